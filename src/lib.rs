@@ -1,0 +1,32 @@
+//! Learns a multirotor's parameters from a recorded flight.
+//!
+//! The rigid body that everything stands on (numbers in brackets are equations of
+//! "Experimental Parameter Identifications of a Quadrotor by Using an Optimized Trajectory",
+//! IEEE Access 2020, 10.1109/ACCESS.2020.3023643):
+//!
+//! ```text
+//! m v' + m S(w) v + m g R^T e_z = [0 0 Fz]     (1)   physics
+//! I w' + S(w) I w = tau                        (2)   physics
+//! Phi(v, w, eta, v', w') Theta = F             (11)  regression
+//! Theta = [m Ixx Ixy Ixz Iyy Iyz Izz]                estimate
+//! F = [Fz tau_phi tau_theta tau_psi]                 vehicle (from the actuators)
+//! ```
+//!
+//! Each module is one stage, made of functions from values to values:
+//! `log -> signals -> regression -> estimate`, and `simulate`, which never sees an estimate.
+//!
+//! Inside: body x forward, y left, z up; world north, west, up; SI units, radians, seconds of the
+//! vehicle's own clock from the recording's start; quaternions w x y z, body to world.
+
+pub mod config;
+pub mod estimate;
+pub mod frames;
+pub mod log;
+pub mod physics;
+pub mod regression;
+pub mod report;
+pub mod signals;
+pub mod simulate;
+pub mod trajectory;
+pub mod units;
+pub mod vehicle;

@@ -1,0 +1,5 @@
+//! From bytes to a [`Recording`].
+
+mod recording;
+
+pub use recording::{Autopilot, Quantity, Recording, Stream, StreamKey};

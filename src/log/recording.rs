@@ -1,0 +1,121 @@
+//! A flight as typed streams on the vehicle's own clock.
+
+use std::collections::BTreeMap;
+
+/// What a stream holds. Units SI, body FLU, world NWU; the width is the number of values a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Quantity {
+    /// quaternion w x y z, body to world (4)
+    Attitude,
+    /// roll and yaw only, rad, where pitch is not logged (2)
+    RollYaw,
+    /// body rates, rad/s (3)
+    AngularRate,
+    /// what an accelerometer feels, body, m/s^2, about +9.81 on z in hover (3)
+    SpecificForce,
+    /// world acceleration without gravity, m/s^2 (3)
+    WorldAcceleration,
+    /// world, m (3)
+    Position,
+    /// world, m/s (3)
+    Velocity,
+    /// actuator outputs as recorded: 0..1 or microseconds (one a channel)
+    ActuatorCommand,
+    /// actuator outputs before the firmware's battery correction (one a channel)
+    ActuatorDemand,
+    /// measured rotor speed, rad/s (one a rotor)
+    RotorSpeed,
+    /// V (1)
+    BatteryVoltage,
+    /// A (1)
+    BatteryCurrent,
+    /// commanded world position, m (3)
+    PositionSetpoint,
+    /// commanded world velocity, m/s (3)
+    VelocitySetpoint,
+    /// commanded world acceleration, m/s^2 (3)
+    AccelerationSetpoint,
+    /// commanded yaw about up, rad (1)
+    YawSetpoint,
+    /// commanded attitude, quaternion w x y z (4)
+    AttitudeSetpoint,
+    /// commanded collective thrust, 0..1 (1)
+    ThrustSetpoint,
+    /// MAV_LANDED_STATE as a number: 1 on ground, 2 in air, 3 taking off, 4 landing (1)
+    LandedState,
+    /// 1 armed, 0 disarmed (1)
+    Armed,
+    /// autopilot's custom mode number (1)
+    Mode,
+}
+
+/// One stream: which quantity, from which message, of which instance.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct StreamKey {
+    /// what it holds
+    pub quantity: Quantity,
+    /// message or file column group that it came from, such as `HIGHRES_IMU`
+    pub source: &'static str,
+    /// port, index or sensor number; 0 where there is one
+    pub instance: u8,
+}
+
+/// Samples in time order. Vehicle clock, seconds from the recording's start.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Stream {
+    /// s
+    pub time_s: Vec<f64>,
+    /// values a sample
+    pub width: usize,
+    /// `width` values a sample, one after the other; NaN where a single value is missing
+    pub values: Vec<f64>,
+}
+
+impl Stream {
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.time_s.len()
+    }
+
+    /// No samples.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.time_s.is_empty()
+    }
+
+    /// The values of one sample.
+    #[must_use]
+    pub fn sample(&self, index: usize) -> &[f64] {
+        &self.values[index * self.width..(index + 1) * self.width]
+    }
+}
+
+/// A flight of one vehicle.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Recording {
+    /// all streams
+    pub streams: BTreeMap<StreamKey, Stream>,
+    /// the vehicle's parameters as far as they were sent
+    pub parameters: BTreeMap<String, f64>,
+    /// which autopilot wrote it
+    pub autopilot: Autopilot,
+    /// times at which the vehicle's clock started anew (reboot); no flight segment may span one
+    pub clock_resets_s: Vec<f64>,
+    /// what the vehicle said
+    pub texts: Vec<(f64, String)>,
+}
+
+/// Which software flew.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Autopilot {
+    /// not said in the recording (CSV)
+    #[default]
+    Unknown,
+    /// PX4
+    Px4,
+    /// ArduPilot
+    ArduPilot,
+    /// another MAVLink autopilot
+    Other,
+}
