@@ -38,10 +38,14 @@ impl WeakKernel {
             }
             let sign = if order % 2 == 0 { 1.0 } else { -1.0 };
             *taps = (0..=2 * half_count).map(|i| sign * bump_derivative(offset(i) / h, order)).collect();
-            if order == 2 {
-                // no response to a constant: the discrete sum of phi'' is not exactly zero
-                let mean = taps.iter().sum::<f64>() / taps.len() as f64;
-                taps.iter_mut().for_each(|tap| *tap -= mean);
+            // a sampled phi'' still answers a constant, a sampled phi''' a slope: taken out
+            if order >= 2 {
+                let power = i32::from(order == 3);
+                let s = |i: usize| offset(i) / h;
+                let shape = |i: usize| s(i).powi(power) * bump_derivative(s(i), 0);
+                let answer: f64 = taps.iter().enumerate().map(|(i, tap)| tap * s(i).powi(power)).sum();
+                let scale: f64 = (0..=2 * half_count).map(|i| shape(i) * s(i).powi(power)).sum();
+                taps.iter_mut().enumerate().for_each(|(i, tap)| *tap -= answer / scale * shape(i));
             }
             let power = i32::try_from(order).unwrap_or(0);
             let moment: f64 =
