@@ -1,1 +1,5 @@
-//! placeholder
+//! Linear regression models of the rigid body: what multiplies the parameters.
+
+mod standard;
+
+pub use standard::{BodyKinematics, standard_regressor};
