@@ -23,6 +23,8 @@ pub enum Quantity {
     ActuatorCommand,
     /// actuator outputs before the firmware's battery correction (one a channel)
     ActuatorDemand,
+    /// force and torque on the body where the log holds them: Fz, tau_x, tau_y, tau_z; N, N m (4)
+    Wrench,
     /// measured rotor speed, rad/s (one a rotor)
     RotorSpeed,
     /// V (1)
