@@ -24,12 +24,12 @@ pub fn standard_regressor(kinematics: &BodyKinematics) -> SMatrix<f64, 4, 7> {
     let (dp, dq, dr) =
         (kinematics.omega_dot_rad_s2.x, kinematics.omega_dot_rad_s2.y, kinematics.omega_dot_rad_s2.z);
     #[rustfmt::skip]
-    let phi = SMatrix::<f64, 4, 7>::new(
+    let phi = SMatrix::<f64, 4, 7>::from_row_slice(&[
         kinematics.specific_force_z_m_s2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
         0.0, dp, dq - p * r, dr + p * q, -q * r, q * q - r * r, q * r,
         0.0, p * r, dp + q * r, r * r - p * p, dq, dr - p * q, -p * r,
         0.0, -p * q, p * p - q * q, dp - q * r, p * q, dq + p * r, dr,
-    );
+    ]);
     phi
 }
 
