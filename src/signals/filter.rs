@@ -100,7 +100,7 @@ impl WindowedFir {
     /// `None` for an even or zero length or a cut-off that is not in `0..rate/2`.
     #[must_use]
     pub fn new(length: usize, cutoff_hz: f64, sample_rate_hz: f64) -> Option<Self> {
-        if length % 2 == 0 || !(cutoff_hz >= 0.0 && cutoff_hz < 0.5 * sample_rate_hz) {
+        if length.is_multiple_of(2) || !(cutoff_hz >= 0.0 && cutoff_hz < 0.5 * sample_rate_hz) {
             return None;
         }
         let middle = (length / 2) as f64;
