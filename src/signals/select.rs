@@ -61,11 +61,11 @@ pub fn is_live(stream: &Stream) -> bool {
 /// The best live stream of a quantity that satisfies `fits`: among those within a factor of 1.6 of
 /// the fastest, the first of its quantity's order of preference.
 #[must_use]
-pub fn best<'a>(
-    recording: &'a Recording,
+pub fn best(
+    recording: &Recording,
     quantity: Quantity,
     fits: impl Fn(&Stream) -> bool,
-) -> Option<(&'a StreamKey, &'a Stream)> {
+) -> Option<(&StreamKey, &Stream)> {
     let candidates: Vec<(&StreamKey, &Stream)> = recording
         .streams
         .iter()
