@@ -8,8 +8,10 @@ mod align;
 mod condition;
 mod filter;
 mod grid;
+mod latency;
 mod noise;
 mod select;
+mod spectrum;
 mod usable;
 mod weak;
 
@@ -20,8 +22,10 @@ pub use align::StreamOffset;
 pub use condition::{ConditionSettings, Quality, Reference, Signals, ThrustPreference, condition, stride};
 pub use filter::{Butterworth, FilterPair, WindowedFir, central_difference};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
+pub use latency::{ActuationLatency, delayed_wrench};
 pub use noise::{median, white_level};
 pub use select::{best, is_live, mean_rate_hz, median_period_s};
+pub use spectrum::highest_harmonic_hz;
 pub use usable::Usable;
 pub use weak::{MAX_ORDER, WeakKernel};
 
