@@ -1,5 +1,7 @@
 //! Every vehicle file at hand loads: those shipped in `configs/` and those beside the repository.
 
+#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+
 mod support;
 
 use mavid::config::{load_vehicle, parse_vehicle, read_vehicle, vehicle_to_toml};
