@@ -1,10 +1,12 @@
 //! Configuration files: what the user wrote (TOML, unknown keys refused), then what it means (checked, SI).
 
 mod check;
+mod csv_mapping;
 mod vehicle;
 mod vehicle_file;
 mod vehicle_writer;
 
+pub use csv_mapping::{default_csv_mapping, load_csv_mapping, parse_csv_mapping};
 pub use vehicle::{LoadedVehicle, ModelTables, load_vehicle, parse_vehicle, read_vehicle};
 pub use vehicle_writer::vehicle_to_toml;
 

@@ -37,10 +37,9 @@ pub fn recommend(
     let (method, chosen, why) = choose(plain, robust, instruments);
     let mut estimated = Estimated::of(chosen);
     let made_physical = !is_physical(&estimated.theta);
-    if made_physical
-        && let Some(theta) = nearest_physical(&estimated.theta, &estimated.covariance, nominal) {
-            estimated.theta = theta;
-        }
+    if made_physical && let Some(theta) = nearest_physical(&estimated.theta, &estimated.covariance, nominal) {
+        estimated.theta = theta;
+    }
     Recommendation { method, why, result: MethodResult::new(method, &estimated, nominal), made_physical }
 }
 
@@ -50,14 +49,15 @@ fn choose<'a>(
     instruments: Option<&'a WeakEstimate>,
 ) -> (Method, &'a WeakEstimate, String) {
     if let Some(iv) = instruments
-        && let Some((index, sigma)) = hausman(plain, iv) {
-            let why = format!(
-                "the commanded trajectory as instrument moves {} by {sigma:.1} standard errors: noise in the \
+        && let Some((index, sigma)) = hausman(plain, iv)
+    {
+        let why = format!(
+            "the commanded trajectory as instrument moves {} by {sigma:.1} standard errors: noise in the \
                  regressors biases the other methods",
-                NAMES[index]
-            );
-            return (Method::WeakIv, iv, why);
-        }
+            NAMES[index]
+        );
+        return (Method::WeakIv, iv, why);
+    }
     if let Some(robust) = robust.filter(|robust| robust.held_back > OUTLIER_SHARE) {
         let why = format!(
             "{:.1} % of the rows are outliers that ordinary least squares would follow",

@@ -9,6 +9,7 @@
 mod builder;
 mod clock;
 mod crc;
+pub mod csv;
 mod decode;
 mod error;
 mod frame;
