@@ -28,7 +28,9 @@ pub enum PhysicsError {
         mass_kg: f64,
     },
     /// inertia without inverse or not positive definite
-    #[error("inertia must be symmetric and positive definite, got {inertia_kg_m2:?} kg m^2 (xx xy xz yy yz zz)")]
+    #[error(
+        "inertia must be symmetric and positive definite, got {inertia_kg_m2:?} kg m^2 (xx xy xz yy yz zz)"
+    )]
     Inertia {
         /// xx xy xz yy yz zz of what came, kg m^2
         inertia_kg_m2: [f64; 6],
@@ -40,7 +42,9 @@ pub enum PhysicsError {
         count: usize,
     },
     /// the propulsion does not give a finite thrust
-    #[error("thrust of one rotor at full command must be positive and finite, got {thrust_n} N (a `speed` law needs a thrust coefficient)")]
+    #[error(
+        "thrust of one rotor at full command must be positive and finite, got {thrust_n} N (a `speed` law needs a thrust coefficient)"
+    )]
     Thrust {
         /// what came, N
         thrust_n: f64,

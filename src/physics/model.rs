@@ -2,7 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::{Airframe, Condition, Effect, MAX_ROTORS, Own, PhysicsError, RigidBodyModel, Rotors, State, Wrench};
+use super::{
+    Airframe, Condition, Effect, MAX_ROTORS, Own, PhysicsError, RigidBodyModel, Rotors, State, Wrench,
+};
 use crate::vehicle::Vehicle;
 
 /// What comes from outside at one instant.

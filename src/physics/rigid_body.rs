@@ -107,8 +107,8 @@ mod tests {
             + skew(&w) * v * model.mass_kg
             + state.attitude.inverse_transform_vector(&Vector3::z()) * model.weight_n();
         assert!((left - wrench.force_n).norm() < 1e-12);
-        let left = model.inertia_kg_m2 * change.angular_acceleration_rad_s2
-            + skew(&w) * model.inertia_kg_m2 * w;
+        let left =
+            model.inertia_kg_m2 * change.angular_acceleration_rad_s2 + skew(&w) * model.inertia_kg_m2 * w;
         assert!((left - wrench.torque_nm).norm() < 1e-12);
     }
 
