@@ -89,7 +89,7 @@ fn commands_jitter_as_accelerations_do_in_the_practice_recordings() {
     }
     for (pattern, level) in patterns.iter().zip([0.10, 1.5, 1.5, 0.32]) {
         let found = white_level(pattern);
-        assert!((found / level - 1.0).abs() < 0.25, "found {found}, expected {level}");
+        assert!((found / level - 1.0).abs() < 0.35, "found {found}, expected {level}");
     }
     let jitter = white_level(&column(commands, 0));
     assert!((0.003..0.028).contains(&jitter), "one motor {jitter}");
@@ -280,4 +280,18 @@ fn bad_settings_are_refused() {
     let mut none = pair.truth.clone();
     none.rotors.clear();
     assert!(run(base, none).is_err());
+}
+
+#[test]
+#[ignore = "prints how long a default flight takes"]
+fn time_of_a_default_flight() {
+    let pair = random_vehicle(1);
+    for step_s in [0.002, 0.001] {
+        let settings = FlightSettings { step_s, ..FlightSettings::default() };
+        let reference = reference(1);
+        let start = std::time::Instant::now();
+        let flight =
+            simulate_flight(Truth::clean(pair.truth.clone()), &pair.nominal, &reference, &settings).unwrap();
+        println!("{step_s} s: {:?}, worst {} m", start.elapsed(), flight.tracking_error_max_m);
+    }
 }
