@@ -69,7 +69,16 @@ impl Default for FlightSettings {
 }
 
 /// Something that no effect accounts for, as force and torque (body) at a time and state.
-pub struct Disturbance(pub Box<dyn Fn(f64, &State) -> Wrench + Send + Sync>);
+pub struct Disturbance(DisturbanceFn);
+
+type DisturbanceFn = Box<dyn Fn(f64, &State) -> Wrench + Send + Sync>;
+
+impl Disturbance {
+    /// From a function of time (s) and state.
+    pub fn new(push: impl Fn(f64, &State) -> Wrench + Send + Sync + 'static) -> Self {
+        Self(Box::new(push))
+    }
+}
 
 impl fmt::Debug for Disturbance {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -131,21 +140,21 @@ pub fn simulate_flight(
     let mut logger =
         Logger::new(&settings.telemetry, rotor_count, settings.duration_s, settings.seed ^ LOG_SEED)?;
     let controller = CascadeController::new(nominal, settings.gains, settings.command_min)?;
-    let mut loop_ = Loop::new(controller, settings, &truth.vehicle, reference)?;
+    let mut flight_loop = Loop::new(controller, settings, &truth.vehicle, reference)?;
     let start = reference.at(0.0);
     let state = State::at_rest(start.position_m, start.yaw_rad);
-    let mut plant = Plant::new(&model, push, &state, &loop_.input(&model, (0, &ticks)))?;
+    let mut plant = Plant::new(&model, push, &state, &flight_loop.input(&model, 0))?;
     for step in 0..ticks.steps {
         let time_s = step as f64 * settings.step_s;
         if step.is_multiple_of(ticks.steps_a_tick) {
-            loop_.control(time_s, &plant.state(), (step, &ticks))?;
+            flight_loop.control(time_s, &plant.state(), step)?;
         }
-        let input = loop_.input(&model, (step, &ticks));
-        logger.log(&loop_.measured(&model, (&plant.state(), &plant.evaluate(&input)), &input));
+        let input = flight_loop.input(&model, step);
+        logger.log(&flight_loop.measured(&model, (&plant.state(), &plant.evaluate(&input)), &input));
         plant.step(&input, settings.step_s);
     }
-    let saturated = loop_.saturated_ticks as f64 / (ticks.steps / ticks.steps_a_tick).max(1) as f64;
-    let tracking_error_max_m = loop_.tracking_error_max_m;
+    let saturated = flight_loop.saturated_ticks as f64 / (ticks.steps / ticks.steps_a_tick).max(1) as f64;
+    let tracking_error_max_m = flight_loop.tracking_error_max_m;
     Ok(SimulatedFlight { recording: logger.finish(), truth, tracking_error_max_m, saturated })
 }
 
@@ -156,6 +165,7 @@ const LOG_SEED: u64 = 0x006c_6f67_6e6f_6973;
 const LOST_M: f64 = 100.0;
 
 /// Durations as counts of steps.
+#[derive(Debug, Clone, Copy)]
 struct Ticks {
     steps: usize,
     steps_a_tick: usize,
@@ -175,6 +185,7 @@ impl Ticks {
 struct Loop<'a> {
     controller: CascadeController,
     settings: &'a FlightSettings,
+    ticks: Ticks,
     propulsion: Propulsion,
     reference: &'a Reference,
     noise: NoiseLevels,
@@ -204,6 +215,7 @@ impl<'a> Loop<'a> {
         Ok(Self {
             controller,
             settings,
+            ticks,
             propulsion: vehicle.propulsion,
             reference,
             noise: settings
@@ -221,17 +233,12 @@ impl<'a> Loop<'a> {
     }
 
     /// One control period begins: a new estimate, a new command.
-    fn control(
-        &mut self,
-        time_s: f64,
-        state: &State,
-        (step, ticks): (usize, &Ticks),
-    ) -> Result<(), SimulateError> {
+    fn control(&mut self, time_s: f64, state: &State, step: usize) -> Result<(), SimulateError> {
         self.setpoint = self.reference.at(time_s);
         self.estimate = self.noise.measure(&mut self.rng, state);
         let commands =
             self.controller.commands(&self.setpoint, &self.estimate, self.settings.control_period_s);
-        self.newest = (step / ticks.steps_a_tick) % self.sent.len();
+        self.newest = (step / self.ticks.steps_a_tick) % self.sent.len();
         self.sent[self.newest] = commands;
         let bounds = (self.settings.command_min, 1.0);
         let at_bound = commands[..self.rotor_count].iter().any(|u| *u <= bounds.0 || *u >= bounds.1);
@@ -242,10 +249,10 @@ impl<'a> Loop<'a> {
     }
 
     /// What acts on the vehicle during a step: the command that was sent one transport delay ago.
-    fn input(&self, model: &Model, (step, ticks): (usize, &Ticks)) -> Input {
-        let now = step / ticks.steps_a_tick;
-        let acting = match step.checked_sub(ticks.delay_steps) {
-            Some(then) => (then / ticks.steps_a_tick) % self.sent.len(),
+    fn input(&self, model: &Model, step: usize) -> Input {
+        let now = step / self.ticks.steps_a_tick;
+        let acting = match step.checked_sub(self.ticks.delay_steps) {
+            Some(then) => (then / self.ticks.steps_a_tick) % self.sent.len(),
             // nothing has arrived yet: this slot still holds the hover command
             None => (now + 1) % self.sent.len(),
         };
