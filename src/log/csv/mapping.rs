@@ -74,11 +74,14 @@ pub fn column_count(quantity: Quantity, form: AttitudeForm) -> Option<usize> {
         | Quantity::Velocity
         | Quantity::PositionSetpoint
         | Quantity::VelocitySetpoint
+        | Quantity::AngularRateSetpoint
         | Quantity::AccelerationSetpoint => Some(3),
+        Quantity::Wrench => Some(4),
         Quantity::ActuatorCommand | Quantity::ActuatorDemand | Quantity::RotorSpeed => None,
         Quantity::BatteryVoltage
         | Quantity::BatteryCurrent
         | Quantity::YawSetpoint
+        | Quantity::YawRateSetpoint
         | Quantity::ThrustSetpoint
         | Quantity::LandedState
         | Quantity::Armed
