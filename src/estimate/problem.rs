@@ -131,11 +131,13 @@ impl Problem {
     fn covariance(&self, bread: &DMatrix<f64>, scaled: &Scaled<'_>) -> DMatrix<f64> {
         let by_residual = bread * self.meat_of_residuals(scaled) * bread.transpose();
         let by_score = bread * self.meat_of_scores(scaled) * bread.transpose();
+        // the autocovariances are not tapered: a variance may come out negative, and then says nothing
+        let sound = (0..self.parameters()).all(|i| by_residual[(i, i)] >= 0.0);
         let excess: f64 = (0..self.parameters())
             .filter(|&i| by_residual[(i, i)] > 0.0)
             .map(|i| by_score[(i, i)] / by_residual[(i, i)] - 1.0)
             .sum();
-        if excess > 0.0 { by_score } else { by_residual }
+        if excess > 0.0 || !sound { by_score } else { by_residual }
     }
 
     fn meat_of_residuals(&self, scaled: &Scaled<'_>) -> DMatrix<f64> {

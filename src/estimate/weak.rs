@@ -5,10 +5,16 @@ use super::theta::{THETA, Theta, ThetaCovariance};
 use crate::regression::{CHANNELS, WeakRows};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
-/// Columns: Theta, latency, three trim torques, and where asked for the second-order term of a delay.
+/// Columns: Theta, latency of the torques, latency of the thrust, three trim torques, three damping
+/// coefficients, and where asked for the second-order term of a delay.
+///
+/// Thrust has a latency of its own because drag along z looks like a (negative) one; damping is there
+/// because it, too, would be taken for a negative latency of the torques.
 const LATENCY: usize = THETA;
-const TRIM: usize = THETA + 1;
-const CURVATURE: usize = THETA + 4;
+const FORCE_LATENCY: usize = THETA + 1;
+const TRIM: usize = THETA + 2;
+const DAMPING: usize = THETA + 5;
+const CURVATURE: usize = THETA + 8;
 
 /// How the body follows the recorded command.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -170,17 +176,23 @@ fn design(
 ) -> DMatrix<f64> {
     let mut x = DMatrix::zeros(rows, columns);
     let series = |order: usize| flights.iter().flat_map(move |flight| flight.regressor[order].iter());
-    for (row, ((phi, first), second)) in series(0).zip(series(1)).zip(series(2)).enumerate() {
+    let rates = flights.iter().flat_map(|flight| flight.rate.iter());
+    for (row, (((phi, first), second), rate)) in
+        series(0).zip(series(1)).zip(series(2)).zip(rates).enumerate()
+    {
         for parameter in 0..THETA {
             x[(row, parameter)] = phi[(channel, parameter)];
+        }
+        if channel == 0 {
+            x[(row, FORCE_LATENCY)] = dot_row(first, channel, theta);
+            continue;
         }
         x[(row, LATENCY)] = dot_row(first, channel, theta);
         if columns > CURVATURE {
             x[(row, CURVATURE)] = dot_row(second, channel, theta);
         }
-        if channel > 0 {
-            x[(row, TRIM + channel - 1)] = 1.0;
-        }
+        x[(row, TRIM + channel - 1)] = 1.0;
+        x[(row, DAMPING + channel - 1)] = rate[channel - 1];
     }
     x
 }

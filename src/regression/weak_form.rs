@@ -41,7 +41,7 @@ pub struct VerticalMotion {
 }
 
 /// Weak-form rows of one flight.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct WeakRows {
     /// s, vehicle clock, of each row
     pub time_s: Vec<f64>,
@@ -49,6 +49,8 @@ pub struct WeakRows {
     pub output: Vec<Vector4<f64>>,
     /// `D Phi_a + K Phi_b` and its first two time derivatives
     pub regressor: [Vec<SMatrix<f64, 4, 7>>; 3],
+    /// `K(w)`, rad/s: what angular damping acts on
+    pub rate: Vec<Vector3<f64>>,
     /// rows without a break between them
     pub runs: Vec<std::ops::Range<usize>>,
 }
@@ -163,7 +165,7 @@ fn kinematic(signals: &Signals, gravity_m_s2: f64) -> Option<(Vec<f64>, Vec<f64>
 #[must_use]
 pub fn weak_rows(signals: &Signals, motion: &WeakMotion, kernel: &WeakKernel) -> WeakRows {
     let stride = stride(signals.grid.step_s);
-    let mut rows = WeakRows { time_s: vec![], output: vec![], regressor: Default::default(), runs: vec![] };
+    let mut rows = WeakRows::default();
     let wrench: [Vec<f64>; CHANNELS] =
         std::array::from_fn(|channel| signals.wrench.iter().map(|w| w[channel]).collect());
     let products = motion.omega.as_deref().map(GyroscopicColumns::from);
@@ -172,6 +174,7 @@ pub fn weak_rows(signals: &Signals, motion: &WeakMotion, kernel: &WeakKernel) ->
         for center in (run.start + kernel.half_count..run.end - kernel.half_count).step_by(stride) {
             rows.time_s.push(signals.grid.time_s(center));
             rows.output.push(Vector4::from_fn(|channel, _| kernel.at(0, &wrench[channel], center)));
+            rows.rate.push(products.as_ref().map_or_else(Vector3::zeros, |p| p.rate(kernel, center)));
             for order in 0..3 {
                 let mut phi = SMatrix::<f64, 4, 7>::zeros();
                 if let Some(products) = &products {
@@ -202,6 +205,10 @@ impl GyroscopicColumns {
             rates: std::array::from_fn(|i| omega.iter().map(|w| w[i]).collect()),
             products: RATE_PAIRS.map(|(i, j)| omega.iter().map(|w| w[i] * w[j]).collect()),
         }
+    }
+
+    fn rate(&self, kernel: &WeakKernel, center: usize) -> Vector3<f64> {
+        Vector3::from_fn(|i, _| kernel.at(0, &self.rates[i], center))
     }
 
     /// `D^(order+1) Phi_a + D^order Phi_b` without the force row.
