@@ -4,6 +4,8 @@
 mod controller;
 mod flight;
 pub mod integrator;
+mod logger;
+pub mod pid;
 mod plant;
 mod reference;
 mod sensors;
@@ -13,7 +15,7 @@ pub use controller::{CascadeController, CascadeGains, Setpoint};
 pub use flight::{Disturbance, FlightSettings, SimulatedFlight, Truth, simulate_flight};
 pub use plant::{PLANT_STATES, Plant};
 pub use reference::{RandomTrajectory, Reference};
-pub use sensors::{Measured, NoiseLevels, StreamSkew, TelemetryRates, TelemetrySettings};
+pub use sensors::{NoiseLevels, StreamSkew, TelemetryRates, TelemetrySettings};
 pub use vehicles::{VehiclePair, random_vehicle};
 
 use std::time::Duration;
@@ -67,6 +69,9 @@ pub enum SimulateError {
         least_s: f64,
     },
 }
+
+/// Farther from the reference, or from the origin, the flight is lost: crashed, or an unstable loop.
+const LOST_M: f64 = 100.0;
 
 /// A setting that must be positive and finite.
 fn positive(name: &'static str, value: f64) -> Result<f64, SimulateError> {

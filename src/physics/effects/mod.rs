@@ -20,3 +20,6 @@ pub static ALL: &[&dyn Effect] = &[&LinearDrag, &MotorLag, &AngularDamping, &Ste
 pub fn by_id(id: &str) -> Option<&'static dyn Effect> {
     ALL.iter().copied().find(|effect| effect.id() == id)
 }
+
+#[cfg(test)]
+mod tests;

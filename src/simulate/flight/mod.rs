@@ -7,10 +7,11 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
 use super::controller::{CascadeController, CascadeGains, Setpoint};
+use super::logger::{Logger, Measured};
 use super::plant::{Plant, Push};
 use super::reference::Reference;
-use super::sensors::{Logger, Measured, NoiseLevels, TelemetrySettings};
-use super::{SimulateError, not_negative, positive, whole_steps};
+use super::sensors::{NoiseLevels, TelemetrySettings};
+use super::{LOST_M, SimulateError, not_negative, positive, whole_steps};
 use crate::log::Recording;
 use crate::physics::effects::MotorLag;
 use crate::physics::{ActiveEffect, Evaluation, Input, MAX_ROTORS, Model, State, Wrench};
@@ -160,9 +161,6 @@ pub fn simulate_flight(
 
 /// Keeps the log's noise apart from the controller's.
 const LOG_SEED: u64 = 0x006c_6f67_6e6f_6973;
-
-/// Beyond this the flight has crashed or the loop is unstable.
-const LOST_M: f64 = 100.0;
 
 /// Durations as counts of steps.
 #[derive(Debug, Clone, Copy)]
