@@ -55,7 +55,7 @@ fn every_shipped_vehicle_loads_and_can_hover() {
         let hover = vehicle.propulsion.command_from_thrust(share_n);
         assert!((0.4..0.85).contains(&hover), "{}: hover at u = {hover}", path.display());
     }
-    assert_eq!(count, 4);
+    assert!(count >= 4, "{count}");
 }
 
 #[test]
