@@ -23,6 +23,7 @@ pub mod estimate;
 pub mod frames;
 pub mod log;
 pub mod physics;
+pub mod plan;
 pub mod regression;
 pub mod report;
 pub mod signals;

@@ -1,0 +1,8 @@
+//! The optimized excitation trajectory.
+pub mod bounds;
+pub mod criterion;
+pub mod descent;
+pub mod information;
+pub mod quadratic;
+pub mod sensitivity;
+pub mod space;

@@ -1,0 +1,312 @@
+//! A strictly convex quadratic programme by the dual active-set method of Goldfarb and Idnani (1983).
+//!
+//! The planner's subproblems have some 35 unknowns, many dense rows and few active ones. The dual
+//! method starts at the unconstrained minimum and pays for active rows only, returns exact vertices,
+//! and needs no scaling or tolerance to be chosen; an interior-point solver would factor all rows at
+//! every step.
+
+use nalgebra::{DMatrix, DVector};
+
+/// `minimise 1/2 z' diag(h) z + c' z` subject to `rows z <= limits`.
+#[derive(Debug, Clone, Default)]
+pub struct QuadraticProgram {
+    /// `h`, all positive
+    pub curvature: Vec<f64>,
+    /// `c`
+    pub slope: Vec<f64>,
+    /// row-major, as wide as `slope`
+    pub rows: Vec<f64>,
+    /// one a row
+    pub limits: Vec<f64>,
+}
+
+/// Where the programme ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum QuadraticOutcome {
+    /// The minimum.
+    Solved(DVector<f64>),
+    /// No point keeps all rows.
+    Infeasible,
+    /// Rounding kept the method from ending.
+    Stalled,
+}
+
+/// Active set with `J = L^-T Q` and the triangular factor `R` of Goldfarb and Idnani.
+struct ActiveSet {
+    inverse: DMatrix<f64>,
+    factor: DMatrix<f64>,
+    rows: Vec<usize>,
+    multipliers: Vec<f64>,
+}
+
+impl QuadraticProgram {
+    /// Adds `row z <= limit`.
+    pub fn push(&mut self, row: impl IntoIterator<Item = f64>, limit: f64) {
+        self.rows.extend(row);
+        self.limits.push(limit);
+    }
+
+    fn row(&self, index: usize) -> &[f64] {
+        let width = self.slope.len();
+        &self.rows[index * width..(index + 1) * width]
+    }
+
+    /// How far `z` is beyond row `index`.
+    fn excess(&self, index: usize, z: &DVector<f64>) -> f64 {
+        dot(self.row(index), z.as_slice()) - self.limits[index]
+    }
+
+    fn worst_row(&self, z: &DVector<f64>, tolerance: f64) -> Option<(usize, f64)> {
+        let mut worst = None;
+        let mut largest = tolerance;
+        for index in 0..self.limits.len() {
+            let excess = self.excess(index, z);
+            if excess > largest {
+                largest = excess;
+                worst = Some((index, excess));
+            }
+        }
+        worst
+    }
+
+    /// Solves the programme; rows are kept to `tolerance` (in the units of their limits).
+    #[must_use]
+    pub fn solve(&self, tolerance: f64) -> QuadraticOutcome {
+        let mut z = DVector::from_iterator(
+            self.slope.len(),
+            self.slope.iter().zip(&self.curvature).map(|(c, h)| -c / h),
+        );
+        let mut active = ActiveSet::new(&self.curvature);
+        for _ in 0..20 * self.slope.len() {
+            let Some((index, _)) = self.worst_row(&z, tolerance) else {
+                return QuadraticOutcome::Solved(z);
+            };
+            if active.rows.contains(&index) {
+                return QuadraticOutcome::Stalled;
+            }
+            if !self.enforce(index, &mut z, &mut active) {
+                return QuadraticOutcome::Infeasible;
+            }
+        }
+        QuadraticOutcome::Stalled
+    }
+
+    /// Moves to where row `index` holds with equality, dropping rows that stand in the way.
+    /// False where the row contradicts those that stay.
+    fn enforce(&self, index: usize, z: &mut DVector<f64>, active: &mut ActiveSet) -> bool {
+        // the method's constraints read n' z >= b
+        let normal: Vec<f64> = self.row(index).iter().map(|value| -value).collect();
+        let mut multiplier = 0.0;
+        for _ in 0..=2 * self.slope.len() {
+            let projected = active.project(&normal);
+            let (direction, dual) = (active.primal_step(&projected), active.dual_step(&projected));
+            let along = dot(&normal, direction.as_slice());
+            let blocking = active.blocking(&dual);
+            let to_drop = blocking.map_or(f64::INFINITY, |(_, step)| step);
+            let scale = dot(&normal, &normal);
+            let to_row = if along > 1e-13 * scale { self.excess(index, z) / along } else { f64::INFINITY };
+            let step = to_drop.min(to_row);
+            if !step.is_finite() {
+                return false;
+            }
+            if to_row.is_finite() {
+                z.axpy(step, &direction, 1.0);
+            }
+            for (value, change) in active.multipliers.iter_mut().zip(&dual) {
+                *value -= step * change;
+            }
+            multiplier += step;
+            if to_row <= to_drop {
+                active.add(index, multiplier, projected);
+                return true;
+            }
+            if let Some((position, _)) = blocking {
+                active.remove(position);
+            }
+        }
+        false
+    }
+}
+
+impl ActiveSet {
+    fn new(curvature: &[f64]) -> Self {
+        let width = curvature.len();
+        let inverse =
+            DMatrix::from_diagonal(&DVector::from_iterator(width, curvature.iter().map(|h| 1.0 / h.sqrt())));
+        let factor = DMatrix::zeros(width, width);
+        Self { inverse, factor, rows: Vec::new(), multipliers: Vec::new() }
+    }
+
+    /// `J' n`
+    fn project(&self, normal: &[f64]) -> Vec<f64> {
+        self.inverse.column_iter().map(|column| dot(column.as_slice(), normal)).collect()
+    }
+
+    /// The part of the step that leaves the active rows as they are.
+    fn primal_step(&self, projected: &[f64]) -> DVector<f64> {
+        let mut step = DVector::zeros(projected.len());
+        for (column, share) in projected.iter().enumerate().skip(self.rows.len()) {
+            step.axpy(*share, &self.inverse.column(column), 1.0);
+        }
+        step
+    }
+
+    /// `R^-1 d`: how the multipliers of the active rows fall per unit of the new one.
+    fn dual_step(&self, projected: &[f64]) -> Vec<f64> {
+        let count = self.rows.len();
+        let mut step = projected[..count].to_vec();
+        for row in (0..count).rev() {
+            for column in row + 1..count {
+                step[row] -= self.factor[(row, column)] * step[column];
+            }
+            step[row] /= self.factor[(row, row)];
+        }
+        step
+    }
+
+    /// The active row whose multiplier first falls to zero, and the step at which it does.
+    fn blocking(&self, dual: &[f64]) -> Option<(usize, f64)> {
+        let falling = dual.iter().enumerate().filter(|(_, change)| **change > 1e-14);
+        falling
+            .map(|(position, change)| (position, self.multipliers[position] / change))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    fn add(&mut self, index: usize, multiplier: f64, mut projected: Vec<f64>) {
+        let count = self.rows.len();
+        for column in (count + 1..projected.len()).rev() {
+            let rotation = Rotation::new(projected[column - 1], projected[column]);
+            (projected[column - 1], projected[column]) = (rotation.length, 0.0);
+            rotation.turn_columns(&mut self.inverse, column - 1);
+        }
+        for (row, value) in projected.iter().enumerate().take(count + 1) {
+            self.factor[(row, count)] = *value;
+        }
+        self.rows.push(index);
+        self.multipliers.push(multiplier);
+    }
+
+    fn remove(&mut self, position: usize) {
+        let count = self.rows.len();
+        self.rows.remove(position);
+        self.multipliers.remove(position);
+        for column in position..count - 1 {
+            for row in 0..=column + 1 {
+                self.factor[(row, column)] = self.factor[(row, column + 1)];
+            }
+            let rotation = Rotation::new(self.factor[(column, column)], self.factor[(column + 1, column)]);
+            (self.factor[(column, column)], self.factor[(column + 1, column)]) = (rotation.length, 0.0);
+            for next in column + 1..count - 1 {
+                let pair = (self.factor[(column, next + 1)], self.factor[(column + 1, next + 1)]);
+                let (upper, lower) = rotation.turn(pair);
+                self.factor[(column, next + 1)] = upper;
+                self.factor[(column + 1, next + 1)] = lower;
+            }
+            rotation.turn_columns(&mut self.inverse, column);
+        }
+    }
+}
+
+/// A plane rotation that brings (`first`, `second`) to (`length`, 0).
+struct Rotation {
+    cos: f64,
+    sin: f64,
+    length: f64,
+}
+
+impl Rotation {
+    fn new(first: f64, second: f64) -> Self {
+        let length = first.hypot(second);
+        if length == 0.0 {
+            return Self { cos: 1.0, sin: 0.0, length };
+        }
+        Self { cos: first / length, sin: second / length, length }
+    }
+
+    fn turn(&self, (first, second): (f64, f64)) -> (f64, f64) {
+        (self.cos * first + self.sin * second, self.cos * second - self.sin * first)
+    }
+
+    /// Turns columns `left` and `left + 1`.
+    fn turn_columns(&self, matrix: &mut DMatrix<f64>, left: usize) {
+        for row in 0..matrix.nrows() {
+            let (first, second) = self.turn((matrix[(row, left)], matrix[(row, left + 1)]));
+            matrix[(row, left)] = first;
+            matrix[(row, left + 1)] = second;
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
+
+    fn solved(program: &QuadraticProgram) -> DVector<f64> {
+        match program.solve(1e-10) {
+            QuadraticOutcome::Solved(z) => z,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_corner_is_found() {
+        // the point of x + y <= 1, x <= 0.2 nearest to (1, 1)
+        let mut program = QuadraticProgram {
+            curvature: vec![1.0, 1.0],
+            slope: vec![-1.0, -1.0],
+            ..QuadraticProgram::default()
+        };
+        program.push([1.0, 1.0], 1.0);
+        program.push([1.0, 0.0], 0.2);
+        assert!((solved(&program) - DVector::from_vec(vec![0.2, 0.8])).norm() < 1e-12);
+    }
+
+    #[test]
+    fn contradiction_is_infeasible() {
+        let mut program = QuadraticProgram {
+            curvature: vec![1.0, 1.0],
+            slope: vec![0.0, 0.0],
+            ..QuadraticProgram::default()
+        };
+        program.push([1.0, 0.0], -1.0);
+        program.push([-1.0, 0.0], -1.0);
+        assert_eq!(program.solve(1e-10), QuadraticOutcome::Infeasible);
+    }
+
+    /// The minimum of a convex programme: feasible, and no feasible point lies downhill. Checked by
+    /// projecting the gradient on random feasible directions.
+    #[test]
+    fn random_programmes_end_at_their_minimum() {
+        let mut random = Pcg64Mcg::seed_from_u64(7);
+        for _ in 0..30 {
+            let (width, count) = (8, 60);
+            let mut program = QuadraticProgram {
+                curvature: (0..width).map(|_| random.random_range(0.01..2.0)).collect(),
+                slope: (0..width).map(|_| random.random_range(-1.0..1.0)).collect(),
+                ..QuadraticProgram::default()
+            };
+            for _ in 0..count {
+                let row: Vec<f64> = (0..width).map(|_| random.random_range(-1.0..1.0)).collect();
+                program.push(row, random.random_range(0.05..0.5));
+            }
+            let z = solved(&program);
+            assert!(program.worst_row(&z, 1e-9).is_none());
+            let value = |z: &DVector<f64>| -> f64 {
+                (0..width).map(|k| 0.5 * program.curvature[k] * z[k] * z[k] + program.slope[k] * z[k]).sum()
+            };
+            for _ in 0..200 {
+                let step = DVector::from_fn(width, |_, _| random.random_range(-0.01..0.01));
+                let other = &z + step;
+                if program.worst_row(&other, 0.0).is_none() {
+                    assert!(value(&other) >= value(&z) - 1e-12);
+                }
+            }
+        }
+    }
+}
