@@ -27,8 +27,6 @@ pub enum Quantity {
     Wrench,
     /// measured rotor speed, rad/s (one a rotor)
     RotorSpeed,
-    /// thrust Fz and torque about body x, y, z where the log holds them directly, N and N m (4)
-    Wrench,
     /// V (1)
     BatteryVoltage,
     /// A (1)
