@@ -50,7 +50,7 @@ impl Check<'_> {
         let size = value.abs();
         let beyond = size.is_finite() && (size > LARGEST || (size > 0.0 && size < SMALLEST));
         let range = if beyond { format!(", of size {SMALLEST:e} to {LARGEST:e}") } else { String::new() };
-        Err(self.refuse(key, format!("{expected}{range}"), value))
+        Err(self.refuse(key, format!("{expected}{range}"), format!("{value:?}")))
     }
 
     /// Finite where it is given.

@@ -413,7 +413,7 @@ spin = "ccw"
             // products of such numbers overflow, and factorisations of infinities do not end
             (
                 vec![BODY, SPEED, &ROTORS.replacen("0.2", "1e200", 1)],
-                vec!["`rotor[0].position`", "of size 1e-18 to 1e12", "came 1000"],
+                vec!["`rotor[0].position`", "of size 1e-18 to 1e12", "came 1e200"],
             ),
             (
                 vec![&BODY.replace("1.5", "1e-320"), SPEED, ROTORS],
