@@ -165,7 +165,7 @@ fn messages_of_step(step: u32, random: &mut Pcg64Mcg) -> Vec<dialect::MavMessage
             actuator: std::array::from_fn(|channel| if channel < 4 { 0.5 + 0.1 * value() } else { 0.0 }),
         }),
     ];
-    if step % 2 == 0 {
+    if step.is_multiple_of(2) {
         messages.push(M::POSITION_TARGET_LOCAL_NED(dialect::POSITION_TARGET_LOCAL_NED_DATA {
             time_boot_ms,
             x: value(),
@@ -193,7 +193,7 @@ fn messages_of_step(step: u32, random: &mut Pcg64Mcg) -> Vec<dialect::MavMessage
             ..Default::default()
         }));
     }
-    if step % 125 == 0 {
+    if step.is_multiple_of(125) {
         messages.push(M::HEARTBEAT(dialect::HEARTBEAT_DATA {
             custom_mode: 6 << 16,
             mavtype: dialect::MavType::MAV_TYPE_QUADROTOR,

@@ -4,7 +4,7 @@
 
 mod support;
 
-use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI, TAU};
 
 use mavid::log::{
     Anchor, Autopilot, ComponentId, Decoder, Event, Quantity, Record, Stamp, SystemId, Vehicle,
@@ -326,13 +326,13 @@ fn rotor_speeds_are_in_radians_a_second() {
         index: 4,
         ..Default::default()
     }));
-    close(&rig.only(Quantity::RotorSpeed), &[628.318_531, -628.318_531, 0.0, 6.283_185]);
+    close(&rig.only(Quantity::RotorSpeed), &[200.0 * PI, -200.0 * PI, 0.0, TAU]);
     assert!(matches!(rig.said[0], Said::Sample { instance: 4, .. }));
     let rig = px4(&M::ESC_TELEMETRY_1_TO_4(dialect::ESC_TELEMETRY_1_TO_4_DATA {
         rpm: [6000, 3000, 0, 60],
         ..Default::default()
     }));
-    close(&rig.only(Quantity::RotorSpeed), &[628.318_531, 314.159_265, 0.0, 6.283_185]);
+    close(&rig.only(Quantity::RotorSpeed), &[200.0 * PI, 100.0 * PI, 0.0, TAU]);
 }
 
 fn battery(cells: &[u16], current_battery: i16, voltages_ext: [u16; 4]) -> M {
@@ -638,7 +638,13 @@ fn a_host_clock_that_jumps_does_not_move_the_vehicles() {
 #[test]
 fn unix_and_boot_stamps_are_put_on_one_clock() {
     let imu = |time_usec| {
-        M::HIGHRES_IMU(dialect::HIGHRES_IMU_DATA { time_usec, zacc: -9.81, ..Default::default() })
+        let fields_updated = dialect::HighresImuUpdatedFlags::all();
+        M::HIGHRES_IMU(dialect::HIGHRES_IMU_DATA {
+            time_usec,
+            zacc: -9.81,
+            fields_updated,
+            ..Default::default()
+        })
     };
     let boot_unix_us = START_US - 10_000_000;
     // tied by what the vehicle says, although the frame is 40 ms late

@@ -178,14 +178,14 @@ impl VehicleClock {
     /// nearest to the last stamp.
     fn unwrapped(&self, raw_us: i64, modulus_us: i64) -> i64 {
         let Some(boot) = self.boot else { return raw_us };
-        let turns = (boot.last_raw_us - raw_us + modulus_us / 2).div_euclid(modulus_us);
-        raw_us + turns.max(0) * modulus_us
+        let behind_us = boot.last_raw_us.saturating_sub(raw_us).saturating_add(modulus_us / 2);
+        raw_us.saturating_add(behind_us.div_euclid(modulus_us).max(0).saturating_mul(modulus_us))
     }
 
     fn advance(&mut self, base: Base, raw_us: i64, host_us: i64) -> Placed {
         let Some(tied) = *self.tied(base) else { return self.tie(base, raw_us, host_us) };
         if tied.continues_with(raw_us, host_us) {
-            let time_us = raw_us + tied.offset_us;
+            let time_us = raw_us.saturating_add(tied.offset_us);
             *self.tied(base) = Some(Tied {
                 last_raw_us: raw_us.max(tied.last_raw_us),
                 last_host_us: host_us,
@@ -211,10 +211,11 @@ impl VehicleClock {
     /// First stamp of a clock: tied by what the vehicle said, else by the host's stamps.
     fn tie(&mut self, base: Base, raw_us: i64, host_us: i64) -> Placed {
         let said = self.unix_minus_boot_us.and_then(|difference| match base {
-            Base::Unix => Some(self.boot?.offset_us - difference),
-            Base::Boot => Some(self.unix?.offset_us + difference),
+            Base::Unix => Some(self.boot?.offset_us.saturating_sub(difference)),
+            Base::Boot => Some(self.unix?.offset_us.saturating_add(difference)),
         });
-        let time_us = said.map_or_else(|| self.at_host(host_us), |offset_us| raw_us + offset_us);
+        let time_us =
+            said.map_or_else(|| self.at_host(host_us), |offset_us| raw_us.saturating_add(offset_us));
         *self.tied(base) = Some(Tied::new(raw_us, time_us, host_us));
         self.note(time_us, host_us);
         Placed::At(time_us)
