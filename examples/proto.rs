@@ -41,7 +41,7 @@ fn main() {
         anchor: Anchor::Thrust,
         gravity_m_s2: 9.81,
     };
-    let space = SeriesSpace::new(10.0, 5, [0.0, 0.0, 0.7, 0.0], [false, false, true, false]);
+    let space = SeriesSpace::new(10.0, 5, [0.0, 0.0, 0.7, 0.0], [false, false, std::env::var("JERK").is_err(), false]);
     let sampler = GramSampler::new(&space, 64, Vector4::repeat(1.0), 9.81);
     let problem = Problem {
         sampler,
@@ -52,7 +52,7 @@ fn main() {
         space,
     };
     let grid = BoundGrid::new(&problem.space, grid_n, 0.0);
-    let mut results = vec![];
+    let mut results = vec![]; let mut best = vec![];
     let t0 = Instant::now();
     for seed in 0..starts {
         let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(u64::from(seed));
@@ -79,7 +79,22 @@ fn main() {
                 log.join(" ")
             );
         }
-        results.push(it.log_value.exp());
+        results.push(it.log_value.exp()); best.push((it.log_value.exp(), problem.space.trajectory(&it.unknowns)));
+    }
+    best.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (v, t) in best.iter().take(8) { println!("{v:.4}"); for ax in &t.axes { for l in 0..5 { print!("{:6.3}@{:4.0} ", ax.a[l].hypot(ax.b[l]), ax.b[l].atan2(ax.a[l]).to_degrees()); } println!("c {:.3}", ax.c); } }
+    for (v, t) in best.iter().take(6) {
+        let tt = Instant::now();
+        let mut x = problem.space.unknowns(t);
+        print!("{v:.4}");
+        for n in [1000, 1000, 1000, 1000] {
+        let g = BoundGrid::new(&problem.space, n, 0.0);
+        let mut it = problem.iterate(x, &g);
+        for k in 0..500 { problem.descend(&mut it, &g, 1, 1e-10); if it.settled { print!(" s{k} {:.0e}", it.proximal); break; } }
+        print!(" -> {n} {:.5} viol {:.1e} {:.1?}", it.log_value.exp(), it.violation, tt.elapsed());
+        x = it.unknowns;
+        }
+        println!();
     }
     results.sort_by(f64::total_cmp);
     println!("{:.1?} best {:.4?}", t0.elapsed(), &results[..10.min(results.len())]);
