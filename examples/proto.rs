@@ -41,7 +41,7 @@ fn main() {
         anchor: Anchor::Thrust,
         gravity_m_s2: 9.81,
     };
-    let space = SeriesSpace::new(10.0, 5, [0.0, 0.0, 0.7, 0.0], [false, false, std::env::var("JERK").is_err(), false]);
+    let space = SeriesSpace::new(10.0, 5, [0.0, 0.0, std::env::var("Z0").map_or(0.7, |v| v.parse().unwrap()), 0.0], [false, false, std::env::var("JERK").is_err(), false]);
     let sampler = GramSampler::new(&space, 64, Vector4::repeat(1.0), 9.81);
     let problem = Problem {
         sampler,
@@ -55,7 +55,7 @@ fn main() {
     let mut results = vec![]; let mut best = vec![];
     let t0 = Instant::now();
     for seed in 0..starts {
-        let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(u64::from(seed));
+        let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(u64::from(seed) + std::env::var("S0").map_or(0, |v| v.parse::<u64>().unwrap()));
         let x = DVector::from_fn(problem.space.dimension(), |_, _| random.random_range(-0.3..0.3));
         let mut it = problem.iterate(x, &grid);
         let t = Instant::now();
@@ -83,11 +83,11 @@ fn main() {
     }
     best.sort_by(|a, b| a.0.total_cmp(&b.0));
     for (v, t) in best.iter().take(8) { println!("{v:.4}"); for ax in &t.axes { for l in 0..5 { print!("{:6.3}@{:4.0} ", ax.a[l].hypot(ax.b[l]), ax.b[l].atan2(ax.a[l]).to_degrees()); } println!("c {:.3}", ax.c); } }
-    for (v, t) in best.iter().take(6) {
+    for (v, t) in best.iter().take(60) {
         let tt = Instant::now();
         let mut x = problem.space.unknowns(t);
         print!("{v:.4}");
-        for n in [1000, 1000, 1000, 1000] {
+        for n in [400,1000] {
         let g = BoundGrid::new(&problem.space, n, 0.0);
         let mut it = problem.iterate(x, &g);
         for k in 0..500 { problem.descend(&mut it, &g, 1, 1e-10); if it.settled { print!(" s{k} {:.0e}", it.proximal); break; } }
