@@ -78,6 +78,12 @@ pub fn world_from_ned(ned: [f64; 3]) -> World {
     World(Vector3::new(ned[0], -ned[1], -ned[2]))
 }
 
+/// East-north-up components, ROS's world frame (REP 103), to this crate's world frame.
+#[must_use]
+pub fn world_from_enu(enu: [f64; 3]) -> World {
+    World(Vector3::new(enu[1], -enu[0], enu[2]))
+}
+
 /// This crate's world frame to north-east-down components.
 #[must_use]
 pub fn ned_from_world(world: World) -> [f64; 3] {
@@ -91,10 +97,25 @@ pub fn frd_from_body(body: Body) -> [f64; 3] {
 }
 
 /// A quaternion (w x y z) that turns FRD into NED, as MAVLink sends it, to the attitude FLU to NWU.
-/// `None` where it is not finite or its norm is not within 10 % of one.
+/// `None` as for [`attitude_from_quaternion`].
 #[must_use]
 pub fn attitude_from_frd_ned(wxyz: [f64; 4]) -> Option<Attitude> {
-    let quaternion = Quaternion::new(wxyz[0], wxyz[1], -wxyz[2], -wxyz[3]);
+    attitude_from_quaternion([wxyz[0], wxyz[1], -wxyz[2], -wxyz[3]])
+}
+
+/// A quaternion (w x y z) that turns FLU into ENU to the attitude FLU to NWU.
+/// `None` as for [`attitude_from_quaternion`].
+#[must_use]
+pub fn attitude_from_flu_enu(wxyz: [f64; 4]) -> Option<Attitude> {
+    let north_from_east = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw_from_enu(0.0));
+    attitude_from_quaternion(wxyz).map(|attitude| Attitude(north_from_east * attitude.0))
+}
+
+/// A quaternion (w x y z) that turns FLU into NWU, normalised.
+/// `None` where it is not finite or its norm is not within 10 % of one.
+#[must_use]
+pub fn attitude_from_quaternion(wxyz: [f64; 4]) -> Option<Attitude> {
+    let quaternion = Quaternion::new(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
     let norm = quaternion.norm();
     (norm.is_finite() && (norm - 1.0).abs() < 0.1)
         .then(|| Attitude(UnitQuaternion::from_quaternion(quaternion)))
@@ -117,6 +138,12 @@ pub fn attitude_from_euler_frd_ned(roll_rad: f64, pitch_rad: f64, yaw_rad: f64) 
 #[must_use]
 pub fn yaw_from_ned(yaw_rad: f64) -> f64 {
     -yaw_rad
+}
+
+/// Yaw about up from east (ENU) to yaw about up from north.
+#[must_use]
+pub fn yaw_from_enu(yaw_rad: f64) -> f64 {
+    yaw_rad - std::f64::consts::FRAC_PI_2
 }
 
 /// The cross-product matrix `S(w)` of the paper: `S(w) v = w x v`.
@@ -156,6 +183,15 @@ mod tests {
         assert!(by_quaternion.0.angle_to(&by_euler.0) < 1e-12);
         let back = frd_ned_from_attitude(by_quaternion);
         assert!((back[2] - q.j).abs() < 1e-12);
+    }
+
+    #[test]
+    fn facing_east_in_enu_is_minus_west() {
+        let attitude = attitude_from_flu_enu([1.0, 0.0, 0.0, 0.0]).unwrap();
+        let forward = attitude.to_world(Body(Vector3::x()));
+        assert!((forward.0 - Vector3::new(0.0, -1.0, 0.0)).norm() < 1e-12);
+        assert_eq!(forward.0.y, world_from_enu([1.0, 0.0, 0.0]).0.y);
+        assert!((attitude.euler().2 - yaw_from_enu(0.0)).abs() < 1e-12);
     }
 
     #[test]

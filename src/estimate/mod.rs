@@ -1,1 +1,19 @@
-//! placeholder
+//! From regression models to parameters with standard errors.
+
+mod identify;
+mod physical;
+mod problem;
+mod recommend;
+mod recursive;
+mod result;
+mod theta;
+mod weak;
+
+pub use identify::{EstimateError, Identification, IdentifySettings, Method, identify};
+pub use physical::{is_physical, nearest_physical, second_moments};
+pub use problem::{Channel, Problem, Solution};
+pub use recommend::Recommendation;
+pub use recursive::{GradientStep, History, PAPER_SIGMA, PaperEstimate, gradient_descent, least_squares};
+pub use result::{Estimated, Finding, MethodResult, Parameter, finding};
+pub use theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, inertia_of, scale_of, theta_of};
+pub use weak::{Latency, LatencyKind, WeakEstimate, WeakMethod, latency, solve_weak};

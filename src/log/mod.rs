@@ -1,5 +1,35 @@
 //! From bytes to a [`Recording`].
+//!
+//! ```text
+//! bytes -> Splitter (a link) or TlogReader (a file) -> Decoder -> events -> RecordingBuilder -> Recording
+//! ```
+//!
+//! [`load`] does all of it; [`stream_tlog`] gives the events to whoever wants them without keeping any.
 
+mod builder;
+mod clock;
+mod crc;
+pub mod csv;
+mod decode;
+mod error;
+mod frame;
+mod load;
 mod recording;
+mod report;
+mod splitter;
+mod tlog;
 
+pub use builder::RecordingBuilder;
+pub use clock::{Anchor, Stamp};
+pub use crc::{CrcSeeds, checksum};
+pub use decode::{DecodeReport, Decoder, Event, Source, StreamId, Vehicle};
+pub use error::LogError;
+pub use frame::{
+    Check, ComponentId, Frame, Header, MARKER_V1, MARKER_V2, MAX_FRAME_BYTES, Payload, Start, SystemId,
+    Version,
+};
+pub use load::{LoadOptions, Loaded, load, stream_tlog};
 pub use recording::{Autopilot, Quantity, Recording, Stream, StreamKey};
+pub use report::{MessageCounts, ReadReport, Resync, Sender, StreamRepair};
+pub use splitter::{SplitCounts, Splitter};
+pub use tlog::{ByteOrder, Record, STAMP_BYTES, TlogReader, TlogWriter};

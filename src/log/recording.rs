@@ -23,6 +23,8 @@ pub enum Quantity {
     ActuatorCommand,
     /// actuator outputs before the firmware's battery correction (one a channel)
     ActuatorDemand,
+    /// force and torque on the body where the log holds them: Fz, tau_x, tau_y, tau_z; N, N m (4)
+    Wrench,
     /// measured rotor speed, rad/s (one a rotor)
     RotorSpeed,
     /// V (1)
@@ -37,8 +39,12 @@ pub enum Quantity {
     AccelerationSetpoint,
     /// commanded yaw about up, rad (1)
     YawSetpoint,
+    /// commanded yaw rate about up, rad/s (1)
+    YawRateSetpoint,
     /// commanded attitude, quaternion w x y z (4)
     AttitudeSetpoint,
+    /// commanded body rates, rad/s (3)
+    AngularRateSetpoint,
     /// commanded collective thrust, 0..1 (1)
     ThrustSetpoint,
     /// MAV_LANDED_STATE as a number: 1 on ground, 2 in air, 3 taking off, 4 landing (1)
@@ -50,7 +56,7 @@ pub enum Quantity {
 }
 
 /// One stream: which quantity, from which message, of which instance.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct StreamKey {
     /// what it holds
     pub quantity: Quantity,
@@ -102,6 +108,8 @@ pub struct Recording {
     pub autopilot: Autopilot,
     /// times at which the vehicle's clock started anew (reboot); no flight segment may span one
     pub clock_resets_s: Vec<f64>,
+    /// times at which the position estimate jumped (ODOMETRY.reset_counter)
+    pub estimator_resets_s: Vec<f64>,
     /// what the vehicle said
     pub texts: Vec<(f64, String)>,
 }

@@ -1,1 +1,62 @@
-//! placeholder
+//! The equations of motion, and the physical effects that a rigid body with exact thrust leaves out.
+//!
+//! Everything here is SI, body FLU, world NWU. Vectors are bare nalgebra vectors because this is the
+//! inner loop of simulation and regression; each says its frame.
+
+mod airframe;
+mod effect;
+pub mod effects;
+mod euler;
+mod model;
+mod rigid_body;
+mod state;
+
+pub use airframe::{Airframe, MAX_ROTORS};
+pub use effect::{Condition, Effect, Own, Parameter, Rotors, effect_wrench};
+pub use euler::{euler_rates, euler_rates_inverse};
+pub use model::{ActiveEffect, Evaluation, Input, Model};
+pub use rigid_body::{RigidBodyModel, pseudo_inertia_is_positive};
+pub use state::{RIGID_STATES, State, StateDerivative, Wrench};
+
+/// Why a vehicle cannot be simulated.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PhysicsError {
+    /// mass not positive and finite
+    #[error("mass must be positive and finite, got {mass_kg} kg")]
+    Mass {
+        /// what came, kg
+        mass_kg: f64,
+    },
+    /// inertia without inverse or not positive definite
+    #[error(
+        "inertia must be symmetric and positive definite, got {inertia_kg_m2:?} kg m^2 (xx xy xz yy yz zz)"
+    )]
+    Inertia {
+        /// xx xy xz yy yz zz of what came, kg m^2
+        inertia_kg_m2: [f64; 6],
+    },
+    /// no rotors, or more than the fixed capacity
+    #[error("expected 1 to {MAX_ROTORS} rotors, got {count}")]
+    RotorCount {
+        /// what came
+        count: usize,
+    },
+    /// the propulsion does not give a finite thrust
+    #[error(
+        "thrust of one rotor at full command must be positive and finite, got {thrust_n} N (a `speed` law needs a thrust coefficient)"
+    )]
+    Thrust {
+        /// what came, N
+        thrust_n: f64,
+    },
+    /// number of values for an effect
+    #[error("effect {id} takes {expected} parameters, got {got}")]
+    ParameterCount {
+        /// effect
+        id: &'static str,
+        /// how many it has
+        expected: usize,
+        /// how many came
+        got: usize,
+    },
+}

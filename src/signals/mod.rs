@@ -1,1 +1,69 @@
-//! placeholder
+//! From a recording to conditioned signals on one clock.
+//!
+//! Time first ([`align`](self::StreamOffset)), then a uniform grid, filters without phase, and a mask
+//! that keeps what is airborne, exciting and not saturated.
+
+mod actuators;
+mod align;
+mod condition;
+mod filter;
+mod grid;
+mod latency;
+mod noise;
+mod select;
+mod spectrum;
+mod usable;
+mod weak;
+
+pub use actuators::{
+    RotorThrusts, ThrustSource, propulsion_from_log, thrusts_from_commands, thrusts_from_speeds,
+};
+pub use align::StreamOffset;
+pub use condition::{ConditionSettings, Quality, Reference, Signals, ThrustPreference, condition, stride};
+pub use filter::{Butterworth, FilterPair, WindowedFir, central_difference};
+pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
+pub use latency::{ActuationLatency, delayed_wrench};
+pub use noise::{median, white_level};
+pub use select::{best, is_live, mean_rate_hz, median_period_s};
+pub use spectrum::highest_harmonic_hz;
+pub use usable::Usable;
+pub use weak::{MAX_ORDER, WeakKernel};
+
+/// Why a recording cannot be conditioned.
+#[derive(Debug, thiserror::Error)]
+pub enum SignalsError {
+    /// no actuator stream that fits the vehicle
+    #[error(
+        "no actuator outputs for {rotors} rotors: expected {unit}, as the vehicle file's [propulsion] says; \
+         the recording holds {found}. Request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS, or correct `actuator`"
+    )]
+    NoActuators {
+        /// rotors of the vehicle
+        rotors: usize,
+        /// what the vehicle file expects
+        unit: &'static str,
+        /// what the recording has
+        found: String,
+    },
+    /// nothing that moves
+    #[error(
+        "no stream of motion: expected body rates, attitude or acceleration; request ATTITUDE_QUATERNION and HIGHRES_IMU (or RAW_IMU)"
+    )]
+    NoMotion,
+    /// streams do not share a span
+    #[error("motion and actuator streams overlap for {overlap_s:.2} s only; at least 1 s is needed")]
+    NoOverlap {
+        /// s
+        overlap_s: f64,
+    },
+    /// no stretch of flight is left
+    #[error("nothing to identify from: {usable_s:.1} s usable, at least {needed_s:.1} s needed ({reason})")]
+    NothingUsable {
+        /// s left
+        usable_s: f64,
+        /// s needed
+        needed_s: f64,
+        /// where the time went
+        reason: String,
+    },
+}

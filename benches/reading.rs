@@ -1,0 +1,209 @@
+//! How fast logs are read, beside pymavlink on the same file.
+//!
+//! `cargo bench --bench reading [-- LOG.tlog]`: without a path a log is generated (seeded, the messages of
+//! an identification flight). `MAVID_PYTHON` names a Python that has pymavlink (default `python3`).
+
+use std::error::Error;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use mavid::log::{Frame, LoadOptions, SystemId, TlogReader, TlogWriter, load, stream_tlog};
+use mavlink::dialects::ardupilotmega as dialect;
+use mavlink::{MAVLinkV2MessageRaw, MavHeader};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+const STEPS: u32 = 12_000;
+const REPEATS: usize = 7;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut out = std::io::stdout().lock();
+    let path = match std::env::args().skip(1).find(|argument| !argument.starts_with("--")) {
+        Some(path) => PathBuf::from(path),
+        None => generated_log()?,
+    };
+    writeln!(out, "{} ({} bytes)", path.display(), std::fs::metadata(&path)?.len())?;
+    let options = LoadOptions { system: Some(SystemId(1)) };
+    let walk = fastest(|| {
+        let mut reader = TlogReader::new(std::fs::File::open(&path)?);
+        while reader.next_record()?.is_some() {}
+        Ok(reader.report().frames)
+    })?;
+    let mut samples = 0_u64;
+    let stream = fastest(|| Ok(stream_tlog(&path, &options, &mut |_| samples += 1)?.1.frames))?;
+    let recording = fastest(|| Ok(load(&path, &options)?.report.frames))?;
+    writeln!(out, "{:<34} {walk:>12.0} frames/s", "frames and checksums")?;
+    writeln!(out, "{:<34} {stream:>12.0} frames/s", "samples, streamed")?;
+    writeln!(out, "{:<34} {recording:>12.0} frames/s", "whole recording in memory")?;
+    match pymavlink(&path) {
+        Ok(theirs) => {
+            for (name, rate) in theirs {
+                let (whole, streamed) = (recording / rate, stream / rate);
+                writeln!(
+                    out,
+                    "{:<34} {rate:>12.0} frames/s: recording {whole:.0} times, streamed {streamed:.0} times",
+                    format!("pymavlink {name}")
+                )?;
+            }
+        }
+        Err(error) => writeln!(out, "pymavlink not measured: {error}")?,
+    }
+    Ok(())
+}
+
+/// Frames a second of the fastest of a few runs.
+fn fastest(mut run: impl FnMut() -> Result<u64, Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
+    let mut best: f64 = 0.0;
+    for _ in 0..REPEATS {
+        let start = Instant::now();
+        let frames = run()?;
+        best = best.max(frames as f64 / start.elapsed().as_secs_f64());
+    }
+    Ok(best)
+}
+
+/// Each way of pymavlink's with its frames a second.
+fn pymavlink(log: &Path) -> Result<Vec<(String, f64)>, Box<dyn Error>> {
+    let python = std::env::var("MAVID_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers/read_with_pymavlink.py");
+    let output = Command::new(python).arg(script).arg("--time").arg(log).output()?;
+    let text = String::from_utf8(output.stdout)?;
+    let rates: Vec<_> = text
+        .lines()
+        .filter_map(|line| line.split_once(' '))
+        .filter_map(|(name, rate)| Some((name.to_owned(), rate.parse().ok()?)))
+        .collect();
+    if rates.is_empty() {
+        return Err(String::from_utf8_lossy(&output.stderr).trim().to_owned().into());
+    }
+    Ok(rates)
+}
+
+/// A log of the messages of an identification flight, 125 Hz steps.
+fn generated_log() -> Result<PathBuf, Box<dyn Error>> {
+    let path = std::env::temp_dir().join("mavid-reading.tlog");
+    let mut log = TlogWriter::new(std::io::BufWriter::new(std::fs::File::create(&path)?));
+    let mut random = Pcg64Mcg::seed_from_u64(7);
+    let mut sequence = 0_u8;
+    for step in 0..STEPS {
+        for message in messages_of_step(step, &mut random) {
+            let header = MavHeader { system_id: 1, component_id: 1, sequence };
+            sequence = sequence.wrapping_add(1);
+            let mut raw = MAVLinkV2MessageRaw::new();
+            raw.serialize_message(header, &message);
+            let frame = Frame::at_start(raw.raw_bytes()).ok_or("a serialised message is a frame")?;
+            log.write(1_700_000_000_000_000 + u64::from(step) * 8000, frame)?;
+        }
+    }
+    log.flush()?;
+    Ok(path)
+}
+
+fn messages_of_step(step: u32, random: &mut Pcg64Mcg) -> Vec<dialect::MavMessage> {
+    use dialect::MavMessage as M;
+    let mut value = || random.random::<f32>() - 0.5;
+    let (time_boot_ms, time_usec) = (41_000 + step * 8, u64::from(41_000 + step * 8) * 1000);
+    let mut messages = vec![
+        M::ATTITUDE_QUATERNION(dialect::ATTITUDE_QUATERNION_DATA {
+            time_boot_ms,
+            q1: 1.0,
+            q2: 0.05 * value(),
+            q3: 0.05 * value(),
+            q4: 0.05 * value(),
+            rollspeed: value(),
+            pitchspeed: value(),
+            yawspeed: value(),
+            ..Default::default()
+        }),
+        M::HIGHRES_IMU(dialect::HIGHRES_IMU_DATA {
+            time_usec,
+            xacc: value(),
+            yacc: value(),
+            zacc: value() - 9.81,
+            xgyro: value(),
+            ygyro: value(),
+            zgyro: value(),
+            xmag: value(),
+            ymag: value(),
+            zmag: value(),
+            abs_pressure: 1013.0 + value(),
+            temperature: 20.0 + value(),
+            ..Default::default()
+        }),
+        M::ATTITUDE(dialect::ATTITUDE_DATA {
+            time_boot_ms,
+            roll: value(),
+            pitch: value(),
+            yaw: value(),
+            rollspeed: value(),
+            pitchspeed: value(),
+            yawspeed: value(),
+        }),
+        M::LOCAL_POSITION_NED(dialect::LOCAL_POSITION_NED_DATA {
+            time_boot_ms,
+            x: value(),
+            y: value(),
+            z: value(),
+            vx: value(),
+            vy: value(),
+            vz: value(),
+        }),
+        M::SERVO_OUTPUT_RAW(dialect::SERVO_OUTPUT_RAW_DATA {
+            time_usec: time_boot_ms * 1000,
+            servo1_raw: 1500,
+            servo2_raw: 1510,
+            servo3_raw: 1490,
+            servo4_raw: 1505,
+            ..Default::default()
+        }),
+        M::ACTUATOR_OUTPUT_STATUS(dialect::ACTUATOR_OUTPUT_STATUS_DATA {
+            time_usec,
+            active: 4,
+            actuator: std::array::from_fn(|channel| if channel < 4 { 0.5 + 0.1 * value() } else { 0.0 }),
+        }),
+    ];
+    if step % 2 == 0 {
+        messages.push(M::POSITION_TARGET_LOCAL_NED(dialect::POSITION_TARGET_LOCAL_NED_DATA {
+            time_boot_ms,
+            x: value(),
+            y: value(),
+            z: value(),
+            vx: value(),
+            vy: value(),
+            vz: value(),
+            yaw: value(),
+            coordinate_frame: dialect::MavFrame::MAV_FRAME_LOCAL_NED,
+            ..Default::default()
+        }));
+        messages.push(M::ATTITUDE_TARGET(dialect::ATTITUDE_TARGET_DATA {
+            time_boot_ms,
+            q: [1.0, 0.05 * value(), 0.05 * value(), 0.05 * value()],
+            thrust: 0.4,
+            ..Default::default()
+        }));
+        messages.push(M::ESC_STATUS(dialect::ESC_STATUS_DATA {
+            time_usec,
+            rpm: [7000, 7100, 6900, 7050],
+            voltage: [16.4; 4],
+            ..Default::default()
+        }));
+    }
+    if step % 125 == 0 {
+        messages.push(M::HEARTBEAT(dialect::HEARTBEAT_DATA {
+            custom_mode: 6 << 16,
+            mavtype: dialect::MavType::MAV_TYPE_QUADROTOR,
+            autopilot: dialect::MavAutopilot::MAV_AUTOPILOT_PX4,
+            base_mode: dialect::MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+            system_status: dialect::MavState::MAV_STATE_ACTIVE,
+            mavlink_version: 3,
+        }));
+        messages.push(M::BATTERY_STATUS(dialect::BATTERY_STATUS_DATA {
+            voltages: [4100, 4100, 4100, 4100, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX],
+            current_battery: 1200,
+            ..Default::default()
+        }));
+    }
+    messages
+}

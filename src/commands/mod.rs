@@ -1,0 +1,73 @@
+//! One file a verb: loads, calls the library, prints. Nothing else of the program prints.
+//!
+//! To add a verb: a variant in [`Verb`], a file here with `run(json, args)`, and an arm in [`run`].
+
+mod output;
+mod vehicle;
+
+use std::process::ExitCode;
+
+use crate::cli::{Cli, Verb};
+
+/// How a verb ended that did not fail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// all of it
+    Done,
+    /// done, but something was lost or left out; the output says what
+    DoneWithLoss,
+}
+
+impl From<Outcome> for ExitCode {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Done => Self::SUCCESS,
+            Outcome::DoneWithLoss => Self::from(3),
+        }
+    }
+}
+
+/// Why a verb did not do its work.
+#[derive(Debug, thiserror::Error)]
+pub enum CommandError {
+    /// what the user gave cannot be used
+    #[error("{0}")]
+    Input(String),
+    /// the program or the machine failed
+    #[error("{0}")]
+    Failure(String),
+}
+
+impl From<mavid::config::ConfigError> for CommandError {
+    fn from(error: mavid::config::ConfigError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl CommandError {
+    /// Says it on standard error and gives the exit status.
+    pub fn report(&self) -> ExitCode {
+        output::message(&format!("mavid: {self}"));
+        match self {
+            Self::Input(_) => ExitCode::from(2),
+            Self::Failure(_) => ExitCode::FAILURE,
+        }
+    }
+}
+
+/// Runs the verb.
+pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
+    match &cli.verb {
+        Verb::Vehicle(args) => vehicle::run(cli.json, args),
+    }
+}
+
+/// Help and version on standard output with status 0, a mistake on standard error with status 2.
+pub fn usage(usage: &clap::Error) -> ExitCode {
+    let printed = usage.print();
+    match (usage.use_stderr(), printed) {
+        (true, _) => ExitCode::from(2),
+        (false, Ok(())) => ExitCode::SUCCESS,
+        (false, Err(_)) => ExitCode::FAILURE,
+    }
+}

@@ -1,0 +1,82 @@
+//! Checks of single values, with the file and the key in every refusal.
+
+use super::ConfigError;
+
+/// Names the file in every error.
+pub(super) struct Check<'a> {
+    /// file name, or what the text is
+    pub origin: &'a str,
+}
+
+impl Check<'_> {
+    /// A refusal.
+    pub fn refuse(
+        &self,
+        key: &str,
+        expected: impl Into<String>,
+        came: impl std::fmt::Display,
+    ) -> ConfigError {
+        ConfigError::Invalid {
+            origin: self.origin.to_owned(),
+            key: key.to_owned(),
+            expected: expected.into(),
+            came: came.to_string(),
+        }
+    }
+
+    /// Neither NaN nor infinite.
+    pub fn finite(&self, key: &str, value: f64) -> Result<f64, ConfigError> {
+        if value.is_finite() { Ok(value) } else { Err(self.refuse(key, "a finite number", value)) }
+    }
+
+    /// Finite and above zero.
+    pub fn positive(&self, key: &str, value: f64) -> Result<f64, ConfigError> {
+        if value.is_finite() && value > 0.0 {
+            Ok(value)
+        } else {
+            Err(self.refuse(key, "a number above zero", value))
+        }
+    }
+
+    /// Finite and not below zero.
+    pub fn not_negative(&self, key: &str, value: f64) -> Result<f64, ConfigError> {
+        if value.is_finite() && value >= 0.0 {
+            Ok(value)
+        } else {
+            Err(self.refuse(key, "a number not below zero", value))
+        }
+    }
+
+    /// Finite where it is given.
+    pub fn optional_finite(&self, key: &str, value: Option<f64>) -> Result<Option<f64>, ConfigError> {
+        value.map(|value| self.finite(key, value)).transpose()
+    }
+
+    /// Finite and above zero where it is given.
+    pub fn optional_positive(&self, key: &str, value: Option<f64>) -> Result<Option<f64>, ConfigError> {
+        value.map(|value| self.positive(key, value)).transpose()
+    }
+
+    /// Present; `because` says what asks for it.
+    pub fn required(&self, key: &str, value: Option<f64>, because: &str) -> Result<f64, ConfigError> {
+        value.ok_or_else(|| self.refuse(key, format!("a number, since {because}"), "nothing"))
+    }
+
+    /// Absent; `because` says what it contradicts.
+    pub fn absent(&self, key: &str, value: Option<f64>, because: &str) -> Result<(), ConfigError> {
+        match value {
+            None => Ok(()),
+            Some(value) => Err(self.refuse(key, format!("no such key, since {because}"), value)),
+        }
+    }
+
+    /// `low < high` where both are given.
+    pub fn ordered(&self, low: (&str, Option<f64>), high: (&str, Option<f64>)) -> Result<(), ConfigError> {
+        match (low.1, high.1) {
+            (Some(below), Some(above)) if below >= above => {
+                Err(self.refuse(low.0, format!("a number below `{}` = {above}", high.0), below))
+            }
+            _ => Ok(()),
+        }
+    }
+}

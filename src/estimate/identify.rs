@@ -1,0 +1,361 @@
+//! All methods on one or several flights of a vehicle, and which of them to believe.
+
+use super::recommend::{Recommendation, recommend};
+use super::result::{Estimated, MethodResult};
+use super::theta::{Theta, ThetaCovariance, theta_of};
+use super::weak::{Latency, LatencyKind, WeakEstimate, WeakMethod, latency, solve_weak};
+use super::{GradientStep, History, gradient_descent, least_squares};
+use crate::regression::{SampledModel, WeakMotion, WeakRows, ZeroPhase, paper_models, weak_rows};
+use crate::signals::{
+    ActuationLatency, Butterworth, Signals, WeakKernel, WindowedFir, delayed_wrench, highest_harmonic_hz,
+};
+use crate::vehicle::Vehicle;
+
+/// A method's name as in files and JSON.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Method {
+    /// standard model (34), least squares (40)
+    Ls,
+    /// standard model (34), gradient descent (42)
+    Gd,
+    /// filtered model (38), least squares (40)
+    Fmls,
+    /// filtered model (38), gradient descent (42)
+    Fmgd,
+    /// weak form, weighted least squares
+    Weak,
+    /// weak form, Huber weights
+    WeakRobust,
+    /// weak form, the commanded trajectory as instrument
+    WeakIv,
+}
+
+impl Method {
+    /// Short name in tables and JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ls => "LS",
+            Self::Gd => "GD",
+            Self::Fmls => "FMLS",
+            Self::Fmgd => "FMGD",
+            Self::Weak => "WEAK",
+            Self::WeakRobust => "WEAK-ROBUST",
+            Self::WeakIv => "WEAK-IV",
+        }
+    }
+}
+
+/// How the identification is done.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IdentifySettings {
+    /// s, half width of the weak form's kernel
+    pub weak_half_width_s: f64,
+    /// cut-off of the zero-phase low-pass, Hz; `None`: from the trajectory's highest harmonic
+    pub cutoff_hz: Option<f64>,
+    /// the paper's windowed FIR in place of the Butterworth
+    pub fir: bool,
+    /// adaptation gain of gradient descent
+    pub sigma: f64,
+}
+
+impl Default for IdentifySettings {
+    fn default() -> Self {
+        Self { weak_half_width_s: 0.2, cutoff_hz: None, fir: false, sigma: super::PAPER_SIGMA }
+    }
+}
+
+/// What came out of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Identification {
+    /// one a method that could run
+    pub methods: Vec<MethodResult>,
+    /// which to believe
+    pub best: Recommendation,
+    /// estimates along time of the paper's four methods
+    pub histories: Vec<(Method, History)>,
+    /// how the body follows the command
+    pub latency: Option<Latency>,
+    /// s, what was taken out of the commands before the methods ran
+    pub compensated: ActuationLatency,
+    /// cut-off of the zero-phase low-pass, Hz, and what it follows from
+    pub cutoff_hz: f64,
+    /// the trajectory's highest harmonic, Hz, where it could be found
+    pub highest_harmonic_hz: Option<f64>,
+    /// cond(W) of the standard regressor as flown
+    pub condition_number: Option<f64>,
+    /// the same with columns scaled to unit length
+    pub scaled_condition_number: f64,
+    /// N m, constant torque on the body about x, y, z that the rotors' nominal geometry leaves over
+    pub trim_torque_nm: [f64; 3],
+    /// residual standard deviation of the weak form: N, N m
+    pub residual: Vec<f64>,
+    /// strength of the commanded trajectory as instrument: smallest first-stage F
+    pub instrument_f: Option<f64>,
+    /// m/s^2, vertical accelerometer less kinematics, per flight
+    pub accelerometer_bias: Vec<Option<f64>>,
+    /// why methods are missing, and other remarks
+    pub notes: Vec<String>,
+}
+
+/// Identifies the rigid body from conditioned flights of one vehicle.
+///
+/// # Errors
+/// [`EstimateError`] where no method can run.
+pub fn identify(
+    flights: &[Signals],
+    vehicle: &Vehicle,
+    settings: &IdentifySettings,
+) -> Result<Identification, EstimateError> {
+    let nominal = theta_of(&vehicle.body);
+    let mut notes = Vec::new();
+    let mut weak = WeakFlights::from(flights, vehicle, settings);
+    let (found, compensated) = weak.compensate(&nominal);
+    let plain = solve_weak(&weak.rows, &nominal, WeakMethod::LeastSquares).ok_or(EstimateError::NoRows)?;
+    let robust = solve_weak(&weak.rows, &nominal, WeakMethod::Robust);
+    let by_instruments = weak
+        .instruments(&mut notes)
+        .and_then(|instruments| solve_weak(&weak.rows, &nominal, WeakMethod::Instruments(&instruments)));
+
+    let harmonic = weak
+        .signals
+        .iter()
+        .filter_map(highest_harmonic_hz)
+        .fold(None, |most: Option<f64>, f| Some(most.map_or(f, |most| most.max(f))));
+    let rate_hz = weak.signals.first().map_or(f64::NAN, |s| 1.0 / s.grid.step_s);
+    let cutoff_hz = settings.cutoff_hz.unwrap_or_else(|| default_cutoff_hz(harmonic, rate_hz));
+    let filter = zero_phase(settings, cutoff_hz, rate_hz)?;
+    let paper = PaperRuns::from(&weak.signals, vehicle, &filter, settings.sigma);
+    if paper.standard.time_s.is_empty() {
+        notes.push(
+            "LS, GD, FMLS and FMGD need body rates and the vertical motion; this recording lacks one".into(),
+        );
+    }
+
+    let mut methods = paper.results();
+    methods.push(MethodResult::new(Method::Weak, &Estimated::of(&plain), &nominal));
+    if let Some(robust) = &robust {
+        methods.push(MethodResult::new(Method::WeakRobust, &Estimated::of(robust), &nominal));
+    }
+    if let Some(iv) = &by_instruments {
+        methods.push(MethodResult::new(Method::WeakIv, &Estimated::of(iv), &nominal));
+    }
+    let best = recommend(&plain, robust.as_ref(), by_instruments.as_ref(), &nominal);
+    Ok(Identification {
+        best,
+        methods,
+        condition_number: paper.condition_number(),
+        histories: paper.histories(),
+        latency: found,
+        compensated,
+        cutoff_hz,
+        highest_harmonic_hz: harmonic,
+        scaled_condition_number: plain.solution.scaled_condition,
+        trim_torque_nm: plain.trim_torque_nm,
+        residual: plain.solution.sigma.clone(),
+        instrument_f: by_instruments.as_ref().map(|iv| instrument_f(&plain, iv)),
+        accelerometer_bias: weak.accelerometer_bias,
+        notes,
+    })
+}
+
+/// Why nothing could be identified.
+#[derive(Debug, thiserror::Error)]
+pub enum EstimateError {
+    /// no usable rows
+    #[error("no usable stretch of flight is as long as the weak form's kernel; record a longer flight")]
+    NoRows,
+    /// the cut-off does not fit the data's rate
+    #[error(
+        "low-pass cut-off {cutoff_hz} Hz: expected more than 0 and less than half the grid's {rate_hz:.1} Hz"
+    )]
+    Cutoff {
+        /// Hz
+        cutoff_hz: f64,
+        /// Hz
+        rate_hz: f64,
+    },
+}
+
+/// Ten times the highest harmonic, as the paper's lambda is (30 rad/s over 180 deg/s); 5 Hz where the
+/// trajectory is not known; never beyond a fifth of the sample rate.
+fn default_cutoff_hz(harmonic_hz: Option<f64>, rate_hz: f64) -> f64 {
+    harmonic_hz.map_or(5.0, |f| (10.0 * f).clamp(2.0, 10.0)).min(0.2 * rate_hz)
+}
+
+fn zero_phase(settings: &IdentifySettings, cutoff_hz: f64, rate_hz: f64) -> Result<ZeroPhase, EstimateError> {
+    let filter = if settings.fir {
+        WindowedFir::new(WindowedFir::PAPER_LENGTH, cutoff_hz, rate_hz).map(ZeroPhase::Fir)
+    } else {
+        Butterworth::new(cutoff_hz, rate_hz).map(ZeroPhase::Butterworth)
+    };
+    filter.ok_or(EstimateError::Cutoff { cutoff_hz, rate_hz })
+}
+
+/// The weak form's view of the flights.
+struct WeakFlights {
+    signals: Vec<Signals>,
+    kernels: Vec<WeakKernel>,
+    motions: Vec<WeakMotion>,
+    rows: Vec<WeakRows>,
+    accelerometer_bias: Vec<Option<f64>>,
+    gravity_m_s2: f64,
+}
+
+impl WeakFlights {
+    fn from(flights: &[Signals], vehicle: &Vehicle, settings: &IdentifySettings) -> Self {
+        let signals = flights.to_vec();
+        let gravity_m_s2 = vehicle.gravity_m_s2;
+        let kernels: Vec<WeakKernel> =
+            signals.iter().map(|s| WeakKernel::new(settings.weak_half_width_s, s.grid.step_s)).collect();
+        let motions: Vec<WeakMotion> =
+            signals.iter().zip(&kernels).map(|(s, k)| WeakMotion::measured(s, k, gravity_m_s2)).collect();
+        let accelerometer_bias =
+            motions.iter().map(|m| m.vertical.as_ref().and_then(|v| v.accelerometer_bias)).collect();
+        let mut all = Self { signals, kernels, motions, rows: Vec::new(), accelerometer_bias, gravity_m_s2 };
+        all.refresh();
+        all
+    }
+
+    fn refresh(&mut self) {
+        self.rows = self
+            .signals
+            .iter()
+            .zip(&self.motions)
+            .zip(&self.kernels)
+            .map(|((signals, motion), kernel)| weak_rows(signals, motion, kernel))
+            .collect();
+    }
+
+    /// Estimates the latency on the untouched commands and takes it out of them, so that every method
+    /// sees the wrench that the body felt.
+    fn compensate(&mut self, nominal: &Theta) -> (Option<Latency>, ActuationLatency) {
+        let Some(found) = latency(&self.rows, nominal) else { return (None, ActuationLatency::default()) };
+        if !(found.total_s.abs() > 4.0 * found.std_s && found.total_s.abs() < 0.3) {
+            return (Some(found), ActuationLatency::default());
+        }
+        let compensation = match found.kind {
+            LatencyKind::Lag => ActuationLatency { delay_s: 0.0, lag_s: found.total_s },
+            LatencyKind::Both { delay_s } => {
+                ActuationLatency { delay_s, lag_s: (found.total_s - delay_s).max(0.0) }
+            }
+            LatencyKind::Delay | LatencyKind::Undetermined => {
+                ActuationLatency { delay_s: found.total_s, lag_s: 0.0 }
+            }
+        };
+        for signals in &mut self.signals {
+            signals.wrench = delayed_wrench(signals, compensation);
+        }
+        self.refresh();
+        (Some(found), compensation)
+    }
+
+    /// Rows of the commanded trajectory; `None` (and why) where a flight has none.
+    fn instruments(&self, notes: &mut Vec<String>) -> Option<Vec<WeakRows>> {
+        let mut out = Vec::new();
+        for (signals, kernel) in self.signals.iter().zip(&self.kernels) {
+            let (Some(reference), Some(rate)) = (&signals.reference, &signals.rate) else {
+                notes.push("no instrumental variables: the commanded acceleration or the body rates are not recorded".into());
+                return None;
+            };
+            let step_s = signals.grid.step_s;
+            let commanded = WeakMotion::commanded(reference, step_s, 0, self.gravity_m_s2);
+            let delay = commanded.omega.as_ref().map_or(0, |omega| tracking_delay(rate, omega, signals));
+            let commanded = WeakMotion::commanded(reference, step_s, delay, self.gravity_m_s2);
+            out.push(weak_rows(signals, &commanded, kernel));
+        }
+        Some(out)
+    }
+}
+
+/// The delay, in grid steps, at which the commanded rates resemble the measured ones most.
+fn tracking_delay(
+    rate: &[nalgebra::Vector3<f64>],
+    commanded: &[nalgebra::Vector3<f64>],
+    signals: &Signals,
+) -> usize {
+    let mut best = (f64::NEG_INFINITY, 0);
+    let mut delay = 0;
+    while (delay as f64) * signals.grid.step_s < 0.6 {
+        let sum: f64 = (delay..rate.len())
+            .step_by(4)
+            .filter(|&i| signals.usable[i])
+            .map(|i| rate[i].dot(&commanded[i - delay]))
+            .sum();
+        if sum > best.0 {
+            best = (sum, delay);
+        }
+        delay += 2;
+    }
+    best.1
+}
+
+/// Strength of the instruments: smallest squared ratio of standard errors turned into an F, over the
+/// moments of inertia.
+fn instrument_f(plain: &WeakEstimate, iv: &WeakEstimate) -> f64 {
+    let rows = plain.solution.residuals.first().map_or(0, nalgebra::DVector::len) as f64;
+    let independent = rows / 8.0;
+    [1, 4, 6]
+        .into_iter()
+        .map(|i| {
+            let share = (plain.covariance[(i, i)] / iv.covariance[(i, i)]).clamp(0.0, 0.999);
+            share / (1.0 - share) * independent / 10.0
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// The paper's four methods.
+struct PaperRuns {
+    standard: SampledModel,
+    runs: Vec<(Method, super::PaperEstimate)>,
+    nominal: Theta,
+}
+
+impl PaperRuns {
+    fn from(flights: &[Signals], vehicle: &Vehicle, filter: &ZeroPhase, sigma: f64) -> Self {
+        let nominal = theta_of(&vehicle.body);
+        let (mut standard, mut filtered) = (SampledModel::default(), SampledModel::default());
+        for signals in flights {
+            if let Some((one, other)) = paper_models(signals, vehicle.gravity_m_s2, filter) {
+                standard.extend(&one);
+                filtered.extend(&other);
+            }
+        }
+        let mut runs = Vec::new();
+        for (model, by_ls, by_gd) in
+            [(&standard, Method::Ls, Method::Gd), (&filtered, Method::Fmls, Method::Fmgd)]
+        {
+            if model.time_s.is_empty() {
+                continue;
+            }
+            runs.extend(least_squares(model).map(|estimate| (by_ls, estimate)));
+            runs.push((by_gd, gradient_descent(model, &nominal, sigma, GradientStep::Implicit)));
+        }
+        runs.sort_by_key(|(method, _)| *method);
+        Self { standard, runs, nominal }
+    }
+
+    fn results(&self) -> Vec<MethodResult> {
+        self.runs
+            .iter()
+            .map(|(method, run)| {
+                let estimated = Estimated { theta: run.theta, covariance: run.covariance };
+                MethodResult::new(*method, &estimated, &self.nominal)
+            })
+            .collect()
+    }
+
+    fn histories(&self) -> Vec<(Method, History)> {
+        self.runs.iter().map(|(method, run)| (*method, run.history.clone())).collect()
+    }
+
+    /// cond(W) of (20) as flown.
+    fn condition_number(&self) -> Option<f64> {
+        let mut gram = ThetaCovariance::zeros();
+        for gamma in &self.standard.gamma {
+            gram += gamma.tr_mul(gamma);
+        }
+        let values = gram.symmetric_eigenvalues();
+        (values.min() > 0.0).then(|| (values.max() / values.min()).sqrt())
+    }
+}

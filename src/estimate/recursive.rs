@@ -1,0 +1,218 @@
+//! The paper's estimators along time: least squares (40) and gradient descent (41), (42).
+
+use super::theta::{THETA, Theta, ThetaCovariance};
+use crate::regression::SampledModel;
+use nalgebra::{Matrix4, SMatrix, Vector4};
+
+/// The paper's adaptation gain sigma of (41).
+pub const PAPER_SIGMA: f64 = 30.0;
+/// Times at which the history keeps the estimate, s apart.
+const HISTORY_STEP_S: f64 = 0.2;
+
+/// An estimate, its covariance, and how it came about.
+#[derive(Debug, Clone, PartialEq)]
+pub struct History {
+    /// s, vehicle clock
+    pub time_s: Vec<f64>,
+    /// estimate at each of these times (the paper's figures 4 and 5)
+    pub theta: Vec<Theta>,
+}
+
+/// Result of one of the paper's four methods.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PaperEstimate {
+    /// `[m Ixx Ixy Ixz Iyy Iyz Izz]`
+    pub theta: Theta,
+    /// allows for coloured residuals
+    pub covariance: ThetaCovariance,
+    /// along time
+    pub history: History,
+}
+
+/// Recursive least squares (40): the information sums grow sample by sample and the last estimate is
+/// the batch one. `None` where the information matrix never becomes regular.
+#[must_use]
+pub fn least_squares(model: &SampledModel) -> Option<PaperEstimate> {
+    let mut information = SMatrix::<f64, THETA, THETA>::zeros();
+    let mut right = Theta::zeros();
+    let mut history = History { time_s: Vec::new(), theta: Vec::new() };
+    let mut next_s = f64::NEG_INFINITY;
+    for ((gamma, upsilon), &time_s) in model.gamma.iter().zip(&model.upsilon).zip(&model.time_s) {
+        information += gamma.tr_mul(gamma);
+        right += gamma.tr_mul(upsilon);
+        if time_s >= next_s {
+            next_s = time_s + HISTORY_STEP_S;
+            if let Some(theta) = solve(&information, &right) {
+                history.time_s.push(time_s);
+                history.theta.push(theta);
+            }
+        }
+    }
+    let theta = solve(&information, &right)?;
+    let inverse = information.try_inverse()?;
+    let covariance = sandwich(model, &theta, &inverse);
+    Some(PaperEstimate { theta, covariance, history })
+}
+
+/// Solution of the normal equations with scaled columns; `None` while they are singular.
+fn solve(information: &SMatrix<f64, THETA, THETA>, right: &Theta) -> Option<Theta> {
+    let scale = Theta::from_fn(|i, _| information[(i, i)].sqrt());
+    if scale.iter().any(|s| s.is_nan() || *s <= 0.0) {
+        return None;
+    }
+    let scaled = SMatrix::<f64, THETA, THETA>::from_fn(|i, j| information[(i, j)] / (scale[i] * scale[j]));
+    let solution = scaled.cholesky()?.solve(&right.component_div(&scale));
+    Some(solution.component_div(&scale))
+}
+
+/// Newey-West covariance of (40) over half a second of score correlation.
+fn sandwich(model: &SampledModel, theta: &Theta, inverse: &SMatrix<f64, THETA, THETA>) -> ThetaCovariance {
+    // scores summed over 0.1 s blocks: their lags then reach far at little cost
+    let mut block = 1;
+    while (block as f64) * model.step_s < 0.1 {
+        block += 1;
+    }
+    let mut meat = ThetaCovariance::zeros();
+    for run in &model.runs {
+        let scores: Vec<Theta> = (run.start..run.end)
+            .step_by(block)
+            .map(|start| {
+                (start..(start + block).min(run.end))
+                    .map(|i| model.gamma[i].tr_mul(&(model.upsilon[i] - model.gamma[i] * theta)))
+                    .sum()
+            })
+            .collect();
+        const LAGS: usize = 10;
+        for lag in 0..=LAGS.min(scores.len().saturating_sub(1)) {
+            let bartlett = 1.0 - lag as f64 / (LAGS as f64 + 1.0);
+            for (late, early) in scores[lag..].iter().zip(&scores) {
+                let product = early * late.transpose();
+                meat += if lag == 0 { product } else { bartlett * (product + product.transpose()) };
+            }
+        }
+    }
+    inverse * meat * inverse.transpose()
+}
+
+/// How gradient descent steps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GradientStep {
+    /// `(I + sigma T Gamma^T Gamma) theta_h = theta_(h-1) + sigma T Gamma^T Upsilon`: stable for every sigma
+    Implicit,
+    /// `theta_h = theta_(h-1) - sigma T Gamma^T e_(h-1)`: diverges once `sigma T |Gamma|^2 > 2`
+    Explicit,
+}
+
+/// Gradient descent (41), (42) from `start` (the nominal parameters).
+///
+/// The covariance follows the same linear recursion, driven by the residual of the end with its
+/// long-run variance.
+#[must_use]
+pub fn gradient_descent(
+    model: &SampledModel,
+    start: &Theta,
+    sigma: f64,
+    step: GradientStep,
+) -> PaperEstimate {
+    let gain = sigma * model.step_s;
+    let mut theta = *start;
+    let mut history = History { time_s: Vec::new(), theta: Vec::new() };
+    let mut next_s = f64::NEG_INFINITY;
+    for ((gamma, upsilon), &time_s) in model.gamma.iter().zip(&model.upsilon).zip(&model.time_s) {
+        theta += gain_matrix(gamma, gain, step) * (upsilon - gamma * theta);
+        if time_s >= next_s {
+            next_s = time_s + HISTORY_STEP_S;
+            history.time_s.push(time_s);
+            history.theta.push(theta);
+        }
+    }
+    let noise = long_run_variance(model, &theta);
+    let mut covariance = ThetaCovariance::zeros();
+    for gamma in &model.gamma {
+        let k = gain_matrix(gamma, gain, step);
+        let transition = ThetaCovariance::identity() - k * gamma;
+        covariance = transition * covariance * transition.transpose() + k * noise * k.transpose();
+    }
+    PaperEstimate { theta, covariance, history }
+}
+
+/// The 7 x 4 gain on the innovation `Upsilon - Gamma theta_(h-1)`. The implicit step's is
+/// `(I + c Gamma^T Gamma)^-1 c Gamma^T = c Gamma^T (I + c Gamma Gamma^T)^-1`, a 4 x 4 inverse.
+fn gain_matrix(gamma: &SMatrix<f64, 4, THETA>, gain: f64, step: GradientStep) -> SMatrix<f64, THETA, 4> {
+    let explicit = gamma.transpose() * gain;
+    match step {
+        GradientStep::Explicit => explicit,
+        GradientStep::Implicit => {
+            let inner = Matrix4::identity() + gain * gamma * gamma.transpose();
+            inner.cholesky().map_or(explicit, |factor| explicit * factor.inverse())
+        }
+    }
+}
+
+/// Residual variance per sample as a slow filter sees it: the sum of autocovariances over 0.5 s.
+fn long_run_variance(model: &SampledModel, theta: &Theta) -> Matrix4<f64> {
+    let mut block = 1;
+    while (block as f64) * model.step_s < 0.5 {
+        block += 1;
+    }
+    let mut sum = Vector4::zeros();
+    let mut count = 0_u32;
+    for run in &model.runs {
+        let residuals: Vec<Vector4<f64>> =
+            run.clone().map(|i| model.upsilon[i] - model.gamma[i] * theta).collect();
+        for chunk in residuals.chunks_exact(block) {
+            let total: Vector4<f64> = chunk.iter().sum();
+            sum += total.component_mul(&total) / block as f64;
+            count += 1;
+        }
+    }
+    Matrix4::from_diagonal(&(sum / f64::from(count.max(1))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{SVector, Vector3};
+
+    fn model(step_s: f64) -> (SampledModel, Theta) {
+        let truth = SVector::from([1.82, 0.0075, -0.0005, 0.0, 0.0098, -0.001, 0.0513]);
+        let mut model = SampledModel { step_s, ..SampledModel::default() };
+        for i in 0..20_000 {
+            let t = f64::from(i) * step_s;
+            let wave = |f: f64, phase: f64| (f * t + phase).sin();
+            let gamma = crate::regression::standard_regressor(&crate::regression::BodyKinematics {
+                specific_force_z_m_s2: 9.81 + 0.3 * wave(2.0, 0.1),
+                omega_rad_s: Vector3::new(0.5 * wave(2.5, 0.0), 0.5 * wave(3.1, 1.0), 0.4 * wave(1.3, 2.0)),
+                omega_dot_rad_s2: Vector3::new(
+                    1.5 * wave(2.5, 1.6),
+                    1.5 * wave(3.1, 2.6),
+                    0.8 * wave(1.3, 3.6),
+                ),
+            });
+            model.time_s.push(t);
+            model.gamma.push(gamma);
+            model.upsilon.push(gamma * truth);
+        }
+        model.runs.push(0..model.time_s.len());
+        (model, truth)
+    }
+
+    #[test]
+    fn least_squares_is_exact_without_noise() {
+        let (model, truth) = model(0.002);
+        let estimate = least_squares(&model).unwrap();
+        assert!((estimate.theta - truth).norm() < 1e-9);
+        assert!((estimate.history.theta.last().unwrap() - truth).norm() < 1e-9);
+    }
+
+    #[test]
+    fn implicit_gradient_converges_where_the_explicit_one_diverges() {
+        let (model, truth) = model(0.002);
+        let nominal = SVector::from([1.79, 0.03, 0.0, 0.0, 0.03, 0.0, 0.04]);
+        // sigma T g^2 = 30 * 0.002 * 9.81^2 = 5.8 > 2
+        let implicit = gradient_descent(&model, &nominal, PAPER_SIGMA, GradientStep::Implicit);
+        assert!((implicit.theta - truth).norm() < 2e-3, "{}", implicit.theta);
+        let explicit = gradient_descent(&model, &nominal, PAPER_SIGMA, GradientStep::Explicit);
+        assert!(!(explicit.theta.norm() < 1e3), "{}", explicit.theta);
+    }
+}

@@ -1,0 +1,225 @@
+//! Identification from the weak form: mass, inertia, actuation latency and trim torques together.
+
+use super::problem::{Channel, Problem, Solution};
+use super::theta::{THETA, Theta, ThetaCovariance};
+use crate::regression::{CHANNELS, WeakRows};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector};
+
+/// Columns: Theta, latency of the torques, latency of the thrust, three trim torques, three damping
+/// coefficients, and where asked for the second-order term of a delay.
+///
+/// Thrust has a latency of its own because drag along z looks like a (negative) one; damping is there
+/// because it, too, would be taken for a negative latency of the torques.
+const LATENCY: usize = THETA;
+const FORCE_LATENCY: usize = THETA + 1;
+const TRIM: usize = THETA + 2;
+const DAMPING: usize = THETA + 5;
+const CURVATURE: usize = THETA + 8;
+
+/// How the body follows the recorded command.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Latency {
+    /// s, lag and delay together
+    pub total_s: f64,
+    /// s, standard error
+    pub std_s: f64,
+    /// what kind it is, where the flight can tell
+    pub kind: LatencyKind,
+}
+
+/// A first-order lag attenuates, a pure delay does not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LatencyKind {
+    /// too short to tell
+    Undetermined,
+    /// first-order
+    Lag,
+    /// transport delay
+    Delay,
+    /// s of delay; the rest is lag
+    Both {
+        /// s
+        delay_s: f64,
+    },
+}
+
+/// A weak-form estimate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeakEstimate {
+    /// `[m Ixx Ixy Ixz Iyy Iyz Izz]`; NaN where there is no column
+    pub theta: Theta,
+    /// allows for coloured residuals
+    pub covariance: ThetaCovariance,
+    /// N m about body x, y, z, constant over the flight
+    pub trim_torque_nm: [f64; 3],
+    /// the first-order latency coefficient, s, with its standard error
+    pub latency: (f64, f64),
+    /// the whole solution
+    pub solution: Solution,
+    /// share of rows that the robust weights held back
+    pub held_back: f64,
+}
+
+/// How the rows are weighted and what stands for the regressors.
+#[derive(Debug, Clone, Copy)]
+pub enum WeakMethod<'a> {
+    /// weighted least squares
+    LeastSquares,
+    /// Huber weights, tuned to 95 % efficiency
+    Robust,
+    /// rows of the commanded trajectory as instruments
+    Instruments(&'a [WeakRows]),
+}
+
+/// Solves the weak form of one or several flights of a vehicle. `None` without a single row.
+#[must_use]
+pub fn solve_weak(flights: &[WeakRows], start: &Theta, method: WeakMethod<'_>) -> Option<WeakEstimate> {
+    solve_with(flights, start, method, false)
+}
+
+/// Newton on the latency column: it depends on the inertia that it is estimated with.
+const PASSES: usize = 4;
+
+fn solve_with(
+    flights: &[WeakRows],
+    start: &Theta,
+    method: WeakMethod<'_>,
+    curvature: bool,
+) -> Option<WeakEstimate> {
+    if flights.iter().all(|rows| rows.time_s.is_empty()) {
+        return None;
+    }
+    let mut theta = *start;
+    let mut solved = None;
+    for _ in 0..PASSES {
+        let problem = assemble(flights, &theta, method, curvature);
+        let (solution, held_back) = match method {
+            WeakMethod::Robust => huber(&problem),
+            _ => (problem.solve(None), 0.0),
+        };
+        for i in 0..THETA {
+            if solution.theta[i].is_finite() {
+                theta[i] = solution.theta[i];
+            }
+        }
+        solved = Some((solution, held_back));
+    }
+    let (solution, held_back) = solved?;
+    Some(WeakEstimate {
+        theta: Theta::from_fn(|i, _| solution.theta[i]),
+        covariance: solution.covariance.fixed_view::<THETA, THETA>(0, 0).into(),
+        trim_torque_nm: std::array::from_fn(|i| solution.theta[TRIM + i]),
+        latency: (solution.theta[LATENCY], solution.covariance[(LATENCY, LATENCY)].sqrt()),
+        solution,
+        held_back,
+    })
+}
+
+/// Lag or delay: a first-order lag `F_command = F + tau F'` has no second-order term, a delay d has
+/// `d^2/2 F''`. The coefficients c1, c2 of both together give `d = c1 - sqrt(c1^2 - 2 c2)`.
+#[must_use]
+pub fn latency(flights: &[WeakRows], start: &Theta) -> Option<Latency> {
+    let estimate = solve_with(flights, start, WeakMethod::LeastSquares, true)?;
+    let solution = &estimate.solution;
+    let (c1, c2) = (solution.theta[LATENCY], solution.theta[CURVATURE]);
+    let (s1, s2) =
+        (solution.covariance[(LATENCY, LATENCY)].sqrt(), solution.covariance[(CURVATURE, CURVATURE)].sqrt());
+    let against_lag = (c2 / s2).abs();
+    let against_delay = ((c2 - 0.5 * c1 * c1) / s2).abs();
+    let kind = match (against_lag > 4.0, against_delay > 4.0) {
+        (false, true) => LatencyKind::Lag,
+        (true, false) => LatencyKind::Delay,
+        (true, true) if c1 * c1 > 2.0 * c2 && c2 > 0.0 => {
+            LatencyKind::Both { delay_s: c1 - (c1 * c1 - 2.0 * c2).sqrt() }
+        }
+        _ => LatencyKind::Undetermined,
+    };
+    Some(Latency { total_s: c1, std_s: s1, kind })
+}
+
+/// Stacks the flights into one problem; columns are scaled by nothing (the solver does).
+fn assemble(flights: &[WeakRows], theta: &Theta, method: WeakMethod<'_>, curvature: bool) -> Problem {
+    let rows: usize = flights.iter().map(|flight| flight.time_s.len()).sum();
+    let columns = if curvature { CURVATURE + 1 } else { CURVATURE };
+    let theta = theta.map(|value| if value.is_finite() { value } else { 0.0 });
+    let instruments = match method {
+        WeakMethod::Instruments(instruments) => Some(instruments),
+        _ => None,
+    };
+    let mut channels = Vec::new();
+    for channel in 0..CHANNELS {
+        let x = design(flights, &theta, channel, (rows, columns));
+        if x.columns(0, THETA).norm() == 0.0 {
+            continue; // nothing measured that this equation needs
+        }
+        let y = DVector::from_iterator(
+            rows,
+            flights.iter().flat_map(|flight| flight.output.iter().map(|output| output[channel])),
+        );
+        let z = instruments.map(|rows_of| design(rows_of, &theta, channel, (rows, columns)));
+        channels.push(Channel { y, x, z });
+    }
+    let mut runs = Vec::new();
+    let mut before = 0;
+    for flight in flights {
+        runs.extend(flight.runs.iter().map(|run| run.start + before..run.end + before));
+        before += flight.time_s.len();
+    }
+    Problem { channels, runs, overlap: 8 }
+}
+
+fn design(
+    flights: &[WeakRows],
+    theta: &Theta,
+    channel: usize,
+    (rows, columns): (usize, usize),
+) -> DMatrix<f64> {
+    let mut x = DMatrix::zeros(rows, columns);
+    let series = |order: usize| flights.iter().flat_map(move |flight| flight.regressor[order].iter());
+    let rates = flights.iter().flat_map(|flight| flight.rate.iter());
+    for (row, (((phi, first), second), rate)) in
+        series(0).zip(series(1)).zip(series(2)).zip(rates).enumerate()
+    {
+        for parameter in 0..THETA {
+            x[(row, parameter)] = phi[(channel, parameter)];
+        }
+        if channel == 0 {
+            x[(row, FORCE_LATENCY)] = dot_row(first, channel, theta);
+            continue;
+        }
+        x[(row, LATENCY)] = dot_row(first, channel, theta);
+        if columns > CURVATURE {
+            x[(row, CURVATURE)] = dot_row(second, channel, theta);
+        }
+        x[(row, TRIM + channel - 1)] = 1.0;
+        x[(row, DAMPING + channel - 1)] = rate[channel - 1];
+    }
+    x
+}
+
+fn dot_row(phi: &SMatrix<f64, CHANNELS, THETA>, row: usize, theta: &SVector<f64, THETA>) -> f64 {
+    (0..THETA).map(|i| phi[(row, i)] * theta[i]).sum()
+}
+
+/// Huber's weights, iterated; also the share of rows held back.
+fn huber(problem: &Problem) -> (Solution, f64) {
+    const TUNING: f64 = 1.345;
+    let mut solution = problem.solve(None);
+    let mut held_back = 0.0;
+    for _ in 0..6 {
+        let weights: Vec<DVector<f64>> = solution
+            .residuals
+            .iter()
+            .map(|residual| {
+                let mut sizes: Vec<f64> = residual.iter().map(|r| r.abs()).collect();
+                let sigma = (1.4826 * crate::signals::median(&mut sizes)).max(f64::MIN_POSITIVE);
+                residual.map(|r| (TUNING * sigma / r.abs().max(f64::MIN_POSITIVE)).min(1.0))
+            })
+            .collect();
+        let total: usize = weights.iter().map(DVector::len).sum();
+        held_back =
+            weights.iter().flat_map(|w| w.iter()).filter(|w| **w < 0.5).count() as f64 / total.max(1) as f64;
+        solution = problem.solve(Some(&weights));
+    }
+    (solution, held_back)
+}

@@ -1,0 +1,248 @@
+//! Reads a table row by row into streams.
+
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Cursor, Read};
+use std::path::Path;
+
+use ::csv::{ByteRecord, ReaderBuilder};
+
+use super::rows::{Clock, cells_si, number};
+use super::{CsvError, CsvMapping, CsvQuantity, CsvReport, RowRejection, convert};
+use crate::log::{Recording, Stream, StreamKey};
+
+/// The source named in the keys of streams that came from a table.
+const SOURCE: &str = "CSV";
+
+/// A header longer than this is not looked at for its delimiter.
+const HEADER_BYTES_MAX: u64 = 1 << 20;
+
+/// Reads a file with a header row.
+///
+/// # Errors
+/// [`CsvError`] where the file cannot be read, lacks a column that is not optional, or has no usable row.
+pub fn read_csv(path: &Path, mapping: &CsvMapping) -> Result<(Recording, CsvReport), CsvError> {
+    let file = File::open(path).map_err(|source| CsvError::Read { path: path.to_owned(), source })?;
+    read_csv_from(BufReader::new(file), &path.display().to_string(), mapping)
+}
+
+/// As [`read_csv`], from any reader; `origin` is named in errors.
+///
+/// # Errors
+/// As [`read_csv`].
+pub fn read_csv_from(
+    mut reader: impl BufRead,
+    origin: &str,
+    mapping: &CsvMapping,
+) -> Result<(Recording, CsvReport), CsvError> {
+    let table_error = |source: ::csv::Error| CsvError::Table { origin: origin.to_owned(), source };
+    let mut head = Vec::new();
+    let mut limited = reader.by_ref().take(HEADER_BYTES_MAX);
+    limited.read_until(b'\n', &mut head).map_err(|source| table_error(source.into()))?;
+    if head.starts_with(b"\xef\xbb\xbf") {
+        head.drain(..3);
+    }
+    let delimiter = mapping.delimiter.unwrap_or_else(|| guess_delimiter(&head));
+    let mut table =
+        ReaderBuilder::new().delimiter(delimiter).flexible(true).from_reader(Cursor::new(head).chain(reader));
+    let header = table.byte_headers().map_err(table_error)?.clone();
+    let mut reading = Reading::new(&header, origin, mapping)?;
+    let mut record = ByteRecord::new();
+    while table.read_byte_record(&mut record).map_err(table_error)? {
+        reading.row(&record);
+    }
+    reading.finish()
+}
+
+/// Comma, semicolon or tab, whichever the header has most of; comma where it has none.
+fn guess_delimiter(head: &[u8]) -> u8 {
+    let count = |delimiter: u8| head.iter().filter(|byte| **byte == delimiter).count();
+    let mut best = b',';
+    for delimiter in [b';', b'\t'] {
+        if count(delimiter) > count(best) {
+            best = delimiter;
+        }
+    }
+    best
+}
+
+/// A quantity that the file has.
+struct Mapped {
+    quantity: CsvQuantity,
+    /// of its columns, in the record
+    indices: Vec<usize>,
+    stream: Stream,
+}
+
+struct Reading<'a> {
+    origin: &'a str,
+    mapping: &'a CsvMapping,
+    time_index: usize,
+    columns: usize,
+    mapped: Vec<Mapped>,
+    clock: Clock,
+    times_s: Vec<f64>,
+    report: CsvReport,
+}
+
+impl<'a> Reading<'a> {
+    fn new(header: &ByteRecord, origin: &'a str, mapping: &'a CsvMapping) -> Result<Self, CsvError> {
+        let present: Vec<String> =
+            header.iter().map(|name| String::from_utf8_lossy(name.trim_ascii()).into_owned()).collect();
+        let mut seen = BTreeSet::new();
+        for column in present.iter().filter(|column| !column.is_empty()) {
+            if !seen.insert(column) {
+                return Err(CsvError::RepeatedColumn { origin: origin.to_owned(), column: column.clone() });
+            }
+        }
+        let mut missing = Vec::new();
+        let time_index = index_of(&present, &mapping.time.column);
+        if time_index.is_none() {
+            missing.push(mapping.time.column.clone());
+        }
+        let mut mapped = Vec::new();
+        for quantity in &mapping.quantities {
+            match columns_of(quantity, &present) {
+                Ok(None) => {}
+                Ok(Some(found)) => mapped.push(found),
+                Err(absent) => missing.extend(absent),
+            }
+        }
+        let Some(time_index) = time_index.filter(|_| missing.is_empty()) else {
+            return Err(CsvError::MissingColumns { origin: origin.to_owned(), missing, present });
+        };
+        if mapped.is_empty() {
+            return Err(CsvError::NothingMapped { origin: origin.to_owned(), present });
+        }
+        let used = |index: &usize| *index == time_index || mapped.iter().any(|m| m.indices.contains(index));
+        let unused_columns =
+            (0..present.len()).filter(|index| !used(index)).map(|index| present[index].clone()).collect();
+        Ok(Self {
+            origin,
+            mapping,
+            time_index,
+            columns: present.len(),
+            mapped,
+            clock: Clock::default(),
+            times_s: Vec::new(),
+            report: CsvReport { unused_columns, ..CsvReport::default() },
+        })
+    }
+
+    fn row(&mut self, record: &ByteRecord) {
+        self.report.rows += 1;
+        match self.cells(record) {
+            Ok((raw_time, cells)) => self.keep(raw_time, cells),
+            Err(reason) => {
+                self.report.rows_rejected += 1;
+                if self.report.rejections.len() < CsvReport::REJECTIONS_KEPT {
+                    let line = record.position().map_or(0, ::csv::Position::line);
+                    self.report.rejections.push(RowRejection { line, reason });
+                }
+            }
+        }
+    }
+
+    /// The row's raw time and the cells of each quantity, or why the row is of no use.
+    fn cells(&self, record: &ByteRecord) -> Result<(f64, Vec<Vec<f64>>), String> {
+        if record.len() != self.columns {
+            return Err(format!("expected {} cells as in the header, came {}", self.columns, record.len()));
+        }
+        let column = &self.mapping.time.column;
+        let raw_time = number(record, self.time_index, column)?;
+        if raw_time.is_nan() {
+            return Err(format!("column \"{column}\": expected a time, came nothing"));
+        }
+        let cells = self.mapped.iter().map(|m| cells_si(&m.quantity, &m.indices, record));
+        Ok((raw_time, cells.collect::<Result<_, _>>()?))
+    }
+
+    fn keep(&mut self, raw_time: f64, cells: Vec<Vec<f64>>) {
+        let time_s = self.clock.time_s(&self.mapping.time, raw_time);
+        self.times_s.push(time_s);
+        for (mapped, cells) in self.mapped.iter_mut().zip(cells) {
+            if cells.iter().all(|cell| cell.is_nan()) {
+                continue;
+            }
+            match convert::to_sample(&mapped.quantity, &cells) {
+                None => self.report.invalid_attitudes += 1,
+                Some(sample) => {
+                    mapped.stream.time_s.push(time_s);
+                    mapped.stream.width = sample.len();
+                    mapped.stream.values.extend(sample);
+                }
+            }
+        }
+    }
+
+    fn finish(mut self) -> Result<(Recording, CsvReport), CsvError> {
+        if self.times_s.is_empty() {
+            let (origin, rows) = (self.origin.to_owned(), self.report.rows);
+            let first = self.report.rejections.into_iter().next();
+            return Err(CsvError::NoRows { origin, rows, first });
+        }
+        self.times_s.sort_by(f64::total_cmp);
+        let start_s = self.times_s[0];
+        let repeats = self.times_s.windows(2).filter(|pair| pair[0] == pair[1]).count();
+        self.report.rows_repeating_a_time = repeats;
+        self.report.rows_out_of_order = self.clock.out_of_order;
+        self.report.clock_resets = self.clock.resets_s.len();
+        self.report.start_time_s = self.clock.start_s(&self.mapping.time) + start_s;
+        let mut recording = Recording {
+            clock_resets_s: self.clock.resets_s.iter().map(|time_s| time_s - start_s).collect(),
+            ..Recording::default()
+        };
+        for Mapped { quantity, stream, .. } in self.mapped {
+            let key = StreamKey { quantity: quantity.quantity, source: SOURCE, instance: quantity.instance };
+            let stream = in_order(stream, start_s);
+            if !stream.is_empty() {
+                recording.streams.insert(key, stream);
+            }
+        }
+        Ok((recording, self.report))
+    }
+}
+
+fn index_of(present: &[String], column: &str) -> Option<usize> {
+    present.iter().position(|name| name == column)
+}
+
+/// Where the columns of a quantity are. `Ok(None)`: the file does without; `Err`: what it lacks.
+fn columns_of(quantity: &CsvQuantity, present: &[String]) -> Result<Option<Mapped>, Vec<String>> {
+    let columns = match quantity.columns.as_slice() {
+        [pattern] if pattern.contains("{n}") => numbered(pattern, present),
+        columns => columns.to_vec(),
+    };
+    let absent: Vec<String> =
+        columns.iter().filter(|column| index_of(present, column).is_none()).cloned().collect();
+    if absent.len() == columns.len() {
+        return if quantity.optional { Ok(None) } else { Err(quantity.columns.clone()) };
+    }
+    if !absent.is_empty() {
+        return Err(absent);
+    }
+    let indices = columns.iter().filter_map(|column| index_of(present, column)).collect();
+    let quantity = CsvQuantity { columns, ..quantity.clone() };
+    Ok(Some(Mapped { quantity, indices, stream: Stream::default() }))
+}
+
+/// `motor_{n}_command` to `motor_1_command`, `motor_2_command` and so on, as far as the header goes.
+fn numbered(pattern: &str, present: &[String]) -> Vec<String> {
+    (1..=present.len())
+        .map(|number| pattern.replace("{n}", &number.to_string()))
+        .take_while(|column| index_of(present, column).is_some())
+        .collect()
+}
+
+/// Sorted by time (equal times stay in the file's order, the first is kept), counted from `start_s`.
+fn in_order(stream: Stream, start_s: f64) -> Stream {
+    let mut order: Vec<usize> = (0..stream.len()).collect();
+    order.sort_by(|a, b| stream.time_s[*a].total_cmp(&stream.time_s[*b]));
+    order.dedup_by(|next, kept| stream.time_s[*next] == stream.time_s[*kept]);
+    let mut sorted = Stream { width: stream.width, ..Stream::default() };
+    for index in order {
+        sorted.time_s.push(stream.time_s[index] - start_s);
+        sorted.values.extend_from_slice(stream.sample(index));
+    }
+    sorted
+}

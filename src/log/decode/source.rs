@@ -1,0 +1,124 @@
+//! The messages that are read, and where each keeps its time.
+
+use super::{Samples, actuators, imu, motion, setpoints, status};
+use crate::log::clock::Stamp;
+use crate::log::frame::Payload;
+use crate::log::recording::{Quantity, StreamKey};
+
+/// Which stream a sample is of; small and quick to compare.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct StreamId {
+    /// what it holds
+    pub quantity: Quantity,
+    /// from which message
+    pub source: Source,
+    /// port, index or sensor number; 0 where there is one
+    pub instance: u8,
+}
+
+impl StreamId {
+    /// The same as a recording's key.
+    #[must_use]
+    pub fn key(&self) -> StreamKey {
+        StreamKey { quantity: self.quantity, source: self.source.name(), instance: self.instance }
+    }
+}
+
+/// How a message keeps its time.
+#[derive(Clone, Copy)]
+enum TimeField {
+    Absent,
+    BootMs,
+    BootUs32,
+    Us,
+    /// SYSTEM_TIME: behind the Unix time
+    BootMsAt8,
+}
+
+macro_rules! sources {
+    ($($variant:ident = $id:literal, $name:literal, $time:ident, $decode:path;)*) => {
+        /// A message that is read.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[allow(missing_docs)] // the variants are MAVLink's own names
+        pub enum Source { $($variant,)* }
+
+        impl Source {
+            /// All of them.
+            pub const ALL: &[Self] = &[$(Self::$variant,)*];
+
+            /// The message of this id, if it is read.
+            #[must_use]
+            pub fn from_message_id(id: u32) -> Option<Self> {
+                match id { $($id => Some(Self::$variant),)* _ => None }
+            }
+
+            /// Its MAVLink id.
+            #[must_use]
+            pub fn message_id(self) -> u32 {
+                match self { $(Self::$variant => $id,)* }
+            }
+
+            /// Its MAVLink name.
+            #[must_use]
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)* }
+            }
+
+            fn time_field(self) -> TimeField {
+                match self { $(Self::$variant => TimeField::$time,)* }
+            }
+
+            pub(super) fn decode(self, payload: Payload<'_>, samples: &mut Samples<'_>) {
+                match self { $(Self::$variant => $decode(payload, samples),)* }
+            }
+        }
+    };
+}
+
+sources! {
+    Heartbeat = 0, "HEARTBEAT", Absent, status::heartbeat;
+    SysStatus = 1, "SYS_STATUS", Absent, status::sys_status;
+    SystemTime = 2, "SYSTEM_TIME", BootMsAt8, nothing;
+    ParamValue = 22, "PARAM_VALUE", Absent, nothing;
+    ScaledImu = 26, "SCALED_IMU", BootMs, imu::scaled_imu;
+    RawImu = 27, "RAW_IMU", Us, imu::raw_imu;
+    Attitude = 30, "ATTITUDE", BootMs, motion::attitude;
+    AttitudeQuaternion = 31, "ATTITUDE_QUATERNION", BootMs, motion::attitude_quaternion;
+    LocalPositionNed = 32, "LOCAL_POSITION_NED", BootMs, motion::local_position_ned;
+    ServoOutputRaw = 36, "SERVO_OUTPUT_RAW", BootUs32, actuators::servo_output_raw;
+    SetAttitudeTarget = 82, "SET_ATTITUDE_TARGET", Absent, setpoints::set_attitude_target;
+    AttitudeTarget = 83, "ATTITUDE_TARGET", BootMs, setpoints::attitude_target;
+    SetPositionTargetLocalNed = 84, "SET_POSITION_TARGET_LOCAL_NED", Absent, setpoints::set_position_target_local_ned;
+    PositionTargetLocalNed = 85, "POSITION_TARGET_LOCAL_NED", BootMs, setpoints::position_target_local_ned;
+    HighresImu = 105, "HIGHRES_IMU", Us, imu::highres_imu;
+    ScaledImu2 = 116, "SCALED_IMU2", BootMs, imu::scaled_imu;
+    ScaledImu3 = 129, "SCALED_IMU3", BootMs, imu::scaled_imu;
+    BatteryStatus = 147, "BATTERY_STATUS", Absent, status::battery_status;
+    ExtendedSysState = 245, "EXTENDED_SYS_STATE", Absent, status::extended_sys_state;
+    Statustext = 253, "STATUSTEXT", Absent, nothing;
+    EscStatus = 291, "ESC_STATUS", Us, actuators::esc_status;
+    Odometry = 331, "ODOMETRY", Us, motion::odometry;
+    ActuatorOutputStatus = 375, "ACTUATOR_OUTPUT_STATUS", Us, actuators::actuator_output_status;
+    CurrentMode = 436, "CURRENT_MODE", Absent, status::current_mode;
+    EscTelemetry1To4 = 11030, "ESC_TELEMETRY_1_TO_4", Absent, actuators::esc_telemetry;
+    EscTelemetry5To8 = 11031, "ESC_TELEMETRY_5_TO_8", Absent, actuators::esc_telemetry;
+    EscTelemetry9To12 = 11032, "ESC_TELEMETRY_9_TO_12", Absent, actuators::esc_telemetry;
+}
+
+impl Source {
+    /// The message's own time. Setpoints that a ground station sends carry its clock, not the vehicle's:
+    /// none.
+    #[must_use]
+    pub fn stamp(self, payload: Payload<'_>) -> Stamp {
+        match self.time_field() {
+            TimeField::Absent => Stamp::Absent,
+            TimeField::BootMs => Stamp::BootMs(payload.u32(0)),
+            TimeField::BootUs32 => Stamp::BootUs32(payload.u32(0)),
+            TimeField::Us => Stamp::Us(payload.u64(0)),
+            TimeField::BootMsAt8 => Stamp::BootMs(payload.u32(8)),
+        }
+    }
+}
+
+/// For messages that hold no samples.
+fn nothing(_: Payload<'_>, _: &mut Samples<'_>) {}

@@ -1,0 +1,229 @@
+//! What was met while reading: every loss counted.
+
+use std::collections::BTreeMap;
+
+use super::decode::DecodeReport;
+use super::frame::{ComponentId, Frame, SystemId, Version};
+use super::recording::StreamKey;
+use super::tlog::{ByteOrder, Record};
+
+/// Damaged places kept with their offsets; further ones are only counted.
+const KEPT_RESYNCS: usize = 1000;
+/// A frame this many frames late is out of order, not the sign of a great loss.
+const LATE_FRAMES: u8 = 8;
+/// The same frame again within so many frames of its sender is a duplicate.
+const DUPLICATE_FRAMES: u32 = 128;
+const DENSE_IDS: usize = 512;
+
+/// Bytes that had to be skipped to find the next record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Resync {
+    /// byte offset in the file where the damage begins
+    pub offset: u64,
+    /// bytes that belong to no record
+    pub skipped_bytes: u64,
+}
+
+/// What was met while reading a log.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ReadReport {
+    /// bytes read
+    pub bytes: u64,
+    /// frames found, unknown ones included
+    pub frames: u64,
+    /// of these MAVLink 1
+    pub frames_v1: u64,
+    /// of these MAVLink 2
+    pub frames_v2: u64,
+    /// of these signed
+    pub signed: u64,
+    /// of these with a message id that the dialect does not have, by id
+    pub unknown_ids: BTreeMap<u32, u64>,
+    /// frames behind a stamp that another frame used already
+    pub shared_stamps: u64,
+    /// whole frames dropped for a wrong checksum
+    pub bad_crc: u64,
+    /// places where bytes were skipped, the first thousand
+    pub resyncs: Vec<Resync>,
+    /// all such places
+    pub resync_count: u64,
+    /// all bytes skipped there
+    pub skipped_bytes: u64,
+    /// bytes at the file's end: a record cut off, or zeros
+    pub truncated_tail_bytes: u64,
+    /// host stamps before their predecessor
+    pub backward_stamps: u64,
+    /// first host stamp, microseconds since 1970 UTC
+    pub first_stamp_us: Option<u64>,
+    /// last host stamp, microseconds since 1970 UTC
+    pub last_stamp_us: Option<u64>,
+    /// order of the host stamps' bytes
+    pub byte_order: ByteOrder,
+    /// who sent what
+    pub senders: Vec<Sender>,
+    /// what became of the chosen vehicle's messages
+    pub decode: DecodeReport,
+    /// what was done to put each stream's samples in order
+    pub streams: BTreeMap<StreamKey, StreamRepair>,
+    last_sender: usize,
+}
+
+/// What putting a stream's samples in order took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct StreamRepair {
+    /// samples with a stamp that the stream has already, dropped
+    pub duplicates: u64,
+    /// samples that came after a later one, sorted in
+    pub out_of_order: u64,
+}
+
+/// One (system, component) that sent frames.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sender {
+    /// system
+    pub system: SystemId,
+    /// component
+    pub component: ComponentId,
+    /// frames
+    pub frames: u64,
+    /// frames missing by the sequence number
+    pub lost: u64,
+    /// frames that came twice
+    pub duplicates: u64,
+    /// frames by message id
+    pub messages: MessageCounts,
+    next_sequence: Option<u8>,
+    recent: Box<[(u16, u32)]>,
+}
+
+/// Frames by message id.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct MessageCounts {
+    dense: Vec<u64>,
+    others: BTreeMap<u32, u64>,
+}
+
+impl MessageCounts {
+    fn add(&mut self, message_id: u32) {
+        match usize::try_from(message_id) {
+            Ok(index) if index < DENSE_IDS => {
+                if self.dense.len() <= index {
+                    self.dense.resize(DENSE_IDS, 0);
+                }
+                self.dense[index] += 1;
+            }
+            _ => *self.others.entry(message_id).or_default() += 1,
+        }
+    }
+
+    /// Message ids with their counts, in order of ids.
+    pub fn iter(&self) -> impl Iterator<Item = (u32, u64)> + '_ {
+        let dense = (0_u32..).zip(self.dense.iter().copied()).filter(|(_, count)| *count > 0);
+        dense.chain(self.others.iter().map(|(id, count)| (*id, *count)))
+    }
+
+    /// Frames of one message.
+    #[must_use]
+    pub fn get(&self, message_id: u32) -> u64 {
+        let dense = usize::try_from(message_id).ok().and_then(|index| self.dense.get(index));
+        dense.or_else(|| self.others.get(&message_id)).copied().unwrap_or(0)
+    }
+}
+
+impl Sender {
+    fn new(system: SystemId, component: ComponentId) -> Self {
+        Self {
+            system,
+            component,
+            frames: 0,
+            lost: 0,
+            duplicates: 0,
+            messages: MessageCounts::default(),
+            next_sequence: None,
+            recent: vec![(0, u32::MAX); 256].into_boxed_slice(),
+        }
+    }
+
+    fn tally(&mut self, frame: &Frame<'_>) {
+        let header = frame.header();
+        let sequence = header.sequence;
+        let number = u32::try_from(self.frames & u64::from(u32::MAX >> 1)).unwrap_or(0);
+        self.frames += 1;
+        self.messages.add(header.message_id);
+        let seen = &mut self.recent[usize::from(sequence)];
+        let checksum = frame.sent_checksum();
+        let duplicate = seen.0 == checksum && number.wrapping_sub(seen.1) < DUPLICATE_FRAMES;
+        *seen = (checksum, number);
+        if duplicate {
+            self.duplicates += 1;
+            return;
+        }
+        let gap = self.next_sequence.map_or(0, |expected| sequence.wrapping_sub(expected));
+        if gap > u8::MAX - LATE_FRAMES {
+            self.lost = self.lost.saturating_sub(1);
+        } else {
+            self.lost += u64::from(gap);
+            self.next_sequence = Some(sequence.wrapping_add(1));
+        }
+    }
+}
+
+impl ReadReport {
+    /// Frames missing by the sequence numbers, of all senders.
+    #[must_use]
+    pub fn lost_frames(&self) -> u64 {
+        self.senders.iter().map(|sender| sender.lost).sum()
+    }
+
+    /// Frames that came twice, of all senders.
+    #[must_use]
+    pub fn duplicates(&self) -> u64 {
+        self.senders.iter().map(|sender| sender.duplicates).sum()
+    }
+
+    /// Nothing was lost, skipped or cut off.
+    #[must_use]
+    pub fn is_undamaged(&self) -> bool {
+        self.bad_crc == 0
+            && self.resync_count == 0
+            && self.truncated_tail_bytes == 0
+            && self.lost_frames() == 0
+    }
+
+    pub(super) fn tally(&mut self, record: &Record<'_>, last_stamp_us: Option<u64>, shared_stamp: bool) {
+        let header = record.frame.header();
+        self.frames += 1;
+        match header.version {
+            Version::V1 => self.frames_v1 += 1,
+            Version::V2 => self.frames_v2 += 1,
+        }
+        self.signed += u64::from(header.is_signed());
+        self.shared_stamps += u64::from(shared_stamp);
+        if !record.known {
+            *self.unknown_ids.entry(header.message_id).or_default() += 1;
+        }
+        self.backward_stamps += u64::from(last_stamp_us.is_some_and(|last| record.stamp_us < last));
+        self.first_stamp_us.get_or_insert(record.stamp_us);
+        self.last_stamp_us = Some(record.stamp_us);
+        self.sender(header.system, header.component).tally(&record.frame);
+    }
+
+    pub(super) fn note_resync(&mut self, offset: u64, skipped_bytes: u64) {
+        self.resync_count += 1;
+        self.skipped_bytes += skipped_bytes;
+        if self.resyncs.len() < KEPT_RESYNCS {
+            self.resyncs.push(Resync { offset, skipped_bytes });
+        }
+    }
+
+    fn sender(&mut self, system: SystemId, component: ComponentId) -> &mut Sender {
+        let same = |sender: &Sender| sender.system == system && sender.component == component;
+        if !self.senders.get(self.last_sender).is_some_and(same) {
+            self.last_sender = self.senders.iter().position(same).unwrap_or_else(|| {
+                self.senders.push(Sender::new(system, component));
+                self.senders.len() - 1
+            });
+        }
+        &mut self.senders[self.last_sender]
+    }
+}

@@ -1,0 +1,345 @@
+//! Reads telemetry logs record by record, over any reader, in bounded memory.
+
+use std::io::Read;
+
+use super::{ByteOrder, NEIGHBOUR_US, STAMP_BYTES, is_wall_clock};
+use crate::log::crc::CrcSeeds;
+use crate::log::error::LogError;
+use crate::log::frame::{Check, Frame, Header, MARKER_V1, MARKER_V2, MAX_FRAME_BYTES, Start};
+use crate::log::report::ReadReport;
+
+const RECORD_BYTES: usize = STAMP_BYTES + MAX_FRAME_BYTES;
+/// What must lie ahead for every judgement: a record and the three that confirm it.
+const LOOKAHEAD: usize = 4 * RECORD_BYTES;
+const BUFFER_BYTES: usize = 1 << 18;
+/// A file without a record in its first bytes is no telemetry log.
+const SEARCH_BYTES: u64 = 1 << 20;
+/// Records whose stamps tell the byte order.
+const ORDER_RECORDS: usize = 3;
+
+/// One frame of a log with its host stamp.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Record<'a> {
+    /// host's time of reception, microseconds since 1970 UTC as written, low two bits included
+    pub stamp_us: u64,
+    /// byte offset of the frame in the file
+    pub offset: u64,
+    /// the dialect knows the message, and its checksum is right
+    pub known: bool,
+    /// the frame, byte for byte
+    pub frame: Frame<'a>,
+}
+
+/// Reads a telemetry log.
+///
+/// Takes MAVLink 1 and 2 mixed, several frames behind one stamp, stamps that jump or run backwards (file
+/// order is kept), and little-endian stamps. Damage is skipped to the next record with a plausible stamp
+/// and a right checksum; a cut-off last record or a tail of zeros ends the log. All of it is counted.
+#[derive(Debug)]
+pub struct TlogReader<R: Read> {
+    from: R,
+    seeds: CrcSeeds,
+    buffer: Vec<u8>,
+    at: usize,
+    filled: usize,
+    ended: bool,
+    base: u64,
+    order: Option<ByteOrder>,
+    last_stamp_us: Option<u64>,
+    report: ReadReport,
+}
+
+/// What stands at the reading position.
+enum Found {
+    /// a record; `stamp_bytes` is 0 where it shares the stamp before
+    Record {
+        stamp_us: u64,
+        stamp_bytes: usize,
+        frame_bytes: usize,
+        known: bool,
+    },
+    /// a whole record with a wrong checksum
+    BadCrc {
+        bytes: usize,
+    },
+    /// a record that the file's end cuts off
+    CutOff,
+    Nothing,
+}
+
+impl<R: Read> TlogReader<R> {
+    /// Reads from the start of `from`; no buffering of its own is needed.
+    pub fn new(from: R) -> Self {
+        Self {
+            from,
+            seeds: CrcSeeds::new(),
+            buffer: vec![0; BUFFER_BYTES],
+            at: 0,
+            filled: 0,
+            ended: false,
+            base: 0,
+            order: None,
+            last_stamp_us: None,
+            report: ReadReport::default(),
+        }
+    }
+
+    /// The next record, `None` at the end.
+    ///
+    /// # Errors
+    /// The reader beneath fails, or the file is empty, or nothing in it looks like a telemetry log.
+    pub fn next_record(&mut self) -> Result<Option<Record<'_>>, LogError> {
+        let Some((stamp_us, stamp_bytes, frame_bytes, known)) = self.advance()? else { return Ok(None) };
+        let start = self.at + stamp_bytes;
+        self.at = start + frame_bytes;
+        let offset = self.base + start as u64;
+        let record = Frame::at_start(&self.buffer[start..self.at]).map(|frame| Record {
+            stamp_us,
+            offset,
+            known,
+            frame,
+        });
+        if let Some(record) = &record {
+            self.report.tally(record, self.last_stamp_us, stamp_bytes == 0);
+        }
+        self.last_stamp_us = Some(stamp_us);
+        Ok(record)
+    }
+
+    /// Moves to the next record: its stamp, the stamp's bytes, the frame's bytes, whether it is known.
+    fn advance(&mut self) -> Result<Option<(u64, usize, usize, bool)>, LogError> {
+        loop {
+            self.look_ahead()?;
+            if self.at == self.filled {
+                return self.finish().map(|()| None);
+            }
+            match self.find(self.at) {
+                Found::Record { stamp_us, stamp_bytes, frame_bytes, known } => {
+                    return Ok(Some((stamp_us, stamp_bytes, frame_bytes, known)));
+                }
+                Found::BadCrc { bytes } => {
+                    self.report.bad_crc += 1;
+                    self.at += bytes;
+                }
+                Found::CutOff => self.resynchronise(true)?,
+                Found::Nothing => self.resynchronise(false)?,
+            }
+        }
+    }
+
+    /// What was met so far; complete once `next_record` has returned `None`.
+    #[must_use]
+    pub fn report(&self) -> &ReadReport {
+        &self.report
+    }
+
+    /// The report, when reading is done.
+    #[must_use]
+    pub fn into_report(self) -> ReadReport {
+        self.report
+    }
+
+    /// Makes sure that enough bytes lie ahead, or all that are left.
+    fn look_ahead(&mut self) -> Result<(), LogError> {
+        if self.ended || self.filled - self.at >= LOOKAHEAD {
+            return Ok(());
+        }
+        self.buffer.copy_within(self.at..self.filled, 0);
+        self.base += self.at as u64;
+        self.filled -= self.at;
+        self.at = 0;
+        while self.filled < self.buffer.len() {
+            match self.from.read(&mut self.buffer[self.filled..]) {
+                Ok(0) => {
+                    self.ended = true;
+                    break;
+                }
+                Ok(bytes) => self.filled += bytes,
+                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
+                Err(source) => {
+                    return Err(LogError::Read { offset: self.base + self.filled as u64, source });
+                }
+            }
+        }
+        self.report.bytes = self.base + self.filled as u64;
+        if self.order.is_none() {
+            self.order = self.tell_order(self.at);
+        }
+        Ok(())
+    }
+
+    fn finish(&self) -> Result<(), LogError> {
+        if self.report.bytes == 0 {
+            return Err(LogError::Empty);
+        }
+        if self.report.frames == 0 { Err(self.not_a_tlog()) } else { Ok(()) }
+    }
+
+    fn not_a_tlog(&self) -> LogError {
+        let first = &self.buffer[..self.filled.min(16)];
+        let raw = self.base == 0
+            && Frame::at_start(&self.buffer[..self.filled])
+                .is_some_and(|frame| frame.check(&self.seeds) == Check::Right);
+        LogError::NotTlog { first: first.to_vec(), raw_capture: raw }
+    }
+
+    fn frame(&self, at: usize) -> Option<Frame<'_>> {
+        Frame::at_start(self.buffer[..self.filled].get(at..)?)
+    }
+
+    fn stamp(&self, at: usize) -> Option<u64> {
+        self.order.unwrap_or_default().stamp_us(self.buffer[..self.filled].get(at..)?)
+    }
+
+    /// A stamp is plausible next to the last one, or on its own as a wall clock's.
+    fn plausible(&self, stamp_us: u64) -> bool {
+        is_wall_clock(stamp_us)
+            || self.last_stamp_us.is_some_and(|last| last.abs_diff(stamp_us) < NEIGHBOUR_US)
+    }
+
+    /// What stands at `at`, where a record should begin.
+    fn find(&self, at: usize) -> Found {
+        if let Some(found) = self.find_behind_same_stamp(at) {
+            return found;
+        }
+        let stamped = at + STAMP_BYTES;
+        let frame = self.frame(stamped);
+        let check = frame.map(|frame| frame.check(&self.seeds));
+        if let (Some(frame), Some(Check::Right), Some(stamp_us)) = (frame, check, self.stamp(at)) {
+            return self.stamped_record(stamp_us, frame, true);
+        }
+        let Some(stamp_us) = self.stamp(at) else { return Found::CutOff };
+        if !self.plausible(stamp_us) {
+            return Found::Nothing;
+        }
+        match frame {
+            Some(frame) if self.fits_next(stamped + frame.bytes().len()) => match check {
+                Some(Check::UnknownMessage) => self.stamped_record(stamp_us, frame, false),
+                _ => Found::BadCrc { bytes: STAMP_BYTES + frame.bytes().len() },
+            },
+            None if self.ended && self.header(stamped) != Start::NotAFrame => Found::CutOff,
+            _ => Found::Nothing,
+        }
+    }
+
+    fn stamped_record(&self, stamp_us: u64, frame: Frame<'_>, known: bool) -> Found {
+        Found::Record { stamp_us, stamp_bytes: STAMP_BYTES, frame_bytes: frame.bytes().len(), known }
+    }
+
+    /// Some ground stations put one stamp before a chunk of several sent frames.
+    fn find_behind_same_stamp(&self, at: usize) -> Option<Found> {
+        if !matches!(self.buffer[at], MARKER_V1 | MARKER_V2) {
+            return None;
+        }
+        let stamp_us = self.last_stamp_us?;
+        let frame = self.frame(at)?;
+        if self.stamp(at).is_some_and(|stamp_us| self.plausible(stamp_us)) {
+            return None;
+        }
+        let frame_bytes = frame.bytes().len();
+        let known = match frame.check(&self.seeds) {
+            Check::Right => true,
+            Check::UnknownMessage if self.fits_next(at + frame_bytes) => false,
+            _ => return None,
+        };
+        Some(Found::Record { stamp_us, stamp_bytes: 0, frame_bytes, known })
+    }
+
+    fn header(&self, at: usize) -> Start {
+        Header::read(self.buffer[..self.filled].get(at..).unwrap_or_default())
+    }
+
+    /// A record, or the end of the log, may begin at `at`.
+    fn fits_next(&self, at: usize) -> bool {
+        if at >= self.filled {
+            return at == self.filled && self.ended;
+        }
+        let same_stamp = self.frame(at).is_some_and(|frame| frame.check(&self.seeds) == Check::Right);
+        let stamped = self.stamp(at).is_none_or(|stamp_us| self.plausible(stamp_us))
+            && self.header(at + STAMP_BYTES) != Start::NotAFrame;
+        same_stamp || stamped
+    }
+
+    /// Skips to the next record. What is skipped is damage; at the file's end, zeros or a record cut off
+    /// are its tail.
+    fn resynchronise(&mut self, cut_off: bool) -> Result<(), LogError> {
+        let from = self.base + self.at as u64;
+        let mut only_zeros = true;
+        loop {
+            only_zeros &= self.buffer[self.at] == 0;
+            self.at += 1;
+            self.look_ahead()?;
+            let skipped = self.base + self.at as u64 - from;
+            if self.at == self.filled {
+                if only_zeros || cut_off {
+                    self.report.truncated_tail_bytes += skipped;
+                } else {
+                    self.report.note_resync(from, skipped);
+                }
+                return Ok(());
+            }
+            if self.report.frames == 0 && skipped > SEARCH_BYTES {
+                return Err(self.not_a_tlog());
+            }
+            if self.restarts_at(self.at) {
+                self.report.note_resync(from, skipped);
+                return Ok(());
+            }
+        }
+    }
+
+    /// Behind damage a record must prove itself: a plausible stamp, a right checksum; or, where the
+    /// message is not known, a next record that fits.
+    fn restarts_at(&mut self, at: usize) -> bool {
+        let stamped = at + STAMP_BYTES;
+        let marked =
+            self.buffer[..self.filled].get(stamped).is_some_and(|b| matches!(*b, MARKER_V1 | MARKER_V2));
+        if !marked {
+            return false;
+        }
+        if self.report.frames == 0 {
+            self.order = self.tell_order(at);
+        }
+        if !self.stamp(at).is_some_and(|stamp_us| self.plausible(stamp_us)) {
+            return false;
+        }
+        let Some(frame) = self.frame(stamped) else { return false };
+        match frame.check(&self.seeds) {
+            Check::Right => true,
+            Check::Wrong => false,
+            Check::UnknownMessage => self.checked_record_at(stamped + frame.bytes().len()),
+        }
+    }
+
+    fn checked_record_at(&self, at: usize) -> bool {
+        if at == self.filled && self.ended {
+            return true;
+        }
+        self.stamp(at).is_some_and(|stamp_us| self.plausible(stamp_us))
+            && self.frame(at + STAMP_BYTES).is_some_and(|frame| frame.check(&self.seeds) == Check::Right)
+    }
+
+    /// Tells the byte order from the stamps of the first records at `at`: little-endian only where every
+    /// stamp is a wall clock's that way and none the other way.
+    fn tell_order(&mut self, mut at: usize) -> Option<ByteOrder> {
+        let (mut records, mut big, mut little) = (0, 0, 0);
+        while records < ORDER_RECORDS {
+            let Some(frame) = self.frame(at + STAMP_BYTES) else { break };
+            if frame.check(&self.seeds) == Check::Wrong {
+                break;
+            }
+            let bytes = &self.buffer[at..];
+            big += usize::from(ByteOrder::Big.stamp_us(bytes).is_some_and(is_wall_clock));
+            little += usize::from(ByteOrder::Little.stamp_us(bytes).is_some_and(is_wall_clock));
+            records += 1;
+            at += STAMP_BYTES + frame.bytes().len();
+        }
+        let order = match records {
+            0 => return None,
+            _ if big == 0 && little == records => ByteOrder::Little,
+            _ => ByteOrder::Big,
+        };
+        self.report.byte_order = order;
+        Some(order)
+    }
+}

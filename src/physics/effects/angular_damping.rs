@@ -1,0 +1,45 @@
+//! Turning is held back in proportion to the body rates.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+
+/// `tau = -diag(bx, by, bz) w`: the inflow at each rotor changes as its hub rises and sinks.
+#[derive(Debug, Clone, Copy)]
+pub struct AngularDamping;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter { name: "bx", unit: "N m/(rad/s)", min: 0.0, max: 1.0 },
+    Parameter { name: "by", unit: "N m/(rad/s)", min: 0.0, max: 1.0 },
+    Parameter { name: "bz", unit: "N m/(rad/s)", min: 0.0, max: 1.0 },
+];
+
+impl Effect for AngularDamping {
+    fn id(&self) -> &'static str {
+        "angular_damping"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "Turning is damped: a torque against the body rates, in proportion to them."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own) -> Wrench {
+        let damping = Vector3::from_column_slice(own.parameters);
+        Wrench { force_n: Vector3::zeros(), torque_nm: -at.state.rates_rad_s.component_mul(&damping) }
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    fn regressor(&self, at: &Condition, _rotors: &Rotors, columns: &mut [Wrench]) {
+        for (axis, column) in columns.iter_mut().enumerate().take(PARAMETERS.len()) {
+            *column = Wrench::zero();
+            column.torque_nm[axis] = -at.state.rates_rad_s[axis];
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Rotor drag: each hub is held back in proportion to its speed through the air and its rotor's speed.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+
+/// `F_i = -(D / N) n_i (v_air + w x r_i)` at hub `r_i`, with `D = diag(dx, dy, dz)` the drag of the
+/// whole vehicle at hover and `n_i` the rotor's speed over its hover speed; torque `r_i x F_i`.
+///
+/// Martin and Salaun 2010; Faessler et al. 2018 (arXiv 1712.02402).
+#[derive(Debug, Clone, Copy)]
+pub struct LinearDrag;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter { name: "dx", unit: "N/(m/s)", min: 0.0, max: 5.0 },
+    Parameter { name: "dy", unit: "N/(m/s)", min: 0.0, max: 5.0 },
+    Parameter { name: "dz", unit: "N/(m/s)", min: 0.0, max: 5.0 },
+];
+
+impl Effect for LinearDrag {
+    fn id(&self) -> &'static str {
+        "linear_drag"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The rotors drag: a force against the airspeed, in proportion to it and to the rotor speed."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
+        let share = -1.0 / at.airframe.rotor_count() as f64;
+        let drag = Vector3::from_column_slice(own.parameters);
+        let mut sum = Wrench::zero();
+        for (arm, speed) in at.airframe.arms_m().iter().zip(&rotors.speed) {
+            let force = at.air_velocity_at(arm).component_mul(&drag) * (share * speed);
+            sum += Wrench::at(arm, force);
+        }
+        sum
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    fn regressor(&self, at: &Condition, rotors: &Rotors, columns: &mut [Wrench]) {
+        let share = -1.0 / at.airframe.rotor_count() as f64;
+        for (axis, column) in columns.iter_mut().enumerate().take(PARAMETERS.len()) {
+            *column = Wrench::zero();
+            for (arm, speed) in at.airframe.arms_m().iter().zip(&rotors.speed) {
+                let mut force = Vector3::zeros();
+                force[axis] = at.air_velocity_at(arm)[axis] * share * speed;
+                *column += Wrench::at(arm, force);
+            }
+        }
+    }
+}

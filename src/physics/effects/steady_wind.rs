@@ -1,0 +1,33 @@
+//! The air moves at a constant velocity.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Effect, Input, Own, Parameter};
+
+/// Wind in the world frame; it acts through whatever depends on airspeed and does nothing without it.
+#[derive(Debug, Clone, Copy)]
+pub struct SteadyWind;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter { name: "north", unit: "m/s", min: -20.0, max: 20.0 },
+    Parameter { name: "west", unit: "m/s", min: -20.0, max: 20.0 },
+    Parameter { name: "up", unit: "m/s", min: -20.0, max: 20.0 },
+];
+
+impl Effect for SteadyWind {
+    fn id(&self) -> &'static str {
+        "steady_wind"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "A steady wind blows: the drag is that of the airspeed, not of the speed over ground."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn wind_m_s(&self, _input: &Input, own: &Own) -> Vector3<f64> {
+        Vector3::from_column_slice(own.parameters)
+    }
+}

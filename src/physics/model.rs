@@ -1,0 +1,150 @@
+//! A rigid body, its rotors and the effects that act on it, put together.
+
+use nalgebra::Vector3;
+
+use super::{
+    Airframe, Condition, Effect, MAX_ROTORS, Own, PhysicsError, RigidBodyModel, Rotors, State, Wrench,
+};
+use crate::vehicle::Vehicle;
+
+/// What comes from outside at one instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Input {
+    /// s
+    pub time_s: f64,
+    /// rotor speed commanded, over the hover speed (-)
+    pub speed_command: [f64; MAX_ROTORS],
+    /// world, m/s
+    pub wind_m_s: Vector3<f64>,
+    /// V, where known
+    pub battery_voltage_v: Option<f64>,
+}
+
+impl Input {
+    /// Commands u in 0..1, no wind. Commands beyond the rotor count are ignored.
+    #[must_use]
+    pub fn from_commands(airframe: &Airframe, time_s: f64, commands: &[f64]) -> Self {
+        let mut speed_command = [0.0; MAX_ROTORS];
+        for (speed, command) in speed_command.iter_mut().zip(commands).take(airframe.rotor_count()) {
+            *speed = airframe.relative_speed(*command);
+        }
+        Self { time_s, speed_command, wind_m_s: Vector3::zeros(), battery_voltage_v: None }
+    }
+}
+
+/// An effect with its values.
+#[derive(Debug, Clone)]
+pub struct ActiveEffect {
+    effect: &'static dyn Effect,
+    parameters: Vec<f64>,
+}
+
+impl ActiveEffect {
+    /// # Errors
+    /// If the number of values is not that of the effect's parameters.
+    pub fn new(effect: &'static dyn Effect, parameters: &[f64]) -> Result<Self, PhysicsError> {
+        let (expected, got) = (effect.parameters().len(), parameters.len());
+        if expected != got {
+            return Err(PhysicsError::ParameterCount { id: effect.id(), expected, got });
+        }
+        Ok(Self { effect, parameters: parameters.to_vec() })
+    }
+
+    /// Which effect.
+    #[must_use]
+    pub fn effect(&self) -> &'static dyn Effect {
+        self.effect
+    }
+
+    /// Its values, in the order of [`Effect::parameters`].
+    #[must_use]
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+}
+
+/// Force and torque at one instant, and what the rotors do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Evaluation {
+    /// all but gravity, body, about the centre of mass
+    pub wrench: Wrench,
+    /// after all effects
+    pub rotors: Rotors,
+}
+
+/// A vehicle with effects.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// mass and inertia
+    pub body: RigidBodyModel,
+    /// rotors
+    pub airframe: Airframe,
+    effects: Vec<ActiveEffect>,
+    state_counts: Vec<usize>,
+}
+
+impl Model {
+    /// # Errors
+    /// If the vehicle is not physical (see [`RigidBodyModel::new`], [`Airframe::new`]).
+    pub fn new(vehicle: &Vehicle, effects: Vec<ActiveEffect>) -> Result<Self, PhysicsError> {
+        let airframe = Airframe::new(vehicle)?;
+        let state_counts = effects.iter().map(|active| active.effect.state_count(&airframe)).collect();
+        Ok(Self {
+            body: RigidBodyModel::new(&vehicle.body, vehicle.gravity_m_s2)?,
+            airframe,
+            effects,
+            state_counts,
+        })
+    }
+
+    /// What was put on top of the rigid body.
+    #[must_use]
+    pub fn effects(&self) -> &[ActiveEffect] {
+        &self.effects
+    }
+
+    /// Own states of all effects together.
+    #[must_use]
+    pub fn own_state_count(&self) -> usize {
+        self.state_counts.iter().sum()
+    }
+
+    /// Own states of vehicles that have long followed their command. Fills the head of `states`.
+    pub fn initial_states(&self, state: &State, input: &Input, states: &mut [f64]) {
+        let at = Condition::new(&self.airframe, state, input, input.wind_m_s);
+        let rotors = Rotors::as_commanded(&self.airframe, &input.speed_command);
+        let mut rest = states;
+        for (active, count) in self.effects.iter().zip(&self.state_counts) {
+            let (own, tail) = rest.split_at_mut((*count).min(rest.len()));
+            active.effect.initial_states(&at, &rotors, own);
+            rest = tail;
+        }
+    }
+
+    /// Force and torque of rotors and effects; writes the rates of the effects' own states, which
+    /// must be [`Self::own_state_count`] long, as must `states`.
+    pub fn evaluate(&self, state: &State, input: &Input, states: &[f64], rates: &mut [f64]) -> Evaluation {
+        rates.fill(0.0);
+        let mut wind_m_s = input.wind_m_s;
+        self.each(states, rates, |effect, own| wind_m_s += effect.wind_m_s(input, own));
+        let at = Condition::new(&self.airframe, state, input, wind_m_s);
+        let mut rotors = Rotors::as_commanded(&self.airframe, &input.speed_command);
+        self.each(states, rates, |effect, own| effect.rotor_speed(&at, own, &mut rotors));
+        rotors.thrust_from_speed(&self.airframe);
+        self.each(states, rates, |effect, own| effect.rotor_thrust(&at, own, &mut rotors));
+        let mut wrench = self.airframe.thrust_wrench(&rotors.thrust_n);
+        self.each(states, rates, |effect, own| wrench += effect.wrench(&at, &rotors, own));
+        Evaluation { wrench, rotors }
+    }
+
+    fn each(&self, states: &[f64], rates: &mut [f64], mut visit: impl FnMut(&'static dyn Effect, &mut Own)) {
+        let (mut states, mut rates) = (states, rates);
+        for (active, count) in self.effects.iter().zip(&self.state_counts) {
+            let (own_states, states_tail) = states.split_at((*count).min(states.len()));
+            let (own_rates, rates_tail) = rates.split_at_mut((*count).min(rates.len()));
+            let mut own = Own { parameters: &active.parameters, states: own_states, rates: own_rates };
+            visit(active.effect, &mut own);
+            (states, rates) = (states_tail, rates_tail);
+        }
+    }
+}

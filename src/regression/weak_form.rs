@@ -1,0 +1,220 @@
+//! The weak form of (11), the right way round.
+//!
+//! A logged command is one sample of a loop that runs faster than the log, so it is by far the
+//! noisiest signal: it stands on the left, alone. Accelerations, hardly noisy under the weak form's
+//! kernel, stand on the right. With the command on the right the inertia would come out too large.
+//!
+//! ```text
+//! K(F) = [D Phi_a + K Phi_b] Theta + latency * d/dt[...] Theta + trim torques
+//! ```
+//!
+//! `latency` is the time by which the body follows the recorded command: a first-order lag gives
+//! `F_command = F + tau F'` exactly, a pure delay gives it to first order.
+
+use super::filtered::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor};
+use crate::signals::{Grid, Reference, Signals, WeakKernel, stride};
+use nalgebra::{SMatrix, UnitQuaternion, Vector3, Vector4};
+
+/// Fz, `tau_x`, `tau_y`, `tau_z`.
+pub const CHANNELS: usize = 4;
+
+/// What the regressor needs of the motion, on the grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeakMotion {
+    /// rad/s, body
+    pub omega: Option<Vec<Vector3<f64>>>,
+    /// m/s^2, what an ideal accelerometer on body z shows
+    pub vertical: Option<VerticalMotion>,
+}
+
+/// Vertical specific force, measured or from velocity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VerticalMotion {
+    /// accelerometer z (bias removed where velocity is known), m/s^2
+    pub specific_force_z: Option<Vec<f64>>,
+    /// body velocity w and `p v - q u + g_bz`
+    pub kinematic: Option<(Vec<f64>, Vec<f64>)>,
+    /// share of the accelerometer, 0..1
+    pub accelerometer_share: f64,
+    /// m/s^2, mean of accelerometer less kinematics, where both are there
+    pub accelerometer_bias: Option<f64>,
+}
+
+/// Weak-form rows of one flight.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct WeakRows {
+    /// s, vehicle clock, of each row
+    pub time_s: Vec<f64>,
+    /// `K(F)`: rows x 4 (N, N m)
+    pub output: Vec<Vector4<f64>>,
+    /// `D Phi_a + K Phi_b` and its first two time derivatives
+    pub regressor: [Vec<SMatrix<f64, 4, 7>>; 3],
+    /// `K(w)`, rad/s: what angular damping acts on
+    pub rate: Vec<Vector3<f64>>,
+    /// rows without a break between them
+    pub runs: Vec<std::ops::Range<usize>>,
+}
+
+impl WeakMotion {
+    /// From what was measured.
+    #[must_use]
+    pub fn measured(signals: &Signals, kernel: &WeakKernel, gravity_m_s2: f64) -> Self {
+        Self {
+            omega: signals.rate.clone(),
+            vertical: VerticalMotion::measured(signals, kernel, gravity_m_s2),
+        }
+    }
+
+    /// From the commanded trajectory alone, `delay_s` later: it holds none of the measurement's noise.
+    /// The attitude follows from acceleration and yaw as in (26), (27).
+    #[must_use]
+    pub fn commanded(reference: &Reference, step_s: f64, delay: usize, gravity_m_s2: f64) -> Self {
+        let count = reference.yaw.len();
+        let late = |i: usize| i.saturating_sub(delay);
+        let attitude: Vec<UnitQuaternion<f64>> = (0..count)
+            .map(|i| attitude_of(&reference.acceleration[late(i)], reference.yaw[late(i)], gravity_m_s2))
+            .collect();
+        let mut omega = vec![Vector3::zeros(); count];
+        for i in 1..count.saturating_sub(1) {
+            let turned = attitude[i - 1].inverse() * attitude[i + 1];
+            omega[i] = turned.scaled_axis() / (2.0 * step_s);
+        }
+        let specific_force_z = (0..count)
+            .map(|i| (reference.acceleration[late(i)] + Vector3::new(0.0, 0.0, gravity_m_s2)).norm())
+            .collect();
+        Self {
+            omega: Some(omega),
+            vertical: Some(VerticalMotion {
+                specific_force_z: Some(specific_force_z),
+                kinematic: None,
+                accelerometer_share: 1.0,
+                accelerometer_bias: None,
+            }),
+        }
+    }
+}
+
+/// Thrust along `a + g e_z`, nose along the yaw.
+fn attitude_of(acceleration: &Vector3<f64>, yaw_rad: f64, gravity_m_s2: f64) -> UnitQuaternion<f64> {
+    let (s, c) = yaw_rad.sin_cos();
+    let vertical = acceleration.z + gravity_m_s2;
+    let pitch = ((c * acceleration.x + s * acceleration.y) / vertical).atan(); // (26)
+    let roll = (pitch.cos() * (s * acceleration.x - c * acceleration.y) / vertical).atan(); // (27)
+    UnitQuaternion::from_euler_angles(roll, pitch, yaw_rad)
+}
+
+impl VerticalMotion {
+    fn measured(signals: &Signals, kernel: &WeakKernel, gravity_m_s2: f64) -> Option<Self> {
+        let mut specific_force_z: Option<Vec<f64>> =
+            signals.specific_force.as_ref().map(|f| f.iter().map(|f| f.z).collect());
+        if specific_force_z.is_none() && signals.attitude.is_none() {
+            // without attitude the size of the world's specific force is still the thrust's
+            specific_force_z = signals
+                .world_acceleration
+                .as_ref()
+                .map(|a| a.iter().map(|a| (a + Vector3::new(0.0, 0.0, gravity_m_s2)).norm()).collect());
+        }
+        let kinematic = kinematic(signals, gravity_m_s2);
+        let (mut bias, mut share) = (None, 1.0);
+        match (&mut specific_force_z, &kinematic) {
+            (Some(force), Some((w, rest))) => {
+                let centers = kernel.centers(&signals.usable, stride(signals.grid.step_s));
+                let difference: Vec<f64> = centers
+                    .iter()
+                    .map(|&c| kernel.at(0, force, c) - kernel.at(1, w, c) - kernel.at(0, rest, c))
+                    .collect();
+                let mean = difference.iter().sum::<f64>() / difference.len().max(1) as f64;
+                force.iter_mut().for_each(|f| *f -= mean);
+                bias = Some(mean);
+                share = 0.8;
+            }
+            (None, Some(_)) => share = 0.0,
+            (None, None) => return None,
+            (Some(_), None) => {}
+        }
+        Some(Self { specific_force_z, kinematic, accelerometer_share: share, accelerometer_bias: bias })
+    }
+
+    /// Specific force on body z (order 0) or its derivatives, at one centre.
+    fn at(&self, kernel: &WeakKernel, order: usize, center: usize) -> f64 {
+        let measured = self.specific_force_z.as_ref().map_or(0.0, |f| kernel.at(order, f, center));
+        let kinematic = self
+            .kinematic
+            .as_ref()
+            .map_or(0.0, |(w, rest)| kernel.at(order + 1, w, center) + kernel.at(order, rest, center));
+        self.accelerometer_share * measured + (1.0 - self.accelerometer_share) * kinematic
+    }
+}
+
+/// `w` and `p v - q u + g_bz`, where attitude, rates and velocity are known.
+fn kinematic(signals: &Signals, gravity_m_s2: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+    let (attitude, rate) = (signals.attitude.as_ref()?, signals.rate.as_ref()?);
+    let velocity = signals.velocity.as_ref()?;
+    let mut w = Vec::with_capacity(rate.len());
+    let mut rest = Vec::with_capacity(rate.len());
+    for ((q, omega), v) in attitude.iter().zip(rate).zip(velocity) {
+        let body = q.inverse_transform_vector(v);
+        let up = q.inverse_transform_vector(&Vector3::z());
+        w.push(body.z);
+        rest.push(omega.x * body.y - omega.y * body.x + gravity_m_s2 * up.z);
+    }
+    Some((w, rest))
+}
+
+/// Builds the rows of one flight; the motion's missing parts leave zero columns.
+#[must_use]
+pub fn weak_rows(signals: &Signals, motion: &WeakMotion, kernel: &WeakKernel) -> WeakRows {
+    let stride = stride(signals.grid.step_s);
+    let mut rows = WeakRows::default();
+    let wrench: [Vec<f64>; CHANNELS] =
+        std::array::from_fn(|channel| signals.wrench.iter().map(|w| w[channel]).collect());
+    let products = motion.omega.as_deref().map(GyroscopicColumns::from);
+    for run in Grid::runs(&signals.usable, 2 * kernel.half_count + 1) {
+        let first = rows.time_s.len();
+        for center in (run.start + kernel.half_count..run.end - kernel.half_count).step_by(stride) {
+            rows.time_s.push(signals.grid.time_s(center));
+            rows.output.push(Vector4::from_fn(|channel, _| kernel.at(0, &wrench[channel], center)));
+            rows.rate.push(products.as_ref().map_or_else(Vector3::zeros, |p| p.rate(kernel, center)));
+            for order in 0..3 {
+                let mut phi = SMatrix::<f64, 4, 7>::zeros();
+                if let Some(products) = &products {
+                    phi += products.at(kernel, order, center);
+                }
+                if let Some(vertical) = &motion.vertical {
+                    phi[(0, 0)] = vertical.at(kernel, order, center);
+                }
+                rows.regressor[order].push(phi);
+            }
+        }
+        rows.runs.push(first..rows.time_s.len());
+    }
+    rows
+}
+
+/// `Phi_a` and `Phi_b` as scalar columns, so that each is filtered once: Phi_a is linear in p, q, r,
+/// Phi_b in their six products.
+struct GyroscopicColumns {
+    rates: [Vec<f64>; 3],
+    /// pp, qq, rr, pq, pr, qr
+    products: [Vec<f64>; 6],
+}
+
+impl GyroscopicColumns {
+    fn from(omega: &[Vector3<f64>]) -> Self {
+        Self {
+            rates: std::array::from_fn(|i| omega.iter().map(|w| w[i]).collect()),
+            products: RATE_PAIRS.map(|(i, j)| omega.iter().map(|w| w[i] * w[j]).collect()),
+        }
+    }
+
+    fn rate(&self, kernel: &WeakKernel, center: usize) -> Vector3<f64> {
+        Vector3::from_fn(|i, _| kernel.at(0, &self.rates[i], center))
+    }
+
+    /// `D^(order+1) Phi_a + D^order Phi_b` without the force row.
+    fn at(&self, kernel: &WeakKernel, order: usize, center: usize) -> SMatrix<f64, 4, 7> {
+        let accelerations = Vector3::from_fn(|i, _| kernel.at(order + 1, &self.rates[i], center));
+        let products = std::array::from_fn(|k| kernel.at(order, &self.products[k], center));
+        momentum_regressor(0.0, &accelerations) + gyroscopic_from_products(&products)
+    }
+}

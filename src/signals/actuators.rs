@@ -1,0 +1,192 @@
+//! From actuator outputs to one thrust a rotor, `F = [Fz tau]` before the mixer.
+//!
+//! Measured rotor speed comes before commands. Of commands, the autopilot's own parameters, where
+//! the log holds them, say which channel drives which motor and how a pulse width becomes thrust;
+//! the vehicle file says how strong a rotor is.
+
+use super::SignalsError;
+use super::select::best;
+use crate::log::{Autopilot, Quantity, Recording, Stream};
+use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
+
+/// What the thrusts rest on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ThrustSource {
+    /// rotor speed sensors and the thrust coefficient
+    MeasuredSpeed,
+    /// commands sent to the motors and the thrust law
+    Command,
+    /// the log holds force and torque themselves
+    Wrench,
+}
+
+/// One thrust a rotor, N, at the stamps of the stream they came from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RotorThrusts {
+    /// width = number of rotors, N, vehicle's rotor order
+    pub stream: Stream,
+    /// normalised commands at the same stamps where they were the source: for saturation
+    pub command: Option<Stream>,
+    /// where they came from
+    pub source: ThrustSource,
+    /// message or column group
+    pub message: &'static str,
+    /// what was taken from the log's parameters, and what disagrees with the vehicle's file
+    pub notes: Vec<String>,
+}
+
+/// Rotor thrusts from the commands.
+///
+/// # Errors
+/// [`SignalsError::NoActuators`] where no stream has a channel for every rotor in the vehicle's unit.
+pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result<RotorThrusts, SignalsError> {
+    let (propulsion, mut notes) = propulsion_from_log(recording, &vehicle.propulsion);
+    let channels = motor_channels(recording, vehicle.rotors.len(), &mut notes);
+    let needed = channels.iter().max().map_or(0, |last| last + 1);
+    let fits = |stream: &Stream| stream.width >= needed && in_unit(stream, &channels, propulsion.actuator);
+    let (key, raw) =
+        best(recording, Quantity::ActuatorCommand, fits).ok_or_else(|| no_actuators(recording, vehicle))?;
+    let mut command = Stream { time_s: raw.time_s.clone(), width: channels.len(), values: Vec::new() };
+    command.values.reserve(raw.len() * channels.len());
+    for index in 0..raw.len() {
+        let sample = raw.sample(index);
+        command.values.extend(channels.iter().map(|&channel| propulsion.normalized(sample[channel])));
+    }
+    let values = command.values.iter().map(|&u| propulsion.thrust_from_command_n(u)).collect();
+    let stream = Stream { time_s: raw.time_s.clone(), width: channels.len(), values };
+    Ok(RotorThrusts {
+        stream,
+        command: Some(command),
+        source: ThrustSource::Command,
+        message: key.source,
+        notes,
+    })
+}
+
+/// Rotor thrusts from measured speeds; `None` where none are recorded or no coefficient is known.
+#[must_use]
+pub fn thrusts_from_speeds(recording: &Recording, vehicle: &Vehicle) -> Option<RotorThrusts> {
+    let coefficient = vehicle.propulsion.thrust_coefficient?;
+    let rotors = vehicle.rotors.len();
+    let (key, raw) = best(recording, Quantity::RotorSpeed, |stream| stream.width >= rotors)?;
+    let mut stream = Stream { time_s: raw.time_s.clone(), width: rotors, values: Vec::new() };
+    stream.values.reserve(raw.len() * rotors);
+    for index in 0..raw.len() {
+        stream.values.extend(raw.sample(index)[..rotors].iter().map(|speed| coefficient * speed * speed));
+    }
+    let (source, message) = (ThrustSource::MeasuredSpeed, key.source);
+    Some(RotorThrusts { stream, command: None, source, message, notes: Vec::new() })
+}
+
+fn no_actuators(recording: &Recording, vehicle: &Vehicle) -> SignalsError {
+    let unit = match vehicle.propulsion.actuator {
+        Actuator::Pwm(Some(_)) => "pulse widths in microseconds",
+        Actuator::Pwm(None) | Actuator::Speed | Actuator::Thrust => "values in 0..1",
+    };
+    let found: Vec<String> = recording
+        .streams
+        .iter()
+        .filter(|(key, _)| key.quantity == Quantity::ActuatorCommand)
+        .map(|(key, stream)| {
+            let largest = stream.values.iter().copied().filter(|v| v.is_finite()).fold(f64::NAN, f64::max);
+            format!("{} ({} channels, largest value {largest:.3})", key.source, stream.width)
+        })
+        .collect();
+    SignalsError::NoActuators {
+        rotors: vehicle.rotors.len(),
+        unit,
+        found: if found.is_empty() { "none".into() } else { found.join(", ") },
+    }
+}
+
+/// Values that could be in the vehicle's unit: most within the range, and not those of another one.
+fn in_unit(stream: &Stream, channels: &[usize], actuator: Actuator) -> bool {
+    let range = match actuator {
+        Actuator::Pwm(Some(range)) => {
+            let span = range.max_us - range.min_us;
+            range.min_us - 0.5 * span..=range.max_us + 0.25 * span
+        }
+        Actuator::Speed | Actuator::Thrust | Actuator::Pwm(None) => -1.05..=1.05,
+    };
+    let total = stream.len() * channels.len();
+    let inside = (0..stream.len())
+        .flat_map(|i| channels.iter().map(move |&channel| stream.sample(i)[channel]))
+        .filter(|value| range.contains(value))
+        .count();
+    2 * inside > total
+}
+
+/// The vehicle file's propulsion with what the autopilot's parameters say better.
+#[must_use]
+pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propulsion, Vec<String>) {
+    let mut propulsion = *stated;
+    let mut notes = Vec::new();
+    let Actuator::Pwm(Some(stated_range)) = stated.actuator else { return (propulsion, notes) };
+    let parameter = |name: &str| recording.parameters.get(name).copied();
+    let (range, expo) = match recording.autopilot {
+        Autopilot::ArduPilot => (ardupilot_range(&parameter), parameter("MOT_THST_EXPO")),
+        Autopilot::Px4 => (px4_range(&parameter), parameter("THR_MDL_FAC")),
+        Autopilot::Unknown | Autopilot::Other => (None, None),
+    };
+    if let Some(range) = range.filter(|range| range.max_us > range.min_us) {
+        if range != stated_range {
+            notes.push(format!(
+                "pulse range {:.0} to {:.0} us from the log's parameters, the vehicle file says {:.0} to {:.0} us",
+                range.min_us, range.max_us, stated_range.min_us, stated_range.max_us
+            ));
+        }
+        propulsion.actuator = Actuator::Pwm(Some(range));
+    }
+    if let (Some(expo), ThrustLaw::Curve { thrust_max_n, expo: stated_expo }) = (expo, stated.law) {
+        if (expo - stated_expo).abs() > 1e-6 {
+            notes.push(format!(
+                "thrust curve exponent {expo} from the log's parameters, the vehicle file says {stated_expo}"
+            ));
+        }
+        propulsion.law = ThrustLaw::Curve { thrust_max_n, expo };
+    }
+    (propulsion, notes)
+}
+
+/// ArduPilot: u = 0 at `MOT_SPIN_MIN`, u = 1 at `MOT_SPIN_MAX` of the pulse range.
+fn ardupilot_range(parameter: &impl Fn(&str) -> Option<f64>) -> Option<PwmRange> {
+    let (low, high) = (parameter("MOT_PWM_MIN")?, parameter("MOT_PWM_MAX")?);
+    let (spin_min, spin_max) = (parameter("MOT_SPIN_MIN")?, parameter("MOT_SPIN_MAX")?);
+    let span = high - low;
+    Some(PwmRange { min_us: low + spin_min * span, max_us: low + spin_max * span })
+}
+
+/// PX4: the first motor output's pulse range.
+fn px4_range(parameter: &impl Fn(&str) -> Option<f64>) -> Option<PwmRange> {
+    let bank = |bank: &str, end: &str| parameter(&format!("PWM_{bank}_{end}1"));
+    ["MAIN", "AUX"]
+        .iter()
+        .find_map(|name| Some(PwmRange { min_us: bank(name, "MIN")?, max_us: bank(name, "MAX")? }))
+}
+
+/// Which output channel (from 0) drives each motor: `SERVOn_FUNCTION` 33..40 (ArduPilot),
+/// `PWM_MAIN_FUNCn` 101..112 (PX4); in order where the log does not say.
+fn motor_channels(recording: &Recording, rotors: usize, notes: &mut Vec<String>) -> Vec<usize> {
+    let (name, first): (&dyn Fn(usize) -> String, f64) = match recording.autopilot {
+        Autopilot::ArduPilot => (&|channel| format!("SERVO{channel}_FUNCTION"), 33.0),
+        Autopilot::Px4 => (&|channel| format!("PWM_MAIN_FUNC{channel}"), 101.0),
+        Autopilot::Unknown | Autopilot::Other => return (0..rotors).collect(),
+    };
+    let find = |motor: usize| {
+        (1..=16).find(|&channel| {
+            recording.parameters.get(&name(channel)).is_some_and(|f| (f - first - motor as f64).abs() < 0.5)
+        })
+    };
+    let mapped: Option<Vec<usize>> = (0..rotors).map(|motor| find(motor).map(|c| c - 1)).collect();
+    match mapped {
+        Some(channels) => {
+            if channels.iter().enumerate().any(|(motor, channel)| motor != *channel) {
+                notes.push(format!(
+                    "motors 1..{rotors} on output channels {channels:?} (from 0), from the log's parameters"
+                ));
+            }
+            channels
+        }
+        None => (0..rotors).collect(),
+    }
+}

@@ -1,0 +1,203 @@
+//! Offsets between streams, from kinematics alone.
+//!
+//! The inertial unit's stamps are the reference. An attitude that is late by `d` leaves
+//! `-D(R^T e) - K(R^T e x w)` over (D, K: the weak form's maps), a velocity that is late leaves
+//! `-D(R^T v) + K(w x R^T v + g R^T e_z - a)`. The shift that leaves least is found by Gauss-Newton on
+//! its derivative, and its standard error from the residual's own autocovariance.
+
+use super::{Grid, WeakKernel, cubic_onto};
+use crate::log::Stream;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+/// An offset of one stream against the inertial unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StreamOffset {
+    /// s; positive: the stream's samples carry a stamp that is too late by this
+    pub late_s: f64,
+    /// s, standard error
+    pub std_s: f64,
+    /// the offset was taken out
+    pub repaired: bool,
+}
+
+/// Offsets beyond this are not a skew between streams, s.
+const LARGEST_S: f64 = 0.1;
+/// An offset known worse than this is left alone, s.
+const LEAST_PRECISE_S: f64 = 0.005;
+
+/// Attitudes on the grid from a quaternion stream shifted by `shift_s`; `None` with too few samples.
+#[must_use]
+pub fn attitudes_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<UnitQuaternion<f64>>> {
+    let flat = cubic_onto(&continuous_sign(stream), shift_s, grid)?;
+    Some(
+        flat.chunks_exact(4)
+            .map(|q| UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3])))
+            .collect(),
+    )
+}
+
+/// q and -q are one attitude: takes the sign that continues the sample before.
+fn continuous_sign(stream: &Stream) -> Stream {
+    let mut out = stream.clone();
+    for i in 1..out.len() {
+        let (done, rest) = out.values.split_at_mut(4 * i);
+        let before = &done[4 * (i - 1)..];
+        let now = &mut rest[..4];
+        if before.iter().zip(now.iter()).map(|(a, b)| a * b).sum::<f64>() < 0.0 {
+            now.iter_mut().for_each(|value| *value = -*value);
+        }
+    }
+    out
+}
+
+/// Three-vectors on the grid by cubic spline, the stream shifted by `shift_s`.
+#[must_use]
+pub fn vectors_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<Vector3<f64>>> {
+    let flat = cubic_onto(stream, shift_s, grid)?;
+    Some(flat.chunks_exact(3).map(|v| Vector3::new(v[0], v[1], v[2])).collect())
+}
+
+/// Offset of an attitude stream against the rates on the grid.
+#[must_use]
+pub fn attitude_offset(
+    attitude: &Stream,
+    rate: &[Vector3<f64>],
+    frame: &AlignFrame<'_>,
+) -> Option<StreamOffset> {
+    estimate(|shift_s| {
+        let attitude = attitudes_onto(attitude, shift_s, frame.grid)?;
+        let mut residual = Vec::with_capacity(9 * frame.centers.len());
+        for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+            let seen: Vec<Vector3<f64>> =
+                attitude.iter().map(|q| q.inverse_transform_vector(&axis)).collect();
+            // d/dt (R^T e) = R^T e x w
+            let turning: Vec<Vector3<f64>> = seen.iter().zip(rate).map(|(e, w)| e.cross(w)).collect();
+            frame.difference(&seen, &turning, &mut residual);
+        }
+        Some(residual)
+    })
+}
+
+/// Offset of a world velocity stream against the inertial unit, the attitude already in place.
+#[must_use]
+pub fn velocity_offset(
+    velocity: &Stream,
+    inertial: &InertialOnGrid<'_>,
+    frame: &AlignFrame<'_>,
+) -> Option<StreamOffset> {
+    estimate(|shift_s| {
+        let velocity = vectors_onto(velocity, shift_s, frame.grid)?;
+        let body: Vec<Vector3<f64>> =
+            inertial.attitude.iter().zip(&velocity).map(|(q, v)| q.inverse_transform_vector(v)).collect();
+        let rate_of_change: Vec<Vector3<f64>> = (0..body.len())
+            .map(|i| {
+                let up = inertial.attitude[i].inverse_transform_vector(&Vector3::z());
+                inertial.specific_force[i] - inertial.rate[i].cross(&body[i]) - inertial.gravity_m_s2 * up
+            })
+            .collect();
+        let mut residual = Vec::with_capacity(3 * frame.centers.len());
+        frame.difference(&body, &rate_of_change, &mut residual);
+        frame.remove_means(&mut residual);
+        Some(residual)
+    })
+}
+
+/// Offset of a position stream against the velocity on the grid.
+#[must_use]
+pub fn position_offset(
+    position: &Stream,
+    velocity: &[Vector3<f64>],
+    frame: &AlignFrame<'_>,
+) -> Option<StreamOffset> {
+    estimate(|shift_s| {
+        let position = vectors_onto(position, shift_s, frame.grid)?;
+        let mut residual = Vec::with_capacity(3 * frame.centers.len());
+        frame.difference(&position, velocity, &mut residual);
+        Some(residual)
+    })
+}
+
+/// Where the comparison is made.
+#[derive(Debug, Clone, Copy)]
+pub struct AlignFrame<'a> {
+    /// common time base
+    pub grid: &'a Grid,
+    /// weak form's kernel on it
+    pub kernel: &'a WeakKernel,
+    /// centres with good support
+    pub centers: &'a [usize],
+}
+
+impl AlignFrame<'_> {
+    /// Appends `integral phi (x' - rate)` for the three components at all centres.
+    fn difference(&self, x: &[Vector3<f64>], rate: &[Vector3<f64>], out: &mut Vec<f64>) {
+        for component in 0..3 {
+            let x: Vec<f64> = x.iter().map(|v| v[component]).collect();
+            let rate: Vec<f64> = rate.iter().map(|v| v[component]).collect();
+            out.extend(self.centers.iter().map(|&c| self.kernel.at(1, &x, c) - self.kernel.at(0, &rate, c)));
+        }
+    }
+
+    /// Takes the mean out of each component: an accelerometer's bias is not a delay.
+    fn remove_means(&self, residual: &mut [f64]) {
+        for component in residual.chunks_mut(self.centers.len().max(1)) {
+            let mean = component.iter().sum::<f64>() / component.len() as f64;
+            component.iter_mut().for_each(|value| *value -= mean);
+        }
+    }
+}
+
+/// The inertial unit's signals and the repaired attitude on the grid.
+#[derive(Debug, Clone, Copy)]
+pub struct InertialOnGrid<'a> {
+    /// body to world
+    pub attitude: &'a [UnitQuaternion<f64>],
+    /// rad/s, body
+    pub rate: &'a [Vector3<f64>],
+    /// m/s^2, body
+    pub specific_force: &'a [Vector3<f64>],
+    /// m/s^2
+    pub gravity_m_s2: f64,
+}
+
+/// Gauss-Newton over the shift; `residual(shift)` must have the same length each time.
+fn estimate(residual: impl Fn(f64) -> Option<Vec<f64>>) -> Option<StreamOffset> {
+    const STEP_S: f64 = 0.002;
+    let mut shift = 0.0;
+    let mut std_s = f64::INFINITY;
+    for _ in 0..6 {
+        let here = residual(shift)?;
+        if here.len() < 20 {
+            return None;
+        }
+        let (ahead, behind) = (residual(shift + STEP_S)?, residual(shift - STEP_S)?);
+        let slope: Vec<f64> = ahead.iter().zip(&behind).map(|(a, b)| (a - b) / (2.0 * STEP_S)).collect();
+        let information: f64 = slope.iter().map(|s| s * s).sum();
+        if information <= 0.0 {
+            return None;
+        }
+        let update = -slope.iter().zip(&here).map(|(s, r)| s * r).sum::<f64>() / information;
+        std_s = coloured_std(&slope, &here, information);
+        shift += update;
+        if !shift.is_finite() || shift.abs() > LARGEST_S {
+            return Some(StreamOffset { late_s: 0.0, std_s: f64::INFINITY, repaired: false });
+        }
+        if update.abs() < 1e-6 {
+            break;
+        }
+    }
+    let repaired = std_s < LEAST_PRECISE_S;
+    Some(StreamOffset { late_s: shift, std_s, repaired })
+}
+
+/// Standard error of one coefficient with the scores' own autocovariance (Bartlett, 20 lags).
+fn coloured_std(slope: &[f64], residual: &[f64], information: f64) -> f64 {
+    const LAGS: usize = 20;
+    let score: Vec<f64> = slope.iter().zip(residual).map(|(s, r)| s * r).collect();
+    let covariance = |lag: usize| -> f64 { score.iter().zip(&score[lag..]).map(|(a, b)| a * b).sum() };
+    let mut variance = covariance(0);
+    for lag in 1..=LAGS.min(score.len() - 1) {
+        variance += 2.0 * (1.0 - lag as f64 / (LAGS as f64 + 1.0)) * covariance(lag);
+    }
+    variance.max(0.0).sqrt() / information
+}

@@ -1,0 +1,419 @@
+//! One flight conditioned: streams chosen, aligned, put on one grid, and cut to what can be used.
+
+use super::actuators::{RotorThrusts, ThrustSource, thrusts_from_commands, thrusts_from_speeds};
+use super::align::{
+    AlignFrame, InertialOnGrid, StreamOffset, attitude_offset, attitudes_onto, position_offset, vectors_onto,
+    velocity_offset,
+};
+use super::select::{best, median_period_s};
+use super::usable::{Usable, airborne_spans, usable};
+use super::{Grid, SignalsError, WeakKernel, linear_onto};
+use crate::log::{Quantity, Recording, Stream};
+use crate::vehicle::Vehicle;
+use nalgebra::{UnitQuaternion, Vector3, Vector4};
+
+/// How a flight is conditioned.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConditionSettings {
+    /// s between grid instants; `None`: the period of the fastest inertial stream, 2 to 20 ms
+    pub step_s: Option<f64>,
+    /// s of flight left out at the beginning (the paper identifies from 10 s on)
+    pub transient_s: f64,
+    /// s, half width of the weak form's kernel
+    pub weak_half_width_s: f64,
+    /// which thrusts are used where the log has both
+    pub thrust: ThrustPreference,
+}
+
+/// Commands or measured rotor speeds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ThrustPreference {
+    /// measured speeds where they are recorded
+    #[default]
+    Measured,
+    /// commands only
+    Commands,
+}
+
+impl Default for ConditionSettings {
+    fn default() -> Self {
+        Self { step_s: None, transient_s: 10.0, weak_half_width_s: 0.2, thrust: ThrustPreference::Measured }
+    }
+}
+
+/// A flight on one clock and one grid. Vectors have one entry a grid instant; SI, body FLU, world NWU.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Signals {
+    /// instants, s of the vehicle's clock
+    pub grid: Grid,
+    /// airborne, exciting, not saturated, no gap in any stream that is used
+    pub usable: Vec<bool>,
+    /// body to world
+    pub attitude: Option<Vec<UnitQuaternion<f64>>>,
+    /// rad/s, body
+    pub rate: Option<Vec<Vector3<f64>>>,
+    /// m/s^2, body
+    pub specific_force: Option<Vec<Vector3<f64>>>,
+    /// m/s^2, world, gravity removed, where the log holds it
+    pub world_acceleration: Option<Vec<Vector3<f64>>>,
+    /// m, world
+    pub position: Option<Vec<Vector3<f64>>>,
+    /// m/s, world
+    pub velocity: Option<Vec<Vector3<f64>>>,
+    /// N, one a rotor and instant, rotor after rotor; empty where the log holds the wrench itself
+    pub rotor_thrust_n: Vec<f64>,
+    /// `F = [Fz tau]`, N and N m, from the rotors through the nominal mixer
+    pub wrench: Vec<Vector4<f64>>,
+    /// what was commanded
+    pub reference: Option<Reference>,
+    /// where things came from and what was repaired
+    pub quality: Quality,
+}
+
+/// The commanded trajectory on the grid, world NWU.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// m/s^2, without gravity
+    pub acceleration: Vec<Vector3<f64>>,
+    /// rad about up
+    pub yaw: Vec<f64>,
+    /// message that it came from
+    pub message: &'static str,
+}
+
+/// Where the signals came from and what was done to them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quality {
+    /// quantity, message, samples a second
+    pub sources: Vec<(Quantity, &'static str, f64)>,
+    /// what the thrusts rest on
+    pub thrust_source: ThrustSource,
+    /// offsets of streams against the inertial unit
+    pub offsets: Vec<(Quantity, StreamOffset)>,
+    /// airborne spans, s
+    pub airborne_s: Vec<(f64, f64)>,
+    /// how the mask came about
+    pub usable: Usable,
+    /// remarks for the user
+    pub notes: Vec<String>,
+}
+
+/// The streams that were chosen.
+struct Chosen<'a> {
+    attitude: Option<(&'static str, &'a Stream)>,
+    rate: Option<(&'static str, &'a Stream)>,
+    specific_force: Option<(&'static str, &'a Stream)>,
+    world_acceleration: Option<(&'static str, &'a Stream)>,
+    position: Option<(&'static str, &'a Stream)>,
+    velocity: Option<(&'static str, &'a Stream)>,
+}
+
+impl<'a> Chosen<'a> {
+    fn from(recording: &'a Recording) -> Self {
+        let pick = |quantity, width| {
+            best(recording, quantity, |s: &Stream| s.width == width).map(|(key, stream)| (key.source, stream))
+        };
+        Self {
+            attitude: pick(Quantity::Attitude, 4),
+            rate: pick(Quantity::AngularRate, 3),
+            specific_force: pick(Quantity::SpecificForce, 3),
+            world_acceleration: pick(Quantity::WorldAcceleration, 3),
+            position: pick(Quantity::Position, 3),
+            velocity: pick(Quantity::Velocity, 3),
+        }
+    }
+
+    fn list(&self) -> [(Quantity, Option<(&'static str, &'a Stream)>); 6] {
+        [
+            (Quantity::Attitude, self.attitude),
+            (Quantity::AngularRate, self.rate),
+            (Quantity::SpecificForce, self.specific_force),
+            (Quantity::WorldAcceleration, self.world_acceleration),
+            (Quantity::Position, self.position),
+            (Quantity::Velocity, self.velocity),
+        ]
+    }
+}
+
+/// Conditions one flight.
+///
+/// # Errors
+/// [`SignalsError`] where the log has no actuators in the vehicle's unit, no streams of motion, or no
+/// stretch of flight long enough for the weak form.
+pub fn condition(
+    recording: &Recording,
+    vehicle: &Vehicle,
+    settings: &ConditionSettings,
+) -> Result<Signals, SignalsError> {
+    let chosen = Chosen::from(recording);
+    let actuation = Actuation::from(recording, vehicle, settings.thrust)?;
+    let step_s = step(&chosen, actuation.stream(), settings)?;
+    let grid = common_grid(&chosen, actuation.stream(), step_s)?;
+    let kernel = WeakKernel::new(settings.weak_half_width_s, step_s);
+    let airborne_s = airborne_spans(recording, &actuation, vehicle);
+    let streams: Vec<&Stream> =
+        chosen.list().iter().filter_map(|(_, s)| s.map(|(_, s)| s)).chain([actuation.stream()]).collect();
+    let rate = chosen.rate.and_then(|(_, s)| vectors_onto(s, 0.0, &grid));
+    let (mask, used) = usable(
+        &grid,
+        &super::usable::Evidence {
+            streams: &streams,
+            airborne_s: &airborne_s,
+            resets_s: &recording.clock_resets_s,
+            command: actuation.command(),
+            rate: rate.as_deref(),
+        },
+        settings.transient_s,
+    );
+    let centers = kernel.centers(&mask, stride(step_s));
+    if centers.len() < 40 {
+        return Err(SignalsError::NothingUsable {
+            usable_s: mask.iter().filter(|m| **m).count() as f64 * step_s,
+            needed_s: 2.0 + 2.0 * settings.weak_half_width_s,
+            reason: used.summary(),
+        });
+    }
+    let frame = AlignFrame { grid: &grid, kernel: &kernel, centers: &centers };
+    let motion = Motion::aligned(&chosen, rate, &frame, vehicle.gravity_m_s2);
+    let (rotor_thrust_n, wrench) = actuation.onto(&grid, vehicle);
+    let mut sources: Vec<(Quantity, &'static str, f64)> = chosen
+        .list()
+        .into_iter()
+        .filter_map(|(quantity, s)| s.map(|(name, s)| (quantity, name, super::select::mean_rate_hz(s))))
+        .collect();
+    sources.push((
+        actuation.quantity(),
+        actuation.message(),
+        super::select::mean_rate_hz(actuation.stream()),
+    ));
+    Ok(Signals {
+        grid,
+        usable: mask,
+        attitude: motion.attitude,
+        rate: motion.rate,
+        specific_force: motion.specific_force,
+        world_acceleration: motion.world_acceleration,
+        position: motion.position,
+        velocity: motion.velocity,
+        rotor_thrust_n,
+        wrench,
+        reference: reference(recording, &grid),
+        quality: Quality {
+            sources,
+            thrust_source: actuation.source(),
+            offsets: motion.offsets,
+            airborne_s,
+            usable: used,
+            notes: actuation.notes(),
+        },
+    })
+}
+
+/// Samples between the weak form's centres: 0.05 s.
+#[must_use]
+pub fn stride(step_s: f64) -> usize {
+    let mut stride = 1;
+    while (stride as f64 + 0.5) * step_s < 0.05 {
+        stride += 1;
+    }
+    stride
+}
+
+/// What drives the body.
+pub(super) enum Actuation {
+    /// one thrust a rotor
+    Rotors(RotorThrusts),
+    /// force and torque as recorded
+    Wrench(&'static str, Stream),
+}
+
+impl Actuation {
+    fn from(
+        recording: &Recording,
+        vehicle: &Vehicle,
+        preference: ThrustPreference,
+    ) -> Result<Self, SignalsError> {
+        if let Some((key, stream)) = best(recording, Quantity::Wrench, |s| s.width == 4) {
+            return Ok(Self::Wrench(key.source, stream.clone()));
+        }
+        let measured = match preference {
+            ThrustPreference::Measured => thrusts_from_speeds(recording, vehicle),
+            ThrustPreference::Commands => None,
+        };
+        measured.map_or_else(|| thrusts_from_commands(recording, vehicle), Ok).map(Self::Rotors)
+    }
+
+    pub(super) fn stream(&self) -> &Stream {
+        match self {
+            Self::Rotors(rotors) => &rotors.stream,
+            Self::Wrench(_, stream) => stream,
+        }
+    }
+
+    fn command(&self) -> Option<&Stream> {
+        match self {
+            Self::Rotors(rotors) => rotors.command.as_ref(),
+            Self::Wrench(..) => None,
+        }
+    }
+
+    fn source(&self) -> ThrustSource {
+        match self {
+            Self::Rotors(rotors) => rotors.source,
+            Self::Wrench(..) => ThrustSource::Wrench,
+        }
+    }
+
+    fn quantity(&self) -> Quantity {
+        match self.source() {
+            ThrustSource::MeasuredSpeed => Quantity::RotorSpeed,
+            ThrustSource::Command => Quantity::ActuatorCommand,
+            ThrustSource::Wrench => Quantity::Wrench,
+        }
+    }
+
+    fn message(&self) -> &'static str {
+        match self {
+            Self::Rotors(rotors) => rotors.message,
+            Self::Wrench(message, _) => message,
+        }
+    }
+
+    fn notes(&self) -> Vec<String> {
+        match self {
+            Self::Rotors(rotors) => rotors.notes.clone(),
+            Self::Wrench(..) => Vec::new(),
+        }
+    }
+
+    /// Total thrust at each of the stream's own samples, N.
+    pub(super) fn collective_n(&self, index: usize) -> f64 {
+        match self {
+            Self::Rotors(rotors) => rotors.stream.sample(index).iter().sum(),
+            Self::Wrench(_, stream) => stream.sample(index)[0],
+        }
+    }
+
+    /// Rotor thrusts and `F` on the grid, by first-order hold.
+    fn onto(&self, grid: &Grid, vehicle: &Vehicle) -> (Vec<f64>, Vec<Vector4<f64>>) {
+        let flat = linear_onto(self.stream(), 0.0, grid).unwrap_or_default();
+        match self {
+            Self::Wrench(..) => {
+                let wrench = flat.chunks_exact(4).map(Vector4::from_column_slice).collect();
+                (Vec::new(), wrench)
+            }
+            Self::Rotors(rotors) => {
+                let mixer = vehicle.mixer();
+                let wrench = flat.chunks_exact(rotors.stream.width).map(|t| mixer.wrench(t)).collect();
+                (flat, wrench)
+            }
+        }
+    }
+}
+
+fn step(chosen: &Chosen<'_>, actuation: &Stream, settings: &ConditionSettings) -> Result<f64, SignalsError> {
+    if let Some(step_s) = settings.step_s {
+        return Ok(step_s);
+    }
+    let inertial = chosen.rate.or(chosen.attitude).or(chosen.world_acceleration);
+    let (_, stream) = inertial.ok_or(SignalsError::NoMotion)?;
+    let period = median_period_s(stream).min(median_period_s(actuation));
+    if !period.is_finite() {
+        return Err(SignalsError::NoMotion);
+    }
+    Ok(period.clamp(0.002, 0.02))
+}
+
+/// The span that all chosen streams share.
+fn common_grid(chosen: &Chosen<'_>, actuation: &Stream, step_s: f64) -> Result<Grid, SignalsError> {
+    let (mut start, mut end) = (f64::NEG_INFINITY, f64::INFINITY);
+    let streams = chosen.list();
+    let motion = streams.iter().filter_map(|(_, s)| s.map(|(_, s)| s));
+    for stream in motion.chain([actuation]) {
+        if let (Some(first), Some(last)) = (stream.time_s.first(), stream.time_s.last()) {
+            start = start.max(*first);
+            end = end.min(*last);
+        }
+    }
+    if end - start < 1.0 {
+        return Err(SignalsError::NoOverlap { overlap_s: (end - start).max(0.0) });
+    }
+    Ok(Grid::covering(start, end, step_s))
+}
+
+/// The body's motion on the grid, offsets taken out.
+struct Motion {
+    attitude: Option<Vec<UnitQuaternion<f64>>>,
+    rate: Option<Vec<Vector3<f64>>>,
+    specific_force: Option<Vec<Vector3<f64>>>,
+    world_acceleration: Option<Vec<Vector3<f64>>>,
+    position: Option<Vec<Vector3<f64>>>,
+    velocity: Option<Vec<Vector3<f64>>>,
+    offsets: Vec<(Quantity, StreamOffset)>,
+}
+
+impl Motion {
+    fn aligned(
+        chosen: &Chosen<'_>,
+        rate: Option<Vec<Vector3<f64>>>,
+        frame: &AlignFrame<'_>,
+        gravity_m_s2: f64,
+    ) -> Self {
+        let grid = frame.grid;
+        let plain = |s: Option<(&'static str, &Stream)>| s.and_then(|(_, s)| vectors_onto(s, 0.0, grid));
+        let mut offsets = Vec::new();
+        let mut note = |quantity, offset: Option<StreamOffset>| {
+            offset.map_or(0.0, |offset| {
+                offsets.push((quantity, offset));
+                if offset.repaired { offset.late_s } else { 0.0 }
+            })
+        };
+        let specific_force = plain(chosen.specific_force);
+        let attitude = chosen.attitude.and_then(|(_, stream)| {
+            let offset = rate.as_ref().and_then(|rate| attitude_offset(stream, rate, frame));
+            attitudes_onto(stream, note(Quantity::Attitude, offset), grid)
+        });
+        let velocity = chosen.velocity.and_then(|(_, stream)| {
+            let offset = match (&attitude, &rate, &specific_force) {
+                (Some(attitude), Some(rate), Some(specific_force)) => {
+                    let inertial = InertialOnGrid { attitude, rate, specific_force, gravity_m_s2 };
+                    velocity_offset(stream, &inertial, frame)
+                }
+                _ => None,
+            };
+            vectors_onto(stream, note(Quantity::Velocity, offset), grid)
+        });
+        let position = chosen.position.and_then(|(_, stream)| {
+            let offset = velocity.as_ref().and_then(|velocity| position_offset(stream, velocity, frame));
+            vectors_onto(stream, note(Quantity::Position, offset), grid)
+        });
+        let world_acceleration = plain(chosen.world_acceleration);
+        Self { attitude, rate, specific_force, world_acceleration, position, velocity, offsets }
+    }
+}
+
+/// The commanded acceleration and yaw, by first-order hold; `None` where they were not recorded.
+fn reference(recording: &Recording, grid: &Grid) -> Option<Reference> {
+    let (key, acceleration) = best(recording, Quantity::AccelerationSetpoint, |s| s.width == 3)?;
+    let acceleration = super::cubic_onto(acceleration, 0.0, grid)?;
+    let yaw = best(recording, Quantity::YawSetpoint, |s| s.width == 1)
+        .and_then(|(_, stream)| super::cubic_onto(&unwrapped(stream), 0.0, grid))
+        .unwrap_or_else(|| vec![0.0; grid.count]);
+    Some(Reference {
+        acceleration: acceleration.chunks_exact(3).map(|a| Vector3::new(a[0], a[1], a[2])).collect(),
+        yaw,
+        message: key.source,
+    })
+}
+
+/// An angle without its jumps of a full turn.
+fn unwrapped(stream: &Stream) -> Stream {
+    let mut out = stream.clone();
+    for i in 1..out.values.len() {
+        let turns = ((out.values[i] - out.values[i - 1]) / std::f64::consts::TAU).round();
+        if turns.is_finite() {
+            out.values[i] -= turns * std::f64::consts::TAU;
+        }
+    }
+    out
+}

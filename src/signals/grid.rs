@@ -1,0 +1,193 @@
+//! Uniform time grids and interpolation of recorded streams onto them.
+
+use crate::log::Stream;
+
+/// Uniformly spaced instants on the vehicle's clock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    /// s, first instant
+    pub start_s: f64,
+    /// s between instants
+    pub step_s: f64,
+    /// number of instants
+    pub count: usize,
+}
+
+impl Grid {
+    /// Covers `start_s..=end_s` with the given step.
+    #[must_use]
+    pub fn covering(start_s: f64, end_s: f64, step_s: f64) -> Self {
+        let mut count = 0;
+        while start_s + step_s * count as f64 <= end_s + 1e-9 {
+            count += 1;
+        }
+        Self { start_s, step_s, count }
+    }
+
+    /// The instant of this index, s.
+    #[must_use]
+    pub fn time_s(&self, index: usize) -> f64 {
+        self.start_s + self.step_s * index as f64
+    }
+
+    /// Runs of consecutive true entries of at least `least` instants, as index ranges.
+    #[must_use]
+    pub fn runs(mask: &[bool], least: usize) -> Vec<std::ops::Range<usize>> {
+        let mut runs = Vec::new();
+        let mut start = None;
+        for (index, &good) in mask.iter().chain(std::iter::once(&false)).enumerate() {
+            match (good, start) {
+                (true, None) => start = Some(index),
+                (false, Some(first)) => {
+                    if index - first >= least {
+                        runs.push(first..index);
+                    }
+                    start = None;
+                }
+                _ => {}
+            }
+        }
+        runs
+    }
+}
+
+/// Natural cubic spline through a stream's samples, evaluated at the grid's instants plus `shift_s`.
+///
+/// Returns `width` values an instant, one after the other. Outside the samples the nearest value is
+/// held; samples with a missing value are passed over. `None` with fewer than four whole samples.
+#[must_use]
+pub fn cubic_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<f64>> {
+    let whole: Vec<usize> =
+        (0..stream.len()).filter(|&i| stream.sample(i).iter().all(|v| v.is_finite())).collect();
+    if whole.len() < 4 {
+        return None;
+    }
+    let time: Vec<f64> = whole.iter().map(|&i| stream.time_s[i]).collect();
+    let width = stream.width;
+    let mut out = vec![0.0; grid.count * width];
+    let brackets = brackets(&time, shift_s, grid);
+    let mut values = vec![0.0; time.len()];
+    for channel in 0..width {
+        for (value, &index) in values.iter_mut().zip(&whole) {
+            *value = stream.sample(index)[channel];
+        }
+        let curvature = natural_spline_curvature(&time, &values);
+        for (instant, &(left, s)) in brackets.iter().enumerate() {
+            let h = time[left + 1] - time[left];
+            let (a, b) = (1.0 - s, s);
+            out[instant * width + channel] = a * values[left]
+                + b * values[left + 1]
+                + ((a * a * a - a) * curvature[left] + (b * b * b - b) * curvature[left + 1]) * h * h / 6.0;
+        }
+    }
+    Some(out)
+}
+
+/// First-order hold: straight lines between samples. See [`cubic_onto`] for the layout.
+#[must_use]
+pub fn linear_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<f64>> {
+    if stream.len() < 2 {
+        return None;
+    }
+    let width = stream.width;
+    let mut out = Vec::with_capacity(grid.count * width);
+    for (left, s) in brackets(&stream.time_s, shift_s, grid) {
+        let (before, after) = (stream.sample(left), stream.sample(left + 1));
+        out.extend(before.iter().zip(after).map(|(x, y)| x + s * (y - x)));
+    }
+    Some(out)
+}
+
+/// The last sample at or before each instant, without interpolation (states and modes).
+#[must_use]
+pub fn hold_onto(stream: &Stream, grid: &Grid) -> Option<Vec<f64>> {
+    if stream.is_empty() {
+        return None;
+    }
+    let mut out = Vec::with_capacity(grid.count * stream.width);
+    let mut at = 0;
+    for index in 0..grid.count {
+        let t = grid.time_s(index);
+        while at + 1 < stream.len() && stream.time_s[at + 1] <= t {
+            at += 1;
+        }
+        out.extend_from_slice(stream.sample(at));
+    }
+    Some(out)
+}
+
+/// For each instant the index of the sample on its left and the share (0..1) of the way to the next.
+fn brackets(time_s: &[f64], shift_s: f64, grid: &Grid) -> Vec<(usize, f64)> {
+    let mut left = 0;
+    (0..grid.count)
+        .map(|index| {
+            let t = grid.time_s(index) + shift_s;
+            while left + 2 < time_s.len() && time_s[left + 1] <= t {
+                left += 1;
+            }
+            let h = time_s[left + 1] - time_s[left];
+            let share = if h > 0.0 { ((t - time_s[left]) / h).clamp(0.0, 1.0) } else { 0.0 };
+            (left, share)
+        })
+        .collect()
+}
+
+/// Second derivatives at the knots of the natural cubic spline (tridiagonal solve).
+fn natural_spline_curvature(time: &[f64], values: &[f64]) -> Vec<f64> {
+    let n = time.len();
+    let mut curvature = vec![0.0; n];
+    let mut upper = vec![0.0; n];
+    for i in 1..n - 1 {
+        let (h0, h1) = ((time[i] - time[i - 1]).max(1e-9), (time[i + 1] - time[i]).max(1e-9));
+        let slope_change = (values[i + 1] - values[i]) / h1 - (values[i] - values[i - 1]) / h0;
+        let diagonal = 2.0 * (h0 + h1) - h0 * upper[i - 1];
+        upper[i] = h1 / diagonal;
+        curvature[i] = (6.0 * slope_change - h0 * curvature[i - 1]) / diagonal;
+    }
+    for i in (1..n - 1).rev() {
+        curvature[i] -= upper[i] * curvature[i + 1];
+    }
+    curvature
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stream(period_s: f64, count: usize, f: impl Fn(f64) -> f64) -> Stream {
+        let time_s: Vec<f64> = (0..count).map(|i| period_s * i as f64).collect();
+        let values = time_s.iter().map(|&t| f(t)).collect();
+        Stream { time_s, width: 1, values }
+    }
+
+    #[test]
+    fn spline_follows_a_smooth_signal() {
+        let s = stream(0.02, 500, |t| (3.0 * t).sin());
+        let grid = Grid::covering(1.0, 8.0, 0.003);
+        let out = cubic_onto(&s, 0.001, &grid).unwrap();
+        for (i, v) in out.iter().enumerate() {
+            assert!((v - (3.0 * (grid.time_s(i) + 0.001)).sin()).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn missing_samples_are_bridged() {
+        let mut s = stream(0.02, 200, |t| t * t);
+        s.values[50] = f64::NAN;
+        let out = cubic_onto(&s, 0.0, &Grid { start_s: 1.0, step_s: 0.1, count: 1 }).unwrap();
+        assert!((out[0] - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn first_order_hold_has_no_delay() {
+        let s = stream(0.1, 20, |t| 2.0 * t);
+        let out = linear_onto(&s, 0.0, &Grid { start_s: 0.55, step_s: 0.1, count: 3 }).unwrap();
+        assert!((out[1] - 1.3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn runs_need_their_length() {
+        let mask = [true, false, true, true, true, false, true, true];
+        assert_eq!(Grid::runs(&mask, 2), vec![2..5, 6..8]);
+    }
+}

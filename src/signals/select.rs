@@ -1,0 +1,114 @@
+//! Which of several streams of one quantity is used.
+
+use super::noise::median;
+use crate::log::{Quantity, Recording, Stream, StreamKey};
+
+/// Message names of one quantity, best first. A source that is not listed comes last.
+fn preference(quantity: Quantity) -> &'static [&'static str] {
+    match quantity {
+        Quantity::Attitude => &["ATTITUDE_QUATERNION", "ATTITUDE", "ODOMETRY"],
+        Quantity::AngularRate => &[
+            "HIGHRES_IMU",
+            "SCALED_IMU",
+            "RAW_IMU",
+            "SCALED_IMU2",
+            "SCALED_IMU3",
+            "ATTITUDE_QUATERNION",
+            "ATTITUDE",
+            "ODOMETRY",
+        ],
+        Quantity::SpecificForce => &["HIGHRES_IMU", "SCALED_IMU", "RAW_IMU", "SCALED_IMU2", "SCALED_IMU3"],
+        Quantity::Position | Quantity::Velocity => &["LOCAL_POSITION_NED", "ODOMETRY"],
+        Quantity::PositionSetpoint
+        | Quantity::VelocitySetpoint
+        | Quantity::AccelerationSetpoint
+        | Quantity::YawSetpoint => &["POSITION_TARGET_LOCAL_NED", "SET_POSITION_TARGET_LOCAL_NED"],
+        Quantity::ActuatorCommand => &["SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"],
+        Quantity::RotorSpeed => &["ESC_STATUS", "ESC_TELEMETRY_1_TO_4"],
+        _ => &[],
+    }
+}
+
+/// Mean rate over the stream's span, Hz; 0 for fewer than two samples.
+#[must_use]
+pub fn mean_rate_hz(stream: &Stream) -> f64 {
+    match (stream.time_s.first(), stream.time_s.last()) {
+        (Some(first), Some(last)) if last > first => (stream.len() as f64 - 1.0) / (last - first),
+        _ => 0.0,
+    }
+}
+
+/// Median period between samples, s; NaN for fewer than two samples.
+#[must_use]
+pub fn median_period_s(stream: &Stream) -> f64 {
+    let mut periods: Vec<f64> = stream.time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    median(&mut periods)
+}
+
+/// Something in the stream moves: a frozen stream says nothing.
+#[must_use]
+pub fn is_live(stream: &Stream) -> bool {
+    (0..stream.width).any(|channel| {
+        let mut seen: Option<f64> = None;
+        (0..stream.len()).map(|i| stream.sample(i)[channel]).filter(|v| v.is_finite()).any(|value| {
+            let moved = seen.is_some_and(|first| first.to_bits() != value.to_bits());
+            seen.get_or_insert(value);
+            moved
+        })
+    })
+}
+
+/// The best live stream of a quantity that satisfies `fits`: among those within a factor of 1.6 of
+/// the fastest, the first of its quantity's order of preference.
+#[must_use]
+pub fn best(
+    recording: &Recording,
+    quantity: Quantity,
+    fits: impl Fn(&Stream) -> bool,
+) -> Option<(&StreamKey, &Stream)> {
+    let candidates: Vec<(&StreamKey, &Stream)> = recording
+        .streams
+        .iter()
+        .filter(|(key, stream)| {
+            key.quantity == quantity && stream.len() >= 10 && is_live(stream) && fits(stream)
+        })
+        .collect();
+    let fastest = candidates.iter().map(|(_, stream)| mean_rate_hz(stream)).fold(0.0, f64::max);
+    let order = preference(quantity);
+    let rank = |source: &str| order.iter().position(|name| *name == source).unwrap_or(order.len());
+    candidates
+        .into_iter()
+        .filter(|(_, stream)| mean_rate_hz(stream) * 1.6 >= fastest)
+        .min_by_key(|(key, _)| (rank(key.source), key.instance))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stream(period_s: f64, live: bool) -> Stream {
+        let time_s: Vec<f64> = (0..100).map(|i| f64::from(i) * period_s).collect();
+        let values = time_s.iter().map(|t| if live { *t } else { 1.0 }).collect();
+        Stream { time_s, width: 1, values }
+    }
+
+    fn recording(entries: [(&'static str, Stream); 2]) -> Recording {
+        let mut recording = Recording::default();
+        for (source, stream) in entries {
+            let key = StreamKey { quantity: Quantity::AngularRate, source, instance: 0 };
+            recording.streams.insert(key, stream);
+        }
+        recording
+    }
+
+    #[test]
+    fn rate_comes_before_preference_and_frozen_streams_never() {
+        let pick = |r: &Recording| best(r, Quantity::AngularRate, |_| true).map(|(key, _)| key.source);
+        let same = recording([("ATTITUDE", stream(0.01, true)), ("HIGHRES_IMU", stream(0.01, true))]);
+        assert_eq!(pick(&same), Some("HIGHRES_IMU"));
+        let slow = recording([("ATTITUDE", stream(0.01, true)), ("HIGHRES_IMU", stream(0.04, true))]);
+        assert_eq!(pick(&slow), Some("ATTITUDE"));
+        let frozen = recording([("ATTITUDE", stream(0.02, true)), ("HIGHRES_IMU", stream(0.01, false))]);
+        assert_eq!(pick(&frozen), Some("ATTITUDE"));
+    }
+}

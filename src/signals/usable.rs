@@ -1,0 +1,229 @@
+//! Which instants of a flight identification may use.
+
+use super::condition::Actuation;
+use super::select::median_period_s;
+use super::{Grid, hold_onto};
+use crate::log::{Quantity, Recording, Stream};
+use crate::vehicle::Vehicle;
+use nalgebra::Vector3;
+
+/// Thrust below this share of the nominal weight: not flying.
+const FLYING_SHARE: f64 = 0.4;
+/// Left out at both ends of an airborne span, s: lift-off and touch-down.
+const GROUND_MARGIN_S: f64 = 0.5;
+/// A hole longer than this many periods, and than [`LEAST_GAP_S`], is a gap.
+const GAP_PERIODS: f64 = 5.0;
+const LEAST_GAP_S: f64 = 0.06;
+/// Excitation is judged over windows of this length, s, against the flight's liveliest tenth.
+const EXCITATION_WINDOW_S: f64 = 4.0;
+const EXCITATION_SHARE: f64 = 0.3;
+
+/// Seconds that each rule left out (an instant may fall under several).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Usable {
+    /// s on the common grid
+    pub total_s: f64,
+    /// s not airborne
+    pub grounded_s: f64,
+    /// s of the transient at the beginning
+    pub transient_s: f64,
+    /// s before the first and after the last excitation
+    pub idle_s: f64,
+    /// s with an actuator at its end stop
+    pub saturated_s: f64,
+    /// s inside gaps of a stream
+    pub gap_s: f64,
+    /// s left
+    pub usable_s: f64,
+}
+
+impl Usable {
+    /// One line that says where the time went.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        format!(
+            "of {:.1} s: {:.1} s not airborne, {:.1} s transient, {:.1} s without excitation, {:.1} s saturated, {:.1} s in gaps",
+            self.total_s, self.grounded_s, self.transient_s, self.idle_s, self.saturated_s, self.gap_s
+        )
+    }
+}
+
+/// What the mask is made from.
+pub(super) struct Evidence<'a> {
+    pub streams: &'a [&'a Stream],
+    pub airborne_s: &'a [(f64, f64)],
+    pub resets_s: &'a [f64],
+    pub command: Option<&'a Stream>,
+    pub rate: Option<&'a [Vector3<f64>]>,
+}
+
+/// Spans in the air: where the autopilot says so, and in any case where the rotors carry the vehicle.
+pub(super) fn airborne_spans(
+    recording: &Recording,
+    actuation: &Actuation,
+    vehicle: &Vehicle,
+) -> Vec<(f64, f64)> {
+    let stream = actuation.stream();
+    let needed = FLYING_SHARE * vehicle.body.mass_kg * vehicle.gravity_m_s2;
+    let landed = recording
+        .streams
+        .iter()
+        .find(|(key, stream)| key.quantity == Quantity::LandedState && !stream.is_empty())
+        .map(|(_, stream)| stream);
+    // thrust smoothed over half a second: a single sample at the end stop is not a landing
+    let mut smooth = 0.0;
+    let mut spans: Vec<(f64, f64)> = Vec::new();
+    let mut open: Option<f64> = None;
+    for index in 0..stream.len() {
+        let t = stream.time_s[index];
+        let step = if index > 0 { t - stream.time_s[index - 1] } else { 0.0 };
+        let collective = actuation.collective_n(index);
+        let share = (step / 0.3).clamp(0.0, 1.0);
+        smooth = if index == 0 { collective } else { smooth + share * (collective - smooth) };
+        let said = landed.is_none_or(|landed| in_air(landed, t));
+        match (said && smooth > needed, open) {
+            (true, None) => open = Some(t),
+            (false, Some(start)) => {
+                spans.push((start, t));
+                open = None;
+            }
+            _ => {}
+        }
+    }
+    if let (Some(start), Some(&end)) = (open, stream.time_s.last()) {
+        spans.push((start, end));
+    }
+    spans.retain(|(start, end)| end - start > 2.0);
+    spans
+}
+
+/// `MAV_LANDED_STATE_IN_AIR` (2) is the last word before `t_s`; unknown (0) does not contradict.
+fn in_air(landed: &Stream, t_s: f64) -> bool {
+    let next = landed.time_s.partition_point(|t| *t <= t_s);
+    let state = landed.values.get(next.saturating_sub(1)).copied().unwrap_or(2.0);
+    (state - 2.0).abs() < 0.5 || state.abs() < 0.5
+}
+
+/// The mask and what each rule took.
+pub(super) fn usable(grid: &Grid, evidence: &Evidence<'_>, transient_s: f64) -> (Vec<bool>, Usable) {
+    let grounded = grounded(grid, evidence);
+    let transient = transient(grid, evidence, transient_s);
+    let saturated = evidence.command.map_or_else(|| vec![false; grid.count], |c| saturated(grid, c));
+    let gap = gaps(grid, evidence);
+    let excluded = |i: usize| grounded[i] || transient[i] || saturated[i] || gap[i];
+    let candidates: Vec<bool> = (0..grid.count).map(|i| !excluded(i)).collect();
+    let idle = evidence.rate.map_or_else(|| vec![false; grid.count], |rate| idle(grid, rate, &candidates));
+    let mask: Vec<bool> = candidates.iter().zip(&idle).map(|(c, idle)| *c && !idle).collect();
+    let seconds = |mask: &[bool]| mask.iter().filter(|m| **m).count() as f64 * grid.step_s;
+    let report = Usable {
+        total_s: grid.count as f64 * grid.step_s,
+        grounded_s: seconds(&grounded),
+        transient_s: seconds(&transient),
+        idle_s: seconds(&idle),
+        saturated_s: seconds(&saturated),
+        gap_s: seconds(&gap),
+        usable_s: seconds(&mask),
+    };
+    (mask, report)
+}
+
+fn grounded(grid: &Grid, evidence: &Evidence<'_>) -> Vec<bool> {
+    let recording_start = grid.start_s;
+    let recording_end = grid.time_s(grid.count.saturating_sub(1));
+    (0..grid.count)
+        .map(|i| {
+            let t = grid.time_s(i);
+            !evidence.airborne_s.iter().any(|&(start, end)| {
+                // a log that begins or ends in the air has no ground there to keep away from
+                let start = if start <= recording_start + 0.1 { start } else { start + GROUND_MARGIN_S };
+                let end = if end >= recording_end - 0.1 { end } else { end - GROUND_MARGIN_S };
+                (start..=end).contains(&t)
+            })
+        })
+        .collect()
+}
+
+/// The first `transient_s` of the first airborne span, at most a fifth of all flight.
+fn transient(grid: &Grid, evidence: &Evidence<'_>, transient_s: f64) -> Vec<bool> {
+    let flown: f64 = evidence.airborne_s.iter().map(|(start, end)| end - start).sum();
+    let until = evidence
+        .airborne_s
+        .first()
+        .map_or(f64::NEG_INFINITY, |(start, _)| start.max(grid.start_s) + transient_s.min(0.2 * flown));
+    (0..grid.count).map(|i| grid.time_s(i) < until).collect()
+}
+
+/// A command at or beyond its range, or stuck at its largest or smallest recorded value.
+fn saturated(grid: &Grid, command: &Stream) -> Vec<bool> {
+    let (low, high) = end_stops(command);
+    let stuck: Vec<f64> = (0..command.len())
+        .map(|i| f64::from(u8::from(command.sample(i).iter().any(|&u| u <= low || u >= high))))
+        .collect();
+    let flags = Stream { time_s: command.time_s.clone(), width: 1, values: stuck };
+    hold_onto(&flags, grid).unwrap_or_default().iter().map(|flag| *flag > 0.5).collect()
+}
+
+/// The range of u, narrowed where many samples repeat the very same extreme value (a flat top).
+fn end_stops(command: &Stream) -> (f64, f64) {
+    let finite = || command.values.iter().copied().filter(|v| v.is_finite());
+    let (smallest, largest) = (finite().fold(1.0, f64::min), finite().fold(0.0, f64::max));
+    let repeated = |extreme: f64| finite().filter(|v| v.to_bits() == extreme.to_bits()).count() >= 5;
+    let low = if repeated(smallest) { smallest } else { 0.0 };
+    let high = if repeated(largest) { largest } else { 1.0 };
+    (low.max(0.0), high.min(1.0))
+}
+
+/// Inside a hole of any stream, or across a restart of the vehicle's clock.
+fn gaps(grid: &Grid, evidence: &Evidence<'_>) -> Vec<bool> {
+    let mut mask = vec![false; grid.count];
+    let mut mark = |from: f64, to: f64| {
+        let first = ((from - grid.start_s) / grid.step_s).floor().max(0.0);
+        let mut index = 0;
+        // first is a small non-negative whole number; found by bisection to stay clear of casts
+        let mut high = grid.count;
+        while index < high {
+            let middle = usize::midpoint(index, high);
+            if (middle as f64) < first { index = middle + 1 } else { high = middle }
+        }
+        while index < grid.count && grid.time_s(index) <= to {
+            mask[index] = true;
+            index += 1;
+        }
+    };
+    for stream in evidence.streams {
+        let period = median_period_s(stream);
+        for pair in stream.time_s.windows(2) {
+            if pair[1] - pair[0] > (GAP_PERIODS * period).max(LEAST_GAP_S) {
+                mark(pair[0], pair[1]);
+            }
+        }
+    }
+    for &reset in evidence.resets_s {
+        mark(reset - 0.5, reset + 0.5);
+    }
+    mask
+}
+
+/// Before the first and after the last window whose rates are lively: hover teaches no inertia.
+fn idle(grid: &Grid, rate: &[Vector3<f64>], candidates: &[bool]) -> Vec<bool> {
+    let mut window = 1;
+    while (window as f64) * grid.step_s < EXCITATION_WINDOW_S {
+        window += 1;
+    }
+    let power: Vec<(usize, f64)> = (0..grid.count)
+        .step_by(window)
+        .filter_map(|start| {
+            let inside: Vec<usize> =
+                (start..(start + window).min(grid.count)).filter(|&i| candidates[i]).collect();
+            let sum: f64 = inside.iter().map(|&i| rate[i].norm_squared()).sum();
+            (!inside.is_empty()).then(|| (start, (sum / inside.len() as f64).sqrt()))
+        })
+        .collect();
+    let mut ordered: Vec<f64> = power.iter().map(|(_, p)| *p).collect();
+    ordered.sort_by(f64::total_cmp);
+    let lively = ordered.get(ordered.len().saturating_sub(1 + ordered.len() / 10)).copied().unwrap_or(0.0);
+    let exciting = |&&(_, p): &&(usize, f64)| p >= EXCITATION_SHARE * lively;
+    let first = power.iter().find(exciting).map_or(0, |(start, _)| *start);
+    let last = power.iter().rev().find(exciting).map_or(grid.count, |(start, _)| start + window);
+    (0..grid.count).map(|i| i < first || i >= last).collect()
+}

@@ -1,0 +1,137 @@
+//! The weak (integral) form: derivatives move from the data to a smooth test function.
+//!
+//! With `phi(s) = (1 - (s/H)^2)^4` on `[-H, H]`, normalised to `integral phi = 1`,
+//! `integral phi f^(d) dt = (-1)^d integral phi^(d) f dt`. Each order is one FIR filter, applied at
+//! chosen centres only; all orders have the same support, so nothing is delayed against anything.
+
+use super::Grid;
+
+/// Highest derivative that the kernel offers; `phi'''` still vanishes at the ends.
+pub const MAX_ORDER: usize = 3;
+
+/// FIR taps of the test function and its derivatives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeakKernel {
+    /// samples on each side of the centre
+    pub half_count: usize,
+    taps: [Vec<f64>; MAX_ORDER + 1],
+}
+
+impl WeakKernel {
+    /// Kernel of half width `half_width_s` for data spaced `step_s`, at least four samples a side.
+    ///
+    /// The taps of order d are scaled so that they give exactly the derivative of `t^d`.
+    #[must_use]
+    pub fn new(half_width_s: f64, step_s: f64) -> Self {
+        let mut half_count = 4;
+        while (half_count as f64 + 0.5) * step_s < half_width_s {
+            half_count += 1;
+        }
+        // the support ends where the next sample would lie
+        let h = (half_count as f64 + 1.0) * step_s;
+        let offset = |i: usize| (i as f64 - half_count as f64) * step_s;
+        let mut taps: [Vec<f64>; MAX_ORDER + 1] = Default::default();
+        let mut factorial = 1.0;
+        for (order, taps) in taps.iter_mut().enumerate() {
+            if order > 0 {
+                factorial *= order as f64;
+            }
+            let sign = if order % 2 == 0 { 1.0 } else { -1.0 };
+            *taps = (0..=2 * half_count).map(|i| sign * bump_derivative(offset(i) / h, order)).collect();
+            // a sampled phi'' still answers a constant, a sampled phi''' a slope: taken out
+            if order >= 2 {
+                let power = i32::from(order == 3);
+                let s = |i: usize| offset(i) / h;
+                let shape = |i: usize| s(i).powi(power) * bump_derivative(s(i), 0);
+                let answer: f64 = taps.iter().enumerate().map(|(i, tap)| tap * s(i).powi(power)).sum();
+                let scale: f64 = (0..=2 * half_count).map(|i| shape(i) * s(i).powi(power)).sum();
+                taps.iter_mut().enumerate().for_each(|(i, tap)| *tap -= answer / scale * shape(i));
+            }
+            let power = i32::try_from(order).unwrap_or(0);
+            let moment: f64 =
+                taps.iter().enumerate().map(|(i, tap)| tap * offset(i).powi(power) / factorial).sum();
+            taps.iter_mut().for_each(|tap| *tap /= moment);
+        }
+        Self { half_count, taps }
+    }
+
+    /// `integral phi f^(order) dt` at one centre; `column` is spaced as the kernel was made for.
+    #[must_use]
+    pub fn at(&self, order: usize, column: &[f64], center: usize) -> f64 {
+        let window = &column[center - self.half_count..=center + self.half_count];
+        self.taps[order].iter().zip(window).map(|(tap, value)| tap * value).sum()
+    }
+
+    /// The same at all centres.
+    #[must_use]
+    pub fn apply(&self, order: usize, column: &[f64], centers: &[usize]) -> Vec<f64> {
+        centers.iter().map(|&center| self.at(order, column, center)).collect()
+    }
+
+    /// Sum of squared taps: variance of the output per variance of white input noise.
+    #[must_use]
+    pub fn noise_gain(&self, order: usize) -> f64 {
+        self.taps[order].iter().map(|tap| tap * tap).sum()
+    }
+
+    /// Centres every `stride` samples whose whole support lies in a run of true entries of `mask`.
+    #[must_use]
+    pub fn centers(&self, mask: &[bool], stride: usize) -> Vec<usize> {
+        Grid::runs(mask, 2 * self.half_count + 1)
+            .into_iter()
+            .flat_map(|run| (run.start + self.half_count..run.end - self.half_count).step_by(stride.max(1)))
+            .collect()
+    }
+}
+
+/// d-th derivative in s of `(1 - s^2)^4`.
+fn bump_derivative(s: f64, order: usize) -> f64 {
+    let u = 1.0 - s * s;
+    match order {
+        0 => u.powi(4),
+        1 => -8.0 * s * u.powi(3),
+        2 => -8.0 * u.powi(3) + 48.0 * s * s * u * u,
+        _ => 144.0 * s * u * u - 192.0 * s.powi(3) * u,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_of_a_sine() {
+        let (step, w) = (0.008, 4.0);
+        let kernel = WeakKernel::new(0.2, step);
+        let column: Vec<f64> = (0..400).map(|i| (w * step * f64::from(i)).sin()).collect();
+        // the kernel is even: every order sees the same attenuation
+        let t = 200.0 * step;
+        let gain = kernel.at(0, &column, 200) / (w * t).sin();
+        assert!(gain > 0.9 && gain < 1.0);
+        let expected = [(w * t).sin(), w * (w * t).cos(), -w * w * (w * t).sin(), -w * w * w * (w * t).cos()];
+        for (order, value) in expected.iter().enumerate() {
+            let got = kernel.at(order, &column, 200);
+            assert!((got / (value * gain) - 1.0).abs() < 2e-3, "order {order}: {got} {value}");
+        }
+    }
+
+    #[test]
+    fn constants_have_no_derivative() {
+        let kernel = WeakKernel::new(0.2, 0.01);
+        let column = vec![3.0; 101];
+        assert!((kernel.at(0, &column, 50) - 3.0).abs() < 1e-12);
+        for order in 1..=MAX_ORDER {
+            assert!(kernel.at(order, &column, 50).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn centres_keep_their_support_inside_runs() {
+        let kernel = WeakKernel::new(0.05, 0.01);
+        let mut mask = vec![true; 100];
+        mask[40] = false;
+        for center in kernel.centers(&mask, 3) {
+            assert!(mask[center - kernel.half_count..=center + kernel.half_count].iter().all(|g| *g));
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! The layers of `src/`: who may import whom, who may open a socket, who may print, how long a file may be.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// Each stage and those directly below it. A stage may use these and all that they may use.
+const LAYERS: &[(&str, &[&str])] = &[
+    ("units", &[]),
+    ("frames", &["units"]),
+    ("vehicle", &["units", "frames"]),
+    ("trajectory", &["units", "frames"]),
+    ("physics", &["vehicle"]),
+    ("log", &["units", "frames"]),
+    // vehicle: from actuator values to force
+    ("signals", &["log", "vehicle"]),
+    ("regression", &["physics", "signals"]),
+    ("estimate", &["regression"]),
+    // never estimate
+    ("simulate", &["physics", "signals", "log", "trajectory"]),
+    ("compare", &["signals", "simulate"]),
+    ("diagnose", &["regression", "estimate", "simulate", "compare"]),
+    ("report", &["diagnose"]),
+    ("export", &["diagnose"]),
+    ("plan", &["physics", "regression", "simulate", "trajectory"]),
+    ("sitl", &["physics", "simulate", "log"]),
+    ("fly", &["plan", "log", "vehicle", "trajectory"]),
+    ("config", &["vehicle", "log", "trajectory"]),
+];
+
+/// The binary's own modules: they may use anything, and nothing of the library may use them.
+const BINARY: &[&str] = &["main", "cli", "commands"];
+
+/// Who may open a socket or name the runtime.
+const NETWORK: &[&str] = &["fly", "sitl", "main", "cli", "commands"];
+
+/// Who may print.
+const PRINT: &[&str] = &["main", "commands"];
+
+/// Lines of a file before its tests.
+const LINES_MAX: usize = 400;
+
+/// A file of `src/`.
+struct Source {
+    /// from `src`, with `/`
+    path: String,
+    /// stage, or module of the binary
+    module: String,
+    /// nesting: 1 for `src/log/mod.rs`, 2 for `src/log/recording.rs`
+    depth: usize,
+    text: String,
+}
+
+fn sources() -> Vec<Source> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut folders = vec![root.clone()];
+    let mut found = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                found.push(source(&root, &path));
+            }
+        }
+    }
+    found.sort_by(|a, b| a.path.cmp(&b.path));
+    assert!(found.len() > 10, "no sources under {}", root.display());
+    found
+}
+
+fn source(root: &Path, path: &Path) -> Source {
+    let relative: PathBuf = path.strip_prefix(root).unwrap().to_owned();
+    let mut parts: Vec<String> =
+        relative.iter().map(|part| part.to_str().unwrap().trim_end_matches(".rs").to_owned()).collect();
+    if parts.last().is_some_and(|last| last == "mod") {
+        parts.pop();
+    }
+    Source {
+        path: relative.iter().map(|part| part.to_str().unwrap()).collect::<Vec<_>>().join("/"),
+        module: parts[0].clone(),
+        depth: parts.len(),
+        text: std::fs::read_to_string(path).unwrap(),
+    }
+}
+
+/// The code without comments (a `//` in a string cuts its line, which hides nothing that matters here).
+fn code(text: &str) -> String {
+    text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
+}
+
+/// The code before the test module at the end.
+fn without_tests(text: &str) -> &str {
+    text.find("#[cfg(test)]\nmod ").map_or(text, |end| &text[..end])
+}
+
+/// First names of the paths that a `use` tree or path begins with: `a::b` or `{a::b, c}`.
+fn heads(tree: &str) -> Vec<String> {
+    let Some(group) = tree.strip_prefix('{') else {
+        let name: String =
+            tree.chars().take_while(|letter| letter.is_alphanumeric() || *letter == '_').collect();
+        return vec![name];
+    };
+    let mut names = Vec::new();
+    let (mut level, mut start) = (0_usize, 0_usize);
+    for (at, letter) in group.char_indices() {
+        match letter {
+            '{' => level += 1,
+            ',' | '}' if level == 0 => {
+                names.extend(heads(group[start..at].trim()));
+                start = at + 1;
+                if letter == '}' {
+                    break;
+                }
+            }
+            '}' => level -= 1,
+            _ => {}
+        }
+    }
+    names
+}
+
+/// Top-level modules that the code names, by `crate::` or by `super::` up to the root.
+fn imports(text: &str, depth: usize) -> BTreeSet<String> {
+    let code = code(text);
+    let mut found = BTreeSet::new();
+    for (at, _) in code.match_indices("crate::") {
+        found.extend(heads(code[at + "crate::".len()..].trim_start()));
+    }
+    let up = "super::".repeat(depth);
+    for (at, _) in code.match_indices(&up) {
+        found.extend(heads(code[at + up.len()..].trim_start()));
+    }
+    found
+}
+
+/// Each stage with all that it may use, itself among it.
+fn allowed() -> BTreeMap<&'static str, BTreeSet<&'static str>> {
+    let mut closed: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for (stage, below) in LAYERS {
+        let mut all = BTreeSet::from([*stage]);
+        for name in *below {
+            // LAYERS is in order from the bottom, so each name is closed already: there can be no cycle
+            let further = closed.get(name).unwrap_or_else(|| panic!("{stage} is listed above {name}"));
+            all.extend(further);
+        }
+        closed.insert(stage, all);
+    }
+    closed
+}
+
+#[test]
+fn imports_point_one_way() {
+    let allowed = allowed();
+    let mut wrong = Vec::new();
+    for source in sources().iter().filter(|source| source.module != "lib") {
+        if BINARY.contains(&source.module.as_str()) {
+            continue;
+        }
+        let Some(may) = allowed.get(source.module.as_str()) else {
+            wrong.push(format!("{}: `{}` is not among the layers", source.path, source.module));
+            continue;
+        };
+        for name in imports(&source.text, source.depth) {
+            let is_module = allowed.contains_key(name.as_str()) || BINARY.contains(&name.as_str());
+            if is_module && !may.contains(name.as_str()) {
+                wrong.push(format!("{}: {} may not use {name}", source.path, source.module));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "imports against the layers:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn simulation_never_sees_an_estimate() {
+    assert!(!allowed()["simulate"].contains("estimate"));
+}
+
+#[test]
+fn imports_are_seen_however_they_are_written() {
+    let text = "use crate::{frames::{Body, World}, units};\n// crate::report\nfn f() { crate::log::g(); }\n\
+                #[cfg(test)]\nmod tests { use super::super::estimate; }";
+    let names: Vec<String> = imports(text, 2).into_iter().collect();
+    assert_eq!(names, ["estimate", "frames", "log", "units"]);
+}
+
+#[test]
+fn only_the_edges_open_sockets() {
+    let mut wrong = Vec::new();
+    for source in sources() {
+        let code = code(&source.text);
+        for needle in ["tokio", "std::net"] {
+            if code.contains(needle) && !NETWORK.contains(&source.module.as_str()) {
+                wrong.push(format!("{}: {needle}", source.path));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "only {} may:\n{}", NETWORK.join(", "), wrong.join("\n"));
+}
+
+#[test]
+fn only_the_commands_print() {
+    let mut wrong = Vec::new();
+    for source in sources().iter().filter(|source| !PRINT.contains(&source.module.as_str())) {
+        let code = code(without_tests(&source.text));
+        for needle in ["print!(", "println!(", "stdout()", "stderr()"] {
+            if code.contains(needle) {
+                wrong.push(format!("{}: {needle}", source.path));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "only {} may print:\n{}", PRINT.join(", "), wrong.join("\n"));
+}
+
+#[test]
+fn files_stay_short() {
+    let long: Vec<String> = sources()
+        .iter()
+        .map(|source| (&source.path, without_tests(&source.text).lines().count()))
+        .filter(|(_, lines)| *lines > LINES_MAX)
+        .map(|(path, lines)| format!("{path}: {lines} lines"))
+        .collect();
+    assert!(long.is_empty(), "more than {LINES_MAX} lines before the tests:\n{}", long.join("\n"));
+}

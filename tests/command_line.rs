@@ -1,0 +1,83 @@
+//! The program at its process boundary: exit status, what goes to which stream, JSON.
+
+#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn mavid(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_mavid")).args(arguments).output().unwrap()
+}
+
+fn config(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(name).display().to_string()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// A file of this test alone.
+fn written(name: &str, text: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+#[test]
+fn vehicle_says_what_a_file_means() {
+    let output = mavid(&["vehicle", &config("qball2.toml")]);
+    assert_eq!(output.status.code(), Some(0));
+    // 1.79 * 9.81 / 34.4
+    assert!(stdout(&output).contains("hover command u     0.5105"), "{}", stdout(&output));
+    assert_eq!(stderr(&output), "");
+}
+
+#[test]
+fn json_is_one_document_and_messages_stay_off_it() {
+    let weak = std::fs::read_to_string(config("qball2.toml")).unwrap().replace("mass = 1.79", "mass = 4.0");
+    let path = written("weak.toml", &weak);
+    let output = mavid(&["vehicle", path.to_str().unwrap(), "--json"]);
+    assert_eq!(output.status.code(), Some(0));
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["schema"], 1);
+    assert_eq!(document["hover_command"], serde_json::Value::Null);
+    assert_eq!(document["rotors"][0]["wrench_per_thrust"][2], -0.2);
+    assert!(stderr(&output).contains("does not lift the weight"), "{}", stderr(&output));
+}
+
+#[test]
+fn bad_input_and_bad_usage_are_status_two_with_nothing_on_stdout() {
+    let path = written("typo.toml", "nmae = \"x\"\n");
+    let typo = path.to_str().unwrap();
+    for arguments in [
+        vec!["vehicle", "no-such-file.toml", "--json"],
+        vec!["vehicle", typo, "--json"],
+        vec!["vehicle"],
+        vec!["vehicle", typo, "--unknown"],
+        vec!["fly-away"],
+        vec![],
+    ] {
+        let output = mavid(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert_eq!(stdout(&output), "", "{arguments:?}");
+        assert!(!stderr(&output).is_empty(), "{arguments:?}");
+    }
+    let message = stderr(&mavid(&["vehicle", typo]));
+    assert!(message.contains("typo.toml") && message.contains("unknown field `nmae`"), "{message}");
+}
+
+#[test]
+fn help_and_version_succeed() {
+    let help = mavid(&["--help"]);
+    assert_eq!(help.status.code(), Some(0));
+    assert!(
+        stdout(&help).contains("Exit status: 0 done, 1 failure, 2 bad usage or input, 3 done with loss.")
+    );
+    let version = mavid(&["--version"]);
+    assert_eq!(stdout(&version), format!("mavid {}\n", env!("CARGO_PKG_VERSION")));
+}

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Makes the Python environment against which some tests compare: numpy, scipy and pymavlink, at the versions of
+# requirements.txt, under target/peers. Says so and succeeds where Python or the packages cannot be had: those tests
+# then skip themselves.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+peers="${CARGO_TARGET_DIR:-target}/peers"
+requirements=tests/peers/requirements.txt
+
+if [ -f "$peers/requirements.txt" ] && cmp -s "$requirements" "$peers/requirements.txt"; then
+    echo "peers: ready in $peers"
+    exit 0
+fi
+if ! command -v python3 >/dev/null; then
+    echo "peers: skipped, there is no python3"
+    exit 0
+fi
+if ! python3 -m venv --clear "$peers"; then
+    echo "peers: skipped, python3 cannot make a virtual environment (on Debian: apt install python3-venv)"
+    rm -rf "$peers"
+    exit 0
+fi
+if ! "$peers/bin/python" -m pip install --quiet --disable-pip-version-check --requirement "$requirements"; then
+    echo "peers: skipped, the packages could not be installed"
+    rm -rf "$peers"
+    exit 0
+fi
+cp "$requirements" "$peers/requirements.txt"
+echo "peers: ready in $peers"
