@@ -64,7 +64,7 @@ pub struct Iterate {
     /// no step promises more than the tolerance
     pub settled: bool,
     /// proximal weight of the next step
-    pub proximal: f64,
+    proximal: f64,
     /// `[bound][instant]`
     values: Vec<Vec<f64>>,
 }
@@ -209,7 +209,6 @@ impl Problem {
                 }
             }
             let ratio = (iterate.merit() - next.merit()) / promised;
-            if std::env::var("DBG").is_ok() { eprintln!("prox {:.1e} |d| {:.1e} gain {:.2e} actual {:.2e} viol {:.2e} -> {:.2e} ratio {ratio:.2}", iterate.proximal, step.change.norm(), step.gain, next.log_value-iterate.log_value, iterate.violation, next.violation); }
             if ratio > 0.1 {
                 next.proximal = (iterate.proximal * if ratio > 0.7 { 0.3 } else { 1.0 }).max(1e-5);
                 *iterate = next;
@@ -223,7 +222,8 @@ impl Problem {
 
 impl Iterate {
     /// What a step must lower.
-    fn merit(&self) -> f64 {
+    #[must_use]
+    pub fn merit(&self) -> f64 {
         self.log_value + VIOLATION_PRICE * self.violation.max(0.0)
     }
 }
@@ -374,11 +374,13 @@ impl StepModel {
 fn instants_that_matter(values: &[f64], sign: f64) -> impl Iterator<Item = usize> {
     let count = values.len();
     let (near, coarse) = ((count / 50).max(1), (count / 40).max(1));
+    let stride = (near / 4).max(1);
     let mut matters: Vec<bool> = (0..count).map(|k| k % coarse == 0).collect();
-    for here in 0..count {
-        let at = |k: usize| sign * values[k % count];
-        if at(here) >= at(here + count - 1) && at(here) >= at(here + 1) {
-            for k in here + count - near..=here + count + near {
+    let at = |k: usize| sign * values[k % count];
+    for peak in 0..count {
+        if at(peak) >= at(peak + count - 1) && at(peak) >= at(peak + 1) {
+            let around = (peak + count - near..=peak + count + near).step_by(stride);
+            for k in around.chain(peak + count - 1..=peak + count + 1) {
                 matters[k % count] = true;
             }
         }

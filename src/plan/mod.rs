@@ -6,3 +6,5 @@ pub mod information;
 pub mod quadratic;
 pub mod sensitivity;
 pub mod space;
+pub mod noise;
+pub mod optimise;
