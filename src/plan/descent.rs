@@ -317,13 +317,15 @@ impl StepModel {
 
     fn solve(&mut self, proximal: f64) -> Option<Step> {
         let (width, terms) = (self.gram.slopes.len(), self.terms.len());
-        let diagonal = DVector::from_fn(width + terms + 1, |k, _| {
-            if k < width { proximal } else { AUXILIARY_CURVATURE }
-        });
-        let mut program = std::mem::replace(
-            &mut self.program,
-            QuadraticProgram::new(DMatrix::zeros(0, 0), Vec::new()),
-        );
+        let diagonal =
+            DVector::from_fn(
+                width + terms + 1,
+                |k, _| {
+                    if k < width { proximal } else { AUXILIARY_CURVATURE }
+                },
+            );
+        let mut program =
+            std::mem::replace(&mut self.program, QuadraticProgram::new(DMatrix::zeros(0, 0), Vec::new()));
         program.curvature = DMatrix::from_diagonal(&diagonal);
         let mut rounds = 0;
         let outcome = program.solve(ROW_TOLERANCE, |program, point| {

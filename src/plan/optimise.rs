@@ -74,9 +74,19 @@ impl Search {
         descend_all(problem, &grid, points, (self.final_steps, done)).into_iter().next()
     }
 
+    /// The last round again from one point.
+    #[must_use]
+    pub fn polish(&self, problem: &Problem, point: DVector<f64>, instants: u32) -> Iterate {
+        let grid = BoundGrid::new(&problem.space, instants, self.margin);
+        let mut iterate = problem.iterate(point, &grid);
+        problem.descend(&mut iterate, &grid, self.final_steps, TOLERANCE);
+        iterate
+    }
+
     /// Velocity coefficients of unit size.
     fn draw(&self, problem: &Problem, start: u64) -> DVector<f64> {
-        let mut random = Pcg64Mcg::seed_from_u64(self.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(start));
+        let mut random =
+            Pcg64Mcg::seed_from_u64(self.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(start));
         DVector::from_fn(problem.space.dimension(), |_, _| random.random_range(-0.3..0.3))
     }
 }

@@ -230,7 +230,7 @@ struct Rotation {
 
 impl Rotation {
     fn new(first: f64, second: f64) -> Self {
-        let length = first.hypot(second);
+        let length = (first * first + second * second).sqrt();
         if length == 0.0 {
             return Self { cos: 1.0, sin: 0.0, length };
         }
@@ -243,16 +243,25 @@ impl Rotation {
 
     /// Turns columns `left` and `left + 1`.
     fn turn_columns(&self, matrix: &mut DMatrix<f64>, left: usize) {
-        for row in 0..matrix.nrows() {
-            let (first, second) = self.turn((matrix[(row, left)], matrix[(row, left + 1)]));
-            matrix[(row, left)] = first;
-            matrix[(row, left + 1)] = second;
+        let height = matrix.nrows();
+        let (head, tail) = matrix.as_mut_slice().split_at_mut((left + 1) * height);
+        for (first, second) in head[left * height..].iter_mut().zip(tail) {
+            (*first, *second) = self.turn((*first, *second));
         }
     }
 }
 
+/// Eight running sums, so that the additions need not wait for each other.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+    let mut sums = [0.0; 8];
+    let (a_chunks, b_chunks) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = a_chunks.remainder().iter().zip(b_chunks.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in a_chunks.zip(b_chunks) {
+        for (sum, (x, y)) in sums.iter_mut().zip(x.iter().zip(y)) {
+            *sum += x * y;
+        }
+    }
+    rest + sums.iter().sum::<f64>()
 }
 
 #[cfg(test)]

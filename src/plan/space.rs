@@ -63,7 +63,8 @@ pub struct PathRows {
 impl SeriesSpace {
     /// `start` is that of x, y, z (m) and psi (rad). Four harmonics leave every kind of start some freedom.
     #[must_use]
-    pub fn new(period_s: f64, harmonics: usize, start: [AxisStart; 4]) -> Self {
+    pub fn new(period_s: f64, harmonics: u32, start: [AxisStart; 4]) -> Self {
+        let harmonics = (0..harmonics).count();
         let bases = start.map(|start| free_basis(harmonics, start.conditions()));
         let start = start.map(AxisStart::value);
         let mut offsets = [0; 5];
