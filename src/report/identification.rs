@@ -28,6 +28,7 @@ pub struct IdentificationDocument {
     vehicle: String,
     anchor: &'static str,
     methods: BTreeMap<&'static str, BTreeMap<&'static str, Value>>,
+    verdict: String,
     best: Best,
     #[serde(skip_serializing_if = "Option::is_none")]
     thrust: Option<Thrust>,
@@ -153,6 +154,7 @@ impl IdentificationDocument {
             vehicle: vehicle.name.clone(),
             anchor: anchor_name(vehicle.anchor),
             methods: identification.methods.iter().map(|m| (m.method.name(), values(m))).collect(),
+            verdict: verdict(&best.result),
             best: Best {
                 method: best.method.name(),
                 why: best.why.clone(),
@@ -314,7 +316,8 @@ pub fn identification_page(
 ) -> String {
     let mut page = String::new();
     let best = &identification.best;
-    let _ = writeln!(page, "{}: method {}: {}", vehicle.name, best.method.name(), best.why);
+    let _ = writeln!(page, "{}: {}", vehicle.name, verdict(&best.result));
+    let _ = writeln!(page, "  method {}: {}", best.method.name(), best.why);
     if best.made_physical {
         let _ = writeln!(
             page,
@@ -322,7 +325,7 @@ pub fn identification_page(
         );
     }
     let nominal = crate::estimate::theta_of(&vehicle.body);
-    let _ = writeln!(page, "\n  parameter       value    std error   nominal  unit");
+    let _ = writeln!(page, "\n  parameter       value    std error    nominal  unit");
     for (index, parameter) in best.result.parameters.iter().enumerate() {
         let _ = writeln!(
             page,
@@ -344,7 +347,7 @@ pub fn identification_page(
     let _ = writeln!(page, "\n  {:<12}{}", "method", NAMES.map(|name| format!("{name:>11}")).concat());
     for method in &identification.methods {
         let cells = method.parameters.iter().map(|p| match p.finding {
-            Finding::Determined { value, .. } | Finding::Given { value } => format!("{value:>11.5}"),
+            Finding::Determined { value, .. } | Finding::Given { value } => format!("{:>11}", number(value)),
             Finding::NotDetermined { .. } => format!("{:>11}", "-"),
         });
         let _ = writeln!(page, "  {:<12}{}", method.method.name(), cells.collect::<String>());
@@ -354,13 +357,35 @@ pub fn identification_page(
     page
 }
 
+/// Five digits after the point where that shows the value, powers of ten where it would not.
+fn number(value: f64) -> String {
+    if value == 0.0 || value.abs() >= 2e-4 { format!("{value:.5}") } else { format!("{value:.3e}") }
+}
+
+/// What the flight is good for, in one sentence.
+fn verdict(result: &MethodResult) -> String {
+    let (mut yes, mut no) = (Vec::new(), Vec::new());
+    for parameter in &result.parameters {
+        match parameter.finding {
+            Finding::Determined { .. } => yes.push(parameter.name),
+            Finding::NotDetermined { .. } => no.push(parameter.name),
+            Finding::Given { .. } => {}
+        }
+    }
+    match (yes.is_empty(), no.is_empty()) {
+        (false, true) => "good for all of mass and inertia".into(),
+        (false, false) => format!("good for {}; not for {}", yes.join(", "), no.join(", ")),
+        (true, _) => "determines none of the parameters".into(),
+    }
+}
+
 fn parameter_line(name: &str, finding: &Finding, (nominal, unit): (f64, &str)) -> String {
     match finding {
         Finding::Determined { value, std } => {
-            format!("{name:<6}{value:>15.5}{std:>13.5}{nominal:>10.4}  {unit}")
+            format!("{name:<6}{:>15}{:>13}{:>11}  {unit}", number(*value), number(*std), number(nominal))
         }
         Finding::Given { value } => {
-            format!("{name:<6}{value:>15.5}{:>13}{nominal:>10.4}  {unit}", "(weighed)")
+            format!("{name:<6}{:>15}{:>13}{:>11}  {unit}", number(*value), "(weighed)", number(nominal))
         }
         Finding::NotDetermined { reason } => format!("{name:<6} not determined: {reason}"),
     }
