@@ -146,8 +146,8 @@ impl Problem {
         if count == 0 { 0.0 } else { sum / count as f64 }
     }
 
-    /// The larger (by trace, columns scaled) of two sandwiches: with the channels' own residual
-    /// autocovariances, and Newey-West on the scores. `bread` is the inverse of the normal matrix.
+    /// Each parameter's larger of two sandwiches: with the channels' own residual autocovariances, and
+    /// Newey-West on the scores. `bread` is the inverse of the normal matrix.
     fn covariance(&self, bread: &DMatrix<f64>, scaled: &Scaled<'_>) -> DMatrix<f64> {
         let mut prior = DMatrix::<f64>::zeros(self.parameters(), self.parameters());
         for &(parameter, deviation) in &self.priors {
@@ -156,12 +156,16 @@ impl Problem {
         let by_residual = bread * (self.meat_of_residuals(scaled) + &prior) * bread.transpose();
         let by_score = bread * (self.meat_of_scores(scaled) + &prior) * bread.transpose();
         // the autocovariances are not tapered: a variance may come out negative, and then says nothing
-        let sound = (0..self.parameters()).all(|i| by_residual[(i, i)] >= 0.0);
-        let excess: f64 = (0..self.parameters())
-            .filter(|&i| by_residual[(i, i)] > 0.0)
-            .map(|i| by_score[(i, i)] / by_residual[(i, i)] - 1.0)
-            .sum();
-        if excess > 0.0 || !sound { by_score } else { by_residual }
+        if (0..self.parameters()).any(|i| by_residual[(i, i)] < 0.0) {
+            return by_score;
+        }
+        let inflation = DVector::from_fn(self.parameters(), |i, _| {
+            let ratio = by_score[(i, i)] / by_residual[(i, i)];
+            if ratio > 1.0 { ratio.sqrt() } else { 1.0 }
+        });
+        DMatrix::from_fn(self.parameters(), self.parameters(), |i, j| {
+            by_residual[(i, j)] * inflation[i] * inflation[j]
+        })
     }
 
     /// `sum_c sum_|l|<=L gamma_c(l) sum_t x(t) x(t+l)^T`, as `X^T (gamma * X)`.
