@@ -3,6 +3,7 @@
 //! To add a verb: a variant in [`Verb`], a file here with `run(json, args)`, and an arm in [`run`].
 
 mod output;
+mod plan;
 mod vehicle;
 
 use std::process::ExitCode;
@@ -59,6 +60,7 @@ impl CommandError {
 pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
     match &cli.verb {
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
+        Verb::Plan(args) => plan::run(cli.json, args),
     }
 }
 
