@@ -63,7 +63,7 @@ pub struct PlanArgs {
     #[arg(long, default_value_t = 5)]
     pub harmonics: u32,
     /// Where the series starts and ends: metres and degrees; without Z the height is chosen
-    #[arg(long, value_name = "X,Y[,Z[,YAW]]", value_delimiter = ',', num_args = 2..=4, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y[,Z[,YAW]]", value_delimiter = ',', allow_hyphen_values = true)]
     pub start: Option<Vec<f64>>,
     /// Check and assess this trajectory instead of planning one
     #[arg(long, value_name = "TRAJECTORY", conflicts_with_all = ["out", "start"])]
