@@ -126,7 +126,7 @@ pub fn plan(
     feasible(limits, vehicle, &request.start)?;
     let problem = problem_of(vehicle, limits, request);
     let samples = (request.period_s / SAMPLE_S).ceil();
-    let mut search = search_of(request);
+    let search = search_of(request);
     let mut best = search.run(&problem, whole(samples), done).ok_or(PlanError::NotDetermined)?;
     for _ in 0..3 {
         if !best.log_value.is_finite() {
@@ -138,7 +138,6 @@ pub fn plan(
             let criterion_value = best.log_value.exp();
             return Ok(Plan { trajectory, criterion_value, assessment });
         }
-        search.margin *= 10.0;
         best = search.polish(&problem, best.unknowns, whole(samples));
     }
     let trajectory = problem.space.trajectory(&best.unknowns);
