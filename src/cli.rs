@@ -1,6 +1,6 @@
 //! The command line: one struct a verb.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Learns a multirotor's parameters from a recorded flight and says which physics the model left out
@@ -24,6 +24,8 @@ pub enum Verb {
     Vehicle(VehicleArgs),
     /// Identify mass and inertia from recorded flights
     Identify(IdentifyArgs),
+    /// Plan an excitation trajectory inside limits, or check one
+    Plan(PlanArgs),
 }
 
 /// Arguments of `mavid vehicle`.
@@ -69,4 +71,54 @@ pub struct IdentifyArgs {
     /// use commands even where rotor speeds are measured
     #[arg(long)]
     pub commands: bool,
+}
+
+/// Arguments of `mavid plan`.
+#[derive(Debug, Args)]
+pub struct PlanArgs {
+    /// vehicle.toml or model.toml
+    pub vehicle: PathBuf,
+    /// Where to write the trajectory
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// File with a [limits] table, instead of the vehicle's
+    #[arg(long)]
+    pub limits: Option<PathBuf>,
+    /// What is minimised
+    #[arg(long, value_enum, default_value = "cond")]
+    pub criterion: CriterionName,
+    /// Seed of the random starts
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Number of random starts
+    #[arg(long, default_value_t = 16)]
+    pub starts: u64,
+    /// Periods to fly; comparing periods with each other needs four
+    #[arg(long, default_value_t = 5)]
+    pub repeats: u32,
+    /// Period, s
+    #[arg(long, default_value_t = 10.0)]
+    pub period: f64,
+    /// Harmonics of the series
+    #[arg(long, default_value_t = 5)]
+    pub harmonics: u32,
+    /// Where the series starts and ends: metres and degrees; without Z the height is chosen
+    #[arg(long, value_name = "X,Y[,Z[,YAW]]", value_delimiter = ',', allow_hyphen_values = true)]
+    pub start: Option<Vec<f64>>,
+    /// Check and assess this trajectory instead of planning one
+    #[arg(long, value_name = "TRAJECTORY", conflicts_with_all = ["out", "start"])]
+    pub check: Option<PathBuf>,
+}
+
+/// Names of the criteria.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CriterionName {
+    /// condition number of W, the paper's
+    Cond,
+    /// condition number of W with columns of unit norm
+    ScaledCond,
+    /// volume of the error ellipsoid
+    DOpt,
+    /// sum of squared relative standard errors
+    AOpt,
 }

@@ -5,6 +5,7 @@
 mod flights;
 mod identify;
 mod output;
+mod plan;
 mod vehicle;
 
 use std::process::ExitCode;
@@ -62,6 +63,7 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
     match &cli.verb {
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
         Verb::Identify(args) => identify::run(cli.json, args),
+        Verb::Plan(args) => plan::run(cli.json, args),
     }
 }
 
