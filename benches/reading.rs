@@ -130,6 +130,7 @@ fn messages_of_step(step: u32, random: &mut Pcg64Mcg) -> Vec<dialect::MavMessage
             zmag: value(),
             abs_pressure: 1013.0 + value(),
             temperature: 20.0 + value(),
+            fields_updated: dialect::HighresImuUpdatedFlags::all(),
             ..Default::default()
         }),
         M::ATTITUDE(dialect::ATTITUDE_DATA {
@@ -164,7 +165,7 @@ fn messages_of_step(step: u32, random: &mut Pcg64Mcg) -> Vec<dialect::MavMessage
             actuator: std::array::from_fn(|channel| if channel < 4 { 0.5 + 0.1 * value() } else { 0.0 }),
         }),
     ];
-    if step % 2 == 0 {
+    if step.is_multiple_of(2) {
         messages.push(M::POSITION_TARGET_LOCAL_NED(dialect::POSITION_TARGET_LOCAL_NED_DATA {
             time_boot_ms,
             x: value(),
@@ -174,6 +175,7 @@ fn messages_of_step(step: u32, random: &mut Pcg64Mcg) -> Vec<dialect::MavMessage
             vy: value(),
             vz: value(),
             yaw: value(),
+            type_mask: dialect::PositionTargetTypemask::empty(),
             coordinate_frame: dialect::MavFrame::MAV_FRAME_LOCAL_NED,
             ..Default::default()
         }));
@@ -181,6 +183,7 @@ fn messages_of_step(step: u32, random: &mut Pcg64Mcg) -> Vec<dialect::MavMessage
             time_boot_ms,
             q: [1.0, 0.05 * value(), 0.05 * value(), 0.05 * value()],
             thrust: 0.4,
+            type_mask: dialect::AttitudeTargetTypemask::empty(),
             ..Default::default()
         }));
         messages.push(M::ESC_STATUS(dialect::ESC_STATUS_DATA {
@@ -190,7 +193,7 @@ fn messages_of_step(step: u32, random: &mut Pcg64Mcg) -> Vec<dialect::MavMessage
             ..Default::default()
         }));
     }
-    if step % 125 == 0 {
+    if step.is_multiple_of(125) {
         messages.push(M::HEARTBEAT(dialect::HEARTBEAT_DATA {
             custom_mode: 6 << 16,
             mavtype: dialect::MavType::MAV_TYPE_QUADROTOR,

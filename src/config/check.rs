@@ -2,6 +2,10 @@
 
 use super::ConfigError;
 
+/// Sizes (SI) beyond these are no vehicle's, and their products would overflow or vanish.
+const SMALLEST: f64 = 1e-18;
+const LARGEST: f64 = 1e12;
+
 /// Names the file in every error.
 pub(super) struct Check<'a> {
     /// file name, or what the text is
@@ -24,27 +28,29 @@ impl Check<'_> {
         }
     }
 
-    /// Neither NaN nor infinite.
+    /// Neither NaN nor infinite nor beyond all measure.
     pub fn finite(&self, key: &str, value: f64) -> Result<f64, ConfigError> {
-        if value.is_finite() { Ok(value) } else { Err(self.refuse(key, "a finite number", value)) }
+        self.within(key, value, (value.abs() <= LARGEST, "a finite number"))
     }
 
     /// Finite and above zero.
     pub fn positive(&self, key: &str, value: f64) -> Result<f64, ConfigError> {
-        if value.is_finite() && value > 0.0 {
-            Ok(value)
-        } else {
-            Err(self.refuse(key, "a number above zero", value))
-        }
+        self.within(key, value, ((SMALLEST..=LARGEST).contains(&value), "a number above zero"))
     }
 
     /// Finite and not below zero.
     pub fn not_negative(&self, key: &str, value: f64) -> Result<f64, ConfigError> {
-        if value.is_finite() && value >= 0.0 {
-            Ok(value)
-        } else {
-            Err(self.refuse(key, "a number not below zero", value))
+        self.within(key, value, ((0.0..=LARGEST).contains(&value), "a number not below zero"))
+    }
+
+    fn within(&self, key: &str, value: f64, (holds, expected): (bool, &str)) -> Result<f64, ConfigError> {
+        if holds {
+            return Ok(value);
         }
+        let size = value.abs();
+        let beyond = size.is_finite() && (size > LARGEST || (size > 0.0 && size < SMALLEST));
+        let range = if beyond { format!(", of size {SMALLEST:e} to {LARGEST:e}") } else { String::new() };
+        Err(self.refuse(key, format!("{expected}{range}"), format!("{value:?}")))
     }
 
     /// Finite where it is given.

@@ -410,6 +410,15 @@ spin = "ccw"
             ),
             (vec![BODY, &CURVE.replace("0.5", "1.5"), ROTORS], vec!["`propulsion.thrust_expo`", "came 1.5"]),
             (vec![BODY, SPEED], vec!["`rotor`", "at least one"]),
+            // products of such numbers overflow, and factorisations of infinities do not end
+            (
+                vec![BODY, SPEED, &ROTORS.replacen("0.2", "1e200", 1)],
+                vec!["`rotor[0].position`", "of size 1e-18 to 1e12", "came 1e200"],
+            ),
+            (
+                vec![&BODY.replace("1.5", "1e-320"), SPEED, ROTORS],
+                vec!["`body.mass`", "of size 1e-18 to 1e12"],
+            ),
             (vec![BODY, SPEED, &ROTORS.replace("rear_left", "front_left")], vec!["\"front_left\" twice"]),
             (
                 vec![BODY, SPEED, ROTORS, "[limits]\nz_min_m = 2\nz_max_m = 1\n"],

@@ -21,6 +21,8 @@ pub struct Problem {
     pub channels: Vec<Channel>,
     /// rows without a break in time
     pub runs: Vec<Range<usize>>,
+    /// parameters that are known beforehand to lie about zero, with their standard deviation
+    pub priors: Vec<(usize, f64)>,
     /// lags (rows) over which white noise is correlated by the kernels' overlap
     pub overlap: usize,
 }
@@ -58,27 +60,41 @@ impl Problem {
     /// channel (robust estimation).
     #[must_use]
     pub fn solve(&self, row_weights: Option<&[DVector<f64>]>) -> Solution {
-        let parameters = self.parameters();
-        let mut sigma: Vec<f64> = self.channels.iter().map(|c| spread(&c.y)).collect();
-        let mut theta = DVector::zeros(parameters);
-        let mut solved = Normal::empty(parameters);
-        for _ in 0..4 {
-            solved = self.normal_equations(&sigma, row_weights);
-            theta = solved.solve();
-            for (sigma, residual) in sigma.iter_mut().zip(self.residuals(&theta)) {
-                *sigma = spread(&residual).max(f64::MIN_POSITIVE);
-            }
-        }
+        let Fit { mut theta, sigma, normal } = self.fit(row_weights);
         let residuals = self.residuals(&theta);
         let lags = self.residual_lags(&residuals);
-        let bread = solved.inverse();
+        let bread = normal.inverse();
         let covariance = self.covariance(&bread, &Scaled { residuals: &residuals, sigma: &sigma, lags });
         for (index, value) in theta.iter_mut().enumerate() {
-            if solved.scale[index] <= 0.0 {
+            if normal.scale[index] <= 0.0 {
                 *value = f64::NAN;
             }
         }
-        Solution { theta, covariance, residuals, sigma, scaled_condition: solved.condition(), lags }
+        Solution { theta, covariance, residuals, sigma, scaled_condition: normal.condition(), lags }
+    }
+
+    /// The estimate alone; parameters without a column are zero.
+    #[must_use]
+    pub fn estimate(&self, row_weights: Option<&[DVector<f64>]>) -> DVector<f64> {
+        self.fit(row_weights).theta
+    }
+
+    /// Alternates between the parameters and the channels' weights.
+    fn fit(&self, row_weights: Option<&[DVector<f64>]>) -> Fit {
+        let mut sigma: Vec<f64> = self.channels.iter().map(|c| spread(&c.y)).collect();
+        // each channel's share of the normal equations stays; only its weight changes
+        let shares: Vec<Normal> =
+            (0..self.channels.len()).map(|channel| self.normal_share(channel, row_weights)).collect();
+        let mut fit = Fit { theta: DVector::zeros(0), sigma: Vec::new(), normal: Normal::empty(0) };
+        for _ in 0..4 {
+            let normal = Normal::weighted(&shares, &sigma, &self.priors);
+            let theta = normal.solve();
+            for (sigma, residual) in sigma.iter_mut().zip(self.residuals(&theta)) {
+                *sigma = spread(&residual).max(f64::MIN_POSITIVE);
+            }
+            fit = Fit { theta, sigma: sigma.clone(), normal };
+        }
+        fit
     }
 
     /// Residuals of every channel; NaN parameters (zero columns) count as zero.
@@ -88,18 +104,22 @@ impl Problem {
         self.channels.iter().map(|channel| &channel.y - &channel.x * &theta).collect()
     }
 
-    fn normal_equations(&self, sigma: &[f64], row_weights: Option<&[DVector<f64>]>) -> Normal {
-        let mut normal = Normal::empty(self.parameters());
-        for (index, (channel, sigma)) in self.channels.iter().zip(sigma).enumerate() {
-            let weight = 1.0 / (sigma * sigma);
-            let mut z = channel.z.as_ref().unwrap_or(&channel.x).clone();
-            for (row, mut values) in z.row_iter_mut().enumerate() {
-                values *= weight * row_weights.map_or(1.0, |weights| weights[index][row]);
+    fn normal_share(&self, index: usize, row_weights: Option<&[DVector<f64>]>) -> Normal {
+        let channel = &self.channels[index];
+        let z = channel.z.as_ref().unwrap_or(&channel.x);
+        let mut share = Normal::empty(self.parameters());
+        if let Some(weights) = row_weights {
+            let mut z = z.clone();
+            for (mut row, weight) in z.row_iter_mut().zip(weights[index].iter()) {
+                row *= *weight;
             }
-            normal.matrix += z.tr_mul(&channel.x);
-            normal.right += z.tr_mul(&channel.y);
+            share.matrix = z.tr_mul(&channel.x);
+            share.right = z.tr_mul(&channel.y);
+        } else {
+            share.matrix = z.tr_mul(&channel.x);
+            share.right = z.tr_mul(&channel.y);
         }
-        normal.finish()
+        share
     }
 
     /// First lag at which every channel's residual autocorrelation has died down, at least the
@@ -126,44 +146,48 @@ impl Problem {
         if count == 0 { 0.0 } else { sum / count as f64 }
     }
 
-    /// The larger (by trace, columns scaled) of two sandwiches: with the channels' own residual
-    /// autocovariances, and Newey-West on the scores. `bread` is the inverse of the normal matrix.
+    /// Each parameter's larger of two sandwiches: with the channels' own residual autocovariances, and
+    /// Newey-West on the scores. `bread` is the inverse of the normal matrix.
     fn covariance(&self, bread: &DMatrix<f64>, scaled: &Scaled<'_>) -> DMatrix<f64> {
-        let by_residual = bread * self.meat_of_residuals(scaled) * bread.transpose();
-        let by_score = bread * self.meat_of_scores(scaled) * bread.transpose();
+        let mut prior = DMatrix::<f64>::zeros(self.parameters(), self.parameters());
+        for &(parameter, deviation) in &self.priors {
+            prior[(parameter, parameter)] = deviation.powi(-2);
+        }
+        let by_residual = bread * (self.meat_of_residuals(scaled) + &prior) * bread.transpose();
+        let by_score = bread * (self.meat_of_scores(scaled) + &prior) * bread.transpose();
         // the autocovariances are not tapered: a variance may come out negative, and then says nothing
-        let sound = (0..self.parameters()).all(|i| by_residual[(i, i)] >= 0.0);
-        let excess: f64 = (0..self.parameters())
-            .filter(|&i| by_residual[(i, i)] > 0.0)
-            .map(|i| by_score[(i, i)] / by_residual[(i, i)] - 1.0)
-            .sum();
-        if excess > 0.0 || !sound { by_score } else { by_residual }
+        if (0..self.parameters()).any(|i| by_residual[(i, i)] < 0.0) {
+            return by_score;
+        }
+        let inflation = DVector::from_fn(self.parameters(), |i, _| {
+            let ratio = by_score[(i, i)] / by_residual[(i, i)];
+            if ratio > 1.0 { ratio.sqrt() } else { 1.0 }
+        });
+        DMatrix::from_fn(self.parameters(), self.parameters(), |i, j| {
+            by_residual[(i, j)] * inflation[i] * inflation[j]
+        })
     }
 
+    /// `sum_c sum_|l|<=L gamma_c(l) sum_t x(t) x(t+l)^T`, as `X^T (gamma * X)`.
     fn meat_of_residuals(&self, scaled: &Scaled<'_>) -> DMatrix<f64> {
         let parameters = self.parameters();
         let mut meat = DMatrix::<f64>::zeros(parameters, parameters);
         for (index, channel) in self.channels.iter().enumerate() {
             let z = channel.z.as_ref().unwrap_or(&channel.x);
-            let rows = z.transpose(); // parameters x rows: a row's entries lie together
-            let scale = scaled.sigma[index].powi(4);
-            for lag in 0..=scaled.lags {
-                let gamma = self.autocovariance(&scaled.residuals[index], lag) / scale;
-                let mut product = DMatrix::<f64>::zeros(parameters, parameters);
-                for run in &self.runs {
-                    let length = run.end.saturating_sub(run.start + lag);
-                    if length > 0 {
-                        let (early, late) =
-                            (rows.columns(run.start, length), rows.columns(run.start + lag, length));
-                        product += early * late.transpose();
+            let gamma: Vec<f64> = (0..=scaled.lags)
+                .map(|lag| self.autocovariance(&scaled.residuals[index], lag) / scaled.sigma[index].powi(4))
+                .collect();
+            let mut smeared = DMatrix::<f64>::zeros(z.nrows(), parameters);
+            for run in &self.runs {
+                for (mut out, column) in smeared.column_iter_mut().zip(z.column_iter()) {
+                    for t in run.clone() {
+                        let first = t.saturating_sub(scaled.lags).max(run.start);
+                        let last = (t + scaled.lags).min(run.end - 1);
+                        out[t] = (first..=last).map(|s| gamma[s.abs_diff(t)] * column[s]).sum();
                     }
                 }
-                if lag == 0 {
-                    meat += gamma * product;
-                } else {
-                    meat += gamma * (&product + product.transpose());
-                }
             }
+            meat += z.tr_mul(&smeared);
         }
         meat
     }
@@ -218,7 +242,27 @@ struct Normal {
     scale: DVector<f64>,
 }
 
+/// Where the alternation ended.
+struct Fit {
+    theta: DVector<f64>,
+    sigma: Vec<f64>,
+    normal: Normal,
+}
+
 impl Normal {
+    fn weighted(shares: &[Self], sigma: &[f64], priors: &[(usize, f64)]) -> Self {
+        let mut sum = Self::empty(shares.first().map_or(0, |share| share.right.len()));
+        for (share, sigma) in shares.iter().zip(sigma) {
+            let weight = 1.0 / (sigma * sigma).max(f64::MIN_POSITIVE);
+            sum.matrix += &share.matrix * weight;
+            sum.right += &share.right * weight;
+        }
+        for &(parameter, deviation) in priors {
+            sum.matrix[(parameter, parameter)] += deviation.powi(-2);
+        }
+        sum.finish()
+    }
+
     fn empty(parameters: usize) -> Self {
         Self {
             matrix: DMatrix::zeros(parameters, parameters),
@@ -299,7 +343,7 @@ mod tests {
                 }
                 channel.y[t] = 2.0 * slow[0] - slow[1] + noise;
             }
-            let problem = Problem { channels: vec![channel], runs: vec![0..n], overlap: 1 };
+            let problem = Problem { channels: vec![channel], runs: vec![0..n], priors: vec![], overlap: 1 };
             let solution = problem.solve(None);
             let error = (solution.theta[0] - 2.0).abs();
             covered += i32::from(error < 1.96 * solution.covariance[(0, 0)].sqrt());
@@ -314,7 +358,12 @@ mod tests {
     fn an_empty_column_is_not_a_number() {
         let x = DMatrix::from_fn(50, 2, |t, j| if j == 0 { (t as f64).sin() } else { 0.0 });
         let y = x.column(0) * 3.0;
-        let problem = Problem { channels: vec![Channel { y, x, z: None }], runs: vec![0..50], overlap: 1 };
+        let problem = Problem {
+            channels: vec![Channel { y, x, z: None }],
+            runs: vec![0..50],
+            priors: vec![],
+            overlap: 1,
+        };
         let solution = problem.solve(None);
         assert!((solution.theta[0] - 3.0).abs() < 1e-9);
         assert!(solution.theta[1].is_nan());

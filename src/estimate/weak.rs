@@ -6,7 +6,8 @@ use crate::regression::{CHANNELS, WeakRows};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
 /// Columns: Theta, latency of the torques, latency of the thrust, three trim torques, three damping
-/// coefficients, and where asked for the second-order term of a delay.
+/// coefficients, the share of the commands' jitter that the rotors do not follow (less one half), and
+/// where asked for the second-order term of a delay.
 ///
 /// Thrust has a latency of its own because drag along z looks like a (negative) one; damping is there
 /// because it, too, would be taken for a negative latency of the torques.
@@ -14,7 +15,10 @@ const LATENCY: usize = THETA;
 const FORCE_LATENCY: usize = THETA + 1;
 const TRIM: usize = THETA + 2;
 const DAMPING: usize = THETA + 5;
-const CURVATURE: usize = THETA + 8;
+const JITTER: usize = THETA + 8;
+const CURVATURE: usize = THETA + 9;
+/// The share of the jitter that is averaged away lies anywhere between none and all.
+const JITTER_STD: f64 = 0.288_675; // 1/sqrt(12)
 
 /// How the body follows the recorded command.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,6 +60,8 @@ pub struct WeakEstimate {
     pub latency: (f64, f64),
     /// the whole solution
     pub solution: Solution,
+    /// names of the equations that are measured, in the order of the solution's channels
+    pub channels: Vec<&'static str>,
     /// share of rows that the robust weights held back
     pub held_back: f64,
 }
@@ -90,26 +96,23 @@ fn solve_with(
         return None;
     }
     let mut theta = *start;
-    let mut solved = None;
-    for _ in 0..PASSES {
-        let problem = assemble(flights, &theta, method, curvature);
-        let (solution, held_back) = match method {
-            WeakMethod::Robust => huber(&problem),
-            _ => (problem.solve(None), 0.0),
-        };
-        for i in 0..THETA {
-            if solution.theta[i].is_finite() {
-                theta[i] = solution.theta[i];
-            }
+    for _ in 1..PASSES {
+        let estimate = assemble(flights, &theta, method, curvature).estimate(None);
+        for (value, new) in theta.iter_mut().zip(estimate.iter()).filter(|(_, new)| **new != 0.0) {
+            *value = *new;
         }
-        solved = Some((solution, held_back));
     }
-    let (solution, held_back) = solved?;
+    let problem = assemble(flights, &theta, method, curvature);
+    let (solution, held_back) = match method {
+        WeakMethod::Robust => huber(&problem),
+        _ => (problem.solve(None), 0.0),
+    };
     Some(WeakEstimate {
         theta: Theta::from_fn(|i, _| solution.theta[i]),
         covariance: solution.covariance.fixed_view::<THETA, THETA>(0, 0).into(),
         trim_torque_nm: std::array::from_fn(|i| solution.theta[TRIM + i]),
         latency: (solution.theta[LATENCY], solution.covariance[(LATENCY, LATENCY)].sqrt()),
+        channels: measured_channels(flights),
         solution,
         held_back,
     })
@@ -148,10 +151,10 @@ fn assemble(flights: &[WeakRows], theta: &Theta, method: WeakMethod<'_>, curvatu
     };
     let mut channels = Vec::new();
     for channel in 0..CHANNELS {
-        let x = design(flights, &theta, channel, (rows, columns));
-        if x.columns(0, THETA).norm() == 0.0 {
-            continue; // nothing measured that this equation needs
+        if !is_measured(flights, channel) {
+            continue;
         }
+        let x = design(flights, &theta, channel, (rows, columns));
         let y = DVector::from_iterator(
             rows,
             flights.iter().flat_map(|flight| flight.output.iter().map(|output| output[channel])),
@@ -165,7 +168,7 @@ fn assemble(flights: &[WeakRows], theta: &Theta, method: WeakMethod<'_>, curvatu
         runs.extend(flight.runs.iter().map(|run| run.start + before..run.end + before));
         before += flight.time_s.len();
     }
-    Problem { channels, runs, overlap: 8 }
+    Problem { channels, runs, priors: vec![(JITTER, JITTER_STD)], overlap: 8 }
 }
 
 fn design(
@@ -177,12 +180,14 @@ fn design(
     let mut x = DMatrix::zeros(rows, columns);
     let series = |order: usize| flights.iter().flat_map(move |flight| flight.regressor[order].iter());
     let rates = flights.iter().flat_map(|flight| flight.rate.iter());
-    for (row, (((phi, first), second), rate)) in
-        series(0).zip(series(1)).zip(series(2)).zip(rates).enumerate()
+    let jitters = flights.iter().flat_map(|flight| flight.jitter.iter());
+    for (row, ((((phi, first), second), rate), jitter)) in
+        series(0).zip(series(1)).zip(series(2)).zip(rates).zip(jitters).enumerate()
     {
         for parameter in 0..THETA {
             x[(row, parameter)] = phi[(channel, parameter)];
         }
+        x[(row, JITTER)] = jitter[channel];
         if channel == 0 {
             x[(row, FORCE_LATENCY)] = dot_row(first, channel, theta);
             continue;
@@ -197,6 +202,20 @@ fn design(
     x
 }
 
+/// Something is recorded that this equation needs: its row of the regressor is not empty.
+fn is_measured(flights: &[WeakRows], channel: usize) -> bool {
+    flights.iter().any(|rows| rows.regressor[0].iter().any(|phi| phi.row(channel).norm_squared() > 0.0))
+}
+
+fn measured_channels(flights: &[WeakRows]) -> Vec<&'static str> {
+    ["force_z", "torque_x", "torque_y", "torque_z"]
+        .into_iter()
+        .enumerate()
+        .filter(|(channel, _)| is_measured(flights, *channel))
+        .map(|(_, name)| name)
+        .collect()
+}
+
 fn dot_row(phi: &SMatrix<f64, CHANNELS, THETA>, row: usize, theta: &SVector<f64, THETA>) -> f64 {
     (0..THETA).map(|i| phi[(row, i)] * theta[i]).sum()
 }
@@ -204,11 +223,12 @@ fn dot_row(phi: &SMatrix<f64, CHANNELS, THETA>, row: usize, theta: &SVector<f64,
 /// Huber's weights, iterated; also the share of rows held back.
 fn huber(problem: &Problem) -> (Solution, f64) {
     const TUNING: f64 = 1.345;
-    let mut solution = problem.solve(None);
-    let mut held_back = 0.0;
-    for _ in 0..6 {
-        let weights: Vec<DVector<f64>> = solution
-            .residuals
+    const ITERATIONS: usize = 6;
+    let mut theta = problem.estimate(None);
+    let mut weights = Vec::new();
+    for _ in 0..ITERATIONS {
+        weights = problem
+            .residuals(&theta)
             .iter()
             .map(|residual| {
                 let mut sizes: Vec<f64> = residual.iter().map(|r| r.abs()).collect();
@@ -216,10 +236,9 @@ fn huber(problem: &Problem) -> (Solution, f64) {
                 residual.map(|r| (TUNING * sigma / r.abs().max(f64::MIN_POSITIVE)).min(1.0))
             })
             .collect();
-        let total: usize = weights.iter().map(DVector::len).sum();
-        held_back =
-            weights.iter().flat_map(|w| w.iter()).filter(|w| **w < 0.5).count() as f64 / total.max(1) as f64;
-        solution = problem.solve(Some(&weights));
+        theta = problem.estimate(Some(&weights));
     }
-    (solution, held_back)
+    let total: usize = weights.iter().map(DVector::len).sum();
+    let held_back = weights.iter().flat_map(|w| w.iter()).filter(|w| **w < 0.5).count();
+    (problem.solve(Some(&weights)), held_back as f64 / total.max(1) as f64)
 }

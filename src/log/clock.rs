@@ -2,12 +2,17 @@
 //!
 //! Messages stamp in three ways: time since boot (milliseconds or microseconds, 32 bits of it or 64), Unix
 //! time, or not at all. The first that is seen makes the recording's clock and its first stamp is zero; the
-//! others are tied to it once. Messages without a stamp are placed by the host's stamp and the median of the
-//! last differences between host and vehicle: frames that arrive together share their latency, and
-//! the vehicle's clock may run slow or fast against the host's.
+//! others are tied to it once. Messages without a stamp are placed by the host's stamp: with the difference
+//! between host and vehicle of the frame just before where both arrived in one burst, for these were sent
+//! together and share their latency, else with the median of the last differences. Both follow a vehicle
+//! whose clock runs slow or fast against the host's.
 
 /// Differences that the median is taken over; odd.
 const WINDOW: usize = 31;
+/// Frames that arrive this close together were sent together.
+const BURST_US: u64 = 2000;
+/// A difference this far from the median is of a message that was old when it was sent.
+const OLD_US: u64 = 50_000;
 /// Stamps of different messages may run back against each other by this much.
 const BACKWARD_US: i64 = 2_000_000;
 /// A leap forward beyond this must be matched by the host's clock.
@@ -89,6 +94,7 @@ pub struct VehicleClock {
     host_minus_time_us: [i64; WINDOW],
     differences: usize,
     start_host_us: i64,
+    last_host_us: i64,
     last_time_us: i64,
 }
 
@@ -103,6 +109,7 @@ impl VehicleClock {
             host_minus_time_us: [0; WINDOW],
             differences: 0,
             start_host_us: anchor.map_or(start_host_us, |anchor| anchor.host_us),
+            last_host_us: i64::MIN,
             last_time_us: 0,
         };
         match anchor {
@@ -155,7 +162,9 @@ impl VehicleClock {
         let mut differences = self.host_minus_time_us;
         let differences = &mut differences[..known];
         let (_, median, _) = differences.select_nth_unstable(known / 2);
-        host_us.saturating_sub(*median)
+        let newest = self.host_minus_time_us[(self.differences - 1) % WINDOW];
+        let in_burst = host_us.abs_diff(self.last_host_us) < BURST_US && newest.abs_diff(*median) < OLD_US;
+        host_us.saturating_sub(if in_burst { newest } else { *median })
     }
 
     fn tied(&mut self, base: Base) -> &mut Option<Tied> {
@@ -169,14 +178,14 @@ impl VehicleClock {
     /// nearest to the last stamp.
     fn unwrapped(&self, raw_us: i64, modulus_us: i64) -> i64 {
         let Some(boot) = self.boot else { return raw_us };
-        let turns = (boot.last_raw_us - raw_us + modulus_us / 2).div_euclid(modulus_us);
-        raw_us + turns.max(0) * modulus_us
+        let behind_us = boot.last_raw_us.saturating_sub(raw_us).saturating_add(modulus_us / 2);
+        raw_us.saturating_add(behind_us.div_euclid(modulus_us).max(0).saturating_mul(modulus_us))
     }
 
     fn advance(&mut self, base: Base, raw_us: i64, host_us: i64) -> Placed {
         let Some(tied) = *self.tied(base) else { return self.tie(base, raw_us, host_us) };
         if tied.continues_with(raw_us, host_us) {
-            let time_us = raw_us + tied.offset_us;
+            let time_us = raw_us.saturating_add(tied.offset_us);
             *self.tied(base) = Some(Tied {
                 last_raw_us: raw_us.max(tied.last_raw_us),
                 last_host_us: host_us,
@@ -202,10 +211,11 @@ impl VehicleClock {
     /// First stamp of a clock: tied by what the vehicle said, else by the host's stamps.
     fn tie(&mut self, base: Base, raw_us: i64, host_us: i64) -> Placed {
         let said = self.unix_minus_boot_us.and_then(|difference| match base {
-            Base::Unix => Some(self.boot?.offset_us - difference),
-            Base::Boot => Some(self.unix?.offset_us + difference),
+            Base::Unix => Some(self.boot?.offset_us.saturating_sub(difference)),
+            Base::Boot => Some(self.unix?.offset_us.saturating_add(difference)),
         });
-        let time_us = said.map_or_else(|| self.at_host(host_us), |offset_us| raw_us + offset_us);
+        let time_us =
+            said.map_or_else(|| self.at_host(host_us), |offset_us| raw_us.saturating_add(offset_us));
         *self.tied(base) = Some(Tied::new(raw_us, time_us, host_us));
         self.note(time_us, host_us);
         Placed::At(time_us)
@@ -228,6 +238,7 @@ impl VehicleClock {
 
     fn note(&mut self, time_us: i64, host_us: i64) {
         self.last_time_us = self.last_time_us.max(time_us);
+        self.last_host_us = host_us;
         self.host_minus_time_us[self.differences % WINDOW] = host_us.saturating_sub(time_us);
         self.differences += 1;
     }

@@ -120,7 +120,6 @@ mod tests {
         assert_eq!(seeds.get(0), Some(50));
         assert_eq!(seeds.get(291), Some(10));
         assert_eq!(seeds.get(60_001), None);
-        assert_eq!(seeds.get(380), None);
         assert_eq!(seeds.get(0xFF_FFFF), None);
     }
 

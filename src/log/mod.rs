@@ -17,6 +17,7 @@ mod load;
 mod recording;
 mod report;
 mod splitter;
+mod stats;
 mod tlog;
 
 pub use builder::RecordingBuilder;
@@ -32,4 +33,5 @@ pub use load::{LoadOptions, Loaded, load, stream_tlog};
 pub use recording::{Autopilot, Quantity, Recording, Stream, StreamKey};
 pub use report::{MessageCounts, ReadReport, Resync, Sender, StreamRepair};
 pub use splitter::{SplitCounts, Splitter};
+pub use stats::{StreamStats, StreamTally};
 pub use tlog::{ByteOrder, Record, STAMP_BYTES, TlogReader, TlogWriter};

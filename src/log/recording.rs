@@ -66,7 +66,8 @@ pub struct StreamKey {
     pub instance: u8,
 }
 
-/// Samples in time order. Vehicle clock, seconds from the recording's start.
+/// Samples in time order. Vehicle clock, seconds from the recording's start: zero is the first message with a
+/// stamp of the vehicle's; others may be stamped some milliseconds before it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Stream {
     /// s

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::decode::DecodeReport;
-use super::frame::{ComponentId, Frame, SystemId, Version};
+use super::frame::{ComponentId, Frame, Header, SystemId, Version};
 use super::recording::StreamKey;
 use super::tlog::{ByteOrder, Record};
 
@@ -206,6 +206,13 @@ impl ReadReport {
         self.first_stamp_us.get_or_insert(record.stamp_us);
         self.last_stamp_us = Some(record.stamp_us);
         self.sender(header.system, header.component).tally(&record.frame);
+    }
+
+    /// Whether a frame's sender sent others before.
+    pub(super) fn knows(&self, header: &Header) -> bool {
+        self.senders
+            .iter()
+            .any(|sender| sender.system == header.system && sender.component == header.component)
     }
 
     pub(super) fn note_resync(&mut self, offset: u64, skipped_bytes: u64) {

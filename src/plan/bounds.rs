@@ -57,11 +57,6 @@ impl Quantity {
             Self::RotorThrust(rotor) => format!("rotor_{rotor}_thrust_n"),
         }
     }
-
-    /// True where the quantity is linear in the coefficients of the series.
-    fn is_linear(self) -> bool {
-        matches!(self, Self::Path { .. })
-    }
 }
 
 /// `min <= quantity <= max`, either side optional.

@@ -1,11 +1,11 @@
 //! What is minimised: cond(W) as in (21), cond of the scaled W, D- and A-optimality.
 //!
-//! Each is written as a sum of maxima of smooth pieces, on a logarithmic scale. The two condition
-//! numbers have a kink where eigenvalues meet, and their optima lie on such kinks; so every eigenvalue
-//! that could become the extreme one is a piece of its own.
+//! Each is a function of the 7 x 7 matrix `G = W^T D W` alone, taken on a logarithmic scale. The two
+//! condition numbers have a kink where eigenvalues meet, and their optima lie on such kinks; so a
+//! criterion is handed out as *supports*: linear functions of `G` that touch it, as many as matter.
 
-use super::information::{Matrix7, SlopedGram};
-use nalgebra::{DVector, SVector, SymmetricEigen};
+use super::information::Matrix7;
+use nalgebra::{SVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
 /// What an excitation trajectory is judged by.
@@ -17,61 +17,87 @@ pub enum Criterion {
     /// Condition number of `W` with its columns scaled to unit norm. It is blind to the size of the
     /// motion: use it to compare, not to plan for accuracy.
     ScaledCond,
-    /// Log determinant of the inverse information matrix: the volume of the error ellipsoid.
+    /// Volume of the error ellipsoid: the seventh root of the determinant of the covariance, square root.
     DOpt,
-    /// Sum of the squared relative standard errors.
+    /// Root mean square of the relative standard errors.
     AOpt,
 }
 
-/// One smooth function that bounds a criterion from below.
+/// A linear function of `G` that touches one term of a criterion:
+/// `value + <slope, G' - G>` for another matrix `G'`.
 #[derive(Debug, Clone)]
-pub struct Piece {
-    /// value here
+pub struct Support {
+    /// the criterion is the sum over terms of the largest support of each
+    pub term: usize,
+    /// value of the touching function at `G`
     pub value: f64,
-    /// slope by the unknowns
-    pub gradient: DVector<f64>,
+    /// its slope by the entries of `G`
+    pub slope: Matrix7,
 }
 
-/// Eigenvalues closer than this ratio may swap places within a step: their plane gets two more pieces.
-const CLOSE_RATIO: f64 = 2.0;
+/// Eigenvalues beyond this many times the extreme one are no candidates for it.
+const CANDIDATE_RATIO: f64 = 4.0;
 
 impl Criterion {
-    /// The logarithm of the criterion for a Gram matrix. `scale` is the size against which each
-    /// parameter's error is measured (kg, kg m^2); only A-optimality uses it.
-    /// Infinite where the matrix is singular.
+    /// The logarithm of the criterion. `scale` is the size against which each parameter's error is
+    /// measured (kg, kg m^2). Infinite where the matrix is singular.
     #[must_use]
     pub fn log_value(self, gram: &Matrix7, scale: &SVector<f64, 7>) -> f64 {
         let value = match self {
             Self::Cond => log_condition(gram),
             Self::ScaledCond => log_condition(&unit_columns(gram)),
-            Self::DOpt => gram.cholesky().map_or(f64::INFINITY, |c| -log_determinant(&c.l())),
-            Self::AOpt => {
-                gram.try_inverse().map_or(f64::INFINITY, |inverse| relative_trace(&inverse, scale).ln())
-            }
+            Self::DOpt => gram.cholesky().map_or(f64::INFINITY, |c| {
+                let log_root: f64 = c.l().diagonal().iter().map(|value| value.ln()).sum();
+                -(log_root + scale.iter().map(|s| s.ln()).sum::<f64>()) / 7.0
+            }),
+            Self::AOpt => gram
+                .cholesky()
+                .map_or(f64::INFINITY, |c| 0.5 * (relative_trace(&c.inverse(), scale) / 7.0).ln()),
         };
         if value.is_nan() { f64::INFINITY } else { value }
     }
 
-    /// The pieces whose maxima, one a group, add up to the logarithm of the criterion.
-    /// `None` where the matrix is singular.
+    /// How many terms the criterion has.
     #[must_use]
-    pub fn pieces(self, gram: &SlopedGram, scale: &SVector<f64, 7>) -> Option<Vec<Vec<Piece>>> {
+    pub fn terms(self) -> usize {
         match self {
-            Self::Cond => condition_pieces(gram),
-            Self::ScaledCond => condition_pieces(&with_unit_columns(gram)),
+            Self::Cond | Self::ScaledCond => 2,
+            Self::DOpt | Self::AOpt => 1,
+        }
+    }
+
+    /// True for a term that is convex in `G`: then its supports hold everywhere, and supports at other
+    /// matrices may be used together with those at this one.
+    #[must_use]
+    pub fn is_convex(self, term: usize) -> bool {
+        match self {
+            Self::Cond => term == 1,
+            Self::ScaledCond => false,
+            Self::DOpt | Self::AOpt => true,
+        }
+    }
+
+    /// The supports at `gram`. `None` where the matrix is singular.
+    #[must_use]
+    pub fn supports(self, gram: &Matrix7, scale: &SVector<f64, 7>) -> Option<Vec<Support>> {
+        if gram.iter().any(|value| !value.is_finite()) {
+            return None;
+        }
+        match self {
+            Self::Cond => condition_supports(gram),
+            Self::ScaledCond => {
+                let supports = condition_supports(&unit_columns(gram))?;
+                Some(supports.into_iter().map(|support| through_scaling(support, gram)).collect())
+            }
             Self::DOpt => {
-                let inverse = gram.matrix.cholesky()?.inverse();
-                let value = self.log_value(&gram.matrix, scale);
-                let gradient = by_unknown(gram, |slope| -inverse.component_mul(slope).sum());
-                Some(vec![vec![Piece { value, gradient }]])
+                let slope = gram.cholesky()?.inverse() * (-0.5 / 7.0);
+                Some(vec![Support { term: 0, value: self.log_value(gram, scale), slope }])
             }
             Self::AOpt => {
-                let inverse = gram.matrix.cholesky()?.inverse();
-                let trace = relative_trace(&inverse, scale);
+                let inverse = gram.cholesky()?.inverse();
                 let weight = Matrix7::from_diagonal(&scale.map(|s| 1.0 / (s * s)));
-                let sandwich = inverse * weight * inverse;
-                let gradient = by_unknown(gram, |slope| -sandwich.component_mul(slope).sum() / trace);
-                Some(vec![vec![Piece { value: trace.ln(), gradient }]])
+                let slope = inverse * weight * inverse * (-0.5 / relative_trace(&inverse, scale));
+                Some(vec![Support { term: 0, value: self.log_value(gram, scale), slope }])
             }
         }
     }
@@ -104,67 +130,84 @@ fn unit_columns(gram: &Matrix7) -> Matrix7 {
     Matrix7::from_fn(|row, column| gram[(row, column)] * scale[row] * scale[column])
 }
 
-fn with_unit_columns(gram: &SlopedGram) -> SlopedGram {
-    let matrix = unit_columns(&gram.matrix);
-    let diagonal = gram.matrix.diagonal();
-    let scale = diagonal.map(|value| 1.0 / value.sqrt());
-    let slopes = gram.slopes.iter().map(|slope| {
-        let change = SVector::<f64, 7>::from_fn(|k, _| 0.5 * slope[(k, k)] / diagonal[k]);
-        Matrix7::from_fn(|row, column| {
-            slope[(row, column)] * scale[row] * scale[column]
-                - matrix[(row, column)] * (change[row] + change[column])
-        })
+/// A support by the entries of the scaled matrix as one by the entries of `gram`.
+fn through_scaling(support: Support, gram: &Matrix7) -> Support {
+    let scaled = unit_columns(gram);
+    let diagonal = gram.diagonal();
+    let mut slope = Matrix7::from_fn(|row, column| {
+        support.slope[(row, column)] / (diagonal[row] * diagonal[column]).sqrt()
     });
-    SlopedGram { slopes: slopes.collect(), matrix }
+    let by_entry = support.slope.component_mul(&scaled);
+    for k in 0..7 {
+        slope[(k, k)] -= by_entry.row(k).sum() / diagonal[k];
+    }
+    Support { slope, ..support }
 }
 
-/// Pieces of `1/2 log(largest)` and of `-1/2 log(smallest)`.
-fn condition_pieces(gram: &SlopedGram) -> Option<Vec<Vec<Piece>>> {
-    if gram.matrix.iter().any(|value| !value.is_finite()) {
+/// Term 0: `1/2 log(largest)`; term 1: `-1/2 log(smallest)`.
+fn condition_supports(gram: &Matrix7) -> Option<Vec<Support>> {
+    let eigen = SymmetricEigen::new(*gram);
+    let (min, max) = (eigen.eigenvalues.min(), eigen.eigenvalues.max());
+    if min <= 0.0 {
         return None;
     }
-    let eigen = SymmetricEigen::new(gram.matrix);
-    let values = eigen.eigenvalues;
-    if values.min() <= 0.0 {
-        return None;
-    }
-    let (min, max) = (values.min(), values.max());
-    let mut directions: Vec<(f64, SVector<f64, 7>)> = Vec::new();
-    for first in 0..7 {
-        let direction = eigen.eigenvectors.column(first).into_owned();
-        directions.push((values[first], direction));
-        for second in first + 1..7 {
-            let ratio = values[first] / values[second];
-            if ratio.max(1.0 / ratio) < CLOSE_RATIO {
-                let other = eigen.eigenvectors.column(second).into_owned();
-                let mean = 0.5 * (values[first] + values[second]);
-                directions.push((mean, (direction + other) * std::f64::consts::FRAC_1_SQRT_2));
-                directions.push((mean, (direction - other) * std::f64::consts::FRAC_1_SQRT_2));
-            }
+    let mut supports = Vec::new();
+    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        let outer = vector * vector.transpose();
+        let half_log = 0.5 * value.ln();
+        if value * CANDIDATE_RATIO > max {
+            supports.push(Support { term: 0, value: half_log, slope: outer * (0.5 / value) });
+        }
+        if *value < CANDIDATE_RATIO * min {
+            supports.push(Support { term: 1, value: -half_log, slope: outer * (-0.5 / value) });
         }
     }
-    let group = |sign: f64, keep: &dyn Fn(f64) -> bool| -> Vec<Piece> {
-        let kept = directions.iter().filter(|(value, _)| keep(*value));
-        kept.map(|(value, v)| Piece {
-            value: sign * 0.5 * value.ln(),
-            gradient: by_unknown(gram, |slope| sign * 0.5 * v.dot(&(slope * v)) / value),
-        })
-        .collect()
-    };
-    Some(vec![
-        group(1.0, &|value| value * CLOSE_RATIO > max),
-        group(-1.0, &|value| value < CLOSE_RATIO * CLOSE_RATIO * min),
-    ])
-}
-
-fn by_unknown(gram: &SlopedGram, slope_of: impl Fn(&Matrix7) -> f64) -> DVector<f64> {
-    DVector::from_iterator(gram.slopes.len(), gram.slopes.iter().map(slope_of))
-}
-
-fn log_determinant(lower: &Matrix7) -> f64 {
-    2.0 * lower.diagonal().iter().map(|value| value.ln()).sum::<f64>()
+    Some(supports)
 }
 
 fn relative_trace(covariance: &Matrix7, scale: &SVector<f64, 7>) -> f64 {
     (0..7).map(|k| covariance[(k, k)] / (scale[k] * scale[k])).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(shift: f64) -> Matrix7 {
+        let root = Matrix7::from_fn(|row, column| {
+            let phase = 1.7 * row as f64 + 0.9 * column as f64 * column as f64;
+            (phase + shift).sin() + if row == column { 2.0 } else { 0.0 }
+        });
+        root * root.transpose()
+    }
+
+    #[test]
+    fn supports_touch_and_have_the_slope() {
+        let scale = SVector::from([1.8, 0.03, 0.02, 0.02, 0.03, 0.02, 0.05]);
+        let (gram, h) = (sample(0.0), 1e-6);
+        let change = sample(0.8);
+        for criterion in [Criterion::Cond, Criterion::ScaledCond, Criterion::DOpt, Criterion::AOpt] {
+            let supports = criterion.supports(&gram, &scale).unwrap();
+            let touching: Vec<&Support> = (0..criterion.terms())
+                .map(|term| {
+                    let of_term = supports.iter().filter(|s| s.term == term);
+                    of_term.max_by(|a, b| a.value.total_cmp(&b.value)).unwrap()
+                })
+                .collect();
+            let sum: f64 = touching.iter().map(|s| s.value).sum();
+            assert!((sum - criterion.log_value(&gram, &scale)).abs() < 1e-12, "{criterion:?}");
+            let slope: f64 = touching.iter().map(|s| s.slope.component_mul(&change).sum()).sum();
+            let at = |step: f64| criterion.log_value(&(gram + change * step), &scale);
+            assert!((slope - (at(h) - at(-h)) / (2.0 * h)).abs() < 1e-7, "{criterion:?}");
+        }
+    }
+
+    #[test]
+    fn condition_is_that_of_the_singular_values() {
+        let gram = Matrix7::from_diagonal(&SVector::from([698.0, 64.0, 60.0, 55.0, 50.0, 47.0, 43.0]));
+        let gram = gram * gram;
+        assert!((condition_number(&gram) - 698.0 / 43.0).abs() < 1e-9);
+        assert!((scaled_condition_number(&gram) - 1.0).abs() < 1e-12);
+        assert_eq!(condition_number(&Matrix7::zeros()), f64::INFINITY);
+    }
 }

@@ -8,6 +8,7 @@ use super::sensitivity::{
 };
 use super::space::{PathRows, SeriesSpace};
 use crate::regression::standard_regressor;
+use crate::trajectory::FourierTrajectory;
 use nalgebra::{DVector, SMatrix, Vector4};
 
 /// The 7 x 7 matrices of `Theta`.
@@ -40,6 +41,23 @@ impl GramSampler {
         let step_s = space.period_s() / f64::from(count.max(1));
         let samples = (0..count).map(|k| space.rows(f64::from(k) * step_s)).collect();
         Self { samples, row_weights, gravity_m_s2 }
+    }
+
+    /// The mean for a given series, by `count` samples of one period.
+    #[must_use]
+    pub fn of_series(
+        series: &FourierTrajectory,
+        count: u32,
+        row_weights: Vector4<f64>,
+        gravity_m_s2: f64,
+    ) -> Matrix7 {
+        let step_s = series.period_s / f64::from(count.max(1));
+        let mut sum = Matrix7::zeros();
+        for k in 0..count {
+            let motion = motion_of(&series.derivatives(f64::from(k) * step_s), gravity_m_s2);
+            sum += weighted_square(&standard_regressor(&kinematics_of(&motion)), &row_weights);
+        }
+        sum / f64::from(count.max(1))
     }
 
     /// The matrix alone.

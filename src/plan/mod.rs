@@ -1,8 +1,36 @@
-//! The optimized excitation trajectory.
-pub mod bounds;
-pub mod criterion;
-pub mod descent;
-pub mod information;
-pub mod quadratic;
-pub mod sensitivity;
-pub mod space;
+//! The optimized excitation trajectory: the finite Fourier series (18) that minimises a criterion of the
+//! regressor `W` (20) inside the bounds (22)-(25) and those of roll, pitch, thrust and torque.
+//!
+//! ```text
+//! space        (18) with the start conditions eliminated
+//! sensitivity  (26), (27), (12) and their exact slopes
+//! information  W^T D W and its slope
+//! criterion    cond, scaled cond, D, A as functions of that matrix
+//! bounds       what must hold; check: does it, on 2 ms samples
+//! quadratic, descent, optimise   one step, one start, many starts
+//! excitation   from limits to a plan
+//! ```
+
+mod bounds;
+mod check;
+mod criterion;
+mod descent;
+mod excitation;
+mod feasible;
+mod information;
+mod noise;
+mod optimise;
+mod quadratic;
+mod sensitivity;
+mod space;
+mod transition;
+
+pub use bounds::{Bound, Dynamics, Instant, Quantity, bounds_of, parameters_of};
+pub use check::{CheckReport, Margin, SAMPLE_S, Violation, check};
+pub use criterion::{Criterion, condition_number, scaled_condition_number};
+pub use excitation::{Assessment, Plan, PlanError, PlanRequest, assess, plan, search_of};
+pub use feasible::{Conflict, StartPlace, feasible};
+pub use information::{GramSampler, Matrix7};
+pub use noise::{NoiseModel, PARAMETERS, parameter_scale, relative_standard_errors};
+pub use optimise::{Round, Search};
+pub use transition::{FlightPlan, TransitionError, flight_path};

@@ -7,11 +7,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// `minimise 1/2 z' diag(h) z + c' z` subject to `rows z <= limits`.
-#[derive(Debug, Clone, Default)]
+/// `minimise 1/2 z' H z + c' z` subject to `rows z <= limits`.
+#[derive(Debug, Clone)]
 pub struct QuadraticProgram {
-    /// `h`, all positive
-    pub curvature: Vec<f64>,
+    /// `H`, positive definite
+    pub curvature: DMatrix<f64>,
     /// `c`
     pub slope: Vec<f64>,
     /// row-major, as wide as `slope`
@@ -27,7 +27,7 @@ pub enum QuadraticOutcome {
     Solved(DVector<f64>),
     /// No point keeps all rows.
     Infeasible,
-    /// Rounding kept the method from ending.
+    /// `H` is not positive definite, or rounding kept the method from ending.
     Stalled,
 }
 
@@ -40,6 +40,12 @@ struct ActiveSet {
 }
 
 impl QuadraticProgram {
+    /// A programme without rows.
+    #[must_use]
+    pub fn new(curvature: DMatrix<f64>, slope: Vec<f64>) -> Self {
+        Self { curvature, slope, rows: Vec::new(), limits: Vec::new() }
+    }
+
     /// Adds `row z <= limit`.
     pub fn push(&mut self, row: impl IntoIterator<Item = f64>, limit: f64) {
         self.rows.extend(row);
@@ -69,17 +75,28 @@ impl QuadraticProgram {
         worst
     }
 
-    /// Solves the programme; rows are kept to `tolerance` (in the units of their limits).
+    /// Solves the programme; rows are kept to `tolerance` (in the units of their limits). Wherever all
+    /// rows hold, `add_rows` may push more and return true: the method then goes on from there.
     #[must_use]
-    pub fn solve(&self, tolerance: f64) -> QuadraticOutcome {
-        let mut z = DVector::from_iterator(
-            self.slope.len(),
-            self.slope.iter().zip(&self.curvature).map(|(c, h)| -c / h),
-        );
-        let mut active = ActiveSet::new(&self.curvature);
-        for _ in 0..20 * self.slope.len() {
+    pub fn solve(
+        &mut self,
+        tolerance: f64,
+        mut add_rows: impl FnMut(&mut Self, &DVector<f64>) -> bool,
+    ) -> QuadraticOutcome {
+        let Some(cholesky) = self.curvature.clone().cholesky() else {
+            return QuadraticOutcome::Stalled;
+        };
+        let Some(inverse) = cholesky.l().try_inverse() else {
+            return QuadraticOutcome::Stalled;
+        };
+        let mut z = -cholesky.solve(&DVector::from_column_slice(&self.slope));
+        let mut active = ActiveSet::new(inverse.transpose());
+        for _ in 0..40 * self.slope.len() {
             let Some((index, _)) = self.worst_row(&z, tolerance) else {
-                return QuadraticOutcome::Solved(z);
+                if !add_rows(self, &z) {
+                    return QuadraticOutcome::Solved(z);
+                }
+                continue;
             };
             if active.rows.contains(&index) {
                 return QuadraticOutcome::Stalled;
@@ -129,11 +146,8 @@ impl QuadraticProgram {
 }
 
 impl ActiveSet {
-    fn new(curvature: &[f64]) -> Self {
-        let width = curvature.len();
-        let inverse =
-            DMatrix::from_diagonal(&DVector::from_iterator(width, curvature.iter().map(|h| 1.0 / h.sqrt())));
-        let factor = DMatrix::zeros(width, width);
+    fn new(inverse: DMatrix<f64>) -> Self {
+        let factor = DMatrix::zeros(inverse.ncols(), inverse.ncols());
         Self { inverse, factor, rows: Vec::new(), multipliers: Vec::new() }
     }
 
@@ -216,7 +230,7 @@ struct Rotation {
 
 impl Rotation {
     fn new(first: f64, second: f64) -> Self {
-        let length = first.hypot(second);
+        let length = (first * first + second * second).sqrt();
         if length == 0.0 {
             return Self { cos: 1.0, sin: 0.0, length };
         }
@@ -229,16 +243,25 @@ impl Rotation {
 
     /// Turns columns `left` and `left + 1`.
     fn turn_columns(&self, matrix: &mut DMatrix<f64>, left: usize) {
-        for row in 0..matrix.nrows() {
-            let (first, second) = self.turn((matrix[(row, left)], matrix[(row, left + 1)]));
-            matrix[(row, left)] = first;
-            matrix[(row, left + 1)] = second;
+        let height = matrix.nrows();
+        let (head, tail) = matrix.as_mut_slice().split_at_mut((left + 1) * height);
+        for (first, second) in head[left * height..].iter_mut().zip(tail) {
+            (*first, *second) = self.turn((*first, *second));
         }
     }
 }
 
+/// Eight running sums, so that the additions need not wait for each other.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+    let mut sums = [0.0; 8];
+    let (a_chunks, b_chunks) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = a_chunks.remainder().iter().zip(b_chunks.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in a_chunks.zip(b_chunks) {
+        for (sum, (x, y)) in sums.iter_mut().zip(x.iter().zip(y)) {
+            *sum += x * y;
+        }
+    }
+    rest + sums.iter().sum::<f64>()
 }
 
 #[cfg(test)]
@@ -247,9 +270,9 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 
-    fn solved(program: &QuadraticProgram) -> DVector<f64> {
-        match program.solve(1e-10) {
-            QuadraticOutcome::Solved(z) => z,
+    fn solved(program: &mut QuadraticProgram) -> DVector<f64> {
+        match program.solve(1e-10, |_, _| false) {
+            QuadraticOutcome::Solved(point) => point,
             other => panic!("{other:?}"),
         }
     }
@@ -257,26 +280,18 @@ mod tests {
     #[test]
     fn a_corner_is_found() {
         // the point of x + y <= 1, x <= 0.2 nearest to (1, 1)
-        let mut program = QuadraticProgram {
-            curvature: vec![1.0, 1.0],
-            slope: vec![-1.0, -1.0],
-            ..QuadraticProgram::default()
-        };
+        let mut program = QuadraticProgram::new(DMatrix::identity(2, 2), vec![-1.0, -1.0]);
         program.push([1.0, 1.0], 1.0);
         program.push([1.0, 0.0], 0.2);
-        assert!((solved(&program) - DVector::from_vec(vec![0.2, 0.8])).norm() < 1e-12);
+        assert!((solved(&mut program) - DVector::from_vec(vec![0.2, 0.8])).norm() < 1e-12);
     }
 
     #[test]
     fn contradiction_is_infeasible() {
-        let mut program = QuadraticProgram {
-            curvature: vec![1.0, 1.0],
-            slope: vec![0.0, 0.0],
-            ..QuadraticProgram::default()
-        };
+        let mut program = QuadraticProgram::new(DMatrix::identity(2, 2), vec![0.0, 0.0]);
         program.push([1.0, 0.0], -1.0);
         program.push([-1.0, 0.0], -1.0);
-        assert_eq!(program.solve(1e-10), QuadraticOutcome::Infeasible);
+        assert_eq!(program.solve(1e-10, |_, _| false), QuadraticOutcome::Infeasible);
     }
 
     /// The minimum of a convex programme: feasible, and no feasible point lies downhill. Checked by
@@ -286,19 +301,18 @@ mod tests {
         let mut random = Pcg64Mcg::seed_from_u64(7);
         for _ in 0..30 {
             let (width, count) = (8, 60);
-            let mut program = QuadraticProgram {
-                curvature: (0..width).map(|_| random.random_range(0.01..2.0)).collect(),
-                slope: (0..width).map(|_| random.random_range(-1.0..1.0)).collect(),
-                ..QuadraticProgram::default()
-            };
+            let root = DMatrix::from_fn(width, width, |_, _| random.random_range(-1.0..1.0));
+            let curvature = &root * root.transpose() + DMatrix::identity(width, width) * 0.01;
+            let slope = (0..width).map(|_| random.random_range(-1.0..1.0)).collect();
+            let mut program = QuadraticProgram::new(curvature, slope);
             for _ in 0..count {
                 let row: Vec<f64> = (0..width).map(|_| random.random_range(-1.0..1.0)).collect();
                 program.push(row, random.random_range(0.05..0.5));
             }
-            let z = solved(&program);
+            let z = solved(&mut program);
             assert!(program.worst_row(&z, 1e-9).is_none());
             let value = |z: &DVector<f64>| -> f64 {
-                (0..width).map(|k| 0.5 * program.curvature[k] * z[k] * z[k] + program.slope[k] * z[k]).sum()
+                0.5 * z.dot(&(&program.curvature * z)) + dot(&program.slope, z.as_slice())
             };
             for _ in 0..200 {
                 let step = DVector::from_fn(width, |_, _| random.random_range(-0.01..0.01));

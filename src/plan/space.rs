@@ -2,13 +2,42 @@
 //!
 //! The series is periodic, so what holds at the start holds at the end. Position, velocity and
 //! acceleration at `t = 0` are linear in the coefficients `[a_1..a_N b_1..b_N c]`; each axis is written
-//! `start + Z x` with `Z` an orthonormal basis of the coefficients that leave the three at zero.
+//! `origin + Z x` with `Z` an orthonormal basis of the coefficients that leave the three at zero.
 
 use crate::trajectory::{FourierAxis, FourierTrajectory};
 use nalgebra::{DMatrix, DVector};
 
 /// Path of one instant: x, y, z, psi, each with its first four derivatives.
 pub type Path = [[f64; 5]; 4];
+
+/// Where an axis starts and ends. It is at rest there in every case.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AxisStart {
+    /// at this value (m, rad)
+    At(f64),
+    /// at this value, which is a bound that may not be crossed: the axis has no jerk there either,
+    /// because a path at rest with jerk crosses its place
+    OnBound(f64),
+    /// anywhere; the value is a first guess
+    Near(f64),
+}
+
+impl AxisStart {
+    fn value(self) -> f64 {
+        match self {
+            Self::At(value) | Self::OnBound(value) | Self::Near(value) => value,
+        }
+    }
+
+    /// Which derivatives vanish at the start, counted from the value itself.
+    fn conditions(self) -> std::ops::RangeInclusive<usize> {
+        match self {
+            Self::At(_) => 0..=2,
+            Self::OnBound(_) => 0..=3,
+            Self::Near(_) => 1..=2,
+        }
+    }
+}
 
 /// All series of one period and order that start and end at rest at one place.
 #[derive(Debug, Clone)]
@@ -32,11 +61,12 @@ pub struct PathRows {
 }
 
 impl SeriesSpace {
-    /// `start` is x, y, z (m) and psi (rad). An axis of `jerk_free` starts and ends without jerk too:
-    /// one that starts on a bound and may not cross it.
+    /// `start` is that of x, y, z (m) and psi (rad). Four harmonics leave every kind of start some freedom.
     #[must_use]
-    pub fn new(period_s: f64, harmonics: usize, start: [f64; 4], jerk_free: [bool; 4]) -> Self {
-        let bases = jerk_free.map(|flag| free_basis(harmonics, if flag { 4 } else { 3 }));
+    pub fn new(period_s: f64, harmonics: u32, start: [AxisStart; 4]) -> Self {
+        let harmonics = (0..harmonics).count();
+        let bases = start.map(|start| free_basis(harmonics, start.conditions()));
+        let start = start.map(AxisStart::value);
         let mut offsets = [0; 5];
         for (axis, basis) in bases.iter().enumerate() {
             offsets[axis + 1] = offsets[axis] + basis.ncols();
@@ -154,27 +184,26 @@ impl PathRows {
     }
 }
 
-/// Orthonormal basis of the coefficients `[a b c w_f]` whose value and first `conditions - 1`
-/// derivatives vanish at `t = 0`.
-fn free_basis(harmonics: usize, conditions: usize) -> DMatrix<f64> {
+/// Orthonormal basis of the coefficients `[a b c w_f]` for which these derivatives vanish at `t = 0`.
+fn free_basis(harmonics: usize, conditions: std::ops::RangeInclusive<usize>) -> DMatrix<f64> {
     let width = 2 * harmonics + 1;
-    let mut rows = DMatrix::zeros(width, conditions);
+    let mut rows = DMatrix::zeros(width, 4);
     let mut harmonic = 0.0;
     for l in 0..harmonics {
         harmonic += 1.0;
         rows[(harmonics + l, 0)] = -1.0 / harmonic;
         rows[(l, 1)] = 1.0;
         rows[(harmonics + l, 2)] = harmonic;
-        if conditions > 3 {
-            rows[(l, 3)] = harmonic * harmonic;
-        }
+        rows[(l, 3)] = harmonic * harmonic;
     }
     rows[(2 * harmonics, 0)] = 1.0;
-    let across = rows.qr().q();
+    let count = conditions.clone().count();
+    let across = rows.columns(*conditions.start(), count).into_owned().qr().q();
     let mut basis: Vec<DVector<f64>> = Vec::new();
     for unit in 0..width {
         let mut candidate = DVector::zeros(width);
         candidate[unit] = 1.0;
+        // twice: the second pass takes out what rounding left
         for _ in 0..2 {
             let inside = &across * across.tr_mul(&candidate);
             candidate -= inside;
@@ -183,11 +212,11 @@ fn free_basis(harmonics: usize, conditions: usize) -> DMatrix<f64> {
                 candidate.axpy(-share, other, 1.0);
             }
         }
-        if candidate.norm() > 1e-6 && basis.len() + conditions < width {
+        if candidate.norm() > 1e-6 && basis.len() + count < width {
             basis.push(candidate.normalize());
         }
     }
-    DMatrix::from_columns(&basis)
+    if basis.is_empty() { DMatrix::zeros(width, 0) } else { DMatrix::from_columns(&basis) }
 }
 
 #[cfg(test)]
@@ -195,7 +224,11 @@ mod tests {
     use super::*;
 
     fn space() -> SeriesSpace {
-        SeriesSpace::new(8.0, 5, [0.1, -0.2, 0.7, 0.3], [false, false, true, false])
+        SeriesSpace::new(
+            8.0,
+            5,
+            [AxisStart::At(0.1), AxisStart::At(-0.2), AxisStart::OnBound(0.7), AxisStart::At(0.3)],
+        )
     }
 
     fn some_unknowns(space: &SeriesSpace) -> DVector<f64> {
@@ -219,6 +252,16 @@ mod tests {
             }
             assert!(path[2][3].abs() < 1e-11 && path[0][3].abs() > 1e-3);
         }
+    }
+
+    #[test]
+    fn a_free_start_is_at_rest_anywhere() {
+        let start = [AxisStart::Near(1.0); 4];
+        let space = SeriesSpace::new(8.0, 4, start);
+        assert_eq!(space.dimension(), 28);
+        let path = space.trajectory(&some_unknowns(&space)).derivatives(0.0);
+        assert!(path.iter().all(|axis| axis[1].abs() < 1e-12 && axis[2].abs() < 1e-12));
+        assert!((path[2][0] - 1.0).abs() > 1e-3);
     }
 
     #[test]

@@ -51,6 +51,8 @@ pub struct WeakRows {
     pub regressor: [Vec<SMatrix<f64, 4, 7>>; 3],
     /// `K(w)`, rad/s: what angular damping acts on
     pub rate: Vec<Vector3<f64>>,
+    /// `K` of what the commands' jitter adds if the rotors follow all of it (N, N m); zero where unknown
+    pub jitter: Vec<Vector4<f64>>,
     /// rows without a break between them
     pub runs: Vec<std::ops::Range<usize>>,
 }
@@ -166,14 +168,21 @@ fn kinematic(signals: &Signals, gravity_m_s2: f64) -> Option<(Vec<f64>, Vec<f64>
 pub fn weak_rows(signals: &Signals, motion: &WeakMotion, kernel: &WeakKernel) -> WeakRows {
     let stride = stride(signals.grid.step_s);
     let mut rows = WeakRows::default();
-    let wrench: [Vec<f64>; CHANNELS] =
-        std::array::from_fn(|channel| signals.wrench.iter().map(|w| w[channel]).collect());
+    let columns = |series: &[Vector4<f64>]| -> [Vec<f64>; CHANNELS] {
+        std::array::from_fn(|channel| series.iter().map(|w| w[channel]).collect())
+    };
+    let wrench = columns(&signals.wrench);
+    let jitter = signals.jitter_wrench.as_deref().map(columns);
+    let smooth = |columns: &[Vec<f64>; CHANNELS], center| {
+        Vector4::from_fn(|channel, _| kernel.at(0, &columns[channel], center))
+    };
     let products = motion.omega.as_deref().map(GyroscopicColumns::from);
     for run in Grid::runs(&signals.usable, 2 * kernel.half_count + 1) {
         let first = rows.time_s.len();
         for center in (run.start + kernel.half_count..run.end - kernel.half_count).step_by(stride) {
             rows.time_s.push(signals.grid.time_s(center));
-            rows.output.push(Vector4::from_fn(|channel, _| kernel.at(0, &wrench[channel], center)));
+            rows.output.push(smooth(&wrench, center));
+            rows.jitter.push(jitter.as_ref().map_or_else(Vector4::zeros, |jitter| smooth(jitter, center)));
             rows.rate.push(products.as_ref().map_or_else(Vector3::zeros, |p| p.rate(kernel, center)));
             for order in 0..3 {
                 let mut phi = SMatrix::<f64, 4, 7>::zeros();

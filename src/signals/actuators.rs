@@ -27,6 +27,9 @@ pub struct RotorThrusts {
     pub stream: Stream,
     /// normalised commands at the same stamps where they were the source: for saturation
     pub command: Option<Stream>,
+    /// thrust, N, that the commands' jitter adds if the rotors follow all of it; where commands are the
+    /// source
+    pub jitter: Option<Stream>,
     /// where they came from
     pub source: ThrustSource,
     /// message or column group
@@ -54,13 +57,9 @@ pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result
     }
     let values = command.values.iter().map(|&u| propulsion.thrust_from_command_n(u)).collect();
     let stream = Stream { time_s: raw.time_s.clone(), width: channels.len(), values };
-    Ok(RotorThrusts {
-        stream,
-        command: Some(command),
-        source: ThrustSource::Command,
-        message: key.source,
-        notes,
-    })
+    let jitter = Some(jitter_thrust(&command, propulsion.thrust_curvature_n()));
+    let (command, source) = (Some(command), ThrustSource::Command);
+    Ok(RotorThrusts { stream, command, jitter, source, message: key.source, notes })
 }
 
 /// Rotor thrusts from measured speeds; `None` where none are recorded or no coefficient is known.
@@ -75,7 +74,24 @@ pub fn thrusts_from_speeds(recording: &Recording, vehicle: &Vehicle) -> Option<R
         stream.values.extend(raw.sample(index)[..rotors].iter().map(|speed| coefficient * speed * speed));
     }
     let (source, message) = (ThrustSource::MeasuredSpeed, key.source);
-    Some(RotorThrusts { stream, command: None, source, message, notes: Vec::new() })
+    Some(RotorThrusts { stream, command: None, jitter: None, source, message, notes: Vec::new() })
+}
+
+/// A thrust curve is convex, so a command that jitters makes more thrust than its mean does:
+/// `1/2 T'' sigma^2`. A rotor averages part of the jitter away, and that part is not known. The local
+/// sigma^2 is the squared fourth difference over 70, what it is for white jitter.
+fn jitter_thrust(command: &Stream, curvature_n: f64) -> Stream {
+    let width = command.width;
+    let mut out = Stream { time_s: command.time_s.clone(), width, values: vec![0.0; command.values.len()] };
+    for index in 2..command.len().saturating_sub(2) {
+        for rotor in 0..width {
+            let at = |i: usize| command.sample(i)[rotor];
+            let fourth =
+                at(index - 2) - 4.0 * at(index - 1) + 6.0 * at(index) - 4.0 * at(index + 1) + at(index + 2);
+            out.values[index * width + rotor] = 0.5 * curvature_n * fourth * fourth / 70.0;
+        }
+    }
+    out
 }
 
 fn no_actuators(recording: &Recording, vehicle: &Vehicle) -> SignalsError {

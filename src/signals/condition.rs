@@ -62,8 +62,12 @@ pub struct Signals {
     pub velocity: Option<Vec<Vector3<f64>>>,
     /// N, one a rotor and instant, rotor after rotor; empty where the log holds the wrench itself
     pub rotor_thrust_n: Vec<f64>,
-    /// `F = [Fz tau]`, N and N m, from the rotors through the nominal mixer
+    /// `F = [Fz tau]`, N and N m, from the rotors through the nominal mixer, less half of
+    /// [`Self::jitter_wrench`]
     pub wrench: Vec<Vector4<f64>>,
+    /// what the commands' jitter adds to the wrench if the rotors follow all of it (N, N m); they follow
+    /// a share of it between none and all
+    pub jitter_wrench: Option<Vec<Vector4<f64>>>,
     /// what was commanded
     pub reference: Option<Reference>,
     /// where things came from and what was repaired
@@ -175,7 +179,7 @@ pub fn condition(
     }
     let frame = AlignFrame { grid: &grid, kernel: &kernel, centers: &centers };
     let motion = Motion::aligned(&chosen, rate, &frame, vehicle.gravity_m_s2);
-    let (rotor_thrust_n, wrench) = actuation.onto(&grid, vehicle);
+    let felt = actuation.onto(&grid, vehicle);
     let mut sources: Vec<(Quantity, &'static str, f64)> = chosen
         .list()
         .into_iter()
@@ -195,8 +199,9 @@ pub fn condition(
         world_acceleration: motion.world_acceleration,
         position: motion.position,
         velocity: motion.velocity,
-        rotor_thrust_n,
-        wrench,
+        rotor_thrust_n: felt.rotor_thrust_n,
+        wrench: felt.wrench,
+        jitter_wrench: felt.jitter_wrench,
         reference: reference(recording, &grid),
         quality: Quality {
             sources,
@@ -295,20 +300,31 @@ impl Actuation {
     }
 
     /// Rotor thrusts and `F` on the grid, by first-order hold.
-    fn onto(&self, grid: &Grid, vehicle: &Vehicle) -> (Vec<f64>, Vec<Vector4<f64>>) {
+    fn onto(&self, grid: &Grid, vehicle: &Vehicle) -> Felt {
         let flat = linear_onto(self.stream(), 0.0, grid).unwrap_or_default();
-        match self {
-            Self::Wrench(..) => {
-                let wrench = flat.chunks_exact(4).map(Vector4::from_column_slice).collect();
-                (Vec::new(), wrench)
-            }
-            Self::Rotors(rotors) => {
-                let mixer = vehicle.mixer();
-                let wrench = flat.chunks_exact(rotors.stream.width).map(|t| mixer.wrench(t)).collect();
-                (flat, wrench)
-            }
+        let Self::Rotors(rotors) = self else {
+            let wrench = flat.chunks_exact(4).map(Vector4::from_column_slice).collect();
+            return Felt { rotor_thrust_n: Vec::new(), wrench, jitter_wrench: None };
+        };
+        let mixer = vehicle.mixer();
+        let mixed = |flat: &[f64]| -> Vec<Vector4<f64>> {
+            flat.chunks_exact(rotors.stream.width).map(|thrusts| mixer.wrench(thrusts)).collect()
+        };
+        let mut wrench = mixed(&flat);
+        let jitter = rotors.jitter.as_ref().and_then(|jitter| linear_onto(jitter, 0.0, grid));
+        let jitter_wrench = jitter.map(|jitter| mixed(&jitter));
+        for (wrench, jitter) in wrench.iter_mut().zip(jitter_wrench.iter().flatten()) {
+            *wrench -= 0.5 * jitter;
         }
+        Felt { rotor_thrust_n: flat, wrench, jitter_wrench }
     }
+}
+
+/// What the rotors do to the body, on the grid.
+struct Felt {
+    rotor_thrust_n: Vec<f64>,
+    wrench: Vec<Vector4<f64>>,
+    jitter_wrench: Option<Vec<Vector4<f64>>>,
 }
 
 fn step(chosen: &Chosen<'_>, actuation: &Stream, settings: &ConditionSettings) -> Result<f64, SignalsError> {

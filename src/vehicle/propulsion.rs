@@ -77,6 +77,17 @@ impl Propulsion {
         }
     }
 
+    /// Second derivative of thrust by command, N: how much thrust the jitter of a command makes.
+    #[must_use]
+    pub fn thrust_curvature_n(&self) -> f64 {
+        match self.law {
+            ThrustLaw::Speed { speed_max_rad_s } => {
+                2.0 * self.thrust_coefficient.unwrap_or(f64::NAN) * speed_max_rad_s * speed_max_rad_s
+            }
+            ThrustLaw::Curve { thrust_max_n, expo } => 2.0 * thrust_max_n * expo,
+        }
+    }
+
     /// Thrust of one rotor, N, from its measured speed; `None` where no coefficient is known.
     #[must_use]
     pub fn thrust_from_speed_n(&self, speed_rad_s: f64) -> Option<f64> {

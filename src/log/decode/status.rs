@@ -40,9 +40,10 @@ pub(super) fn battery_status(payload: Payload<'_>, samples: &mut Samples<'_>) {
     let id = payload.u8(32);
     let cells = (0..10).map(|cell| payload.u16(10 + 2 * cell)).filter(|cell| *cell != u16::MAX);
     let further = (0..4).map(|cell| payload.u16(41 + 2 * cell)).filter(|cell| !matches!(*cell, 0 | u16::MAX));
-    let millivolts: Vec<f64> = cells.chain(further).map(f64::from).collect();
-    if !millivolts.is_empty() {
-        samples.give(Quantity::BatteryVoltage, id, &[volts_from_mv(millivolts.iter().sum())]);
+    let known =
+        cells.chain(further).fold(None, |sum: Option<f64>, cell| Some(sum.unwrap_or(0.0) + f64::from(cell)));
+    if let Some(millivolts) = known {
+        samples.give(Quantity::BatteryVoltage, id, &[volts_from_mv(millivolts)]);
     }
     current(payload.i16(30), id, samples);
 }

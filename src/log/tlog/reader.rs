@@ -213,7 +213,7 @@ impl<R: Read> TlogReader<R> {
             return Found::Nothing;
         }
         match frame {
-            Some(frame) if self.fits_next(stamped + frame.bytes().len()) => match check {
+            Some(frame) if self.is_one_record(at, stamped + frame.bytes().len()) => match check {
                 Some(Check::UnknownMessage) => self.stamped_record(stamp_us, frame, false),
                 _ => Found::BadCrc { bytes: STAMP_BYTES + frame.bytes().len() },
             },
@@ -237,11 +237,14 @@ impl<R: Read> TlogReader<R> {
             return None;
         }
         let frame_bytes = frame.bytes().len();
-        let known = match frame.check(&self.seeds) {
-            Check::Right => true,
-            Check::UnknownMessage if self.fits_next(at + frame_bytes) => false,
-            _ => return None,
-        };
+        let check = frame.check(&self.seeds);
+        // without a stamp, noise looks like a frame too easily: its sender or what follows must vouch for it
+        let follows = self.fits_next(at + frame_bytes);
+        let speaks = self.report.knows(frame.header());
+        let known = check == Check::Right;
+        if !(known && (follows || speaks) || check == Check::UnknownMessage && follows && speaks) {
+            return None;
+        }
         Some(Found::Record { stamp_us, stamp_bytes: 0, frame_bytes, known })
     }
 
@@ -258,6 +261,24 @@ impl<R: Read> TlogReader<R> {
         let stamped = self.stamp(at).is_none_or(|stamp_us| self.plausible(stamp_us))
             && self.header(at + STAMP_BYTES) != Start::NotAFrame;
         same_stamp || stamped
+    }
+
+    /// The log goes on at `end`, and no run of checked records begins behind `at` and reaches `end`: bytes
+    /// between are one record although its checksum does not prove it.
+    fn is_one_record(&self, at: usize, end: usize) -> bool {
+        self.fits_next(end) && !(at + 1..end).any(|inside| self.run_of_checked_records(inside, end) >= end)
+    }
+
+    fn run_of_checked_records(&self, from: usize, until: usize) -> usize {
+        let mut at = from;
+        while at < until && self.marked(at + STAMP_BYTES) && self.checked_record_at(at) {
+            at += STAMP_BYTES + self.frame(at + STAMP_BYTES).map_or(0, |frame| frame.bytes().len());
+        }
+        at
+    }
+
+    fn marked(&self, at: usize) -> bool {
+        self.buffer[..self.filled].get(at).is_some_and(|byte| matches!(*byte, MARKER_V1 | MARKER_V2))
     }
 
     /// Skips to the next record. What is skipped is damage; at the file's end, zeros or a record cut off
@@ -292,9 +313,7 @@ impl<R: Read> TlogReader<R> {
     /// message is not known, a next record that fits.
     fn restarts_at(&mut self, at: usize) -> bool {
         let stamped = at + STAMP_BYTES;
-        let marked =
-            self.buffer[..self.filled].get(stamped).is_some_and(|b| matches!(*b, MARKER_V1 | MARKER_V2));
-        if !marked {
+        if !self.marked(stamped) {
             return false;
         }
         if self.report.frames == 0 {
@@ -307,14 +326,14 @@ impl<R: Read> TlogReader<R> {
         match frame.check(&self.seeds) {
             Check::Right => true,
             Check::Wrong => false,
-            Check::UnknownMessage => self.checked_record_at(stamped + frame.bytes().len()),
+            Check::UnknownMessage => {
+                let next = stamped + frame.bytes().len();
+                next == self.filled && self.ended || self.checked_record_at(next)
+            }
         }
     }
 
     fn checked_record_at(&self, at: usize) -> bool {
-        if at == self.filled && self.ended {
-            return true;
-        }
         self.stamp(at).is_some_and(|stamp_us| self.plausible(stamp_us))
             && self.frame(at + STAMP_BYTES).is_some_and(|frame| frame.check(&self.seeds) == Check::Right)
     }

@@ -1,0 +1,257 @@
+//! Plans an excitation trajectory: from limits and a criterion to coefficients, margins and the
+//! standard errors that the flight will have.
+
+use super::bounds::{Bound, Dynamics, bounds_of};
+use super::check::{CheckReport, SAMPLE_S, Violation, check};
+use super::criterion::{Criterion, condition_number, scaled_condition_number};
+use super::descent::Problem;
+use super::feasible::{Conflict, StartPlace, feasible};
+use super::information::GramSampler;
+use super::noise::{NoiseModel, parameter_scale, relative_standard_errors};
+use super::optimise::Search;
+use super::space::{AxisStart, SeriesSpace};
+use crate::trajectory::FourierTrajectory;
+use crate::vehicle::{Limits, Vehicle};
+use nalgebra::Vector4;
+
+/// Samples a period for the information; [`GramSampler`] says why so few do.
+const INFORMATION_SAMPLES_PER_HARMONIC: u32 = 13;
+
+/// What is asked of the planner.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanRequest {
+    /// T of (18), s
+    pub period_s: f64,
+    /// N of (18)
+    pub harmonics: u32,
+    /// how many periods are flown
+    pub repeats: u32,
+    /// where the series starts and ends
+    pub start: StartPlace,
+    /// what is minimised
+    pub criterion: Criterion,
+    /// for the standard errors, and for D- and A-optimality
+    pub noise: NoiseModel,
+    /// seed of the random starts
+    pub seed: u64,
+    /// number of random starts
+    pub starts: u64,
+}
+
+impl Default for PlanRequest {
+    /// The paper's series, five periods, sixteen starts.
+    fn default() -> Self {
+        Self {
+            period_s: 10.0,
+            harmonics: 5,
+            repeats: 5,
+            start: StartPlace::default(),
+            criterion: Criterion::Cond,
+            noise: NoiseModel::default(),
+            seed: 1,
+            starts: 16,
+        }
+    }
+}
+
+/// What a trajectory is worth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assessment {
+    /// cond(W), `W` of (20)
+    pub condition_number: f64,
+    /// cond(W) with columns of unit norm
+    pub scaled_condition_number: f64,
+    /// of the parameters in the order of `Theta`, relative to [`parameter_scale`]; `None` where the
+    /// flight cannot determine all of them
+    pub standard_errors: Option<[f64; 7]>,
+    /// the flight time on which the standard errors rest, s
+    pub flight_s: f64,
+    /// bounds over one period
+    pub check: CheckReport,
+}
+
+/// A planned trajectory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// the series (18)
+    pub trajectory: FourierTrajectory,
+    /// the criterion's value: a condition number, or a relative standard error
+    pub criterion_value: f64,
+    /// what it is worth
+    pub assessment: Assessment,
+}
+
+/// Why there is no plan.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// a number of the request is out of range
+    #[error("{name}: expected {expected}, came {came}")]
+    Request {
+        /// which
+        name: &'static str,
+        /// what would do
+        expected: &'static str,
+        /// what came
+        came: String,
+    },
+    /// limits that cannot be kept
+    #[error("limits in conflict: {0}")]
+    Conflict(#[from] Conflict),
+    /// the search ended outside a bound
+    #[error(
+        "no trajectory within the limits was found in {starts} starts; the best one breaks one: {violation}"
+    )]
+    OutsideLimits {
+        /// how many starts were tried
+        starts: u64,
+        /// the first broken bound
+        violation: Violation,
+    },
+    /// nothing that moves all parameters fits into the limits
+    #[error("the limits leave no motion that determines all seven parameters")]
+    NotDetermined,
+}
+
+/// Plans a trajectory. `done` is called once a descent, [`Search::work`] times in all.
+///
+/// # Errors
+/// If a number is out of range, limits conflict, or no trajectory inside the limits was found.
+pub fn plan(
+    vehicle: &Vehicle,
+    limits: &Limits,
+    request: &PlanRequest,
+    done: &(dyn Fn() + Sync),
+) -> Result<Plan, PlanError> {
+    check_request(request)?;
+    feasible(limits, vehicle, &request.start)?;
+    let problem = problem_of(vehicle, limits, request);
+    let samples = (request.period_s / SAMPLE_S).ceil();
+    let mut search = search_of(request);
+    let mut best = search.run(&problem, whole(samples), done).ok_or(PlanError::NotDetermined)?;
+    for _ in 0..3 {
+        if !best.log_value.is_finite() {
+            return Err(PlanError::NotDetermined);
+        }
+        let trajectory = problem.space.trajectory(&best.unknowns);
+        let assessment = assess(&trajectory, vehicle, &problem.bounds, request);
+        if assessment.check.first_violation.is_none() {
+            let criterion_value = best.log_value.exp();
+            return Ok(Plan { trajectory, criterion_value, assessment });
+        }
+        search.margin *= 10.0;
+        best = search.polish(&problem, best.unknowns, whole(samples));
+    }
+    let trajectory = problem.space.trajectory(&best.unknowns);
+    let report = assess(&trajectory, vehicle, &problem.bounds, request).check;
+    match report.first_violation {
+        Some(violation) => Err(PlanError::OutsideLimits { starts: request.starts, violation }),
+        None => Err(PlanError::NotDetermined),
+    }
+}
+
+/// The search for a request: bounds are tightened by what a sinusoid of the highest harmonic can rise
+/// between two samples.
+#[must_use]
+pub fn search_of(request: &PlanRequest) -> Search {
+    let highest_rad_s = std::f64::consts::TAU * f64::from(request.harmonics) / request.period_s;
+    let between = 0.5 * (0.5 * highest_rad_s * SAMPLE_S).powi(2);
+    let mut search = Search::new(request.seed, request.starts);
+    search.margin = search.margin.max(between);
+    search
+}
+
+/// What a series is worth, whoever made it.
+#[must_use]
+pub fn assess(
+    trajectory: &FourierTrajectory,
+    vehicle: &Vehicle,
+    bounds: &[Bound],
+    request: &PlanRequest,
+) -> Assessment {
+    let dynamics = Dynamics::new(vehicle);
+    let gravity = vehicle.gravity_m_s2;
+    let samples = whole((trajectory.period_s / SAMPLE_S).round().max(1.0));
+    let gram = GramSampler::of_series(trajectory, samples, Vector4::repeat(1.0), gravity);
+    let weights = request.noise.row_information(vehicle);
+    let information = GramSampler::of_series(trajectory, samples, weights, gravity);
+    let flight_s = f64::from(request.repeats) * trajectory.period_s;
+    Assessment {
+        condition_number: condition_number(&gram),
+        scaled_condition_number: scaled_condition_number(&gram),
+        standard_errors: relative_standard_errors(&information, flight_s, &parameter_scale(vehicle)),
+        flight_s,
+        check: check(|t| trajectory.derivatives(t), trajectory.period_s, bounds, &dynamics),
+    }
+}
+
+fn problem_of(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Problem {
+    let space = SeriesSpace::new(request.period_s, request.harmonics, starts_of(limits, &request.start));
+    let information = match request.criterion {
+        Criterion::Cond | Criterion::ScaledCond => Vector4::repeat(1.0),
+        Criterion::DOpt | Criterion::AOpt => {
+            let flight_s = f64::from(request.repeats) * request.period_s;
+            request.noise.row_information(vehicle) * flight_s
+        }
+    };
+    let samples = INFORMATION_SAMPLES_PER_HARMONIC * request.harmonics;
+    Problem {
+        sampler: GramSampler::new(&space, samples, information, vehicle.gravity_m_s2),
+        criterion: request.criterion,
+        parameter_scale: parameter_scale(vehicle),
+        bounds: bounds_of(limits, vehicle),
+        dynamics: Dynamics::new(vehicle),
+        space,
+    }
+}
+
+/// The height is free unless prescribed; a start on a bound gets no jerk.
+fn starts_of(limits: &Limits, start: &StartPlace) -> [AxisStart; 4] {
+    let at = |value: f64, bounds: [Option<f64>; 2]| {
+        let on_bound = bounds.iter().flatten().any(|bound| (bound - value).abs() < 1e-9);
+        if on_bound { AxisStart::OnBound(value) } else { AxisStart::At(value) }
+    };
+    let both = |max: Option<f64>| [max, max.map(|value| -value)];
+    let height = match (start.z_m, limits.z_min_m, limits.z_max_m) {
+        (Some(z), min, max) => at(z, [min, max]),
+        (None, Some(min), Some(max)) => AxisStart::Near(0.5 * (min + max)),
+        (None, Some(only), None) => AxisStart::Near(only + 1.0),
+        (None, None, Some(only)) => AxisStart::Near(only - 1.0),
+        (None, None, None) => AxisStart::At(0.0),
+    };
+    [
+        at(start.x_m, both(limits.x_max_m)),
+        at(start.y_m, both(limits.y_max_m)),
+        height,
+        at(start.yaw_rad, both(limits.yaw_max_rad)),
+    ]
+}
+
+fn check_request(request: &PlanRequest) -> Result<(), PlanError> {
+    let refuse = |name, expected, came: String| Err(PlanError::Request { name, expected, came });
+    if !(0.1..=1000.0).contains(&request.period_s) {
+        return refuse("period", "0.1 to 1000 s", request.period_s.to_string());
+    }
+    if !(4..=20).contains(&request.harmonics) {
+        return refuse("harmonics", "4 to 20", request.harmonics.to_string());
+    }
+    if request.starts == 0 || request.repeats == 0 {
+        return refuse("starts and repeats", "at least one", "0".to_owned());
+    }
+    let place =
+        [request.start.x_m, request.start.y_m, request.start.z_m.unwrap_or(0.0), request.start.yaw_rad];
+    if place.iter().any(|value| !value.is_finite()) {
+        return refuse("start", "finite numbers", format!("{place:?}"));
+    }
+    Ok(())
+}
+
+/// A count that is known to be small and positive, as an integer.
+fn whole(count: f64) -> u32 {
+    let mut low = 0_u32;
+    let mut high = 1_000_000_u32;
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if f64::from(middle) < count { low = middle + 1 } else { high = middle }
+    }
+    low
+}

@@ -1,0 +1,172 @@
+//! Whole logs: whose messages they hold, and what a recording of them is.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use mavid::log::{
+    Autopilot, LoadOptions, LogError, Quantity, StreamKey, StreamTally, SystemId, load, stream_tlog,
+};
+use support::{attitude, ground_heartbeat, header, heartbeat, tlog, v2};
+
+const ATTITUDE: StreamKey = StreamKey { quantity: Quantity::Attitude, source: "ATTITUDE", instance: 0 };
+
+/// A log under a name of its own in the temporary folder; removed when dropped.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str, bytes: &[u8]) -> Self {
+        let path = std::env::temp_dir().join(format!("mavid-{}-{name}", std::process::id()));
+        std::fs::write(&path, bytes).unwrap();
+        Self(path)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.0);
+    }
+}
+
+fn of_system(system: u32) -> LoadOptions {
+    LoadOptions { system: Some(SystemId(system)) }
+}
+
+/// Two vehicles (1 and 2), and a ground station (255) between them.
+fn two_vehicles() -> Vec<u8> {
+    let mut frames = Vec::new();
+    for step in 0..50_u8 {
+        let time_ms = 5000 + u32::from(step) * 20;
+        frames.push(v2(header(255, step), &ground_heartbeat()));
+        for system in [1, 2] {
+            frames.push(v2(header(system, 2 * step), &heartbeat()));
+            frames.push(v2(header(system, 2 * step + 1), &attitude(time_ms + system * 100_000)));
+        }
+    }
+    tlog(&frames)
+}
+
+#[test]
+fn several_vehicles_are_named_and_one_is_chosen() {
+    let log = Scratch::new("two.tlog", &two_vehicles());
+    let refused = load(&log.0, &LoadOptions::default()).unwrap_err();
+    assert!(
+        matches!(&refused, LogError::SeveralVehicles { systems } if *systems == [SystemId(1), SystemId(2)])
+    );
+    assert!(refused.to_string().contains("1, 2"), "{refused}");
+    for system in [1, 2] {
+        let recording = load(&log.0, &of_system(system)).unwrap().recording;
+        assert_eq!(recording.streams[&ATTITUDE].len(), 50);
+        assert_eq!(recording.streams[&ATTITUDE].time_s[49], 0.98);
+        assert_eq!(recording.autopilot, Autopilot::Px4);
+    }
+    let refused = load(&log.0, &of_system(3)).unwrap_err();
+    assert!(matches!(refused, LogError::SystemAbsent { wanted: SystemId(3), .. }), "{refused}");
+}
+
+#[test]
+fn a_log_of_a_ground_station_alone_holds_no_vehicle() {
+    let log = Scratch::new("ground.tlog", &tlog(&[v2(header(255, 0), &ground_heartbeat())]));
+    let refused = load(&log.0, &LoadOptions::default()).unwrap_err();
+    assert!(refused.to_string().contains("255"), "{refused}");
+}
+
+#[test]
+fn a_vehicle_without_a_heartbeat_is_read_when_it_is_named() {
+    let log = Scratch::new("silent.tlog", &tlog(&support::attitudes(20)));
+    assert!(matches!(load(&log.0, &LoadOptions::default()), Err(LogError::NoVehicle { .. })));
+    assert_eq!(load(&log.0, &of_system(1)).unwrap().recording.streams[&ATTITUDE].len(), 20);
+}
+
+#[test]
+fn a_name_that_says_nothing_is_refused() {
+    let refused = load(Path::new("flight.bag"), &LoadOptions::default()).unwrap_err();
+    assert!(refused.to_string().contains("flight.bag"), "{refused}");
+    let refused = load(Path::new("absent.tlog"), &LoadOptions::default()).unwrap_err();
+    assert!(refused.to_string().contains("absent.tlog"), "{refused}");
+}
+
+#[test]
+fn doubled_and_late_samples_are_put_in_order_and_counted() {
+    let times_ms = [1000, 1020, 1020, 1060, 1040, 1080, 1060];
+    let mut frames = vec![v2(header(1, 0), &heartbeat())];
+    frames.extend(times_ms.map(|time_ms| v2(header(1, 0), &attitude(time_ms))));
+    let log = Scratch::new("order.tlog", &tlog(&frames));
+    let loaded = load(&log.0, &LoadOptions::default()).unwrap();
+    assert_eq!(loaded.recording.streams[&ATTITUDE].time_s, [0.0, 0.02, 0.04, 0.06, 0.08]);
+    let repair = loaded.report.streams[&ATTITUDE];
+    assert_eq!((repair.duplicates, repair.out_of_order), (2, 2));
+}
+
+#[test]
+fn streamed_samples_are_those_of_the_recording() {
+    let log = Scratch::new("streamed.tlog", &two_vehicles());
+    let mut tally = StreamTally::default();
+    stream_tlog(&log.0, &of_system(2), &mut |event| {
+        if let mavid::log::Event::Sample { stream, time_s, values } = event
+            && stream.key() == ATTITUDE
+        {
+            tally.add(time_s, values);
+        }
+    })
+    .unwrap();
+    let recording = load(&log.0, &of_system(2)).unwrap().recording;
+    assert_eq!(tally.stats(), mavid::log::StreamStats::of(&recording.streams[&ATTITUDE]));
+}
+
+/// What the Python reader prints; `None`, with a message, where it cannot run.
+fn pymavlink(what: &str, log: &Path) -> Option<String> {
+    let python = std::env::var("MAVID_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers/read_with_pymavlink.py");
+    let Ok(output) = Command::new(&python).arg(script).arg(what).arg(log).output() else {
+        support::skip(&format!("{python} does not run"));
+        return None;
+    };
+    if output.status.code() == Some(77) {
+        support::skip("pymavlink is missing");
+        return None;
+    }
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some(String::from_utf8(output.stdout).unwrap())
+}
+
+#[test]
+fn pymavlink_reads_what_the_writer_wrote_to_the_byte() {
+    let mut writer = mavid::log::TlogWriter::new(Vec::new());
+    let mut wanted = String::new();
+    for step in 0..200_u8 {
+        let frame = match step % 4 {
+            0 => v2(header(1, step), &heartbeat()),
+            1 => support::v1(header(1, step), &attitude(u32::from(step))),
+            2 => support::unknown(step, &[step; 17]),
+            _ => v2(header(255, step), &ground_heartbeat()),
+        };
+        let stamp_us = support::START_US + u64::from(step) * 3333;
+        let written = writer.write(stamp_us, support::frame(&frame)).unwrap();
+        let hexadecimal: String = frame.iter().map(|byte| format!("{byte:02x}")).collect();
+        wanted.push_str(&format!("{written} {hexadecimal}\n"));
+    }
+    let log = Scratch::new("peer.tlog", &writer.into_inner());
+    let Some(theirs) = pymavlink("--records", &log.0) else { return };
+    assert_eq!(theirs, wanted);
+}
+
+#[test]
+fn pymavlink_counts_the_same_messages_in_recorded_flights() {
+    let Some(shared) = support::shared() else { return };
+    let flights = ["recordings/autopilots/ap_baseline.tlog", "recordings/autopilots/px4_baseline.tlog"];
+    let cases = ["cases/p01-nothing-missing/identify.tlog", "cases/p04-motor-lag/holdout.tlog"];
+    for path in flights.into_iter().chain(cases).map(|name| shared.join(name)) {
+        let Some(theirs) = pymavlink("--counts", &path) else { return };
+        let report = load(&path, &LoadOptions::default()).unwrap().report;
+        let mut counts = std::collections::BTreeMap::<u32, u64>::new();
+        for (id, count) in report.senders.iter().flat_map(|sender| sender.messages.iter()) {
+            *counts.entry(id).or_default() += count;
+        }
+        let ours: String = counts.iter().map(|(id, count)| format!("{id} {count}\n")).collect();
+        assert_eq!(ours, theirs, "{}", path.display());
+    }
+}
