@@ -146,7 +146,7 @@ pub(super) fn usable(grid: &Grid, evidence: &Evidence<'_>, transient_s: f64) -> 
     let report = Usable {
         total_s: grid.count as f64 * grid.step_s,
         grounded_s: seconds(&grounded),
-        transient_s: seconds(&transient),
+        transient_s: seconds(&transient.iter().zip(&grounded).map(|(t, g)| *t && !*g).collect::<Vec<bool>>()),
         idle_s: seconds(&idle.iter().zip(&candidates).map(|(idle, c)| *idle && *c).collect::<Vec<bool>>()),
         saturated_s: seconds(&saturated.iter().zip(&grounded).map(|(s, g)| *s && !*g).collect::<Vec<bool>>()),
         gap_s: seconds(&gap),
