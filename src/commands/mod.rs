@@ -2,6 +2,8 @@
 //!
 //! To add a verb: a variant in [`Verb`], a file here with `run(json, args)`, and an arm in [`run`].
 
+mod flights;
+mod identify;
 mod output;
 mod plan;
 mod vehicle;
@@ -61,6 +63,7 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
     match &cli.verb {
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
         Verb::Plan(args) => plan::run(cli.json, args),
+        Verb::Identify(args) => identify::run(cli.json, args),
     }
 }
 

@@ -1,5 +1,6 @@
 //! From regression models to parameters with standard errors.
 
+mod anchor;
 mod identify;
 mod physical;
 mod problem;
@@ -9,6 +10,7 @@ mod result;
 mod theta;
 mod weak;
 
+pub use anchor::{ThrustScale, apply_anchor, identified_vehicle};
 pub use identify::{EstimateError, Identification, IdentifySettings, Method, identify};
 pub use physical::{is_physical, nearest_physical, second_moments};
 pub use problem::{Channel, Problem, Solution};
