@@ -22,10 +22,10 @@ const AFTER_HELP: &str = "Exit status: 0 done, 1 failure, 2 bad usage or input, 
 pub enum Verb {
     /// Check a vehicle file (or a model) and say what it means
     Vehicle(VehicleArgs),
-    /// Identify mass and inertia from recorded flights
-    Identify(IdentifyArgs),
     /// Plan an excitation trajectory inside limits, or check one
     Plan(PlanArgs),
+    /// Identify mass and inertia from recorded flights
+    Identify(IdentifyArgs),
 }
 
 /// Arguments of `mavid vehicle`.
@@ -33,44 +33,6 @@ pub enum Verb {
 pub struct VehicleArgs {
     /// vehicle.toml or model.toml
     pub file: PathBuf,
-}
-
-/// Arguments of `mavid identify`.
-#[derive(Debug, Args)]
-pub struct IdentifyArgs {
-    /// recordings of one vehicle: .tlog, or .csv with known columns
-    #[arg(required = true, value_name = "LOG")]
-    pub logs: Vec<PathBuf>,
-    /// vehicle.toml, or a model
-    #[arg(long)]
-    pub vehicle: PathBuf,
-    /// write the identified vehicle here
-    #[arg(long, value_name = "MODEL.TOML")]
-    pub out: Option<PathBuf>,
-    /// write the parameters along time here as a chart
-    #[arg(long, value_name = "FILE.SVG")]
-    pub chart: Option<PathBuf>,
-    /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
-    #[arg(long, value_name = "FILE")]
-    pub csv_map: Option<PathBuf>,
-    /// system id of the vehicle, where a log holds several
-    #[arg(long, value_name = "ID")]
-    pub system: Option<u8>,
-    /// s of flight left out at the beginning
-    #[arg(long, value_name = "S", default_value_t = 10.0)]
-    pub transient: f64,
-    /// cut-off of the zero-phase low-pass, Hz; without it ten times the trajectory's highest harmonic
-    #[arg(long, value_name = "HZ")]
-    pub cutoff: Option<f64>,
-    /// use the 31-tap windowed filter in place of the Butterworth
-    #[arg(long)]
-    pub fir: bool,
-    /// adaptation gain of gradient descent
-    #[arg(long, default_value_t = mavid::estimate::PAPER_SIGMA)]
-    pub sigma: f64,
-    /// use commands even where rotor speeds are measured
-    #[arg(long)]
-    pub commands: bool,
 }
 
 /// Arguments of `mavid plan`.
@@ -121,4 +83,42 @@ pub enum CriterionName {
     DOpt,
     /// sum of squared relative standard errors
     AOpt,
+}
+
+/// Arguments of `mavid identify`.
+#[derive(Debug, Args)]
+pub struct IdentifyArgs {
+    /// recordings of one vehicle: .tlog, or .csv with known columns
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// vehicle.toml, or a model
+    #[arg(long)]
+    pub vehicle: PathBuf,
+    /// write the identified vehicle here
+    #[arg(long, value_name = "MODEL.TOML")]
+    pub out: Option<PathBuf>,
+    /// write the parameters along time here as a chart
+    #[arg(long, value_name = "FILE.SVG")]
+    pub chart: Option<PathBuf>,
+    /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
+    #[arg(long, value_name = "FILE")]
+    pub csv_map: Option<PathBuf>,
+    /// system id of the vehicle, where a log holds several
+    #[arg(long, value_name = "ID")]
+    pub system: Option<u8>,
+    /// s of flight left out at the beginning
+    #[arg(long, value_name = "S", default_value_t = 10.0)]
+    pub transient: f64,
+    /// cut-off of the zero-phase low-pass, Hz; without it ten times the trajectory's highest harmonic
+    #[arg(long, value_name = "HZ")]
+    pub cutoff: Option<f64>,
+    /// use the 31-tap windowed filter in place of the Butterworth
+    #[arg(long)]
+    pub fir: bool,
+    /// adaptation gain of gradient descent
+    #[arg(long, default_value_t = mavid::estimate::PAPER_SIGMA)]
+    pub sigma: f64,
+    /// use commands even where rotor speeds are measured
+    #[arg(long)]
+    pub commands: bool,
 }
