@@ -69,8 +69,11 @@ fn over_seeds(title: &str, vehicle: &Vehicle, seeds: u64, start: StartPlace) -> 
     Ok(())
 }
 
-/// Condition number, violation and time of each start of the rival.
-fn slsqp(limits: &Limits, seconds: u64) -> Result<Vec<(f64, f64, f64)>, Box<dyn Error>> {
+/// Condition number, violation and time.
+type Figures = (f64, f64, f64);
+
+/// Each start of the rival.
+fn slsqp(limits: &Limits, seconds: u64) -> Result<Vec<Figures>, Box<dyn Error>> {
     let python = std::env::var("MAVID_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers/plan_with_slsqp.py");
     let problem = serde_json::json!({

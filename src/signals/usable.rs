@@ -1,6 +1,6 @@
 //! Which instants of a flight identification may use.
 
-use super::condition::Actuation;
+use super::actuation::Actuation;
 use super::select::median_period_s;
 use super::{Grid, hold_onto};
 use crate::log::{Quantity, Recording, Stream};
