@@ -22,6 +22,8 @@ const AFTER_HELP: &str = "Exit status: 0 done, 1 failure, 2 bad usage or input, 
 pub enum Verb {
     /// Check a vehicle file (or a model) and say what it means
     Vehicle(VehicleArgs),
+    /// Say what is in a log and what can be identified from it
+    Inspect(InspectArgs),
 }
 
 /// Arguments of `mavid vehicle`.
@@ -29,4 +31,20 @@ pub enum Verb {
 pub struct VehicleArgs {
     /// vehicle.toml or model.toml
     pub file: PathBuf,
+}
+
+/// Arguments of `mavid inspect`.
+#[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// flight.tlog or flight.csv
+    pub log: PathBuf,
+    /// vehicle.toml or model.toml: says how well each parameter can be identified
+    #[arg(long)]
+    pub vehicle: Option<PathBuf>,
+    /// what the columns of a CSV file mean (default: configs/csv/default.toml)
+    #[arg(long)]
+    pub csv_map: Option<PathBuf>,
+    /// the vehicle's MAVLink system id, where a log holds several
+    #[arg(long)]
+    pub system: Option<u32>,
 }

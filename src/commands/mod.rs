@@ -2,6 +2,7 @@
 //!
 //! To add a verb: a variant in [`Verb`], a file here with `run(json, args)`, and an arm in [`run`].
 
+mod inspect;
 mod output;
 mod vehicle;
 
@@ -44,6 +45,18 @@ impl From<mavid::config::ConfigError> for CommandError {
     }
 }
 
+impl From<mavid::log::LogError> for CommandError {
+    fn from(error: mavid::log::LogError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<mavid::log::csv::CsvError> for CommandError {
+    fn from(error: mavid::log::csv::CsvError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
 impl CommandError {
     /// Says it on standard error and gives the exit status.
     pub fn report(&self) -> ExitCode {
@@ -59,6 +72,7 @@ impl CommandError {
 pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
     match &cli.verb {
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
+        Verb::Inspect(args) => inspect::run(cli.json, args),
     }
 }
 

@@ -1,6 +1,7 @@
 //! From regression models to parameters with standard errors.
 
 mod identify;
+mod information;
 mod physical;
 mod problem;
 mod recommend;
@@ -10,6 +11,7 @@ mod theta;
 mod weak;
 
 pub use identify::{EstimateError, Identification, IdentifySettings, Method, identify};
+pub use information::WeakInformation;
 pub use physical::{is_physical, nearest_physical, second_moments};
 pub use problem::{Channel, Problem, Solution};
 pub use recommend::Recommendation;

@@ -38,7 +38,7 @@ pub fn highest_harmonic_hz(signals: &Signals) -> Option<f64> {
     let mut power = Vec::new();
     let mut bin = 1.0;
     while bin / span_s <= HIGHEST_HZ {
-        power.push((bin / span_s, power_at(&used, &mean, bin)));
+        power.push((bin / span_s, windowed_power(&used, &mean, bin)));
         bin += 1.0;
     }
     let total: f64 = power.iter().map(|(_, p)| p).sum();
@@ -52,8 +52,9 @@ pub fn highest_harmonic_hz(signals: &Signals) -> Option<f64> {
         .map(|(f, _)| *f)
 }
 
-/// Power of the Hann-windowed series at one bin (whole turns over its length).
-fn power_at(series: &[Vector3<f64>], mean: &Vector3<f64>, bin: f64) -> f64 {
+/// Power of the Hann-windowed series, less its mean, at one bin (whole turns over its length).
+#[must_use]
+pub fn windowed_power(series: &[Vector3<f64>], mean: &Vector3<f64>, bin: f64) -> f64 {
     let n = series.len() as f64;
     let (s1, c1) = (TAU * bin / n).sin_cos();
     let (mut s, mut c) = (0.0, 1.0);
