@@ -116,10 +116,12 @@ impl ExcitationTally {
         (self.rate, self.acceleration) = (Some(rates), Some(accelerations));
     }
 
-    /// Spectrum and period, from the longest run of the window.
+    /// Spectrum and period, from the first to the last instant that counts: a short end stop or a transient in
+    /// between is no end of the motion.
     fn add_series(&mut self, motion: &Motion, kernel: &WeakKernel) {
         let runs = Grid::runs(&motion.usable, 2 * kernel.half_count + 1);
-        let Some(run) = runs.into_iter().max_by_key(ExactSizeIterator::len) else { return };
+        let (Some(first), Some(last)) = (runs.first(), runs.last()) else { return };
+        let run = first.start..last.end;
         let mut step = 1;
         while (step as f64 + 0.5) * motion.grid.step_s < SERIES_STEP_S {
             step += 1;

@@ -23,6 +23,8 @@ pub(super) struct Evidence<'a> {
     pub streams: &'a [(StreamKey, usize, StreamStats)],
     pub assessment: &'a Assessment,
     pub vehicle: Option<&'a Vehicle>,
+    /// parameters of the autopilot's thrust curve that the log does not hold
+    pub missing_curve: Option<&'static str>,
 }
 
 impl Evidence<'_> {

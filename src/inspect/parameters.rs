@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::inspection::ParameterSummary;
+use crate::log::Autopilot;
 
 /// Parameters kept; autopilots have about 1500.
 const KEPT: usize = 10_000;
@@ -51,6 +52,16 @@ impl Parameters {
     /// Name and value of all.
     pub(super) fn values(&self) -> &BTreeMap<String, f64> {
         &self.values
+    }
+
+    /// What of the way from command to thrust the log should hold and does not.
+    pub(super) fn missing_curve(&self, autopilot: Autopilot) -> Option<&'static str> {
+        let (needed, names) = match autopilot {
+            Autopilot::ArduPilot => ("MOT_THST_EXPO", "MOT_* and SERVOn_FUNCTION"),
+            Autopilot::Px4 => ("THR_MDL_FAC", "THR_MDL_FAC and PWM_MAIN_*"),
+            Autopilot::Other | Autopilot::Unknown => return None,
+        };
+        (!self.values.contains_key(needed)).then_some(names)
     }
 
     /// What to tell.

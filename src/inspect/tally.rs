@@ -229,7 +229,8 @@ struct Found {
 
 impl Found {
     fn inspection(self, tally: Tally, assessment: Assessment, vehicle: Option<&Vehicle>) -> Inspection {
-        let evidence = Evidence { streams: &self.streams, assessment: &assessment, vehicle };
+        let missing_curve = tally.parameters.missing_curve(self.autopilot);
+        let evidence = Evidence { streams: &self.streams, assessment: &assessment, vehicle, missing_curve };
         let identifiability = outlook(&evidence);
         let (verdict, advice) = verdict(&evidence, &identifiability, &self.vehicle);
         Inspection {

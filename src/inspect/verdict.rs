@@ -52,19 +52,24 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
             "Fly a trajectory of `mavid plan`."
         );
     }
-    let not = if bad.is_empty() { String::new() } else { format!(", but not for {}", bad.join(", ")) };
     let good: Vec<&Outlook> = principal(outlook).filter(|o| o.status != "not_determined").collect();
     let names: Vec<&str> = good.iter().map(|outlook| label(outlook.name)).collect();
     if evidence.vehicle.is_none() {
         return format!(
-            "Good for {}{not}: {time}. With --vehicle this says how well; `mavid identify` does it.",
-            names.join(", ")
+            "Has what identification of {} needs{}: {time}. With --vehicle this says how well it will do.",
+            names.join(", "),
+            if bad.is_empty() {
+                String::new()
+            } else {
+                format!(", but not what {} would need", bad.join(", "))
+            }
         );
     }
     let to: Vec<String> = good
         .iter()
         .filter_map(|o| Some(format!("{} to {}", label(o.name), percent(o.std_relative?))))
         .collect();
+    let not = if bad.is_empty() { String::new() } else { format!(", but not for {}", bad.join(", ")) };
     format!("Good for {}{not}: {time}. Next: `mavid identify`.", to.join(", "))
 }
 
@@ -191,6 +196,12 @@ fn remarks(evidence: &Evidence<'_>, vehicle: &VehicleSummary) -> Vec<String> {
              identified."
                 .into(),
         );
+        if let Some(names) = evidence.missing_curve {
+            advice.push(format!(
+                "The autopilot's thrust curve is not in the log: record its parameters ({names}); until then the vehicle \
+                 file's counts."
+            ));
+        }
     }
     advice.extend(evidence.assessment.notes.iter().cloned());
     advice

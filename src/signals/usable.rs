@@ -18,7 +18,7 @@ const LEAST_GAP_S: f64 = 0.06;
 const EXCITATION_WINDOW_S: f64 = 4.0;
 const EXCITATION_SHARE: f64 = 0.3;
 
-/// Seconds that each rule left out (an instant may fall under several).
+/// Seconds of flight that each rule left out (an instant may fall under several).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Usable {
     /// s on the common grid
@@ -123,13 +123,15 @@ pub fn usable(grid: &Grid, evidence: &Evidence<'_>, transient_s: f64) -> (Vec<bo
     let idle = evidence.rate.map_or_else(|| vec![false; grid.count], |rate| idle(grid, rate, &candidates));
     let mask: Vec<bool> = candidates.iter().zip(&idle).map(|(c, idle)| *c && !idle).collect();
     let seconds = |mask: &[bool]| mask.iter().filter(|m| **m).count() as f64 * grid.step_s;
+    let flown =
+        |rule: &[bool]| seconds(&rule.iter().zip(&grounded).map(|(r, g)| *r && !*g).collect::<Vec<_>>());
     let report = Usable {
         total_s: grid.count as f64 * grid.step_s,
         grounded_s: seconds(&grounded),
-        transient_s: seconds(&transient),
-        idle_s: seconds(&idle),
-        saturated_s: seconds(&saturated),
-        gap_s: seconds(&gap),
+        transient_s: flown(&transient),
+        idle_s: flown(&idle),
+        saturated_s: flown(&saturated),
+        gap_s: flown(&gap),
         usable_s: seconds(&mask),
     };
     (mask, report)

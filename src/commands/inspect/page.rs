@@ -148,7 +148,7 @@ fn clock(page: &mut String, inspection: &Inspection) {
     }
     for offset in &inspection.stream_offsets {
         let text = format!("{:+.2} +- {:.2} ms late", 1e3 * offset.late_s, 1e3 * offset.std_s);
-        row(page, offset.quantity, text);
+        row(page, &format!("{} stamps", offset.quantity), text);
     }
 }
 
@@ -258,11 +258,16 @@ fn vehicle_parameters(page: &mut String, inspection: &Inspection) {
     let heading_text = format!("vehicle's parameters ({}; those that matter)", parameters.count);
     heading(page, &heading_text);
     let entries: Vec<String> =
-        parameters.relevant.iter().map(|(name, value)| format!("{name} {value}")).collect();
+        parameters.relevant.iter().map(|(name, value)| format!("{name} {}", short(*value))).collect();
     for chunk in entries.chunks(4) {
         let cells: String = chunk.iter().map(|entry| format!("{entry:<28}")).collect();
         line(page, format!("  {}", cells.trim_end()));
     }
+}
+
+/// Parameters are single-precision: six decimals are all there is.
+fn short(value: f64) -> String {
+    format!("{value:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 fn texts(page: &mut String, inspection: &Inspection) {
