@@ -13,7 +13,6 @@ pub(super) struct WindowRecorder {
     vehicle: Vehicle,
     builder: RecordingBuilder,
     start_s: Option<f64>,
-    numbers: usize,
     numbers_max: usize,
     /// last word on armed and landed: the next window begins with it
     states: Vec<(StreamId, Vec<f64>)>,
@@ -22,14 +21,7 @@ pub(super) struct WindowRecorder {
 impl WindowRecorder {
     /// Nothing collected yet.
     pub(super) fn new(vehicle: Vehicle) -> Self {
-        Self {
-            vehicle,
-            builder: RecordingBuilder::new(),
-            start_s: None,
-            numbers: 0,
-            numbers_max: 0,
-            states: Vec::new(),
-        }
+        Self { vehicle, builder: RecordingBuilder::new(), start_s: None, numbers_max: 0, states: Vec::new() }
     }
 
     /// Adds an event; gives the window before it where that is full. Parameters and texts are kept elsewhere.
@@ -52,7 +44,7 @@ impl WindowRecorder {
 
     fn sample(&mut self, stream: StreamId, time_s: f64, values: &[f64]) -> Option<Recording> {
         let full = self.start_s.is_some_and(|start_s| time_s - start_s >= WINDOW_S)
-            || self.numbers + values.len() + 1 > WINDOW_NUMBERS;
+            || self.builder.numbers() >= WINDOW_NUMBERS;
         let window = if full { self.close() } else { None };
         if self.start_s.is_none() {
             self.start_s = Some(time_s);
@@ -66,16 +58,14 @@ impl WindowRecorder {
                 None => self.states.push((stream, values.to_vec())),
             }
         }
-        self.numbers += values.len() + 1;
-        self.numbers_max = self.numbers_max.max(self.numbers);
         self.builder.add(Event::Sample { stream, time_s, values });
+        self.numbers_max = self.numbers_max.max(self.builder.numbers());
         window
     }
 
     /// The window so far; `None` where it is empty.
     pub(super) fn close(&mut self) -> Option<Recording> {
         self.start_s.take()?;
-        self.numbers = 0;
         let builder = std::mem::take(&mut self.builder);
         self.builder = RecordingBuilder::new();
         Some(builder.finish(&self.vehicle).0)
