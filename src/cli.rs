@@ -26,6 +26,8 @@ pub enum Verb {
     Plan(PlanArgs),
     /// Identify mass and inertia from recorded flights
     Identify(IdentifyArgs),
+    /// Say what is in a log and what can be identified from it
+    Inspect(InspectArgs),
 }
 
 /// Arguments of `mavid vehicle`.
@@ -121,4 +123,20 @@ pub struct IdentifyArgs {
     /// use commands even where rotor speeds are measured
     #[arg(long)]
     pub commands: bool,
+}
+
+/// Arguments of `mavid inspect`.
+#[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// flight.tlog or flight.csv
+    pub log: PathBuf,
+    /// vehicle.toml or model.toml: says how well each parameter can be identified
+    #[arg(long)]
+    pub vehicle: Option<PathBuf>,
+    /// what the columns of a CSV file mean (default: configs/csv/default.toml)
+    #[arg(long)]
+    pub csv_map: Option<PathBuf>,
+    /// the vehicle's MAVLink system id, where a log holds several
+    #[arg(long)]
+    pub system: Option<u32>,
 }

@@ -21,6 +21,7 @@
 pub mod config;
 pub mod estimate;
 pub mod frames;
+pub mod inspect;
 pub mod log;
 pub mod physics;
 pub mod plan;

@@ -17,6 +17,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("signals", &["log", "vehicle"]),
     ("regression", &["physics", "signals"]),
     ("estimate", &["regression"]),
+    ("inspect", &["log", "signals", "regression", "estimate"]),
     // never estimate
     ("simulate", &["physics", "signals", "log", "trajectory"]),
     ("config", &["vehicle", "log", "trajectory"]),

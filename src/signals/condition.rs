@@ -7,7 +7,7 @@ use super::align::{
     velocity_offset,
 };
 use super::select::{best, median_period_s};
-use super::usable::{Usable, airborne_spans, usable};
+use super::usable::{Evidence, Usable, airborne_spans, usable};
 use super::{Grid, SignalsError, WeakKernel};
 use crate::log::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
@@ -151,7 +151,7 @@ pub fn condition(
     let rate = chosen.rate.and_then(|(_, s)| vectors_onto(s, 0.0, &grid));
     let (mask, used) = usable(
         &grid,
-        &super::usable::Evidence {
+        &Evidence {
             streams: &streams,
             airborne_s: &airborne_s,
             resets_s: &recording.clock_resets_s,

@@ -27,8 +27,8 @@ pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use latency::{ActuationLatency, delayed_wrench};
 pub use noise::{median, white_level};
 pub use select::{best, is_live, mean_rate_hz, median_period_s};
-pub use spectrum::highest_harmonic_hz;
-pub use usable::Usable;
+pub use spectrum::{hann_windowed, highest_harmonic_hz, power_at};
+pub use usable::{Evidence, Usable, in_air, usable};
 pub use weak::{MAX_ORDER, WeakKernel};
 
 /// Why a recording cannot be conditioned.

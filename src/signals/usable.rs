@@ -23,7 +23,7 @@ const LEAST_UNSATURATED_S: f64 = 8.0;
 const EXCITATION_WINDOW_S: f64 = 4.0;
 const EXCITATION_SHARE: f64 = 0.3;
 
-/// Seconds that each rule left out (an instant may fall under several).
+/// Seconds of flight that each rule left out (an instant may fall under several).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Usable {
     /// s on the common grid
@@ -62,11 +62,17 @@ impl Usable {
 }
 
 /// What the mask is made from.
-pub(super) struct Evidence<'a> {
+#[derive(Debug, Clone, Copy)]
+pub struct Evidence<'a> {
+    /// streams whose holes count
     pub streams: &'a [&'a Stream],
+    /// spans in the air, s
     pub airborne_s: &'a [(f64, f64)],
+    /// restarts of the vehicle's clock, s
     pub resets_s: &'a [f64],
+    /// normalised commands, where they are the source of thrust
     pub command: Option<&'a Stream>,
+    /// rad/s, body, on the grid
     pub rate: Option<&'a [Vector3<f64>]>,
 }
 
@@ -111,14 +117,16 @@ pub(super) fn airborne_spans(
 }
 
 /// `MAV_LANDED_STATE_IN_AIR` (2) is the last word before `t_s`; unknown (0) does not contradict.
-fn in_air(landed: &Stream, t_s: f64) -> bool {
+#[must_use]
+pub fn in_air(landed: &Stream, t_s: f64) -> bool {
     let next = landed.time_s.partition_point(|t| *t <= t_s);
     let state = landed.values.get(next.saturating_sub(1)).copied().unwrap_or(2.0);
     (state - 2.0).abs() < 0.5 || state.abs() < 0.5
 }
 
-/// The mask and what each rule took.
-pub(super) fn usable(grid: &Grid, evidence: &Evidence<'_>, transient_s: f64) -> (Vec<bool>, Usable) {
+/// The mask and what each rule took; `transient_s` is left out at the beginning of the first airborne span.
+#[must_use]
+pub fn usable(grid: &Grid, evidence: &Evidence<'_>, transient_s: f64) -> (Vec<bool>, Usable) {
     let grounded = grounded(grid, evidence);
     let transient = transient(grid, evidence, transient_s);
     let saturated = evidence.command.map_or_else(|| vec![false; grid.count], |c| saturated(grid, c));
@@ -143,13 +151,15 @@ pub(super) fn usable(grid: &Grid, evidence: &Evidence<'_>, transient_s: f64) -> 
             (candidates, idle, mask) = kept;
         }
     }
+    let flown =
+        |rule: &[bool]| seconds(&rule.iter().zip(&grounded).map(|(r, g)| *r && !*g).collect::<Vec<_>>());
     let report = Usable {
         total_s: grid.count as f64 * grid.step_s,
         grounded_s: seconds(&grounded),
-        transient_s: seconds(&transient.iter().zip(&grounded).map(|(t, g)| *t && !*g).collect::<Vec<bool>>()),
+        transient_s: flown(&transient),
         idle_s: seconds(&idle.iter().zip(&candidates).map(|(idle, c)| *idle && *c).collect::<Vec<bool>>()),
-        saturated_s: seconds(&saturated.iter().zip(&grounded).map(|(s, g)| *s && !*g).collect::<Vec<bool>>()),
-        gap_s: seconds(&gap),
+        saturated_s: flown(&saturated),
+        gap_s: flown(&gap),
         usable_s: seconds(&mask),
         saturation_kept,
     };
