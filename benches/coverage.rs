@@ -62,8 +62,9 @@ fn report(
 }
 
 fn fly(seed: u64, speeds: bool, noise: f64) -> Option<(Row, Method)> {
-    let pair = random_vehicle(seed);
-    let trajectory = RandomTrajectory::default().draw(seed).ok()?;
+    // three generators, three seeds: vehicle, trajectory and noise must not share their draws
+    let pair = random_vehicle(seed.wrapping_mul(7919));
+    let trajectory = RandomTrajectory::default().draw(seed.wrapping_mul(104_729)).ok()?;
     let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
     let mut settings = FlightSettings { seed, ..FlightSettings::default() };
     settings.telemetry.noise_scale = noise;

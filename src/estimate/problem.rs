@@ -155,8 +155,10 @@ impl Problem {
         for &(parameter, deviation) in &self.priors {
             prior[(parameter, parameter)] = deviation.powi(-2);
         }
-        let by_residual = bread * (self.meat_of_residuals(scaled) + &prior) * bread.transpose();
-        let by_score = bread * (self.meat_of_scores(scaled) + &prior) * bread.transpose();
+        let freedom = self.freedom();
+        let sandwich = |meat: DMatrix<f64>| bread * (meat * freedom + &prior) * bread.transpose();
+        let by_residual = sandwich(self.meat_of_residuals(scaled));
+        let by_score = sandwich(self.meat_of_scores(scaled));
         // the autocovariances are not tapered: a variance may come out negative, and then says nothing
         if (0..self.parameters()).any(|i| by_residual[(i, i)] < 0.0) {
             return by_score;
@@ -168,6 +170,20 @@ impl Problem {
         DMatrix::from_fn(self.parameters(), self.parameters(), |i, j| {
             by_residual[(i, j)] * inflation[i] * inflation[j]
         })
+    }
+
+    /// Residuals of a fit are smaller than the noise: each parameter of an equation costs one independent
+    /// row, and independent rows lie an overlap apart.
+    fn freedom(&self) -> f64 {
+        let rows = self.runs.iter().map(Range::len).sum::<usize>() as f64;
+        let most = self
+            .channels
+            .iter()
+            .map(|channel| channel.x.column_iter().filter(|column| column.norm_squared() > 0.0).count())
+            .max()
+            .unwrap_or(0) as f64;
+        let spent = (most * self.overlap as f64).min(0.5 * rows);
+        rows / (rows - spent)
     }
 
     /// `sum_c sum_|l|<=L gamma_c(l) sum_t x(t) x(t+l)^T`, as `X^T (gamma * X)`.

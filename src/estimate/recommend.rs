@@ -9,7 +9,7 @@ use super::weak::WeakEstimate;
 /// More rows than this held back by the robust weights: outliers, not noise.
 const OUTLIER_SHARE: f64 = 0.02;
 /// Two estimates differ where they are further apart than this many standard errors of their difference.
-const HAUSMAN_SIGMA: f64 = 3.0;
+const HAUSMAN_SIGMA: f64 = 5.0;
 /// Instruments whose standard error is more than this many times the plain one's are too weak.
 const WEAKEST_INSTRUMENT: f64 = 4.0;
 
