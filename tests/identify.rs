@@ -210,10 +210,21 @@ fn every_shared_flight_is_identified_or_says_why_not() {
 fn the_autopilots_masses_from_pulse_widths() {
     let Some(shared) = support::shared() else { return };
     let folder = shared.join("recordings/autopilots");
-    for (log, vehicle, mass_kg) in
-        [("ap_baseline.tlog", "ardupilot-quad.toml", 3.0), ("px4_baseline.tlog", "px4-sih.toml", 1.0)]
-    {
+    for (log, vehicle, mass_kg, weak) in [
+        ("ap_baseline.tlog", "ardupilot-quad.toml", 3.0, None),
+        ("ap_wind5E.tlog", "ardupilot-quad.toml", 3.0, None),
+        ("px4_baseline.tlog", "px4-sih.toml", 1.0, None),
+        ("px4_motor1_85.tlog", "px4-sih.toml", 1.0, Some(("front_right", 0.85))),
+    ] {
         let found = from_files(&folder.join(log), &folder.join(vehicle));
         assert!((mass_of(&found) / mass_kg - 1.0).abs() < 0.02, "{log}: {}", mass_of(&found));
+        match (&found.weak_rotor, weak) {
+            (None, None) => {}
+            (Some(found), Some((name, factor))) => {
+                assert_eq!(found.name, name);
+                assert!((found.factor - factor).abs() < 0.02, "{found:?}");
+            }
+            (found, weak) => unreachable!("{log}: {found:?} for {weak:?}"),
+        }
     }
 }

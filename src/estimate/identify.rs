@@ -2,6 +2,7 @@
 
 use super::recommend::{Recommendation, recommend};
 use super::result::{Estimated, MethodResult};
+use super::rotor_check::{WeakRotor, weak_rotor, with_weak_rotor};
 use super::theta::{Theta, ThetaCovariance, theta_of};
 use super::weak::{Latency, LatencyKind, WeakEstimate, WeakMethod, latency, solve_weak};
 use super::{GradientStep, History, gradient_descent, least_squares};
@@ -88,6 +89,8 @@ pub struct Identification {
     pub scaled_condition_number: f64,
     /// N m, constant torque on the body about x, y, z that the rotors' nominal geometry leaves over
     pub trim_torque_nm: [f64; 3],
+    /// a rotor that gives less than its command says; taken out of everything else
+    pub weak_rotor: Option<WeakRotor>,
     /// residual standard deviation of the weak form: N, N m
     pub residual: Vec<f64>,
     /// which equation each of [`Self::residual`] belongs to
@@ -105,6 +108,24 @@ pub struct Identification {
 /// # Errors
 /// [`EstimateError`] where no method can run.
 pub fn identify(
+    flights: &[Signals],
+    vehicle: &Vehicle,
+    settings: &IdentifySettings,
+) -> Result<Identification, EstimateError> {
+    let found = identify_evenly(flights, vehicle, settings)?;
+    let Some(weak) = found.weak_rotor else { return Ok(found) };
+    let mended = with_weak_rotor(flights, vehicle, &weak);
+    let mut again = identify_evenly(&mended, vehicle, settings)?;
+    again.notes.push(format!(
+        "the torque left over is that of rotor {} giving {:.3} +- {:.3} of its thrust: taken out, the other rotors set the scale",
+        weak.name, weak.factor, weak.std
+    ));
+    again.weak_rotor = Some(weak);
+    Ok(again)
+}
+
+/// With every rotor as strong as its command says.
+fn identify_evenly(
     flights: &[Signals],
     vehicle: &Vehicle,
     settings: &IdentifySettings,
@@ -148,6 +169,7 @@ pub fn identify(
         methods,
         condition_number: paper.condition_number(),
         histories: paper.histories(),
+        weak_rotor: weak_rotor(&plain, flights, vehicle),
         latency: found,
         compensated,
         cutoff_hz,

@@ -8,6 +8,7 @@ mod problem;
 mod recommend;
 mod recursive;
 mod result;
+mod rotor_check;
 mod theta;
 mod weak;
 
@@ -19,5 +20,6 @@ pub use problem::{Channel, Problem, Solution};
 pub use recommend::Recommendation;
 pub use recursive::{GradientStep, History, PAPER_SIGMA, PaperEstimate, gradient_descent, least_squares};
 pub use result::{Estimated, Finding, MethodResult, Parameter, finding};
+pub use rotor_check::WeakRotor;
 pub use theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, inertia_of, scale_of, theta_of};
 pub use weak::{Latency, LatencyKind, WeakEstimate, WeakMethod, latency, solve_weak};

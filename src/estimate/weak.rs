@@ -7,7 +7,8 @@ use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
 /// Columns: Theta, latency of the torques, latency of the thrust, three trim torques, three damping
 /// coefficients, the share of the commands' jitter that the rotors do not follow (less one half), and
-/// where asked for the second-order term of a delay.
+/// drag along body z (three: by the body's own motion, by wind from north and west), and where asked for
+/// the second-order term of a delay.
 ///
 /// Thrust has a latency of its own because drag along z looks like a (negative) one; damping is there
 /// because it, too, would be taken for a negative latency of the torques.
@@ -16,7 +17,11 @@ const FORCE_LATENCY: usize = THETA + 1;
 const TRIM: usize = THETA + 2;
 const DAMPING: usize = THETA + 5;
 pub(super) const JITTER: usize = THETA + 8;
-const CURVATURE: usize = THETA + 9;
+const HEAVE: usize = THETA + 9;
+const CURVATURE: usize = THETA + 12;
+/// Drag along body z per mass, 1/s, and what a wind makes of it per mass, m/s^2: rotors have 0.3 to 0.6 1/s
+/// (inflow), and a flight in more than 5 m/s of wind is hardly an identification flight.
+const HEAVE_STD: [f64; 3] = [1.0, 2.5, 2.5];
 /// The share of the jitter that is averaged away lies anywhere between none and all.
 pub(super) const JITTER_STD: f64 = 0.288_675; // 1/sqrt(12)
 
@@ -56,6 +61,8 @@ pub struct WeakEstimate {
     pub covariance: ThetaCovariance,
     /// N m about body x, y, z, constant over the flight
     pub trim_torque_nm: [f64; 3],
+    /// its standard error, N m
+    pub trim_std_nm: [f64; 3],
     /// the first-order latency coefficient, s, with its standard error
     pub latency: (f64, f64),
     /// the whole solution
@@ -111,6 +118,7 @@ fn solve_with(
         theta: Theta::from_fn(|i, _| solution.theta[i]),
         covariance: solution.covariance.fixed_view::<THETA, THETA>(0, 0).into(),
         trim_torque_nm: std::array::from_fn(|i| solution.theta[TRIM + i]),
+        trim_std_nm: std::array::from_fn(|i| solution.covariance[(TRIM + i, TRIM + i)].sqrt()),
         latency: (solution.theta[LATENCY], solution.covariance[(LATENCY, LATENCY)].sqrt()),
         channels: measured_channels(flights),
         solution,
@@ -168,7 +176,13 @@ fn assemble(flights: &[WeakRows], theta: &Theta, method: WeakMethod<'_>, curvatu
         runs.extend(flight.runs.iter().map(|run| run.start + before..run.end + before));
         before += flight.time_s.len();
     }
-    Problem { channels, runs, priors: vec![(JITTER, JITTER_STD)], overlap: 8 }
+    Problem { channels, runs, priors: priors(theta[0]), overlap: 8 }
+}
+
+/// What is known of the nuisances beforehand.
+fn priors(mass_kg: f64) -> Vec<(usize, f64)> {
+    let heave = HEAVE_STD.iter().enumerate().map(|(i, std)| (HEAVE + i, std * mass_kg));
+    std::iter::once((JITTER, JITTER_STD)).chain(heave).collect()
 }
 
 fn design(
@@ -181,8 +195,9 @@ fn design(
     let series = |order: usize| flights.iter().flat_map(move |flight| flight.regressor[order].iter());
     let rates = flights.iter().flat_map(|flight| flight.rate.iter());
     let jitters = flights.iter().flat_map(|flight| flight.jitter.iter());
-    for (row, ((((phi, first), second), rate), jitter)) in
-        series(0).zip(series(1)).zip(series(2)).zip(rates).zip(jitters).enumerate()
+    let heaves = flights.iter().flat_map(|flight| flight.heave.iter());
+    for (row, (((((phi, first), second), rate), jitter), heave)) in
+        series(0).zip(series(1)).zip(series(2)).zip(rates).zip(jitters).zip(heaves).enumerate()
     {
         for parameter in 0..THETA {
             x[(row, parameter)] = phi[(channel, parameter)];
@@ -190,6 +205,9 @@ fn design(
         x[(row, JITTER)] = jitter[channel];
         if channel == 0 {
             x[(row, FORCE_LATENCY)] = dot_row(first, channel, theta);
+            for (i, value) in heave.iter().enumerate() {
+                x[(row, HEAVE + i)] = *value;
+            }
             continue;
         }
         x[(row, LATENCY)] = dot_row(first, channel, theta);

@@ -51,6 +51,9 @@ pub struct WeakRows {
     pub regressor: [Vec<SMatrix<f64, 4, 7>>; 3],
     /// `K(w)`, rad/s: what angular damping acts on
     pub rate: Vec<Vector3<f64>>,
+    /// what drag along body z acts on: `K` of the body's velocity w (m/s), and of the north and west
+    /// components of the thrust axis, by which a wind reaches it (-); zero where attitude is not known
+    pub heave: Vec<Vector3<f64>>,
     /// `K` of what the commands' jitter adds if the rotors follow all of it (N, N m); zero where unknown
     pub jitter: Vec<Vector4<f64>>,
     /// rows without a break between them
@@ -173,6 +176,7 @@ pub fn weak_rows(signals: &Signals, motion: &WeakMotion, kernel: &WeakKernel) ->
     };
     let wrench = columns(&signals.wrench);
     let jitter = signals.jitter_wrench.as_deref().map(columns);
+    let heave = heave_columns(signals);
     let smooth = |columns: &[Vec<f64>; CHANNELS], center| {
         Vector4::from_fn(|channel, _| kernel.at(0, &columns[channel], center))
     };
@@ -182,6 +186,9 @@ pub fn weak_rows(signals: &Signals, motion: &WeakMotion, kernel: &WeakKernel) ->
         for center in (run.start + kernel.half_count..run.end - kernel.half_count).step_by(stride) {
             rows.time_s.push(signals.grid.time_s(center));
             rows.output.push(smooth(&wrench, center));
+            rows.heave.push(heave.as_ref().map_or_else(Vector3::zeros, |columns| {
+                Vector3::from_fn(|i, _| kernel.at(0, &columns[i], center))
+            }));
             rows.jitter.push(jitter.as_ref().map_or_else(Vector4::zeros, |jitter| smooth(jitter, center)));
             rows.rate.push(products.as_ref().map_or_else(Vector3::zeros, |p| p.rate(kernel, center)));
             for order in 0..3 {
@@ -198,6 +205,14 @@ pub fn weak_rows(signals: &Signals, motion: &WeakMotion, kernel: &WeakKernel) ->
         rows.runs.push(first..rows.time_s.len());
     }
     rows
+}
+
+/// Body velocity w, and the thrust axis' north and west components.
+fn heave_columns(signals: &Signals) -> Option<[Vec<f64>; 3]> {
+    let (attitude, velocity) = (signals.attitude.as_ref()?, signals.velocity.as_ref()?);
+    let axes: Vec<Vector3<f64>> = attitude.iter().map(|q| q.transform_vector(&Vector3::z())).collect();
+    let w = axes.iter().zip(velocity).map(|(axis, v)| axis.dot(v)).collect();
+    Some([w, axes.iter().map(|axis| axis.x).collect(), axes.iter().map(|axis| axis.y).collect()])
 }
 
 /// `Phi_a` and `Phi_b` as scalar columns, so that each is filtered once: Phi_a is linear in p, q, r,

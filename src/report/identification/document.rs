@@ -34,6 +34,7 @@ pub struct IdentificationDocument {
     scaled_condition_number: f64,
     latency: Option<LatencyValue>,
     trim_torque: TrimTorque,
+    weak_rotor: Option<WeakRotorValue>,
     filter: Filter,
     data_quality: DataQuality,
     history: BTreeMap<&'static str, HistoryColumns>,
@@ -86,6 +87,13 @@ struct TrimTorque {
     y: Option<f64>,
     z: Option<f64>,
     unit: &'static str,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct WeakRotorValue {
+    rotor: String,
+    factor: f64,
+    std: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -170,6 +178,11 @@ impl IdentificationDocument {
             scaled_condition_number: identification.scaled_condition_number,
             latency: latency_value(identification),
             trim_torque: trim_torque(identification),
+            weak_rotor: identification.weak_rotor.as_ref().map(|weak| WeakRotorValue {
+                rotor: weak.name.clone(),
+                factor: weak.factor,
+                std: weak.std,
+            }),
             filter: Filter {
                 cutoff_hz: identification.cutoff_hz,
                 highest_harmonic_hz: identification.highest_harmonic_hz,
