@@ -1,6 +1,6 @@
 //! The command line: one struct a verb.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Learns a multirotor's parameters from a recorded flight and says which physics the model left out
@@ -24,6 +24,10 @@ pub enum Verb {
     Vehicle(VehicleArgs),
     /// Say what is in a log and what can be identified from it
     Inspect(InspectArgs),
+    /// Plan an excitation trajectory inside limits, or check one
+    Plan(PlanArgs),
+    /// Identify mass and inertia from recorded flights
+    Identify(IdentifyArgs),
 }
 
 /// Arguments of `mavid vehicle`.
@@ -47,4 +51,92 @@ pub struct InspectArgs {
     /// the vehicle's MAVLink system id, where a log holds several
     #[arg(long)]
     pub system: Option<u32>,
+}
+
+/// Arguments of `mavid plan`.
+#[derive(Debug, Args)]
+pub struct PlanArgs {
+    /// vehicle.toml or model.toml
+    pub vehicle: PathBuf,
+    /// Where to write the trajectory
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// File with a [limits] table, instead of the vehicle's
+    #[arg(long)]
+    pub limits: Option<PathBuf>,
+    /// What is minimised
+    #[arg(long, value_enum, default_value = "cond")]
+    pub criterion: CriterionName,
+    /// Seed of the random starts
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Number of random starts
+    #[arg(long, default_value_t = 16)]
+    pub starts: u64,
+    /// Periods to fly; comparing periods with each other needs four
+    #[arg(long, default_value_t = 5)]
+    pub repeats: u32,
+    /// Period, s
+    #[arg(long, default_value_t = 10.0)]
+    pub period: f64,
+    /// Harmonics of the series
+    #[arg(long, default_value_t = 5)]
+    pub harmonics: u32,
+    /// Where the series starts and ends: metres and degrees; without Z the height is chosen
+    #[arg(long, value_name = "X,Y[,Z[,YAW]]", value_delimiter = ',', allow_hyphen_values = true)]
+    pub start: Option<Vec<f64>>,
+    /// Check and assess this trajectory instead of planning one
+    #[arg(long, value_name = "TRAJECTORY", conflicts_with_all = ["out", "start"])]
+    pub check: Option<PathBuf>,
+}
+
+/// Names of the criteria.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CriterionName {
+    /// condition number of W, the paper's
+    Cond,
+    /// condition number of W with columns of unit norm
+    ScaledCond,
+    /// volume of the error ellipsoid
+    DOpt,
+    /// sum of squared relative standard errors
+    AOpt,
+}
+
+/// Arguments of `mavid identify`.
+#[derive(Debug, Args)]
+pub struct IdentifyArgs {
+    /// recordings of one vehicle: .tlog, or .csv with known columns
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// vehicle.toml, or a model
+    #[arg(long)]
+    pub vehicle: PathBuf,
+    /// write the identified vehicle here
+    #[arg(long, value_name = "MODEL.TOML")]
+    pub out: Option<PathBuf>,
+    /// write the parameters along time here as a chart
+    #[arg(long, value_name = "FILE.SVG")]
+    pub chart: Option<PathBuf>,
+    /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
+    #[arg(long, value_name = "FILE")]
+    pub csv_map: Option<PathBuf>,
+    /// system id of the vehicle, where a log holds several
+    #[arg(long, value_name = "ID")]
+    pub system: Option<u8>,
+    /// s of flight left out at the beginning
+    #[arg(long, value_name = "S", default_value_t = 10.0)]
+    pub transient: f64,
+    /// cut-off of the zero-phase low-pass, Hz; without it ten times the trajectory's highest harmonic
+    #[arg(long, value_name = "HZ")]
+    pub cutoff: Option<f64>,
+    /// use the 31-tap windowed filter in place of the Butterworth
+    #[arg(long)]
+    pub fir: bool,
+    /// adaptation gain of gradient descent
+    #[arg(long, default_value_t = mavid::estimate::PAPER_SIGMA)]
+    pub sigma: f64,
+    /// use commands even where rotor speeds are measured
+    #[arg(long)]
+    pub commands: bool,
 }

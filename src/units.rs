@@ -10,6 +10,9 @@ pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 /// file says otherwise.
 pub const GRAVITY_M_S2: f64 = 9.81;
 
+/// Density of air at sea level, 15 degrees Celsius (ISO 2533), kg/m^3.
+pub const AIR_DENSITY_KG_M3: f64 = 1.225;
+
 /// Milliseconds to seconds.
 #[must_use]
 pub fn seconds_from_ms(ms: f64) -> f64 {

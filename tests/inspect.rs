@@ -185,7 +185,7 @@ fn a_reboot_splits_the_flight_and_is_told() {
     {
         let stamp_us = support::START_US + u64::from(index) * 20_000;
         let sequence = u8::try_from(index % 256).unwrap();
-        if index % 50 == 0 {
+        if index.is_multiple_of(50) {
             bytes.extend(record(stamp_us, &v2(header(1, sequence), &heartbeat())));
         }
         bytes.extend(record(stamp_us, &v2(header(1, sequence), &support::attitude(boot_ms))));

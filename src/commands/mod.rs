@@ -2,8 +2,11 @@
 //!
 //! To add a verb: a variant in [`Verb`], a file here with `run(json, args)`, and an arm in [`run`].
 
+mod flights;
+mod identify;
 mod inspect;
 mod output;
+mod plan;
 mod vehicle;
 
 use std::process::ExitCode;
@@ -73,6 +76,8 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
     match &cli.verb {
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
+        Verb::Plan(args) => plan::run(cli.json, args),
+        Verb::Identify(args) => identify::run(cli.json, args),
     }
 }
 

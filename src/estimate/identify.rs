@@ -90,6 +90,8 @@ pub struct Identification {
     pub trim_torque_nm: [f64; 3],
     /// residual standard deviation of the weak form: N, N m
     pub residual: Vec<f64>,
+    /// which equation each of [`Self::residual`] belongs to
+    pub residual_channels: Vec<&'static str>,
     /// strength of the commanded trajectory as instrument: smallest first-stage F
     pub instrument_f: Option<f64>,
     /// m/s^2, vertical accelerometer less kinematics, per flight
@@ -153,6 +155,7 @@ pub fn identify(
         scaled_condition_number: plain.solution.scaled_condition,
         trim_torque_nm: plain.trim_torque_nm,
         residual: plain.solution.sigma.clone(),
+        residual_channels: plain.channels.clone(),
         instrument_f: by_instruments.as_ref().map(|iv| instrument_f(&plain, iv)),
         accelerometer_bias: weak.accelerometer_bias,
         notes,

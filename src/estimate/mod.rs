@@ -1,5 +1,6 @@
 //! From regression models to parameters with standard errors.
 
+mod anchor;
 mod identify;
 mod information;
 mod physical;
@@ -10,6 +11,7 @@ mod result;
 mod theta;
 mod weak;
 
+pub use anchor::{ThrustScale, apply_anchor, identified_vehicle, rescaled};
 pub use identify::{EstimateError, Identification, IdentifySettings, Method, identify};
 pub use information::WeakInformation;
 pub use physical::{is_physical, nearest_physical, second_moments};

@@ -28,6 +28,11 @@ pub enum Finding {
         /// standard error, same unit
         std: f64,
     },
+    /// known beforehand (a weighed mass)
+    Given {
+        /// in the parameter's unit
+        value: f64,
+    },
     /// the flight says nothing useful
     NotDetermined {
         /// for the user
@@ -70,9 +75,21 @@ impl MethodResult {
         let parameters = std::array::from_fn(|index| Parameter {
             name: NAMES[index],
             unit: UNITS[index],
-            finding: finding(estimated, nominal, index),
+            finding: by_method(method, finding(estimated, nominal, index)),
         });
         Self { method, parameters, estimated: estimated.clone() }
+    }
+}
+
+/// Gradient descent with a fixed gain never stops following the noise; that is not the flight's fault.
+fn by_method(method: Method, finding: Finding) -> Finding {
+    match (method, finding) {
+        (Method::Gd | Method::Fmgd, Finding::NotDetermined { .. }) => Finding::NotDetermined {
+            reason:
+                "gradient descent with this gain keeps following the noise; a smaller --sigma averages longer"
+                    .into(),
+        },
+        (_, finding) => finding,
     }
 }
 

@@ -60,6 +60,8 @@ pub struct WeakEstimate {
     pub latency: (f64, f64),
     /// the whole solution
     pub solution: Solution,
+    /// names of the equations that are measured, in the order of the solution's channels
+    pub channels: Vec<&'static str>,
     /// share of rows that the robust weights held back
     pub held_back: f64,
 }
@@ -110,6 +112,7 @@ fn solve_with(
         covariance: solution.covariance.fixed_view::<THETA, THETA>(0, 0).into(),
         trim_torque_nm: std::array::from_fn(|i| solution.theta[TRIM + i]),
         latency: (solution.theta[LATENCY], solution.covariance[(LATENCY, LATENCY)].sqrt()),
+        channels: measured_channels(flights),
         solution,
         held_back,
     })
@@ -148,10 +151,10 @@ fn assemble(flights: &[WeakRows], theta: &Theta, method: WeakMethod<'_>, curvatu
     };
     let mut channels = Vec::new();
     for channel in 0..CHANNELS {
-        let x = design(flights, &theta, channel, (rows, columns));
-        if x.columns(0, THETA).norm() == 0.0 {
-            continue; // nothing measured that this equation needs
+        if !is_measured(flights, channel) {
+            continue;
         }
+        let x = design(flights, &theta, channel, (rows, columns));
         let y = DVector::from_iterator(
             rows,
             flights.iter().flat_map(|flight| flight.output.iter().map(|output| output[channel])),
@@ -197,6 +200,20 @@ fn design(
         x[(row, DAMPING + channel - 1)] = rate[channel - 1];
     }
     x
+}
+
+/// Something is recorded that this equation needs: its row of the regressor is not empty.
+fn is_measured(flights: &[WeakRows], channel: usize) -> bool {
+    flights.iter().any(|rows| rows.regressor[0].iter().any(|phi| phi.row(channel).norm_squared() > 0.0))
+}
+
+fn measured_channels(flights: &[WeakRows]) -> Vec<&'static str> {
+    ["force_z", "torque_x", "torque_y", "torque_z"]
+        .into_iter()
+        .enumerate()
+        .filter(|(channel, _)| is_measured(flights, *channel))
+        .map(|(_, name)| name)
+        .collect()
 }
 
 fn dot_row(phi: &SMatrix<f64, CHANNELS, THETA>, row: usize, theta: &SVector<f64, THETA>) -> f64 {

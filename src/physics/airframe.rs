@@ -1,9 +1,9 @@
 //! What the effects need to know of a vehicle, with the rotors in fixed-size arrays.
 
-use nalgebra::Vector3;
+use nalgebra::{SMatrix, Vector3, Vector4};
 
 use super::{PhysicsError, Wrench};
-use crate::vehicle::{Mixer, Propulsion, Vehicle};
+use crate::vehicle::{Propulsion, Vehicle};
 
 /// Fixed capacity for rotors, so that no step of a simulation allocates.
 pub const MAX_ROTORS: usize = 8;
@@ -19,7 +19,12 @@ pub struct Airframe {
     /// sign of the reaction torque about +z
     yaw_signs: [f64; MAX_ROTORS],
     rotor_count: usize,
-    mixer: Mixer,
+    /// thrusts to `[Fz tau]`, the vehicle's mixer
+    mixer: SMatrix<f64, 4, MAX_ROTORS>,
+    /// kg, as the vehicle's description has it
+    pub mass_kg: f64,
+    /// m/s^2
+    pub gravity_m_s2: f64,
     /// thrust law
     pub propulsion: Propulsion,
     /// m g / number of rotors, N: the scale of relative thrust and speed
@@ -51,13 +56,17 @@ impl Airframe {
             arms_m[slot] = rotor.position_m - vehicle.body.center_of_mass_m;
             yaw_signs[slot] = rotor.spin.yaw_sign();
         }
+        let mut mixer = SMatrix::<f64, 4, MAX_ROTORS>::zeros();
+        mixer.columns_mut(0, count).copy_from(&vehicle.mixer().matrix);
         let hover_speed_rad_s =
             vehicle.propulsion.thrust_coefficient.map(|coefficient| (hover_thrust_n / coefficient).sqrt());
         Ok(Self {
             arms_m,
             yaw_signs,
             rotor_count: count,
-            mixer: vehicle.mixer(),
+            mixer,
+            mass_kg: vehicle.body.mass_kg,
+            gravity_m_s2: vehicle.gravity_m_s2,
             propulsion: vehicle.propulsion,
             hover_thrust_n,
             hover_speed_rad_s,
@@ -94,9 +103,13 @@ impl Airframe {
         self.hover_thrust_n * relative_speed * relative_speed
     }
 
-    /// Force and torque of rotor thrusts (N).
+    /// Force and torque of rotor thrusts (N); those beyond the rotor count do nothing.
     #[must_use]
-    pub fn thrust_wrench(&self, thrust_n: &[f64]) -> Wrench {
-        Wrench::from_thrust_and_torque(&self.mixer.wrench(thrust_n))
+    pub fn thrust_wrench(&self, thrust_n: &[f64; MAX_ROTORS]) -> Wrench {
+        let mut sum = Vector4::zeros();
+        for (column, thrust) in self.mixer.column_iter().zip(thrust_n).take(self.rotor_count) {
+            sum += column * *thrust;
+        }
+        Wrench::from_thrust_and_torque(&sum)
     }
 }

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use nalgebra::Vector3;
 
-use super::{Airframe, Input, MAX_ROTORS, State, Wrench};
+use super::{Airframe, Input, MAX_ROTORS, Measurement, State, Wrench};
 
 /// One parameter of an effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +30,8 @@ pub struct Condition<'a> {
     pub input: &'a Input,
     /// velocity of the centre of mass through the air, body, m/s
     pub air_velocity_m_s: Vector3<f64>,
+    /// where the centre of mass is against where the airframe has it, body, m
+    pub center_of_mass_m: Vector3<f64>,
 }
 
 impl<'a> Condition<'a> {
@@ -37,7 +39,26 @@ impl<'a> Condition<'a> {
     #[must_use]
     pub fn new(airframe: &'a Airframe, state: &'a State, input: &'a Input, wind_m_s: Vector3<f64>) -> Self {
         let air_velocity_m_s = state.attitude.inverse_transform_vector(&(state.velocity_m_s - wind_m_s));
-        Self { airframe, state, input, air_velocity_m_s }
+        Self { airframe, state, input, air_velocity_m_s, center_of_mass_m: Vector3::zeros() }
+    }
+
+    /// Hub positions from the true centre of mass, body, m.
+    pub fn arms_m(&self) -> impl Iterator<Item = Vector3<f64>> {
+        self.airframe.arms_m().iter().map(|arm| arm - self.center_of_mass_m)
+    }
+
+    /// Height of a point of the body (`arm_m` from the centre of mass) over the ground, world z = 0, m.
+    #[must_use]
+    pub fn height_of(&self, arm_m: &Vector3<f64>) -> f64 {
+        self.state.position_m.z + (self.state.attitude * arm_m).z
+    }
+
+    /// Force and torque of rotor thrusts (N) about the true centre of mass.
+    #[must_use]
+    pub fn thrust_wrench(&self, thrust_n: &[f64; MAX_ROTORS]) -> Wrench {
+        let mut wrench = self.airframe.thrust_wrench(thrust_n);
+        wrench.torque_nm -= self.center_of_mass_m.cross(&wrench.force_n);
+        wrench
     }
 
     /// Velocity of a point of the body through the air (`arm_m` from the centre of mass), body, m/s.
@@ -89,9 +110,10 @@ pub struct Own<'a> {
 
 /// One physical effect: equation, parameters, and the sentence by which the report names it.
 ///
-/// The hooks run in this order over all effects of a model: [`Effect::wind_m_s`],
-/// [`Effect::rotor_speed`], [`Effect::rotor_thrust`], [`Effect::wrench`]. An effect fills in those
-/// that it acts through; the others change nothing.
+/// The hooks run in this order over all effects of a model: [`Effect::command_delay_s`] when commands
+/// are looked up, then [`Effect::wind_m_s`] and [`Effect::center_of_mass_m`], [`Effect::rotor_speed`],
+/// [`Effect::rotor_thrust`], [`Effect::wrench`], [`Effect::reaction`]; [`Effect::measure`] when sensors
+/// are read. An effect fills in those that it acts through; the others change nothing.
 pub trait Effect: Debug + Sync {
     /// identifier as in reports and files
     fn id(&self) -> &'static str;
@@ -102,6 +124,11 @@ pub trait Effect: Debug + Sync {
     /// name, unit, bounds
     fn parameters(&self) -> &'static [Parameter];
 
+    /// what this airframe's description lacks for the effect to be computed
+    fn missing(&self, _airframe: &Airframe) -> Option<&'static str> {
+        None
+    }
+
     /// number of own states on this airframe
     fn state_count(&self, _airframe: &Airframe) -> usize {
         0
@@ -110,15 +137,25 @@ pub trait Effect: Debug + Sync {
     /// own states at the start, for rotors that have long followed their command
     fn initial_states(&self, _at: &Condition, _rotors: &Rotors, _states: &mut [f64]) {}
 
+    /// how long before now the commands were sent that act now, s
+    fn command_delay_s(&self, _parameters: &[f64]) -> f64 {
+        0.0
+    }
+
     /// wind that it adds, world, m/s
     fn wind_m_s(&self, _input: &Input, _own: &Own) -> Vector3<f64> {
+        Vector3::zeros()
+    }
+
+    /// by how much it moves the centre of mass from where the vehicle's description has it, body, m
+    fn center_of_mass_m(&self, _own: &Own) -> Vector3<f64> {
         Vector3::zeros()
     }
 
     /// alters the rotors' speed and its rate
     fn rotor_speed(&self, _at: &Condition, _own: &mut Own, _rotors: &mut Rotors) {}
 
-    /// alters the rotors' thrust at their speed
+    /// alters the rotors' thrust at their speed, and their reaction torque with it
     fn rotor_thrust(&self, _at: &Condition, _own: &mut Own, _rotors: &mut Rotors) {}
 
     /// adds force and torque beyond the rotors' thrust
@@ -126,29 +163,53 @@ pub trait Effect: Debug + Sync {
         Wrench::zero()
     }
 
-    /// Whether its wrench is linear in its parameters, so that [`Effect::regressor`] holds.
+    /// adds what follows from the vehicle's acceleration, that is, from all force and torque `applied`
+    /// to it (gravity apart)
+    fn reaction(&self, _at: &Condition, _applied: &Wrench, _own: &mut Own) -> Wrench {
+        Wrench::zero()
+    }
+
+    /// alters what the sensors show; `angular_acceleration_rad_s2` is the true one, body
+    fn measure(
+        &self,
+        _state: &State,
+        _angular_acceleration_rad_s2: &Vector3<f64>,
+        _parameters: &[f64],
+        _seen: &mut Measurement,
+    ) {
+    }
+
+    /// Whether its wrench is linear in its parameters: [`Effect::regressor`] times them is the wrench.
     fn is_linear(&self) -> bool {
         false
     }
 
-    /// The wrench for one unit of each parameter, one column a parameter, without own states.
-    /// Columns of an effect that is not linear are left as they are.
-    fn regressor(&self, _at: &Condition, _rotors: &Rotors, _columns: &mut [Wrench]) {}
+    /// Whether [`Effect::regressor`] gives the wrench's derivative by the parameters. Not so where an
+    /// effect acts through its own states, wind, time or the sensors.
+    fn has_regressor(&self) -> bool {
+        self.is_linear()
+    }
+
+    /// The wrench's derivative by each parameter at `parameters`, one column a parameter; of a linear
+    /// effect the same everywhere. Columns of an effect without regressor are left as they are.
+    fn regressor(&self, _at: &Condition, _rotors: &Rotors, _parameters: &[f64], _columns: &mut [Wrench]) {}
 }
 
 /// The whole change of force and torque that one effect makes, through thrust and otherwise, to
 /// rotors that turn at `rotors.speed`.
 #[must_use]
 pub fn effect_wrench(effect: &dyn Effect, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
+    let mut at = *at;
+    let before = at.thrust_wrench(&rotors.thrust_n);
+    at.center_of_mass_m += effect.center_of_mass_m(own);
     let mut changed = *rotors;
-    effect.rotor_speed(at, own, &mut changed);
+    effect.rotor_speed(&at, own, &mut changed);
     if changed.speed != rotors.speed {
         changed.thrust_from_speed(at.airframe);
     }
-    effect.rotor_thrust(at, own, &mut changed);
-    let mut difference_n = changed.thrust_n;
-    for (difference, before) in difference_n.iter_mut().zip(&rotors.thrust_n) {
-        *difference -= before;
-    }
-    at.airframe.thrust_wrench(&difference_n) + effect.wrench(at, &changed, own)
+    effect.rotor_thrust(&at, own, &mut changed);
+    let mut sum = at.thrust_wrench(&changed.thrust_n);
+    sum += effect.wrench(&at, &changed, own);
+    sum += effect.reaction(&at, &sum, own);
+    sum - before
 }

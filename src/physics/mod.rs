@@ -7,6 +7,7 @@ mod airframe;
 mod effect;
 pub mod effects;
 mod euler;
+mod measurement;
 mod model;
 mod rigid_body;
 mod state;
@@ -14,6 +15,7 @@ mod state;
 pub use airframe::{Airframe, MAX_ROTORS};
 pub use effect::{Condition, Effect, Own, Parameter, Rotors, effect_wrench};
 pub use euler::{euler_rates, euler_rates_inverse};
+pub use measurement::Measurement;
 pub use model::{ActiveEffect, Evaluation, Input, Model};
 pub use rigid_body::{RigidBodyModel, pseudo_inertia_is_positive};
 pub use state::{RIGID_STATES, State, StateDerivative, Wrench};
@@ -48,6 +50,14 @@ pub enum PhysicsError {
     Thrust {
         /// what came, N
         thrust_n: f64,
+    },
+    /// the vehicle's description lacks what an effect needs
+    #[error("effect {id} needs the vehicle's {what}; add it to the vehicle file")]
+    Missing {
+        /// effect
+        id: &'static str,
+        /// what is missing
+        what: &'static str,
     },
     /// number of values for an effect
     #[error("effect {id} takes {expected} parameters, got {got}")]

@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 
 use super::{
-    Airframe, Condition, Effect, MAX_ROTORS, Own, PhysicsError, RigidBodyModel, Rotors, State, Wrench,
+    Airframe, Condition, Effect, MAX_ROTORS, Measurement, Own, PhysicsError, RigidBodyModel, Rotors, State,
+    Wrench,
 };
 use crate::vehicle::Vehicle;
 
@@ -85,9 +86,15 @@ pub struct Model {
 
 impl Model {
     /// # Errors
-    /// If the vehicle is not physical (see [`RigidBodyModel::new`], [`Airframe::new`]).
+    /// If the vehicle is not physical (see [`RigidBodyModel::new`], [`Airframe::new`]), or its
+    /// description lacks what an effect needs.
     pub fn new(vehicle: &Vehicle, effects: Vec<ActiveEffect>) -> Result<Self, PhysicsError> {
         let airframe = Airframe::new(vehicle)?;
+        for active in &effects {
+            if let Some(what) = active.effect.missing(&airframe) {
+                return Err(PhysicsError::Missing { id: active.effect.id(), what });
+            }
+        }
         let state_counts = effects.iter().map(|active| active.effect.state_count(&airframe)).collect();
         Ok(Self {
             body: RigidBodyModel::new(&vehicle.body, vehicle.gravity_m_s2)?,
@@ -125,16 +132,40 @@ impl Model {
     /// must be [`Self::own_state_count`] long, as must `states`.
     pub fn evaluate(&self, state: &State, input: &Input, states: &[f64], rates: &mut [f64]) -> Evaluation {
         rates.fill(0.0);
-        let mut wind_m_s = input.wind_m_s;
-        self.each(states, rates, |effect, own| wind_m_s += effect.wind_m_s(input, own));
-        let at = Condition::new(&self.airframe, state, input, wind_m_s);
+        let (mut wind_m_s, mut center_of_mass_m) = (input.wind_m_s, Vector3::zeros());
+        self.each(states, rates, |effect, own| {
+            wind_m_s += effect.wind_m_s(input, own);
+            center_of_mass_m += effect.center_of_mass_m(own);
+        });
+        let mut at = Condition::new(&self.airframe, state, input, wind_m_s);
+        at.center_of_mass_m = center_of_mass_m;
         let mut rotors = Rotors::as_commanded(&self.airframe, &input.speed_command);
         self.each(states, rates, |effect, own| effect.rotor_speed(&at, own, &mut rotors));
         rotors.thrust_from_speed(&self.airframe);
         self.each(states, rates, |effect, own| effect.rotor_thrust(&at, own, &mut rotors));
-        let mut wrench = self.airframe.thrust_wrench(&rotors.thrust_n);
+        let mut wrench = at.thrust_wrench(&rotors.thrust_n);
         self.each(states, rates, |effect, own| wrench += effect.wrench(&at, &rotors, own));
+        self.each(states, rates, |effect, own| wrench += effect.reaction(&at, &wrench, own));
         Evaluation { wrench, rotors }
+    }
+
+    /// How long before now the commands were sent that act now, s. Whoever holds the commands looks
+    /// them up by it.
+    #[must_use]
+    pub fn command_delay_s(&self) -> f64 {
+        self.effects.iter().map(|active| active.effect.command_delay_s(&active.parameters)).sum()
+    }
+
+    /// What sensors without noise show while the vehicle is pushed by `wrench`, which includes every
+    /// effect's (see [`Self::evaluate`]).
+    #[must_use]
+    pub fn measure(&self, state: &State, wrench: &Wrench) -> Measurement {
+        let mut seen = Measurement { state: *state, specific_force_m_s2: wrench.force_n / self.body.mass_kg };
+        let turning = self.body.derivative(state, wrench).angular_acceleration_rad_s2;
+        for active in &self.effects {
+            active.effect.measure(state, &turning, &active.parameters, &mut seen);
+        }
+        seen
     }
 
     fn each(&self, states: &[f64], rates: &mut [f64], mut visit: impl FnMut(&'static dyn Effect, &mut Own)) {

@@ -3,6 +3,7 @@
 //! Time first ([`align`](self::StreamOffset)), then a uniform grid, filters without phase, and a mask
 //! that keeps what is airborne, exciting and not saturated.
 
+mod actuation;
 mod actuators;
 mod align;
 mod condition;
@@ -15,11 +16,12 @@ mod spectrum;
 mod usable;
 mod weak;
 
+pub use actuation::ThrustPreference;
 pub use actuators::{
     RotorThrusts, ThrustSource, propulsion_from_log, thrusts_from_commands, thrusts_from_speeds,
 };
 pub use align::StreamOffset;
-pub use condition::{ConditionSettings, Quality, Reference, Signals, ThrustPreference, condition, stride};
+pub use condition::{ConditionSettings, Quality, Reference, Signals, condition, stride};
 pub use filter::{Butterworth, FilterPair, WindowedFir, central_difference};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use latency::{ActuationLatency, delayed_wrench};

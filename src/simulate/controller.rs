@@ -1,8 +1,9 @@
 //! The autopilot of synthetic flights: position and attitude control on noisy estimates.
 
-use nalgebra::{Matrix3, Rotation3, SMatrix, UnitQuaternion, Vector3, Vector4};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3, Vector4};
 
 use super::SimulateError;
+use super::allocation::Allocation;
 use crate::physics::{MAX_ROTORS, RigidBodyModel, State};
 use crate::vehicle::Vehicle;
 
@@ -60,11 +61,8 @@ impl Default for CascadeGains {
 pub struct CascadeController {
     gains: CascadeGains,
     body: RigidBodyModel,
-    vehicle: Vehicle,
-    /// thrusts from `[Fz tau]`
-    allocation: SMatrix<f64, MAX_ROTORS, 4>,
+    allocation: Allocation,
     integral_m_s: Vector3<f64>,
-    command_min: f64,
 }
 
 impl CascadeController {
@@ -74,23 +72,8 @@ impl CascadeController {
     /// If the vehicle is not physical or its rotors do not span thrust and three torques.
     pub fn new(vehicle: &Vehicle, gains: CascadeGains, command_min: f64) -> Result<Self, SimulateError> {
         let body = RigidBodyModel::new(&vehicle.body, vehicle.gravity_m_s2)?;
-        let mixer = vehicle.mixer().matrix;
-        let rotors = mixer.ncols();
-        let failed = SimulateError::Allocation { rotors };
-        if rotors > MAX_ROTORS || mixer.rank(1e-9) < 4 {
-            return Err(failed);
-        }
-        let inverse = mixer.pseudo_inverse(1e-12).map_err(|_| failed)?;
-        let mut allocation = SMatrix::<f64, MAX_ROTORS, 4>::zeros();
-        allocation.rows_mut(0, rotors).copy_from(&inverse);
-        Ok(Self {
-            gains,
-            body,
-            vehicle: vehicle.clone(),
-            allocation,
-            integral_m_s: Vector3::zeros(),
-            command_min,
-        })
+        let allocation = Allocation::new(vehicle, command_min)?;
+        Ok(Self { gains, body, allocation, integral_m_s: Vector3::zeros() })
     }
 
     /// Normalised commands u for an estimate of the state; called every `period_s` (s).
@@ -98,12 +81,7 @@ impl CascadeController {
         let (force_n, attitude) = self.thrust_vector(setpoint, estimate, period_s);
         let thrust_n = force_n.dot(&(estimate.attitude * Vector3::z()));
         let torque_nm = self.torque(setpoint, estimate, &attitude);
-        let thrusts_n = self.allocation * Vector4::new(thrust_n, torque_nm.x, torque_nm.y, torque_nm.z);
-        let mut commands = [0.0; MAX_ROTORS];
-        for (command, thrust_n) in commands.iter_mut().zip(thrusts_n.iter()).take(self.vehicle.rotors.len()) {
-            *command = self.vehicle.propulsion.command_from_thrust(*thrust_n).clamp(self.command_min, 1.0);
-        }
-        commands
+        self.allocation.commands(&Vector4::new(thrust_n, torque_nm.x, torque_nm.y, torque_nm.z))
     }
 
     /// Force wanted (world, N) and the attitude that points the thrust along it.
@@ -117,23 +95,13 @@ impl CascadeController {
         let error_m = setpoint.position_m - estimate.position_m;
         let error_m_s = setpoint.velocity_m_s - estimate.velocity_m_s;
         self.integral_m_s += error_m * period_s;
-        let mut wanted = setpoint.acceleration_m_s2
+        let wanted = setpoint.acceleration_m_s2
             + error_m * gains.position
             + error_m_s * gains.velocity
             + self.integral_m_s * gains.position_integral
             + Vector3::z() * self.body.gravity_m_s2;
-        // never less than a third of hover, never tilted beyond the bound
-        wanted.z = wanted.z.max(self.body.gravity_m_s2 / 3.0);
-        let (side, most) = (wanted.xy().norm(), wanted.z * gains.tilt_max_rad.tan());
-        if side > most {
-            wanted.x *= most / side;
-            wanted.y *= most / side;
-        }
-        let up = wanted.normalize();
-        let heading = Vector3::new(setpoint.yaw_rad.cos(), setpoint.yaw_rad.sin(), 0.0);
-        let left = up.cross(&heading).normalize();
-        let matrix = Matrix3::from_columns(&[left.cross(&up), left, up]);
-        let attitude = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix));
+        let wanted = limited_tilt(wanted, self.body.gravity_m_s2, gains.tilt_max_rad);
+        let attitude = attitude_of_thrust(&wanted, setpoint.yaw_rad);
         (wanted * self.body.mass_kg, attitude)
     }
 
@@ -148,4 +116,25 @@ impl CascadeController {
         let acceleration = -error * self.gains.attitude - (w - rates_wanted) * self.gains.rates;
         self.body.inertia_kg_m2 * acceleration + w.cross(&(self.body.inertia_kg_m2 * w))
     }
+}
+
+/// The attitude whose z axis lies along `wanted` (world) and whose nose points to `yaw_rad`.
+pub(super) fn attitude_of_thrust(wanted: &Vector3<f64>, yaw_rad: f64) -> UnitQuaternion<f64> {
+    let up = wanted.normalize();
+    let heading = Vector3::new(yaw_rad.cos(), yaw_rad.sin(), 0.0);
+    let left = up.cross(&heading).normalize();
+    let matrix = Matrix3::from_columns(&[left.cross(&up), left, up]);
+    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix))
+}
+
+/// Keeps a wanted acceleration (world, gravity included) from hanging below a third of hover and from
+/// tilting beyond a bound (rad).
+pub(super) fn limited_tilt(mut wanted: Vector3<f64>, gravity_m_s2: f64, tilt_max_rad: f64) -> Vector3<f64> {
+    wanted.z = wanted.z.max(gravity_m_s2 / 3.0);
+    let (side, most) = (wanted.xy().norm(), wanted.z * tilt_max_rad.tan());
+    if side > most {
+        wanted.x *= most / side;
+        wanted.y *= most / side;
+    }
+    wanted
 }

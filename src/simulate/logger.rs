@@ -17,11 +17,11 @@ use crate::physics::{MAX_ROTORS, State};
 pub(super) struct Measured {
     /// s
     pub(super) time_s: f64,
-    /// truth
+    /// as sensors without noise show it
     pub(super) state: State,
     /// what the controller last believed
     pub(super) estimate: State,
-    /// truth, body, m/s^2, no gravity
+    /// the same of the accelerometer, m/s^2
     pub(super) specific_force_m_s2: Vector3<f64>,
     /// as the log holds them: u, or microseconds
     pub(super) actuators: [f64; MAX_ROTORS],

@@ -1,8 +1,11 @@
 //! Flights that never happened: integration, the paper's closed loop, and synthetic identification
 //! flights as an autopilot would log them. Never sees an estimate.
 
+mod allocation;
+mod cascade;
 mod controller;
 mod flight;
+mod ground;
 pub mod integrator;
 mod logger;
 pub mod pid;
@@ -11,8 +14,10 @@ mod reference;
 mod sensors;
 mod vehicles;
 
+pub use cascade::{AutopilotCascade, AutopilotGains, LoopGains};
 pub use controller::{CascadeController, CascadeGains, Setpoint};
 pub use flight::{Disturbance, FlightSettings, SimulatedFlight, Truth, simulate_flight};
+pub use ground::{GroundContact, GroundSettings};
 pub use plant::{PLANT_STATES, Plant};
 pub use reference::{RandomTrajectory, Reference};
 pub use sensors::{NoiseLevels, StreamSkew, TelemetryRates, TelemetrySettings};

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Makes the Python environment against which some tests compare: numpy, scipy and pymavlink, at the versions of
-# requirements.txt, under target/peers. Says so and succeeds where Python or the packages cannot be had: those tests
+# requirements.txt, and RotorPy without the plotting and learning packages that its dynamics do not use, under target/peers. Says so and succeeds where Python or the packages cannot be had: those tests
 # then skip themselves.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 peers="${CARGO_TARGET_DIR:-target}/peers"
 requirements=tests/peers/requirements.txt
+rotorpy=tests/peers/rotorpy.txt
 
-if [ -f "$peers/requirements.txt" ] && cmp -s "$requirements" "$peers/requirements.txt"; then
+if [ -f "$peers/requirements.txt" ] && cat "$requirements" "$rotorpy" | cmp -s - "$peers/requirements.txt"; then
     echo "peers: ready in $peers"
     exit 0
 fi
@@ -20,10 +21,13 @@ if ! python3 -m venv --clear "$peers"; then
     rm -rf "$peers"
     exit 0
 fi
-if ! "$peers/bin/python" -m pip install --quiet --disable-pip-version-check --requirement "$requirements"; then
+pip() {
+    "$peers/bin/python" -m pip install --quiet --disable-pip-version-check "$@"
+}
+if ! pip --requirement "$requirements" || ! pip --no-deps --requirement "$rotorpy"; then
     echo "peers: skipped, the packages could not be installed"
     rm -rf "$peers"
     exit 0
 fi
-cp "$requirements" "$peers/requirements.txt"
+cat "$requirements" "$rotorpy" >"$peers/requirements.txt"
 echo "peers: ready in $peers"

@@ -101,7 +101,7 @@ fn messages_of_step(step: u32) -> Vec<dialect::MavMessage> {
             }),
         }),
     ];
-    if step % 2 == 0 {
+    if step.is_multiple_of(2) {
         messages.push(M::LOCAL_POSITION_NED(dialect::LOCAL_POSITION_NED_DATA {
             time_boot_ms,
             x: single(size * wave(10.0, 0.0)),
@@ -110,7 +110,7 @@ fn messages_of_step(step: u32) -> Vec<dialect::MavMessage> {
             ..Default::default()
         }));
     }
-    if step % 125 == 0 {
+    if step.is_multiple_of(125) {
         messages.push(M::HEARTBEAT(dialect::HEARTBEAT_DATA {
             custom_mode: 6 << 16,
             mavtype: dialect::MavType::MAV_TYPE_QUADROTOR,

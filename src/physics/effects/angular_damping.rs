@@ -36,7 +36,7 @@ impl Effect for AngularDamping {
         true
     }
 
-    fn regressor(&self, at: &Condition, _rotors: &Rotors, columns: &mut [Wrench]) {
+    fn regressor(&self, at: &Condition, _rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
         for (axis, column) in columns.iter_mut().enumerate().take(PARAMETERS.len()) {
             *column = Wrench::zero();
             column.torque_nm[axis] = -at.state.rates_rad_s[axis];

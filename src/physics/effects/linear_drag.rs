@@ -34,9 +34,9 @@ impl Effect for LinearDrag {
         let share = -1.0 / at.airframe.rotor_count() as f64;
         let drag = Vector3::from_column_slice(own.parameters);
         let mut sum = Wrench::zero();
-        for (arm, speed) in at.airframe.arms_m().iter().zip(&rotors.speed) {
-            let force = at.air_velocity_at(arm).component_mul(&drag) * (share * speed);
-            sum += Wrench::at(arm, force);
+        for (arm, speed) in at.arms_m().zip(&rotors.speed) {
+            let force = at.air_velocity_at(&arm).component_mul(&drag) * (share * speed);
+            sum += Wrench::at(&arm, force);
         }
         sum
     }
@@ -45,14 +45,14 @@ impl Effect for LinearDrag {
         true
     }
 
-    fn regressor(&self, at: &Condition, rotors: &Rotors, columns: &mut [Wrench]) {
+    fn regressor(&self, at: &Condition, rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
         let share = -1.0 / at.airframe.rotor_count() as f64;
         for (axis, column) in columns.iter_mut().enumerate().take(PARAMETERS.len()) {
             *column = Wrench::zero();
-            for (arm, speed) in at.airframe.arms_m().iter().zip(&rotors.speed) {
+            for (arm, speed) in at.arms_m().zip(&rotors.speed) {
                 let mut force = Vector3::zeros();
-                force[axis] = at.air_velocity_at(arm)[axis] * share * speed;
-                *column += Wrench::at(arm, force);
+                force[axis] = at.air_velocity_at(&arm)[axis] * share * speed;
+                *column += Wrench::at(&arm, force);
             }
         }
     }

@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
@@ -129,26 +128,28 @@ pub fn simulate_flight(
     reference: &Reference,
     settings: &FlightSettings,
 ) -> Result<SimulatedFlight, SimulateError> {
-    let ticks = Ticks::new(settings)?;
     let mut effects = Vec::with_capacity(truth.effects.len() + 1);
     if not_negative("motor_time_constant_s", settings.motor_time_constant_s)? > 0.0 {
         effects.push(ActiveEffect::new(&MotorLag, &[settings.motor_time_constant_s])?);
     }
     effects.extend(truth.effects.iter().cloned());
     let model = Model::new(&truth.vehicle, effects)?;
+    let ticks = Ticks::new(settings, model.command_delay_s())?;
     let push = truth.disturbance.as_ref().map(|disturbance| &*disturbance.0 as Push);
     let rotor_count = truth.vehicle.rotors.len();
     let mut logger =
         Logger::new(&settings.telemetry, rotor_count, settings.duration_s, settings.seed ^ LOG_SEED)?;
     let controller = CascadeController::new(nominal, settings.gains, settings.command_min)?;
-    let mut flight_loop = Loop::new(controller, settings, &truth.vehicle, reference)?;
+    let mut flight_loop = Loop::new(controller, (settings, ticks), &truth.vehicle, reference)?;
     let start = reference.at(0.0);
     let state = State::at_rest(start.position_m, start.yaw_rad);
     let mut plant = Plant::new(&model, push, &state, &flight_loop.input(&model, 0))?;
     for step in 0..ticks.steps {
         let time_s = step as f64 * settings.step_s;
         if step.is_multiple_of(ticks.steps_a_tick) {
-            flight_loop.control(time_s, &plant.state(), step)?;
+            // what the sensors show of the state does not depend on the force
+            let seen = model.measure(&plant.state(), &Wrench::zero()).state;
+            flight_loop.control(time_s, &plant.state(), (&seen, step))?;
         }
         let input = flight_loop.input(&model, step);
         logger.log(&flight_loop.measured(&model, (&plant.state(), &plant.evaluate(&input)), &input));
@@ -171,10 +172,11 @@ struct Ticks {
 }
 
 impl Ticks {
-    fn new(settings: &FlightSettings) -> Result<Self, SimulateError> {
+    /// `delay_s` is the effects' own, beside that of the settings.
+    fn new(settings: &FlightSettings, delay_s: f64) -> Result<Self, SimulateError> {
         let step_s = positive("step_s", settings.step_s)?;
         let steps_a_tick = whole_steps("control_period_s", settings.control_period_s, step_s)?.max(1);
-        let delay_steps = whole_steps("transport_delay_s", settings.transport_delay_s, step_s)?;
+        let delay_steps = whole_steps("transport_delay_s", settings.transport_delay_s + delay_s, step_s)?;
         Ok(Self { steps: whole_steps("duration_s", settings.duration_s, step_s)?, steps_a_tick, delay_steps })
     }
 }
@@ -201,11 +203,10 @@ struct Loop<'a> {
 impl<'a> Loop<'a> {
     fn new(
         controller: CascadeController,
-        settings: &'a FlightSettings,
+        (settings, ticks): (&'a FlightSettings, Ticks),
         vehicle: &Vehicle,
         reference: &'a Reference,
     ) -> Result<Self, SimulateError> {
-        let ticks = Ticks::new(settings)?;
         let setpoint = reference.at(0.0);
         let rotor_count = vehicle.rotors.len();
         let hover_n = vehicle.body.mass_kg * vehicle.gravity_m_s2 / rotor_count as f64;
@@ -231,9 +232,14 @@ impl<'a> Loop<'a> {
     }
 
     /// One control period begins: a new estimate, a new command.
-    fn control(&mut self, time_s: f64, state: &State, step: usize) -> Result<(), SimulateError> {
+    fn control(
+        &mut self,
+        time_s: f64,
+        state: &State,
+        (seen, step): (&State, usize),
+    ) -> Result<(), SimulateError> {
         self.setpoint = self.reference.at(time_s);
-        self.estimate = self.noise.measure(&mut self.rng, state);
+        self.estimate = self.noise.measure(&mut self.rng, seen);
         let commands =
             self.controller.commands(&self.setpoint, &self.estimate, self.settings.control_period_s);
         self.newest = (step / self.ticks.steps_a_tick) % self.sent.len();
@@ -269,22 +275,18 @@ impl<'a> Loop<'a> {
         }
         let rotor_speed_rad_s =
             model.airframe.hover_speed_rad_s.map(|hover_rad_s| now.rotors.speed.map(|n| n * hover_rad_s));
+        let seen = model.measure(state, &now.wrench);
         Measured {
             time_s: input.time_s,
-            state: *state,
+            state: seen.state,
             estimate: self.estimate,
-            specific_force_m_s2: specific_force(model, &now.wrench),
+            specific_force_m_s2: seen.specific_force_m_s2,
             actuators,
             rotor_speed_rad_s,
             setpoint: self.setpoint,
             battery_voltage_v: input.battery_voltage_v.unwrap_or(f64::NAN),
         }
     }
-}
-
-/// What an accelerometer at the centre of mass feels, body, m/s^2.
-fn specific_force(model: &Model, wrench: &Wrench) -> Vector3<f64> {
-    wrench.force_n / model.body.mass_kg
 }
 
 /// The normalised command u as the log holds it; inverse of [`Propulsion::normalized`].

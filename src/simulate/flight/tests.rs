@@ -2,7 +2,7 @@ use super::*;
 use crate::log::{Quantity, Stream, StreamKey};
 use crate::physics::effects::LinearDrag;
 use crate::simulate::{RandomTrajectory, random_vehicle};
-use nalgebra::{Quaternion, UnitQuaternion};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 fn reference(seed: u64) -> Reference {
     let trajectory = RandomTrajectory::default().draw(seed).unwrap();

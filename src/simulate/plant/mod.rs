@@ -88,3 +88,6 @@ fn evaluate(
     }
     evaluation
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,54 @@
+//! Loads recordings, whatever their format.
+
+use mavid::config::{default_csv_mapping, load_csv_mapping};
+use mavid::log::{LoadOptions, Recording, SystemId, csv};
+use mavid::report::InputFile;
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use super::CommandError;
+
+/// How to read recordings.
+#[derive(Debug, Clone)]
+pub struct ReadAs<'a> {
+    /// what a CSV's columns mean
+    pub csv_map: Option<&'a PathBuf>,
+    /// the vehicle, where a log holds several
+    pub system: Option<u8>,
+}
+
+/// A recording and the file that it came from.
+#[derive(Debug)]
+pub struct Flight {
+    /// the recording
+    pub recording: Recording,
+    /// name, hash, losses
+    pub input: InputFile,
+}
+
+/// Reads one recording.
+pub fn load(path: &Path, read_as: &ReadAs<'_>) -> Result<Flight, CommandError> {
+    let named = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
+    let is_csv = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
+    let (recording, losses) = if is_csv {
+        let mapping = read_as.csv_map.map_or_else(default_csv_mapping, |file| load_csv_mapping(file))?;
+        let (recording, report) = csv::read_csv(path, &mapping).map_err(|error| named(&error))?;
+        (recording, report.losses())
+    } else {
+        let options = LoadOptions { system: read_as.system.map(|id| SystemId(u32::from(id))) };
+        let loaded = mavid::log::load(path, &options).map_err(|error| named(&error))?;
+        (loaded.recording, loaded.report.losses())
+    };
+    let sha256 = sha256_of(path).map_err(|error| named(&error))?;
+    Ok(Flight { recording, input: InputFile { path: path.display().to_string(), sha256, losses } })
+}
+
+fn sha256_of(path: &Path) -> std::io::Result<String> {
+    let mut hasher = Sha256::new();
+    std::io::copy(&mut std::fs::File::open(path)?, &mut hasher)?;
+    Ok(hasher.finalize().iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
+}

@@ -1,0 +1,126 @@
+//! What sets the scale: only force per mass can come out of a flight.
+
+use super::identify::Identification;
+use super::result::{Estimated, Finding, MethodResult, finding};
+use super::theta::{THETA, Theta, ThetaCovariance, theta_of};
+use crate::vehicle::{Anchor, ThrustLaw, Vehicle};
+use nalgebra::SMatrix;
+
+/// How much stronger the rotors are than the vehicle file says, where the mass was weighed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ThrustScale {
+    /// factor on thrust (-), with its standard error
+    pub factor: Finding,
+    /// name of the quantity that it scales, as in the vehicle file
+    pub name: &'static str,
+    /// the scaled quantity
+    pub value: Finding,
+    /// its unit
+    pub unit: &'static str,
+}
+
+/// Puts every method's result on the scale that the vehicle's anchor sets.
+///
+/// Under [`Anchor::Thrust`] nothing changes. Under [`Anchor::Mass`] the estimates, made with the stated
+/// thrust, shrink or grow by `m_weighed / m_estimated`: the mass is the weighed one, and the thrust
+/// coefficient is what was identified. Izz follows only as far as torque per thrust is known.
+pub fn apply_anchor(identification: &mut Identification, vehicle: &Vehicle) -> Option<ThrustScale> {
+    if vehicle.anchor == Anchor::Thrust {
+        return None;
+    }
+    let weighed = vehicle.body.mass_kg;
+    let nominal = theta_of(&vehicle.body);
+    let scale = thrust_scale(&identification.best.result, vehicle);
+    for result in identification.methods.iter_mut().chain([&mut identification.best.result]) {
+        if matches!(result.parameters[0].finding, Finding::Determined { .. }) {
+            *result = MethodResult::new(result.method, &rescaled(&result.estimated, weighed), &nominal);
+        } else {
+            for index in 1..THETA {
+                result.parameters[index].finding = Finding::NotDetermined {
+                    reason: "the thrust scale is not determined: no vertical motion".into(),
+                };
+            }
+        }
+        result.parameters[0].finding = Finding::Given { value: weighed };
+    }
+    for (_, history) in &mut identification.histories {
+        for theta in &mut history.theta {
+            *theta *= weighed / theta[0];
+        }
+    }
+    Some(scale)
+}
+
+/// On the scale of a weighed mass: `Theta' = Theta m_w / m`, its covariance by the chain rule.
+#[must_use]
+pub fn rescaled(estimated: &Estimated, weighed_kg: f64) -> Estimated {
+    let factor = weighed_kg / estimated.theta[0];
+    let theta: Theta = estimated.theta * factor;
+    let mut jacobian = SMatrix::<f64, THETA, THETA>::identity() * factor;
+    for row in 0..THETA {
+        jacobian[(row, 0)] -= theta[row] / estimated.theta[0];
+    }
+    let covariance: ThetaCovariance = jacobian * estimated.covariance * jacobian.transpose();
+    Estimated { theta, covariance }
+}
+
+fn thrust_scale(best: &MethodResult, vehicle: &Vehicle) -> ThrustScale {
+    let (name, unit, stated) = match vehicle.propulsion.law {
+        ThrustLaw::Speed { .. } => {
+            ("thrust_coefficient", "N/(rad/s)^2", vehicle.propulsion.thrust_coefficient.unwrap_or(f64::NAN))
+        }
+        ThrustLaw::Curve { thrust_max_n, .. } => ("thrust_max", "N", thrust_max_n),
+    };
+    let nominal = theta_of(&vehicle.body);
+    match finding(&best.estimated, &nominal, 0) {
+        Finding::Determined { value, std } => {
+            let factor = vehicle.body.mass_kg / value;
+            let relative = std / value;
+            let scaled =
+                |size: f64| Finding::Determined { value: size * factor, std: size * factor * relative };
+            ThrustScale { factor: scaled(1.0), name, value: scaled(stated), unit }
+        }
+        other => ThrustScale { factor: other.clone(), name, value: other, unit },
+    }
+}
+
+/// The vehicle with what was determined put in; what was not keeps its nominal value.
+#[must_use]
+pub fn identified_vehicle(vehicle: &Vehicle, best: &MethodResult, scale: Option<&ThrustScale>) -> Vehicle {
+    let mut theta = theta_of(&vehicle.body);
+    for (index, parameter) in best.parameters.iter().enumerate() {
+        match parameter.finding {
+            Finding::Determined { .. } => theta[index] = best.estimated.theta[index],
+            Finding::Given { value } => theta[index] = value,
+            Finding::NotDetermined { .. } => {}
+        }
+    }
+    let mut out = vehicle.clone();
+    out.body.mass_kg = theta[0];
+    out.body.inertia_kg_m2 = super::inertia_of(&theta);
+    if let Some(Finding::Determined { value: factor, .. }) = scale.map(|scale| &scale.factor) {
+        out.propulsion.thrust_coefficient = out.propulsion.thrust_coefficient.map(|k| k * factor);
+        if let ThrustLaw::Curve { thrust_max_n, .. } = &mut out.propulsion.law {
+            *thrust_max_n *= factor;
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::SVector;
+
+    #[test]
+    fn rescaling_keeps_ratios_and_moves_the_mass_error_into_the_inertia() {
+        let theta = SVector::from([2.0, 0.02, 0.0, 0.0, 0.03, 0.0, 0.05]);
+        let mut covariance = ThetaCovariance::zeros();
+        covariance[(0, 0)] = 0.02_f64.powi(2); // 1 % of the mass
+        let out = rescaled(&Estimated { theta, covariance }, 2.2);
+        assert!((out.theta[0] - 2.2).abs() < 1e-12);
+        assert!((out.theta[1] - 0.022).abs() < 1e-12);
+        assert!(out.covariance[(0, 0)].abs() < 1e-15); // weighed: no error left
+        assert!((out.covariance[(1, 1)].sqrt() / 0.022 - 0.01).abs() < 1e-9);
+    }
+}

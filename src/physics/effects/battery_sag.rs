@@ -1,0 +1,52 @@
+//! Thrust falls with the battery's voltage.
+
+use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+
+/// `T_i = T (V / V_full)^exponent`, reaction torque alike; nothing where the voltage is not known. With
+/// speed in proportion to voltage the exponent is 2; with speed controlled by the ESC it is 0.
+#[derive(Debug, Clone, Copy)]
+pub struct BatterySag;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter { name: "exponent", unit: "-", min: 0.0, max: 4.0 },
+    Parameter { name: "full_voltage", unit: "V", min: 2.5, max: 60.0 },
+];
+
+/// V / V_full; 1 where the voltage is not known or not positive.
+fn ratio(at: &Condition, parameters: &[f64]) -> f64 {
+    at.input.battery_voltage_v.filter(|voltage_v| *voltage_v > 0.0).map_or(1.0, |now_v| now_v / parameters[1])
+}
+
+impl Effect for BatterySag {
+    fn id(&self) -> &'static str {
+        "battery_sag"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "Thrust falls with the battery: the same command gives less as its voltage drops."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn rotor_thrust(&self, at: &Condition, own: &mut Own, rotors: &mut Rotors) {
+        let factor = ratio(at, own.parameters).powf(own.parameters[0]);
+        for thrust_n in &mut rotors.thrust_n {
+            *thrust_n *= factor;
+        }
+    }
+
+    fn has_regressor(&self) -> bool {
+        true
+    }
+
+    fn regressor(&self, at: &Condition, rotors: &Rotors, parameters: &[f64], columns: &mut [Wrench]) {
+        let [by_exponent, by_voltage] = columns else { return };
+        let (ratio, exponent) = (ratio(at, parameters), parameters[0]);
+        let sagged = at.thrust_wrench(&rotors.thrust_n) * ratio.powf(exponent);
+        *by_exponent = sagged * ratio.ln();
+        let known = at.input.battery_voltage_v.is_some();
+        *by_voltage = sagged * if known { -exponent / parameters[1] } else { 0.0 };
+    }
+}

@@ -1,0 +1,52 @@
+//! Blades flap in the airstream and the hubs turn the body.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+
+/// `M_i = (k / N) n_i e_z x (v_air + w x r_i)` at each hub, with `k` of the whole vehicle at hover. Drag that
+/// acts h above the centre of mass has the same form with `k = -h d`, so `k` may have either sign.
+///
+/// Mahony, Kumar and Corke 2012; the form is RotorPy's `k_flap`.
+#[derive(Debug, Clone, Copy)]
+pub struct BladeFlapping;
+
+const PARAMETERS: &[Parameter] = &[Parameter { name: "k", unit: "N m/(m/s)", min: -0.2, max: 0.2 }];
+
+/// The torque for one N m/(m/s).
+fn per_coefficient(at: &Condition, rotors: &Rotors) -> Wrench {
+    let share = 1.0 / at.airframe.rotor_count() as f64;
+    let mut torque_nm = Vector3::zeros();
+    for (arm, speed) in at.arms_m().zip(&rotors.speed) {
+        torque_nm += Vector3::z().cross(&at.air_velocity_at(&arm)) * (share * speed);
+    }
+    Wrench { force_n: Vector3::zeros(), torque_nm }
+}
+
+impl Effect for BladeFlapping {
+    fn id(&self) -> &'static str {
+        "blade_flapping"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The blades flap: a torque about the horizontal axes in proportion to the airspeed."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
+        per_coefficient(at, rotors) * own.parameters[0]
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    fn regressor(&self, at: &Condition, rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
+        if let Some(column) = columns.first_mut() {
+            *column = per_coefficient(at, rotors);
+        }
+    }
+}

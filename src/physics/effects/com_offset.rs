@@ -1,0 +1,47 @@
+//! The centre of mass is not where the vehicle file has it.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+
+/// Every force at a hub turns about the true centre: `tau = sum (r_i - c) x F_i`, for thrust alone
+/// `-c x T e_z = (-c_y T, c_x T, 0)`. The state stays that of the true centre of mass, so nothing else moves.
+/// Its z acts only on forces across the thrust axis.
+#[derive(Debug, Clone, Copy)]
+pub struct ComOffset;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter { name: "x", unit: "m", min: -0.1, max: 0.1 },
+    Parameter { name: "y", unit: "m", min: -0.1, max: 0.1 },
+    Parameter { name: "z", unit: "m", min: -0.1, max: 0.1 },
+];
+
+impl Effect for ComOffset {
+    fn id(&self) -> &'static str {
+        "com_offset"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The centre of mass is off: thrust turns the vehicle about it."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn center_of_mass_m(&self, own: &Own) -> Vector3<f64> {
+        Vector3::from_column_slice(own.parameters)
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    fn regressor(&self, at: &Condition, rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
+        let thrust = at.thrust_wrench(&rotors.thrust_n).force_n;
+        for (axis, column) in columns.iter_mut().enumerate().take(PARAMETERS.len()) {
+            *column =
+                Wrench { force_n: Vector3::zeros(), torque_nm: -Vector3::ith(axis, 1.0).cross(&thrust) };
+        }
+    }
+}

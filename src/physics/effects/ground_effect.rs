@@ -1,0 +1,82 @@
+//! Near the ground a rotor gives more thrust.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Airframe, Condition, Effect, Own, Parameter, Rotors, Wrench};
+
+/// Thrust of the rotor at height z over the ground (world z = 0) times
+/// `1 / (1 - rho (R / 4z)^2) + Ca exp(-Cb z / R)`. With Ca = 0 the form of Cheeseman and Bennett 1955 (rho = 1
+/// for one rotor, more for several), with rho = 0 the exponential form; an estimate holds one of them at
+/// zero. The reaction torque stays, since the rotor's speed and drag do.
+///
+/// Sanchez-Cuevas et al. 2017 (10.1155/2017/1823056) measured two to four times the first form.
+#[derive(Debug, Clone, Copy)]
+pub struct GroundEffect;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter { name: "rho", unit: "-", min: 0.0, max: 3.5 },
+    Parameter { name: "ca", unit: "-", min: 0.0, max: 1.0 },
+    Parameter { name: "cb", unit: "-", min: 0.2, max: 8.0 },
+];
+
+/// Lower than this no rotor turns over the ground; it also keeps the first form from its pole.
+const LEAST_RADII: f64 = 0.5;
+
+/// Height of a hub over the ground, in rotor radii.
+fn height_in_radii(at: &Condition, arm: &Vector3<f64>) -> f64 {
+    let radius_m = at.airframe.propulsion.rotor_radius_m.unwrap_or(f64::INFINITY);
+    (at.height_of(arm) / radius_m).max(LEAST_RADII)
+}
+
+/// Factor on thrust.
+fn cheeseman_bennett(rho: f64, radii: f64) -> f64 {
+    1.0 / (1.0 - rho / (16.0 * radii * radii))
+}
+
+impl Effect for GroundEffect {
+    fn id(&self) -> &'static str {
+        "ground_effect"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The ground is near: the rotors give more thrust the lower they are."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn missing(&self, airframe: &Airframe) -> Option<&'static str> {
+        airframe.propulsion.rotor_radius_m.is_none().then_some("rotor_radius")
+    }
+
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
+        let [rho, ca, cb] = [own.parameters[0], own.parameters[1], own.parameters[2]];
+        let mut sum = Wrench::zero();
+        for (arm, thrust_n) in at.arms_m().zip(&rotors.thrust_n) {
+            let radii = height_in_radii(at, &arm);
+            let gain = cheeseman_bennett(rho, radii) - 1.0 + ca * (-cb * radii).exp();
+            sum += Wrench::at(&arm, Vector3::z() * (thrust_n * gain));
+        }
+        sum
+    }
+
+    fn has_regressor(&self) -> bool {
+        true
+    }
+
+    fn regressor(&self, at: &Condition, rotors: &Rotors, parameters: &[f64], columns: &mut [Wrench]) {
+        let [rho, ca, cb] = [parameters[0], parameters[1], parameters[2]];
+        let [by_rho, by_ca, by_cb] = columns else { return };
+        (*by_rho, *by_ca, *by_cb) = (Wrench::zero(), Wrench::zero(), Wrench::zero());
+        for (arm, thrust_n) in at.arms_m().zip(&rotors.thrust_n) {
+            let radii = height_in_radii(at, &arm);
+            let lift = |gain: f64| Wrench::at(&arm, Vector3::z() * (thrust_n * gain));
+            let share = cheeseman_bennett(rho, radii);
+            *by_rho += lift(share * share / (16.0 * radii * radii));
+            let decay = (-cb * radii).exp();
+            *by_ca += lift(decay);
+            *by_cb += lift(-ca * radii * decay);
+        }
+    }
+}

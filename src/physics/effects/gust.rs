@@ -1,0 +1,80 @@
+//! The wind gusts.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Effect, Input, Own, Parameter};
+
+/// Wind in each world axis as a sum of sines whose spectrum is that of a first-order Gauss-Markov process,
+/// `2 sigma^2 T / (1 + (w T)^2)`, so that it is smooth, repeatable by its seed and fits every integrator. A real
+/// gust does not repeat from run to run: what is estimated is `sigma` and `correlation_time`.
+///
+/// Dryden's longitudinal form, MIL-F-8785C.
+#[derive(Debug, Clone, Copy)]
+pub struct Gust;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter { name: "sigma", unit: "m/s", min: 0.0, max: 10.0 },
+    Parameter { name: "correlation_time", unit: "s", min: 0.05, max: 30.0 },
+    Parameter { name: "seed", unit: "-", min: 0.0, max: 1e9 },
+];
+
+/// Lines a decade and axis are enough that no period shows within a flight.
+const LINES: usize = 24;
+/// Lowest frequency times correlation time; 2 % of the variance lies below it.
+const LOWEST: f64 = 0.03;
+/// Ratio of neighbouring lines: 24 of them reach 30 over the correlation time, 2 % of the variance beyond.
+const STEP: f64 = 1.333_521_432_163_324;
+
+/// A stream of shares in 0..1 by a linear congruential generator (Numerical Recipes' constants).
+struct Phases(u32);
+
+impl Phases {
+    fn seeded(seed: f64) -> Self {
+        let bits = seed.to_bits();
+        let [a, b, c, d, e, f, g, h] = bits.to_le_bytes();
+        let mut phases = Self(u32::from_le_bytes([a, b, c, d]) ^ u32::from_le_bytes([e, f, g, h]));
+        // seeds that differ in few bits part ways
+        for _ in 0..4 {
+            phases.next_share();
+        }
+        phases
+    }
+
+    fn next_share(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(self.0) / 4_294_967_296.0
+    }
+}
+
+impl Effect for Gust {
+    fn id(&self) -> &'static str {
+        "gust"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The wind gusts: the drag changes irregularly and not the same way twice."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn wind_m_s(&self, input: &Input, own: &Own) -> Vector3<f64> {
+        let [sigma_m_s, correlation_s, seed] = [own.parameters[0], own.parameters[1], own.parameters[2]];
+        let mut random = Phases::seeded(seed);
+        let mut wind_m_s = Vector3::zeros();
+        let mut low = LOWEST;
+        for _ in 0..LINES {
+            let high = low * STEP;
+            // variance of the process between both frequencies
+            let amplitude = sigma_m_s * (4.0 / std::f64::consts::PI * (high.atan() - low.atan())).sqrt();
+            for wind in &mut wind_m_s {
+                let frequency = (low + (high - low) * random.next_share()) / correlation_s;
+                let phase = std::f64::consts::TAU * random.next_share();
+                *wind += amplitude * (frequency * input.time_s + phase).sin();
+            }
+            low = high;
+        }
+        wind_m_s
+    }
+}

@@ -1,0 +1,42 @@
+//! The inertial unit sits askew.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::physics::{Effect, Measurement, Parameter, State};
+
+/// Accelerometer and gyroscopes show body vectors turned by the rotation vector `(x, y, z)`; position and
+/// attitude do not.
+#[derive(Debug, Clone, Copy)]
+pub struct ImuMisalignment;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter { name: "x", unit: "rad", min: -0.2, max: 0.2 },
+    Parameter { name: "y", unit: "rad", min: -0.2, max: 0.2 },
+    Parameter { name: "z", unit: "rad", min: -0.2, max: 0.2 },
+];
+
+impl Effect for ImuMisalignment {
+    fn id(&self) -> &'static str {
+        "imu_misalignment"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The inertial unit sits askew: its axes are not the body's."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn measure(
+        &self,
+        _state: &State,
+        _angular_acceleration_rad_s2: &Vector3<f64>,
+        parameters: &[f64],
+        seen: &mut Measurement,
+    ) {
+        let turn = UnitQuaternion::from_scaled_axis(Vector3::from_column_slice(parameters));
+        seen.specific_force_m_s2 = turn * seen.specific_force_m_s2;
+        seen.state.rates_rad_s = turn * seen.state.rates_rad_s;
+    }
+}

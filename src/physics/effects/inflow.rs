@@ -1,0 +1,50 @@
+//! Climbing costs thrust.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+
+/// `F_i = -(kz / N) n_i (v_air + w x r_i)_z e_z` at each hub, with `kz` of the whole vehicle at hover: the blades
+/// meet the air at a smaller angle. The same term as the `dz` of rotor drag, which a report gives here.
+///
+/// Bangura and Mahony 2012; Svacha et al. 2017.
+#[derive(Debug, Clone, Copy)]
+pub struct Inflow;
+
+const PARAMETERS: &[Parameter] = &[Parameter { name: "kz", unit: "N/(m/s)", min: 0.0, max: 5.0 }];
+
+/// Force and torque for one N/(m/s).
+fn per_coefficient(at: &Condition, rotors: &Rotors) -> Wrench {
+    let share = -1.0 / at.airframe.rotor_count() as f64;
+    at.arms_m().zip(&rotors.speed).fold(Wrench::zero(), |sum, (arm, speed)| {
+        sum + Wrench::at(&arm, Vector3::z() * (share * speed * at.air_velocity_at(&arm).z))
+    })
+}
+
+impl Effect for Inflow {
+    fn id(&self) -> &'static str {
+        "inflow"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "Climbing costs thrust: it falls with the airspeed along the rotor axis."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
+        per_coefficient(at, rotors) * own.parameters[0]
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    fn regressor(&self, at: &Condition, rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
+        if let Some(column) = columns.first_mut() {
+            *column = per_coefficient(at, rotors);
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! The vehicle becomes lighter or heavier in flight.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+
+/// From `time` on the mass is `m + delta` at the same centre and inertia: all force `F` accelerates it by
+/// `F / (m + delta)`, which on the body of mass `m` is the force `-delta / (m + delta) F` beside it.
+#[derive(Debug, Clone, Copy)]
+pub struct MassChange;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter { name: "time", unit: "s", min: 0.0, max: 1e5 },
+    Parameter { name: "delta", unit: "kg", min: -5.0, max: 5.0 },
+];
+
+/// By how much the mass differs now, kg; never so much that less than a tenth is left.
+fn changed_kg(at: &Condition, parameters: &[f64]) -> f64 {
+    let delta_kg = parameters[1].max(-0.9 * at.airframe.mass_kg);
+    if at.input.time_s >= parameters[0] { delta_kg } else { 0.0 }
+}
+
+impl Effect for MassChange {
+    fn id(&self) -> &'static str {
+        "mass_change"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The mass changed in flight: from one moment on the same thrust accelerates it more, or less."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn reaction(&self, at: &Condition, applied: &Wrench, own: &mut Own) -> Wrench {
+        let share = changed_kg(at, own.parameters) / (at.airframe.mass_kg + changed_kg(at, own.parameters));
+        Wrench { force_n: applied.force_n * -share, torque_nm: Vector3::zeros() }
+    }
+
+    fn has_regressor(&self) -> bool {
+        true
+    }
+
+    fn regressor(&self, at: &Condition, rotors: &Rotors, parameters: &[f64], columns: &mut [Wrench]) {
+        let [by_time, by_delta] = columns else { return };
+        (*by_time, *by_delta) = (Wrench::zero(), Wrench::zero());
+        if at.input.time_s >= parameters[0] {
+            let now_kg = at.airframe.mass_kg + changed_kg(at, parameters);
+            let slope = -at.airframe.mass_kg / (now_kg * now_kg);
+            by_delta.force_n = at.thrust_wrench(&rotors.thrust_n).force_n * slope;
+        }
+    }
+}

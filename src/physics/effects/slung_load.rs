@@ -1,0 +1,64 @@
+//! A load hangs below on a cord.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Airframe, Condition, Effect, Own, Parameter, Rotors, Wrench};
+
+/// A point mass on a taut massless cord of fixed length from the centre of mass. Own states: the unit
+/// vector `q` from vehicle to load and its rate, world. With `F` all force on the vehicle (world, gravity
+/// apart), the cord pulls with `T = M m / (M + m) (L |q'|^2 - q . F / M)` along `q`, and
+/// `L q'' = -(T q / m) - (F + T q) / M`.
+///
+/// Sreenath, Lee and Kumar 2013, without torque, since the cord is at the centre of mass.
+#[derive(Debug, Clone, Copy)]
+pub struct SlungLoad;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter { name: "mass", unit: "kg", min: 0.0, max: 5.0 },
+    Parameter { name: "length", unit: "m", min: 0.05, max: 20.0 },
+];
+
+/// Direction and its rate.
+const STATES: usize = 6;
+
+impl Effect for SlungLoad {
+    fn id(&self) -> &'static str {
+        "slung_load"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "A load swings below on a cord: it pulls sideways after each stop, at its own frequency."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn state_count(&self, _airframe: &Airframe) -> usize {
+        STATES
+    }
+
+    fn initial_states(&self, _at: &Condition, _rotors: &Rotors, states: &mut [f64]) {
+        // hanging still
+        states.fill(0.0);
+        states[2] = -1.0;
+    }
+
+    fn reaction(&self, at: &Condition, applied: &Wrench, own: &mut Own) -> Wrench {
+        let [load_kg, length_m] = [own.parameters[0], own.parameters[1]];
+        let vehicle_kg = at.airframe.mass_kg;
+        let cord = Vector3::from_column_slice(&own.states[..3]).normalize();
+        let swing = Vector3::from_column_slice(&own.states[3..]);
+        let swing = swing - cord * cord.dot(&swing);
+        let force_n = at.state.attitude * applied.force_n;
+        let reduced_kg = vehicle_kg * load_kg / (vehicle_kg + load_kg);
+        // tension per kilogram of load stays defined when there is no load
+        let tension_m_s2 = reduced_kg / load_kg.max(f64::MIN_POSITIVE)
+            * (length_m * swing.norm_squared() - cord.dot(&force_n) / vehicle_kg);
+        let pull_n = cord * (tension_m_s2 * load_kg);
+        let turning = (cord * -tension_m_s2 - (force_n + pull_n) / vehicle_kg) / length_m;
+        own.rates[..3].copy_from_slice(swing.as_slice());
+        own.rates[3..].copy_from_slice(turning.as_slice());
+        Wrench { force_n: at.state.attitude.inverse_transform_vector(&pull_n), torque_nm: Vector3::zeros() }
+    }
+}

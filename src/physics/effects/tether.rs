@@ -1,0 +1,64 @@
+//! A line leads down to the ground.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+
+/// The line that was lifted weighs `line_mass` per metre of height, and beyond `length` from the anchor at the
+/// world's origin it pulls back like a spring: `F = -line_mass g z e_z - stiffness (|p| - length)+ p / |p|`,
+/// at the centre of mass.
+#[derive(Debug, Clone, Copy)]
+pub struct Tether;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter { name: "line_mass", unit: "kg/m", min: 0.0, max: 0.5 },
+    Parameter { name: "stiffness", unit: "N/m", min: 0.0, max: 1000.0 },
+    Parameter { name: "length", unit: "m", min: 0.5, max: 500.0 },
+];
+
+fn in_body(at: &Condition, world_n: Vector3<f64>) -> Wrench {
+    let force_n = at.state.attitude.inverse_transform_vector(&world_n);
+    Wrench { force_n, torque_nm: Vector3::zeros() }
+}
+
+/// World force for one kg/m of line.
+fn weight_per_mass(at: &Condition) -> Vector3<f64> {
+    Vector3::z() * (-at.airframe.gravity_m_s2 * at.state.position_m.z.max(0.0))
+}
+
+/// How far the line is stretched, outwards, world, m.
+fn stretch(at: &Condition, length_m: f64) -> Vector3<f64> {
+    let away_m = at.state.position_m.norm();
+    if away_m > length_m { at.state.position_m * (1.0 - length_m / away_m) } else { Vector3::zeros() }
+}
+
+impl Effect for Tether {
+    fn id(&self) -> &'static str {
+        "tether"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "A line leads down to the ground: it weighs more the higher the vehicle, and holds it back when taut."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own) -> Wrench {
+        let [line_kg_m, stiffness_n_m, length_m] = [own.parameters[0], own.parameters[1], own.parameters[2]];
+        in_body(at, weight_per_mass(at) * line_kg_m - stretch(at, length_m) * stiffness_n_m)
+    }
+
+    fn has_regressor(&self) -> bool {
+        true
+    }
+
+    fn regressor(&self, at: &Condition, _rotors: &Rotors, parameters: &[f64], columns: &mut [Wrench]) {
+        let [by_mass, by_stiffness, by_length] = columns else { return };
+        let stretch = stretch(at, parameters[2]);
+        *by_mass = in_body(at, weight_per_mass(at));
+        *by_stiffness = in_body(at, -stretch);
+        *by_length = in_body(at, stretch.try_normalize(0.0).unwrap_or_default() * parameters[1]);
+    }
+}

@@ -1,0 +1,51 @@
+//! The thrust axis leans in the body.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+
+/// `F_i = T_i (b_y, -b_x, 0)` at each hub beside the thrust: the rotor plane turned by the small angles `x`, `y`
+/// about the body's axes.
+#[derive(Debug, Clone, Copy)]
+pub struct ThrustTilt;
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter { name: "x", unit: "rad", min: -0.2, max: 0.2 },
+    Parameter { name: "y", unit: "rad", min: -0.2, max: 0.2 },
+];
+
+/// Each rotor's thrust along `lean` at its hub.
+fn across(at: &Condition, rotors: &Rotors, lean: &Vector3<f64>) -> Wrench {
+    at.arms_m()
+        .zip(&rotors.thrust_n)
+        .fold(Wrench::zero(), |sum, (arm, thrust_n)| sum + Wrench::at(&arm, lean * *thrust_n))
+}
+
+impl Effect for ThrustTilt {
+    fn id(&self) -> &'static str {
+        "thrust_tilt"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "The thrust axis leans: thrust pushes sideways, fixed in the body."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
+        let lean = Vector3::new(own.parameters[1], -own.parameters[0], 0.0);
+        across(at, rotors, &lean)
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    fn regressor(&self, at: &Condition, rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
+        let [by_x, by_y] = columns else { return };
+        *by_x = across(at, rotors, &-Vector3::y());
+        *by_y = across(at, rotors, &Vector3::x());
+    }
+}

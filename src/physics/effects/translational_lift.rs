@@ -1,0 +1,50 @@
+//! Flying sideways gives thrust.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+
+/// `F_i = (kh / N) ((v_air + w x r_i)_x^2 + (..)_y^2) e_z` at each hub, with `kh` of the whole vehicle.
+///
+/// Faessler et al. 2018 (arXiv 1712.02402); Svacha et al. 2017.
+#[derive(Debug, Clone, Copy)]
+pub struct TranslationalLift;
+
+const PARAMETERS: &[Parameter] = &[Parameter { name: "kh", unit: "N/(m/s)^2", min: 0.0, max: 1.0 }];
+
+/// Force and torque for one N/(m/s)^2.
+fn per_coefficient(at: &Condition) -> Wrench {
+    let share = 1.0 / at.airframe.rotor_count() as f64;
+    at.arms_m().fold(Wrench::zero(), |sum, arm| {
+        let across = at.air_velocity_at(&arm).xy().norm_squared();
+        sum + Wrench::at(&arm, Vector3::z() * (share * across))
+    })
+}
+
+impl Effect for TranslationalLift {
+    fn id(&self) -> &'static str {
+        "translational_lift"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "Flying sideways gives thrust: it grows with the square of the airspeed across the rotor axis."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own) -> Wrench {
+        per_coefficient(at) * own.parameters[0]
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    fn regressor(&self, at: &Condition, _rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
+        if let Some(column) = columns.first_mut() {
+            *column = per_coefficient(at);
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! Commands take time to arrive.
+
+use crate::physics::{Effect, Parameter};
+
+/// What acts now was commanded `delay` ago: `u(t - d)`, an exact shift of the commands, no filter.
+#[derive(Debug, Clone, Copy)]
+pub struct TransportDelay;
+
+const PARAMETERS: &[Parameter] = &[Parameter { name: "delay", unit: "s", min: 0.0, max: 0.3 }];
+
+impl Effect for TransportDelay {
+    fn id(&self) -> &'static str {
+        "transport_delay"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "Commands arrive late, as a pure delay."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn command_delay_s(&self, parameters: &[f64]) -> f64 {
+        parameters[0].max(0.0)
+    }
+}

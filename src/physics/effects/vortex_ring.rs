@@ -1,0 +1,75 @@
+//! Descending into its own wake a rotor loses thrust.
+
+use nalgebra::Vector3;
+
+use crate::physics::{Airframe, Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::units::AIR_DENSITY_KG_M3;
+
+/// `F_i = -loss T_i e(x) e_z` at each hub, with `x = v_z / v_h` the climb over the induced velocity of hover,
+/// `v_h = sqrt(T_i / (2 rho A))`. `e(x)` is by how much Leishman's measured induced velocity exceeds that of
+/// momentum theory, `k(x) / k(0) - (sqrt(x^2/4 + 1) - x/2)`, where it does (-1.45 < x < 0), and fades with
+/// lateral airspeed as `1 / (1 + (v_xy / v_h)^2)`. The fluctuation that goes with it is not modelled.
+///
+/// Leishman 2006, section 2.13.
+#[derive(Debug, Clone, Copy)]
+pub struct VortexRing;
+
+const PARAMETERS: &[Parameter] = &[Parameter { name: "loss", unit: "-", min: 0.0, max: 5.0 }];
+
+/// Induced over hover velocity in descent, by powers of x (Leishman's fit of measurements).
+const INDUCED: [f64; 5] = [1.15, -1.125, -1.372, -1.718, -0.655];
+
+/// Excess of the induced velocity at the climb ratio x.
+fn excess(x: f64) -> f64 {
+    if !(-2.0..0.0).contains(&x) {
+        return 0.0;
+    }
+    let measured = INDUCED.iter().rev().fold(0.0, |sum, k| sum * x + k) / INDUCED[0];
+    (measured - ((x * x / 4.0 + 1.0).sqrt() - x / 2.0)).max(0.0)
+}
+
+/// Force and torque for a loss of 1.
+fn per_loss(at: &Condition, rotors: &Rotors) -> Wrench {
+    let radius_m = at.airframe.propulsion.rotor_radius_m.unwrap_or(f64::INFINITY);
+    let disc_kg_m = 2.0 * AIR_DENSITY_KG_M3 * std::f64::consts::PI * radius_m * radius_m;
+    let mut sum = Wrench::zero();
+    for (arm, thrust_n) in at.arms_m().zip(&rotors.thrust_n) {
+        let hover_m_s = (thrust_n.max(1e-9) / disc_kg_m).sqrt();
+        let air = at.air_velocity_at(&arm) / hover_m_s;
+        let lost_n = thrust_n * excess(air.z) / (1.0 + air.xy().norm_squared());
+        sum += Wrench::at(&arm, Vector3::z() * -lost_n);
+    }
+    sum
+}
+
+impl Effect for VortexRing {
+    fn id(&self) -> &'static str {
+        "vortex_ring"
+    }
+
+    fn sentence(&self) -> &'static str {
+        "It sinks into its own wake: the rotors lose thrust in a steep descent."
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn missing(&self, airframe: &Airframe) -> Option<&'static str> {
+        airframe.propulsion.rotor_radius_m.is_none().then_some("rotor_radius")
+    }
+
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
+        per_loss(at, rotors) * own.parameters[0]
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    fn regressor(&self, at: &Condition, rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
+        if let Some(column) = columns.first_mut() {
+            *column = per_loss(at, rotors);
+        }
+    }
+}

@@ -1,0 +1,191 @@
+use super::*;
+use crate::physics::ActiveEffect;
+use crate::physics::effects::{LinearDrag, MotorLag, SlungLoad};
+use crate::simulate::{
+    AutopilotCascade, AutopilotGains, GroundContact, GroundSettings, Setpoint, random_vehicle,
+};
+use crate::vehicle::Vehicle;
+use nalgebra::{UnitQuaternion, Vector3};
+
+const STEP_S: f64 = 0.001;
+
+fn plain(vehicle: &Vehicle, effects: Vec<ActiveEffect>) -> Model {
+    Model::new(vehicle, effects).unwrap()
+}
+
+fn input(model: &Model, relative_speed: f64) -> Input {
+    let mut input = Input::from_commands(&model.airframe, 0.0, &[]);
+    input.speed_command[..4].fill(relative_speed);
+    input
+}
+
+fn drifting(velocity_m_s: Vector3<f64>) -> State {
+    State { velocity_m_s, ..State::at_rest(Vector3::new(0.0, 0.0, 50.0), 0.4) }
+}
+
+#[test]
+fn drag_slows_a_glide_exponentially() {
+    let mut vehicle = random_vehicle(3).truth;
+    vehicle.rotors.iter_mut().for_each(|rotor| rotor.position_m.z = 0.0);
+    let m = vehicle.body.mass_kg;
+    let drag = ActiveEffect::new(&LinearDrag, &[0.3, 0.3, 0.0]).unwrap();
+    let model = plain(&vehicle, vec![drag]);
+    let hover = input(&model, 1.0);
+    let mut plant = Plant::new(&model, None, &drifting(Vector3::new(4.0, 0.0, 0.0)), &hover).unwrap();
+    for _ in 0..2000 {
+        plant.step(&hover, STEP_S);
+    }
+    // level, since the hubs lie in the centre's plane: m v' = -d v
+    assert!((plant.state().velocity_m_s.x - 4.0 * (-0.3 / m * 2.0).exp()).abs() < 1e-9);
+}
+
+#[test]
+fn a_lagging_rotor_answers_a_step_as_the_exponential_does() {
+    let vehicle = random_vehicle(4).truth;
+    let model = plain(&vehicle, vec![ActiveEffect::new(&MotorLag, &[0.05]).unwrap()]);
+    let mut plant = Plant::new(&model, None, &drifting(Vector3::zeros()), &input(&model, 1.0)).unwrap();
+    let faster = input(&model, 1.2);
+    for _ in 0..50 {
+        plant.step(&faster, STEP_S);
+    }
+    let expected = 1.2 - 0.2 * (-1.0_f64).exp();
+    assert!((plant.evaluate(&faster).rotors.speed[0] - expected).abs() < 1e-9);
+}
+
+/// Kinetic and potential energy of vehicle and load, J, and their momentum, N s.
+fn totals(plant: &Plant, vehicle: &Vehicle, (load_kg, length_m): (f64, f64)) -> (f64, Vector3<f64>) {
+    let (state, own) = (plant.state(), plant.vector.as_slice());
+    let cord = Vector3::from_column_slice(&own[13..16]);
+    let swing = Vector3::from_column_slice(&own[16..19]);
+    let load_velocity = state.velocity_m_s + swing * length_m;
+    let m = vehicle.body.mass_kg;
+    let kinetic = 0.5 * m * state.velocity_m_s.norm_squared() + 0.5 * load_kg * load_velocity.norm_squared();
+    let height = m * state.position_m.z + load_kg * (state.position_m + cord * length_m).z;
+    (kinetic + vehicle.gravity_m_s2 * height, state.velocity_m_s * m + load_velocity * load_kg)
+}
+
+#[test]
+fn a_slung_load_in_free_fall_keeps_energy_and_momentum() {
+    let vehicle = random_vehicle(5).truth;
+    let load = (0.3, 0.8);
+    let model = plain(&vehicle, vec![ActiveEffect::new(&SlungLoad, &[load.0, load.1]).unwrap()]);
+    let off = input(&model, 0.0);
+    let mut plant = Plant::new(&model, None, &drifting(Vector3::new(1.0, 0.5, 0.0)), &off).unwrap();
+    // the load swings
+    plant.vector[16] = 2.0;
+    plant.vector[17] = -1.0;
+    let (energy, momentum) = totals(&plant, &vehicle, load);
+    for _ in 0..2000 {
+        plant.step(&off, STEP_S);
+    }
+    let (later, moved) = totals(&plant, &vehicle, load);
+    assert!((later / energy - 1.0).abs() < 1e-9, "{energy} J, {later} J");
+    // only gravity acts on both together
+    let fall = Vector3::z() * (-9.81 * 2.0 * (vehicle.body.mass_kg + load.0));
+    assert!((moved - momentum - fall).norm() < 1e-8);
+    let cord = Vector3::from_column_slice(&plant.vector.as_slice()[13..16]);
+    assert!((cord.norm() - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_slung_load_swings_at_the_frequency_of_the_double_body() {
+    let vehicle = random_vehicle(6).truth;
+    let (m, load_kg, length_m) = (vehicle.body.mass_kg, 0.2, 1.0);
+    let model = plain(&vehicle, vec![ActiveEffect::new(&SlungLoad, &[load_kg, length_m]).unwrap()]);
+    // thrust carries both
+    let hold = input(&model, ((m + load_kg) / m).sqrt());
+    let mut plant = Plant::new(&model, None, &drifting(Vector3::zeros()), &hold).unwrap();
+    plant.vector[13] = 0.01;
+    let mut crossings = Vec::new();
+    let mut before = 0.01;
+    for step in 0..6000_u32 {
+        plant.step(&Input { time_s: f64::from(step) * STEP_S, ..hold }, STEP_S);
+        let now = plant.vector[13];
+        if before > 0.0 && now <= 0.0 {
+            crossings.push((f64::from(step) + before / (before - now)) * STEP_S);
+        }
+        before = now;
+    }
+    let found = std::f64::consts::TAU / (crossings[1] - crossings[0]);
+    let expected = (9.81 / length_m * (1.0 + load_kg / m)).sqrt();
+    assert!((found / expected - 1.0).abs() < 1e-3, "{found} rad/s, expected {expected}");
+}
+
+#[test]
+fn a_vehicle_rests_on_the_ground_takes_off_and_lands() {
+    let vehicle = random_vehicle(7).truth;
+    let model = plain(&vehicle, vec![]);
+    let ground = GroundContact::new(&model.airframe, GroundSettings::default());
+    let push = |_: f64, state: &State| ground.wrench(state);
+    let stand = Vector3::new(0.0, 0.0, ground.standing_height_m() + 0.02);
+    let off = input(&model, 0.0);
+    // dropped from 2 cm, a little askew and moving
+    let mut state = State::at_rest(stand, 0.3);
+    state.velocity_m_s.x = 0.2;
+    state.attitude *= UnitQuaternion::from_euler_angles(0.05, 0.02, 0.0);
+    let mut plant = Plant::new(&model, Some(&push), &state, &off).unwrap();
+    for _ in 0..2000 {
+        plant.step(&off, STEP_S);
+    }
+    let resting = plant.state();
+    assert!(resting.velocity_m_s.norm() < 1e-3 && resting.rates_rad_s.norm() < 1e-3);
+    assert!((resting.position_m.z - ground.standing_height_m()).abs() < 1e-4);
+    assert!((resting.attitude * Vector3::z()).z > 0.999_999);
+    // then the cascade takes it to 2 m and back
+    let mut cascade = AutopilotCascade::new(&vehicle, AutopilotGains::default(), 0.0).unwrap();
+    let mut fly = |plant: &mut Plant, target_m: f64, seconds: u32| {
+        for step in 0..seconds * 1000 {
+            let height_m = target_m;
+            let setpoint = Setpoint {
+                position_m: Vector3::new(0.0, 0.0, height_m),
+                velocity_m_s: Vector3::zeros(),
+                acceleration_m_s2: Vector3::zeros(),
+                yaw_rad: 0.3,
+                yaw_rate_rad_s: 0.0,
+            };
+            let commands = cascade.commands(&setpoint, &plant.state(), STEP_S);
+            let time_s = f64::from(step) * STEP_S;
+            plant.step(&Input::from_commands(&model.airframe, time_s, &commands), STEP_S);
+        }
+    };
+    fly(&mut plant, 2.0, 12);
+    let up = plant.state();
+    assert!((up.position_m - Vector3::new(0.0, 0.0, 2.0)).norm() < 0.05, "{}", up.position_m);
+    assert!((up.attitude.euler_angles().2 - 0.3).abs() < 0.01);
+    fly(&mut plant, -1.0, 8);
+    for _ in 0..2000 {
+        plant.step(&off, STEP_S);
+    }
+    assert!((plant.state().position_m.z - ground.standing_height_m()).abs() < 1e-3);
+}
+
+#[test]
+fn the_autopilots_cascade_flies_a_circle_in_wind() {
+    let vehicle = random_vehicle(8).truth;
+    let drag = ActiveEffect::new(&LinearDrag, &[0.15, 0.15, 0.05]).unwrap();
+    let model = plain(&vehicle, vec![drag]);
+    let mut cascade = AutopilotCascade::new(&vehicle, AutopilotGains::default(), 0.02).unwrap();
+    let hover = input(&model, 1.0);
+    let mut plant =
+        Plant::new(&model, None, &State::at_rest(Vector3::new(1.0, 0.0, 2.0), 0.0), &hover).unwrap();
+    let mut worst_m = 0.0_f64;
+    for step in 0..30_000_u32 {
+        let t = f64::from(step) * STEP_S;
+        let (sin, cos) = (0.8 * t).sin_cos();
+        let setpoint = Setpoint {
+            position_m: Vector3::new(cos, sin, 2.0),
+            velocity_m_s: Vector3::new(-sin, cos, 0.0) * 0.8,
+            acceleration_m_s2: Vector3::new(-cos, -sin, 0.0) * 0.64,
+            yaw_rad: 0.5 * t,
+            yaw_rate_rad_s: 0.5,
+        };
+        let commands = cascade.commands(&setpoint, &plant.state(), STEP_S);
+        let mut now = Input::from_commands(&model.airframe, t, &commands);
+        now.wind_m_s = Vector3::new(2.0, 0.0, 0.0);
+        plant.step(&now, STEP_S);
+        if t > 15.0 {
+            worst_m = worst_m.max((plant.state().position_m - setpoint.position_m).norm());
+        }
+    }
+    assert!(worst_m < 0.15, "{worst_m} m");
+}
