@@ -22,12 +22,12 @@ const AFTER_HELP: &str = "Exit status: 0 done, 1 failure, 2 bad usage or input, 
 pub enum Verb {
     /// Check a vehicle file (or a model) and say what it means
     Vehicle(VehicleArgs),
-    /// Say what is in a log and what can be identified from it
-    Inspect(InspectArgs),
     /// Plan an excitation trajectory inside limits, or check one
     Plan(PlanArgs),
     /// Identify mass and inertia from recorded flights
     Identify(IdentifyArgs),
+    /// Say what is in a log and what can be identified from it
+    Inspect(InspectArgs),
 }
 
 /// Arguments of `mavid vehicle`.
@@ -35,22 +35,6 @@ pub enum Verb {
 pub struct VehicleArgs {
     /// vehicle.toml or model.toml
     pub file: PathBuf,
-}
-
-/// Arguments of `mavid inspect`.
-#[derive(Debug, Args)]
-pub struct InspectArgs {
-    /// flight.tlog or flight.csv
-    pub log: PathBuf,
-    /// vehicle.toml or model.toml: says how well each parameter can be identified
-    #[arg(long)]
-    pub vehicle: Option<PathBuf>,
-    /// what the columns of a CSV file mean (default: configs/csv/default.toml)
-    #[arg(long)]
-    pub csv_map: Option<PathBuf>,
-    /// the vehicle's MAVLink system id, where a log holds several
-    #[arg(long)]
-    pub system: Option<u32>,
 }
 
 /// Arguments of `mavid plan`.
@@ -139,4 +123,20 @@ pub struct IdentifyArgs {
     /// use commands even where rotor speeds are measured
     #[arg(long)]
     pub commands: bool,
+}
+
+/// Arguments of `mavid inspect`.
+#[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// flight.tlog or flight.csv
+    pub log: PathBuf,
+    /// vehicle.toml or model.toml: says how well each parameter can be identified
+    #[arg(long)]
+    pub vehicle: Option<PathBuf>,
+    /// what the columns of a CSV file mean (default: configs/csv/default.toml)
+    #[arg(long)]
+    pub csv_map: Option<PathBuf>,
+    /// the vehicle's MAVLink system id, where a log holds several
+    #[arg(long)]
+    pub system: Option<u32>,
 }

@@ -220,7 +220,12 @@ fn every_shared_flight_is_inspected_without_and_with_its_vehicle() {
         let vehicle = read_vehicle(&vehicle).unwrap().vehicle;
         assert!(inspected(&path, None).verdict.starts_with("Has what identification of mass, Ixx"), "{name}");
         let inspection = inspected(&path, Some(&vehicle));
-        assert!(inspection.verdict.starts_with("Good for"), "{}: {}", path.display(), inspection.verdict);
+        assert!(
+            inspection.verdict.starts_with("This log is good for mass"),
+            "{}: {}",
+            path.display(),
+            inspection.verdict
+        );
         let mass = inspection.identifiability[0].std_relative.unwrap();
         assert!(mass < 0.05, "{name}: {mass}");
         assert!(inspection.losses.is_empty(), "{name}");

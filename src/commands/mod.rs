@@ -75,9 +75,9 @@ impl CommandError {
 pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
     match &cli.verb {
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
-        Verb::Inspect(args) => inspect::run(cli.json, args),
         Verb::Plan(args) => plan::run(cli.json, args),
         Verb::Identify(args) => identify::run(cli.json, args),
+        Verb::Inspect(args) => inspect::run(cli.json, args),
     }
 }
 

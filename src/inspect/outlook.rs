@@ -129,7 +129,7 @@ fn of(evidence: &Evidence<'_>, index: usize) -> Outlook {
             Finding::Determined { std, .. } => Outlook {
                 status: "determined",
                 std: Some(std),
-                std_relative: Some(std / scale_of(&theta_of(&vehicle.body), index)),
+                std_relative: Some(std / size_of(vehicle, expected, index)),
                 ..none
             },
             Finding::NotDetermined { reason } => Outlook { reason: Some(reason), ..none },
@@ -140,6 +140,16 @@ fn of(evidence: &Evidence<'_>, index: usize) -> Outlook {
         Some(reason) => Outlook { reason: Some(reason), ..none },
         None => Outlook { status: "possible", ..none },
     }
+}
+
+/// A parameter's size: the larger of what the vehicle file says and what the log does, as [`finding`] judges.
+fn size_of(vehicle: &Vehicle, expected: &Estimated, index: usize) -> f64 {
+    let stated = scale_of(&theta_of(&vehicle.body), index);
+    let theta = match vehicle.anchor {
+        Anchor::Mass => rescaled(expected, vehicle.body.mass_kg).theta,
+        Anchor::Thrust => expected.theta,
+    };
+    stated.max(scale_of(&theta.map(f64::abs), index))
 }
 
 /// What `identify` will say, on the scale that the vehicle's anchor sets.

@@ -151,17 +151,15 @@ pub fn usable(grid: &Grid, evidence: &Evidence<'_>, transient_s: f64) -> (Vec<bo
             (candidates, idle, mask) = kept;
         }
     }
-    let flown: Vec<bool> = grounded.iter().map(|grounded| !grounded).collect();
-    let both = |rule: &[bool], other: &[bool]| {
-        seconds(&rule.iter().zip(other).map(|(a, b)| *a && *b).collect::<Vec<bool>>())
-    };
+    let flown =
+        |rule: &[bool]| seconds(&rule.iter().zip(&grounded).map(|(r, g)| *r && !*g).collect::<Vec<_>>());
     let report = Usable {
         total_s: grid.count as f64 * grid.step_s,
         grounded_s: seconds(&grounded),
-        transient_s: both(&transient, &flown),
-        idle_s: both(&idle, &candidates),
-        saturated_s: both(&saturated, &flown),
-        gap_s: both(&gap, &flown),
+        transient_s: flown(&transient),
+        idle_s: seconds(&idle.iter().zip(&candidates).map(|(idle, c)| *idle && *c).collect::<Vec<bool>>()),
+        saturated_s: flown(&saturated),
+        gap_s: flown(&gap),
         usable_s: seconds(&mask),
         saturation_kept,
     };
