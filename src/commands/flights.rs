@@ -1,7 +1,7 @@
 //! Loads recordings, whatever their format.
 
 use mavid::config::{default_csv_mapping, load_csv_mapping};
-use mavid::log::{LoadOptions, ReadReport, Recording, SystemId, csv};
+use mavid::log::{LoadOptions, Recording, SystemId, csv};
 use mavid::report::InputFile;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -34,39 +34,14 @@ pub fn load(path: &Path, read_as: &ReadAs<'_>) -> Result<Flight, CommandError> {
     let (recording, losses) = if is_csv {
         let mapping = read_as.csv_map.map_or_else(default_csv_mapping, |file| load_csv_mapping(file))?;
         let (recording, report) = csv::read_csv(path, &mapping).map_err(|error| named(&error))?;
-        (recording, if report.has_loss() { vec![csv_loss(&report)] } else { Vec::new() })
+        (recording, report.losses())
     } else {
         let options = LoadOptions { system: read_as.system.map(|id| SystemId(u32::from(id))) };
         let loaded = mavid::log::load(path, &options).map_err(|error| named(&error))?;
-        (loaded.recording, tlog_losses(&loaded.report))
+        (loaded.recording, loaded.report.losses())
     };
     let sha256 = sha256_of(path).map_err(|error| named(&error))?;
     Ok(Flight { recording, input: InputFile { path: path.display().to_string(), sha256, losses } })
-}
-
-fn csv_loss(report: &csv::CsvReport) -> String {
-    format!(
-        "{} of {} rows rejected, {} repeat a time, {} attitudes invalid",
-        report.rows_rejected, report.rows, report.rows_repeating_a_time, report.invalid_attitudes
-    )
-}
-
-/// What is gone from a telemetry log: damage, not the frames that a radio link lost.
-pub fn tlog_losses(report: &ReadReport) -> Vec<String> {
-    let mut losses = Vec::new();
-    if report.bad_crc > 0 {
-        losses.push(format!("{} frames with a wrong checksum dropped", report.bad_crc));
-    }
-    if report.resync_count > 0 {
-        losses.push(format!(
-            "{} bytes of no frame skipped in {} places",
-            report.skipped_bytes, report.resync_count
-        ));
-    }
-    if report.truncated_tail_bytes > 0 {
-        losses.push(format!("{} bytes of a record cut off at the end", report.truncated_tail_bytes));
-    }
-    losses
 }
 
 fn sha256_of(path: &Path) -> std::io::Result<String> {

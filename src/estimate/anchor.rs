@@ -51,8 +51,9 @@ pub fn apply_anchor(identification: &mut Identification, vehicle: &Vehicle) -> O
     Some(scale)
 }
 
-/// `Theta' = Theta m_w / m`, its covariance by the chain rule.
-fn rescaled(estimated: &Estimated, weighed_kg: f64) -> Estimated {
+/// On the scale of a weighed mass: `Theta' = Theta m_w / m`, its covariance by the chain rule.
+#[must_use]
+pub fn rescaled(estimated: &Estimated, weighed_kg: f64) -> Estimated {
     let factor = weighed_kg / estimated.theta[0];
     let theta: Theta = estimated.theta * factor;
     let mut jacobian = SMatrix::<f64, THETA, THETA>::identity() * factor;

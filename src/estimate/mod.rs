@@ -12,7 +12,7 @@ mod rotor_check;
 mod theta;
 mod weak;
 
-pub use anchor::{ThrustScale, apply_anchor, identified_vehicle};
+pub use anchor::{ThrustScale, apply_anchor, identified_vehicle, rescaled};
 pub use identify::{EstimateError, Identification, IdentifySettings, Method, identify};
 pub use information::WeakInformation;
 pub use physical::{is_physical, nearest_physical, second_moments};

@@ -3,6 +3,7 @@
 use super::inspection::Excitation;
 use super::motion::Motion;
 use crate::signals::{Grid, WeakKernel, hann_windowed, power_at, stride};
+use crate::units::STANDARD_GRAVITY_M_S2;
 use nalgebra::Vector3;
 
 /// Half width of the kernel, s: the identification's own.
@@ -25,6 +26,7 @@ pub(super) struct ExcitationTally {
     seconds: f64,
     rate: Option<Moments>,
     acceleration: Option<Moments>,
+    /// count, sum and sum of squares of what is beyond gravity: a small difference of squares stays exact
     thrust: Option<(f64, f64, f64)>,
     speed: Option<(f64, f64, f64)>,
     altitude_m: Option<(f64, f64)>,
@@ -83,7 +85,7 @@ impl ExcitationTally {
         }
         if let Some(thrust) = &motion.thrust {
             let (count, sum, square) = self.thrust.get_or_insert((0.0, 0.0, 0.0));
-            for value in kernel.apply(0, thrust, &centers) {
+            for value in kernel.apply(0, thrust, &centers).iter().map(|f| f - STANDARD_GRAVITY_M_S2) {
                 *count += 1.0;
                 *sum += value;
                 *square += value * value;
@@ -186,7 +188,7 @@ impl ExcitationTally {
             rate_rms_rad_s: self.rate.map(|rate| rate.rms()),
             angular_acceleration_rms_rad_s2: self.acceleration.map(|acceleration| acceleration.rms()),
             angular_acceleration_band_hz: self.band_hz(),
-            thrust_mean_m_s2: self.thrust.map(|(count, sum, _)| sum / count),
+            thrust_mean_m_s2: self.thrust.map(|(count, sum, _)| STANDARD_GRAVITY_M_S2 + sum / count),
             thrust_variation_m_s2: self
                 .thrust
                 .map(|(count, sum, square)| (square / count - (sum / count).powi(2)).max(0.0).sqrt()),

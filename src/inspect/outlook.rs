@@ -2,7 +2,7 @@
 
 use super::assess::Assessment;
 use super::inspection::Outlook;
-use crate::estimate::{Finding, NAMES, THETA, UNITS, finding, scale_of, theta_of};
+use crate::estimate::{Estimated, Finding, NAMES, THETA, UNITS, finding, rescaled, scale_of, theta_of};
 use crate::log::{Quantity, StreamKey, StreamStats};
 use crate::vehicle::{Anchor, Vehicle};
 
@@ -106,24 +106,66 @@ pub(super) fn outlook(evidence: &Evidence<'_>) -> Vec<Outlook> {
 }
 
 fn of(evidence: &Evidence<'_>, index: usize) -> Outlook {
-    // a weighed vehicle's thrust has the mass' place: only their ratio comes out of a flight
-    let weighed = index == 0 && evidence.vehicle.is_some_and(|vehicle| vehicle.anchor == Anchor::Mass);
-    let (name, unit) = if weighed { ("thrust_scale", "1") } else { (NAMES[index], UNITS[index]) };
-    let none = Outlook { name, status: "not_determined", std: None, unit, std_relative: None, reason: None };
+    let blank = |name, unit| Outlook {
+        name,
+        status: "not_determined",
+        std: None,
+        unit,
+        std_relative: None,
+        reason: None,
+    };
+    let none = blank(NAMES[index], UNITS[index]);
     if let (Some(vehicle), Some(expected)) = (evidence.vehicle, &evidence.assessment.expected) {
-        let nominal = theta_of(&vehicle.body);
-        return match finding(expected, &nominal, index) {
-            Finding::Determined { std, .. } => {
-                let relative = std / scale_of(&nominal, index);
-                let std = if weighed { relative } else { std };
-                Outlook { status: "determined", std: Some(std), std_relative: Some(relative), ..none }
-            }
-            Finding::Given { .. } => Outlook { status: "given", ..none },
+        let weighed = vehicle.anchor == Anchor::Mass;
+        // a weighed vehicle's thrust has the mass' place: only their ratio comes out of a flight
+        let none = if weighed && index == 0 { blank("thrust_scale", "1") } else { none };
+        return match expected_finding(vehicle, expected, index) {
+            Finding::Determined { value, std } if weighed && index == 0 => Outlook {
+                status: "determined",
+                std: Some(vehicle.body.mass_kg / value * (std / value)),
+                std_relative: Some(std / value),
+                ..none
+            },
+            Finding::Determined { std, .. } => Outlook {
+                status: "determined",
+                std: Some(std),
+                std_relative: Some(std / size_of(vehicle, expected, index)),
+                ..none
+            },
             Finding::NotDetermined { reason } => Outlook { reason: Some(reason), ..none },
+            Finding::Given { .. } => Outlook { reason: Some("known beforehand".into()), ..none },
         };
     }
     match evidence.obstacle(index) {
         Some(reason) => Outlook { reason: Some(reason), ..none },
         None => Outlook { status: "possible", ..none },
+    }
+}
+
+/// A parameter's size: the larger of what the vehicle file says and what the log does, as [`finding`] judges.
+fn size_of(vehicle: &Vehicle, expected: &Estimated, index: usize) -> f64 {
+    let stated = scale_of(&theta_of(&vehicle.body), index);
+    let theta = match vehicle.anchor {
+        Anchor::Mass => rescaled(expected, vehicle.body.mass_kg).theta,
+        Anchor::Thrust => expected.theta,
+    };
+    stated.max(scale_of(&theta.map(f64::abs), index))
+}
+
+/// What `identify` will say, on the scale that the vehicle's anchor sets.
+fn expected_finding(vehicle: &Vehicle, expected: &Estimated, index: usize) -> Finding {
+    let nominal = theta_of(&vehicle.body);
+    let of_mass = finding(expected, &nominal, 0);
+    match (vehicle.anchor, of_mass) {
+        (Anchor::Mass, Finding::Determined { .. }) if index > 0 => {
+            finding(&rescaled(expected, vehicle.body.mass_kg), &nominal, index)
+        }
+        (Anchor::Mass, unknown) if index > 0 => match unknown {
+            Finding::NotDetermined { reason } => {
+                Finding::NotDetermined { reason: format!("the thrust scale is not determined: {reason}") }
+            }
+            other => other,
+        },
+        _ => finding(expected, &nominal, index),
     }
 }

@@ -1,4 +1,4 @@
-//! The readers' reports as they are told, and what of them is loss.
+//! The readers' reports as they are told.
 
 use super::inspection::{CsvReading, SenderSummary, TlogReading};
 use crate::log::csv::CsvReport;
@@ -49,26 +49,6 @@ pub(super) fn tlog_reading(report: &ReadReport) -> TlogReading {
     }
 }
 
-/// What of the file itself was lost. Frames that a radio lost before the file was written show as gaps in
-/// the sequence; they are told, but they are not the file's loss.
-pub(super) fn tlog_losses(reading: &TlogReading) -> Vec<String> {
-    let mut losses = Vec::new();
-    if reading.bad_crc > 0 {
-        losses.push(format!("{} frames with a wrong checksum dropped", reading.bad_crc));
-    }
-    if reading.resync_count > 0 {
-        let first = reading.resyncs.first().map_or(0, |(offset, _)| *offset);
-        losses.push(format!(
-            "{} bytes skipped in {} damaged places, the first at byte {first}",
-            reading.skipped_bytes, reading.resync_count
-        ));
-    }
-    if reading.truncated_tail_bytes > 0 {
-        losses.push(format!("{} bytes of a record cut off at the end", reading.truncated_tail_bytes));
-    }
-    losses
-}
-
 /// A table's report.
 pub(super) fn csv_reading(report: &CsvReport) -> CsvReading {
     CsvReading {
@@ -80,23 +60,4 @@ pub(super) fn csv_reading(report: &CsvReport) -> CsvReading {
         invalid_attitudes: report.invalid_attitudes,
         unused_columns: report.unused_columns.clone(),
     }
-}
-
-/// What of the table was left out.
-pub(super) fn csv_losses(reading: &CsvReading) -> Vec<String> {
-    let mut losses = Vec::new();
-    if reading.rows_rejected > 0 {
-        let first = reading
-            .rejections
-            .first()
-            .map_or_else(String::new, |(line, reason)| format!(", the first in line {line}: {reason}"));
-        losses.push(format!("{} of {} rows rejected{first}", reading.rows_rejected, reading.rows));
-    }
-    if reading.rows_repeating_a_time > 0 {
-        losses.push(format!("{} rows repeat a time and were left out", reading.rows_repeating_a_time));
-    }
-    if reading.invalid_attitudes > 0 {
-        losses.push(format!("{} attitudes are no rotations and were left out", reading.invalid_attitudes));
-    }
-    losses
 }

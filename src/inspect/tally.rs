@@ -8,7 +8,7 @@ use super::clock::ClockTally;
 use super::inspection::{Inspection, Reading, Text, TextSummary, VehicleSummary};
 use super::outlook::{Evidence, outlook};
 use super::parameters::Parameters;
-use super::reading::{csv_losses, csv_reading, tlog_losses, tlog_reading};
+use super::reading::{csv_reading, tlog_reading};
 use super::streams::{StreamTallies, summary_of};
 use super::timeline::TimelineTally;
 use super::verdict::verdict;
@@ -140,8 +140,8 @@ impl Pass {
                 let changed = tally.add(place, &event);
                 let sent = send(recorder.add(event), &tally.parameters);
                 parameters_late |= changed && sent > 0;
-                events += 1;
-                if events % PROGRESS_EVENTS == 0 {
+                events = events.wrapping_add(1);
+                if events.is_multiple_of(PROGRESS_EVENTS) {
                     progress(place.offset);
                 }
             });
@@ -167,7 +167,6 @@ impl Pass {
             .filter(|sender| sender.system == speaker.system && sender.component == speaker.component)
             .map(|sender| sender.messages.get(crate::log::Source::Heartbeat.message_id()))
             .sum::<u64>();
-        let losses = tlog_losses(&reading);
         let streams = self.tally.streams.summary();
         let found = Found {
             vehicle: VehicleSummary {
@@ -179,7 +178,7 @@ impl Pass {
             },
             autopilot: speaker.autopilot,
             reading: Reading::Tlog(reading),
-            losses,
+            losses: report.losses(),
             streams,
             numbers_held_max: self.numbers_held_max,
         };
@@ -202,15 +201,14 @@ pub fn inspect_csv(recording: &Recording, report: &CsvReport, vehicle: Option<&V
     recording.clock_resets_s.iter().for_each(|time_s| tally.clock.reset(*time_s));
     let mut assessor = Assessor::new(vehicle);
     windows_of(recording).iter().for_each(|window| assessor.window(window));
-    let reading = csv_reading(report);
     let found = Found {
         vehicle: VehicleSummary {
             autopilot: autopilot_name(recording.autopilot),
             ..VehicleSummary::default()
         },
         autopilot: recording.autopilot,
-        losses: csv_losses(&reading),
-        reading: Reading::Csv(reading),
+        losses: report.losses(),
+        reading: Reading::Csv(csv_reading(report)),
         streams,
         numbers_held_max: recording.streams.values().map(|s| s.values.len() + s.len()).sum(),
     };

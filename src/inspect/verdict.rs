@@ -9,6 +9,8 @@ use crate::signals::SignalsError;
 const AMPLE_S: f64 = 20.0;
 /// A share of the flight that is worth a word when it is lost.
 const NOTABLE_SHARE: f64 = 0.05;
+/// A standard error beyond this share of the parameter is a poor one.
+const POOR: f64 = 0.1;
 /// Rate to ask for, Hz.
 const WANTED_HZ: u32 = 100;
 
@@ -65,12 +67,20 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
             }
         );
     }
-    let to: Vec<String> = good
-        .iter()
-        .filter_map(|o| Some(format!("{} to {}", label(o.name), percent(o.std_relative?))))
+    let to = |poor: bool| -> Vec<String> {
+        let wanted = |outlook: &&&Outlook| outlook.std_relative.is_some_and(|std| (std > POOR) == poor);
+        let told = |outlook: &&Outlook| {
+            format!("{} to {}", label(outlook.name), percent(outlook.std_relative.unwrap_or(f64::NAN)))
+        };
+        good.iter().filter(wanted).map(told).collect()
+    };
+    let parts: Vec<String> = [("good for", to(false)), ("poor for", to(true))]
+        .into_iter()
+        .filter(|(_, names)| !names.is_empty())
+        .map(|(word, names)| format!("{word} {}", names.join(", ")))
         .collect();
-    let not = if bad.is_empty() { String::new() } else { format!(", but not for {}", bad.join(", ")) };
-    format!("Good for {}{not}: {time}. Next: `mavid identify`.", to.join(", "))
+    let not = if bad.is_empty() { String::new() } else { format!("; not for {}", bad.join(", ")) };
+    format!("This log is {}{not}: {time}. Next: `mavid identify`.", parts.join("; "))
 }
 
 /// Mass and moments: the products follow them.

@@ -190,6 +190,27 @@ impl ReadReport {
             && self.lost_frames() == 0
     }
 
+    /// What of the file itself is gone, in words. Frames that a link lost before the file was written show as
+    /// gaps in the sequence: they are no loss of the file's.
+    #[must_use]
+    pub fn losses(&self) -> Vec<String> {
+        let mut losses = Vec::new();
+        if self.bad_crc > 0 {
+            losses.push(format!("{} frames with a wrong checksum dropped", self.bad_crc));
+        }
+        if self.resync_count > 0 {
+            let first = self.resyncs.first().map_or(0, |resync| resync.offset);
+            losses.push(format!(
+                "{} bytes of no frame skipped in {} places, the first at byte {first}",
+                self.skipped_bytes, self.resync_count
+            ));
+        }
+        if self.truncated_tail_bytes > 0 {
+            losses.push(format!("{} bytes of a record cut off at the end", self.truncated_tail_bytes));
+        }
+        losses
+    }
+
     pub(super) fn tally(&mut self, record: &Record<'_>, last_stamp_us: Option<u64>, shared_stamp: bool) {
         let header = record.frame.header();
         self.frames += 1;

@@ -112,6 +112,26 @@ impl CsvReport {
     /// How many rejected rows are told one by one.
     pub const REJECTIONS_KEPT: usize = 20;
 
+    /// What of the file was left out, in words.
+    #[must_use]
+    pub fn losses(&self) -> Vec<String> {
+        let mut losses = Vec::new();
+        if self.rows_rejected > 0 {
+            let first = self
+                .rejections
+                .first()
+                .map_or_else(String::new, |row| format!(", the first in line {}: {}", row.line, row.reason));
+            losses.push(format!("{} of {} rows rejected{first}", self.rows_rejected, self.rows));
+        }
+        if self.rows_repeating_a_time > 0 {
+            losses.push(format!("{} rows repeat a time and were left out", self.rows_repeating_a_time));
+        }
+        if self.invalid_attitudes > 0 {
+            losses.push(format!("{} attitudes are no rotations and were left out", self.invalid_attitudes));
+        }
+        losses
+    }
+
     /// Whether anything of the file was lost.
     #[must_use]
     pub fn has_loss(&self) -> bool {
