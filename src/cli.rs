@@ -107,7 +107,7 @@ pub struct IdentifyArgs {
     pub csv_map: Option<PathBuf>,
     /// system id of the vehicle, where a log holds several
     #[arg(long, value_name = "ID")]
-    pub system: Option<u8>,
+    pub system: Option<u32>,
     /// s of flight left out at the beginning
     #[arg(long, value_name = "S", default_value_t = 10.0)]
     pub transient: f64,

@@ -15,7 +15,7 @@ pub struct ReadAs<'a> {
     /// what a CSV's columns mean
     pub csv_map: Option<&'a PathBuf>,
     /// the vehicle, where a log holds several
-    pub system: Option<u8>,
+    pub system: Option<u32>,
 }
 
 /// A recording and the file that it came from.
@@ -36,7 +36,7 @@ pub fn load(path: &Path, read_as: &ReadAs<'_>) -> Result<Flight, CommandError> {
         let (recording, report) = csv::read_csv(path, &mapping).map_err(|error| named(&error))?;
         (recording, report.losses())
     } else {
-        let options = LoadOptions { system: read_as.system.map(|id| SystemId(u32::from(id))) };
+        let options = LoadOptions { system: read_as.system.map(SystemId) };
         let loaded = mavid::log::load(path, &options).map_err(|error| named(&error))?;
         (loaded.recording, loaded.report.losses())
     };
