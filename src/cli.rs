@@ -108,17 +108,17 @@ pub struct IdentifyArgs {
     /// system id of the vehicle, where a log holds several
     #[arg(long, value_name = "ID")]
     pub system: Option<u32>,
-    /// s of flight left out at the beginning
-    #[arg(long, value_name = "S", default_value_t = 10.0)]
-    pub transient: f64,
+    /// s of flight left out at the beginning [default: 10, at most a fifth of the flight]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub transient: Option<f64>,
     /// cut-off of the zero-phase low-pass, Hz; without it ten times the trajectory's highest harmonic
-    #[arg(long, value_name = "HZ")]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub cutoff: Option<f64>,
     /// use the 31-tap windowed filter in place of the Butterworth
     #[arg(long)]
     pub fir: bool,
     /// adaptation gain of gradient descent
-    #[arg(long, default_value_t = mavid::estimate::PAPER_SIGMA)]
+    #[arg(long, default_value_t = mavid::estimate::PAPER_SIGMA, allow_negative_numbers = true)]
     pub sigma: f64,
     /// use commands even where rotor speeds are measured
     #[arg(long)]

@@ -27,13 +27,18 @@ pub struct Flight {
     pub input: InputFile,
 }
 
+/// Read by a mapping of its columns.
+pub fn is_csv(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
+}
+
 /// Reads one recording.
 pub fn load(path: &Path, read_as: &ReadAs<'_>) -> Result<Flight, CommandError> {
     let named = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
-    let is_csv = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
-    let (recording, losses) = if is_csv {
+    let (recording, losses) = if is_csv(path) {
         let mapping = read_as.csv_map.map_or_else(default_csv_mapping, |file| load_csv_mapping(file))?;
-        let (recording, report) = csv::read_csv(path, &mapping).map_err(|error| named(&error))?;
+        let (recording, report) =
+            csv::read_csv(path, &mapping).map_err(|error| CommandError::Input(error.to_string()))?;
         (recording, report.losses())
     } else {
         let options = LoadOptions { system: read_as.system.map(SystemId) };

@@ -1,6 +1,6 @@
 //! `mavid identify LOG... --vehicle V`: parameters from recorded flights.
 
-use mavid::config::load_vehicle;
+use mavid::config::{LoadedVehicle, read_vehicle};
 use mavid::estimate::{IdentifySettings, apply_anchor, identify};
 use mavid::report::{
     IdentificationDocument, InputFile, history_charts, identification_page, model_toml, svg,
@@ -10,32 +10,35 @@ use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 use std::path::Path;
 
-use super::flights::{ReadAs, load};
+use super::flights::{ReadAs, is_csv, load};
 use super::{CommandError, Outcome, output};
 use crate::cli::IdentifyArgs;
 
 /// Runs the verb.
 pub fn run(json: bool, args: &IdentifyArgs) -> Result<Outcome, CommandError> {
-    let vehicle = load_vehicle(&args.vehicle)?;
+    let LoadedVehicle { vehicle, warnings, .. } = read_vehicle(&args.vehicle)?;
+    for warning in &warnings {
+        output::message(&format!("warning: {}: {warning}", args.vehicle.display()));
+    }
     let settings = settings(args)?;
     let (flights, inputs) = conditioned(args, &vehicle)?;
     let mut identification =
         identify(&flights, &vehicle, &settings).map_err(|error| CommandError::Input(error.to_string()))?;
     let scale = apply_anchor(&mut identification, &vehicle);
     let quality: Vec<&Quality> = flights.iter().map(|signals| &signals.quality).collect();
-    if let Some(path) = &args.out {
-        let text = model_toml(&identification, &vehicle, &inputs, scale.as_ref())?;
-        write(path, &text)?;
-    }
-    if let Some(path) = &args.chart {
-        write(path, &svg(&history_charts(&identification)))?;
-    }
     if json {
         let document =
             IdentificationDocument::new(&identification, &vehicle, &quality, &inputs, scale.as_ref());
         output::json(&document)?;
     } else {
         output::text(identification_page(&identification, &vehicle, &quality, scale.as_ref()).trim_end())?;
+    }
+    if let Some(path) = &args.out {
+        let text = model_toml(&identification, &vehicle, &inputs, scale.as_ref())?;
+        write(path, &text)?;
+    }
+    if let Some(path) = &args.chart {
+        write(path, &svg(&history_charts(&identification)))?;
     }
     let mut outcome = Outcome::Done;
     for input in inputs.iter().filter(|input| !input.losses.is_empty()) {
@@ -47,15 +50,15 @@ pub fn run(json: bool, args: &IdentifyArgs) -> Result<Outcome, CommandError> {
 
 fn settings(args: &IdentifyArgs) -> Result<IdentifySettings, CommandError> {
     for (name, value) in [("--sigma", Some(args.sigma)), ("--cutoff", args.cutoff)] {
-        if value.is_some_and(|value| !value.is_finite() || value <= 0.0) {
-            return Err(CommandError::Input(format!("{name}: expected a positive number, got {value:?}")));
+        if let Some(value) = value.filter(|value| !value.is_finite() || *value <= 0.0) {
+            return Err(CommandError::Input(format!("{name}: expected a positive number, got {value}")));
         }
     }
-    if !args.transient.is_finite() || args.transient < 0.0 {
-        return Err(CommandError::Input(format!(
-            "--transient: expected seconds from 0 on, got {}",
-            args.transient
-        )));
+    if let Some(value) = args.transient.filter(|value| !value.is_finite() || *value < 0.0) {
+        return Err(CommandError::Input(format!("--transient: expected seconds from 0 on, got {value}")));
+    }
+    if args.csv_map.is_some() && !args.logs.iter().any(|log| is_csv(log)) {
+        return Err(CommandError::Input("--csv-map: expected a .csv among the logs, got none".into()));
     }
     Ok(IdentifySettings {
         cutoff_hz: args.cutoff,
@@ -98,5 +101,5 @@ fn conditioned(
 
 fn write(path: &Path, text: &str) -> Result<(), CommandError> {
     std::fs::write(path, text)
-        .map_err(|error| CommandError::Failure(format!("cannot write {}: {error}", path.display())))
+        .map_err(|error| CommandError::Input(format!("cannot write {}: {error}", path.display())))
 }

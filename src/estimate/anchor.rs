@@ -31,6 +31,10 @@ pub fn apply_anchor(identification: &mut Identification, vehicle: &Vehicle) -> O
     let weighed = vehicle.body.mass_kg;
     let nominal = theta_of(&vehicle.body);
     let scale = thrust_scale(&identification.best.result, vehicle);
+    if let Finding::Determined { value: factor, .. } = scale.factor {
+        identification.trim_torque_nm.iter_mut().for_each(|torque| *torque *= factor);
+        identification.residual.iter_mut().for_each(|residual| *residual *= factor);
+    }
     for result in identification.methods.iter_mut().chain([&mut identification.best.result]) {
         if matches!(result.parameters[0].finding, Finding::Determined { .. }) {
             *result = MethodResult::new(result.method, &rescaled(&result.estimated, weighed), &nominal);
@@ -61,7 +65,7 @@ pub fn rescaled(estimated: &Estimated, weighed_kg: f64) -> Estimated {
         jacobian[(row, 0)] -= theta[row] / estimated.theta[0];
     }
     let covariance: ThetaCovariance = jacobian * estimated.covariance * jacobian.transpose();
-    Estimated { theta, covariance }
+    Estimated { theta, covariance, explained: estimated.explained }
 }
 
 fn thrust_scale(best: &MethodResult, vehicle: &Vehicle) -> ThrustScale {
@@ -117,7 +121,7 @@ mod tests {
         let theta = SVector::from([2.0, 0.02, 0.0, 0.0, 0.03, 0.0, 0.05]);
         let mut covariance = ThetaCovariance::zeros();
         covariance[(0, 0)] = 0.02_f64.powi(2); // 1 % of the mass
-        let out = rescaled(&Estimated { theta, covariance }, 2.2);
+        let out = rescaled(&Estimated { theta, covariance, explained: None }, 2.2);
         assert!((out.theta[0] - 2.2).abs() < 1e-12);
         assert!((out.theta[1] - 0.022).abs() < 1e-12);
         assert!(out.covariance[(0, 0)].abs() < 1e-15); // weighed: no error left

@@ -1,5 +1,6 @@
 //! All methods on one or several flights of a vehicle, and which of them to believe.
 
+use super::plausible::{disagreeing, implausible};
 use super::recommend::{Recommendation, recommend};
 use super::result::{Estimated, MethodResult};
 use super::rotor_check::{WeakRotor, weak_rotor, with_weak_rotor};
@@ -95,6 +96,8 @@ pub struct Identification {
     pub residual: Vec<f64>,
     /// which equation each of [`Self::residual`] belongs to
     pub residual_channels: Vec<&'static str>,
+    /// share of each of these equations' variance that the rigid body explains (-)
+    pub explained: Vec<f64>,
     /// strength of the commanded trajectory as instrument: smallest first-stage F
     pub instrument_f: Option<f64>,
     /// m/s^2, vertical accelerometer less kinematics, per flight
@@ -164,6 +167,8 @@ fn identify_evenly(
         methods.push(MethodResult::new(Method::WeakIv, &Estimated::of(iv), &nominal));
     }
     let best = recommend(&plain, robust.as_ref(), by_instruments.as_ref(), &nominal);
+    notes.extend(implausible(&best.result, &nominal));
+    notes.extend(disagreeing(&weak.rows, &nominal));
     Ok(Identification {
         best,
         methods,
@@ -178,6 +183,7 @@ fn identify_evenly(
         trim_torque_nm: plain.trim_torque_nm,
         residual: plain.solution.sigma.clone(),
         residual_channels: plain.channels.clone(),
+        explained: plain.explained.clone(),
         instrument_f: by_instruments.as_ref().map(|iv| instrument_f(&plain, iv)),
         accelerometer_bias: weak.accelerometer_bias,
         notes,
@@ -269,7 +275,11 @@ impl WeakFlights {
             }
         };
         for signals in &mut self.signals {
-            signals.wrench = delayed_wrench(signals, compensation);
+            let step_s = signals.grid.step_s;
+            signals.wrench = delayed_wrench(&signals.wrench, step_s, compensation);
+            if let Some(jitter) = &mut signals.jitter_wrench {
+                *jitter = delayed_wrench(jitter, step_s, compensation);
+            }
         }
         self.refresh();
         (Some(found), compensation)
@@ -364,7 +374,7 @@ impl PaperRuns {
         self.runs
             .iter()
             .map(|(method, run)| {
-                let estimated = Estimated { theta: run.theta, covariance: run.covariance };
+                let estimated = Estimated { theta: run.theta, covariance: run.covariance, explained: None };
                 MethodResult::new(*method, &estimated, &self.nominal)
             })
             .collect()

@@ -2,7 +2,7 @@
 
 use super::result::Estimated;
 use super::theta::{THETA, Theta, ThetaCovariance};
-use super::weak::{JITTER, JITTER_STD, WeakEstimate};
+use super::weak::{WeakEstimate, priors};
 use nalgebra::{DMatrix, DVector};
 
 /// Information (inverse covariance) that one or several windows of one vehicle hold on all parameters of
@@ -13,6 +13,10 @@ pub struct WeakInformation {
     /// matrix times estimate
     weighted: DVector<f64>,
     windows: usize,
+    /// nuisances and the standard deviations that they are known to have beforehand
+    priors: Vec<(usize, f64)>,
+    /// best share of each torque's variance that the rigid body explains in a window
+    explained: Option<[f64; 3]>,
 }
 
 impl WeakInformation {
@@ -38,7 +42,9 @@ impl WeakInformation {
             }
         }
         let theta = estimate.solution.theta.map(|value| if value.is_finite() { value } else { 0.0 });
-        Self { weighted: &matrix * theta, matrix, windows: 1 }
+        let priors = priors(theta[0]);
+        let explained = Estimated::of(estimate).explained;
+        Self { weighted: &matrix * theta, matrix, windows: 1, priors, explained }
     }
 
     /// Adds another window's.
@@ -46,6 +52,11 @@ impl WeakInformation {
         self.matrix += &other.matrix;
         self.weighted += &other.weighted;
         self.windows += other.windows;
+        // the liveliest window says whether a rigid body moves so
+        self.explained = match (self.explained, other.explained) {
+            (Some(a), Some(b)) => Some(std::array::from_fn(|axis| a[axis].max(b[axis]))),
+            (a, b) => a.or(b),
+        };
     }
 
     /// The windows' common estimate and its covariance; NaN where nothing is known.
@@ -53,8 +64,10 @@ impl WeakInformation {
     pub fn combined(&self) -> Estimated {
         let mut matrix = self.matrix.clone();
         let used: Vec<usize> = (0..matrix.nrows()).filter(|&i| matrix[(i, i)] > 0.0).collect();
-        if let Some(at) = used.iter().position(|&i| i == JITTER) {
-            matrix[(JITTER, JITTER)] = self.jitter_information(&used, at);
+        for &(parameter, deviation) in &self.priors {
+            if let Some(at) = used.iter().position(|&i| i == parameter) {
+                matrix[(parameter, parameter)] = self.without_repeats(&used, at, deviation.powi(-2));
+            }
         }
         let scale: Vec<f64> = used.iter().map(|&i| matrix[(i, i)].sqrt()).collect();
         let scaled = DMatrix::from_fn(used.len(), used.len(), |i, j| {
@@ -64,6 +77,7 @@ impl WeakInformation {
         let mut estimated = Estimated {
             theta: Theta::from_element(f64::NAN),
             covariance: ThetaCovariance::from_element(f64::NAN),
+            explained: self.explained,
         };
         let Some(inverse) = inverse else { return estimated };
         let of_theta = used.iter().enumerate().filter(|(_, parameter)| **parameter < THETA);
@@ -78,18 +92,18 @@ impl WeakInformation {
         estimated
     }
 
-    /// Each window brought the prior of the jitter's share along: it counts once. What is left must still
-    /// hold the prior beside all that the other parameters take.
-    fn jitter_information(&self, used: &[usize], at: usize) -> f64 {
-        let prior = JITTER_STD.powi(-2);
+    /// Each window brought a nuisance's prior along: it counts once. What is left must still hold the
+    /// prior beside all that the other parameters take.
+    fn without_repeats(&self, used: &[usize], at: usize, prior: f64) -> f64 {
+        let parameter = used[at];
         let repeated = prior * self.windows.saturating_sub(1) as f64;
         let others: Vec<usize> = (0..used.len()).filter(|&i| i != at).map(|i| used[i]).collect();
         let scale: Vec<f64> = others.iter().map(|&i| self.matrix[(i, i)].sqrt()).collect();
         let rest = DMatrix::from_fn(others.len(), others.len(), |i, j| {
             self.matrix[(others[i], others[j])] / (scale[i] * scale[j])
         });
-        let coupling = DVector::from_fn(others.len(), |i, _| self.matrix[(others[i], JITTER)] / scale[i]);
+        let coupling = DVector::from_fn(others.len(), |i, _| self.matrix[(others[i], parameter)] / scale[i]);
         let taken = rest.cholesky().map_or(0.0, |factor| coupling.dot(&factor.solve(&coupling)));
-        (self.matrix[(JITTER, JITTER)] - repeated).max(taken + prior)
+        (self.matrix[(parameter, parameter)] - repeated).max(taken + prior)
     }
 }

@@ -4,6 +4,7 @@ mod anchor;
 mod identify;
 mod information;
 mod physical;
+mod plausible;
 mod problem;
 mod recommend;
 mod recursive;

@@ -62,9 +62,14 @@ impl Problem {
     pub fn solve(&self, row_weights: Option<&[DVector<f64>]>) -> Solution {
         let Fit { mut theta, sigma, normal } = self.fit(row_weights);
         let residuals = self.residuals(&theta);
-        let lags = self.residual_lags(&residuals);
+        // what a row contributes to the estimate is its weighted residual
+        let scored: Vec<DVector<f64>> = match row_weights {
+            Some(weights) => residuals.iter().zip(weights).map(|(r, w)| r.component_mul(w)).collect(),
+            None => residuals.clone(),
+        };
+        let lags = self.residual_lags(&scored);
         let bread = normal.inverse();
-        let covariance = self.covariance(&bread, &Scaled { residuals: &residuals, sigma: &sigma, lags });
+        let covariance = self.covariance(&bread, &Scaled { residuals: &scored, sigma: &sigma, lags });
         for (index, value) in theta.iter_mut().enumerate() {
             if normal.scale[index] <= 0.0 {
                 *value = f64::NAN;

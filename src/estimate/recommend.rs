@@ -39,8 +39,10 @@ pub fn recommend(
     // an inertia that is not determined needs no repair
     let as_estimated = MethodResult::new(method, &estimated, nominal);
     let determined = |i: usize| matches!(as_estimated.parameters[i].finding, Finding::Determined { .. });
-    let made_physical = [1, 4, 6].into_iter().all(determined) && !is_physical(&estimated.theta);
-    if made_physical && let Some(theta) = nearest_physical(&estimated.theta, &estimated.covariance, nominal) {
+    let needed = [1, 4, 6].into_iter().all(determined) && !is_physical(&estimated.theta);
+    let mended = needed.then(|| nearest_physical(&estimated.theta, &estimated.covariance, nominal)).flatten();
+    let made_physical = mended.is_some();
+    if let Some(theta) = mended {
         estimated.theta = theta;
     }
     Recommendation { method, why, result: MethodResult::new(method, &estimated, nominal), made_physical }

@@ -1,6 +1,6 @@
 //! The paper's estimators along time: least squares (40) and gradient descent (41), (42).
 
-use super::theta::{THETA, Theta, ThetaCovariance};
+use super::theta::{THETA, Theta, ThetaCovariance, scale_of};
 use crate::regression::SampledModel;
 use nalgebra::{Matrix4, SMatrix, Vector4};
 
@@ -65,7 +65,7 @@ fn solve(information: &SMatrix<f64, THETA, THETA>, right: &Theta) -> Option<Thet
     Some(solution.component_div(&scale))
 }
 
-/// Newey-West covariance of (40) over half a second of score correlation.
+/// Newey-West covariance of (40) over a second of score correlation.
 fn sandwich(model: &SampledModel, theta: &Theta, inverse: &SMatrix<f64, THETA, THETA>) -> ThetaCovariance {
     // scores summed over 0.1 s blocks: their lags then reach far at little cost
     let mut block = 1;
@@ -105,8 +105,8 @@ pub enum GradientStep {
 
 /// Gradient descent (41), (42) from `start` (the nominal parameters).
 ///
-/// The covariance follows the same linear recursion, driven by the residual of the end with its
-/// long-run variance.
+/// The covariance follows the same linear recursion, from a start that is uncertain by its own size,
+/// driven by the residual with its long-run variance.
 #[must_use]
 pub fn gradient_descent(
     model: &SampledModel,
@@ -127,7 +127,9 @@ pub fn gradient_descent(
         }
     }
     let noise = long_run_variance(model, &theta);
-    let mut covariance = ThetaCovariance::zeros();
+    // the start is a guess as wrong as it is large: what the descent does not forget of it stays uncertain
+    let guess = Theta::from_fn(|i, _| scale_of(start, i).powi(2));
+    let mut covariance = ThetaCovariance::from_diagonal(&guess);
     for gamma in &model.gamma {
         let k = gain_matrix(gamma, gain, step);
         let transition = ThetaCovariance::identity() - k * gamma;

@@ -40,6 +40,9 @@ pub enum Finding {
     },
 }
 
+/// An inertia is not claimed from a torque that moves as the rigid body says by less than this share.
+pub const LEAST_EXPLAINED: f64 = 0.3;
+
 /// `Theta` with its covariance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimated {
@@ -47,13 +50,22 @@ pub struct Estimated {
     pub theta: Theta,
     /// same order
     pub covariance: ThetaCovariance,
+    /// share of the variance of the torques about x, y, z that the rigid body explains; `None` where that
+    /// was not judged
+    pub explained: Option<[f64; 3]>,
 }
 
 impl Estimated {
     /// The rigid-body part of a weak-form estimate.
     #[must_use]
     pub fn of(weak: &WeakEstimate) -> Self {
-        Self { theta: weak.theta, covariance: weak.covariance }
+        let share = |name: &str| {
+            let index = weak.channels.iter().position(|channel| *channel == name)?;
+            weak.explained.get(index).copied()
+        };
+        let explained =
+            ["torque_x", "torque_y", "torque_z"].map(|name| share(name).unwrap_or(f64::NEG_INFINITY));
+        Self { theta: weak.theta, covariance: weak.covariance, explained: Some(explained) }
     }
 }
 
@@ -93,6 +105,31 @@ fn by_method(method: Method, finding: Finding) -> Finding {
     }
 }
 
+/// The axes whose torque a moment or product of inertia is seen in.
+fn axes_of(index: usize) -> &'static [usize] {
+    match index {
+        1 => &[0],
+        2 => &[0, 1],
+        3 => &[0, 2],
+        4 => &[1],
+        5 => &[1, 2],
+        6 => &[2],
+        _ => &[],
+    }
+}
+
+/// The torque of one of the parameter's axes does not move as a rigid body's would.
+fn unexplained(estimated: &Estimated, index: usize) -> Option<String> {
+    let shares = estimated.explained?;
+    axes_of(index).iter().find(|axis| shares[**axis] < LEAST_EXPLAINED).map(|axis| {
+        format!(
+            "the rigid body explains only {:.0} % of the torque about {}: noise, or physics that it leaves out",
+            100.0 * shares[*axis].max(0.0),
+            ["x", "y", "z"][*axis]
+        )
+    })
+}
+
 /// Judges one parameter.
 #[must_use]
 pub fn finding(estimated: &Estimated, nominal: &Theta, index: usize) -> Finding {
@@ -107,10 +144,14 @@ pub fn finding(estimated: &Estimated, nominal: &Theta, index: usize) -> Finding 
     if relative > LARGEST_RELATIVE_STD {
         return Finding::NotDetermined {
             reason: format!(
-                "standard error {:.0} % of its size; fly more angular acceleration about this axis",
-                100.0 * relative
+                "standard error {:.0} % of its size; fly more angular acceleration about {}",
+                100.0 * relative,
+                axes_of(index).iter().map(|axis| ["x", "y", "z"][*axis]).collect::<Vec<_>>().join(" and ")
             ),
         };
+    }
+    if let Some(reason) = unexplained(estimated, index) {
+        return Finding::NotDetermined { reason };
     }
     let moment = matches!(index, 0 | 1 | 4 | 6);
     if moment && value <= 2.0 * std {

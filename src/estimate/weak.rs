@@ -69,6 +69,8 @@ pub struct WeakEstimate {
     pub solution: Solution,
     /// names of the equations that are measured, in the order of the solution's channels
     pub channels: Vec<&'static str>,
+    /// share of each channel's variance that the rigid body explains, same order (-)
+    pub explained: Vec<f64>,
     /// share of rows that the robust weights held back
     pub held_back: f64,
 }
@@ -121,6 +123,7 @@ fn solve_with(
         trim_std_nm: std::array::from_fn(|i| solution.covariance[(TRIM + i, TRIM + i)].sqrt()),
         latency: (solution.theta[LATENCY], solution.covariance[(LATENCY, LATENCY)].sqrt()),
         channels: measured_channels(flights),
+        explained: explained(&problem, &solution),
         solution,
         held_back,
     })
@@ -136,11 +139,14 @@ pub fn latency(flights: &[WeakRows], start: &Theta) -> Option<Latency> {
     let (s1, s2) =
         (solution.covariance[(LATENCY, LATENCY)].sqrt(), solution.covariance[(CURVATURE, CURVATURE)].sqrt());
     let against_lag = (c2 / s2).abs();
-    let against_delay = ((c2 - 0.5 * c1 * c1) / s2).abs();
+    // the delta method: c2 - c1^2/2 takes its error from both
+    let cross = solution.covariance[(LATENCY, CURVATURE)];
+    let spread = (s2 * s2 + c1 * c1 * s1 * s1 - 2.0 * c1 * cross).max(0.0).sqrt();
+    let against_delay = ((c2 - 0.5 * c1 * c1) / spread).abs();
     let kind = match (against_lag > 4.0, against_delay > 4.0) {
-        (false, true) => LatencyKind::Lag,
+        (false, true) if c1 > 0.0 => LatencyKind::Lag,
         (true, false) => LatencyKind::Delay,
-        (true, true) if c1 * c1 > 2.0 * c2 && c2 > 0.0 => {
+        (true, true) if c1 * c1 > 2.0 * c2 && c1 > 0.0 => {
             LatencyKind::Both { delay_s: c1 - (c1 * c1 - 2.0 * c2).sqrt() }
         }
         _ => LatencyKind::Undetermined,
@@ -180,7 +186,7 @@ fn assemble(flights: &[WeakRows], theta: &Theta, method: WeakMethod<'_>, curvatu
 }
 
 /// What is known of the nuisances beforehand.
-fn priors(mass_kg: f64) -> Vec<(usize, f64)> {
+pub(super) fn priors(mass_kg: f64) -> Vec<(usize, f64)> {
     let heave = HEAVE_STD.iter().enumerate().map(|(i, std)| (HEAVE + i, std * mass_kg));
     std::iter::once((JITTER, JITTER_STD)).chain(heave).collect()
 }
@@ -223,6 +229,25 @@ fn design(
 /// Something is recorded that this equation needs: its row of the regressor is not empty.
 fn is_measured(flights: &[WeakRows], channel: usize) -> bool {
     flights.iter().any(|rows| rows.regressor[0].iter().any(|phi| phi.row(channel).norm_squared() > 0.0))
+}
+
+/// How much of each channel moves as the rigid body says: nuisances do not count as explained.
+fn explained(problem: &Problem, solution: &Solution) -> Vec<f64> {
+    let body: DVector<f64> = DVector::from_fn(problem.parameters(), |i, _| {
+        if i < THETA && solution.theta[i].is_finite() { solution.theta[i] } else { 0.0 }
+    });
+    let nuisances = DVector::from_fn(problem.parameters(), |i, _| {
+        if i >= THETA && solution.theta[i].is_finite() { solution.theta[i] } else { 0.0 }
+    });
+    problem
+        .channels
+        .iter()
+        .map(|channel| {
+            let left = &channel.y - &channel.x * &nuisances;
+            let residual = &left - &channel.x * &body;
+            1.0 - residual.variance() / left.variance().max(f64::MIN_POSITIVE)
+        })
+        .collect()
 }
 
 fn measured_channels(flights: &[WeakRows]) -> Vec<&'static str> {

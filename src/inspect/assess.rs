@@ -66,7 +66,7 @@ impl<'a> Assessor<'a> {
         let (spans, from) = airborne(recording, commands.as_ref(), &mut self.effort_max);
         self.flight.airborne_from = from;
         // only the first flight begins with the take-off's transient
-        let transient_s = if self.flown { 0.0 } else { ConditionSettings::default().transient_s };
+        let transient_s = self.flown.then_some(0.0);
         let settings = ConditionSettings { transient_s, ..ConditionSettings::default() };
         let conditioned = self.vehicle.map(|vehicle| (condition(recording, vehicle, &settings), vehicle));
         let spans = match conditioned {

@@ -43,7 +43,7 @@ impl Motion {
     pub(super) fn of_recording(
         recording: &Recording,
         airborne_s: &[(f64, f64)],
-        transient_s: f64,
+        transient_s: Option<f64>,
     ) -> Option<(Self, Usable)> {
         let pick = |quantity| best(recording, quantity, |s: &Stream| s.width == 3).map(|(_, stream)| stream);
         let chosen = [

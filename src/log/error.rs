@@ -39,7 +39,7 @@ pub enum LogError {
         raw_capture: bool,
     },
     /// the file's name does not say what it is
-    #[error("expected a log named *.tlog, got {}", path.display())]
+    #[error("expected a log named *.tlog or *.csv, got {}", path.display())]
     UnknownFormat {
         /// which file
         path: PathBuf,
@@ -51,7 +51,7 @@ pub enum LogError {
         systems: Vec<SystemId>,
     },
     /// more than one vehicle and none chosen
-    #[error("expected one vehicle, got systems {}: choose one", list(systems))]
+    #[error("expected one vehicle, got systems {}: name the one that is meant (--system)", list(systems))]
     SeveralVehicles {
         /// the vehicles
         systems: Vec<SystemId>,

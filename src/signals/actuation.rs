@@ -77,11 +77,27 @@ impl Actuation {
         }
     }
 
-    pub(super) fn notes(&self) -> Vec<String> {
-        match self {
-            Self::Rotors(rotors) => rotors.notes.clone(),
-            Self::Wrench(..) => Vec::new(),
+    /// What the user should know of where the thrusts come from.
+    pub(super) fn notes(&self, recording: &Recording, vehicle: &Vehicle) -> Vec<String> {
+        let Self::Rotors(rotors) = self else { return Vec::new() };
+        let mut notes = rotors.notes.clone();
+        let needed = vehicle.rotors.len();
+        let recorded = |quantity: Quantity| {
+            let streams = recording.streams.iter().filter(move |(key, _)| key.quantity == quantity);
+            streams.map(|(_, stream)| stream.width).max()
+        };
+        match recorded(Quantity::RotorSpeed) {
+            Some(width) if rotors.source == ThrustSource::Command && width < needed => notes.push(format!(
+                "rotor speeds of {width} rotors are recorded, the vehicle has {needed}: commands are used instead"
+            )),
+            _ => {}
         }
+        if let Some(width) = recorded(Quantity::ActuatorCommand).filter(|width| *width > needed) {
+            notes.push(format!(
+                "the log has {width} actuator channels in use, the vehicle file {needed} rotors: is it this vehicle's?"
+            ));
+        }
+        notes
     }
 
     /// Total thrust at each of the stream's own samples, N.

@@ -5,6 +5,7 @@
 //! the vehicle file says how strong a rotor is.
 
 use super::SignalsError;
+use super::grid::LARGEST_VALUE;
 use super::select::best;
 use crate::log::{Autopilot, Quantity, Recording, Stream};
 use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
@@ -54,7 +55,7 @@ pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result
     command.time_s.clear();
     for index in 0..raw.len() {
         let sample = raw.sample(index);
-        if channels.iter().all(|&channel| sample[channel].is_finite()) {
+        if channels.iter().all(|&channel| sample[channel].abs() < LARGEST_VALUE) {
             command.time_s.push(raw.time_s[index]);
             command.values.extend(channels.iter().map(|&channel| propulsion.normalized(sample[channel])));
         }
@@ -77,7 +78,7 @@ pub fn thrusts_from_speeds(recording: &Recording, vehicle: &Vehicle) -> Option<R
     for index in 0..raw.len() {
         let speeds = &raw.sample(index)[..rotors];
         // a sensor drop-out is a missing sample, not a stopped rotor
-        if speeds.iter().all(|speed| speed.is_finite()) {
+        if speeds.iter().all(|speed| speed.abs() < LARGEST_VALUE) {
             stream.time_s.push(raw.time_s[index]);
             stream.values.extend(speeds.iter().map(|speed| coefficient * speed * speed));
         }

@@ -64,7 +64,7 @@ pub fn attitude_offset(
     rate: &[Vector3<f64>],
     frame: &AlignFrame<'_>,
 ) -> Option<StreamOffset> {
-    estimate(|shift_s| {
+    estimate(frame.centers.len(), |shift_s| {
         let attitude = attitudes_onto(attitude, shift_s, frame.grid)?;
         let mut residual = Vec::with_capacity(9 * frame.centers.len());
         for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
@@ -85,7 +85,7 @@ pub fn velocity_offset(
     inertial: &InertialOnGrid<'_>,
     frame: &AlignFrame<'_>,
 ) -> Option<StreamOffset> {
-    estimate(|shift_s| {
+    estimate(frame.centers.len(), |shift_s| {
         let velocity = vectors_onto(velocity, shift_s, frame.grid)?;
         let body: Vec<Vector3<f64>> =
             inertial.attitude.iter().zip(&velocity).map(|(q, v)| q.inverse_transform_vector(v)).collect();
@@ -109,7 +109,7 @@ pub fn position_offset(
     velocity: &[Vector3<f64>],
     frame: &AlignFrame<'_>,
 ) -> Option<StreamOffset> {
-    estimate(|shift_s| {
+    estimate(frame.centers.len(), |shift_s| {
         let position = vectors_onto(position, shift_s, frame.grid)?;
         let mut residual = Vec::with_capacity(3 * frame.centers.len());
         frame.difference(&position, velocity, &mut residual);
@@ -161,13 +161,13 @@ pub struct InertialOnGrid<'a> {
 }
 
 /// Gauss-Newton over the shift; `residual(shift)` must have the same length each time.
-fn estimate(residual: impl Fn(f64) -> Option<Vec<f64>>) -> Option<StreamOffset> {
+fn estimate(instants: usize, residual: impl Fn(f64) -> Option<Vec<f64>>) -> Option<StreamOffset> {
     const STEP_S: f64 = 0.002;
     let mut shift = 0.0;
     let mut std_s = f64::INFINITY;
     for _ in 0..6 {
         let here = residual(shift)?;
-        if here.len() < 20 {
+        if instants < 20 || here.is_empty() {
             return None;
         }
         let (ahead, behind) = (residual(shift + STEP_S)?, residual(shift - STEP_S)?);
@@ -177,7 +177,7 @@ fn estimate(residual: impl Fn(f64) -> Option<Vec<f64>>) -> Option<StreamOffset> 
             return None;
         }
         let update = -slope.iter().zip(&here).map(|(s, r)| s * r).sum::<f64>() / information;
-        std_s = coloured_std(&slope, &here, information);
+        std_s = coloured_std((&slope, &here), instants, information);
         shift += update;
         if !shift.is_finite() || shift.abs() > LARGEST_S {
             return Some(StreamOffset { late_s: 0.0, std_s: f64::INFINITY, repaired: false });
@@ -191,9 +191,17 @@ fn estimate(residual: impl Fn(f64) -> Option<Vec<f64>>) -> Option<StreamOffset> 
 }
 
 /// Standard error of one coefficient with the scores' own autocovariance (Bartlett, 20 lags).
-fn coloured_std(slope: &[f64], residual: &[f64], information: f64) -> f64 {
+///
+/// The components of one instant share their noise, so their scores are added before neighbours in time
+/// are compared; `instants` is the length of one component's block.
+fn coloured_std((slope, residual): (&[f64], &[f64]), instants: usize, information: f64) -> f64 {
     const LAGS: usize = 20;
-    let score: Vec<f64> = slope.iter().zip(residual).map(|(s, r)| s * r).collect();
+    let mut score = vec![0.0; instants];
+    for (slope, residual) in slope.chunks(instants).zip(residual.chunks(instants)) {
+        for ((score, s), r) in score.iter_mut().zip(slope).zip(residual) {
+            *score += s * r;
+        }
+    }
     let covariance = |lag: usize| -> f64 { score.iter().zip(&score[lag..]).map(|(a, b)| a * b).sum() };
     let mut variance = covariance(0);
     for lag in 1..=LAGS.min(score.len() - 1) {

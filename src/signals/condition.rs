@@ -18,8 +18,8 @@ use nalgebra::{UnitQuaternion, Vector3, Vector4};
 pub struct ConditionSettings {
     /// s between grid instants; `None`: the period of the fastest inertial stream, 2 to 20 ms
     pub step_s: Option<f64>,
-    /// s of flight left out at the beginning (the paper identifies from 10 s on)
-    pub transient_s: f64,
+    /// s of flight left out at the beginning; `None`: 10 s as in the paper, at most a fifth of the flight
+    pub transient_s: Option<f64>,
     /// s, half width of the weak form's kernel
     pub weak_half_width_s: f64,
     /// which thrusts are used where the log has both
@@ -28,7 +28,7 @@ pub struct ConditionSettings {
 
 impl Default for ConditionSettings {
     fn default() -> Self {
-        Self { step_s: None, transient_s: 10.0, weak_half_width_s: 0.2, thrust: ThrustPreference::Measured }
+        Self { step_s: None, transient_s: None, weak_half_width_s: 0.2, thrust: ThrustPreference::Measured }
     }
 }
 
@@ -148,13 +148,15 @@ pub fn condition(
     let airborne_s = airborne_spans(recording, &actuation, vehicle);
     let streams: Vec<&Stream> =
         chosen.list().iter().filter_map(|(_, s)| s.map(|(_, s)| s)).chain([actuation.stream()]).collect();
+    // the vehicle's clock started anew, or its estimator jumped
+    let resets_s = [recording.clock_resets_s.as_slice(), &recording.estimator_resets_s].concat();
     let rate = chosen.rate.and_then(|(_, s)| vectors_onto(s, 0.0, &grid));
     let (mask, used) = usable(
         &grid,
         &Evidence {
             streams: &streams,
             airborne_s: &airborne_s,
-            resets_s: &recording.clock_resets_s,
+            resets_s: &resets_s,
             command: actuation.command(),
             rate: rate.as_deref(),
         },
@@ -200,7 +202,7 @@ pub fn condition(
             offsets: motion.offsets,
             airborne_s,
             usable: used,
-            notes: actuation.notes(),
+            notes: actuation.notes(recording, vehicle),
         },
     })
 }
@@ -215,6 +217,9 @@ pub fn stride(step_s: f64) -> usize {
     stride
 }
 
+/// Motion or actuators recorded more slowly than this show nothing of a multirotor's rotation, s.
+const SLOWEST_S: f64 = 0.1;
+
 fn step(chosen: &Chosen<'_>, actuation: &Stream, settings: &ConditionSettings) -> Result<f64, SignalsError> {
     if let Some(step_s) = settings.step_s {
         return Ok(step_s);
@@ -224,6 +229,9 @@ fn step(chosen: &Chosen<'_>, actuation: &Stream, settings: &ConditionSettings) -
     let period = median_period_s(stream).min(median_period_s(actuation));
     if !period.is_finite() {
         return Err(SignalsError::NoMotion);
+    }
+    if period > SLOWEST_S {
+        return Err(SignalsError::TooSlow { rate_hz: 1.0 / period, needed_hz: 1.0 / SLOWEST_S });
     }
     Ok(period.clamp(0.002, 0.02))
 }

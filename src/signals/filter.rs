@@ -162,8 +162,8 @@ pub fn central_difference(column: &[f64], step_s: f64) -> Vec<f64> {
 ///
 /// Printed, both are zero-order-hold equivalents, and signals are not held but smooth. (36) then reads
 /// every rate too large by `lambda T / (1 - exp(-lambda T))`, its gain on a ramp (3.0 % at 500 Hz, 12.4 %
-/// at 125 Hz with lambda = 30 rad/s), so that inertia comes out too small by as much; and (36) times
-/// `T/lambda'` is (35) of the forward difference, which belongs half a sample later than (35) of the
+/// at 125 Hz with lambda = 30 rad/s), so that inertia comes out too small by as much; and (36) over
+/// that gain is (35) of the forward difference, which belongs half a sample later than (35) of the
 /// signal. [`FilterPair::new`] divides the gain out and gives (35) the mean of two neighbours, which makes
 /// the pair exact on straight lines; [`FilterPair::as_printed`] keeps both.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -51,14 +51,17 @@ impl Grid {
     }
 }
 
+/// No signal of a flying vehicle reaches this in SI units; what does is damage and counts as missing.
+pub const LARGEST_VALUE: f64 = 1e5;
+
 /// Natural cubic spline through a stream's samples, evaluated at the grid's instants plus `shift_s`.
 ///
 /// Returns `width` values an instant, one after the other. Outside the samples the nearest value is
-/// held; samples with a missing value are passed over. `None` with fewer than four whole samples.
+/// held; samples with a missing or absurd value are passed over. `None` with fewer than four whole samples.
 #[must_use]
 pub fn cubic_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<f64>> {
     let whole: Vec<usize> =
-        (0..stream.len()).filter(|&i| stream.sample(i).iter().all(|v| v.is_finite())).collect();
+        (0..stream.len()).filter(|&i| stream.sample(i).iter().all(|v| v.abs() < LARGEST_VALUE)).collect();
     if whole.len() < 4 {
         return None;
     }

@@ -1,6 +1,5 @@
 //! Takes a known actuation latency out of the recorded force and torque.
 
-use super::Signals;
 use nalgebra::Vector4;
 
 /// The body feels `F(t) = F_command(t - delay)` behind a first-order lag of `lag`; both in s.
@@ -21,14 +20,14 @@ impl ActuationLatency {
 }
 
 /// The wrench that the body felt, from the commanded one: shifted by the delay (straight lines between
-/// instants), then through the lag with its exact response to straight lines.
+/// instants), then through the lag with its exact response to straight lines. One entry every `step_s`.
 #[must_use]
-pub fn delayed_wrench(signals: &Signals, latency: ActuationLatency) -> Vec<Vector4<f64>> {
-    let shifted = shifted(&signals.wrench, latency.delay_s / signals.grid.step_s);
+pub fn delayed_wrench(wrench: &[Vector4<f64>], step_s: f64, latency: ActuationLatency) -> Vec<Vector4<f64>> {
+    let shifted = shifted(wrench, latency.delay_s / step_s);
     if latency.lag_s <= 0.0 {
         return shifted;
     }
-    lagged(&shifted, latency.lag_s, signals.grid.step_s)
+    lagged(&shifted, latency.lag_s, step_s)
 }
 
 fn shifted(series: &[Vector4<f64>], steps: f64) -> Vec<Vector4<f64>> {

@@ -37,7 +37,7 @@ pub enum SignalsError {
     /// no actuator stream that fits the vehicle
     #[error(
         "no actuator outputs for {rotors} rotors: expected {unit}, as the vehicle file's [propulsion] says; \
-         the recording holds {found}. Request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS, or correct `actuator`"
+         the recording holds {found}. They must be in that unit and move. Record actuator outputs (over MAVLink SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS), or correct `actuator`"
     )]
     NoActuators {
         /// rotors of the vehicle
@@ -49,9 +49,20 @@ pub enum SignalsError {
     },
     /// nothing that moves
     #[error(
-        "no stream of motion: expected body rates, attitude or acceleration; request ATTITUDE_QUATERNION and HIGHRES_IMU (or RAW_IMU)"
+        "no stream of motion: expected body rates, attitude or acceleration; record them (over MAVLink ATTITUDE_QUATERNION and HIGHRES_IMU or RAW_IMU)"
     )]
     NoMotion,
+    /// sampled too slowly
+    #[error(
+        "motion and actuators are sampled at {rate_hz:.2} Hz: at least {needed_hz:.0} Hz is needed, 100 Hz is good. \
+         If the log is faster than that, its time column is not in the unit that the mapping says"
+    )]
+    TooSlow {
+        /// Hz
+        rate_hz: f64,
+        /// Hz
+        needed_hz: f64,
+    },
     /// streams do not share a span
     #[error("motion and actuator streams overlap for {overlap_s:.2} s only; at least 1 s is needed")]
     NoOverlap {

@@ -19,10 +19,11 @@ fn preference(quantity: Quantity) -> &'static [&'static str] {
         ],
         Quantity::SpecificForce => &["HIGHRES_IMU", "SCALED_IMU", "RAW_IMU", "SCALED_IMU2", "SCALED_IMU3"],
         Quantity::Position | Quantity::Velocity => &["LOCAL_POSITION_NED", "ODOMETRY"],
+        // what was asked for comes before the autopilot's own setpoint, into which it feeds back noise
         Quantity::PositionSetpoint
         | Quantity::VelocitySetpoint
         | Quantity::AccelerationSetpoint
-        | Quantity::YawSetpoint => &["POSITION_TARGET_LOCAL_NED", "SET_POSITION_TARGET_LOCAL_NED"],
+        | Quantity::YawSetpoint => &["SET_POSITION_TARGET_LOCAL_NED", "POSITION_TARGET_LOCAL_NED"],
         Quantity::ActuatorCommand => &["SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"],
         Quantity::RotorSpeed => &["ESC_STATUS", "ESC_TELEMETRY_1_TO_4"],
         _ => &[],

@@ -126,7 +126,7 @@ pub fn in_air(landed: &Stream, t_s: f64) -> bool {
 
 /// The mask and what each rule took; `transient_s` is left out at the beginning of the first airborne span.
 #[must_use]
-pub fn usable(grid: &Grid, evidence: &Evidence<'_>, transient_s: f64) -> (Vec<bool>, Usable) {
+pub fn usable(grid: &Grid, evidence: &Evidence<'_>, transient_s: Option<f64>) -> (Vec<bool>, Usable) {
     let grounded = grounded(grid, evidence);
     let transient = transient(grid, evidence, transient_s);
     let saturated = evidence.command.map_or_else(|| vec![false; grid.count], |c| saturated(grid, c));
@@ -182,13 +182,15 @@ fn grounded(grid: &Grid, evidence: &Evidence<'_>) -> Vec<bool> {
         .collect()
 }
 
-/// The first `transient_s` of the first airborne span, at most a fifth of all flight.
-fn transient(grid: &Grid, evidence: &Evidence<'_>, transient_s: f64) -> Vec<bool> {
+/// The paper's transient, s.
+const TRANSIENT_S: f64 = 10.0;
+
+/// The beginning of the first airborne span.
+fn transient(grid: &Grid, evidence: &Evidence<'_>, transient_s: Option<f64>) -> Vec<bool> {
     let flown: f64 = evidence.airborne_s.iter().map(|(start, end)| end - start).sum();
-    let until = evidence
-        .airborne_s
-        .first()
-        .map_or(f64::NEG_INFINITY, |(start, _)| start.max(grid.start_s) + transient_s.min(0.2 * flown));
+    let until = evidence.airborne_s.first().map_or(f64::NEG_INFINITY, |(start, _)| {
+        start.max(grid.start_s) + transient_s.unwrap_or_else(|| TRANSIENT_S.min(0.2 * flown))
+    });
     (0..grid.count).map(|i| grid.time_s(i) < until).collect()
 }
 

@@ -108,6 +108,7 @@ struct DataQuality {
     inputs: Vec<InputFile>,
     flights: Vec<FlightQuality>,
     residual: BTreeMap<&'static str, f64>,
+    explained: BTreeMap<&'static str, f64>,
     instrument_f: Option<f64>,
 }
 
@@ -289,10 +290,12 @@ fn data_quality(identification: &Identification, quality: &[&Quality], inputs: &
         })
         .collect();
     let channels = identification.residual_channels.iter().copied();
+    let explained = channels.clone().zip(identification.explained.iter().copied()).collect();
     DataQuality {
         inputs: inputs.to_vec(),
         flights,
         residual: channels.zip(identification.residual.iter().copied()).collect(),
+        explained,
         instrument_f: identification.instrument_f,
     }
 }

@@ -42,7 +42,7 @@ pub fn identification_page(
     } else {
         let _ = writeln!(
             page,
-            "  scale: the stated thrust is trusted (anchor = \"thrust\"); a weighed mass would set it with anchor = \"mass\""
+            "  scale: the stated thrust is trusted (anchor = \"thrust\"); a weighed mass would set it with anchor = \"mass\". Izz rests on the stated torque per thrust as well"
         );
     }
     let _ = writeln!(page, "\n  {:<12}{}", "method", NAMES.map(|name| format!("{name:>11}")).concat());
@@ -52,6 +52,14 @@ pub fn identification_page(
             Finding::NotDetermined { .. } => format!("{:>11}", "-"),
         });
         let _ = writeln!(page, "  {:<12}{}", method.method.name(), cells.collect::<String>());
+    }
+    let dashes =
+        |m: &MethodResult| m.parameters.iter().any(|p| matches!(p.finding, Finding::NotDetermined { .. }));
+    if identification.methods.iter().any(dashes) {
+        let _ = writeln!(
+            page,
+            "  -: not determined. GD and FMGD follow the noise of the last instants; a smaller --sigma averages longer"
+        );
     }
     page.push('\n');
     page.push_str(&quality_lines(identification, quality));
@@ -96,13 +104,16 @@ fn quality_lines(identification: &Identification, quality: &[&Quality]) -> Strin
     let mut page = String::new();
     if let Some(latency) = identification.latency.filter(|latency| latency.total_s.is_finite()) {
         let kind = match latency.kind {
-            LatencyKind::Undetermined => "lag or delay, too short to tell",
+            _ if latency.total_s < 0.0 => {
+                "commands stamped later than the body's answer: a skew between streams"
+            }
+            LatencyKind::Undetermined => "lag or delay: this flight cannot tell",
             LatencyKind::Lag => "a first-order lag",
             LatencyKind::Delay => "a transport delay",
             LatencyKind::Both { .. } => "lag and delay",
         };
         let taken = if identification.compensated.total_s() == 0.0 {
-            "not significant, left in"
+            "less than four standard errors, left in"
         } else {
             "taken out"
         };
@@ -139,8 +150,9 @@ fn quality_lines(identification: &Identification, quality: &[&Quality]) -> Strin
             let what = if offset.repaired { "taken out" } else { "left in: not known well enough" };
             let _ = writeln!(
                 page,
-                "    {quantity:?} late by {:.2} +- {:.2} ms against the inertial unit, {what}",
-                1e3 * offset.late_s,
+                "    {quantity:?} {} by {:.2} +- {:.2} ms against the inertial unit, {what}",
+                if offset.late_s < 0.0 { "early" } else { "late" },
+                1e3 * offset.late_s.abs(),
                 1e3 * offset.std_s
             );
         }

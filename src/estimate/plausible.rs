@@ -1,0 +1,65 @@
+//! Results that hardly can be: of another vehicle, of a wrong unit, of two vehicles at once.
+
+use super::result::{Finding, MethodResult};
+use super::theta::{NAMES, Theta};
+use super::weak::{WeakMethod, solve_weak};
+use crate::regression::WeakRows;
+
+/// A nominal file is wrong by less than these factors.
+const MASS_FACTOR: f64 = 1.5;
+const INERTIA_FACTOR: f64 = 3.0;
+/// Flights of one vehicle agree within this many standard errors of their difference, and this share.
+const FLIGHTS_SIGMA: f64 = 6.0;
+const FLIGHTS_SHARE: f64 = 0.02;
+
+/// Estimates that are far from what the vehicle file states.
+#[must_use]
+pub fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<String> {
+    [(0, MASS_FACTOR), (1, INERTIA_FACTOR), (4, INERTIA_FACTOR), (6, INERTIA_FACTOR)]
+        .into_iter()
+        .filter_map(|(index, most)| {
+            let Finding::Determined { value, .. } = result.parameters[index].finding else { return None };
+            let factor = value / nominal[index];
+            (factor > most || factor < 1.0 / most).then(|| {
+                format!(
+                    "warning: {} is {factor:.2} times what the vehicle file states: another vehicle's log, a wrong unit, \
+                     or thrust and torque coefficients that are off by as much? A weighed mass with anchor = \"mass\" sets the scale",
+                    NAMES[index]
+                )
+            })
+        })
+        .collect()
+}
+
+/// Flights whose masses contradict each other.
+#[must_use]
+pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<String> {
+    if flights.len() < 2 {
+        return Vec::new();
+    }
+    let masses: Vec<Option<(f64, f64)>> = flights
+        .iter()
+        .map(|rows| {
+            let alone = solve_weak(std::slice::from_ref(rows), nominal, WeakMethod::LeastSquares)?;
+            let std = alone.covariance[(0, 0)].sqrt();
+            (alone.theta[0].is_finite() && std.is_finite()).then_some((alone.theta[0], std))
+        })
+        .collect();
+    let Some((first, first_std)) = masses.first().copied().flatten() else { return Vec::new() };
+    masses
+        .iter()
+        .enumerate()
+        .skip(1)
+        .filter_map(|(index, mass)| {
+            let (mass, std) = (*mass)?;
+            let sigma = (mass - first).abs() / first_std.hypot(std);
+            (sigma > FLIGHTS_SIGMA && (mass / first - 1.0).abs() > FLIGHTS_SHARE).then(|| {
+                format!(
+                    "warning: flight {} alone gives a mass of {mass:.4} kg, flight 1 {first:.4} kg, {sigma:.0} standard errors apart: \
+                     two vehicles or two loads? The common estimate describes neither",
+                    index + 1
+                )
+            })
+        })
+        .collect()
+}
