@@ -69,7 +69,8 @@ impl Problem {
         };
         let lags = self.residual_lags(&scored);
         let bread = normal.inverse();
-        let covariance = self.covariance(&bread, &Scaled { residuals: &scored, sigma: &sigma, lags });
+        let covariance = self.covariance(&bread, &Scaled { residuals: &scored, sigma: &sigma, lags })
+            * row_weights.map_or(1.0, held_back_inflation);
         for (index, value) in theta.iter_mut().enumerate() {
             if normal.scale[index] <= 0.0 {
                 *value = f64::NAN;
@@ -333,6 +334,14 @@ impl Normal {
         let singular = scaled.singular_values();
         (singular.max() / singular.min().max(f64::MIN_POSITIVE)).sqrt()
     }
+}
+
+/// The weighted normal matrix stands for the slope of the scores, which is zero for every row that is held
+/// back: it is too large by the mean weight over the share of rows with full weight (Huber 1973).
+fn held_back_inflation(weights: &[DVector<f64>]) -> f64 {
+    let all = || weights.iter().flat_map(|weights| weights.iter());
+    let full = all().filter(|weight| **weight >= 1.0).count() as f64;
+    if full > 0.0 { (all().sum::<f64>() / full).powi(2) } else { 1.0 }
 }
 
 /// Root mean square about zero.
