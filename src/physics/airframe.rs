@@ -81,6 +81,7 @@ impl Airframe {
 
     /// Hub positions from the centre of mass, body, m.
     #[must_use]
+    #[inline]
     pub fn arms_m(&self) -> &[Vector3<f64>] {
         &self.arms_m[..self.rotor_count]
     }
@@ -99,12 +100,14 @@ impl Airframe {
 
     /// Thrust of a rotor at a relative speed, N.
     #[must_use]
+    #[inline]
     pub fn thrust_n(&self, relative_speed: f64) -> f64 {
         self.hover_thrust_n * relative_speed * relative_speed
     }
 
     /// Force and torque of rotor thrusts (N); those beyond the rotor count do nothing.
     #[must_use]
+    #[inline]
     pub fn thrust_wrench(&self, thrust_n: &[f64; MAX_ROTORS]) -> Wrench {
         let mut sum = Vector4::zeros();
         for (column, thrust) in self.mixer.column_iter().zip(thrust_n).take(self.rotor_count) {

@@ -13,7 +13,7 @@ mod rigid_body;
 mod state;
 
 pub use airframe::{Airframe, MAX_ROTORS};
-pub use effect::{Condition, Effect, Own, Parameter, Rotors, effect_wrench};
+pub use effect::{Condition, Effect, Hook, Own, Parameter, Rotors, effect_wrench};
 pub use euler::{euler_rates, euler_rates_inverse};
 pub use measurement::Measurement;
 pub use model::{ActiveEffect, Evaluation, Input, Model};

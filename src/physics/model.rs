@@ -1,10 +1,12 @@
 //! A rigid body, its rotors and the effects that act on it, put together.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 
 use super::{
-    Airframe, Condition, Effect, MAX_ROTORS, Measurement, Own, PhysicsError, RigidBodyModel, Rotors, State,
-    Wrench,
+    Airframe, Condition, Effect, Hook, MAX_ROTORS, Measurement, Own, PhysicsError, RigidBodyModel, Rotors,
+    State, Wrench,
 };
 use crate::vehicle::Vehicle;
 
@@ -81,7 +83,37 @@ pub struct Model {
     /// rotors
     pub airframe: Airframe,
     effects: Vec<ActiveEffect>,
-    state_counts: Vec<usize>,
+    /// each effect's part of the own states
+    slots: Vec<Range<usize>>,
+    own_state_count: usize,
+    by_hook: ByHook,
+}
+
+/// Indices of the effects that act through each hook.
+#[derive(Debug, Clone, Default)]
+struct ByHook {
+    air: Vec<usize>,
+    center_of_mass: Vec<usize>,
+    rotor_speed: Vec<usize>,
+    rotor_thrust: Vec<usize>,
+    wrench: Vec<usize>,
+    reaction: Vec<usize>,
+}
+
+impl ByHook {
+    fn of(effects: &[ActiveEffect]) -> Self {
+        let through = |hook: Hook| {
+            (0..effects.len()).filter(|index| effects[*index].effect.hooks().contains(&hook)).collect()
+        };
+        Self {
+            air: through(Hook::Air),
+            center_of_mass: through(Hook::CenterOfMass),
+            rotor_speed: through(Hook::RotorSpeed),
+            rotor_thrust: through(Hook::RotorThrust),
+            wrench: through(Hook::Wrench),
+            reaction: through(Hook::Reaction),
+        }
+    }
 }
 
 impl Model {
@@ -95,12 +127,19 @@ impl Model {
                 return Err(PhysicsError::Missing { id: active.effect.id(), what });
             }
         }
-        let state_counts = effects.iter().map(|active| active.effect.state_count(&airframe)).collect();
+        let (mut slots, mut own_state_count) = (Vec::with_capacity(effects.len()), 0);
+        for active in &effects {
+            let start = own_state_count;
+            own_state_count += active.effect.state_count(&airframe);
+            slots.push(start..own_state_count);
+        }
         Ok(Self {
             body: RigidBodyModel::new(&vehicle.body, vehicle.gravity_m_s2)?,
             airframe,
+            by_hook: ByHook::of(&effects),
             effects,
-            state_counts,
+            slots,
+            own_state_count,
         })
     }
 
@@ -113,39 +152,43 @@ impl Model {
     /// Own states of all effects together.
     #[must_use]
     pub fn own_state_count(&self) -> usize {
-        self.state_counts.iter().sum()
+        self.own_state_count
     }
 
     /// Own states of vehicles that have long followed their command. Fills the head of `states`.
     pub fn initial_states(&self, state: &State, input: &Input, states: &mut [f64]) {
         let at = Condition::new(&self.airframe, state, input, input.wind_m_s);
         let rotors = Rotors::as_commanded(&self.airframe, &input.speed_command);
-        let mut rest = states;
-        for (active, count) in self.effects.iter().zip(&self.state_counts) {
-            let (own, tail) = rest.split_at_mut((*count).min(rest.len()));
-            active.effect.initial_states(&at, &rotors, own);
-            rest = tail;
+        for (active, slot) in self.effects.iter().zip(&self.slots) {
+            if let Some(own) = states.get_mut(slot.clone()) {
+                active.effect.initial_states(&at, &rotors, own);
+            }
         }
     }
 
-    /// Force and torque of rotors and effects; writes the rates of the effects' own states, which
-    /// must be [`Self::own_state_count`] long, as must `states`.
+    /// Force and torque of rotors and effects; writes the rates of the effects' own states. Both must be
+    /// [`Self::own_state_count`] long; an effect whose part is missing sees none.
     pub fn evaluate(&self, state: &State, input: &Input, states: &[f64], rates: &mut [f64]) -> Evaluation {
         rates.fill(0.0);
-        let (mut wind_m_s, mut center_of_mass_m) = (input.wind_m_s, Vector3::zeros());
-        self.each(states, rates, |effect, own| {
-            wind_m_s += effect.wind_m_s(input, own);
-            center_of_mass_m += effect.center_of_mass_m(own);
-        });
+        let mut states = OwnStates { states, rates };
+        let hooks = &self.by_hook;
+        let mut wind_m_s = input.wind_m_s;
+        self.each(&hooks.air, &mut states, |effect, own| wind_m_s += effect.wind_m_s(input, own));
         let mut at = Condition::new(&self.airframe, state, input, wind_m_s);
-        at.center_of_mass_m = center_of_mass_m;
+        self.each(&hooks.center_of_mass, &mut states, |effect, own| {
+            at.center_of_mass_m += effect.center_of_mass_m(own);
+        });
         let mut rotors = Rotors::as_commanded(&self.airframe, &input.speed_command);
-        self.each(states, rates, |effect, own| effect.rotor_speed(&at, own, &mut rotors));
-        rotors.thrust_from_speed(&self.airframe);
-        self.each(states, rates, |effect, own| effect.rotor_thrust(&at, own, &mut rotors));
+        if !hooks.rotor_speed.is_empty() {
+            self.each(&hooks.rotor_speed, &mut states, |effect, own| {
+                effect.rotor_speed(&at, own, &mut rotors)
+            });
+            rotors.thrust_from_speed(&self.airframe);
+        }
+        self.each(&hooks.rotor_thrust, &mut states, |effect, own| effect.rotor_thrust(&at, own, &mut rotors));
         let mut wrench = at.thrust_wrench(&rotors.thrust_n);
-        self.each(states, rates, |effect, own| wrench += effect.wrench(&at, &rotors, own));
-        self.each(states, rates, |effect, own| wrench += effect.reaction(&at, &wrench, own));
+        self.each(&hooks.wrench, &mut states, |effect, own| wrench += effect.wrench(&at, &rotors, own));
+        self.each(&hooks.reaction, &mut states, |effect, own| wrench += effect.reaction(&at, &wrench, own));
         Evaluation { wrench, rotors }
     }
 
@@ -168,14 +211,24 @@ impl Model {
         seen
     }
 
-    fn each(&self, states: &[f64], rates: &mut [f64], mut visit: impl FnMut(&'static dyn Effect, &mut Own)) {
-        let (mut states, mut rates) = (states, rates);
-        for (active, count) in self.effects.iter().zip(&self.state_counts) {
-            let (own_states, states_tail) = states.split_at((*count).min(states.len()));
-            let (own_rates, rates_tail) = rates.split_at_mut((*count).min(rates.len()));
-            let mut own = Own { parameters: &active.parameters, states: own_states, rates: own_rates };
+    fn each(
+        &self,
+        indices: &[usize],
+        all: &mut OwnStates,
+        mut visit: impl FnMut(&'static dyn Effect, &mut Own),
+    ) {
+        for (active, slot) in indices.iter().map(|index| (&self.effects[*index], &self.slots[*index])) {
+            let (states, rates) = (all.states.get(slot.clone()), all.rates.get_mut(slot.clone()));
+            let parameters = &active.parameters;
+            let mut own =
+                Own { parameters, states: states.unwrap_or_default(), rates: rates.unwrap_or_default() };
             visit(active.effect, &mut own);
-            (states, rates) = (states_tail, rates_tail);
         }
     }
+}
+
+/// Own states of all effects and where their rates go.
+struct OwnStates<'a> {
+    states: &'a [f64],
+    rates: &'a mut [f64],
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Airframe, Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// Thrust of the rotor at height z over the ground (world z = 0) times
 /// `1 / (1 - rho (R / 4z)^2) + Ca exp(-Cb z / R)`. With Ca = 0 the form of Cheeseman and Bennett 1955 (rho = 1
@@ -44,6 +44,10 @@ impl Effect for GroundEffect {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn missing(&self, airframe: &Airframe) -> Option<&'static str> {

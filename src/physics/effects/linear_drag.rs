@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = -(D / N) n_i (v_air + w x r_i)` at hub `r_i`, with `D = diag(dx, dy, dz)` the drag of the
 /// whole vehicle at hover and `n_i` the rotor's speed over its hover speed; torque `r_i x F_i`.
@@ -28,6 +28,10 @@ impl Effect for LinearDrag {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = (kh / N) ((v_air + w x r_i)_x^2 + (..)_y^2) e_z` at each hub, with `kh` of the whole vehicle.
 ///
@@ -32,6 +32,10 @@ impl Effect for TranslationalLift {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own) -> Wrench {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Airframe, Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 use crate::units::AIR_DENSITY_KG_M3;
 
 /// `F_i = -loss T_i e(x) e_z` at each hub, with `x = v_z / v_h` the climb over the induced velocity of hover,
@@ -53,6 +53,10 @@ impl Effect for VortexRing {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn missing(&self, airframe: &Airframe) -> Option<&'static str> {
