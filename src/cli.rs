@@ -24,6 +24,8 @@ pub enum Verb {
     Vehicle(VehicleArgs),
     /// Identify mass and inertia from recorded flights
     Identify(IdentifyArgs),
+    /// Compare models with recorded flights: flown again, predicted, played back
+    Validate(ValidateArgs),
 }
 
 /// Arguments of `mavid vehicle`.
@@ -69,4 +71,27 @@ pub struct IdentifyArgs {
     /// use commands even where rotor speeds are measured
     #[arg(long)]
     pub commands: bool,
+}
+
+/// Arguments of `mavid validate`.
+#[derive(Debug, Args)]
+pub struct ValidateArgs {
+    /// recordings of one vehicle: .tlog, or .csv with known columns
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// a vehicle or model file; the first is what the others are compared with
+    #[arg(long = "model", required = true, value_name = "FILE")]
+    pub models: Vec<PathBuf>,
+    /// write charts of each flight flown again into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
+    #[arg(long, value_name = "FILE")]
+    pub csv_map: Option<PathBuf>,
+    /// system id of the vehicle, where a log holds several
+    #[arg(long, value_name = "ID")]
+    pub system: Option<u8>,
+    /// s of flight left out at the beginning
+    #[arg(long, value_name = "S", default_value_t = 10.0)]
+    pub transient: f64,
 }

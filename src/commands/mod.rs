@@ -2,9 +2,11 @@
 //!
 //! To add a verb: a variant in [`Verb`], a file here with `run(json, args)`, and an arm in [`run`].
 
+mod effects;
 mod flights;
 mod identify;
 mod output;
+mod validate;
 mod vehicle;
 
 use std::process::ExitCode;
@@ -62,6 +64,7 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
     match &cli.verb {
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
         Verb::Identify(args) => identify::run(cli.json, args),
+        Verb::Validate(args) => validate::run(cli.json, args),
     }
 }
 

@@ -95,7 +95,13 @@ impl Airframe {
     /// Relative rotor speed that a normalised command u in 0..1 asks for.
     #[must_use]
     pub fn relative_speed(&self, command: f64) -> f64 {
-        (self.propulsion.thrust_from_command_n(command) / self.hover_thrust_n).sqrt()
+        self.relative_speed_of_thrust(self.propulsion.thrust_from_command_n(command))
+    }
+
+    /// Relative rotor speed that gives a thrust, N; 0 where it is negative.
+    #[must_use]
+    pub fn relative_speed_of_thrust(&self, thrust_n: f64) -> f64 {
+        (thrust_n.max(0.0) / self.hover_thrust_n).sqrt()
     }
 
     /// Thrust of a rotor at a relative speed, N.

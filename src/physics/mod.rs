@@ -59,6 +59,24 @@ pub enum PhysicsError {
         /// what is missing
         what: &'static str,
     },
+    /// no effect of this name
+    #[error("no effect `{id}`; expected one of {}", effects::ALL.iter().map(|e| e.id()).collect::<Vec<_>>().join(", "))]
+    UnknownEffect {
+        /// what came
+        id: String,
+    },
+    /// a parameter of an effect by its name
+    #[error("effect {id}, `{name}`: expected {expected}, got {got}")]
+    EffectParameter {
+        /// effect
+        id: &'static str,
+        /// parameter
+        name: String,
+        /// the range, or the names
+        expected: String,
+        /// what came
+        got: String,
+    },
     /// number of values for an effect
     #[error("effect {id} takes {expected} parameters, got {got}")]
     ParameterCount {

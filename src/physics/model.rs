@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::{
     Airframe, Condition, Effect, Hook, MAX_ROTORS, Measurement, Own, PhysicsError, RigidBodyModel, Rotors,
-    State, Wrench,
+    State, Wrench, effects,
 };
 use crate::vehicle::Vehicle;
 
@@ -51,6 +51,35 @@ impl ActiveEffect {
             return Err(PhysicsError::ParameterCount { id: effect.id(), expected, got });
         }
         Ok(Self { effect, parameters: parameters.to_vec() })
+    }
+
+    /// By names, as files have them.
+    ///
+    /// # Errors
+    /// If there is no such effect, a parameter is missing, unknown, or outside its bounds.
+    pub fn named(id: &str, values: &[(&str, f64)]) -> Result<Self, PhysicsError> {
+        let effect = effects::by_id(id).ok_or_else(|| PhysicsError::UnknownEffect { id: id.to_owned() })?;
+        let refuse = |name: &str, expected: String, got: String| {
+            Err(PhysicsError::EffectParameter { id: effect.id(), name: name.to_owned(), expected, got })
+        };
+        if let Some((name, _)) =
+            values.iter().find(|(name, _)| effect.parameters().iter().all(|p| p.name != *name))
+        {
+            let names: Vec<_> = effect.parameters().iter().map(|p| p.name).collect();
+            return refuse(name, format!("one of {}", names.join(", ")), "an unknown name".to_owned());
+        }
+        let mut parameters = Vec::with_capacity(effect.parameters().len());
+        for parameter in effect.parameters() {
+            let range = format!("{} to {} {}", parameter.min, parameter.max, parameter.unit);
+            match values.iter().find(|(name, _)| *name == parameter.name) {
+                Some((_, value)) if (parameter.min..=parameter.max).contains(value) => {
+                    parameters.push(*value)
+                }
+                Some((_, value)) => return refuse(parameter.name, range, value.to_string()),
+                None => return refuse(parameter.name, range, "nothing".to_owned()),
+            }
+        }
+        Ok(Self { effect, parameters })
     }
 
     /// Which effect.
@@ -127,20 +156,29 @@ impl Model {
                 return Err(PhysicsError::Missing { id: active.effect.id(), what });
             }
         }
+        let body = RigidBodyModel::new(&vehicle.body, vehicle.gravity_m_s2)?;
+        Ok(Self::assembled(body, airframe, effects))
+    }
+
+    /// The same vehicle for rotors whose speeds are measured: without what lies between command and speed.
+    #[must_use]
+    pub fn with_measured_speeds(&self) -> Self {
+        let before = |active: &&ActiveEffect| {
+            let hooks = active.effect.hooks();
+            !hooks.contains(&Hook::Commands) && !hooks.contains(&Hook::RotorSpeed)
+        };
+        let effects = self.effects.iter().filter(before).cloned().collect();
+        Self::assembled(self.body, self.airframe.clone(), effects)
+    }
+
+    fn assembled(body: RigidBodyModel, airframe: Airframe, effects: Vec<ActiveEffect>) -> Self {
         let (mut slots, mut own_state_count) = (Vec::with_capacity(effects.len()), 0);
         for active in &effects {
             let start = own_state_count;
             own_state_count += active.effect.state_count(&airframe);
             slots.push(start..own_state_count);
         }
-        Ok(Self {
-            body: RigidBodyModel::new(&vehicle.body, vehicle.gravity_m_s2)?,
-            airframe,
-            by_hook: ByHook::of(&effects),
-            effects,
-            slots,
-            own_state_count,
-        })
+        Self { body, airframe, by_hook: ByHook::of(&effects), effects, slots, own_state_count }
     }
 
     /// What was put on top of the rigid body.

@@ -46,6 +46,11 @@ impl<'a> Plant<'a> {
         State::read(&self.vector)
     }
 
+    /// Puts the body somewhere else; the effects' own states stay.
+    pub fn set_state(&mut self, state: &State) {
+        state.write(&mut self.vector);
+    }
+
     /// Force, torque and rotors under this input, now.
     #[must_use]
     pub fn evaluate(&self, input: &Input) -> Evaluation {

@@ -205,6 +205,21 @@ fn wrong_parameter_counts_are_refused() {
 }
 
 #[test]
+fn effects_are_made_by_name_within_their_bounds() {
+    let drag = ActiveEffect::named("linear_drag", &[("dy", 0.2), ("dx", 0.1), ("dz", 0.0)]).unwrap();
+    assert_eq!(drag.parameters(), [0.1, 0.2, 0.0]);
+    for (id, values) in [
+        ("no_such", vec![]),
+        ("inflow", vec![]),
+        ("inflow", vec![("kz", -1.0)]),
+        ("inflow", vec![("kz", f64::NAN)]),
+        ("inflow", vec![("kz", 0.1), ("k", 0.1)]),
+    ] {
+        assert!(ActiveEffect::named(id, &values).is_err(), "{id} {values:?}");
+    }
+}
+
+#[test]
 fn an_effect_that_the_description_does_not_carry_is_refused() {
     let mut bare = vehicle();
     bare.propulsion.rotor_radius_m = None;
