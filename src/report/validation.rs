@@ -66,7 +66,8 @@ impl ErrorTable {
     pub fn page(&self) -> String {
         let mut page = format!("{}\n  {:<22}", self.title, "RMS error");
         for (index, model) in self.models.iter().enumerate() {
-            let short: String = model.chars().take(14).collect();
+            // names of one family differ at their ends
+            let short: String = model.chars().skip(model.chars().count().saturating_sub(14)).collect();
             let _ = write!(page, "{short:>15}");
             if index > 0 {
                 let _ = write!(page, "{:>9}", "P_imp %");
@@ -144,8 +145,8 @@ pub fn playback_table(title: impl Into<String>, fits: &[(String, Result<Fit, Str
 #[must_use]
 pub fn closed_loop_charts(flights: &[(String, &TenSignals)]) -> Vec<Panel> {
     let line = |label: &str, signals: &TenSignals, x: Option<usize>, y: usize| {
-        // a chart is some 500 dots wide
-        let every = (signals.time_s.len() / 1500).max(1);
+        // a chart is some 440 dots wide
+        let every = (signals.time_s.len() / 880).max(1);
         let kept = || (0..signals.time_s.len()).step_by(every);
         Line {
             label: label.to_owned(),

@@ -14,13 +14,13 @@ use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, 
 pub struct GroundEffect;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "rho", unit: "-", min: 0.0, max: 3.5 },
+    Parameter { name: "rho", unit: "-", min: 0.0, max: 8.0 },
     Parameter { name: "ca", unit: "-", min: 0.0, max: 1.0 },
     Parameter { name: "cb", unit: "-", min: 0.2, max: 8.0 },
 ];
 
 /// Lower than this no rotor turns over the ground; it also keeps the first form from its pole.
-const LEAST_RADII: f64 = 0.5;
+const LEAST_RADII: f64 = 0.75;
 
 /// Height of a hub over the ground, in rotor radii.
 fn height_in_radii(at: &Condition, arm: &Vector3<f64>) -> f64 {

@@ -195,3 +195,6 @@ impl Commands {
         input
     }
 }
+
+#[cfg(test)]
+mod tests;
