@@ -1,6 +1,6 @@
 //! The command line: one struct a verb.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Learns a multirotor's parameters from a recorded flight and says which physics the model left out
@@ -22,10 +22,14 @@ const AFTER_HELP: &str = "Exit status: 0 done, 1 failure, 2 bad usage or input, 
 pub enum Verb {
     /// Check a vehicle file (or a model) and say what it means
     Vehicle(VehicleArgs),
+    /// Plan an excitation trajectory inside limits, or check one
+    Plan(PlanArgs),
     /// Identify mass and inertia from recorded flights
     Identify(IdentifyArgs),
     /// Compare models with recorded flights: flown again, predicted, played back
     Validate(ValidateArgs),
+    /// Say what is in a log and what can be identified from it
+    Inspect(InspectArgs),
 }
 
 /// Arguments of `mavid vehicle`.
@@ -33,6 +37,56 @@ pub enum Verb {
 pub struct VehicleArgs {
     /// vehicle.toml or model.toml
     pub file: PathBuf,
+}
+
+/// Arguments of `mavid plan`.
+#[derive(Debug, Args)]
+pub struct PlanArgs {
+    /// vehicle.toml or model.toml
+    pub vehicle: PathBuf,
+    /// Where to write the trajectory
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// File with a [limits] table, instead of the vehicle's
+    #[arg(long)]
+    pub limits: Option<PathBuf>,
+    /// What is minimised
+    #[arg(long, value_enum, default_value = "cond")]
+    pub criterion: CriterionName,
+    /// Seed of the random starts
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Number of random starts
+    #[arg(long, default_value_t = 16)]
+    pub starts: u64,
+    /// Periods to fly; comparing periods with each other needs four
+    #[arg(long, default_value_t = 5)]
+    pub repeats: u32,
+    /// Period, s
+    #[arg(long, default_value_t = 10.0)]
+    pub period: f64,
+    /// Harmonics of the series
+    #[arg(long, default_value_t = 5)]
+    pub harmonics: u32,
+    /// Where the series starts and ends: metres and degrees; without Z the height is chosen
+    #[arg(long, value_name = "X,Y[,Z[,YAW]]", value_delimiter = ',', allow_hyphen_values = true)]
+    pub start: Option<Vec<f64>>,
+    /// Check and assess this trajectory instead of planning one
+    #[arg(long, value_name = "TRAJECTORY", conflicts_with_all = ["out", "start"])]
+    pub check: Option<PathBuf>,
+}
+
+/// Names of the criteria.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CriterionName {
+    /// condition number of W, the paper's
+    Cond,
+    /// condition number of W with columns of unit norm
+    ScaledCond,
+    /// volume of the error ellipsoid
+    DOpt,
+    /// sum of squared relative standard errors
+    AOpt,
 }
 
 /// Arguments of `mavid identify`.
@@ -94,4 +148,20 @@ pub struct ValidateArgs {
     /// s of flight left out at the beginning
     #[arg(long, value_name = "S", default_value_t = 10.0)]
     pub transient: f64,
+}
+
+/// Arguments of `mavid inspect`.
+#[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// flight.tlog or flight.csv
+    pub log: PathBuf,
+    /// vehicle.toml or model.toml: says how well each parameter can be identified
+    #[arg(long)]
+    pub vehicle: Option<PathBuf>,
+    /// what the columns of a CSV file mean (default: configs/csv/default.toml)
+    #[arg(long)]
+    pub csv_map: Option<PathBuf>,
+    /// the vehicle's MAVLink system id, where a log holds several
+    #[arg(long)]
+    pub system: Option<u32>,
 }

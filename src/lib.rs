@@ -22,6 +22,7 @@ pub mod compare;
 pub mod config;
 pub mod estimate;
 pub mod frames;
+pub mod inspect;
 pub mod log;
 pub mod physics;
 pub mod plan;

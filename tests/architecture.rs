@@ -17,16 +17,18 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("signals", &["log", "vehicle"]),
     ("regression", &["physics", "signals"]),
     ("estimate", &["regression"]),
+    ("inspect", &["log", "signals", "regression", "estimate"]),
     // never estimate
     ("simulate", &["physics", "signals", "log", "trajectory"]),
+    ("config", &["vehicle", "log", "trajectory"]),
     ("compare", &["signals", "simulate"]),
     ("diagnose", &["regression", "estimate", "simulate", "compare"]),
-    ("report", &["diagnose"]),
+    // config: a model file is a vehicle file
+    ("report", &["diagnose", "config"]),
     ("export", &["diagnose"]),
     ("plan", &["physics", "regression", "simulate", "trajectory"]),
     ("sitl", &["physics", "simulate", "log"]),
     ("fly", &["plan", "log", "vehicle", "trajectory"]),
-    ("config", &["vehicle", "log", "trajectory"]),
 ];
 
 /// The binary's own modules: they may use anything, and nothing of the library may use them.

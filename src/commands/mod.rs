@@ -5,7 +5,9 @@
 mod effects;
 mod flights;
 mod identify;
+mod inspect;
 mod output;
+mod plan;
 mod validate;
 mod vehicle;
 
@@ -48,6 +50,18 @@ impl From<mavid::config::ConfigError> for CommandError {
     }
 }
 
+impl From<mavid::log::LogError> for CommandError {
+    fn from(error: mavid::log::LogError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<mavid::log::csv::CsvError> for CommandError {
+    fn from(error: mavid::log::csv::CsvError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
 impl CommandError {
     /// Says it on standard error and gives the exit status.
     pub fn report(&self) -> ExitCode {
@@ -63,8 +77,10 @@ impl CommandError {
 pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
     match &cli.verb {
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
+        Verb::Plan(args) => plan::run(cli.json, args),
         Verb::Identify(args) => identify::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, args),
+        Verb::Inspect(args) => inspect::run(cli.json, args),
     }
 }
 

@@ -78,29 +78,29 @@ const BOTH: Frames =
     &[("flu-nwu", AxisFrame::FluNwu), ("frd-ned", AxisFrame::FrdNed), ("flu-enu", AxisFrame::FluEnu)];
 const NO_FRAME: Frames = &[];
 
-/// Each quantity's name with its units and frames.
-const QUANTITIES: &[(&str, Quantity, Units, Frames)] = &[
-    ("attitude", Quantity::Attitude, RATIO, BOTH),
-    ("roll_yaw", Quantity::RollYaw, ANGLE, BOTH),
-    ("angular_rate", Quantity::AngularRate, RATE, BODY),
-    ("specific_force", Quantity::SpecificForce, ACCELERATION, BODY),
-    ("world_acceleration", Quantity::WorldAcceleration, ACCELERATION, WORLD),
-    ("position", Quantity::Position, METRE, WORLD),
-    ("velocity", Quantity::Velocity, METRE_PER_SECOND, WORLD),
-    ("actuator_command", Quantity::ActuatorCommand, ACTUATOR, NO_FRAME),
-    ("actuator_demand", Quantity::ActuatorDemand, ACTUATOR, NO_FRAME),
-    ("rotor_speed", Quantity::RotorSpeed, ROTOR_SPEED, NO_FRAME),
-    ("battery_voltage", Quantity::BatteryVoltage, VOLT, NO_FRAME),
-    ("battery_current", Quantity::BatteryCurrent, AMPERE, NO_FRAME),
-    ("position_setpoint", Quantity::PositionSetpoint, METRE, WORLD),
-    ("velocity_setpoint", Quantity::VelocitySetpoint, METRE_PER_SECOND, WORLD),
-    ("acceleration_setpoint", Quantity::AccelerationSetpoint, ACCELERATION, WORLD),
-    ("yaw_setpoint", Quantity::YawSetpoint, ANGLE, WORLD),
-    ("attitude_setpoint", Quantity::AttitudeSetpoint, RATIO, BOTH),
-    ("thrust_setpoint", Quantity::ThrustSetpoint, RATIO, NO_FRAME),
-    ("landed_state", Quantity::LandedState, RATIO, NO_FRAME),
-    ("armed", Quantity::Armed, RATIO, NO_FRAME),
-    ("mode", Quantity::Mode, RATIO, NO_FRAME),
+/// Each quantity that a table may hold, with its units and frames.
+const QUANTITIES: &[(Quantity, Units, Frames)] = &[
+    (Quantity::Attitude, RATIO, BOTH),
+    (Quantity::RollYaw, ANGLE, BOTH),
+    (Quantity::AngularRate, RATE, BODY),
+    (Quantity::SpecificForce, ACCELERATION, BODY),
+    (Quantity::WorldAcceleration, ACCELERATION, WORLD),
+    (Quantity::Position, METRE, WORLD),
+    (Quantity::Velocity, METRE_PER_SECOND, WORLD),
+    (Quantity::ActuatorCommand, ACTUATOR, NO_FRAME),
+    (Quantity::ActuatorDemand, ACTUATOR, NO_FRAME),
+    (Quantity::RotorSpeed, ROTOR_SPEED, NO_FRAME),
+    (Quantity::BatteryVoltage, VOLT, NO_FRAME),
+    (Quantity::BatteryCurrent, AMPERE, NO_FRAME),
+    (Quantity::PositionSetpoint, METRE, WORLD),
+    (Quantity::VelocitySetpoint, METRE_PER_SECOND, WORLD),
+    (Quantity::AccelerationSetpoint, ACCELERATION, WORLD),
+    (Quantity::YawSetpoint, ANGLE, WORLD),
+    (Quantity::AttitudeSetpoint, RATIO, BOTH),
+    (Quantity::ThrustSetpoint, RATIO, NO_FRAME),
+    (Quantity::LandedState, RATIO, NO_FRAME),
+    (Quantity::Armed, RATIO, NO_FRAME),
+    (Quantity::Mode, RATIO, NO_FRAME),
 ];
 
 /// The mapping for files with the columns that `configs/csv/default.toml` lists.
@@ -156,8 +156,10 @@ fn delimiter(check: &Check<'_>, name: &str) -> Result<u8, ConfigError> {
 }
 
 fn quantity(check: &Check<'_>, key: &str, table: QuantityTable) -> Result<CsvQuantity, ConfigError> {
-    let Some((_, quantity, units, frames)) = QUANTITIES.iter().find(|(name, ..)| *name == table.name) else {
-        let names: Vec<&str> = QUANTITIES.iter().map(|(name, ..)| *name).collect();
+    let Some((quantity, units, frames)) =
+        QUANTITIES.iter().find(|(quantity, ..)| quantity.name() == table.name)
+    else {
+        let names: Vec<&str> = QUANTITIES.iter().map(|(quantity, ..)| quantity.name()).collect();
         let expected = format!("one of {}", names.join(", "));
         return Err(check.refuse(&format!("{key}.name"), expected, format!("\"{}\"", table.name)));
     };

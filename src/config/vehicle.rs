@@ -233,7 +233,7 @@ fn rotors(check: &Check<'_>, tables: Vec<RotorTable>) -> Result<Vec<Rotor>, Conf
     Ok(rotors)
 }
 
-fn limits(check: &Check<'_>, table: &LimitsTable) -> Result<Limits, ConfigError> {
+pub(super) fn limits(check: &Check<'_>, table: &LimitsTable) -> Result<Limits, ConfigError> {
     let positive = |key: &str, value| check.optional_positive(&format!("limits.{key}"), value);
     let finite = |key: &str, value| check.optional_finite(&format!("limits.{key}"), value);
     let angle = |key: &str, deg| -> Result<Option<f64>, ConfigError> {

@@ -90,7 +90,7 @@ fn propulsion_table(propulsion: &Propulsion) -> PropulsionTable {
     table
 }
 
-fn limits_table(limits: &Limits) -> LimitsTable {
+pub(super) fn limits_table(limits: &Limits) -> LimitsTable {
     let degrees = |rad: Option<f64>| rad.map(units::deg_from_rad);
     LimitsTable {
         roll_max_deg: degrees(limits.roll_max_rad),

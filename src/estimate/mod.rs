@@ -2,6 +2,7 @@
 
 mod anchor;
 mod identify;
+mod information;
 mod physical;
 mod problem;
 mod recommend;
@@ -12,6 +13,7 @@ mod weak;
 
 pub use anchor::{ThrustScale, apply_anchor, identified_vehicle};
 pub use identify::{EstimateError, Identification, IdentifySettings, Method, identify};
+pub use information::WeakInformation;
 pub use physical::{is_physical, nearest_physical, second_moments};
 pub use problem::{Channel, Problem, Solution};
 pub use recommend::Recommendation;

@@ -81,7 +81,8 @@ impl Problem {
 
     /// Alternates between the parameters and the channels' weights.
     fn fit(&self, row_weights: Option<&[DVector<f64>]>) -> Fit {
-        let mut sigma: Vec<f64> = self.channels.iter().map(|c| spread(&c.y)).collect();
+        let size: Vec<f64> = self.channels.iter().map(|c| spread(&c.y).max(1e-100)).collect();
+        let mut sigma = size.clone();
         // each channel's share of the normal equations stays; only its weight changes
         let shares: Vec<Normal> =
             (0..self.channels.len()).map(|channel| self.normal_share(channel, row_weights)).collect();
@@ -89,8 +90,9 @@ impl Problem {
         for _ in 0..4 {
             let normal = Normal::weighted(&shares, &sigma, &self.priors);
             let theta = normal.solve();
-            for (sigma, residual) in sigma.iter_mut().zip(self.residuals(&theta)) {
-                *sigma = spread(&residual).max(f64::MIN_POSITIVE);
+            for ((sigma, size), residual) in sigma.iter_mut().zip(&size).zip(self.residuals(&theta)) {
+                // an exact fit leaves only rounding, which is no measure of weight
+                *sigma = spread(&residual).max(1e-12 * size);
             }
             fit = Fit { theta, sigma: sigma.clone(), normal };
         }
@@ -253,7 +255,7 @@ impl Normal {
     fn weighted(shares: &[Self], sigma: &[f64], priors: &[(usize, f64)]) -> Self {
         let mut sum = Self::empty(shares.first().map_or(0, |share| share.right.len()));
         for (share, sigma) in shares.iter().zip(sigma) {
-            let weight = 1.0 / (sigma * sigma).max(f64::MIN_POSITIVE);
+            let weight = 1.0 / (sigma * sigma);
             sum.matrix += &share.matrix * weight;
             sum.right += &share.right * weight;
         }
@@ -343,7 +345,12 @@ mod tests {
                 }
                 channel.y[t] = 2.0 * slow[0] - slow[1] + noise;
             }
-            let problem = Problem { channels: vec![channel], runs: vec![0..n], priors: vec![], overlap: 1 };
+            let problem = Problem {
+                channels: vec![channel],
+                runs: std::iter::once(0..n).collect(),
+                priors: vec![],
+                overlap: 1,
+            };
             let solution = problem.solve(None);
             let error = (solution.theta[0] - 2.0).abs();
             covered += i32::from(error < 1.96 * solution.covariance[(0, 0)].sqrt());
@@ -360,7 +367,7 @@ mod tests {
         let y = x.column(0) * 3.0;
         let problem = Problem {
             channels: vec![Channel { y, x, z: None }],
-            runs: vec![0..50],
+            runs: std::iter::once(0..50).collect(),
             priors: vec![],
             overlap: 1,
         };

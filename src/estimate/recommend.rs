@@ -2,7 +2,7 @@
 
 use super::identify::Method;
 use super::physical::{is_physical, nearest_physical};
-use super::result::{Estimated, MethodResult};
+use super::result::{Estimated, Finding, MethodResult};
 use super::theta::{NAMES, Theta, scale_of};
 use super::weak::WeakEstimate;
 
@@ -36,7 +36,10 @@ pub fn recommend(
 ) -> Recommendation {
     let (method, chosen, why) = choose(plain, robust, instruments);
     let mut estimated = Estimated::of(chosen);
-    let made_physical = !is_physical(&estimated.theta);
+    // an inertia that is not determined needs no repair
+    let as_estimated = MethodResult::new(method, &estimated, nominal);
+    let determined = |i: usize| matches!(as_estimated.parameters[i].finding, Finding::Determined { .. });
+    let made_physical = [1, 4, 6].into_iter().all(determined) && !is_physical(&estimated.theta);
     if made_physical && let Some(theta) = nearest_physical(&estimated.theta, &estimated.covariance, nominal) {
         estimated.theta = theta;
     }

@@ -213,6 +213,7 @@ mod tests {
         let implicit = gradient_descent(&model, &nominal, PAPER_SIGMA, GradientStep::Implicit);
         assert!((implicit.theta - truth).norm() < 2e-3, "{}", implicit.theta);
         let explicit = gradient_descent(&model, &nominal, PAPER_SIGMA, GradientStep::Explicit);
-        assert!(!(explicit.theta.norm() < 1e3), "{}", explicit.theta);
+        let size = explicit.theta.norm();
+        assert!(size.is_nan() || size > 1e3, "{}", explicit.theta);
     }
 }

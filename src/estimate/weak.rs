@@ -15,10 +15,10 @@ const LATENCY: usize = THETA;
 const FORCE_LATENCY: usize = THETA + 1;
 const TRIM: usize = THETA + 2;
 const DAMPING: usize = THETA + 5;
-const JITTER: usize = THETA + 8;
+pub(super) const JITTER: usize = THETA + 8;
 const CURVATURE: usize = THETA + 9;
 /// The share of the jitter that is averaged away lies anywhere between none and all.
-const JITTER_STD: f64 = 0.288_675; // 1/sqrt(12)
+pub(super) const JITTER_STD: f64 = 0.288_675; // 1/sqrt(12)
 
 /// How the body follows the recorded command.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -13,6 +13,7 @@ pub struct RecordingBuilder {
     /// for each source, where its streams are in `streams`
     by_source: Vec<Vec<usize>>,
     rest: Recording,
+    numbers: usize,
 }
 
 #[derive(Debug)]
@@ -32,14 +33,26 @@ impl RecordingBuilder {
     /// Adds what one event says.
     pub fn add(&mut self, event: Event<'_>) {
         match event {
-            Event::Sample { stream, time_s, values } => self.stream(stream).push(time_s, values),
+            Event::Sample { stream, time_s, values } => {
+                let growing = self.stream(stream);
+                let before = growing.numbers();
+                growing.push(time_s, values);
+                let added = growing.numbers() - before;
+                self.numbers += added;
+            }
             Event::Parameter { name, value } => {
                 self.rest.parameters.insert(name.to_owned(), value);
             }
-            Event::Text { time_s, text } => self.rest.texts.push((time_s, text.to_owned())),
+            Event::Text { time_s, text, .. } => self.rest.texts.push((time_s, text.to_owned())),
             Event::ClockReset { time_s } => self.rest.clock_resets_s.push(time_s),
             Event::EstimatorReset { time_s } => self.rest.estimator_resets_s.push(time_s),
         }
+    }
+
+    /// Stamps and values held so far.
+    #[must_use]
+    pub fn numbers(&self) -> usize {
+        self.numbers
     }
 
     /// The recording, each stream in the order of time, and what putting it in order took.
@@ -70,6 +83,10 @@ impl RecordingBuilder {
 }
 
 impl Growing {
+    fn numbers(&self) -> usize {
+        self.stream.time_s.len() + self.stream.values.len()
+    }
+
     fn push(&mut self, time_s: f64, values: &[f64]) {
         if let Some(&last_s) = self.stream.time_s.last() {
             if time_s == last_s {

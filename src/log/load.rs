@@ -60,22 +60,78 @@ pub fn stream_tlog(
     options: &LoadOptions,
     sink: &mut impl FnMut(Event<'_>),
 ) -> Result<(Vehicle, ReadReport), LogError> {
-    let survey = Survey::of(TlogReader::new(open(path)?), options)?;
-    let mut decoder = Decoder::new(survey.vehicle, survey.anchor, survey.start_us);
-    let mut reader = TlogReader::new(open(path)?);
-    let mut vehicles = BTreeSet::from([survey.vehicle.system]);
-    while let Some(record) = reader.next_record()? {
-        decoder.decode(&record, sink);
-        vehicles
-            .extend(Vehicle::from_heartbeat(&record).filter(|_| record.known).map(|vehicle| vehicle.system));
+    let walk = TlogWalk::open(path, options)?.run(&mut |_, event| sink(event))?;
+    if options.system.is_none() && walk.vehicles.len() > 1 {
+        return Err(LogError::SeveralVehicles { systems: walk.vehicles.into_iter().collect() });
     }
-    if options.system.is_none() && vehicles.len() > 1 {
-        return Err(LogError::SeveralVehicles { systems: vehicles.into_iter().collect() });
+    Ok((walk.vehicle, walk.report))
+}
+
+/// Where in a telemetry log an event was met.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    /// host's stamp of the frame, microseconds since 1970 UTC
+    pub host_us: u64,
+    /// byte offset of the frame in the file
+    pub offset: u64,
+}
+
+/// What a walk through a telemetry log met beside the samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Walk {
+    /// whose messages were decoded
+    pub vehicle: Vehicle,
+    /// all systems that sent a vehicle's HEARTBEAT, and the one decoded
+    pub vehicles: BTreeSet<SystemId>,
+    /// what was met while reading it
+    pub report: ReadReport,
+}
+
+/// A telemetry log about to be walked through.
+#[derive(Debug)]
+pub struct TlogWalk {
+    decoder: Decoder,
+    reader: TlogReader<File>,
+    start_us: u64,
+}
+
+impl TlogWalk {
+    /// Finds the vehicle and its clock: the chosen one, else the first that sends a HEARTBEAT.
+    ///
+    /// # Errors
+    /// As [`load`], but for several vehicles.
+    pub fn open(path: &Path, options: &LoadOptions) -> Result<Self, LogError> {
+        let survey = Survey::of(TlogReader::new(open(path)?), options)?;
+        let decoder = Decoder::new(survey.vehicle, survey.anchor, survey.start_us);
+        Ok(Self { decoder, reader: TlogReader::new(open(path)?), start_us: survey.start_us })
     }
-    decoder.finish(sink);
-    let mut report = reader.into_report();
-    report.decode = decoder.report().clone();
-    Ok((survey.vehicle, report))
+
+    /// Whose messages will be decoded.
+    #[must_use]
+    pub fn vehicle(&self) -> Vehicle {
+        *self.decoder.vehicle()
+    }
+
+    /// Gives each event with its place to `sink`; memory does not grow with the log.
+    ///
+    /// # Errors
+    /// Reading fails.
+    pub fn run(mut self, sink: &mut impl FnMut(Place, Event<'_>)) -> Result<Walk, LogError> {
+        let vehicle = self.vehicle();
+        let mut vehicles = BTreeSet::from([vehicle.system]);
+        let mut place = Place { host_us: self.start_us, offset: 0 };
+        while let Some(record) = self.reader.next_record()? {
+            place = Place { host_us: record.stamp_us, offset: record.offset };
+            self.decoder.decode(&record, &mut |event: Event<'_>| sink(place, event));
+            vehicles.extend(
+                Vehicle::from_heartbeat(&record).filter(|_| record.known).map(|vehicle| vehicle.system),
+            );
+        }
+        self.decoder.finish(&mut |event: Event<'_>| sink(place, event));
+        let mut report = self.reader.into_report();
+        report.decode = self.decoder.report().clone();
+        Ok(Walk { vehicle, vehicles, report })
+    }
 }
 
 fn open(path: &Path) -> Result<File, LogError> {

@@ -29,7 +29,7 @@ pub use frame::{
     Check, ComponentId, Frame, Header, MARKER_V1, MARKER_V2, MAX_FRAME_BYTES, Payload, Start, SystemId,
     Version,
 };
-pub use load::{LoadOptions, Loaded, load, stream_tlog};
+pub use load::{LoadOptions, Loaded, Place, TlogWalk, Walk, load, stream_tlog};
 pub use recording::{Autopilot, Quantity, Recording, Stream, StreamKey};
 pub use report::{MessageCounts, ReadReport, Resync, Sender, StreamRepair};
 pub use splitter::{SplitCounts, Splitter};

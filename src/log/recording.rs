@@ -55,6 +55,39 @@ pub enum Quantity {
     Mode,
 }
 
+impl Quantity {
+    /// Name as in files and JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Attitude => "attitude",
+            Self::RollYaw => "roll_yaw",
+            Self::AngularRate => "angular_rate",
+            Self::SpecificForce => "specific_force",
+            Self::WorldAcceleration => "world_acceleration",
+            Self::Position => "position",
+            Self::Velocity => "velocity",
+            Self::ActuatorCommand => "actuator_command",
+            Self::ActuatorDemand => "actuator_demand",
+            Self::Wrench => "wrench",
+            Self::RotorSpeed => "rotor_speed",
+            Self::BatteryVoltage => "battery_voltage",
+            Self::BatteryCurrent => "battery_current",
+            Self::PositionSetpoint => "position_setpoint",
+            Self::VelocitySetpoint => "velocity_setpoint",
+            Self::AccelerationSetpoint => "acceleration_setpoint",
+            Self::YawSetpoint => "yaw_setpoint",
+            Self::YawRateSetpoint => "yaw_rate_setpoint",
+            Self::AttitudeSetpoint => "attitude_setpoint",
+            Self::AngularRateSetpoint => "angular_rate_setpoint",
+            Self::ThrustSetpoint => "thrust_setpoint",
+            Self::LandedState => "landed_state",
+            Self::Armed => "armed",
+            Self::Mode => "mode",
+        }
+    }
+}
+
 /// One stream: which quantity, from which message, of which instance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct StreamKey {

@@ -82,11 +82,11 @@ pub fn check(
         for margin in &mut margins {
             let value = instant.value(margin.quantity, dynamics);
             let seen = Margin { value, time_s, ..*margin };
-            // not a number: neither comparison holds, and it must count as broken
-            if !(seen.spare() >= margin.spare()) {
+            let broken = seen.spare() < 0.0 || value.is_nan();
+            if seen.spare() < margin.spare() || value.is_nan() {
                 *margin = seen;
             }
-            if !(seen.spare() >= 0.0) && first_violation.is_none() {
+            if broken && first_violation.is_none() {
                 first_violation =
                     Some(Violation { time_s, quantity: seen.quantity, value, limit: seen.limit });
             }

@@ -24,6 +24,9 @@ const VIOLATION_PRICE: f64 = 2.0;
 const AUXILIARY_CURVATURE: f64 = 1e-3;
 /// Rows of a step are kept to this share of the bound's scale.
 const ROW_TOLERANCE: f64 = 1e-11;
+/// Rows that hardly depend on the unknowns, those next to a prescribed start, are left out: they would
+/// only spoil the condition of a step. What they hold is far below the tightening of the bounds.
+const LEVER_MIN: f64 = 1e-6;
 /// How often supports are added within a step.
 const SUPPORT_ROUNDS: u32 = 12;
 
@@ -106,6 +109,12 @@ impl BoundGrid {
         let instants = (0..count).map(|k| space.rows(f64::from(k) * step_s)).collect();
         Self { instants, tightening }
     }
+
+    /// The share of its scale by which every bound is tightened.
+    #[must_use]
+    pub fn tightening(&self) -> f64 {
+        self.tightening
+    }
 }
 
 impl Problem {
@@ -164,7 +173,7 @@ impl Problem {
                         continue;
                     }
                     let gradient = self.gradient(iterate, &grid.instants[instant], (bound, side));
-                    if gradient.iter().any(|value| value.abs() > 1e-12) {
+                    if gradient.iter().any(|value| value.abs() > LEVER_MIN) {
                         rows.push(BoundRow { excess, gradient, instant, bound: index, side });
                     }
                 }

@@ -1,7 +1,7 @@
 //! Plans an excitation trajectory: from limits and a criterion to coefficients, margins and the
 //! standard errors that the flight will have.
 
-use super::bounds::{Bound, Dynamics, bounds_of};
+use super::bounds::{Bound, Dynamics, Quantity, bounds_of};
 use super::check::{CheckReport, SAMPLE_S, Violation, check};
 use super::criterion::{Criterion, condition_number, scaled_condition_number};
 use super::descent::Problem;
@@ -126,7 +126,7 @@ pub fn plan(
     feasible(limits, vehicle, &request.start)?;
     let problem = problem_of(vehicle, limits, request);
     let samples = (request.period_s / SAMPLE_S).ceil();
-    let mut search = search_of(request);
+    let search = search_of(request);
     let mut best = search.run(&problem, whole(samples), done).ok_or(PlanError::NotDetermined)?;
     for _ in 0..3 {
         if !best.log_value.is_finite() {
@@ -138,7 +138,6 @@ pub fn plan(
             let criterion_value = best.log_value.exp();
             return Ok(Plan { trajectory, criterion_value, assessment });
         }
-        search.margin *= 10.0;
         best = search.polish(&problem, best.unknowns, whole(samples));
     }
     let trajectory = problem.space.trajectory(&best.unknowns);
@@ -149,14 +148,18 @@ pub fn plan(
     }
 }
 
-/// The search for a request: bounds are tightened by what a sinusoid of the highest harmonic can rise
-/// between two samples.
+/// The largest share by which a peak can stand above the samples beside it. Attitude multiplies path by
+/// yaw and so holds twice the highest harmonic.
+fn rise_between_samples(request: &PlanRequest) -> f64 {
+    let highest_rad_s = 2.0 * std::f64::consts::TAU * f64::from(request.harmonics) / request.period_s;
+    0.5 * (0.5 * highest_rad_s * SAMPLE_S).powi(2)
+}
+
+/// The search for a request: bounds are tightened by what a peak can rise between two samples.
 #[must_use]
 pub fn search_of(request: &PlanRequest) -> Search {
-    let highest_rad_s = std::f64::consts::TAU * f64::from(request.harmonics) / request.period_s;
-    let between = 0.5 * (0.5 * highest_rad_s * SAMPLE_S).powi(2);
     let mut search = Search::new(request.seed, request.starts);
-    search.margin = search.margin.max(between);
+    search.margin = search.margin.max(rise_between_samples(request));
     search
 }
 
@@ -185,7 +188,7 @@ pub fn assess(
 }
 
 fn problem_of(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Problem {
-    let space = SeriesSpace::new(request.period_s, request.harmonics, starts_of(limits, &request.start));
+    let space = SeriesSpace::new(request.period_s, request.harmonics, starts_of(limits, request));
     let information = match request.criterion {
         Criterion::Cond | Criterion::ScaledCond => Vector4::repeat(1.0),
         Criterion::DOpt | Criterion::AOpt => {
@@ -204,25 +207,36 @@ fn problem_of(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Prob
     }
 }
 
-/// The height is free unless prescribed; a start on a bound gets no jerk.
-fn starts_of(limits: &Limits, start: &StartPlace) -> [AxisStart; 4] {
-    let at = |value: f64, bounds: [Option<f64>; 2]| {
-        let on_bound = bounds.iter().flatten().any(|bound| (bound - value).abs() < 1e-9);
-        if on_bound { AxisStart::OnBound(value) } else { AxisStart::At(value) }
+/// The height is free unless prescribed. A start on a bound gets no jerk, and stands off the bound by as
+/// little as all else does.
+fn starts_of(limits: &Limits, request: &PlanRequest) -> [AxisStart; 4] {
+    let margin = search_of(request).margin;
+    let at = |value: f64, min: Option<f64>, max: Option<f64>| {
+        let bound = Bound { quantity: Quantity::Path { axis: 0, order: 0 }, min, max };
+        let off = margin * bound.scale();
+        let near = |bound: &f64| (bound - value).abs() < off;
+        if let Some(min) = min.filter(near) {
+            AxisStart::OnBound(min + off)
+        } else if let Some(max) = max.filter(near) {
+            AxisStart::OnBound(max - off)
+        } else {
+            AxisStart::At(value)
+        }
     };
-    let both = |max: Option<f64>| [max, max.map(|value| -value)];
+    let both = |value: f64, max: Option<f64>| at(value, max.map(|max| -max), max);
+    let start = &request.start;
     let height = match (start.z_m, limits.z_min_m, limits.z_max_m) {
-        (Some(z), min, max) => at(z, [min, max]),
+        (Some(z), min, max) => at(z, min, max),
         (None, Some(min), Some(max)) => AxisStart::Near(0.5 * (min + max)),
         (None, Some(only), None) => AxisStart::Near(only + 1.0),
         (None, None, Some(only)) => AxisStart::Near(only - 1.0),
         (None, None, None) => AxisStart::At(0.0),
     };
     [
-        at(start.x_m, both(limits.x_max_m)),
-        at(start.y_m, both(limits.y_max_m)),
+        both(start.x_m, limits.x_max_m),
+        both(start.y_m, limits.y_max_m),
         height,
-        at(start.yaw_rad, both(limits.yaw_max_rad)),
+        both(start.yaw_rad, limits.yaw_max_rad),
     ]
 }
 

@@ -64,7 +64,7 @@ fn positive_limits(limits: &Limits) -> Result<(), Conflict> {
         ("torque_max_nm", limits.torque_max_nm),
     ];
     for (name, size) in sizes {
-        if let Some(size) = size.filter(|size| !(*size > 0.0)) {
+        if let Some(size) = size.filter(|size| *size <= 0.0 || size.is_nan()) {
             let asked = "an excitation".to_owned();
             return conflict(format!("{name} = {size}"), asked, "it leaves no room to move");
         }
@@ -74,7 +74,7 @@ fn positive_limits(limits: &Limits) -> Result<(), Conflict> {
 
 fn ordered(low_name: &str, low: Option<f64>, high_name: &str, high: Option<f64>) -> Result<(), Conflict> {
     match (low, high) {
-        (Some(low), Some(high)) if !(low < high) => conflict(
+        (Some(low), Some(high)) if low >= high || low.is_nan() || high.is_nan() => conflict(
             format!("{low_name} = {low}"),
             format!("{high_name} = {high}"),
             "the lower bound is not below the upper one",

@@ -129,3 +129,44 @@ pub fn weighted_square(phi: &SMatrix<f64, 4, 7>, weights: &Vector4<f64>) -> Matr
 fn upper_entries() -> impl Iterator<Item = (usize, usize)> {
     (0..7).flat_map(|row| (row..7).map(move |column| (row, column)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::space::AxisStart;
+    use super::*;
+
+    fn space_and_point() -> (SeriesSpace, DVector<f64>) {
+        let start = [AxisStart::At(0.0), AxisStart::At(0.0), AxisStart::Near(1.0), AxisStart::At(0.0)];
+        let space = SeriesSpace::new(10.0, 5, start);
+        let mut value = 0.4;
+        let point = DVector::from_fn(space.dimension(), |_, _| {
+            value = (value * 5.1_f64).sin();
+            0.15 * value
+        });
+        (space, point)
+    }
+
+    #[test]
+    fn slopes_agree_with_differences() {
+        let (space, point) = space_and_point();
+        let sampler = GramSampler::new(&space, 40, Vector4::new(1.0, 2.0, 3.0, 4.0), 9.81);
+        let sloped = sampler.sloped(&point);
+        assert!((sloped.matrix - sampler.matrix(&point)).norm() < 1e-10);
+        let h = 1e-5;
+        for unknown in 0..space.dimension() {
+            let mut step = DVector::zeros(space.dimension());
+            step[unknown] = h;
+            let numeric = (sampler.matrix(&(&point + &step)) - sampler.matrix(&(&point - &step))) / (2.0 * h);
+            let error = (numeric - sloped.slopes[unknown]).norm();
+            assert!(error < 1e-6 * (1.0 + numeric.norm()), "unknown {unknown}: {error}");
+        }
+    }
+
+    #[test]
+    fn few_samples_stand_for_many() {
+        let (space, point) = space_and_point();
+        let few = GramSampler::new(&space, 65, Vector4::repeat(1.0), 9.81).matrix(&point);
+        let many = GramSampler::of_series(&space.trajectory(&point), 5000, Vector4::repeat(1.0), 9.81);
+        assert!((few - many).norm() < 1e-9 * many.norm());
+    }
+}

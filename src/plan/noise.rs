@@ -4,7 +4,12 @@
 //! command on the left-hand side), so the noise of a row is what the force or torque balance shows when
 //! nothing is wrong: the accelerometer and the commands' jitter in force, the jitter and the gyro's
 //! noise in torque. The command loop runs faster than the log; a logged command is one tick of it, while
-//! the body feels the mean of all ticks, and this aliased jitter is the largest noise of the torque rows.
+//! the body feels the mean of all ticks. This aliased jitter is the largest noise of the torque rows. It
+//! is the controller's answer to the noise on which it flies, an angular acceleration times the inertia
+//! that the controller believes in, and so it does not follow from the rotors.
+//!
+//! Each noise is taken as white. The jitter of a real loop is coloured by its controller, so a promise
+//! may be off by some ten per cent for one parameter or another.
 
 use super::bounds::parameters_of;
 use super::information::Matrix7;
@@ -18,9 +23,10 @@ pub struct NoiseModel {
     pub accelerometer_m_s2: f64,
     /// gyro, one axis, rad/s, one sample
     pub gyro_rad_s: f64,
-    /// difference between a logged command and the mean that acted, one rotor, as a share of the
-    /// thrust at full command
-    pub command_jitter: f64,
+    /// difference between a logged thrust command and the mean that acted, as thrust per mass, m/s^2
+    pub thrust_jitter_m_s2: f64,
+    /// the same of the torque commands, as angular acceleration about body x, y, z, rad/s^2
+    pub torque_jitter_rad_s2: [f64; 3],
     /// rate at which accelerometer, gyro and commands are logged, 1/s; samples count as independent
     pub log_rate_hz: f64,
     /// half the width of the weak form's kernel, s; it sets the noise of the gyro's derivative
@@ -28,12 +34,14 @@ pub struct NoiseModel {
 }
 
 impl Default for NoiseModel {
-    /// An autopilot of the class of Pixhawk, logged at 125 Hz.
+    /// Sensors of the class of a Pixhawk, control at 250 Hz logged at 125 Hz. The jitter is that of this
+    /// crate's simulated flights with their default controller; a test holds the two together.
     fn default() -> Self {
         Self {
             accelerometer_m_s2: 0.12,
             gyro_rad_s: 0.006,
-            command_jitter: 0.007,
+            thrust_jitter_m_s2: 0.26,
+            torque_jitter_rad_s2: [1.1, 1.3, 0.6],
             log_rate_hz: 125.0,
             kernel_half_width_s: 0.2,
         }
@@ -50,19 +58,16 @@ impl NoiseModel {
     #[must_use]
     pub fn row_information(&self, vehicle: &Vehicle) -> Vector4<f64> {
         const KERNEL_RATIO: f64 = 34.0 / 7.0;
-        let mixer = vehicle.mixer().matrix;
-        let jitter_n = self.command_jitter * vehicle.propulsion.thrust_from_command_n(1.0);
         let moments = vehicle.body.inertia_kg_m2.diagonal();
         Vector4::from_fn(|row, _| {
-            let gain_square: f64 = mixer.row(row).iter().map(|gain| gain * gain).sum();
-            let command = jitter_n * jitter_n * gain_square;
-            let sensor = if row == 0 {
-                (vehicle.body.mass_kg * self.accelerometer_m_s2).powi(2)
+            let variance = if row == 0 {
+                let square = self.accelerometer_m_s2.powi(2) + self.thrust_jitter_m_s2.powi(2);
+                vehicle.body.mass_kg.powi(2) * square
             } else {
-                let rate = moments[row - 1] * self.gyro_rad_s / self.kernel_half_width_s;
-                rate * rate * KERNEL_RATIO
+                let gyro = KERNEL_RATIO * (self.gyro_rad_s / self.kernel_half_width_s).powi(2);
+                moments[row - 1].powi(2) * (gyro + self.torque_jitter_rad_s2[row - 1].powi(2))
             };
-            self.log_rate_hz / (command + sensor)
+            self.log_rate_hz / variance
         })
     }
 }

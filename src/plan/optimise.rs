@@ -108,6 +108,9 @@ fn descend_all(
         })
         .collect();
     // stable: equal merits keep the order of the starts
-    reached.sort_by(|a, b| a.merit().total_cmp(&b.merit()));
+    reached.sort_by(|a, b| {
+        let outside = |iterate: &Iterate| iterate.violation > grid.tightening();
+        outside(a).cmp(&outside(b)).then(a.merit().total_cmp(&b.merit()))
+    });
     reached
 }

@@ -38,6 +38,14 @@ impl ZeroPhase {
         }
     }
 
+    /// Samples at each end of a record that its made-up continuation reaches into.
+    fn edge_count(&self) -> usize {
+        match self {
+            Self::Butterworth(filter) => filter.settling_count(),
+            Self::Fir(_) => WindowedFir::PAPER_LENGTH,
+        }
+    }
+
     fn vectors<const N: usize>(&self, columns: &[[f64; N]]) -> Vec<[f64; N]> {
         let mut out = columns.to_vec();
         for component in 0..N {
@@ -86,7 +94,9 @@ pub fn paper_models(
     let low_wrench = filter_entries(&filtered.wrench, |column| pair.low_pass(column));
 
     let (mut standard, mut by_filter) = (SampledModel::empty(step_s), SampledModel::empty(step_s));
-    for run in crate::signals::Grid::runs(&signals.usable, 50) {
+    let edge = filter.edge_count();
+    let inside: Vec<bool> = (0..count).map(|i| signals.usable[i] && i >= edge && i + edge < count).collect();
+    for run in crate::signals::Grid::runs(&inside, 50) {
         let start = standard.time_s.len();
         for i in run {
             let kinematics = BodyKinematics {

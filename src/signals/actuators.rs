@@ -51,12 +51,16 @@ pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result
         best(recording, Quantity::ActuatorCommand, fits).ok_or_else(|| no_actuators(recording, vehicle))?;
     let mut command = Stream { time_s: raw.time_s.clone(), width: channels.len(), values: Vec::new() };
     command.values.reserve(raw.len() * channels.len());
+    command.time_s.clear();
     for index in 0..raw.len() {
         let sample = raw.sample(index);
-        command.values.extend(channels.iter().map(|&channel| propulsion.normalized(sample[channel])));
+        if channels.iter().all(|&channel| sample[channel].is_finite()) {
+            command.time_s.push(raw.time_s[index]);
+            command.values.extend(channels.iter().map(|&channel| propulsion.normalized(sample[channel])));
+        }
     }
     let values = command.values.iter().map(|&u| propulsion.thrust_from_command_n(u)).collect();
-    let stream = Stream { time_s: raw.time_s.clone(), width: channels.len(), values };
+    let stream = Stream { time_s: command.time_s.clone(), width: channels.len(), values };
     let jitter = Some(jitter_thrust(&command, propulsion.thrust_curvature_n()));
     let (command, source) = (Some(command), ThrustSource::Command);
     Ok(RotorThrusts { stream, command, jitter, source, message: key.source, notes })
@@ -68,10 +72,15 @@ pub fn thrusts_from_speeds(recording: &Recording, vehicle: &Vehicle) -> Option<R
     let coefficient = vehicle.propulsion.thrust_coefficient?;
     let rotors = vehicle.rotors.len();
     let (key, raw) = best(recording, Quantity::RotorSpeed, |stream| stream.width >= rotors)?;
-    let mut stream = Stream { time_s: raw.time_s.clone(), width: rotors, values: Vec::new() };
+    let mut stream = Stream { time_s: Vec::with_capacity(raw.len()), width: rotors, values: Vec::new() };
     stream.values.reserve(raw.len() * rotors);
     for index in 0..raw.len() {
-        stream.values.extend(raw.sample(index)[..rotors].iter().map(|speed| coefficient * speed * speed));
+        let speeds = &raw.sample(index)[..rotors];
+        // a sensor drop-out is a missing sample, not a stopped rotor
+        if speeds.iter().all(|speed| speed.is_finite()) {
+            stream.time_s.push(raw.time_s[index]);
+            stream.values.extend(speeds.iter().map(|speed| coefficient * speed * speed));
+        }
     }
     let (source, message) = (ThrustSource::MeasuredSpeed, key.source);
     Some(RotorThrusts { stream, command: None, jitter: None, source, message, notes: Vec::new() })

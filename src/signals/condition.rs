@@ -1,13 +1,14 @@
 //! One flight conditioned: streams chosen, aligned, put on one grid, and cut to what can be used.
 
-use super::actuators::{RotorThrusts, ThrustSource, thrusts_from_commands, thrusts_from_speeds};
+use super::actuation::{Actuation, ThrustPreference};
+use super::actuators::ThrustSource;
 use super::align::{
     AlignFrame, InertialOnGrid, StreamOffset, attitude_offset, attitudes_onto, position_offset, vectors_onto,
     velocity_offset,
 };
 use super::select::{best, median_period_s};
-use super::usable::{Usable, airborne_spans, usable};
-use super::{Grid, SignalsError, WeakKernel, linear_onto};
+use super::usable::{Evidence, Usable, airborne_spans, usable};
+use super::{Grid, SignalsError, WeakKernel};
 use crate::log::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
@@ -23,16 +24,6 @@ pub struct ConditionSettings {
     pub weak_half_width_s: f64,
     /// which thrusts are used where the log has both
     pub thrust: ThrustPreference,
-}
-
-/// Commands or measured rotor speeds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum ThrustPreference {
-    /// measured speeds where they are recorded
-    #[default]
-    Measured,
-    /// commands only
-    Commands,
 }
 
 impl Default for ConditionSettings {
@@ -160,7 +151,7 @@ pub fn condition(
     let rate = chosen.rate.and_then(|(_, s)| vectors_onto(s, 0.0, &grid));
     let (mask, used) = usable(
         &grid,
-        &super::usable::Evidence {
+        &Evidence {
             streams: &streams,
             airborne_s: &airborne_s,
             resets_s: &recording.clock_resets_s,
@@ -222,109 +213,6 @@ pub fn stride(step_s: f64) -> usize {
         stride += 1;
     }
     stride
-}
-
-/// What drives the body.
-pub(super) enum Actuation {
-    /// one thrust a rotor
-    Rotors(RotorThrusts),
-    /// force and torque as recorded
-    Wrench(&'static str, Stream),
-}
-
-impl Actuation {
-    fn from(
-        recording: &Recording,
-        vehicle: &Vehicle,
-        preference: ThrustPreference,
-    ) -> Result<Self, SignalsError> {
-        if let Some((key, stream)) = best(recording, Quantity::Wrench, |s| s.width == 4) {
-            return Ok(Self::Wrench(key.source, stream.clone()));
-        }
-        let measured = match preference {
-            ThrustPreference::Measured => thrusts_from_speeds(recording, vehicle),
-            ThrustPreference::Commands => None,
-        };
-        measured.map_or_else(|| thrusts_from_commands(recording, vehicle), Ok).map(Self::Rotors)
-    }
-
-    pub(super) fn stream(&self) -> &Stream {
-        match self {
-            Self::Rotors(rotors) => &rotors.stream,
-            Self::Wrench(_, stream) => stream,
-        }
-    }
-
-    fn command(&self) -> Option<&Stream> {
-        match self {
-            Self::Rotors(rotors) => rotors.command.as_ref(),
-            Self::Wrench(..) => None,
-        }
-    }
-
-    fn source(&self) -> ThrustSource {
-        match self {
-            Self::Rotors(rotors) => rotors.source,
-            Self::Wrench(..) => ThrustSource::Wrench,
-        }
-    }
-
-    fn quantity(&self) -> Quantity {
-        match self.source() {
-            ThrustSource::MeasuredSpeed => Quantity::RotorSpeed,
-            ThrustSource::Command => Quantity::ActuatorCommand,
-            ThrustSource::Wrench => Quantity::Wrench,
-        }
-    }
-
-    fn message(&self) -> &'static str {
-        match self {
-            Self::Rotors(rotors) => rotors.message,
-            Self::Wrench(message, _) => message,
-        }
-    }
-
-    fn notes(&self) -> Vec<String> {
-        match self {
-            Self::Rotors(rotors) => rotors.notes.clone(),
-            Self::Wrench(..) => Vec::new(),
-        }
-    }
-
-    /// Total thrust at each of the stream's own samples, N.
-    pub(super) fn collective_n(&self, index: usize) -> f64 {
-        match self {
-            Self::Rotors(rotors) => rotors.stream.sample(index).iter().sum(),
-            Self::Wrench(_, stream) => stream.sample(index)[0],
-        }
-    }
-
-    /// Rotor thrusts and `F` on the grid, by first-order hold.
-    fn onto(&self, grid: &Grid, vehicle: &Vehicle) -> Felt {
-        let flat = linear_onto(self.stream(), 0.0, grid).unwrap_or_default();
-        let Self::Rotors(rotors) = self else {
-            let wrench = flat.chunks_exact(4).map(Vector4::from_column_slice).collect();
-            return Felt { rotor_thrust_n: Vec::new(), wrench, jitter_wrench: None };
-        };
-        let mixer = vehicle.mixer();
-        let mixed = |flat: &[f64]| -> Vec<Vector4<f64>> {
-            flat.chunks_exact(rotors.stream.width).map(|thrusts| mixer.wrench(thrusts)).collect()
-        };
-        let mut wrench = mixed(&flat);
-        let jitter = rotors.jitter.as_ref().and_then(|jitter| linear_onto(jitter, 0.0, grid));
-        let jitter_wrench = jitter.map(|jitter| mixed(&jitter));
-        for (wrench, jitter) in wrench.iter_mut().zip(jitter_wrench.iter().flatten()) {
-            *wrench -= 0.5 * jitter;
-        }
-        Felt { rotor_thrust_n: flat, wrench, jitter_wrench }
-    }
-}
-
-/// What the rotors do to the body, on the grid.
-struct Felt {
-    rotor_thrust_n: Vec<f64>,
-    wrench: Vec<Vector4<f64>>,
-    jitter_wrench: Option<Vec<Vector4<f64>>>,
 }
 
 fn step(chosen: &Chosen<'_>, actuation: &Stream, settings: &ConditionSettings) -> Result<f64, SignalsError> {

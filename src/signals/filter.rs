@@ -58,6 +58,12 @@ impl Butterworth {
         Some(Self { sections, pad })
     }
 
+    /// Samples after which a disturbance has died away: two periods of the cut-off.
+    #[must_use]
+    pub fn settling_count(&self) -> usize {
+        self.pad / 2
+    }
+
     /// The filtered column, as long as the input; the ends are extended by odd reflection.
     #[must_use]
     pub fn filtfilt(&self, column: &[f64]) -> Vec<f64> {
@@ -154,55 +160,65 @@ pub fn central_difference(column: &[f64], step_s: f64) -> Vec<f64> {
 
 /// The paper's discrete filters `f_D(z)` (35) and `g_D(z)` (36).
 ///
-/// Printed, (36) is the zero-order-hold equivalent of `lambda s/(s + lambda)`. Fed with a smooth
-/// signal it reads every rate too large by `lambda T / (1 - exp(-lambda T))`, its gain on a ramp
-/// (3.0 % at 500 Hz, 12.4 % at 125 Hz with lambda = 30 rad/s), and inertia comes out too small by as
-/// much. [`FilterPair::new`] divides that gain out; [`FilterPair::as_printed`] keeps it.
+/// Printed, both are zero-order-hold equivalents, and signals are not held but smooth. (36) then reads
+/// every rate too large by `lambda T / (1 - exp(-lambda T))`, its gain on a ramp (3.0 % at 500 Hz, 12.4 %
+/// at 125 Hz with lambda = 30 rad/s), so that inertia comes out too small by as much; and (36) times
+/// `T/lambda'` is (35) of the forward difference, which belongs half a sample later than (35) of the
+/// signal. [`FilterPair::new`] divides the gain out and gives (35) the mean of two neighbours, which makes
+/// the pair exact on straight lines; [`FilterPair::as_printed`] keeps both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilterPair {
     pole: f64,
     rate_gain: f64,
+    midpoint: bool,
 }
 
 impl FilterPair {
     /// The cut-off of the paper, rad/s.
     pub const PAPER_LAMBDA_RAD_S: f64 = 30.0;
 
-    /// (35) and (36) with exact response of (36) to a ramp.
+    /// (35) and (36), consistent on straight lines.
     #[must_use]
     pub fn new(lambda_rad_s: f64, step_s: f64) -> Self {
         let pole = (-lambda_rad_s * step_s).exp();
-        Self { pole, rate_gain: (1.0 - pole) / step_s }
+        Self { pole, rate_gain: (1.0 - pole) / step_s, midpoint: true }
     }
 
     /// (35) and (36) as the paper prints them.
     #[must_use]
     pub fn as_printed(lambda_rad_s: f64, step_s: f64) -> Self {
-        Self { pole: (-lambda_rad_s * step_s).exp(), rate_gain: lambda_rad_s }
+        Self { pole: (-lambda_rad_s * step_s).exp(), rate_gain: lambda_rad_s, midpoint: false }
     }
 
-    /// `f_D` of the column; starts from zero, one sample of delay.
+    /// `f_D` of the column; starts from zero.
     #[must_use]
     pub fn low_pass(&self, column: &[f64]) -> Vec<f64> {
+        if !self.midpoint {
+            return self.filtered(column.iter().copied());
+        }
+        let next = column.iter().skip(1).chain(column.last());
+        self.filtered(column.iter().zip(next).map(|(now, next)| f64::midpoint(*now, *next)))
+    }
+
+    /// `g_D` of the column: `gain (input - f_D input)`.
+    #[must_use]
+    pub fn rate(&self, column: &[f64]) -> Vec<f64> {
+        let mut low = self.filtered(column.iter().copied());
+        for (low, input) in low.iter_mut().zip(column) {
+            *low = self.rate_gain * (input - *low);
+        }
+        low
+    }
+
+    fn filtered(&self, input: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut state = 0.0;
-        column
-            .iter()
+        input
             .map(|input| {
                 let output = state;
                 state = self.pole * state + (1.0 - self.pole) * input;
                 output
             })
             .collect()
-    }
-
-    /// `g_D` of the column: `gain (input - f_D input)`.
-    #[must_use]
-    pub fn rate(&self, column: &[f64]) -> Vec<f64> {
-        let mut low = self.low_pass(column);
-        for (low, input) in low.iter_mut().zip(column) {
-            *low = self.rate_gain * (input - *low);
-        }
-        low
     }
 }
 
@@ -256,5 +272,19 @@ mod tests {
         assert!((printed - 1.0303).abs() < 1e-4, "{printed}");
         // the pair stays consistent: f_D of the true rate is one
         assert!((FilterPair::new(30.0, 0.002).low_pass(&vec![1.0; 2000])[1999] - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn rate_and_low_pass_agree_on_a_sine_to_second_order() {
+        let (w, step_s) = (6.0, 0.008);
+        let time = |i: u32| f64::from(i) * step_s;
+        let x: Vec<f64> = (0..3000).map(|i| (w * time(i)).sin()).collect();
+        let rate: Vec<f64> = (0..3000).map(|i| w * (w * time(i)).cos()).collect();
+        let worst = |pair: FilterPair| {
+            let (by_filter, low) = (pair.rate(&x), pair.low_pass(&rate));
+            (1000..2900).map(|i| (by_filter[i] - low[i]).abs()).fold(0.0, f64::max) / w
+        };
+        assert!(worst(FilterPair::new(30.0, step_s)) < 3e-4);
+        assert!(worst(FilterPair::as_printed(30.0, step_s)) > 0.1);
     }
 }

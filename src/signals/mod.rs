@@ -3,6 +3,7 @@
 //! Time first ([`align`](self::StreamOffset)), then a uniform grid, filters without phase, and a mask
 //! that keeps what is airborne, exciting and not saturated.
 
+mod actuation;
 mod actuators;
 mod align;
 mod condition;
@@ -15,18 +16,19 @@ mod spectrum;
 mod usable;
 mod weak;
 
+pub use actuation::ThrustPreference;
 pub use actuators::{
     RotorThrusts, ThrustSource, propulsion_from_log, thrusts_from_commands, thrusts_from_speeds,
 };
 pub use align::StreamOffset;
-pub use condition::{ConditionSettings, Quality, Reference, Signals, ThrustPreference, condition, stride};
+pub use condition::{ConditionSettings, Quality, Reference, Signals, condition, stride};
 pub use filter::{Butterworth, FilterPair, WindowedFir, central_difference};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use latency::{ActuationLatency, delayed_wrench};
 pub use noise::{median, white_level};
 pub use select::{best, is_live, mean_rate_hz, median_period_s};
-pub use spectrum::highest_harmonic_hz;
-pub use usable::Usable;
+pub use spectrum::{hann_windowed, highest_harmonic_hz, power_at};
+pub use usable::{Evidence, Usable, in_air, usable};
 pub use weak::{MAX_ORDER, WeakKernel};
 
 /// Why a recording cannot be conditioned.

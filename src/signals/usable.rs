@@ -1,6 +1,6 @@
 //! Which instants of a flight identification may use.
 
-use super::condition::Actuation;
+use super::actuation::Actuation;
 use super::select::median_period_s;
 use super::{Grid, hold_onto};
 use crate::log::{Quantity, Recording, Stream};
@@ -14,11 +14,16 @@ const GROUND_MARGIN_S: f64 = 0.5;
 /// A hole longer than this many periods, and than [`LEAST_GAP_S`], is a gap.
 const GAP_PERIODS: f64 = 5.0;
 const LEAST_GAP_S: f64 = 0.06;
-/// Excitation is judged over windows of this length, s, against the flight's liveliest tenth.
+/// An actuator at its end stop for longer than this is saturated; a shorter touch is a known command, s.
+const SATURATION_S: f64 = 0.1;
+/// Saturated stretches are kept where less than this is left without them, s.
+const LEAST_UNSATURATED_S: f64 = 8.0;
+/// Excitation is judged over windows of this length, s, against the livelier half of the flight: a bump
+/// at landing sets no standard.
 const EXCITATION_WINDOW_S: f64 = 4.0;
 const EXCITATION_SHARE: f64 = 0.3;
 
-/// Seconds that each rule left out (an instant may fall under several).
+/// Seconds of flight that each rule left out (an instant may fall under several).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Usable {
     /// s on the common grid
@@ -35,6 +40,8 @@ pub struct Usable {
     pub gap_s: f64,
     /// s left
     pub usable_s: f64,
+    /// saturated stretches were kept because hardly anything else was left
+    pub saturation_kept: bool,
 }
 
 impl Usable {
@@ -42,18 +49,30 @@ impl Usable {
     #[must_use]
     pub fn summary(&self) -> String {
         format!(
-            "of {:.1} s: {:.1} s not airborne, {:.1} s transient, {:.1} s without excitation, {:.1} s saturated, {:.1} s in gaps",
-            self.total_s, self.grounded_s, self.transient_s, self.idle_s, self.saturated_s, self.gap_s
+            "of {:.1} s: {:.1} s not airborne, {:.1} s transient, {:.1} s without excitation, {:.1} s saturated{}, {:.1} s in gaps",
+            self.total_s,
+            self.grounded_s,
+            self.transient_s,
+            self.idle_s,
+            self.saturated_s,
+            if self.saturation_kept { " (kept: hardly anything else is left)" } else { "" },
+            self.gap_s
         )
     }
 }
 
 /// What the mask is made from.
-pub(super) struct Evidence<'a> {
+#[derive(Debug, Clone, Copy)]
+pub struct Evidence<'a> {
+    /// streams whose holes count
     pub streams: &'a [&'a Stream],
+    /// spans in the air, s
     pub airborne_s: &'a [(f64, f64)],
+    /// restarts of the vehicle's clock, s
     pub resets_s: &'a [f64],
+    /// normalised commands, where they are the source of thrust
     pub command: Option<&'a Stream>,
+    /// rad/s, body, on the grid
     pub rate: Option<&'a [Vector3<f64>]>,
 }
 
@@ -98,31 +117,51 @@ pub(super) fn airborne_spans(
 }
 
 /// `MAV_LANDED_STATE_IN_AIR` (2) is the last word before `t_s`; unknown (0) does not contradict.
-fn in_air(landed: &Stream, t_s: f64) -> bool {
+#[must_use]
+pub fn in_air(landed: &Stream, t_s: f64) -> bool {
     let next = landed.time_s.partition_point(|t| *t <= t_s);
     let state = landed.values.get(next.saturating_sub(1)).copied().unwrap_or(2.0);
     (state - 2.0).abs() < 0.5 || state.abs() < 0.5
 }
 
-/// The mask and what each rule took.
-pub(super) fn usable(grid: &Grid, evidence: &Evidence<'_>, transient_s: f64) -> (Vec<bool>, Usable) {
+/// The mask and what each rule took; `transient_s` is left out at the beginning of the first airborne span.
+#[must_use]
+pub fn usable(grid: &Grid, evidence: &Evidence<'_>, transient_s: f64) -> (Vec<bool>, Usable) {
     let grounded = grounded(grid, evidence);
     let transient = transient(grid, evidence, transient_s);
     let saturated = evidence.command.map_or_else(|| vec![false; grid.count], |c| saturated(grid, c));
     let gap = gaps(grid, evidence);
-    let excluded = |i: usize| grounded[i] || transient[i] || saturated[i] || gap[i];
-    let candidates: Vec<bool> = (0..grid.count).map(|i| !excluded(i)).collect();
-    let idle = evidence.rate.map_or_else(|| vec![false; grid.count], |rate| idle(grid, rate, &candidates));
-    let mask: Vec<bool> = candidates.iter().zip(&idle).map(|(c, idle)| *c && !idle).collect();
+    let masked = |heed_saturation: bool| {
+        let candidates: Vec<bool> = (0..grid.count)
+            .map(|i| !(grounded[i] || transient[i] || gap[i] || heed_saturation && saturated[i]))
+            .collect();
+        let idle =
+            evidence.rate.map_or_else(|| vec![false; grid.count], |rate| idle(grid, rate, &candidates));
+        let mask: Vec<bool> = candidates.iter().zip(&idle).map(|(c, idle)| *c && !idle).collect();
+        (candidates, idle, mask)
+    };
     let seconds = |mask: &[bool]| mask.iter().filter(|m| **m).count() as f64 * grid.step_s;
+    let (mut candidates, mut idle, mut mask) = masked(true);
+    let mut saturation_kept = false;
+    if seconds(&mask) < LEAST_UNSATURATED_S {
+        // a command at its end stop is still a known command: better than no flight at all
+        let kept = masked(false);
+        saturation_kept = seconds(&kept.2) > seconds(&mask);
+        if saturation_kept {
+            (candidates, idle, mask) = kept;
+        }
+    }
+    let flown =
+        |rule: &[bool]| seconds(&rule.iter().zip(&grounded).map(|(r, g)| *r && !*g).collect::<Vec<_>>());
     let report = Usable {
         total_s: grid.count as f64 * grid.step_s,
         grounded_s: seconds(&grounded),
-        transient_s: seconds(&transient),
-        idle_s: seconds(&idle),
-        saturated_s: seconds(&saturated),
-        gap_s: seconds(&gap),
+        transient_s: flown(&transient),
+        idle_s: seconds(&idle.iter().zip(&candidates).map(|(idle, c)| *idle && *c).collect::<Vec<bool>>()),
+        saturated_s: flown(&saturated),
+        gap_s: flown(&gap),
         usable_s: seconds(&mask),
+        saturation_kept,
     };
     (mask, report)
 }
@@ -160,7 +199,14 @@ fn saturated(grid: &Grid, command: &Stream) -> Vec<bool> {
         .map(|i| f64::from(u8::from(command.sample(i).iter().any(|&u| u <= low || u >= high))))
         .collect();
     let flags = Stream { time_s: command.time_s.clone(), width: 1, values: stuck };
-    hold_onto(&flags, grid).unwrap_or_default().iter().map(|flag| *flag > 0.5).collect()
+    let touching: Vec<bool> = hold_onto(&flags, grid).unwrap_or_default().iter().map(|f| *f > 0.5).collect();
+    let mut mask = vec![false; grid.count];
+    for run in Grid::runs(&touching, 1) {
+        if run.len() as f64 * grid.step_s > SATURATION_S {
+            mask[run].fill(true);
+        }
+    }
+    mask
 }
 
 /// The range of u, narrowed where many samples repeat the very same extreme value (a flat top).
@@ -221,7 +267,7 @@ fn idle(grid: &Grid, rate: &[Vector3<f64>], candidates: &[bool]) -> Vec<bool> {
         .collect();
     let mut ordered: Vec<f64> = power.iter().map(|(_, p)| *p).collect();
     ordered.sort_by(f64::total_cmp);
-    let lively = ordered.get(ordered.len().saturating_sub(1 + ordered.len() / 10)).copied().unwrap_or(0.0);
+    let lively = ordered.get(ordered.len() * 6 / 10).copied().unwrap_or(0.0);
     let exciting = |&&(_, p): &&(usize, f64)| p >= EXCITATION_SHARE * lively;
     let first = power.iter().find(exciting).map_or(0, |(start, _)| *start);
     let last = power.iter().rev().find(exciting).map_or(grid.count, |(start, _)| start + window);

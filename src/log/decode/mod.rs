@@ -81,6 +81,8 @@ pub enum Event<'a> {
     Text {
         /// s
         time_s: f64,
+        /// MAV_SEVERITY: 0 emergency, 3 error, 4 warning, 6 information, 7 debugging
+        severity: u8,
         /// whole text, put together from its chunks
         text: &'a str,
     },

@@ -106,6 +106,12 @@ sources! {
 }
 
 impl Source {
+    /// Samples of this message stand where their own stamp says, not where the host's does.
+    #[must_use]
+    pub fn has_own_time(self) -> bool {
+        !matches!(self.time_field(), TimeField::Absent)
+    }
+
     /// The message's own time. Setpoints that a ground station sends carry its clock, not the vehicle's:
     /// none.
     #[must_use]

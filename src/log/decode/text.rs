@@ -18,6 +18,7 @@ struct Open {
     id: u16,
     next_chunk: u8,
     time_s: f64,
+    severity: u8,
     text: String,
 }
 
@@ -39,7 +40,13 @@ impl Texts {
             None => {
                 self.finish(sink);
                 let text = if chunk > 0 { format!("[...]{text}") } else { text };
-                self.open = Some(Open { id, next_chunk: chunk.saturating_add(1), time_s, text });
+                self.open = Some(Open {
+                    id,
+                    next_chunk: chunk.saturating_add(1),
+                    time_s,
+                    severity: payload.u8(0),
+                    text,
+                });
             }
         }
         if id == 0 || last {
@@ -50,7 +57,8 @@ impl Texts {
     /// Gives out what is there of a text whose end did not come.
     pub(super) fn finish(&mut self, sink: &mut impl FnMut(Event<'_>)) {
         if let Some(open) = self.open.take() {
-            sink(Event::Text { time_s: open.time_s, text: open.text.trim_end() });
+            let (time_s, severity) = (open.time_s, open.severity);
+            sink(Event::Text { time_s, severity, text: open.text.trim_end() });
         }
     }
 }

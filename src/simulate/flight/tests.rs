@@ -281,17 +281,3 @@ fn bad_settings_are_refused() {
     none.rotors.clear();
     assert!(run(base, none).is_err());
 }
-
-#[test]
-#[ignore = "prints how long a default flight takes"]
-fn time_of_a_default_flight() {
-    let pair = random_vehicle(1);
-    for step_s in [0.002, 0.001] {
-        let settings = FlightSettings { step_s, ..FlightSettings::default() };
-        let reference = reference(1);
-        let start = std::time::Instant::now();
-        let flight =
-            simulate_flight(Truth::clean(pair.truth.clone()), &pair.nominal, &reference, &settings).unwrap();
-        println!("{step_s} s: {:?}, worst {} m", start.elapsed(), flight.tracking_error_max_m);
-    }
-}

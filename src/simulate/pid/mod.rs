@@ -26,11 +26,12 @@ pub struct PidFlightSettings {
     pub controller: PidSettings,
     /// s
     pub duration_s: f64,
-    /// integration step, and the period in which the controller computes, s
+    /// integration step, s
     pub step_s: f64,
     /// zero-order hold of p, psi and their rates, Hz
     pub motion_capture_hz: f64,
-    /// zero-order hold of roll, pitch and their rates, and the log's rate, Hz
+    /// zero-order hold of roll, pitch and their rates, Hz; the controller computes, and the log is
+    /// written, each time they are new, so that the log holds the very force and torque that act
     pub inertial_hz: f64,
     /// noise of the log (not of the feedback) and its seed; `None` logs the truth
     pub log_noise: Option<(NoiseLevels, u64)>,
@@ -128,6 +129,7 @@ fn fly(path: Path, settings: &PidFlightSettings, advance: Advance) -> Result<Pid
     let mut log = Log::new(settings.log_noise);
     let mut state = at_rest_on(path);
     let mut seen = feedback(&state);
+    let mut applied = Vector4::zeros();
     let (mut tracking_error_max_m, mut saturated_steps) = (0.0_f64, 0_usize);
     for step in 0..steps {
         let time_s = step as f64 * step_s;
@@ -145,8 +147,8 @@ fn fly(path: Path, settings: &PidFlightSettings, advance: Advance) -> Result<Pid
             seen.euler_rates_rad_s.fixed_rows_mut::<2>(0).copy_from(&rates);
         }
         let desired = path(time_s);
-        let applied = pid.wrench(&desired, &seen, step_s);
         if inertial_due {
+            applied = pid.wrench(&desired, &seen, 1.0 / settings.inertial_hz);
             log.sample(time_s, &state, (&applied, &desired));
         }
         let error = Vector3::new(desired[0][0], desired[1][0], desired[2][0]) - state.position_m;

@@ -1,14 +1,12 @@
-//! What `identify` says: JSON, a page for the terminal, the model file, the paper's figures 4 and 5.
+//! The JSON document of `identify`.
 
-use super::chart::{Line, Panel};
-use crate::estimate::{
-    Finding, Identification, LatencyKind, MethodResult, NAMES, THETA, ThrustScale, UNITS, identified_vehicle,
-};
+use crate::estimate::{Finding, Identification, LatencyKind, MethodResult, NAMES, THETA, ThrustScale};
 use crate::signals::{Quality, ThrustSource};
 use crate::vehicle::{Anchor, Vehicle};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::fmt::Write;
+
+use super::page::verdict;
 
 /// One recording that went in.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -28,6 +26,7 @@ pub struct IdentificationDocument {
     vehicle: String,
     anchor: &'static str,
     methods: BTreeMap<&'static str, BTreeMap<&'static str, Value>>,
+    verdict: String,
     best: Best,
     #[serde(skip_serializing_if = "Option::is_none")]
     thrust: Option<Thrust>,
@@ -153,6 +152,7 @@ impl IdentificationDocument {
             vehicle: vehicle.name.clone(),
             anchor: anchor_name(vehicle.anchor),
             methods: identification.methods.iter().map(|m| (m.method.name(), values(m))).collect(),
+            verdict: verdict(&best.result),
             best: Best {
                 method: best.method.name(),
                 why: best.why.clone(),
@@ -206,7 +206,7 @@ fn values(result: &MethodResult) -> BTreeMap<&'static str, Value> {
     result.parameters.iter().map(|p| (p.name, value(&p.finding, p.unit))).collect()
 }
 
-fn correlation(result: &MethodResult) -> Vec<Vec<Option<f64>>> {
+pub(super) fn correlation(result: &MethodResult) -> Vec<Vec<Option<f64>>> {
     let covariance = &result.estimated.covariance;
     (0..THETA)
         .map(|i| {
@@ -284,7 +284,7 @@ fn data_quality(identification: &Identification, quality: &[&Quality], inputs: &
     }
 }
 
-fn thrust_name(source: ThrustSource) -> &'static str {
+pub(super) fn thrust_name(source: ThrustSource) -> &'static str {
     match source {
         ThrustSource::MeasuredSpeed => "measured rotor speed",
         ThrustSource::Command => "commands",
@@ -300,208 +300,6 @@ fn history_columns(identification: &Identification) -> BTreeMap<&'static str, Hi
             let column = |i: usize| history.theta.iter().map(|theta| theta[i]).collect();
             let parameters = NAMES.iter().enumerate().map(|(i, name)| (*name, column(i))).collect();
             (method.name(), HistoryColumns { time_s: history.time_s.clone(), parameters })
-        })
-        .collect()
-}
-
-/// The page for the terminal.
-#[must_use]
-pub fn identification_page(
-    identification: &Identification,
-    vehicle: &Vehicle,
-    quality: &[&Quality],
-    scale: Option<&ThrustScale>,
-) -> String {
-    let mut page = String::new();
-    let best = &identification.best;
-    let _ = writeln!(page, "{}: method {}: {}", vehicle.name, best.method.name(), best.why);
-    if best.made_physical {
-        let _ = writeln!(
-            page,
-            "  the estimate was not an inertia that a body can have; moved to the nearest that is"
-        );
-    }
-    let nominal = crate::estimate::theta_of(&vehicle.body);
-    let _ = writeln!(page, "\n  parameter       value    std error   nominal  unit");
-    for (index, parameter) in best.result.parameters.iter().enumerate() {
-        let _ = writeln!(
-            page,
-            "  {}",
-            parameter_line(parameter.name, &parameter.finding, (nominal[index], parameter.unit))
-        );
-    }
-    if let Some(scale) = scale {
-        let stated = "(identified)";
-        if let Finding::Determined { value, std } = scale.value {
-            let _ = writeln!(page, "  {} {value:.4e} +- {std:.1e} {} {stated}", scale.name, scale.unit);
-        }
-    } else {
-        let _ = writeln!(
-            page,
-            "  scale: the stated thrust is trusted (anchor = \"thrust\"); a weighed mass would set it with anchor = \"mass\""
-        );
-    }
-    let _ = writeln!(page, "\n  {:<12}{}", "method", NAMES.map(|name| format!("{name:>11}")).concat());
-    for method in &identification.methods {
-        let cells = method.parameters.iter().map(|p| match p.finding {
-            Finding::Determined { value, .. } | Finding::Given { value } => format!("{value:>11.5}"),
-            Finding::NotDetermined { .. } => format!("{:>11}", "-"),
-        });
-        let _ = writeln!(page, "  {:<12}{}", method.method.name(), cells.collect::<String>());
-    }
-    page.push('\n');
-    page.push_str(&quality_lines(identification, quality));
-    page
-}
-
-fn parameter_line(name: &str, finding: &Finding, (nominal, unit): (f64, &str)) -> String {
-    match finding {
-        Finding::Determined { value, std } => {
-            format!("{name:<6}{value:>15.5}{std:>13.5}{nominal:>10.4}  {unit}")
-        }
-        Finding::Given { value } => {
-            format!("{name:<6}{value:>15.5}{:>13}{nominal:>10.4}  {unit}", "(weighed)")
-        }
-        Finding::NotDetermined { reason } => format!("{name:<6} not determined: {reason}"),
-    }
-}
-
-fn quality_lines(identification: &Identification, quality: &[&Quality]) -> String {
-    let mut page = String::new();
-    if let Some(latency) = identification.latency.filter(|latency| latency.total_s.is_finite()) {
-        let kind = match latency.kind {
-            LatencyKind::Undetermined => "lag or delay, too short to tell",
-            LatencyKind::Lag => "a first-order lag",
-            LatencyKind::Delay => "a transport delay",
-            LatencyKind::Both { .. } => "lag and delay",
-        };
-        let taken = if identification.compensated.total_s() == 0.0 {
-            "not significant, left in"
-        } else {
-            "taken out"
-        };
-        let _ = writeln!(
-            page,
-            "  actuation latency {:.1} +- {:.1} ms ({kind}), {taken}",
-            1e3 * latency.total_s,
-            1e3 * latency.std_s
-        );
-    }
-    let harmonic = identification.highest_harmonic_hz.map_or_else(
-        || "trajectory unknown".into(),
-        |f| format!("highest harmonic of the trajectory {f:.2} Hz"),
-    );
-    let _ =
-        writeln!(page, "  low-pass of LS, GD, FMLS, FMGD at {:.2} Hz ({harmonic})", identification.cutoff_hz);
-    if let Some(condition) = identification.condition_number {
-        let _ = writeln!(
-            page,
-            "  cond(W) as flown {condition:.1}; with scaled columns {:.1}",
-            identification.scaled_condition_number
-        );
-    }
-    for (index, quality) in quality.iter().enumerate() {
-        let _ = writeln!(
-            page,
-            "  flight {}: {:.1} s used; thrust from {}; {}",
-            index + 1,
-            quality.usable.usable_s,
-            thrust_name(quality.thrust_source),
-            quality.usable.summary()
-        );
-        for (quantity, offset) in &quality.offsets {
-            let what = if offset.repaired { "taken out" } else { "left in: not known well enough" };
-            let _ = writeln!(
-                page,
-                "    {quantity:?} late by {:.2} +- {:.2} ms against the inertial unit, {what}",
-                1e3 * offset.late_s,
-                1e3 * offset.std_s
-            );
-        }
-        for note in &quality.notes {
-            let _ = writeln!(page, "    {note}");
-        }
-    }
-    for note in &identification.notes {
-        let _ = writeln!(page, "  {note}");
-    }
-    page
-}
-
-/// The model file: the vehicle with its identified values, and where they came from.
-///
-/// # Errors
-/// [`crate::config::ConfigError`] where a value has no form in TOML.
-pub fn model_toml(
-    identification: &Identification,
-    vehicle: &Vehicle,
-    inputs: &[InputFile],
-    scale: Option<&ThrustScale>,
-) -> Result<String, crate::config::ConfigError> {
-    let best = &identification.best.result;
-    let mut text = crate::config::vehicle_to_toml(&identified_vehicle(vehicle, best, scale))?;
-    let _ = writeln!(text, "\n[identified]\nmethod = \"{}\"", best.method.name());
-    let _ = writeln!(text, "# what the flight did not determine keeps its nominal value in [body]");
-    for parameter in &best.parameters {
-        let _ = match &parameter.finding {
-            Finding::Determined { value, std } => writeln!(
-                text,
-                "{} = {{ value = {value:e}, std = {std:e}, unit = \"{}\" }}",
-                parameter.name, parameter.unit
-            ),
-            Finding::Given { value } => writeln!(
-                text,
-                "{} = {{ value = {value:e}, std = 0.0, unit = \"{}\", status = \"given\" }}",
-                parameter.name, parameter.unit
-            ),
-            Finding::NotDetermined { reason } => writeln!(
-                text,
-                "{} = {{ status = \"not_determined\", reason = {:?} }}",
-                parameter.name, reason
-            ),
-        };
-    }
-    if let Some(Finding::Determined { value, std }) = scale.map(|scale| &scale.value) {
-        let (name, unit) = scale.map_or(("", ""), |scale| (scale.name, scale.unit));
-        let _ = writeln!(text, "{name} = {{ value = {value:e}, std = {std:e}, unit = \"{unit}\" }}");
-    }
-    let _ = writeln!(text, "correlation_of = {NAMES:?}");
-    let rows: Vec<String> = correlation(best)
-        .iter()
-        .map(|row| {
-            let cells: Vec<String> =
-                row.iter().map(|r| r.map_or_else(|| "nan".into(), |r| format!("{r:.4}"))).collect();
-            format!("  [{}]", cells.join(", "))
-        })
-        .collect();
-    let _ = writeln!(text, "correlation = [\n{}\n]", rows.join(",\n"));
-    let _ = writeln!(text, "\n[provenance]\nprogram = \"mavid {}\"", env!("CARGO_PKG_VERSION"));
-    let files: Vec<String> = inputs
-        .iter()
-        .map(|input| format!("  {{ path = {:?}, sha256 = \"{}\" }}", input.path, input.sha256))
-        .collect();
-    let _ = writeln!(text, "inputs = [\n{}\n]", files.join(",\n"));
-    let _ = writeln!(text, "cutoff_hz = {:.4}", identification.cutoff_hz);
-    Ok(text)
-}
-
-/// The paper's figures 4 and 5: mass and inertia along time, by method.
-#[must_use]
-pub fn history_charts(identification: &Identification) -> Vec<Panel> {
-    (0..THETA)
-        .map(|index| Panel {
-            title: format!("{} along time", NAMES[index]),
-            x_label: "time, s".into(),
-            y_label: format!("{}, {}", NAMES[index], UNITS[index]),
-            lines: identification
-                .histories
-                .iter()
-                .map(|(method, history)| Line {
-                    label: method.name().into(),
-                    x: history.time_s.clone(),
-                    y: history.theta.iter().map(|theta| theta[index]).collect(),
-                })
-                .collect(),
         })
         .collect()
 }

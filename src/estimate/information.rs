@@ -1,0 +1,95 @@
+//! What windows of flight say together, when each was looked at alone and then let go.
+
+use super::result::Estimated;
+use super::theta::{THETA, Theta, ThetaCovariance};
+use super::weak::{JITTER, JITTER_STD, WeakEstimate};
+use nalgebra::{DMatrix, DVector};
+
+/// Information (inverse covariance) that one or several windows of one vehicle hold on all parameters of
+/// the weak form. The nuisances are shared: latency, trim and damping are taken for the same throughout.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeakInformation {
+    matrix: DMatrix<f64>,
+    /// matrix times estimate
+    weighted: DVector<f64>,
+    windows: usize,
+}
+
+impl WeakInformation {
+    /// Of one window.
+    #[must_use]
+    pub fn of(estimate: &WeakEstimate) -> Self {
+        let covariance = &estimate.solution.covariance;
+        let count = covariance.nrows();
+        let deviation = DVector::from_fn(count, |i, _| covariance[(i, i)].max(0.0).sqrt());
+        let used: Vec<usize> =
+            (0..count).filter(|&i| deviation[i] > 0.0 && estimate.solution.theta[i].is_finite()).collect();
+        let correlation = DMatrix::from_fn(used.len(), used.len(), |i, j| {
+            covariance[(used[i], used[j])] / (deviation[used[i]] * deviation[used[j]])
+        });
+        // a sandwich that is not positive definite speaks for its diagonal alone
+        let inverse = correlation
+            .cholesky()
+            .map_or_else(|| DMatrix::identity(used.len(), used.len()), |factor| factor.inverse());
+        let mut matrix = DMatrix::zeros(count, count);
+        for (i, &row) in used.iter().enumerate() {
+            for (j, &column) in used.iter().enumerate() {
+                matrix[(row, column)] = inverse[(i, j)] / (deviation[row] * deviation[column]);
+            }
+        }
+        let theta = estimate.solution.theta.map(|value| if value.is_finite() { value } else { 0.0 });
+        Self { weighted: &matrix * theta, matrix, windows: 1 }
+    }
+
+    /// Adds another window's.
+    pub fn add(&mut self, other: &Self) {
+        self.matrix += &other.matrix;
+        self.weighted += &other.weighted;
+        self.windows += other.windows;
+    }
+
+    /// The windows' common estimate and its covariance; NaN where nothing is known.
+    #[must_use]
+    pub fn combined(&self) -> Estimated {
+        let mut matrix = self.matrix.clone();
+        let used: Vec<usize> = (0..matrix.nrows()).filter(|&i| matrix[(i, i)] > 0.0).collect();
+        if let Some(at) = used.iter().position(|&i| i == JITTER) {
+            matrix[(JITTER, JITTER)] = self.jitter_information(&used, at);
+        }
+        let scale: Vec<f64> = used.iter().map(|&i| matrix[(i, i)].sqrt()).collect();
+        let scaled = DMatrix::from_fn(used.len(), used.len(), |i, j| {
+            matrix[(used[i], used[j])] / (scale[i] * scale[j])
+        });
+        let inverse = scaled.cholesky().map(|factor| factor.inverse());
+        let mut estimated = Estimated {
+            theta: Theta::from_element(f64::NAN),
+            covariance: ThetaCovariance::from_element(f64::NAN),
+        };
+        let Some(inverse) = inverse else { return estimated };
+        let of_theta = used.iter().enumerate().filter(|(_, parameter)| **parameter < THETA);
+        for (i, &row) in of_theta.clone() {
+            let terms = used.iter().enumerate();
+            estimated.theta[row] =
+                terms.map(|(j, &k)| inverse[(i, j)] / (scale[i] * scale[j]) * self.weighted[k]).sum();
+            for (j, &column) in of_theta.clone() {
+                estimated.covariance[(row, column)] = inverse[(i, j)] / (scale[i] * scale[j]);
+            }
+        }
+        estimated
+    }
+
+    /// Each window brought the prior of the jitter's share along: it counts once. What is left must still
+    /// hold the prior beside all that the other parameters take.
+    fn jitter_information(&self, used: &[usize], at: usize) -> f64 {
+        let prior = JITTER_STD.powi(-2);
+        let repeated = prior * self.windows.saturating_sub(1) as f64;
+        let others: Vec<usize> = (0..used.len()).filter(|&i| i != at).map(|i| used[i]).collect();
+        let scale: Vec<f64> = others.iter().map(|&i| self.matrix[(i, i)].sqrt()).collect();
+        let rest = DMatrix::from_fn(others.len(), others.len(), |i, j| {
+            self.matrix[(others[i], others[j])] / (scale[i] * scale[j])
+        });
+        let coupling = DVector::from_fn(others.len(), |i, _| self.matrix[(others[i], JITTER)] / scale[i]);
+        let taken = rest.cholesky().map_or(0.0, |factor| coupling.dot(&factor.solve(&coupling)));
+        (self.matrix[(JITTER, JITTER)] - repeated).max(taken + prior)
+    }
+}

@@ -1,0 +1,181 @@
+//! Looks at one window of flight after the other and keeps numbers only.
+
+use super::airborne::{airborne, normalized_commands};
+use super::excitation::ExcitationTally;
+use super::inspection::{Excitation, FlightSummary, OffsetSummary, Segment};
+use super::motion::Motion;
+use crate::estimate::{Estimated, WeakInformation, WeakMethod, solve_weak, theta_of};
+use crate::log::{Quantity, Recording};
+use crate::regression::{WeakMotion, weak_rows};
+use crate::signals::{ConditionSettings, Quality, Signals, SignalsError, WeakKernel, condition};
+use crate::vehicle::Vehicle;
+
+/// Segments kept; a log with more is counted.
+const KEPT_SEGMENTS: usize = 1000;
+/// Spans that end and begin this close are one flight that a window's edge divides, s.
+const SAME_FLIGHT_S: f64 = 0.5;
+
+/// Collects what windows of flight say.
+#[derive(Debug, Default)]
+pub(super) struct Assessor<'a> {
+    vehicle: Option<&'a Vehicle>,
+    flight: FlightSummary,
+    excitation: ExcitationTally,
+    effort_max: f64,
+    flown: bool,
+    /// the vehicle's clock started anew since the last segment
+    restarted: bool,
+    information: Option<WeakInformation>,
+    offsets: Vec<OffsetSum>,
+    notes: Vec<String>,
+    refusal: Option<SignalsError>,
+}
+
+/// Offsets of one quantity weighted by their precision.
+#[derive(Debug)]
+struct OffsetSum {
+    quantity: Quantity,
+    weight: f64,
+    weighted_s: f64,
+}
+
+/// What all windows say.
+#[derive(Debug)]
+pub(super) struct Assessment {
+    pub flight: FlightSummary,
+    pub excitation: Option<Excitation>,
+    /// estimate and covariance to expect; `None` without a vehicle or a usable window
+    pub expected: Option<Estimated>,
+    pub offsets: Vec<OffsetSummary>,
+    /// what the conditioning remarked, each once
+    pub notes: Vec<String>,
+    /// why the vehicle file and the log do not go together, where no window could be conditioned
+    pub refusal: Option<SignalsError>,
+}
+
+impl<'a> Assessor<'a> {
+    /// Nothing seen yet.
+    pub(super) fn new(vehicle: Option<&'a Vehicle>) -> Self {
+        Self { vehicle, ..Self::default() }
+    }
+
+    /// Looks at a window.
+    pub(super) fn window(&mut self, recording: &Recording) {
+        self.restarted |= !recording.clock_resets_s.is_empty();
+        let commands = normalized_commands(recording);
+        let (spans, from) = airborne(recording, commands.as_ref(), &mut self.effort_max);
+        self.flight.airborne_from = from;
+        // only the first flight begins with the take-off's transient
+        let transient_s = if self.flown { 0.0 } else { ConditionSettings::default().transient_s };
+        let settings = ConditionSettings { transient_s, ..ConditionSettings::default() };
+        let conditioned = self.vehicle.map(|vehicle| (condition(recording, vehicle, &settings), vehicle));
+        let spans = match conditioned {
+            Some((Ok(signals), vehicle)) => {
+                self.inform(&signals, vehicle);
+                self.flight.add(&signals.quality.usable);
+                let spans = signals.quality.airborne_s.clone();
+                self.segments(&spans, &signals.usable, |i| signals.grid.time_s(i));
+                self.excitation.add(&Motion::from(signals));
+                spans
+            }
+            refused => {
+                if let Some((Err(refusal), _)) = refused
+                    && (self.refusal.is_none() || !matches!(refusal, SignalsError::NothingUsable { .. }))
+                {
+                    self.refusal = Some(refusal);
+                }
+                match Motion::of_recording(recording, &spans, transient_s) {
+                    Some((motion, used)) => {
+                        self.flight.add(&used);
+                        self.segments(&spans, &motion.usable, |i| motion.grid.time_s(i));
+                        self.excitation.add(&motion);
+                    }
+                    None => {
+                        self.flight.airborne_s += spans.iter().map(|(start, end)| end - start).sum::<f64>();
+                        self.segments(&spans, &[], |_| f64::NAN);
+                    }
+                }
+                spans
+            }
+        };
+        self.flown |= !spans.is_empty();
+    }
+
+    /// What identification would learn from the window: its own weak form, solved.
+    fn inform(&mut self, signals: &Signals, vehicle: &Vehicle) {
+        let kernel = WeakKernel::new(ConditionSettings::default().weak_half_width_s, signals.grid.step_s);
+        let motion = WeakMotion::measured(signals, &kernel, vehicle.gravity_m_s2);
+        let rows = weak_rows(signals, &motion, &kernel);
+        let nominal = theta_of(&vehicle.body);
+        if let Some(estimate) = solve_weak(&[rows], &nominal, WeakMethod::LeastSquares) {
+            let information = WeakInformation::of(&estimate);
+            match &mut self.information {
+                Some(all) => all.add(&information),
+                None => self.information = Some(information),
+            }
+        }
+        self.note(&signals.quality);
+    }
+
+    fn note(&mut self, quality: &Quality) {
+        for note in &quality.notes {
+            if !self.notes.contains(note) {
+                self.notes.push(note.clone());
+            }
+        }
+        for (quantity, offset) in &quality.offsets {
+            let weight = offset.std_s.powi(-2);
+            if !weight.is_finite() {
+                continue;
+            }
+            match self.offsets.iter_mut().find(|sum| sum.quantity == *quantity) {
+                Some(sum) => {
+                    sum.weight += weight;
+                    sum.weighted_s += weight * offset.late_s;
+                }
+                None => self.offsets.push(OffsetSum {
+                    quantity: *quantity,
+                    weight,
+                    weighted_s: weight * offset.late_s,
+                }),
+            }
+        }
+    }
+
+    fn segments(&mut self, spans: &[(f64, f64)], usable: &[bool], time_s: impl Fn(usize) -> f64) {
+        let step_s = if usable.len() > 1 { time_s(1) - time_s(0) } else { 0.0 };
+        for &(start_s, end_s) in spans {
+            let inside = |i: &usize| usable[*i] && (start_s..=end_s).contains(&time_s(*i));
+            let usable_s = (0..usable.len()).filter(inside).count() as f64 * step_s;
+            let same_flight = !std::mem::take(&mut self.restarted);
+            let segments = &mut self.flight.segments;
+            let kept = segments.len() < KEPT_SEGMENTS;
+            match segments.last_mut() {
+                Some(last) if same_flight && start_s - last.end_s < SAME_FLIGHT_S => {
+                    last.end_s = end_s;
+                    last.usable_s += usable_s;
+                }
+                _ if kept => segments.push(Segment { start_s, end_s, usable_s }),
+                _ => self.flight.segments_dropped += 1,
+            }
+        }
+    }
+
+    /// What was collected.
+    pub(super) fn finish(self) -> Assessment {
+        let expected = self.information.as_ref().map(WeakInformation::combined);
+        let offset = |sum: &OffsetSum| OffsetSummary {
+            quantity: sum.quantity.name(),
+            late_s: sum.weighted_s / sum.weight,
+            std_s: sum.weight.powf(-0.5),
+        };
+        Assessment {
+            flight: self.flight,
+            excitation: self.excitation.summary(),
+            refusal: self.refusal.filter(|_| expected.is_none()),
+            expected,
+            offsets: self.offsets.iter().map(offset).collect(),
+            notes: self.notes,
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! What is in a log and what it is good for.
+//!
+//! A telemetry log streams through: streams are tallied sample by sample, and what flight segments,
+//! excitation and information need is kept in windows of two minutes, each assessed by the identification's own
+//! conditioning and weak form, turned into numbers, and let go. Memory does not grow with the log.
+
+mod airborne;
+mod assess;
+mod clock;
+mod excitation;
+mod inspection;
+mod motion;
+mod outlook;
+mod parameters;
+mod reading;
+mod streams;
+mod tally;
+mod timeline;
+mod verdict;
+mod window;
+
+pub use inspection::{
+    ClockSummary, CsvReading, Excitation, FlightSummary, Inspection, ModeChange, OffsetSummary, Outlook,
+    ParameterSummary, Reading, Segment, SenderSummary, StreamSummary, Text, TextSummary, Timeline,
+    TlogReading, VehicleSummary,
+};
+pub use tally::{inspect_csv, inspect_tlog};

@@ -1,0 +1,99 @@
+//! The vehicle's parameters as far as they matter for identification.
+
+use std::collections::BTreeMap;
+
+use super::inspection::ParameterSummary;
+use crate::log::Autopilot;
+
+/// Parameters kept; autopilots have about 1500.
+const KEPT: usize = 10_000;
+/// Beginnings of names that tell how a command becomes thrust and how the vehicle is built.
+const RELEVANT: [&str; 15] = [
+    "MOT_",
+    "FRAME_",
+    "THR_MDL_FAC",
+    "MPC_THR_HOVER",
+    "PWM_MAIN_MIN",
+    "PWM_MAIN_MAX",
+    "PWM_MAIN_FUNC",
+    "PWM_AUX_MIN",
+    "PWM_AUX_MAX",
+    "PWM_AUX_FUNC",
+    "CA_AIRFRAME",
+    "CA_ROTOR",
+    "SYS_AUTOSTART",
+    "BAT_N_CELLS",
+    "BAT1_N_CELLS",
+];
+
+/// All that the log holds, in bounds.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Parameters {
+    values: BTreeMap<String, f64>,
+    dropped: u64,
+}
+
+impl Parameters {
+    /// Takes one; says whether it changes what identification reads.
+    pub(super) fn take(&mut self, name: &str, value: f64) -> bool {
+        if let Some(known) = self.values.get_mut(name) {
+            let changed = known.to_bits() != value.to_bits();
+            *known = value;
+            return changed && is_relevant(name, value);
+        }
+        if self.values.len() >= KEPT {
+            self.dropped += 1;
+            return false;
+        }
+        self.values.insert(name.to_owned(), value);
+        is_relevant(name, value)
+    }
+
+    /// Name and value of all.
+    pub(super) fn values(&self) -> &BTreeMap<String, f64> {
+        &self.values
+    }
+
+    /// What of the way from command to thrust the log should hold and does not.
+    pub(super) fn missing_curve(&self, autopilot: Autopilot) -> Option<&'static str> {
+        let (needed, names) = match autopilot {
+            Autopilot::ArduPilot => ("MOT_THST_EXPO", "MOT_* and SERVOn_FUNCTION"),
+            Autopilot::Px4 => ("THR_MDL_FAC", "THR_MDL_FAC and PWM_MAIN_*"),
+            Autopilot::Other | Autopilot::Unknown => return None,
+        };
+        (!self.values.contains_key(needed)).then_some(names)
+    }
+
+    /// What to tell.
+    pub(super) fn summary(&self) -> ParameterSummary {
+        let relevant = self.values.iter().filter(|(name, value)| is_relevant(name, **value));
+        ParameterSummary {
+            count: self.values.len(),
+            relevant: relevant.map(|(name, value)| (name.clone(), *value)).collect(),
+            dropped: self.dropped,
+        }
+    }
+}
+
+/// `SERVOn_FUNCTION` matters where it is a motor (33 to 40), the rest by its name.
+fn is_relevant(name: &str, value: f64) -> bool {
+    let motor = name.starts_with("SERVO") && name.ends_with("_FUNCTION") && (33.0..=40.0).contains(&value);
+    motor || RELEVANT.iter().any(|beginning| name.starts_with(beginning))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_matters_is_told_and_its_change_noticed() {
+        let mut parameters = Parameters::default();
+        assert!(parameters.take("MOT_THST_EXPO", 0.65));
+        assert!(!parameters.take("MOT_THST_EXPO", 0.65));
+        assert!(parameters.take("MOT_THST_EXPO", 0.6));
+        assert!(!parameters.take("SERVO9_FUNCTION", 0.0));
+        assert!(parameters.take("SERVO1_FUNCTION", 33.0));
+        let summary = parameters.summary();
+        assert_eq!((summary.count, summary.relevant.len()), (3, 2));
+    }
+}

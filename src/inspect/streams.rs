@@ -1,0 +1,92 @@
+//! How each stream runs.
+
+use super::inspection::StreamSummary;
+use crate::log::{Quantity, StreamId, StreamKey, StreamStats, StreamTally};
+
+/// Tallies of all streams of a log.
+#[derive(Debug, Default)]
+pub(super) struct StreamTallies {
+    tallies: Vec<(StreamId, usize, StreamTally)>,
+    /// where the last sample went: messages bring their quantities in the same order again and again
+    next: usize,
+}
+
+impl StreamTallies {
+    /// Adds a sample.
+    pub(super) fn add(&mut self, stream: StreamId, time_s: f64, values: &[f64]) {
+        let expected = self.tallies.get(self.next).is_some_and(|(id, ..)| *id == stream);
+        let index = if expected { self.next } else { self.find(stream) };
+        self.next = index + 1;
+        let (_, width, tally) = &mut self.tallies[index];
+        *width = values.len().max(*width);
+        tally.add(time_s, values);
+    }
+
+    fn find(&mut self, stream: StreamId) -> usize {
+        self.tallies.iter().position(|(id, ..)| *id == stream).unwrap_or_else(|| {
+            self.tallies.push((stream, 0, StreamTally::default()));
+            self.tallies.len() - 1
+        })
+    }
+
+    /// The vehicle's clock started anew.
+    pub(super) fn reset(&mut self) {
+        self.tallies.iter_mut().for_each(|(_, _, tally)| tally.reset());
+    }
+
+    /// What was collected, in the order of keys.
+    pub(super) fn summary(&self) -> Vec<(StreamKey, usize, StreamStats)> {
+        let mut all: Vec<_> =
+            self.tallies.iter().map(|(id, width, tally)| (id.key(), *width, tally.stats())).collect();
+        all.sort_by_key(|(key, ..)| *key);
+        all
+    }
+}
+
+/// A stream as it is told.
+pub(super) fn summary_of((key, width, stats): &(StreamKey, usize, StreamStats)) -> StreamSummary {
+    StreamSummary {
+        quantity: key.quantity.name(),
+        source: key.source,
+        instance: key.instance,
+        width: *width,
+        count: stats.count,
+        span_s: stats.span_s,
+        rate_hz: stats.rate_hz,
+        median_period_s: stats.median_period_s,
+        jitter_s: stats.jitter_s,
+        gaps: stats.gaps,
+        largest_gap_s: stats.largest_gap_s,
+        missing_s: stats.missing_s,
+        backward: stats.backward,
+        repeated_stamps: stats.repeated_stamps,
+        resets: stats.resets,
+        state: state(key.quantity, stats),
+    }
+}
+
+/// `zero` and `constant` only where a value that never moves is a fault: a mode may well stay.
+fn state(quantity: Quantity, stats: &StreamStats) -> &'static str {
+    let may_stay = matches!(
+        quantity,
+        Quantity::Mode
+            | Quantity::Armed
+            | Quantity::LandedState
+            | Quantity::BatteryVoltage
+            | Quantity::BatteryCurrent
+            | Quantity::PositionSetpoint
+            | Quantity::VelocitySetpoint
+            | Quantity::AccelerationSetpoint
+            | Quantity::YawSetpoint
+            | Quantity::YawRateSetpoint
+            | Quantity::AttitudeSetpoint
+            | Quantity::AngularRateSetpoint
+            | Quantity::ThrustSetpoint
+    );
+    match stats {
+        _ if may_stay => "live",
+        stats if stats.all_zero => "zero",
+        stats if stats.is_constant() => "constant",
+        _ => "live",
+    }
+}

@@ -1,0 +1,208 @@
+//! What a log is good for, in words, and what to do next.
+
+use super::inspection::{Outlook, VehicleSummary};
+use super::outlook::{AXIS_NAMES, Evidence, LEAST_ANGULAR_ACCELERATION, SLOWEST_HZ};
+use crate::log::Quantity;
+use crate::signals::SignalsError;
+
+/// Flight that a good identification wants, s.
+const AMPLE_S: f64 = 20.0;
+/// A share of the flight that is worth a word when it is lost.
+const NOTABLE_SHARE: f64 = 0.05;
+/// Rate to ask for, Hz.
+const WANTED_HZ: u32 = 100;
+
+/// The verdict and the advice.
+pub(super) fn verdict(
+    evidence: &Evidence<'_>,
+    outlook: &[Outlook],
+    vehicle: &VehicleSummary,
+) -> (String, Vec<String>) {
+    let mut advice = missing(evidence);
+    advice.extend(flying(evidence));
+    advice.extend(remarks(evidence, vehicle));
+    (sentence(evidence, outlook), advice)
+}
+
+fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
+    if let Some(SignalsError::NoActuators { .. }) = &evidence.assessment.refusal
+        && evidence.actuator_hz().is_some()
+    {
+        return "Nothing can be identified with this vehicle file: its actuators are not those of the log. See the \
+                advice."
+            .into();
+    }
+    if let Some(nothing) = evidence.nothing() {
+        let next = match evidence.actuator_hz() {
+            None => {
+                format!("Request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS at {WANTED_HZ} Hz and fly again.")
+            }
+            Some(_) => "Fly a trajectory of `mavid plan` with it recording.".to_owned(),
+        };
+        return format!("Nothing can be identified from this log: {nothing}. {next}");
+    }
+    let flight = &evidence.assessment.flight;
+    let time = format!("{:.0} s of {:.0} s in the air can be used", flight.usable_s, flight.airborne_s);
+    let good: Vec<&Outlook> = outlook.iter().filter(|outlook| outlook.status != "not_determined").collect();
+    let bad: Vec<&str> =
+        principal(outlook).filter(|o| o.status == "not_determined").map(|o| label(o.name)).collect();
+    if good.is_empty() {
+        return format!(
+            "No parameter of the rigid body can be identified from this log, although {time}. {}",
+            "Fly a trajectory of `mavid plan`."
+        );
+    }
+    let good: Vec<&Outlook> = principal(outlook).filter(|o| o.status != "not_determined").collect();
+    let names: Vec<&str> = good.iter().map(|outlook| label(outlook.name)).collect();
+    if evidence.vehicle.is_none() {
+        return format!(
+            "Has what identification of {} needs{}: {time}. With --vehicle this says how well it will do.",
+            names.join(", "),
+            if bad.is_empty() {
+                String::new()
+            } else {
+                format!(", but not what {} would need", bad.join(", "))
+            }
+        );
+    }
+    let to: Vec<String> = good
+        .iter()
+        .filter_map(|o| Some(format!("{} to {}", label(o.name), percent(o.std_relative?))))
+        .collect();
+    let not = if bad.is_empty() { String::new() } else { format!(", but not for {}", bad.join(", ")) };
+    format!("Good for {}{not}: {time}. Next: `mavid identify`.", to.join(", "))
+}
+
+/// Mass and moments: the products follow them.
+fn principal(outlook: &[Outlook]) -> impl Iterator<Item = &Outlook> {
+    outlook.iter().filter(|outlook| !matches!(outlook.name, "ixy" | "ixz" | "iyz"))
+}
+
+/// A parameter as it is spoken of.
+fn label(name: &'static str) -> &'static str {
+    match name {
+        "ixx" => "Ixx",
+        "iyy" => "Iyy",
+        "izz" => "Izz",
+        "thrust_scale" => "thrust",
+        other => other,
+    }
+}
+
+/// Two digits.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    match percent {
+        p if p < 0.1 => format!("{p:.2} %"),
+        p if p < 10.0 => format!("{p:.1} %"),
+        p => format!("{p:.0} %"),
+    }
+}
+
+/// Streams that are not there, or too slow.
+fn missing(evidence: &Evidence<'_>) -> Vec<String> {
+    let mut advice = Vec::new();
+    if let Some(refusal) = &evidence.assessment.refusal {
+        advice.push(refusal.to_string());
+    }
+    match evidence.actuator_hz() {
+        None => advice.push(format!(
+            "No actuator outputs: nothing can be identified. Request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS at {WANTED_HZ} Hz."
+        )),
+        Some(hz) if hz < SLOWEST_HZ => {
+            advice.push(format!("Actuators at {hz:.0} Hz: too slow, request {WANTED_HZ} Hz."));
+        }
+        Some(_) => {}
+    }
+    match evidence.rate_hz(Quantity::AngularRate) {
+        None => advice.push(
+            "No body rates: inertia cannot be identified. Request ATTITUDE_QUATERNION or HIGHRES_IMU (PX4), ATTITUDE or RAW_IMU (ArduPilot)."
+                .into(),
+        ),
+        Some(hz) if hz < SLOWEST_HZ => {
+            advice.push(format!("Body rates at {hz:.0} Hz: too slow, request {WANTED_HZ} Hz."));
+        }
+        Some(_) => {}
+    }
+    if !evidence.has_vertical_motion() {
+        advice.push(
+            "No vertical motion: mass cannot be identified. Request an IMU message, or attitude, rates and LOCAL_POSITION_NED."
+                .into(),
+        );
+    }
+    if evidence.rate_hz(Quantity::Attitude).is_none() {
+        advice.push("No attitude: streams cannot be aligned, and neither drag nor wind can be told.".into());
+    }
+    if evidence.rate_hz(Quantity::Velocity).is_none() {
+        advice.push("No velocity: drag cannot be told. Request LOCAL_POSITION_NED.".into());
+    }
+    advice
+}
+
+/// What to fly better.
+fn flying(evidence: &Evidence<'_>) -> Vec<String> {
+    let mut advice = Vec::new();
+    let flight = &evidence.assessment.flight;
+    if flight.airborne_s > 0.0 && flight.usable_s < AMPLE_S {
+        advice.push(format!(
+            "Only {:.0} s can be used: fly {AMPLE_S:.0} s and more of a lively trajectory, clear of take-off and landing.",
+            flight.usable_s
+        ));
+    }
+    let dull: Vec<&str> = (0..3)
+        .filter(|axis| {
+            evidence.angular_acceleration(*axis).is_some_and(|rms| rms < LEAST_ANGULAR_ACCELERATION)
+        })
+        .map(|axis| AXIS_NAMES[axis])
+        .collect();
+    if !dull.is_empty() {
+        advice.push(format!("Hardly any motion in {}: fly a trajectory of `mavid plan`.", dull.join(", ")));
+    }
+    let shares = [
+        (flight.saturated_s, "with an actuator at its end stop: fly more gently"),
+        (flight.gap_s, "inside gaps of a stream: use a better link or fewer messages"),
+    ];
+    for (seconds, what) in shares {
+        if seconds > NOTABLE_SHARE * flight.airborne_s && seconds > 1.0 {
+            advice.push(format!("{seconds:.0} s {what}."));
+        }
+    }
+    advice
+}
+
+/// What limits the result beside that.
+fn remarks(evidence: &Evidence<'_>, vehicle: &VehicleSummary) -> Vec<String> {
+    let mut advice = Vec::new();
+    if !vehicle.others.is_empty() {
+        let others: Vec<String> = vehicle.others.iter().map(ToString::to_string).collect();
+        advice.push(format!(
+            "Several vehicles: this is system {}; choose with --system (also there: {}).",
+            vehicle.system.unwrap_or(0),
+            others.join(", ")
+        ));
+    }
+    if vehicle.without_heartbeat && vehicle.system.is_some() {
+        advice.push("No HEARTBEAT: which autopilot flew, and when it was armed, is not known.".into());
+    }
+    for (key, _, stats) in evidence.streams {
+        if stats.all_zero && matches!(key.quantity, Quantity::RotorSpeed | Quantity::ActuatorCommand) {
+            advice.push(format!("{} holds nothing but zeros: it is not used.", key.source));
+        }
+    }
+    let speeds = evidence.rate_hz(Quantity::RotorSpeed).is_some();
+    if !speeds && evidence.rate_hz(Quantity::ActuatorCommand).is_some() {
+        advice.push(
+            "No rotor speeds: thrust rests on commands, so the motors' lag and the battery's sag are part of what is \
+             identified."
+                .into(),
+        );
+        if let Some(names) = evidence.missing_curve {
+            advice.push(format!(
+                "The autopilot's thrust curve is not in the log: record its parameters ({names}); until then the vehicle \
+                 file's counts."
+            ));
+        }
+    }
+    advice.extend(evidence.assessment.notes.iter().cloned());
+    advice
+}

@@ -1,0 +1,119 @@
+//! Recordings of bounded length, one after the other, so that memory does not grow with the log.
+
+use crate::log::{Event, Quantity, Recording, RecordingBuilder, Stream, StreamId, Vehicle};
+
+/// s of the vehicle's clock in one window.
+pub(super) const WINDOW_S: f64 = 120.0;
+/// Stamps and values held in one window at most: 12 MB.
+pub(super) const WINDOW_NUMBERS: usize = 1_500_000;
+
+/// Collects events into windows.
+#[derive(Debug)]
+pub(super) struct WindowRecorder {
+    vehicle: Vehicle,
+    builder: RecordingBuilder,
+    start_s: Option<f64>,
+    numbers_max: usize,
+    /// last word on armed and landed: the next window begins with it
+    states: Vec<(StreamId, Vec<f64>)>,
+}
+
+impl WindowRecorder {
+    /// Nothing collected yet.
+    pub(super) fn new(vehicle: Vehicle) -> Self {
+        Self { vehicle, builder: RecordingBuilder::new(), start_s: None, numbers_max: 0, states: Vec::new() }
+    }
+
+    /// Adds an event; gives the window before it where that is full. Parameters and texts are kept elsewhere.
+    pub(super) fn add(&mut self, event: Event<'_>) -> Option<Recording> {
+        match event {
+            Event::Sample { stream, time_s, values } => self.sample(stream, time_s, values),
+            Event::ClockReset { .. } => {
+                let window = self.close();
+                self.states.clear();
+                self.builder.add(event);
+                window
+            }
+            Event::EstimatorReset { .. } => {
+                self.builder.add(event);
+                None
+            }
+            Event::Parameter { .. } | Event::Text { .. } => None,
+        }
+    }
+
+    fn sample(&mut self, stream: StreamId, time_s: f64, values: &[f64]) -> Option<Recording> {
+        let full = self.start_s.is_some_and(|start_s| time_s - start_s >= WINDOW_S)
+            || self.builder.numbers() >= WINDOW_NUMBERS;
+        let window = if full { self.close() } else { None };
+        if self.start_s.is_none() {
+            self.start_s = Some(time_s);
+            for (state, values) in &self.states {
+                self.builder.add(Event::Sample { stream: *state, time_s, values });
+            }
+        }
+        if matches!(stream.quantity, Quantity::LandedState | Quantity::Armed) {
+            match self.states.iter_mut().find(|(known, _)| *known == stream) {
+                Some((_, last)) => values.clone_into(last),
+                None => self.states.push((stream, values.to_vec())),
+            }
+        }
+        self.builder.add(Event::Sample { stream, time_s, values });
+        self.numbers_max = self.numbers_max.max(self.builder.numbers());
+        window
+    }
+
+    /// The window so far; `None` where it is empty.
+    pub(super) fn close(&mut self) -> Option<Recording> {
+        self.start_s.take()?;
+        let builder = std::mem::take(&mut self.builder);
+        self.builder = RecordingBuilder::new();
+        Some(builder.finish(&self.vehicle).0)
+    }
+
+    /// Most numbers that were held at once.
+    pub(super) fn numbers_max(&self) -> usize {
+        self.numbers_max
+    }
+}
+
+/// A recording that is in memory, in windows of equal length.
+pub(super) fn windows_of(recording: &Recording) -> Vec<Recording> {
+    let streams = || recording.streams.values();
+    let start_s = streams().filter_map(|s| s.time_s.first()).copied().fold(f64::INFINITY, f64::min);
+    let end_s = streams().filter_map(|s| s.time_s.last()).copied().fold(f64::NEG_INFINITY, f64::max);
+    let mut count: u32 = 1;
+    while (end_s - start_s) / f64::from(count) > WINDOW_S {
+        count += 1;
+    }
+    if count == 1 {
+        return vec![recording.clone()];
+    }
+    let edge = |index: u32| match index {
+        0 => f64::NEG_INFINITY,
+        _ if index == count => f64::INFINITY,
+        _ => start_s + (end_s - start_s) * f64::from(index) / f64::from(count),
+    };
+    (0..count).map(|index| cut(recording, edge(index), edge(index + 1))).collect()
+}
+
+fn cut(recording: &Recording, from_s: f64, to_s: f64) -> Recording {
+    let inside = |time_s: &f64| (from_s..to_s).contains(time_s);
+    let piece = |stream: &Stream| {
+        let first = stream.time_s.partition_point(|t| *t < from_s);
+        let last = stream.time_s.partition_point(|t| *t < to_s);
+        Stream {
+            time_s: stream.time_s[first..last].to_vec(),
+            width: stream.width,
+            values: stream.values[first * stream.width..last * stream.width].to_vec(),
+        }
+    };
+    Recording {
+        streams: recording.streams.iter().map(|(key, stream)| (*key, piece(stream))).collect(),
+        parameters: recording.parameters.clone(),
+        autopilot: recording.autopilot,
+        clock_resets_s: recording.clock_resets_s.iter().copied().filter(inside).collect(),
+        estimator_resets_s: recording.estimator_resets_s.iter().copied().filter(inside).collect(),
+        texts: Vec::new(),
+    }
+}

@@ -1,0 +1,9 @@
+//! What `identify` says: JSON, a page for the terminal, the model file, the paper's figures 4 and 5.
+
+mod document;
+mod model;
+mod page;
+
+pub use document::{IdentificationDocument, InputFile};
+pub use model::{history_charts, model_toml};
+pub use page::identification_page;

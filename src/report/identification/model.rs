@@ -1,0 +1,86 @@
+//! The model file, and the parameters along time.
+
+use crate::estimate::{Finding, Identification, NAMES, THETA, ThrustScale, UNITS, identified_vehicle};
+use crate::report::chart::{Line, Panel};
+use crate::vehicle::Vehicle;
+use std::fmt::Write;
+
+use super::document::{InputFile, correlation};
+
+/// The model file: the vehicle with its identified values, and where they came from.
+///
+/// # Errors
+/// [`crate::config::ConfigError`] where a value has no form in TOML.
+pub fn model_toml(
+    identification: &Identification,
+    vehicle: &Vehicle,
+    inputs: &[InputFile],
+    scale: Option<&ThrustScale>,
+) -> Result<String, crate::config::ConfigError> {
+    let best = &identification.best.result;
+    let mut text = crate::config::vehicle_to_toml(&identified_vehicle(vehicle, best, scale))?;
+    let _ = writeln!(text, "\n[identified]\nmethod = \"{}\"", best.method.name());
+    let _ = writeln!(text, "# what the flight did not determine keeps its nominal value in [body]");
+    for parameter in &best.parameters {
+        let _ = match &parameter.finding {
+            Finding::Determined { value, std } => writeln!(
+                text,
+                "{} = {{ value = {value:e}, std = {std:e}, unit = \"{}\" }}",
+                parameter.name, parameter.unit
+            ),
+            Finding::Given { value } => writeln!(
+                text,
+                "{} = {{ value = {value:e}, std = 0.0, unit = \"{}\", status = \"given\" }}",
+                parameter.name, parameter.unit
+            ),
+            Finding::NotDetermined { reason } => writeln!(
+                text,
+                "{} = {{ status = \"not_determined\", reason = {:?} }}",
+                parameter.name, reason
+            ),
+        };
+    }
+    if let Some(Finding::Determined { value, std }) = scale.map(|scale| &scale.value) {
+        let (name, unit) = scale.map_or(("", ""), |scale| (scale.name, scale.unit));
+        let _ = writeln!(text, "{name} = {{ value = {value:e}, std = {std:e}, unit = \"{unit}\" }}");
+    }
+    let _ = writeln!(text, "correlation_of = {NAMES:?}");
+    let rows: Vec<String> = correlation(best)
+        .iter()
+        .map(|row| {
+            let cells: Vec<String> =
+                row.iter().map(|r| r.map_or_else(|| "nan".into(), |r| format!("{r:.4}"))).collect();
+            format!("  [{}]", cells.join(", "))
+        })
+        .collect();
+    let _ = writeln!(text, "correlation = [\n{}\n]", rows.join(",\n"));
+    let _ = writeln!(text, "\n[provenance]\nprogram = \"mavid {}\"", env!("CARGO_PKG_VERSION"));
+    let files: Vec<String> = inputs
+        .iter()
+        .map(|input| format!("  {{ path = {:?}, sha256 = \"{}\" }}", input.path, input.sha256))
+        .collect();
+    let _ = writeln!(text, "inputs = [\n{}\n]", files.join(",\n"));
+    let _ = writeln!(text, "cutoff_hz = {:.4}", identification.cutoff_hz);
+    Ok(text)
+}
+
+/// The paper's figures 4 and 5: mass and inertia along time, by method.
+#[must_use]
+pub fn history_charts(identification: &Identification) -> Vec<Panel> {
+    (0..THETA)
+        .map(|index| Panel {
+            title: format!("{} along time", NAMES[index]),
+            x_label: "time, s".into(),
+            y_label: format!("{}, {}", NAMES[index], UNITS[index]),
+            lines: identification
+                .histories
+                .iter()
+                .map(|(method, history)| Line {
+                    label: method.name().into(),
+                    x: history.time_s.clone(),
+                    y: history.theta.iter().map(|theta| theta[index]).collect(),
+                })
+                .collect(),
+        })
+        .collect()
+}

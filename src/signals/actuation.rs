@@ -1,0 +1,121 @@
+//! What drives the body: rotors, or force and torque as the log holds them.
+
+use super::actuators::{RotorThrusts, ThrustSource, thrusts_from_commands, thrusts_from_speeds};
+use super::select::best;
+use super::{Grid, SignalsError, linear_onto};
+use crate::log::{Quantity, Recording, Stream};
+use crate::vehicle::Vehicle;
+use nalgebra::Vector4;
+
+/// Commands or measured rotor speeds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ThrustPreference {
+    /// measured speeds where they are recorded
+    #[default]
+    Measured,
+    /// commands only
+    Commands,
+}
+
+/// What drives the body.
+pub(super) enum Actuation {
+    /// one thrust a rotor
+    Rotors(RotorThrusts),
+    /// force and torque as recorded
+    Wrench(&'static str, Stream),
+}
+
+impl Actuation {
+    pub(super) fn from(
+        recording: &Recording,
+        vehicle: &Vehicle,
+        preference: ThrustPreference,
+    ) -> Result<Self, SignalsError> {
+        if let Some((key, stream)) = best(recording, Quantity::Wrench, |s| s.width == 4) {
+            return Ok(Self::Wrench(key.source, stream.clone()));
+        }
+        let measured = match preference {
+            ThrustPreference::Measured => thrusts_from_speeds(recording, vehicle),
+            ThrustPreference::Commands => None,
+        };
+        measured.map_or_else(|| thrusts_from_commands(recording, vehicle), Ok).map(Self::Rotors)
+    }
+
+    pub(super) fn stream(&self) -> &Stream {
+        match self {
+            Self::Rotors(rotors) => &rotors.stream,
+            Self::Wrench(_, stream) => stream,
+        }
+    }
+
+    pub(super) fn command(&self) -> Option<&Stream> {
+        match self {
+            Self::Rotors(rotors) => rotors.command.as_ref(),
+            Self::Wrench(..) => None,
+        }
+    }
+
+    pub(super) fn source(&self) -> ThrustSource {
+        match self {
+            Self::Rotors(rotors) => rotors.source,
+            Self::Wrench(..) => ThrustSource::Wrench,
+        }
+    }
+
+    pub(super) fn quantity(&self) -> Quantity {
+        match self.source() {
+            ThrustSource::MeasuredSpeed => Quantity::RotorSpeed,
+            ThrustSource::Command => Quantity::ActuatorCommand,
+            ThrustSource::Wrench => Quantity::Wrench,
+        }
+    }
+
+    pub(super) fn message(&self) -> &'static str {
+        match self {
+            Self::Rotors(rotors) => rotors.message,
+            Self::Wrench(message, _) => message,
+        }
+    }
+
+    pub(super) fn notes(&self) -> Vec<String> {
+        match self {
+            Self::Rotors(rotors) => rotors.notes.clone(),
+            Self::Wrench(..) => Vec::new(),
+        }
+    }
+
+    /// Total thrust at each of the stream's own samples, N.
+    pub(super) fn collective_n(&self, index: usize) -> f64 {
+        match self {
+            Self::Rotors(rotors) => rotors.stream.sample(index).iter().sum(),
+            Self::Wrench(_, stream) => stream.sample(index)[0],
+        }
+    }
+
+    /// Rotor thrusts and `F` on the grid, by first-order hold.
+    pub(super) fn onto(&self, grid: &Grid, vehicle: &Vehicle) -> Felt {
+        let flat = linear_onto(self.stream(), 0.0, grid).unwrap_or_default();
+        let Self::Rotors(rotors) = self else {
+            let wrench = flat.chunks_exact(4).map(Vector4::from_column_slice).collect();
+            return Felt { rotor_thrust_n: Vec::new(), wrench, jitter_wrench: None };
+        };
+        let mixer = vehicle.mixer();
+        let mixed = |flat: &[f64]| -> Vec<Vector4<f64>> {
+            flat.chunks_exact(rotors.stream.width).map(|thrusts| mixer.wrench(thrusts)).collect()
+        };
+        let mut wrench = mixed(&flat);
+        let jitter = rotors.jitter.as_ref().and_then(|jitter| linear_onto(jitter, 0.0, grid));
+        let jitter_wrench = jitter.map(|jitter| mixed(&jitter));
+        for (wrench, jitter) in wrench.iter_mut().zip(jitter_wrench.iter().flatten()) {
+            *wrench -= 0.5 * jitter;
+        }
+        Felt { rotor_thrust_n: flat, wrench, jitter_wrench }
+    }
+}
+
+/// What the rotors do to the body, on the grid.
+pub(super) struct Felt {
+    pub(super) rotor_thrust_n: Vec<f64>,
+    pub(super) wrench: Vec<Vector4<f64>>,
+    pub(super) jitter_wrench: Option<Vec<Vector4<f64>>>,
+}

@@ -1,0 +1,219 @@
+//! From recorded flights to parameters: fixtures, the shared flights where they are, and a twin of the paper.
+
+#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+
+mod support;
+
+use mavid::config::{default_csv_mapping, load_vehicle, read_trajectory};
+use mavid::estimate::{
+    Finding, Identification, IdentifySettings, LatencyKind, Method, Theta, apply_anchor, identified_vehicle,
+    identify, inertia_of, is_physical, scale_of, theta_of,
+};
+use mavid::log::{LoadOptions, Recording, csv, load};
+use mavid::physics::RigidBodyModel;
+use mavid::signals::{ConditionSettings, SignalsError, ThrustPreference, condition};
+use mavid::simulate::pid::{PidFlightSettings, simulate_pid_flight};
+use mavid::vehicle::{Anchor, RigidBody, Vehicle};
+use nalgebra::{SVector, Vector3};
+use std::path::{Path, PathBuf};
+
+fn fixture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
+}
+
+fn read(path: &Path) -> Recording {
+    if path.extension().is_some_and(|extension| extension == "csv") {
+        csv::read_csv(path, &default_csv_mapping().unwrap()).unwrap().0
+    } else {
+        load(path, &LoadOptions::default()).unwrap().recording
+    }
+}
+
+fn identified(recording: &Recording, vehicle: &Vehicle, thrust: ThrustPreference) -> Identification {
+    let settings = ConditionSettings { thrust, ..ConditionSettings::default() };
+    let signals = condition(recording, vehicle, &settings).unwrap();
+    identify(&[signals], vehicle, &IdentifySettings::default()).unwrap()
+}
+
+fn from_files(log: &Path, vehicle: &Path) -> Identification {
+    identified(&read(log), &load_vehicle(vehicle).unwrap(), ThrustPreference::Measured)
+}
+
+/// Errors in percent of the parameter, of `sqrt(Iii Ijj)` for products.
+fn errors_percent(estimate: &Theta, truth: &Theta) -> Theta {
+    Theta::from_fn(|i, _| 100.0 * (estimate[i] - truth[i]) / scale_of(truth, i))
+}
+
+fn p01_truth() -> Theta {
+    SVector::from([2.06, 0.0217, 0.0004, -0.0009, 0.0231, 0.0005, 0.0402])
+}
+
+fn mass_of(identification: &Identification) -> f64 {
+    identification.best.result.estimated.theta[0]
+}
+
+#[test]
+fn a_piece_of_the_first_case_gives_its_mass_and_inertia() {
+    let found = from_files(&fixture("p01_identify_0_25s.tlog"), &fixture("p01_vehicle.toml"));
+    let estimated = &found.best.result.estimated;
+    let errors = errors_percent(&estimated.theta, &p01_truth());
+    assert!(errors[0].abs() < 0.1, "{errors}");
+    // 20 s of it: three standard errors, none above 4 %
+    for i in 1..7 {
+        let std = 100.0 * estimated.covariance[(i, i)].sqrt() / scale_of(&p01_truth(), i);
+        assert!(errors[i].abs() < 3.0 * std && std < 4.0, "parameter {i}: {} +- {std}", errors[i]);
+    }
+    assert!(is_physical(&estimated.theta));
+}
+
+#[test]
+fn commands_and_measured_speeds_agree() {
+    let vehicle = load_vehicle(&fixture("p01_vehicle.toml")).unwrap();
+    let recording = read(&fixture("p01_identify_0_25s.tlog"));
+    let by_speed = identified(&recording, &vehicle, ThrustPreference::Measured);
+    let by_command = identified(&recording, &vehicle, ThrustPreference::Commands);
+    assert!((mass_of(&by_speed) / mass_of(&by_command) - 1.0).abs() < 2e-3);
+    // a command is ahead of the rotor that follows it
+    assert!(by_command.latency.unwrap().total_s > by_speed.latency.unwrap().total_s);
+}
+
+#[test]
+fn a_lag_of_sixty_milliseconds_is_found_and_called_a_lag() {
+    let found = from_files(&fixture("p04_identify_10_22s.tlog"), &fixture("p04_vehicle.toml"));
+    let latency = found.latency.unwrap();
+    assert!(matches!(latency.kind, LatencyKind::Lag | LatencyKind::Both { .. }), "{latency:?}");
+    assert!((latency.total_s - 0.066).abs() < 0.02, "{latency:?}");
+    let truth = SVector::from([1.0, 0.025, 0.0006, 0.0, 0.027, 0.0008, 0.031]);
+    let errors = errors_percent(&found.best.result.estimated.theta, &truth);
+    assert!(errors[0].abs() < 0.5 && errors.iter().all(|e| e.abs() < 8.0), "{errors}");
+}
+
+#[test]
+fn pulse_widths_of_both_autopilots_give_the_mass() {
+    for (log, vehicle, mass_kg) in [
+        ("ap_baseline_70_79s.tlog", "ardupilot-quad.toml", 3.0),
+        ("px4_baseline_40_46s.tlog", "px4-sih.toml", 1.0),
+    ] {
+        let found = from_files(&fixture(log), &fixture(vehicle));
+        assert!((mass_of(&found) / mass_kg - 1.0).abs() < 0.03, "{log}: {}", mass_of(&found));
+    }
+}
+
+#[test]
+fn a_weighed_mass_moves_the_scale_to_the_thrust() {
+    let mut vehicle = load_vehicle(&fixture("p01_vehicle.toml")).unwrap();
+    vehicle.anchor = Anchor::Mass;
+    vehicle.body.mass_kg = 2.06;
+    // stated 4 % too strong
+    vehicle.propulsion.thrust_coefficient = Some(8.55e-6 * 1.04);
+    let mut found =
+        identified(&read(&fixture("p01_identify_0_25s.tlog")), &vehicle, ThrustPreference::Measured);
+    let scale = apply_anchor(&mut found, &vehicle).unwrap();
+    let Finding::Determined { value, std } = scale.value else { unreachable!("{scale:?}") };
+    assert!((value / 8.55e-6 - 1.0).abs() < 1e-3 && std < 1e-8, "{value} {std}");
+    assert_eq!(found.best.result.parameters[0].finding, Finding::Given { value: 2.06 });
+    let model = identified_vehicle(&vehicle, &found.best.result, Some(&scale));
+    assert_eq!(model.propulsion.thrust_coefficient, Some(value));
+    assert!((theta_of(&model.body)[1] / 0.0217 - 1.0).abs() < 0.06);
+}
+
+#[test]
+fn a_log_without_actuators_says_what_to_request() {
+    let vehicle = load_vehicle(&fixture("p01_vehicle.toml")).unwrap();
+    let mut recording = read(&fixture("p01_identify_0_25s.tlog"));
+    recording.streams.retain(|key, _| {
+        !matches!(key.quantity, mavid::log::Quantity::ActuatorCommand | mavid::log::Quantity::RotorSpeed)
+    });
+    let error = condition(&recording, &vehicle, &ConditionSettings::default()).unwrap_err();
+    assert!(matches!(error, SignalsError::NoActuators { .. }));
+    assert!(error.to_string().contains("SERVO_OUTPUT_RAW"), "{error}");
+}
+
+#[test]
+fn without_body_rates_inertia_is_not_a_number() {
+    let vehicle = load_vehicle(&fixture("p01_vehicle.toml")).unwrap();
+    let mut recording = read(&fixture("p01_identify_0_25s.tlog"));
+    recording.streams.retain(|key, _| key.quantity != mavid::log::Quantity::AngularRate);
+    let found = identified(&recording, &vehicle, ThrustPreference::Measured);
+    for parameter in &found.best.result.parameters[1..] {
+        assert!(matches!(&parameter.finding, Finding::NotDetermined { reason } if reason.contains("rates")));
+    }
+    assert!(matches!(found.best.result.parameters[0].finding, Finding::Determined { .. }));
+}
+
+/// Table 3's FMLS values fly Table 2's trajectory under the paper's PID for 50 s at 500 Hz.
+#[test]
+fn all_four_methods_recover_the_papers_vehicle() {
+    let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs");
+    let nominal = load_vehicle(&configs.join("qball2.toml")).unwrap();
+    let trajectory = read_trajectory(&configs.join("trajectories/table2.toml")).unwrap().series;
+    let truth = SVector::from([1.82245, 0.00749, -0.00051, -0.00003, 0.00976, -0.00098, 0.05130]);
+    let body = RigidBody {
+        mass_kg: truth[0],
+        inertia_kg_m2: inertia_of(&truth),
+        center_of_mass_m: Vector3::zeros(),
+    };
+    let model = RigidBodyModel::new(&body, nominal.gravity_m_s2).unwrap();
+    let flight = simulate_pid_flight(&model, &trajectory, &PidFlightSettings::default(), None).unwrap();
+    let found = identified(&flight.recording, &nominal, ThrustPreference::Measured);
+    for method in [Method::Ls, Method::Gd, Method::Fmls, Method::Fmgd] {
+        let result = found.methods.iter().find(|result| result.method == method).unwrap();
+        let errors = errors_percent(&result.estimated.theta, &truth);
+        assert!(errors.amax() < 0.2, "{}: {errors}", method.name());
+    }
+    // figures 4 and 5: a history for each of them, its end the estimate
+    assert_eq!(found.histories.len(), 4);
+    let (_, history) = &found.histories[0];
+    assert!(history.time_s.len() > 150 && history.time_s[0] < 11.0);
+}
+
+#[test]
+fn the_first_case_within_its_tolerances() {
+    let Some(shared) = support::shared() else { return };
+    let case = shared.join("cases/p01-nothing-missing");
+    let found = from_files(&case.join("identify.tlog"), &case.join("vehicle.toml"));
+    let errors = errors_percent(&found.best.result.estimated.theta, &p01_truth());
+    assert!(errors[0].abs() < 0.5, "{errors}");
+    assert!(errors.amax() < 3.0, "{errors}");
+}
+
+#[test]
+fn every_shared_flight_is_identified_or_says_why_not() {
+    let Some(shared) = support::shared() else { return };
+    let mut count = 0;
+    for folder in ["cases", "recordings"] {
+        for vehicle_file in support::files(&shared.join(folder), "toml") {
+            let here = vehicle_file.parent().unwrap();
+            let vehicle = load_vehicle(&vehicle_file).unwrap();
+            let logs = support::files(here, "tlog").into_iter().chain(support::files(here, "csv"));
+            let prefix = match vehicle_file.file_stem().unwrap().to_str().unwrap() {
+                "ardupilot-quad" => "ap_",
+                "px4-sih" => "px4_",
+                _ => "",
+            };
+            for log in logs {
+                let name = log.file_name().unwrap().to_str().unwrap();
+                if !name.starts_with(prefix) {
+                    continue;
+                }
+                let found = identified(&read(&log), &vehicle, ThrustPreference::Measured);
+                let mass = &found.best.result.parameters[0].finding;
+                assert!(matches!(mass, Finding::Determined { .. }), "{}: {mass:?}", log.display());
+                count += 1;
+            }
+        }
+    }
+    assert!(count >= 16 + 21 + 4, "{count}");
+}
+
+#[test]
+fn the_autopilots_masses_from_pulse_widths() {
+    let Some(shared) = support::shared() else { return };
+    let folder = shared.join("recordings/autopilots");
+    for (log, vehicle, mass_kg) in
+        [("ap_baseline.tlog", "ardupilot-quad.toml", 3.0), ("px4_baseline.tlog", "px4-sih.toml", 1.0)]
+    {
+        let found = from_files(&folder.join(log), &folder.join(vehicle));
+        assert!((mass_of(&found) / mass_kg - 1.0).abs() < 0.02, "{log}: {}", mass_of(&found));
+    }
+}
