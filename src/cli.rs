@@ -26,6 +26,8 @@ pub enum Verb {
     Plan(PlanArgs),
     /// Identify mass and inertia from recorded flights
     Identify(IdentifyArgs),
+    /// Fly a vehicle along a trajectory in simulation and write its log
+    Simulate(SimulateArgs),
     /// Compare models with recorded flights: flown again, predicted, played back
     Validate(ValidateArgs),
     /// Say what is in a log and what can be identified from it
@@ -164,4 +166,29 @@ pub struct InspectArgs {
     /// the vehicle's MAVLink system id, where a log holds several
     #[arg(long)]
     pub system: Option<u32>,
+}
+
+/// Arguments of `mavid simulate`.
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// vehicle.toml or model.toml: what flies
+    pub vehicle: PathBuf,
+    /// trajectory.toml
+    #[arg(long, value_name = "FILE")]
+    pub trajectory: PathBuf,
+    /// further effects: [[effect]] tables with `id` and the parameters by name
+    #[arg(long, value_name = "FILE")]
+    pub effects: Option<PathBuf>,
+    /// the vehicle that the controller believes it flies; without it the one that flies
+    #[arg(long, value_name = "FILE")]
+    pub nominal: Option<PathBuf>,
+    /// telemetry log to write
+    #[arg(long, value_name = "LOG.TLOG")]
+    pub out: PathBuf,
+    /// same seed, same noise
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// factor on the sensors' noise
+    #[arg(long, default_value_t = 1.0)]
+    pub noise: f64,
 }

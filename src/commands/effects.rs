@@ -1,13 +1,31 @@
 //! Effects from the tables of a file: `[[effect]]` with `id` and the parameters by name.
 
+use std::path::Path;
+
 use mavid::physics::ActiveEffect;
 use mavid::vehicle::Vehicle;
+use serde::Deserialize;
 
 use super::CommandError;
 
 /// The effects of a model file. A rotor may be given by its name.
 pub fn effects(tables: &[toml::Table], vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
     tables.iter().map(|table| effect(table, vehicle)).collect()
+}
+
+/// The effects of a file that holds nothing but `[[effect]]` tables.
+pub fn effects_file(path: &Path, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
+    let named = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
+    let text = std::fs::read_to_string(path).map_err(|error| named(&error))?;
+    let file: EffectsFile = toml::from_str(&text).map_err(|error| named(&error))?;
+    effects(&file.effect, vehicle).map_err(|error| named(&error))
+}
+
+/// `--effects FILE`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EffectsFile {
+    effect: Vec<toml::Table>,
 }
 
 fn effect(table: &toml::Table, vehicle: &Vehicle) -> Result<ActiveEffect, CommandError> {

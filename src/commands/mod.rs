@@ -8,6 +8,7 @@ mod identify;
 mod inspect;
 mod output;
 mod plan;
+mod simulate;
 mod validate;
 mod vehicle;
 
@@ -79,6 +80,7 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
         Verb::Plan(args) => plan::run(cli.json, args),
         Verb::Identify(args) => identify::run(cli.json, args),
+        Verb::Simulate(args) => simulate::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
     }
