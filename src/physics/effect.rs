@@ -84,12 +84,17 @@ pub struct Rotors {
 }
 
 impl Rotors {
+    /// Rotors that stand.
+    #[must_use]
+    pub fn still() -> Self {
+        Self { speed: [0.0; MAX_ROTORS], acceleration_1_s: [0.0; MAX_ROTORS], thrust_n: [0.0; MAX_ROTORS] }
+    }
+
     /// Rotors that turn as commanded, at constant speed.
     #[must_use]
     #[inline]
     pub fn as_commanded(airframe: &Airframe, relative_speed: &[f64; MAX_ROTORS]) -> Self {
-        let mut rotors =
-            Self { speed: *relative_speed, acceleration_1_s: [0.0; MAX_ROTORS], thrust_n: [0.0; MAX_ROTORS] };
+        let mut rotors = Self { speed: *relative_speed, ..Self::still() };
         rotors.thrust_from_speed(airframe);
         rotors
     }

@@ -16,6 +16,7 @@ pub use airframe::{Airframe, MAX_ROTORS};
 pub use effect::{Condition, Effect, Hook, Own, Parameter, Rotors, effect_wrench};
 pub use euler::{euler_rates, euler_rates_inverse};
 pub use measurement::Measurement;
+pub(crate) use model::OwnStates;
 pub use model::{ActiveEffect, Evaluation, Input, Model};
 pub use rigid_body::{RigidBodyModel, pseudo_inertia_is_positive};
 pub use state::{RIGID_STATES, State, StateDerivative, Wrench};

@@ -207,8 +207,20 @@ impl Model {
     /// Force and torque of rotors and effects; writes the rates of the effects' own states. Both must be
     /// [`Self::own_state_count`] long; an effect whose part is missing sees none.
     pub fn evaluate(&self, state: &State, input: &Input, states: &[f64], rates: &mut [f64]) -> Evaluation {
-        rates.fill(0.0);
-        let mut states = OwnStates { states, rates };
+        let mut rotors = Rotors::still();
+        let wrench = self.wrench(state, input, OwnStates { states, rates }, &mut rotors);
+        Evaluation { wrench, rotors }
+    }
+
+    /// [`Self::evaluate`] for the inner loop: `rotors` is overwritten.
+    pub(crate) fn wrench(
+        &self,
+        state: &State,
+        input: &Input,
+        mut states: OwnStates,
+        rotors: &mut Rotors,
+    ) -> Wrench {
+        states.rates.fill(0.0);
         let hooks = &self.by_hook;
         let mut wind_m_s = input.wind_m_s;
         self.each(&hooks.air, &mut states, |effect, own| wind_m_s += effect.wind_m_s(input, own));
@@ -216,18 +228,15 @@ impl Model {
         self.each(&hooks.center_of_mass, &mut states, |effect, own| {
             at.center_of_mass_m += effect.center_of_mass_m(own);
         });
-        let mut rotors = Rotors::as_commanded(&self.airframe, &input.speed_command);
-        if !hooks.rotor_speed.is_empty() {
-            self.each(&hooks.rotor_speed, &mut states, |effect, own| {
-                effect.rotor_speed(&at, own, &mut rotors)
-            });
-            rotors.thrust_from_speed(&self.airframe);
-        }
-        self.each(&hooks.rotor_thrust, &mut states, |effect, own| effect.rotor_thrust(&at, own, &mut rotors));
+        rotors.speed = input.speed_command;
+        rotors.acceleration_1_s = [0.0; MAX_ROTORS];
+        self.each(&hooks.rotor_speed, &mut states, |effect, own| effect.rotor_speed(&at, own, rotors));
+        rotors.thrust_from_speed(&self.airframe);
+        self.each(&hooks.rotor_thrust, &mut states, |effect, own| effect.rotor_thrust(&at, own, rotors));
         let mut wrench = at.thrust_wrench(&rotors.thrust_n);
-        self.each(&hooks.wrench, &mut states, |effect, own| wrench += effect.wrench(&at, &rotors, own));
+        self.each(&hooks.wrench, &mut states, |effect, own| wrench += effect.wrench(&at, rotors, own));
         self.each(&hooks.reaction, &mut states, |effect, own| wrench += effect.reaction(&at, &wrench, own));
-        Evaluation { wrench, rotors }
+        wrench
     }
 
     /// How long before now the commands were sent that act now, s. Whoever holds the commands looks
@@ -265,8 +274,8 @@ impl Model {
     }
 }
 
-/// Own states of all effects and where their rates go.
-struct OwnStates<'a> {
-    states: &'a [f64],
-    rates: &'a mut [f64],
+/// Own states of all effects and where their rates go, [`Model::own_state_count`] of each.
+pub(crate) struct OwnStates<'a> {
+    pub(crate) states: &'a [f64],
+    pub(crate) rates: &'a mut [f64],
 }

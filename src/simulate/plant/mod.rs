@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use super::SimulateError;
 use super::integrator::rk4_step;
-use crate::physics::{Evaluation, Input, Model, RIGID_STATES, State, Wrench};
+use crate::physics::{Evaluation, Input, Model, OwnStates, RIGID_STATES, Rotors, State, Wrench};
 
 /// Capacity of the state vector: rigid body and the effects' own states.
 pub const PLANT_STATES: usize = 32;
@@ -54,9 +54,13 @@ impl<'a> Plant<'a> {
     /// Force, torque and rotors under this input, now.
     #[must_use]
     pub fn evaluate(&self, input: &Input) -> Evaluation {
-        let mut rates = [0.0; PLANT_STATES];
-        let own = &self.vector.as_slice()[RIGID_STATES..];
-        evaluate(self.model, self.push, (&self.state(), own), (input, &mut rates))
+        let (mut rates, count) = ([0.0; PLANT_STATES], self.model.own_state_count());
+        let (state, own) = (self.state(), &self.vector.as_slice()[RIGID_STATES..RIGID_STATES + count]);
+        let mut evaluation = self.model.evaluate(&state, input, own, &mut rates[..count]);
+        if let Some(push) = self.push {
+            evaluation.wrench += push(input.time_s, &state);
+        }
+        evaluation
     }
 
     /// Moves on by `step_s` (s) under a constant input, with one Runge-Kutta step.
@@ -72,13 +76,18 @@ impl<'a> Plant<'a> {
 
     fn step_of<const N: usize>(&mut self, input: &Input, step_s: f64) {
         let (model, push) = (self.model, self.push);
+        let count = model.own_state_count();
+        let (mut now, mut rotors) = (*input, Rotors::still());
         let mut derivative = |time_s: f64, vector: &SVector<f64, N>| {
             let mut out = SVector::<f64, N>::zeros();
             let state = State::read(vector);
-            let now = Input { time_s, ..*input };
-            let own_rates = &mut out.as_mut_slice()[RIGID_STATES..];
-            let wrench =
-                evaluate(model, push, (&state, &vector.as_slice()[RIGID_STATES..]), (&now, own_rates)).wrench;
+            now.time_s = time_s;
+            let states = &vector.as_slice()[RIGID_STATES..RIGID_STATES + count];
+            let rates = &mut out.as_mut_slice()[RIGID_STATES..RIGID_STATES + count];
+            let mut wrench = model.wrench(&state, &now, OwnStates { states, rates }, &mut rotors);
+            if let Some(push) = push {
+                wrench += push(time_s, &state);
+            }
             model.body.derivative(&state, &wrench).write(&mut out);
             out
         };
@@ -88,20 +97,6 @@ impl<'a> Plant<'a> {
         State::read(&vector).write(&mut vector);
         self.vector.as_mut_slice()[..N].copy_from_slice(vector.as_slice());
     }
-}
-
-fn evaluate(
-    model: &Model,
-    push: Option<Push>,
-    (state, own): (&State, &[f64]),
-    (input, rates): (&Input, &mut [f64]),
-) -> Evaluation {
-    let count = model.own_state_count();
-    let mut evaluation = model.evaluate(state, input, &own[..count], &mut rates[..count]);
-    if let Some(push) = push {
-        evaluation.wrench += push(input.time_s, state);
-    }
-    evaluation
 }
 
 #[cfg(test)]
