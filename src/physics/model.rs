@@ -225,9 +225,13 @@ impl Model {
         let mut wind_m_s = input.wind_m_s;
         self.each(&hooks.air, &mut states, |effect, own| wind_m_s += effect.wind_m_s(input, own));
         let mut at = Condition::new(&self.airframe, state, input, wind_m_s);
-        self.each(&hooks.center_of_mass, &mut states, |effect, own| {
-            at.center_of_mass_m += effect.center_of_mass_m(own);
-        });
+        if !hooks.center_of_mass.is_empty() {
+            let mut center_m = Vector3::zeros();
+            self.each(&hooks.center_of_mass, &mut states, |effect, own| {
+                center_m += effect.center_of_mass_m(own);
+            });
+            at = at.with_center_of_mass(center_m);
+        }
         rotors.speed = input.speed_command;
         rotors.acceleration_1_s = [0.0; MAX_ROTORS];
         self.each(&hooks.rotor_speed, &mut states, |effect, own| effect.rotor_speed(&at, own, rotors));

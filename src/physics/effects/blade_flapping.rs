@@ -17,8 +17,8 @@ const PARAMETERS: &[Parameter] = &[Parameter { name: "k", unit: "N m/(m/s)", min
 fn per_coefficient(at: &Condition, rotors: &Rotors) -> Wrench {
     let share = 1.0 / at.airframe.rotor_count() as f64;
     let mut torque_nm = Vector3::zeros();
-    for (arm, speed) in at.arms_m().zip(&rotors.speed) {
-        torque_nm += Vector3::z().cross(&at.air_velocity_at(&arm)) * (share * speed);
+    for ((_, air), speed) in at.hubs().zip(&rotors.speed) {
+        torque_nm += Vector3::z().cross(air) * (share * speed);
     }
     Wrench { force_n: Vector3::zeros(), torque_nm }
 }

@@ -16,8 +16,8 @@ const PARAMETERS: &[Parameter] = &[Parameter { name: "kz", unit: "N/(m/s)", min:
 /// Force and torque for one N/(m/s).
 fn per_coefficient(at: &Condition, rotors: &Rotors) -> Wrench {
     let share = -1.0 / at.airframe.rotor_count() as f64;
-    at.arms_m().zip(&rotors.speed).fold(Wrench::zero(), |sum, (arm, speed)| {
-        sum + Wrench::at(&arm, Vector3::z() * (share * speed * at.air_velocity_at(&arm).z))
+    at.hubs().zip(&rotors.speed).fold(Wrench::zero(), |sum, ((arm, air), speed)| {
+        sum + Wrench::at(&arm, Vector3::z() * (share * speed * air.z))
     })
 }
 

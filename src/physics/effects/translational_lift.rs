@@ -15,8 +15,8 @@ const PARAMETERS: &[Parameter] = &[Parameter { name: "kh", unit: "N/(m/s)^2", mi
 /// Force and torque for one N/(m/s)^2.
 fn per_coefficient(at: &Condition) -> Wrench {
     let share = 1.0 / at.airframe.rotor_count() as f64;
-    at.arms_m().fold(Wrench::zero(), |sum, arm| {
-        let across = at.air_velocity_at(&arm).xy().norm_squared();
+    at.hubs().fold(Wrench::zero(), |sum, (arm, air)| {
+        let across = air.xy().norm_squared();
         sum + Wrench::at(&arm, Vector3::z() * (share * across))
     })
 }

@@ -33,9 +33,9 @@ fn per_loss(at: &Condition, rotors: &Rotors) -> Wrench {
     let radius_m = at.airframe.propulsion.rotor_radius_m.unwrap_or(f64::INFINITY);
     let disc_kg_m = 2.0 * AIR_DENSITY_KG_M3 * std::f64::consts::PI * radius_m * radius_m;
     let mut sum = Wrench::zero();
-    for (arm, thrust_n) in at.arms_m().zip(&rotors.thrust_n) {
+    for ((arm, air), thrust_n) in at.hubs().zip(&rotors.thrust_n) {
         let hover_m_s = (thrust_n.max(1e-9) / disc_kg_m).sqrt();
-        let air = at.air_velocity_at(&arm) / hover_m_s;
+        let air = air / hover_m_s;
         let lost_n = thrust_n * excess(air.z) / (1.0 + air.xy().norm_squared());
         sum += Wrench::at(&arm, Vector3::z() * -lost_n);
     }
