@@ -26,6 +26,10 @@ pub enum Verb {
     Plan(PlanArgs),
     /// Identify mass and inertia from recorded flights
     Identify(IdentifyArgs),
+    /// Fly a vehicle along a trajectory in simulation and write its log
+    Simulate(SimulateArgs),
+    /// Compare models with recorded flights: flown again, predicted, played back
+    Validate(ValidateArgs),
     /// Say what is in a log and what can be identified from it
     Inspect(InspectArgs),
 }
@@ -125,6 +129,29 @@ pub struct IdentifyArgs {
     pub commands: bool,
 }
 
+/// Arguments of `mavid validate`.
+#[derive(Debug, Args)]
+pub struct ValidateArgs {
+    /// recordings of one vehicle: .tlog, or .csv with known columns
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// a vehicle or model file; the first is what the others are compared with
+    #[arg(long = "model", required = true, value_name = "FILE")]
+    pub models: Vec<PathBuf>,
+    /// write charts of each flight flown again into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
+    #[arg(long, value_name = "FILE")]
+    pub csv_map: Option<PathBuf>,
+    /// system id of the vehicle, where a log holds several
+    #[arg(long, value_name = "ID")]
+    pub system: Option<u32>,
+    /// s of flight left out at the beginning
+    #[arg(long, value_name = "S", default_value_t = 10.0)]
+    pub transient: f64,
+}
+
 /// Arguments of `mavid inspect`.
 #[derive(Debug, Args)]
 pub struct InspectArgs {
@@ -139,4 +166,29 @@ pub struct InspectArgs {
     /// the vehicle's MAVLink system id, where a log holds several
     #[arg(long)]
     pub system: Option<u32>,
+}
+
+/// Arguments of `mavid simulate`.
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// vehicle.toml or model.toml: what flies
+    pub vehicle: PathBuf,
+    /// trajectory.toml
+    #[arg(long, value_name = "FILE")]
+    pub trajectory: PathBuf,
+    /// further effects: [[effect]] tables with `id` and the parameters by name
+    #[arg(long, value_name = "FILE")]
+    pub effects: Option<PathBuf>,
+    /// the vehicle that the controller believes it flies; without it the one that flies
+    #[arg(long, value_name = "FILE")]
+    pub nominal: Option<PathBuf>,
+    /// telemetry log to write
+    #[arg(long, value_name = "LOG.TLOG")]
+    pub out: PathBuf,
+    /// same seed, same noise
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// factor on the sensors' noise
+    #[arg(long, default_value_t = 1.0)]
+    pub noise: f64,
 }

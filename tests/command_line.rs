@@ -81,3 +81,19 @@ fn help_and_version_succeed() {
     let version = mavid(&["--version"]);
     assert_eq!(stdout(&version), format!("mavid {}\n", env!("CARGO_PKG_VERSION")));
 }
+
+/// The README shows what the program prints.
+#[test]
+fn the_readmes_example_is_what_is_printed() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
+    let command = readme.lines().find_map(|line| line.strip_prefix("cargo run --release -- ")).unwrap();
+    let shown = readme.split("```text\n").nth(1).unwrap().split("```").next().unwrap();
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_mavid"))
+        .args(command.split_whitespace())
+        .current_dir(root)
+        .output()
+        .unwrap();
+    assert!(output.status.success());
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), shown);
+}

@@ -2,11 +2,14 @@
 //!
 //! To add a verb: a variant in [`Verb`], a file here with `run(json, args)`, and an arm in [`run`].
 
+mod effects;
 mod flights;
 mod identify;
 mod inspect;
 mod output;
 mod plan;
+mod simulate;
+mod validate;
 mod vehicle;
 
 use std::process::ExitCode;
@@ -77,6 +80,8 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
         Verb::Plan(args) => plan::run(cli.json, args),
         Verb::Identify(args) => identify::run(cli.json, args),
+        Verb::Simulate(args) => simulate::run(cli.json, args),
+        Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
     }
 }

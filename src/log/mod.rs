@@ -34,4 +34,4 @@ pub use recording::{Autopilot, Quantity, Recording, Stream, StreamKey};
 pub use report::{MessageCounts, ReadReport, Resync, Sender, StreamRepair};
 pub use splitter::{SplitCounts, Splitter};
 pub use stats::{StreamStats, StreamTally};
-pub use tlog::{ByteOrder, Record, STAMP_BYTES, TlogReader, TlogWriter};
+pub use tlog::{ByteOrder, Record, STAMP_BYTES, TlogReader, TlogWriter, write_recording};

@@ -81,6 +81,7 @@ impl Airframe {
 
     /// Hub positions from the centre of mass, body, m.
     #[must_use]
+    #[inline]
     pub fn arms_m(&self) -> &[Vector3<f64>] {
         &self.arms_m[..self.rotor_count]
     }
@@ -94,17 +95,25 @@ impl Airframe {
     /// Relative rotor speed that a normalised command u in 0..1 asks for.
     #[must_use]
     pub fn relative_speed(&self, command: f64) -> f64 {
-        (self.propulsion.thrust_from_command_n(command) / self.hover_thrust_n).sqrt()
+        self.relative_speed_of_thrust(self.propulsion.thrust_from_command_n(command))
+    }
+
+    /// Relative rotor speed that gives a thrust, N; 0 where it is negative.
+    #[must_use]
+    pub fn relative_speed_of_thrust(&self, thrust_n: f64) -> f64 {
+        (thrust_n.max(0.0) / self.hover_thrust_n).sqrt()
     }
 
     /// Thrust of a rotor at a relative speed, N.
     #[must_use]
+    #[inline]
     pub fn thrust_n(&self, relative_speed: f64) -> f64 {
         self.hover_thrust_n * relative_speed * relative_speed
     }
 
     /// Force and torque of rotor thrusts (N); those beyond the rotor count do nothing.
     #[must_use]
+    #[inline]
     pub fn thrust_wrench(&self, thrust_n: &[f64; MAX_ROTORS]) -> Wrench {
         let mut sum = Vector4::zeros();
         for (column, thrust) in self.mixer.column_iter().zip(thrust_n).take(self.rotor_count) {

@@ -31,18 +31,52 @@ pub struct Condition<'a> {
     /// velocity of the centre of mass through the air, body, m/s
     pub air_velocity_m_s: Vector3<f64>,
     /// where the centre of mass is against where the airframe has it, body, m
-    pub center_of_mass_m: Vector3<f64>,
+    center_of_mass_m: Vector3<f64>,
+    /// velocity of each hub through the air, body, m/s
+    hub_air_velocity_m_s: [Vector3<f64>; MAX_ROTORS],
 }
 
 impl<'a> Condition<'a> {
     /// The condition in a given wind (world, m/s).
     #[must_use]
+    #[inline]
     pub fn new(airframe: &'a Airframe, state: &'a State, input: &'a Input, wind_m_s: Vector3<f64>) -> Self {
         let air_velocity_m_s = state.attitude.inverse_transform_vector(&(state.velocity_m_s - wind_m_s));
-        Self { airframe, state, input, air_velocity_m_s, center_of_mass_m: Vector3::zeros() }
+        let mut at = Self {
+            airframe,
+            state,
+            input,
+            air_velocity_m_s,
+            center_of_mass_m: Vector3::zeros(),
+            hub_air_velocity_m_s: [Vector3::zeros(); MAX_ROTORS],
+        };
+        at.hubs_move();
+        at
+    }
+
+    /// The same with the centre of mass elsewhere in the airframe (body, m).
+    #[must_use]
+    pub fn with_center_of_mass(mut self, center_of_mass_m: Vector3<f64>) -> Self {
+        self.center_of_mass_m = center_of_mass_m;
+        self.hubs_move();
+        self
+    }
+
+    fn hubs_move(&mut self) {
+        for (hub, arm) in self.hub_air_velocity_m_s.iter_mut().zip(self.airframe.arms_m()) {
+            let arm = arm - self.center_of_mass_m;
+            *hub = self.air_velocity_m_s + self.state.rates_rad_s.cross(&arm);
+        }
+    }
+
+    /// Each hub's position from the true centre of mass (body, m) and velocity through the air (body, m/s).
+    #[inline]
+    pub fn hubs(&self) -> impl Iterator<Item = (Vector3<f64>, &Vector3<f64>)> {
+        self.arms_m().zip(&self.hub_air_velocity_m_s)
     }
 
     /// Hub positions from the true centre of mass, body, m.
+    #[inline]
     pub fn arms_m(&self) -> impl Iterator<Item = Vector3<f64>> {
         self.airframe.arms_m().iter().map(|arm| arm - self.center_of_mass_m)
     }
@@ -55,16 +89,11 @@ impl<'a> Condition<'a> {
 
     /// Force and torque of rotor thrusts (N) about the true centre of mass.
     #[must_use]
+    #[inline]
     pub fn thrust_wrench(&self, thrust_n: &[f64; MAX_ROTORS]) -> Wrench {
         let mut wrench = self.airframe.thrust_wrench(thrust_n);
         wrench.torque_nm -= self.center_of_mass_m.cross(&wrench.force_n);
         wrench
-    }
-
-    /// Velocity of a point of the body through the air (`arm_m` from the centre of mass), body, m/s.
-    #[must_use]
-    pub fn air_velocity_at(&self, arm_m: &Vector3<f64>) -> Vector3<f64> {
-        self.air_velocity_m_s + self.state.rates_rad_s.cross(arm_m)
     }
 }
 
@@ -80,21 +109,49 @@ pub struct Rotors {
 }
 
 impl Rotors {
+    /// Rotors that stand.
+    #[must_use]
+    pub fn still() -> Self {
+        Self { speed: [0.0; MAX_ROTORS], acceleration_1_s: [0.0; MAX_ROTORS], thrust_n: [0.0; MAX_ROTORS] }
+    }
+
     /// Rotors that turn as commanded, at constant speed.
     #[must_use]
+    #[inline]
     pub fn as_commanded(airframe: &Airframe, relative_speed: &[f64; MAX_ROTORS]) -> Self {
-        let mut rotors =
-            Self { speed: *relative_speed, acceleration_1_s: [0.0; MAX_ROTORS], thrust_n: [0.0; MAX_ROTORS] };
+        let mut rotors = Self { speed: *relative_speed, ..Self::still() };
         rotors.thrust_from_speed(airframe);
         rotors
     }
 
     /// Sets the thrusts that belong to the speeds.
+    #[inline]
     pub fn thrust_from_speed(&mut self, airframe: &Airframe) {
         for (thrust, speed) in self.thrust_n.iter_mut().zip(&self.speed) {
             *thrust = airframe.thrust_n(*speed);
         }
     }
+}
+
+/// Through what an effect acts: which of its functions do something.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hook {
+    /// [`Effect::command_delay_s`]
+    Commands,
+    /// [`Effect::wind_m_s`]
+    Air,
+    /// [`Effect::center_of_mass_m`]
+    CenterOfMass,
+    /// [`Effect::rotor_speed`]
+    RotorSpeed,
+    /// [`Effect::rotor_thrust`]
+    RotorThrust,
+    /// [`Effect::wrench`]
+    Wrench,
+    /// [`Effect::reaction`]
+    Reaction,
+    /// [`Effect::measure`]
+    Sensors,
 }
 
 /// An effect's parameter values and own states, and where it writes the rates of the latter.
@@ -123,6 +180,9 @@ pub trait Effect: Debug + Sync {
 
     /// name, unit, bounds
     fn parameters(&self) -> &'static [Parameter];
+
+    /// which of the functions below do something: the others are not called in a simulation
+    fn hooks(&self) -> &'static [Hook];
 
     /// what this airframe's description lacks for the effect to be computed
     fn missing(&self, _airframe: &Airframe) -> Option<&'static str> {
@@ -199,9 +259,8 @@ pub trait Effect: Debug + Sync {
 /// rotors that turn at `rotors.speed`.
 #[must_use]
 pub fn effect_wrench(effect: &dyn Effect, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
-    let mut at = *at;
     let before = at.thrust_wrench(&rotors.thrust_n);
-    at.center_of_mass_m += effect.center_of_mass_m(own);
+    let at = at.with_center_of_mass(at.center_of_mass_m + effect.center_of_mass_m(own));
     let mut changed = *rotors;
     effect.rotor_speed(&at, own, &mut changed);
     if changed.speed != rotors.speed {

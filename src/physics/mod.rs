@@ -13,9 +13,10 @@ mod rigid_body;
 mod state;
 
 pub use airframe::{Airframe, MAX_ROTORS};
-pub use effect::{Condition, Effect, Own, Parameter, Rotors, effect_wrench};
+pub use effect::{Condition, Effect, Hook, Own, Parameter, Rotors, effect_wrench};
 pub use euler::{euler_rates, euler_rates_inverse};
 pub use measurement::Measurement;
+pub(crate) use model::OwnStates;
 pub use model::{ActiveEffect, Evaluation, Input, Model};
 pub use rigid_body::{RigidBodyModel, pseudo_inertia_is_positive};
 pub use state::{RIGID_STATES, State, StateDerivative, Wrench};
@@ -58,6 +59,24 @@ pub enum PhysicsError {
         id: &'static str,
         /// what is missing
         what: &'static str,
+    },
+    /// no effect of this name
+    #[error("no effect `{id}`; expected one of {}", effects::ALL.iter().map(|e| e.id()).collect::<Vec<_>>().join(", "))]
+    UnknownEffect {
+        /// what came
+        id: String,
+    },
+    /// a parameter of an effect by its name
+    #[error("effect {id}, `{name}`: expected {expected}, got {got}")]
+    EffectParameter {
+        /// effect
+        id: &'static str,
+        /// parameter
+        name: String,
+        /// the range, or the names
+        expected: String,
+        /// what came
+        got: String,
     },
     /// number of values for an effect
     #[error("effect {id} takes {expected} parameters, got {got}")]

@@ -1,10 +1,12 @@
 //! A rigid body, its rotors and the effects that act on it, put together.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 
 use super::{
-    Airframe, Condition, Effect, MAX_ROTORS, Measurement, Own, PhysicsError, RigidBodyModel, Rotors, State,
-    Wrench,
+    Airframe, Condition, Effect, Hook, MAX_ROTORS, Measurement, Own, PhysicsError, RigidBodyModel, Rotors,
+    State, Wrench, effects,
 };
 use crate::vehicle::Vehicle;
 
@@ -51,6 +53,35 @@ impl ActiveEffect {
         Ok(Self { effect, parameters: parameters.to_vec() })
     }
 
+    /// By names, as files have them.
+    ///
+    /// # Errors
+    /// If there is no such effect, a parameter is missing, unknown, or outside its bounds.
+    pub fn named(id: &str, values: &[(&str, f64)]) -> Result<Self, PhysicsError> {
+        let effect = effects::by_id(id).ok_or_else(|| PhysicsError::UnknownEffect { id: id.to_owned() })?;
+        let refuse = |name: &str, expected: String, got: String| {
+            Err(PhysicsError::EffectParameter { id: effect.id(), name: name.to_owned(), expected, got })
+        };
+        if let Some((name, _)) =
+            values.iter().find(|(name, _)| effect.parameters().iter().all(|p| p.name != *name))
+        {
+            let names: Vec<_> = effect.parameters().iter().map(|p| p.name).collect();
+            return refuse(name, format!("one of {}", names.join(", ")), "an unknown name".to_owned());
+        }
+        let mut parameters = Vec::with_capacity(effect.parameters().len());
+        for parameter in effect.parameters() {
+            let range = format!("{} to {} {}", parameter.min, parameter.max, parameter.unit);
+            match values.iter().find(|(name, _)| *name == parameter.name) {
+                Some((_, value)) if (parameter.min..=parameter.max).contains(value) => {
+                    parameters.push(*value)
+                }
+                Some((_, value)) => return refuse(parameter.name, range, value.to_string()),
+                None => return refuse(parameter.name, range, "nothing".to_owned()),
+            }
+        }
+        Ok(Self { effect, parameters })
+    }
+
     /// Which effect.
     #[must_use]
     pub fn effect(&self) -> &'static dyn Effect {
@@ -81,7 +112,37 @@ pub struct Model {
     /// rotors
     pub airframe: Airframe,
     effects: Vec<ActiveEffect>,
-    state_counts: Vec<usize>,
+    /// each effect's part of the own states
+    slots: Vec<Range<usize>>,
+    own_state_count: usize,
+    by_hook: ByHook,
+}
+
+/// Indices of the effects that act through each hook.
+#[derive(Debug, Clone, Default)]
+struct ByHook {
+    air: Vec<usize>,
+    center_of_mass: Vec<usize>,
+    rotor_speed: Vec<usize>,
+    rotor_thrust: Vec<usize>,
+    wrench: Vec<usize>,
+    reaction: Vec<usize>,
+}
+
+impl ByHook {
+    fn of(effects: &[ActiveEffect]) -> Self {
+        let through = |hook: Hook| {
+            (0..effects.len()).filter(|index| effects[*index].effect.hooks().contains(&hook)).collect()
+        };
+        Self {
+            air: through(Hook::Air),
+            center_of_mass: through(Hook::CenterOfMass),
+            rotor_speed: through(Hook::RotorSpeed),
+            rotor_thrust: through(Hook::RotorThrust),
+            wrench: through(Hook::Wrench),
+            reaction: through(Hook::Reaction),
+        }
+    }
 }
 
 impl Model {
@@ -95,13 +156,29 @@ impl Model {
                 return Err(PhysicsError::Missing { id: active.effect.id(), what });
             }
         }
-        let state_counts = effects.iter().map(|active| active.effect.state_count(&airframe)).collect();
-        Ok(Self {
-            body: RigidBodyModel::new(&vehicle.body, vehicle.gravity_m_s2)?,
-            airframe,
-            effects,
-            state_counts,
-        })
+        let body = RigidBodyModel::new(&vehicle.body, vehicle.gravity_m_s2)?;
+        Ok(Self::assembled(body, airframe, effects))
+    }
+
+    /// The same vehicle for rotors whose speeds are measured: without what lies between command and speed.
+    #[must_use]
+    pub fn with_measured_speeds(&self) -> Self {
+        let before = |active: &&ActiveEffect| {
+            let hooks = active.effect.hooks();
+            !hooks.contains(&Hook::Commands) && !hooks.contains(&Hook::RotorSpeed)
+        };
+        let effects = self.effects.iter().filter(before).cloned().collect();
+        Self::assembled(self.body, self.airframe.clone(), effects)
+    }
+
+    fn assembled(body: RigidBodyModel, airframe: Airframe, effects: Vec<ActiveEffect>) -> Self {
+        let (mut slots, mut own_state_count) = (Vec::with_capacity(effects.len()), 0);
+        for active in &effects {
+            let start = own_state_count;
+            own_state_count += active.effect.state_count(&airframe);
+            slots.push(start..own_state_count);
+        }
+        Self { body, airframe, by_hook: ByHook::of(&effects), effects, slots, own_state_count }
     }
 
     /// What was put on top of the rigid body.
@@ -113,40 +190,57 @@ impl Model {
     /// Own states of all effects together.
     #[must_use]
     pub fn own_state_count(&self) -> usize {
-        self.state_counts.iter().sum()
+        self.own_state_count
     }
 
     /// Own states of vehicles that have long followed their command. Fills the head of `states`.
     pub fn initial_states(&self, state: &State, input: &Input, states: &mut [f64]) {
         let at = Condition::new(&self.airframe, state, input, input.wind_m_s);
         let rotors = Rotors::as_commanded(&self.airframe, &input.speed_command);
-        let mut rest = states;
-        for (active, count) in self.effects.iter().zip(&self.state_counts) {
-            let (own, tail) = rest.split_at_mut((*count).min(rest.len()));
-            active.effect.initial_states(&at, &rotors, own);
-            rest = tail;
+        for (active, slot) in self.effects.iter().zip(&self.slots) {
+            if let Some(own) = states.get_mut(slot.clone()) {
+                active.effect.initial_states(&at, &rotors, own);
+            }
         }
     }
 
-    /// Force and torque of rotors and effects; writes the rates of the effects' own states, which
-    /// must be [`Self::own_state_count`] long, as must `states`.
+    /// Force and torque of rotors and effects; writes the rates of the effects' own states. Both must be
+    /// [`Self::own_state_count`] long; an effect whose part is missing sees none.
     pub fn evaluate(&self, state: &State, input: &Input, states: &[f64], rates: &mut [f64]) -> Evaluation {
-        rates.fill(0.0);
-        let (mut wind_m_s, mut center_of_mass_m) = (input.wind_m_s, Vector3::zeros());
-        self.each(states, rates, |effect, own| {
-            wind_m_s += effect.wind_m_s(input, own);
-            center_of_mass_m += effect.center_of_mass_m(own);
-        });
-        let mut at = Condition::new(&self.airframe, state, input, wind_m_s);
-        at.center_of_mass_m = center_of_mass_m;
-        let mut rotors = Rotors::as_commanded(&self.airframe, &input.speed_command);
-        self.each(states, rates, |effect, own| effect.rotor_speed(&at, own, &mut rotors));
-        rotors.thrust_from_speed(&self.airframe);
-        self.each(states, rates, |effect, own| effect.rotor_thrust(&at, own, &mut rotors));
-        let mut wrench = at.thrust_wrench(&rotors.thrust_n);
-        self.each(states, rates, |effect, own| wrench += effect.wrench(&at, &rotors, own));
-        self.each(states, rates, |effect, own| wrench += effect.reaction(&at, &wrench, own));
+        let mut rotors = Rotors::still();
+        let wrench = self.wrench(state, input, OwnStates { states, rates }, &mut rotors);
         Evaluation { wrench, rotors }
+    }
+
+    /// [`Self::evaluate`] for the inner loop: `rotors` is overwritten.
+    pub(crate) fn wrench(
+        &self,
+        state: &State,
+        input: &Input,
+        mut states: OwnStates,
+        rotors: &mut Rotors,
+    ) -> Wrench {
+        states.rates.fill(0.0);
+        let hooks = &self.by_hook;
+        let mut wind_m_s = input.wind_m_s;
+        self.each(&hooks.air, &mut states, |effect, own| wind_m_s += effect.wind_m_s(input, own));
+        let mut at = Condition::new(&self.airframe, state, input, wind_m_s);
+        if !hooks.center_of_mass.is_empty() {
+            let mut center_m = Vector3::zeros();
+            self.each(&hooks.center_of_mass, &mut states, |effect, own| {
+                center_m += effect.center_of_mass_m(own);
+            });
+            at = at.with_center_of_mass(center_m);
+        }
+        rotors.speed = input.speed_command;
+        rotors.acceleration_1_s = [0.0; MAX_ROTORS];
+        self.each(&hooks.rotor_speed, &mut states, |effect, own| effect.rotor_speed(&at, own, rotors));
+        rotors.thrust_from_speed(&self.airframe);
+        self.each(&hooks.rotor_thrust, &mut states, |effect, own| effect.rotor_thrust(&at, own, rotors));
+        let mut wrench = at.thrust_wrench(&rotors.thrust_n);
+        self.each(&hooks.wrench, &mut states, |effect, own| wrench += effect.wrench(&at, rotors, own));
+        self.each(&hooks.reaction, &mut states, |effect, own| wrench += effect.reaction(&at, &wrench, own));
+        wrench
     }
 
     /// How long before now the commands were sent that act now, s. Whoever holds the commands looks
@@ -168,14 +262,24 @@ impl Model {
         seen
     }
 
-    fn each(&self, states: &[f64], rates: &mut [f64], mut visit: impl FnMut(&'static dyn Effect, &mut Own)) {
-        let (mut states, mut rates) = (states, rates);
-        for (active, count) in self.effects.iter().zip(&self.state_counts) {
-            let (own_states, states_tail) = states.split_at((*count).min(states.len()));
-            let (own_rates, rates_tail) = rates.split_at_mut((*count).min(rates.len()));
-            let mut own = Own { parameters: &active.parameters, states: own_states, rates: own_rates };
+    fn each(
+        &self,
+        indices: &[usize],
+        all: &mut OwnStates,
+        mut visit: impl FnMut(&'static dyn Effect, &mut Own),
+    ) {
+        for (active, slot) in indices.iter().map(|index| (&self.effects[*index], &self.slots[*index])) {
+            let (states, rates) = (all.states.get(slot.clone()), all.rates.get_mut(slot.clone()));
+            let parameters = &active.parameters;
+            let mut own =
+                Own { parameters, states: states.unwrap_or_default(), rates: rates.unwrap_or_default() };
             visit(active.effect, &mut own);
-            (states, rates) = (states_tail, rates_tail);
         }
     }
+}
+
+/// Own states of all effects and where their rates go, [`Model::own_state_count`] of each.
+pub(crate) struct OwnStates<'a> {
+    pub(crate) states: &'a [f64],
+    pub(crate) rates: &'a mut [f64],
 }

@@ -43,6 +43,7 @@ impl RigidBodyModel {
     /// (1) is written there for the velocity in the body frame; turned into the world frame its
     /// `m S(w) v` cancels.
     #[must_use]
+    #[inline]
     pub fn derivative(&self, state: &State, wrench: &Wrench) -> StateDerivative {
         let w = &state.rates_rad_s;
         let spin = Quaternion::from_parts(0.0, *w * 0.5);

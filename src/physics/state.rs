@@ -40,6 +40,7 @@ impl State {
 
     /// Writes the state into the head of an integrator's vector of at least [`RIGID_STATES`] numbers;
     /// shorter vectors take what fits.
+    #[inline]
     pub fn write<const N: usize>(&self, vector: &mut SVector<f64, N>) {
         let q = self.attitude.quaternion();
         let (p, v, w) = (&self.position_m, &self.velocity_m_s, &self.rates_rad_s);
@@ -51,6 +52,7 @@ impl State {
 
     /// Reads the head of an integrator's vector; the quaternion is brought to unit length.
     #[must_use]
+    #[inline]
     pub fn read<const N: usize>(vector: &SVector<f64, N>) -> Self {
         const { assert!(N >= RIGID_STATES) };
         let v = vector.as_slice();
@@ -100,6 +102,7 @@ pub struct Wrench {
 impl Wrench {
     /// Nothing pushes.
     #[must_use]
+    #[inline]
     pub fn zero() -> Self {
         Self { force_n: Vector3::zeros(), torque_nm: Vector3::zeros() }
     }
@@ -112,6 +115,7 @@ impl Wrench {
 
     /// A force (body, N) that acts at `arm_m` (body, m, from the centre of mass).
     #[must_use]
+    #[inline]
     pub fn at(arm_m: &Vector3<f64>, force_n: Vector3<f64>) -> Self {
         Self { force_n, torque_nm: arm_m.cross(&force_n) }
     }

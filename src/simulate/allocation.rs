@@ -1,6 +1,6 @@
 //! From force and torque wanted to rotor commands.
 
-use nalgebra::{SMatrix, Vector4};
+use nalgebra::{SMatrix, SVector, Vector4};
 
 use super::SimulateError;
 use crate::physics::MAX_ROTORS;
@@ -8,7 +8,7 @@ use crate::vehicle::{Propulsion, Vehicle};
 
 /// The pseudo-inverse of a vehicle's mixer and of its thrust law.
 #[derive(Debug, Clone)]
-pub(super) struct Allocation {
+pub struct Allocation {
     /// thrusts from `[Fz tau]`
     inverse: SMatrix<f64, MAX_ROTORS, 4>,
     rotor_count: usize,
@@ -21,7 +21,7 @@ impl Allocation {
     ///
     /// # Errors
     /// If the rotors do not span thrust and three torques.
-    pub(super) fn new(vehicle: &Vehicle, command_min: f64) -> Result<Self, SimulateError> {
+    pub fn new(vehicle: &Vehicle, command_min: f64) -> Result<Self, SimulateError> {
         let mixer = vehicle.mixer().matrix;
         let rotor_count = mixer.ncols();
         let failed = SimulateError::Allocation { rotors: rotor_count };
@@ -34,9 +34,14 @@ impl Allocation {
         Ok(Self { inverse, rotor_count, propulsion: vehicle.propulsion, command_min })
     }
 
+    /// Rotor thrusts (N) for `[Fz tau]` (N, N m); may be negative.
+    pub fn thrusts_n(&self, wanted: &Vector4<f64>) -> SVector<f64, MAX_ROTORS> {
+        self.inverse * wanted
+    }
+
     /// Normalised commands u for `[Fz tau]` (N, N m).
-    pub(super) fn commands(&self, wanted: &Vector4<f64>) -> [f64; MAX_ROTORS] {
-        let thrusts_n = self.inverse * wanted;
+    pub fn commands(&self, wanted: &Vector4<f64>) -> [f64; MAX_ROTORS] {
+        let thrusts_n = self.thrusts_n(wanted);
         let mut commands = [0.0; MAX_ROTORS];
         for (command, thrust_n) in commands.iter_mut().zip(thrusts_n.iter()).take(self.rotor_count) {
             *command = self.propulsion.command_from_thrust(*thrust_n).clamp(self.command_min, 1.0);

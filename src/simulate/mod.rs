@@ -14,6 +14,7 @@ mod reference;
 mod sensors;
 mod vehicles;
 
+pub use allocation::Allocation;
 pub use cascade::{AutopilotCascade, AutopilotGains, LoopGains};
 pub use controller::{CascadeController, CascadeGains, Setpoint};
 pub use flight::{Disturbance, FlightSettings, SimulatedFlight, Truth, simulate_flight};

@@ -1,5 +1,7 @@
 //! Runs the scripts of `tests/peers`.
 
+#![allow(dead_code, clippy::unwrap_used)] // no user uses all of it
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

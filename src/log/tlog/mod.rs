@@ -1,9 +1,11 @@
 //! Telemetry logs (`.tlog`): before each MAVLink frame the 8 bytes of its host stamp, microseconds since
 //! 1970 UTC, big-endian. No header, no index, no footer.
 
+mod encode;
 mod reader;
 mod writer;
 
+pub use encode::write_recording;
 pub use reader::{Record, TlogReader};
 pub use writer::TlogWriter;
 

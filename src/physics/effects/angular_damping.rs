@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `tau = -diag(bx, by, bz) w`: the inflow at each rotor changes as its hub rises and sinks.
 #[derive(Debug, Clone, Copy)]
@@ -25,6 +25,10 @@ impl Effect for AngularDamping {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own) -> Wrench {

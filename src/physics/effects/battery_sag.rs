@@ -1,6 +1,6 @@
 //! Thrust falls with the battery's voltage.
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `T_i = T (V / V_full)^exponent`, reaction torque alike; nothing where the voltage is not known. With
 /// speed in proportion to voltage the exponent is 2; with speed controlled by the ESC it is 0.
@@ -28,6 +28,10 @@ impl Effect for BatterySag {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::RotorThrust]
     }
 
     fn rotor_thrust(&self, at: &Condition, own: &mut Own, rotors: &mut Rotors) {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `M_i = (k / N) n_i e_z x (v_air + w x r_i)` at each hub, with `k` of the whole vehicle at hover. Drag that
 /// acts h above the centre of mass has the same form with `k = -h d`, so `k` may have either sign.
@@ -17,8 +17,8 @@ const PARAMETERS: &[Parameter] = &[Parameter { name: "k", unit: "N m/(m/s)", min
 fn per_coefficient(at: &Condition, rotors: &Rotors) -> Wrench {
     let share = 1.0 / at.airframe.rotor_count() as f64;
     let mut torque_nm = Vector3::zeros();
-    for (arm, speed) in at.arms_m().zip(&rotors.speed) {
-        torque_nm += Vector3::z().cross(&at.air_velocity_at(&arm)) * (share * speed);
+    for ((_, air), speed) in at.hubs().zip(&rotors.speed) {
+        torque_nm += Vector3::z().cross(air) * (share * speed);
     }
     Wrench { force_n: Vector3::zeros(), torque_nm }
 }
@@ -34,6 +34,10 @@ impl Effect for BladeFlapping {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {

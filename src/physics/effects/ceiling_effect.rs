@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Airframe, Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// Thrust of the rotor at distance z below a ceiling at `height` over the ground times
 /// `1 / (1 - (1/a1) (R / (z + a2))^2)`.
@@ -48,6 +48,10 @@ impl Effect for CeilingEffect {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn missing(&self, airframe: &Airframe) -> Option<&'static str> {

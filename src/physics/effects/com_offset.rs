@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// Every force at a hub turns about the true centre: `tau = sum (r_i - c) x F_i`, for thrust alone
 /// `-c x T e_z = (-c_y T, c_x T, 0)`. The state stays that of the true centre of mass, so nothing else moves.
@@ -27,6 +27,10 @@ impl Effect for ComOffset {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::CenterOfMass]
     }
 
     fn center_of_mass_m(&self, own: &Own) -> Vector3<f64> {

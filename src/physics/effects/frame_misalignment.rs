@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::physics::{Effect, Measurement, Parameter, State};
+use crate::physics::{Effect, Hook, Measurement, Parameter, State};
 
 /// The reference's axes are turned against the world's by the rotation vector `(x, y, z)`, `p_world = R_e p`
 /// and `q_world = q_e q`: position, velocity and attitude are shown in its axes, the inertial unit is not
@@ -27,6 +27,10 @@ impl Effect for FrameMisalignment {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Sensors]
     }
 
     fn measure(

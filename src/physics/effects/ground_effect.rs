@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Airframe, Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// Thrust of the rotor at height z over the ground (world z = 0) times
 /// `1 / (1 - rho (R / 4z)^2) + Ca exp(-Cb z / R)`. With Ca = 0 the form of Cheeseman and Bennett 1955 (rho = 1
@@ -14,13 +14,13 @@ use crate::physics::{Airframe, Condition, Effect, Own, Parameter, Rotors, Wrench
 pub struct GroundEffect;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "rho", unit: "-", min: 0.0, max: 3.5 },
+    Parameter { name: "rho", unit: "-", min: 0.0, max: 8.0 },
     Parameter { name: "ca", unit: "-", min: 0.0, max: 1.0 },
     Parameter { name: "cb", unit: "-", min: 0.2, max: 8.0 },
 ];
 
 /// Lower than this no rotor turns over the ground; it also keeps the first form from its pole.
-const LEAST_RADII: f64 = 0.5;
+const LEAST_RADII: f64 = 0.75;
 
 /// Height of a hub over the ground, in rotor radii.
 fn height_in_radii(at: &Condition, arm: &Vector3<f64>) -> f64 {
@@ -44,6 +44,10 @@ impl Effect for GroundEffect {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn missing(&self, airframe: &Airframe) -> Option<&'static str> {

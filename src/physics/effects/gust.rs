@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Effect, Input, Own, Parameter};
+use crate::physics::{Effect, Hook, Input, Own, Parameter};
 
 /// Wind in each world axis as a sum of sines whose spectrum is that of a first-order Gauss-Markov process,
 /// `2 sigma^2 T / (1 + (w T)^2)`, so that it is smooth, repeatable by its seed and fits every integrator. A real
@@ -57,6 +57,10 @@ impl Effect for Gust {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Air]
     }
 
     fn wind_m_s(&self, input: &Input, own: &Own) -> Vector3<f64> {

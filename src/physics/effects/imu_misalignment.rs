@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::physics::{Effect, Measurement, Parameter, State};
+use crate::physics::{Effect, Hook, Measurement, Parameter, State};
 
 /// Accelerometer and gyroscopes show body vectors turned by the rotation vector `(x, y, z)`; position and
 /// attitude do not.
@@ -26,6 +26,10 @@ impl Effect for ImuMisalignment {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Sensors]
     }
 
     fn measure(

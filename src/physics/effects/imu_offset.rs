@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Effect, Measurement, Parameter, State};
+use crate::physics::{Effect, Hook, Measurement, Parameter, State};
 
 /// `a = a_com + w' x r + w x (w x r)` for an accelerometer at `r` from the centre of mass.
 #[derive(Debug, Clone, Copy)]
@@ -25,6 +25,10 @@ impl Effect for ImuOffset {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Sensors]
     }
 
     fn measure(

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = -(kz / N) n_i (v_air + w x r_i)_z e_z` at each hub, with `kz` of the whole vehicle at hover: the blades
 /// meet the air at a smaller angle. The same term as the `dz` of rotor drag, which a report gives here.
@@ -16,8 +16,8 @@ const PARAMETERS: &[Parameter] = &[Parameter { name: "kz", unit: "N/(m/s)", min:
 /// Force and torque for one N/(m/s).
 fn per_coefficient(at: &Condition, rotors: &Rotors) -> Wrench {
     let share = -1.0 / at.airframe.rotor_count() as f64;
-    at.arms_m().zip(&rotors.speed).fold(Wrench::zero(), |sum, (arm, speed)| {
-        sum + Wrench::at(&arm, Vector3::z() * (share * speed * at.air_velocity_at(&arm).z))
+    at.hubs().zip(&rotors.speed).fold(Wrench::zero(), |sum, ((arm, air), speed)| {
+        sum + Wrench::at(&arm, Vector3::z() * (share * speed * air.z))
     })
 }
 
@@ -32,6 +32,10 @@ impl Effect for Inflow {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {

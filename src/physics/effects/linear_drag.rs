@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = -(D / N) n_i (v_air + w x r_i)` at hub `r_i`, with `D = diag(dx, dy, dz)` the drag of the
 /// whole vehicle at hover and `n_i` the rotor's speed over its hover speed; torque `r_i x F_i`.
@@ -30,12 +30,16 @@ impl Effect for LinearDrag {
         PARAMETERS
     }
 
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
+    }
+
     fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
         let share = -1.0 / at.airframe.rotor_count() as f64;
         let drag = Vector3::from_column_slice(own.parameters);
         let mut sum = Wrench::zero();
-        for (arm, speed) in at.arms_m().zip(&rotors.speed) {
-            let force = at.air_velocity_at(&arm).component_mul(&drag) * (share * speed);
+        for ((arm, air), speed) in at.hubs().zip(&rotors.speed) {
+            let force = air.component_mul(&drag) * (share * speed);
             sum += Wrench::at(&arm, force);
         }
         sum
@@ -49,9 +53,9 @@ impl Effect for LinearDrag {
         let share = -1.0 / at.airframe.rotor_count() as f64;
         for (axis, column) in columns.iter_mut().enumerate().take(PARAMETERS.len()) {
             *column = Wrench::zero();
-            for (arm, speed) in at.arms_m().zip(&rotors.speed) {
+            for ((arm, air), speed) in at.hubs().zip(&rotors.speed) {
                 let mut force = Vector3::zeros();
-                force[axis] = at.air_velocity_at(&arm)[axis] * share * speed;
+                force[axis] = air[axis] * share * speed;
                 *column += Wrench::at(&arm, force);
             }
         }

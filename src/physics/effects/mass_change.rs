@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// From `time` on the mass is `m + delta` at the same centre and inertia: all force `F` accelerates it by
 /// `F / (m + delta)`, which on the body of mass `m` is the force `-delta / (m + delta) F` beside it.
@@ -31,6 +31,10 @@ impl Effect for MassChange {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Reaction]
     }
 
     fn reaction(&self, at: &Condition, applied: &Wrench, own: &mut Own) -> Wrench {

@@ -1,6 +1,6 @@
 //! Rotors take time to reach the commanded speed.
 
-use crate::physics::{Airframe, Condition, Effect, Own, Parameter, Rotors};
+use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors};
 
 /// `Omega' = (Omega_command - Omega) / time_constant`, one state a rotor.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +23,10 @@ impl Effect for MotorLag {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::RotorSpeed]
     }
 
     fn state_count(&self, airframe: &Airframe) -> usize {

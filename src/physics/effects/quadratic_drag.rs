@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F = -|v_air| diag(cx, cy, cz) v_air` at the centre of mass; `c = rho CdA / 2` of a face.
 ///
@@ -27,6 +27,10 @@ impl Effect for QuadraticDrag {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own) -> Wrench {

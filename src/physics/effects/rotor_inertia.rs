@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Airframe, Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `tau = -(H' + w x H)` with `H = -jr sum s_i Omega_i e_z` and `s_i` the sign of the rotor's reaction torque about
 /// +z (a rotor that turns about -z pushes the body about +z): gyroscopic and spin-up torque together.
@@ -36,6 +36,10 @@ impl Effect for RotorInertia {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn missing(&self, airframe: &Airframe) -> Option<&'static str> {

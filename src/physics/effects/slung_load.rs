@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Airframe, Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// A point mass on a taut massless cord of fixed length from the centre of mass. Own states: the unit
 /// vector `q` from vehicle to load and its rate, world. With `F` all force on the vehicle (world, gravity
@@ -32,6 +32,10 @@ impl Effect for SlungLoad {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Reaction]
     }
 
     fn state_count(&self, _airframe: &Airframe) -> usize {

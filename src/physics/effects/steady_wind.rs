@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Effect, Input, Own, Parameter};
+use crate::physics::{Effect, Hook, Input, Own, Parameter};
 
 /// Wind in the world frame; it acts through whatever depends on airspeed and does nothing without it.
 #[derive(Debug, Clone, Copy)]
@@ -25,6 +25,10 @@ impl Effect for SteadyWind {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Air]
     }
 
     fn wind_m_s(&self, _input: &Input, own: &Own) -> Vector3<f64> {

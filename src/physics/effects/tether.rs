@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// The line that was lifted weighs `line_mass` per metre of height, and beyond `length` from the anchor at the
 /// world's origin it pulls back like a spring: `F = -line_mass g z e_z - stiffness (|p| - length)+ p / |p|`,
@@ -43,6 +43,10 @@ impl Effect for Tether {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own) -> Wrench {

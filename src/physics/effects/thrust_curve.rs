@@ -1,6 +1,6 @@
 //! Thrust does not follow the law that the vehicle file states.
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `T_i = T (1 + c (T / T_hover - 1))`: nothing at hover, where the scale is known, and a slope there of `1 + c`
 /// times that of the law; reaction torque alike.
@@ -27,6 +27,10 @@ impl Effect for ThrustCurve {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::RotorThrust]
     }
 
     fn rotor_thrust(&self, at: &Condition, own: &mut Own, rotors: &mut Rotors) {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = T_i (b_y, -b_x, 0)` at each hub beside the thrust: the rotor plane turned by the small angles `x`, `y`
 /// about the body's axes.
@@ -32,6 +32,10 @@ impl Effect for ThrustTilt {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = (kh / N) ((v_air + w x r_i)_x^2 + (..)_y^2) e_z` at each hub, with `kh` of the whole vehicle.
 ///
@@ -15,8 +15,8 @@ const PARAMETERS: &[Parameter] = &[Parameter { name: "kh", unit: "N/(m/s)^2", mi
 /// Force and torque for one N/(m/s)^2.
 fn per_coefficient(at: &Condition) -> Wrench {
     let share = 1.0 / at.airframe.rotor_count() as f64;
-    at.arms_m().fold(Wrench::zero(), |sum, arm| {
-        let across = at.air_velocity_at(&arm).xy().norm_squared();
+    at.hubs().fold(Wrench::zero(), |sum, (arm, air)| {
+        let across = air.xy().norm_squared();
         sum + Wrench::at(&arm, Vector3::z() * (share * across))
     })
 }
@@ -32,6 +32,10 @@ impl Effect for TranslationalLift {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own) -> Wrench {

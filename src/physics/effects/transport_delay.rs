@@ -1,6 +1,6 @@
 //! Commands take time to arrive.
 
-use crate::physics::{Effect, Parameter};
+use crate::physics::{Effect, Hook, Parameter};
 
 /// What acts now was commanded `delay` ago: `u(t - d)`, an exact shift of the commands, no filter.
 #[derive(Debug, Clone, Copy)]
@@ -19,6 +19,10 @@ impl Effect for TransportDelay {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Commands]
     }
 
     fn command_delay_s(&self, parameters: &[f64]) -> f64 {

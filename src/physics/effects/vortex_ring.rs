@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Airframe, Condition, Effect, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 use crate::units::AIR_DENSITY_KG_M3;
 
 /// `F_i = -loss T_i e(x) e_z` at each hub, with `x = v_z / v_h` the climb over the induced velocity of hover,
@@ -33,9 +33,9 @@ fn per_loss(at: &Condition, rotors: &Rotors) -> Wrench {
     let radius_m = at.airframe.propulsion.rotor_radius_m.unwrap_or(f64::INFINITY);
     let disc_kg_m = 2.0 * AIR_DENSITY_KG_M3 * std::f64::consts::PI * radius_m * radius_m;
     let mut sum = Wrench::zero();
-    for (arm, thrust_n) in at.arms_m().zip(&rotors.thrust_n) {
+    for ((arm, air), thrust_n) in at.hubs().zip(&rotors.thrust_n) {
         let hover_m_s = (thrust_n.max(1e-9) / disc_kg_m).sqrt();
-        let air = at.air_velocity_at(&arm) / hover_m_s;
+        let air = air / hover_m_s;
         let lost_n = thrust_n * excess(air.z) / (1.0 + air.xy().norm_squared());
         sum += Wrench::at(&arm, Vector3::z() * -lost_n);
     }
@@ -53,6 +53,10 @@ impl Effect for VortexRing {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::Wrench]
     }
 
     fn missing(&self, airframe: &Airframe) -> Option<&'static str> {

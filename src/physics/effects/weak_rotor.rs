@@ -1,6 +1,6 @@
 //! One rotor gives less (or more) than the others.
 
-use crate::physics::{Condition, Effect, MAX_ROTORS, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Condition, Effect, Hook, MAX_ROTORS, Own, Parameter, Rotors, Wrench};
 
 /// `T_i = factor T` and its reaction torque for the rotor of this number, counted from 0 in the order of the
 /// vehicle's rotors.
@@ -28,6 +28,10 @@ impl Effect for WeakRotor {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn hooks(&self) -> &'static [Hook] {
+        &[Hook::RotorThrust]
     }
 
     fn rotor_thrust(&self, _at: &Condition, own: &mut Own, rotors: &mut Rotors) {

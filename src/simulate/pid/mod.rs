@@ -9,13 +9,15 @@ use nalgebra::{SVector, Vector3, Vector4};
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
+use super::allocation::Allocation;
 use super::integrator::rk4_step;
-use super::plant::Push;
+use super::plant::{Plant, Push};
 use super::sensors::NoiseLevels;
 use super::{LOST_M, SimulateError, positive, whole_steps};
 use crate::log::{Quantity, Recording, Stream, StreamKey};
-use crate::physics::{RIGID_STATES, RigidBodyModel, State, Wrench, euler_rates};
+use crate::physics::{Input, Model, RIGID_STATES, RigidBodyModel, State, Wrench, euler_rates};
 use crate::trajectory::FourierTrajectory;
+use crate::vehicle::Vehicle;
 
 /// The simulation of section IV-A.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,6 +65,9 @@ pub struct PidFlight {
 /// Source of the recording's streams.
 pub const SOURCE: &str = "PID_SIMULATION";
 
+/// What is to be flown: value and four derivatives of x, y, z (m) and psi (rad) at a time (s).
+pub type Path<'a> = &'a dyn Fn(f64) -> [[f64; 5]; 4];
+
 /// Flies `body` along `reference` from rest at its first point; `push` is what the rigid body leaves out.
 ///
 /// # Errors
@@ -73,14 +78,56 @@ pub fn simulate_pid_flight(
     settings: &PidFlightSettings,
     push: Option<Push>,
 ) -> Result<PidFlight, SimulateError> {
+    let path = |time_s: f64| reference.derivatives(time_s);
+    let mut state = at_rest_on(&path);
+    fly(&path, settings, &mut |f, instant| {
+        state = advance((body, push), &state, f, instant);
+        state
+    })
+}
+
+/// Flies a vehicle with rotors and effects: F is shared out to the rotors of `vehicle`, whose commands
+/// then go through the effects of `model`. A thrust below zero becomes zero.
+///
+/// # Errors
+/// As [`simulate_pid_flight`]; also if the rotors do not span thrust and three torques.
+pub fn simulate_pid_model_flight(
+    (model, vehicle): (&Model, &Vehicle),
+    path: Path,
+    settings: &PidFlightSettings,
+) -> Result<PidFlight, SimulateError> {
+    let allocation = Allocation::new(vehicle, 0.0)?;
+    let input_of = |f: &Vector4<f64>, time_s: f64| {
+        let mut input = Input::from_commands(&model.airframe, time_s, &[]);
+        for (speed, thrust_n) in input.speed_command.iter_mut().zip(allocation.thrusts_n(f).iter()) {
+            *speed = model.airframe.relative_speed_of_thrust(*thrust_n);
+        }
+        input
+    };
+    let hover = Vector4::new(model.body.weight_n(), 0.0, 0.0, 0.0);
+    let mut plant = Plant::new(model, None, &at_rest_on(path), &input_of(&hover, 0.0))?;
+    fly(path, settings, &mut |f, (time_s, step_s)| {
+        plant.step(&input_of(f, time_s), step_s);
+        plant.state()
+    })
+}
+
+fn at_rest_on(path: Path) -> State {
+    let start = path(0.0).map(|axis| axis[0]);
+    State::at_rest(Vector3::new(start[0], start[1], start[2]), start[3])
+}
+
+/// Moves the vehicle on by a step (time and length, s) under constant F.
+type Advance<'a> = &'a mut dyn FnMut(&Vector4<f64>, (f64, f64)) -> State;
+
+fn fly(path: Path, settings: &PidFlightSettings, advance: Advance) -> Result<PidFlight, SimulateError> {
     let step_s = positive("step_s", settings.step_s)?;
     let steps = whole_steps("duration_s", settings.duration_s, step_s)?;
     let mut motion_capture = Clock::new("motion_capture_hz", settings.motion_capture_hz)?;
     let mut inertial = Clock::new("inertial_hz", settings.inertial_hz)?;
     let mut pid = Pid::new(settings.controller);
     let mut log = Log::new(settings.log_noise);
-    let start = reference.derivatives(0.0).map(|axis| axis[0]);
-    let mut state = State::at_rest(Vector3::new(start[0], start[1], start[2]), start[3]);
+    let mut state = at_rest_on(path);
     let mut seen = feedback(&state);
     let mut applied = Vector4::zeros();
     let (mut tracking_error_max_m, mut saturated_steps) = (0.0_f64, 0_usize);
@@ -99,15 +146,15 @@ pub fn simulate_pid_flight(
             let rates = now.euler_rates_rad_s.fixed_rows::<2>(0);
             seen.euler_rates_rad_s.fixed_rows_mut::<2>(0).copy_from(&rates);
         }
-        let desired = reference.derivatives(time_s);
+        let desired = path(time_s);
         if inertial_due {
             applied = pid.wrench(&desired, &seen, 1.0 / settings.inertial_hz);
-            log.sample(time_s, &state, &applied);
+            log.sample(time_s, &state, (&applied, &desired));
         }
         let error = Vector3::new(desired[0][0], desired[1][0], desired[2][0]) - state.position_m;
         tracking_error_max_m = tracking_error_max_m.max(error.norm());
         saturated_steps += usize::from(at_bound(&applied, &settings.controller));
-        state = advance((body, push), &state, &applied, (time_s, step_s));
+        state = advance(&applied, (time_s, step_s));
         let away_m = state.position_m.norm();
         if away_m.is_nan() || away_m > LOST_M {
             return Err(SimulateError::Diverged { time_s, what: "position" });
@@ -175,7 +222,7 @@ impl Clock {
 /// The streams of the paper's log.
 struct Log {
     noise: Option<(NoiseLevels, Pcg64Mcg)>,
-    streams: [(Quantity, Stream); 5],
+    streams: [(Quantity, Stream); 9],
 }
 
 impl Log {
@@ -189,20 +236,30 @@ impl Log {
                 empty(Quantity::Attitude, 4),
                 empty(Quantity::AngularRate, 3),
                 empty(Quantity::Wrench, 4),
+                empty(Quantity::PositionSetpoint, 3),
+                empty(Quantity::VelocitySetpoint, 3),
+                empty(Quantity::AccelerationSetpoint, 3),
+                empty(Quantity::YawSetpoint, 1),
             ],
         }
     }
 
-    fn sample(&mut self, time_s: f64, state: &State, f: &Vector4<f64>) {
+    fn sample(&mut self, time_s: f64, state: &State, (f, desired): (&Vector4<f64>, &[[f64; 5]; 4])) {
         let seen = self.noise.as_mut().map_or(*state, |(levels, rng)| levels.measure(rng, state));
         let q = seen.attitude.quaternion();
         let attitude = [q.w, q.i, q.j, q.k];
+        let order = |n: usize| [desired[0][n], desired[1][n], desired[2][n]];
+        let setpoints = [order(0), order(1), order(2)];
         let values = [
             seen.position_m.as_slice(),
             seen.velocity_m_s.as_slice(),
             &attitude,
             seen.rates_rad_s.as_slice(),
             f.as_slice(),
+            &setpoints[0],
+            &setpoints[1],
+            &setpoints[2],
+            &desired[3][..1],
         ];
         for ((_, stream), values) in self.streams.iter_mut().zip(values) {
             stream.time_s.push(time_s);

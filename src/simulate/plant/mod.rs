@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use super::SimulateError;
 use super::integrator::rk4_step;
-use crate::physics::{Evaluation, Input, Model, RIGID_STATES, State, Wrench};
+use crate::physics::{Evaluation, Input, Model, OwnStates, RIGID_STATES, Rotors, State, Wrench};
 
 /// Capacity of the state vector: rigid body and the effects' own states.
 pub const PLANT_STATES: usize = 32;
@@ -46,47 +46,57 @@ impl<'a> Plant<'a> {
         State::read(&self.vector)
     }
 
+    /// Puts the body somewhere else; the effects' own states stay.
+    pub fn set_state(&mut self, state: &State) {
+        state.write(&mut self.vector);
+    }
+
     /// Force, torque and rotors under this input, now.
     #[must_use]
     pub fn evaluate(&self, input: &Input) -> Evaluation {
-        let mut rates = [0.0; PLANT_STATES];
-        evaluate(self.model, self.push, &self.vector, (input, &mut rates))
+        let (mut rates, count) = ([0.0; PLANT_STATES], self.model.own_state_count());
+        let (state, own) = (self.state(), &self.vector.as_slice()[RIGID_STATES..RIGID_STATES + count]);
+        let mut evaluation = self.model.evaluate(&state, input, own, &mut rates[..count]);
+        if let Some(push) = self.push {
+            evaluation.wrench += push(input.time_s, &state);
+        }
+        evaluation
     }
 
     /// Moves on by `step_s` (s) under a constant input, with one Runge-Kutta step.
     pub fn step(&mut self, input: &Input, step_s: f64) {
+        // no more numbers than the effects need take part
+        match self.model.own_state_count() {
+            0 => self.step_of::<RIGID_STATES>(input, step_s),
+            1..=4 => self.step_of::<{ RIGID_STATES + 4 }>(input, step_s),
+            5..=10 => self.step_of::<{ RIGID_STATES + 10 }>(input, step_s),
+            _ => self.step_of::<PLANT_STATES>(input, step_s),
+        }
+    }
+
+    fn step_of<const N: usize>(&mut self, input: &Input, step_s: f64) {
         let (model, push) = (self.model, self.push);
-        let mut derivative = |time_s: f64, vector: &SVector<f64, PLANT_STATES>| {
-            let mut rates = [0.0; PLANT_STATES];
-            let now = Input { time_s, ..*input };
-            let evaluation = evaluate(model, push, vector, (&now, &mut rates));
-            let mut out = SVector::<f64, PLANT_STATES>::zeros();
-            model.body.derivative(&State::read(vector), &evaluation.wrench).write(&mut out);
-            for (slot, rate) in out.iter_mut().skip(RIGID_STATES).zip(rates) {
-                *slot = rate;
+        let count = model.own_state_count();
+        let (mut now, mut rotors) = (*input, Rotors::still());
+        let mut derivative = |time_s: f64, vector: &SVector<f64, N>| {
+            let mut out = SVector::<f64, N>::zeros();
+            let state = State::read(vector);
+            now.time_s = time_s;
+            let states = &vector.as_slice()[RIGID_STATES..RIGID_STATES + count];
+            let rates = &mut out.as_mut_slice()[RIGID_STATES..RIGID_STATES + count];
+            let mut wrench = model.wrench(&state, &now, OwnStates { states, rates }, &mut rotors);
+            if let Some(push) = push {
+                wrench += push(time_s, &state);
             }
+            model.body.derivative(&state, &wrench).write(&mut out);
             out
         };
-        self.vector = rk4_step(&mut derivative, input.time_s, &self.vector, step_s);
+        let mut vector = SVector::<f64, N>::from_column_slice(&self.vector.as_slice()[..N]);
+        vector = rk4_step(&mut derivative, input.time_s, &vector, step_s);
         // back to a unit quaternion: the step leaves it by its own error
-        self.state().write(&mut self.vector);
+        State::read(&vector).write(&mut vector);
+        self.vector.as_mut_slice()[..N].copy_from_slice(vector.as_slice());
     }
-}
-
-fn evaluate(
-    model: &Model,
-    push: Option<Push>,
-    vector: &SVector<f64, PLANT_STATES>,
-    (input, rates): (&Input, &mut [f64; PLANT_STATES]),
-) -> Evaluation {
-    let state = State::read(vector);
-    let count = model.own_state_count();
-    let own = &vector.as_slice()[RIGID_STATES..RIGID_STATES + count];
-    let mut evaluation = model.evaluate(&state, input, own, &mut rates[..count]);
-    if let Some(push) = push {
-        evaluation.wrench += push(input.time_s, &state);
-    }
-    evaluation
 }
 
 #[cfg(test)]

@@ -1,0 +1,53 @@
+//! Effects from the tables of a file: `[[effect]]` with `id` and the parameters by name.
+
+use std::path::Path;
+
+use mavid::physics::ActiveEffect;
+use mavid::vehicle::Vehicle;
+use serde::Deserialize;
+
+use super::CommandError;
+
+/// The effects of a model file. A rotor may be given by its name.
+pub fn effects(tables: &[toml::Table], vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
+    tables.iter().map(|table| effect(table, vehicle)).collect()
+}
+
+/// The effects of a file that holds nothing but `[[effect]]` tables.
+pub fn effects_file(path: &Path, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
+    let named = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
+    let text = std::fs::read_to_string(path).map_err(|error| named(&error))?;
+    let file: EffectsFile = toml::from_str(&text).map_err(|error| named(&error))?;
+    effects(&file.effect, vehicle).map_err(|error| named(&error))
+}
+
+/// `--effects FILE`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EffectsFile {
+    effect: Vec<toml::Table>,
+}
+
+fn effect(table: &toml::Table, vehicle: &Vehicle) -> Result<ActiveEffect, CommandError> {
+    let refuse = |text: String| CommandError::Input(text);
+    let id = table
+        .get("id")
+        .and_then(toml::Value::as_str)
+        .ok_or_else(|| refuse(format!("[[effect]]: expected `id = \"...\"`, got {table}")))?;
+    let mut values = Vec::with_capacity(table.len());
+    for (name, value) in table.iter().filter(|(name, _)| *name != "id") {
+        let number = match value {
+            toml::Value::Float(number) => Some(*number),
+            // whole numbers of a file are small
+            toml::Value::Integer(number) => i32::try_from(*number).ok().map(f64::from),
+            toml::Value::String(rotor) if name == "rotor" => {
+                vehicle.rotors.iter().position(|known| known.name == *rotor).map(|index| index as f64)
+            }
+            _ => None,
+        };
+        let number =
+            number.ok_or_else(|| refuse(format!("effect {id}, `{name}`: expected a number, got {value}")))?;
+        values.push((name.as_str(), number));
+    }
+    ActiveEffect::named(id, &values).map_err(|error| refuse(error.to_string()))
+}

@@ -1,0 +1,88 @@
+//! `mavid simulate VEHICLE --trajectory T --out LOG.tlog`: a flight that never happened, as its log.
+
+use std::fs::File;
+use std::io::BufWriter;
+
+use mavid::config::{read_trajectory, read_vehicle};
+use mavid::log::write_recording;
+use mavid::simulate::{FlightSettings, Reference, TelemetrySettings, Truth, simulate_flight};
+use serde::Serialize;
+
+use super::effects::{effects, effects_file};
+use super::{CommandError, Outcome, output};
+use crate::cli::SimulateArgs;
+
+/// Host's time at the start of every simulated log, 2023-11-14 UTC: the same flight gives the same bytes.
+const START_US: u64 = 1_700_000_000_000_000;
+/// Hover before the trajectory and change-over to it, s.
+const HOVER_S: f64 = 4.0;
+const RAMP_S: f64 = 2.0;
+
+/// What was flown.
+#[derive(Debug, Serialize)]
+struct Document {
+    schema: u32,
+    log: String,
+    frames: u64,
+    duration_s: f64,
+    /// identifiers of the effects that acted
+    effects: Vec<&'static str>,
+    tracking_error_max_m: f64,
+    /// share of the control periods with a command at a bound
+    saturated: f64,
+}
+
+/// Runs the verb.
+pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
+    let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
+    let loaded = read_vehicle(&args.vehicle)?;
+    for warning in &loaded.warnings {
+        output::message(&format!("warning: {warning}"));
+    }
+    let vehicle = loaded.vehicle;
+    let mut acting = effects(&loaded.model.effects, &vehicle)?;
+    if let Some(path) = &args.effects {
+        acting.extend(effects_file(path, &vehicle)?);
+    }
+    let nominal = match &args.nominal {
+        Some(path) => read_vehicle(path)?.vehicle,
+        None => vehicle.clone(),
+    };
+    let trajectory = read_trajectory(&args.trajectory)?;
+    let duration_s = HOVER_S + f64::from(trajectory.repeats) * trajectory.series.period_s;
+    let reference = Reference { trajectory: trajectory.series, hover_s: HOVER_S, ramp_s: RAMP_S };
+    let base = FlightSettings::default();
+    let settings = FlightSettings {
+        seed: args.seed,
+        duration_s,
+        motor_time_constant_s: vehicle.propulsion.time_constant_s.unwrap_or(base.motor_time_constant_s),
+        telemetry: TelemetrySettings { noise_scale: args.noise, ..base.telemetry },
+        ..base
+    };
+    let ids = acting.iter().map(|active| active.effect().id()).collect();
+    let truth = Truth { vehicle, effects: acting, disturbance: None };
+    let flight = simulate_flight(truth, &nominal, &reference, &settings).map_err(|error| input(&error))?;
+    let failed = |error| CommandError::Failure(format!("cannot write {}: {error}", args.out.display()));
+    let file = BufWriter::new(File::create(&args.out).map_err(failed)?);
+    let frames = write_recording(&flight.recording, file, START_US).map_err(failed)?;
+    let document = Document {
+        schema: 1,
+        log: args.out.display().to_string(),
+        frames,
+        duration_s,
+        effects: ids,
+        tracking_error_max_m: flight.tracking_error_max_m,
+        saturated: flight.saturated,
+    };
+    if json {
+        output::json(&document)?;
+    } else {
+        output::text(&format!(
+            "{}: {frames} frames, {duration_s} s, at most {:.3} m off the trajectory, a command at its bound in {:.2} % of the periods",
+            document.log,
+            document.tracking_error_max_m,
+            100.0 * document.saturated
+        ))?;
+    }
+    Ok(Outcome::Done)
+}

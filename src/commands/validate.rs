@@ -1,0 +1,206 @@
+//! `mavid validate LOG... --model A --model B...`: the paper's two validations and open-loop playback.
+
+use std::path::Path;
+
+use mavid::compare::{PlaybackSettings, TenSignals, autopilot_flight, playback, resimulated};
+use mavid::config::read_vehicle;
+use mavid::estimate::theta_of;
+use mavid::physics::Model;
+use mavid::regression::{ZeroPhase, output_prediction_rms, paper_models};
+use mavid::report::{
+    ErrorTable, InputFile, closed_loop_charts, closed_loop_table, playback_table, prediction_table, svg,
+};
+use mavid::signals::{Butterworth, ConditionSettings, Signals, ThrustSource, condition};
+use mavid::simulate::pid::{PidFlightSettings, PidSettings};
+use mavid::vehicle::Vehicle;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::effects::effects;
+use super::flights::{Flight, ReadAs, load};
+use super::{CommandError, Outcome, output};
+use crate::cli::ValidateArgs;
+
+/// Lengths of the playback's windows, s.
+const WINDOWS_S: [f64; 3] = [0.1, 0.5, 1.0];
+/// Cut-off of the low-pass under the regression models, Hz.
+const CUTOFF_HZ: f64 = 5.0;
+
+/// A model by its file's name.
+struct Named {
+    name: String,
+    vehicle: Vehicle,
+    model: Model,
+}
+
+/// All tables.
+#[derive(Debug, Serialize)]
+struct Document {
+    schema: u32,
+    models: Vec<String>,
+    flights: Vec<FlightTables>,
+}
+
+/// One flight's tables.
+#[derive(Debug, Serialize)]
+struct FlightTables {
+    input: InputFile,
+    /// interval of the closed-loop and prediction errors, s
+    span_s: (f64, f64),
+    tables: Vec<ErrorTable>,
+    #[serde(skip)]
+    charts: String,
+}
+
+/// Runs the verb.
+pub fn run(json: bool, args: &ValidateArgs) -> Result<Outcome, CommandError> {
+    if !args.transient.is_finite() || args.transient < 0.0 {
+        let got = args.transient;
+        return Err(CommandError::Input(format!("--transient: expected seconds from 0 on, got {got}")));
+    }
+    let models: Vec<Named> = args.models.iter().map(|path| named(path)).collect::<Result<_, _>>()?;
+    let read_as = ReadAs { csv_map: args.csv_map.as_ref(), system: args.system };
+    let one = |path: &std::path::PathBuf| flight_tables(load(path, &read_as)?, &models, args.transient);
+    let flights: Vec<FlightTables> = args.logs.par_iter().map(one).collect::<Result<_, _>>()?;
+    if let Some(folder) = &args.out {
+        write_charts(folder, &flights)?;
+    }
+    let document =
+        Document { schema: 1, models: models.iter().map(|model| model.name.clone()).collect(), flights };
+    if json {
+        output::json(&document)?;
+    } else {
+        let pages = document.flights.iter().map(|flight| {
+            let tables: Vec<String> = flight.tables.iter().map(ErrorTable::page).collect();
+            format!("{}\n\n{}", flight.input.path, tables.join("\n"))
+        });
+        output::text(pages.collect::<Vec<_>>().join("\n").trim_end())?;
+    }
+    let mut outcome = Outcome::Done;
+    for flight in document.flights.iter().filter(|flight| !flight.input.losses.is_empty()) {
+        output::message(&format!("{}: {}", flight.input.path, flight.input.losses.join("; ")));
+        outcome = Outcome::DoneWithLoss;
+    }
+    Ok(outcome)
+}
+
+fn named(path: &Path) -> Result<Named, CommandError> {
+    let loaded = read_vehicle(path)?;
+    for warning in &loaded.warnings {
+        output::message(&format!("warning: {}: {warning}", path.display()));
+    }
+    let refuse = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
+    let effects = effects(&loaded.model.effects, &loaded.vehicle).map_err(|error| refuse(&error))?;
+    let model = Model::new(&loaded.vehicle, effects).map_err(|error| refuse(&error))?;
+    let name =
+        path.file_stem().map_or_else(|| loaded.vehicle.name.clone(), |stem| stem.display().to_string());
+    Ok(Named { name, vehicle: loaded.vehicle, model })
+}
+
+fn flight_tables(flight: Flight, models: &[Named], transient_s: f64) -> Result<FlightTables, CommandError> {
+    let settings = ConditionSettings { transient_s: Some(transient_s), ..ConditionSettings::default() };
+    // each model's own thrust law turns commands into thrusts
+    let signals: Vec<Signals> = models
+        .iter()
+        .map(|model| condition(&flight.recording, &model.vehicle, &settings))
+        .collect::<Result<_, _>>()
+        .map_err(|error| CommandError::Input(format!("{}: {error}", flight.input.path)))?;
+    let Some(first) = signals.first() else {
+        return Err(CommandError::Input("expected at least one --model".to_owned()));
+    };
+    let airborne = first.quality.airborne_s.first().copied().unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    let end_s = first.grid.time_s(first.grid.count.saturating_sub(1)).min(airborne.1);
+    let span_s = (first.grid.start_s.max(airborne.0) + transient_s, end_s);
+    let (closed_loop, charts) = closed_loop(&flight, first, models, span_s);
+    let mut tables = vec![closed_loop];
+    tables.extend(predictions(models, &signals, span_s));
+    for window_s in WINDOWS_S {
+        let settings = PlaybackSettings { window_s, ..PlaybackSettings::default() };
+        let fits: Vec<_> = models
+            .iter()
+            .zip(&signals)
+            .map(|(model, signals)| {
+                let fit = playback((&model.model, &model.vehicle), signals, &settings);
+                (model.name.clone(), fit.map_err(|error| error.to_string()))
+            })
+            .collect();
+        tables.push(playback_table(format!("Open-loop playback over windows of {window_s} s"), &fits));
+    }
+    Ok(FlightTables { input: flight.input, span_s, tables, charts })
+}
+
+/// Table 4 and Figures 6 to 9.
+fn closed_loop(
+    flight: &Flight,
+    recorded: &Signals,
+    models: &[Named],
+    span_s: (f64, f64),
+) -> (ErrorTable, String) {
+    let by_pid = recorded.quality.thrust_source == ThrustSource::Wrench;
+    let nominal = &models[0].vehicle;
+    let fly = |model: &Named| {
+        let flown = if by_pid {
+            let controller = PidSettings { mass_kg: nominal.body.mass_kg, ..PidSettings::default() };
+            let settings = PidFlightSettings { controller, ..PidFlightSettings::default() };
+            resimulated(&flight.recording, (&model.model, &model.vehicle), &settings)
+        } else {
+            autopilot_flight(&flight.recording, &model.model, nominal)
+        };
+        (model.name.clone(), flown.map_err(|error| error.to_string()))
+    };
+    let controller = if by_pid { "the paper's PID" } else { "the simulator's own controller" };
+    let title = format!(
+        "Flown again in closed loop by {controller} from the recorded setpoints, {:.0} to {:.0} s",
+        span_s.0, span_s.1
+    );
+    let flown: Vec<(String, Result<TenSignals, String>)> = models.par_iter().map(fly).collect();
+    match TenSignals::of_signals(recorded) {
+        Ok(recorded) => {
+            let mut lines = vec![("recorded".to_owned(), &recorded)];
+            lines.extend(flown.iter().filter_map(|(name, s)| s.as_ref().ok().map(|s| (name.clone(), s))));
+            let charts = svg(&closed_loop_charts(&lines));
+            (closed_loop_table(title, &recorded, &flown, span_s), charts)
+        }
+        Err(error) => {
+            let missing: Vec<_> =
+                models.iter().map(|model| (model.name.clone(), Err(error.to_string()))).collect();
+            (closed_loop_table(title, &TenSignals::default(), &missing, span_s), svg(&[]))
+        }
+    }
+}
+
+/// (43) in both regression models.
+fn predictions(models: &[Named], signals: &[Signals], span_s: (f64, f64)) -> [ErrorTable; 2] {
+    let mut columns = [Vec::new(), Vec::new()];
+    for (model, signals) in models.iter().zip(signals) {
+        let theta = theta_of(&model.vehicle.body);
+        let both = Butterworth::new(CUTOFF_HZ, 1.0 / signals.grid.step_s).and_then(|filter| {
+            paper_models(signals, model.vehicle.gravity_m_s2, &ZeroPhase::Butterworth(filter))
+        });
+        let rms = both.map(|(standard, filtered)| {
+            [&standard, &filtered].map(|regression| output_prediction_rms(regression, &theta, span_s))
+        });
+        for (index, column) in columns.iter_mut().enumerate() {
+            let found = rms.and_then(|both| both[index]).ok_or_else(|| {
+                "the recording lacks body rates, vertical motion, or usable samples".to_owned()
+            });
+            column.push((model.name.clone(), found));
+        }
+    }
+    let title = |which| format!("Output prediction error (43) of the {which} regression model");
+    [prediction_table(title("standard"), &columns[0]), prediction_table(title("filtered"), &columns[1])]
+}
+
+fn write_charts(folder: &Path, flights: &[FlightTables]) -> Result<(), CommandError> {
+    let failed = |path: &Path, error: std::io::Error| {
+        CommandError::Failure(format!("cannot write {}: {error}", path.display()))
+    };
+    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
+    for (index, flight) in flights.iter().enumerate() {
+        let stem = Path::new(&flight.input.path).file_stem().unwrap_or_default().display().to_string();
+        // flights of different folders may have one name
+        let path = folder.join(format!("{}-{stem}.svg", index + 1));
+        std::fs::write(&path, &flight.charts).map_err(|error| failed(&path, error))?;
+    }
+    Ok(())
+}

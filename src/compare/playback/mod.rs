@@ -1,0 +1,200 @@
+//! Open loop: recorded actuators played back from measured states over short windows.
+
+use super::{CompareError, MeanSquare};
+use crate::physics::{Input, MAX_ROTORS, Model, State};
+use crate::signals::{Grid, Signals, ThrustSource};
+use crate::simulate::{Allocation, Plant};
+use crate::vehicle::Vehicle;
+
+/// How playback is done.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlaybackSettings {
+    /// length of a window, s
+    pub window_s: f64,
+    /// time from one window's start to the next one's, s
+    pub stride_s: f64,
+    /// time before each window in which the effects' own states follow the recording, s
+    pub warm_up_s: f64,
+    /// longest integration step, s
+    pub step_s: f64,
+}
+
+impl Default for PlaybackSettings {
+    fn default() -> Self {
+        Self { window_s: 0.5, stride_s: 0.5, warm_up_s: 0.3, step_s: 0.002 }
+    }
+}
+
+/// Root mean square over all instants of all windows of the size of the vector error. `None` where the
+/// recording does not hold the quantity.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Fit {
+    /// m
+    pub position_m: Option<f64>,
+    /// m/s
+    pub velocity_m_s: Option<f64>,
+    /// angle between the attitudes, rad
+    pub attitude_rad: Option<f64>,
+    /// rad/s
+    pub rates_rad_s: Option<f64>,
+    /// windows
+    pub windows: usize,
+}
+
+impl Fit {
+    /// Position, velocity, attitude, rates.
+    #[must_use]
+    pub fn quantities(&self) -> [Option<f64>; 4] {
+        [self.position_m, self.velocity_m_s, self.attitude_rad, self.rates_rad_s]
+    }
+}
+
+/// Plays the recorded actuators back through a model.
+///
+/// `signals` must be conditioned with `vehicle`, which `model` is made of, because its thrust law turns
+/// commands into thrusts. Where the rotor speeds were measured, effects between command and speed are
+/// left out; where the log holds force and torque, they are shared out to the rotors.
+///
+/// # Errors
+/// If attitude or rates are missing, no window fits, or the model cannot be simulated.
+pub fn playback(
+    (model, vehicle): (&Model, &Vehicle),
+    signals: &Signals,
+    settings: &PlaybackSettings,
+) -> Result<Fit, CompareError> {
+    let measured_speeds = signals.quality.thrust_source == ThrustSource::MeasuredSpeed;
+    let model = if measured_speeds { model.with_measured_speeds() } else { model.clone() };
+    let states = MeasuredStates::of(signals)?;
+    let commands = Commands::of(&model, vehicle, signals)?;
+    let step_s = signals.grid.step_s;
+    let count =
+        |time_s: f64| (1..signals.grid.count).take_while(|n| *n as f64 * step_s <= time_s + 1e-9).count();
+    let (window, warm_up) = (count(settings.window_s).max(1), count(settings.warm_up_s));
+    let substeps = (1..100).find(|n| step_s / f64::from(*n) <= settings.step_s + 1e-12).unwrap_or(100);
+    let mut errors = [MeanSquare::default(); 4];
+    let mut windows = 0;
+    for run in Grid::runs(&signals.usable, window + warm_up + 1) {
+        let starts = (run.start + warm_up..run.end - window).step_by(count(settings.stride_s).max(1));
+        for start in starts {
+            windows += 1;
+            let first = start - warm_up;
+            let mut plant = Plant::new(&model, None, &states.at(first), &commands.at(first, 0.0))?;
+            for index in first..start + window {
+                if index <= start {
+                    plant.set_state(&states.at(index));
+                } else {
+                    states.compare(index, &plant.state(), start, &mut errors);
+                }
+                for substep in 0..substeps {
+                    let share = (f64::from(substep) + 0.5) / f64::from(substeps);
+                    plant.step(&commands.at(index, share), step_s / f64::from(substeps));
+                }
+            }
+            states.compare(start + window, &plant.state(), start, &mut errors);
+        }
+    }
+    if windows == 0 {
+        let PlaybackSettings { window_s, warm_up_s, .. } = *settings;
+        return Err(CompareError::NoWindow { window_s, warm_up_s });
+    }
+    let [position_m, velocity_m_s, attitude_rad, rates_rad_s] = errors.map(|error| error.root());
+    Ok(Fit { position_m, velocity_m_s, attitude_rad, rates_rad_s, windows })
+}
+
+/// What was measured of the body.
+struct MeasuredStates<'a> {
+    signals: &'a Signals,
+}
+
+impl<'a> MeasuredStates<'a> {
+    fn of(signals: &'a Signals) -> Result<Self, CompareError> {
+        let purpose = "open-loop playback";
+        if signals.attitude.is_none() {
+            return Err(CompareError::Missing { what: "attitude", purpose });
+        }
+        if signals.rate.is_none() {
+            return Err(CompareError::Missing { what: "body rates", purpose });
+        }
+        Ok(Self { signals })
+    }
+
+    /// What is not recorded is zero.
+    fn at(&self, index: usize) -> State {
+        let vector = |series: &Option<Vec<nalgebra::Vector3<f64>>>| {
+            series.as_ref().map(|series| series[index]).unwrap_or_default()
+        };
+        State {
+            position_m: vector(&self.signals.position),
+            velocity_m_s: vector(&self.signals.velocity),
+            attitude: self.signals.attitude.as_ref().map(|series| series[index]).unwrap_or_default(),
+            rates_rad_s: vector(&self.signals.rate),
+        }
+    }
+
+    fn compare(&self, index: usize, simulated: &State, start: usize, errors: &mut [MeanSquare; 4]) {
+        debug_assert!(index > start);
+        let measured = self.at(index);
+        let [position, velocity, attitude, rates] = errors;
+        if self.signals.position.is_some() && self.signals.velocity.is_some() {
+            position.add((simulated.position_m - measured.position_m).norm_squared());
+        }
+        if self.signals.velocity.is_some() {
+            velocity.add((simulated.velocity_m_s - measured.velocity_m_s).norm_squared());
+        }
+        attitude.add(simulated.attitude.angle_to(&measured.attitude).powi(2));
+        rates.add((simulated.rates_rad_s - measured.rates_rad_s).norm_squared());
+    }
+}
+
+/// Relative rotor speeds asked for (or measured) at each instant.
+struct Commands {
+    grid: Grid,
+    delay_instants: f64,
+    thrusts_n: Vec<[f64; MAX_ROTORS]>,
+    model: Model,
+}
+
+impl Commands {
+    fn of(model: &Model, vehicle: &Vehicle, signals: &Signals) -> Result<Self, CompareError> {
+        let rotors = model.airframe.rotor_count();
+        let mut thrusts_n = vec![[0.0; MAX_ROTORS]; signals.grid.count];
+        if signals.rotor_thrust_n.is_empty() {
+            let allocation = Allocation::new(vehicle, 0.0)?;
+            for (thrusts_n, wrench) in thrusts_n.iter_mut().zip(&signals.wrench) {
+                thrusts_n.copy_from_slice(allocation.thrusts_n(wrench).as_slice());
+            }
+        } else {
+            for (thrusts_n, recorded) in thrusts_n.iter_mut().zip(signals.rotor_thrust_n.chunks(rotors)) {
+                thrusts_n[..rotors].copy_from_slice(recorded);
+            }
+        }
+        Ok(Self {
+            grid: signals.grid,
+            delay_instants: model.command_delay_s() / signals.grid.step_s,
+            thrusts_n,
+            model: model.clone(),
+        })
+    }
+
+    /// What acts `share` of the way from one instant to the next.
+    fn at(&self, index: usize, share: f64) -> Input {
+        let last = self.thrusts_n.len() - 1;
+        let place = (index as f64 + share - self.delay_instants).max(0.0);
+        // counted back from the instant: delays are a few instants long
+        let mut left = index.min(last);
+        while left > 0 && left as f64 > place {
+            left -= 1;
+        }
+        let (right, part) = ((left + 1).min(last), place - left as f64);
+        let time_s = self.grid.time_s(index) + share * self.grid.step_s;
+        let mut input = Input::from_commands(&self.model.airframe, time_s, &[]);
+        for rotor in 0..self.model.airframe.rotor_count() {
+            let (a, b) = (self.thrusts_n[left][rotor], self.thrusts_n[right][rotor]);
+            input.speed_command[rotor] = self.model.airframe.relative_speed_of_thrust(a + part * (b - a));
+        }
+        input
+    }
+}
+
+#[cfg(test)]
+mod tests;

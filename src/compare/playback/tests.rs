@@ -1,0 +1,74 @@
+use super::*;
+use crate::physics::ActiveEffect;
+use crate::physics::effects::{LinearDrag, MotorLag, TransportDelay};
+use crate::signals::{ConditionSettings, ThrustPreference, condition};
+use crate::simulate::{
+    FlightSettings, RandomTrajectory, Reference, TelemetrySettings, Truth, random_vehicle, simulate_flight,
+};
+
+/// A flight of the true vehicle with these effects, conditioned; sensors with this share of their noise.
+fn flown(effects: Vec<ActiveEffect>, noise: f64, thrust: ThrustPreference) -> (Vehicle, Signals) {
+    let vehicle = random_vehicle(11).truth;
+    let trajectory = RandomTrajectory::default().draw(11).unwrap();
+    let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
+    let telemetry = TelemetrySettings { noise_scale: noise, ..TelemetrySettings::default() };
+    let base = FlightSettings { duration_s: 34.0, seed: 3, ..FlightSettings::default() };
+    let settings = FlightSettings { telemetry, control_noise_scale: noise, ..base };
+    let truth = Truth { vehicle: vehicle.clone(), effects, disturbance: None };
+    let flight = simulate_flight(truth, &vehicle, &reference, &settings).unwrap();
+    let settings = ConditionSettings { thrust, ..ConditionSettings::default() };
+    let signals = condition(&flight.recording, &vehicle, &settings).unwrap();
+    (vehicle, signals)
+}
+
+fn fit(vehicle: &Vehicle, signals: &Signals, effects: Vec<ActiveEffect>, window_s: f64) -> [f64; 4] {
+    let model = Model::new(vehicle, effects).unwrap();
+    let settings = PlaybackSettings { window_s, ..PlaybackSettings::default() };
+    let fit = playback((&model, vehicle), signals, &settings).unwrap();
+    assert!(fit.windows > 20);
+    fit.quantities().map(|quantity| quantity.unwrap())
+}
+
+fn drag() -> ActiveEffect {
+    ActiveEffect::new(&LinearDrag, &[0.3, 0.3, 0.1]).unwrap()
+}
+
+#[test]
+fn concealed_drag_shows_and_is_mended_by_the_true_effect() {
+    let (vehicle, signals) = flown(vec![drag()], 0.1, ThrustPreference::Measured);
+    for window_s in [0.1, 0.5, 1.0] {
+        let (without, with) =
+            (fit(&vehicle, &signals, vec![], window_s), fit(&vehicle, &signals, vec![drag()], window_s));
+        assert!(with[1] < 0.75 * without[1], "{window_s} s: velocity {} to {}", without[1], with[1]);
+    }
+    // errors grow with the window
+    let error = |window_s| fit(&vehicle, &signals, vec![], window_s)[1];
+    assert!(error(0.1) < error(0.5) && error(0.5) < error(1.0));
+}
+
+#[test]
+fn concealed_lag_and_delay_show_in_commands_and_not_in_measured_speeds() {
+    let late = || {
+        vec![
+            ActiveEffect::new(&TransportDelay, &[0.02]).unwrap(),
+            ActiveEffect::new(&MotorLag, &[0.04]).unwrap(),
+        ]
+    };
+    let (vehicle, signals) = flown(late(), 0.1, ThrustPreference::Commands);
+    let (without, with) = (fit(&vehicle, &signals, vec![], 0.5), fit(&vehicle, &signals, late(), 0.5));
+    assert!(with[3] < 0.5 * without[3], "rates {} to {}", without[3], with[3]);
+    let (vehicle, signals) = flown(late(), 0.1, ThrustPreference::Measured);
+    assert_eq!(fit(&vehicle, &signals, vec![], 0.5), fit(&vehicle, &signals, late(), 0.5));
+}
+
+#[test]
+fn what_cannot_be_played_back_is_refused() {
+    let (vehicle, mut signals) = flown(vec![], 1.0, ThrustPreference::Measured);
+    let model = Model::new(&vehicle, vec![]).unwrap();
+    let run = |signals: &Signals, window_s| {
+        playback((&model, &vehicle), signals, &PlaybackSettings { window_s, ..PlaybackSettings::default() })
+    };
+    assert!(matches!(run(&signals, 300.0), Err(CompareError::NoWindow { .. })));
+    signals.rate = None;
+    assert!(matches!(run(&signals, 0.5), Err(CompareError::Missing { what: "body rates", .. })));
+}
