@@ -111,7 +111,7 @@ fn candidates(recording: &Recording) -> Vec<(Method, Vehicle)> {
 
 /// Tables 5 and 6 (or 7 and 8, and so on) of one flight.
 fn predictions(title: &str, recording: &Recording, found: &[(Method, Vehicle)]) -> [ErrorTable; 2] {
-    let settings = ConditionSettings { transient_s: 0.0, ..ConditionSettings::default() };
+    let settings = ConditionSettings { transient_s: Some(0.0), ..ConditionSettings::default() };
     let signals = condition(recording, &nominal(), &settings).unwrap();
     let filter = ZeroPhase::Butterworth(Butterworth::new(5.0, 1.0 / signals.grid.step_s).unwrap());
     let (standard, filtered) = paper_models(&signals, 9.81, &filter).unwrap();
