@@ -85,11 +85,11 @@ fn help_and_version_succeed() {
 /// The README shows what the program prints.
 #[test]
 fn the_readmes_example_is_what_is_printed() {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
     let command = readme.lines().find_map(|line| line.strip_prefix("cargo run --release -- ")).unwrap();
     let shown = readme.split("```text\n").nth(1).unwrap().split("```").next().unwrap();
-    let output = std::process::Command::new(env!("CARGO_BIN_EXE_mavid"))
+    let output = Command::new(env!("CARGO_BIN_EXE_mavid"))
         .args(command.split_whitespace())
         .current_dir(root)
         .output()
