@@ -17,7 +17,9 @@ pub fn identification_page(
 ) -> String {
     let mut page = String::new();
     let best = &identification.best;
-    let _ = writeln!(page, "{}: {}", vehicle.name, verdict(&best.result));
+    let doubtful = identification.notes.iter().any(|note| note.starts_with("warning"));
+    let but = if doubtful { "; doubtful: see the warnings below" } else { "" };
+    let _ = writeln!(page, "{}: {}{but}", vehicle.name, verdict(&best.result));
     let _ = writeln!(page, "  method {}: {}", best.method.name(), best.why);
     if best.made_physical {
         let _ = writeln!(
