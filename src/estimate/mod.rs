@@ -22,4 +22,4 @@ pub use recursive::{GradientStep, History, PAPER_SIGMA, PaperEstimate, gradient_
 pub use result::{Estimated, Finding, MethodResult, Parameter, finding};
 pub use rotor_check::WeakRotor;
 pub use theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, inertia_of, scale_of, theta_of};
-pub use weak::{Latency, LatencyKind, WeakEstimate, WeakMethod, latency, solve_weak};
+pub use weak::{Latency, LatencyKind, WeakEstimate, WeakMethod, expected_covariance, latency, solve_weak};

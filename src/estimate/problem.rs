@@ -186,21 +186,48 @@ impl Problem {
         rows / (rows - spent)
     }
 
-    /// `sum_c sum_|l|<=L gamma_c(l) sum_t x(t) x(t+l)^T`, as `X^T (gamma * X)`.
+    /// The covariance that the estimate will have over repeated flights, for noise whose autocovariance
+    /// over row lags is known: one list a channel, from lag 0 on and zero beyond its end.
+    #[must_use]
+    pub fn expected_covariance(&self, noise: &[Vec<f64>]) -> DMatrix<f64> {
+        let shares: Vec<Normal> =
+            (0..self.channels.len()).map(|index| self.normal_share(index, None)).collect();
+        let sigma: Vec<f64> =
+            noise.iter().map(|gamma| gamma.first().map_or(0.0, |variance| variance.sqrt())).collect();
+        let bread = Normal::weighted(&shares, &sigma, &self.priors).inverse();
+        let weighted: Vec<Vec<f64>> = noise
+            .iter()
+            .zip(&sigma)
+            .map(|(gamma, sigma)| gamma.iter().map(|value| value / sigma.powi(4)).collect())
+            .collect();
+        &bread * self.meat(&weighted) * bread.transpose()
+    }
+
     fn meat_of_residuals(&self, scaled: &Scaled<'_>) -> DMatrix<f64> {
+        let gammas: Vec<Vec<f64>> = scaled
+            .residuals
+            .iter()
+            .zip(scaled.sigma)
+            .map(|(residual, sigma)| {
+                (0..=scaled.lags).map(|lag| self.autocovariance(residual, lag) / sigma.powi(4)).collect()
+            })
+            .collect();
+        self.meat(&gammas)
+    }
+
+    /// `sum_c sum_|l|<=L gamma_c(l) sum_t x(t) x(t+l)^T`, as `X^T (gamma * X)`.
+    fn meat(&self, gammas: &[Vec<f64>]) -> DMatrix<f64> {
         let parameters = self.parameters();
         let mut meat = DMatrix::<f64>::zeros(parameters, parameters);
-        for (index, channel) in self.channels.iter().enumerate() {
+        for (channel, gamma) in self.channels.iter().zip(gammas) {
+            let lags = gamma.len().saturating_sub(1);
             let z = channel.z.as_ref().unwrap_or(&channel.x);
-            let gamma: Vec<f64> = (0..=scaled.lags)
-                .map(|lag| self.autocovariance(&scaled.residuals[index], lag) / scaled.sigma[index].powi(4))
-                .collect();
             let mut smeared = DMatrix::<f64>::zeros(z.nrows(), parameters);
             for run in &self.runs {
                 for (mut out, column) in smeared.column_iter_mut().zip(z.column_iter()) {
                     for t in run.clone() {
-                        let first = t.saturating_sub(scaled.lags).max(run.start);
-                        let last = (t + scaled.lags).min(run.end - 1);
+                        let first = t.saturating_sub(lags).max(run.start);
+                        let last = (t + lags).min(run.end - 1);
                         out[t] = (first..=last).map(|s| gamma[s.abs_diff(t)] * column[s]).sum();
                     }
                 }
