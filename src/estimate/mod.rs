@@ -16,7 +16,7 @@ pub use anchor::{ThrustScale, apply_anchor, identified_vehicle, rescaled};
 pub use identify::{EstimateError, Identification, IdentifySettings, Method, identify};
 pub use information::WeakInformation;
 pub use physical::{is_physical, nearest_physical, second_moments};
-pub use problem::{Channel, Problem, Solution};
+pub use problem::{Channel, NoiseTerm, Problem, Solution};
 pub use recommend::Recommendation;
 pub use recursive::{GradientStep, History, PAPER_SIGMA, PaperEstimate, gradient_descent, least_squares};
 pub use result::{Estimated, Finding, MethodResult, Parameter, finding};

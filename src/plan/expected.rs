@@ -5,13 +5,14 @@
 //! be flown larger than planned by a third. The rows of that flight are those of the identification, with
 //! all its nuisances; the noise is that of [`NoiseModel`], coloured by the kernel.
 
-use super::noise::{NoiseModel, parameter_scale};
+use super::noise::{NoiseModel, RowSpacing, parameter_scale};
 use crate::estimate::{expected_covariance, theta_of};
 use crate::regression::{WeakMotion, weak_rows};
-use crate::signals::{ConditionSettings, ThrustPreference, WeakKernel, condition, stride};
+use crate::signals::{ConditionSettings, Signals, ThrustPreference, WeakKernel, condition, stride};
 use crate::simulate::{FlightSettings, Reference, TelemetrySettings, Truth, simulate_flight};
 use crate::trajectory::FourierTrajectory;
 use crate::vehicle::Vehicle;
+use nalgebra::Vector3;
 
 /// Which part of a series' flight is identified from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,8 +55,20 @@ pub fn expected_standard_errors(
     let kernel = WeakKernel::new(noise.kernel_half_width_s, signals.grid.step_s);
     let motion = WeakMotion::measured(&signals, &kernel, vehicle.gravity_m_s2);
     let rows = weak_rows(&signals, &motion, &kernel);
-    let colour = noise.row_autocovariance(vehicle, &kernel, signals.grid.step_s, stride(signals.grid.step_s));
-    let covariance = expected_covariance(&[rows], &theta_of(&vehicle.body), &colour)?;
+    let stride = stride(signals.grid.step_s);
+    let lean = kernel.centers(&signals.usable, stride).into_iter().map(|at| lean(&signals, at)).collect();
+    let spacing = RowSpacing { kernel: &kernel, step_s: signals.grid.step_s, stride };
+    let noise = noise.of_rows(vehicle, &spacing, lean);
+    let covariance = expected_covariance(&[rows], &theta_of(&vehicle.body), &noise)?;
     let scale = parameter_scale(vehicle);
     Some(std::array::from_fn(|k| covariance[(k, k)].sqrt() / scale[k]))
+}
+
+/// Slope of the thrust axis towards the heading; the heading is at right angles to body y.
+fn lean(signals: &Signals, at: usize) -> f64 {
+    let Some(attitude) = signals.attitude.as_ref().map(|attitude| attitude[at]) else { return 0.0 };
+    let (up, left) = (attitude * Vector3::z(), attitude * Vector3::y());
+    let heading = Vector3::new(left.y, -left.x, 0.0).normalize();
+    let sine = up.dot(&heading);
+    sine / (1.0 - sine * sine).sqrt()
 }

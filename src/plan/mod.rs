@@ -34,6 +34,6 @@ pub use excitation::{Assessment, Plan, PlanError, PlanRequest, assess, plan, sea
 pub use expected::{FlightSpan, expected_standard_errors};
 pub use feasible::{Conflict, StartPlace, feasible};
 pub use information::{GramSampler, Matrix7};
-pub use noise::{NoiseModel, PARAMETERS, parameter_scale};
+pub use noise::{NoiseModel, PARAMETERS, RowSpacing, parameter_scale};
 pub use optimise::{Round, Search};
 pub use transition::{FlightPlan, TransitionError, flight_path};

@@ -7,6 +7,7 @@
 //! Accelerometer, velocity and the gyro's derivative come with the regressor.
 
 use super::bounds::parameters_of;
+use crate::estimate::NoiseTerm;
 use crate::regression::CHANNELS;
 use crate::signals::WeakKernel;
 use crate::simulate::FlightSettings;
@@ -26,6 +27,10 @@ pub struct NoiseModel {
     pub thrust_jitter_m_s2: f64,
     /// the same of the torque commands, as angular acceleration about body x, y, z, rad/s^2
     pub torque_jitter_rad_s2: [f64; 3],
+    /// the same about body z, for a thrust axis that leans towards the heading with a slope of one: the
+    /// heading is held about the world's vertical, and so a noisy tilt turns the wanted attitude about
+    /// body z, too
+    pub leaning_jitter_rad_s2: f64,
     /// ticks of the command loop, 1/s
     pub control_rate_hz: f64,
     /// rate at which accelerometer, gyro and commands are logged, 1/s; samples count as independent
@@ -65,6 +70,7 @@ impl NoiseModel {
             velocity_m_s: logged.velocity_m_s,
             thrust_jitter_m_s2: path,
             torque_jitter_rad_s2: [tilted, tilted, turn(0.0)],
+            leaning_jitter_rad_s2: gains.attitude * path / gravity_m_s2,
             control_rate_hz: 1.0 / settings.control_period_s,
             log_rate_hz: settings.telemetry.rates.actuator_hz,
             velocity_rate_hz: settings.telemetry.rates.position_hz,
@@ -72,11 +78,15 @@ impl NoiseModel {
         }
     }
 
+    /// s: the density that white noise of unit variance a tick leaves between the log and what acts. A
+    /// loop no faster than its log has every tick in it.
+    fn unseen_s(&self) -> f64 {
+        (1.0 / self.log_rate_hz - 1.0 / self.control_rate_hz).max(0.0)
+    }
+
     /// Densities of white noise in the four balances: of their own (N^2 s, (N m)^2 s), and of what the
     /// kernel's derivative acts on ((N s)^2 s, (N m s)^2 s).
     fn densities(&self, vehicle: &Vehicle) -> [(f64, f64); CHANNELS] {
-        // a loop slower than its log has every tick in it
-        let unseen_s = (1.0 / self.log_rate_hz - 1.0 / self.control_rate_hz).max(0.0);
         let moments = vehicle.body.inertia_kg_m2.diagonal();
         std::array::from_fn(|channel| {
             if channel == 0 {
@@ -84,33 +94,30 @@ impl NoiseModel {
                 let kinematic =
                     ((1.0 - ACCELEROMETER_SHARE) * self.velocity_m_s).powi(2) / self.velocity_rate_hz;
                 let square = vehicle.body.mass_kg.powi(2);
-                (square * (measured + self.thrust_jitter_m_s2.powi(2) * unseen_s), square * kinematic)
+                (square * (measured + self.thrust_jitter_m_s2.powi(2) * self.unseen_s()), square * kinematic)
             } else {
                 let square = moments[channel - 1].powi(2);
-                let jitter = self.torque_jitter_rad_s2[channel - 1].powi(2) * unseen_s;
+                let jitter = self.torque_jitter_rad_s2[channel - 1].powi(2) * self.unseen_s();
                 (square * jitter, square * self.gyro_rad_s.powi(2) / self.log_rate_hz)
             }
         })
     }
 
-    /// Autocovariance of the weak form's rows over lags of `stride` grid steps, until the kernels part.
+    /// Noise of the weak form's rows, which lie `stride` grid steps apart. `lean` is the slope of the
+    /// thrust axis towards the heading at each row (-).
     #[must_use]
-    pub fn row_autocovariance(
+    pub fn of_rows(
         &self,
         vehicle: &Vehicle,
-        kernel: &WeakKernel,
-        step_s: f64,
-        stride: usize,
-    ) -> [Vec<f64>; CHANNELS] {
-        self.densities(vehicle).map(|(own, derived)| {
-            (0..=2 * kernel.half_count)
-                .step_by(stride.max(1))
-                .map(|lag| {
-                    (own * kernel.noise_covariance(0, lag) + derived * kernel.noise_covariance(1, lag))
-                        / step_s
-                })
-                .collect()
-        })
+        rows: &RowSpacing<'_>,
+        lean: Vec<f64>,
+    ) -> [Vec<NoiseTerm>; CHANNELS] {
+        let leaning = vehicle.body.inertia_kg_m2[(2, 2)] * self.leaning_jitter_rad_s2;
+        let mut noise = self.densities(vehicle).map(|(own, derived)| {
+            vec![rows.coloured(own, 0, Vec::new()), rows.coloured(derived, 1, Vec::new())]
+        });
+        noise[3].push(rows.coloured(leaning.powi(2) * self.unseen_s(), 0, lean));
+        noise
     }
 
     /// Inverse variance, per second of flight, of the balances Fz, `tau_x`, `tau_y`, `tau_z`
@@ -124,6 +131,27 @@ impl NoiseModel {
         const KERNEL_RATIO: f64 = 34.0 / 7.0;
         let widened = KERNEL_RATIO / self.kernel_half_width_s.powi(2);
         Vector4::from(self.densities(vehicle).map(|(own, derived)| 1.0 / (own + widened * derived)))
+    }
+}
+
+/// How rows lie in time.
+#[derive(Debug, Clone, Copy)]
+pub struct RowSpacing<'a> {
+    /// what smooths the signals
+    pub kernel: &'a WeakKernel,
+    /// s between samples
+    pub step_s: f64,
+    /// samples between rows
+    pub stride: usize,
+}
+
+impl RowSpacing<'_> {
+    /// White noise of this density under the kernel's derivative of this order.
+    fn coloured(&self, density: f64, order: usize, amplitude: Vec<f64>) -> NoiseTerm {
+        let lags = (0..=2 * self.kernel.half_count).step_by(self.stride.max(1));
+        let variance = density / self.step_s;
+        let autocovariance = lags.map(|lag| variance * self.kernel.noise_covariance(order, lag)).collect();
+        NoiseTerm { autocovariance, amplitude }
     }
 }
 
