@@ -56,19 +56,25 @@ pub fn expected_standard_errors(
     let motion = WeakMotion::measured(&signals, &kernel, vehicle.gravity_m_s2);
     let rows = weak_rows(&signals, &motion, &kernel);
     let stride = stride(signals.grid.step_s);
-    let lean = kernel.centers(&signals.usable, stride).into_iter().map(|at| lean(&signals, at)).collect();
+    let centers = kernel.centers(&signals.usable, stride);
+    let tilting: Vec<[f64; 3]> =
+        centers.into_iter().map(|at| tilting(&signals, at, vehicle.gravity_m_s2)).collect();
+    let tilting = std::array::from_fn(|axis| tilting.iter().map(|factors| factors[axis]).collect());
     let spacing = RowSpacing { kernel: &kernel, step_s: signals.grid.step_s, stride };
-    let noise = noise.of_rows(vehicle, &spacing, lean);
+    let noise = noise.of_rows(vehicle, &spacing, tilting);
     let covariance = expected_covariance(&[rows], &theta_of(&vehicle.body), &noise)?;
     let scale = parameter_scale(vehicle);
     Some(std::array::from_fn(|k| covariance[(k, k)].sqrt() / scale[k]))
 }
 
-/// Slope of the thrust axis towards the heading; the heading is at right angles to body y.
-fn lean(signals: &Signals, at: usize) -> f64 {
-    let Some(attitude) = signals.attitude.as_ref().map(|attitude| attitude[at]) else { return 0.0 };
-    let (up, left) = (attitude * Vector3::z(), attitude * Vector3::y());
-    let heading = Vector3::new(left.y, -left.x, 0.0).normalize();
-    let sine = up.dot(&heading);
-    sine / (1.0 - sine * sine).sqrt()
+/// What a noisy tilt in hover becomes about body x, y, z: the angle is inverse to the thrust, and its share
+/// about body z is the slope of the thrust axis towards the heading, which is at right angles to body y.
+fn tilting(signals: &Signals, at: usize, gravity_m_s2: f64) -> [f64; 3] {
+    let (Some(attitude), Some(force)) = (&signals.attitude, &signals.specific_force) else {
+        return [1.0, 1.0, 0.0];
+    };
+    let (up, left) = (attitude[at] * Vector3::z(), attitude[at] * Vector3::y());
+    let sine = up.dot(&Vector3::new(left.y, -left.x, 0.0).normalize());
+    let angle = gravity_m_s2 / force[at].norm();
+    [angle, angle, angle * sine / (1.0 - sine * sine).sqrt()]
 }

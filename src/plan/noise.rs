@@ -25,12 +25,13 @@ pub struct NoiseModel {
     pub velocity_m_s: f64,
     /// white jitter of one tick's thrust command, as thrust per mass, m/s^2
     pub thrust_jitter_m_s2: f64,
-    /// the same of the torque commands, as angular acceleration about body x, y, z, rad/s^2
+    /// the same of the torque commands that answers the noise of attitude and rates, as angular
+    /// acceleration about body x, y, z, rad/s^2
     pub torque_jitter_rad_s2: [f64; 3],
-    /// the same about body z, for a thrust axis that leans towards the heading with a slope of one: the
-    /// heading is held about the world's vertical, and so a noisy tilt turns the wanted attitude about
-    /// body z, too
-    pub leaning_jitter_rad_s2: f64,
+    /// the same that answers a noisy wanted tilt in hover, rad/s^2: about body x and y. The less thrust, the
+    /// more tilt a noisy wanted force makes; and where the thrust axis leans towards the heading, which is
+    /// held about the world's vertical, a noisy tilt turns the wanted attitude about body z, too
+    pub tilt_jitter_rad_s2: f64,
     /// ticks of the command loop, 1/s
     pub control_rate_hz: f64,
     /// rate at which accelerometer, gyro and commands are logged, 1/s; samples count as independent
@@ -60,17 +61,14 @@ impl NoiseModel {
         let (gains, sensed) = (&settings.gains, settings.control_noise.scaled(settings.control_noise_scale));
         let logged = settings.telemetry.noise.scaled(settings.telemetry.noise_scale);
         let path = (gains.position * sensed.position_m).hypot(gains.velocity * sensed.velocity_m_s);
-        let turn = |tilt_rad: f64| {
-            (gains.attitude * tilt_rad.hypot(sensed.attitude_rad)).hypot(gains.rates * sensed.rates_rad_s)
-        };
-        let tilted = turn(path / gravity_m_s2);
+        let turning = (gains.attitude * sensed.attitude_rad).hypot(gains.rates * sensed.rates_rad_s);
         Self {
             accelerometer_m_s2: logged.specific_force_m_s2,
             gyro_rad_s: logged.rates_rad_s,
             velocity_m_s: logged.velocity_m_s,
             thrust_jitter_m_s2: path,
-            torque_jitter_rad_s2: [tilted, tilted, turn(0.0)],
-            leaning_jitter_rad_s2: gains.attitude * path / gravity_m_s2,
+            torque_jitter_rad_s2: [turning; 3],
+            tilt_jitter_rad_s2: gains.attitude * path / gravity_m_s2,
             control_rate_hz: 1.0 / settings.control_period_s,
             log_rate_hz: settings.telemetry.rates.actuator_hz,
             velocity_rate_hz: settings.telemetry.rates.position_hz,
@@ -103,21 +101,29 @@ impl NoiseModel {
         })
     }
 
-    /// Noise of the weak form's rows, which lie `stride` grid steps apart. `lean` is the slope of the
-    /// thrust axis towards the heading at each row (-).
+    /// Noise of the weak form's rows. `tilting` is what a noisy tilt in hover becomes about body x, y, z at
+    /// each row, a factor.
     #[must_use]
     pub fn of_rows(
         &self,
         vehicle: &Vehicle,
         rows: &RowSpacing<'_>,
-        lean: Vec<f64>,
+        tilting: [Vec<f64>; 3],
     ) -> [Vec<NoiseTerm>; CHANNELS] {
-        let leaning = vehicle.body.inertia_kg_m2[(2, 2)] * self.leaning_jitter_rad_s2;
         let mut noise = self.densities(vehicle).map(|(own, derived)| {
             vec![rows.coloured(own, 0, Vec::new()), rows.coloured(derived, 1, Vec::new())]
         });
-        noise[3].push(rows.coloured(leaning.powi(2) * self.unseen_s(), 0, lean));
+        for ((terms, amplitude), tilt) in noise[1..].iter_mut().zip(tilting).zip(self.tilt_densities(vehicle))
+        {
+            terms.push(rows.coloured(tilt, 0, amplitude));
+        }
         noise
+    }
+
+    /// Densities of the torques that answer a noisy tilt in hover, (N m)^2 s.
+    fn tilt_densities(&self, vehicle: &Vehicle) -> [f64; 3] {
+        let jitter = self.tilt_jitter_rad_s2.powi(2) * self.unseen_s();
+        vehicle.body.inertia_kg_m2.diagonal().map(|moment| moment * moment * jitter).into()
     }
 
     /// Inverse variance, per second of flight, of the balances Fz, `tau_x`, `tau_y`, `tau_z`
@@ -125,12 +131,15 @@ impl NoiseModel {
     ///
     /// The derivative of white noise has, under a kernel of half width H, `c / H^2` times its density:
     /// `c = 34/7` for `(1 - s^2)^4`, the ratio of the integrals of the squared derivative and of the
-    /// squared kernel.
+    /// squared kernel. A tilt counts as it does in hover.
     #[must_use]
     pub fn row_information(&self, vehicle: &Vehicle) -> Vector4<f64> {
         const KERNEL_RATIO: f64 = 34.0 / 7.0;
         let widened = KERNEL_RATIO / self.kernel_half_width_s.powi(2);
-        Vector4::from(self.densities(vehicle).map(|(own, derived)| 1.0 / (own + widened * derived)))
+        let [tilt_x, tilt_y, _] = self.tilt_densities(vehicle);
+        let tilting = Vector4::new(0.0, tilt_x, tilt_y, 0.0);
+        let rest = Vector4::from(self.densities(vehicle).map(|(own, derived)| own + widened * derived));
+        (rest + tilting).map(f64::recip)
     }
 }
 
