@@ -6,13 +6,12 @@
 //! times the mass or inertia that the controller believes in, and so does not follow from the rotors.
 //! Accelerometer, velocity and the gyro's derivative come with the regressor.
 
-use super::bounds::parameters_of;
-use crate::estimate::NoiseTerm;
+use crate::estimate::{NoiseTerm, Theta, scale_of, theta_of};
 use crate::regression::CHANNELS;
 use crate::signals::WeakKernel;
 use crate::simulate::FlightSettings;
 use crate::vehicle::Vehicle;
-use nalgebra::{SVector, Vector4};
+use nalgebra::Vector4;
 
 /// Sensors, command loop and log of a vehicle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -167,12 +166,10 @@ impl RowSpacing<'_> {
 /// The size against which each parameter's error is measured (kg, kg m^2): mass and moments of inertia
 /// themselves, and for the product of two axes the geometric mean of their moments.
 #[must_use]
-pub fn parameter_scale(vehicle: &Vehicle) -> SVector<f64, 7> {
-    let theta = parameters_of(&vehicle.body);
-    let (x, y, z) = (theta[1], theta[4], theta[6]);
-    let mean = |a: f64, b: f64| (a * b).abs().sqrt();
-    SVector::from([theta[0], x, mean(x, y), mean(x, z), y, mean(y, z), z])
+pub fn parameter_scale(vehicle: &Vehicle) -> Theta {
+    let theta = theta_of(&vehicle.body);
+    Theta::from_fn(|index, _| scale_of(&theta, index))
 }
 
 /// Names of `Theta` in files and JSON.
-pub const PARAMETERS: [&str; 7] = ["mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
+pub use crate::estimate::NAMES as PARAMETERS;
