@@ -62,10 +62,10 @@ pub struct PlanArgs {
     #[arg(long, default_value_t = 16)]
     pub starts: u64,
     /// Periods to fly; comparing periods with each other needs four
-    #[arg(long, default_value_t = 5)]
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     pub repeats: u32,
     /// Period, s
-    #[arg(long, default_value_t = 10.0)]
+    #[arg(long, default_value_t = 10.0, allow_negative_numbers = true)]
     pub period: f64,
     /// Harmonics of the series
     #[arg(long, default_value_t = 5)]
@@ -76,6 +76,17 @@ pub struct PlanArgs {
     /// Check and assess this trajectory instead of planning one
     #[arg(long, value_name = "TRAJECTORY", conflicts_with_all = ["out", "start"])]
     pub check: Option<PathBuf>,
+    /// The circular validation path (44) instead of a plan: metres, seconds a turn, metres of height;
+    /// without HEIGHT the middle of the room's
+    #[arg(long, value_name = "RADIUS,PERIOD[,HEIGHT]", value_delimiter = ',', allow_hyphen_values = true,
+        conflicts_with_all = ["check", "start"])]
+    pub circle: Option<Vec<f64>>,
+    /// Where it hovers after takeoff, metres and degrees; without it at the series' mean
+    #[arg(long, value_name = "X,Y,Z[,YAW]", value_delimiter = ',', allow_hyphen_values = true)]
+    pub takeoff: Option<Vec<f64>>,
+    /// Where it hovers before it lands; without it where it took off
+    #[arg(long, value_name = "X,Y,Z[,YAW]", value_delimiter = ',', allow_hyphen_values = true)]
+    pub landing: Option<Vec<f64>>,
 }
 
 /// Names of the criteria.

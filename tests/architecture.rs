@@ -26,7 +26,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     // config: a model file is a vehicle file
     ("report", &["diagnose", "config"]),
     ("export", &["diagnose"]),
-    ("plan", &["physics", "regression", "simulate", "trajectory"]),
+    // estimate: what a flight will determine is for its estimator to say
+    ("plan", &["physics", "regression", "estimate", "simulate", "trajectory"]),
     ("sitl", &["physics", "simulate", "log"]),
     ("fly", &["plan", "log", "vehicle", "trajectory"]),
 ];

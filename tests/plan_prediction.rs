@@ -4,7 +4,9 @@
 
 use mavid::config::read_vehicle;
 use mavid::estimate::{IdentifySettings, Method, identify};
-use mavid::plan::{Criterion, PARAMETERS, PlanRequest, parameter_scale, plan};
+use mavid::plan::{
+    Criterion, FlightSpan, PARAMETERS, PlanRequest, expected_standard_errors, parameter_scale, plan,
+};
 use mavid::signals::{ConditionSettings, ThrustPreference, condition};
 use mavid::simulate::{FlightSettings, Reference, Truth, simulate_flight};
 use mavid::vehicle::Limits;
@@ -12,7 +14,6 @@ use rayon::prelude::*;
 use std::path::Path;
 
 #[test]
-#[ignore = "open: the white noise model is right within 20 % for some parameters only"]
 fn fifty_flights_scatter_as_promised() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let vehicle = read_vehicle(&root.join("configs/x500.toml")).unwrap().vehicle;
@@ -26,8 +27,8 @@ fn fifty_flights_scatter_as_promised() {
     let request = PlanRequest { criterion: Criterion::DOpt, starts: 4, ..PlanRequest::default() };
     let planned = plan(&vehicle, &room, &request, &|| {}).unwrap();
     // identification leaves the first ten seconds out: 4 s of hover and 6 s of the series
-    let used = (planned.assessment.flight_s / (planned.assessment.flight_s - 6.0)).sqrt();
-    let promised = planned.assessment.standard_errors.unwrap().map(|error| error * used);
+    let span = FlightSpan { flown_s: 50.0, left_out_s: 6.0 };
+    let promised = expected_standard_errors(&planned.trajectory, &vehicle, &request.noise, span).unwrap();
     let scale = parameter_scale(&vehicle);
     let reference = Reference { trajectory: planned.trajectory, hover_s: 4.0, ramp_s: 0.5 };
     let flights: Vec<Vec<f64>> = (0..50_u64)

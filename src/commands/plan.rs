@@ -5,12 +5,14 @@ use std::fmt::Write;
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use mavid::config::{StoredTrajectory, read_limits, read_trajectory, read_vehicle, trajectory_to_toml};
-use mavid::plan::{
-    Assessment, Criterion, Margin, PARAMETERS, PlanError, PlanRequest, StartPlace, assess, bounds_of, plan,
-    search_of,
+use mavid::config::{
+    StoredTrajectory, StoredTransitions, read_limits, read_trajectory, read_vehicle, trajectory_to_toml,
 };
-use mavid::trajectory::FourierTrajectory;
+use mavid::plan::{
+    Assessment, Criterion, Dynamics, FlightPlan, Margin, PARAMETERS, Plan, PlanError, PlanRequest,
+    StartPlace, assess, bounds_of, flight_path, plan, search_of,
+};
+use mavid::trajectory::{CirclePath, FlightPath, FourierTrajectory, Segment};
 use mavid::vehicle::{Limits, Vehicle};
 use serde::Serialize;
 
@@ -31,6 +33,19 @@ struct Summary {
     /// what is left to each bound on 2 ms samples, SI
     margins: BTreeMap<String, f64>,
     first_violation: Option<String>,
+    /// from takeoff to the series and back; none where no transition keeps the limits
+    transitions: Option<Transitions>,
+}
+
+/// What is flown before and after the series.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Transitions {
+    /// x, y, z (m), yaw (rad)
+    takeoff: [f64; 4],
+    /// the same before landing
+    landing: [f64; 4],
+    to_start_s: f64,
+    to_landing_s: f64,
 }
 
 impl From<PlanError> for CommandError {
@@ -47,14 +62,32 @@ pub fn run(json: bool, args: &PlanArgs) -> Result<Outcome, CommandError> {
     let vehicle = read_vehicle(&args.vehicle)?.vehicle;
     let limits = args.limits.as_deref().map_or(Ok(vehicle.limits), read_limits)?;
     let mut request = request_of(args)?;
-    let summary = if let Some(file) = &args.check {
+    let bounds = bounds_of(&limits, &vehicle);
+    let (series, worth, criterion_value) = if let Some(file) = &args.check {
         let stored = read_trajectory(file)?;
         request.repeats = stored.repeats;
-        let worth = assess(&stored.series, &vehicle, &bounds_of(&limits, &vehicle), &request);
-        summarize(&worth, request.criterion, None)
+        let worth = assess(&stored.series, &vehicle, &bounds, &request);
+        (stored.series, worth, None)
+    } else if let Some(circle) = &args.circle {
+        let series = circle_of(circle, &limits)?;
+        let worth = assess(&series, &vehicle, &bounds, &request);
+        (series, worth, None)
     } else {
-        planned(&vehicle, &limits, &request, args.out.as_deref())?
+        let plan = planned(&vehicle, &limits, &request)?;
+        (plan.trajectory, plan.assessment, Some(plan.criterion_value))
     };
+    let mut summary = summarize(&worth, request.criterion, criterion_value);
+    let flight = around(&series, args, request.repeats)?;
+    match flight_path(&series, &flight, &bounds, &Dynamics::new(&vehicle)) {
+        Ok(path) => summary.transitions = transitions_of(&path, &flight),
+        Err(error) => {
+            summary.first_violation.get_or_insert(error.to_string());
+        }
+    }
+    if let Some(path) = &args.out {
+        store(path, series, (&limits, &request), &summary)?;
+        output::message(&format!("wrote {}", path.display()));
+    }
     if json {
         output::json(&summary)?;
     } else {
@@ -63,25 +96,69 @@ pub fn run(json: bool, args: &PlanArgs) -> Result<Outcome, CommandError> {
     Ok(if summary.first_violation.is_some() { Outcome::DoneWithLoss } else { Outcome::Done })
 }
 
-fn planned(
-    vehicle: &Vehicle,
-    limits: &Limits,
-    request: &PlanRequest,
-    out: Option<&Path>,
-) -> Result<Summary, CommandError> {
+fn planned(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Result<Plan, CommandError> {
     let bar = ProgressBar::new(search_of(request).work());
     if let Ok(style) = ProgressStyle::with_template("planning {bar:30} {pos}/{len} descents") {
         bar.set_style(style);
     }
     let result = plan(vehicle, limits, request, &|| bar.inc(1));
     bar.finish_and_clear();
-    let plan = result?;
-    let summary = summarize(&plan.assessment, request.criterion, Some(plan.criterion_value));
-    if let Some(path) = out {
-        store(path, plan.trajectory, (limits, request), &summary)?;
-        output::message(&format!("wrote {}", path.display()));
+    Ok(result?)
+}
+
+/// The circle of `--circle`.
+fn circle_of(numbers: &[f64], limits: &Limits) -> Result<FourierTrajectory, CommandError> {
+    let middle = match (limits.z_min_m, limits.z_max_m) {
+        (Some(low), Some(high)) => f64::midpoint(low, high),
+        (Some(low), None) => low + 1.0,
+        (None, Some(high)) => high - 1.0,
+        (None, None) => 1.0,
+    };
+    let (radius_m, turn_s, height_m) = match numbers {
+        [radius, turn] => (*radius, *turn, middle),
+        [radius, turn, height] => (*radius, *turn, *height),
+        other => {
+            let message = format!("--circle: expected RADIUS,PERIOD[,HEIGHT], came {other:?}");
+            return Err(CommandError::Input(message));
+        }
+    };
+    let sound =
+        radius_m > 0.0 && radius_m.is_finite() && (0.1..=1000.0).contains(&turn_s) && height_m.is_finite();
+    if !sound {
+        return Err(CommandError::Input(format!(
+            "--circle: expected a radius above 0 m, a period of 0.1 to 1000 s and a finite height, came {numbers:?}"
+        )));
     }
-    Ok(summary)
+    Ok(CirclePath { radius_m, height_m }.steady_turns(turn_s))
+}
+
+/// Where the flight begins and ends: unless prescribed, at the series' mean. A series may start on a bound,
+/// and a transition to the very place would swing beyond it.
+fn around(series: &FourierTrajectory, args: &PlanArgs, repeats: u32) -> Result<FlightPlan, CommandError> {
+    let place: [f64; 4] = std::array::from_fn(|i| series.axes[i].c);
+    let takeoff = args.takeoff.as_deref().map_or(Ok(place), |numbers| place_of("--takeoff", numbers))?;
+    let landing = args.landing.as_deref().map_or(Ok(takeoff), |numbers| place_of("--landing", numbers))?;
+    Ok(FlightPlan { takeoff, landing, hover_s: 0.0, repeats })
+}
+
+fn place_of(option: &str, numbers: &[f64]) -> Result<[f64; 4], CommandError> {
+    match numbers {
+        [x, y, z, rest @ ..] if rest.len() <= 1 && numbers.iter().all(|value| value.is_finite()) => {
+            Ok([*x, *y, *z, rest.first().map_or(0.0, |deg| deg.to_radians())])
+        }
+        other => Err(CommandError::Input(format!("{option}: expected X,Y,Z[,YAW], came {other:?}"))),
+    }
+}
+
+/// Transitions before and after the series.
+fn transitions_of(path: &FlightPath, flight: &FlightPlan) -> Option<Transitions> {
+    let mut durations = path
+        .segments
+        .iter()
+        .filter(|(segment, _)| matches!(segment, Segment::Transition(_)))
+        .map(|(_, duration)| *duration);
+    let (to_start_s, to_landing_s) = (durations.next()?, durations.next()?);
+    Some(Transitions { takeoff: flight.takeoff, landing: flight.landing, to_start_s, to_landing_s })
 }
 
 fn store(
@@ -100,6 +177,12 @@ fn store(
         criterion: summary.criterion_value.map(|value| (name, value)),
         margins: summary.margins.clone(),
         standard_errors: errors.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
+        transitions: summary.transitions.map(|t| StoredTransitions {
+            takeoff: t.takeoff,
+            landing: t.landing,
+            to_start_s: t.to_start_s,
+            to_landing_s: t.to_landing_s,
+        }),
     };
     std::fs::write(path, trajectory_to_toml(&stored)?)
         .map_err(|error| CommandError::Failure(format!("cannot write {}: {error}", path.display())))
@@ -148,6 +231,7 @@ fn summarize(worth: &Assessment, criterion: Criterion, criterion_value: Option<f
         flight_s: worth.flight_s,
         margins: margins.map(|margin| (margin_name(margin), margin.spare())).collect(),
         first_violation: worth.check.first_violation.map(|violation| violation.to_string()),
+        transitions: None,
     }
 }
 
@@ -178,6 +262,13 @@ fn page(summary: &Summary) -> String {
     for (name, spare) in &summary.margins {
         let (spare, name) = in_degrees(*spare, name);
         let _ = writeln!(page, "  {name:<30} {spare:.6}");
+    }
+    if let Some(around) = &summary.transitions {
+        let [x, y, z, _] = around.takeoff;
+        let (to_start_s, to_landing_s) = (around.to_start_s, around.to_landing_s);
+        let _ = writeln!(page, "from hover at ({x:.2}, {y:.2}, {z:.2}) m to the start in {to_start_s:.2} s");
+        let [x, y, z, _] = around.landing;
+        let _ = writeln!(page, "from the end to hover at ({x:.2}, {y:.2}, {z:.2}) m in {to_landing_s:.2} s");
     }
     match &summary.first_violation {
         Some(violation) => {

@@ -9,7 +9,8 @@ mod vehicle_writer;
 
 pub use csv_mapping::{default_csv_mapping, load_csv_mapping, parse_csv_mapping};
 pub use trajectory::{
-    StoredTrajectory, parse_limits, parse_trajectory, read_limits, read_trajectory, trajectory_to_toml,
+    StoredTrajectory, StoredTransitions, parse_limits, parse_trajectory, read_limits, read_trajectory,
+    trajectory_to_toml,
 };
 pub use vehicle::{LoadedVehicle, ModelTables, load_vehicle, parse_vehicle, read_vehicle};
 pub use vehicle_writer::vehicle_to_toml;

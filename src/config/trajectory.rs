@@ -26,6 +26,61 @@ pub struct StoredTrajectory {
     pub margins: BTreeMap<String, f64>,
     /// expected relative standard errors by parameter
     pub standard_errors: BTreeMap<String, f64>,
+    /// what is flown before and after
+    pub transitions: Option<StoredTransitions>,
+}
+
+/// What is flown before and after a series; the polynomials follow from places and durations.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StoredTransitions {
+    /// x, y, z (m) and psi (rad) where the vehicle hovers after takeoff
+    pub takeoff: [f64; 4],
+    /// where it hovers before it lands
+    pub landing: [f64; 4],
+    /// s from takeoff to the series' start
+    pub to_start_s: f64,
+    /// s from the series' end to the landing place
+    pub to_landing_s: f64,
+}
+
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct TransitionsTable {
+    /// m, m, m, rad
+    takeoff_x_y_z_yaw: [f64; 4],
+    /// m, m, m, rad
+    landing_x_y_z_yaw: [f64; 4],
+    to_start_s: f64,
+    to_landing_s: f64,
+}
+
+impl TransitionsTable {
+    fn checked(self, check: &Check<'_>) -> Result<StoredTransitions, ConfigError> {
+        for (key, place) in
+            [("takeoff_x_y_z_yaw", self.takeoff_x_y_z_yaw), ("landing_x_y_z_yaw", self.landing_x_y_z_yaw)]
+        {
+            place
+                .iter()
+                .try_for_each(|value| check.finite(&format!("transitions.{key}"), *value).map(|_| ()))?;
+        }
+        Ok(StoredTransitions {
+            takeoff: self.takeoff_x_y_z_yaw,
+            landing: self.landing_x_y_z_yaw,
+            to_start_s: check.positive("transitions.to_start_s", self.to_start_s)?,
+            to_landing_s: check.positive("transitions.to_landing_s", self.to_landing_s)?,
+        })
+    }
+}
+
+impl From<StoredTransitions> for TransitionsTable {
+    fn from(stored: StoredTransitions) -> Self {
+        Self {
+            takeoff_x_y_z_yaw: stored.takeoff,
+            landing_x_y_z_yaw: stored.landing,
+            to_start_s: stored.to_start_s,
+            to_landing_s: stored.to_landing_s,
+        }
+    }
 }
 
 #[derive(Debug, Deserialize, Serialize)]
@@ -49,6 +104,8 @@ struct TrajectoryFile {
     margins_on_2_ms_samples: BTreeMap<String, f64>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     relative_standard_errors: BTreeMap<String, f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    transitions: Option<TransitionsTable>,
 }
 
 /// The diagnosis compares periods with each other: four, and one to settle.
@@ -128,6 +185,7 @@ pub fn parse_trajectory(text: &str, origin: &str) -> Result<StoredTrajectory, Co
         criterion: file.criterion.map(|table| (table.name, table.value)),
         margins: file.margins_on_2_ms_samples,
         standard_errors: file.relative_standard_errors,
+        transitions: file.transitions.map(|table| table.checked(&check)).transpose()?,
     })
 }
 
@@ -150,12 +208,14 @@ pub fn trajectory_to_toml(stored: &StoredTrajectory) -> Result<String, ConfigErr
         limits: limits_table(&stored.limits),
         margins_on_2_ms_samples: stored.margins.clone(),
         relative_standard_errors: stored.standard_errors.clone(),
+        transitions: stored.transitions.map(TransitionsTable::from),
     };
     Ok(format!("{HEADER}{}", toml::to_string(&file)?))
 }
 
 const HEADER: &str = "# q(t) = sum over l of a_l/(w l) sin(w l t) - b_l/(w l) cos(w l t), plus c; w = 2 pi / period_s.\n\
-    # x, y, z in metres (north, west, up), yaw in radians; a and b per second.\n";
+    # x, y, z in metres (north, west, up), yaw in radians; a and b per second.\n\
+    # [transitions]: polynomials of seventh degree from a hover to the start and from the end to a hover.\n";
 
 /// Limits from a file that holds a `[limits]` table as a vehicle's does.
 ///
@@ -187,10 +247,14 @@ mod tests {
         stored.series.axes[1].b[3] = 0.1 + 0.2;
         stored.limits.roll_max_rad = Some(0.1);
         stored.margins.insert("roll_rad".to_owned(), 1e-7);
+        let place = [0.0, 0.0, 1.0, 0.0];
+        stored.transitions =
+            Some(StoredTransitions { takeoff: place, landing: place, to_start_s: 2.0, to_landing_s: 3.0 });
         let again = parse_trajectory(&trajectory_to_toml(&stored).unwrap(), "again").unwrap();
         assert_eq!(again.series, stored.series);
         assert_eq!(again.criterion, stored.criterion);
         assert_eq!(again.margins, stored.margins);
+        assert_eq!(again.transitions, stored.transitions);
         assert!((again.limits.roll_max_rad.unwrap() - 0.1).abs() < 1e-15);
     }
 

@@ -27,6 +27,24 @@ pub struct Problem {
     pub overlap: usize,
 }
 
+/// Noise of one equation's rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NoiseTerm {
+    /// over row lags from 0 on, zero beyond its end; squared unit of the output
+    pub autocovariance: Vec<f64>,
+    /// factor on the noise, one a row; empty where it does not change
+    pub amplitude: Vec<f64>,
+}
+
+impl NoiseTerm {
+    /// Mean variance of a row.
+    fn variance(&self) -> f64 {
+        let square = self.amplitude.iter().map(|a| a * a).sum::<f64>();
+        let mean = if self.amplitude.is_empty() { 1.0 } else { square / self.amplitude.len() as f64 };
+        mean * self.autocovariance.first().copied().unwrap_or(0.0)
+    }
+}
+
 /// A solution and what it rests on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
@@ -192,28 +210,53 @@ impl Problem {
         rows / (rows - spent)
     }
 
-    /// `sum_c sum_|l|<=L gamma_c(l) sum_t x(t) x(t+l)^T`, as `X^T (gamma * X)`.
+    /// The covariance that the estimate will have over repeated flights, for noise that is known: one
+    /// list of independent terms a channel.
+    #[must_use]
+    pub fn expected_covariance(&self, noise: &[Vec<NoiseTerm>]) -> DMatrix<f64> {
+        let shares: Vec<Normal> =
+            (0..self.channels.len()).map(|index| self.normal_share(index, None)).collect();
+        let sigma: Vec<f64> =
+            noise.iter().map(|terms| terms.iter().map(NoiseTerm::variance).sum::<f64>().sqrt()).collect();
+        let bread = Normal::weighted(&shares, &sigma, &self.priors).inverse();
+        let mut meat = DMatrix::zeros(self.parameters(), self.parameters());
+        for ((channel, terms), sigma) in self.channels.iter().zip(noise).zip(&sigma) {
+            for term in terms {
+                let mut z = channel.z.as_ref().unwrap_or(&channel.x).clone();
+                for (mut row, amplitude) in z.row_iter_mut().zip(&term.amplitude) {
+                    row *= *amplitude;
+                }
+                meat += self.meat_of(&z, &term.autocovariance) * sigma.powi(-4);
+            }
+        }
+        &bread * meat * bread.transpose()
+    }
+
     fn meat_of_residuals(&self, scaled: &Scaled<'_>) -> DMatrix<f64> {
-        let parameters = self.parameters();
-        let mut meat = DMatrix::<f64>::zeros(parameters, parameters);
+        let mut meat = DMatrix::zeros(self.parameters(), self.parameters());
         for (index, channel) in self.channels.iter().enumerate() {
-            let z = channel.z.as_ref().unwrap_or(&channel.x);
             let gamma: Vec<f64> = (0..=scaled.lags)
                 .map(|lag| self.autocovariance(&scaled.residuals[index], lag) / scaled.sigma[index].powi(4))
                 .collect();
-            let mut smeared = DMatrix::<f64>::zeros(z.nrows(), parameters);
-            for run in &self.runs {
-                for (mut out, column) in smeared.column_iter_mut().zip(z.column_iter()) {
-                    for t in run.clone() {
-                        let first = t.saturating_sub(scaled.lags).max(run.start);
-                        let last = (t + scaled.lags).min(run.end - 1);
-                        out[t] = (first..=last).map(|s| gamma[s.abs_diff(t)] * column[s]).sum();
-                    }
-                }
-            }
-            meat += z.tr_mul(&smeared);
+            meat += self.meat_of(channel.z.as_ref().unwrap_or(&channel.x), &gamma);
         }
         meat
+    }
+
+    /// One channel's `sum_|l|<=L gamma(l) sum_t x(t) x(t+l)^T`, as `X^T (gamma * X)`.
+    fn meat_of(&self, z: &DMatrix<f64>, gamma: &[f64]) -> DMatrix<f64> {
+        let lags = gamma.len().saturating_sub(1);
+        let mut smeared = DMatrix::<f64>::zeros(z.nrows(), z.ncols());
+        for run in &self.runs {
+            for (mut out, column) in smeared.column_iter_mut().zip(z.column_iter()) {
+                for t in run.clone() {
+                    let first = t.saturating_sub(lags).max(run.start);
+                    let last = (t + lags).min(run.end - 1);
+                    out[t] = (first..=last).map(|s| gamma[s.abs_diff(t)] * column[s]).sum();
+                }
+            }
+        }
+        z.tr_mul(&smeared)
     }
 
     fn meat_of_scores(&self, scaled: &Scaled<'_>) -> DMatrix<f64> {

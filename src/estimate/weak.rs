@@ -1,6 +1,6 @@
 //! Identification from the weak form: mass, inertia, actuation latency and trim torques together.
 
-use super::problem::{Channel, Problem, Solution};
+use super::problem::{Channel, NoiseTerm, Problem, Solution};
 use super::theta::{THETA, Theta, ThetaCovariance};
 use crate::regression::{CHANNELS, WeakRows};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
@@ -90,6 +90,24 @@ pub enum WeakMethod<'a> {
 #[must_use]
 pub fn solve_weak(flights: &[WeakRows], start: &Theta, method: WeakMethod<'_>) -> Option<WeakEstimate> {
     solve_with(flights, start, method, false)
+}
+
+/// Covariance over repeated flights of `Theta` as the weak form will estimate it from such rows, beside
+/// all its nuisances, for noise that is known (one list of independent terms an equation, in N and N m).
+/// `None` where some parameter has no column.
+#[must_use]
+pub fn expected_covariance(
+    flights: &[WeakRows],
+    theta: &Theta,
+    noise: &[Vec<NoiseTerm>; CHANNELS],
+) -> Option<ThetaCovariance> {
+    let problem = assemble(flights, theta, WeakMethod::LeastSquares, false);
+    let measured: Vec<Vec<NoiseTerm>> =
+        (0..CHANNELS).filter(|&c| is_measured(flights, c)).map(|c| noise[c].clone()).collect();
+    let covariance = problem.expected_covariance(&measured);
+    let of_theta = covariance.view_range(..THETA.min(covariance.nrows()), ..THETA.min(covariance.ncols()));
+    let known = of_theta.nrows() == THETA && (0..THETA).all(|i| of_theta[(i, i)] > 0.0);
+    known.then(|| ThetaCovariance::from_fn(|i, j| of_theta[(i, j)]))
 }
 
 /// Newton on the latency column: it depends on the inertia that it is estimated with.

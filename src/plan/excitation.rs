@@ -5,9 +5,10 @@ use super::bounds::{Bound, Dynamics, Quantity, bounds_of};
 use super::check::{CheckReport, SAMPLE_S, Violation, check};
 use super::criterion::{Criterion, condition_number, scaled_condition_number};
 use super::descent::Problem;
+use super::expected::{FlightSpan, expected_standard_errors};
 use super::feasible::{Conflict, StartPlace, feasible};
 use super::information::GramSampler;
-use super::noise::{NoiseModel, parameter_scale, relative_standard_errors};
+use super::noise::{NoiseModel, parameter_scale};
 use super::optimise::Search;
 use super::space::{AxisStart, SeriesSpace};
 use crate::trajectory::FourierTrajectory;
@@ -175,13 +176,16 @@ pub fn assess(
     let gravity = vehicle.gravity_m_s2;
     let samples = whole((trajectory.period_s / SAMPLE_S).round().max(1.0));
     let gram = GramSampler::of_series(trajectory, samples, Vector4::repeat(1.0), gravity);
-    let weights = request.noise.row_information(vehicle);
-    let information = GramSampler::of_series(trajectory, samples, weights, gravity);
     let flight_s = f64::from(request.repeats) * trajectory.period_s;
     Assessment {
         condition_number: condition_number(&gram),
         scaled_condition_number: scaled_condition_number(&gram),
-        standard_errors: relative_standard_errors(&information, flight_s, &parameter_scale(vehicle)),
+        standard_errors: expected_standard_errors(
+            trajectory,
+            vehicle,
+            &request.noise,
+            FlightSpan { flown_s: flight_s, left_out_s: 0.0 },
+        ),
         flight_s,
         check: check(|t| trajectory.derivatives(t), trajectory.period_s, bounds, &dynamics),
     }

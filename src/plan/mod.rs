@@ -8,6 +8,7 @@
 //! criterion    cond, scaled cond, D, A as functions of that matrix
 //! bounds       what must hold; check: does it, on 2 ms samples
 //! quadratic, descent, optimise   one step, one start, many starts
+//! noise, expected   what the flight will determine, and how well
 //! excitation   from limits to a plan
 //! ```
 
@@ -16,6 +17,7 @@ mod check;
 mod criterion;
 mod descent;
 mod excitation;
+mod expected;
 mod feasible;
 mod information;
 mod noise;
@@ -29,8 +31,9 @@ pub use bounds::{Bound, Dynamics, Instant, Quantity, bounds_of, parameters_of};
 pub use check::{CheckReport, Margin, SAMPLE_S, Violation, check};
 pub use criterion::{Criterion, condition_number, scaled_condition_number};
 pub use excitation::{Assessment, Plan, PlanError, PlanRequest, assess, plan, search_of};
+pub use expected::{FlightSpan, expected_standard_errors};
 pub use feasible::{Conflict, StartPlace, feasible};
 pub use information::{GramSampler, Matrix7};
-pub use noise::{NoiseModel, PARAMETERS, parameter_scale, relative_standard_errors};
+pub use noise::{NoiseModel, PARAMETERS, RowSpacing, parameter_scale};
 pub use optimise::{Round, Search};
 pub use transition::{FlightPlan, TransitionError, flight_path};

@@ -1,98 +1,175 @@
-//! What the flight will determine, and how well: relative standard errors before it is flown.
+//! The noise of the balances (7) to (10) as a weak-form regression on commands sees it.
 //!
-//! Identification regresses the logged force and torque on the measured motion (the weak form, with the
-//! command on the left-hand side), so the noise of a row is what the force or torque balance shows when
-//! nothing is wrong: the accelerometer and the commands' jitter in force, the jitter and the gyro's
-//! noise in torque. The command loop runs faster than the log; a logged command is one tick of it, while
-//! the body feels the mean of all ticks. This aliased jitter is the largest noise of the torque rows. It
-//! is the controller's answer to the noise on which it flies, an angular acceleration times the inertia
-//! that the controller believes in, and so it does not follow from the rotors.
-//!
-//! Each noise is taken as white. The jitter of a real loop is coloured by its controller, so a promise
-//! may be off by some ten per cent for one parameter or another.
+//! The command loop runs faster than the log. A logged command is one tick of it, while the body feels the
+//! mean of all ticks: of white jitter of `s` a tick, `s^2 (1/f_log - 1/f_control)` is left as density of
+//! the difference. The jitter is the controller's answer to the noise on which it flies, an acceleration
+//! times the mass or inertia that the controller believes in, and so does not follow from the rotors.
+//! Accelerometer, velocity and the gyro's derivative come with the regressor.
 
-use super::bounds::parameters_of;
-use super::information::Matrix7;
+use crate::estimate::{NoiseTerm, Theta, scale_of, theta_of};
+use crate::regression::CHANNELS;
+use crate::signals::WeakKernel;
+use crate::simulate::FlightSettings;
 use crate::vehicle::Vehicle;
-use nalgebra::{SVector, Vector4};
+use nalgebra::Vector4;
 
-/// Noise of the balances (7) to (10) as a weak-form regression sees them.
+/// Sensors, command loop and log of a vehicle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoiseModel {
     /// accelerometer, one axis, m/s^2, one sample
     pub accelerometer_m_s2: f64,
     /// gyro, one axis, rad/s, one sample
     pub gyro_rad_s: f64,
-    /// difference between a logged thrust command and the mean that acted, as thrust per mass, m/s^2
+    /// velocity, one axis, m/s, one sample
+    pub velocity_m_s: f64,
+    /// white jitter of one tick's thrust command, as thrust per mass, m/s^2
     pub thrust_jitter_m_s2: f64,
-    /// the same of the torque commands, as angular acceleration about body x, y, z, rad/s^2
+    /// the same of the torque commands that answers the noise of attitude and rates, as angular
+    /// acceleration about body x, y, z, rad/s^2
     pub torque_jitter_rad_s2: [f64; 3],
+    /// the same that answers a noisy wanted tilt in hover, rad/s^2: about body x and y. The less thrust, the
+    /// more tilt a noisy wanted force makes; and where the thrust axis leans towards the heading, which is
+    /// held about the world's vertical, a noisy tilt turns the wanted attitude about body z, too
+    pub tilt_jitter_rad_s2: f64,
+    /// ticks of the command loop, 1/s
+    pub control_rate_hz: f64,
     /// rate at which accelerometer, gyro and commands are logged, 1/s; samples count as independent
     pub log_rate_hz: f64,
-    /// half the width of the weak form's kernel, s; it sets the noise of the gyro's derivative
+    /// rate at which velocity is logged, 1/s
+    pub velocity_rate_hz: f64,
+    /// half the width of the weak form's kernel, s
     pub kernel_half_width_s: f64,
 }
 
 impl Default for NoiseModel {
-    /// Sensors of the class of a Pixhawk, control at 250 Hz logged at 125 Hz. The jitter is that of this
-    /// crate's simulated flights with their default controller; a test holds the two together.
+    /// The simulated flights' own: sensors of the class of a Pixhawk, control at 250 Hz logged at 125 Hz.
     fn default() -> Self {
-        Self {
-            accelerometer_m_s2: 0.12,
-            gyro_rad_s: 0.006,
-            thrust_jitter_m_s2: 0.26,
-            torque_jitter_rad_s2: [1.1, 1.3, 0.6],
-            log_rate_hz: 125.0,
-            kernel_half_width_s: 0.2,
-        }
+        Self::of_loop(&FlightSettings::default(), 9.81)
     }
 }
 
+/// Share of the accelerometer in the vertical motion where velocity is recorded, too.
+const ACCELEROMETER_SHARE: f64 = 0.8;
+
 impl NoiseModel {
+    /// What a cascade makes of the noise that it flies on, to first order about hover. Position and
+    /// velocity become thrust along z, and along x and y a tilt, of which the attitude gain makes a
+    /// torque; attitude and rates become torques.
+    #[must_use]
+    pub fn of_loop(settings: &FlightSettings, gravity_m_s2: f64) -> Self {
+        let (gains, sensed) = (&settings.gains, settings.control_noise.scaled(settings.control_noise_scale));
+        let logged = settings.telemetry.noise.scaled(settings.telemetry.noise_scale);
+        let path = (gains.position * sensed.position_m).hypot(gains.velocity * sensed.velocity_m_s);
+        let turning = (gains.attitude * sensed.attitude_rad).hypot(gains.rates * sensed.rates_rad_s);
+        Self {
+            accelerometer_m_s2: logged.specific_force_m_s2,
+            gyro_rad_s: logged.rates_rad_s,
+            velocity_m_s: logged.velocity_m_s,
+            thrust_jitter_m_s2: path,
+            torque_jitter_rad_s2: [turning; 3],
+            tilt_jitter_rad_s2: gains.attitude * path / gravity_m_s2,
+            control_rate_hz: 1.0 / settings.control_period_s,
+            log_rate_hz: settings.telemetry.rates.actuator_hz,
+            velocity_rate_hz: settings.telemetry.rates.position_hz,
+            kernel_half_width_s: 0.2,
+        }
+    }
+
+    /// s: the density that white noise of unit variance a tick leaves between the log and what acts. A
+    /// loop no faster than its log has every tick in it.
+    fn unseen_s(&self) -> f64 {
+        (1.0 / self.log_rate_hz - 1.0 / self.control_rate_hz).max(0.0)
+    }
+
+    /// Densities of white noise in the four balances: of their own (N^2 s, (N m)^2 s), and of what the
+    /// kernel's derivative acts on ((N s)^2 s, (N m s)^2 s).
+    fn densities(&self, vehicle: &Vehicle) -> [(f64, f64); CHANNELS] {
+        let moments = vehicle.body.inertia_kg_m2.diagonal();
+        std::array::from_fn(|channel| {
+            if channel == 0 {
+                let measured = (ACCELEROMETER_SHARE * self.accelerometer_m_s2).powi(2) / self.log_rate_hz;
+                let kinematic =
+                    ((1.0 - ACCELEROMETER_SHARE) * self.velocity_m_s).powi(2) / self.velocity_rate_hz;
+                let square = vehicle.body.mass_kg.powi(2);
+                (square * (measured + self.thrust_jitter_m_s2.powi(2) * self.unseen_s()), square * kinematic)
+            } else {
+                let square = moments[channel - 1].powi(2);
+                let jitter = self.torque_jitter_rad_s2[channel - 1].powi(2) * self.unseen_s();
+                (square * jitter, square * self.gyro_rad_s.powi(2) / self.log_rate_hz)
+            }
+        })
+    }
+
+    /// Noise of the weak form's rows. `tilting` is what a noisy tilt in hover becomes about body x, y, z at
+    /// each row, a factor.
+    #[must_use]
+    pub fn of_rows(
+        &self,
+        vehicle: &Vehicle,
+        rows: &RowSpacing<'_>,
+        tilting: [Vec<f64>; 3],
+    ) -> [Vec<NoiseTerm>; CHANNELS] {
+        let mut noise = self.densities(vehicle).map(|(own, derived)| {
+            vec![rows.coloured(own, 0, Vec::new()), rows.coloured(derived, 1, Vec::new())]
+        });
+        for ((terms, amplitude), tilt) in noise[1..].iter_mut().zip(tilting).zip(self.tilt_densities(vehicle))
+        {
+            terms.push(rows.coloured(tilt, 0, amplitude));
+        }
+        noise
+    }
+
+    /// Densities of the torques that answer a noisy tilt in hover, (N m)^2 s.
+    fn tilt_densities(&self, vehicle: &Vehicle) -> [f64; 3] {
+        let jitter = self.tilt_jitter_rad_s2.powi(2) * self.unseen_s();
+        vehicle.body.inertia_kg_m2.diagonal().map(|moment| moment * moment * jitter).into()
+    }
+
     /// Inverse variance, per second of flight, of the balances Fz, `tau_x`, `tau_y`, `tau_z`
-    /// (1/(N^2 s), 1/((N m)^2 s)).
+    /// (1/(N^2 s), 1/((N m)^2 s)): the kernel's colour as one number, for the criteria.
     ///
-    /// White noise of variance `s^2` at rate `f` has the density `s^2 / f`. The derivative of a gyro's
-    /// white noise has, under a kernel of half width H, `c / H^2` times its density: `c = 34/7` for
-    /// `(1 - s^2)^4`, the ratio of the integrals of the squared derivative and of the squared kernel.
+    /// The derivative of white noise has, under a kernel of half width H, `c / H^2` times its density:
+    /// `c = 34/7` for `(1 - s^2)^4`, the ratio of the integrals of the squared derivative and of the
+    /// squared kernel. A tilt counts as it does in hover.
     #[must_use]
     pub fn row_information(&self, vehicle: &Vehicle) -> Vector4<f64> {
         const KERNEL_RATIO: f64 = 34.0 / 7.0;
-        let moments = vehicle.body.inertia_kg_m2.diagonal();
-        Vector4::from_fn(|row, _| {
-            let variance = if row == 0 {
-                let square = self.accelerometer_m_s2.powi(2) + self.thrust_jitter_m_s2.powi(2);
-                vehicle.body.mass_kg.powi(2) * square
-            } else {
-                let gyro = KERNEL_RATIO * (self.gyro_rad_s / self.kernel_half_width_s).powi(2);
-                moments[row - 1].powi(2) * (gyro + self.torque_jitter_rad_s2[row - 1].powi(2))
-            };
-            self.log_rate_hz / variance
-        })
+        let widened = KERNEL_RATIO / self.kernel_half_width_s.powi(2);
+        let [tilt_x, tilt_y, _] = self.tilt_densities(vehicle);
+        let tilting = Vector4::new(0.0, tilt_x, tilt_y, 0.0);
+        let rest = Vector4::from(self.densities(vehicle).map(|(own, derived)| own + widened * derived));
+        (rest + tilting).map(f64::recip)
+    }
+}
+
+/// How rows lie in time.
+#[derive(Debug, Clone, Copy)]
+pub struct RowSpacing<'a> {
+    /// what smooths the signals
+    pub kernel: &'a WeakKernel,
+    /// s between samples
+    pub step_s: f64,
+    /// samples between rows
+    pub stride: usize,
+}
+
+impl RowSpacing<'_> {
+    /// White noise of this density under the kernel's derivative of this order.
+    fn coloured(&self, density: f64, order: usize, amplitude: Vec<f64>) -> NoiseTerm {
+        let lags = (0..=2 * self.kernel.half_count).step_by(self.stride.max(1));
+        let variance = density / self.step_s;
+        let autocovariance = lags.map(|lag| variance * self.kernel.noise_covariance(order, lag)).collect();
+        NoiseTerm { autocovariance, amplitude }
     }
 }
 
 /// The size against which each parameter's error is measured (kg, kg m^2): mass and moments of inertia
 /// themselves, and for the product of two axes the geometric mean of their moments.
 #[must_use]
-pub fn parameter_scale(vehicle: &Vehicle) -> SVector<f64, 7> {
-    let theta = parameters_of(&vehicle.body);
-    let (x, y, z) = (theta[1], theta[4], theta[6]);
-    let mean = |a: f64, b: f64| (a * b).abs().sqrt();
-    SVector::from([theta[0], x, mean(x, y), mean(x, z), y, mean(y, z), z])
+pub fn parameter_scale(vehicle: &Vehicle) -> Theta {
+    let theta = theta_of(&vehicle.body);
+    Theta::from_fn(|index, _| scale_of(&theta, index))
 }
 
 /// Names of `Theta` in files and JSON.
-pub const PARAMETERS: [&str; 7] = ["mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
-
-/// Relative standard error of each parameter after `duration_s`, from the information a second of flight
-/// brings. `None` where the flight cannot determine all of them.
-#[must_use]
-pub fn relative_standard_errors(
-    information_per_s: &Matrix7,
-    duration_s: f64,
-    scale: &SVector<f64, 7>,
-) -> Option<[f64; 7]> {
-    let covariance = (information_per_s * duration_s).cholesky()?.inverse();
-    Some(std::array::from_fn(|k| covariance[(k, k)].sqrt() / scale[k]))
-}
+pub use crate::estimate::NAMES as PARAMETERS;

@@ -71,7 +71,14 @@ impl WeakKernel {
     /// Sum of squared taps: variance of the output per variance of white input noise.
     #[must_use]
     pub fn noise_gain(&self, order: usize) -> f64 {
-        self.taps[order].iter().map(|tap| tap * tap).sum()
+        self.noise_covariance(order, 0)
+    }
+
+    /// Covariance of two outputs whose centres lie `lag` samples apart, per variance of white input noise.
+    #[must_use]
+    pub fn noise_covariance(&self, order: usize, lag: usize) -> f64 {
+        let taps = &self.taps[order];
+        taps.iter().zip(taps.iter().skip(lag)).map(|(tap, other)| tap * other).sum()
     }
 
     /// Centres every `stride` samples whose whole support lies in a run of true entries of `mask`.

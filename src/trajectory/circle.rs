@@ -1,5 +1,6 @@
 //! The circular validation paths (44).
 
+use super::{FourierAxis, FourierTrajectory};
 use std::f64::consts::{PI, TAU};
 
 /// One of (44): a circle flown in 5 s, the height swinging once a turn after a first turn of climbing.
@@ -46,6 +47,24 @@ impl CirclePath {
     }
 }
 
+impl CirclePath {
+    /// The turns after the climb as a series (18) of one harmonic, flown in `turn_s` (s; 5 in the paper).
+    /// It starts at full speed: a transition leads there in place of the printed climb.
+    #[must_use]
+    pub fn steady_turns(&self, turn_s: f64) -> FourierTrajectory {
+        let w = TAU / turn_s;
+        let axis =
+            |sine: f64, cosine: f64, c: f64| FourierAxis { a: vec![sine * w], b: vec![-cosine * w], c };
+        let axes = [
+            axis(0.0, self.radius_m, 0.0),
+            axis(self.radius_m, 0.0, 0.0),
+            axis(SWING_M, 0.0, self.height_m),
+            axis(YAW_RAD, 0.0, 0.0),
+        ];
+        FourierTrajectory { period_s: turn_s, axes }
+    }
+}
+
 /// `sin(phase)` and its derivatives for `phase' = w`.
 fn harmonic(w: f64, phase: f64) -> [f64; 5] {
     let (s, c) = phase.sin_cos();
@@ -76,6 +95,20 @@ mod tests {
         let later = path.derivatives(6.25);
         assert!((later[2][0] - 1.1).abs() < 1e-12);
         assert!((later[3][0].to_degrees() - 15.0).abs() < 1e-10);
+    }
+
+    #[test]
+    fn steady_turns_are_the_printed_path_after_its_climb() {
+        let path = CirclePath { radius_m: 0.5, height_m: 1.0 };
+        let turns = path.steady_turns(TURN_S);
+        for t in [5.1, 6.0, 8.3, 9.9] {
+            let (series, printed) = (turns.derivatives(t), path.derivatives(t));
+            for axis in 0..4 {
+                for order in 0..5 {
+                    assert!((series[axis][order] - printed[axis][order]).abs() < 1e-12);
+                }
+            }
+        }
     }
 
     #[test]

@@ -1,0 +1,82 @@
+//! `mavid plan` at its process boundary.
+
+#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn plan(vehicle: &str, arguments: &[&str]) -> Output {
+    let vehicle = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(vehicle);
+    Command::new(env!("CARGO_BIN_EXE_mavid")).arg("plan").arg(vehicle).args(arguments).output().unwrap()
+}
+
+fn temporary(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
+fn json(output: &Output) -> serde_json::Value {
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn json_has_the_settled_keys() {
+    let out = temporary("plan.toml");
+    let output = plan("qball2.toml", &["--starts", "2", "--json", "--out", out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let document = json(&output);
+    assert_eq!(document["schema"], 1);
+    assert_eq!(document["criterion"], "cond");
+    assert!(document["condition_number"].as_f64().unwrap() < 17.0);
+    for name in ["mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz"] {
+        let error = document["standard_errors"][name].as_f64().unwrap();
+        assert!(error > 0.0 && error < 1.0, "{name} {error}");
+    }
+    assert!(document["margins"].as_object().unwrap().values().all(|spare| spare.as_f64().unwrap() >= 0.0));
+    let again = plan("qball2.toml", &["--check", out.to_str().unwrap(), "--json"]);
+    assert_eq!(again.status.code(), Some(0));
+    let (first, second) = (document["condition_number"].as_f64(), json(&again)["condition_number"].as_f64());
+    assert!((first.unwrap() - second.unwrap()).abs() < 1e-9);
+}
+
+#[test]
+fn a_circle_is_written_with_the_way_to_it() {
+    let out = temporary("circle.toml");
+    let arguments = ["--circle", "0.5,5", "--takeoff", "0,0,1.8", "--json", "--out", out.to_str().unwrap()];
+    let output = plan("x500.toml", &arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stdout));
+    let stored = mavid::config::read_trajectory(&out).unwrap();
+    let start = stored.series.derivatives(0.0);
+    assert!((start[0][0] - 0.5).abs() < 1e-12 && (stored.series.period_s - 5.0).abs() < 1e-12);
+    let transitions = stored.transitions.unwrap();
+    assert!((transitions.takeoff[2] - 1.8).abs() < 1e-12 && transitions.to_start_s >= 1.0);
+    // faster than the limits allow
+    let fast = plan("x500.toml", &["--circle", "1.5,2", "--json"]);
+    assert_eq!(fast.status.code(), Some(3));
+    assert!(json(&fast)["first_violation"].as_str().unwrap().contains("limit"));
+}
+
+#[test]
+fn wrong_input_is_named() {
+    for (arguments, word) in [
+        (["--period", "-1"], "period: expected 0.1 to 1000 s, came -1"),
+        (["--harmonics", "0"], "harmonics: expected 4 to 20, came 0"),
+        (["--repeats", "0"], "repeats"),
+        (["--start", "9,0"], "start at x = 9"),
+        (["--start", "1"], "expected X,Y[,Z[,YAW]]"),
+        (["--circle", "-1,5"], "radius above 0 m"),
+        (["--circle", "1,-5"], "period of 0.1 to 1000 s"),
+        (["--takeoff", "1"], "expected X,Y,Z[,YAW]"),
+        (["--limits", "no-such-file.toml"], "no-such-file.toml"),
+    ] {
+        let output = plan("qball2.toml", &[&arguments[..], &["--starts", "1", "--json"]].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(output.stdout.is_empty() && message.contains(word), "{arguments:?}: {message}");
+    }
+    let limits = temporary("conflict.toml");
+    std::fs::write(&limits, "[limits]\nthrust_max_n = 10.0\n").unwrap();
+    let output = plan("qball2.toml", &["--limits", limits.to_str().unwrap(), "--starts", "1"]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("thrust_max_n = 10"), "{message}");
+}
