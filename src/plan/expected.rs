@@ -46,7 +46,7 @@ pub fn expected_standard_errors(
     };
     let flown = simulate_flight(Truth::clean(vehicle.clone()), vehicle, &reference, &settings).ok()?;
     let settings = ConditionSettings {
-        transient_s: span.left_out_s,
+        transient_s: Some(span.left_out_s),
         weak_half_width_s: noise.kernel_half_width_s,
         thrust: ThrustPreference::Commands,
         ..ConditionSettings::default()
