@@ -45,15 +45,25 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn over_seeds(title: &str, vehicle: &Vehicle, seeds: u64, start: StartPlace) -> Result<(), Box<dyn Error>> {
-    let (mut conditions, mut times_s) = (Vec::new(), Vec::new());
+    let (mut conditions, mut times_s, mut failures) = (Vec::new(), Vec::new(), Vec::new());
     for seed in 0..seeds {
         let request = PlanRequest { seed, start, ..PlanRequest::default() };
         let began = Instant::now();
-        let plan = plan(vehicle, &vehicle.limits, &request, &|| {})?;
-        times_s.push(began.elapsed().as_secs_f64());
-        conditions.push(plan.assessment.condition_number);
+        match plan(vehicle, &vehicle.limits, &request, &|| {}) {
+            Ok(plan) => {
+                times_s.push(began.elapsed().as_secs_f64());
+                conditions.push(plan.assessment.condition_number);
+            }
+            Err(error) => failures.push(format!("seed {seed}: {error}")),
+        }
     }
     let mut out = std::io::stdout().lock();
+    for failure in &failures {
+        writeln!(out, "{title}: {failure}")?;
+    }
+    if conditions.is_empty() {
+        return Ok(());
+    }
     let reached = conditions.iter().filter(|condition| **condition <= 16.20).count();
     writeln!(out, "{title}: {seeds} seeds, {} starts each, every bound kept", PlanRequest::default().starts)?;
     writeln!(out, "  cond(W) at most 16.20 in {reached} of {seeds}")?;
