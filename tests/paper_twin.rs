@@ -8,7 +8,7 @@
 )]
 
 use mavid::compare::{TenSignals, resimulated};
-use mavid::config::load_vehicle;
+use mavid::config::{load_vehicle, read_trajectory};
 use mavid::estimate::{IdentifySettings, Method, identify, inertia_of, theta_of};
 use mavid::log::Recording;
 use mavid::physics::effects::{AngularDamping, MotorLag};
@@ -18,39 +18,15 @@ use mavid::report::{ErrorTable, closed_loop_table, prediction_table};
 use mavid::signals::{Butterworth, ConditionSettings, condition};
 use mavid::simulate::NoiseLevels;
 use mavid::simulate::pid::{PidFlightSettings, simulate_pid_model_flight};
-use mavid::trajectory::{CirclePath, FourierAxis, FourierTrajectory};
+use mavid::trajectory::{CirclePath, FourierTrajectory};
 use mavid::vehicle::Vehicle;
 use nalgebra::{Matrix3, SVector};
 use std::path::Path;
 
-/// Table 2, period 10 s.
+/// Table 2, as it ships.
 fn table2() -> FourierTrajectory {
-    let axis = |a: [f64; 5], b: [f64; 5], c| FourierAxis { a: a.to_vec(), b: b.to_vec(), c };
-    FourierTrajectory {
-        period_s: 10.0,
-        axes: [
-            axis(
-                [-0.1000, -0.0386, -0.0828, -0.0698, 0.2911],
-                [-0.0712, 0.0290, 0.0218, 0.0249, -0.0304],
-                -0.0784,
-            ),
-            axis(
-                [-0.0163, 0.0418, -0.0079, 0.0147, -0.0322],
-                [0.2112, 0.0830, 0.0954, 0.1418, -0.2462],
-                0.4310,
-            ),
-            axis(
-                [-0.0338, -0.1039, 0.2224, -0.0738, -0.0108],
-                [0.0833, 0.0414, 0.2020, -0.1457, -0.0379],
-                0.9026,
-            ),
-            axis(
-                [0.1959, 0.1709, -0.0586, -0.2600, -0.0483],
-                [0.1136, -0.2140, 0.1724, -0.0428, -0.0063],
-                0.0830,
-            ),
-        ],
-    }
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/trajectories/table2.toml");
+    read_trajectory(&file).unwrap().series
 }
 
 /// Table 1 on the paper's frame.
