@@ -20,6 +20,7 @@
 
 pub mod compare;
 pub mod config;
+pub mod diagnose;
 pub mod estimate;
 pub mod frames;
 pub mod inspect;

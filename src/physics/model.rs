@@ -217,8 +217,32 @@ impl Model {
         &self,
         state: &State,
         input: &Input,
+        states: OwnStates,
+        rotors: &mut Rotors,
+    ) -> Wrench {
+        self.loads(state, input, states, rotors, Turning::Commanded)
+    }
+
+    /// Force and torque (body, about the centre of mass, gravity apart) where the rotors' relative speed
+    /// and its rate are known: `rotors` gives both and is overwritten with the thrusts after all effects.
+    /// What acts between command and speed is left out. `states` and `rates` as in [`Self::evaluate`].
+    pub fn wrench_of_rotors(
+        &self,
+        state: &State,
+        input: &Input,
+        (states, rates): (&[f64], &mut [f64]),
+        rotors: &mut Rotors,
+    ) -> Wrench {
+        self.loads(state, input, OwnStates { states, rates }, rotors, Turning::Known)
+    }
+
+    fn loads(
+        &self,
+        state: &State,
+        input: &Input,
         mut states: OwnStates,
         rotors: &mut Rotors,
+        turning: Turning,
     ) -> Wrench {
         states.rates.fill(0.0);
         let hooks = &self.by_hook;
@@ -232,9 +256,16 @@ impl Model {
             });
             at = at.with_center_of_mass(center_m);
         }
-        rotors.speed = input.speed_command;
-        rotors.acceleration_1_s = [0.0; MAX_ROTORS];
-        self.each(&hooks.rotor_speed, &mut states, |effect, own| effect.rotor_speed(&at, own, rotors));
+        match turning {
+            Turning::Commanded => {
+                rotors.speed = input.speed_command;
+                rotors.acceleration_1_s = [0.0; MAX_ROTORS];
+                self.each(&hooks.rotor_speed, &mut states, |effect, own| {
+                    effect.rotor_speed(&at, own, rotors)
+                });
+            }
+            Turning::Known => {}
+        }
         rotors.thrust_from_speed(&self.airframe);
         self.each(&hooks.rotor_thrust, &mut states, |effect, own| effect.rotor_thrust(&at, own, rotors));
         let mut wrench = at.thrust_wrench(&rotors.thrust_n);
@@ -276,6 +307,13 @@ impl Model {
             visit(active.effect, &mut own);
         }
     }
+}
+
+/// Whether the rotors turn as commanded, through the effects in between, or as is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Turning {
+    Commanded,
+    Known,
 }
 
 /// Own states of all effects and where their rates go, [`Model::own_state_count`] of each.

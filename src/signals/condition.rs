@@ -59,6 +59,8 @@ pub struct Signals {
     /// what the commands' jitter adds to the wrench if the rotors follow all of it (N, N m); they follow
     /// a share of it between none and all
     pub jitter_wrench: Option<Vec<Vector4<f64>>>,
+    /// V, where it is recorded
+    pub battery_voltage_v: Option<Vec<f64>>,
     /// what was commanded
     pub reference: Option<Reference>,
     /// where things came from and what was repaired
@@ -195,6 +197,7 @@ pub fn condition(
         rotor_thrust_n: felt.rotor_thrust_n,
         wrench: felt.wrench,
         jitter_wrench: felt.jitter_wrench,
+        battery_voltage_v: battery_voltage(recording, &grid),
         reference: reference(recording, &grid),
         quality: Quality {
             sources,
@@ -302,6 +305,13 @@ impl Motion {
         let world_acceleration = plain(chosen.world_acceleration);
         Self { attitude, rate, specific_force, world_acceleration, position, velocity, offsets }
     }
+}
+
+/// Straight lines between samples: the voltage is sent a few times a second, and sags slowly.
+fn battery_voltage(recording: &Recording, grid: &Grid) -> Option<Vec<f64>> {
+    let (_, stream) = best(recording, Quantity::BatteryVoltage, |s| s.width == 1)?;
+    let flat = super::linear_onto(stream, 0.0, grid)?;
+    flat.iter().all(|voltage| voltage.is_finite()).then_some(flat)
 }
 
 /// The commanded acceleration and yaw, by first-order hold; `None` where they were not recorded.

@@ -30,17 +30,21 @@ fn quadratic_drag_grows_with_the_square() {
 fn ground_effect_is_the_textbooks_and_fades() {
     // hubs are 19 mm over the centre of mass; one radius is 0.165 m
     let at_radii = |radii: f64| State::at_rest(Vector3::new(0.0, 0.0, radii * 0.165 - 0.019), 0.0);
-    let cheeseman = |radii| change(&GroundEffect, &[1.0, 0.0, 1.0], &at_radii(radii)).force_n.z / WEIGHT_N;
+    let cheeseman =
+        |radii| change(&GroundEffect, &[1.0, 0.0, 1.0, 1.0], &at_radii(radii)).force_n.z / WEIGHT_N;
     // Cheeseman and Bennett: 1/(1 - 1/16) - 1 = 6.67 % at one radius, 1.59 % at two, 0.39 % at four
     for (radii, gain) in [(1.0, 1.0 / 15.0), (2.0, 1.0 / 63.0), (4.0, 1.0 / 255.0)] {
         assert!((cheeseman(radii) - gain).abs() < 1e-9);
     }
-    let exponential = change(&GroundEffect, &[0.0, 0.2, 1.5], &at_radii(2.0)).force_n.z / WEIGHT_N;
+    let exponential = change(&GroundEffect, &[0.0, 0.2, 1.5, 1.0], &at_radii(2.0)).force_n.z / WEIGHT_N;
     assert!((exponential - 0.2 * (-3.0_f64).exp()).abs() < 1e-9);
     // banked to the right, the right rotors are lower and are lifted more: it rolls back, positive roll is right down
     let banked = State { attitude: UnitQuaternion::from_euler_angles(0.2, 0.0, 0.0), ..at_radii(1.5) };
-    let level = change(&GroundEffect, &[1.0, 0.0, 1.0], &at_radii(1.5));
-    assert!(change(&GroundEffect, &[1.0, 0.0, 1.0], &banked).torque_nm.x < level.torque_nm.x - 1e-3);
+    let level = change(&GroundEffect, &[1.0, 0.0, 1.0, 1.0], &at_radii(1.5));
+    assert!(change(&GroundEffect, &[1.0, 0.0, 1.0, 1.0], &banked).torque_nm.x < level.torque_nm.x - 1e-3);
+    // not so where all rotors are lifted alike
+    let alike = change(&GroundEffect, &[1.0, 0.0, 1.0, 0.0], &banked);
+    assert!(alike.torque_nm.norm() < 1e-9, "{alike:?}");
     // below the ground it stays finite
     assert!(cheeseman(-3.0).is_finite());
 }

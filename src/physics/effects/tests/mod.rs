@@ -223,7 +223,7 @@ fn effects_are_made_by_name_within_their_bounds() {
 fn an_effect_that_the_description_does_not_carry_is_refused() {
     let mut bare = vehicle();
     bare.propulsion.rotor_radius_m = None;
-    let ground = ActiveEffect::new(&GroundEffect, &[1.0, 0.0, 1.0]).unwrap();
+    let ground = ActiveEffect::new(&GroundEffect, &[1.0, 0.0, 1.0, 1.0]).unwrap();
     let refused = Model::new(&bare, vec![ground]).unwrap_err();
     assert!(refused.to_string().contains("rotor_radius"), "{refused}");
 }

@@ -1,0 +1,71 @@
+//! Force and torque of a model along a flight that was flown: recorded states, known rotor thrusts.
+
+use super::trace::Trace;
+use crate::physics::{Airframe, Input, MAX_ROTORS, Model, Rotors, Wrench};
+use crate::signals::central_difference;
+use nalgebra::Vector3;
+
+/// One thrust a rotor, N; those beyond the rotor count are zero.
+pub type Thrusts = [f64; MAX_ROTORS];
+
+/// What the rotors do at each grid instant.
+#[derive(Debug, Clone)]
+pub struct Turning {
+    /// N
+    pub thrust_n: Vec<Thrusts>,
+    /// rate of the speed relative to hover, 1/s
+    pub acceleration_1_s: Vec<Thrusts>,
+}
+
+impl Turning {
+    /// Speeds that belong to the thrusts, and their rate.
+    #[must_use]
+    pub fn new(thrust_n: Vec<Thrusts>, airframe: &Airframe, step_s: f64) -> Self {
+        let mut acceleration_1_s = vec![[0.0; MAX_ROTORS]; thrust_n.len()];
+        for rotor in 0..airframe.rotor_count() {
+            let speed: Vec<f64> =
+                thrust_n.iter().map(|thrusts| airframe.relative_speed_of_thrust(thrusts[rotor])).collect();
+            for (out, rate) in acceleration_1_s.iter_mut().zip(central_difference(&speed, step_s)) {
+                out[rotor] = rate;
+            }
+        }
+        Self { thrust_n, acceleration_1_s }
+    }
+}
+
+/// Force and torque of the model at each grid instant (body, N, N m), the effects' own states carried
+/// along. Instants that no row uses are left zero, unless states run through them.
+#[must_use]
+pub fn wrench_along(model: &Model, trace: &Trace, turning: &Turning) -> Vec<Wrench> {
+    let count = model.own_state_count();
+    let (mut states, mut rates, mut rates_before) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
+    let mut out = vec![Wrench::zero(); trace.grid.count];
+    for index in 0..trace.grid.count {
+        if count == 0 && !trace.usable[index] {
+            continue;
+        }
+        let input = Input {
+            time_s: trace.grid.time_s(index),
+            speed_command: [0.0; MAX_ROTORS],
+            wind_m_s: Vector3::zeros(),
+            battery_voltage_v: trace.voltage_v.as_ref().map(|v| v[index]),
+        };
+        let mut rotors = Rotors::still();
+        for rotor in 0..model.airframe.rotor_count() {
+            rotors.speed[rotor] = model.airframe.relative_speed_of_thrust(turning.thrust_n[index][rotor]);
+            rotors.acceleration_1_s[rotor] = turning.acceleration_1_s[index][rotor];
+        }
+        let state = &trace.states[index];
+        if index == 0 {
+            model.initial_states(state, &input, &mut states);
+        }
+        out[index] = model.wrench_of_rotors(state, &input, (&states, &mut rates), &mut rotors);
+        // Adams-Bashforth of second order
+        for ((state, rate), before) in states.iter_mut().zip(&rates).zip(&mut rates_before) {
+            let slope = if index == 0 { *rate } else { 1.5 * rate - 0.5 * *before };
+            *state += trace.grid.step_s * slope;
+            *before = *rate;
+        }
+    }
+    out
+}

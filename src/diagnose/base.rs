@@ -1,0 +1,49 @@
+//! The model so far: rigid body, actuation latency, and the effects that were accepted.
+
+use crate::physics::{ActiveEffect, Effect, Model, PhysicsError};
+use crate::signals::ActuationLatency;
+use crate::vehicle::Vehicle;
+
+/// An effect with its values, and which of them are estimated.
+#[derive(Debug, Clone)]
+pub struct Present {
+    /// which
+    pub effect: &'static dyn Effect,
+    /// in the order of [`Effect::parameters`]
+    pub values: Vec<f64>,
+    /// indices of those that are estimated
+    pub free: Vec<usize>,
+}
+
+/// What the recording is compared with.
+#[derive(Debug, Clone)]
+pub struct Base {
+    /// with mass and inertia as now estimated
+    pub vehicle: Vehicle,
+    /// between command and rotor
+    pub latency: ActuationLatency,
+    /// beside the rigid body
+    pub present: Vec<Present>,
+}
+
+impl Base {
+    /// A rigid body alone.
+    #[must_use]
+    pub fn rigid(vehicle: &Vehicle) -> Self {
+        Self { vehicle: vehicle.clone(), latency: ActuationLatency::default(), present: Vec::new() }
+    }
+
+    /// The model with its effects, and `more` of them.
+    ///
+    /// # Errors
+    /// [`PhysicsError`] where the vehicle is not physical or lacks what an effect needs.
+    pub fn model(&self, more: &[Present]) -> Result<Model, PhysicsError> {
+        let effects = self
+            .present
+            .iter()
+            .chain(more)
+            .map(|present| ActiveEffect::new(present.effect, &present.values))
+            .collect::<Result<Vec<_>, _>>()?;
+        Model::new(&self.vehicle, effects)
+    }
+}

@@ -1,0 +1,439 @@
+//! What a column explains beyond the nuisances, and how sure that is.
+//!
+//! The variance of a coefficient comes from the flight's own residual: its autocovariance channel by
+//! channel, or the autocovariance of the scores (Newey-West), whichever is larger. Physics that nothing
+//! explains enlarges it, so the evidence turns cautious where the model is wrong.
+
+use super::rows::{CHANNELS, Channels, Rows};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+use statrs::function::gamma::ln_gamma;
+use std::ops::Range;
+
+/// Rows over which the kernels of neighbouring rows overlap.
+const OVERLAP: usize = 8;
+/// Longest residual correlation allowed for, rows (2 s).
+const MOST_LAGS: usize = 40;
+/// Bartlett window of the scores, rows (1 s).
+const SCORE_LAGS: usize = 20;
+/// Blocks of the cluster test.
+const BLOCKS: usize = 12;
+
+/// Rows weighted by each channel's residual, and the nuisances' projection.
+#[derive(Debug, Clone)]
+pub struct Weighted {
+    runs: Vec<Range<usize>>,
+    rows: usize,
+    /// residual standard deviation of each channel, N and N m
+    pub sigma: [f64; CHANNELS],
+    /// nuisances and the base's own effects, weighted
+    nuisances: DMatrix<f64>,
+    precision: DVector<f64>,
+    normal: Option<Cholesky<f64, Dyn>>,
+    /// what the nuisances leave, weighted
+    pub left: DVector<f64>,
+    /// residual energy in units of sigma squared
+    pub energy: f64,
+}
+
+/// What the data say of a candidate's coefficients.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evidence {
+    /// coefficients, SI
+    pub theta: Vec<f64>,
+    /// covariance
+    pub covariance: DMatrix<f64>,
+    /// normal deviate with the probability of the coefficients' Wald statistic
+    pub z: f64,
+    /// of the cluster test over twelve blocks
+    pub p_cluster: f64,
+    /// share of the residual energy that goes
+    pub gain: f64,
+    /// energy that goes, in sigma squared
+    pub energy: f64,
+}
+
+impl Evidence {
+    /// Standard error of one coefficient.
+    #[must_use]
+    pub fn std(&self, index: usize) -> f64 {
+        self.covariance[(index, index)].max(0.0).sqrt()
+    }
+}
+
+impl Weighted {
+    /// Partials the nuisances and the base's own effects out of the residual.
+    #[must_use]
+    pub fn new(rows: &Rows) -> Self {
+        let count = rows.len();
+        let mut columns: Vec<(&Channels, Option<f64>)> =
+            rows.nuisances.iter().map(|column| (&column.values, column.prior_std)).collect();
+        columns.extend(rows.effects.iter().map(|column| (column, None)));
+        let precision = DVector::from_iterator(
+            columns.len(),
+            columns.iter().map(|(_, prior)| prior.map_or(0.0, |std| std.powi(-2))),
+        );
+        let mut sigma: [f64; CHANNELS] = std::array::from_fn(|channel| spread(&rows.residual[channel]));
+        let mut out = None;
+        for _ in 0..3 {
+            let nuisances = DMatrix::from_columns(
+                &columns.iter().map(|(column, _)| weighted(column, &sigma)).collect::<Vec<_>>(),
+            );
+            let mut normal = nuisances.tr_mul(&nuisances);
+            for (index, precision) in precision.iter().enumerate() {
+                normal[(index, index)] += precision;
+            }
+            // a column that is nowhere excited drops out
+            let most = normal.diagonal().max();
+            for index in 0..normal.nrows() {
+                if normal[(index, index)] <= 1e-14 * most {
+                    normal[(index, index)] += 1.0;
+                }
+            }
+            let normal = scaled_cholesky(&normal);
+            let mut this = Self {
+                runs: rows.runs.clone(),
+                rows: count,
+                sigma,
+                nuisances,
+                precision: precision.clone(),
+                normal,
+                left: DVector::zeros(0),
+                energy: 0.0,
+            };
+            let y = weighted(&rows.residual, &sigma);
+            this.left = this.project(&y);
+            this.energy = this.left.dot(&y);
+            for (channel, sigma) in sigma.iter_mut().enumerate() {
+                let part = this.left.rows(channel * count, count);
+                let std = (part.norm_squared() / count.max(1) as f64).sqrt();
+                if std > 0.0 {
+                    *sigma *= std;
+                }
+            }
+            out = Some(this);
+        }
+        out.unwrap_or_else(|| unreachable_empty(rows))
+    }
+
+    /// By how much slow noise is larger than rows that were independent would have it: square root of the
+    /// residual's long-run variance, mean of the channels.
+    #[must_use]
+    pub fn long_run_deviation(&self) -> f64 {
+        let gammas = self.gammas(&self.left);
+        let used: Vec<f64> = gammas
+            .iter()
+            .filter(|gamma| gamma[0] > 0.0)
+            .map(|gamma| (gamma[0] + 2.0 * gamma[1..].iter().sum::<f64>()).max(gamma[0]))
+            .collect();
+        (used.iter().sum::<f64>() / used.len().max(1) as f64).max(1.0).sqrt()
+    }
+
+    /// Coefficients of the nuisances and of the base's effects, in the order of the rows' columns, and
+    /// their covariance.
+    #[must_use]
+    pub fn coefficients(&self, rows: &Rows) -> (DVector<f64>, DMatrix<f64>) {
+        let y = weighted(&rows.residual, &self.sigma);
+        let size = self.nuisances.ncols();
+        let Some(normal) = &self.normal else {
+            return (DVector::zeros(size), DMatrix::from_diagonal_element(size, size, f64::INFINITY));
+        };
+        let theta = normal.solve(&self.nuisances.tr_mul(&y));
+        let bread = normal.inverse();
+        let prior = DMatrix::from_diagonal(&self.precision);
+        let by_residual =
+            &bread * (self.meat_of_residual(&self.nuisances, &self.gammas(&self.left)) + &prior) * &bread;
+        let by_score = &bread * (self.meat_of_scores(&self.nuisances, &self.left) + &prior) * &bread;
+        let covariance = DMatrix::from_fn(size, size, |i, j| {
+            let more = |k: usize| (by_score[(k, k)] / by_residual[(k, k)]).max(1.0).sqrt();
+            if by_residual[(i, i)] > 0.0 && by_residual[(j, j)] > 0.0 {
+                by_residual[(i, j)] * more(i) * more(j)
+            } else {
+                by_score[(i, j)]
+            }
+        });
+        (theta, covariance)
+    }
+
+    /// A column without the part that the nuisances explain.
+    fn project(&self, column: &DVector<f64>) -> DVector<f64> {
+        match &self.normal {
+            Some(normal) => column - &self.nuisances * normal.solve(&self.nuisances.tr_mul(column)),
+            None => column.clone(),
+        }
+    }
+
+    /// Columns weighted and partialled.
+    #[must_use]
+    pub fn partialled(&self, columns: &[Channels]) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
+        let plain: Vec<DVector<f64>> = columns.iter().map(|column| weighted(column, &self.sigma)).collect();
+        let partialled: Vec<DVector<f64>> = plain.iter().map(|column| self.project(column)).collect();
+        // what the nuisances explain all but entirely says nothing
+        let seen = plain.iter().zip(&partialled).all(|(plain, partialled)| {
+            plain.norm_squared() > 0.0 && partialled.norm_squared() > 1e-6 * plain.norm_squared()
+        });
+        seen.then(|| (DMatrix::from_columns(&plain), DMatrix::from_columns(&partialled)))
+    }
+
+    /// Tests columns; `None` where they cannot be told from the nuisances or from each other.
+    #[must_use]
+    pub fn test(&self, columns: &[Channels]) -> Option<Evidence> {
+        let (plain, partialled) = self.partialled(columns)?;
+        let normal = plain.tr_mul(&partialled);
+        let normal = 0.5 * (&normal + normal.transpose());
+        let inverse = scaled_cholesky(&normal)?.inverse();
+        let theta = &inverse * partialled.tr_mul(&weighted_left(self));
+        let energy = theta.dot(&(&normal * &theta));
+        let after = &self.left - &partialled * &theta;
+        let prior = self.prior_part(&plain);
+        let gamma = self.gammas(&after);
+        let by_residual = &inverse * (self.meat_of_residual(&partialled, &gamma) + &prior) * &inverse;
+        let by_score = &inverse * (self.meat_of_scores(&partialled, &after) + &prior) * &inverse;
+        let covariance = if by_residual.trace_of_scaled(&normal) > by_score.trace_of_scaled(&normal) {
+            by_residual
+        } else {
+            by_score
+        };
+        let size = columns.len();
+        let wald = covariance.clone().cholesky().map_or(0.0, |c| theta.dot(&c.solve(&theta)));
+        Some(Evidence {
+            z: normal_deviate(wald, size),
+            p_cluster: self.cluster(&inverse, &partialled, &after, &theta),
+            gain: energy / self.energy.max(f64::MIN_POSITIVE),
+            energy,
+            theta: theta.iter().copied().collect(),
+            covariance,
+        })
+    }
+
+    /// Normal deviate of the columns from `first` on, given those before.
+    #[must_use]
+    pub fn conditional(&self, columns: &[Channels], first: usize) -> Option<f64> {
+        let all = self.test(columns)?;
+        let size = columns.len() - first;
+        let theta = DVector::from_iterator(size, all.theta[first..].iter().copied());
+        let covariance = all.covariance.view((first, first), (size, size)).into_owned();
+        Some(normal_deviate(theta.dot(&covariance.cholesky()?.solve(&theta)), size))
+    }
+
+    /// What the spread of nuisances that are known beforehand adds to the scores' variance.
+    fn prior_part(&self, plain: &DMatrix<f64>) -> DMatrix<f64> {
+        let size = plain.ncols();
+        let Some(normal) = &self.normal else { return DMatrix::zeros(size, size) };
+        // X' M Z = X'Z A^-1 P
+        let cross = normal.solve(&self.nuisances.tr_mul(plain));
+        let mut out = DMatrix::zeros(size, size);
+        for (index, precision) in self.precision.iter().enumerate().filter(|(_, p)| **p > 0.0) {
+            let row = cross.row(index);
+            out += row.transpose() * row * *precision;
+        }
+        out
+    }
+
+    /// Autocovariance of each channel up to the first lag where all have died down, at least the
+    /// kernels' overlap.
+    fn gammas(&self, residual: &DVector<f64>) -> Vec<Vec<f64>> {
+        let at = |channel, lag| self.autocovariance(residual, channel, lag);
+        let zero: Vec<f64> = (0..CHANNELS).map(|channel| at(channel, 0)).collect();
+        let lags = (OVERLAP..MOST_LAGS)
+            .find(|&lag| {
+                (0..CHANNELS)
+                    .all(|channel| zero[channel] <= 0.0 || at(channel, lag).abs() < 0.05 * zero[channel])
+            })
+            .unwrap_or(MOST_LAGS);
+        (0..CHANNELS).map(|channel| (0..=lags).map(|lag| at(channel, lag)).collect()).collect()
+    }
+
+    fn autocovariance(&self, residual: &DVector<f64>, channel: usize, lag: usize) -> f64 {
+        let series = residual.rows(channel * self.rows, self.rows);
+        let (mut sum, mut count) = (0.0, 0usize);
+        for run in &self.runs {
+            for t in run.start..run.end.saturating_sub(lag) {
+                sum += series[t] * series[t + lag];
+                count += 1;
+            }
+        }
+        if count == 0 { 0.0 } else { sum / count as f64 }
+    }
+
+    /// `sum_c sum_|l|<=L gamma_c(l) sum_t x_c(t) x_c(t+l)'`.
+    fn meat_of_residual(&self, columns: &DMatrix<f64>, gammas: &[Vec<f64>]) -> DMatrix<f64> {
+        let mut smeared = DMatrix::<f64>::zeros(columns.nrows(), columns.ncols());
+        for (channel, gamma) in gammas.iter().enumerate() {
+            let lags = gamma.len() - 1;
+            let offset = channel * self.rows;
+            for (mut out, column) in smeared.column_iter_mut().zip(columns.column_iter()) {
+                for run in &self.runs {
+                    for t in run.clone() {
+                        let first = t.saturating_sub(lags).max(run.start);
+                        let last = (t + lags).min(run.end - 1);
+                        let sum: f64 =
+                            (first..=last).map(|s| gamma[s.abs_diff(t)] * column[offset + s]).sum();
+                        out[offset + t] = sum;
+                    }
+                }
+            }
+        }
+        let meat = columns.tr_mul(&smeared);
+        0.5 * (&meat + meat.transpose())
+    }
+
+    /// Score of each row: all channels together.
+    fn scores(&self, columns: &DMatrix<f64>, residual: &DVector<f64>) -> DMatrix<f64> {
+        let mut scores = DMatrix::<f64>::zeros(columns.ncols(), self.rows);
+        for channel in 0..CHANNELS {
+            let offset = channel * self.rows;
+            for (index, column) in columns.column_iter().enumerate() {
+                for row in 0..self.rows {
+                    scores[(index, row)] += column[offset + row] * residual[offset + row];
+                }
+            }
+        }
+        scores
+    }
+
+    fn meat_of_scores(&self, columns: &DMatrix<f64>, residual: &DVector<f64>) -> DMatrix<f64> {
+        let scores = self.scores(columns, residual);
+        let size = columns.ncols();
+        let mut meat = DMatrix::<f64>::zeros(size, size);
+        for run in &self.runs {
+            for lag in 0..=SCORE_LAGS {
+                let length = run.len().saturating_sub(lag);
+                if length == 0 {
+                    continue;
+                }
+                let product: DMatrix<f64> =
+                    scores.columns(run.start, length) * scores.columns(run.start + lag, length).transpose();
+                let bartlett = 1.0 - lag as f64 / (SCORE_LAGS as f64 + 1.0);
+                if lag == 0 {
+                    meat += product;
+                } else {
+                    meat += bartlett * (&product + product.transpose());
+                }
+            }
+        }
+        meat
+    }
+
+    /// F test with the scores of twelve stretches of the flight as replicates.
+    fn cluster(
+        &self,
+        inverse: &DMatrix<f64>,
+        columns: &DMatrix<f64>,
+        residual: &DVector<f64>,
+        theta: &DVector<f64>,
+    ) -> f64 {
+        let scores = self.scores(columns, residual);
+        let size = columns.ncols();
+        let mut meat = DMatrix::<f64>::zeros(size, size);
+        for block in 0..BLOCKS {
+            let (from, to) = (self.rows * block / BLOCKS, self.rows * (block + 1) / BLOCKS);
+            let sum = scores.columns(from, to - from).column_sum();
+            meat += &sum * sum.transpose();
+        }
+        let blocks = BLOCKS as f64;
+        let covariance = inverse * meat * inverse * (blocks / (blocks - 1.0));
+        let Some(factor) = covariance.cholesky() else { return 1.0 };
+        let f = theta.dot(&factor.solve(theta)) / size as f64 * (blocks - size as f64) / (blocks - 1.0);
+        FisherSnedecor::new(size as f64, blocks - size as f64).map_or(1.0, |law| law.sf(f))
+    }
+}
+
+/// Sum of a covariance's diagonal in units of the information about each parameter.
+trait TraceOfScaled {
+    fn trace_of_scaled(&self, normal: &DMatrix<f64>) -> f64;
+}
+
+impl TraceOfScaled for DMatrix<f64> {
+    fn trace_of_scaled(&self, normal: &DMatrix<f64>) -> f64 {
+        (0..self.nrows()).map(|i| self[(i, i)] * normal[(i, i)]).sum()
+    }
+}
+
+fn weighted_left(weighted: &Weighted) -> DVector<f64> {
+    weighted.left.clone()
+}
+
+fn unreachable_empty(rows: &Rows) -> Weighted {
+    Weighted {
+        runs: rows.runs.clone(),
+        rows: rows.len(),
+        sigma: [1.0; CHANNELS],
+        nuisances: DMatrix::zeros(0, 0),
+        precision: DVector::zeros(0),
+        normal: None,
+        left: DVector::zeros(0),
+        energy: 0.0,
+    }
+}
+
+/// Channel after channel, each over its sigma.
+fn weighted(column: &Channels, sigma: &[f64; CHANNELS]) -> DVector<f64> {
+    let count = column[0].len();
+    DVector::from_iterator(
+        CHANNELS * count,
+        column.iter().zip(sigma).flat_map(|(values, sigma)| {
+            let weight = if *sigma > 0.0 { 1.0 / sigma } else { 0.0 };
+            values.iter().map(move |value| value * weight)
+        }),
+    )
+}
+
+/// Cholesky of a symmetric matrix whose diagonal may span many decades.
+fn scaled_cholesky(matrix: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
+    matrix.clone().cholesky()
+}
+
+fn spread(values: &[f64]) -> f64 {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+/// The normal deviate that is exceeded (on both sides) as seldom as `wald` by a chi square of `size`
+/// degrees of freedom; by logarithms, so that nothing underflows.
+#[must_use]
+pub fn normal_deviate(wald: f64, size: usize) -> f64 {
+    if !(wald > 0.0) {
+        return 0.0;
+    }
+    if size == 1 {
+        return wald.sqrt();
+    }
+    let target = ln_chi_square_sf(wald, size as f64);
+    // ln P(|Z| > z)
+    let two_sided = |z: f64| ln_chi_square_sf(z * z, 1.0);
+    let (mut low, mut high) = (0.0, wald.sqrt());
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if two_sided(middle) > target { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// Logarithm of the chance that a chi square of `k` degrees of freedom exceeds `x`.
+fn ln_chi_square_sf(x: f64, k: f64) -> f64 {
+    let (a, h) = (0.5 * k, 0.5 * x);
+    if h < a + 30.0 {
+        let upper = statrs::function::gamma::checked_gamma_ur(a, h).unwrap_or(0.0);
+        return upper.max(f64::MIN_POSITIVE).ln();
+    }
+    // continued fraction of the upper incomplete gamma function, by Lentz's method
+    let mut b = h + 1.0 - a;
+    let mut c = f64::MAX.sqrt();
+    let mut d = 1.0 / b;
+    let mut fraction = d;
+    for i in 1..200 {
+        let n = f64::from(i);
+        let term = -n * (n - a);
+        b += 2.0;
+        d = 1.0 / (term * d + b);
+        c = b + term / c;
+        let factor = d * c;
+        fraction *= factor;
+        if (factor - 1.0).abs() < 1e-12 {
+            break;
+        }
+    }
+    a * h.ln() - h - ln_gamma(a) + fraction.ln()
+}

@@ -1,0 +1,286 @@
+//! The whole method: search, lack of fit, verdict.
+
+use super::candidates::Candidate;
+use super::confusable::confusable_with;
+use super::explanation::{Confusable, DetectionLimit, Explanation, Named, NamedParameter, Strength, Verdict};
+use super::harmonics::{LackOfFit, lack_of_fit, period_s};
+use super::latency::LatencyFinding;
+use super::rows::CHANNELS;
+use super::search::{Fitted, Gates, Search, Step, Tested, search};
+use super::trace::{Trace, TraceError};
+use crate::physics::PhysicsError;
+use crate::physics::effects::by_id;
+use crate::signals::Signals;
+use crate::vehicle::Vehicle;
+
+/// How a recording is explained.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExplainSettings {
+    /// s, half width of the weak form's test function
+    pub half_width_s: f64,
+    /// what is asked of a name
+    pub gates: Gates,
+}
+
+impl Default for ExplainSettings {
+    fn default() -> Self {
+        Self { half_width_s: 0.2, gates: Gates::default() }
+    }
+}
+
+/// Why nothing can be explained.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ExplainError {
+    /// streams are missing
+    #[error(transparent)]
+    Trace(#[from] TraceError),
+    /// the vehicle is not physical
+    #[error(transparent)]
+    Physics(#[from] PhysicsError),
+    /// too little flight
+    #[error(
+        "{seconds:.1} s of flight can be used, at least {needed_s:.0} s are needed to tell physics from noise"
+    )]
+    TooShort {
+        /// s that can be used
+        seconds: f64,
+        /// s needed
+        needed_s: f64,
+    },
+}
+
+/// Fewest rows that twelve blocks make sense of.
+const LEAST_ROWS: usize = 120;
+/// Chance below which something is left at the harmonics.
+const LACK_P: f64 = 1e-6;
+/// and it must be larger than this in force (of gravity) or torque (of the torque's own rms).
+const LACK_FORCE_G: f64 = 0.002;
+const LACK_TORQUE: f64 = 0.1;
+/// A lag or delay is named beyond sampling and a fast motor, s.
+const FAST_MOTOR_S: f64 = 0.004;
+/// A mounting tilt is a nuisance below half a degree, rad.
+const TILT_NUISANCE_RAD: f64 = 0.0087;
+/// Rivals that explain nearly as much as what was taken.
+const RIVAL: f64 = 0.93;
+
+/// Explains one or more flights of a vehicle.
+///
+/// # Errors
+/// [`ExplainError`] where streams are missing or too little was flown.
+pub fn explain(
+    flights: &[Signals],
+    vehicle: &Vehicle,
+    settings: &ExplainSettings,
+) -> Result<Explanation, ExplainError> {
+    let traces: Vec<Trace> = flights
+        .iter()
+        .map(|signals| Trace::new(signals, vehicle, settings.half_width_s))
+        .collect::<Result<_, _>>()?;
+    let rows: usize = traces.iter().map(Trace::rows).sum();
+    if rows < LEAST_ROWS {
+        let (seconds, needed_s) = (rows as f64 * 0.05, LEAST_ROWS as f64 * 0.05);
+        return Err(ExplainError::TooShort { seconds, needed_s });
+    }
+    let found = search(&traces, vehicle, &settings.gates)?;
+    let lack = lacks(&traces, &found.after);
+    Ok(judge(&traces, vehicle, found, lack))
+}
+
+/// The harmonic test on each flight that repeats; the worst of them.
+fn lacks(traces: &[Trace], fitted: &Fitted) -> Option<LackOfFit> {
+    let (rows, left) = (fitted.rows.len(), fitted.weighted.left.as_slice());
+    let mut from = 0;
+    let mut worst: Option<LackOfFit> = None;
+    for trace in traces {
+        let to = from + trace.rows();
+        let time_s = &fitted.rows.time_s[from..to];
+        if let Some(period_s) = flown_period_s(trace, time_s) {
+            let residual: [&[f64]; CHANNELS] =
+                std::array::from_fn(|channel| &left[channel * rows + from..channel * rows + to]);
+            let found = lack_of_fit(time_s, residual, period_s);
+            if let Some(found) = found
+                && worst.as_ref().is_none_or(|worst| found.p_least() < worst.p_least())
+            {
+                worst = Some(found);
+            }
+        }
+        from = to;
+    }
+    worst
+}
+
+/// By what is measured of the motion.
+fn flown_period_s(trace: &Trace, time_s: &[f64]) -> Option<f64> {
+    let series =
+        |pick: &dyn Fn(usize) -> f64| -> Vec<f64> { trace.centers.iter().map(|&c| pick(c)).collect() };
+    let mut motion: Vec<Vec<f64>> = Vec::new();
+    for axis in 0..3 {
+        if trace.known.velocity {
+            motion.push(series(&|center| trace.states[center].velocity_m_s[axis]));
+        } else {
+            motion.push(series(&|center| trace.states[center].rates_rad_s[axis]));
+        }
+    }
+    let motion: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
+    period_s(time_s, &motion)
+}
+
+/// Whether what is left at the harmonics is certain and large enough to matter.
+fn is_lacking(lack: &LackOfFit, fitted: &Fitted) -> bool {
+    let body = &fitted.base.vehicle;
+    let weight_n = body.body.mass_kg * body.gravity_m_s2;
+    (0..CHANNELS).any(|channel| {
+        let size = lack.excess_rms[channel] * fitted.weighted.sigma[channel];
+        let least = if channel < 3 {
+            LACK_FORCE_G * weight_n
+        } else {
+            LACK_TORQUE * fitted.rows.torque_rms[channel - 3]
+        };
+        lack.p_value[channel] * (CHANNELS as f64) < LACK_P && size > least
+    })
+}
+
+/// Verdict and names.
+fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, lack: Option<LackOfFit>) -> Explanation {
+    let mut named = names(traces, &found);
+    named.extend(latency_name(traces, vehicle, &found));
+    let lacking = lack.as_ref().is_some_and(|lack| is_lacking(lack, &found.after));
+    let excess = lack.as_ref().map_or(0.0, |lack| lack.excess_energy);
+    let explained = explained_energy(&found);
+    let verdict = match (named.is_empty(), lacking) {
+        (true, false) => Verdict::NothingMissing,
+        (true, true) => Verdict::Unexplained,
+        (false, false) => Verdict::Explained,
+        (false, true) if excess > explained => Verdict::Unexplained,
+        (false, true) => Verdict::PartlyExplained,
+    };
+    let closest = if verdict == Verdict::Unexplained { std::mem::take(&mut named) } else { Vec::new() };
+    Explanation { verdict, named, closest, limits: limits(&found.last), lack_of_fit: lack, search: found }
+}
+
+/// Energy that the accepted effects took away, in sigma squared of the final residual.
+fn explained_energy(found: &Search) -> f64 {
+    let (before, after) = (&found.before.weighted, &found.after.weighted);
+    let rows = found.after.rows.len() as f64;
+    (0..CHANNELS)
+        .filter(|&channel| after.sigma[channel] > 0.0)
+        .map(|channel| rows * ((before.sigma[channel] / after.sigma[channel]).powi(2) - 1.0))
+        .sum()
+}
+
+/// One name an accepted effect.
+fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
+    let fitted = &found.after;
+    let mut index = fitted.rows.nuisances.len();
+    let mut out = Vec::new();
+    for (place, present) in fitted.base.present.iter().enumerate() {
+        let mut parameters = Vec::new();
+        for (slot, parameter) in present.effect.parameters().iter().enumerate() {
+            let free = present.free.contains(&slot);
+            let std = if free {
+                index += 1;
+                fitted.covariance[(index - 1, index - 1)].max(0.0).sqrt()
+            } else {
+                0.0
+            };
+            if free || present.values[slot] != 0.0 {
+                let value = present.values[slot];
+                parameters.push(NamedParameter { name: parameter.name, value, std, unit: parameter.unit });
+            }
+        }
+        let small_tilt = present.effect.id() == "thrust_tilt"
+            && present.values.iter().map(|v| v * v).sum::<f64>().sqrt() < TILT_NUISANCE_RAD;
+        if small_tilt {
+            continue;
+        }
+        let step = found.steps.iter().find(|step| {
+            step.taken.candidate.parts.iter().any(|part| part.effect.id() == present.effect.id())
+        });
+        out.push(Named {
+            id: present.effect.id(),
+            sentence: present.effect.sentence(),
+            parameters,
+            strength: step.map_or_else(Strength::default, strength),
+            confusable_with: step.map_or_else(Vec::new, |step| confusable(traces, found, place, step)),
+        });
+    }
+    out
+}
+
+fn strength(step: &Step) -> Strength {
+    let evidence = &step.taken.evidence;
+    Strength { z: evidence.z, gain: evidence.gain, energy: evidence.energy, count: evidence.theta.len() }
+}
+
+/// Effects that explain as much, or that this flight cannot tell from it.
+fn confusable(traces: &[Trace], found: &Search, place: usize, step: &Step) -> Vec<Confusable> {
+    let id = found.after.base.present[place].effect.id();
+    let mut out = confusable_with(traces, &found.after, place, &found.last);
+    for rival in &step.rivals {
+        let close = rival.evidence.energy > RIVAL * step.taken.evidence.energy;
+        let known = out.iter().any(|confusable| confusable.id == rival.candidate.id);
+        if close && !known && rival.candidate.id != id {
+            out.push(Confusable { id: rival.candidate.id, distinguishability: None });
+        }
+    }
+    out
+}
+
+/// A lag or delay beyond what sampling and a fast motor make.
+fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<Named> {
+    let LatencyFinding { total_s, std_s, parts, against_lag, against_delay } = found.latency;
+    let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
+    let known_s = vehicle.propulsion.time_constant_s.unwrap_or(0.0);
+    let ordinary_s = known_s + FAST_MOTOR_S + 0.5 * period_s;
+    if total_s - ordinary_s < 4.0 * std_s {
+        return None;
+    }
+    let is_lag = parts.lag_s > parts.delay_s;
+    let (id, other, name, value) = if is_lag {
+        ("motor_lag", "transport_delay", "time_constant", parts.lag_s)
+    } else {
+        ("transport_delay", "motor_lag", "delay", parts.delay_s)
+    };
+    let told_apart = if is_lag { against_delay } else { against_lag } > 4.0;
+    let z = (total_s - ordinary_s) / std_s;
+    Some(Named {
+        id,
+        sentence: by_id(id)?.sentence(),
+        parameters: vec![NamedParameter { name, value, std: std_s, unit: "s" }],
+        strength: Strength { z, gain: 0.0, energy: z * z, count: 1 },
+        confusable_with: if told_apart {
+            Vec::new()
+        } else {
+            vec![Confusable { id: other, distinguishability: Some(against_lag.max(against_delay)) }]
+        },
+    })
+}
+
+/// The smallest coefficient that this flight would have shown, for every candidate that was not named.
+fn limits(last: &[Tested]) -> Vec<DetectionLimit> {
+    let mut out: Vec<DetectionLimit> = Vec::new();
+    for tested in last.iter().filter(|tested| tested.candidate.through.is_none()) {
+        let Candidate { id, parts, .. } = &tested.candidate;
+        let mut index = 0;
+        for part in parts {
+            for &free in &part.free {
+                let parameter = &part.effect.parameters()[free];
+                let limit = 4.0 * tested.evidence.std(index);
+                index += 1;
+                let same = out.iter_mut().find(|l| l.id == *id && l.parameter == parameter.name);
+                match same {
+                    Some(same) => same.limit = same.limit.max(limit),
+                    None => {
+                        out.push(DetectionLimit {
+                            id,
+                            parameter: parameter.name,
+                            limit,
+                            unit: parameter.unit,
+                        });
+                    }
+                }
+            }
+        }
+    }
+    out
+}

@@ -1,0 +1,182 @@
+//! Lack of fit without a library: what is left at the trajectory's harmonics against the bins beside them.
+//!
+//! A trajectory that is flown several times puts everything that the model lacks at multiples of its
+//! frequency; noise lies between them as well. It cannot see what does not repeat.
+
+use super::rows::CHANNELS;
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
+use std::f64::consts::TAU;
+
+/// Highest frequency that is looked at, Hz.
+const HIGHEST_HZ: f64 = 2.0;
+/// Fewest periods.
+const LEAST_PERIODS: usize = 3;
+/// Autocorrelation at one period that makes a flight periodic.
+const PERIODIC: f64 = 0.5;
+/// Shortest period that is looked for, s.
+const SHORTEST_S: f64 = 3.0;
+
+/// One harmonic of one channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Line {
+    /// Hz
+    pub frequency_hz: f64,
+    /// power at it over that of its neighbours
+    pub ratio: f64,
+    /// energy beyond the neighbours', in sigma squared of the channel
+    pub excess: f64,
+}
+
+/// The test's outcome.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LackOfFit {
+    /// s
+    pub period_s: f64,
+    /// whole periods used
+    pub periods: usize,
+    /// chance of as much at the harmonics where only noise is left, each channel
+    pub p_value: [f64; CHANNELS],
+    /// root mean square at the harmonics beyond the noise, each channel, in its sigma
+    pub excess_rms: [f64; CHANNELS],
+    /// each channel's lines
+    pub lines: [Vec<Line>; CHANNELS],
+    /// energy at the harmonics beyond the noise, all channels, sigma squared
+    pub excess_energy: f64,
+}
+
+impl LackOfFit {
+    /// Smallest chance over the channels, times their number.
+    #[must_use]
+    pub fn p_least(&self) -> f64 {
+        (self.p_value.iter().fold(1.0_f64, |least, p| least.min(*p)) * CHANNELS as f64).min(1.0)
+    }
+}
+
+/// The period of a repeated trajectory by the autocorrelation of `signals` (rows at `time_s`); `None` where
+/// nothing repeats at least [`LEAST_PERIODS`] times.
+#[must_use]
+pub fn period_s(time_s: &[f64], signals: &[&[f64]]) -> Option<f64> {
+    let (first, last) = (*time_s.first()?, *time_s.last()?);
+    let step_s = median_step(time_s)?;
+    let mut index = Vec::with_capacity(time_s.len());
+    let (mut slot, mut at_s) = (0usize, first);
+    for time in time_s {
+        while at_s + 0.5 * step_s < *time {
+            at_s += step_s;
+            slot += 1;
+        }
+        index.push(slot);
+    }
+    let count = slot + 1;
+    let longest_s = (last - first) / LEAST_PERIODS as f64;
+    let series: Vec<Vec<f64>> = signals.iter().map(|signal| onto(&index, signal, count)).collect();
+    let correlation = |lag: usize| {
+        let (mut sum, mut power) = (0.0, 0.0);
+        for series in &series {
+            let scale: f64 = series.iter().map(|v| v * v).sum::<f64>() / count as f64;
+            if scale <= 0.0 {
+                continue;
+            }
+            let product: f64 = series.iter().zip(&series[lag..]).map(|(a, b)| a * b).sum();
+            sum += product / scale;
+            power += (count - lag) as f64;
+        }
+        if power > 0.0 { sum / power } else { 0.0 }
+    };
+    let lags: Vec<(f64, f64)> = (1..count)
+        .map(|lag| (lag, lag as f64 * step_s))
+        .filter(|(_, lag_s)| (SHORTEST_S..=longest_s).contains(lag_s))
+        .map(|(lag, lag_s)| (lag_s, correlation(lag)))
+        .collect();
+    let best = lags.iter().map(|(_, r)| *r).fold(0.0, f64::max);
+    if best < PERIODIC {
+        return None;
+    }
+    // the first peak that is nearly as high: its multiples are as high
+    let peak = (1..lags.len().saturating_sub(1))
+        .find(|&i| lags[i].1 > 0.9 * best && lags[i].1 >= lags[i - 1].1 && lags[i].1 >= lags[i + 1].1)?;
+    let (before, at, after) = (lags[peak - 1].1, lags[peak].1, lags[peak + 1].1);
+    let curve = before - 2.0 * at + after;
+    let shift = if curve < 0.0 { 0.5 * (before - after) / curve } else { 0.0 };
+    Some(lags[peak].0 + shift * step_s)
+}
+
+fn median_step(time_s: &[f64]) -> Option<f64> {
+    let mut steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().filter(|step| *step > 0.0)
+}
+
+/// Mean-free, zero where nothing was measured.
+fn onto(index: &[usize], signal: &[f64], count: usize) -> Vec<f64> {
+    let mean = signal.iter().sum::<f64>() / signal.len().max(1) as f64;
+    let mut out = vec![0.0; count];
+    for (slot, value) in index.iter().zip(signal) {
+        out[*slot] = value - mean;
+    }
+    out
+}
+
+/// Tests the residual (one series a channel, in units of its sigma) of one flight.
+#[must_use]
+pub fn lack_of_fit(time_s: &[f64], residual: [&[f64]; CHANNELS], period_s: f64) -> Option<LackOfFit> {
+    let (first, last) = (*time_s.first()?, *time_s.last()?);
+    let step_s = median_step(time_s)?;
+    let mut periods = 0usize;
+    while (periods + 1) as f64 * period_s <= last - first + step_s {
+        periods += 1;
+    }
+    if periods < LEAST_PERIODS {
+        return None;
+    }
+    // the last whole periods: the beginning may hold the way to the start
+    let from_s = last + step_s - periods as f64 * period_s;
+    let used: Vec<usize> = (0..time_s.len()).filter(|&row| time_s[row] >= from_s - 1e-9).collect();
+    let neighbours: &[i32] = if periods > LEAST_PERIODS { &[-2, -1, 1, 2] } else { &[-1, 1] };
+    let law = FisherSnedecor::new(2.0, 2.0 * neighbours.len() as f64).ok()?;
+    let mut out = LackOfFit {
+        period_s,
+        periods,
+        p_value: [1.0; CHANNELS],
+        excess_rms: [0.0; CHANNELS],
+        lines: Default::default(),
+        excess_energy: 0.0,
+    };
+    let count = used.len() as f64;
+    for (channel, series) in residual.iter().enumerate() {
+        let mean = used.iter().map(|&row| series[row]).sum::<f64>() / count;
+        let power = |frequency_hz: f64| {
+            let (mut re, mut im) = (0.0, 0.0);
+            for &row in &used {
+                let (s, c) = (TAU * frequency_hz * (time_s[row] - from_s)).sin_cos();
+                re += (series[row] - mean) * c;
+                im += (series[row] - mean) * s;
+            }
+            re * re + im * im
+        };
+        let (mut statistic, mut harmonics, mut excess) = (0.0, 0u32, 0.0);
+        let mut harmonic = 1.0;
+        while harmonic / period_s <= HIGHEST_HZ {
+            let frequency_hz = harmonic / period_s;
+            let spacing_hz = 1.0 / (periods as f64 * period_s);
+            let noise = neighbours
+                .iter()
+                .map(|shift| power(frequency_hz + f64::from(*shift) * spacing_hz))
+                .sum::<f64>()
+                / neighbours.len() as f64;
+            let at = power(frequency_hz);
+            let ratio = if noise > 0.0 { at / noise } else { 0.0 };
+            statistic -= 2.0 * law.sf(ratio).max(1e-300).ln();
+            harmonics += 1;
+            let beyond = 2.0 * (at - noise) / count;
+            excess += beyond;
+            out.lines[channel].push(Line { frequency_hz, ratio, excess: beyond });
+            harmonic += 1.0;
+        }
+        out.p_value[channel] =
+            ChiSquared::new(2.0 * f64::from(harmonics)).map_or(1.0, |law| law.sf(statistic));
+        out.excess_rms[channel] = (excess.max(0.0) / count).sqrt();
+        out.excess_energy += excess.max(0.0);
+    }
+    Some(out)
+}

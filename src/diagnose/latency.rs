@@ -1,0 +1,94 @@
+//! Between command and rotor: how much, and whether it is a lag or a delay.
+//!
+//! A first-order lag makes the command `M + tau M'` exactly, a pure delay `M + d M' + d^2/2 M'' ...`, where M is
+//! the torque that the motion took. So the second-order term tells them apart; the residual's size does not,
+//! because a lag also smooths noise and wins for that reason.
+
+use super::base::Base;
+use super::evidence::Weighted;
+use super::rows::{Nuisance, Rows};
+use super::search::{Fitted, fit};
+use super::trace::Trace;
+use crate::physics::PhysicsError;
+use crate::signals::ActuationLatency;
+
+/// What the latency consists of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LatencyFinding {
+    /// delay and lag together, s
+    pub total_s: f64,
+    /// its standard error, s
+    pub std_s: f64,
+    /// how it was shared out
+    pub parts: ActuationLatency,
+    /// standard deviations by which a pure lag misses the second-order term
+    pub against_lag: f64,
+    /// by which a pure delay misses it
+    pub against_delay: f64,
+}
+
+/// Latencies below this need no kind: sampling and a fast motor together are as long, s.
+const LEAST_S: f64 = 0.010;
+/// A kind is refused beyond this many standard deviations.
+const REFUSED: f64 = 6.0;
+
+/// Fits the base with the kind of latency that the second-order term shows.
+///
+/// # Errors
+/// [`PhysicsError`] where the base is not physical.
+pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFinding), PhysicsError> {
+    let fitted = fit(flights, base)?;
+    let mut finding = finding_of(&fitted);
+    if finding.total_s < LEAST_S.max(4.0 * finding.std_s) {
+        return Ok((fitted, finding));
+    }
+    let Some((against_lag, against_delay, delay_s)) = second_order(flights, &fitted)? else {
+        return Ok((fitted, finding));
+    };
+    let mut base = fitted.base.clone();
+    let total_s = finding.total_s;
+    base.latency = if against_lag > REFUSED && against_delay > REFUSED && (0.0..total_s).contains(&delay_s) {
+        ActuationLatency { delay_s, lag_s: total_s - delay_s }
+    } else if against_lag < against_delay {
+        ActuationLatency { delay_s: 0.0, lag_s: total_s }
+    } else {
+        ActuationLatency { delay_s: total_s, lag_s: 0.0 }
+    };
+    let fitted = fit(flights, base)?;
+    finding = LatencyFinding { against_lag, against_delay, ..finding_of(&fitted) };
+    Ok((fitted, finding))
+}
+
+/// Total and standard error of a fit's latency.
+#[must_use]
+pub fn finding_of(fitted: &Fitted) -> LatencyFinding {
+    let index = fitted.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Latency);
+    let std_s = index.map_or(f64::INFINITY, |index| fitted.covariance[(index, index)].max(0.0).sqrt());
+    LatencyFinding {
+        total_s: fitted.base.latency.total_s(),
+        std_s,
+        parts: fitted.base.latency,
+        against_lag: 0.0,
+        against_delay: 0.0,
+    }
+}
+
+/// Standard deviations against a lag and against a delay, and the delay if it is some of both.
+fn second_order(flights: &[Trace], fitted: &Fitted) -> Result<Option<(f64, f64, f64)>, PhysicsError> {
+    let mut base = fitted.base.clone();
+    base.latency = ActuationLatency::default();
+    let mut rows = Rows::new(flights, &base)?;
+    let Some(place) = rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Latency) else {
+        return Ok(None);
+    };
+    let mut first = rows.nuisances.remove(place).values;
+    first[2].fill(0.0);
+    let second = rows.latency_curvature(flights, &base);
+    let Some(evidence) = Weighted::new(&rows).test(&[first, second]) else { return Ok(None) };
+    let (c1, c2) = (evidence.theta[0], evidence.theta[1]);
+    let (s1, s2) = (evidence.std(0), evidence.std(1));
+    // c2 - c1^2/2 takes its error from both
+    let spread = (s2 * s2 + c1 * c1 * s1 * s1 - 2.0 * c1 * evidence.covariance[(0, 1)]).max(1e-30).sqrt();
+    let delay_s = c1 - (c1 * c1 - 2.0 * c2).max(0.0).sqrt();
+    Ok(Some(((c2 / s2).abs(), ((c2 - 0.5 * c1 * c1) / spread).abs(), delay_s)))
+}

@@ -1,0 +1,26 @@
+//! Where simulation and recording differ, which physics was left out, and the better model.
+
+mod along;
+mod base;
+mod candidates;
+mod confusable;
+mod evidence;
+mod explain;
+mod explanation;
+mod harmonics;
+mod latency;
+mod rows;
+mod search;
+mod trace;
+
+pub use along::{Thrusts, Turning, wrench_along};
+pub use base::{Base, Present};
+pub use candidates::{Candidate, candidates};
+pub use evidence::{Evidence, Weighted, normal_deviate};
+pub use explain::{ExplainError, ExplainSettings, explain};
+pub use explanation::{Confusable, DetectionLimit, Explanation, Named, NamedParameter, Strength, Verdict};
+pub use harmonics::{LackOfFit, Line, lack_of_fit, period_s};
+pub use latency::{LatencyFinding, fit_latency};
+pub use rows::{CHANNEL_NAMES, CHANNELS, Channels, Nuisance, NuisanceColumn, Rows};
+pub use search::{Fitted, Gates, Search, Step, Tested, fit, search};
+pub use trace::{Known, Trace, TraceError};

@@ -1,0 +1,388 @@
+//! The recording against the model, in six channels of the weak form, and how each parameter moves them.
+//!
+//! Each equation has its noisiest signal alone on the left: specific force in the three force rows, the
+//! commanded torque in the three torque rows. A parameter's column is built from the signals that are not
+//! on the left of its row: rotor thrusts by the commands for forces, by the measured motion for torques.
+
+use super::along::{Turning, wrench_along};
+use super::base::{Base, Present};
+use super::trace::Trace;
+use crate::physics::{Model, PhysicsError, Wrench};
+use crate::regression::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor};
+use crate::signals::central_difference;
+use nalgebra::{Vector3, Vector4};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Force on body x, y, z (N), torque about them (N m).
+pub const CHANNELS: usize = 6;
+/// Names of the channels, as in JSON.
+pub const CHANNEL_NAMES: [&str; CHANNELS] =
+    ["force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z"];
+
+/// One value a row and channel.
+pub type Channels = [Vec<f64>; CHANNELS];
+
+/// What a nuisance column stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Nuisance {
+    /// kg
+    Mass,
+    /// kg m^2: xx xy xz yy yz zz
+    Inertia(usize),
+    /// s, of all channels
+    Latency,
+    /// s, of the force beyond that of the torque
+    ForceLatency,
+    /// rad, thrust axis about body x, y
+    Tilt(usize),
+    /// share of the commands' jitter that the rotors do not follow, less one half
+    Jitter,
+}
+
+/// A column with what is known of its coefficient beforehand.
+#[derive(Debug, Clone)]
+pub struct NuisanceColumn {
+    /// what it is
+    pub nuisance: Nuisance,
+    /// per unit
+    pub values: Channels,
+    /// standard deviation of the coefficient about zero, its unit; `None`: nothing is known
+    pub prior_std: Option<f64>,
+}
+
+/// All flights in weak form, linearised about a base.
+#[derive(Debug, Clone)]
+pub struct Rows {
+    /// s, vehicle clock of its flight
+    pub time_s: Vec<f64>,
+    /// rows without a break between them
+    pub runs: Vec<Range<usize>>,
+    /// what acts beyond the base: N, N m
+    pub residual: Channels,
+    /// always in
+    pub nuisances: Vec<NuisanceColumn>,
+    /// one a free parameter of the base's effects, in order
+    pub effects: Vec<Channels>,
+    /// N m, root mean square of the torque that the motion took, about body x, y, z
+    pub torque_rms: [f64; 3],
+    /// for more columns about the same base
+    flights: Vec<Along>,
+}
+
+/// One flight's rotors and loads under the base.
+#[derive(Debug, Clone)]
+struct Along {
+    commanded: Turning,
+    motion: Turning,
+    by_commands: Vec<Wrench>,
+    by_motion: Vec<Wrench>,
+}
+
+/// Thrust-axis tilt and accelerometer tilt look alike; frames are true to about a quarter of a degree.
+const TILT_STD_RAD: f64 = 0.005;
+/// An accelerometer's filter differs from the gyroscopes' by some milliseconds.
+const FORCE_LATENCY_STD_S: f64 = 0.004;
+/// Anything between none and all.
+const JITTER_STD: f64 = 0.288_675;
+/// Passes over the motion's rotor thrusts, which depend on the effects that depend on them.
+const MOTION_PASSES: usize = 2;
+
+impl Rows {
+    /// Linearises `flights` about `base`.
+    ///
+    /// # Errors
+    /// [`PhysicsError`] where the base is not physical.
+    pub fn new(flights: &[Trace], base: &Base) -> Result<Self, PhysicsError> {
+        let model = base.model(&[])?;
+        let parts: Vec<(Along, Channels, Vec<NuisanceColumn>)> =
+            flights.par_iter().map(|trace| one_flight(trace, base, &model)).collect();
+        let mut rows = Self {
+            time_s: Vec::new(),
+            runs: Vec::new(),
+            residual: Default::default(),
+            nuisances: Vec::new(),
+            effects: Vec::new(),
+            torque_rms: [0.0; 3],
+            flights: Vec::new(),
+        };
+        let mut squares = Vector3::zeros();
+        for trace in flights {
+            let torque = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
+            squares +=
+                trace.centers.iter().map(|&c| torque[c].component_mul(&torque[c])).sum::<Vector3<f64>>();
+        }
+        for (trace, (along, residual, nuisances)) in flights.iter().zip(parts) {
+            let before = rows.time_s.len();
+            rows.time_s.extend(trace.centers.iter().map(|&center| trace.grid.time_s(center)));
+            rows.runs.extend(trace.runs.iter().map(|run| run.start + before..run.end + before));
+            append(&mut rows.residual, &residual);
+            if rows.nuisances.is_empty() {
+                rows.nuisances = nuisances;
+            } else {
+                rows.nuisances.iter_mut().zip(&nuisances).for_each(|(a, b)| append(&mut a.values, &b.values));
+            }
+            rows.flights.push(along);
+        }
+        rows.torque_rms = std::array::from_fn(|axis| (squares[axis] / rows.len().max(1) as f64).sqrt());
+        rows.effects = rows.present_columns(flights, base)?;
+        Ok(rows)
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.time_s.len()
+    }
+
+    /// No rows at all.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.time_s.is_empty()
+    }
+
+    /// Columns of the free parameters of an effect that the base does not have. Its values must be those
+    /// at which it does nothing.
+    ///
+    /// # Errors
+    /// [`PhysicsError`] where the vehicle lacks what the effect needs.
+    pub fn columns_of(
+        &self,
+        flights: &[Trace],
+        base: &Base,
+        candidate: &Present,
+    ) -> Result<Vec<Channels>, PhysicsError> {
+        let mut columns = Vec::with_capacity(candidate.free.len());
+        for &index in &candidate.free {
+            let mut moved = candidate.clone();
+            let step = step_of(candidate, index);
+            moved.values[index] += step;
+            let model = base.model(std::slice::from_ref(&moved))?;
+            columns.push(self.difference(flights, &model, None, step));
+        }
+        Ok(columns)
+    }
+
+    /// The same where the effect acts through others that only `base` has, not the rows' own.
+    ///
+    /// # Errors
+    /// [`PhysicsError`] where the vehicle lacks what the effect needs.
+    pub fn columns_through(
+        &self,
+        flights: &[Trace],
+        base: &Base,
+        candidate: &Present,
+    ) -> Result<Vec<Channels>, PhysicsError> {
+        let without = base.model(&[])?;
+        let mut columns = Vec::with_capacity(candidate.free.len());
+        for &index in &candidate.free {
+            let mut moved = candidate.clone();
+            let step = step_of(candidate, index);
+            moved.values[index] += step;
+            let model = base.model(std::slice::from_ref(&moved))?;
+            columns.push(self.difference(flights, &model, Some(&without), step));
+        }
+        Ok(columns)
+    }
+
+    /// The second-order term of a latency in the torque rows: `-K(M'')` by the measured motion.
+    #[must_use]
+    pub fn latency_curvature(&self, flights: &[Trace], base: &Base) -> Channels {
+        let mut out = Channels::default();
+        for trace in flights {
+            let torque = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
+            let none = || vec![0.0; trace.rows()];
+            let [x, y, z] =
+                [0, 1, 2].map(|axis| trace.weak(2, &torque.iter().map(|t| -t[axis]).collect::<Vec<f64>>()));
+            append(&mut out, &[none(), none(), none(), x, y, z]);
+        }
+        out
+    }
+
+    fn present_columns(&self, flights: &[Trace], base: &Base) -> Result<Vec<Channels>, PhysicsError> {
+        let places: Vec<(usize, usize)> = base
+            .present
+            .iter()
+            .enumerate()
+            .flat_map(|(effect, present)| present.free.iter().map(move |&index| (effect, index)))
+            .collect();
+        places
+            .into_par_iter()
+            .map(|(effect, index)| {
+                let step = step_of(&base.present[effect], index);
+                let moved = |by: f64| {
+                    let mut moved = base.clone();
+                    moved.present[effect].values[index] += by;
+                    moved.model(&[])
+                };
+                let (up, down) = (moved(0.5 * step)?, moved(-0.5 * step)?);
+                Ok(self.difference(flights, &up, Some(&down), step))
+            })
+            .collect()
+    }
+
+    /// `K` of the change of force and torque per `step`, against the base or against `down`.
+    fn difference(&self, flights: &[Trace], up: &Model, down: Option<&Model>, step: f64) -> Channels {
+        let mut out = Channels::default();
+        for (trace, along) in flights.iter().zip(&self.flights) {
+            let force = wrench_along(up, trace, &along.commanded);
+            let torque = wrench_along(up, trace, &along.motion);
+            let below = down.map(|down| {
+                (wrench_along(down, trace, &along.commanded), wrench_along(down, trace, &along.motion))
+            });
+            let (force_0, torque_0) =
+                below.as_ref().map_or((&along.by_commands, &along.by_motion), |(f, t)| (f, t));
+            let per = |a: Vector3<f64>, b: Vector3<f64>| (a - b) / step;
+            let forces: Vec<Vector3<f64>> =
+                force.iter().zip(force_0).map(|(a, b)| per(a.force_n, b.force_n)).collect();
+            let torques: Vec<Vector3<f64>> =
+                torque.iter().zip(torque_0).map(|(a, b)| per(a.torque_nm, b.torque_nm)).collect();
+            append(&mut out, &weak_wrench(trace, &forces, &torques));
+        }
+        out
+    }
+}
+
+/// By how much a parameter is moved to see what it does.
+fn step_of(present: &Present, index: usize) -> f64 {
+    let parameter = &present.effect.parameters()[index];
+    let span = (parameter.max - parameter.min).min(1.0);
+    (1e-4 * span).max(1e-3 * present.values[index].abs())
+}
+
+fn append(to: &mut Channels, from: &Channels) {
+    to.iter_mut().zip(from).for_each(|(to, from)| to.extend_from_slice(from));
+}
+
+fn weak_wrench(trace: &Trace, forces: &[Vector3<f64>], torques: &[Vector3<f64>]) -> Channels {
+    let [fx, fy, fz] = trace.weak_vector(0, forces);
+    let [tx, ty, tz] = trace.weak_vector(0, torques);
+    [fx, fy, fz, tx, ty, tz]
+}
+
+/// Residual and nuisances of one flight.
+fn one_flight(trace: &Trace, base: &Base, model: &Model) -> (Along, Channels, Vec<NuisanceColumn>) {
+    let airframe = &model.airframe;
+    let (mass_kg, inertia) = (base.vehicle.body.mass_kg, base.vehicle.body.inertia_kg_m2);
+    let (felt, commanded) = trace.by_commands(airframe, base.latency);
+    let by_commands = wrench_along(model, trace, &commanded);
+    let (mut motion, mut by_motion, mut beyond) = (commanded.clone(), Vec::new(), None);
+    for _ in 0..MOTION_PASSES {
+        let thrusts = trace.by_motion(&base.vehicle, (mass_kg, &inertia), &commanded, beyond.as_deref());
+        motion = Turning::new(thrusts, airframe, trace.grid.step_s);
+        by_motion = wrench_along(model, trace, &motion);
+        if base.present.is_empty() {
+            break;
+        }
+        let of_effects = by_motion.iter().zip(&motion.thrust_n).map(|(all, thrusts)| {
+            let rest = *all - airframe.thrust_wrench(thrusts);
+            Vector4::new(rest.force_n.z, rest.torque_nm.x, rest.torque_nm.y, rest.torque_nm.z)
+        });
+        beyond = Some(of_effects.collect::<Vec<_>>());
+    }
+    let residual = residual(trace, base, model, (&felt, &commanded, &motion), (&by_commands, &by_motion));
+    let nuisances = nuisances(trace, base, &commanded, &by_commands);
+    (Along { commanded, motion, by_commands, by_motion }, residual, nuisances)
+}
+
+/// `m K(a) - K(F)` and `D(J w) + K(w x J w) - K(M)`, with the effects' part from the smooth thrusts.
+fn residual(
+    trace: &Trace,
+    base: &Base,
+    model: &Model,
+    (felt, commanded, motion): (&[super::along::Thrusts], &Turning, &Turning),
+    (by_commands, by_motion): (&[Wrench], &[Wrench]),
+) -> Channels {
+    let airframe = &model.airframe;
+    let (mut forces, mut torques) = (Vec::new(), Vec::new());
+    for index in 0..trace.grid.count {
+        let rotors = airframe.thrust_wrench(&felt[index]);
+        let jitter = trace.jitter.as_ref().map_or_else(Vector4::zeros, |jitter| jitter[index] * 0.5);
+        let effects_force =
+            by_commands[index].force_n - airframe.thrust_wrench(&commanded.thrust_n[index]).force_n;
+        let effects_torque =
+            by_motion[index].torque_nm - airframe.thrust_wrench(&motion.thrust_n[index]).torque_nm;
+        let used = if trace.usable[index] { 1.0 } else { 0.0 };
+        forces.push(rotors.force_n - Vector3::z() * jitter[0] + effects_force * used);
+        torques
+            .push(rotors.torque_nm - Vector3::new(jitter[1], jitter[2], jitter[3]) + effects_torque * used);
+    }
+    let acting = weak_wrench(trace, &forces, &torques);
+    let felt_force = trace.weak_specific_force();
+    let momentum = momentum_rows(trace);
+    let j = &base.vehicle.body.inertia_kg_m2;
+    let six = [j[(0, 0)], j[(0, 1)], j[(0, 2)], j[(1, 1)], j[(1, 2)], j[(2, 2)]];
+    let mut out = acting;
+    for axis in 0..3 {
+        for (row, value) in out[axis].iter_mut().enumerate() {
+            *value = base.vehicle.body.mass_kg * felt_force[axis][row] - *value;
+        }
+        for (row, value) in out[3 + axis].iter_mut().enumerate() {
+            let turning: f64 = (0..6).map(|k| momentum[k][axis][row] * six[k]).sum();
+            *value = turning - *value;
+        }
+    }
+    out
+}
+
+/// For each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2.
+fn momentum_rows(trace: &Trace) -> [[Vec<f64>; 3]; 6] {
+    let rates: Vec<Vector3<f64>> = trace.states.iter().map(|state| state.rates_rad_s).collect();
+    let turning = trace.weak_vector(1, &rates);
+    let products =
+        RATE_PAIRS.map(|(i, j)| trace.weak(0, &rates.iter().map(|w| w[i] * w[j]).collect::<Vec<f64>>()));
+    let mut out: [[Vec<f64>; 3]; 6] = Default::default();
+    for row in 0..trace.rows() {
+        let turning = Vector3::from_fn(|axis, _| turning[axis][row]);
+        let phi = momentum_regressor(0.0, &turning)
+            + gyroscopic_from_products(&std::array::from_fn(|k| products[k][row]));
+        for (entry, axes) in out.iter_mut().enumerate() {
+            for (axis, values) in axes.iter_mut().enumerate() {
+                values.push(phi[(1 + axis, 1 + entry)]);
+            }
+        }
+    }
+    out
+}
+
+fn nuisances(trace: &Trace, base: &Base, commanded: &Turning, by_commands: &[Wrench]) -> Vec<NuisanceColumn> {
+    let none = || vec![0.0; trace.rows()];
+    let column = |nuisance, prior_std, values: Channels| NuisanceColumn { nuisance, values, prior_std };
+    let mass_kg = base.vehicle.body.mass_kg;
+    let mut out = Vec::new();
+    // more mass than assumed: more force than assumed was there, in proportion to it
+    let forces: Vec<Vector3<f64>> = by_commands.iter().map(|w| w.force_n / -mass_kg).collect();
+    let [fx, fy, fz] = trace.weak_vector(0, &forces);
+    out.push(column(Nuisance::Mass, None, [fx, fy, fz, none(), none(), none()]));
+    for (entry, axes) in momentum_rows(trace).into_iter().enumerate() {
+        let [tx, ty, tz] = axes.map(|values| values.into_iter().map(|v| -v).collect::<Vec<f64>>());
+        out.push(column(Nuisance::Inertia(entry), None, [none(), none(), none(), tx, ty, tz]));
+    }
+    // by the commands for the force, by the motion for the torques
+    let lift: Vec<f64> = commanded.thrust_n.iter().map(|thrusts| -thrusts.iter().sum::<f64>()).collect();
+    let lift = trace.weak(0, &central_difference(&lift, trace.grid.step_s));
+    let torque = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
+    let [tx, ty, tz] = [0, 1, 2].map(|axis| {
+        let column: Vec<f64> = torque.iter().map(|t| -t[axis]).collect();
+        trace.weak(0, &central_difference(&column, trace.grid.step_s))
+    });
+    out.push(column(Nuisance::Latency, None, [none(), none(), lift.clone(), tx, ty, tz]));
+    out.push(column(
+        Nuisance::ForceLatency,
+        Some(FORCE_LATENCY_STD_S),
+        [none(), none(), lift, none(), none(), none()],
+    ));
+    let thrust: Vec<f64> = commanded.thrust_n.iter().map(|thrusts| thrusts.iter().sum::<f64>()).collect();
+    let thrust = trace.weak(0, &thrust);
+    let negative: Vec<f64> = thrust.iter().map(|t| -t).collect();
+    let tilt = Some(TILT_STD_RAD);
+    out.push(column(Nuisance::Tilt(0), tilt, [none(), negative, none(), none(), none(), none()]));
+    out.push(column(Nuisance::Tilt(1), tilt, [thrust, none(), none(), none(), none(), none()]));
+    if let Some(jitter) = &trace.jitter {
+        let channel =
+            |row: usize| trace.weak(0, &jitter.iter().map(|jitter| -jitter[row]).collect::<Vec<f64>>());
+        let values = [none(), none(), channel(0), channel(1), channel(2), channel(3)];
+        out.push(column(Nuisance::Jitter, Some(JITTER_STD), values));
+    }
+    out
+}

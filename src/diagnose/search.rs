@@ -1,0 +1,313 @@
+//! The forward search: fit, test every candidate, take the one that explains most, fit again.
+
+use super::base::{Base, Present};
+use super::candidates::{Candidate, candidates, drag_and_wind};
+use super::evidence::{Evidence, Weighted};
+use super::latency::{LatencyFinding, finding_of, fit_latency};
+use super::rows::{Channels, Nuisance, Rows};
+use super::trace::Trace;
+use crate::physics::PhysicsError;
+use crate::vehicle::Vehicle;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// What is asked of a candidate before it is named.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gates {
+    /// normal deviate
+    pub z: f64,
+    /// family-wise chance of the cluster test, shared out to the candidates
+    pub p_cluster: f64,
+    /// share of the residual energy
+    pub gain: f64,
+    /// most effects that are accepted
+    pub steps: usize,
+}
+
+impl Default for Gates {
+    fn default() -> Self {
+        Self { z: 4.0, p_cluster: 0.02, gain: 0.005, steps: 6 }
+    }
+}
+
+/// A base fitted to the flights.
+#[derive(Debug, Clone)]
+pub struct Fitted {
+    /// the model
+    pub base: Base,
+    /// linearised about it
+    pub rows: Rows,
+    /// weighted, partialled
+    pub weighted: Weighted,
+    /// coefficients left over (about zero after convergence), nuisances first
+    pub coefficients: DVector<f64>,
+    /// their covariance
+    pub covariance: DMatrix<f64>,
+}
+
+/// Most Gauss-Newton passes.
+const PASSES: usize = 8;
+/// A coefficient that moves by less than this many standard errors has converged.
+const CONVERGED: f64 = 0.05;
+
+/// Fits rigid body, latency and the base's effects.
+///
+/// # Errors
+/// [`PhysicsError`] where the estimate leaves what is physical.
+pub fn fit(flights: &[Trace], mut base: Base) -> Result<Fitted, PhysicsError> {
+    let mut fitted = evaluate(flights, base.clone())?;
+    for _ in 0..PASSES {
+        let moved = step(&mut base, &fitted);
+        fitted = evaluate(flights, base.clone())?;
+        if moved < CONVERGED {
+            break;
+        }
+    }
+    Ok(fitted)
+}
+
+fn evaluate(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsError> {
+    let rows = Rows::new(flights, &base)?;
+    let weighted = Weighted::new(&rows);
+    let (coefficients, covariance) = weighted.coefficients(&rows);
+    Ok(Fitted { base, rows, weighted, coefficients, covariance })
+}
+
+/// Moves the base by the coefficients; returns the largest move in standard errors.
+fn step(base: &mut Base, fitted: &Fitted) -> f64 {
+    let mut most = 0.0_f64;
+    let body = &mut base.vehicle.body;
+    for (index, column) in fitted.rows.nuisances.iter().enumerate() {
+        let by = fitted.coefficients[index];
+        let std = fitted.covariance[(index, index)].max(0.0).sqrt();
+        match column.nuisance {
+            Nuisance::Mass => {
+                body.mass_kg = (body.mass_kg + by).clamp(0.3 * body.mass_kg, 3.0 * body.mass_kg)
+            }
+            Nuisance::Inertia(entry) => {
+                const PLACES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+                let (row, column) = PLACES[entry];
+                let scale = (body.inertia_kg_m2[(row, row)] * body.inertia_kg_m2[(column, column)]).sqrt();
+                // a diagonal entry neither vanishes nor triples in one pass
+                let by = if row == column {
+                    by.clamp(-0.7 * scale, 2.0 * scale)
+                } else {
+                    by.clamp(-0.5 * scale, 0.5 * scale)
+                };
+                body.inertia_kg_m2[(row, column)] += by;
+                if row != column {
+                    body.inertia_kg_m2[(column, row)] += by;
+                }
+            }
+            Nuisance::Latency => {
+                let by = by.clamp(-0.05, 0.05);
+                if base.latency.lag_s > 0.0 {
+                    base.latency.lag_s = (base.latency.lag_s + by).max(1e-4);
+                } else {
+                    base.latency.delay_s = (base.latency.delay_s + by).clamp(-0.1, 0.3);
+                }
+            }
+            _ => continue,
+        }
+        most = most.max(by.abs() / std.max(f64::MIN_POSITIVE));
+    }
+    let mut index = fitted.rows.nuisances.len();
+    for present in &mut base.present {
+        for &free in &present.free {
+            let parameter = &present.effect.parameters()[free];
+            let by = fitted.coefficients[index];
+            let std = fitted.covariance[(index, index)].max(0.0).sqrt();
+            let before = present.values[free];
+            present.values[free] = (before + by).clamp(parameter.min, parameter.max);
+            most = most.max((present.values[free] - before).abs() / std.max(f64::MIN_POSITIVE));
+            index += 1;
+        }
+    }
+    most
+}
+
+/// A candidate with its evidence.
+#[derive(Debug, Clone)]
+pub struct Tested {
+    /// which
+    pub candidate: Candidate,
+    /// its coefficients in order of the parts' free parameters
+    pub evidence: Evidence,
+}
+
+/// One accepted step.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// what was taken
+    pub taken: Tested,
+    /// others that would have passed, with their evidence
+    pub rivals: Vec<Tested>,
+}
+
+/// Where the search ended.
+#[derive(Debug, Clone)]
+pub struct Search {
+    /// rigid body alone, with its latency
+    pub before: Fitted,
+    /// with all that was accepted
+    pub after: Fitted,
+    /// between command and rotor
+    pub latency: LatencyFinding,
+    /// in the order in which they were taken
+    pub steps: Vec<Step>,
+    /// every candidate about the final base
+    pub last: Vec<Tested>,
+}
+
+/// Searches.
+///
+/// # Errors
+/// [`PhysicsError`] where the vehicle is not physical.
+pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Search, PhysicsError> {
+    let (before, latency) = fit_latency(flights, Base::rigid(vehicle))?;
+    let mut after = before.clone();
+    let mut steps: Vec<Step> = Vec::new();
+    let mut last;
+    loop {
+        let candidates = candidates(&after.base.vehicle, flights);
+        last = test_all(flights, &after, &candidates);
+        if steps.len() >= gates.steps {
+            break;
+        }
+        let count = last.len() as f64;
+        let mut passed: Vec<Tested> =
+            last.iter().filter(|tested| passes(tested, gates, count)).cloned().collect();
+        passed.sort_by(|a, b| b.evidence.energy.total_cmp(&a.evidence.energy));
+        let Some(taken) = passed.first().cloned() else { break };
+        let mut base = after.base.clone();
+        for part in started(&taken) {
+            base.present.push(released(part));
+        }
+        after = fit(flights, base)?;
+        steps.push(Step { taken, rivals: passed.split_off(1) });
+    }
+    let latency = LatencyFinding {
+        against_lag: latency.against_lag,
+        against_delay: latency.against_delay,
+        ..finding_of(&after)
+    };
+    Ok(Search { before, after, latency, steps, last })
+}
+
+/// The candidate's effects at the values that the evidence has.
+fn started(tested: &Tested) -> Vec<Present> {
+    let mut theta = tested.evidence.theta.iter();
+    let mut parts = tested.candidate.parts.clone();
+    for part in &mut parts {
+        for &free in &part.free {
+            let parameter = &part.effect.parameters()[free];
+            if let Some(by) = theta.next() {
+                part.values[free] = (part.values[free] + by).clamp(parameter.min, parameter.max);
+            }
+        }
+    }
+    if let [drag, wind] = parts.as_mut_slice()
+        && tested.candidate.through.is_some()
+    {
+        // the columns were those of one unit of drag
+        let strength = 0.5 * (drag.values[0] + drag.values[1]).max(1e-3);
+        for &free in &wind.free {
+            let parameter = &wind.effect.parameters()[free];
+            wind.values[free] = (wind.values[free] / strength).clamp(parameter.min, parameter.max);
+        }
+    }
+    parts
+}
+
+/// Parameters that only show once the effect is there are estimated from then on.
+fn released(mut present: Present) -> Present {
+    if present.effect.id() == "ground_effect" {
+        present.free = vec![0, 3];
+    }
+    present
+}
+
+fn test_all(flights: &[Trace], fitted: &Fitted, candidates: &[Candidate]) -> Vec<Tested> {
+    let mut out: Vec<Tested> = candidates
+        .par_iter()
+        .filter(|candidate| !is_present(&fitted.base, candidate))
+        .filter_map(|candidate| {
+            let columns = columns_of(flights, fitted, candidate)?;
+            let evidence = fitted.weighted.test(&columns)?;
+            Some(Tested { candidate: candidate.clone(), evidence })
+        })
+        .collect();
+    out.extend(test_drag_and_wind(flights, fitted));
+    out
+}
+
+fn columns_of(flights: &[Trace], fitted: &Fitted, candidate: &Candidate) -> Option<Vec<Channels>> {
+    let mut columns = Vec::new();
+    for part in &candidate.parts {
+        columns.extend(fitted.rows.columns_of(flights, &fitted.base, part).ok()?);
+    }
+    Some(columns)
+}
+
+/// The same effect, for rotors the same rotor.
+fn is_present(base: &Base, candidate: &Candidate) -> bool {
+    candidate.parts.iter().all(|part| {
+        base.present.iter().any(|present| {
+            present.effect.id() == part.effect.id()
+                && (part.effect.id() != "weak_rotor" || present.values[0] == part.values[0])
+        })
+    })
+}
+
+/// Wind acts through drag: both together, or wind alone where drag is known already.
+fn test_drag_and_wind(flights: &[Trace], fitted: &Fitted) -> Option<Tested> {
+    let (drag, wind, unit) = drag_and_wind()?;
+    let present = |id: &str| fitted.base.present.iter().any(|present| present.effect.id() == id);
+    if present("steady_wind") || !flights.iter().all(|trace| trace.known.velocity && trace.known.attitude) {
+        return None;
+    }
+    if present("linear_drag") || present("quadratic_drag") {
+        let candidate = Candidate { id: "steady_wind", parts: vec![wind], through: None };
+        let columns = columns_of(flights, fitted, &candidate)?;
+        let evidence = fitted.weighted.test(&columns)?;
+        return Some(Tested { candidate, evidence });
+    }
+    let mut with_unit = fitted.base.clone();
+    with_unit.present.push(unit.clone());
+    let mut columns = fitted.rows.columns_of(flights, &fitted.base, &drag).ok()?;
+    columns.extend(fitted.rows.columns_through(flights, &with_unit, &wind).ok()?);
+    let evidence = fitted.weighted.test(&columns)?;
+    // wind is named only for what it adds to drag
+    let more = fitted.weighted.conditional(&columns, 2)?;
+    let candidate = Candidate { id: "steady_wind", parts: vec![drag, wind], through: Some(unit) };
+    (more > 4.0).then_some(Tested { candidate, evidence })
+}
+
+/// Significant, spread over the flight, possible, and large enough to matter.
+fn passes(tested: &Tested, gates: &Gates, candidates: f64) -> bool {
+    let evidence = &tested.evidence;
+    evidence.z.abs() > gates.z
+        && evidence.p_cluster < gates.p_cluster / candidates
+        && evidence.gain >= gates.gain
+        && possible(tested)
+}
+
+/// Each coefficient's sign and size is one that physics allows, within two standard errors.
+fn possible(tested: &Tested) -> bool {
+    if tested.candidate.through.is_some() {
+        // the wind's columns carry the drag's strength
+        return tested.evidence.theta[0] > 0.0 && tested.evidence.theta[1] > 0.0;
+    }
+    let mut index = 0;
+    let mut all = true;
+    for part in &tested.candidate.parts {
+        for &free in &part.free {
+            let parameter = &part.effect.parameters()[free];
+            let value = part.values[free] + tested.evidence.theta[index];
+            let slack = 2.0 * tested.evidence.std(index);
+            all &= value > parameter.min - slack && value < parameter.max + slack;
+            index += 1;
+        }
+    }
+    all
+}

@@ -1,0 +1,376 @@
+//! One flight as the weak form sees it: measured states, and the rotor thrusts in two readings.
+
+use super::along::{Thrusts, Turning};
+use crate::log::Quantity;
+use crate::physics::{Airframe, MAX_ROTORS, State};
+use crate::signals::{
+    ActuationLatency, Butterworth, Grid, Signals, WeakKernel, central_difference, delayed_wrench, stride,
+};
+use crate::vehicle::Vehicle;
+use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
+use std::ops::Range;
+
+/// Share of the accelerometer in the measured specific force; the rest is kinematic. From the ratio of
+/// their noise after the weak form, with which a fifth of kinematics costs nothing.
+const ACCELEROMETER_SHARE: f64 = 0.8;
+/// Zero-phase low-pass of what enters regressors, Hz.
+const SMOOTH_HZ: f64 = 6.0;
+
+/// A flight prepared for diagnosis. Series have one entry a grid instant.
+#[derive(Debug, Clone)]
+pub struct Trace {
+    /// instants
+    pub grid: Grid,
+    /// airborne, no gap, not saturated
+    pub usable: Vec<bool>,
+    /// weak form's test function
+    pub kernel: WeakKernel,
+    /// grid indices of the rows
+    pub centers: Vec<usize>,
+    /// rows without a break between them
+    pub runs: Vec<Range<usize>>,
+    /// measured; what was not recorded is zero (attitude: level)
+    pub states: Vec<State>,
+    /// what is measured of the state
+    pub known: Known,
+    /// V
+    pub voltage_v: Option<Vec<f64>>,
+    /// s between commands (or measured speeds) as logged
+    pub command_period_s: f64,
+    /// m/s^2, body, accelerometer with its mean brought to that of the kinematics where both are known
+    specific_force_m_s2: Vec<Vector3<f64>>,
+    /// m/s^2, accelerometer less kinematics, mean of each body axis
+    pub accelerometer_bias_m_s2: Option<Vector3<f64>>,
+    accelerometer_share: f64,
+    /// N, as commanded (or measured), each rotor
+    commanded_n: Vec<Thrusts>,
+    /// N, N m: what the commands' jitter adds if the rotors follow all of it
+    pub jitter: Option<Vec<Vector4<f64>>>,
+    /// zero-phase, of body rates (rad/s), their derivative (rad/s^2) and specific force z (m/s^2)
+    smooth_rate: Vec<Vector3<f64>>,
+    smooth_turning: Vec<Vector3<f64>>,
+    smooth_lift: Vec<f64>,
+    /// K of the rates, once for all passes: first derivative and the six products of rates
+    gravity_m_s2: f64,
+}
+
+/// Which parts of the state are measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Known {
+    /// attitude
+    pub attitude: bool,
+    /// velocity
+    pub velocity: bool,
+    /// position
+    pub position: bool,
+}
+
+/// Why a flight cannot be diagnosed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TraceError {
+    /// no gyroscope
+    #[error(
+        "body rates are not recorded: expected ANGULAR_RATE from HIGHRES_IMU, ATTITUDE or similar; without them no torque can be compared"
+    )]
+    NoRates,
+    /// neither accelerometer nor velocity with attitude
+    #[error("neither an accelerometer nor velocity with attitude is recorded: no force can be compared")]
+    NoForce,
+    /// rotor thrusts unknown
+    #[error("the log holds force and torque, not actuator outputs: what the rotors did is not known")]
+    NoRotors,
+    /// grid too coarse for the low-pass
+    #[error("sampled at {rate_hz:.1} Hz: expected at least 25 Hz")]
+    TooSlow {
+        /// Hz
+        rate_hz: f64,
+    },
+}
+
+impl Trace {
+    /// From conditioned signals.
+    ///
+    /// # Errors
+    /// [`TraceError`] where rates, forces or rotor thrusts are not known.
+    pub fn new(signals: &Signals, vehicle: &Vehicle, half_width_s: f64) -> Result<Self, TraceError> {
+        let grid = signals.grid;
+        let rates = signals.rate.as_ref().ok_or(TraceError::NoRates)?;
+        if signals.rotor_thrust_n.is_empty() {
+            return Err(TraceError::NoRotors);
+        }
+        let known = Known {
+            attitude: signals.attitude.is_some(),
+            velocity: signals.velocity.is_some(),
+            position: signals.position.is_some(),
+        };
+        let kinematic = known.attitude && known.velocity;
+        let measured = signals.specific_force.as_ref();
+        if measured.is_none() && !kinematic {
+            return Err(TraceError::NoForce);
+        }
+        let kernel = WeakKernel::new(half_width_s, grid.step_s);
+        let stride = stride(grid.step_s);
+        let (mut centers, mut runs) = (Vec::new(), Vec::new());
+        for run in Grid::runs(&signals.usable, 2 * kernel.half_count + 1) {
+            let first = centers.len();
+            centers.extend((run.start + kernel.half_count..run.end - kernel.half_count).step_by(stride));
+            runs.push(first..centers.len());
+        }
+        let zero = vec![Vector3::zeros(); grid.count];
+        let position = signals.position.as_ref().unwrap_or(&zero);
+        let velocity = signals.velocity.as_ref().unwrap_or(&zero);
+        let level = vec![UnitQuaternion::identity(); grid.count];
+        let attitude = signals.attitude.as_ref().unwrap_or(&level);
+        let states = (0..grid.count)
+            .map(|i| State {
+                position_m: position[i],
+                velocity_m_s: velocity[i],
+                attitude: attitude[i],
+                rates_rad_s: rates[i],
+            })
+            .collect();
+        let rotors = vehicle.rotors.len();
+        let commanded_n = signals
+            .rotor_thrust_n
+            .chunks_exact(rotors)
+            .map(|thrusts| {
+                let mut all = [0.0; MAX_ROTORS];
+                all[..rotors].copy_from_slice(thrusts);
+                all
+            })
+            .collect();
+        let mut trace = Self {
+            grid,
+            usable: signals.usable.clone(),
+            kernel,
+            centers,
+            runs,
+            states,
+            known,
+            voltage_v: signals.battery_voltage_v.clone(),
+            command_period_s: command_period_s(signals),
+            specific_force_m_s2: measured.cloned().unwrap_or(zero),
+            accelerometer_bias_m_s2: None,
+            accelerometer_share: match (measured.is_some(), kinematic) {
+                (true, true) => ACCELEROMETER_SHARE,
+                (true, false) => 1.0,
+                _ => 0.0,
+            },
+            commanded_n,
+            jitter: signals.jitter_wrench.clone(),
+            smooth_rate: Vec::new(),
+            smooth_turning: Vec::new(),
+            smooth_lift: Vec::new(),
+            gravity_m_s2: vehicle.gravity_m_s2,
+        };
+        trace.level_accelerometer();
+        trace.smooth()?;
+        Ok(trace)
+    }
+
+    /// Number of weak-form rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.centers.len()
+    }
+
+    /// `K` of a series at every row.
+    #[must_use]
+    pub fn weak(&self, order: usize, series: &[f64]) -> Vec<f64> {
+        self.kernel.apply(order, series, &self.centers)
+    }
+
+    /// `K` of a vector series, axis by axis.
+    #[must_use]
+    pub fn weak_vector(&self, order: usize, series: &[Vector3<f64>]) -> [Vec<f64>; 3] {
+        std::array::from_fn(|axis| {
+            let column: Vec<f64> = series.iter().map(|v| v[axis]).collect();
+            self.weak(order, &column)
+        })
+    }
+
+    /// Kinematic specific force `K1(v_b) + K(w x v_b + g R' e_z)` at every row, body, m/s^2; `None`
+    /// without attitude and velocity.
+    #[must_use]
+    pub fn weak_kinematic(&self) -> Option<[Vec<f64>; 3]> {
+        if !(self.known.attitude && self.known.velocity) {
+            return None;
+        }
+        let up = Vector3::z() * self.gravity_m_s2;
+        let (mut body, mut rest) = (Vec::new(), Vec::new());
+        for state in &self.states {
+            let velocity = state.body_velocity_m_s();
+            rest.push(state.rates_rad_s.cross(&velocity) + state.attitude.inverse_transform_vector(&up));
+            body.push(velocity);
+        }
+        let (mut derivative, rest) = (self.weak_vector(1, &body), self.weak_vector(0, &rest));
+        for (axis, rest) in derivative.iter_mut().zip(&rest) {
+            axis.iter_mut().zip(rest).for_each(|(d, r)| *d += r);
+        }
+        Some(derivative)
+    }
+
+    /// `K` of the specific force that the body felt, m/s^2: accelerometer and kinematics weighted by
+    /// their noise.
+    #[must_use]
+    pub fn weak_specific_force(&self) -> [Vec<f64>; 3] {
+        let share = self.accelerometer_share;
+        let mut force = self.weak_vector(0, &self.specific_force_m_s2);
+        let kinematic = if share < 1.0 { self.weak_kinematic() } else { None };
+        if let Some(kinematic) = kinematic {
+            for (axis, kinematic) in force.iter_mut().zip(&kinematic) {
+                axis.iter_mut().zip(kinematic).for_each(|(f, k)| *f = share * *f + (1.0 - share) * k);
+            }
+        }
+        force
+    }
+
+    /// The accelerometer's bias is what its mean differs from that of the kinematics.
+    fn level_accelerometer(&mut self) {
+        if self.accelerometer_share <= 0.0 || self.rows() == 0 {
+            return;
+        }
+        let Some(kinematic) = self.weak_kinematic() else { return };
+        let measured = self.weak_vector(0, &self.specific_force_m_s2);
+        let bias = Vector3::from_fn(|axis, _| {
+            let sum: f64 = measured[axis].iter().zip(&kinematic[axis]).map(|(m, k)| m - k).sum();
+            sum / self.rows() as f64
+        });
+        self.specific_force_m_s2.iter_mut().for_each(|f| *f -= bias);
+        self.accelerometer_bias_m_s2 = Some(bias);
+    }
+
+    fn smooth(&mut self) -> Result<(), TraceError> {
+        let rate_hz = 1.0 / self.grid.step_s;
+        let filter =
+            Butterworth::new(SMOOTH_HZ.min(0.4 * rate_hz), rate_hz).ok_or(TraceError::TooSlow { rate_hz })?;
+        let rates: [Vec<f64>; 3] = std::array::from_fn(|axis| {
+            filter.filtfilt(&self.states.iter().map(|s| s.rates_rad_s[axis]).collect::<Vec<_>>())
+        });
+        let turning = rates.each_ref().map(|rate| central_difference(rate, self.grid.step_s));
+        let vectors = |axes: &[Vec<f64>; 3]| -> Vec<Vector3<f64>> {
+            (0..self.grid.count).map(|i| Vector3::new(axes[0][i], axes[1][i], axes[2][i])).collect()
+        };
+        self.smooth_rate = vectors(&rates);
+        self.smooth_turning = vectors(&turning);
+        let lift: Vec<f64> = if self.accelerometer_share > 0.0 {
+            self.specific_force_m_s2.iter().map(|f| f.z).collect()
+        } else {
+            self.kinematic_lift()
+        };
+        self.smooth_lift = filter.filtfilt(&lift);
+        Ok(())
+    }
+
+    /// Specific force along body z by differentiation, m/s^2: only for use behind the low-pass.
+    fn kinematic_lift(&self) -> Vec<f64> {
+        let velocity: Vec<Vec<f64>> =
+            (0..3).map(|axis| self.states.iter().map(|s| s.velocity_m_s[axis]).collect()).collect();
+        let acceleration: Vec<Vec<f64>> =
+            velocity.iter().map(|v| central_difference(v, self.grid.step_s)).collect();
+        (0..self.grid.count)
+            .map(|i| {
+                let world = Vector3::new(acceleration[0][i], acceleration[1][i], acceleration[2][i]);
+                let felt = world + Vector3::z() * self.gravity_m_s2;
+                self.states[i].attitude.inverse_transform_vector(&felt).z
+            })
+            .collect()
+    }
+
+    /// What the rotors gave by their commands, N, after the latency: raw, and smoothed for regressors.
+    #[must_use]
+    pub fn by_commands(&self, airframe: &Airframe, latency: ActuationLatency) -> (Vec<Thrusts>, Turning) {
+        let felt = felt(&self.commanded_n, airframe, self.grid.step_s, latency);
+        let rate_hz = 1.0 / self.grid.step_s;
+        let mut smooth = vec![[0.0; MAX_ROTORS]; self.grid.count];
+        if let Some(filter) = Butterworth::new(SMOOTH_HZ.min(0.4 * rate_hz), rate_hz) {
+            for rotor in 0..airframe.rotor_count() {
+                let column: Vec<f64> = felt.iter().map(|thrusts| thrusts[rotor]).collect();
+                for (out, value) in smooth.iter_mut().zip(filter.filtfilt(&column)) {
+                    out[rotor] = value;
+                }
+            }
+        }
+        let turning = Turning::new(smooth, airframe, self.grid.step_s);
+        (felt, turning)
+    }
+
+    /// The commanded thrusts that, with `effects` (N, N m beside the rotors' own wrench; `[Fz tau]`), give
+    /// the motion that was measured: they hold the noise of the motion, not of the commands.
+    #[must_use]
+    pub fn by_motion(
+        &self,
+        vehicle: &Vehicle,
+        (mass_kg, inertia): (f64, &Matrix3<f64>),
+        commanded: &Turning,
+        effects: Option<&[Vector4<f64>]>,
+    ) -> Vec<Thrusts> {
+        let mixer = vehicle.mixer().matrix;
+        let rotors = vehicle.rotors.len();
+        let mixer = DMatrix::from_fn(4, rotors, |i, j| mixer[(i, j)]);
+        let Ok(inverse) = mixer.clone().pseudo_inverse(1e-12) else { return commanded.thrust_n.clone() };
+        let mut out = commanded.thrust_n.clone();
+        for (i, thrusts) in out.iter_mut().enumerate() {
+            let rate = self.smooth_rate[i];
+            let torque = inertia * self.smooth_turning[i] + rate.cross(&(inertia * rate));
+            let mut short = Vector4::new(mass_kg * self.smooth_lift[i], torque.x, torque.y, torque.z);
+            if let Some(effects) = effects {
+                short -= effects[i];
+            }
+            for (rotor, thrust) in thrusts.iter().enumerate().take(rotors) {
+                short -= Vector4::from_fn(|row, _| mixer[(row, rotor)] * thrust);
+            }
+            for (rotor, thrust) in thrusts.iter_mut().enumerate().take(rotors) {
+                *thrust += (0..4).map(|row| inverse[(rotor, row)] * short[row]).sum::<f64>();
+            }
+        }
+        out
+    }
+
+    /// Torque that the measured turning takes, `J w' + w x J w`, smoothed, body, N m.
+    #[must_use]
+    pub fn turning_torque(&self, inertia: &Matrix3<f64>) -> Vec<Vector3<f64>> {
+        self.smooth_rate
+            .iter()
+            .zip(&self.smooth_turning)
+            .map(|(rate, turning)| inertia * turning + rate.cross(&(inertia * rate)))
+            .collect()
+    }
+}
+
+/// Of the stream that the thrusts rest on.
+fn command_period_s(signals: &Signals) -> f64 {
+    let of_thrust = |quantity: Quantity| matches!(quantity, Quantity::ActuatorCommand | Quantity::RotorSpeed);
+    let rate_hz =
+        signals.quality.sources.iter().find(|(quantity, ..)| of_thrust(*quantity)).map(|(.., rate)| *rate);
+    rate_hz.filter(|rate_hz| *rate_hz > 0.0).map_or(signals.grid.step_s, |rate_hz| 1.0 / rate_hz)
+}
+
+/// Thrusts behind an actuation latency. The lag acts on the rotors' speed, as a motor's does.
+fn felt(
+    commanded_n: &[Thrusts],
+    airframe: &Airframe,
+    step_s: f64,
+    latency: ActuationLatency,
+) -> Vec<Thrusts> {
+    const HALF: usize = MAX_ROTORS / 2;
+    if latency == ActuationLatency::default() {
+        return commanded_n.to_vec();
+    }
+    let mut out = vec![[0.0; MAX_ROTORS]; commanded_n.len()];
+    for first in [0, HALF] {
+        if first >= airframe.rotor_count() {
+            break;
+        }
+        let speeds: Vec<Vector4<f64>> = commanded_n
+            .iter()
+            .map(|thrusts| Vector4::from_fn(|i, _| airframe.relative_speed_of_thrust(thrusts[first + i])))
+            .collect();
+        for (out, speed) in out.iter_mut().zip(delayed_wrench(&speeds, step_s, latency)) {
+            for i in 0..HALF {
+                out[first + i] = airframe.thrust_n(speed[i]);
+            }
+        }
+    }
+    out
+}
