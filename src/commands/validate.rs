@@ -16,7 +16,7 @@ use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::effects::effects;
+use super::effects::{effects, with_stated_lag};
 use super::flights::{Flight, ReadAs, load};
 use super::{CommandError, Outcome, output};
 use crate::cli::ValidateArgs;
@@ -91,6 +91,7 @@ fn named(path: &Path) -> Result<Named, CommandError> {
     }
     let refuse = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
     let effects = effects(&loaded.model.effects, &loaded.vehicle).map_err(|error| refuse(&error))?;
+    let effects = with_stated_lag(effects, &loaded.vehicle);
     let model = Model::new(&loaded.vehicle, effects).map_err(|error| refuse(&error))?;
     let name =
         path.file_stem().map_or_else(|| loaded.vehicle.name.clone(), |stem| stem.display().to_string());

@@ -143,7 +143,17 @@ fn propulsion(check: &Check<'_>, table: &PropulsionTable) -> Result<Propulsion, 
             .time_constant
             .map(|value| check.not_negative("propulsion.time_constant", value))
             .transpose()?,
+        time_constant_down_s: falling_time_constant(check, table)?,
     })
+}
+
+/// That of rotors that slow down, which says nothing without the other.
+fn falling_time_constant(check: &Check<'_>, table: &PropulsionTable) -> Result<Option<f64>, ConfigError> {
+    let because = "time_constant_down is that of falling speed beside that of rising speed";
+    if table.time_constant_down.is_some() {
+        check.required("propulsion.time_constant", table.time_constant, because)?;
+    }
+    check.optional_positive("propulsion.time_constant_down", table.time_constant_down)
 }
 
 /// Law, thrust coefficient, torque per thrust.
