@@ -374,7 +374,8 @@ spin = "ccw"
 
     #[test]
     fn written_and_read_again_it_is_the_same() {
-        for propulsion in [CURVE, SPEED] {
+        let lagging = format!("{SPEED}time_constant = 0.0125\ntime_constant_down = 0.025\n");
+        for propulsion in [CURVE, SPEED, &lagging] {
             let limits = "[limits]\nyaw_max_deg = 180.0\nthrust_max_n = 34.4\n";
             let vehicle = parse(&[BODY, propulsion, ROTORS, limits]).unwrap().vehicle;
             let mut text = vehicle_to_toml(&vehicle).unwrap();
@@ -404,6 +405,17 @@ spin = "ccw"
             (vec![&BODY.replace("1.5", "-1.5"), SPEED, ROTORS], vec!["`body.mass`", "came -1.5"]),
             (vec![&BODY.replace("0.02,", "nan,"), SPEED, ROTORS], vec!["`body.inertia.xx`", "came NaN"]),
             (vec![&BODY.replace("0.035 }", "0.035, xy = 0.03 }"), SPEED, ROTORS], vec!["positive definite"]),
+            (
+                vec![BODY, SPEED, "time_constant_down = 0.02\n", ROTORS],
+                vec![
+                    "`propulsion.time_constant`: expected a number, since time_constant_down",
+                    "came nothing",
+                ],
+            ),
+            (
+                vec![BODY, SPEED, "time_constant = 0.02\ntime_constant_down = 0\n", ROTORS],
+                vec!["`propulsion.time_constant_down`: expected a number above zero", "came 0"],
+            ),
             (vec![BODY, SPEED, "thrust_max = 5\n", ROTORS], vec!["speed_max = 1000 and thrust_max = 5"]),
             (
                 vec![BODY, SPEED, "torque_ratio = 0.02\n", ROTORS],

@@ -1,5 +1,6 @@
 mod laws;
 mod limits;
+mod speed;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
