@@ -12,7 +12,7 @@ const HIGHEST_HZ: f64 = 2.0;
 /// Fewest periods.
 const LEAST_PERIODS: usize = 3;
 /// Autocorrelation at one period that makes a flight periodic.
-const PERIODIC: f64 = 0.5;
+const PERIODIC: f64 = 0.35;
 /// Shortest period that is looked for, s.
 const SHORTEST_S: f64 = 3.0;
 
