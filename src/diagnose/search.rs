@@ -318,8 +318,18 @@ fn is_present(base: &Base, candidate: &Candidate) -> bool {
         base.present.iter().any(|present| {
             present.effect.id() == part.effect.id()
                 && (part.effect.id() != "weak_rotor" || present.values[0] == part.values[0])
+                || drags_along_z(present) && drags_along_z(part)
         })
     })
+}
+
+/// Inflow and the z of drag are one term.
+fn drags_along_z(present: &Present) -> bool {
+    match present.effect.id() {
+        "inflow" => true,
+        "linear_drag" => present.free.contains(&2),
+        _ => false,
+    }
 }
 
 /// Wind acts through drag: both together, or wind alone where drag is known already.
