@@ -30,6 +30,7 @@ pub mod regression;
 pub mod report;
 pub mod signals;
 pub mod simulate;
+pub mod sitl;
 pub mod trajectory;
 pub mod units;
 pub mod vehicle;
