@@ -23,6 +23,7 @@ pub mod config;
 pub mod estimate;
 pub mod frames;
 pub mod inspect;
+pub mod link;
 pub mod log;
 pub mod physics;
 pub mod plan;
