@@ -197,7 +197,13 @@ impl UdpOut {
                 },
                 frame = outgoing.next() => {
                     let stamp = outgoing.now();
-                    sent(socket.send(&frame).await, &frame, stamp, outgoing)
+                    let mut result = socket.send(&frame).await;
+                    if is_refusal(&result) {
+                        // the answer to an earlier datagram; this one was not sent yet
+                        self.refused(lost, incoming);
+                        result = socket.send(&frame).await;
+                    }
+                    sent(result, &frame, stamp, outgoing)
                 }
             };
             match failure {
@@ -222,6 +228,10 @@ impl UdpOut {
             incoming.open(true);
         }
     }
+}
+
+fn is_refusal(result: &io::Result<usize>) -> bool {
+    result.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::ConnectionRefused)
 }
 
 fn sent(
