@@ -6,8 +6,11 @@ mod effects;
 mod flights;
 mod identify;
 mod inspect;
+mod network;
 mod output;
 mod plan;
+mod record;
+mod replay;
 mod simulate;
 mod validate;
 mod vehicle;
@@ -83,6 +86,8 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Simulate(args) => simulate::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
+        Verb::Record(args) => record::run(cli.json, args),
+        Verb::Replay(args) => replay::run(cli.json, args),
     }
 }
 
