@@ -124,7 +124,7 @@ impl UdpIn {
             }
             None => {
                 if incoming.datagram(bytes, stamp) {
-                    outgoing.discard();
+                    outgoing.connected();
                     incoming.connected(from.to_string());
                     *peer = Some(Peer { address: from, heard: stamp.at });
                 }
@@ -158,6 +158,7 @@ impl UdpOut {
                 None => connect(self.remote).await,
             };
             if let Ok(socket) = socket {
+                outgoing.connected();
                 incoming.open(true);
                 let why = self.session(&socket, &mut lost, incoming, outgoing).await;
                 if !lost {
