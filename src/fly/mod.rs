@@ -5,6 +5,7 @@
 
 mod address;
 pub mod finding;
+pub mod live;
 pub mod parameters;
 pub mod preflight;
 pub mod requests;
