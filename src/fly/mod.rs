@@ -9,3 +9,4 @@ pub mod live;
 pub mod parameters;
 pub mod preflight;
 pub mod requests;
+pub mod view;
