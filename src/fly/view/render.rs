@@ -170,6 +170,8 @@ fn help(model: &ViewModel) -> Line<'_> {
             format!("type {KILL_WORD} and Enter to stop the motors NOW, Esc to leave: {typed}_"),
             Style::new().fg(Color::Red).add_modifier(Modifier::BOLD),
         ),
-        None => Line::raw(format!("h hold   l land   r return   :{KILL_WORD} Enter stops the motors   Ctrl-C end")),
+        None => Line::raw(format!(
+            "h hold   l land   r return   :{KILL_WORD} Enter stops the motors   Ctrl-C end"
+        )),
     }
 }
