@@ -485,9 +485,7 @@ fn low_guided_limits_are_said_with_what_to_set() {
     assert!(said.expected.contains("horizontal acceleration"), "{said}");
     assert!(said.came.contains("WP_ACC = 1") && said.remedy.contains("set WP_ACC to"), "{said}");
     // the older firmware's name and unit, the same judgement
-    for name in ["WP_ACC"] {
-        scene.parameters.values.remove(name);
-    }
+    scene.parameters.values.remove("WP_ACC");
     scene.parameters.values.insert("WPNAV_ACCEL".into(), 100.0);
     let older = scene.said("autopilot limits");
     assert!(older.came.contains("1.00 m/s^2 (WPNAV_ACCEL = 100"), "{older}");

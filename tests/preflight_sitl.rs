@@ -6,6 +6,7 @@
 use mavid::config::load_vehicle;
 use mavid::fly::finding::{Level, worst};
 use mavid::fly::parameters::{Download, DownloadSettings, Parameters, failsafe_declaration, wanted};
+use mavid::fly::preflight::{Fence, FenceDownload, FenceItem, FenceOutcome, Geodetic};
 use mavid::fly::requests::{Capacity, LinkKind, Need, RatesReport, RequestSettings, Requests, request_set};
 use mavid::log::{Autopilot, ComponentId, Decoder, Event, Frame, Record, SystemId, Vehicle};
 use mavid::sitl::{self, ArduPilotRelease, AutopilotKind, LinkId, LinkRole, Settings};
@@ -21,21 +22,29 @@ struct Peer {
     decoder: Decoder,
     now: Duration,
     sequence: u8,
-    /// every so many-th message from here gets lost
-    lost_every: Option<u32>,
-    sent: u32,
+    /// share of the messages from here that get lost
+    loss: f64,
+    seed: u32,
 }
 
 impl Peer {
-    fn new(kind: AutopilotKind, (loss, lost_every): (f64, Option<u32>), latency_ms: u64) -> Self {
+    fn new(kind: AutopilotKind, loss: f64, latency_ms: u64) -> Self {
+        Self::with_fence(kind, loss, latency_ms, Vec::new())
+    }
+
+    fn with_fence(kind: AutopilotKind, loss: f64, latency_ms: u64, fence: Vec<sitl::FenceItem>) -> Self {
         let description =
             load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml")).unwrap();
-        let settings =
-            Settings { loss, latency: Duration::from_millis(latency_ms), ..Settings::new(description, kind) };
+        let settings = Settings {
+            loss,
+            fence,
+            latency: Duration::from_millis(latency_ms),
+            ..Settings::new(description, kind)
+        };
         let mut vehicle = sitl::Vehicle::new(settings).unwrap();
         let link = vehicle.open_link(LinkRole::GroundStation);
         let decoder = Decoder::new(Self::identity(kind), None, 0);
-        Self { vehicle, link, decoder, now: Duration::ZERO, sequence: 0, lost_every, sent: 0 }
+        Self { vehicle, link, decoder, now: Duration::ZERO, sequence: 0, loss, seed: 11 }
     }
 
     fn identity(kind: AutopilotKind) -> Vehicle {
@@ -47,8 +56,9 @@ impl Peer {
     }
 
     fn send(&mut self, message: &MavMessage) {
-        self.sent += 1;
-        if self.lost_every.is_some_and(|every| self.sent.is_multiple_of(every)) {
+        // a hash in place of chance
+        self.seed = self.seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        if f64::from(self.seed >> 8) / f64::from(1_u32 << 24) < self.loss {
             return;
         }
         let mut raw = MAVLinkV2MessageRaw::new();
@@ -107,7 +117,7 @@ const KINDS: [AutopilotKind; 3] = [
 #[test]
 fn every_kind_gives_what_a_flight_needs() {
     for kind in KINDS {
-        let parameters = downloaded(&mut Peer::new(kind, (0.0, None), 20), kind);
+        let parameters = downloaded(&mut Peer::new(kind, 0.0, 20), kind);
         let needed: &[&str] = match kind {
             AutopilotKind::Px4 => &["COM_OF_LOSS_T", "COM_OBL_RC_ACT", "THR_MDL_FAC", "PWM_MAIN_MIN1"],
             AutopilotKind::ArduPilot(_) => &[
@@ -135,7 +145,7 @@ fn every_kind_gives_what_a_flight_needs() {
 fn old_and_new_names_mean_the_same() {
     let of = |release| {
         let kind = AutopilotKind::ArduPilot(release);
-        downloaded(&mut Peer::new(kind, (0.0, None), 20), kind)
+        downloaded(&mut Peer::new(kind, 0.0, 20), kind)
     };
     let (old, new) = (of(ArduPilotRelease::V4_6), of(ArduPilotRelease::V4_7));
     for name in ["WPNAV_ACCEL", "WPNAV_SPEED", "ANGLE_MAX", "SYSID_MYGCS"] {
@@ -148,8 +158,8 @@ fn old_and_new_names_mean_the_same() {
 #[test]
 fn a_lossy_link_loses_no_parameter() {
     for kind in KINDS {
-        let clean = downloaded(&mut Peer::new(kind, (0.0, None), 20), kind);
-        let lossy = downloaded(&mut Peer::new(kind, (0.2, Some(5)), 200), kind);
+        let clean = downloaded(&mut Peer::new(kind, 0.0, 20), kind);
+        let lossy = downloaded(&mut Peer::new(kind, 0.2, 200), kind);
         assert_eq!(clean.values, lossy.values, "{kind:?}");
     }
 }
@@ -158,7 +168,7 @@ fn a_lossy_link_loses_no_parameter() {
 fn every_kind_sends_what_identification_needs() {
     for kind in KINDS {
         // until ArduPilot has a position estimate it sends none
-        let mut peer = Peer::new(kind, (0.0, None), 20);
+        let mut peer = Peer::new(kind, 0.0, 20);
         while peer.now < Duration::from_secs(45) {
             peer.step(|_| {}, |_| {});
         }
@@ -174,12 +184,52 @@ fn every_kind_sends_what_identification_needs() {
 #[test]
 fn a_lossy_link_still_gets_its_streams() {
     for kind in KINDS {
-        let mut peer = Peer::new(kind, (0.2, Some(5)), 200);
+        let mut peer = Peer::new(kind, 0.2, 200);
         while peer.now < Duration::from_secs(45) {
             peer.step(|_| {}, |_| {});
         }
         let report = measured(&mut peer, kind);
         let lines: Vec<String> = report.streams.iter().map(|stream| stream.line()).collect();
         assert!(report.suffices_to_identify(), "{kind:?}: {lines:#?}");
+    }
+}
+
+fn fence_of(peer: &mut Peer, kind: AutopilotKind) -> (FenceOutcome, Vec<FenceItem>) {
+    let mut download = FenceDownload::new(Peer::identity(kind));
+    while download.outcome().is_none() {
+        while let Some(message) = download.poll(peer.now) {
+            peer.send(&message);
+        }
+        peer.step(|frame| download.take_frame(frame), |_| {});
+    }
+    (download.outcome().unwrap().clone(), download.items().to_vec())
+}
+
+#[test]
+fn the_stored_fence_is_read_over_any_link() {
+    let origin = Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594 };
+    let corner = |north_deg: f64, east_deg: f64| sitl::FenceItem {
+        command: 5001,
+        param1: 4.0,
+        latitude_deg: origin.latitude_deg + north_deg,
+        longitude_deg: origin.longitude_deg + east_deg,
+    };
+    let stored = vec![corner(-1e-4, -1e-4), corner(1e-4, -1e-4), corner(1e-4, 1e-4), corner(-1e-4, 1e-4)];
+    for kind in KINDS {
+        for (loss, latency_ms) in [(0.0, 20), (0.2, 200)] {
+            let mut peer = Peer::with_fence(kind, loss, latency_ms, stored.clone());
+            let (outcome, items) = fence_of(&mut peer, kind);
+            assert_eq!((outcome, items.len()), (FenceOutcome::Complete, 4), "{kind:?}");
+            let parameters =
+                Parameters { autopilot: Peer::identity(kind).autopilot, ..Parameters::default() };
+            let fence = Fence::new(&parameters, &items, Some(&origin));
+            // a ten thousandth of a degree: 11.1 m north, 7.5 m east
+            let spare_m = fence.zones[0].spare_m([0.0, 0.0]);
+            assert!((spare_m - 7.55).abs() < 0.1, "{spare_m}");
+        }
+        let (outcome, items) = fence_of(&mut Peer::new(kind, 0.0, 20), kind);
+        assert_eq!((outcome, items.len()), (FenceOutcome::Complete, 0), "{kind:?}: no fence");
+        let (outcome, _) = fence_of(&mut Peer::new(kind, 0.999, 20), kind);
+        assert!(matches!(outcome, FenceOutcome::Incomplete { .. }), "{kind:?}: {outcome:?}");
     }
 }

@@ -68,7 +68,7 @@ fn header(model: &ViewModel) -> Line<'_> {
 
 fn gauge_row(frame: &mut Frame<'_>, model: &ViewModel, area: Rect) {
     let [link, battery, tracking] =
-        Layout::horizontal([Constraint::Fill(3), Constraint::Fill(2), Constraint::Fill(4)]).areas(area);
+        Layout::horizontal([Constraint::Fill(4), Constraint::Fill(2), Constraint::Fill(3)]).areas(area);
     boxed(frame, "Link", vec![link_line(model)], link);
     boxed(frame, "Battery", vec![battery_line(model)], battery);
     boxed(frame, "Tracking error", vec![tracking_line(model, tracking.width)], tracking);
