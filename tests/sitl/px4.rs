@@ -237,6 +237,7 @@ fn without_yaw_it_keeps_its_heading_and_with_it_turns() {
 }
 
 #[test]
+#[expect(deprecated, reason = "PX4 knows the frame by its number, whatever its name")]
 fn body_velocities_turn_with_the_heading() {
     let mut ground = offboard(settings(PX4));
     let east = std::f32::consts::FRAC_PI_2;
