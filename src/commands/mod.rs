@@ -6,9 +6,13 @@ mod effects;
 mod flights;
 mod identify;
 mod inspect;
+mod network;
 mod output;
 mod plan;
+mod record;
+mod replay;
 mod simulate;
+mod sitl;
 mod validate;
 mod vehicle;
 
@@ -81,8 +85,11 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Plan(args) => plan::run(cli.json, args),
         Verb::Identify(args) => identify::run(cli.json, args),
         Verb::Simulate(args) => simulate::run(cli.json, args),
+        Verb::Sitl(args) => sitl::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
+        Verb::Record(args) => record::run(cli.json, args),
+        Verb::Replay(args) => replay::run(cli.json, args),
     }
 }
 

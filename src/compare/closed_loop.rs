@@ -306,10 +306,7 @@ mod tests {
         let recorded = TenSignals::of_signals(&signals).unwrap();
         let span_s = (10.0, 29.0);
         let off_m = recorded_tracking_m(&flight.recording, &recorded, span_s).unwrap().unwrap();
-        assert!(
-            off_m.iter().all(|off_m| *off_m < 0.1 && *off_m <= flight.tracking_error_max_m),
-            "{off_m:?}"
-        );
+        assert!(off_m.iter().all(|off_m| *off_m < 0.1 && *off_m <= flight.tracking_error_max_m), "{off_m:?}");
         assert_eq!(recorded_tracking_m(&flight.recording, &recorded, (900.0, 901.0)).unwrap(), None);
         let errors = |mass: f64| {
             let mut flown = vehicle.clone();

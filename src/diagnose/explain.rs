@@ -1,5 +1,6 @@
 //! The whole method: search, lack of fit, verdict.
 
+use super::base::{Base, Present};
 use super::candidates::Candidate;
 use super::confusable::confusable_with;
 use super::explanation::{Confusable, DetectionLimit, Explanation, Named, NamedParameter, Strength, Verdict};
@@ -60,6 +61,12 @@ const LACK_TORQUE: f64 = 0.1;
 const FAST_MOTOR_S: f64 = 0.004;
 /// A mounting tilt is a nuisance below half a degree, rad.
 const TILT_NUISANCE_RAD: f64 = 0.0087;
+/// A centre of mass is not known better, m.
+const COM_NUISANCE_M: f64 = 0.000_15;
+/// No line that holds anything weighs less, kg/m.
+const LEAST_LINE_KG_M: f64 = 0.005;
+/// Rotors of one vehicle differ by as much.
+const SCATTER: f64 = 0.15;
 /// Rivals that explain nearly as much as what was taken.
 const RIVAL: f64 = 0.93;
 
@@ -189,9 +196,7 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
                 parameters.push(NamedParameter { name: parameter.name, value, std, unit: parameter.unit });
             }
         }
-        let small_tilt = present.effect.id() == "thrust_tilt"
-            && present.values.iter().map(|v| v * v).sum::<f64>().sqrt() < TILT_NUISANCE_RAD;
-        if small_tilt {
+        if is_ordinary(present, &fitted.base) {
             continue;
         }
         let step = found.steps.iter().find(|step| {
@@ -206,6 +211,25 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
         });
     }
     out
+}
+
+/// What every vehicle has a little of, or what is too small to be what the effect is called: it stays in the
+/// model and gets no name.
+fn is_ordinary(present: &Present, base: &Base) -> bool {
+    let size = |slots: &[usize]| slots.iter().map(|&slot| present.values[slot].powi(2)).sum::<f64>().sqrt();
+    let rotors = base.present.iter().filter(|other| other.effect.id() == "weak_rotor");
+    match present.effect.id() {
+        "thrust_tilt" => size(&[0, 1]) < TILT_NUISANCE_RAD,
+        "com_offset" => size(&[0, 1, 2]) < COM_NUISANCE_M,
+        "tether" => present.values[0] < LEAST_LINE_KG_M && present.values[1] == 0.0,
+        // one that is stronger, or several that differ: the rotors' scatter
+        "weak_rotor" => {
+            present.values[1] > 1.0
+                || rotors.clone().count() > 1 && rotors.clone().all(|rotor| rotor.values[1] > 1.0 - SCATTER)
+                || rotors.clone().any(|rotor| rotor.values[1] > 1.0) && present.values[1] > 1.0 - SCATTER
+        }
+        _ => false,
+    }
 }
 
 fn strength(step: &Step) -> Strength {

@@ -179,12 +179,14 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
     let mut steps: Vec<Step> = Vec::new();
     let mut last;
     let mut settled = 0;
+    let mut refused: Vec<&'static str> = Vec::new();
     loop {
         let candidates = candidates(&after.base.vehicle, flights);
         last = test_all(flights, &after, &candidates);
         let count = last.len() as f64;
+        let back = |tested: &Tested| refused.contains(&tested.candidate.id);
         let mut passed: Vec<Tested> =
-            last.iter().filter(|tested| passes(tested, &after, gates, count)).cloned().collect();
+            last.iter().filter(|tested| !back(tested)).filter(|tested| passes(tested, &after, gates, count)).cloned().collect();
         let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);
         let worth = |tested: &Tested| tested.evidence.energy - price * tested.evidence.theta.len() as f64;
         passed.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
@@ -198,7 +200,11 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
             _ if settled == SETTLINGS || steps.is_empty() => break,
             _ => {
                 settled += 1;
+                let before = after.base.present.clone();
                 let (dropped, moved) = settle(flights, &mut after)?;
+                let gone = before.iter().map(|present| present.effect.id());
+                let kept = |id: &&'static str| after.base.present.iter().any(|p| p.effect.id() == *id);
+                refused.extend(gone.filter(|id| !kept(id)));
                 if !dropped && moved < SETTLED_S {
                     break;
                 }
