@@ -129,6 +129,12 @@ impl Rows {
         Ok(rows)
     }
 
+    /// What the rotors of a flight do by their commands, after the latency and smoothed.
+    #[must_use]
+    pub fn commanded(&self, flight: usize) -> Option<&Turning> {
+        self.flights.get(flight).map(|along| &along.commanded)
+    }
+
     /// Number of rows.
     #[must_use]
     pub fn len(&self) -> usize {
