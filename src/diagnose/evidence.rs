@@ -394,7 +394,7 @@ fn spread(values: &[f64]) -> f64 {
 /// degrees of freedom; by logarithms, so that nothing underflows.
 #[must_use]
 pub fn normal_deviate(wald: f64, size: usize) -> f64 {
-    if !(wald > 0.0) {
+    if wald.is_nan() || wald <= 0.0 {
         return 0.0;
     }
     if size == 1 {

@@ -129,6 +129,8 @@ const TIMES_S: [f64; 16] =
     [0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.8, 1.1, 1.5, 2.1, 3.0, 4.2, 6.0, 8.5, 12.0, 20.0];
 /// Axes of a gust differ in strength by no more than this.
 const ALIKE: f64 = 3.0;
+/// Time about a mass change that is left out, s.
+const CHANGE_S: f64 = 2.5;
 /// Chance below which a state is followed.
 const STATE_P: f64 = 1e-6;
 /// Least force that follows a state, of the weight.
@@ -137,7 +139,8 @@ const STATE_G: f64 = 0.002;
 /// Tests what the fit leaves.
 #[must_use]
 pub fn aperiodic(traces: &[Trace], fitted: &Fitted, located: &Localisation) -> Aperiodic {
-    let Some(view) = View::new(traces, fitted) else { return Aperiodic::default() };
+    let Some(mut view) = View::new(traces, fitted) else { return Aperiodic::default() };
+    quieten(&mut view, fitted);
     let redness: Vec<Redness> = red_quantities(&view)
         .into_iter()
         .filter_map(|(of, series)| redness(&view, fitted, of, &series))
@@ -147,6 +150,22 @@ pub fn aperiodic(traces: &[Trace], fitted: &Fitted, located: &Localisation) -> A
         gust: gust(&view, fitted, &redness),
         state: state_lack(&view, fitted, located),
         redness,
+    }
+}
+
+/// Leaves out the time about a mass change, which is known to some seconds only: a step at the wrong time is
+/// a large push of short duration, and not noise.
+fn quieten(view: &mut View, fitted: &Fitted) {
+    let changes = fitted.base.present.iter().filter(|present| present.effect.id() == "mass_change");
+    for at_s in changes.filter_map(|present| present.values.first()) {
+        for row in 0..view.len() {
+            if (view.time_s[row] - at_s).abs() < CHANGE_S {
+                view.residual.iter_mut().for_each(|channel| channel[row] = 0.0);
+                if let Some(world) = &mut view.world_force_n {
+                    world.iter_mut().for_each(|axis| axis[row] = 0.0);
+                }
+            }
+        }
     }
 }
 

@@ -17,7 +17,7 @@ pub struct FieldTest {
     pub gain: f64,
     /// normal deviate of the field on what the named effects leave
     pub z: f64,
-    /// chance of the cluster test over twelve blocks
+    /// chance of the cluster test over twelve blocks, for display: weak with so many columns
     pub p_cluster: f64,
     /// world axis of the force (0 x, 1 y, 2 z)
     pub component: usize,
@@ -54,10 +54,13 @@ pub struct Uneven {
 
 /// Smooth functions along one axis.
 const HATS: usize = 7;
-/// Normal deviate of a field. Beyond that of a name: 8 directions and places are tried, of six columns each.
+/// Normal deviate of a field. Beyond that of a name: eight directions and places of six columns each are tried,
+/// and their largest on flights without a field reaches four.
 const FIELD_Z: f64 = 5.5;
-/// Family-wise chance of the cluster test.
-const FIELD_P: f64 = 0.02;
+/// Stretches of the flight, and in how many of them a field must explain something. The cluster test says
+/// nothing with six columns over twelve stretches.
+const STRETCHES: usize = 12;
+const LEAST_STRETCHES: usize = 8;
 /// Directions and places that are tried: vertical force along the height belongs to ground, ceiling, tether.
 const TRIED: [(usize, usize); 8] = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1), (0, 2), (1, 2)];
 /// Least share of the residual energy.
@@ -88,20 +91,18 @@ pub fn field_test(
             Some((component, along, evidence, columns))
         })
         .collect();
-    let passes = |z: f64, p: f64| z > FIELD_Z && p < FIELD_P / TRIED.len() as f64;
     let (component, along, evidence, columns) = tested.into_iter().max_by(|a, b| {
-        let key = |t: &(usize, usize, super::super::Evidence, Vec<Channels>)| {
-            (passes(t.2.z, t.2.p_cluster), t.2.energy)
-        };
-        let (a, b) = (key(a), key(b));
-        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        let seen = |z: f64| z > FIELD_Z;
+        seen(a.2.z).cmp(&seen(b.2.z)).then(a.2.energy.total_cmp(&b.2.energy))
     })?;
     let (where_m, extent_m, force_n) =
         bump(traces, after, (component, along), ranges[along]).unwrap_or((0.0, 0.0, 0.0));
     let body = &after.base.vehicle;
     let least_n = FIELD_G * body.body.mass_kg * body.gravity_m_s2;
-    let certain =
-        passes(evidence.z, evidence.p_cluster) && evidence.gain >= FIELD_GAIN && force_n.abs() >= least_n;
+    let certain = evidence.z > FIELD_Z
+        && evidence.gain >= FIELD_GAIN
+        && force_n.abs() >= least_n
+        && all_along(after, &columns, &evidence.theta);
     let energy_alone = if certain { taken(before, after, &columns) } else { evidence.energy };
     Some(FieldTest {
         gain: evidence.gain,
@@ -118,6 +119,26 @@ pub fn field_test(
         beats_named: certain && energy_alone > named_energy,
         uneven: uneven(traces, after),
     })
+}
+
+/// Whether the columns explain something in most stretches of the flight, none of which gives half of it.
+fn all_along(after: &Fitted, columns: &[Channels], theta: &[f64]) -> bool {
+    let Some((_, partialled)) = after.weighted.partialled(columns) else { return false };
+    let left = &after.weighted.left;
+    let rest = left - partialled * DVector::from_column_slice(theta);
+    let rows = after.rows.len();
+    let gains: Vec<f64> = (0..STRETCHES)
+        .map(|stretch| {
+            let (from, to) = (rows * stretch / STRETCHES, rows * (stretch + 1) / STRETCHES);
+            (0..CHANNELS)
+                .flat_map(|channel| channel * rows + from..channel * rows + to)
+                .map(|at| left[at] * left[at] - rest[at] * rest[at])
+                .sum()
+        })
+        .collect();
+    let total: f64 = gains.iter().sum();
+    let helped = gains.iter().filter(|gain| **gain > 0.0).count();
+    helped >= LEAST_STRETCHES && gains.iter().all(|gain| *gain < 0.5 * total)
 }
 
 /// Range of a world axis that holds 96 of 100 rows, m.

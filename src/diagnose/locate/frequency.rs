@@ -89,7 +89,7 @@ pub(super) fn coherences(view: &View, traces: &[Trace]) -> Vec<Coherence> {
     if windows.len() < LEAST_WINDOWS {
         return Vec::new();
     }
-    // half-overlapping Hann windows count for about 0.95 of as many that do not overlap... of their span
+    // neighbouring Hann windows that overlap by half share a little: they count for this much
     let free = 0.95 * windows.len() as f64;
     let noise = 1.0 - 0.05_f64.powf(1.0 / (free - 1.0));
     let spectra = |series: &[f64]| -> Vec<Vec<(f64, f64)>> {

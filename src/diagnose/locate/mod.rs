@@ -30,7 +30,7 @@ pub struct AxisShare {
     /// standard deviation that the sensors' noise accounts for, N or N m; from 1.5 to 4 Hz, continued by the
     /// spectrum that white noise has behind the weak form
     pub noise: f64,
-    /// energy beyond the noise, in units of the noise's variance, over all rows
+    /// energy beyond the noise, in units of the noise's variance, over all rows; zero where it is not certain
     pub excess: f64,
     /// its share among the channels (0..1); zero everywhere where nothing exceeds noise
     pub share: f64,
@@ -63,6 +63,9 @@ impl Localisation {
     }
 }
 
+/// The noise's variance is known to about a quarter; less beyond it is none.
+const BEYOND_NOISE: f64 = 1.5;
+
 /// Locates a fit's residual; `None` without rows.
 #[must_use]
 pub fn localise(traces: &[Trace], fitted: &Fitted) -> Option<Localisation> {
@@ -79,7 +82,11 @@ pub fn localise(traces: &[Trace], fitted: &Fitted) -> Option<Localisation> {
         axis.noise = noise.sqrt();
         if noise > 0.0 {
             axis.excess = series.len() as f64 * (variance / noise - 1.0).max(0.0);
-            *band = frequency::band(&view, &ordinates, noise);
+            if variance > BEYOND_NOISE * noise {
+                *band = frequency::band(&view, &ordinates, noise);
+            } else {
+                axis.excess = 0.0;
+            }
         }
     }
     let total: f64 = axes.iter().map(|axis| axis.excess).sum();
@@ -106,3 +113,6 @@ pub fn localise(traces: &[Trace], fitted: &Fitted) -> Option<Localisation> {
         bands,
     })
 }
+
+#[cfg(test)]
+mod tests;

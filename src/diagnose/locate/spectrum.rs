@@ -124,7 +124,7 @@ pub(super) fn whittle(power: &[f64], shapes: &[&[f64]]) -> Option<Whittle> {
         return None;
     }
     let mean = power.iter().sum::<f64>() / count as f64;
-    if !(mean > 0.0) {
+    if mean.is_nan() || mean <= 0.0 {
         return None;
     }
     let mut spectrum = vec![mean; count];
@@ -204,4 +204,37 @@ pub(super) fn noise_shapes(view: &View, ordinates: &[Ordinate]) -> [Vec<f64>; 2]
             .map(|o| scale * kernel_power(&view.kernel, (order, view.grid_step_s), o.frequency_hz))
             .collect()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::view::Followed;
+    use super::super::view::tests::{synthetic, white};
+    use super::*;
+
+    #[test]
+    fn the_noise_is_told_from_what_is_slow() {
+        let noise = white(1);
+        let plain = synthetic(|i, _| noise[i], Some(10.0), (Followed::WorldX, &f64::sin));
+        let slow =
+            synthetic(|i, t| noise[i] + 3.0 * (0.4 * t).sin(), Some(10.0), (Followed::WorldX, &f64::sin));
+        let expected = plain.kernel.noise_gain(0);
+        for view in [&plain, &slow] {
+            let found = noise_variance(view, &periodogram(view, &view.residual[2])).unwrap();
+            assert!((found / expected - 1.0).abs() < 0.25, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_sum_of_shapes_is_found_and_none_is_negative() {
+        let shapes: [Vec<f64>; 2] = [
+            (0..200).map(|i| 1.0 + f64::from(i)).collect(),
+            (0..200).map(|i| 300.0 / (1.0 + f64::from(i))).collect(),
+        ];
+        let power: Vec<f64> = (0..200).map(|i| 2.0 * shapes[0][i] + 5.0 * shapes[1][i]).collect();
+        let fit = whittle(&power, &[&shapes[0], &shapes[1]]).unwrap();
+        assert!((fit.coefficients[0] - 2.0).abs() < 1e-3 && (fit.coefficients[1] - 5.0).abs() < 1e-3);
+        let only = whittle(&shapes[0], &[&shapes[0], &shapes[1]]).unwrap();
+        assert!(only.coefficients.iter().all(|c| *c >= 0.0));
+    }
 }

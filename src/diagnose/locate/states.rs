@@ -281,7 +281,7 @@ fn bins(cut: &Cut, residual: &[f64], channel: usize) -> Vec<Bin> {
     }
     let stream = SEED ^ (channel as u64) << 8 ^ cut.values.len() as u64;
     let mut rng = Pcg64Mcg::seed_from_u64(stream);
-    let mut drawn: Vec<Vec<f64>> = vec![Vec::with_capacity(RESAMPLES); BINS];
+    let mut drawn: Vec<Vec<f64>> = vec![Vec::new(); BINS];
     for _ in 0..RESAMPLES {
         let mut totals = [(0.0, 0.0); BINS];
         for _ in 0..cut.blocks {
@@ -320,4 +320,36 @@ fn peak(bins: &[Bin]) -> f64 {
     bins.iter()
         .max_by(|a, b| (a.mean - median).abs().total_cmp(&(b.mean - median).abs()))
         .map_or(0.0, |bin| bin.center)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::view::tests::{synthetic, white};
+    use super::*;
+
+    #[test]
+    fn the_state_that_is_followed_comes_first_and_takes_its_shadow_along() {
+        let noise = white(2);
+        let place = |t: f64| (0.9 * t).sin() + 0.3 * (0.4 * t).cos();
+        let bump = |t: f64| (-0.5 * ((place(t) + 0.3) / 0.2).powi(2)).exp();
+        let view = synthetic(|i, t| 2.0 * noise[i] + bump(t), None, (Followed::WorldX, &place));
+        let follows = follow(&view);
+        let first = follows.iter().find(|f| f.channel == 2 && f.entered == Some(0)).unwrap();
+        assert_eq!(first.state, Followed::WorldX);
+        assert!((first.peak_at + 0.3).abs() < 0.15, "{}", first.peak_at);
+        assert!(first.partial_share > 0.3, "{}", first.partial_share);
+        let at_peak = first.bins.iter().find(|bin| bin.center == first.peak_at).unwrap();
+        assert!(at_peak.low < at_peak.mean && at_peak.mean < at_peak.high);
+    }
+
+    #[test]
+    fn noise_follows_nothing() {
+        let mut entered = 0;
+        for seed in 0..10 {
+            let noise = white(seed);
+            let view = synthetic(|i, _| noise[i], None, (Followed::WorldX, &|t| (0.9 * t).sin()));
+            entered += follow(&view).iter().filter(|f| f.entered.is_some()).count();
+        }
+        assert!(entered <= 1, "{entered}");
+    }
 }

@@ -66,7 +66,7 @@ const OVERLAP: usize = 8;
 /// Distance of the differences behind the long-run variance, means (2 s).
 const APART: usize = 5;
 /// Penalty of a change, times the logarithm of the number of means, in long-run variances.
-const PENALTY: f64 = 4.0;
+const PENALTY: f64 = 6.0;
 /// Most changes of one channel of one flight.
 const MOST: usize = 4;
 /// Fewest means on each side of a change (2 s).
@@ -261,4 +261,50 @@ fn slope(means: &[Mean], long_run: f64) -> Option<(f64, f64)> {
         down += (mean.time_s - middle_s).powi(2);
     }
     (down > 0.0).then(|| (up / down, (long_run / down).sqrt()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::view::Followed;
+    use super::super::view::tests::{synthetic, white};
+    use super::*;
+
+    #[test]
+    fn a_step_is_found_beside_what_repeats() {
+        let noise = white(3);
+        let force = |i: usize, t: f64| {
+            noise[i] + (0.2 * std::f64::consts::PI * t).sin() + if t > 23.0 { 0.5 } else { 0.0 }
+        };
+        let view = synthetic(force, Some(10.0), (Followed::WorldX, &f64::sin));
+        let (found, _) = changes(&view);
+        let first = found.iter().find(|change| change.channel == 2).unwrap();
+        assert_eq!(first.kind, ChangeKind::Mean);
+        assert!((first.time_s - 23.0).abs() < 1.5 && (first.size - 0.5).abs() < 0.2, "{first:?}");
+    }
+
+    #[test]
+    fn noise_does_not_change_and_a_drift_has_its_size() {
+        let mut found = 0;
+        for seed in 0..20 {
+            let noise = white(seed);
+            let view = synthetic(|i, t| noise[i] + 0.002 * t, None, (Followed::WorldX, &f64::sin));
+            let (changes, drifts) = changes(&view);
+            found += changes.len();
+            let drift = drifts.iter().find(|drift| drift.channel == 2).unwrap();
+            assert!((drift.per_s - 0.002).abs() < 4.5 * drift.std_per_s, "{drift:?}");
+        }
+        assert!(found <= 1, "{found}");
+    }
+
+    #[test]
+    fn a_push_of_some_seconds_is_a_span() {
+        let noise = white(4);
+        let push = |t: f64| if (20.0..26.0).contains(&t) { 2.0 } else { 0.0 };
+        let view = synthetic(|i, t| noise[i] + push(t), None, (Followed::WorldX, &f64::sin));
+        let mut sigma = [0.0; CHANNELS];
+        sigma[2] = view.kernel.noise_gain(0).sqrt();
+        let spans = spans(&view, &sigma);
+        let [span] = spans.as_slice() else { panic!("{spans:?}") };
+        assert!((span.from_s - 20.0).abs() < 2.5 && (span.to_s - 26.0).abs() < 2.5, "{span:?}");
+    }
 }

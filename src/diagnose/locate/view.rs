@@ -292,3 +292,58 @@ fn median_step(time_s: &[f64]) -> Option<f64> {
     steps.sort_by(f64::total_cmp);
     steps.get(steps.len() / 2).copied().filter(|step| *step > 0.0)
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// One flight of 50 s whose force along z is the weak form of `force` (s to N), the rest zero, with one
+    /// state.
+    pub(in super::super) fn synthetic(
+        force: impl Fn(usize, f64) -> f64,
+        period_s: Option<f64>,
+        state: (Followed, &dyn Fn(f64) -> f64),
+    ) -> View {
+        let grid_step_s = 0.008;
+        let kernel = WeakKernel::new(0.2, grid_step_s);
+        let series: Vec<f64> = (0..6250).map(|i| force(i, i as f64 * grid_step_s)).collect();
+        let mask = vec![true; series.len()];
+        let centers = kernel.centers(&mask, 6);
+        let time_s: Vec<f64> = centers.iter().map(|&center| center as f64 * grid_step_s).collect();
+        let rows = time_s.len();
+        let mut residual: Channels = std::array::from_fn(|_| vec![0.0; rows]);
+        residual[2] = kernel.apply(0, &series, &centers);
+        let length_s = period_s.unwrap_or(BLOCK_S);
+        let block = |length_s: f64| -> Vec<usize> {
+            time_s
+                .iter()
+                .map(|t| (0..100_i32).take_while(|k| (f64::from(*k) + 1.0) * length_s <= *t).count())
+                .collect()
+        };
+        View {
+            step_s: 6.0 * grid_step_s,
+            flights: vec![(0..rows, period_s)],
+            runs: std::iter::once(0..rows).collect(),
+            blocks: block(length_s),
+            short_blocks: block(SHORT_BLOCK_S),
+            residual,
+            states: vec![
+                (state.0, time_s.iter().map(|t| state.1(*t)).collect()),
+                (Followed::Speed, time_s.iter().map(|t| (1.7 * t).sin().abs()).collect()),
+            ],
+            thrust_n: vec![10.0; rows],
+            world_force_n: None,
+            kernel,
+            grid_step_s,
+            time_s,
+        }
+    }
+
+    /// White noise of unit variance, the same for the same index.
+    pub(in super::super) fn white(seed: u64) -> Vec<f64> {
+        use rand::SeedableRng;
+        use rand_distr::{Distribution, StandardNormal};
+        let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(seed);
+        (0..6250).map(|_| StandardNormal.sample(&mut rng)).collect()
+    }
+}
