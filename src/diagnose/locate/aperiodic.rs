@@ -5,9 +5,10 @@ use super::super::rows::{CHANNELS, Channels};
 use super::super::search::Fitted;
 use super::super::trace::Trace;
 use super::Localisation;
+use super::gust::{GustFound, gust};
 use super::spectrum::{Ordinate, Whittle, noise_shapes, periodogram, whittle};
 use super::view::{Followed, View};
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
 /// Quantities that are looked at for trends and redness.
@@ -57,23 +58,6 @@ pub struct Redness {
     pub certain: bool,
 }
 
-/// Gusts by their force through the drag.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GustFound {
-    /// each horizontal axis, m/s
-    pub sigma_m_s: f64,
-    /// standard error, that of the drag among it
-    pub sigma_std_m_s: f64,
-    /// s
-    pub correlation_s: f64,
-    /// standard error
-    pub correlation_std_s: f64,
-    /// drag that makes a force of it, N/(m/s)
-    pub drag_n_s_m: f64,
-    /// likelihood ratio of the red part, both axes, as in [`Redness`]
-    pub statistic: f64,
-}
-
 /// A state that the residual follows in a flight that repeats nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StateLack {
@@ -119,7 +103,7 @@ const TREND_Z: f64 = 5.5;
 /// Change over a flight: of the weight.
 const TREND_G: f64 = 0.005;
 /// Likelihood ratio of redness.
-const RED_STATISTIC: f64 = 30.0;
+pub(super) const RED_STATISTIC: f64 = 30.0;
 /// Least rms of a red force, of the weight.
 const RED_G: f64 = 0.003;
 /// Least torque of any kind, of the torque's rms.
@@ -127,8 +111,6 @@ const LEAST_TORQUE: f64 = 0.1;
 /// Correlation times that are tried, s: from the kernel's width to half a minute.
 const TIMES_S: [f64; 16] =
     [0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.8, 1.1, 1.5, 2.1, 3.0, 4.2, 6.0, 8.5, 12.0, 20.0];
-/// Axes of a gust differ in strength by no more than this.
-const ALIKE: f64 = 3.0;
 /// Time about a mass change that is left out, s.
 const CHANGE_S: f64 = 2.5;
 /// Chance below which a state is followed.
@@ -244,12 +226,12 @@ fn red_quantities(view: &View) -> Vec<(Quantity, Vec<f64>)> {
 }
 
 /// Ordinates that the trajectory does not reach.
-fn beside_harmonics(view: &View, series: &[f64]) -> Vec<Ordinate> {
+pub(super) fn beside_harmonics(view: &View, series: &[f64]) -> Vec<Ordinate> {
     periodogram(view, series).into_iter().filter(|ordinate| !ordinate.harmonic).collect()
 }
 
 /// What a first-order Gauss-Markov force of unit variance has behind the weak form.
-fn red_shape(view: &View, ordinates: &[Ordinate], kernel: &[f64], correlation_s: f64) -> Vec<f64> {
+pub(super) fn red_shape(view: &View, ordinates: &[Ordinate], kernel: &[f64], correlation_s: f64) -> Vec<f64> {
     ordinates
         .iter()
         .zip(kernel)
@@ -261,7 +243,7 @@ fn red_shape(view: &View, ordinates: &[Ordinate], kernel: &[f64], correlation_s:
 }
 
 /// The correlation time that explains most, its fit, and the likelihood ratio against noise alone.
-fn red_fit(view: &View, ordinates: &[Ordinate]) -> Option<(f64, Whittle, f64)> {
+pub(super) fn red_fit(view: &View, ordinates: &[Ordinate]) -> Option<(f64, Whittle, f64)> {
     let power: Vec<f64> = ordinates.iter().map(|o| o.power).collect();
     let [force, velocity] = noise_shapes(view, ordinates);
     let plain = whittle(&power, &[&force, &velocity])?;
@@ -284,117 +266,6 @@ fn redness(view: &View, fitted: &Fitted, of: Quantity, series: &[f64]) -> Option
     let least = if matches!(of, Quantity::Torque(_)) { LEAST_TORQUE } else { RED_G };
     let certain = statistic > RED_STATISTIC && relative > least;
     Some(Redness { of, statistic, rms, correlation_s, relative, certain })
-}
-
-/// Lateral drag of the accepted effects with its standard error, N/(m/s) at the speeds flown.
-fn lateral_drag(view: &View, fitted: &Fitted) -> Option<(f64, f64)> {
-    let mut first = fitted.rows.nuisances.len();
-    let (mut drag, mut variance) = (0.0, 0.0);
-    let speed = view.states.iter().find(|(state, _)| *state == Followed::Speed).map(|(_, values)| values);
-    let mean_speed = speed.map_or(0.0, |values| values.iter().sum::<f64>() / values.len().max(1) as f64);
-    for present in &fitted.base.present {
-        // a quadratic drag's slope, mean of along and across the motion
-        let slope = match present.effect.id() {
-            "linear_drag" => 1.0,
-            "quadratic_drag" => 1.5 * mean_speed,
-            _ => 0.0,
-        };
-        if slope > 0.0 {
-            drag += slope * 0.5 * (present.values[0] + present.values[1]);
-            for (index, slot) in present.free.iter().enumerate() {
-                if *slot < 2 {
-                    variance += (0.5 * slope).powi(2) * fitted.covariance[(first + index, first + index)];
-                }
-            }
-        }
-        first += present.free.len();
-    }
-    (drag > 0.0 && variance.is_finite()).then(|| (drag, variance.max(0.0).sqrt()))
-}
-
-/// Gusts: both horizontal axes red alike, and a drag through which they act.
-fn gust(view: &View, fitted: &Fitted, redness: &[Redness]) -> Option<GustFound> {
-    let axes: Vec<&Redness> = redness.iter().filter(|red| matches!(red.of, Quantity::World(_))).collect();
-    let [x, y] = axes.as_slice() else { return None };
-    let alike = x.rms < ALIKE * y.rms && y.rms < ALIKE * x.rms;
-    let each = x.statistic.min(y.statistic) > 0.5 * RED_STATISTIC;
-    if !(alike && each && (x.certain || y.certain)) {
-        return None;
-    }
-    let (drag, drag_std) = lateral_drag(view, fitted)?;
-    let world = view.world_force_n.as_ref()?;
-    let mut ordinates = beside_harmonics(view, &world[0]);
-    ordinates.extend(beside_harmonics(view, &world[1]));
-    let (at_s, _, statistic) = red_fit(view, &ordinates)?;
-    let (correlation_s, fit) = refined(view, &ordinates, at_s)?;
-    let (relative_variance, correlation_std_s) = red_errors(view, &ordinates, &fit, correlation_s)?;
-    let sigma_m_s = fit.coefficients[2].sqrt() / drag;
-    let relative = (0.25 * relative_variance + (drag_std / drag).powi(2)).sqrt();
-    Some(GustFound {
-        sigma_m_s,
-        sigma_std_m_s: sigma_m_s * relative,
-        correlation_s,
-        correlation_std_s,
-        drag_n_s_m: drag,
-        statistic,
-    })
-}
-
-/// Between the times that were tried, by a search on the deviance.
-fn refined(view: &View, ordinates: &[Ordinate], at_s: f64) -> Option<(f64, Whittle)> {
-    let power: Vec<f64> = ordinates.iter().map(|o| o.power).collect();
-    let [force, velocity] = noise_shapes(view, ordinates);
-    let fit = |correlation_s: f64| {
-        let red = red_shape(view, ordinates, &force, correlation_s);
-        whittle(&power, &[&force, &velocity, &red])
-    };
-    let mut best = (at_s, fit(at_s)?);
-    let mut step = 1.25;
-    while step > 1.01 {
-        let tried = [best.0 / step, best.0 * step];
-        let better = tried
-            .into_iter()
-            .filter_map(|time_s| Some((time_s, fit(time_s)?)))
-            .filter(|(_, found)| found.deviance < best.1.deviance)
-            .min_by(|a, b| a.1.deviance.total_cmp(&b.1.deviance));
-        match better {
-            Some(found) if (0.05..60.0).contains(&found.0) => best = found,
-            _ => step = step.sqrt(),
-        }
-    }
-    Some(best)
-}
-
-/// Relative variance of the red variance, and standard error of the correlation time, by Whittle's information.
-fn red_errors(view: &View, ordinates: &[Ordinate], fit: &Whittle, correlation_s: f64) -> Option<(f64, f64)> {
-    let [force, velocity] = noise_shapes(view, ordinates);
-    let red = red_shape(view, ordinates, &force, correlation_s);
-    let mut information = DMatrix::<f64>::zeros(4, 4);
-    for (i, o) in ordinates.iter().enumerate() {
-        let turn = (TAU * o.frequency_hz * correlation_s).powi(2);
-        let of_red = fit.coefficients[2] * red[i];
-        let slopes = [
-            of_red,
-            // by the logarithm of the correlation time
-            of_red * (1.0 - turn) / (1.0 + turn),
-            fit.coefficients[0] * force[i],
-            fit.coefficients[1] * velocity[i],
-        ]
-        .map(|slope| slope / fit.spectrum[i]);
-        for a in 0..4 {
-            for b in 0..4 {
-                information[(a, b)] += slopes[a] * slopes[b];
-            }
-        }
-    }
-    // a noise shape that is not there has no error
-    for index in 2..4 {
-        if information[(index, index)] <= 0.0 {
-            information[(index, index)] = 1.0;
-        }
-    }
-    let covariance = information.cholesky()?.inverse();
-    Some((covariance[(0, 0)], correlation_s * covariance[(1, 1)].sqrt()))
 }
 
 /// The state that the residual follows most surely, where no flight repeats.

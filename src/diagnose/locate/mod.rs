@@ -4,14 +4,16 @@
 mod aperiodic;
 mod field;
 mod frequency;
+mod gust;
 mod spectrum;
 mod states;
 mod time;
 mod view;
 
-pub use aperiodic::{Aperiodic, GustFound, Quantity, Redness, StateLack, Trend, aperiodic};
+pub use aperiodic::{Aperiodic, Quantity, Redness, StateLack, Trend, aperiodic};
 pub use field::{FieldTest, Uneven, field_test};
 pub use frequency::{Band, Coherence};
+pub use gust::GustFound;
 pub use states::{Bin, Follow};
 pub use time::{Change, ChangeKind, Drift, Span};
 pub use view::Followed;
