@@ -116,6 +116,7 @@ fn fly(kind: &str, seed: u64, noise: f64) -> Option<(Explanation, Option<f64>)> 
                 let input = mavid::physics::Input {
                     time_s,
                     speed_command: [0.0; mavid::physics::MAX_ROTORS],
+                    speed_rate_1_s: [0.0; mavid::physics::MAX_ROTORS],
                     wind_m_s: Vector3::zeros(),
                     battery_voltage_v: None,
                 };

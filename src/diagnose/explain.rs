@@ -6,7 +6,7 @@ use super::explanation::{Confusable, DetectionLimit, Explanation, Named, NamedPa
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
 use super::latency::LatencyFinding;
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
-use super::rows::CHANNELS;
+use super::rows::{AXES, CHANNELS};
 use super::search::{Fitted, Gates, Search, Step, Tested, search};
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
@@ -137,14 +137,14 @@ fn lacks(traces: &[Trace], fitted: &Fitted) -> Option<LackOfFit> {
 fn is_lacking(lack: &LackOfFit, fitted: &Fitted) -> bool {
     let body = &fitted.base.vehicle;
     let weight_n = body.body.mass_kg * body.gravity_m_s2;
-    (0..CHANNELS).any(|channel| {
+    (0..AXES).any(|channel| {
         let size = lack.excess_rms[channel] * fitted.weighted.sigma[channel];
         let least = if channel < 3 {
             LACK_FORCE_G * weight_n
         } else {
             LACK_TORQUE * fitted.rows.torque_rms[channel - 3]
         };
-        lack.p_value[channel] * (CHANNELS as f64) < LACK_P && size > least
+        lack.p_value[channel] * (AXES as f64) < LACK_P && size > least
     })
 }
 
@@ -205,7 +205,7 @@ fn gust_name(gust: &GustFound) -> Option<Named> {
 fn explained_energy(found: &Search) -> f64 {
     let (before, after) = (&found.before.weighted, &found.after.weighted);
     let rows = found.after.rows.len() as f64;
-    (0..CHANNELS)
+    (0..AXES)
         .filter(|&channel| after.sigma[channel] > 0.0)
         .map(|channel| rows * ((before.sigma[channel] / after.sigma[channel]).powi(2) - 1.0))
         .sum()
@@ -218,7 +218,8 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
     let mut out = Vec::new();
     for (place, present) in fitted.base.present.iter().enumerate() {
         let mut parameters = Vec::new();
-        for (slot, parameter) in present.effect.parameters().iter().enumerate() {
+        for slot in 0..present.values.len() {
+            let Some(parameter) = present.parameter(slot) else { continue };
             let free = present.free.contains(&slot);
             let std = if free {
                 index += 1;
@@ -307,7 +308,7 @@ fn limits(last: &[Tested]) -> Vec<DetectionLimit> {
         let mut index = 0;
         for part in parts {
             for &free in &part.free {
-                let parameter = &part.effect.parameters()[free];
+                let Some(parameter) = part.parameter(free) else { continue };
                 let limit = 4.0 * tested.evidence.std(index);
                 index += 1;
                 let same = out.iter_mut().find(|l| l.id == *id && l.parameter == parameter.name);

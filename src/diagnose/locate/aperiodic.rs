@@ -1,7 +1,7 @@
 //! What never repeats, which the harmonic test cannot see: slow trends, noise redder than any sensor's, gusts;
 //! and a lack of fit for flights without a period.
 
-use super::super::rows::{CHANNELS, Channels};
+use super::super::rows::{AXES, Channels, SECOND};
 use super::super::search::Fitted;
 use super::super::trace::Trace;
 use super::Localisation;
@@ -210,7 +210,12 @@ fn trend_column(traces: &[Trace], view: &View, of: Quantity) -> Channels {
                     continue;
                 }
             };
-            (0..3).for_each(|axis| out[axis][row] = force[axis] * minutes);
+            for axis in 0..3 {
+                out[axis][row] = force[axis] * minutes;
+                if trace.reads_force_twice() {
+                    out[SECOND + axis][row] = force[axis] * minutes;
+                }
+            }
         }
     }
     out
@@ -285,7 +290,7 @@ fn state_lack(view: &View, fitted: &Fitted, located: &Localisation) -> Option<St
     tested
         .into_iter()
         .map(|follow| {
-            let rms = follow.share.sqrt() * located.axes[follow.channel % CHANNELS].rms;
+            let rms = follow.share.sqrt() * located.axes[follow.channel % AXES].rms;
             let p_value = (follow.p_value * count).min(1.0);
             let certain = p_value < STATE_P && rms > least(follow.channel);
             StateLack { channel: follow.channel, state: follow.state, p_value, rms, certain }

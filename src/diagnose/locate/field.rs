@@ -3,7 +3,7 @@
 //! A library of vehicle effects gives such a field a wrong name sooner or later. So it is a rival of every
 //! name: tested on what the names leave, and compared with what they took.
 
-use super::super::rows::{CHANNELS, Channels};
+use super::super::rows::{AXES, CHANNELS, Channels, channels};
 use super::super::search::Fitted;
 use super::super::trace::Trace;
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -174,11 +174,9 @@ fn force_column(
                 }
             })
             .collect();
-        let force = trace.weak_vector(0, &forces);
-        for (to, from) in out.iter_mut().zip(force) {
-            to.extend(from);
-        }
-        out[3..].iter_mut().for_each(|torque| torque.resize(torque.len() + trace.rows(), 0.0));
+        let torque = std::array::from_fn(|_| vec![0.0; trace.rows()]);
+        let both = channels(trace, trace.weak_vector(0, &forces), torque);
+        out.iter_mut().zip(both).for_each(|(to, from)| to.extend(from));
     }
     out
 }
@@ -246,7 +244,7 @@ fn taken(before: &Fitted, after: &Fitted, columns: &[Channels]) -> f64 {
     let theta: DVector<f64> = factor.solve(&partialled.tr_mul(left));
     let rest = left - &partialled * theta;
     let rows = before.rows.len();
-    (0..CHANNELS)
+    (0..AXES)
         .filter(|&channel| after.weighted.sigma[channel] > 0.0)
         .map(|channel| {
             let part = |v: &DVector<f64>| v.rows(channel * rows, rows).norm_squared();

@@ -1,6 +1,6 @@
 //! The residual over frequency: the band in which it exceeds noise, and what it moves with.
 
-use super::super::rows::CHANNELS;
+use super::super::rows::AXES;
 use super::super::trace::Trace;
 use super::spectrum::{Ordinate, noise_shapes};
 use super::view::{Followed, View};
@@ -97,7 +97,7 @@ pub(super) fn coherences(view: &View, traces: &[Trace]) -> Vec<Coherence> {
     };
     let of_inputs: Vec<_> = inputs.par_iter().map(|(_, values)| spectra(values)).collect();
     let of_channels: Vec<_> =
-        (0..CHANNELS).into_par_iter().map(|channel| spectra(&view.residual[channel])).collect();
+        (0..AXES).into_par_iter().map(|channel| spectra(&view.residual[channel])).collect();
     let mut out = Vec::new();
     for (channel, residual) in of_channels.iter().enumerate() {
         for ((state, _), input) in inputs.iter().zip(&of_inputs) {

@@ -18,7 +18,7 @@ pub use states::{Bin, Follow};
 pub use time::{Change, ChangeKind, Drift, Span};
 pub use view::Followed;
 
-use super::rows::CHANNELS;
+use super::rows::AXES;
 use super::search::Fitted;
 use super::trace::Trace;
 use spectrum::{noise_variance, periodogram};
@@ -42,7 +42,7 @@ pub struct AxisShare {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Localisation {
     /// each channel's part
-    pub axes: [AxisShare; CHANNELS],
+    pub axes: [AxisShare; AXES],
     /// sudden changes, greatest first
     pub changes: Vec<Change>,
     /// each channel's drift
@@ -54,7 +54,7 @@ pub struct Localisation {
     /// with what it moves, most first
     pub coherences: Vec<Coherence>,
     /// at which frequencies
-    pub bands: [Option<Band>; CHANNELS],
+    pub bands: [Option<Band>; AXES],
 }
 
 impl Localisation {
@@ -72,8 +72,8 @@ const BEYOND_NOISE: f64 = 1.5;
 #[must_use]
 pub fn localise(traces: &[Trace], fitted: &Fitted) -> Option<Localisation> {
     let view = View::new(traces, fitted)?;
-    let mut axes = [AxisShare::default(); CHANNELS];
-    let mut bands = [None; CHANNELS];
+    let mut axes = [AxisShare::default(); AXES];
+    let mut bands = [None; AXES];
     for (channel, (axis, band)) in axes.iter_mut().zip(&mut bands).enumerate() {
         let series = &view.residual[channel];
         let variance = series.iter().map(|v| v * v).sum::<f64>() / series.len() as f64;

@@ -1,6 +1,6 @@
 //! The residual in time: sudden changes of its mean, slope or gain on thrust, drift, and where it exceeds noise.
 
-use super::super::rows::CHANNELS;
+use super::super::rows::AXES;
 use super::view::View;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
@@ -86,7 +86,7 @@ struct Mean {
 /// Changes and drift of all channels.
 pub(super) fn changes(view: &View) -> (Vec<Change>, Vec<Drift>) {
     let (mut out, mut drifts) = (Vec::new(), Vec::new());
-    for channel in 0..CHANNELS {
+    for channel in 0..AXES {
         for (flight, (rows, period_s)) in view.flights.iter().enumerate() {
             let means = means(view, channel, rows);
             let means = period_s.map_or_else(|| means.clone(), |period_s| folded(&means, period_s));
@@ -111,7 +111,7 @@ pub(super) fn changes(view: &View) -> (Vec<Change>, Vec<Drift>) {
 }
 
 /// Where each channel exceeds its noise (N or N m).
-pub(super) fn spans(view: &View, noise: &[f64; CHANNELS]) -> Vec<Span> {
+pub(super) fn spans(view: &View, noise: &[f64; AXES]) -> Vec<Span> {
     let mut out: Vec<Span> = Vec::new();
     // nearly independent values in a window, whose mean square scatters so
     let most = 1.0 + 4.0 * (2.0 / (2 * WINDOW) as f64).sqrt();
@@ -301,7 +301,7 @@ mod tests {
         let noise = white(4);
         let push = |t: f64| if (20.0..26.0).contains(&t) { 2.0 } else { 0.0 };
         let view = synthetic(|i, t| noise[i] + push(t), None, (Followed::WorldX, &f64::sin));
-        let mut sigma = [0.0; CHANNELS];
+        let mut sigma = [0.0; AXES];
         sigma[2] = view.kernel.noise_gain(0).sqrt();
         let spans = spans(&view, &sigma);
         let [span] = spans.as_slice() else { panic!("{spans:?}") };

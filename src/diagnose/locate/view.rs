@@ -1,7 +1,7 @@
 //! A fit's residual row by row, beside the states that it may follow.
 
 use super::super::harmonics::flown_period_s;
-use super::super::rows::{CHANNELS, Channels};
+use super::super::rows::{AXES, CHANNELS};
 use super::super::search::Fitted;
 use super::super::trace::Trace;
 use crate::signals::{WeakKernel, central_difference};
@@ -103,8 +103,8 @@ pub(super) struct View {
     pub(super) blocks: Vec<usize>,
     /// replicates for slow states
     pub(super) short_blocks: Vec<usize>,
-    /// what acts beyond the fit: N, N m
-    pub(super) residual: Channels,
+    /// what acts beyond the fit: N, N m; the force by its first reading
+    pub(super) residual: [Vec<f64>; AXES],
     /// the states, those that were measured and move
     pub(super) states: Vec<(Followed, Vec<f64>)>,
     /// thrust of all rotors, N
@@ -127,7 +127,7 @@ impl View {
         if rows < 2 || left.len() != CHANNELS * rows {
             return None;
         }
-        let residual: Channels = std::array::from_fn(|channel| {
+        let residual: [Vec<f64>; AXES] = std::array::from_fn(|channel| {
             left.rows(channel * rows, rows).iter().map(|value| value * sigma[channel]).collect()
         });
         let mut view = Self {
@@ -311,7 +311,7 @@ pub(super) mod tests {
         let centers = kernel.centers(&mask, 6);
         let time_s: Vec<f64> = centers.iter().map(|&center| center as f64 * grid_step_s).collect();
         let rows = time_s.len();
-        let mut residual: Channels = std::array::from_fn(|_| vec![0.0; rows]);
+        let mut residual: [Vec<f64>; AXES] = std::array::from_fn(|_| vec![0.0; rows]);
         residual[2] = kernel.apply(0, &series, &centers);
         let length_s = period_s.unwrap_or(BLOCK_S);
         let block = |length_s: f64| -> Vec<usize> {
