@@ -154,6 +154,12 @@ impl Rows {
         Ok(rows)
     }
 
+    /// What the rotors of a flight do by their commands, after the latency and smoothed.
+    #[must_use]
+    pub fn commanded(&self, flight: usize) -> Option<&Turning> {
+        self.flights.get(flight).map(|along| &along.commanded)
+    }
+
     /// Number of rows.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -283,7 +289,7 @@ fn weak_wrench(trace: &Trace, forces: &[Vector3<f64>], torques: &[Vector3<f64>])
 }
 
 /// Force in each reading there is, and torque.
-fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
+pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
     let second = if trace.reads_force_twice() { force.clone() } else { nothing(trace) };
     let ([fx, fy, fz], [tx, ty, tz], [kx, ky, kz]) = (force, torque, second);
     [fx, fy, fz, tx, ty, tz, kx, ky, kz]
@@ -380,12 +386,7 @@ fn momentum_rows(trace: &Trace) -> [[Vec<f64>; 3]; 6] {
     out
 }
 
-fn nuisances(
-    trace: &Trace,
-    base: &Base,
-    commanded: &Turning,
-    by_commands: &[Wrench],
-) -> Vec<NuisanceColumn> {
+fn nuisances(trace: &Trace, base: &Base, commanded: &Turning, by_commands: &[Wrench]) -> Vec<NuisanceColumn> {
     let none = || vec![0.0; trace.rows()];
     let force = |values: [Vec<f64>; 3]| channels(trace, values, nothing(trace));
     let torque = |values: [Vec<f64>; 3]| channels(trace, nothing(trace), values);
@@ -418,11 +419,9 @@ fn nuisances(
     out.push(column(Nuisance::Tilt(0), tilt, force([none(), negative, none()])));
     out.push(column(Nuisance::Tilt(1), tilt, force([thrust, none(), none()])));
     if let Some(jitter) = &trace.jitter {
-        let channel = |row: usize| {
-            trace.weak(0, &jitter.iter().map(|jitter| -jitter[row]).collect::<Vec<f64>>())
-        };
-        let values =
-            channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);
+        let channel =
+            |row: usize| trace.weak(0, &jitter.iter().map(|jitter| -jitter[row]).collect::<Vec<f64>>());
+        let values = channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);
         out.push(column(Nuisance::Jitter, Some(JITTER_STD), values));
     }
     out.extend(sensor_nuisances(trace, mass_kg));
