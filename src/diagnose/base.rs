@@ -1,5 +1,6 @@
 //! The model so far: rigid body, actuation latency, and the effects that were accepted.
 
+use crate::physics::effects::by_id;
 use crate::physics::{ActiveEffect, Effect, Model, PhysicsError};
 use crate::signals::ActuationLatency;
 use crate::vehicle::Vehicle;
@@ -45,5 +46,17 @@ impl Base {
             .map(|present| ActiveEffect::new(present.effect, &present.values))
             .collect::<Result<Vec<_>, _>>()?;
         Model::new(&self.vehicle, effects)
+    }
+
+    /// The latency as effects, for simulations; a delay below zero, which only the log's own stamps can
+    /// make, is none.
+    #[must_use]
+    pub fn latency_effects(&self) -> Vec<Present> {
+        let ActuationLatency { delay_s, lag_s } = self.latency;
+        let of = |id: &str, value: f64| {
+            let effect = by_id(id).filter(|_| value > 0.0)?;
+            Some(Present { effect, values: vec![value], free: Vec::new() })
+        };
+        [of("motor_lag", lag_s), of("transport_delay", delay_s)].into_iter().flatten().collect()
     }
 }
