@@ -16,6 +16,14 @@ pub struct Present {
     pub free: Vec<usize>,
 }
 
+impl Present {
+    /// Value at which a parameter's effect vanishes.
+    #[must_use]
+    pub fn nothing_at(&self, slot: usize) -> f64 {
+        if self.effect.id() == "weak_rotor" && slot == 1 { 1.0 } else { 0.0 }
+    }
+}
+
 /// What the recording is compared with.
 #[derive(Debug, Clone)]
 pub struct Base {

@@ -24,6 +24,6 @@ pub use explain::{ExplainError, ExplainSettings, explain};
 pub use explanation::{Confusable, DetectionLimit, Explanation, Named, NamedParameter, Strength, Verdict};
 pub use harmonics::{LackOfFit, Line, lack_of_fit, period_s};
 pub use latency::{LatencyFinding, fit_latency};
-pub use rows::{CHANNEL_NAMES, CHANNELS, Channels, Nuisance, NuisanceColumn, Rows};
+pub use rows::{AXES, CHANNEL_NAMES, CHANNELS, Channels, Nuisance, NuisanceColumn, Rows, SECOND};
 pub use search::{Fitted, Gates, Search, Step, Tested, fit, search};
 pub use trace::{Known, Trace, TraceError};
