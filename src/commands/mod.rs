@@ -8,6 +8,7 @@ mod identify;
 mod inspect;
 mod output;
 mod plan;
+mod prove;
 mod simulate;
 mod validate;
 mod vehicle;
@@ -83,6 +84,7 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Simulate(args) => simulate::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
+        Verb::Prove(args) => prove::run(cli.json, args),
     }
 }
 

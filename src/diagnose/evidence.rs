@@ -142,8 +142,7 @@ impl Weighted {
         let bread = normal.inverse();
         let prior = DMatrix::from_diagonal(&self.precision);
         let gammas = self.gammas(&self.left);
-        let by_residual =
-            &bread * (self.meat_of_residual(&self.nuisances, &gammas) + &prior) * &bread;
+        let by_residual = &bread * (self.meat_of_residual(&self.nuisances, &gammas) + &prior) * &bread;
         let by_score = &bread * (self.meat_of_scores(&self.nuisances, &self.left, &gammas) + &prior) * &bread;
         let covariance = DMatrix::from_fn(size, size, |i, j| {
             let more = |k: usize| (by_score[(k, k)] / by_residual[(k, k)]).max(1.0).sqrt();

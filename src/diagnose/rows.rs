@@ -381,12 +381,7 @@ fn momentum_rows(trace: &Trace) -> [[Vec<f64>; 3]; 6] {
     out
 }
 
-fn nuisances(
-    trace: &Trace,
-    base: &Base,
-    commanded: &Turning,
-    by_commands: &[Wrench],
-) -> Vec<NuisanceColumn> {
+fn nuisances(trace: &Trace, base: &Base, commanded: &Turning, by_commands: &[Wrench]) -> Vec<NuisanceColumn> {
     let none = || vec![0.0; trace.rows()];
     let force = |values: [Vec<f64>; 3]| channels(trace, values, nothing(trace));
     let torque = |values: [Vec<f64>; 3]| channels(trace, nothing(trace), values);
@@ -419,11 +414,9 @@ fn nuisances(
     out.push(column(Nuisance::Tilt(0), tilt, force([none(), negative, none()])));
     out.push(column(Nuisance::Tilt(1), tilt, force([thrust, none(), none()])));
     if let Some(jitter) = &trace.jitter {
-        let channel = |row: usize| {
-            trace.weak(0, &jitter.iter().map(|jitter| -jitter[row]).collect::<Vec<f64>>())
-        };
-        let values =
-            channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);
+        let channel =
+            |row: usize| trace.weak(0, &jitter.iter().map(|jitter| -jitter[row]).collect::<Vec<f64>>());
+        let values = channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);
         out.push(column(Nuisance::Jitter, Some(JITTER_STD), values));
     }
     out.extend(sensor_nuisances(trace, mass_kg));

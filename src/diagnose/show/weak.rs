@@ -5,7 +5,7 @@ use super::{Blocks, Ready, ShowSettings};
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
 use crate::diagnose::explanation::Explanation;
-use crate::diagnose::rows::{CHANNELS, Channels};
+use crate::diagnose::rows::{CHANNELS, Channels, Nuisance, SECOND};
 use crate::diagnose::search::{Fitted, evaluate};
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
@@ -58,20 +58,29 @@ pub(super) fn residuals(
         }
     }
     let (mut compared, _) = blocks.compared(settings.draws, settings.seed);
-    for (compared, sum) in compared.iter_mut().zip(floor) {
-        if let Some(compared) = compared {
-            compared.floor = Some((sum / rows.max(1) as f64).sqrt());
-        }
+    for (entry, sum) in compared.iter_mut().zip(floor) {
+        // force that is read once only has no second reading
+        *entry = entry
+            .filter(|compared| compared.before.value > 0.0 && sum > 0.0)
+            .map(|compared| Compared { floor: Some((sum / rows.max(1) as f64).sqrt()), ..compared });
     }
     Ok(Weak { compared, own: parts.into_iter().map(|(.., own)| own).collect() })
 }
 
-/// The residual less the identified share of each nuisance that the base does not hold.
+/// The residual less the share of each nuisance that the base does not hold: the sensors' own (a bias, the
+/// attitude's level) as the flight itself has it, the vehicle's as it was identified.
 fn without_known_nuisances(own: &Fitted, identified: &Fitted) -> Channels {
     let mut residual = own.rows.residual.clone();
-    for column in own.rows.nuisances.iter().filter(|column| column.prior_std.is_some()) {
-        let place = identified.rows.nuisances.iter().position(|known| known.nuisance == column.nuisance);
-        let Some(share) = place.map(|index| identified.coefficients[index]) else { continue };
+    for (index, column) in own.rows.nuisances.iter().enumerate() {
+        let share = match column.nuisance {
+            Nuisance::Mass | Nuisance::Inertia(_) | Nuisance::Latency => continue,
+            Nuisance::AccelerometerBias(_) | Nuisance::Level(_) => own.coefficients[index],
+            Nuisance::ForceLatency | Nuisance::Tilt(_) | Nuisance::Jitter => {
+                let columns = &identified.rows.nuisances;
+                let place = columns.iter().position(|known| known.nuisance == column.nuisance);
+                place.map_or(0.0, |index| identified.coefficients[index])
+            }
+        };
         for (residual, values) in residual.iter_mut().zip(&column.values) {
             residual.iter_mut().zip(values).for_each(|(r, v)| *r -= share * v);
         }
@@ -80,7 +89,11 @@ fn without_known_nuisances(own: &Fitted, identified: &Fitted) -> Channels {
 }
 
 fn subtract(residual: &mut Channels, empirical: &Empirical, trace: &Trace) {
-    for (residual, force) in residual.iter_mut().zip(empirical.weak_force(trace)) {
-        residual.iter_mut().zip(force).for_each(|(r, f)| *r -= f);
+    let force = empirical.weak_force(trace);
+    let readings: &[usize] = if trace.reads_force_twice() { &[0, SECOND] } else { &[0] };
+    for first in readings {
+        for (axis, force) in force.iter().enumerate() {
+            residual[first + axis].iter_mut().zip(force).for_each(|(r, f)| *r -= f);
+        }
     }
 }
