@@ -1,7 +1,7 @@
 //! The model so far: rigid body, actuation latency, and the effects that were accepted.
 
 use crate::physics::effects::by_id;
-use crate::physics::{ActiveEffect, Effect, Model, PhysicsError};
+use crate::physics::{ActiveEffect, Effect, Model, Parameter, PhysicsError};
 use crate::signals::ActuationLatency;
 use crate::vehicle::Vehicle;
 
@@ -10,13 +10,25 @@ use crate::vehicle::Vehicle;
 pub struct Present {
     /// which
     pub effect: &'static dyn Effect,
-    /// in the order of [`Effect::parameters`]
+    /// in the order of [`Effect::parameters`], then of [`Effect::finer_parameters`]
     pub values: Vec<f64>,
     /// indices of those that are estimated
     pub free: Vec<usize>,
 }
 
 impl Present {
+    /// The parameter of a slot of the values; `None` beyond the last.
+    #[must_use]
+    pub fn parameter(&self, slot: usize) -> Option<&'static Parameter> {
+        self.effect.parameters().iter().chain(self.effect.finer_parameters()).nth(slot)
+    }
+
+    /// The value that physics allows nearest to this.
+    #[must_use]
+    pub fn possible(&self, slot: usize, value: f64) -> f64 {
+        self.parameter(slot).map_or(value, |parameter| value.clamp(parameter.min, parameter.max))
+    }
+
     /// Value at which a parameter's effect vanishes.
     #[must_use]
     pub fn nothing_at(&self, slot: usize) -> f64 {

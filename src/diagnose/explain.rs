@@ -175,7 +175,8 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
     let mut out = Vec::new();
     for (place, present) in fitted.base.present.iter().enumerate() {
         let mut parameters = Vec::new();
-        for (slot, parameter) in present.effect.parameters().iter().enumerate() {
+        for slot in 0..present.values.len() {
+            let Some(parameter) = present.parameter(slot) else { continue };
             let free = present.free.contains(&slot);
             let std = if free {
                 index += 1;
@@ -264,7 +265,7 @@ fn limits(last: &[Tested]) -> Vec<DetectionLimit> {
         let mut index = 0;
         for part in parts {
             for &free in &part.free {
-                let parameter = &part.effect.parameters()[free];
+                let Some(parameter) = part.parameter(free) else { continue };
                 let limit = 4.0 * tested.evidence.std(index);
                 index += 1;
                 let same = out.iter_mut().find(|l| l.id == *id && l.parameter == parameter.name);

@@ -30,6 +30,9 @@ pub struct LatencyFinding {
 
 /// Latencies below this need no kind: sampling and a fast motor together are as long, s.
 const LEAST_S: f64 = 0.010;
+/// A command holds until the next one comes; the loop that sends it runs faster than the log. Share of the
+/// log's period by which that delays the mean command.
+const HELD: f64 = 0.25;
 /// A kind is refused beyond this many standard deviations.
 const REFUSED: f64 = 6.0;
 
@@ -52,7 +55,11 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
         latency = if both {
             ActuationLatency { delay_s, lag_s: total_s - delay_s }
         } else if against_lag < against_delay {
-            ActuationLatency { delay_s: 0.0, lag_s: total_s }
+            let held_s = flights.iter().map(|trace| HELD * trace.command_period_s).fold(0.0, f64::max);
+            ActuationLatency {
+                delay_s: held_s.min(0.5 * total_s),
+                lag_s: total_s - held_s.min(0.5 * total_s),
+            }
         } else {
             ActuationLatency { delay_s: total_s, lag_s: 0.0 }
         };
@@ -70,7 +77,10 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
 fn look_alikes(flights: &[Trace]) -> Vec<Present> {
     let moving = flights.iter().all(|trace| trace.known.velocity && trace.known.attitude);
     let drag = if moving {
-        [present("linear_drag", &[0.0; 3], &[0, 1]), present("inflow", &[0.0], &[0])]
+        [
+            present("linear_drag", &[0.0, 0.0, 0.0, 0.0], &[0, 1, 2]),
+            present("quadratic_drag", &[0.0; 3], &[0, 1, 2]),
+        ]
     } else {
         [None, None]
     };

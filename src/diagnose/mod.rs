@@ -10,6 +10,7 @@ mod explain;
 mod explanation;
 mod harmonics;
 mod latency;
+pub mod next;
 mod rows;
 mod search;
 pub mod show;

@@ -270,8 +270,7 @@ impl Rows {
 
 /// By how much a parameter is moved to see what it does.
 fn step_of(present: &Present, index: usize) -> f64 {
-    let parameter = &present.effect.parameters()[index];
-    let span = (parameter.max - parameter.min).min(1.0);
+    let span = present.parameter(index).map_or(1.0, |parameter| (parameter.max - parameter.min).min(1.0));
     (1e-4 * span).max(1e-3 * present.values[index].abs())
 }
 

@@ -124,11 +124,10 @@ fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
     let mut index = fitted.rows.nuisances.len();
     for present in &mut base.present {
         for &free in &present.free {
-            let parameter = &present.effect.parameters()[free];
             let by = fitted.coefficients[index];
             let std = fitted.covariance[(index, index)].max(0.0).sqrt();
             let before = present.values[free];
-            present.values[free] = (before + by).clamp(parameter.min, parameter.max);
+            present.values[free] = present.possible(free, before + by);
             most = most.max((present.values[free] - before).abs() / std.max(f64::MIN_POSITIVE));
             index += 1;
         }
@@ -250,9 +249,8 @@ fn started(tested: &Tested) -> Vec<Present> {
     let mut parts = tested.candidate.parts.clone();
     for part in &mut parts {
         for &free in &part.free {
-            let parameter = &part.effect.parameters()[free];
             if let Some(by) = theta.next() {
-                part.values[free] = (part.values[free] + by).clamp(parameter.min, parameter.max);
+                part.values[free] = part.possible(free, part.values[free] + by);
             }
         }
     }
@@ -262,8 +260,7 @@ fn started(tested: &Tested) -> Vec<Present> {
         // the columns were those of one unit of drag
         let strength = 0.5 * (drag.values[0] + drag.values[1]).max(1e-3);
         for &free in &wind.free {
-            let parameter = &wind.effect.parameters()[free];
-            wind.values[free] = (wind.values[free] / strength).clamp(parameter.min, parameter.max);
+            wind.values[free] = wind.possible(free, wind.values[free] / strength);
         }
     }
     parts
@@ -271,8 +268,9 @@ fn started(tested: &Tested) -> Vec<Present> {
 
 /// Parameters that only show once the effect is there are estimated from then on.
 fn released(mut present: Present) -> Present {
-    if present.effect.id() == "ground_effect" {
-        present.free = vec![0, 3];
+    let finer = present.effect.parameters().len();
+    if present.values.len() > finer && present.effect.id() != "motor_lag" {
+        present.free.push(finer);
     }
     present
 }
@@ -287,7 +285,7 @@ fn test_all(flights: &[Trace], fitted: &Fitted, candidates: &[Candidate]) -> Vec
             Some(Tested { candidate: candidate.clone(), evidence })
         })
         .collect();
-    out.extend(test_drag_and_wind(flights, fitted));
+    out.extend([1.0, 0.0].into_iter().filter_map(|at_hubs| test_drag_and_wind(flights, fitted, at_hubs)));
     out
 }
 
@@ -310,13 +308,16 @@ fn is_present(base: &Base, candidate: &Candidate) -> bool {
 }
 
 /// Wind acts through drag: both together, or wind alone where drag is known already.
-fn test_drag_and_wind(flights: &[Trace], fitted: &Fitted) -> Option<Tested> {
-    let (drag, wind, unit) = drag_and_wind()?;
+fn test_drag_and_wind(flights: &[Trace], fitted: &Fitted, at_hubs: f64) -> Option<Tested> {
+    let (drag, wind, unit) = drag_and_wind(at_hubs)?;
     let present = |id: &str| fitted.base.present.iter().any(|present| present.effect.id() == id);
     if present("steady_wind") || !flights.iter().all(|trace| trace.known.velocity && trace.known.attitude) {
         return None;
     }
     if present("linear_drag") || present("quadratic_drag") {
+        if at_hubs < 1.0 {
+            return None; // its columns come through the drag that is there
+        }
         let candidate = Candidate { id: "steady_wind", parts: vec![wind], through: None };
         let columns = columns_of(flights, fitted, &candidate)?;
         let evidence = fitted.weighted.test(&columns)?;
@@ -352,10 +353,9 @@ fn possible(tested: &Tested) -> bool {
     let mut all = true;
     for part in &tested.candidate.parts {
         for &free in &part.free {
-            let parameter = &part.effect.parameters()[free];
             let value = part.values[free] + tested.evidence.theta[index];
             let slack = 2.0 * tested.evidence.std(index);
-            all &= value > parameter.min - slack && value < parameter.max + slack;
+            all &= (part.possible(free, value) - value).abs() < slack;
             index += 1;
         }
     }

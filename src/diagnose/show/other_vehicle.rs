@@ -134,7 +134,7 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
     let mut index = own.rows.nuisances.len();
     for present in &own.base.present {
         for &free in &present.free {
-            let parameter = &present.effect.parameters()[free];
+            let Some(parameter) = present.parameter(free) else { continue };
             out.push(Agreement {
                 name: format!("{}.{}", present.effect.id(), parameter.name),
                 unit: parameter.unit,
