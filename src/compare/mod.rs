@@ -5,7 +5,7 @@ mod playback;
 
 pub use closed_loop::{SIGNALS, TenSignals, autopilot_flight, recorded_tracking_m, resimulated};
 pub use playback::{
-    Fit, PlaybackSettings, StateNoise, WindowErrors, playback, playback_floor, playback_windows,
+    CommandNoise, Fit, PlaybackSettings, StateNoise, WindowErrors, playback, playback_floor, playback_windows,
 };
 
 use crate::simulate::SimulateError;

@@ -11,6 +11,7 @@ mod explanation;
 mod harmonics;
 mod latency;
 pub mod next;
+pub mod refit;
 mod rows;
 mod search;
 pub mod show;

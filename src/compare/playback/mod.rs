@@ -1,14 +1,15 @@
 //! Open loop: recorded actuators played back from measured states over short windows.
 
+mod floor;
+
+pub use floor::{CommandNoise, StateNoise, playback_floor};
+
 use super::{CompareError, MeanSquare};
 use crate::physics::{Input, MAX_ROTORS, Model, State};
 use crate::signals::{Grid, Signals, ThrustSource};
 use crate::simulate::{Allocation, Plant, Push};
 use crate::vehicle::Vehicle;
-use nalgebra::{UnitQuaternion, Vector3};
-use rand::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
-use rand_pcg::Pcg64Mcg;
+use nalgebra::Vector3;
 use std::cmp::Ordering;
 
 /// How playback is done.
@@ -114,61 +115,6 @@ pub fn playback_windows(
         out.push(played.errors(start, &errors));
     }
     Ok(out)
-}
-
-/// White noise of the measured state, one standard deviation an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct StateNoise {
-    /// m
-    pub position_m: f64,
-    /// m/s
-    pub velocity_m_s: f64,
-    /// rad, about each body axis
-    pub attitude_rad: f64,
-    /// rad/s
-    pub rates_rad_s: f64,
-}
-
-/// What [`playback_windows`] would find of a model that is right: the sensors' noise at the start of each
-/// window, carried along by the model, and at every instant that is compared. One seeded draw a window.
-///
-/// # Errors
-/// As [`playback`].
-pub fn playback_floor(
-    (model, vehicle): (&Model, &Vehicle),
-    signals: &Signals,
-    settings: &PlaybackSettings,
-    (noise, seed): (&StateNoise, u64),
-) -> Result<Vec<WindowErrors>, CompareError> {
-    let model = played(model, signals);
-    let played = Played::of((&model, vehicle), None, signals, settings)?;
-    let mut generator = Pcg64Mcg::seed_from_u64(seed);
-    let mut out = Vec::with_capacity(played.starts.len());
-    for &start in &played.starts {
-        let mut errors = [MeanSquare::default(); 4];
-        let measured = played.states.at(start);
-        let truth = played.window(start, &measured)?;
-        let simulated = played.window(start, &noise.on(&measured, &mut generator))?;
-        for (truth, simulated) in truth.iter().zip(&simulated) {
-            played.states.compare(simulated, &noise.on(truth, &mut generator), &mut errors);
-        }
-        out.push(played.errors(start, &errors));
-    }
-    Ok(out)
-}
-
-impl StateNoise {
-    fn on(&self, state: &State, generator: &mut Pcg64Mcg) -> State {
-        let mut draw = |size: f64| {
-            Vector3::from_fn(|_, _| size * Distribution::<f64>::sample(&StandardNormal, generator))
-        };
-        State {
-            position_m: state.position_m + draw(self.position_m),
-            velocity_m_s: state.velocity_m_s + draw(self.velocity_m_s),
-            attitude: state.attitude * UnitQuaternion::from_scaled_axis(draw(self.attitude_rad)),
-            rates_rad_s: state.rates_rad_s + draw(self.rates_rad_s),
-        }
-    }
 }
 
 /// Where rotor speeds were measured, what lies between command and speed is left out.
