@@ -38,6 +38,8 @@ pub enum Verb {
     Record(RecordArgs),
     /// Play a recorded flight back as live traffic; nothing is commanded
     Replay(ReplayArgs),
+    /// Explain a folder of cases and score the sealed verdicts against their answers
+    Prove(ProveArgs),
 }
 
 /// Arguments of `mavid vehicle`.
@@ -326,4 +328,15 @@ fn positive(text: &str) -> Result<f64, String> {
         Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
         _ => Err(format!("expected a number above 0, got `{text}`")),
     }
+/// Arguments of `mavid prove`.
+#[derive(Debug, Args)]
+pub struct ProveArgs {
+    /// folder of cases, each with vehicle.toml, identify.tlog (or other logs) and, where there is one, holdout.tlog
+    pub cases: PathBuf,
+    /// what was concealed; opened after all verdicts are written and hashed
+    #[arg(long, value_name = "FILE")]
+    pub answers: Option<PathBuf>,
+    /// write the verdicts into this folder
+    #[arg(long, value_name = "DIR", default_value = "verdicts")]
+    pub out: PathBuf,
 }

@@ -24,12 +24,13 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("simulate", &["physics", "signals", "log", "trajectory"]),
     ("config", &["vehicle", "log", "trajectory"]),
     ("compare", &["signals", "simulate"]),
-    ("diagnose", &["regression", "estimate", "simulate", "compare"]),
+    // estimate: what a flight will determine is for its estimator to say
+    ("plan", &["physics", "regression", "estimate", "simulate", "trajectory"]),
+    // plan: the flight that tells two explanations apart keeps the vehicle's limits
+    ("diagnose", &["regression", "estimate", "simulate", "compare", "plan"]),
     // config: a model file is a vehicle file
     ("report", &["diagnose", "config"]),
     ("export", &["diagnose"]),
-    // estimate: what a flight will determine is for its estimator to say
-    ("plan", &["physics", "regression", "estimate", "simulate", "trajectory"]),
     ("sitl", &["physics", "simulate", "log", "link"]),
     ("fly", &["plan", "log", "vehicle", "trajectory", "link"]),
 ];

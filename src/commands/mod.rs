@@ -11,6 +11,7 @@ mod output;
 mod plan;
 mod record;
 mod replay;
+mod prove;
 mod simulate;
 mod sitl;
 mod validate;
@@ -90,6 +91,7 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Inspect(args) => inspect::run(cli.json, args),
         Verb::Record(args) => record::run(cli.json, args),
         Verb::Replay(args) => replay::run(cli.json, args),
+        Verb::Prove(args) => prove::run(cli.json, args),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The model so far: rigid body, actuation latency, and the effects that were accepted.
 
+use crate::physics::effects::by_id;
 use crate::physics::{ActiveEffect, Effect, Model, Parameter, PhysicsError};
 use crate::signals::ActuationLatency;
 use crate::vehicle::Vehicle;
@@ -70,6 +71,18 @@ impl Base {
         let mut vehicle = self.vehicle.clone();
         vehicle.body.inertia_kg_m2 = positive(&vehicle.body.inertia_kg_m2);
         Model::new(&vehicle, effects)
+    }
+
+    /// The latency as effects, for simulations; a delay below zero, which only the log's own stamps can
+    /// make, is none.
+    #[must_use]
+    pub fn latency_effects(&self) -> Vec<Present> {
+        let ActuationLatency { delay_s, lag_s } = self.latency;
+        let of = |id: &str, value: f64| {
+            let effect = by_id(id).filter(|_| value > 0.0)?;
+            Some(Present { effect, values: vec![value], free: Vec::new() })
+        };
+        [of("motor_lag", lag_s), of("transport_delay", delay_s)].into_iter().flatten().collect()
     }
 }
 

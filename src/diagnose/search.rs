@@ -77,7 +77,8 @@ pub fn fit(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted, 
     Ok(fitted)
 }
 
-fn evaluate(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsError> {
+/// Rows, weights and coefficients about a base, without a step.
+pub(super) fn evaluate(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsError> {
     let rows = Rows::new(flights, &base)?;
     let weighted = Weighted::new(&rows);
     let (coefficients, covariance) = weighted.coefficients(&rows);

@@ -260,10 +260,16 @@ impl Trace {
             .collect()
     }
 
+    /// What the rotors gave by their commands, N, after the latency.
+    #[must_use]
+    pub fn felt_n(&self, airframe: &Airframe, latency: ActuationLatency) -> Vec<Thrusts> {
+        felt(&self.commanded_n, airframe, self.grid.step_s, latency)
+    }
+
     /// What the rotors gave by their commands, N, after the latency: raw, and smoothed for regressors.
     #[must_use]
     pub fn by_commands(&self, airframe: &Airframe, latency: ActuationLatency) -> (Vec<Thrusts>, Turning) {
-        let felt = felt(&self.commanded_n, airframe, self.grid.step_s, latency);
+        let felt = self.felt_n(airframe, latency);
         let rate_hz = 1.0 / self.grid.step_s;
         let mut smooth = vec![[0.0; MAX_ROTORS]; self.grid.count];
         if let Some(filter) = Butterworth::new(SMOOTH_HZ.min(0.4 * rate_hz), rate_hz) {

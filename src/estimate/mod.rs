@@ -18,6 +18,7 @@ pub use anchor::{ThrustScale, apply_anchor, identified_vehicle, rescaled};
 pub use identify::{EstimateError, Identification, IdentifySettings, Method, identify};
 pub use information::WeakInformation;
 pub use live::RecursiveEstimator;
+pub(crate) use physical::{LogCholesky, log_cholesky, unpack};
 pub use physical::{is_physical, nearest_physical, second_moments};
 pub use problem::{Channel, NoiseTerm, Problem, Solution};
 pub use recommend::Recommendation;

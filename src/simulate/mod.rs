@@ -19,7 +19,7 @@ pub use cascade::{AutopilotCascade, AutopilotGains, LoopGains, Wanted};
 pub use controller::{CascadeController, CascadeGains, Setpoint};
 pub use flight::{Disturbance, FlightSettings, SimulatedFlight, Truth, simulate_flight};
 pub use ground::{GroundContact, GroundSettings};
-pub use plant::{PLANT_STATES, Plant, PlantMemory};
+pub use plant::{PLANT_STATES, Plant, PlantMemory, Push};
 pub use reference::{RandomTrajectory, Reference};
 pub use sensors::{NoiseLevels, StreamSkew, TelemetryRates, TelemetrySettings};
 pub use vehicles::{VehiclePair, random_vehicle};
