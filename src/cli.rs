@@ -32,6 +32,8 @@ pub enum Verb {
     Validate(ValidateArgs),
     /// Say what is in a log and what can be identified from it
     Inspect(InspectArgs),
+    /// Say where simulation and recording differ and which physics was left out
+    Explain(ExplainArgs),
 }
 
 /// Arguments of `mavid vehicle`.
@@ -177,6 +179,33 @@ pub struct InspectArgs {
     /// the vehicle's MAVLink system id, where a log holds several
     #[arg(long)]
     pub system: Option<u32>,
+}
+
+/// Arguments of `mavid explain`.
+#[derive(Debug, Args)]
+pub struct ExplainArgs {
+    /// recordings of one vehicle: .tlog, or .csv with known columns
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// vehicle.toml, or a model
+    #[arg(long)]
+    pub vehicle: PathBuf,
+    /// other flights of the same vehicle, on which the improvement is shown; without them the end of the
+    /// flight is held back for it
+    #[arg(long, value_name = "LOG", num_args = 1..)]
+    pub holdout: Vec<PathBuf>,
+    /// write report.html, model.toml and explanation.json into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
+    #[arg(long, value_name = "FILE")]
+    pub csv_map: Option<PathBuf>,
+    /// system id of the vehicle, where a log holds several
+    #[arg(long, value_name = "ID")]
+    pub system: Option<u32>,
+    /// s of flight left out at the beginning
+    #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub transient: f64,
 }
 
 /// Arguments of `mavid simulate`.

@@ -3,6 +3,7 @@
 //! To add a verb: a variant in [`Verb`], a file here with `run(json, args)`, and an arm in [`run`].
 
 mod effects;
+mod explain;
 mod flights;
 mod identify;
 mod inspect;
@@ -83,6 +84,7 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Simulate(args) => simulate::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
+        Verb::Explain(args) => explain::run(cli.json, args),
     }
 }
 

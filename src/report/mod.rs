@@ -1,13 +1,20 @@
 //! What people and other programs read: documents, tables, charts. Nothing here prints.
 
 mod chart;
+mod explanation;
 mod identification;
+mod number;
 mod validation;
 
 pub use chart::{Line, Panel, svg};
+pub use explanation::{
+    AxisShare, Estimate, ExplanationDocument, Given, Located, Pair, ShownOn, StateShare, Story,
+    explanation_page, for_readers, held_back,
+};
 pub use identification::{
     IdentificationDocument, InputFile, history_charts, identification_page, model_toml,
 };
+pub use number::{significant, spoken, with_error};
 pub use validation::{
     Column, ErrorRow, ErrorTable, closed_loop_charts, closed_loop_table, playback_table, prediction_table,
 };

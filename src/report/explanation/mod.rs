@@ -1,0 +1,18 @@
+//! What `explain` says: the sentence, a page for the terminal, JSON, the model file, the report.
+
+mod answer;
+mod document;
+mod located;
+mod model;
+mod page;
+mod readers;
+mod show;
+mod story;
+mod words;
+
+pub use document::ExplanationDocument;
+pub use located::{AxisShare, Located, StateShare};
+pub use page::explanation_page;
+pub use readers::for_readers;
+pub use show::{Pair, ShownOn, held_back};
+pub use story::{Estimate, Given, Story};
