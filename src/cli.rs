@@ -34,6 +34,8 @@ pub enum Verb {
     Inspect(InspectArgs),
     /// Say where simulation and recording differ and which physics was left out
     Explain(ExplainArgs),
+    /// Explain a folder of cases and score the sealed verdicts against their answers
+    Prove(ProveArgs),
 }
 
 /// Arguments of `mavid vehicle`.
@@ -231,4 +233,17 @@ pub struct SimulateArgs {
     /// factor on the sensors' noise
     #[arg(long, default_value_t = 1.0)]
     pub noise: f64,
+}
+
+/// Arguments of `mavid prove`.
+#[derive(Debug, Args)]
+pub struct ProveArgs {
+    /// folder of cases, each with vehicle.toml, identify.tlog (or other logs) and, where there is one, holdout.tlog
+    pub cases: PathBuf,
+    /// what was concealed; opened after all verdicts are written and hashed
+    #[arg(long, value_name = "FILE")]
+    pub answers: Option<PathBuf>,
+    /// write the verdicts into this folder
+    #[arg(long, value_name = "DIR", default_value = "verdicts")]
+    pub out: PathBuf,
 }

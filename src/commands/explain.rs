@@ -3,14 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use mavid::config::read_vehicle;
-use mavid::diagnose::{ExplainSettings, explain, period_s};
-use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page, held_back};
+use mavid::diagnose::show::{HeldOut, Split, split_last_periods};
+use mavid::diagnose::{Empirical, ExplainSettings, explain};
+use mavid::log::Recording;
+use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page};
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
 use super::effects::effects;
-use super::flights::{ReadAs, is_csv, load, refuse_twins};
+use super::flights::{Flight, ReadAs, is_csv, load, refuse_twins};
 use super::{CommandError, Outcome, output};
 use crate::cli::ExplainArgs;
 
@@ -23,25 +25,32 @@ pub fn run(json: bool, args: &ExplainArgs) -> Result<Outcome, CommandError> {
     let refuse =
         |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", args.vehicle.display()));
     let known = effects(&loaded.model.effects, &vehicle).map_err(|error| refuse(&error))?;
-    let (mut flights, inputs) = conditioned(&args.logs, args, &vehicle)?;
-    let (mut shown, held_inputs) = conditioned(&args.holdout, args, &vehicle)?;
-    refuse_twins(&inputs.iter().chain(&held_inputs).collect::<Vec<_>>())?;
-    let mut shown_on = ShownOn::Flights(held_inputs);
-    if args.holdout.is_empty() {
-        (shown_on, shown) = hold_back(&mut flights);
-    }
+    let mut flights = flown(&args.logs, args, &vehicle)?;
+    let held = flown(&args.holdout, args, &vehicle)?;
+    refuse_twins(&flights.iter().chain(&held).map(|flight| &flight.input).collect::<Vec<_>>())?;
+    let (shown_on, back) = if held.is_empty() {
+        hold_back(&mut flights)
+    } else {
+        (ShownOn::Flights(held.iter().map(|flight| flight.input.clone()).collect()), None)
+    };
     let settings = ExplainSettings::default();
-    let explanation = explain(&flights, &vehicle, &settings).map_err(|error| {
-        CommandError::Input(format!(
-            "{}: {error}",
-            args.logs.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ")
-        ))
+    let signals: Vec<Signals> = flights.iter().map(|flight| flight.signals.clone()).collect();
+    let explanation = explain(&signals, &vehicle, &settings).map_err(|error| {
+        let logs: Vec<String> = args.logs.iter().map(|log| log.display().to_string()).collect();
+        CommandError::Input(format!("{}: {error}", logs.join(", ")))
     })?;
-    warnings.extend(inputs.iter().flat_map(losses));
-    let quality = flights.iter().map(|signals| signals.quality.clone()).collect();
-    let given = Given { vehicle, known, inputs, quality, settings, transient_s: args.transient, warnings };
+    warnings.extend(flights.iter().chain(&held).filter_map(|flight| losses(&flight.input)));
+    let given = Given {
+        vehicle,
+        known,
+        inputs: flights.iter().map(|flight| flight.input.clone()).collect(),
+        quality: flights.iter().map(|flight| flight.signals.quality.clone()).collect(),
+        settings,
+        transient_s: args.transient,
+        warnings,
+    };
     let mut story = Story::new(given, explanation);
-    show(&mut story, &flights, &shown, shown_on);
+    show(&mut story, &flights, (&held, back.as_ref()), shown_on);
     if let Some(folder) = &args.out {
         write(folder, &story)?;
     }
@@ -73,12 +82,21 @@ fn check(args: &ExplainArgs) -> Result<(), CommandError> {
     Ok(())
 }
 
+/// A flight made ready.
+struct Flown {
+    recording: Recording,
+    signals: Signals,
+    input: InputFile,
+}
+
+impl Flown {
+    fn held_out(&self) -> HeldOut<'_> {
+        HeldOut { name: &self.input.path, signals: &self.signals, recording: Some(&self.recording) }
+    }
+}
+
 /// Loads and conditions every flight, side by side.
-fn conditioned(
-    logs: &[PathBuf],
-    args: &ExplainArgs,
-    vehicle: &Vehicle,
-) -> Result<(Vec<Signals>, Vec<InputFile>), CommandError> {
+fn flown(logs: &[PathBuf], args: &ExplainArgs, vehicle: &Vehicle) -> Result<Vec<Flown>, CommandError> {
     let read_as = ReadAs { csv_map: args.csv_map.as_ref(), system: args.system };
     let settings = ConditionSettings {
         transient_s: Some(args.transient),
@@ -86,59 +104,51 @@ fn conditioned(
         ..ConditionSettings::default()
     };
     let one = |path: &PathBuf| {
-        let flight = load(path, &read_as)?;
-        let signals = condition(&flight.recording, vehicle, &settings)
+        let Flight { recording, input } = load(path, &read_as)?;
+        let signals = condition(&recording, vehicle, &settings)
             .map_err(|error| CommandError::Input(format!("{}: {error}", path.display())))?;
-        Ok((signals, flight.input))
+        Ok(Flown { recording, signals, input })
     };
-    let done: Vec<Result<(Signals, InputFile), CommandError>> = logs.par_iter().map(one).collect();
-    Ok(done.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().unzip())
+    let done: Vec<Result<Flown, CommandError>> = logs.par_iter().map(one).collect();
+    done.into_iter().collect()
 }
 
-/// The last flight where there are several, else the end of the only one.
-fn hold_back(flights: &mut [Signals]) -> (ShownOn, Vec<Signals>) {
-    let Some(last) = flights.last_mut() else {
-        return (ShownOn::Nothing { reason: "no flight".to_owned() }, Vec::new());
+/// The end of the last flight, which is then not explained.
+fn hold_back(flights: &mut [Flown]) -> (ShownOn, Option<Signals>) {
+    let split = flights.last().and_then(|last| split_last_periods(&last.signals));
+    let (Some(Split { identify, holdout, from_s, .. }), Some(last)) = (split, flights.last_mut()) else {
+        let reason = "the flight is too short to hold a part of it back; give another with --holdout";
+        return (ShownOn::Nothing { reason: reason.to_owned() }, None);
     };
-    let Some((explained, shown, from_s)) = held_back(last, flown_period_s(last)) else {
-        let reason = "the flight is too short to hold a part of it back; give another flight with --holdout";
-        return (ShownOn::Nothing { reason: reason.to_owned() }, Vec::new());
-    };
-    *last = explained;
-    let seconds = shown.usable.iter().filter(|used| **used).count() as f64 * shown.grid.step_s;
-    (ShownOn::HeldBack { from_s, seconds }, vec![shown])
+    last.signals = identify;
+    let seconds = holdout.usable.iter().filter(|used| **used).count() as f64 * holdout.grid.step_s;
+    (ShownOn::HeldBack { from_s, seconds }, Some(holdout))
 }
 
-/// Of the recorded motion.
-fn flown_period_s(signals: &Signals) -> Option<f64> {
-    let every = mavid::signals::stride(signals.grid.step_s);
-    let used: Vec<usize> =
-        (0..signals.grid.count).step_by(every.max(1)).filter(|&index| signals.usable[index]).collect();
-    let time_s: Vec<f64> = used.iter().map(|&index| signals.grid.time_s(index)).collect();
-    let motion = signals.velocity.as_ref().or(signals.rate.as_ref())?;
-    let axes: Vec<Vec<f64>> =
-        (0..3).map(|axis| used.iter().map(|&index| motion[index][axis]).collect()).collect();
-    let axes: Vec<&[f64]> = axes.iter().map(Vec::as_slice).collect();
-    period_s(&time_s, &axes)
-}
-
-/// Prediction errors before and after.
-fn show(story: &mut Story, flights: &[Signals], shown: &[Signals], shown_on: ShownOn) {
-    story.shown_on = shown_on;
-    match story.played(flights) {
-        Ok(pair) => story.identify = Some(pair),
-        Err(error) => story.given.warnings.push(format!("open-loop prediction: {error}")),
+/// Prediction errors before and after, on what was explained and on what was not.
+fn show(story: &mut Story, flights: &[Flown], (held, back): (&[Flown], Option<&Signals>), shown_on: ShownOn) {
+    let all: Vec<Signals> = flights.iter().map(|flight| flight.signals.clone()).collect();
+    let (vehicle, settings) = (&story.given.vehicle, &story.given.settings);
+    let empirical = match Empirical::fit(&story.explanation, &all, vehicle, settings) {
+        Ok(empirical) => empirical,
+        Err(error) => {
+            story.given.warnings.push(format!("no empirical term: {error}"));
+            None
+        }
+    };
+    let used: Vec<HeldOut> = flights.iter().map(Flown::held_out).collect();
+    if let Err(error) = story.show_identification(&used, empirical.as_ref()) {
+        story.given.warnings.push(format!("open-loop prediction: {error}"));
     }
+    let mut shown: Vec<HeldOut> = held.iter().map(Flown::held_out).collect();
+    shown.extend(back.map(|signals| HeldOut { name: "the part held back", signals, recording: None }));
     if shown.is_empty() {
-        return;
+        story.shown_on = shown_on;
+    } else if let Err(error) = story.show_holdout(&shown, empirical.as_ref(), shown_on) {
+        story.given.warnings.push(format!("hold-out: {error}"));
+        story.shown_on = ShownOn::Nothing { reason: error.to_string() };
     }
-    match story.played(shown) {
-        Ok(pair) => story.holdout = Some(pair),
-        Err(error) => story.shown_on = ShownOn::Nothing { reason: error.to_string() },
-    }
-    if matches!(story.shown_on, ShownOn::Flights(_)) {
-        story.given.warnings.extend(story.stranger(shown));
-    }
+    story.empirical = empirical;
 }
 
 fn losses(input: &InputFile) -> Option<String> {

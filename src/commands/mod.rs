@@ -9,6 +9,7 @@ mod identify;
 mod inspect;
 mod output;
 mod plan;
+mod prove;
 mod simulate;
 mod validate;
 mod vehicle;
@@ -85,6 +86,7 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
         Verb::Explain(args) => explain::run(cli.json, args),
+        Verb::Prove(args) => prove::run(cli.json, args),
     }
 }
 

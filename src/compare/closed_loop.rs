@@ -4,11 +4,12 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
 use super::{CompareError, MeanSquare};
 use crate::log::{Quantity, Recording, Stream};
-use crate::physics::{Input, Model, State};
+use crate::physics::{Input, MAX_ROTORS, Model, State};
 use crate::signals::{Grid, Signals, best, linear_onto};
 use crate::simulate::pid::{PidFlightSettings, simulate_pid_model_flight};
 use crate::simulate::{CascadeController, CascadeGains, Plant, Setpoint, SimulateError};
 use crate::vehicle::Vehicle;
+use std::collections::VecDeque;
 
 /// The signals of Table 4 and their units.
 pub const SIGNALS: [(&str, &str); 10] = [
@@ -90,8 +91,19 @@ impl TenSignals {
     /// RMS of the difference of each signal from `from_s` to `to_s`, `other` interpolated to this one's
     /// instants. Angles go the short way round. `None` where both share no instant.
     #[must_use]
-    pub fn rms_errors(&self, other: &Self, (from_s, to_s): (f64, f64)) -> Option<[f64; 10]> {
+    pub fn rms_errors(&self, other: &Self, span_s: (f64, f64)) -> Option<[f64; 10]> {
         let mut sums = [MeanSquare::default(); 10];
+        for (_, squares) in self.square_errors(other, span_s) {
+            sums.iter_mut().zip(squares).for_each(|(sum, square)| sum.add(square));
+        }
+        let roots: Vec<f64> = sums.iter().filter_map(MeanSquare::root).collect();
+        roots.try_into().ok()
+    }
+
+    /// Squared differences behind [`Self::rms_errors`], instant by instant (s of the vehicle's clock).
+    #[must_use]
+    pub fn square_errors(&self, other: &Self, (from_s, to_s): (f64, f64)) -> Vec<(f64, [f64; 10])> {
+        let mut out = Vec::with_capacity(self.time_s.len());
         let mut right = 1;
         for (time_s, mine) in self.time_s.iter().zip(&self.values) {
             while right + 1 < other.time_s.len() && other.time_s[right] < *time_s {
@@ -103,15 +115,15 @@ impl TenSignals {
                 continue;
             };
             let share = (time_s - a) / (b - a).max(f64::MIN_POSITIVE);
-            for (signal, sum) in sums.iter_mut().enumerate() {
+            let square = |signal: usize| {
                 let angle = SIGNALS[signal].1 == "deg";
                 let (low, high) = (other.values[right - 1][signal], other.values[right][signal]);
                 let there = low + share * shortest(high - low, angle);
-                sum.add(shortest(mine[signal] - there, angle).powi(2));
-            }
+                shortest(mine[signal] - there, angle).powi(2)
+            };
+            out.push((*time_s, std::array::from_fn(square)));
         }
-        let roots: Vec<f64> = sums.iter().filter_map(MeanSquare::root).collect();
-        roots.try_into().ok()
+        out
     }
 }
 
@@ -226,6 +238,7 @@ pub fn autopilot_flight(
     hover.speed_command[..model.airframe.rotor_count()].fill(1.0);
     let mut plant = Plant::new(model, None, &state, &hover)?;
     let (mixer, mut all) = (nominal.mixer(), TenSignals::default());
+    let mut under_way: VecDeque<[f64; MAX_ROTORS]> = VecDeque::new();
     let mut time_s = asked.grid.start_s;
     while time_s < asked.end_s() {
         let now = asked.at(time_s);
@@ -244,9 +257,17 @@ pub fn autopilot_flight(
         let commands = controller.commands(&setpoint, &state, PERIOD_S);
         let thrusts_n = commands.map(|u| nominal.propulsion.thrust_from_command_n(u));
         all.push(time_s, (&state.position_m, &state.attitude), &mixer.wrench(&thrusts_n));
+        under_way.push_back(commands);
+        // as many periods late as the delay has
+        while under_way.len() > 1
+            && (under_way.len() - 1) as f64 * PERIOD_S > model.command_delay_s() + 0.5 * PERIOD_S
+        {
+            under_way.pop_front();
+        }
+        let acting = under_way.front().unwrap_or(&commands);
         for step in 0..STEPS {
             let step_s = PERIOD_S / f64::from(STEPS);
-            let input = Input::from_commands(&model.airframe, time_s + f64::from(step) * step_s, &commands);
+            let input = Input::from_commands(&model.airframe, time_s + f64::from(step) * step_s, acting);
             plant.step(&input, step_s);
         }
         time_s += PERIOD_S;

@@ -4,7 +4,9 @@ mod closed_loop;
 mod playback;
 
 pub use closed_loop::{SIGNALS, TenSignals, autopilot_flight, resimulated};
-pub use playback::{Fit, PlaybackSettings, playback};
+pub use playback::{
+    Fit, PlaybackSettings, StateNoise, WindowErrors, playback, playback_floor, playback_windows,
+};
 
 use crate::simulate::SimulateError;
 

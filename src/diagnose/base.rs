@@ -1,5 +1,6 @@
 //! The model so far: rigid body, actuation latency, and the effects that were accepted.
 
+use crate::physics::effects::by_id;
 use crate::physics::{ActiveEffect, Effect, Model, PhysicsError};
 use crate::signals::ActuationLatency;
 use crate::vehicle::Vehicle;
@@ -13,6 +14,14 @@ pub struct Present {
     pub values: Vec<f64>,
     /// indices of those that are estimated
     pub free: Vec<usize>,
+}
+
+impl Present {
+    /// Value at which a parameter's effect vanishes.
+    #[must_use]
+    pub fn nothing_at(&self, slot: usize) -> f64 {
+        if self.effect.id() == "weak_rotor" && slot == 1 { 1.0 } else { 0.0 }
+    }
 }
 
 /// What the recording is compared with.
@@ -45,5 +54,17 @@ impl Base {
             .map(|present| ActiveEffect::new(present.effect, &present.values))
             .collect::<Result<Vec<_>, _>>()?;
         Model::new(&self.vehicle, effects)
+    }
+
+    /// The latency as effects, for simulations; a delay below zero, which only the log's own stamps can
+    /// make, is none.
+    #[must_use]
+    pub fn latency_effects(&self) -> Vec<Present> {
+        let ActuationLatency { delay_s, lag_s } = self.latency;
+        let of = |id: &str, value: f64| {
+            let effect = by_id(id).filter(|_| value > 0.0)?;
+            Some(Present { effect, values: vec![value], free: Vec::new() })
+        };
+        [of("motor_lag", lag_s), of("transport_delay", delay_s)].into_iter().flatten().collect()
     }
 }

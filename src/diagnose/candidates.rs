@@ -21,7 +21,8 @@ const MASS_CHANGE_EVERY_S: f64 = 4.0;
 /// Lengths of a load's cord that are tried, m: their periods lie 20 % apart.
 const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
 
-fn present(id: &str, values: &[f64], free: &[usize]) -> Option<Present> {
+/// An effect by its identifier; `None` where there is no such effect.
+pub(super) fn present(id: &str, values: &[f64], free: &[usize]) -> Option<Present> {
     let effect = by_id(id)?;
     Some(Present { effect, values: values.to_vec(), free: free.to_vec() })
 }

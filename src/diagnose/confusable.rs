@@ -22,14 +22,9 @@ pub fn confusable_with(
     let own = before..before + present[place].free.len();
     let mut rows = fitted.rows.clone();
     let columns: Vec<_> = rows.effects.drain(own).collect();
-    let values: Vec<f64> = present[place]
-        .free
-        .iter()
-        .map(|&slot| {
-            // from where the effect does nothing
-            present[place].values[slot] - nothing_at(present[place].effect.id(), slot)
-        })
-        .collect();
+    let effect = &present[place];
+    let values: Vec<f64> =
+        effect.free.iter().map(|&slot| effect.values[slot] - effect.nothing_at(slot)).collect();
     let weighted = Weighted::new(&rows);
     let Some((_, partialled)) = weighted.partialled(&columns) else { return Vec::new() };
     let mut signal = nalgebra::DVector::zeros(partialled.nrows());
@@ -63,11 +58,6 @@ pub fn confusable_with(
         }
     }
     out
-}
-
-/// Value at which a parameter's effect vanishes.
-fn nothing_at(id: &str, slot: usize) -> f64 {
-    if id == "weak_rotor" && slot == 1 { 1.0 } else { 0.0 }
 }
 
 /// Norm of what the columns cannot make of the signal.

@@ -12,9 +12,9 @@ use std::ops::Range;
 
 /// Rows over which the kernels of neighbouring rows overlap.
 const OVERLAP: usize = 8;
-/// Longest residual correlation allowed for, rows (2 s).
-const MOST_LAGS: usize = 40;
-/// Bartlett window of the scores, rows (1 s).
+/// Longest residual correlation allowed for, rows (6 s).
+const MOST_LAGS: usize = 120;
+/// Bartlett window of the scores, rows (1 s), at least.
 const SCORE_LAGS: usize = 20;
 /// Blocks of the cluster test.
 const BLOCKS: usize = 12;
@@ -141,9 +141,9 @@ impl Weighted {
         let theta = normal.solve(&self.nuisances.tr_mul(&y));
         let bread = normal.inverse();
         let prior = DMatrix::from_diagonal(&self.precision);
-        let by_residual =
-            &bread * (self.meat_of_residual(&self.nuisances, &self.gammas(&self.left)) + &prior) * &bread;
-        let by_score = &bread * (self.meat_of_scores(&self.nuisances, &self.left) + &prior) * &bread;
+        let gammas = self.gammas(&self.left);
+        let by_residual = &bread * (self.meat_of_residual(&self.nuisances, &gammas) + &prior) * &bread;
+        let by_score = &bread * (self.meat_of_scores(&self.nuisances, &self.left, &gammas) + &prior) * &bread;
         let covariance = DMatrix::from_fn(size, size, |i, j| {
             let more = |k: usize| (by_score[(k, k)] / by_residual[(k, k)]).max(1.0).sqrt();
             if by_residual[(i, i)] > 0.0 && by_residual[(j, j)] > 0.0 {
@@ -188,7 +188,7 @@ impl Weighted {
         let prior = self.prior_part(&plain);
         let gamma = self.gammas(&after);
         let by_residual = &inverse * (self.meat_of_residual(&partialled, &gamma) + &prior) * &inverse;
-        let by_score = &inverse * (self.meat_of_scores(&partialled, &after) + &prior) * &inverse;
+        let by_score = &inverse * (self.meat_of_scores(&partialled, &after, &gamma) + &prior) * &inverse;
         let covariance = if by_residual.trace_of_scaled(&normal) > by_score.trace_of_scaled(&normal) {
             by_residual
         } else {
@@ -230,18 +230,23 @@ impl Weighted {
         out
     }
 
-    /// Autocovariance of each channel up to the first lag where all have died down, at least the
-    /// kernels' overlap.
+    /// Autocovariance of each channel up to where it has died down, at least the kernels' overlap. Noise
+    /// of an estimator or of a poor accelerometer lasts for seconds.
     fn gammas(&self, residual: &DVector<f64>) -> Vec<Vec<f64>> {
-        let at = |channel, lag| self.autocovariance(residual, channel, lag);
-        let zero: Vec<f64> = (0..CHANNELS).map(|channel| at(channel, 0)).collect();
-        let lags = (OVERLAP..MOST_LAGS)
-            .find(|&lag| {
-                (0..CHANNELS)
-                    .all(|channel| zero[channel] <= 0.0 || at(channel, lag).abs() < 0.05 * zero[channel])
+        (0..CHANNELS)
+            .map(|channel| {
+                let zero = self.autocovariance(residual, channel, 0);
+                let mut gamma = vec![zero];
+                for lag in 1..MOST_LAGS {
+                    let at = self.autocovariance(residual, channel, lag);
+                    gamma.push(at);
+                    if lag >= OVERLAP && at < 0.05 * zero {
+                        break;
+                    }
+                }
+                gamma
             })
-            .unwrap_or(MOST_LAGS);
-        (0..CHANNELS).map(|channel| (0..=lags).map(|lag| at(channel, lag)).collect()).collect()
+            .collect()
     }
 
     fn autocovariance(&self, residual: &DVector<f64>, channel: usize, lag: usize) -> f64 {
@@ -292,19 +297,25 @@ impl Weighted {
         scores
     }
 
-    fn meat_of_scores(&self, columns: &DMatrix<f64>, residual: &DVector<f64>) -> DMatrix<f64> {
+    fn meat_of_scores(
+        &self,
+        columns: &DMatrix<f64>,
+        residual: &DVector<f64>,
+        gammas: &[Vec<f64>],
+    ) -> DMatrix<f64> {
+        let window = gammas.iter().map(Vec::len).max().unwrap_or(0).max(SCORE_LAGS);
         let scores = self.scores(columns, residual);
         let size = columns.ncols();
         let mut meat = DMatrix::<f64>::zeros(size, size);
         for run in &self.runs {
-            for lag in 0..=SCORE_LAGS {
+            for lag in 0..=window {
                 let length = run.len().saturating_sub(lag);
                 if length == 0 {
                     continue;
                 }
                 let product: DMatrix<f64> =
                     scores.columns(run.start, length) * scores.columns(run.start + lag, length).transpose();
-                let bartlett = 1.0 - lag as f64 / (SCORE_LAGS as f64 + 1.0);
+                let bartlett = 1.0 - lag as f64 / (window as f64 + 1.0);
                 if lag == 0 {
                     meat += product;
                 } else {
@@ -394,7 +405,7 @@ fn spread(values: &[f64]) -> f64 {
 /// degrees of freedom; by logarithms, so that nothing underflows.
 #[must_use]
 pub fn normal_deviate(wald: f64, size: usize) -> f64 {
-    if !(wald > 0.0) {
+    if wald.is_nan() || wald <= 0.0 {
         return 0.0;
     }
     if size == 1 {

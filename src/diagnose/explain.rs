@@ -5,7 +5,7 @@ use super::confusable::confusable_with;
 use super::explanation::{Confusable, DetectionLimit, Explanation, Named, NamedParameter, Strength, Verdict};
 use super::harmonics::{LackOfFit, lack_of_fit, period_s};
 use super::latency::LatencyFinding;
-use super::rows::CHANNELS;
+use super::rows::{AXES, CHANNELS};
 use super::search::{Fitted, Gates, Search, Step, Tested, search};
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
@@ -129,14 +129,14 @@ fn flown_period_s(trace: &Trace, time_s: &[f64]) -> Option<f64> {
 fn is_lacking(lack: &LackOfFit, fitted: &Fitted) -> bool {
     let body = &fitted.base.vehicle;
     let weight_n = body.body.mass_kg * body.gravity_m_s2;
-    (0..CHANNELS).any(|channel| {
+    (0..AXES).any(|channel| {
         let size = lack.excess_rms[channel] * fitted.weighted.sigma[channel];
         let least = if channel < 3 {
             LACK_FORCE_G * weight_n
         } else {
             LACK_TORQUE * fitted.rows.torque_rms[channel - 3]
         };
-        lack.p_value[channel] * (CHANNELS as f64) < LACK_P && size > least
+        lack.p_value[channel] * (AXES as f64) < LACK_P && size > least
     })
 }
 
@@ -162,7 +162,7 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, lack: Option<LackOf
 fn explained_energy(found: &Search) -> f64 {
     let (before, after) = (&found.before.weighted, &found.after.weighted);
     let rows = found.after.rows.len() as f64;
-    (0..CHANNELS)
+    (0..AXES)
         .filter(|&channel| after.sigma[channel] > 0.0)
         .map(|channel| rows * ((before.sigma[channel] / after.sigma[channel]).powi(2) - 1.0))
         .sum()

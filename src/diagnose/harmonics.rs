@@ -3,7 +3,7 @@
 //! A trajectory that is flown several times puts everything that the model lacks at multiples of its
 //! frequency; noise lies between them as well. It cannot see what does not repeat.
 
-use super::rows::CHANNELS;
+use super::rows::{AXES, CHANNELS};
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 use std::f64::consts::TAU;
 
@@ -40,7 +40,7 @@ pub struct LackOfFit {
     pub excess_rms: [f64; CHANNELS],
     /// each channel's lines
     pub lines: [Vec<Line>; CHANNELS],
-    /// energy at the harmonics beyond the noise, all channels, sigma squared
+    /// energy at the harmonics beyond the noise, all axes of the first reading, sigma squared
     pub excess_energy: f64,
 }
 
@@ -56,11 +56,12 @@ impl LackOfFit {
 /// nothing repeats at least [`LEAST_PERIODS`] times.
 #[must_use]
 pub fn period_s(time_s: &[f64], signals: &[&[f64]]) -> Option<f64> {
-    let (first, last) = (*time_s.first()?, *time_s.last()?);
+    let (first, last) = middle(time_s)?;
+    let used: Vec<usize> = (0..time_s.len()).filter(|&row| (first..=last).contains(&time_s[row])).collect();
     let step_s = median_step(time_s)?;
-    let mut index = Vec::with_capacity(time_s.len());
+    let mut index = Vec::with_capacity(used.len());
     let (mut slot, mut at_s) = (0usize, first);
-    for time in time_s {
+    for time in used.iter().map(|&row| &time_s[row]) {
         while at_s + 0.5 * step_s < *time {
             at_s += step_s;
             slot += 1;
@@ -68,8 +69,12 @@ pub fn period_s(time_s: &[f64], signals: &[&[f64]]) -> Option<f64> {
         index.push(slot);
     }
     let count = slot + 1;
-    let longest_s = (last - first) / LEAST_PERIODS as f64;
-    let series: Vec<Vec<f64>> = signals.iter().map(|signal| onto(&index, signal, count)).collect();
+    // of the whole flight
+    let longest_s = 1.5 * (last - first) / LEAST_PERIODS as f64;
+    let series: Vec<Vec<f64>> = signals
+        .iter()
+        .map(|signal| onto(&index, &used.iter().map(|&row| signal[row]).collect::<Vec<f64>>(), count))
+        .collect();
     let correlation = |lag: usize| {
         let (mut sum, mut power) = (0.0, 0.0);
         for series in &series {
@@ -99,6 +104,13 @@ pub fn period_s(time_s: &[f64], signals: &[&[f64]]) -> Option<f64> {
     let curve = before - 2.0 * at + after;
     let shift = if curve < 0.0 { 0.5 * (before - after) / curve } else { 0.0 };
     Some(lags[peak].0 + shift * step_s)
+}
+
+/// The flight without its first and last sixth: the ways to the start and home do not repeat. Its span, s.
+fn middle(time_s: &[f64]) -> Option<(f64, f64)> {
+    let (first, last) = (*time_s.first()?, *time_s.last()?);
+    let edge = (last - first) / 6.0;
+    Some((first + edge, last - edge))
 }
 
 fn median_step(time_s: &[f64]) -> Option<f64> {
@@ -176,7 +188,9 @@ pub fn lack_of_fit(time_s: &[f64], residual: [&[f64]; CHANNELS], period_s: f64) 
         out.p_value[channel] =
             ChiSquared::new(2.0 * f64::from(harmonics)).map_or(1.0, |law| law.sf(statistic));
         out.excess_rms[channel] = (excess.max(0.0) / count).sqrt();
-        out.excess_energy += excess.max(0.0);
+        if channel < AXES {
+            out.excess_energy += excess.max(0.0);
+        }
     }
     Some(out)
 }

@@ -4,10 +4,11 @@
 //! the torque that the motion took. So the second-order term tells them apart; the residual's size does not,
 //! because a lag also smooths noise and wins for that reason.
 
-use super::base::Base;
+use super::base::{Base, Present};
+use super::candidates::present;
 use super::evidence::Weighted;
-use super::rows::{Nuisance, Rows};
-use super::search::{Fitted, fit};
+use super::rows::{Nuisance, Rows, SECOND};
+use super::search::{Fitted, Newton, fit};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::signals::ActuationLatency;
@@ -32,31 +33,48 @@ const LEAST_S: f64 = 0.010;
 /// A kind is refused beyond this many standard deviations.
 const REFUSED: f64 = 6.0;
 
-/// Fits the base with the kind of latency that the second-order term shows.
+/// Fits the rigid body alone, with the latency that is left when what could be taken for one (damping and
+/// drag move with the derivative of force and torque, too) is allowed for.
 ///
 /// # Errors
 /// [`PhysicsError`] where the base is not physical.
 pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFinding), PhysicsError> {
-    let fitted = fit(flights, base)?;
+    let mut allowed = base.clone();
+    allowed.present = look_alikes(flights);
+    let fitted = fit(flights, allowed, Newton::Free)?;
     let mut finding = finding_of(&fitted);
-    if finding.total_s < LEAST_S.max(4.0 * finding.std_s) {
-        return Ok((fitted, finding));
-    }
-    let Some((against_lag, against_delay, delay_s)) = second_order(flights, &fitted)? else {
-        return Ok((fitted, finding));
-    };
-    let mut base = fitted.base.clone();
+    let mut latency = fitted.base.latency;
     let total_s = finding.total_s;
-    base.latency = if against_lag > REFUSED && against_delay > REFUSED && (0.0..total_s).contains(&delay_s) {
-        ActuationLatency { delay_s, lag_s: total_s - delay_s }
-    } else if against_lag < against_delay {
-        ActuationLatency { delay_s: 0.0, lag_s: total_s }
+    if total_s > LEAST_S.max(4.0 * finding.std_s)
+        && let Some((against_lag, against_delay, delay_s)) = second_order(flights, &fitted)?
+    {
+        let both = against_lag > REFUSED && against_delay > REFUSED && (0.0..total_s).contains(&delay_s);
+        latency = if both {
+            ActuationLatency { delay_s, lag_s: total_s - delay_s }
+        } else if against_lag < against_delay {
+            ActuationLatency { delay_s: 0.0, lag_s: total_s }
+        } else {
+            ActuationLatency { delay_s: total_s, lag_s: 0.0 }
+        };
+        let mut base = fitted.base;
+        base.latency = latency;
+        let fitted = fit(flights, base, Newton::Free)?;
+        latency = fitted.base.latency;
+        finding = LatencyFinding { against_lag, against_delay, ..finding_of(&fitted) };
+    }
+    let held = fit(flights, Base { latency, ..base }, Newton::Held)?;
+    Ok((held, finding))
+}
+
+/// Effects whose columns resemble that of a latency.
+fn look_alikes(flights: &[Trace]) -> Vec<Present> {
+    let moving = flights.iter().all(|trace| trace.known.velocity && trace.known.attitude);
+    let drag = if moving {
+        [present("linear_drag", &[0.0; 3], &[0, 1]), present("inflow", &[0.0], &[0])]
     } else {
-        ActuationLatency { delay_s: total_s, lag_s: 0.0 }
+        [None, None]
     };
-    let fitted = fit(flights, base)?;
-    finding = LatencyFinding { against_lag, against_delay, ..finding_of(&fitted) };
-    Ok((fitted, finding))
+    std::iter::once(present("angular_damping", &[0.0; 3], &[0, 1, 2])).chain(drag).flatten().collect()
 }
 
 /// Total and standard error of a fit's latency.
@@ -83,6 +101,7 @@ fn second_order(flights: &[Trace], fitted: &Fitted) -> Result<Option<(f64, f64, 
     };
     let mut first = rows.nuisances.remove(place).values;
     first[2].fill(0.0);
+    first[SECOND + 2].fill(0.0);
     let second = rows.latency_curvature(flights, &base);
     let Some(evidence) = Weighted::new(&rows).test(&[first, second]) else { return Ok(None) };
     let (c1, c2) = (evidence.theta[0], evidence.theta[1]);

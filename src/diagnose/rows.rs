@@ -1,7 +1,8 @@
-//! The recording against the model, in six channels of the weak form, and how each parameter moves them.
+//! The recording against the model, channel by channel of the weak form, and how each parameter moves them.
 //!
-//! Each equation has its noisiest signal alone on the left: specific force in the three force rows, the
-//! commanded torque in the three torque rows. A parameter's column is built from the signals that are not
+//! Each equation has its noisiest signal alone on the left: specific force in the force rows, the
+//! commanded torque in the three torque rows. Force is read twice where it can be, by the accelerometer and
+//! by the kinematics: what acts on the vehicle shows in both, a fault of a sensor in one of them. A parameter's column is built from the signals that are not
 //! on the left of its row: rotor thrusts by the commands for forces, by the measured motion for torques.
 
 use super::along::{Turning, wrench_along};
@@ -14,11 +15,27 @@ use nalgebra::{Vector3, Vector4};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Force on body x, y, z (N), torque about them (N m).
-pub const CHANNELS: usize = 6;
+/// Force on body x, y, z (N), torque about them (N m), and the force's second reading (N).
+///
+/// The first reading is the accelerometer's, the second the kinematics' (velocity and attitude); where there
+/// is but one, it is the first, and the second is zero throughout.
+pub const CHANNELS: usize = 9;
+/// Axes of force and torque: the first channels.
+pub const AXES: usize = 6;
+/// Where the second reading of the force begins.
+pub const SECOND: usize = 6;
 /// Names of the channels, as in JSON.
-pub const CHANNEL_NAMES: [&str; CHANNELS] =
-    ["force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z"];
+pub const CHANNEL_NAMES: [&str; CHANNELS] = [
+    "force_x",
+    "force_y",
+    "force_z",
+    "torque_x",
+    "torque_y",
+    "torque_z",
+    "kinematic_force_x",
+    "kinematic_force_y",
+    "kinematic_force_z",
+];
 
 /// One value a row and channel.
 pub type Channels = [Vec<f64>; CHANNELS];
@@ -38,6 +55,10 @@ pub enum Nuisance {
     Tilt(usize),
     /// share of the commands' jitter that the rotors do not follow, less one half
     Jitter,
+    /// m/s^2, on body x, y, z of the accelerometer
+    AccelerometerBias(usize),
+    /// rad, of the attitude's level about world x, y
+    Level(usize),
 }
 
 /// A column with what is known of its coefficient beforehand.
@@ -85,6 +106,10 @@ const TILT_STD_RAD: f64 = 0.005;
 const FORCE_LATENCY_STD_S: f64 = 0.004;
 /// Anything between none and all.
 const JITTER_STD: f64 = 0.288_675;
+/// An attitude estimate is level to about half a degree.
+const LEVEL_STD_RAD: f64 = 0.01;
+/// An accelerometer alone: nothing says better how far it is off, m/s^2.
+const BIAS_STD_M_S2: f64 = 0.2;
 /// Passes over the motion's rotor thrusts, which depend on the effects that depend on them.
 const MOTION_PASSES: usize = 2;
 
@@ -194,7 +219,7 @@ impl Rows {
             let none = || vec![0.0; trace.rows()];
             let [x, y, z] =
                 [0, 1, 2].map(|axis| trace.weak(2, &torque.iter().map(|t| -t[axis]).collect::<Vec<f64>>()));
-            append(&mut out, &[none(), none(), none(), x, y, z]);
+            append(&mut out, &channels(trace, [none(), none(), none()], [x, y, z]));
         }
         out
     }
@@ -255,9 +280,18 @@ fn append(to: &mut Channels, from: &Channels) {
 }
 
 fn weak_wrench(trace: &Trace, forces: &[Vector3<f64>], torques: &[Vector3<f64>]) -> Channels {
-    let [fx, fy, fz] = trace.weak_vector(0, forces);
-    let [tx, ty, tz] = trace.weak_vector(0, torques);
-    [fx, fy, fz, tx, ty, tz]
+    channels(trace, trace.weak_vector(0, forces), trace.weak_vector(0, torques))
+}
+
+/// Force in each reading there is, and torque.
+fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
+    let second = if trace.reads_force_twice() { force.clone() } else { nothing(trace) };
+    let ([fx, fy, fz], [tx, ty, tz], [kx, ky, kz]) = (force, torque, second);
+    [fx, fy, fz, tx, ty, tz, kx, ky, kz]
+}
+
+fn nothing(trace: &Trace) -> [Vec<f64>; 3] {
+    std::array::from_fn(|_| vec![0.0; trace.rows()])
 }
 
 /// Residual and nuisances of one flight.
@@ -308,14 +342,16 @@ fn residual(
             .push(rotors.torque_nm - Vector3::new(jitter[1], jitter[2], jitter[3]) + effects_torque * used);
     }
     let acting = weak_wrench(trace, &forces, &torques);
-    let felt_force = trace.weak_specific_force();
+    let readings = trace.weak_specific_force();
     let momentum = momentum_rows(trace);
     let j = &base.vehicle.body.inertia_kg_m2;
     let six = [j[(0, 0)], j[(0, 1)], j[(0, 2)], j[(1, 1)], j[(1, 2)], j[(2, 2)]];
     let mut out = acting;
     for axis in 0..3 {
-        for (row, value) in out[axis].iter_mut().enumerate() {
-            *value = base.vehicle.body.mass_kg * felt_force[axis][row] - *value;
+        for (reading, first) in readings.iter().zip([0, SECOND]) {
+            for (row, value) in out[first + axis].iter_mut().enumerate() {
+                *value = base.vehicle.body.mass_kg * reading[axis][row] - *value;
+            }
         }
         for (row, value) in out[3 + axis].iter_mut().enumerate() {
             let turning: f64 = (0..6).map(|k| momentum[k][axis][row] * six[k]).sum();
@@ -347,42 +383,71 @@ fn momentum_rows(trace: &Trace) -> [[Vec<f64>; 3]; 6] {
 
 fn nuisances(trace: &Trace, base: &Base, commanded: &Turning, by_commands: &[Wrench]) -> Vec<NuisanceColumn> {
     let none = || vec![0.0; trace.rows()];
+    let force = |values: [Vec<f64>; 3]| channels(trace, values, nothing(trace));
+    let torque = |values: [Vec<f64>; 3]| channels(trace, nothing(trace), values);
     let column = |nuisance, prior_std, values: Channels| NuisanceColumn { nuisance, values, prior_std };
     let mass_kg = base.vehicle.body.mass_kg;
     let mut out = Vec::new();
     // more mass than assumed: more force than assumed was there, in proportion to it
     let forces: Vec<Vector3<f64>> = by_commands.iter().map(|w| w.force_n / -mass_kg).collect();
-    let [fx, fy, fz] = trace.weak_vector(0, &forces);
-    out.push(column(Nuisance::Mass, None, [fx, fy, fz, none(), none(), none()]));
+    out.push(column(Nuisance::Mass, None, force(trace.weak_vector(0, &forces))));
     for (entry, axes) in momentum_rows(trace).into_iter().enumerate() {
-        let [tx, ty, tz] = axes.map(|values| values.into_iter().map(|v| -v).collect::<Vec<f64>>());
-        out.push(column(Nuisance::Inertia(entry), None, [none(), none(), none(), tx, ty, tz]));
+        let values = axes.map(|values| values.into_iter().map(|v| -v).collect::<Vec<f64>>());
+        out.push(column(Nuisance::Inertia(entry), None, torque(values)));
     }
     // by the commands for the force, by the motion for the torques
-    let lift: Vec<f64> = commanded.thrust_n.iter().map(|thrusts| -thrusts.iter().sum::<f64>()).collect();
-    let lift = trace.weak(0, &central_difference(&lift, trace.grid.step_s));
-    let torque = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
-    let [tx, ty, tz] = [0, 1, 2].map(|axis| {
-        let column: Vec<f64> = torque.iter().map(|t| -t[axis]).collect();
+    let thrust: Vec<f64> = commanded.thrust_n.iter().map(|thrusts| thrusts.iter().sum::<f64>()).collect();
+    let late: Vec<f64> = central_difference(&thrust, trace.grid.step_s).iter().map(|d| -d).collect();
+    let late = trace.weak(0, &late);
+    let turning = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
+    let late_torque = [0, 1, 2].map(|axis| {
+        let column: Vec<f64> = turning.iter().map(|t| -t[axis]).collect();
         trace.weak(0, &central_difference(&column, trace.grid.step_s))
     });
-    out.push(column(Nuisance::Latency, None, [none(), none(), lift.clone(), tx, ty, tz]));
-    out.push(column(
-        Nuisance::ForceLatency,
-        Some(FORCE_LATENCY_STD_S),
-        [none(), none(), lift, none(), none(), none()],
-    ));
-    let thrust: Vec<f64> = commanded.thrust_n.iter().map(|thrusts| thrusts.iter().sum::<f64>()).collect();
+    let both = channels(trace, [none(), none(), late.clone()], late_torque);
+    out.push(column(Nuisance::Latency, None, both));
+    let late = force([none(), none(), late]);
+    out.push(column(Nuisance::ForceLatency, Some(FORCE_LATENCY_STD_S), late));
     let thrust = trace.weak(0, &thrust);
     let negative: Vec<f64> = thrust.iter().map(|t| -t).collect();
     let tilt = Some(TILT_STD_RAD);
-    out.push(column(Nuisance::Tilt(0), tilt, [none(), negative, none(), none(), none(), none()]));
-    out.push(column(Nuisance::Tilt(1), tilt, [thrust, none(), none(), none(), none(), none()]));
+    out.push(column(Nuisance::Tilt(0), tilt, force([none(), negative, none()])));
+    out.push(column(Nuisance::Tilt(1), tilt, force([thrust, none(), none()])));
     if let Some(jitter) = &trace.jitter {
         let channel =
             |row: usize| trace.weak(0, &jitter.iter().map(|jitter| -jitter[row]).collect::<Vec<f64>>());
-        let values = [none(), none(), channel(0), channel(1), channel(2), channel(3)];
+        let values = channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);
         out.push(column(Nuisance::Jitter, Some(JITTER_STD), values));
+    }
+    out.extend(sensor_nuisances(trace, mass_kg));
+    out
+}
+
+/// The accelerometer's bias, and the level of the attitude that the kinematics rest on.
+fn sensor_nuisances(trace: &Trace, mass_kg: f64) -> Vec<NuisanceColumn> {
+    let mut out = Vec::new();
+    if trace.has_accelerometer() {
+        let prior_std = if trace.reads_force_twice() { None } else { Some(BIAS_STD_M_S2) };
+        for axis in 0..3 {
+            let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
+            values[axis].fill(mass_kg);
+            out.push(NuisanceColumn { nuisance: Nuisance::AccelerometerBias(axis), values, prior_std });
+        }
+    }
+    if trace.known.attitude && trace.known.velocity {
+        let first = if trace.has_accelerometer() { SECOND } else { 0 };
+        for axis in 0..2 {
+            // gravity leans by the error's cross product with up
+            let lean = Vector3::ith(axis, 1.0).cross(&Vector3::z()) * (mass_kg * trace.gravity_m_s2);
+            let leaning: Vec<Vector3<f64>> =
+                trace.states.iter().map(|state| state.attitude.inverse_transform_vector(&lean)).collect();
+            let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
+            for (slot, column) in trace.weak_vector(0, &leaning).into_iter().enumerate() {
+                values[first + slot] = column;
+            }
+            let nuisance = Nuisance::Level(axis);
+            out.push(NuisanceColumn { nuisance, values, prior_std: Some(LEVEL_STD_RAD) });
+        }
     }
     out
 }

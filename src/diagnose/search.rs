@@ -2,7 +2,7 @@
 
 use super::base::{Base, Present};
 use super::candidates::{Candidate, candidates, drag_and_wind};
-use super::evidence::{Evidence, Weighted};
+use super::evidence::{Evidence, Weighted, normal_deviate};
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::rows::{Channels, Nuisance, Rows};
 use super::trace::Trace;
@@ -50,14 +50,23 @@ const PASSES: usize = 8;
 /// A coefficient that moves by less than this many standard errors has converged.
 const CONVERGED: f64 = 0.05;
 
+/// Whether the latency is estimated, or stays as it is and only its column is in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Newton {
+    /// estimated
+    Free,
+    /// as given
+    Held,
+}
+
 /// Fits rigid body, latency and the base's effects.
 ///
 /// # Errors
 /// [`PhysicsError`] where the estimate leaves what is physical.
-pub fn fit(flights: &[Trace], mut base: Base) -> Result<Fitted, PhysicsError> {
+pub fn fit(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted, PhysicsError> {
     let mut fitted = evaluate(flights, base.clone())?;
     for _ in 0..PASSES {
-        let moved = step(&mut base, &fitted);
+        let moved = step(&mut base, &fitted, newton);
         fitted = evaluate(flights, base.clone())?;
         if moved < CONVERGED {
             break;
@@ -66,7 +75,8 @@ pub fn fit(flights: &[Trace], mut base: Base) -> Result<Fitted, PhysicsError> {
     Ok(fitted)
 }
 
-fn evaluate(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsError> {
+/// Rows, weights and coefficients about a base, without a step.
+pub(super) fn evaluate(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsError> {
     let rows = Rows::new(flights, &base)?;
     let weighted = Weighted::new(&rows);
     let (coefficients, covariance) = weighted.coefficients(&rows);
@@ -74,7 +84,7 @@ fn evaluate(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsError> {
 }
 
 /// Moves the base by the coefficients; returns the largest move in standard errors.
-fn step(base: &mut Base, fitted: &Fitted) -> f64 {
+fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
     let mut most = 0.0_f64;
     let body = &mut base.vehicle.body;
     for (index, column) in fitted.rows.nuisances.iter().enumerate() {
@@ -99,12 +109,12 @@ fn step(base: &mut Base, fitted: &Fitted) -> f64 {
                     body.inertia_kg_m2[(column, row)] += by;
                 }
             }
-            Nuisance::Latency => {
+            Nuisance::Latency if newton == Newton::Free => {
                 let by = by.clamp(-0.05, 0.05);
                 if base.latency.lag_s > 0.0 {
                     base.latency.lag_s = (base.latency.lag_s + by).max(1e-4);
                 } else {
-                    base.latency.delay_s = (base.latency.delay_s + by).clamp(-0.1, 0.3);
+                    base.latency.delay_s = (base.latency.delay_s + by).clamp(-0.03, 0.3);
                 }
             }
             _ => continue,
@@ -168,23 +178,30 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
     let mut after = before.clone();
     let mut steps: Vec<Step> = Vec::new();
     let mut last;
+    let mut settled = false;
     loop {
         let candidates = candidates(&after.base.vehicle, flights);
         last = test_all(flights, &after, &candidates);
-        if steps.len() >= gates.steps {
-            break;
-        }
         let count = last.len() as f64;
         let mut passed: Vec<Tested> =
             last.iter().filter(|tested| passes(tested, gates, count)).cloned().collect();
         passed.sort_by(|a, b| b.evidence.energy.total_cmp(&a.evidence.energy));
-        let Some(taken) = passed.first().cloned() else { break };
-        let mut base = after.base.clone();
-        for part in started(&taken) {
-            base.present.push(released(part));
+        match passed.first().cloned() {
+            Some(taken) if steps.len() < gates.steps => {
+                let mut base = after.base.clone();
+                base.present.extend(started(&taken).into_iter().map(released));
+                after = fit(flights, base, Newton::Held)?;
+                steps.push(Step { taken, rivals: passed.split_off(1) });
+            }
+            _ if settled || steps.is_empty() => break,
+            _ => {
+                settled = true;
+                let (dropped, moved) = settle(flights, &mut after)?;
+                if !dropped && moved < SETTLED_S {
+                    break;
+                }
+            }
         }
-        after = fit(flights, base)?;
-        steps.push(Step { taken, rivals: passed.split_off(1) });
     }
     let latency = LatencyFinding {
         against_lag: latency.against_lag,
@@ -193,6 +210,39 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
     };
     Ok(Search { before, after, latency, steps, last })
 }
+
+/// A latency that moves by less than this when it is estimated with the effects changes nothing, s.
+const SETTLED_S: f64 = 0.001;
+
+/// Effects that the later ones have made superfluous go, and the latency is estimated with those that stay.
+/// Returns whether any went, and by how much the latency moved, s.
+fn settle(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64), PhysicsError> {
+    let mut index = after.rows.nuisances.len();
+    let mut kept = Vec::new();
+    for present in &after.base.present {
+        let size = present.free.len();
+        let theta = DVector::from_iterator(
+            size,
+            present.free.iter().map(|&slot| present.values[slot] - present.nothing_at(slot)),
+        );
+        let covariance = after.covariance.view((index, index), (size, size)).into_owned();
+        let z = covariance
+            .cholesky()
+            .map_or(f64::INFINITY, |factor| normal_deviate(theta.dot(&factor.solve(&theta)), size));
+        index += size;
+        if z > KEPT {
+            kept.push(present.clone());
+        }
+    }
+    let dropped = kept.len() < after.base.present.len();
+    let before_s = after.base.latency.total_s();
+    let base = Base { present: kept, ..after.base.clone() };
+    *after = fit(flights, base, Newton::Free)?;
+    Ok((dropped, (after.base.latency.total_s() - before_s).abs()))
+}
+
+/// An accepted effect stays while it is this many standard deviations from nothing.
+const KEPT: f64 = 4.0;
 
 /// The candidate's effects at the values that the evidence has.
 fn started(tested: &Tested) -> Vec<Present> {

@@ -10,9 +10,6 @@ use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
 use std::ops::Range;
 
-/// Share of the accelerometer in the measured specific force; the rest is kinematic. From the ratio of
-/// their noise after the weak form, with which a fifth of kinematics costs nothing.
-const ACCELEROMETER_SHARE: f64 = 0.8;
 /// Zero-phase low-pass of what enters regressors, Hz.
 const SMOOTH_HZ: f64 = 6.0;
 
@@ -37,11 +34,8 @@ pub struct Trace {
     pub voltage_v: Option<Vec<f64>>,
     /// s between commands (or measured speeds) as logged
     pub command_period_s: f64,
-    /// m/s^2, body, accelerometer with its mean brought to that of the kinematics where both are known
-    specific_force_m_s2: Vec<Vector3<f64>>,
-    /// m/s^2, accelerometer less kinematics, mean of each body axis
-    pub accelerometer_bias_m_s2: Option<Vector3<f64>>,
-    accelerometer_share: f64,
+    /// m/s^2, body, accelerometer
+    specific_force_m_s2: Option<Vec<Vector3<f64>>>,
     /// N, as commanded (or measured), each rotor
     commanded_n: Vec<Thrusts>,
     /// N, N m: what the commands' jitter adds if the rotors follow all of it
@@ -50,8 +44,8 @@ pub struct Trace {
     smooth_rate: Vec<Vector3<f64>>,
     smooth_turning: Vec<Vector3<f64>>,
     smooth_lift: Vec<f64>,
-    /// K of the rates, once for all passes: first derivative and the six products of rates
-    gravity_m_s2: f64,
+    /// m/s^2
+    pub gravity_m_s2: f64,
 }
 
 /// Which parts of the state are measured.
@@ -149,13 +143,7 @@ impl Trace {
             known,
             voltage_v: signals.battery_voltage_v.clone(),
             command_period_s: command_period_s(signals),
-            specific_force_m_s2: measured.cloned().unwrap_or(zero),
-            accelerometer_bias_m_s2: None,
-            accelerometer_share: match (measured.is_some(), kinematic) {
-                (true, true) => ACCELEROMETER_SHARE,
-                (true, false) => 1.0,
-                _ => 0.0,
-            },
+            specific_force_m_s2: measured.cloned(),
             commanded_n,
             jitter: signals.jitter_wrench.clone(),
             smooth_rate: Vec::new(),
@@ -163,7 +151,6 @@ impl Trace {
             smooth_lift: Vec::new(),
             gravity_m_s2: vehicle.gravity_m_s2,
         };
-        trace.level_accelerometer();
         trace.smooth()?;
         Ok(trace)
     }
@@ -210,34 +197,24 @@ impl Trace {
         Some(derivative)
     }
 
-    /// `K` of the specific force that the body felt, m/s^2: accelerometer and kinematics weighted by
-    /// their noise.
+    /// An accelerometer is recorded.
     #[must_use]
-    pub fn weak_specific_force(&self) -> [Vec<f64>; 3] {
-        let share = self.accelerometer_share;
-        let mut force = self.weak_vector(0, &self.specific_force_m_s2);
-        let kinematic = if share < 1.0 { self.weak_kinematic() } else { None };
-        if let Some(kinematic) = kinematic {
-            for (axis, kinematic) in force.iter_mut().zip(&kinematic) {
-                axis.iter_mut().zip(kinematic).for_each(|(f, k)| *f = share * *f + (1.0 - share) * k);
-            }
-        }
-        force
+    pub fn has_accelerometer(&self) -> bool {
+        self.specific_force_m_s2.is_some()
     }
 
-    /// The accelerometer's bias is what its mean differs from that of the kinematics.
-    fn level_accelerometer(&mut self) {
-        if self.accelerometer_share <= 0.0 || self.rows() == 0 {
-            return;
-        }
-        let Some(kinematic) = self.weak_kinematic() else { return };
-        let measured = self.weak_vector(0, &self.specific_force_m_s2);
-        let bias = Vector3::from_fn(|axis, _| {
-            let sum: f64 = measured[axis].iter().zip(&kinematic[axis]).map(|(m, k)| m - k).sum();
-            sum / self.rows() as f64
-        });
-        self.specific_force_m_s2.iter_mut().for_each(|f| *f -= bias);
-        self.accelerometer_bias_m_s2 = Some(bias);
+    /// By accelerometer and by kinematics.
+    #[must_use]
+    pub fn reads_force_twice(&self) -> bool {
+        self.has_accelerometer() && self.known.attitude && self.known.velocity
+    }
+
+    /// `K` of the specific force that the body felt, m/s^2, body: each reading there is, the
+    /// accelerometer's first.
+    #[must_use]
+    pub fn weak_specific_force(&self) -> Vec<[Vec<f64>; 3]> {
+        let measured = self.specific_force_m_s2.as_ref().map(|force| self.weak_vector(0, force));
+        measured.into_iter().chain(self.weak_kinematic()).collect()
     }
 
     fn smooth(&mut self) -> Result<(), TraceError> {
@@ -253,10 +230,9 @@ impl Trace {
         };
         self.smooth_rate = vectors(&rates);
         self.smooth_turning = vectors(&turning);
-        let lift: Vec<f64> = if self.accelerometer_share > 0.0 {
-            self.specific_force_m_s2.iter().map(|f| f.z).collect()
-        } else {
-            self.kinematic_lift()
+        let lift: Vec<f64> = match &self.specific_force_m_s2 {
+            Some(force) => force.iter().map(|f| f.z).collect(),
+            None => self.kinematic_lift(),
         };
         self.smooth_lift = filter.filtfilt(&lift);
         Ok(())

@@ -8,8 +8,8 @@ mod validation;
 
 pub use chart::{Line, Panel, svg};
 pub use explanation::{
-    AxisShare, Estimate, ExplanationDocument, Given, Located, Pair, ShownOn, StateShare, Story,
-    explanation_page, for_readers, held_back,
+    AxisShare, Estimate, ExplanationDocument, Given, Located, Predicted, ShownOn, StateShare, Story,
+    explanation_page, for_readers,
 };
 pub use identification::{
     IdentificationDocument, InputFile, history_charts, identification_page, model_toml,

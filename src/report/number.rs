@@ -1,5 +1,7 @@
 //! Numbers as people read them: rounded to what is known of them.
 
+use crate::diagnose::show::Interval;
+
 /// Digits after the point that show a standard error's one digit, or two where the first is a 1.
 fn decimals(std: f64) -> i32 {
     let mut power = 0;
@@ -71,6 +73,20 @@ fn exponent(value: f64) -> i32 {
         power -= 1;
     }
     power
+}
+
+/// `49 % (44 to 53 %)`.
+#[must_use]
+pub fn percent(of: &Interval) -> String {
+    let whole = |value: f64| rounded(value, 0);
+    let range = of.range.map(|(low, high)| format!(" ({} to {} %)", whole(low), whole(high)));
+    format!("{} %{}", whole(of.value), range.unwrap_or_default())
+}
+
+/// A chance as people read it: what is beyond the range of floating point is said to be below it.
+#[must_use]
+pub fn chance(p: f64) -> String {
+    if p < 1e-300 { "below 1e-300".to_owned() } else { significant(p, 1) }
 }
 
 /// Units as they are said: `N per m/s`.

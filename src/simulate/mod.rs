@@ -19,7 +19,7 @@ pub use cascade::{AutopilotCascade, AutopilotGains, LoopGains};
 pub use controller::{CascadeController, CascadeGains, Setpoint};
 pub use flight::{Disturbance, FlightSettings, SimulatedFlight, Truth, simulate_flight};
 pub use ground::{GroundContact, GroundSettings};
-pub use plant::{PLANT_STATES, Plant};
+pub use plant::{PLANT_STATES, Plant, Push};
 pub use reference::{RandomTrajectory, Reference};
 pub use sensors::{NoiseLevels, StreamSkew, TelemetryRates, TelemetrySettings};
 pub use vehicles::{VehiclePair, random_vehicle};

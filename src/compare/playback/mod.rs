@@ -3,8 +3,13 @@
 use super::{CompareError, MeanSquare};
 use crate::physics::{Input, MAX_ROTORS, Model, State};
 use crate::signals::{Grid, Signals, ThrustSource};
-use crate::simulate::{Allocation, Plant};
+use crate::simulate::{Allocation, Plant, Push};
 use crate::vehicle::Vehicle;
+use nalgebra::{UnitQuaternion, Vector3};
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+use std::cmp::Ordering;
 
 /// How playback is done.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,43 +67,184 @@ pub fn playback(
     signals: &Signals,
     settings: &PlaybackSettings,
 ) -> Result<Fit, CompareError> {
-    let measured_speeds = signals.quality.thrust_source == ThrustSource::MeasuredSpeed;
-    let model = if measured_speeds { model.with_measured_speeds() } else { model.clone() };
-    let states = MeasuredStates::of(signals)?;
-    let commands = Commands::of(&model, vehicle, signals)?;
-    let step_s = signals.grid.step_s;
-    let count =
-        |time_s: f64| (1..signals.grid.count).take_while(|n| *n as f64 * step_s <= time_s + 1e-9).count();
-    let (window, warm_up) = (count(settings.window_s).max(1), count(settings.warm_up_s));
-    let substeps = (1..100).find(|n| step_s / f64::from(*n) <= settings.step_s + 1e-12).unwrap_or(100);
+    let windows = playback_windows((model, vehicle), None, signals, settings)?;
     let mut errors = [MeanSquare::default(); 4];
-    let mut windows = 0;
-    for run in Grid::runs(&signals.usable, window + warm_up + 1) {
-        let starts = (run.start + warm_up..run.end - window).step_by(count(settings.stride_s).max(1));
-        for start in starts {
-            windows += 1;
-            let first = start - warm_up;
-            let mut plant = Plant::new(&model, None, &states.at(first), &commands.at(first, 0.0))?;
-            for index in first..start + window {
-                if index <= start {
-                    plant.set_state(&states.at(index));
-                } else {
-                    states.compare(index, &plant.state(), start, &mut errors);
-                }
-                for substep in 0..substeps {
-                    let share = (f64::from(substep) + 0.5) / f64::from(substeps);
-                    plant.step(&commands.at(index, share), step_s / f64::from(substeps));
-                }
-            }
-            states.compare(start + window, &plant.state(), start, &mut errors);
+    for window in &windows {
+        for (error, (sum, count)) in errors.iter_mut().zip(window.squares.iter().zip(&window.counts)) {
+            error.sum += sum;
+            error.count += count;
         }
     }
-    if windows == 0 {
-        let PlaybackSettings { window_s, warm_up_s, .. } = *settings;
-        return Err(CompareError::NoWindow { window_s, warm_up_s });
-    }
     let [position_m, velocity_m_s, attitude_rad, rates_rad_s] = errors.map(|error| error.root());
-    Ok(Fit { position_m, velocity_m_s, attitude_rad, rates_rad_s, windows })
+    Ok(Fit { position_m, velocity_m_s, attitude_rad, rates_rad_s, windows: windows.len() })
+}
+
+/// Squared errors of one window, in the order of [`Fit::quantities`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WindowErrors {
+    /// s, vehicle clock, where the window starts
+    pub start_s: f64,
+    /// sums of squares: m^2, (m/s)^2, rad^2, (rad/s)^2
+    pub squares: [f64; 4],
+    /// instants in each sum; 0 where the recording does not hold the quantity
+    pub counts: [usize; 4],
+}
+
+/// [`playback`] window by window, for whoever needs to know how the error is spread. `push` acts beside
+/// the model.
+///
+/// # Errors
+/// As [`playback`].
+pub fn playback_windows(
+    (model, vehicle): (&Model, &Vehicle),
+    push: Option<Push>,
+    signals: &Signals,
+    settings: &PlaybackSettings,
+) -> Result<Vec<WindowErrors>, CompareError> {
+    let model = played(model, signals);
+    let played = Played::of((&model, vehicle), push, signals, settings)?;
+    let mut out = Vec::with_capacity(played.starts.len());
+    for &start in &played.starts {
+        let mut errors = [MeanSquare::default(); 4];
+        let simulated = played.window(start, &played.states.at(start))?;
+        for (index, state) in (start + 1..).zip(&simulated) {
+            played.states.compare(state, &played.states.at(index), &mut errors);
+        }
+        out.push(played.errors(start, &errors));
+    }
+    Ok(out)
+}
+
+/// White noise of the measured state, one standard deviation an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct StateNoise {
+    /// m
+    pub position_m: f64,
+    /// m/s
+    pub velocity_m_s: f64,
+    /// rad, about each body axis
+    pub attitude_rad: f64,
+    /// rad/s
+    pub rates_rad_s: f64,
+}
+
+/// What [`playback_windows`] would find of a model that is right: the sensors' noise at the start of each
+/// window, carried along by the model, and at every instant that is compared. One seeded draw a window.
+///
+/// # Errors
+/// As [`playback`].
+pub fn playback_floor(
+    (model, vehicle): (&Model, &Vehicle),
+    signals: &Signals,
+    settings: &PlaybackSettings,
+    (noise, seed): (&StateNoise, u64),
+) -> Result<Vec<WindowErrors>, CompareError> {
+    let model = played(model, signals);
+    let played = Played::of((&model, vehicle), None, signals, settings)?;
+    let mut generator = Pcg64Mcg::seed_from_u64(seed);
+    let mut out = Vec::with_capacity(played.starts.len());
+    for &start in &played.starts {
+        let mut errors = [MeanSquare::default(); 4];
+        let measured = played.states.at(start);
+        let truth = played.window(start, &measured)?;
+        let simulated = played.window(start, &noise.on(&measured, &mut generator))?;
+        for (truth, simulated) in truth.iter().zip(&simulated) {
+            played.states.compare(simulated, &noise.on(truth, &mut generator), &mut errors);
+        }
+        out.push(played.errors(start, &errors));
+    }
+    Ok(out)
+}
+
+impl StateNoise {
+    fn on(&self, state: &State, generator: &mut Pcg64Mcg) -> State {
+        let mut draw = |size: f64| {
+            Vector3::from_fn(|_, _| size * Distribution::<f64>::sample(&StandardNormal, generator))
+        };
+        State {
+            position_m: state.position_m + draw(self.position_m),
+            velocity_m_s: state.velocity_m_s + draw(self.velocity_m_s),
+            attitude: state.attitude * UnitQuaternion::from_scaled_axis(draw(self.attitude_rad)),
+            rates_rad_s: state.rates_rad_s + draw(self.rates_rad_s),
+        }
+    }
+}
+
+/// Where rotor speeds were measured, what lies between command and speed is left out.
+fn played(model: &Model, signals: &Signals) -> Model {
+    let measured_speeds = signals.quality.thrust_source == ThrustSource::MeasuredSpeed;
+    if measured_speeds { model.with_measured_speeds() } else { model.clone() }
+}
+
+/// A recording ready to be played back.
+struct Played<'a> {
+    model: &'a Model,
+    push: Option<Push<'a>>,
+    states: MeasuredStates<'a>,
+    commands: Commands,
+    step_s: f64,
+    substeps: u32,
+    /// instants
+    window: usize,
+    warm_up: usize,
+    starts: Vec<usize>,
+}
+
+impl<'a> Played<'a> {
+    fn of(
+        (model, vehicle): (&'a Model, &Vehicle),
+        push: Option<Push<'a>>,
+        signals: &'a Signals,
+        settings: &PlaybackSettings,
+    ) -> Result<Self, CompareError> {
+        let states = MeasuredStates::of(signals)?;
+        let commands = Commands::of(model, vehicle, signals)?;
+        let step_s = signals.grid.step_s;
+        let count =
+            |time_s: f64| (1..signals.grid.count).take_while(|n| *n as f64 * step_s <= time_s + 1e-9).count();
+        let (window, warm_up) = (count(settings.window_s).max(1), count(settings.warm_up_s));
+        let substeps = (1..100).find(|n| step_s / f64::from(*n) <= settings.step_s + 1e-12).unwrap_or(100);
+        let mut starts = Vec::new();
+        for run in Grid::runs(&signals.usable, window + warm_up + 1) {
+            starts.extend((run.start + warm_up..run.end - window).step_by(count(settings.stride_s).max(1)));
+        }
+        if starts.is_empty() {
+            let PlaybackSettings { window_s, warm_up_s, .. } = *settings;
+            return Err(CompareError::NoWindow { window_s, warm_up_s });
+        }
+        Ok(Self { model, push, states, commands, step_s, substeps, window, warm_up, starts })
+    }
+
+    /// States at the instants after `start`, from `initial` there.
+    fn window(&self, start: usize, initial: &State) -> Result<Vec<State>, CompareError> {
+        let first = start - self.warm_up;
+        let mut plant =
+            Plant::new(self.model, self.push, &self.states.at(first), &self.commands.at(first, 0.0))?;
+        let mut out = Vec::with_capacity(self.window);
+        for index in first..start + self.window {
+            match index.cmp(&start) {
+                Ordering::Less => plant.set_state(&self.states.at(index)),
+                Ordering::Equal => plant.set_state(initial),
+                Ordering::Greater => {}
+            }
+            for substep in 0..self.substeps {
+                let share = (f64::from(substep) + 0.5) / f64::from(self.substeps);
+                plant.step(&self.commands.at(index, share), self.step_s / f64::from(self.substeps));
+            }
+            if index >= start {
+                out.push(plant.state());
+            }
+        }
+        Ok(out)
+    }
+
+    fn errors(&self, start: usize, errors: &[MeanSquare; 4]) -> WindowErrors {
+        WindowErrors {
+            start_s: self.states.signals.grid.time_s(start),
+            squares: errors.map(|error| error.sum),
+            counts: errors.map(|error| error.count),
+        }
+    }
 }
 
 /// What was measured of the body.
@@ -120,7 +266,7 @@ impl<'a> MeasuredStates<'a> {
 
     /// What is not recorded is zero.
     fn at(&self, index: usize) -> State {
-        let vector = |series: &Option<Vec<nalgebra::Vector3<f64>>>| {
+        let vector = |series: &Option<Vec<Vector3<f64>>>| {
             series.as_ref().map(|series| series[index]).unwrap_or_default()
         };
         State {
@@ -131,9 +277,8 @@ impl<'a> MeasuredStates<'a> {
         }
     }
 
-    fn compare(&self, index: usize, simulated: &State, start: usize, errors: &mut [MeanSquare; 4]) {
-        debug_assert!(index > start);
-        let measured = self.at(index);
+    /// Position only counts where velocity is known too: without it the start is a guess.
+    fn compare(&self, simulated: &State, measured: &State, errors: &mut [MeanSquare; 4]) {
         let [position, velocity, attitude, rates] = errors;
         if self.signals.position.is_some() && self.signals.velocity.is_some() {
             position.add((simulated.position_m - measured.position_m).norm_squared());

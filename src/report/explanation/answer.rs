@@ -1,9 +1,9 @@
 //! The answer in one sentence.
 
-use super::show::QUANTITIES;
+use super::show::Predicted;
 use super::story::Story;
 use super::words::{called, clause};
-use crate::diagnose::{DetectionLimit, Verdict};
+use crate::diagnose::{Along, DetectionLimit, Verdict};
 use crate::report::number::{significant, spoken};
 use std::fmt::Write;
 
@@ -56,13 +56,7 @@ impl Story {
         else {
             return String::new();
         };
-        let most = pair
-            .improvements()
-            .into_iter()
-            .zip(QUANTITIES)
-            .filter_map(|(percent, (name, _))| Some((percent?, name)))
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        most.map_or_else(String::new, |(percent, name)| {
+        pair.most().map_or_else(String::new, |(name, percent)| {
             let shown = self.shown_on.words();
             if percent >= 0.5 {
                 format!("; with {with} the 0.5 s {name} error on {shown} falls by {percent:.0} %")
@@ -96,7 +90,25 @@ impl Story {
         } else {
             format!("; {} comes closest and does not serve", closest.join(" with "))
         };
-        format!("Something is there that no known effect accounts for, {}{closest}.", self.whereabouts())
+        let term = self.empirical.as_ref().map_or_else(String::new, |term| {
+            let gain = self.holdout.as_ref().and_then(Predicted::most).map_or_else(
+                String::new,
+                |(name, percent)| {
+                    format!(
+                        " and lowers the 0.5 s {name} error on {} by {percent:.0} %",
+                        self.shown_on.words()
+                    )
+                },
+            );
+            format!(
+                "; an empirical force along {}, not a mechanism, stands in for it{gain}",
+                spoken_along(term.along)
+            )
+        });
+        format!(
+            "Something is there that no known effect accounts for, {}{closest}{term}.",
+            self.whereabouts()
+        )
     }
 
     /// Where the misfit lives: axis, place, band.
@@ -136,6 +148,15 @@ fn seen_from(limit: &DetectionLimit) -> String {
         id => format!("{} of {} {}", called(id), significant(limit.limit, 2), spoken(limit.unit))
             .trim_end()
             .to_owned(),
+    }
+}
+
+/// What an empirical term depends on.
+fn spoken_along(along: Along) -> String {
+    const AXES: [&str; 3] = ["x", "y", "z"];
+    match along {
+        Along::Position(axis) => format!("world {}", AXES[axis.min(2)]),
+        Along::Velocity(axis) => format!("the velocity along body {}", AXES[axis.min(2)]),
     }
 }
 

@@ -1,10 +1,10 @@
 //! The JSON document of `explain`.
 
 use super::located::Located;
-use super::show::{Pair, ShownOn};
+use super::show::{Predicted, ShownOn};
 use super::story::{Story, body_values, rigid_body};
-use crate::compare::Fit;
-use crate::diagnose::{CHANNEL_NAMES, Named};
+use crate::diagnose::show::Compared;
+use crate::diagnose::{AXES, Along, CHANNEL_NAMES, Named};
 use crate::report::InputFile;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -17,6 +17,7 @@ pub struct ExplanationDocument {
     answer: String,
     effects: Vec<EffectValue>,
     closest: Vec<EffectValue>,
+    empirical: Option<EmpiricalValue>,
     localisation: Located,
     fit: FitValues,
     parameters: BTreeMap<&'static str, ParameterValue>,
@@ -71,7 +72,22 @@ struct FitValues {
 struct PairValue {
     before: Option<FitValue>,
     after: Option<FitValue>,
+    /// what white noise of the sensors alone would leave
+    floor: Option<FitValue>,
+    windows: Option<usize>,
     improvement_percent: Option<f64>,
+    improvement_range_percent: Option<(f64, f64)>,
+}
+
+/// A term without a mechanism: straight lines between the knots, zero outside.
+#[derive(Debug, Clone, Serialize)]
+struct EmpiricalValue {
+    variable: &'static str,
+    unit: &'static str,
+    at: Vec<f64>,
+    force_n: Vec<[f64; 3]>,
+    frame: &'static str,
+    gain_percent: f64,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -80,7 +96,6 @@ struct FitValue {
     velocity_m_s: Option<f64>,
     attitude_rad: Option<f64>,
     rates_rad_s: Option<f64>,
-    windows: usize,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -156,6 +171,7 @@ impl ExplanationDocument {
             answer: story.answer(),
             effects: effect_values(story, &story.effects),
             closest: effect_values(story, &story.closest),
+            empirical: empirical(story),
             localisation: story.located.clone(),
             fit: fit_values(story),
             parameters: story
@@ -211,8 +227,8 @@ fn fit_values(story: &Story) -> FitValues {
         ShownOn::Nothing { reason } => (None, Some(reason.clone())),
     };
     FitValues {
-        identify: pair(story.identify.as_ref()),
-        holdout: pair(story.holdout.as_ref()),
+        identify: predicted(story.identify.as_ref()),
+        holdout: predicted(story.holdout.as_ref()),
         shown_on: match story.shown_on {
             ShownOn::Flights(_) => "holdout",
             ShownOn::HeldBack { .. } => "held_back",
@@ -223,17 +239,38 @@ fn fit_values(story: &Story) -> FitValues {
     }
 }
 
-fn pair(pair: Option<&Pair>) -> PairValue {
+fn predicted(predicted: Option<&Predicted>) -> PairValue {
+    let half = predicted.map(Predicted::half_second);
+    let windows = predicted
+        .and_then(|of| of.open_loop.iter().find(|of| (of.window_s - 0.5).abs() < 1e-9).map(|of| of.windows));
+    let fit = |pick: &dyn Fn(&Compared) -> Option<f64>| {
+        let [position_m, velocity_m_s, attitude_rad, rates_rad_s] =
+            half?.map(|of| of.as_ref().and_then(pick));
+        Some(FitValue { position_m, velocity_m_s, attitude_rad, rates_rad_s })
+    };
     PairValue {
-        before: pair.map(|pair| fit(&pair.before)),
-        after: pair.map(|pair| fit(&pair.after)),
-        improvement_percent: pair.and_then(Pair::improvement),
+        before: fit(&|of| Some(of.before.value)),
+        after: fit(&|of| Some(of.after.value)),
+        floor: fit(&|of| of.floor),
+        windows,
+        improvement_percent: predicted.and_then(Predicted::improvement),
+        improvement_range_percent: predicted.and_then(|of| of.improvement_percent?.range),
     }
 }
 
-fn fit(fit: &Fit) -> FitValue {
-    let Fit { position_m, velocity_m_s, attitude_rad, rates_rad_s, windows } = *fit;
-    FitValue { position_m, velocity_m_s, attitude_rad, rates_rad_s, windows }
+fn empirical(story: &Story) -> Option<EmpiricalValue> {
+    let term = story.empirical.as_ref()?;
+    Some(EmpiricalValue {
+        variable: term.along.name(),
+        unit: term.along.unit(),
+        at: term.knots.clone(),
+        force_n: term.force_n.iter().map(|force| [force.x, force.y, force.z]).collect(),
+        frame: match term.along {
+            Along::Position(_) => "world",
+            Along::Velocity(_) => "body",
+        },
+        gain_percent: 100.0 * term.gain,
+    })
 }
 
 fn moved(story: &Story) -> BTreeMap<&'static str, Moved> {
@@ -276,6 +313,7 @@ fn residual(story: &Story) -> BTreeMap<&'static str, ResidualValue> {
     let (before, after) = (search.before.weighted.sigma, search.after.weighted.sigma);
     CHANNEL_NAMES
         .into_iter()
+        .take(AXES)
         .zip(before.into_iter().zip(after))
         .map(|(name, (before, after))| {
             let unit = if name.starts_with("force") { "N" } else { "N m" };

@@ -1,6 +1,6 @@
 //! Where simulation and recording differ.
 
-use crate::diagnose::{CHANNEL_NAMES, CHANNELS, Explanation, Verdict};
+use crate::diagnose::{AXES, CHANNEL_NAMES, Explanation, Verdict};
 use serde::Serialize;
 
 /// An axis' share of the misfit.
@@ -59,11 +59,11 @@ impl Located {
 
 /// Energy of the misfit by channel, sigma squared: what the found effects took away, or, where nothing
 /// serves, what repeats with the trajectory.
-fn misfit(explanation: &Explanation) -> [f64; CHANNELS] {
+fn misfit(explanation: &Explanation) -> [f64; AXES] {
     let search = &explanation.search;
     match explanation.verdict {
-        Verdict::NothingMissing => [0.0; CHANNELS],
-        Verdict::Unexplained => explanation.lack_of_fit.as_ref().map_or([0.0; CHANNELS], |lack| {
+        Verdict::NothingMissing => [0.0; AXES],
+        Verdict::Unexplained => explanation.lack_of_fit.as_ref().map_or([0.0; AXES], |lack| {
             std::array::from_fn(|c| lack.lines[c].iter().map(|line| line.excess.max(0.0)).sum())
         }),
         Verdict::Explained | Verdict::PartlyExplained => {

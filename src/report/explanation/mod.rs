@@ -14,5 +14,5 @@ pub use document::ExplanationDocument;
 pub use located::{AxisShare, Located, StateShare};
 pub use page::explanation_page;
 pub use readers::for_readers;
-pub use show::{Pair, ShownOn, held_back};
+pub use show::{Predicted, ShownOn};
 pub use story::{Estimate, Given, Story};

@@ -1,10 +1,10 @@
 //! The page of `explain` for the terminal.
 
-use super::show::{Pair, QUANTITIES, ShownOn};
+use super::show::{Predicted, QUANTITIES};
 use super::story::{Story, body_values, rigid_body};
 use super::words::{called, clause};
-use crate::diagnose::{CHANNEL_NAMES, Named, Verdict};
-use crate::report::number::{significant, with_error};
+use crate::diagnose::{AXES, CHANNEL_NAMES, Named, Verdict};
+use crate::report::number::{chance, percent, significant, with_error};
 use std::fmt::Write;
 
 /// The page for the terminal: the answer first.
@@ -37,7 +37,7 @@ fn effect_lines(page: &mut String, story: &Story, effect: &Named) {
         page,
         "    evidence: z {:.1}, p {}, {} % of the residual energy",
         strength.z,
-        significant(story.p_value(effect), 1),
+        chance(story.p_value(effect)),
         significant(100.0 * strength.gain, 2)
     );
     for other in &effect.confusable_with {
@@ -77,38 +77,32 @@ fn located_lines(page: &mut String, story: &Story) {
 fn fit_lines(page: &mut String, story: &Story) {
     let _ = writeln!(
         page,
-        "\n  open-loop prediction over 0.5 s, rms{:>27}{:>12}{:>10}",
-        "rigid body", "with it", "better"
+        "\n  open-loop prediction over 0.5 s, rms   {:>12}{:>12}{:>12}  better by",
+        "rigid body", "with it", "noise alone"
     );
-    let shown = match &story.shown_on {
-        ShownOn::Flights(inputs) => format!("hold-out ({} flights)", inputs.len()),
-        ShownOn::HeldBack { from_s, seconds } => {
-            format!("held back ({seconds:.0} s from {from_s:.0} s on)")
-        }
-        ShownOn::Nothing { reason } => format!("nothing to show it on: {reason}"),
-    };
-    for (name, pair) in [("flights explained", story.identify), (shown.as_str(), story.holdout)] {
+    let shown = story.shown_on.heading();
+    for (name, of) in [("flights explained", &story.identify), (shown.as_str(), &story.holdout)] {
         let _ = writeln!(page, "    {name}");
-        pair_lines(page, pair.as_ref());
+        predicted_lines(page, of.as_ref());
     }
 }
 
-fn pair_lines(page: &mut String, pair: Option<&Pair>) {
-    let Some(pair) = pair else { return };
-    let (before, after) = (pair.before.quantities(), pair.after.quantities());
-    for (index, (name, unit)) in QUANTITIES.iter().enumerate() {
-        let (Some(before), Some(after)) = (before[index], after[index]) else { continue };
+fn predicted_lines(page: &mut String, predicted: Option<&Predicted>) {
+    let Some(predicted) = predicted else { return };
+    for (of, (name, unit)) in predicted.half_second().iter().zip(QUANTITIES) {
+        let Some(of) = of else { continue };
         let _ = writeln!(
             page,
-            "      {:<28}{:>22}{:>12}{:>8} %",
+            "      {:<33}{:>12}{:>12}{:>12}  {}",
             format!("{name} ({unit})"),
-            significant(before, 3),
-            significant(after, 3),
-            pair.improvements()[index].map_or_else(|| "-".to_owned(), |percent| format!("{percent:.0}"))
+            significant(of.before.value, 3),
+            significant(of.after.value, 3),
+            of.floor.map_or_else(|| "-".to_owned(), |floor| significant(floor, 3)),
+            percent(&of.improvement_percent)
         );
     }
-    if let Some(mean) = pair.improvement() {
-        let _ = writeln!(page, "      {:<28}{:>42} %", "mean", format!("{mean:.1}"));
+    if let Some(mean) = predicted.improvement_percent {
+        let _ = writeln!(page, "      {:<69}  {}", "mean", percent(&mean));
     }
 }
 
@@ -136,7 +130,7 @@ fn body_lines(page: &mut String, story: &Story) {
     );
     let (before, after) = (search.before.weighted.sigma, search.after.weighted.sigma);
     let _ = writeln!(page, "\n  residual, rms{:>13}{:>12}", "alone", "after");
-    for (index, name) in CHANNEL_NAMES.iter().enumerate() {
+    for (index, name) in CHANNEL_NAMES.iter().take(AXES).enumerate() {
         let unit = if index < 3 { "N" } else { "N m" };
         let _ = writeln!(
             page,

@@ -2,11 +2,12 @@
 
 use super::located::Located;
 use super::readers::for_readers;
-use super::show::{Pair, ShownOn};
-use crate::diagnose::{CHANNELS, ExplainSettings, Explanation, Fitted, Named, Nuisance, Verdict};
-use crate::physics::{ActiveEffect, effects::by_id};
+use super::show::{Predicted, ShownOn};
+use crate::diagnose::show::Shown;
+use crate::diagnose::{CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, Named, Nuisance, Verdict};
+use crate::physics::ActiveEffect;
 use crate::report::InputFile;
-use crate::signals::{ActuationLatency, Quality};
+use crate::signals::Quality;
 use crate::vehicle::{RigidBody, Vehicle};
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -54,9 +55,13 @@ pub struct Story {
     /// where nothing serves: what comes closest, likewise
     pub closest: Vec<Named>,
     /// errors of open-loop prediction on the flights that were explained
-    pub identify: Option<Pair>,
+    pub identify: Option<Predicted>,
     /// and on those that were not used
-    pub holdout: Option<Pair>,
+    pub holdout: Option<Predicted>,
+    /// everything that was shown on them
+    pub shown: Option<Shown>,
+    /// a term without a mechanism, where none serves
+    pub empirical: Option<Empirical>,
     /// which those are
     pub shown_on: ShownOn,
     /// where simulation and recording differ
@@ -73,6 +78,8 @@ impl Story {
             located: Located::of(&explanation),
             identify: None,
             holdout: None,
+            shown: None,
+            empirical: None,
             shown_on: ShownOn::Nothing { reason: "no hold-out".to_owned() },
             given,
             explanation,
@@ -97,27 +104,6 @@ impl Story {
         &self.explanation.search.after.base.vehicle
     }
 
-    /// The rigid body alone, with the actuation latency where that was not named: what `before` simulates.
-    #[must_use]
-    pub fn model_before(&self) -> (Vehicle, Vec<ActiveEffect>) {
-        let base = &self.explanation.search.before.base;
-        let mut effects = self.given.known.clone();
-        if !self.latency_named() {
-            effects.extend(latency_effects(base.latency));
-        }
-        (base.vehicle.clone(), effects)
-    }
-
-    /// The model with all effects that were found: what `after` simulates.
-    #[must_use]
-    pub fn model_after(&self) -> (Vehicle, Vec<ActiveEffect>) {
-        let base = &self.explanation.search.after.base;
-        let mut effects = self.given.known.clone();
-        effects.extend(self.found());
-        effects.extend(latency_effects(base.latency));
-        (base.vehicle.clone(), effects)
-    }
-
     /// Effects for the model file: those that were found, and a latency that was named.
     #[must_use]
     pub fn effects_of_model(&self) -> Vec<ActiveEffect> {
@@ -127,7 +113,8 @@ impl Story {
         }
         effects.extend(self.found());
         if self.latency_named() {
-            effects.extend(latency_effects(self.explanation.search.after.base.latency));
+            let latency = self.explanation.search.after.base.latency_effects();
+            effects.extend(latency.iter().filter_map(|l| ActiveEffect::new(l.effect, &l.values).ok()));
         }
         effects
     }
@@ -173,20 +160,6 @@ impl Story {
         let is_latency = |named: &Named| matches!(named.id, "motor_lag" | "transport_delay");
         self.explanation.named.iter().chain(&self.explanation.closest).any(is_latency)
     }
-}
-
-/// Lag and delay as effects; a negative delay is a skew of the log's streams and none.
-#[must_use]
-pub fn latency_effects(latency: ActuationLatency) -> Vec<ActiveEffect> {
-    [("motor_lag", latency.lag_s), ("transport_delay", latency.delay_s)]
-        .into_iter()
-        .filter(|(_, value_s)| *value_s > 1e-4)
-        .filter_map(|(id, value_s)| {
-            let effect = by_id(id)?;
-            let [parameter] = effect.parameters() else { return None };
-            ActiveEffect::new(effect, &[value_s.min(parameter.max)]).ok()
-        })
-        .collect()
 }
 
 /// Names of mass and inertia in the order of the paper's parameters.

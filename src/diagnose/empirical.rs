@@ -1,0 +1,252 @@
+//! Where no mechanism serves: the residual force as a piecewise linear function of one measured quantity.
+//!
+//! It names nothing. It holds inside what was flown and is zero outside.
+
+use super::explain::ExplainSettings;
+use super::explanation::{Explanation, Verdict};
+use super::search::Fitted;
+use super::trace::{Trace, TraceError};
+use crate::physics::{State, Wrench};
+use crate::signals::Signals;
+use crate::vehicle::Vehicle;
+use nalgebra::{DMatrix, DVector, Vector3};
+use rayon::prelude::*;
+
+/// What the force depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Along {
+    /// world x, y or z of the vehicle (m): a force fixed in the room
+    Position(usize),
+    /// velocity along body x, y or z (m/s): a force fixed in the body
+    Velocity(usize),
+}
+
+impl Along {
+    const ALL: [Self; 6] = [
+        Self::Position(0),
+        Self::Position(1),
+        Self::Position(2),
+        Self::Velocity(0),
+        Self::Velocity(1),
+        Self::Velocity(2),
+    ];
+
+    /// As in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Position(axis) => ["world_x", "world_y", "world_z"][axis.min(2)],
+            Self::Velocity(axis) => ["body_velocity_x", "body_velocity_y", "body_velocity_z"][axis.min(2)],
+        }
+    }
+
+    /// Unit of the quantity.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Position(_) => "m",
+            Self::Velocity(_) => "m/s",
+        }
+    }
+
+    fn of(self, state: &State) -> f64 {
+        match self {
+            Self::Position(axis) => state.position_m[axis],
+            Self::Velocity(axis) => state.body_velocity_m_s()[axis],
+        }
+    }
+
+    /// The force's axis in the body.
+    fn axis(self, state: &State, axis: usize) -> Vector3<f64> {
+        let unit = Vector3::ith(axis, 1.0);
+        match self {
+            Self::Position(_) => state.attitude.inverse_transform_vector(&unit),
+            Self::Velocity(_) => unit,
+        }
+    }
+}
+
+/// An empirical term, not a mechanism.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Empirical {
+    /// what it depends on
+    pub along: Along,
+    /// values of that quantity, ascending; the first and last bound what was flown
+    pub knots: Vec<f64>,
+    /// N at each knot, straight lines between them: world x y z along position, body x y z along velocity
+    pub force_n: Vec<Vector3<f64>>,
+    /// share of the force residual's energy that it predicts in stretches that it was not fitted to (0..1)
+    pub gain: f64,
+}
+
+/// Numbers of knots that are tried.
+const KNOTS: [usize; 3] = [7, 13, 25];
+/// Stretches of the cross-validation.
+const FOLDS: usize = 6;
+/// Less than this is not worth a term.
+const LEAST_GAIN: f64 = 0.02;
+/// Strength of the prior towards zero, of the mean information.
+const RIDGE: f64 = 1e-2;
+
+impl Empirical {
+    /// The best term for what the explanation leaves; `None` where everything has a name, or nothing
+    /// predicts 2 % of what is left in stretches that it was not fitted to. `flights` are those that were
+    /// explained.
+    ///
+    /// # Errors
+    /// [`TraceError`] where streams are missing.
+    pub fn fit(
+        explanation: &Explanation,
+        flights: &[Signals],
+        vehicle: &Vehicle,
+        settings: &ExplainSettings,
+    ) -> Result<Option<Self>, TraceError> {
+        let fitted = match explanation.verdict {
+            Verdict::NothingMissing | Verdict::Explained => return Ok(None),
+            Verdict::PartlyExplained => &explanation.search.after,
+            Verdict::Unexplained => &explanation.search.before,
+        };
+        let traces: Vec<Trace> = flights
+            .iter()
+            .map(|signals| Trace::new(signals, vehicle, settings.half_width_s))
+            .collect::<Result<_, _>>()?;
+        let positions = traces.iter().all(|trace| trace.known.position && trace.known.attitude);
+        let velocities = traces.iter().all(|trace| trace.known.velocity && trace.known.attitude);
+        let choices: Vec<(Along, usize)> = Along::ALL
+            .into_iter()
+            .filter(|along| if matches!(along, Along::Position(_)) { positions } else { velocities })
+            .flat_map(|along| KNOTS.map(|knots| (along, knots)))
+            .collect();
+        let best = choices
+            .into_par_iter()
+            .filter_map(|(along, knots)| fitted_term(&traces, fitted, along, knots))
+            .max_by(|a, b| a.gain.total_cmp(&b.gain));
+        Ok(best.filter(|term| term.gain > LEAST_GAIN))
+    }
+
+    /// Force at this state, body, N. Zero outside what was flown.
+    #[must_use]
+    pub fn force_n(&self, state: &State) -> Vector3<f64> {
+        let Some((left, share)) = self.place(self.along.of(state)) else { return Vector3::zeros() };
+        let force = self.force_n[left].lerp(&self.force_n[left + 1], share);
+        (0..3).map(|axis| self.along.axis(state, axis) * force[axis]).sum()
+    }
+
+    /// For simulations: what acts beside the model.
+    pub fn push(&self) -> impl Fn(f64, &State) -> Wrench + '_ {
+        |_, state| Wrench { force_n: self.force_n(state), torque_nm: Vector3::zeros() }
+    }
+
+    /// Weak form of the force along a flight, body x y z, N.
+    pub(super) fn weak_force(&self, trace: &Trace) -> [Vec<f64>; 3] {
+        let forces: Vec<Vector3<f64>> = trace.states.iter().map(|state| self.force_n(state)).collect();
+        trace.weak_vector(0, &forces)
+    }
+
+    fn place(&self, value: f64) -> Option<(usize, f64)> {
+        place(&self.knots, value)
+    }
+}
+
+/// Knot on the left and share of the way to the next; `None` outside.
+fn place(knots: &[f64], value: f64) -> Option<(usize, f64)> {
+    let (first, last) = (*knots.first()?, *knots.last()?);
+    if !(first..=last).contains(&value) {
+        return None;
+    }
+    let left = knots.partition_point(|knot| *knot <= value).clamp(1, knots.len() - 1) - 1;
+    Some((left, (value - knots[left]) / (knots[left + 1] - knots[left]).max(f64::MIN_POSITIVE)))
+}
+
+/// Knots with as many rows between any two.
+fn knots_of(traces: &[Trace], along: Along, count: usize) -> Option<Vec<f64>> {
+    let mut values: Vec<f64> = traces
+        .iter()
+        .flat_map(|trace| trace.centers.iter().map(|&center| along.of(&trace.states[center])))
+        .collect();
+    values.sort_by(f64::total_cmp);
+    let last = values.len().checked_sub(1)?;
+    let mut knots: Vec<f64> = (0..count).map(|k| values[last * k / (count - 1)]).collect();
+    knots.dedup_by(|a, b| *a - *b < 1e-6);
+    (knots.len() >= 4).then_some(knots)
+}
+
+/// Sums of one stretch of the flights.
+struct Fold {
+    normal: DMatrix<f64>,
+    moment: DVector<f64>,
+    energy: f64,
+}
+
+fn fitted_term(traces: &[Trace], fitted: &Fitted, along: Along, count: usize) -> Option<Empirical> {
+    let knots = knots_of(traces, along, count)?;
+    let columns = columns(traces, along, &knots);
+    let rows = fitted.rows.len();
+    let size = columns.len();
+    let weighted = DMatrix::from_fn(3 * rows, size, |row, column| {
+        let (channel, row) = (row / rows, row % rows);
+        columns[column][channel][row] / fitted.weighted.sigma[channel]
+    });
+    let left = fitted.weighted.left.rows(0, 3 * rows);
+    let folds: Vec<Fold> = (0..FOLDS)
+        .map(|fold| {
+            let (from, to) = (rows * fold / FOLDS, rows * (fold + 1) / FOLDS);
+            let mut sums =
+                Fold { normal: DMatrix::zeros(size, size), moment: DVector::zeros(size), energy: 0.0 };
+            for channel in 0..3 {
+                let part = weighted.rows(channel * rows + from, to - from);
+                let y = left.rows(channel * rows + from, to - from);
+                sums.normal += part.tr_mul(&part);
+                sums.moment += part.tr_mul(&y);
+                sums.energy += y.norm_squared();
+            }
+            sums
+        })
+        .collect();
+    let solve = |without: Option<usize>| {
+        let (mut normal, mut moment) = (DMatrix::zeros(size, size), DVector::zeros(size));
+        for (_, fold) in folds.iter().enumerate().filter(|(index, _)| Some(*index) != without) {
+            normal += &fold.normal;
+            moment += &fold.moment;
+        }
+        let ridge = RIDGE * normal.trace() / size as f64;
+        (0..size).for_each(|index| normal[(index, index)] += ridge);
+        normal.cholesky().map(|factor| factor.solve(&moment))
+    };
+    let (mut after, mut before) = (0.0, 0.0);
+    for (index, fold) in folds.iter().enumerate() {
+        let theta = solve(Some(index))?;
+        after += fold.energy - 2.0 * theta.dot(&fold.moment) + theta.dot(&(&fold.normal * &theta));
+        before += fold.energy;
+    }
+    let theta = solve(None)?;
+    let force_n = theta.as_slice().chunks_exact(3).map(Vector3::from_column_slice).collect();
+    Some(Empirical { along, knots, force_n, gain: 1.0 - after / before.max(f64::MIN_POSITIVE) })
+}
+
+/// Weak-form force rows of a newton at each knot and axis.
+fn columns(traces: &[Trace], along: Along, knots: &[f64]) -> Vec<[Vec<f64>; 3]> {
+    let mut out: Vec<[Vec<f64>; 3]> = vec![Default::default(); 3 * knots.len()];
+    for trace in traces {
+        let places: Vec<Option<(usize, f64)>> =
+            trace.states.iter().map(|state| place(knots, along.of(state))).collect();
+        for knot in 0..knots.len() {
+            for axis in 0..3 {
+                let force: Vec<Vector3<f64>> = trace
+                    .states
+                    .iter()
+                    .zip(&places)
+                    .map(|(state, place)| match place {
+                        Some((left, share)) if *left == knot => along.axis(state, axis) * (1.0 - share),
+                        Some((left, share)) if left + 1 == knot => along.axis(state, axis) * *share,
+                        _ => Vector3::zeros(),
+                    })
+                    .collect();
+                for (out, column) in out[3 * knot + axis].iter_mut().zip(trace.weak_vector(0, &force)) {
+                    out.extend(column);
+                }
+            }
+        }
+    }
+    out
+}

@@ -1,0 +1,66 @@
+//! Without a flight to hold out: the last periods of a flight are kept aside.
+
+use crate::diagnose::harmonics::period_s;
+use crate::signals::{Signals, stride};
+
+/// A flight cut in two. Both parts hold all instants; only the masks differ.
+#[derive(Debug, Clone)]
+pub struct Split {
+    /// to explain from
+    pub identify: Signals,
+    /// to show on
+    pub holdout: Signals,
+    /// s, vehicle clock, where the second part begins
+    pub from_s: f64,
+    /// s, period of the trajectory; `None`: the last third is held back
+    pub period_s: Option<f64>,
+}
+
+/// Least time that is worth explaining from, s.
+const LEAST_S: f64 = 12.0;
+/// Left out between the parts, s: longer than the weak form's kernel and the playback's warm-up.
+const BETWEEN_S: f64 = 0.5;
+/// Share of the flight that is held back.
+const SHARE: f64 = 1.0 / 3.0;
+
+/// Keeps the last whole periods aside, about a third of the flight and at least one period; without a
+/// period the last third. `None` where too little would be left on either side.
+#[must_use]
+pub fn split_last_periods(signals: &Signals) -> Option<Split> {
+    let used: Vec<usize> = (0..signals.grid.count).filter(|&index| signals.usable[index]).collect();
+    let (first_s, last_s) = (signals.grid.time_s(*used.first()?), signals.grid.time_s(*used.last()?));
+    let period_s = flown_period_s(signals, &used);
+    let held_s = match period_s {
+        Some(period_s) => (SHARE * (last_s - first_s) / period_s).round().max(1.0) * period_s,
+        None => SHARE * (last_s - first_s),
+    };
+    let from_s = last_s - held_s;
+    let cut = |keep: &dyn Fn(f64) -> bool| {
+        let mut part = signals.clone();
+        for (index, usable) in part.usable.iter_mut().enumerate() {
+            *usable &= keep(signals.grid.time_s(index));
+        }
+        part
+    };
+    let identify = cut(&|time_s| time_s < from_s - BETWEEN_S);
+    let holdout = cut(&|time_s| time_s >= from_s);
+    let seconds =
+        |part: &Signals| part.usable.iter().filter(|usable| **usable).count() as f64 * signals.grid.step_s;
+    (seconds(&identify) >= LEAST_S && seconds(&holdout) >= LEAST_S / 2.0).then_some(Split {
+        identify,
+        holdout,
+        from_s,
+        period_s,
+    })
+}
+
+/// By velocity where it is known, else by rates.
+fn flown_period_s(signals: &Signals, used: &[usize]) -> Option<f64> {
+    let motion = signals.velocity.as_ref().or(signals.rate.as_ref())?;
+    let rows: Vec<usize> = used.iter().copied().step_by(stride(signals.grid.step_s)).collect();
+    let time_s: Vec<f64> = rows.iter().map(|&index| signals.grid.time_s(index)).collect();
+    let axes: Vec<Vec<f64>> =
+        (0..3).map(|axis| rows.iter().map(|&index| motion[index][axis]).collect()).collect();
+    let axes: Vec<&[f64]> = axes.iter().map(Vec::as_slice).collect();
+    period_s(&time_s, &axes)
+}
