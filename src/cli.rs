@@ -34,6 +34,8 @@ pub enum Verb {
     Inspect(InspectArgs),
     /// Say where simulation and recording differ and which physics was left out
     Explain(ExplainArgs),
+    /// Write a model for another simulator
+    Export(ExportArgs),
     /// Explain a folder of cases and score the sealed verdicts against their answers
     Prove(ProveArgs),
 }
@@ -208,6 +210,34 @@ pub struct ExplainArgs {
     /// s of flight left out at the beginning
     #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
     pub transient: f64,
+}
+
+/// Arguments of `mavid export`.
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// model.toml or vehicle.toml
+    pub model: PathBuf,
+    /// for which simulator
+    #[arg(long, value_enum)]
+    pub to: ExportFormat,
+    /// where to write it; without it standard output
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+/// Names of the simulators.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ExportFormat {
+    /// parameters of PX4's simulation in hardware
+    Px4Sih,
+    /// frame of ArduPilot's simulator: --model "x:frame.json"
+    ArdupilotSitl,
+    /// Gazebo
+    Sdf,
+    /// MuJoCo
+    Mjcf,
+    /// RotorPy
+    Rotorpy,
 }
 
 /// Arguments of `mavid simulate`.

@@ -22,6 +22,7 @@ pub mod compare;
 pub mod config;
 pub mod diagnose;
 pub mod estimate;
+pub mod export;
 pub mod frames;
 pub mod inspect;
 pub mod log;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use mavid::config::read_vehicle;
 use mavid::diagnose::show::{HeldOut, Split, split_last_periods};
-use mavid::diagnose::{Empirical, ExplainSettings, explain};
+use mavid::diagnose::{Empirical, ExplainSettings, Trace, explain};
 use mavid::log::Recording;
 use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page};
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
@@ -49,10 +49,15 @@ pub fn run(json: bool, args: &ExplainArgs) -> Result<Outcome, CommandError> {
         transient_s: args.transient,
         warnings,
     };
+    let traces: Vec<Trace> = signals
+        .iter()
+        .filter_map(|signals| Trace::new(signals, &given.vehicle, settings.half_width_s).ok())
+        .collect();
     let mut story = Story::new(given, explanation);
+    story.locate(&traces);
     show(&mut story, &flights, (&held, back.as_ref()), shown_on);
     if let Some(folder) = &args.out {
-        write(folder, &story)?;
+        write(folder, &story, &traces)?;
     }
     if json {
         output::json(&ExplanationDocument::new(&story))?;
@@ -155,10 +160,11 @@ fn losses(input: &InputFile) -> Option<String> {
     (!input.losses.is_empty()).then(|| format!("{}: {}", input.path, input.losses.join("; ")))
 }
 
-fn write(folder: &Path, story: &Story) -> Result<(), CommandError> {
+fn write(folder: &Path, story: &Story, traces: &[Trace]) -> Result<(), CommandError> {
     std::fs::create_dir_all(folder)
         .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", folder.display())))?;
     output::file(&folder.join("model.toml"), &story.model_toml()?)?;
+    output::file(&folder.join("report.html"), &story.report_html(traces))?;
     let document = serde_json::to_string_pretty(&ExplanationDocument::new(story))
         .map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))?;
     output::file(&folder.join("explanation.json"), &document)

@@ -4,6 +4,7 @@
 
 mod effects;
 mod explain;
+mod export;
 mod flights;
 mod identify;
 mod inspect;
@@ -86,6 +87,7 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
         Verb::Explain(args) => explain::run(cli.json, args),
+        Verb::Export(args) => export::run(cli.json, args),
         Verb::Prove(args) => prove::run(cli.json, args),
     }
 }

@@ -50,8 +50,7 @@ pub(super) struct Page {
 
 impl Page {
     pub(super) fn new(title: &str, answer: &str) -> Self {
-        let body =
-            format!("<h1>{}</h1>\n<p class=\"answer\">{}</p>\n", escape(title), escape(answer));
+        let body = format!("<h1>{}</h1>\n<p class=\"answer\">{}</p>\n", escape(title), escape(answer));
         Self { title: title.to_owned(), body }
     }
 
@@ -78,11 +77,7 @@ impl Page {
 
     /// `svg` is an element as the charts make it.
     pub(super) fn figure(&mut self, svg: &str, caption: &str) {
-        let _ = writeln!(
-            self.body,
-            "<figure>{svg}<figcaption>{}</figcaption></figure>",
-            escape(caption)
-        );
+        let _ = writeln!(self.body, "<figure>{svg}<figcaption>{}</figcaption></figure>", escape(caption));
     }
 
     /// A heading that ends in `|` stands over numbers.

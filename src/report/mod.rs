@@ -2,11 +2,13 @@
 
 mod chart;
 mod explanation;
+mod html;
 mod identification;
 mod number;
+mod quality;
 mod validation;
 
-pub use chart::{Line, Panel, svg};
+pub use chart::{Band, Bars, Line, Panel, Strip, Stroke, svg};
 pub use explanation::{
     AxisShare, Estimate, ExplanationDocument, Given, Located, Predicted, ShownOn, StateShare, Story,
     explanation_page, for_readers,

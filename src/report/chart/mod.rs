@@ -74,8 +74,7 @@ pub struct Panel {
 }
 
 /// Colours that stay apart for most eyes (Okabe and Ito 2008), and the page's own.
-const COLOURS: [&str; 7] =
-    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "currentColor"];
+const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "currentColor"];
 /// Dots.
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 230.0;

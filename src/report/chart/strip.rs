@@ -71,8 +71,11 @@ impl Strip {
         for (value, text) in axis.ticks() {
             if let Some(share) = axis.share(value) {
                 let x = LEFT + cell / 2.0 + (WIDTH - LEFT - RIGHT - cell) * share;
-                let _ =
-                    write!(out, r#"<text x="{x:.1}" y="{}" text-anchor="middle">{text}</text>"#, bottom + 14.0);
+                let _ = write!(
+                    out,
+                    r#"<text x="{x:.1}" y="{}" text-anchor="middle">{text}</text>"#,
+                    bottom + 14.0
+                );
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Where simulation and recording differ.
 
-use crate::diagnose::{AXES, CHANNEL_NAMES, Explanation, Verdict};
+use super::follow::variables;
+use crate::diagnose::{AXES, CHANNEL_NAMES, Explanation, Trace, Verdict};
 use serde::Serialize;
 
 /// An axis' share of the misfit.
@@ -37,6 +38,8 @@ pub struct Located {
     pub place: Option<String>,
 }
 
+/// A state that explains less is not listed, percent.
+const LEAST_SHARE_PERCENT: f64 = 5.0;
 /// A harmonic this far above its neighbours carries misfit.
 const LINE_RATIO: f64 = 5.0;
 
@@ -54,6 +57,24 @@ impl Located {
             .collect();
         axes.sort_by(|a, b| b.share_percent.total_cmp(&a.share_percent));
         Self { axes, band_hz: band_hz(explanation), ..Self::default() }
+    }
+
+    /// By time and state along the axis with the largest share, from the flights' traces.
+    pub(super) fn add_states(&mut self, explanation: &Explanation, traces: &[Trace]) {
+        let worst = self.axes.first().and_then(|worst| CHANNEL_NAMES.iter().position(|n| *n == worst.axis));
+        let Some(axis) = worst else { return };
+        let (before, after) = (&explanation.search.before, &explanation.search.after);
+        let residual = &before.rows.residual[axis];
+        self.time_s = spans(&before.rows.time_s, &rolling(residual), 2.0 * after.weighted.sigma[axis]);
+        self.state = variables(traces, before)
+            .iter()
+            .map(|variable| StateShare {
+                variable: variable.name.to_owned(),
+                share_percent: 100.0 * variable.bin(residual).share,
+            })
+            .filter(|state| state.share_percent > LEAST_SHARE_PERCENT)
+            .collect();
+        self.state.sort_by(|a, b| b.share_percent.total_cmp(&a.share_percent));
     }
 }
 
@@ -85,4 +106,33 @@ fn band_hz(explanation: &Explanation) -> Option<[f64; 2]> {
         let f = line.frequency_hz;
         Some(band.map_or([f, f], |[low, high]| [low.min(f), high.max(f)]))
     })
+}
+
+/// Rows of a rolling mean: one second.
+const ROLLING: usize = 20;
+/// s between spans that are one.
+const JOINED_S: f64 = 1.0;
+
+/// Rolling root mean square over a second.
+pub(super) fn rolling(residual: &[f64]) -> Vec<f64> {
+    let half = ROLLING / 2;
+    (0..residual.len())
+        .map(|row| {
+            let part = &residual[row.saturating_sub(half)..(row + half).min(residual.len())];
+            (part.iter().map(|r| r * r).sum::<f64>() / part.len().max(1) as f64).sqrt()
+        })
+        .collect()
+}
+
+/// Spans in which a size lies above a bound, s; near ones are joined.
+pub(super) fn spans(time_s: &[f64], size: &[f64], bound: f64) -> Vec<[f64; 2]> {
+    let mut out: Vec<[f64; 2]> = Vec::new();
+    for (time, _) in time_s.iter().zip(size).filter(|(_, size)| **size > bound) {
+        match out.last_mut() {
+            Some(last) if time - last[1] < JOINED_S => last[1] = *time,
+            _ => out.push([*time, *time]),
+        }
+    }
+    out.retain(|[from, to]| to > from);
+    out
 }

@@ -2,6 +2,9 @@
 
 mod answer;
 mod document;
+mod figures;
+mod follow;
+mod html;
 mod located;
 mod model;
 mod page;

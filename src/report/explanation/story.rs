@@ -4,7 +4,9 @@ use super::located::Located;
 use super::readers::for_readers;
 use super::show::{Predicted, ShownOn};
 use crate::diagnose::show::Shown;
-use crate::diagnose::{CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, Named, Nuisance, Verdict};
+use crate::diagnose::{
+    CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, Named, Nuisance, Trace, Verdict,
+};
 use crate::physics::ActiveEffect;
 use crate::report::InputFile;
 use crate::signals::Quality;
@@ -84,6 +86,11 @@ impl Story {
             given,
             explanation,
         }
+    }
+
+    /// Adds when and along which state the misfit lives; `traces` are those of the flights explained.
+    pub fn locate(&mut self, traces: &[Trace]) {
+        self.located.add_states(&self.explanation, traces);
     }
 
     /// In one word.
