@@ -38,6 +38,10 @@ pub enum Verb {
     Record(RecordArgs),
     /// Play a recorded flight back as live traffic; nothing is commanded
     Replay(ReplayArgs),
+    /// Say where simulation and recording differ and which physics was left out
+    Explain(ExplainArgs),
+    /// Write a model for another simulator
+    Export(ExportArgs),
     /// Explain a folder of cases and score the sealed verdicts against their answers
     Prove(ProveArgs),
 }
@@ -185,6 +189,61 @@ pub struct InspectArgs {
     /// the vehicle's MAVLink system id, where a log holds several
     #[arg(long)]
     pub system: Option<u32>,
+}
+
+/// Arguments of `mavid explain`.
+#[derive(Debug, Args)]
+pub struct ExplainArgs {
+    /// recordings of one vehicle: .tlog, or .csv with known columns
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// vehicle.toml, or a model
+    #[arg(long)]
+    pub vehicle: PathBuf,
+    /// other flights of the same vehicle, on which the improvement is shown; without them the end of the
+    /// flight is held back for it
+    #[arg(long, value_name = "LOG", num_args = 1..)]
+    pub holdout: Vec<PathBuf>,
+    /// write report.html, model.toml and explanation.json into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
+    #[arg(long, value_name = "FILE")]
+    pub csv_map: Option<PathBuf>,
+    /// system id of the vehicle, where a log holds several
+    #[arg(long, value_name = "ID")]
+    pub system: Option<u32>,
+    /// s of flight left out at the beginning
+    #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub transient: f64,
+}
+
+/// Arguments of `mavid export`.
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// model.toml or vehicle.toml
+    pub model: PathBuf,
+    /// for which simulator
+    #[arg(long, value_enum)]
+    pub to: ExportFormat,
+    /// where to write it; without it standard output
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+/// Names of the simulators.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ExportFormat {
+    /// parameters of PX4's simulation in hardware
+    Px4Sih,
+    /// frame of ArduPilot's simulator: --model "x:frame.json"
+    ArdupilotSitl,
+    /// Gazebo
+    Sdf,
+    /// MuJoCo
+    Mjcf,
+    /// RotorPy
+    Rotorpy,
 }
 
 /// Arguments of `mavid simulate`.

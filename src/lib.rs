@@ -23,6 +23,7 @@ pub mod config;
 pub mod diagnose;
 pub mod estimate;
 pub mod fly;
+pub mod export;
 pub mod frames;
 pub mod inspect;
 pub mod link;

@@ -3,6 +3,8 @@
 //! To add a verb: a variant in [`Verb`], a file here with `run(json, args)`, and an arm in [`run`].
 
 mod effects;
+mod explain;
+mod export;
 mod flights;
 mod identify;
 mod inspect;
@@ -91,6 +93,8 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Inspect(args) => inspect::run(cli.json, args),
         Verb::Record(args) => record::run(cli.json, args),
         Verb::Replay(args) => replay::run(cli.json, args),
+        Verb::Explain(args) => explain::run(cli.json, args),
+        Verb::Export(args) => export::run(cli.json, args),
         Verb::Prove(args) => prove::run(cli.json, args),
     }
 }
