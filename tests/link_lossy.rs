@@ -18,7 +18,7 @@ use tokio::time::timeout;
 const LONG: Duration = Duration::from_secs(20);
 
 async fn receive(reader: &mut LinkReader) -> Received {
-    timeout(LONG, reader.receive()).await.expect("nothing came").unwrap()
+    timeout(LONG, reader.receive()).await.unwrap().unwrap()
 }
 
 /// Both ends of a link through the proxy, connected.
