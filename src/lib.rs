@@ -21,6 +21,7 @@
 pub mod compare;
 pub mod config;
 pub mod estimate;
+pub mod fly;
 pub mod frames;
 pub mod inspect;
 pub mod link;
@@ -31,6 +32,7 @@ pub mod regression;
 pub mod report;
 pub mod signals;
 pub mod simulate;
+pub mod sitl;
 pub mod trajectory;
 pub mod units;
 pub mod vehicle;

@@ -12,6 +12,7 @@ mod plan;
 mod record;
 mod replay;
 mod simulate;
+mod sitl;
 mod validate;
 mod vehicle;
 
@@ -84,6 +85,7 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Plan(args) => plan::run(cli.json, args),
         Verb::Identify(args) => identify::run(cli.json, args),
         Verb::Simulate(args) => simulate::run(cli.json, args),
+        Verb::Sitl(args) => sitl::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
         Verb::Record(args) => record::run(cli.json, args),
