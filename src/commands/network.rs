@@ -2,7 +2,7 @@
 
 use std::future::Future;
 
-use mavid::link::{Address, Ends, Link, LinkError, LinkOptions};
+use mavid::link::{Address, AddressError, Ends, Link, LinkError, LinkOptions};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 
 use super::CommandError;
@@ -17,10 +17,14 @@ pub fn block_on<T>(verb: impl Future<Output = Result<T, CommandError>>) -> Resul
     outcome
 }
 
+/// The address that the user gave.
+pub fn address(text: &str) -> Result<Address, CommandError> {
+    text.parse().map_err(|error: AddressError| CommandError::Input(error.to_string()))
+}
+
 /// Opens the link that the user named.
-pub async fn open(address: &str, options: LinkOptions) -> Result<Ends, CommandError> {
-    let address: Address = address.parse().map_err(|error| CommandError::Input(format!("{error}")))?;
-    Link::open(&address, options).await.map_err(|error| match error {
+pub async fn open(address: &Address, options: LinkOptions) -> Result<Ends, CommandError> {
+    Link::open(address, options).await.map_err(|error| match error {
         LinkError::Unavailable { .. } => CommandError::Input(error.to_string()),
         _ => CommandError::Failure(error.to_string()),
     })

@@ -85,9 +85,15 @@ pub fn run(json: bool, args: &RecordArgs) -> Result<Outcome, CommandError> {
 }
 
 async fn record(json: bool, args: &RecordArgs, signing: Option<Signing>) -> Result<Outcome, CommandError> {
+    let address = network::address(&args.connect)?;
     let recorder = Recorder::create(&args.out, args.force).map_err(|error| refused(&error))?;
     let options = LinkOptions { recorder: Some(recorder.clone()), signing, ..LinkOptions::default() };
-    let (reader, writer) = network::open(&args.connect, options).await?;
+    let opened = network::open(&address, options).await;
+    if opened.is_err() {
+        // nothing was recorded; a file that cannot be removed is an empty one
+        let _ = std::fs::remove_file(&args.out);
+    }
+    let (reader, writer) = opened?;
     let start = Instant::now();
     let mut capture = Capture { reader, writer, bar: bar(), asked: Vec::new(), recorder };
     let ended = capture.until(start, args).await;

@@ -46,7 +46,7 @@ fn failed(error: &ReplayError) -> CommandError {
 }
 
 async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome, CommandError> {
-    let (mut reader, writer) = network::open(&args.to, LinkOptions::default()).await?;
+    let (mut reader, writer) = network::open(&network::address(&args.to)?, LinkOptions::default()).await?;
     if !writer.is_connected() {
         output::message(&format!("waiting for somebody at {}", args.to));
     }

@@ -86,7 +86,7 @@ impl Link {
 }
 
 fn start(name: String, transport: Transport, options: &LinkOptions) -> Ends {
-    let shared = Arc::new(Shared::new(name));
+    let shared = Arc::new(Shared::new(name, transport.local()));
     shared.open.store(transport.is_connected(), Ordering::Release);
     let (to_reader, from_task) = mpsc::unbounded_channel();
     let (to_task, queue) = mpsc::channel(QUEUE);

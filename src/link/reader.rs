@@ -1,5 +1,6 @@
 //! The half of a link that hears.
 
+use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -148,6 +149,12 @@ impl LinkReader {
             Err(mpsc::error::TryRecvError::Empty) => Ok(None),
             Err(mpsc::error::TryRecvError::Disconnected) => Err(LinkError::Closed),
         }
+    }
+
+    /// Where a `udpin` or `tcpin` link listens: the port that the system chose where the address said 0.
+    #[must_use]
+    pub fn local_address(&self) -> Option<SocketAddr> {
+        self.shared.local
     }
 
     /// What passed the link so far.

@@ -145,7 +145,7 @@ impl Replay {
     /// stamp has the present moment and the log's time. At the end the reader says that the link has ended.
     #[must_use]
     pub fn start(self) -> LinkReader {
-        let shared = Arc::new(Shared::new(self.path.display().to_string()));
+        let shared = Arc::new(Shared::new(self.path.display().to_string(), None));
         let (to_reader, from_task) = mpsc::unbounded_channel();
         let reader = LinkReader::new(from_task, shared.clone(), None);
         tokio::spawn(async move {

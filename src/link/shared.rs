@@ -1,5 +1,6 @@
 //! What the halves of a link and its task share.
 
+use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, AtomicUsize};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -13,6 +14,8 @@ use super::stats::LinkStats;
 pub(super) struct Shared {
     /// the address, for messages
     pub name: String,
+    /// where a socket listens or sends from
+    pub local: Option<SocketAddr>,
     /// frames given now are sent
     pub open: AtomicBool,
     /// frames and events that wait for the reader
@@ -26,8 +29,8 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    pub fn new(name: String) -> Self {
-        Self { name, ..Self::default() }
+    pub fn new(name: String, local: Option<SocketAddr>) -> Self {
+        Self { name, local, ..Self::default() }
     }
 
     /// No code holding these locks panics; a poisoned one would still hold whole values.

@@ -85,6 +85,8 @@ struct State {
     dropped: AtomicU64,
     redacted: AtomicU64,
     failing: AtomicBool,
+    /// frames were dropped, and the disk has not caught up yet
+    behind: AtomicBool,
     failure: Mutex<Option<String>>,
 }
 
@@ -135,9 +137,14 @@ impl Recorder {
         if waiting > self.waiting_max || self.orders.send(order).is_err() {
             self.state.waiting_bytes.fetch_sub(bytes, Ordering::Relaxed);
             self.state.dropped.fetch_add(1, Ordering::Relaxed);
+            self.state.behind.store(true, Ordering::Relaxed);
             return false;
         }
-        !self.state.failing.load(Ordering::Relaxed)
+        // it has caught up where half of the room is free: one frame that fits again is not worth telling
+        if waiting <= self.waiting_max / 2 {
+            self.state.behind.store(false, Ordering::Relaxed);
+        }
+        !self.state.failing.load(Ordering::Relaxed) && !self.state.behind.load(Ordering::Relaxed)
     }
 
     /// Asks for everything recorded so far to be brought onto the disk now; does not wait.

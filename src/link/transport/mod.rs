@@ -60,6 +60,15 @@ pub(super) async fn open(address: &Address, peer_timeout: Duration) -> Result<Tr
 }
 
 impl Transport {
+    /// The socket's own address, where it has one for good.
+    pub fn local(&self) -> Option<SocketAddr> {
+        match self {
+            Self::UdpIn(udp) => Some(udp.local()),
+            Self::TcpIn(tcp) => tcp.local(),
+            _ => None,
+        }
+    }
+
     /// Whether there is somebody to send to as soon as it is open.
     pub fn is_connected(&self) -> bool {
         matches!(self, Self::UdpOut(_) | Self::TcpOut(_) | Self::Serial(_) | Self::Memory(_))

@@ -29,6 +29,10 @@ impl TcpIn {
         Ok(Self { listener: TcpListener::bind(resolve(host, port).await?.as_slice()).await? })
     }
 
+    pub fn local(&self) -> Option<SocketAddr> {
+        self.listener.local_addr().ok()
+    }
+
     pub async fn serve(&mut self, incoming: &mut Incoming, outgoing: &mut Outgoing) {
         let mut backoff = Backoff::new();
         loop {

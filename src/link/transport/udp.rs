@@ -48,6 +48,10 @@ impl UdpIn {
         Ok(Self { local, first: Some(socket), peer_timeout, strangers: BTreeSet::new() })
     }
 
+    pub fn local(&self) -> SocketAddr {
+        self.local
+    }
+
     pub async fn serve(&mut self, incoming: &mut Incoming, outgoing: &mut Outgoing) {
         let mut backoff = Backoff::new();
         loop {
