@@ -387,6 +387,8 @@ fn positive(text: &str) -> Result<f64, String> {
         Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
         _ => Err(format!("expected a number above 0, got `{text}`")),
     }
+}
+
 /// Arguments of `mavid prove`.
 #[derive(Debug, Args)]
 pub struct ProveArgs {
