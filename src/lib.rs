@@ -21,6 +21,7 @@
 pub mod compare;
 pub mod config;
 pub mod estimate;
+pub mod fly;
 pub mod frames;
 pub mod inspect;
 pub mod link;

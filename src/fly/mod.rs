@@ -1,0 +1,37 @@
+//! The ground station's side of an identification flight.
+//!
+//! [`Flight`] is the whole flight as a state machine without I/O: frames, keys and the clock go in, messages,
+//! notes and the outcome come out. [`Streamer`] makes the setpoints from the [`Guide`] that the flight renews
+//! with every step, and stops by itself where the flight does not. Times are [`std::time::Duration`]s of the
+//! host's monotonic clock since any fixed start.
+//!
+//! ```text
+//! frames, keys, clock -> Flight -> commands, notes, outcome
+//!                          | Guide
+//!                          v
+//!                 clock -> Streamer -> setpoints
+//! ```
+
+mod commander;
+mod course;
+mod flight;
+mod health;
+mod modes;
+mod outcome;
+mod roster;
+mod safety;
+mod setpoint;
+mod sortie;
+mod target;
+mod telemetry;
+
+pub use commander::{Answer, AnswerResult, Manner};
+pub use course::{Around, Course, PathClock, PathTime, Track, transfer};
+pub use flight::{Action, Event, Flight, Key, Status};
+pub use health::{BatteryLevel, EstimatorReport, SystemReport};
+pub use modes::{Mode, Stack};
+pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
+pub use safety::{Guide, Lead, Streamed, Streamer};
+pub use setpoint::{Place, Setpoint};
+pub use sortie::{Origin, Settings, Sortie};
+pub use target::{Order, Target, heartbeat};
