@@ -86,6 +86,8 @@ pub struct Telemetry {
     stack: Stack,
     /// last frame of its autopilot
     pub heard: Duration,
+    /// when it was heard again after a silence, or first
+    pub resumed: Duration,
     /// last HEARTBEAT
     pub heartbeat: Duration,
     /// mode, arming
@@ -123,6 +125,7 @@ impl Telemetry {
             decoder: Decoder::new(vehicle, None, micros(now)),
             stack,
             heard: now,
+            resumed: now,
             heartbeat: now,
             state: None,
             motion: None,
@@ -144,6 +147,9 @@ impl Telemetry {
     /// Takes a frame of the vehicle's autopilot with a right checksum.
     pub fn take(&mut self, now: Duration, frame: Frame<'_>) -> Vec<Novelty> {
         let header = frame.header();
+        if now.saturating_sub(self.heard) > POSITION_GAP {
+            self.resumed = now;
+        }
         self.heard = now;
         let late = self.is_late(header);
         let mut news = Vec::new();

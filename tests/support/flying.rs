@@ -16,7 +16,7 @@ use mavid::sitl::{AutopilotKind, LinkId, LinkRole, Settings as VehicleSettings, 
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
-use rand::{Rng, SeedableRng};
+use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 /// Between two looks at the clock.

@@ -131,9 +131,10 @@ impl Flight {
         if bad || unhealthy {
             return Some(Cause::Estimator(telemetry.estimator_faults(now).join("; ")));
         }
-        let position_age = telemetry.motion.map_or(Duration::MAX, |motion| now.saturating_sub(motion.at));
+        // after a silence the first message is seldom a position
+        let since = telemetry.motion.map_or(telemetry.resumed, |motion| motion.at.max(telemetry.resumed));
         let heard = now.saturating_sub(telemetry.heard) < PAUSE_AFTER;
-        if heard && position_age > POSITION_MAX {
+        if heard && now.saturating_sub(since) > POSITION_MAX {
             return Some(Cause::Estimator("no local position arrives".to_owned()));
         }
         if self.watch.failsafe.update(now, telemetry.is_in_failsafe()) >= FAILSAFE_ACTS {
