@@ -9,7 +9,9 @@ use std::time::Duration;
 
 use mavid::link::{Address, Link, LinkError, LinkEvent, LinkOptions, LinkReader, Received, ReceivedFrame};
 use mavid::log::{ComponentId, SystemId};
-use support::{ground_heartbeat, header, heartbeat, unknown, v2};
+use mavlink::dialects::ardupilotmega::MavMessage;
+use support::{ground_heartbeat, header, heartbeat, unknown, v1, v2};
+use tokio::io::AsyncWriteExt;
 use tokio::net::{TcpListener, UdpSocket};
 use tokio::time::timeout;
 
@@ -172,9 +174,8 @@ async fn of_setpoints_only_the_latest_waits() {
     assert!(matches!(first_out.send_latest(&heartbeat()), Err(LinkError::NotConnected { .. })));
     assert!(matches!(first_out.send(&[1, 2, 3]), Err(LinkError::NotAFrame { bytes: 3 })));
 
-    let ((mut first, first_out), (_second, second_out)) = Link::pair(vehicle(), LinkOptions::default());
-    assert!(matches!(event(&mut first).await, LinkEvent::Connected { .. }));
-    tokio::task::yield_now().await;
+    let ((mut first, first_out), (mut second, second_out)) = Link::pair(vehicle(), LinkOptions::default());
+    assert!(matches!(event(&mut second).await, LinkEvent::Connected { .. }));
     for _ in 0..5 {
         second_out.send_latest(&ground_heartbeat()).unwrap();
     }
@@ -185,4 +186,67 @@ async fn of_setpoints_only_the_latest_waits() {
     assert_eq!((only.message().unwrap(), only.header.sequence), (heartbeat(), 0));
     assert_eq!((second_out.stats().replaced, second_out.stats().sent_frames), (5, 1));
     drop(first_out);
+}
+
+/// Frames of MAVLink 1 and of unknown messages come through, a frame inside a payload does not.
+#[tokio::test]
+async fn every_whole_frame_comes_through_and_none_from_within_a_payload() {
+    let port = free_port("127.0.0.1");
+    let address = format!("udpin:127.0.0.1:{port}").parse().unwrap();
+    let (mut reader, _writer) = Link::open(&address, LinkOptions::default()).await.unwrap();
+    let peer = UdpSocket::bind("127.0.0.1:0").await.unwrap();
+    let radio = MavMessage::RADIO_STATUS(Default::default());
+    let frames = [
+        v2(header(1, 0), &heartbeat()),
+        v1(header(51, 0), &radio),
+        unknown(1, &v2(header(1, 77), &ground_heartbeat())),
+        v2(header(1, 2), &heartbeat()),
+    ];
+    // one datagram each, then all in one
+    for datagram in frames.iter().cloned().chain([frames.concat()]) {
+        peer.send_to(&datagram, ("127.0.0.1", port)).await.unwrap();
+    }
+    for expected in frames.iter().chain(&frames) {
+        assert_eq!(frame(&mut reader).await.bytes(), expected);
+    }
+    let stats = reader.stats();
+    assert_eq!((stats.received_frames, stats.unknown, stats.skipped_bytes), (8, 2, 0));
+}
+
+#[tokio::test]
+async fn losses_and_noise_are_counted() {
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let address = format!("tcpout:{}", listener.local_addr().unwrap()).parse().unwrap();
+    let (mut reader, _writer) = Link::open(&address, LinkOptions::default()).await.unwrap();
+    let (mut line, _) = listener.accept().await.unwrap();
+    let good = |sequence| v2(header(9, sequence), &heartbeat());
+    let mut broken = good(9);
+    broken[12] ^= 1;
+    let bytes = [good(0), good(1), good(7), vec![1, 2, 3], good(8), broken, good(10), vec![0; 4], good(11)];
+    line.write_all(&bytes.concat()).await.unwrap();
+    for sequence in [0, 1, 7, 8, 10, 11] {
+        assert_eq!(frame(&mut reader).await.header.sequence, sequence);
+    }
+    let stats = reader.stats();
+    assert_eq!(stats.senders[&(SystemId(9), ComponentId(1))].lost, 6);
+    assert_eq!((stats.received_frames, stats.bad_crc, stats.lost()), (6, 1, 6));
+    assert_eq!(stats.received_bytes, bytes.concat().len() as u64);
+    assert_eq!(stats.skipped_bytes, 3 + 4 + good(9).len() as u64);
+    assert_eq!(stats.resyncs, 1, "all of it came in one piece");
+}
+
+/// A burst that fits into the system's smallest buffers is not lost, whoever is scheduled first.
+#[tokio::test]
+async fn a_burst_is_taken_whole() {
+    let port = free_port("127.0.0.1");
+    let address = format!("udpin:127.0.0.1:{port}").parse().unwrap();
+    let (mut reader, _writer) = Link::open(&address, LinkOptions::default()).await.unwrap();
+    let peer = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
+    for sequence in 0..200 {
+        peer.send_to(&v2(header(1, sequence), &heartbeat()), ("127.0.0.1", port)).unwrap();
+    }
+    for sequence in 0..200 {
+        assert_eq!(frame(&mut reader).await.header.sequence, sequence);
+    }
+    assert_eq!(reader.stats().lost(), 0);
 }

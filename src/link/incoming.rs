@@ -6,8 +6,11 @@ use std::sync::atomic::Ordering;
 use tokio::sync::mpsc;
 
 use super::clock::{HostClock, HostStamp};
+use super::open::LinkOptions;
 use super::reader::{LinkEvent, Received, ReceivedFrame};
+use super::recorder::Recorder;
 use super::shared::Shared;
+use super::signing::Signing;
 use crate::log::{Frame, Splitter};
 
 /// Frames that may wait for the reader; further ones are counted, not delivered.
@@ -28,16 +31,36 @@ struct Sink {
     to_reader: mpsc::UnboundedSender<Received>,
     shared: Arc<Shared>,
     clock: HostClock,
+    signing: Option<Signing>,
+    recorder: Option<Recorder>,
+    recording_fails: bool,
 }
 
 impl Incoming {
-    pub fn new(to_reader: mpsc::UnboundedSender<Received>, shared: Arc<Shared>, clock: HostClock) -> Self {
-        Self { splitter: Splitter::new(), sink: Sink { to_reader, shared, clock }, was_connected: false }
+    pub fn new(
+        to_reader: mpsc::UnboundedSender<Received>,
+        shared: Arc<Shared>,
+        options: &LinkOptions,
+    ) -> Self {
+        let sink = Sink {
+            to_reader,
+            shared,
+            clock: options.clock,
+            signing: options.signing.clone(),
+            recorder: options.recorder.clone(),
+            recording_fails: false,
+        };
+        Self { splitter: Splitter::new(), sink, was_connected: false }
     }
 
     /// The present moment: to be taken as soon as bytes are there.
     pub fn now(&self) -> HostStamp {
         self.sink.clock.now()
+    }
+
+    /// The clock, for a thread that reads.
+    pub fn clock(&self) -> HostClock {
+        self.sink.clock
     }
 
     /// Bytes of a stream.
@@ -46,7 +69,7 @@ impl Incoming {
         self.take(bytes.len(), stamp);
     }
 
-    /// A datagram: frames do not go on in the next. Whether there was a good HEARTBEAT in it.
+    /// A datagram: frames do not go on in the next. Whether there was a HEARTBEAT in it that may be believed.
     pub fn datagram(&mut self, bytes: &[u8], stamp: HostStamp) -> bool {
         self.splitter.feed(bytes);
         self.splitter.flush();
@@ -105,15 +128,30 @@ impl Incoming {
 }
 
 impl Sink {
-    /// Whether the frame may be believed.
-    fn accept(&self, frame: &Frame<'_>, stamp: HostStamp) -> bool {
+    /// Records, counts and delivers a frame. Whether it is proven: of a known message, and signed where that
+    /// is asked.
+    fn accept(&mut self, frame: &Frame<'_>, stamp: HostStamp) -> bool {
+        self.record(frame, stamp);
         self.shared.stats().tally(frame);
+        if let Some(Err(distrust)) = self.signing.as_ref().map(|signing| signing.verify(frame)) {
+            self.shared.stats().count(distrust);
+            return false;
+        }
         if self.shared.waiting.load(Ordering::Relaxed) < WAITING {
             self.deliver(Received::Frame(ReceivedFrame::new(stamp, *frame)));
         } else {
             self.shared.stats().undelivered += 1;
         }
         true
+    }
+
+    fn record(&mut self, frame: &Frame<'_>, stamp: HostStamp) {
+        let Some(recorder) = &self.recorder else { return };
+        let fails = !recorder.record(stamp, frame);
+        if std::mem::replace(&mut self.recording_fails, fails) != fails {
+            let event = if fails { LinkEvent::RecordingFails } else { LinkEvent::RecordingGoesOn };
+            self.deliver(Received::Event(event));
+        }
     }
 
     /// A reader that is gone misses nothing.

@@ -11,7 +11,9 @@ use super::error::LinkError;
 use super::incoming::Incoming;
 use super::outgoing::Outgoing;
 use super::reader::LinkReader;
+use super::recorder::Recorder;
 use super::shared::Shared;
+use super::signing::Signing;
 use super::transport::{self, Transport};
 use super::writer::LinkWriter;
 use crate::log::{ComponentId, SystemId};
@@ -32,6 +34,10 @@ pub struct LinkOptions {
     pub clock: HostClock,
     /// a `udpin` link forgets its peer after this silence and answers the next that sends a heartbeat
     pub peer_timeout: Duration,
+    /// signs what is sent, and believes only what is signed; without it signed frames pass unchecked
+    pub signing: Option<Signing>,
+    /// records every frame received and sent
+    pub recorder: Option<Recorder>,
 }
 
 impl Default for LinkOptions {
@@ -41,6 +47,8 @@ impl Default for LinkOptions {
             component: ComponentId(190),
             clock: HostClock::start(),
             peer_timeout: Duration::from_secs(3),
+            signing: None,
+            recorder: None,
         }
     }
 }
@@ -63,7 +71,7 @@ impl Link {
     /// The address cannot be resolved, bound, connected to or opened now. Later losses are events.
     pub async fn open(address: &Address, options: LinkOptions) -> Result<Ends, LinkError> {
         let transport = transport::open(address, options.peer_timeout).await?;
-        Ok(start(address.to_string(), transport, options))
+        Ok(start(address.to_string(), transport, &options))
     }
 
     /// Two links in memory that talk to each other: for a vehicle and a ground station in one process, and
@@ -71,19 +79,19 @@ impl Link {
     #[must_use]
     pub fn pair(first: LinkOptions, second: LinkOptions) -> (Ends, Ends) {
         let (one, two) = tokio::io::duplex(1 << 16);
-        let start = |stream, options| start("memory".into(), Transport::Memory(Some(stream)), options);
+        let start = |stream, options| start("memory".into(), Transport::Memory(Some(stream)), &options);
         (start(one, first), start(two, second))
     }
 }
 
-fn start(name: String, transport: Transport, options: LinkOptions) -> Ends {
+fn start(name: String, transport: Transport, options: &LinkOptions) -> Ends {
     let shared = Arc::new(Shared::new(name));
     let (to_reader, from_task) = mpsc::unbounded_channel();
     let (to_task, queue) = mpsc::channel(QUEUE);
     let (alive, gone) = watch::channel(());
     let alive = Arc::new(alive);
-    let incoming = Incoming::new(to_reader, shared.clone(), options.clock);
-    let outgoing = Outgoing::new(queue, shared.clone(), options.system, options.component);
+    let incoming = Incoming::new(to_reader, shared.clone(), options);
+    let outgoing = Outgoing::new(queue, shared.clone(), options);
     tokio::spawn(drive(transport, incoming, outgoing, gone, shared.clone()));
     (LinkReader::new(from_task, shared.clone(), Some(alive.clone())), LinkWriter::new(to_task, shared, alive))
 }

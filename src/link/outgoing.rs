@@ -7,8 +7,12 @@ use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use tokio::sync::{mpsc, oneshot};
 
+use super::clock::{HostClock, HostStamp};
+use super::open::LinkOptions;
+use super::recorder::Recorder;
 use super::shared::Shared;
-use crate::log::{ComponentId, SystemId};
+use super::signing::Signing;
+use crate::log::{ComponentId, Frame, SystemId};
 
 /// Something for the ordered queue.
 #[derive(Debug)]
@@ -28,32 +32,46 @@ pub(super) struct Outgoing {
     shared: Arc<Shared>,
     system: SystemId,
     component: ComponentId,
+    clock: HostClock,
+    signing: Option<Signing>,
+    recorder: Option<Recorder>,
     sequence: u8,
     /// the last frame came from the slot: the queue has its turn
     queue_first: bool,
+    /// a frame was given out and not yet told as sent or failed
+    in_flight: bool,
     barriers: VecDeque<oneshot::Sender<()>>,
 }
 
 impl Outgoing {
-    pub fn new(
-        queue: mpsc::Receiver<Item>,
-        shared: Arc<Shared>,
-        system: SystemId,
-        component: ComponentId,
-    ) -> Self {
-        Self { queue, shared, system, component, sequence: 0, queue_first: false, barriers: VecDeque::new() }
+    pub fn new(queue: mpsc::Receiver<Item>, shared: Arc<Shared>, options: &LinkOptions) -> Self {
+        Self {
+            queue,
+            shared,
+            system: options.system,
+            component: options.component,
+            clock: options.clock,
+            signing: options.signing.clone(),
+            recorder: options.recorder.clone(),
+            sequence: 0,
+            queue_first: false,
+            in_flight: false,
+            barriers: VecDeque::new(),
+        }
     }
 
     /// The next frame to send; the one before is sent when this is called. Cancel-safe: nothing is taken
     /// before it returns.
     pub async fn next(&mut self) -> Box<[u8]> {
-        loop {
+        let bytes = loop {
             match self.pick().await {
-                Item::Frame(bytes) => return bytes,
-                Item::Message(message) => return self.serialise(&message),
+                Item::Frame(bytes) => break bytes,
+                Item::Message(message) => break self.serialise(&message),
                 Item::Barrier(done) => self.barriers.push_back(done),
             }
-        }
+        };
+        self.in_flight = true;
+        bytes
     }
 
     /// The slot and the queue take turns, so that neither starves the other.
@@ -98,12 +116,28 @@ impl Outgoing {
             MavHeader { system_id: self.system.0, component_id: self.component.0, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
         let mut raw = MAVLinkV2MessageRaw::new();
-        raw.serialize_message(header, message);
-        raw.raw_bytes().into()
+        let Some(signing) = &self.signing else {
+            raw.serialize_message(header, message);
+            return raw.raw_bytes().into();
+        };
+        raw.serialize_message_for_signing(header, message);
+        let mut bytes: Box<[u8]> = raw.raw_bytes().into();
+        signing.sign(&mut bytes);
+        bytes
+    }
+
+    /// The present moment: to be taken when a frame is handed to the system.
+    pub fn now(&self) -> HostStamp {
+        self.clock.now()
     }
 
     /// A frame went out.
-    pub fn sent(&mut self, frame: &[u8]) {
+    pub fn sent(&mut self, frame: &[u8], stamp: HostStamp) {
+        self.in_flight = false;
+        if let (Some(recorder), Some(frame)) = (&self.recorder, Frame::at_start(frame)) {
+            // a failing recording is told by what comes in
+            let _ = recorder.record(stamp, &frame);
+        }
         let mut stats = self.shared.stats();
         stats.sent_frames += 1;
         stats.sent_bytes += frame.len() as u64;
@@ -111,12 +145,14 @@ impl Outgoing {
 
     /// A frame did not go out.
     pub fn failed(&mut self) {
+        self.in_flight = false;
         self.shared.stats().unsent += 1;
     }
 
     /// Forgets what waits: nothing old may reach a vehicle that comes back.
     pub fn discard(&mut self) {
         let mut unsent = u64::from(self.shared.latest().take().is_some());
+        unsent += u64::from(std::mem::take(&mut self.in_flight));
         while let Ok(item) = self.queue.try_recv() {
             match item {
                 Item::Barrier(done) => self.barriers.push_back(done),

@@ -100,6 +100,10 @@ pub enum LinkEvent {
         /// who
         peer: String,
     },
+    /// the recording misses frames, or its file cannot be written now
+    RecordingFails,
+    /// the recording goes on
+    RecordingGoesOn,
 }
 
 /// The half of a link that hears. It cannot send: a link without a [`LinkWriter`](super::LinkWriter), as a

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::signing::Distrust;
 use crate::log::{ComponentId, Frame, Sender, SplitCounts, SystemId};
 
 /// Senders told apart; noise that looks like frames must not fill the memory.
@@ -22,6 +23,12 @@ pub struct LinkStats {
     pub skipped_bytes: u64,
     /// places where bytes had to be skipped
     pub resyncs: u64,
+    /// frames not believed: their signature was not made with our key; not delivered
+    pub badly_signed: u64,
+    /// frames not believed: signed, but heard before or too old; not delivered
+    pub replayed: u64,
+    /// frames not believed: not signed, where they should be; not delivered
+    pub unsigned: u64,
     /// frames that nobody took in time: the reader's queue was full. They are in the recording
     pub undelivered: u64,
     /// datagrams from others than the peer, dropped
@@ -52,6 +59,14 @@ impl LinkStats {
         let key = (frame.header().system, frame.header().component);
         if self.senders.len() < SENDERS || self.senders.contains_key(&key) {
             self.senders.entry(key).or_insert_with(|| Sender::new(key.0, key.1)).tally(frame);
+        }
+    }
+
+    pub(super) fn count(&mut self, distrust: Distrust) {
+        match distrust {
+            Distrust::Unsigned => self.unsigned += 1,
+            Distrust::Wrong => self.badly_signed += 1,
+            Distrust::Replayed => self.replayed += 1,
         }
     }
 

@@ -2,15 +2,20 @@
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::time::Duration;
 
 use mavlink::dialects::ardupilotmega::MavMessage;
 use tokio::sync::{mpsc, oneshot};
+use tokio::time::timeout;
 
 use super::error::LinkError;
 use super::outgoing::Item;
 use super::shared::{Alive, Shared};
 use super::stats::LinkStats;
 use crate::log::Frame;
+
+/// How often a flush looks whether the link was lost meanwhile.
+const LOOK: Duration = Duration::from_millis(100);
 
 /// The half of a link that speaks. Clones share the link, its queue and its sequence numbers.
 ///
@@ -72,9 +77,19 @@ impl LinkWriter {
     /// # Errors
     /// The link has ended.
     pub async fn flush(&self) -> Result<(), LinkError> {
-        let (done, answer) = oneshot::channel();
+        let (done, mut answer) = oneshot::channel();
+        if !self.is_connected() {
+            // what waited was dropped by the loss
+            return if self.queue.is_closed() { Err(LinkError::Closed) } else { Ok(()) };
+        }
         self.queue.send(Item::Barrier(done)).await.map_err(|_| LinkError::Closed)?;
-        answer.await.map_err(|_| LinkError::Closed)
+        loop {
+            match timeout(LOOK, &mut answer).await {
+                Ok(answered) => return answered.map_err(|_| LinkError::Closed),
+                Err(_) if !self.is_connected() => return Ok(()),
+                Err(_) => {}
+            }
+        }
     }
 
     /// What passed the link so far.

@@ -1,8 +1,12 @@
 //! What carries the bytes of a link.
 
 mod backoff;
+#[cfg(unix)]
+mod pty;
+mod serial;
 mod stream;
 mod tcp;
+mod threads;
 mod udp;
 
 use std::io;
@@ -16,6 +20,10 @@ use super::error::LinkError;
 use super::incoming::Incoming;
 use super::outgoing::Outgoing;
 
+/// A frame in a stream is not interrupted for longer: what waits for more bytes is then decided. Radios that
+/// take turns pause for less.
+const SILENCE: Duration = Duration::from_millis(250);
+
 /// What carries the bytes of a link.
 #[derive(Debug)]
 pub(super) enum Transport {
@@ -23,6 +31,9 @@ pub(super) enum Transport {
     UdpOut(udp::UdpOut),
     TcpIn(tcp::TcpIn),
     TcpOut(tcp::TcpOut),
+    Serial(serial::Serial),
+    #[cfg(unix)]
+    Pty(pty::Pty),
     Memory(Option<DuplexStream>),
 }
 
@@ -35,8 +46,14 @@ pub(super) async fn open(address: &Address, peer_timeout: Duration) -> Result<Tr
         Address::UdpOut { host, port } => udp::UdpOut::open(host, *port).await.map(Transport::UdpOut),
         Address::TcpIn { host, port } => tcp::TcpIn::open(host, *port).await.map(Transport::TcpIn),
         Address::TcpOut { host, port } => tcp::TcpOut::open(host, *port).await.map(Transport::TcpOut),
-        Address::Serial { .. } | Address::Pty { .. } => {
-            return Err(LinkError::Unavailable { address: address.to_string(), kind: "serial" });
+        Address::Serial { path, baud, flow_control } => {
+            serial::Serial::open(path, *baud, *flow_control).map(Transport::Serial)
+        }
+        #[cfg(unix)]
+        Address::Pty { path } => pty::Pty::open(path).map(Transport::Pty),
+        #[cfg(not(unix))]
+        Address::Pty { .. } => {
+            return Err(LinkError::Unavailable { address: address.to_string(), kind: "pseudo-terminal" });
         }
     };
     opened.map_err(|source| LinkError::Open { address: address.to_string(), source })
@@ -50,6 +67,9 @@ impl Transport {
             Self::UdpOut(udp) => udp.serve(incoming, outgoing).await,
             Self::TcpIn(tcp) => tcp.serve(incoming, outgoing).await,
             Self::TcpOut(tcp) => tcp.serve(incoming, outgoing).await,
+            Self::Serial(serial) => serial.serve(incoming, outgoing).await,
+            #[cfg(unix)]
+            Self::Pty(pty) => pty.serve(incoming, outgoing).await,
             Self::Memory(stream) => {
                 if let Some(stream) = stream.take() {
                     incoming.connected("memory".into());

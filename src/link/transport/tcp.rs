@@ -103,3 +103,20 @@ async fn carry(stream: TcpStream, peer: SocketAddr, incoming: &mut Incoming, out
     incoming.lost(why);
     outgoing.discard();
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn small_frames_are_not_held_back() {
+        let server = TcpIn::open("127.0.0.1", 0).await.unwrap();
+        let port = server.listener.local_addr().unwrap().port();
+        let (stream, _) = connect("127.0.0.1", port).await.unwrap();
+        assert!(stream.nodelay().unwrap());
+        assert!(SockRef::from(&stream).keepalive().unwrap());
+        let (accepted, _) = server.listener.accept().await.unwrap();
+        prepare(&accepted);
+        assert!(accepted.nodelay().unwrap());
+    }
+}

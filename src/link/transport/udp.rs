@@ -9,6 +9,7 @@ use socket2::{Domain, Protocol, Socket, Type};
 use tokio::net::UdpSocket;
 use tokio::time::{Instant, sleep_until};
 
+use super::super::clock::HostStamp;
 use super::super::incoming::Incoming;
 use super::super::outgoing::Outgoing;
 use super::backoff::Backoff;
@@ -83,7 +84,8 @@ impl UdpIn {
                 },
                 frame = outgoing.next(), if peer.is_some() => {
                     let to = peer.as_ref().map_or(self.local, |peer| peer.address);
-                    send(socket.send_to(&frame, to).await, &frame, outgoing)
+                    let stamp = outgoing.now();
+                    sent(socket.send_to(&frame, to).await, &frame, stamp, outgoing)
                 }
                 () = sleep_until(silent_at), if peer.is_some() => {
                     peer = None;
@@ -193,7 +195,10 @@ impl UdpOut {
                     }
                     Err(error) => Some(error),
                 },
-                frame = outgoing.next() => send(socket.send(&frame).await, &frame, outgoing),
+                frame = outgoing.next() => {
+                    let stamp = outgoing.now();
+                    sent(socket.send(&frame).await, &frame, stamp, outgoing)
+                }
             };
             match failure {
                 None => {}
@@ -219,10 +224,15 @@ impl UdpOut {
     }
 }
 
-fn send(sent: io::Result<usize>, frame: &[u8], outgoing: &mut Outgoing) -> Option<io::Error> {
-    match sent {
+fn sent(
+    result: io::Result<usize>,
+    frame: &[u8],
+    stamp: HostStamp,
+    outgoing: &mut Outgoing,
+) -> Option<io::Error> {
+    match result {
         Ok(_) => {
-            outgoing.sent(frame);
+            outgoing.sent(frame, stamp);
             None
         }
         Err(error) => {
@@ -273,4 +283,33 @@ async fn connect(remote: SocketAddr) -> io::Result<UdpSocket> {
     let socket = bind((any, 0).into())?;
     socket.connect(remote).await?;
     Ok(socket)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test(start_paused = true)]
+    async fn a_socket_that_goes_on_failing_ends_the_session_after_pauses() {
+        let (mut failures, start) = (Failures::default(), Instant::now());
+        let error = io::Error::other("no such network");
+        for _ in 1..FAILURES {
+            assert_eq!(failures.add(&error).await, None);
+        }
+        let paused = start.elapsed();
+        assert!(paused >= Duration::from_millis(200), "{paused:?}");
+        let why = failures.add(&error).await.unwrap();
+        assert!(why.contains("no such network"), "{why}");
+        failures.reset();
+        assert_eq!(failures.add(&error).await, None);
+    }
+
+    #[tokio::test]
+    async fn the_receive_buffer_is_larger_than_the_systems_default() {
+        let local = SocketAddr::from(([127, 0, 0, 1], 0));
+        let plain = UdpSocket::bind(local).await.unwrap();
+        let ours = bind(local).unwrap();
+        let size = |socket: &UdpSocket| socket2::SockRef::from(socket).recv_buffer_size().unwrap();
+        assert!(size(&ours) > size(&plain), "{} {}", size(&ours), size(&plain));
+    }
 }
