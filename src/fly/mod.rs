@@ -12,18 +12,25 @@
 //!                 clock -> Streamer -> setpoints
 //! ```
 
+mod address;
 mod commander;
 mod course;
+pub mod finding;
 mod flight;
 mod health;
+pub mod live;
 mod modes;
 mod outcome;
+pub mod parameters;
+pub mod preflight;
+pub mod requests;
 mod roster;
 mod safety;
 mod setpoint;
 mod sortie;
 mod target;
 mod telemetry;
+pub mod view;
 
 pub use commander::{Answer, AnswerResult, Manner};
 pub use course::{Around, Course, PathClock, PathTime, Track, transfer};
