@@ -111,3 +111,68 @@ fn admit(listed: &Listed) -> Choice {
     }
     Choice::Vehicle(vehicle, target, stack)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::{CrcSeeds, checksum};
+
+    /// A HEARTBEAT: who, MAV_TYPE, MAV_AUTOPILOT, base mode.
+    fn heartbeat(system: u8, mav_type: u8, autopilot: u8, base_mode: u8) -> Vec<u8> {
+        let mut frame = vec![0xFD, 9, 0, 0, 0, system, 1, 0, 0, 0];
+        frame.extend([0, 0, 0, 0, mav_type, autopilot, base_mode, 3, 3]);
+        let sum = checksum(&frame[1..], CrcSeeds::new().get(0).unwrap());
+        frame.extend(sum.to_le_bytes());
+        frame
+    }
+
+    fn choice(frames: &[Vec<u8>], system: Option<u32>) -> Choice {
+        let mut roster = Roster::default();
+        for frame in frames {
+            roster.hear(Duration::ZERO, Frame::at_start(frame).unwrap());
+        }
+        roster.choose(Duration::from_secs(3), system.map(SystemId))
+    }
+
+    fn refused(frames: &[Vec<u8>]) -> String {
+        match choice(frames, None) {
+            Choice::Refuse(why) => why,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_only_vehicle_is_flown_and_ground_stations_are_none() {
+        let frames = [heartbeat(255, 6, 8, 0), heartbeat(7, 2, 12, 0)];
+        let Choice::Vehicle(_, target, stack) = choice(&frames, None) else { panic!() };
+        assert_eq!((target.system, stack), (SystemId(7), Stack::Px4));
+    }
+
+    #[test]
+    fn among_several_one_must_be_named() {
+        let frames = [heartbeat(1, 2, 3, 0), heartbeat(2, 2, 3, 0)];
+        assert!(refused(&frames).contains("systems 1, 2"));
+        assert!(matches!(choice(&frames, Some(2)), Choice::Vehicle(_, target, _) if target.system == SystemId(2)));
+        assert_eq!(choice(&frames, Some(3)), Choice::Wait);
+    }
+
+    #[test]
+    fn a_vehicle_that_cannot_be_flown_is_refused() {
+        for (frame, why) in [
+            (heartbeat(1, 1, 12, 0), "multirotor"),
+            (heartbeat(1, 2, 12, 128), "armed already"),
+            (heartbeat(1, 2, 18, 0), "PX4 or ArduPilot"),
+        ] {
+            let refusal = refused(&[frame]);
+            assert!(refusal.contains(why), "{refusal}");
+        }
+    }
+
+    #[test]
+    fn a_second_vehicle_is_waited_for() {
+        let mut roster = Roster::default();
+        let frame = heartbeat(1, 2, 12, 0);
+        roster.hear(Duration::from_secs(9), Frame::at_start(&frame).unwrap());
+        assert_eq!(roster.choose(Duration::from_secs(10), None), Choice::Wait);
+    }
+}

@@ -292,6 +292,12 @@ impl Telemetry {
         self.motion = Some(Seen { at: now, value: motion });
     }
 
+    /// Who it is.
+    #[must_use]
+    pub fn vehicle(&self) -> log::Vehicle {
+        *self.decoder.vehicle()
+    }
+
     /// Which autopilot's rules it follows.
     #[must_use]
     pub fn stack(&self) -> Stack {

@@ -34,7 +34,7 @@ const GATE_HOLDS: Duration = Duration::from_secs(1);
 
 impl Flight {
     /// The plan's zero in the vehicle's local frame.
-    pub(super) fn offset_m(&self, stand_m: &Vector3<f64>) -> Vector3<f64> {
+    pub(in crate::fly) fn offset_m(&self, stand_m: &Vector3<f64>) -> Vector3<f64> {
         let [x, y, ..] = self.sortie.course.takeoff();
         match self.sortie.settings.origin {
             Origin::Local => Vector3::new(0.0, 0.0, stand_m.z),

@@ -208,8 +208,9 @@ impl Flight {
             }
             return;
         }
-        let next = match &self.phase {
-            Phase::Leave(leaving) => match leaving.wish {
+        let next = match (&self.phase, key) {
+            (Phase::Leave(_), Key::To(mode)) => Some(mode),
+            (Phase::Leave(leaving), _) => match leaving.wish {
                 Mode::External | Mode::Hold => Some(Mode::Land),
                 Mode::Land | Mode::Return => Some(Mode::Return),
             },
@@ -226,6 +227,11 @@ impl Flight {
         }
         if let Phase::Leave(leaving) = &mut self.phase {
             leaving.by_operator = true;
+            if let Key::To(mode) = key
+                && mode != leaving.wish
+            {
+                self.wish(now, mode);
+            }
         }
     }
 
@@ -239,7 +245,7 @@ impl Flight {
         self.end(now, Cause::Signal(by.to_owned()));
         if let Phase::Leave(leaving) = &mut self.phase {
             self.cause.get_or_insert(Cause::Signal(by.to_owned()));
-            leaving.stop_by = Some(now + STOP_WITHIN);
+            leaving.stop_by.get_or_insert(now + STOP_WITHIN);
         }
     }
 }

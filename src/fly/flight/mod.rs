@@ -12,7 +12,7 @@ use mavlink::dialects::ardupilotmega::MavMessage;
 
 use super::commander::Commander;
 use super::health::BatteryLevel;
-use super::modes::Stack;
+use super::modes::{Mode, Stack};
 use super::outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
 use super::roster::Roster;
 use super::safety::{Guide, Lead};
@@ -20,7 +20,7 @@ use super::setpoint::Place;
 use super::sortie::Sortie;
 use super::target::{Target, heartbeat};
 use super::telemetry::{Novelty, Telemetry};
-use crate::log::{Check, CrcSeeds, Frame};
+use crate::log::{self, Check, CrcSeeds, Frame};
 use crate::units::deg_from_rad;
 use ground::Checking;
 use leave::Leaving;
@@ -53,6 +53,8 @@ pub enum Event<'a> {
 pub enum Key {
     /// once: hold; twice: land; three times: return
     Abort,
+    /// to hold, land or return, whatever was before
+    To(Mode),
     /// motors off now, wherever the vehicle is; only after a typed word
     Kill,
 }
@@ -172,6 +174,12 @@ pub struct Flight {
 pub struct Status {
     /// name of the phase
     pub phase: &'static str,
+    /// off the ground by our doing
+    pub airborne: bool,
+    /// ended before its time
+    pub aborted: bool,
+    /// s along the trajectory, and all of it
+    pub progress_s: Option<(f64, f64)>,
     /// the vehicle's mode in its own words
     pub mode: Option<String>,
     /// motors may turn
@@ -182,6 +190,8 @@ pub struct Status {
     pub tracking_m: f64,
     /// since the vehicle was heard, s
     pub link_age_s: Option<f64>,
+    /// low or worse by the autopilot's own judgement
+    pub battery_is_low: bool,
     /// percent
     pub battery_percent: Option<i8>,
     /// V
@@ -268,6 +278,24 @@ impl Flight {
         self.contact.as_ref().map(|contact| (contact.target, contact.telemetry.stack()))
     }
 
+    /// The vehicle as the log knows it, once it is found.
+    #[must_use]
+    pub fn vehicle(&self) -> Option<log::Vehicle> {
+        self.contact.as_ref().map(|contact| contact.telemetry.vehicle())
+    }
+
+    /// What tells a known message by its checksum.
+    #[must_use]
+    pub fn seeds(&self) -> &CrcSeeds {
+        &self.seeds
+    }
+
+    /// What is flown.
+    #[must_use]
+    pub fn sortie(&self) -> &Sortie {
+        &self.sortie
+    }
+
     /// The flight's own message requests are done and it waits for [`Event::Cleared`].
     #[must_use]
     pub fn wants_clearance(&self) -> bool {
@@ -282,17 +310,30 @@ impl Flight {
         let motion = telemetry.and_then(|telemetry| telemetry.motion);
         Status {
             phase: self.phase.name(),
+            airborne: self.phase.is_airborne(),
+            aborted: self.cause.is_some(),
+            progress_s: self.progress_s(now),
             mode: state.map(|(stack, state)| stack.mode_name(state.custom_mode)),
             armed: state.is_some_and(|(_, state)| state.armed),
             period: (self.flown.periods, self.sortie.course.repeats()),
             tracking_m: self.watch.tracking.latest_m(),
             link_age_s: telemetry.map(|telemetry| now.saturating_sub(telemetry.heard).as_secs_f64()),
+            battery_is_low: self.battery_level() > BatteryLevel::Good,
             battery_percent: telemetry.and_then(|telemetry| telemetry.battery?.value.1),
             battery_v: telemetry.and_then(|telemetry| telemetry.battery_v),
             position_m: motion.map(|motion| motion.value.position_m.into()),
             estimator_faults: telemetry
                 .map(|telemetry| telemetry.estimator_faults(now))
                 .unwrap_or_default(),
+        }
+    }
+
+    fn progress_s(&self, now: Duration) -> Option<(f64, f64)> {
+        match (&self.phase, &self.guide.lead) {
+            (Phase::Course, Lead::Along(track)) => {
+                Some((track.clock.at(now).along_s, track.path.duration_s()))
+            }
+            _ => None,
         }
     }
 

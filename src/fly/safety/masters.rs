@@ -72,3 +72,53 @@ impl Masters {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fly::setpoint::{Place, Setpoint};
+    use crate::fly::target::heartbeat;
+    use mavlink::dialects::ardupilotmega::MavMessage;
+    use mavlink::{MAVLinkV2MessageRaw, MavHeader};
+
+    fn ms(value: u64) -> Duration {
+        Duration::from_millis(value)
+    }
+
+    fn heard(message: &MavMessage, system_id: u32) -> Option<Cause> {
+        let mut raw = MAVLinkV2MessageRaw::new();
+        raw.serialize_message(MavHeader { system_id, component_id: 190, sequence: 0 }, message);
+        let masters = Masters::new(SystemId(255), ComponentId(190));
+        let target = Target::new(SystemId(1), ComponentId(1)).unwrap();
+        masters.hear(Frame::at_start(raw.raw_bytes()).unwrap(), target)
+    }
+
+    #[test]
+    fn a_listener_is_no_master_and_one_with_our_ids_is() {
+        assert!(heard(&heartbeat(), 254).is_none());
+        assert!(heard(&heartbeat(), 255).is_some());
+    }
+
+    #[test]
+    fn setpoints_of_others_for_our_vehicle_are_seen() {
+        let place = Place { position_m: Vector3::zeros(), yaw_rad: 0.0 };
+        for (system, ours) in [(1, true), (2, false)] {
+            let target = Target::new(SystemId(system), ComponentId(1)).unwrap();
+            let message = Setpoint::hold(ms(0), &place).message(target);
+            assert_eq!(heard(&message, 254).is_some(), ours);
+        }
+    }
+
+    #[test]
+    fn a_target_that_is_late_is_ours_and_one_elsewhere_is_not() {
+        let mut masters = Masters::new(SystemId(255), ComponentId(190));
+        let place = |t: u64| Vector3::new(3e-3 * t as f64, 0.0, 1.0);
+        for t in (1000..3000).step_by(20) {
+            masters.told(ms(t), place(t));
+            assert!(masters.check(ms(t), &place(t - 400)).is_none());
+        }
+        let elsewhere = place(3000) + Vector3::new(0.0, 2.0, 0.0);
+        assert!(masters.check(ms(3000), &elsewhere).is_none());
+        assert!(masters.check(ms(3600), &elsewhere).is_some());
+    }
+}
