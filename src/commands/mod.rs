@@ -10,6 +10,7 @@ mod inspect;
 mod output;
 mod plan;
 mod simulate;
+mod sitl;
 mod validate;
 mod vehicle;
 
@@ -83,6 +84,7 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Identify(args) => identify::run(cli.json, args),
         Verb::Simulate(args) => simulate::run(cli.json, args),
         Verb::Fly(args) => fly::run(cli.json, args),
+        Verb::Sitl(args) => sitl::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
     }

@@ -331,7 +331,8 @@ impl Autopilot {
         let ready = self.mode == Mode::Guided && self.is_armed() && self.is_landed();
         let home_m = self.home_m.unwrap_or_else(Vector3::zeros);
         let target_m = home_m.z + height_m;
-        if !ready || !(target_m > state.position_m.z + 0.5) {
+        let climbs = target_m > state.position_m.z + 0.5;
+        if !ready || !climbs {
             return Answer::Failed;
         }
         self.guidance.begin(Task::Takeoff(target_m), &state);

@@ -1,7 +1,7 @@
 //! The embedded simulated vehicle: physics of [`crate::simulate`] behind an autopilot that speaks MAVLink 2
 //! as PX4 or as ArduPilot does.
 //!
-//! It does no I/O and has no clock of its own: bytes go in with [`Vehicle::receive`], time goes on with
+//! [`Vehicle`] does no I/O and has no clock of its own ([`serve()`] gives it both): bytes go in with [`Vehicle::receive`], time goes on with
 //! [`Vehicle::advance`], and frames with their times come out. The same calls give the same bytes.
 //!
 //! ```text
@@ -27,6 +27,7 @@ mod modes;
 mod parameters;
 mod requests;
 mod safety;
+mod serve;
 mod settings;
 mod shaper;
 mod streams;
@@ -38,6 +39,7 @@ pub use fault::Fault;
 pub use link::{LinkId, LinkRole};
 pub use mission::FenceItem;
 pub use modes::{ArduPilotRelease, AutopilotKind, Mode};
+pub use serve::{LOCKSTEP, Pace, serve};
 pub use settings::{Origin, SensorSettings, Settings};
 pub use vehicle::{Outgoing, Vehicle};
 

@@ -119,12 +119,50 @@ impl Ground {
         let mut payload: Vec<u8> = params.iter().flat_map(|param| param.to_le_bytes()).collect();
         payload.extend(number.to_le_bytes());
         payload.extend([1, 1, 0]);
-        let mut frame = vec![0xFD, 33, 0, 0, self.sequence, self.system, 190, 76, 0, 0];
+        self.raw(76, 152, &payload)
+    }
+
+    /// A frame of any message, by its payload and seed.
+    pub fn raw(&mut self, id: u8, seed: u8, payload: &[u8]) -> Vec<u8> {
+        let length = u8::try_from(payload.len()).unwrap();
+        let mut frame = vec![0xFD, length, 0, 0, self.sequence, self.system, 190, id, 0, 0];
         frame.extend(payload);
-        let sum = mavid::log::checksum(&frame[1..], 152);
+        let sum = mavid::log::checksum(&frame[1..], seed);
         frame.extend(sum.to_le_bytes());
         self.sequence = self.sequence.wrapping_add(1);
         frame
+    }
+
+    /// Sends such a frame and takes what comes at once.
+    pub fn send_raw(&mut self, id: u8, seed: u8, payload: &[u8]) {
+        let bytes = self.raw(id, seed, payload);
+        self.vehicle.receive(self.link, &bytes, self.now);
+        let out = self.vehicle.advance(self.now);
+        self.take(out);
+    }
+
+    /// PARAM_REQUEST_READ by name.
+    pub fn request_parameter(&mut self, name: &str) {
+        let mut payload = (-1_i16).to_le_bytes().to_vec();
+        payload.extend([1, 1]);
+        payload.extend(padded(name));
+        self.send_raw(20, 214, &payload);
+    }
+
+    /// PARAM_SET with a type and the four bytes of its value.
+    pub fn set_parameter(&mut self, name: &str, kind: u8, value: [u8; 4]) {
+        let mut payload = value.to_vec();
+        payload.extend([1, 1]);
+        payload.extend(padded(name));
+        payload.push(kind);
+        self.send_raw(23, 168, &payload);
+    }
+
+    /// The last PARAM_VALUE of this name.
+    pub fn parameter(&self, name: &str) -> Option<mavid::log::Payload<'_>> {
+        let all = self.received.iter().rev().filter(|(_, id, _)| *id == 22);
+        all.map(|(_, _, bytes)| Frame::at_start(bytes).unwrap().payload())
+            .find(|payload| payload.text(8, 16) == name)
     }
 
     pub fn set_mode(&mut self, mode: Mode) -> u8 {
@@ -301,4 +339,11 @@ impl Target {
             coordinate_frame: self.frame,
         })
     }
+}
+
+/// A parameter's name in its field.
+fn padded(name: &str) -> [u8; 16] {
+    let mut field = [0; 16];
+    field[..name.len()].copy_from_slice(name.as_bytes());
+    field
 }
