@@ -36,6 +36,10 @@ pub enum Verb {
     Validate(ValidateArgs),
     /// Say what is in a log and what can be identified from it
     Inspect(InspectArgs),
+    /// Record a MAVLink link until interrupted
+    Record(RecordArgs),
+    /// Play a recorded flight back as live traffic; nothing is commanded
+    Replay(ReplayArgs),
 }
 
 /// Arguments of `mavid vehicle`.
@@ -336,4 +340,47 @@ pub enum ArduPilotVersion {
     /// metres and degrees
     #[value(name = "4.7")]
     V4_7,
+
+/// Arguments of `mavid record`.
+#[derive(Debug, Args)]
+pub struct RecordArgs {
+    /// udpin:HOST:PORT, udpout:HOST:PORT, tcpout:HOST:PORT, tcpin:HOST:PORT or serial:PATH:BAUD[:rtscts]
+    #[arg(long, value_name = "ADDRESS")]
+    pub connect: String,
+    /// telemetry log to write
+    #[arg(long, value_name = "FILE.tlog")]
+    pub out: PathBuf,
+    /// s to record; without it until interrupted
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub duration: Option<f64>,
+    /// replace a file that is there already
+    #[arg(long)]
+    pub force: bool,
+    /// speak as a ground station: send a heartbeat each second, and ask the vehicle for the messages that
+    /// identification uses
+    #[arg(long)]
+    pub heartbeat: bool,
+    /// MAVLink 2 signing key: a file with 32 bytes, 64 hexadecimal digits, or a passphrase
+    #[arg(long, value_name = "FILE")]
+    pub signing_key_file: Option<PathBuf>,
+}
+
+/// Arguments of `mavid replay`.
+#[derive(Debug, Args)]
+pub struct ReplayArgs {
+    /// telemetry log to play
+    pub log: PathBuf,
+    /// where to: an address as for `mavid record`
+    #[arg(long, value_name = "ADDRESS", default_value = "udpout:127.0.0.1:14550")]
+    pub to: String,
+    /// how many times faster than it was; 0 is as fast as possible
+    #[arg(long, value_name = "N", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub speed: f64,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+        _ => Err(format!("expected a number above 0, got `{text}`")),
+    }
 }

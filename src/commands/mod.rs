@@ -7,8 +7,11 @@ mod flights;
 mod fly;
 mod identify;
 mod inspect;
+mod network;
 mod output;
 mod plan;
+mod record;
+mod replay;
 mod simulate;
 mod sitl;
 mod validate;
@@ -87,6 +90,8 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Sitl(args) => sitl::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
+        Verb::Record(args) => record::run(cli.json, args),
+        Verb::Replay(args) => replay::run(cli.json, args),
     }
 }
 

@@ -14,7 +14,7 @@ use super::signing::Signing;
 use crate::log::{Frame, Splitter};
 
 /// Frames that may wait for the reader; further ones are counted, not delivered.
-const WAITING: usize = 1 << 14;
+pub(super) const WAITING: usize = 1 << 14;
 const HEARTBEAT: u32 = 0;
 
 /// From bytes to frames and events for the reader.

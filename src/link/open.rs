@@ -1,6 +1,7 @@
 //! Opens links.
 
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use tokio::sync::{mpsc, watch};
@@ -86,6 +87,7 @@ impl Link {
 
 fn start(name: String, transport: Transport, options: &LinkOptions) -> Ends {
     let shared = Arc::new(Shared::new(name));
+    shared.open.store(transport.is_connected(), Ordering::Release);
     let (to_reader, from_task) = mpsc::unbounded_channel();
     let (to_task, queue) = mpsc::channel(QUEUE);
     let (alive, gone) = watch::channel(());

@@ -40,6 +40,8 @@ pub(super) struct Outgoing {
     queue_first: bool,
     /// a frame was given out and not yet told as sent or failed
     in_flight: bool,
+    /// the other end was lost and is not back
+    lost: bool,
     barriers: VecDeque<oneshot::Sender<()>>,
 }
 
@@ -56,6 +58,7 @@ impl Outgoing {
             sequence: 0,
             queue_first: false,
             in_flight: false,
+            lost: false,
             barriers: VecDeque::new(),
         }
     }
@@ -149,8 +152,17 @@ impl Outgoing {
         self.shared.stats().unsent += 1;
     }
 
+    /// Somebody is at the other end. What was given before a loss, but came behind it, is forgotten too.
+    pub fn connected(&mut self) {
+        if self.lost {
+            self.discard();
+            self.lost = false;
+        }
+    }
+
     /// Forgets what waits: nothing old may reach a vehicle that comes back.
     pub fn discard(&mut self) {
+        self.lost = true;
         let mut unsent = u64::from(self.shared.latest().take().is_some());
         unsent += u64::from(std::mem::take(&mut self.in_flight));
         while let Ok(item) = self.queue.try_recv() {

@@ -60,6 +60,11 @@ pub(super) async fn open(address: &Address, peer_timeout: Duration) -> Result<Tr
 }
 
 impl Transport {
+    /// Whether there is somebody to send to as soon as it is open.
+    pub fn is_connected(&self) -> bool {
+        matches!(self, Self::UdpOut(_) | Self::TcpOut(_) | Self::Serial(_) | Self::Memory(_))
+    }
+
     /// Carries bytes, connecting again as often as needed; ends only where that is impossible.
     pub async fn serve(&mut self, incoming: &mut Incoming, outgoing: &mut Outgoing) {
         match self {

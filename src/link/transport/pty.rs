@@ -52,7 +52,7 @@ impl Pty {
     pub async fn serve(&mut self, incoming: &mut Incoming, outgoing: &mut Outgoing) {
         loop {
             if let (true, Ok(port)) = (is_opened(&self.master), self.port()) {
-                outgoing.discard();
+                outgoing.connected();
                 incoming.connected(self.terminal.display().to_string());
                 let why = threads::session(port, incoming, outgoing).await;
                 incoming.lost(why);

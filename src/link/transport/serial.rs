@@ -41,7 +41,7 @@ impl Serial {
             let port = self.first.take().map_or_else(|| self.port(), Ok);
             if let Ok(port) = port {
                 backoff.reset();
-                outgoing.discard();
+                outgoing.connected();
                 incoming.connected(self.path.display().to_string());
                 let why = threads::session(port, incoming, outgoing).await;
                 incoming.lost(why);

@@ -97,7 +97,7 @@ fn prepare(stream: &TcpStream) {
 }
 
 async fn carry(stream: TcpStream, peer: SocketAddr, incoming: &mut Incoming, outgoing: &mut Outgoing) {
-    outgoing.discard();
+    outgoing.connected();
     incoming.connected(peer.to_string());
     let why = stream::session(stream, incoming, outgoing).await;
     incoming.lost(why);

@@ -124,7 +124,7 @@ impl UdpIn {
             }
             None => {
                 if incoming.datagram(bytes, stamp) {
-                    outgoing.discard();
+                    outgoing.connected();
                     incoming.connected(from.to_string());
                     *peer = Some(Peer { address: from, heard: stamp.at });
                 }
@@ -158,6 +158,7 @@ impl UdpOut {
                 None => connect(self.remote).await,
             };
             if let Ok(socket) = socket {
+                outgoing.connected();
                 incoming.open(true);
                 let why = self.session(&socket, &mut lost, incoming, outgoing).await;
                 if !lost {
@@ -197,7 +198,13 @@ impl UdpOut {
                 },
                 frame = outgoing.next() => {
                     let stamp = outgoing.now();
-                    sent(socket.send(&frame).await, &frame, stamp, outgoing)
+                    let mut result = socket.send(&frame).await;
+                    if is_refusal(&result) {
+                        // the answer to an earlier datagram; this one was not sent yet
+                        self.refused(lost, incoming);
+                        result = socket.send(&frame).await;
+                    }
+                    sent(result, &frame, stamp, outgoing)
                 }
             };
             match failure {
@@ -222,6 +229,10 @@ impl UdpOut {
             incoming.open(true);
         }
     }
+}
+
+fn is_refusal(result: &io::Result<usize>) -> bool {
+    result.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::ConnectionRefused)
 }
 
 fn sent(
