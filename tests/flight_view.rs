@@ -47,9 +47,26 @@ fn model() -> ViewModel {
 fn everything_that_matters_is_on_the_screen() {
     let screen = drawn(&model(), 100, 30);
     for wanted in [
-        "x500, PX4", "trajectory", "OFFBOARD", "ARMED", "31 of 50 s", "870/s", "55.4 kB/s", "1.3 % lost", "76 %",
-        "15.42 V", "0.49 of 1.0 m", "roll   -3.2", "-2.00", "2.061 +- 0.012 kg", "not determined yet",
-        "takeoff done", "setpoints late", "h hold", "l land", "r return",
+        "x500, PX4",
+        "trajectory",
+        "OFFBOARD",
+        "ARMED",
+        "31 of 50 s",
+        "870/s",
+        "55.4 kB/s",
+        "1.3 % lost",
+        "76 %",
+        "15.42 V",
+        "0.49 of 1.0 m",
+        "roll   -3.2",
+        "-2.00",
+        "2.061 +- 0.012 kg",
+        "not determined yet",
+        "takeoff done",
+        "setpoints late",
+        "h hold",
+        "l land",
+        "r return",
     ] {
         assert!(screen.contains(wanted), "no `{wanted}` in\n{screen}");
     }

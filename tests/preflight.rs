@@ -160,8 +160,7 @@ fn px4_integers_are_read_from_their_bytes() {
 #[test]
 fn a_lossy_link_costs_time_and_no_parameter() {
     let known: BTreeMap<&str, f32> = ARDUPILOT_47.iter().copied().collect();
-    let (clean, clean_sent, clean_time) =
-        downloaded(Autopilot::ArduPilot, (&known, &[]), Wire::new(0.0, 20));
+    let (clean, clean_sent, clean_time) = downloaded(Autopilot::ArduPilot, (&known, &[]), Wire::new(0.0, 20));
     let (lossy, lossy_sent, lossy_time) =
         downloaded(Autopilot::ArduPilot, (&known, &[]), Wire::new(0.2, 200));
     assert_eq!(clean.values, lossy.values);
@@ -263,7 +262,8 @@ fn ardupilot_without_highres() -> Streamer {
 fn what_is_refused_is_replaced_and_what_arrives_is_measured() {
     for (loss, delay_ms) in [(0.0, 20), (0.2, 200)] {
         let wire = Wire::new(loss, delay_ms);
-        let requests = requested(Autopilot::ArduPilot, &mut ardupilot_without_highres(), wire, LinkKind::Wide);
+        let requests =
+            requested(Autopilot::ArduPilot, &mut ardupilot_without_highres(), wire, LinkKind::Wide);
         let report = requests.report();
         let stream = |id: u32| report.streams.iter().find(|s| s.request.message_id == id).unwrap();
         assert_eq!(stream(HIGHRES_IMU).answer, Answer::Refused(2));
@@ -278,7 +278,8 @@ fn what_is_refused_is_replaced_and_what_arrives_is_measured() {
 
 #[test]
 fn what_is_accepted_and_never_comes_is_noticed() {
-    let mut streamer = Streamer { refused: &[], silent: &[HIGHRES_IMU, 36, 11030], ..ardupilot_without_highres() };
+    let mut streamer =
+        Streamer { refused: &[], silent: &[HIGHRES_IMU, 36, 11030], ..ardupilot_without_highres() };
     let requests = requested(Autopilot::ArduPilot, &mut streamer, Wire::new(0.0, 5), LinkKind::Wide);
     let report = requests.report();
     let raw = report.streams.iter().find(|s| s.request.message_id == RAW_IMU).unwrap();
@@ -363,12 +364,13 @@ impl Scene {
             path: path(1.0),
             limits: room,
             parameters: ardupilot(&[]),
-            fence: Fence { radius_m: Some(30.0), height_max_m: Some(20.0), margin_m: 2.0, ..Fence::default() },
-            battery: BatteryState {
-                remaining_percent: Some(90.0),
-                is_low: false,
-                endurance_s: Some(900.0),
+            fence: Fence {
+                radius_m: Some(30.0),
+                height_max_m: Some(20.0),
+                margin_m: 2.0,
+                ..Fence::default()
             },
+            battery: BatteryState { remaining_percent: Some(90.0), is_low: false, endurance_s: Some(900.0) },
             readiness: Readiness {
                 may_arm: Some(true),
                 estimate_good_for: Some(Duration::from_secs(10)),
@@ -381,8 +383,7 @@ impl Scene {
     }
 
     fn findings(&self) -> Vec<Finding> {
-        let vehicle =
-            load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml")).unwrap();
+        let vehicle = load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml")).unwrap();
         preflight(&Situation {
             path: &self.path,
             origin_m: Vector3::zeros(),
@@ -484,9 +485,7 @@ fn low_guided_limits_are_said_with_what_to_set() {
     assert!(said.expected.contains("horizontal acceleration"), "{said}");
     assert!(said.came.contains("WP_ACC = 1") && said.remedy.contains("set WP_ACC to"), "{said}");
     // the older firmware's name and unit, the same judgement
-    for name in ["WP_ACC"] {
-        scene.parameters.values.remove(name);
-    }
+    scene.parameters.values.remove("WP_ACC");
     scene.parameters.values.insert("WPNAV_ACCEL".into(), 100.0);
     let older = scene.said("autopilot limits");
     assert!(older.came.contains("1.00 m/s^2 (WPNAV_ACCEL = 100"), "{older}");
@@ -504,7 +503,12 @@ fn the_fence_is_checked_with_its_margin_and_with_every_area() {
     scene = Scene::good();
     let square = |inside, half: f64, north: f64| Zone::Polygon {
         inside,
-        corners_m: vec![[north - half, -half], [north + half, -half], [north + half, half], [north - half, half]],
+        corners_m: vec![
+            [north - half, -half],
+            [north + half, -half],
+            [north + half, half],
+            [north - half, half],
+        ],
     };
     scene.fence.zones = vec![square(true, 10.0, 0.0)];
     assert_eq!(scene.said("fence").level, Level::Ok);

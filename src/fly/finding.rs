@@ -46,7 +46,13 @@ impl Finding {
     /// All is well.
     #[must_use]
     pub fn ok(subject: &'static str, expected: impl Into<String>, came: impl Into<String>) -> Self {
-        Self { level: Level::Ok, subject, expected: expected.into(), came: came.into(), remedy: String::new() }
+        Self {
+            level: Level::Ok,
+            subject,
+            expected: expected.into(),
+            came: came.into(),
+            remedy: String::new(),
+        }
     }
 
     /// The operator should know.

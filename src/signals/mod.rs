@@ -18,13 +18,12 @@ mod weak;
 
 pub use actuation::ThrustPreference;
 pub use actuators::{
-    RotorThrusts, ThrustSource, motor_channels, propulsion_from_log, thrusts_from_commands, thrusts_from_speeds,
+    RotorThrusts, ThrustSource, motor_channels, propulsion_from_log, thrusts_from_commands,
+    thrusts_from_speeds,
 };
 pub use align::StreamOffset;
 pub use condition::{ConditionSettings, Quality, Reference, Signals, condition, stride};
-pub use filter::{
-    Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference,
-};
+pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use latency::{ActuationLatency, delayed_wrench};
 pub use noise::{median, white_level};

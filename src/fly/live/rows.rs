@@ -65,8 +65,8 @@ impl Causal {
         let up_z = instant.attitude.inverse_transform_vector(&Vector3::z()).z;
         let (rate, wrench) = (instant.rate_rad_s, instant.wrench);
         let mut smooth = [
-            rate.x, rate.y, rate.z, velocity.x, velocity.y, velocity.z, up_z, wrench[0], wrench[1], wrench[2],
-            wrench[3],
+            rate.x, rate.y, rate.z, velocity.x, velocity.y, velocity.z, up_z, wrench[0], wrench[1],
+            wrench[2], wrench[3],
         ];
         for (value, memory) in smooth.iter_mut().zip(&mut memory.low_passed) {
             *value = low_pass.next(memory, *value);

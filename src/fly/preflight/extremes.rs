@@ -97,7 +97,9 @@ impl Stopping {
             _ => (
                 "MPC_ACC_HOR",
                 value("MPC_ACC_HOR", 1.0),
-                value("MPC_ACC_UP_MAX", 1.0).zip(value("MPC_ACC_DOWN_MAX", 1.0)).map(|(up, down)| up.min(down)),
+                value("MPC_ACC_UP_MAX", 1.0)
+                    .zip(value("MPC_ACC_DOWN_MAX", 1.0))
+                    .map(|(up, down)| up.min(down)),
                 value("MPC_TILTMAX_AIR", 1.0),
             ),
         };
@@ -123,7 +125,11 @@ impl Stopping {
         let horizontal = velocity_m_s.xy().norm() / (2.0 * self.horizontal_m_s2);
         let vertical = velocity_m_s.z.abs() / (2.0 * self.vertical_m_s2);
         place_m
-            + Vector3::new(velocity_m_s.x * horizontal, velocity_m_s.y * horizontal, velocity_m_s.z * vertical)
+            + Vector3::new(
+                velocity_m_s.x * horizontal,
+                velocity_m_s.y * horizontal,
+                velocity_m_s.z * vertical,
+            )
     }
 }
 
@@ -139,8 +145,7 @@ mod tests {
 
     #[test]
     fn braking_takes_the_square_of_speed_over_twice_the_deceleration() {
-        let stopping =
-            Stopping { horizontal_m_s2: 2.0, vertical_m_s2: 1.0, basis: String::new() };
+        let stopping = Stopping { horizontal_m_s2: 2.0, vertical_m_s2: 1.0, basis: String::new() };
         let rest = stopping.rest(&Vector3::new(1.0, 1.0, 1.0), &Vector3::new(3.0, 4.0, -2.0));
         // 25 / 4 = 6.25 m along (0.6, 0.8), and 4 / 2 = 2 m down
         assert!((rest - Vector3::new(4.75, 6.0, -1.0)).norm() < 1e-12, "{rest}");

@@ -62,7 +62,9 @@ impl Fence {
         match (areas && !items.is_empty(), origin) {
             (true, Some(origin)) => fence.place(items, origin),
             (true, None) => {
-                fence.unknown.push("the local frame's origin is not known, so its areas have no place".into());
+                fence
+                    .unknown
+                    .push("the local frame's origin is not known, so its areas have no place".into());
             }
             (false, _) => {}
         }
@@ -90,8 +92,11 @@ impl Fence {
             }
             value
         };
-        let (radius_m, max_m, min_m) =
-            (read(RADIUS, "FENCE_RADIUS"), read(HEIGHT_MAX, "FENCE_ALT_MAX"), read(HEIGHT_MIN, "FENCE_ALT_MIN"));
+        let (radius_m, max_m, min_m) = (
+            read(RADIUS, "FENCE_RADIUS"),
+            read(HEIGHT_MAX, "FENCE_ALT_MAX"),
+            read(HEIGHT_MIN, "FENCE_ALT_MIN"),
+        );
         self.radius_m = radius_m;
         self.height_max_m = max_m;
         self.height_min_m = min_m;

@@ -60,7 +60,8 @@ impl Zone {
                 (*inside, radius_m - distance)
             }
             Self::Polygon { inside, corners_m } => {
-                let border = edges(corners_m).map(|edge| distance_m(place_m, edge)).fold(f64::INFINITY, f64::min);
+                let border =
+                    edges(corners_m).map(|edge| distance_m(place_m, edge)).fold(f64::INFINITY, f64::min);
                 (*inside, if contains(corners_m, place_m) { border } else { -border })
             }
         };
@@ -85,9 +86,8 @@ fn edges(corners: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
 
 /// By the number of edges that a ray crosses.
 fn contains(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
-    let crossed = edges(corners).filter(|[[x0, y0], [x1, y1]]| {
-        (y0 > &y) != (y1 > &y) && x < x0 + (y - y0) / (y1 - y0) * (x1 - x0)
-    });
+    let crossed = edges(corners)
+        .filter(|[[x0, y0], [x1, y1]]| (y0 > &y) != (y1 > &y) && x < x0 + (y - y0) / (y1 - y0) * (x1 - x0));
     crossed.count() % 2 == 1
 }
 

@@ -72,13 +72,12 @@ fn estimate(readiness: &Readiness) -> Finding {
 
 fn pre_arm(readiness: &Readiness, autopilot: Autopilot) -> Finding {
     let expected = "the autopilot's own checks passed";
-    let said = if readiness.reasons.is_empty() {
-        "no reason said".to_owned()
-    } else {
-        readiness.reasons.join("; ")
-    };
+    let said =
+        if readiness.reasons.is_empty() { "no reason said".to_owned() } else { readiness.reasons.join("; ") };
     let remedy = match autopilot {
-        Autopilot::ArduPilot => "its checks depend on the mode: set GUIDED, then wait for the position estimate",
+        Autopilot::ArduPilot => {
+            "its checks depend on the mode: set GUIDED, then wait for the position estimate"
+        }
         _ => "mend what it names",
     };
     match readiness.may_arm {

@@ -162,7 +162,8 @@ impl NeedReport {
         );
         let expected = format!("{} at {good_hz} Hz, {least_hz} Hz at least", need.name());
         if !self.is_served() && *to_fly {
-            let remedy = "the flight cannot be watched without it: check the link and the autopilot's stream settings";
+            let remedy =
+                "the flight cannot be watched without it: check the link and the autopilot's stream settings";
             return Finding::refusal("messages", expected, came, remedy);
         }
         if !self.is_served() {

@@ -56,7 +56,9 @@ fn state_line(model: &ViewModel) -> String {
     parts.extend(model.progress_s.map(|(done_s, all_s)| format!("{done_s:.0} of {all_s:.0} s")));
     parts.extend(model.tracking.error_m.map(|error_m| format!("error {error_m:.2} m")));
     parts.extend(model.battery.percent.map(|percent| format!("battery {percent:.0} %")));
-    parts.extend(model.link.age_s.map(|age_s| format!("link {age_s:.1} s, {:.0} frames/s", model.link.frames_hz)));
+    parts.extend(
+        model.link.age_s.map(|age_s| format!("link {age_s:.1} s, {:.0} frames/s", model.link.frames_hz)),
+    );
     format!("[{:7.1} s] {}", model.elapsed_s, parts.join(", "))
 }
 

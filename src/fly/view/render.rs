@@ -68,7 +68,7 @@ fn header(model: &ViewModel) -> Line<'_> {
 
 fn gauge_row(frame: &mut Frame<'_>, model: &ViewModel, area: Rect) {
     let [link, battery, tracking] =
-        Layout::horizontal([Constraint::Fill(3), Constraint::Fill(2), Constraint::Fill(4)]).areas(area);
+        Layout::horizontal([Constraint::Fill(4), Constraint::Fill(2), Constraint::Fill(3)]).areas(area);
     boxed(frame, "Link", vec![link_line(model)], link);
     boxed(frame, "Battery", vec![battery_line(model)], battery);
     boxed(frame, "Tracking error", vec![tracking_line(model, tracking.width)], tracking);
@@ -170,6 +170,8 @@ fn help(model: &ViewModel) -> Line<'_> {
             format!("type {KILL_WORD} and Enter to stop the motors NOW, Esc to leave: {typed}_"),
             Style::new().fg(Color::Red).add_modifier(Modifier::BOLD),
         ),
-        None => Line::raw(format!("h hold   l land   r return   :{KILL_WORD} Enter stops the motors   Ctrl-C end")),
+        None => Line::raw(format!(
+            "h hold   l land   r return   :{KILL_WORD} Enter stops the motors   Ctrl-C end"
+        )),
     }
 }

@@ -4,7 +4,10 @@ const BLOCKS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█
 
 /// The last `width` values between their least and their largest; a blank for what is not a number.
 #[must_use]
-pub fn spark(values: impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + Clone, width: usize) -> String {
+pub fn spark(
+    values: impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + Clone,
+    width: usize,
+) -> String {
     let skipped = values.len().saturating_sub(width);
     let shown = values.skip(skipped);
     let finite = || shown.clone().filter(|value| value.is_finite());
