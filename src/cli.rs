@@ -340,6 +340,7 @@ pub enum ArduPilotVersion {
     /// metres and degrees
     #[value(name = "4.7")]
     V4_7,
+}
 
 /// Arguments of `mavid record`.
 #[derive(Debug, Args)]
