@@ -41,7 +41,11 @@ fn a_whole_flight_takes_off_flies_lands_and_disarms() {
         assert!(outcome.flown.tilt_max_deg > 1.0 && outcome.flown.tilt_max_deg < 30.0, "{:?}", outcome.flown);
         assert!(!flying.flight.status(flying.now).armed);
         let (gaps, stale): (Vec<_>, Vec<_>) = (
-            flying.setpoints.windows(2).filter(|pair| pair[1].0 - pair[0].0 != Duration::from_millis(20)).collect(),
+            flying
+                .setpoints
+                .windows(2)
+                .filter(|pair| pair[1].0 - pair[0].0 != Duration::from_millis(20))
+                .collect(),
             flying.setpoints.iter().filter(|(at, setpoint)| *at != setpoint.time).collect(),
         );
         assert!(stale.is_empty());

@@ -8,7 +8,9 @@ use std::time::Duration;
 
 use mavid::config::{StoredTrajectory, read_trajectory, read_vehicle};
 use mavid::fly::view::{KeyCommand, Keys, PlainLog, Screen, ViewModel};
-use mavid::fly::{self, Around, Console, Course, Ending, Origin, Outcome as FlightOutcome, Record, Ride, Sortie};
+use mavid::fly::{
+    self, Around, Console, Course, Ending, Origin, Outcome as FlightOutcome, Record, Ride, Sortie,
+};
 use mavid::link::Signing;
 use mavid::log::{ComponentId, SystemId};
 use mavid::report::IdentificationDocument;
@@ -106,7 +108,8 @@ fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
 }
 
 fn copy(from: &Path, to: &Path) -> Result<(), CommandError> {
-    let failed = |error| CommandError::Input(format!("cannot copy {} to {}: {error}", from.display(), to.display()));
+    let failed =
+        |error| CommandError::Input(format!("cannot copy {} to {}: {error}", from.display(), to.display()));
     let text = std::fs::read(from).map_err(failed)?;
     std::fs::write(to, text).map_err(failed)
 }
@@ -152,10 +155,8 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
 /// The flight, with its view on another thread: neither a slow terminal nor a key holds it up.
 fn fly_it(ride: Ride, plain: bool) -> Result<Record, CommandError> {
     let failed = |error: &dyn std::fmt::Display| CommandError::Failure(error.to_string());
-    let runtime = tokio::runtime::Builder::new_multi_thread()
-        .enable_all()
-        .build()
-        .map_err(|error| failed(&error))?;
+    let runtime =
+        tokio::runtime::Builder::new_multi_thread().enable_all().build().map_err(|error| failed(&error))?;
     let (show, pictures) = channel();
     let (pressed, keys) = unbounded_channel();
     let drawn = !plain && std::io::stderr().is_terminal() && std::io::stdin().is_terminal();

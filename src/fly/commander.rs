@@ -161,11 +161,13 @@ impl Commander {
     pub fn hear(&mut self, now: Duration, ack: Payload<'_>) -> Option<Answer> {
         let (command, result) = (ack.u16(0), ack.u8(2));
         let detail = ack.i32(4);
-        let at = self.pending.iter().position(|waiting| {
-            u32::from(command) == waiting.order.command as u32 && waiting.sent > 0
-        })?;
+        let at = self
+            .pending
+            .iter()
+            .position(|waiting| u32::from(command) == waiting.order.command as u32 && waiting.sent > 0)?;
         let waiting = &mut self.pending[at];
-        let temporary = result == TEMPORARILY_REJECTED || result == FAILED && waiting.manner.failed_is_temporary;
+        let temporary =
+            result == TEMPORARILY_REJECTED || result == FAILED && waiting.manner.failed_is_temporary;
         if result == IN_PROGRESS {
             waiting.since = now;
             waiting.next = now + waiting.manner.patience;
@@ -178,8 +180,11 @@ impl Commander {
             return None;
         }
         let order = self.pending.remove(at).order;
-        let result =
-            if result == ACCEPTED { AnswerResult::Accepted } else { AnswerResult::Refused { result, detail } };
+        let result = if result == ACCEPTED {
+            AnswerResult::Accepted
+        } else {
+            AnswerResult::Refused { result, detail }
+        };
         Some(Answer { order, result })
     }
 }

@@ -178,7 +178,9 @@ mod tests {
     #[test]
     fn a_battery_without_a_state_is_judged_by_percent() {
         let mut status = [0_u8; 41];
-        for (percent, level) in [(50, BatteryLevel::Good), (15, BatteryLevel::Low), (5, BatteryLevel::Critical)] {
+        for (percent, level) in
+            [(50, BatteryLevel::Good), (15, BatteryLevel::Low), (5, BatteryLevel::Critical)]
+        {
             status[35] = percent;
             assert_eq!(battery_status(Payload(&status)).0, level);
         }

@@ -104,10 +104,14 @@ fn admit(listed: &Listed) -> Choice {
     };
     if !MULTIROTORS.contains(&listed.mav_type) {
         let kind = listed.mav_type;
-        return Choice::Refuse(format!("system {system}: expected a multirotor, got a vehicle of type {kind}"));
+        return Choice::Refuse(format!(
+            "system {system}: expected a multirotor, got a vehicle of type {kind}"
+        ));
     }
     if listed.armed {
-        return Choice::Refuse(format!("system {system} is armed already; expected it on the ground, disarmed"));
+        return Choice::Refuse(format!(
+            "system {system} is armed already; expected it on the ground, disarmed"
+        ));
     }
     Choice::Vehicle(vehicle, target, stack)
 }
@@ -152,7 +156,9 @@ mod tests {
     fn among_several_one_must_be_named() {
         let frames = [heartbeat(1, 2, 3, 0), heartbeat(2, 2, 3, 0)];
         assert!(refused(&frames).contains("systems 1, 2"));
-        assert!(matches!(choice(&frames, Some(2)), Choice::Vehicle(_, target, _) if target.system == SystemId(2)));
+        assert!(
+            matches!(choice(&frames, Some(2)), Choice::Vehicle(_, target, _) if target.system == SystemId(2))
+        );
         assert_eq!(choice(&frames, Some(3)), Choice::Wait);
     }
 

@@ -7,8 +7,8 @@ use nalgebra::Vector3;
 use std::time::Duration;
 
 use super::target::Target;
-use crate::units::narrow;
 use crate::frames::{World, ned_from_world, yaw_from_ned};
+use crate::units::narrow;
 
 /// Where the vehicle is to be at one instant, and how it is to move there. World NWU, in the frame of the
 /// vehicle's own local position.

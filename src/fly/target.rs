@@ -97,10 +97,7 @@ impl Order {
     /// ArduCopter's takeoff in GUIDED, m above home.
     #[must_use]
     pub fn takeoff(height_m: f32) -> Self {
-        Self {
-            command: MavCmd::MAV_CMD_NAV_TAKEOFF,
-            parameters: [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height_m],
-        }
+        Self { command: MavCmd::MAV_CMD_NAV_TAKEOFF, parameters: [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height_m] }
     }
 
     /// To send one message now; ids are far below what a float holds exactly.

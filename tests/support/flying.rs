@@ -9,7 +9,8 @@ use std::time::Duration;
 
 use mavid::config::read_vehicle;
 use mavid::fly::{
-    Action, Around, Cause, Course, Event, Flight, Note, Outcome, Setpoint, Settings, Sortie, Streamed, Streamer,
+    Action, Around, Cause, Course, Event, Flight, Note, Outcome, Setpoint, Settings, Sortie, Streamed,
+    Streamer,
 };
 use mavid::log::Frame;
 use mavid::sitl::{AutopilotKind, LinkId, LinkRole, Settings as VehicleSettings, Vehicle};
@@ -92,8 +93,12 @@ pub fn series() -> FourierTrajectory {
     }
 }
 
-pub const AROUND: Around =
-    Around { takeoff: [0.0, 0.0, 1.5, 0.0], landing: [0.0, 0.0, 1.5, 0.0], to_start_s: 3.0, to_landing_s: 3.0 };
+pub const AROUND: Around = Around {
+    takeoff: [0.0, 0.0, 1.5, 0.0],
+    landing: [0.0, 0.0, 1.5, 0.0],
+    to_start_s: 3.0,
+    to_landing_s: 3.0,
+};
 
 pub fn vehicle_settings(kind: AutopilotKind) -> VehicleSettings {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
@@ -143,9 +148,8 @@ impl Flying {
 
     fn send(&mut self, message: &MavMessage) {
         if let MavMessage::COMMAND_LONG(data) = message {
-            let parameters = [
-                data.param1, data.param2, data.param3, data.param4, data.param5, data.param6, data.param7,
-            ];
+            let parameters =
+                [data.param1, data.param2, data.param3, data.param4, data.param5, data.param6, data.param7];
             self.commands.push((self.now, data.command as u32, parameters));
         }
         let mut raw = MAVLinkV2MessageRaw::new();

@@ -177,7 +177,8 @@ impl Flight {
         if self.battery_level() == BatteryLevel::Low
             && let Some(course) = self.sortie.course.ending_soon(along_s)
         {
-            let loss = format!("battery low: {} of {} periods", course.repeats(), self.sortie.course.repeats());
+            let loss =
+                format!("battery low: {} of {} periods", course.repeats(), self.sortie.course.repeats());
             self.note(now, Level::Warning, "battery", loss.clone());
             self.losses.push(loss);
             if let Lead::Along(track) = &mut self.guide.lead {

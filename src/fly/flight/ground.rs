@@ -80,12 +80,8 @@ impl Flight {
     pub(super) fn connect(&mut self, now: Duration) {
         match self.roster.choose(now, self.sortie.system) {
             Choice::Vehicle(vehicle, target, stack) => {
-                let text = format!(
-                    "system {} component {}, {}",
-                    target.system,
-                    target.component,
-                    stack.name()
-                );
+                let text =
+                    format!("system {} component {}, {}", target.system, target.component, stack.name());
                 self.note(now, Level::Information, "vehicle", text);
                 let telemetry = Telemetry::new(vehicle, stack, now);
                 self.contact = Some(super::Contact { target, telemetry });
@@ -185,9 +181,8 @@ impl Flight {
         let telemetry = &contact.telemetry;
         let mut missing = telemetry.estimator_faults(now);
         let motion = telemetry.motion.filter(|motion| now.saturating_sub(motion.at) < POSITION_FRESH);
-        let good = |since: Option<Duration>| {
-            since.is_some_and(|since| now.saturating_sub(since) >= ESTIMATOR_GOOD)
-        };
+        let good =
+            |since: Option<Duration>| since.is_some_and(|since| now.saturating_sub(since) >= ESTIMATOR_GOOD);
         match motion {
             None => missing.push("no local position arrives".to_owned()),
             Some(_) if !good(telemetry.position_since) => {

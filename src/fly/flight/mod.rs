@@ -3,7 +3,11 @@
 mod air;
 mod ground;
 mod leave;
+mod listen;
+mod status;
 mod watch;
+
+pub use status::Status;
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -19,8 +23,8 @@ use super::safety::{Guide, Lead};
 use super::setpoint::Place;
 use super::sortie::Sortie;
 use super::target::{Target, heartbeat};
-use super::telemetry::{Novelty, Telemetry};
-use crate::log::{self, Check, CrcSeeds, Frame};
+use super::telemetry::Telemetry;
+use crate::log::{self, CrcSeeds, Frame};
 use crate::units::deg_from_rad;
 use ground::Checking;
 use leave::Leaving;
@@ -122,10 +126,7 @@ impl Phase {
 
     /// Our mode is engaged and setpoints are ours.
     fn is_ours(&self) -> bool {
-        matches!(
-            self,
-            Self::Ready | Self::Arm | Self::Climb | Self::Transfer | Self::Gate(_) | Self::Course
-        )
+        matches!(self, Self::Ready | Self::Arm | Self::Climb | Self::Transfer | Self::Gate(_) | Self::Course)
     }
 
     /// The vehicle may be off the ground by our doing.
@@ -167,39 +168,6 @@ pub struct Flight {
     cause: Option<Cause>,
     flown: Flown,
     losses: Vec<String>,
-}
-
-/// What a display shows.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Status {
-    /// name of the phase
-    pub phase: &'static str,
-    /// off the ground by our doing
-    pub airborne: bool,
-    /// ended before its time
-    pub aborted: bool,
-    /// s along the trajectory, and all of it
-    pub progress_s: Option<(f64, f64)>,
-    /// the vehicle's mode in its own words
-    pub mode: Option<String>,
-    /// motors may turn
-    pub armed: bool,
-    /// period flown, of how many
-    pub period: (u32, u32),
-    /// distance to the reference, m
-    pub tracking_m: f64,
-    /// since the vehicle was heard, s
-    pub link_age_s: Option<f64>,
-    /// low or worse by the autopilot's own judgement
-    pub battery_is_low: bool,
-    /// percent
-    pub battery_percent: Option<i8>,
-    /// V
-    pub battery_v: Option<f64>,
-    /// x, y, z, m, world, local
-    pub position_m: Option<[f64; 3]>,
-    /// why the estimate cannot be flown by
-    pub estimator_faults: Vec<String>,
 }
 
 impl Flight {
@@ -300,110 +268,6 @@ impl Flight {
     #[must_use]
     pub fn wants_clearance(&self) -> bool {
         matches!(&self.phase, Phase::Check(checking) if checking.has_asked()) && self.clearance.is_none()
-    }
-
-    /// For a display.
-    #[must_use]
-    pub fn status(&self, now: Duration) -> Status {
-        let telemetry = self.contact.as_ref().map(|contact| &contact.telemetry);
-        let state = telemetry.and_then(|telemetry| Some((telemetry.stack(), telemetry.state?.value)));
-        let motion = telemetry.and_then(|telemetry| telemetry.motion);
-        Status {
-            phase: self.phase.name(),
-            airborne: self.phase.is_airborne(),
-            aborted: self.cause.is_some(),
-            progress_s: self.progress_s(now),
-            mode: state.map(|(stack, state)| stack.mode_name(state.custom_mode)),
-            armed: state.is_some_and(|(_, state)| state.armed),
-            period: (self.flown.periods, self.sortie.course.repeats()),
-            tracking_m: self.watch.tracking.latest_m(),
-            link_age_s: telemetry.map(|telemetry| now.saturating_sub(telemetry.heard).as_secs_f64()),
-            battery_is_low: self.battery_level() > BatteryLevel::Good,
-            battery_percent: telemetry.and_then(|telemetry| telemetry.battery?.value.1),
-            battery_v: telemetry.and_then(|telemetry| telemetry.battery_v),
-            position_m: motion.map(|motion| motion.value.position_m.into()),
-            estimator_faults: telemetry
-                .map(|telemetry| telemetry.estimator_faults(now))
-                .unwrap_or_default(),
-        }
-    }
-
-    fn progress_s(&self, now: Duration) -> Option<(f64, f64)> {
-        match (&self.phase, &self.guide.lead) {
-            (Phase::Course, Lead::Along(track)) => {
-                Some((track.clock.at(now).along_s, track.path.duration_s()))
-            }
-            _ => None,
-        }
-    }
-
-    fn hear(&mut self, now: Duration, frame: Frame<'_>) {
-        if frame.check(&self.seeds) != Check::Right {
-            return;
-        }
-        self.roster.hear(now, frame);
-        let Some(contact) = &mut self.contact else { return };
-        let header = frame.header();
-        if (header.system, header.component) != (contact.target.system, contact.target.component) {
-            if let Some(cause) = self.watch.masters.hear(frame, contact.target) {
-                self.end(now, cause);
-            }
-            return;
-        }
-        let news = contact.telemetry.take(now, frame);
-        match header.message_id {
-            // COMMAND_ACK; its addressee is an extension that may be zero
-            77 => {
-                let payload = frame.payload();
-                let ours = payload.u8(8) == 0
-                    || u32::from(payload.u8(8)) == self.sortie.settings.station.0.0;
-                if ours && let Some(answer) = self.commander.hear(now, payload) {
-                    self.answered(now, &answer);
-                }
-            }
-            148 => self.version(now, frame.payload()),
-            _ => {}
-        }
-        for novelty in news {
-            self.learn(now, novelty);
-        }
-        self.check_motion(now);
-    }
-
-    fn learn(&mut self, now: Duration, novelty: Novelty) {
-        let Some((_, stack)) = self.target() else { return };
-        match novelty {
-            Novelty::State { from, to } => {
-                let mode = stack.mode_name(to.custom_mode);
-                let armed = if to.armed { "armed" } else { "disarmed" };
-                if from.is_none_or(|from| (from.custom_mode, from.armed) != (to.custom_mode, to.armed)) {
-                    self.note(now, Level::Information, "mode", format!("{mode}, {armed}"));
-                }
-            }
-            Novelty::Text(severity, text) => {
-                let level = match severity {
-                    0..=3 => Level::Error,
-                    4 => Level::Warning,
-                    _ => Level::Information,
-                };
-                self.note(now, level, "vehicle", text);
-            }
-            Novelty::Reboot if self.phase.is_airborne() => self.end(now, Cause::Reboot),
-            Novelty::Reboot => {
-                self.end(now, Cause::Refused("the autopilot started anew; expected it to stay on".into()));
-            }
-            Novelty::EstimatorReset(what) if self.phase.is_airborne() => {
-                self.end(now, Cause::EstimatorReset(what));
-            }
-            Novelty::EstimatorReset(what) => self.note(now, Level::Warning, "estimator", what),
-            Novelty::Target(place_m) => {
-                if matches!(self.phase, Phase::Course)
-                    && let Some(cause) = self.watch.masters.check(now, &place_m)
-                {
-                    self.end(now, cause);
-                }
-            }
-        }
     }
 
     /// One step of time: the safety rules first, then the phase, then what is to be sent.

@@ -74,7 +74,10 @@ impl Flight {
     pub(super) fn check_stall(&mut self, now: Duration) {
         let gap = now.saturating_sub(self.guide.issued);
         if gap > STALL && self.guide.lead != Lead::Silent && self.phase.is_ours() {
-            self.end(now, Cause::Stalled(format!("the flight was not looked after for {} ms", gap.as_millis())));
+            self.end(
+                now,
+                Cause::Stalled(format!("the flight was not looked after for {} ms", gap.as_millis())),
+            );
         }
     }
 
@@ -125,7 +128,8 @@ impl Flight {
         if telemetry.battery_level() == BatteryLevel::Critical {
             return Some(Cause::Battery("it is critical".to_owned()));
         }
-        let bad = telemetry.estimator_bad_since.is_some_and(|since| now.saturating_sub(since) >= ESTIMATOR_BAD);
+        let bad =
+            telemetry.estimator_bad_since.is_some_and(|since| now.saturating_sub(since) >= ESTIMATOR_BAD);
         let unhealthy = telemetry.system.as_ref().is_some_and(|seen| !seen.value.unhealthy.is_empty());
         let unhealthy = self.watch.unhealthy.update(now, unhealthy) >= ESTIMATOR_BAD;
         if bad || unhealthy {
@@ -139,7 +143,9 @@ impl Flight {
         }
         if self.watch.failsafe.update(now, telemetry.is_in_failsafe()) >= FAILSAFE_ACTS {
             let said = telemetry.complaints_since(now.saturating_sub(Duration::from_secs(5))).join("; ");
-            return Some(Cause::Failsafe(format!("declared, and the mode is still ours; it says \"{said}\"")));
+            return Some(Cause::Failsafe(format!(
+                "declared, and the mode is still ours; it says \"{said}\""
+            )));
         }
         None
     }
@@ -197,7 +203,12 @@ impl Flight {
                     self.flown.paused_s += lasted_s;
                     self.losses.push(format!("the trajectory waited {lasted_s:.1} s for the link"));
                 }
-                self.note(now, Level::Warning, "link", format!("heard again after {lasted_s:.1} s of waiting"));
+                self.note(
+                    now,
+                    Level::Warning,
+                    "link",
+                    format!("heard again after {lasted_s:.1} s of waiting"),
+                );
             }
             _ => {}
         }

@@ -57,8 +57,7 @@ pub(super) struct Clearance {
 
 impl Clearance {
     pub(super) fn new(vehicle: log::Vehicle, rotors: usize, link: LinkKind) -> Self {
-        let download =
-            Download::new(vehicle, wanted(vehicle.autopilot, rotors), DownloadSettings::default());
+        let download = Download::new(vehicle, wanted(vehicle.autopilot, rotors), DownloadSettings::default());
         Self { vehicle, link, stage: Stage::Parameters(Box::new(download)) }
     }
 
@@ -122,7 +121,9 @@ impl Clearance {
         };
         let mut findings = preflight(&Situation {
             path: sortie.course.path(),
-            origin_m: status.position_m.map_or_else(Vector3::zeros, |[x, y, z]| flight.offset_m(&Vector3::new(x, y, z))),
+            origin_m: status
+                .position_m
+                .map_or_else(Vector3::zeros, |[x, y, z]| flight.offset_m(&Vector3::new(x, y, z))),
             home_m: None,
             vehicle,
             limits: &sortie.limits,

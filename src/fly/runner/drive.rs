@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
+use super::PARAMETERS;
 use super::clearance::{Clearance, Cleared};
 use super::journal::Journal;
 use super::stream::SharedGuide;
-use super::PARAMETERS;
 use crate::fly::finding;
 use crate::fly::flight::{Action, Event, Flight, Key};
 use crate::fly::live::{LiveIdentification, LiveSettings};
@@ -92,7 +92,9 @@ impl Drive {
         self.guide.set(self.flight.guide());
         while let Some(action) = self.flight.next_action() {
             match action {
-                Action::Send(message) => self.refused += u64::from(self.writer.send_message(&message).is_err()),
+                Action::Send(message) => {
+                    self.refused += u64::from(self.writer.send_message(&message).is_err())
+                }
                 Action::Note(note) => self.notes.push(note),
                 Action::Finished(outcome) => self.outcome = Some(outcome),
             }
@@ -130,7 +132,9 @@ impl Drive {
         let now = self.clock.elapsed();
         let (up, level, text) = match event {
             LinkEvent::Connected { peer } => (Some(true), Level::Information, format!("connected to {peer}")),
-            LinkEvent::Restored { peer } => (Some(true), Level::Warning, format!("connected again to {peer}")),
+            LinkEvent::Restored { peer } => {
+                (Some(true), Level::Warning, format!("connected again to {peer}"))
+            }
             LinkEvent::Lost { why } => (Some(false), Level::Warning, format!("lost: {why}")),
             other => (None, Level::Warning, format!("{other:?}")),
         };

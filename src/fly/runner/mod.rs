@@ -30,8 +30,8 @@ use super::sortie::Sortie;
 use super::target::Order;
 use super::view::{KeyCommand, ViewModel};
 use crate::link::{
-    Address, Link, LinkError, LinkOptions, LinkReader, LinkStats, LinkWriter, Received, RecordError, Recorder,
-    RecorderStatus, Signing,
+    Address, Link, LinkError, LinkOptions, LinkReader, LinkStats, LinkWriter, Received, RecordError,
+    Recorder, RecorderStatus, Signing,
 };
 use crate::vehicle::Vehicle;
 use drive::Drive;
@@ -163,9 +163,7 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
 fn kind_of(address: &Address) -> LinkKind {
     match address {
         // what a USB port is told of its speed means nothing, but a radio's does
-        Address::Serial { path, baud, .. } if !is_usb(path) => {
-            LinkKind::Serial { baud: f64::from(*baud) }
-        }
+        Address::Serial { path, baud, .. } if !is_usb(path) => LinkKind::Serial { baud: f64::from(*baud) },
         _ => LinkKind::Wide,
     }
 }
@@ -218,7 +216,8 @@ async fn last_words(writer: &LinkWriter, guide: &SharedGuide) {
         return;
     }
     for confirmation in 0..LAST_WORDS {
-        let message = target.command(&Order::set_mode(stack, Mode::Hold), u8::try_from(confirmation).unwrap_or(0));
+        let message =
+            target.command(&Order::set_mode(stack, Mode::Hold), u8::try_from(confirmation).unwrap_or(0));
         // nothing is left to do where the link refuses it
         let _ = writer.send_message(&message);
         tokio::time::sleep(LAST_WORD_PAUSE).await;

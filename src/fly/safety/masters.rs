@@ -65,11 +65,9 @@ impl Masters {
 
     /// Takes the target that the vehicle says it flies to, m, world.
     pub fn check(&mut self, now: Duration, target_m: &Vector3<f64>) -> Option<Cause> {
-        let nearest_m =
-            self.told.iter().map(|(_, told)| (told - target_m).norm()).min_by(f64::total_cmp)?;
-        (self.foreign.update(now, nearest_m > FOREIGN_M) > PATIENCE).then(|| {
-            Cause::SecondMaster(format!("the vehicle flies to a target {nearest_m:.2} m from ours"))
-        })
+        let nearest_m = self.told.iter().map(|(_, told)| (told - target_m).norm()).min_by(f64::total_cmp)?;
+        (self.foreign.update(now, nearest_m > FOREIGN_M) > PATIENCE)
+            .then(|| Cause::SecondMaster(format!("the vehicle flies to a target {nearest_m:.2} m from ours")))
     }
 }
 
