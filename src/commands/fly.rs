@@ -99,6 +99,11 @@ fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
     let sortie = sortie(args, &trajectory, &loaded.vehicle)?;
     let signing =
         args.signing_key_file.as_deref().map(Signing::open).transpose().map_err(|error| input(&error))?;
+    let tlog = args.out.join(fly::TLOG);
+    if tlog.exists() {
+        let name = tlog.display();
+        return Err(CommandError::Input(format!("--out: {name} exists already; expected a new folder")));
+    }
     std::fs::create_dir_all(&args.out).map_err(|error| {
         CommandError::Input(format!("cannot make the folder {}: {error}", args.out.display()))
     })?;

@@ -31,6 +31,7 @@ pub(super) struct Place {
     pub(super) dir: PathBuf,
     pub(super) vehicle: Vehicle,
     pub(super) link: LinkKind,
+    pub(super) address: String,
 }
 
 /// A flight under way.
@@ -63,6 +64,8 @@ impl Drive {
     ) -> Self {
         let mut model = ViewModel { title: place.vehicle.name.clone(), ..ViewModel::default() };
         model.tracking.limit_m = Some(flight.sortie().settings.tracking_max_m);
+        let waits = format!("{}: waiting for a vehicle", place.address);
+        let notes = vec![Note::new(clock.elapsed(), Level::Information, "link", waits)];
         Self {
             flight,
             guide,
@@ -72,7 +75,7 @@ impl Drive {
             clearance: None,
             decoder: None,
             live: None,
-            notes: Vec::new(),
+            notes,
             model,
             shown: Duration::ZERO,
             estimated: Duration::ZERO,

@@ -141,7 +141,8 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
     let stream =
         Stream::start(period, clock, guide.clone(), writer.clone(), stalled).map_err(make("a thread"))?;
     let flight = Flight::new(ride.sortie);
-    let place = drive::Place { dir: ride.dir, vehicle: ride.vehicle, link: kind_of(&ride.address) };
+    let (link, address) = (kind_of(&ride.address), ride.address.to_string());
+    let place = drive::Place { dir: ride.dir, vehicle: ride.vehicle, link, address };
     let drive = Drive::new(flight, guide.clone(), writer.clone(), clock, place);
     // a task of its own: were it to panic, there is still somebody to tell the vehicle
     let task = tokio::spawn(conduct(drive, reader, console, journal, stalls));
