@@ -141,8 +141,9 @@ fn the_abort_key_holds_then_lands_then_returns() {
         for (phase, stays_s) in [("hold", 30.0), ("land", 0.5), ("return", 2.0)] {
             flying.event(Event::Key(Key::Abort));
             assert_eq!(flying.phase(), phase);
-            let pressed = flying.now;
+            let pressed = flying.now - Duration::from_millis(1);
             flying.wait(stays_s);
+            assert!((1..=4).contains(&flying.commands_since(SET_MODE, pressed)), "{}", flying.story());
             assert_eq!(flying.phase(), phase, "nobody but the operator goes on: {}", flying.story());
             let late = pressed + Duration::from_millis(450);
             assert_eq!(flying.setpoints_since(late), 0, "setpoints end once the mode is seen");
@@ -295,12 +296,19 @@ fn a_short_silence_pauses_the_trajectory_and_a_long_one_ends_it() {
     assert_eq!(flying.outcome.as_ref().unwrap().ending, Ending::Landed, "{}", flying.story());
 }
 
+/// PX4 falls out of OFFBOARD unheard and comes back to it with the first setpoint that it hears: what is seen
+/// is a vehicle that is not where it was led.
 #[test]
-fn px4_fails_safe_in_a_silence_and_is_left_to_it() {
-    let (flying, since) = after(PX4, Fault::LinkSilence(Duration::from_millis(3500)));
-    assert!(matches!(flying.cause(), Cause::Override(_)), "{} {}", flying.cause(), flying.story());
-    let late = since + Duration::from_millis(3600);
-    assert_eq!((flying.setpoints_since(late), flying.commands_since(SET_MODE, late)), (0, 0));
+fn px4_fails_safe_in_a_silence_and_the_trajectory_is_not_resumed_elsewhere() {
+    let (flying, _) = after(PX4, Fault::LinkSilence(Duration::from_millis(3500)));
+    assert!(
+        matches!(flying.cause(), Cause::Override(_) | Cause::Tracking(_)),
+        "{} {}",
+        flying.cause(),
+        flying.story()
+    );
+    let outcome = flying.outcome.as_ref().unwrap();
+    assert!(outcome.flown.periods < 2 && outcome.ending == Ending::Landed, "{outcome:?}");
 }
 
 #[test]

@@ -6,13 +6,17 @@ use super::{Flight, Key, Phase};
 use crate::fly::commander::Manner;
 use crate::fly::modes::Mode;
 use crate::fly::outcome::{Cause, Ending, Level};
-use crate::fly::safety::Lead;
+use crate::fly::safety::{Lead, Sustained};
 use crate::fly::setpoint::Place;
 use crate::fly::target::Order;
 
 /// A mode that is not entered within this time is not going to be.
 const HOLD_BY: Duration = Duration::from_secs(3);
 const LAND_BY: Duration = Duration::from_secs(5);
+/// A mode that was accepted, or not answered, is asked for again after this time.
+const ASK_AGAIN: Duration = Duration::from_millis(400);
+/// An autopilot that disarms after its landing may change its mode before it is heard to stand on the ground.
+const GROUND_IS_HEARD: Duration = Duration::from_millis(1500);
 /// From the order to land to the ground; a vehicle that returns first flies home.
 const GROUND_BY: Duration = Duration::from_secs(180);
 /// On the ground, the autopilot disarms by itself; after this long it is told to.
@@ -27,13 +31,17 @@ const BRAKING_M_S2: f64 = 3.0;
 pub(super) struct Leaving {
     wish: Mode,
     wished: Duration,
+    /// when it was last asked for
+    asked: Duration,
     /// when the wished mode was first seen
     reached: Option<Duration>,
+    /// seen in another mode after that
+    left: Sustained,
     /// somebody decides what follows a hold
     by_operator: bool,
     /// the program ends by then
     stop_by: Option<Duration>,
-    landed: super::super::safety::Sustained,
+    landed: Sustained,
 }
 
 impl Leaving {
@@ -41,10 +49,12 @@ impl Leaving {
         Self {
             wish,
             wished: now,
+            asked: now,
             reached: None,
+            left: Sustained::default(),
             by_operator: false,
             stop_by: None,
-            landed: super::super::safety::Sustained::default(),
+            landed: Sustained::default(),
         }
     }
 
@@ -90,6 +100,9 @@ impl Flight {
     }
 
     fn ask(&mut self, now: Duration, wish: Mode) {
+        if let Phase::Leave(leaving) = &mut self.phase {
+            leaving.asked = now;
+        }
         if let Some((_, stack)) = self.target() {
             self.commander.give(now, Order::set_mode(stack, wish), Manner::URGENT);
         }
@@ -99,7 +112,7 @@ impl Flight {
         let armed = self.is_armed();
         let Phase::Leave(leaving) = &self.phase else { return };
         let (wish, wished, stop_by) = (leaving.wish, leaving.wished, leaving.stop_by);
-        let seen = self.is_in(wish);
+        let (seen, on_ground) = (self.is_in(wish), self.is_on_ground());
         if !armed {
             self.finish(now, if self.stand.is_some() { Ending::Landed } else { Ending::NotFlown });
             return;
@@ -115,14 +128,17 @@ impl Flight {
                 leaving.reached = Some(now);
                 self.guide.lead = Lead::Silent;
             }
-            (true, Some(_)) => {}
-            // somebody else has chosen another mode after ours; one on the ground says nothing
-            (false, Some(_)) if !self.is_on_ground() => {
-                let mode = self.mode_name();
-                self.end(now, Cause::Override(format!("{} left for {mode}", self.phase.name())));
-                return;
+            (true, Some(_)) => {
+                leaving.left.update(now, false);
             }
-            (false, Some(_)) => {}
+            // somebody else has chosen another mode after ours; one on the ground says nothing
+            (false, Some(_)) => {
+                if leaving.left.update(now, !on_ground) > GROUND_IS_HEARD {
+                    let mode = self.mode_name();
+                    self.end(now, Cause::Override(format!("{} left for {mode}", self.phase.name())));
+                    return;
+                }
+            }
             (false, None) => {
                 self.insist(now, wish, wished);
                 return;
@@ -152,8 +168,9 @@ impl Flight {
                 self.wish(now, next);
             }
             None => {
-                let order = self.target().map(|(_, stack)| Order::set_mode(stack, wish));
-                if order.is_some_and(|order| !self.commander.waits_for(&order)) {
+                let due = matches!(&self.phase, Phase::Leave(leaving)
+                    if now.saturating_sub(leaving.asked) >= ASK_AGAIN);
+                if due {
                     self.ask(now, wish);
                 }
             }
