@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use mavid::config::{LoadedVehicle, parse_vehicle, read_vehicle};
-use mavid::link::{Address, Link, LinkOptions};
+use mavid::link::{Address, LinkOptions};
 use mavid::log::{ComponentId, SystemId};
 use mavid::sitl::{
     ArduPilotRelease, AutopilotKind, LinkRole, Pace, SensorSettings, Settings, Vehicle, serve,
@@ -12,7 +12,7 @@ use mavid::sitl::{
 use serde::Serialize;
 
 use super::effects::{effects, effects_file};
-use super::{CommandError, Outcome, output};
+use super::{CommandError, Outcome, network, output};
 use crate::cli::{ArduPilotVersion, AutopilotName, SitlArgs};
 
 /// The vehicle that flies where none is given.
@@ -47,12 +47,7 @@ pub fn run(json: bool, args: &SitlArgs) -> Result<Outcome, CommandError> {
     };
     let limit = args.duration.map(|seconds| seconds_from("duration", seconds)).transpose()?;
     let vehicle = Vehicle::new(settings).map_err(|error| CommandError::Input(error.to_string()))?;
-    let runtime = tokio::runtime::Builder::new_multi_thread()
-        .worker_threads(2)
-        .enable_all()
-        .build()
-        .map_err(|error| CommandError::Failure(format!("cannot start the runtime: {error}")))?;
-    runtime.block_on(fly(vehicle, &addresses, (pace, limit), json, &document))?;
+    network::block_on(fly(vehicle, &addresses, (pace, limit), json, &document))?;
     Ok(Outcome::Done)
 }
 
@@ -70,9 +65,7 @@ async fn fly(
             component: ComponentId(1),
             ..LinkOptions::default()
         };
-        let ends = Link::open(address, options)
-            .await
-            .map_err(|error| CommandError::Failure(format!("cannot open {address}: {error}")))?;
+        let ends = network::open(&address.to_string(), options).await?;
         links.push((role(address), ends));
     }
     if json {
@@ -82,7 +75,7 @@ async fn fly(
     }
     let stop = async {
         // where the signal cannot be had, the program is ended by the system
-        if tokio::signal::ctrl_c().await.is_err() {
+        if network::interrupted().await.is_err() {
             std::future::pending::<()>().await;
         }
     };

@@ -3,7 +3,7 @@
 mod closed_loop;
 mod playback;
 
-pub use closed_loop::{SIGNALS, TenSignals, autopilot_flight, resimulated};
+pub use closed_loop::{SIGNALS, TenSignals, autopilot_flight, recorded_tracking_m, resimulated};
 pub use playback::{Fit, PlaybackSettings, playback};
 
 use crate::simulate::SimulateError;

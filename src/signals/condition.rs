@@ -59,6 +59,8 @@ pub struct Signals {
     /// what the commands' jitter adds to the wrench if the rotors follow all of it (N, N m); they follow
     /// a share of it between none and all
     pub jitter_wrench: Option<Vec<Vector4<f64>>>,
+    /// V; `None` where it is not recorded
+    pub battery_voltage_v: Option<Vec<f64>>,
     /// what was commanded
     pub reference: Option<Reference>,
     /// where things came from and what was repaired
@@ -195,6 +197,7 @@ pub fn condition(
         rotor_thrust_n: felt.rotor_thrust_n,
         wrench: felt.wrench,
         jitter_wrench: felt.jitter_wrench,
+        battery_voltage_v: battery_voltage_v(recording, &grid),
         reference: reference(recording, &grid),
         quality: Quality {
             sources,
@@ -302,6 +305,14 @@ impl Motion {
         let world_acceleration = plain(chosen.world_acceleration);
         Self { attitude, rate, specific_force, world_acceleration, position, velocity, offsets }
     }
+}
+
+/// By straight lines between the samples that are known.
+fn battery_voltage_v(recording: &Recording, grid: &Grid) -> Option<Vec<f64>> {
+    let (_, raw) = best(recording, Quantity::BatteryVoltage, |s| s.width == 1)?;
+    let known = raw.time_s.iter().zip(&raw.values).filter(|(_, volts)| (0.1..1e3).contains(*volts));
+    let (time_s, values) = known.map(|(time_s, volts)| (*time_s, *volts)).unzip();
+    super::linear_onto(&Stream { time_s, width: 1, values }, 0.0, grid)
 }
 
 /// The commanded acceleration and yaw, by first-order hold; `None` where they were not recorded.

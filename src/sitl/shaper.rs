@@ -34,6 +34,9 @@ pub(super) struct Wish {
     pub(super) acceleration_m_s2: Vector3<f64>,
 }
 
+/// How much slower the position's loop is than the velocity's (ArduPilot's `CONTROL_TIME_CONSTANT_RATIO`).
+const LOOP_RATIO: f64 = 4.0;
+
 /// The reference, world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Shaper {
@@ -94,10 +97,9 @@ fn shaped<const D: usize>(
     period_s: f64,
 ) -> SVector<f64, D> {
     let pole = bounds.jerk / bounds.acceleration;
-    // half of the acceleration is kept for the correction of the velocity
-    let braking = 0.5 * bounds.acceleration;
+    let braking = bounds.acceleration * (1.0 - 1.0 / LOOP_RATIO);
     let error = (position - p).map(|error| if error.is_nan() { 0.0 } else { error });
-    let wanted = root_law(&error, 0.5 * pole, braking);
+    let wanted = root_law(&error, pole / LOOP_RATIO, braking);
     let wanted = capped(&wanted, bounds) + velocity;
     let turn = root_law(&(wanted - v), pole, bounds.jerk).cap_magnitude(bounds.acceleration);
     let target = (turn + acceleration).cap_magnitude(bounds.acceleration);

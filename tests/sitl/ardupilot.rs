@@ -211,7 +211,7 @@ fn lively(settings: Settings) -> f64 {
 fn its_limits_in_guided_make_it_miss_a_lively_trajectory_unless_they_are_raised() {
     let limited = lively(settings(COPTER));
     let raised = lively(with(&[("WP_ACC", 20.0), ("PSC_JERK_NE", 100.0), ("WP_SPD", 20.0)]));
-    assert!(limited > 0.4 && raised < 0.15, "{limited} {raised}");
+    assert!(limited > 2.0 * raised && raised < 0.3, "{limited} {raised}");
     let old = Settings {
         parameters: [("WPNAV_ACCEL", 2000.0), ("PSC_JERK_XY", 100.0), ("WPNAV_SPEED", 2000.0)]
             .map(|(name, value)| (name.to_owned(), value))
@@ -378,7 +378,7 @@ fn a_download_of_parameters_slows_its_streams() {
         ground.wait(0.02);
     }
     let values = ground.received.iter().filter(|(_, id, _)| *id == 22);
-    let (first, last) = (values.clone().next().unwrap().0, values.clone().last().unwrap().0);
+    let (first, last) = (values.clone().next().unwrap().0, values.clone().next_back().unwrap().0);
     let during =
         ground.received.iter().filter(|(time, id, _)| *id == 30 && *time > first && *time < last).count();
     let rate_hz = during as f64 / (last - first).as_secs_f64();

@@ -9,6 +9,7 @@ use std::time::Duration;
 use mavid::config::read_vehicle;
 use mavid::log::{ComponentId, Frame, SystemId};
 use mavid::sitl::{AutopilotKind, Fault, LinkId, LinkRole, Mode, Outgoing, Settings, Vehicle};
+use mavid::units::narrow;
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 
@@ -92,8 +93,8 @@ impl Ground {
 
     /// The same with a setpoint every 20 ms.
     pub fn stream(&mut self, seconds: f64, setpoint: &MavMessage) {
-        let steps = (seconds / 0.02).round() as usize;
-        for _ in 0..steps {
+        let end = self.now + Duration::from_secs_f64(seconds);
+        while self.now < end {
             self.send(setpoint);
             self.wait(0.02);
         }
@@ -183,7 +184,7 @@ impl Ground {
     }
 
     pub fn set_interval(&mut self, id: u32, rate_hz: f64) -> u8 {
-        self.command(511, [id as f32, (1e6 / rate_hz) as f32, 0.0, 0.0, 0.0, 0.0, 0.0])
+        self.command(511, [id as f32, narrow(1e6 / rate_hz), 0.0, 0.0, 0.0, 0.0, 0.0])
     }
 
     pub fn fault(&mut self, fault: Fault) {
@@ -260,7 +261,7 @@ impl Ground {
     pub fn take_off(&mut self, height_m: f64) {
         self.wait(3.0);
         if self.kind == AutopilotKind::Px4 {
-            let above_sea = 488.0 + height_m as f32;
+            let above_sea = 488.0 + narrow(height_m);
             assert_eq!(self.command(22, [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, above_sea]), 0);
             assert_eq!(self.arm(), 0, "{:?}", self.texts());
         } else {
@@ -268,7 +269,7 @@ impl Ground {
             self.set_interval(245, 5.0);
             assert_eq!(self.set_mode(Mode::Guided), 0);
             assert_eq!(self.arm(), 0, "{:?}", self.texts());
-            assert_eq!(self.command(22, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height_m as f32]), 0);
+            assert_eq!(self.command(22, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, narrow(height_m)]), 0);
         }
         self.wait(4.0 + 2.0 * height_m);
         let [_, _, down] = self.position();

@@ -52,8 +52,9 @@ impl Fit {
 /// Plays the recorded actuators back through a model.
 ///
 /// `signals` must be conditioned with `vehicle`, which `model` is made of, because its thrust law turns
-/// commands into thrusts. Where the rotor speeds were measured, effects between command and speed are
-/// left out; where the log holds force and torque, they are shared out to the rotors.
+/// commands into thrusts. Where the rotor speeds were measured, effects between command and speed (lag, delay,
+/// sag with the battery) are left out, and the rotors spin up as measured; where the log holds force and
+/// torque, they are shared out to the rotors. The battery's voltage is the recorded one.
 ///
 /// # Errors
 /// If attitude or rates are missing, no window fits, or the model cannot be simulated.
@@ -146,16 +147,16 @@ impl<'a> MeasuredStates<'a> {
     }
 }
 
-/// Relative rotor speeds asked for (or measured) at each instant.
-struct Commands {
-    grid: Grid,
+/// Relative rotor speeds asked for (or measured) at each instant, and the battery's voltage.
+struct Commands<'a> {
+    signals: &'a Signals,
     delay_instants: f64,
     thrusts_n: Vec<[f64; MAX_ROTORS]>,
-    model: Model,
+    model: &'a Model,
 }
 
-impl Commands {
-    fn of(model: &Model, vehicle: &Vehicle, signals: &Signals) -> Result<Self, CompareError> {
+impl<'a> Commands<'a> {
+    fn of(model: &'a Model, vehicle: &Vehicle, signals: &'a Signals) -> Result<Self, CompareError> {
         let rotors = model.airframe.rotor_count();
         let mut thrusts_n = vec![[0.0; MAX_ROTORS]; signals.grid.count];
         if signals.rotor_thrust_n.is_empty() {
@@ -168,12 +169,7 @@ impl Commands {
                 thrusts_n[..rotors].copy_from_slice(recorded);
             }
         }
-        Ok(Self {
-            grid: signals.grid,
-            delay_instants: model.command_delay_s() / signals.grid.step_s,
-            thrusts_n,
-            model: model.clone(),
-        })
+        Ok(Self { signals, delay_instants: model.command_delay_s() / signals.grid.step_s, thrusts_n, model })
     }
 
     /// What acts `share` of the way from one instant to the next.
@@ -186,12 +182,24 @@ impl Commands {
             left -= 1;
         }
         let (right, part) = ((left + 1).min(last), place - left as f64);
-        let time_s = self.grid.time_s(index) + share * self.grid.step_s;
-        let mut input = Input::from_commands(&self.model.airframe, time_s, &[]);
-        for rotor in 0..self.model.airframe.rotor_count() {
+        let Signals { grid, quality, battery_voltage_v, .. } = self.signals;
+        let airframe = &self.model.airframe;
+        let mut input = Input::from_commands(airframe, grid.time_s(index) + share * grid.step_s, &[]);
+        let measured = quality.thrust_source == ThrustSource::MeasuredSpeed;
+        for rotor in 0..airframe.rotor_count() {
             let (a, b) = (self.thrusts_n[left][rotor], self.thrusts_n[right][rotor]);
-            input.speed_command[rotor] = self.model.airframe.relative_speed_of_thrust(a + part * (b - a));
+            let speed = airframe.relative_speed_of_thrust(a + part * (b - a));
+            input.speed_command[rotor] = speed;
+            if measured && speed > 0.0 {
+                // T = T_hover n^2, so n' = T' / (2 T_hover n)
+                let thrust_rate_n_s = (b - a) / grid.step_s;
+                input.speed_rate_1_s[rotor] = thrust_rate_n_s / (2.0 * airframe.hover_thrust_n * speed);
+            }
         }
+        // of now: commands travel, the battery does not
+        let next = (index + 1).min(last);
+        input.battery_voltage_v =
+            battery_voltage_v.as_ref().map(|volts| volts[index] + share * (volts[next] - volts[index]));
         input
     }
 }

@@ -54,15 +54,13 @@ impl Effect for GroundEffect {
         airframe.propulsion.rotor_radius_m.is_none().then_some("rotor_radius")
     }
 
-    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
         let [rho, ca, cb] = [own.parameters[0], own.parameters[1], own.parameters[2]];
-        let mut sum = Wrench::zero();
-        for (arm, thrust_n) in at.arms_m().zip(&rotors.thrust_n) {
-            let radii = height_in_radii(at, &arm);
+        for (arm, thrust_n) in at.arms_m().iter().zip(&rotors.thrust_n) {
+            let radii = height_in_radii(at, arm);
             let gain = cheeseman_bennett(rho, radii) - 1.0 + ca * (-cb * radii).exp();
-            sum += Wrench::at(&arm, Vector3::z() * (thrust_n * gain));
+            sum.lift_at(arm, thrust_n * gain);
         }
-        sum
     }
 
     fn has_regressor(&self) -> bool {
@@ -73,14 +71,13 @@ impl Effect for GroundEffect {
         let [rho, ca, cb] = [parameters[0], parameters[1], parameters[2]];
         let [by_rho, by_ca, by_cb] = columns else { return };
         (*by_rho, *by_ca, *by_cb) = (Wrench::zero(), Wrench::zero(), Wrench::zero());
-        for (arm, thrust_n) in at.arms_m().zip(&rotors.thrust_n) {
-            let radii = height_in_radii(at, &arm);
-            let lift = |gain: f64| Wrench::at(&arm, Vector3::z() * (thrust_n * gain));
+        for (arm, thrust_n) in at.arms_m().iter().zip(&rotors.thrust_n) {
+            let radii = height_in_radii(at, arm);
             let share = cheeseman_bennett(rho, radii);
-            *by_rho += lift(share * share / (16.0 * radii * radii));
+            by_rho.lift_at(arm, thrust_n * share * share / (16.0 * radii * radii));
             let decay = (-cb * radii).exp();
-            *by_ca += lift(decay);
-            *by_cb += lift(-ca * radii * decay);
+            by_ca.lift_at(arm, thrust_n * decay);
+            by_cb.lift_at(arm, -thrust_n * ca * radii * decay);
         }
     }
 }

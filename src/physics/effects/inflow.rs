@@ -1,7 +1,5 @@
 //! Climbing costs thrust.
 
-use nalgebra::Vector3;
-
 use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = -(kz / N) n_i (v_air + w x r_i)_z e_z` at each hub, with `kz` of the whole vehicle at hover: the blades
@@ -16,9 +14,11 @@ const PARAMETERS: &[Parameter] = &[Parameter { name: "kz", unit: "N/(m/s)", min:
 /// Force and torque for one N/(m/s).
 fn per_coefficient(at: &Condition, rotors: &Rotors) -> Wrench {
     let share = -1.0 / at.airframe.rotor_count() as f64;
-    at.hubs().zip(&rotors.speed).fold(Wrench::zero(), |sum, ((arm, air), speed)| {
-        sum + Wrench::at(&arm, Vector3::z() * (share * speed * air.z))
-    })
+    let mut sum = Wrench::zero();
+    for ((arm, air), speed) in at.hubs().zip(&rotors.speed) {
+        sum.lift_at(arm, share * speed * air.z);
+    }
+    sum
 }
 
 impl Effect for Inflow {
@@ -38,8 +38,8 @@ impl Effect for Inflow {
         &[Hook::Wrench]
     }
 
-    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
-        per_coefficient(at, rotors) * own.parameters[0]
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
+        *sum += per_coefficient(at, rotors) * own.parameters[0];
     }
 
     fn is_linear(&self) -> bool {

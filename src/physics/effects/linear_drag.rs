@@ -34,15 +34,12 @@ impl Effect for LinearDrag {
         &[Hook::Wrench]
     }
 
-    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
         let share = -1.0 / at.airframe.rotor_count() as f64;
-        let drag = Vector3::from_column_slice(own.parameters);
-        let mut sum = Wrench::zero();
+        let drag = own.axes();
         for ((arm, air), speed) in at.hubs().zip(&rotors.speed) {
-            let force = air.component_mul(&drag) * (share * speed);
-            sum += Wrench::at(&arm, force);
+            sum.push_at(arm, &(air.component_mul(&drag) * (share * speed)));
         }
-        sum
     }
 
     fn is_linear(&self) -> bool {
@@ -56,7 +53,7 @@ impl Effect for LinearDrag {
             for ((arm, air), speed) in at.hubs().zip(&rotors.speed) {
                 let mut force = Vector3::zeros();
                 force[axis] = air[axis] * share * speed;
-                *column += Wrench::at(&arm, force);
+                column.push_at(arm, &force);
             }
         }
     }

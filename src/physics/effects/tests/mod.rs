@@ -1,5 +1,6 @@
 mod laws;
 mod limits;
+mod speed;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -28,6 +29,7 @@ fn vehicle() -> Vehicle {
             torque_per_thrust_m: 0.016,
             rotor_radius_m: Some(0.165),
             time_constant_s: None,
+            time_constant_down_s: None,
         },
         rotors: vec![
             rotor(0.17, 0.17, Spin::Cw),
