@@ -79,6 +79,8 @@ pub struct Flying {
     pub down: Way,
     /// frames of these messages get lost on their way down
     pub swallowed: Vec<u32>,
+    /// what the stream has to tell the flight
+    stalled: Option<Duration>,
     streamer: Streamer,
     link: LinkId,
     sequence: u8,
@@ -137,6 +139,7 @@ impl Flying {
             up: Way::new(1),
             down: Way::new(2),
             swallowed: Vec::new(),
+            stalled: None,
             link,
             sequence: 0,
         }
@@ -188,6 +191,9 @@ impl Flying {
             }
         }
         if alive {
+            if let Some(gap) = self.stalled.take() {
+                self.event(Event::Stalled(gap));
+            }
             for bytes in self.down.take(self.now) {
                 self.event(Event::Frame(Frame::at_start(&bytes).unwrap()));
             }
@@ -202,7 +208,8 @@ impl Flying {
                 self.setpoints.push((self.now, setpoint));
                 self.send(&message);
             }
-            Some(Streamed::Stalled { setpoint, command, .. }) => {
+            Some(Streamed::Stalled { gap, setpoint, command }) => {
+                self.stalled = Some(gap);
                 if let Some(setpoint) = setpoint {
                     self.send(&setpoint);
                 }

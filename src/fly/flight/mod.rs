@@ -272,7 +272,6 @@ impl Flight {
 
     /// One step of time: the safety rules first, then the phase, then what is to be sent.
     fn step(&mut self, now: Duration) {
-        self.check_stall(now);
         self.guide.issued = now;
         self.supervise(now);
         match &self.phase {

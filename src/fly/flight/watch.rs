@@ -25,8 +25,6 @@ const ENGAGING: Duration = Duration::from_millis(1500);
 const LATE_REPORT: Duration = Duration::from_millis(400);
 /// An autopilot that declares an emergency changes its mode by itself, within this time.
 const FAILSAFE_ACTS: Duration = Duration::from_secs(1);
-/// A supervisor that was held up for longer has lost the vehicle.
-const STALL: Duration = Duration::from_millis(100);
 /// Beyond what is planned, degrees.
 const TILT_BEYOND_DEG: f64 = 20.0;
 const TILT_LEAST_DEG: f64 = 25.0;
@@ -70,17 +68,6 @@ impl Watch {
 }
 
 impl Flight {
-    /// The step before this one was too long ago while setpoints were streamed.
-    pub(super) fn check_stall(&mut self, now: Duration) {
-        let gap = now.saturating_sub(self.guide.issued);
-        if gap > STALL && self.guide.lead != Lead::Silent && self.phase.is_ours() {
-            self.end(
-                now,
-                Cause::Stalled(format!("the flight was not looked after for {} ms", gap.as_millis())),
-            );
-        }
-    }
-
     /// All rules that hold while the vehicle is ours.
     pub(super) fn supervise(&mut self, now: Duration) {
         if self.contact.is_none() || matches!(self.phase, Phase::Done) {

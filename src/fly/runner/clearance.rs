@@ -7,14 +7,18 @@ use mavlink::dialects::ardupilotmega::MavMessage;
 use crate::fly::finding::{Finding, Level};
 use crate::fly::flight::Flight;
 use crate::fly::parameters::{Download, DownloadSettings, Parameters, wanted};
-use crate::fly::preflight::{BatteryState, Fence, Readiness, Situation, preflight};
+use crate::fly::preflight::{
+    BatteryState, Fence, FenceDownload, FenceOutcome, Geodetic, Readiness, Situation, preflight,
+};
 use crate::fly::requests::{Capacity, LinkKind, RequestSettings, Requests, request_set, slow_request_set};
-use crate::log::{self, Frame};
+use crate::log::{self, Frame, Payload};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
 /// Subjects that the flight itself waits for: no refusal yet.
 const AWAITED: [&str; 4] = ["estimate", "pre-arm", "home", "health"];
+
+const GPS_GLOBAL_ORIGIN: u32 = 49;
 
 /// What came of it.
 #[derive(Debug)]
@@ -53,12 +57,16 @@ pub(super) struct Clearance {
     vehicle: log::Vehicle,
     link: LinkKind,
     stage: Stage,
+    fence: FenceDownload,
+    /// where the local frame lies, as GPS_GLOBAL_ORIGIN says
+    origin: Option<Geodetic>,
 }
 
 impl Clearance {
     pub(super) fn new(vehicle: log::Vehicle, rotors: usize, link: LinkKind) -> Self {
         let download = Download::new(vehicle, wanted(vehicle.autopilot, rotors), DownloadSettings::default());
-        Self { vehicle, link, stage: Stage::Parameters(Box::new(download)) }
+        let (stage, fence) = (Stage::Parameters(Box::new(download)), FenceDownload::new(vehicle));
+        Self { vehicle, link, stage, fence, origin: None }
     }
 
     pub(super) fn take_event(&mut self, event: &log::Event<'_>) {
@@ -68,6 +76,11 @@ impl Clearance {
     }
 
     pub(super) fn take_frame(&mut self, frame: &Frame<'_>) {
+        let header = frame.header();
+        if header.system == self.vehicle.system && header.message_id == GPS_GLOBAL_ORIGIN {
+            self.origin = Some(geodetic(frame.payload()));
+        }
+        self.fence.take_frame(frame);
         match &mut self.stage {
             Stage::Parameters(download) => download.take_frame(frame),
             Stage::Rates(_, requests) => requests.take_frame(frame),
@@ -82,7 +95,9 @@ impl Clearance {
             Stage::Rates(_, requests) => requests.poll(now),
             Stage::Over => None,
         };
+        let message = message.or_else(|| self.fence.poll(now));
         if message.is_none()
+            && self.fence.outcome().is_some()
             && let Stage::Parameters(download) = &self.stage
             && download.is_done(now)
             && let Stage::Parameters(download) = std::mem::replace(&mut self.stage, Stage::Over)
@@ -105,9 +120,25 @@ impl Clearance {
             return None;
         };
         let report = requests.report();
+        let mut findings = self.findings(flight, vehicle, (&parameters, now));
+        findings.extend(report.findings());
+        let lines = report.streams.iter().map(|stream| stream.line()).collect();
+        Some(Cleared { parameters: *parameters, findings, lines })
+    }
+
+    fn findings(
+        &self,
+        flight: &Flight,
+        vehicle: &Vehicle,
+        (parameters, now): (&Parameters, Duration),
+    ) -> Vec<Finding> {
         let status = flight.status(now);
         let sortie = flight.sortie();
-        let fence = Fence::new(&parameters, &[], None);
+        let mut fence = Fence::new(parameters, self.fence.items(), self.origin.as_ref());
+        if let Some(FenceOutcome::Incomplete { came, of }) = self.fence.outcome() {
+            let of = of.map_or("an unknown number of".to_owned(), |of| of.to_string());
+            fence.unknown.push(format!("{came} of {of} items came"));
+        }
         let battery = BatteryState {
             remaining_percent: status.battery_percent.map(f64::from),
             is_low: status.battery_is_low,
@@ -119,7 +150,7 @@ impl Clearance {
             armed: status.armed,
             ..Readiness::default()
         };
-        let mut findings = preflight(&Situation {
+        preflight(&Situation {
             path: sortie.course.path(),
             origin_m: status
                 .position_m
@@ -127,14 +158,16 @@ impl Clearance {
             home_m: None,
             vehicle,
             limits: &sortie.limits,
-            parameters: &parameters,
+            parameters,
             fence: &fence,
             battery: &battery,
             readiness: &readiness,
             own_system: u8::try_from(sortie.settings.station.0.0).unwrap_or(u8::MAX),
-        });
-        findings.extend(report.findings());
-        let lines = report.streams.iter().map(|stream| stream.line()).collect();
-        Some(Cleared { parameters: *parameters, findings, lines })
+        })
     }
+}
+
+fn geodetic(origin: Payload<'_>) -> Geodetic {
+    let degrees = |offset: usize| 1e-7 * f64::from(origin.i32(offset));
+    Geodetic { latitude_deg: degrees(0), longitude_deg: degrees(4) }
 }
