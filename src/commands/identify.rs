@@ -141,7 +141,3 @@ fn conditioned(
 }
 
 /// Writes a file of results.
-pub fn write(path: &Path, text: &str) -> Result<(), CommandError> {
-    std::fs::write(path, text)
-        .map_err(|error| CommandError::Input(format!("cannot write {}: {error}", path.display())))
-}

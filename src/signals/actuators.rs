@@ -261,6 +261,7 @@ mod tests {
                 torque_per_thrust_m: 0.016,
                 rotor_radius_m: None,
                 time_constant_s: None,
+                time_constant_down_s: None,
             },
             rotors: vec![
                 rotor(0.2, 0.2, Spin::Cw),
