@@ -49,6 +49,19 @@ pub fn load(path: &Path, read_as: &ReadAs<'_>) -> Result<Flight, CommandError> {
     Ok(Flight { recording, input: InputFile { path: path.display().to_string(), sha256, losses } })
 }
 
+/// The same file twice is refused.
+pub fn refuse_twins(inputs: &[&InputFile]) -> Result<(), CommandError> {
+    for (index, input) in inputs.iter().enumerate() {
+        if let Some(twin) = inputs[..index].iter().find(|other| other.sha256 == input.sha256) {
+            return Err(CommandError::Input(format!(
+                "{} and {} are the same recording byte for byte; expected different flights",
+                twin.path, input.path
+            )));
+        }
+    }
+    Ok(())
+}
+
 fn sha256_of(path: &Path) -> std::io::Result<String> {
     let mut hasher = Sha256::new();
     std::io::copy(&mut std::fs::File::open(path)?, &mut hasher)?;

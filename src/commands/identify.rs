@@ -8,9 +8,8 @@ use mavid::report::{
 use mavid::signals::{ConditionSettings, Quality, Signals, ThrustPreference, condition};
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
-use std::path::Path;
 
-use super::flights::{ReadAs, is_csv, load};
+use super::flights::{ReadAs, is_csv, load, refuse_twins};
 use super::{CommandError, Outcome, output};
 use crate::cli::IdentifyArgs;
 
@@ -35,10 +34,10 @@ pub fn run(json: bool, args: &IdentifyArgs) -> Result<Outcome, CommandError> {
     }
     if let Some(path) = &args.out {
         let text = model_toml(&identification, &vehicle, &inputs, scale.as_ref())?;
-        write(path, &text)?;
+        output::file(path, &text)?;
     }
     if let Some(path) = &args.chart {
-        write(path, &svg(&history_charts(&identification)))?;
+        output::file(path, &svg(&history_charts(&identification)))?;
     }
     let mut outcome = Outcome::Done;
     for input in inputs.iter().filter(|input| !input.losses.is_empty()) {
@@ -88,18 +87,6 @@ fn conditioned(
     let done: Vec<Result<(Signals, InputFile), CommandError>> = args.logs.par_iter().map(one).collect();
     let (flights, inputs): (Vec<Signals>, Vec<InputFile>) =
         done.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
-    for (index, input) in inputs.iter().enumerate() {
-        if let Some(twin) = inputs[..index].iter().find(|other| other.sha256 == input.sha256) {
-            return Err(CommandError::Input(format!(
-                "{} and {} are the same recording byte for byte; expected different flights",
-                twin.path, input.path
-            )));
-        }
-    }
+    refuse_twins(&inputs.iter().collect::<Vec<_>>())?;
     Ok((flights, inputs))
-}
-
-fn write(path: &Path, text: &str) -> Result<(), CommandError> {
-    std::fs::write(path, text)
-        .map_err(|error| CommandError::Input(format!("cannot write {}: {error}", path.display())))
 }

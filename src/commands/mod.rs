@@ -3,13 +3,19 @@
 //! To add a verb: a variant in [`Verb`], a file here with `run(json, args)`, and an arm in [`run`].
 
 mod effects;
+mod explain;
+mod export;
 mod flights;
 mod identify;
 mod inspect;
+mod network;
 mod output;
 mod plan;
+mod record;
+mod replay;
 mod prove;
 mod simulate;
+mod sitl;
 mod validate;
 mod vehicle;
 
@@ -82,8 +88,13 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Plan(args) => plan::run(cli.json, args),
         Verb::Identify(args) => identify::run(cli.json, args),
         Verb::Simulate(args) => simulate::run(cli.json, args),
+        Verb::Sitl(args) => sitl::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
+        Verb::Record(args) => record::run(cli.json, args),
+        Verb::Replay(args) => replay::run(cli.json, args),
+        Verb::Explain(args) => explain::run(cli.json, args),
+        Verb::Export(args) => export::run(cli.json, args),
         Verb::Prove(args) => prove::run(cli.json, args),
     }
 }

@@ -1,6 +1,7 @@
 //! Standard output for results, standard error for the rest.
 
 use std::io::{self, Write};
+use std::path::Path;
 
 use serde::Serialize;
 
@@ -21,6 +22,12 @@ pub fn json(document: &impl Serialize) -> Result<(), CommandError> {
 /// Progress, warnings and errors. Where standard error is closed there is nobody to tell.
 pub fn message(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// A file of the user's choice.
+pub fn file(path: &Path, text: &str) -> Result<(), CommandError> {
+    std::fs::write(path, text)
+        .map_err(|error| CommandError::Input(format!("cannot write {}: {error}", path.display())))
 }
 
 /// A reader that has seen enough (`mavid ... | head`) is not a failure.

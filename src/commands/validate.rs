@@ -182,7 +182,7 @@ fn closed_loop_notes(by_pid: bool, nominal: &str, tracking_m: Option<[f64; 3]>) 
         format!(
             "controller: position, velocity, attitude and rate loops with PX4's default gains, on exact states; it believes \
              {nominal}. The autopilot's own gains and estimates are not in the log: what it did otherwise is in every \
-             column. F_z tells models apart; position and attitude do so only as far as the controller does not hold them"
+             column. force and torque tell models apart; position and attitude do so only as far as the controller does not hold them"
         )
     }];
     notes.extend(tracking_m.map(|[x, y, z]| {

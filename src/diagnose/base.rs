@@ -4,6 +4,7 @@ use crate::physics::effects::by_id;
 use crate::physics::{ActiveEffect, Effect, Model, Parameter, PhysicsError};
 use crate::signals::ActuationLatency;
 use crate::vehicle::Vehicle;
+use nalgebra::Matrix3;
 
 /// An effect with its values, and which of them are estimated.
 #[derive(Debug, Clone)]
@@ -65,7 +66,11 @@ impl Base {
             .chain(more)
             .map(|present| ActiveEffect::new(present.effect, &present.values))
             .collect::<Result<Vec<_>, _>>()?;
-        Model::new(&self.vehicle, effects)
+        // along a recording only force and torque are asked for; while the search goes on, the inertia may
+        // be what no body has
+        let mut vehicle = self.vehicle.clone();
+        vehicle.body.inertia_kg_m2 = positive(&vehicle.body.inertia_kg_m2);
+        Model::new(&vehicle, effects)
     }
 
     /// The latency as effects, for simulations; a delay below zero, which only the log's own stamps can
@@ -79,4 +84,13 @@ impl Base {
         };
         [of("motor_lag", lag_s), of("transport_delay", delay_s)].into_iter().flatten().collect()
     }
+}
+
+/// The inertia with its principal moments held above a thousandth of the largest.
+fn positive(inertia: &Matrix3<f64>) -> Matrix3<f64> {
+    let mut eigen = inertia.symmetric_eigen();
+    let least = 1e-3 * eigen.eigenvalues.amax();
+    eigen.eigenvalues.iter_mut().for_each(|moment| *moment = moment.max(least));
+    let raised = eigen.recompose();
+    0.5 * (raised + raised.transpose())
 }

@@ -43,8 +43,10 @@ pub fn candidates(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
         // of the rotors, at their hubs, or of the body, at its centre
         for at_hubs in [1.0, 0.0] {
             add(&[present("linear_drag", &[0.0, 0.0, 0.0, at_hubs], &[0, 1])]);
+            add(&[present("linear_drag", &[0.0, 0.0, 0.0, at_hubs], &[0, 1, 2])]);
             add(&[present("inflow", &[0.0, at_hubs], &[0])]);
         }
+        add(&[present("quadratic_drag", &[0.0; 3], &[0, 1])]);
         add(&[present("quadratic_drag", &[0.0; 3], &[0, 1, 2])]);
         add(&[present("blade_flapping", &[0.0], &[0])]);
         add(&[present("translational_lift", &[0.0], &[0])]);
@@ -67,7 +69,8 @@ pub fn candidates(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
         add(&[present("weak_rotor", &[number, 1.0], &[1])]);
         number += 1.0;
     }
-    if let Some(full_v) = full_voltage(flights) {
+    let by_commands = known(|trace| !trace.measured_speeds);
+    if let Some(full_v) = full_voltage(flights).filter(|_| by_commands) {
         add(&[present("battery_sag", &[0.0, full_v], &[0])]);
     }
     if velocity {

@@ -51,6 +51,8 @@ pub struct Evidence {
     pub gain: f64,
     /// energy that goes, in sigma squared
     pub energy: f64,
+    /// root mean square of what the nuisances leave of it, each channel, N and N m
+    pub rms: [f64; CHANNELS],
 }
 
 impl Evidence {
@@ -209,6 +211,7 @@ impl Weighted {
             p_cluster: self.cluster(&inverse, &partialled, &after, &theta),
             gain: energy / self.energy.max(f64::MIN_POSITIVE),
             energy,
+            rms: self.rms(&(&partialled * &theta)),
             theta: theta.iter().copied().collect(),
             covariance,
         })
@@ -222,6 +225,13 @@ impl Weighted {
         let theta = DVector::from_iterator(size, all.theta[first..].iter().copied());
         let covariance = all.covariance.view((first, first), (size, size)).into_owned();
         Some(normal_deviate(theta.dot(&covariance.cholesky()?.solve(&theta)), size))
+    }
+
+    fn rms(&self, series: &DVector<f64>) -> [f64; CHANNELS] {
+        std::array::from_fn(|channel| {
+            let part = series.rows(channel * self.rows, self.rows);
+            (part.norm_squared() / self.rows.max(1) as f64).sqrt() * self.sigma[channel]
+        })
     }
 
     /// What the spread of nuisances that are known beforehand adds to the scores' variance.

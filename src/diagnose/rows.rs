@@ -154,6 +154,12 @@ impl Rows {
         Ok(rows)
     }
 
+    /// What the rotors of a flight do by their commands, after the latency and smoothed.
+    #[must_use]
+    pub fn commanded(&self, flight: usize) -> Option<&Turning> {
+        self.flights.get(flight).map(|along| &along.commanded)
+    }
+
     /// Number of rows.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -283,7 +289,7 @@ fn weak_wrench(trace: &Trace, forces: &[Vector3<f64>], torques: &[Vector3<f64>])
 }
 
 /// Force in each reading there is, and torque.
-fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
+pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
     let second = if trace.reads_force_twice() { force.clone() } else { nothing(trace) };
     let ([fx, fy, fz], [tx, ty, tz], [kx, ky, kz]) = (force, torque, second);
     [fx, fy, fz, tx, ty, tz, kx, ky, kz]

@@ -2,7 +2,7 @@
 
 use super::base::{Base, Present};
 use super::candidates::{Candidate, candidates, drag_and_wind};
-use super::evidence::{Evidence, Weighted, normal_deviate};
+use super::evidence::{Evidence, Weighted};
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::rows::{Channels, Nuisance, Rows};
 use super::trace::Trace;
@@ -20,13 +20,15 @@ pub struct Gates {
     pub p_cluster: f64,
     /// share of the residual energy
     pub gain: f64,
+    /// least force that matters, of the weight, or torque, of the torque that the motion took (rms)
+    pub matters: (f64, f64),
     /// most effects that are accepted
     pub steps: usize,
 }
 
 impl Default for Gates {
     fn default() -> Self {
-        Self { z: 4.0, p_cluster: 0.02, gain: 0.005, steps: 6 }
+        Self { z: 4.0, p_cluster: 0.02, gain: 0.004, matters: (4e-4, 0.04), steps: 6 }
     }
 }
 
@@ -177,14 +179,18 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
     let mut after = before.clone();
     let mut steps: Vec<Step> = Vec::new();
     let mut last;
-    let mut settled = false;
+    let mut settled = 0;
+    let mut refused: Vec<&'static str> = Vec::new();
     loop {
         let candidates = candidates(&after.base.vehicle, flights);
         last = test_all(flights, &after, &candidates);
         let count = last.len() as f64;
+        let back = |tested: &Tested| refused.contains(&tested.candidate.id);
         let mut passed: Vec<Tested> =
-            last.iter().filter(|tested| passes(tested, gates, count)).cloned().collect();
-        passed.sort_by(|a, b| b.evidence.energy.total_cmp(&a.evidence.energy));
+            last.iter().filter(|tested| !back(tested)).filter(|tested| passes(tested, &after, gates, count)).cloned().collect();
+        let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);
+        let worth = |tested: &Tested| tested.evidence.energy - price * tested.evidence.theta.len() as f64;
+        passed.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
         match passed.first().cloned() {
             Some(taken) if steps.len() < gates.steps => {
                 let mut base = after.base.clone();
@@ -192,10 +198,14 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
                 after = fit(flights, base, Newton::Held)?;
                 steps.push(Step { taken, rivals: passed.split_off(1) });
             }
-            _ if settled || steps.is_empty() => break,
+            _ if settled == SETTLINGS || steps.is_empty() => break,
             _ => {
-                settled = true;
+                settled += 1;
+                let before = after.base.present.clone();
                 let (dropped, moved) = settle(flights, &mut after)?;
+                let gone = before.iter().map(|present| present.effect.id());
+                let kept = |id: &&'static str| after.base.present.iter().any(|p| p.effect.id() == *id);
+                refused.extend(gone.filter(|id| !kept(id)));
                 if !dropped && moved < SETTLED_S {
                     break;
                 }
@@ -210,6 +220,10 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
     Ok(Search { before, after, latency, steps, last })
 }
 
+/// How often the search may go on after that.
+const SETTLINGS: usize = 2;
+/// What a column must explain to be worth having, in independent squared sigmas.
+const COLUMN_PRICE: f64 = 12.0;
 /// A latency that moves by less than this when it is estimated with the effects changes nothing, s.
 const SETTLED_S: f64 = 0.001;
 
@@ -217,23 +231,29 @@ const SETTLED_S: f64 = 0.001;
 /// Returns whether any went, and by how much the latency moved, s.
 fn settle(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64), PhysicsError> {
     let mut index = after.rows.nuisances.len();
-    let mut kept = Vec::new();
+    let mut kept: Vec<Present> = Vec::new();
+    let mut dropped = false;
     for present in &after.base.present {
-        let size = present.free.len();
-        let theta = DVector::from_iterator(
-            size,
-            present.free.iter().map(|&slot| present.values[slot] - present.nothing_at(slot)),
-        );
-        let covariance = after.covariance.view((index, index), (size, size)).into_owned();
-        let z = covariance
-            .cholesky()
-            .map_or(f64::INFINITY, |factor| normal_deviate(theta.dot(&factor.solve(&theta)), size));
-        index += size;
-        if z > KEPT {
-            kept.push(present.clone());
+        let mut pruned = present.clone();
+        let mut strength = 0.0;
+        for (place, &slot) in present.free.iter().enumerate() {
+            let std = after.covariance[(index + place, index + place)].max(0.0).sqrt();
+            let z = (present.values[slot] - present.nothing_at(slot)).abs() / std.max(f64::MIN_POSITIVE);
+            let finer = slot >= present.effect.parameters().len();
+            if !finer && z < PRUNED {
+                pruned.values[slot] = present.nothing_at(slot);
+                pruned.free.retain(|free| *free != slot);
+                dropped = true;
+            } else if !finer {
+                strength = f64::max(strength, z);
+            }
+        }
+        index += present.free.len();
+        if strength > KEPT {
+            kept.push(pruned);
         }
     }
-    let dropped = kept.len() < after.base.present.len();
+    dropped |= kept.len() < after.base.present.len();
     let before_s = after.base.latency.total_s();
     let base = Base { present: kept, ..after.base.clone() };
     *after = fit(flights, base, Newton::Free)?;
@@ -242,6 +262,8 @@ fn settle(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64), PhysicsE
 
 /// An accepted effect stays while it is this many standard deviations from nothing.
 const KEPT: f64 = 4.0;
+/// A parameter of it goes back to nothing when it is nearer than this.
+const PRUNED: f64 = 2.5;
 
 /// The candidate's effects at the values that the evidence has.
 fn started(tested: &Tested) -> Vec<Present> {
@@ -303,8 +325,18 @@ fn is_present(base: &Base, candidate: &Candidate) -> bool {
         base.present.iter().any(|present| {
             present.effect.id() == part.effect.id()
                 && (part.effect.id() != "weak_rotor" || present.values[0] == part.values[0])
+                || drags_along_z(present) && drags_along_z(part)
         })
     })
+}
+
+/// Inflow and the z of drag are one term.
+fn drags_along_z(present: &Present) -> bool {
+    match present.effect.id() {
+        "inflow" => true,
+        "linear_drag" => present.free.contains(&2),
+        _ => false,
+    }
 }
 
 /// Wind acts through drag: both together, or wind alone where drag is known already.
@@ -335,11 +367,17 @@ fn test_drag_and_wind(flights: &[Trace], fitted: &Fitted, at_hubs: f64) -> Optio
 }
 
 /// Significant, spread over the flight, possible, and large enough to matter.
-fn passes(tested: &Tested, gates: &Gates, candidates: f64) -> bool {
+fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates: f64) -> bool {
     let evidence = &tested.evidence;
+    let weight_n = fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2;
+    let matters = (0..3).any(|axis| {
+        evidence.rms[axis] > gates.matters.0 * weight_n
+            || evidence.rms[3 + axis] > gates.matters.1 * fitted.rows.torque_rms[axis]
+    });
     evidence.z.abs() > gates.z
         && evidence.p_cluster < gates.p_cluster / candidates
         && evidence.gain >= gates.gain
+        && matters
         && possible(tested)
 }
 

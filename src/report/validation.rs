@@ -155,6 +155,7 @@ pub fn closed_loop_charts(flights: &[(String, &TenSignals)]) -> Vec<Panel> {
             label: label.to_owned(),
             x: kept().map(|i| x.map_or(signals.time_s[i], |x| signals.values[i][x])).collect(),
             y: kept().map(|i| signals.values[i][y]).collect(),
+            ..Line::default()
         }
     };
     let panel = |title: &str, labels: (&str, String), x: Option<usize>, y: usize| Panel {
@@ -162,6 +163,7 @@ pub fn closed_loop_charts(flights: &[(String, &TenSignals)]) -> Vec<Panel> {
         x_label: labels.0.to_owned(),
         y_label: labels.1,
         lines: flights.iter().map(|(label, signals)| line(label, signals, x, y)).collect(),
+        ..Panel::default()
     };
     let mut panels = vec![panel("path", ("x (m)", "y (m)".to_owned()), Some(0), 1)];
     for (index, (name, unit)) in SIGNALS.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! What drives the body: rotors, or force and torque as the log holds them.
 
 use super::actuators::{RotorThrusts, ThrustSource, thrusts_from_commands, thrusts_from_speeds};
-use super::select::best;
+use super::select::{best, mean_rate_hz};
 use super::{Grid, SignalsError, linear_onto};
 use crate::log::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
@@ -15,6 +15,34 @@ pub enum ThrustPreference {
     Measured,
     /// commands only
     Commands,
+    /// measured speeds where they are sampled at least as fast as the commands, else commands
+    BestSampled,
+}
+
+/// Shares of a rate that lost frames explain: streams this close are sampled alike.
+const SAMPLED_ALIKE: f64 = 0.95;
+
+/// The rotors' thrusts by this preference.
+fn rotor_thrusts(
+    recording: &Recording,
+    vehicle: &Vehicle,
+    preference: ThrustPreference,
+) -> Result<RotorThrusts, SignalsError> {
+    let speeds = || thrusts_from_speeds(recording, vehicle);
+    let commands = || thrusts_from_commands(recording, vehicle);
+    match preference {
+        ThrustPreference::Measured => speeds().map_or_else(commands, Ok),
+        ThrustPreference::Commands => commands(),
+        ThrustPreference::BestSampled => match (speeds(), commands()) {
+            (Some(speeds), Ok(commands))
+                if mean_rate_hz(&speeds.stream) < SAMPLED_ALIKE * mean_rate_hz(&commands.stream) =>
+            {
+                Ok(commands)
+            }
+            (Some(speeds), _) => Ok(speeds),
+            (None, commands) => commands,
+        },
+    }
 }
 
 /// What drives the body.
@@ -34,11 +62,7 @@ impl Actuation {
         if let Some((key, stream)) = best(recording, Quantity::Wrench, |s| s.width == 4) {
             return Ok(Self::Wrench(key.source, stream.clone()));
         }
-        let measured = match preference {
-            ThrustPreference::Measured => thrusts_from_speeds(recording, vehicle),
-            ThrustPreference::Commands => None,
-        };
-        measured.map_or_else(|| thrusts_from_commands(recording, vehicle), Ok).map(Self::Rotors)
+        rotor_thrusts(recording, vehicle, preference).map(Self::Rotors)
     }
 
     pub(super) fn stream(&self) -> &Stream {

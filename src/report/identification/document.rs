@@ -300,7 +300,7 @@ fn data_quality(identification: &Identification, quality: &[&Quality], inputs: &
     }
 }
 
-pub(super) fn thrust_name(source: ThrustSource) -> &'static str {
+pub(in crate::report) fn thrust_name(source: ThrustSource) -> &'static str {
     match source {
         ThrustSource::MeasuredSpeed => "measured rotor speed",
         ThrustSource::Command => "commands",

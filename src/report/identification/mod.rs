@@ -7,3 +7,5 @@ mod page;
 pub use document::{IdentificationDocument, InputFile};
 pub use model::{history_charts, model_toml};
 pub use page::identification_page;
+
+pub(super) use document::thrust_name;

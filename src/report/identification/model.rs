@@ -79,8 +79,10 @@ pub fn history_charts(identification: &Identification) -> Vec<Panel> {
                     label: method.name().into(),
                     x: history.time_s.clone(),
                     y: history.theta.iter().map(|theta| theta[index]).collect(),
+                    ..Line::default()
                 })
                 .collect(),
+            ..Panel::default()
         })
         .collect()
 }

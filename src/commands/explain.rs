@@ -1,0 +1,171 @@
+//! `mavid explain LOG... --vehicle V`: which physics the model left out.
+
+use std::path::{Path, PathBuf};
+
+use mavid::config::read_vehicle;
+use mavid::diagnose::show::{HeldOut, Split, split_last_periods};
+use mavid::diagnose::{Empirical, ExplainSettings, Trace, explain};
+use mavid::log::Recording;
+use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page};
+use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
+use mavid::vehicle::Vehicle;
+use rayon::prelude::*;
+
+use super::effects::effects;
+use super::flights::{Flight, ReadAs, is_csv, load, refuse_twins};
+use super::{CommandError, Outcome, output};
+use crate::cli::ExplainArgs;
+
+/// Runs the verb.
+pub fn run(json: bool, args: &ExplainArgs) -> Result<Outcome, CommandError> {
+    check(args)?;
+    let loaded = read_vehicle(&args.vehicle)?;
+    let vehicle = loaded.vehicle;
+    let mut warnings = loaded.warnings;
+    let refuse =
+        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", args.vehicle.display()));
+    let known = effects(&loaded.model.effects, &vehicle).map_err(|error| refuse(&error))?;
+    let mut flights = flown(&args.logs, args, &vehicle)?;
+    let held = flown(&args.holdout, args, &vehicle)?;
+    refuse_twins(&flights.iter().chain(&held).map(|flight| &flight.input).collect::<Vec<_>>())?;
+    let (shown_on, back) = if held.is_empty() {
+        hold_back(&mut flights)
+    } else {
+        (ShownOn::Flights(held.iter().map(|flight| flight.input.clone()).collect()), None)
+    };
+    let settings = ExplainSettings::default();
+    let signals: Vec<Signals> = flights.iter().map(|flight| flight.signals.clone()).collect();
+    let explanation = explain(&signals, &vehicle, &settings).map_err(|error| {
+        let logs: Vec<String> = args.logs.iter().map(|log| log.display().to_string()).collect();
+        CommandError::Input(format!("{}: {error}", logs.join(", ")))
+    })?;
+    warnings.extend(flights.iter().chain(&held).filter_map(|flight| losses(&flight.input)));
+    let given = Given {
+        vehicle,
+        known,
+        inputs: flights.iter().map(|flight| flight.input.clone()).collect(),
+        quality: flights.iter().map(|flight| flight.signals.quality.clone()).collect(),
+        settings,
+        transient_s: args.transient,
+        warnings,
+    };
+    let traces: Vec<Trace> = signals
+        .iter()
+        .filter_map(|signals| Trace::new(signals, &given.vehicle, settings.half_width_s).ok())
+        .collect();
+    let mut story = Story::new(given, explanation);
+    story.locate(&traces);
+    show(&mut story, &flights, (&held, back.as_ref()), shown_on);
+    if let Some(folder) = &args.out {
+        write(folder, &story, &traces)?;
+    }
+    if json {
+        output::json(&ExplanationDocument::new(&story))?;
+    } else {
+        output::text(explanation_page(&story).trim_end())?;
+    }
+    for warning in &story.given.warnings {
+        output::message(&format!("warning: {warning}"));
+    }
+    let lossless = story.given.inputs.iter().all(|input| input.losses.is_empty());
+    Ok(if lossless { Outcome::Done } else { Outcome::DoneWithLoss })
+}
+
+fn check(args: &ExplainArgs) -> Result<(), CommandError> {
+    let transient_s = args.transient;
+    if !transient_s.is_finite() || transient_s < 0.0 {
+        return Err(CommandError::Input(format!(
+            "--transient: expected seconds from 0 on, got {transient_s}"
+        )));
+    }
+    if args.csv_map.is_some() && !args.logs.iter().chain(&args.holdout).any(|log| is_csv(log)) {
+        return Err(CommandError::Input("--csv-map: expected a .csv among the logs, got none".into()));
+    }
+    if let Some(path) = args.out.as_ref().filter(|path| path.exists() && !path.is_dir()) {
+        return Err(CommandError::Input(format!("--out: expected a folder, {} is a file", path.display())));
+    }
+    Ok(())
+}
+
+/// A flight made ready.
+struct Flown {
+    recording: Recording,
+    signals: Signals,
+    input: InputFile,
+}
+
+impl Flown {
+    fn held_out(&self) -> HeldOut<'_> {
+        HeldOut { name: &self.input.path, signals: &self.signals, recording: Some(&self.recording) }
+    }
+}
+
+/// Loads and conditions every flight, side by side.
+fn flown(logs: &[PathBuf], args: &ExplainArgs, vehicle: &Vehicle) -> Result<Vec<Flown>, CommandError> {
+    let read_as = ReadAs { csv_map: args.csv_map.as_ref(), system: args.system };
+    let settings = ConditionSettings {
+        transient_s: Some(args.transient),
+        thrust: ThrustPreference::BestSampled,
+        ..ConditionSettings::default()
+    };
+    let one = |path: &PathBuf| {
+        let Flight { recording, input } = load(path, &read_as)?;
+        let signals = condition(&recording, vehicle, &settings)
+            .map_err(|error| CommandError::Input(format!("{}: {error}", path.display())))?;
+        Ok(Flown { recording, signals, input })
+    };
+    let done: Vec<Result<Flown, CommandError>> = logs.par_iter().map(one).collect();
+    done.into_iter().collect()
+}
+
+/// The end of the last flight, which is then not explained.
+fn hold_back(flights: &mut [Flown]) -> (ShownOn, Option<Signals>) {
+    let split = flights.last().and_then(|last| split_last_periods(&last.signals));
+    let (Some(Split { identify, holdout, from_s, .. }), Some(last)) = (split, flights.last_mut()) else {
+        let reason = "the flight is too short to hold a part of it back; give another with --holdout";
+        return (ShownOn::Nothing { reason: reason.to_owned() }, None);
+    };
+    last.signals = identify;
+    let seconds = holdout.usable.iter().filter(|used| **used).count() as f64 * holdout.grid.step_s;
+    (ShownOn::HeldBack { from_s, seconds }, Some(holdout))
+}
+
+/// Prediction errors before and after, on what was explained and on what was not.
+fn show(story: &mut Story, flights: &[Flown], (held, back): (&[Flown], Option<&Signals>), shown_on: ShownOn) {
+    let all: Vec<Signals> = flights.iter().map(|flight| flight.signals.clone()).collect();
+    let (vehicle, settings) = (&story.given.vehicle, &story.given.settings);
+    let empirical = match Empirical::fit(&story.explanation, &all, vehicle, settings) {
+        Ok(empirical) => empirical,
+        Err(error) => {
+            story.given.warnings.push(format!("no empirical term: {error}"));
+            None
+        }
+    };
+    let used: Vec<HeldOut> = flights.iter().map(Flown::held_out).collect();
+    if let Err(error) = story.show_identification(&used, empirical.as_ref()) {
+        story.given.warnings.push(format!("open-loop prediction: {error}"));
+    }
+    let mut shown: Vec<HeldOut> = held.iter().map(Flown::held_out).collect();
+    shown.extend(back.map(|signals| HeldOut { name: "the part held back", signals, recording: None }));
+    if shown.is_empty() {
+        story.shown_on = shown_on;
+    } else if let Err(error) = story.show_holdout(&shown, empirical.as_ref(), shown_on) {
+        story.given.warnings.push(format!("hold-out: {error}"));
+        story.shown_on = ShownOn::Nothing { reason: error.to_string() };
+    }
+    story.empirical = empirical;
+}
+
+fn losses(input: &InputFile) -> Option<String> {
+    (!input.losses.is_empty()).then(|| format!("{}: {}", input.path, input.losses.join("; ")))
+}
+
+fn write(folder: &Path, story: &Story, traces: &[Trace]) -> Result<(), CommandError> {
+    std::fs::create_dir_all(folder)
+        .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", folder.display())))?;
+    output::file(&folder.join("model.toml"), &story.model_toml()?)?;
+    output::file(&folder.join("report.html"), &story.report_html(traces))?;
+    let document = serde_json::to_string_pretty(&ExplanationDocument::new(story))
+        .map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))?;
+    output::file(&folder.join("explanation.json"), &document)
+}

@@ -1,0 +1,48 @@
+//! `mavid export MODEL --to FORMAT`: the model for another simulator.
+
+use mavid::config::read_vehicle;
+use mavid::export::{Exported, Format, export};
+use serde::Serialize;
+
+use super::effects::effects;
+use super::{CommandError, Outcome, output};
+use crate::cli::{ExportArgs, ExportFormat};
+
+#[derive(Debug, Serialize)]
+struct Document {
+    schema: u32,
+    file: Option<String>,
+    text: String,
+    left_out: Vec<String>,
+}
+
+/// Runs the verb.
+pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
+    let loaded = read_vehicle(&args.model)?;
+    let refuse =
+        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", args.model.display()));
+    for warning in &loaded.warnings {
+        output::message(&format!("warning: {warning}"));
+    }
+    let active = effects(&loaded.model.effects, &loaded.vehicle).map_err(|error| refuse(&error))?;
+    let format = match args.to {
+        ExportFormat::Px4Sih => Format::Px4Sih,
+        ExportFormat::ArdupilotSitl => Format::ArdupilotSitl,
+        ExportFormat::Sdf => Format::Sdf,
+        ExportFormat::Mjcf => Format::Mjcf,
+        ExportFormat::Rotorpy => Format::Rotorpy,
+    };
+    let Exported { text, left_out } =
+        export(&loaded.vehicle, &active, format).map_err(|error| refuse(&error))?;
+    left_out.iter().for_each(|note| output::message(&format!("note: {note}")));
+    if let Some(path) = &args.out {
+        output::file(path, &text)?;
+    }
+    if json {
+        let file = args.out.as_ref().map(|path| path.display().to_string());
+        output::json(&Document { schema: 1, file, text, left_out })?;
+    } else if args.out.is_none() {
+        output::text(text.trim_end())?;
+    }
+    Ok(Outcome::Done)
+}

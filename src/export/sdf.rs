@@ -1,0 +1,88 @@
+//! Gazebo: a model with the multicopter motor model of gz-sim.
+//!
+//! Its motor: `T = motorConstant w^2`, reaction torque `momentConstant T`, drag `rotorDragCoefficient |w| v` across
+//! the rotor axis, first-order lag up and down. Frames and units are ours.
+
+use super::{ExportError, Exported, Source, escape, xml_comments};
+use crate::vehicle::Spin;
+use std::fmt::Write;
+
+const FORMAT: &str = "sdf";
+/// kg and kg m^2 of a rotor's link, which the solver needs above zero.
+const ROTOR_KG: f64 = 1e-3;
+const ROTOR_KG_M2: f64 = 1e-7;
+/// s, a lag that is nearly none.
+const FAST_S: f64 = 0.001;
+
+pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
+    let (coefficient, speed_max) = source.speeds(FORMAT)?;
+    let hover = source.hover_rad_s(FORMAT)?;
+    let count = source.vehicle.rotors.len() as f64;
+    let drag = ["dx", "dy", "dz"].map(|axis| source.take("linear_drag", axis));
+    let across = 0.5 * (drag[0] + drag[1]);
+    if (drag[0] - drag[1]).abs() > 0.05 * across {
+        source.note(format!(
+            "drag is the same along x and y here: the mean of {:.4} and {:.4} N/(m/s)",
+            drag[0], drag[1]
+        ));
+    }
+    if drag[2] > 0.0 {
+        source.note(format!(
+            "drag along the rotor axis has no place in the motor model: {:.4} N/(m/s)",
+            drag[2]
+        ));
+    }
+    let lag_s = source.time_constant_s().unwrap_or(FAST_S);
+    let center = source.center_of_mass_m();
+    let wind = ["north", "west", "up"].map(|axis| source.take("steady_wind", axis));
+    if wind.iter().any(|part| *part != 0.0) {
+        source.note(format!(
+            "wind belongs to the world, not to the model: <wind><linear_velocity>{} {} {}</linear_velocity></wind> for a world with x north and y west",
+            wind[0], wind[1], wind[2]
+        ));
+    }
+    let body = &source.vehicle.body;
+    let rotors_kg = ROTOR_KG * count;
+    let j = &body.inertia_kg_m2;
+    let mut links = String::new();
+    let mut plugins = String::new();
+    for (number, rotor) in source.vehicle.rotors.iter().enumerate() {
+        let p = rotor.position_m;
+        let spin = match rotor.spin {
+            Spin::Cw => "cw",
+            Spin::Ccw => "ccw",
+        };
+        let _ = write!(
+            links,
+            "    <link name=\"rotor_{number}\">\n      <pose>{} {} {} 0 0 0</pose>\n      <inertial><mass>{ROTOR_KG}</mass><inertia><ixx>{ROTOR_KG_M2}</ixx><ixy>0</ixy><ixz>0</ixz><iyy>{ROTOR_KG_M2}</iyy><iyz>0</iyz><izz>{ROTOR_KG_M2}</izz></inertia></inertial>\n    </link>\n    <joint name=\"rotor_{number}_joint\" type=\"revolute\">\n      <parent>base_link</parent>\n      <child>rotor_{number}</child>\n      <axis><xyz>0 0 1</xyz><limit><lower>-1e16</lower><upper>1e16</upper></limit></axis>\n    </joint>\n",
+            p.x, p.y, p.z
+        );
+        let _ = write!(
+            plugins,
+            "    <plugin filename=\"gz-sim-multicopter-motor-model-system\" name=\"gz::sim::systems::MulticopterMotorModel\">\n      <jointName>rotor_{number}_joint</jointName>\n      <linkName>rotor_{number}</linkName>\n      <turningDirection>{spin}</turningDirection>\n      <timeConstantUp>{lag_s}</timeConstantUp>\n      <timeConstantDown>{lag_s}</timeConstantDown>\n      <maxRotVelocity>{speed_max}</maxRotVelocity>\n      <motorConstant>{coefficient:e}</motorConstant>\n      <momentConstant>{}</momentConstant>\n      <commandSubTopic>command/motor_speed</commandSubTopic>\n      <motorNumber>{number}</motorNumber>\n      <rotorDragCoefficient>{:e}</rotorDragCoefficient>\n      <rollingMomentCoefficient>0</rollingMomentCoefficient>\n      <rotorVelocitySlowdownSim>10</rotorVelocitySlowdownSim>\n      <motorType>velocity</motorType>\n    </plugin>\n",
+            source.vehicle.propulsion.torque_per_thrust_m,
+            across / (count * hover)
+        );
+    }
+    let inertial = format!(
+        "    <link name=\"base_link\">\n      <inertial>\n        <pose>{} {} {} 0 0 0</pose>\n        <mass>{}</mass>\n        <inertia><ixx>{}</ixx><ixy>{}</ixy><ixz>{}</ixz><iyy>{}</iyy><iyz>{}</iyz><izz>{}</izz></inertia>\n      </inertial>\n    </link>\n",
+        center.x,
+        center.y,
+        center.z,
+        body.mass_kg - rotors_kg,
+        j[(0, 0)],
+        j[(0, 1)],
+        j[(0, 2)],
+        j[(1, 1)],
+        j[(1, 2)],
+        j[(2, 2)]
+    );
+    source.note(format!("the rotors' links weigh {ROTOR_KG} kg each, taken off the body; collision and visual shapes are for you to add"));
+    let name = escape(&source.vehicle.name);
+    Ok(source.finish(|notes| {
+        format!(
+            "<?xml version=\"1.0\"?>\n{}<sdf version=\"1.9\">\n  <model name=\"{name}\">\n{inertial}{links}{plugins}  </model>\n</sdf>\n",
+            xml_comments(notes)
+        )
+    }))
+}

@@ -1,0 +1,21 @@
+//! What `explain` says: the sentence, a page for the terminal, JSON, the model file, the report.
+
+mod answer;
+mod document;
+mod figures;
+mod follow;
+mod html;
+mod located;
+mod model;
+mod page;
+mod readers;
+mod show;
+mod story;
+mod words;
+
+pub use document::ExplanationDocument;
+pub use located::{AxisShare, Located, StateShare};
+pub use page::explanation_page;
+pub use readers::for_readers;
+pub use show::{Predicted, ShownOn};
+pub use story::{Estimate, Given, Story};

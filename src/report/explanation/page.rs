@@ -1,0 +1,176 @@
+//! The page of `explain` for the terminal.
+
+use super::show::{Predicted, QUANTITIES};
+use super::story::{Story, body_values, rigid_body};
+use super::words::{called, clause};
+use crate::diagnose::{AXES, CHANNEL_NAMES, Named, Verdict};
+use crate::report::number::{chance, percent, significant, with_error};
+use std::fmt::Write;
+
+/// The page for the terminal: the answer first.
+#[must_use]
+pub fn explanation_page(story: &Story) -> String {
+    let mut page = format!("{}\n\n", story.answer());
+    let _ = writeln!(page, "  verdict: {}", story.verdict().name());
+    for effect in story.effects.iter().chain(&story.closest) {
+        effect_lines(&mut page, story, effect);
+    }
+    located_lines(&mut page, story);
+    fit_lines(&mut page, story);
+    body_lines(&mut page, story);
+    limit_lines(&mut page, story);
+    quality_lines(&mut page, story);
+    for warning in &story.given.warnings {
+        let _ = writeln!(page, "  warning: {warning}");
+    }
+    page
+}
+
+fn effect_lines(page: &mut String, story: &Story, effect: &Named) {
+    let mark = if story.verdict() == Verdict::Unexplained { " (closest, not named)" } else { "" };
+    let _ = writeln!(page, "\n  {}{mark}: {}", effect.id, clause(effect, story.vehicle()));
+    for p in &effect.parameters {
+        let _ = writeln!(page, "    {:<16}{:>22}  {}", p.name, with_error(p.value, p.std), p.unit);
+    }
+    let strength = &effect.strength;
+    let _ = writeln!(
+        page,
+        "    evidence: z {:.1}, p {}, {} % of the residual energy",
+        strength.z,
+        chance(story.p_value(effect)),
+        significant(100.0 * strength.gain, 2)
+    );
+    for other in &effect.confusable_with {
+        let apart = other
+            .distinguishability
+            .map_or(String::new(), |apart| format!(": {apart:.1} standard deviations apart in this flight"));
+        let _ = writeln!(page, "    may be taken for {} ({}){apart}", called(other.id), other.id);
+    }
+}
+
+fn located_lines(page: &mut String, story: &Story) {
+    let located = &story.located;
+    if located.axes.is_empty() {
+        return;
+    }
+    let axes: Vec<String> = located
+        .axes
+        .iter()
+        .take(4)
+        .map(|axis| format!("{} {:.0} %", axis.axis, axis.share_percent))
+        .collect();
+    let _ = writeln!(page, "\n  where: {}", axes.join(", "));
+    if !located.state.is_empty() {
+        let state: Vec<String> = located
+            .state
+            .iter()
+            .take(4)
+            .map(|state| format!("{} {:.0} %", state.variable, state.share_percent))
+            .collect();
+        let _ = writeln!(page, "  following: {}", state.join(", "));
+    }
+    if let Some([low, high]) = located.band_hz {
+        let _ = writeln!(page, "  between {} and {} Hz", significant(low, 2), significant(high, 2));
+    }
+}
+
+fn fit_lines(page: &mut String, story: &Story) {
+    let _ = writeln!(
+        page,
+        "\n  open-loop prediction over 0.5 s, rms   {:>12}{:>12}{:>12}  better by",
+        "rigid body", "with it", "noise alone"
+    );
+    let shown = story.shown_on.heading();
+    for (name, of) in [("flights explained", &story.identify), (shown.as_str(), &story.holdout)] {
+        let _ = writeln!(page, "    {name}");
+        predicted_lines(page, of.as_ref());
+    }
+}
+
+fn predicted_lines(page: &mut String, predicted: Option<&Predicted>) {
+    let Some(predicted) = predicted else { return };
+    for (of, (name, unit)) in predicted.half_second().iter().zip(QUANTITIES) {
+        let Some(of) = of else { continue };
+        let _ = writeln!(
+            page,
+            "      {:<33}{:>12}{:>12}{:>12}  {}",
+            format!("{name} ({unit})"),
+            significant(of.before.value, 3),
+            significant(of.after.value, 3),
+            of.floor.map_or_else(|| "-".to_owned(), |floor| significant(floor, 3)),
+            percent(&of.improvement_percent)
+        );
+    }
+    if let Some(mean) = predicted.improvement_percent {
+        let _ = writeln!(page, "      {:<69}  {}", "mean", percent(&mean));
+    }
+}
+
+fn body_lines(page: &mut String, story: &Story) {
+    let search = &story.explanation.search;
+    let nominal = body_values(&story.given.vehicle.body);
+    let (before, after) = (rigid_body(&search.before), rigid_body(&search.after));
+    let _ = writeln!(page, "\n  rigid body{:>13}{:>16}{:>28}", "nominal", "alone", "with the effects");
+    for ((before, after), nominal) in before.iter().zip(&after).zip(nominal) {
+        let _ = writeln!(
+            page,
+            "    {:<6}{:>13}{:>16}{:>28}  {}",
+            after.name,
+            significant(nominal, 4),
+            significant(before.value, 4),
+            with_error(after.value, after.std),
+            after.unit
+        );
+    }
+    let latency = &search.latency;
+    let _ = writeln!(
+        page,
+        "    from command to rotor {} ms",
+        with_error(1e3 * latency.total_s, 1e3 * latency.std_s)
+    );
+    let (before, after) = (search.before.weighted.sigma, search.after.weighted.sigma);
+    let _ = writeln!(page, "\n  residual, rms{:>13}{:>12}", "alone", "after");
+    for (index, name) in CHANNEL_NAMES.iter().take(AXES).enumerate() {
+        let unit = if index < 3 { "N" } else { "N m" };
+        let _ = writeln!(
+            page,
+            "    {name:<10}{:>13}{:>12}  {unit}",
+            significant(before[index], 3),
+            significant(after[index], 3)
+        );
+    }
+}
+
+fn limit_lines(page: &mut String, story: &Story) {
+    if story.explanation.limits.is_empty() {
+        return;
+    }
+    let _ = writeln!(page, "\n  what would have been named in this flight");
+    for limit in &story.explanation.limits {
+        let _ = writeln!(
+            page,
+            "    {:<20}{:<14} from {:>9} {}",
+            limit.id,
+            limit.parameter,
+            significant(limit.limit, 2),
+            limit.unit
+        );
+    }
+}
+
+fn quality_lines(page: &mut String, story: &Story) {
+    page.push('\n');
+    for (input, quality) in story.given.inputs.iter().zip(&story.given.quality) {
+        let _ = writeln!(
+            page,
+            "  {}: {:.1} s used; thrust from {}; {}",
+            input.path,
+            quality.usable.usable_s,
+            crate::report::identification::thrust_name(quality.thrust_source),
+            quality.usable.summary()
+        );
+        for note in &quality.notes {
+            let _ = writeln!(page, "    {note}");
+        }
+    }
+}

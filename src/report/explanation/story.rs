@@ -1,0 +1,197 @@
+//! Everything that the report says, put together once: page, JSON, model file and HTML read from here.
+
+use super::located::Located;
+use super::readers::for_readers;
+use super::show::{Predicted, ShownOn};
+use crate::diagnose::show::Shown;
+use crate::diagnose::{
+    CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, Named, Nuisance, Trace, Verdict,
+};
+use crate::physics::ActiveEffect;
+use crate::report::InputFile;
+use crate::signals::Quality;
+use crate::vehicle::{RigidBody, Vehicle};
+use statrs::distribution::{ContinuousCDF, Normal};
+
+/// A parameter with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// as in JSON
+    pub name: &'static str,
+    /// in `unit`
+    pub value: f64,
+    /// standard error
+    pub std: f64,
+    /// SI
+    pub unit: &'static str,
+}
+
+/// What went in beside the recordings' signals.
+#[derive(Debug, Clone)]
+pub struct Given {
+    /// nominal
+    pub vehicle: Vehicle,
+    /// effects that the vehicle's file has already
+    pub known: Vec<ActiveEffect>,
+    /// flights that were explained
+    pub inputs: Vec<InputFile>,
+    /// where their signals come from
+    pub quality: Vec<Quality>,
+    /// settings of the method
+    pub settings: ExplainSettings,
+    /// s left out at the beginning of each flight
+    pub transient_s: f64,
+    /// what the user should know, sentence by sentence
+    pub warnings: Vec<String>,
+}
+
+/// The whole answer.
+#[derive(Debug, Clone)]
+pub struct Story {
+    /// what went in
+    pub given: Given,
+    /// what came out
+    pub explanation: Explanation,
+    /// named effects as readers want them
+    pub effects: Vec<Named>,
+    /// where nothing serves: what comes closest, likewise
+    pub closest: Vec<Named>,
+    /// errors of open-loop prediction on the flights that were explained
+    pub identify: Option<Predicted>,
+    /// and on those that were not used
+    pub holdout: Option<Predicted>,
+    /// everything that was shown on them
+    pub shown: Option<Shown>,
+    /// a term without a mechanism, where none serves
+    pub empirical: Option<Empirical>,
+    /// which those are
+    pub shown_on: ShownOn,
+    /// where simulation and recording differ
+    pub located: Located,
+}
+
+impl Story {
+    /// Puts it together.
+    #[must_use]
+    pub fn new(given: Given, explanation: Explanation) -> Self {
+        Self {
+            effects: for_readers(&explanation.named),
+            closest: for_readers(&explanation.closest),
+            located: Located::of(&explanation),
+            identify: None,
+            holdout: None,
+            shown: None,
+            empirical: None,
+            shown_on: ShownOn::Nothing { reason: "no hold-out".to_owned() },
+            given,
+            explanation,
+        }
+    }
+
+    /// Adds when and along which state the misfit lives; `traces` are those of the flights explained.
+    pub fn locate(&mut self, traces: &[Trace]) {
+        self.located.add_states(&self.explanation, traces);
+    }
+
+    /// In one word.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        self.explanation.verdict
+    }
+
+    /// Mass and inertia of the final model.
+    #[must_use]
+    pub fn rigid_body(&self) -> Vec<Estimate> {
+        rigid_body(&self.explanation.search.after)
+    }
+
+    /// The vehicle as identified.
+    #[must_use]
+    pub fn vehicle(&self) -> &Vehicle {
+        &self.explanation.search.after.base.vehicle
+    }
+
+    /// Effects for the model file: those that were found, and a latency that was named.
+    #[must_use]
+    pub fn effects_of_model(&self) -> Vec<ActiveEffect> {
+        let mut effects = self.given.known.clone();
+        if self.verdict() == Verdict::Unexplained {
+            return effects;
+        }
+        effects.extend(self.found());
+        if self.latency_named() {
+            let latency = self.explanation.search.after.base.latency_effects();
+            effects.extend(latency.iter().filter_map(|l| ActiveEffect::new(l.effect, &l.values).ok()));
+        }
+        effects
+    }
+
+    /// The base's own effects beyond what was given; one isotropic drag in place of its two pieces.
+    fn found(&self) -> Vec<ActiveEffect> {
+        let base = &self.explanation.search.after.base;
+        let entries = if self.verdict() == Verdict::Unexplained { &self.closest } else { &self.effects };
+        let merged_dz = entries
+            .iter()
+            .find(|effect| effect.id == "linear_drag")
+            .and_then(|effect| effect.parameters.iter().find(|p| p.name == "dz"));
+        let mut out = Vec::new();
+        for present in &base.present {
+            let mut values = present.values.clone();
+            match (present.effect.id(), merged_dz) {
+                ("inflow", Some(_)) => continue,
+                ("linear_drag", Some(dz)) => values[2] = dz.value,
+                _ => {}
+            }
+            out.extend(ActiveEffect::new(present.effect, &values).ok());
+        }
+        out
+    }
+
+    /// Chance of evidence this strong where the effect is absent: of the normal deviate, both sides.
+    #[must_use]
+    pub fn p_value(&self, effect: &Named) -> f64 {
+        Normal::standard().sf(effect.strength.z.abs()) * 2.0
+    }
+
+    /// Change of the Bayesian information criterion by the effect: what its parameters cost less what they
+    /// explain.
+    #[must_use]
+    pub fn delta_bic(&self, effect: &Named) -> f64 {
+        let rows = (CHANNELS * self.explanation.search.after.rows.len()) as f64;
+        effect.strength.count as f64 * rows.ln() - effect.strength.energy
+    }
+
+    /// A lag or delay is among the names.
+    #[must_use]
+    pub fn latency_named(&self) -> bool {
+        let is_latency = |named: &Named| matches!(named.id, "motor_lag" | "transport_delay");
+        self.explanation.named.iter().chain(&self.explanation.closest).any(is_latency)
+    }
+}
+
+/// Names of mass and inertia in the order of the paper's parameters.
+pub const BODY_NAMES: [&str; 7] = ["mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
+
+/// Mass (kg) and inertia (kg m^2) in the order of [`BODY_NAMES`].
+#[must_use]
+pub fn body_values(body: &RigidBody) -> [f64; 7] {
+    let j = &body.inertia_kg_m2;
+    [body.mass_kg, j[(0, 0)], j[(0, 1)], j[(0, 2)], j[(1, 1)], j[(1, 2)], j[(2, 2)]]
+}
+
+/// Mass and inertia of a fit with their standard errors.
+#[must_use]
+pub fn rigid_body(fitted: &Fitted) -> Vec<Estimate> {
+    let values = body_values(&fitted.base.vehicle.body);
+    BODY_NAMES
+        .iter()
+        .zip(values)
+        .enumerate()
+        .map(|(index, (name, value))| {
+            let wanted = if index == 0 { Nuisance::Mass } else { Nuisance::Inertia(index - 1) };
+            let place = fitted.rows.nuisances.iter().position(|column| column.nuisance == wanted);
+            let std = place.map_or(f64::NAN, |at| fitted.covariance[(at, at)].max(0.0).sqrt());
+            Estimate { name, value, std, unit: if index == 0 { "kg" } else { "kg m^2" } }
+        })
+        .collect()
+}
