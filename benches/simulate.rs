@@ -21,7 +21,7 @@ use nalgebra::{SVector, UnitQuaternion, Vector3};
 use rotorpy::HUMMINGBIRD;
 use serde_json::json;
 
-/// Best of this many runs: the machine may do something else besides.
+/// Best of this many runs, of ours as of RotorPy's: the machine may do something else besides.
 const RUNS: usize = 5;
 
 fn tumbling() -> State {
@@ -73,19 +73,22 @@ fn with_effects(model: &Model, input: &Input) -> f64 {
     })
 }
 
-/// RotorPy's simulated seconds a second, commands every 2 ms.
+/// RotorPy's simulated seconds a second, commands every 2 ms, best of some runs.
 fn its_rate() -> Result<f64, String> {
     let state = tumbling();
     let q = state.attitude.quaternion();
     let hover = [HUMMINGBIRD.hover_rad_s(); 4];
     let given = json!({
-        "params": HUMMINGBIRD.params(), "step_s": 2e-3, "commands": vec![hover; 1000],
+        "params": HUMMINGBIRD.params(), "step_s": 2e-3, "commands": vec![hover; 500],
         "start": {
             "x": state.position_m.as_slice(), "v": state.velocity_m_s.as_slice(), "q": [q.i, q.j, q.k, q.w],
             "w": state.rates_rad_s.as_slice(), "wind": [0.0, 0.0, 0.0], "rotor_speeds": hover,
         },
     });
-    python::ask("rotorpy_multirotor.py", &["--time"], &given).map(|answer| answer.as_f64().unwrap())
+    (0..RUNS).try_fold(0.0, |best, _| {
+        let answer = python::ask("rotorpy_multirotor.py", &["--time"], &given)?;
+        Ok(f64::max(best, answer.as_f64().unwrap()))
+    })
 }
 
 fn main() {

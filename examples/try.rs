@@ -109,6 +109,54 @@ fn main() {
     } else {
         println!("   not periodic");
     }
+    for (when, located) in [("before", &ex.located_before), ("after", &ex.located_after)] {
+        let Some(located) = located else { continue };
+        println!(
+            "   {when} shares {} changes {:?}",
+            located.axes.map(|a| format!("{:.2}({:.1e}/{:.1e})", a.share, a.rms, a.noise)).join(" "),
+            located
+                .changes
+                .iter()
+                .take(3)
+                .map(|c| format!("{} {:.1}s {:?} {:.3}", c.channel, c.time_s, c.kind, c.size))
+                .collect::<Vec<_>>()
+        );
+        for f in located.follows.iter().take(4) {
+            println!(
+                "      {} {} F {:.0} share {:.2} partial {:.0} {:.2} entered {:?} peak {:.2}",
+                f.channel,
+                f.state.name(),
+                f.f,
+                f.share,
+                f.partial_f,
+                f.partial_share,
+                f.entered,
+                f.peak_at
+            );
+        }
+        println!(
+            "      bands {:?}",
+            located.bands.map(|b| b.map(|b| format!("{:.2}-{:.2} h {:?}", b.low_hz, b.high_hz, b.harmonic)))
+        );
+        println!(
+            "      coherent {:?}",
+            located
+                .coherences
+                .iter()
+                .take(3)
+                .map(|c| format!(
+                    "{} {} {:.2}>{:.2} at {:.2}",
+                    c.channel,
+                    c.with.name(),
+                    c.mean,
+                    c.noise,
+                    c.frequency_hz
+                ))
+                .collect::<Vec<_>>()
+        );
+    }
+    println!("   field {:?}", ex.field);
+    println!("   aperiodic {:?}", ex.aperiodic);
     let mut l = out.last.clone();
     l.sort_by(|a, b| b.evidence.z.total_cmp(&a.evidence.z));
     println!(

@@ -72,3 +72,17 @@ pub fn rad_from_deg(deg: f64) -> f64 {
 pub fn deg_from_rad(rad: f64) -> f64 {
     rad.to_degrees()
 }
+
+/// To the precision of MAVLink's floats.
+#[must_use]
+#[expect(clippy::cast_possible_truncation, reason = "rounding to the message's precision is what is wanted")]
+pub fn narrow(value: f64) -> f32 {
+    value as f32
+}
+
+/// The nearest whole number; holds at the bounds and turns NaN into 0.
+#[must_use]
+#[expect(clippy::cast_possible_truncation, reason = "rounded before, saturates")]
+pub fn whole(value: f64) -> i32 {
+    value.round() as i32
+}

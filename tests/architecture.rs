@@ -13,6 +13,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("trajectory", &["units", "frames"]),
     ("physics", &["vehicle"]),
     ("log", &["units", "frames"]),
+    // frames over sockets and serial ports, and their recording
+    ("link", &["log"]),
     // vehicle: from actuator values to force
     ("signals", &["log", "vehicle"]),
     ("regression", &["physics", "signals"]),
@@ -22,21 +24,22 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("simulate", &["physics", "signals", "log", "trajectory"]),
     ("config", &["vehicle", "log", "trajectory"]),
     ("compare", &["signals", "simulate"]),
-    ("diagnose", &["regression", "estimate", "simulate", "compare"]),
+    // estimate: what a flight will determine is for its estimator to say
+    ("plan", &["physics", "regression", "estimate", "simulate", "trajectory"]),
+    // plan: the flight that tells two explanations apart keeps the vehicle's limits
+    ("diagnose", &["regression", "estimate", "simulate", "compare", "plan"]),
     // config: a model file is a vehicle file
     ("report", &["diagnose", "config"]),
     ("export", &["diagnose"]),
-    // estimate: what a flight will determine is for its estimator to say
-    ("plan", &["physics", "regression", "estimate", "simulate", "trajectory"]),
-    ("sitl", &["physics", "simulate", "log"]),
-    ("fly", &["plan", "log", "vehicle", "trajectory"]),
+    ("sitl", &["physics", "simulate", "log", "link"]),
+    ("fly", &["plan", "log", "vehicle", "trajectory", "link"]),
 ];
 
 /// The binary's own modules: they may use anything, and nothing of the library may use them.
 const BINARY: &[&str] = &["main", "cli", "commands"];
 
 /// Who may open a socket or name the runtime.
-const NETWORK: &[&str] = &["fly", "sitl", "main", "cli", "commands"];
+const NETWORK: &[&str] = &["link", "fly", "sitl", "main", "cli", "commands"];
 
 /// Who may print.
 const PRINT: &[&str] = &["main", "commands"];

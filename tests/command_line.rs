@@ -97,3 +97,52 @@ fn the_readmes_example_is_what_is_printed() {
     assert!(output.status.success());
     assert_eq!(String::from_utf8(output.stdout).unwrap(), shown);
 }
+
+#[test]
+fn sitl_says_what_runs_and_nothing_of_what_is_concealed() {
+    let effects =
+        written("concealed.toml", "[[effect]]\nid = \"linear_drag\"\ndx = 0.3\ndy = 0.3\ndz = 0.0\n");
+    let effects = effects.to_str().unwrap();
+    let listen = "udpout:127.0.0.1:9";
+    let output = mavid(&[
+        "sitl",
+        "--json",
+        "--effects",
+        effects,
+        "--listen",
+        listen,
+        "--speed",
+        "100",
+        "--duration",
+        "1",
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["autopilot"], "px4");
+    assert_eq!(document["listen"], serde_json::json!([listen]));
+    assert!(!stdout(&output).contains("drag") && !stderr(&output).contains("drag"));
+}
+
+#[test]
+fn sitl_refuses_what_it_cannot_run() {
+    let unknown = written("unknown-effect.toml", "[[effect]]\nid = \"phlogiston\"\n");
+    let missing = written("missing-parameter.toml", "[[effect]]\nid = \"linear_drag\"\ndx = 0.3\n");
+    let stray = written("stray-key.toml", "wind = 3\n");
+    for (arguments, said) in [
+        (vec!["--listen", "udp:127.0.0.1:9"], "udpin:HOST:PORT"),
+        (vec!["--speed", "0"], "--speed"),
+        (vec!["--speed", "2", "--lockstep"], "cannot be used with"),
+        (vec!["--loss", "1.5"], "loss"),
+        (vec!["--duration", "-1"], "--duration"),
+        (vec!["--autopilot", "betaflight"], "px4"),
+        (vec!["--effects", unknown.to_str().unwrap()], "phlogiston"),
+        (vec!["--effects", missing.to_str().unwrap()], "dy"),
+        (vec!["--effects", stray.to_str().unwrap()], "wind"),
+        (vec!["--vehicle", "no-such-file.toml"], "no-such-file.toml"),
+    ] {
+        let output = mavid(&[&["sitl"], &arguments[..]].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
+        assert!(stderr(&output).contains(said), "{arguments:?}: {}", stderr(&output));
+        assert_eq!(stdout(&output), "");
+    }
+}

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use mavid::physics::ActiveEffect;
+use mavid::physics::effects::MotorLag;
+use mavid::physics::{ActiveEffect, Effect};
 use mavid::vehicle::Vehicle;
 use serde::Deserialize;
 
@@ -11,6 +12,14 @@ use super::CommandError;
 /// The effects of a model file. A rotor may be given by its name.
 pub fn effects(tables: &[toml::Table], vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
     tables.iter().map(|table| effect(table, vehicle)).collect()
+}
+
+/// With the motor lag that the vehicle's `time_constant` states, if no effect is one.
+pub fn with_stated_lag(mut effects: Vec<ActiveEffect>, vehicle: &Vehicle) -> Vec<ActiveEffect> {
+    if effects.iter().all(|active| active.effect().id() != MotorLag.id()) {
+        effects.extend(MotorLag::stated(&vehicle.propulsion));
+    }
+    effects
 }
 
 /// The effects of a file that holds nothing but `[[effect]]` tables.

@@ -8,10 +8,14 @@ mod export;
 mod flights;
 mod identify;
 mod inspect;
+mod network;
 mod output;
 mod plan;
+mod record;
+mod replay;
 mod prove;
 mod simulate;
+mod sitl;
 mod validate;
 mod vehicle;
 
@@ -84,8 +88,11 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Plan(args) => plan::run(cli.json, args),
         Verb::Identify(args) => identify::run(cli.json, args),
         Verb::Simulate(args) => simulate::run(cli.json, args),
+        Verb::Sitl(args) => sitl::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),
+        Verb::Record(args) => record::run(cli.json, args),
+        Verb::Replay(args) => replay::run(cli.json, args),
         Verb::Explain(args) => explain::run(cli.json, args),
         Verb::Export(args) => export::run(cli.json, args),
         Verb::Prove(args) => prove::run(cli.json, args),

@@ -8,7 +8,7 @@ use mavid::log::write_recording;
 use mavid::simulate::{FlightSettings, Reference, TelemetrySettings, Truth, simulate_flight};
 use serde::Serialize;
 
-use super::effects::{effects, effects_file};
+use super::effects::{effects, effects_file, with_stated_lag};
 use super::{CommandError, Outcome, output};
 use crate::cli::SimulateArgs;
 
@@ -55,11 +55,13 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     let settings = FlightSettings {
         seed: args.seed,
         duration_s,
+        // where it is stated and not zero it is among the effects
         motor_time_constant_s: vehicle.propulsion.time_constant_s.unwrap_or(base.motor_time_constant_s),
         telemetry: TelemetrySettings { noise_scale: args.noise, ..base.telemetry },
         ..base
     };
     let ids = acting.iter().map(|active| active.effect().id()).collect();
+    let acting = with_stated_lag(acting, &vehicle);
     let truth = Truth { vehicle, effects: acting, disturbance: None };
     let flight = simulate_flight(truth, &nominal, &reference, &settings).map_err(|error| input(&error))?;
     let failed = |error| CommandError::Failure(format!("cannot write {}: {error}", args.out.display()));

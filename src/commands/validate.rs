@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use mavid::compare::{PlaybackSettings, TenSignals, autopilot_flight, playback, resimulated};
+use mavid::compare::{
+    PlaybackSettings, TenSignals, autopilot_flight, playback, recorded_tracking_m, resimulated,
+};
 use mavid::config::read_vehicle;
 use mavid::estimate::theta_of;
 use mavid::physics::Model;
@@ -16,7 +18,7 @@ use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::effects::effects;
+use super::effects::{effects, with_stated_lag};
 use super::flights::{Flight, ReadAs, load};
 use super::{CommandError, Outcome, output};
 use crate::cli::ValidateArgs;
@@ -91,6 +93,7 @@ fn named(path: &Path) -> Result<Named, CommandError> {
     }
     let refuse = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
     let effects = effects(&loaded.model.effects, &loaded.vehicle).map_err(|error| refuse(&error))?;
+    let effects = with_stated_lag(effects, &loaded.vehicle);
     let model = Model::new(&loaded.vehicle, effects).map_err(|error| refuse(&error))?;
     let name =
         path.file_stem().map_or_else(|| loaded.vehicle.name.clone(), |stem| stem.display().to_string());
@@ -148,7 +151,7 @@ fn closed_loop(
         };
         (model.name.clone(), flown.map_err(|error| error.to_string()))
     };
-    let controller = if by_pid { "the paper's PID" } else { "the simulator's own controller" };
+    let controller = if by_pid { "the paper's PID" } else { "an autopilot's cascade" };
     let title = format!(
         "Flown again in closed loop by {controller} from the recorded setpoints, {:.0} to {:.0} s",
         span_s.0, span_s.1
@@ -159,7 +162,9 @@ fn closed_loop(
             let mut lines = vec![("recorded".to_owned(), &recorded)];
             lines.extend(flown.iter().filter_map(|(name, s)| s.as_ref().ok().map(|s| (name.clone(), s))));
             let charts = svg(&closed_loop_charts(&lines));
-            (closed_loop_table(title, &recorded, &flown, span_s), charts)
+            let tracking = recorded_tracking_m(&flight.recording, &recorded, span_s);
+            let notes = closed_loop_notes(by_pid, &models[0].name, tracking.ok().flatten());
+            (ErrorTable { notes, ..closed_loop_table(title, &recorded, &flown, span_s) }, charts)
         }
         Err(error) => {
             let missing: Vec<_> =
@@ -167,6 +172,25 @@ fn closed_loop(
             (closed_loop_table(title, &TenSignals::default(), &missing, span_s), svg(&[]))
         }
     }
+}
+
+/// Who flew the simulations, and what that leaves in the errors.
+fn closed_loop_notes(by_pid: bool, nominal: &str, tracking_m: Option<[f64; 3]>) -> Vec<String> {
+    let mut notes = vec![if by_pid {
+        format!("controller: the paper's PID (28) to (32) with the mass of {nominal}, on exact states")
+    } else {
+        format!(
+            "controller: position, velocity, attitude and rate loops with PX4's default gains, on exact states; it believes \
+             {nominal}. The autopilot's own gains and estimates are not in the log: what it did otherwise is in every \
+             column. force and torque tell models apart; position and attitude do so only as far as the controller does not hold them"
+        )
+    }];
+    notes.extend(tracking_m.map(|[x, y, z]| {
+        format!(
+            "the recorded flight itself was off its setpoints by {x:.3}, {y:.3}, {z:.3} m RMS in x, y, z, which no model mends"
+        )
+    }));
+    notes
 }
 
 /// (43) in both regression models.

@@ -7,7 +7,7 @@ use crate::log::{Quantity, Recording, Stream};
 use crate::physics::{Input, MAX_ROTORS, Model, State};
 use crate::signals::{Grid, Signals, best, linear_onto};
 use crate::simulate::pid::{PidFlightSettings, simulate_pid_model_flight};
-use crate::simulate::{CascadeController, CascadeGains, Plant, Setpoint, SimulateError};
+use crate::simulate::{AutopilotCascade, AutopilotGains, Plant, Setpoint, SimulateError};
 use crate::vehicle::Vehicle;
 use std::collections::VecDeque;
 
@@ -217,9 +217,34 @@ pub fn resimulated(
     Ok(signals)
 }
 
-/// The recorded setpoints flown by the simulator's own position and attitude controller with this model,
-/// for logs of autopilots, whose controller and its gains are not known. The controller believes
-/// `nominal`, so that every model is flown alike.
+/// By how much the recorded flight itself was off its setpoints in x, y, z, RMS, m, from `from_s` to `to_s`. So
+/// much of the closed-loop errors is the recorded controller's own, and no model of the vehicle mends it.
+///
+/// # Errors
+/// If the recording holds no setpoints.
+pub fn recorded_tracking_m(
+    recording: &Recording,
+    recorded: &TenSignals,
+    (from_s, to_s): (f64, f64),
+) -> Result<Option<[f64; 3]>, CompareError> {
+    let asked = Asked::of(recording)?;
+    let span_s = from_s.max(asked.grid.start_s)..=to_s.min(asked.end_s());
+    let mut sums = [MeanSquare::default(); 3];
+    for (time_s, flown) in recorded.time_s.iter().zip(&recorded.values) {
+        if span_s.contains(time_s) {
+            let wanted = asked.at(*time_s);
+            for (sum, (flown, wanted)) in sums.iter_mut().zip(flown.iter().zip(wanted)) {
+                sum.add((flown - wanted).powi(2));
+            }
+        }
+    }
+    let roots: Vec<f64> = sums.iter().filter_map(MeanSquare::root).collect();
+    Ok(roots.try_into().ok())
+}
+
+/// The recorded setpoints flown with this model by a cascade as PX4 and ArduPilot have, with its default gains:
+/// for logs of autopilots, whose own gains and estimates are not known. It flies on exact states and
+/// believes `nominal`, so that every model is flown alike.
 ///
 /// # Errors
 /// If the recording holds no setpoints, the loop diverges, or rotors cannot set all torques.
@@ -231,7 +256,7 @@ pub fn autopilot_flight(
     const PERIOD_S: f64 = 0.004;
     const STEPS: u32 = 2;
     let asked = Asked::of(recording)?;
-    let mut controller = CascadeController::new(nominal, CascadeGains::default(), 0.0)?;
+    let mut controller = AutopilotCascade::new(nominal, AutopilotGains::default(), 0.0)?;
     let first = asked.at(asked.grid.start_s);
     let state = State::at_rest(Vector3::new(first[0], first[1], first[2]), first[9]);
     let mut hover = Input::from_commands(&model.airframe, 0.0, &[]);
@@ -273,4 +298,48 @@ pub fn autopilot_flight(
         time_s += PERIOD_S;
     }
     Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signals::{ConditionSettings, condition};
+    use crate::simulate::{
+        FlightSettings, RandomTrajectory, Reference, TelemetrySettings, Truth, random_vehicle,
+        simulate_flight,
+    };
+
+    #[test]
+    fn an_autopilots_flight_flown_again_tells_a_wrong_mass_by_its_thrust() {
+        let vehicle = random_vehicle(11).truth;
+        let trajectory = RandomTrajectory::default().draw(11).unwrap();
+        let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
+        let telemetry = TelemetrySettings { noise_scale: 0.0, ..TelemetrySettings::default() };
+        let settings = FlightSettings {
+            duration_s: 30.0,
+            control_noise_scale: 0.0,
+            motor_time_constant_s: 0.0,
+            telemetry,
+            ..FlightSettings::default()
+        };
+        let flight = simulate_flight(Truth::clean(vehicle.clone()), &vehicle, &reference, &settings).unwrap();
+        let signals = condition(&flight.recording, &vehicle, &ConditionSettings::default()).unwrap();
+        let recorded = TenSignals::of_signals(&signals).unwrap();
+        let span_s = (10.0, 29.0);
+        let off_m = recorded_tracking_m(&flight.recording, &recorded, span_s).unwrap().unwrap();
+        assert!(off_m.iter().all(|off_m| *off_m < 0.1 && *off_m <= flight.tracking_error_max_m), "{off_m:?}");
+        assert_eq!(recorded_tracking_m(&flight.recording, &recorded, (900.0, 901.0)).unwrap(), None);
+        let errors = |mass: f64| {
+            let mut flown = vehicle.clone();
+            flown.body.mass_kg *= mass;
+            let model = Model::new(&flown, vec![]).unwrap();
+            let again = autopilot_flight(&flight.recording, &model, &vehicle).unwrap();
+            recorded.rms_errors(&again, span_s).unwrap()
+        };
+        let (right, heavy) = (errors(1.0), errors(1.1));
+        let weight_n = vehicle.body.mass_kg * vehicle.gravity_m_s2;
+        assert!(right[6] < 0.03 * weight_n && heavy[6] > 0.08 * weight_n, "{right:?} {heavy:?}");
+        // the loops hold position and heading whatever the mass
+        assert!(right[..3].iter().chain(&heavy[..3]).all(|error_m| *error_m < 0.3), "{right:?} {heavy:?}");
+    }
 }

@@ -3,9 +3,9 @@
 mod closed_loop;
 mod playback;
 
-pub use closed_loop::{SIGNALS, TenSignals, autopilot_flight, resimulated};
+pub use closed_loop::{SIGNALS, TenSignals, autopilot_flight, recorded_tracking_m, resimulated};
 pub use playback::{
-    Fit, PlaybackSettings, StateNoise, WindowErrors, playback, playback_floor, playback_windows,
+    CommandNoise, Fit, PlaybackSettings, StateNoise, WindowErrors, playback, playback_floor, playback_windows,
 };
 
 use crate::simulate::SimulateError;

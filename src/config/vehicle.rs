@@ -143,7 +143,17 @@ fn propulsion(check: &Check<'_>, table: &PropulsionTable) -> Result<Propulsion, 
             .time_constant
             .map(|value| check.not_negative("propulsion.time_constant", value))
             .transpose()?,
+        time_constant_down_s: falling_time_constant(check, table)?,
     })
+}
+
+/// That of rotors that slow down, which says nothing without the other.
+fn falling_time_constant(check: &Check<'_>, table: &PropulsionTable) -> Result<Option<f64>, ConfigError> {
+    let because = "time_constant_down is that of falling speed beside that of rising speed";
+    if table.time_constant_down.is_some() {
+        check.required("propulsion.time_constant", table.time_constant, because)?;
+    }
+    check.optional_positive("propulsion.time_constant_down", table.time_constant_down)
 }
 
 /// Law, thrust coefficient, torque per thrust.
@@ -364,7 +374,8 @@ spin = "ccw"
 
     #[test]
     fn written_and_read_again_it_is_the_same() {
-        for propulsion in [CURVE, SPEED] {
+        let lagging = format!("{SPEED}time_constant = 0.0125\ntime_constant_down = 0.025\n");
+        for propulsion in [CURVE, SPEED, &lagging] {
             let limits = "[limits]\nyaw_max_deg = 180.0\nthrust_max_n = 34.4\n";
             let vehicle = parse(&[BODY, propulsion, ROTORS, limits]).unwrap().vehicle;
             let mut text = vehicle_to_toml(&vehicle).unwrap();
@@ -394,6 +405,17 @@ spin = "ccw"
             (vec![&BODY.replace("1.5", "-1.5"), SPEED, ROTORS], vec!["`body.mass`", "came -1.5"]),
             (vec![&BODY.replace("0.02,", "nan,"), SPEED, ROTORS], vec!["`body.inertia.xx`", "came NaN"]),
             (vec![&BODY.replace("0.035 }", "0.035, xy = 0.03 }"), SPEED, ROTORS], vec!["positive definite"]),
+            (
+                vec![BODY, SPEED, "time_constant_down = 0.02\n", ROTORS],
+                vec![
+                    "`propulsion.time_constant`: expected a number, since time_constant_down",
+                    "came nothing",
+                ],
+            ),
+            (
+                vec![BODY, SPEED, "time_constant = 0.02\ntime_constant_down = 0\n", ROTORS],
+                vec!["`propulsion.time_constant_down`: expected a number above zero", "came 0"],
+            ),
             (vec![BODY, SPEED, "thrust_max = 5\n", ROTORS], vec!["speed_max = 1000 and thrust_max = 5"]),
             (
                 vec![BODY, SPEED, "torque_ratio = 0.02\n", ROTORS],

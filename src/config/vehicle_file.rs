@@ -95,6 +95,9 @@ pub(super) struct PropulsionTable {
     /// s
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_constant: Option<f64>,
+    /// s
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_constant_down: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, Deserialize, Serialize)]

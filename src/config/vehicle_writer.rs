@@ -75,6 +75,7 @@ fn propulsion_table(propulsion: &Propulsion) -> PropulsionTable {
         torque_ratio: None,
         rotor_radius: propulsion.rotor_radius_m,
         time_constant: propulsion.time_constant_s,
+        time_constant_down: propulsion.time_constant_down_s,
     };
     match propulsion.law {
         ThrustLaw::Speed { speed_max_rad_s } => {

@@ -1,7 +1,7 @@
 //! Force and torque of a model along a flight that was flown: recorded states, known rotor thrusts.
 
 use super::trace::Trace;
-use crate::physics::{Airframe, Input, MAX_ROTORS, Model, Rotors, Wrench};
+use crate::physics::{Airframe, Input, MAX_ROTORS, Model, Wrench};
 use crate::signals::central_difference;
 use nalgebra::Vector3;
 
@@ -44,22 +44,22 @@ pub fn wrench_along(model: &Model, trace: &Trace, turning: &Turning) -> Vec<Wren
         if count == 0 && !trace.usable[index] {
             continue;
         }
-        let input = Input {
+        let mut input = Input {
             time_s: trace.grid.time_s(index),
             speed_command: [0.0; MAX_ROTORS],
+            speed_rate_1_s: turning.acceleration_1_s[index],
             wind_m_s: Vector3::zeros(),
             battery_voltage_v: trace.voltage_v.as_ref().map(|v| v[index]),
         };
-        let mut rotors = Rotors::still();
         for rotor in 0..model.airframe.rotor_count() {
-            rotors.speed[rotor] = model.airframe.relative_speed_of_thrust(turning.thrust_n[index][rotor]);
-            rotors.acceleration_1_s[rotor] = turning.acceleration_1_s[index][rotor];
+            input.speed_command[rotor] =
+                model.airframe.relative_speed_of_thrust(turning.thrust_n[index][rotor]);
         }
         let state = &trace.states[index];
         if index == 0 {
             model.initial_states(state, &input, &mut states);
         }
-        out[index] = model.wrench_of_rotors(state, &input, (&states, &mut rates), &mut rotors);
+        out[index] = model.evaluate(state, &input, &states, &mut rates).wrench;
         // Adams-Bashforth of second order
         for ((state, rate), before) in states.iter_mut().zip(&rates).zip(&mut rates_before) {
             let slope = if index == 0 { *rate } else { 1.5 * rate - 0.5 * *before };

@@ -1,22 +1,35 @@
 //! The model so far: rigid body, actuation latency, and the effects that were accepted.
 
 use crate::physics::effects::by_id;
-use crate::physics::{ActiveEffect, Effect, Model, PhysicsError};
+use crate::physics::{ActiveEffect, Effect, Model, Parameter, PhysicsError};
 use crate::signals::ActuationLatency;
 use crate::vehicle::Vehicle;
+use nalgebra::Matrix3;
 
 /// An effect with its values, and which of them are estimated.
 #[derive(Debug, Clone)]
 pub struct Present {
     /// which
     pub effect: &'static dyn Effect,
-    /// in the order of [`Effect::parameters`]
+    /// in the order of [`Effect::parameters`], then of [`Effect::finer_parameters`]
     pub values: Vec<f64>,
     /// indices of those that are estimated
     pub free: Vec<usize>,
 }
 
 impl Present {
+    /// The parameter of a slot of the values; `None` beyond the last.
+    #[must_use]
+    pub fn parameter(&self, slot: usize) -> Option<&'static Parameter> {
+        self.effect.parameters().iter().chain(self.effect.finer_parameters()).nth(slot)
+    }
+
+    /// The value that physics allows nearest to this.
+    #[must_use]
+    pub fn possible(&self, slot: usize, value: f64) -> f64 {
+        self.parameter(slot).map_or(value, |parameter| value.clamp(parameter.min, parameter.max))
+    }
+
     /// Value at which a parameter's effect vanishes.
     #[must_use]
     pub fn nothing_at(&self, slot: usize) -> f64 {
@@ -53,7 +66,11 @@ impl Base {
             .chain(more)
             .map(|present| ActiveEffect::new(present.effect, &present.values))
             .collect::<Result<Vec<_>, _>>()?;
-        Model::new(&self.vehicle, effects)
+        // along a recording only force and torque are asked for; while the search goes on, the inertia may
+        // be what no body has
+        let mut vehicle = self.vehicle.clone();
+        vehicle.body.inertia_kg_m2 = positive(&vehicle.body.inertia_kg_m2);
+        Model::new(&vehicle, effects)
     }
 
     /// The latency as effects, for simulations; a delay below zero, which only the log's own stamps can
@@ -67,4 +84,13 @@ impl Base {
         };
         [of("motor_lag", lag_s), of("transport_delay", delay_s)].into_iter().flatten().collect()
     }
+}
+
+/// The inertia with its principal moments held above a thousandth of the largest.
+fn positive(inertia: &Matrix3<f64>) -> Matrix3<f64> {
+    let mut eigen = inertia.symmetric_eigen();
+    let least = 1e-3 * eigen.eigenvalues.amax();
+    eigen.eigenvalues.iter_mut().for_each(|moment| *moment = moment.max(least));
+    let raised = eigen.recompose();
+    0.5 * (raised + raised.transpose())
 }

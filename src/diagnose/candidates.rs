@@ -40,10 +40,15 @@ pub fn candidates(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
     let known = |what: fn(&Trace) -> bool| flights.iter().all(what);
     let velocity = known(|trace| trace.known.velocity && trace.known.attitude);
     if velocity {
-        add(&[present("linear_drag", &[0.0; 3], &[0, 1])]);
+        // of the rotors, at their hubs, or of the body, at its centre
+        for at_hubs in [1.0, 0.0] {
+            add(&[present("linear_drag", &[0.0, 0.0, 0.0, at_hubs], &[0, 1])]);
+            add(&[present("linear_drag", &[0.0, 0.0, 0.0, at_hubs], &[0, 1, 2])]);
+            add(&[present("inflow", &[0.0, at_hubs], &[0])]);
+        }
+        add(&[present("quadratic_drag", &[0.0; 3], &[0, 1])]);
         add(&[present("quadratic_drag", &[0.0; 3], &[0, 1, 2])]);
         add(&[present("blade_flapping", &[0.0], &[0])]);
-        add(&[present("inflow", &[0.0], &[0])]);
         add(&[present("translational_lift", &[0.0], &[0])]);
         add(&[present("vortex_ring", &[0.0], &[0])]);
     }
@@ -58,12 +63,14 @@ pub fn candidates(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
     add(&[present("thrust_tilt", &[0.0; 2], &[0, 1])]);
     add(&[present("rotor_inertia", &[0.0], &[0])]);
     add(&[present("angular_damping", &[0.0; 3], &[0, 1, 2])]);
+    add(&[present("angular_damping", &[0.0; 3], &[0, 1])]);
     let mut number = 0.0;
     for _ in &vehicle.rotors {
         add(&[present("weak_rotor", &[number, 1.0], &[1])]);
         number += 1.0;
     }
-    if let Some(full_v) = full_voltage(flights) {
+    let by_commands = known(|trace| !trace.measured_speeds);
+    if let Some(full_v) = full_voltage(flights).filter(|_| by_commands) {
         add(&[present("battery_sag", &[0.0, full_v], &[0])]);
     }
     if velocity {
@@ -79,11 +86,12 @@ pub fn candidates(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
     out
 }
 
-/// Wind, tried together with drag: its columns are those that it has through a drag of one unit.
+/// Wind, tried together with drag at the hubs or at the centre: its columns are those that it has through a
+/// drag of one unit.
 #[must_use]
-pub fn drag_and_wind() -> Option<(Present, Present, Present)> {
-    let drag = present("linear_drag", &[0.0; 3], &[0, 1])?;
-    let unit = present("linear_drag", &[1.0, 1.0, 0.0], &[])?;
+pub fn drag_and_wind(at_hubs: f64) -> Option<(Present, Present, Present)> {
+    let drag = present("linear_drag", &[0.0, 0.0, 0.0, at_hubs], &[0, 1])?;
+    let unit = present("linear_drag", &[1.0, 1.0, 0.0, at_hubs], &[])?;
     let wind = present("steady_wind", &[0.0; 3], &[0, 1])?;
     Some((drag, wind, unit))
 }

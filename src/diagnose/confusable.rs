@@ -1,9 +1,13 @@
 //! Which other effect could stand for a named one in this flight.
 
+use super::base::Base;
+use super::candidates::Candidate;
 use super::evidence::Weighted;
 use super::explanation::Confusable;
+use super::rows::{CHANNELS, Rows};
 use super::search::{Fitted, Tested};
 use super::trace::Trace;
+use nalgebra::{DMatrix, DVector};
 
 /// Effects closer than this many standard deviations are not told apart.
 const APART: f64 = 5.0;
@@ -17,36 +21,14 @@ pub fn confusable_with(
     place: usize,
     others: &[Tested],
 ) -> Vec<Confusable> {
-    let present = &fitted.base.present;
-    let before: usize = present[..place].iter().map(|p| p.free.len()).sum();
-    let own = before..before + present[place].free.len();
-    let mut rows = fitted.rows.clone();
-    let columns: Vec<_> = rows.effects.drain(own).collect();
-    let effect = &present[place];
-    let values: Vec<f64> =
-        effect.free.iter().map(|&slot| effect.values[slot] - effect.nothing_at(slot)).collect();
-    let weighted = Weighted::new(&rows);
-    let Some((_, partialled)) = weighted.partialled(&columns) else { return Vec::new() };
-    let mut signal = nalgebra::DVector::zeros(partialled.nrows());
-    for (index, value) in values.iter().enumerate() {
-        signal += partialled.column(index) * *value;
-    }
-    let inflation = fitted.weighted.long_run_deviation();
     let mut out: Vec<Confusable> = Vec::new();
+    let Some(signal) = Signal::new(&fitted.rows, &fitted.base, place, None) else { return out };
+    let inflation = fitted.weighted.long_run_deviation();
     for other in others {
-        let id = other.candidate.id;
-        if id == present[place].effect.id() || other.candidate.through.is_some() {
+        let Some(left) = signal.beyond(flights, &fitted.rows, &fitted.base, &other.candidate) else {
             continue;
-        }
-        let mut columns = Vec::new();
-        for part in &other.candidate.parts {
-            if let Ok(found) = fitted.rows.columns_of(flights, &fitted.base, part) {
-                columns.extend(found);
-            }
-        }
-        let Some((_, basis)) = weighted.partialled(&columns) else { continue };
-        let left = left_over(&signal, &basis);
-        let distance = left / inflation;
+        };
+        let (id, distance) = (other.candidate.id, left / inflation);
         if distance < APART {
             let known = out.iter_mut().find(|confusable| confusable.id == id);
             match known {
@@ -60,8 +42,61 @@ pub fn confusable_with(
     out
 }
 
+/// What one of a base's effects does in its rows, beyond what nuisances and the other effects could do.
+pub(super) struct Signal {
+    id: &'static str,
+    weighted: Weighted,
+    sum: DVector<f64>,
+}
+
+impl Signal {
+    /// Of the effect at `place`, in standard deviations of each channel: the rows' own, or those given (N,
+    /// N m). `None` where it cannot be told from the nuisances.
+    pub(super) fn new(
+        rows: &Rows,
+        base: &Base,
+        place: usize,
+        sigma: Option<&[f64; CHANNELS]>,
+    ) -> Option<Self> {
+        let effect = base.present.get(place)?;
+        let before: usize = base.present[..place].iter().map(|p| p.free.len()).sum();
+        let mut rows = rows.clone();
+        let columns: Vec<_> = rows.effects.drain(before..before + effect.free.len()).collect();
+        let weighted = sigma.map_or_else(|| Weighted::new(&rows), |sigma| Weighted::at(&rows, sigma));
+        let (_, partialled) = weighted.partialled(&columns)?;
+        let mut sum = DVector::zeros(partialled.nrows());
+        for (index, &slot) in effect.free.iter().enumerate() {
+            // from where the effect does nothing
+            sum += partialled.column(index) * (effect.values[slot] - effect.nothing_at(slot));
+        }
+        Some(Self { id: effect.effect.id(), weighted, sum })
+    }
+
+    /// Norm of what a candidate could not do in its stead, in standard deviations of rows that are
+    /// independent. `None` for the effect itself, and where the candidate does nothing.
+    pub(super) fn beyond(
+        &self,
+        flights: &[Trace],
+        rows: &Rows,
+        base: &Base,
+        candidate: &Candidate,
+    ) -> Option<f64> {
+        if candidate.id == self.id || candidate.through.is_some() {
+            return None;
+        }
+        let mut columns = Vec::new();
+        for part in &candidate.parts {
+            if let Ok(found) = rows.columns_of(flights, base, part) {
+                columns.extend(found);
+            }
+        }
+        let (_, basis) = self.weighted.partialled(&columns)?;
+        Some(left_over(&self.sum, &basis))
+    }
+}
+
 /// Norm of what the columns cannot make of the signal.
-fn left_over(signal: &nalgebra::DVector<f64>, basis: &nalgebra::DMatrix<f64>) -> f64 {
+fn left_over(signal: &DVector<f64>, basis: &DMatrix<f64>) -> f64 {
     let normal = basis.tr_mul(basis);
     let Some(factor) = normal.cholesky() else { return signal.norm() };
     let theta = factor.solve(&basis.tr_mul(signal));

@@ -79,8 +79,9 @@ pub struct Empirical {
     pub gain: f64,
 }
 
-/// Numbers of knots that are tried.
-const KNOTS: [usize; 3] = [7, 13, 25];
+/// Knots by which the quantity is chosen, and numbers that are tried for it then.
+const KNOTS: usize = 13;
+const OTHER_KNOTS: [usize; 2] = [7, 25];
 /// Stretches of the cross-validation.
 const FOLDS: usize = 6;
 /// Less than this is not worth a term.
@@ -112,15 +113,18 @@ impl Empirical {
             .collect::<Result<_, _>>()?;
         let positions = traces.iter().all(|trace| trace.known.position && trace.known.attitude);
         let velocities = traces.iter().all(|trace| trace.known.velocity && trace.known.attitude);
-        let choices: Vec<(Along, usize)> = Along::ALL
-            .into_iter()
-            .filter(|along| if matches!(along, Along::Position(_)) { positions } else { velocities })
-            .flat_map(|along| KNOTS.map(|knots| (along, knots)))
-            .collect();
-        let best = choices
-            .into_par_iter()
-            .filter_map(|(along, knots)| fitted_term(&traces, fitted, along, knots))
-            .max_by(|a, b| a.gain.total_cmp(&b.gain));
+        let known = |along: &Along| if matches!(along, Along::Position(_)) { positions } else { velocities };
+        let best_of = |choices: Vec<(Along, usize)>| {
+            choices
+                .into_par_iter()
+                .filter_map(|(along, knots)| fitted_term(&traces, fitted, along, knots))
+                .max_by(|a, b| a.gain.total_cmp(&b.gain))
+        };
+        let all = Along::ALL.into_iter().filter(known).map(|along| (along, KNOTS)).collect();
+        let best = best_of(all).map(|first| {
+            let others = best_of(OTHER_KNOTS.map(|knots| (first.along, knots)).to_vec());
+            others.filter(|other| other.gain > first.gain).unwrap_or(first)
+        });
         Ok(best.filter(|term| term.gain > LEAST_GAIN))
     }
 

@@ -51,6 +51,8 @@ pub struct Evidence {
     pub gain: f64,
     /// energy that goes, in sigma squared
     pub energy: f64,
+    /// root mean square of what the nuisances leave of it, each channel, N and N m
+    pub rms: [f64; CHANNELS],
 }
 
 impl Evidence {
@@ -62,10 +64,22 @@ impl Evidence {
 }
 
 impl Weighted {
-    /// Partials the nuisances and the base's own effects out of the residual.
+    /// Partials the nuisances and the base's own effects out of the residual, each channel weighted by what
+    /// is left of it.
     #[must_use]
     pub fn new(rows: &Rows) -> Self {
-        let count = rows.len();
+        let mut sigma: [f64; CHANNELS] = std::array::from_fn(|channel| spread(&rows.residual[channel]));
+        let mut this = Self::at(rows, &sigma);
+        for _ in 0..2 {
+            sigma = this.residual_sigma();
+            this = Self::at(rows, &sigma);
+        }
+        this
+    }
+
+    /// The same at given standard deviations of the channels (N, N m), for flights that were not flown.
+    #[must_use]
+    pub fn at(rows: &Rows, sigma: &[f64; CHANNELS]) -> Self {
         let mut columns: Vec<(&Channels, Option<f64>)> =
             rows.nuisances.iter().map(|column| (&column.values, column.prior_std)).collect();
         columns.extend(rows.effects.iter().map(|column| (column, None)));
@@ -73,47 +87,43 @@ impl Weighted {
             columns.len(),
             columns.iter().map(|(_, prior)| prior.map_or(0.0, |std| std.powi(-2))),
         );
-        let mut sigma: [f64; CHANNELS] = std::array::from_fn(|channel| spread(&rows.residual[channel]));
-        let mut out = None;
-        for _ in 0..3 {
-            let nuisances = DMatrix::from_columns(
-                &columns.iter().map(|(column, _)| weighted(column, &sigma)).collect::<Vec<_>>(),
-            );
-            let mut normal = nuisances.tr_mul(&nuisances);
-            for (index, precision) in precision.iter().enumerate() {
-                normal[(index, index)] += precision;
-            }
-            // a column that is nowhere excited drops out
-            let most = normal.diagonal().max();
-            for index in 0..normal.nrows() {
-                if normal[(index, index)] <= 1e-14 * most {
-                    normal[(index, index)] += 1.0;
-                }
-            }
-            let normal = scaled_cholesky(&normal);
-            let mut this = Self {
-                runs: rows.runs.clone(),
-                rows: count,
-                sigma,
-                nuisances,
-                precision: precision.clone(),
-                normal,
-                left: DVector::zeros(0),
-                energy: 0.0,
-            };
-            let y = weighted(&rows.residual, &sigma);
-            this.left = this.project(&y);
-            this.energy = this.left.dot(&y);
-            for (channel, sigma) in sigma.iter_mut().enumerate() {
-                let part = this.left.rows(channel * count, count);
-                let std = (part.norm_squared() / count.max(1) as f64).sqrt();
-                if std > 0.0 {
-                    *sigma *= std;
-                }
-            }
-            out = Some(this);
+        let nuisances = DMatrix::from_columns(
+            &columns.iter().map(|(column, _)| weighted(column, sigma)).collect::<Vec<_>>(),
+        );
+        let mut normal = nuisances.tr_mul(&nuisances);
+        for (index, precision) in precision.iter().enumerate() {
+            normal[(index, index)] += precision;
         }
-        out.unwrap_or_else(|| unreachable_empty(rows))
+        // a column that is nowhere excited drops out
+        let most = normal.diagonal().max();
+        for index in 0..normal.nrows() {
+            if normal[(index, index)] <= 1e-14 * most {
+                normal[(index, index)] += 1.0;
+            }
+        }
+        let mut this = Self {
+            runs: rows.runs.clone(),
+            rows: rows.len(),
+            sigma: *sigma,
+            nuisances,
+            precision,
+            normal: scaled_cholesky(&normal),
+            left: DVector::zeros(0),
+            energy: 0.0,
+        };
+        let y = weighted(&rows.residual, sigma);
+        this.left = this.project(&y);
+        this.energy = this.left.dot(&y);
+        this
+    }
+
+    /// Standard deviations of what is left.
+    fn residual_sigma(&self) -> [f64; CHANNELS] {
+        std::array::from_fn(|channel| {
+            let part = self.left.rows(channel * self.rows, self.rows);
+            let std = (part.norm_squared() / self.rows.max(1) as f64).sqrt();
+            if std > 0.0 { self.sigma[channel] * std } else { self.sigma[channel] }
+        })
     }
 
     /// By how much slow noise is larger than rows that were independent would have it: square root of the
@@ -201,6 +211,7 @@ impl Weighted {
             p_cluster: self.cluster(&inverse, &partialled, &after, &theta),
             gain: energy / self.energy.max(f64::MIN_POSITIVE),
             energy,
+            rms: self.rms(&(&partialled * &theta)),
             theta: theta.iter().copied().collect(),
             covariance,
         })
@@ -214,6 +225,13 @@ impl Weighted {
         let theta = DVector::from_iterator(size, all.theta[first..].iter().copied());
         let covariance = all.covariance.view((first, first), (size, size)).into_owned();
         Some(normal_deviate(theta.dot(&covariance.cholesky()?.solve(&theta)), size))
+    }
+
+    fn rms(&self, series: &DVector<f64>) -> [f64; CHANNELS] {
+        std::array::from_fn(|channel| {
+            let part = series.rows(channel * self.rows, self.rows);
+            (part.norm_squared() / self.rows.max(1) as f64).sqrt() * self.sigma[channel]
+        })
     }
 
     /// What the spread of nuisances that are known beforehand adds to the scores' variance.
@@ -363,19 +381,6 @@ impl TraceOfScaled for DMatrix<f64> {
 
 fn weighted_left(weighted: &Weighted) -> DVector<f64> {
     weighted.left.clone()
-}
-
-fn unreachable_empty(rows: &Rows) -> Weighted {
-    Weighted {
-        runs: rows.runs.clone(),
-        rows: rows.len(),
-        sigma: [1.0; CHANNELS],
-        nuisances: DMatrix::zeros(0, 0),
-        precision: DVector::zeros(0),
-        normal: None,
-        left: DVector::zeros(0),
-        energy: 0.0,
-    }
 }
 
 /// Channel after channel, each over its sigma.

@@ -1,10 +1,12 @@
 //! The whole method: search, lack of fit, verdict.
 
+use super::base::{Base, Present};
 use super::candidates::Candidate;
 use super::confusable::confusable_with;
 use super::explanation::{Confusable, DetectionLimit, Explanation, Named, NamedParameter, Strength, Verdict};
-use super::harmonics::{LackOfFit, lack_of_fit, period_s};
+use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
 use super::latency::LatencyFinding;
+use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
 use super::rows::{AXES, CHANNELS};
 use super::search::{Fitted, Gates, Search, Step, Tested, search};
 use super::trace::{Trace, TraceError};
@@ -60,6 +62,12 @@ const LACK_TORQUE: f64 = 0.1;
 const FAST_MOTOR_S: f64 = 0.004;
 /// A mounting tilt is a nuisance below half a degree, rad.
 const TILT_NUISANCE_RAD: f64 = 0.0087;
+/// A centre of mass is not known better, m.
+const COM_NUISANCE_M: f64 = 0.000_15;
+/// No line that holds anything weighs less, kg/m.
+const LEAST_LINE_KG_M: f64 = 0.005;
+/// Rotors of one vehicle differ by as much.
+const SCATTER: f64 = 0.15;
 /// Rivals that explain nearly as much as what was taken.
 const RIVAL: f64 = 0.93;
 
@@ -82,8 +90,31 @@ pub fn explain(
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
     let found = search(&traces, vehicle, &settings.gates)?;
-    let lack = lacks(&traces, &found.after);
-    Ok(judge(&traces, vehicle, found, lack))
+    let beyond = beyond(&traces, &found);
+    Ok(judge(&traces, vehicle, found, beyond))
+}
+
+/// What is left beside all names, and where.
+struct Beyond {
+    lack: Option<LackOfFit>,
+    located_before: Option<Localisation>,
+    located_after: Option<Localisation>,
+    field: Option<FieldTest>,
+    aperiodic: Aperiodic,
+}
+
+fn beyond(traces: &[Trace], found: &Search) -> Beyond {
+    let (located_before, located_after) =
+        rayon::join(|| localise(traces, &found.before), || localise(traces, &found.after));
+    Beyond {
+        lack: lacks(traces, &found.after),
+        field: field_test(traces, (&found.before, &found.after), explained_energy(found)),
+        aperiodic: located_after
+            .as_ref()
+            .map_or_else(Aperiodic::default, |located| aperiodic(traces, &found.after, located)),
+        located_before,
+        located_after,
+    }
 }
 
 /// The harmonic test on each flight that repeats; the worst of them.
@@ -109,22 +140,6 @@ fn lacks(traces: &[Trace], fitted: &Fitted) -> Option<LackOfFit> {
     worst
 }
 
-/// By what is measured of the motion.
-fn flown_period_s(trace: &Trace, time_s: &[f64]) -> Option<f64> {
-    let series =
-        |pick: &dyn Fn(usize) -> f64| -> Vec<f64> { trace.centers.iter().map(|&c| pick(c)).collect() };
-    let mut motion: Vec<Vec<f64>> = Vec::new();
-    for axis in 0..3 {
-        if trace.known.velocity {
-            motion.push(series(&|center| trace.states[center].velocity_m_s[axis]));
-        } else {
-            motion.push(series(&|center| trace.states[center].rates_rad_s[axis]));
-        }
-    }
-    let motion: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
-    period_s(time_s, &motion)
-}
-
 /// Whether what is left at the harmonics is certain and large enough to matter.
 fn is_lacking(lack: &LackOfFit, fitted: &Fitted) -> bool {
     let body = &fitted.base.vehicle;
@@ -141,21 +156,56 @@ fn is_lacking(lack: &LackOfFit, fitted: &Fitted) -> bool {
 }
 
 /// Verdict and names.
-fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, lack: Option<LackOfFit>) -> Explanation {
+fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> Explanation {
+    let Beyond { lack, located_before, located_after, field, aperiodic } = beyond;
     let mut named = names(traces, &found);
     named.extend(latency_name(traces, vehicle, &found));
-    let lacking = lack.as_ref().is_some_and(|lack| is_lacking(lack, &found.after));
+    named.extend(aperiodic.gust.as_ref().and_then(gust_name));
+    let a_field = field.as_ref().is_some_and(|field| field.certain);
+    let lacking =
+        lack.as_ref().is_some_and(|lack| is_lacking(lack, &found.after)) || a_field || aperiodic.is_lacking();
     let excess = lack.as_ref().map_or(0.0, |lack| lack.excess_energy);
     let explained = explained_energy(&found);
+    // a field of the room that alone explains more leaves the names nothing
+    let beaten = field.as_ref().is_some_and(|field| field.beats_named);
     let verdict = match (named.is_empty(), lacking) {
         (true, false) => Verdict::NothingMissing,
         (true, true) => Verdict::Unexplained,
         (false, false) => Verdict::Explained,
-        (false, true) if excess > explained => Verdict::Unexplained,
+        (false, true) if beaten || excess > explained => Verdict::Unexplained,
         (false, true) => Verdict::PartlyExplained,
     };
     let closest = if verdict == Verdict::Unexplained { std::mem::take(&mut named) } else { Vec::new() };
-    Explanation { verdict, named, closest, limits: limits(&found.last), lack_of_fit: lack, search: found }
+    Explanation {
+        verdict,
+        named,
+        closest,
+        limits: limits(&found.last),
+        lack_of_fit: lack,
+        located_before,
+        located_after,
+        field,
+        aperiodic,
+        search: found,
+    }
+}
+
+/// Gusts have no signature of their own in the search: their size and time are those of the residual.
+fn gust_name(gust: &GustFound) -> Option<Named> {
+    let effect = by_id("gust")?;
+    let values = [(gust.sigma_m_s, gust.sigma_std_m_s), (gust.correlation_s, gust.correlation_std_s)];
+    let parameters = effect.parameters().iter().zip(values);
+    let parameters = parameters
+        .map(|(parameter, (value, std))| NamedParameter {
+            name: parameter.name,
+            value,
+            std,
+            unit: parameter.unit,
+        })
+        .collect();
+    let z = gust.statistic.max(0.0).sqrt();
+    let strength = Strength { z, gain: 0.0, energy: gust.statistic, count: 2 };
+    Some(Named { id: "gust", sentence: effect.sentence(), parameters, strength, confusable_with: Vec::new() })
 }
 
 /// Energy that the accepted effects took away, in sigma squared of the final residual.
@@ -175,7 +225,8 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
     let mut out = Vec::new();
     for (place, present) in fitted.base.present.iter().enumerate() {
         let mut parameters = Vec::new();
-        for (slot, parameter) in present.effect.parameters().iter().enumerate() {
+        for slot in 0..present.values.len() {
+            let Some(parameter) = present.parameter(slot) else { continue };
             let free = present.free.contains(&slot);
             let std = if free {
                 index += 1;
@@ -188,9 +239,7 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
                 parameters.push(NamedParameter { name: parameter.name, value, std, unit: parameter.unit });
             }
         }
-        let small_tilt = present.effect.id() == "thrust_tilt"
-            && present.values.iter().map(|v| v * v).sum::<f64>().sqrt() < TILT_NUISANCE_RAD;
-        if small_tilt {
+        if is_ordinary(present, &fitted.base) {
             continue;
         }
         let step = found.steps.iter().find(|step| {
@@ -205,6 +254,25 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
         });
     }
     out
+}
+
+/// What every vehicle has a little of, or what is too small to be what the effect is called: it stays in the
+/// model and gets no name.
+fn is_ordinary(present: &Present, base: &Base) -> bool {
+    let size = |slots: &[usize]| slots.iter().map(|&slot| present.values[slot].powi(2)).sum::<f64>().sqrt();
+    let rotors = base.present.iter().filter(|other| other.effect.id() == "weak_rotor");
+    match present.effect.id() {
+        "thrust_tilt" => size(&[0, 1]) < TILT_NUISANCE_RAD,
+        "com_offset" => size(&[0, 1, 2]) < COM_NUISANCE_M,
+        "tether" => present.values[0] < LEAST_LINE_KG_M && present.values[1] == 0.0,
+        // one that is stronger, or several that differ: the rotors' scatter
+        "weak_rotor" => {
+            present.values[1] > 1.0
+                || rotors.clone().count() > 1 && rotors.clone().all(|rotor| rotor.values[1] > 1.0 - SCATTER)
+                || rotors.clone().any(|rotor| rotor.values[1] > 1.0) && present.values[1] > 1.0 - SCATTER
+        }
+        _ => false,
+    }
 }
 
 fn strength(step: &Step) -> Strength {
@@ -264,7 +332,7 @@ fn limits(last: &[Tested]) -> Vec<DetectionLimit> {
         let mut index = 0;
         for part in parts {
             for &free in &part.free {
-                let parameter = &part.effect.parameters()[free];
+                let Some(parameter) = part.parameter(free) else { continue };
                 let limit = 4.0 * tested.evidence.std(index);
                 index += 1;
                 let same = out.iter_mut().find(|l| l.id == *id && l.parameter == parameter.name);

@@ -1,6 +1,7 @@
 //! What comes out of it.
 
 use super::harmonics::LackOfFit;
+use super::locate::{Aperiodic, FieldTest, Localisation};
 use super::search::Search;
 
 /// The answer in one word.
@@ -105,6 +106,14 @@ pub struct Explanation {
     pub limits: Vec<DetectionLimit>,
     /// what repeats with the trajectory and is left over
     pub lack_of_fit: Option<LackOfFit>,
+    /// where the rigid body's residual lives
+    pub located_before: Option<Localisation>,
+    /// where what is left lives
+    pub located_after: Option<Localisation>,
+    /// a force of the room against the named effects
+    pub field: Option<FieldTest>,
+    /// what never repeats
+    pub aperiodic: Aperiodic,
     /// the fits and the evidence
     pub search: Search,
 }

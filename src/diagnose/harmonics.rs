@@ -4,6 +4,7 @@
 //! frequency; noise lies between them as well. It cannot see what does not repeat.
 
 use super::rows::{AXES, CHANNELS};
+use super::trace::Trace;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 use std::f64::consts::TAU;
 
@@ -12,7 +13,7 @@ const HIGHEST_HZ: f64 = 2.0;
 /// Fewest periods.
 const LEAST_PERIODS: usize = 3;
 /// Autocorrelation at one period that makes a flight periodic.
-const PERIODIC: f64 = 0.5;
+const PERIODIC: f64 = 0.35;
 /// Shortest period that is looked for, s.
 const SHORTEST_S: f64 = 3.0;
 
@@ -104,6 +105,23 @@ pub fn period_s(time_s: &[f64], signals: &[&[f64]]) -> Option<f64> {
     let curve = before - 2.0 * at + after;
     let shift = if curve < 0.0 { 0.5 * (before - after) / curve } else { 0.0 };
     Some(lags[peak].0 + shift * step_s)
+}
+
+/// The period of a flight by what is measured of its motion; its rows lie at `time_s`.
+#[must_use]
+pub fn flown_period_s(trace: &Trace, time_s: &[f64]) -> Option<f64> {
+    let series =
+        |pick: &dyn Fn(usize) -> f64| -> Vec<f64> { trace.centers.iter().map(|&c| pick(c)).collect() };
+    let mut motion: Vec<Vec<f64>> = Vec::new();
+    for axis in 0..3 {
+        if trace.known.velocity {
+            motion.push(series(&|center| trace.states[center].velocity_m_s[axis]));
+        } else {
+            motion.push(series(&|center| trace.states[center].rates_rad_s[axis]));
+        }
+    }
+    let motion: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
+    period_s(time_s, &motion)
 }
 
 /// The flight without its first and last sixth: the ways to the start and home do not repeat. Its span, s.

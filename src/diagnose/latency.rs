@@ -30,6 +30,11 @@ pub struct LatencyFinding {
 
 /// Latencies below this need no kind: sampling and a fast motor together are as long, s.
 const LEAST_S: f64 = 0.010;
+/// A command holds until the next one comes; the loop that sends it runs faster than the log. Share of the
+/// log's period by which that delays the mean command.
+const HELD: f64 = 0.25;
+/// Gyroscopes noisier than this let no kind be told.
+const NOISY_RAD_S: f64 = 0.03;
 /// A kind is refused beyond this many standard deviations.
 const REFUSED: f64 = 6.0;
 
@@ -49,10 +54,14 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
         && let Some((against_lag, against_delay, delay_s)) = second_order(flights, &fitted)?
     {
         let both = against_lag > REFUSED && against_delay > REFUSED && (0.0..total_s).contains(&delay_s);
-        latency = if both {
+        // fed back, the gyroscopes' noise moves commands and motion together, and the second order with them
+        let fed_back = flights.iter().any(|trace| trace.gyro_noise_rad_s > NOISY_RAD_S);
+        latency = if fed_back {
+            lag_of(flights, total_s)
+        } else if both {
             ActuationLatency { delay_s, lag_s: total_s - delay_s }
         } else if against_lag < against_delay {
-            ActuationLatency { delay_s: 0.0, lag_s: total_s }
+            lag_of(flights, total_s)
         } else {
             ActuationLatency { delay_s: total_s, lag_s: 0.0 }
         };
@@ -60,17 +69,30 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
         base.latency = latency;
         let fitted = fit(flights, base, Newton::Free)?;
         latency = fitted.base.latency;
-        finding = LatencyFinding { against_lag, against_delay, ..finding_of(&fitted) };
+        finding = finding_of(&fitted);
+        if !fed_back {
+            finding = LatencyFinding { against_lag, against_delay, ..finding };
+        }
     }
     let held = fit(flights, Base { latency, ..base }, Newton::Held)?;
     Ok((held, finding))
+}
+
+/// A lag behind the time for which a command holds.
+fn lag_of(flights: &[Trace], total_s: f64) -> ActuationLatency {
+    let held_s = flights.iter().map(|trace| HELD * trace.command_period_s).fold(0.0, f64::max);
+    let delay_s = held_s.min(0.5 * total_s);
+    ActuationLatency { delay_s, lag_s: total_s - delay_s }
 }
 
 /// Effects whose columns resemble that of a latency.
 fn look_alikes(flights: &[Trace]) -> Vec<Present> {
     let moving = flights.iter().all(|trace| trace.known.velocity && trace.known.attitude);
     let drag = if moving {
-        [present("linear_drag", &[0.0; 3], &[0, 1]), present("inflow", &[0.0], &[0])]
+        [
+            present("linear_drag", &[0.0, 0.0, 0.0, 0.0], &[0, 1, 2]),
+            present("quadratic_drag", &[0.0; 3], &[0, 1, 2]),
+        ]
     } else {
         [None, None]
     };

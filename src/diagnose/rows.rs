@@ -154,6 +154,12 @@ impl Rows {
         Ok(rows)
     }
 
+    /// What the rotors of a flight do by their commands, after the latency and smoothed.
+    #[must_use]
+    pub fn commanded(&self, flight: usize) -> Option<&Turning> {
+        self.flights.get(flight).map(|along| &along.commanded)
+    }
+
     /// Number of rows.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -270,8 +276,7 @@ impl Rows {
 
 /// By how much a parameter is moved to see what it does.
 fn step_of(present: &Present, index: usize) -> f64 {
-    let parameter = &present.effect.parameters()[index];
-    let span = (parameter.max - parameter.min).min(1.0);
+    let span = present.parameter(index).map_or(1.0, |parameter| (parameter.max - parameter.min).min(1.0));
     (1e-4 * span).max(1e-3 * present.values[index].abs())
 }
 
@@ -284,7 +289,7 @@ fn weak_wrench(trace: &Trace, forces: &[Vector3<f64>], torques: &[Vector3<f64>])
 }
 
 /// Force in each reading there is, and torque.
-fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
+pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
     let second = if trace.reads_force_twice() { force.clone() } else { nothing(trace) };
     let ([fx, fy, fz], [tx, ty, tz], [kx, ky, kz]) = (force, torque, second);
     [fx, fy, fz, tx, ty, tz, kx, ky, kz]

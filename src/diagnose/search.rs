@@ -2,7 +2,7 @@
 
 use super::base::{Base, Present};
 use super::candidates::{Candidate, candidates, drag_and_wind};
-use super::evidence::{Evidence, Weighted, normal_deviate};
+use super::evidence::{Evidence, Weighted};
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::rows::{Channels, Nuisance, Rows};
 use super::trace::Trace;
@@ -20,13 +20,15 @@ pub struct Gates {
     pub p_cluster: f64,
     /// share of the residual energy
     pub gain: f64,
+    /// least force that matters, of the weight, or torque, of the torque that the motion took (rms)
+    pub matters: (f64, f64),
     /// most effects that are accepted
     pub steps: usize,
 }
 
 impl Default for Gates {
     fn default() -> Self {
-        Self { z: 4.0, p_cluster: 0.02, gain: 0.005, steps: 6 }
+        Self { z: 4.0, p_cluster: 0.02, gain: 0.004, matters: (4e-4, 0.04), steps: 6 }
     }
 }
 
@@ -124,11 +126,10 @@ fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
     let mut index = fitted.rows.nuisances.len();
     for present in &mut base.present {
         for &free in &present.free {
-            let parameter = &present.effect.parameters()[free];
             let by = fitted.coefficients[index];
             let std = fitted.covariance[(index, index)].max(0.0).sqrt();
             let before = present.values[free];
-            present.values[free] = (before + by).clamp(parameter.min, parameter.max);
+            present.values[free] = present.possible(free, before + by);
             most = most.max((present.values[free] - before).abs() / std.max(f64::MIN_POSITIVE));
             index += 1;
         }
@@ -178,14 +179,18 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
     let mut after = before.clone();
     let mut steps: Vec<Step> = Vec::new();
     let mut last;
-    let mut settled = false;
+    let mut settled = 0;
+    let mut refused: Vec<&'static str> = Vec::new();
     loop {
         let candidates = candidates(&after.base.vehicle, flights);
         last = test_all(flights, &after, &candidates);
         let count = last.len() as f64;
+        let back = |tested: &Tested| refused.contains(&tested.candidate.id);
         let mut passed: Vec<Tested> =
-            last.iter().filter(|tested| passes(tested, gates, count)).cloned().collect();
-        passed.sort_by(|a, b| b.evidence.energy.total_cmp(&a.evidence.energy));
+            last.iter().filter(|tested| !back(tested)).filter(|tested| passes(tested, &after, gates, count)).cloned().collect();
+        let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);
+        let worth = |tested: &Tested| tested.evidence.energy - price * tested.evidence.theta.len() as f64;
+        passed.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
         match passed.first().cloned() {
             Some(taken) if steps.len() < gates.steps => {
                 let mut base = after.base.clone();
@@ -193,10 +198,14 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
                 after = fit(flights, base, Newton::Held)?;
                 steps.push(Step { taken, rivals: passed.split_off(1) });
             }
-            _ if settled || steps.is_empty() => break,
+            _ if settled == SETTLINGS || steps.is_empty() => break,
             _ => {
-                settled = true;
+                settled += 1;
+                let before = after.base.present.clone();
                 let (dropped, moved) = settle(flights, &mut after)?;
+                let gone = before.iter().map(|present| present.effect.id());
+                let kept = |id: &&'static str| after.base.present.iter().any(|p| p.effect.id() == *id);
+                refused.extend(gone.filter(|id| !kept(id)));
                 if !dropped && moved < SETTLED_S {
                     break;
                 }
@@ -211,6 +220,10 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
     Ok(Search { before, after, latency, steps, last })
 }
 
+/// How often the search may go on after that.
+const SETTLINGS: usize = 2;
+/// What a column must explain to be worth having, in independent squared sigmas.
+const COLUMN_PRICE: f64 = 12.0;
 /// A latency that moves by less than this when it is estimated with the effects changes nothing, s.
 const SETTLED_S: f64 = 0.001;
 
@@ -218,23 +231,29 @@ const SETTLED_S: f64 = 0.001;
 /// Returns whether any went, and by how much the latency moved, s.
 fn settle(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64), PhysicsError> {
     let mut index = after.rows.nuisances.len();
-    let mut kept = Vec::new();
+    let mut kept: Vec<Present> = Vec::new();
+    let mut dropped = false;
     for present in &after.base.present {
-        let size = present.free.len();
-        let theta = DVector::from_iterator(
-            size,
-            present.free.iter().map(|&slot| present.values[slot] - present.nothing_at(slot)),
-        );
-        let covariance = after.covariance.view((index, index), (size, size)).into_owned();
-        let z = covariance
-            .cholesky()
-            .map_or(f64::INFINITY, |factor| normal_deviate(theta.dot(&factor.solve(&theta)), size));
-        index += size;
-        if z > KEPT {
-            kept.push(present.clone());
+        let mut pruned = present.clone();
+        let mut strength = 0.0;
+        for (place, &slot) in present.free.iter().enumerate() {
+            let std = after.covariance[(index + place, index + place)].max(0.0).sqrt();
+            let z = (present.values[slot] - present.nothing_at(slot)).abs() / std.max(f64::MIN_POSITIVE);
+            let finer = slot >= present.effect.parameters().len();
+            if !finer && z < PRUNED {
+                pruned.values[slot] = present.nothing_at(slot);
+                pruned.free.retain(|free| *free != slot);
+                dropped = true;
+            } else if !finer {
+                strength = f64::max(strength, z);
+            }
+        }
+        index += present.free.len();
+        if strength > KEPT {
+            kept.push(pruned);
         }
     }
-    let dropped = kept.len() < after.base.present.len();
+    dropped |= kept.len() < after.base.present.len();
     let before_s = after.base.latency.total_s();
     let base = Base { present: kept, ..after.base.clone() };
     *after = fit(flights, base, Newton::Free)?;
@@ -243,6 +262,8 @@ fn settle(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64), PhysicsE
 
 /// An accepted effect stays while it is this many standard deviations from nothing.
 const KEPT: f64 = 4.0;
+/// A parameter of it goes back to nothing when it is nearer than this.
+const PRUNED: f64 = 2.5;
 
 /// The candidate's effects at the values that the evidence has.
 fn started(tested: &Tested) -> Vec<Present> {
@@ -250,9 +271,8 @@ fn started(tested: &Tested) -> Vec<Present> {
     let mut parts = tested.candidate.parts.clone();
     for part in &mut parts {
         for &free in &part.free {
-            let parameter = &part.effect.parameters()[free];
             if let Some(by) = theta.next() {
-                part.values[free] = (part.values[free] + by).clamp(parameter.min, parameter.max);
+                part.values[free] = part.possible(free, part.values[free] + by);
             }
         }
     }
@@ -262,8 +282,7 @@ fn started(tested: &Tested) -> Vec<Present> {
         // the columns were those of one unit of drag
         let strength = 0.5 * (drag.values[0] + drag.values[1]).max(1e-3);
         for &free in &wind.free {
-            let parameter = &wind.effect.parameters()[free];
-            wind.values[free] = (wind.values[free] / strength).clamp(parameter.min, parameter.max);
+            wind.values[free] = wind.possible(free, wind.values[free] / strength);
         }
     }
     parts
@@ -271,8 +290,9 @@ fn started(tested: &Tested) -> Vec<Present> {
 
 /// Parameters that only show once the effect is there are estimated from then on.
 fn released(mut present: Present) -> Present {
-    if present.effect.id() == "ground_effect" {
-        present.free = vec![0, 3];
+    let finer = present.effect.parameters().len();
+    if present.values.len() > finer && present.effect.id() != "motor_lag" {
+        present.free.push(finer);
     }
     present
 }
@@ -287,7 +307,7 @@ fn test_all(flights: &[Trace], fitted: &Fitted, candidates: &[Candidate]) -> Vec
             Some(Tested { candidate: candidate.clone(), evidence })
         })
         .collect();
-    out.extend(test_drag_and_wind(flights, fitted));
+    out.extend([1.0, 0.0].into_iter().filter_map(|at_hubs| test_drag_and_wind(flights, fitted, at_hubs)));
     out
 }
 
@@ -305,18 +325,31 @@ fn is_present(base: &Base, candidate: &Candidate) -> bool {
         base.present.iter().any(|present| {
             present.effect.id() == part.effect.id()
                 && (part.effect.id() != "weak_rotor" || present.values[0] == part.values[0])
+                || drags_along_z(present) && drags_along_z(part)
         })
     })
 }
 
+/// Inflow and the z of drag are one term.
+fn drags_along_z(present: &Present) -> bool {
+    match present.effect.id() {
+        "inflow" => true,
+        "linear_drag" => present.free.contains(&2),
+        _ => false,
+    }
+}
+
 /// Wind acts through drag: both together, or wind alone where drag is known already.
-fn test_drag_and_wind(flights: &[Trace], fitted: &Fitted) -> Option<Tested> {
-    let (drag, wind, unit) = drag_and_wind()?;
+fn test_drag_and_wind(flights: &[Trace], fitted: &Fitted, at_hubs: f64) -> Option<Tested> {
+    let (drag, wind, unit) = drag_and_wind(at_hubs)?;
     let present = |id: &str| fitted.base.present.iter().any(|present| present.effect.id() == id);
     if present("steady_wind") || !flights.iter().all(|trace| trace.known.velocity && trace.known.attitude) {
         return None;
     }
     if present("linear_drag") || present("quadratic_drag") {
+        if at_hubs < 1.0 {
+            return None; // its columns come through the drag that is there
+        }
         let candidate = Candidate { id: "steady_wind", parts: vec![wind], through: None };
         let columns = columns_of(flights, fitted, &candidate)?;
         let evidence = fitted.weighted.test(&columns)?;
@@ -334,11 +367,17 @@ fn test_drag_and_wind(flights: &[Trace], fitted: &Fitted) -> Option<Tested> {
 }
 
 /// Significant, spread over the flight, possible, and large enough to matter.
-fn passes(tested: &Tested, gates: &Gates, candidates: f64) -> bool {
+fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates: f64) -> bool {
     let evidence = &tested.evidence;
+    let weight_n = fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2;
+    let matters = (0..3).any(|axis| {
+        evidence.rms[axis] > gates.matters.0 * weight_n
+            || evidence.rms[3 + axis] > gates.matters.1 * fitted.rows.torque_rms[axis]
+    });
     evidence.z.abs() > gates.z
         && evidence.p_cluster < gates.p_cluster / candidates
         && evidence.gain >= gates.gain
+        && matters
         && possible(tested)
 }
 
@@ -352,10 +391,9 @@ fn possible(tested: &Tested) -> bool {
     let mut all = true;
     for part in &tested.candidate.parts {
         for &free in &part.free {
-            let parameter = &part.effect.parameters()[free];
             let value = part.values[free] + tested.evidence.theta[index];
             let slack = 2.0 * tested.evidence.std(index);
-            all &= value > parameter.min - slack && value < parameter.max + slack;
+            all &= (part.possible(free, value) - value).abs() < slack;
             index += 1;
         }
     }

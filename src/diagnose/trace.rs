@@ -4,7 +4,8 @@ use super::along::{Thrusts, Turning};
 use crate::log::Quantity;
 use crate::physics::{Airframe, MAX_ROTORS, State};
 use crate::signals::{
-    ActuationLatency, Butterworth, Grid, Signals, WeakKernel, central_difference, delayed_wrench, stride,
+    ActuationLatency, Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference,
+    delayed_wrench, stride, white_level_of,
 };
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
@@ -32,6 +33,10 @@ pub struct Trace {
     pub known: Known,
     /// V
     pub voltage_v: Option<Vec<f64>>,
+    /// the thrusts rest on measured rotor speeds: nothing between command and speed shows
+    pub measured_speeds: bool,
+    /// rad/s, white noise of the gyroscopes, largest axis
+    pub gyro_noise_rad_s: f64,
     /// s between commands (or measured speeds) as logged
     pub command_period_s: f64,
     /// m/s^2, body, accelerometer
@@ -142,6 +147,8 @@ impl Trace {
             states,
             known,
             voltage_v: signals.battery_voltage_v.clone(),
+            measured_speeds: signals.quality.thrust_source == ThrustSource::MeasuredSpeed,
+            gyro_noise_rad_s: gyro_noise_rad_s(rates),
             command_period_s: command_period_s(signals),
             specific_force_m_s2: measured.cloned(),
             commanded_n,
@@ -253,10 +260,16 @@ impl Trace {
             .collect()
     }
 
+    /// What the rotors gave by their commands, N, after the latency.
+    #[must_use]
+    pub fn felt_n(&self, airframe: &Airframe, latency: ActuationLatency) -> Vec<Thrusts> {
+        felt(&self.commanded_n, airframe, self.grid.step_s, latency)
+    }
+
     /// What the rotors gave by their commands, N, after the latency: raw, and smoothed for regressors.
     #[must_use]
     pub fn by_commands(&self, airframe: &Airframe, latency: ActuationLatency) -> (Vec<Thrusts>, Turning) {
-        let felt = felt(&self.commanded_n, airframe, self.grid.step_s, latency);
+        let felt = self.felt_n(airframe, latency);
         let rate_hz = 1.0 / self.grid.step_s;
         let mut smooth = vec![[0.0; MAX_ROTORS]; self.grid.count];
         if let Some(filter) = Butterworth::new(SMOOTH_HZ.min(0.4 * rate_hz), rate_hz) {
@@ -312,6 +325,12 @@ impl Trace {
             .map(|(rate, turning)| inertia * turning + rate.cross(&(inertia * rate)))
             .collect()
     }
+}
+
+fn gyro_noise_rad_s(rates: &[Vector3<f64>]) -> f64 {
+    (0..3)
+        .map(|axis| white_level_of(&rates.iter().map(|rate| rate[axis]).collect::<Vec<_>>()))
+        .fold(0.0, f64::max)
 }
 
 /// Of the stream that the thrusts rest on.

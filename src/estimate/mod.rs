@@ -3,6 +3,7 @@
 mod anchor;
 mod identify;
 mod information;
+mod live;
 mod physical;
 mod plausible;
 mod problem;
@@ -16,6 +17,8 @@ mod weak;
 pub use anchor::{ThrustScale, apply_anchor, identified_vehicle, rescaled};
 pub use identify::{EstimateError, Identification, IdentifySettings, Method, identify};
 pub use information::WeakInformation;
+pub use live::RecursiveEstimator;
+pub(crate) use physical::{LogCholesky, log_cholesky, unpack};
 pub use physical::{is_physical, nearest_physical, second_moments};
 pub use problem::{Channel, NoiseTerm, Problem, Solution};
 pub use recommend::Recommendation;

@@ -8,6 +8,9 @@ use nalgebra::{Matrix4, SMatrix, Vector4};
 pub const PAPER_SIGMA: f64 = 30.0;
 /// Times at which the history keeps the estimate, s apart.
 const HISTORY_STEP_S: f64 = 0.2;
+/// Length of the blocks over which scores are summed, s, and how many of them are correlated with each other.
+pub(super) const SCORE_BLOCK_S: f64 = 0.1;
+pub(super) const LAGS: usize = 10;
 
 /// An estimate, its covariance, and how it came about.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,43 +36,82 @@ pub struct PaperEstimate {
 /// the batch one. `None` where the information matrix never becomes regular.
 #[must_use]
 pub fn least_squares(model: &SampledModel) -> Option<PaperEstimate> {
-    let mut information = SMatrix::<f64, THETA, THETA>::zeros();
-    let mut right = Theta::zeros();
+    let mut sums = NormalEquations::default();
     let mut history = History { time_s: Vec::new(), theta: Vec::new() };
     let mut next_s = f64::NEG_INFINITY;
     for ((gamma, upsilon), &time_s) in model.gamma.iter().zip(&model.upsilon).zip(&model.time_s) {
-        information += gamma.tr_mul(gamma);
-        right += gamma.tr_mul(upsilon);
+        sums.add(gamma, upsilon);
         if time_s >= next_s {
             next_s = time_s + HISTORY_STEP_S;
-            if let Some(theta) = solve(&information, &right) {
+            if let Some(theta) = sums.solve() {
                 history.time_s.push(time_s);
                 history.theta.push(theta);
             }
         }
     }
-    let theta = solve(&information, &right)?;
-    let inverse = information.try_inverse()?;
+    let theta = sums.solve()?;
+    let inverse = sums.information.try_inverse()?;
     let covariance = sandwich(model, &theta, &inverse);
     Some(PaperEstimate { theta, covariance, history })
 }
 
-/// Solution of the normal equations with scaled columns; `None` while they are singular.
-fn solve(information: &SMatrix<f64, THETA, THETA>, right: &Theta) -> Option<Theta> {
-    let scale = Theta::from_fn(|i, _| information[(i, i)].sqrt());
-    if scale.iter().any(|s| s.is_nan() || *s <= 0.0) {
-        return None;
+/// The sums of (40): `Gamma^T Gamma` and `Gamma^T Upsilon` over the samples so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct NormalEquations {
+    pub(super) information: ThetaCovariance,
+    pub(super) right: Theta,
+}
+
+impl Default for NormalEquations {
+    fn default() -> Self {
+        Self { information: ThetaCovariance::zeros(), right: Theta::zeros() }
     }
-    let scaled = SMatrix::<f64, THETA, THETA>::from_fn(|i, j| information[(i, j)] / (scale[i] * scale[j]));
-    let solution = scaled.cholesky()?.solve(&right.component_div(&scale));
-    Some(solution.component_div(&scale))
+}
+
+impl NormalEquations {
+    /// Adds a sample.
+    pub(super) fn add(&mut self, gamma: &SMatrix<f64, 4, THETA>, upsilon: &Vector4<f64>) {
+        self.information += gamma.tr_mul(gamma);
+        self.right += gamma.tr_mul(upsilon);
+    }
+
+    /// Adds the sums of other samples.
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.information += other.information;
+        self.right += other.right;
+    }
+
+    /// Their solution with scaled columns; `None` while they are singular.
+    pub(super) fn solve(&self) -> Option<Theta> {
+        let Self { information, right } = self;
+        let scale = Theta::from_fn(|i, _| information[(i, i)].sqrt());
+        if scale.iter().any(|s| s.is_nan() || *s <= 0.0) {
+            return None;
+        }
+        let scaled = ThetaCovariance::from_fn(|i, j| information[(i, j)] / (scale[i] * scale[j]));
+        let solution = scaled.cholesky()?.solve(&right.component_div(&scale));
+        Some(solution.component_div(&scale))
+    }
+}
+
+/// Variance of a sum of scores that are correlated over up to `lags` of them, with Bartlett's weights.
+pub(super) fn newey_west(scores: &[Theta], lags: usize) -> ThetaCovariance {
+    let mut meat = ThetaCovariance::zeros();
+    for lag in 0..=lags.min(scores.len().saturating_sub(1)) {
+        let bartlett = 1.0 - lag as f64 / (lags as f64 + 1.0);
+        for (late, early) in scores[lag..].iter().zip(scores) {
+            let product = early * late.transpose();
+            meat += if lag == 0 { product } else { bartlett * (product + product.transpose()) };
+        }
+    }
+    meat
 }
 
 /// Newey-West covariance of (40) over a second of score correlation.
 fn sandwich(model: &SampledModel, theta: &Theta, inverse: &SMatrix<f64, THETA, THETA>) -> ThetaCovariance {
     // scores summed over 0.1 s blocks: their lags then reach far at little cost
     let mut block = 1;
-    while (block as f64) * model.step_s < 0.1 {
+    while (block as f64) * model.step_s < SCORE_BLOCK_S {
         block += 1;
     }
     let mut meat = ThetaCovariance::zeros();
@@ -82,14 +124,7 @@ fn sandwich(model: &SampledModel, theta: &Theta, inverse: &SMatrix<f64, THETA, T
                     .sum()
             })
             .collect();
-        const LAGS: usize = 10;
-        for lag in 0..=LAGS.min(scores.len().saturating_sub(1)) {
-            let bartlett = 1.0 - lag as f64 / (LAGS as f64 + 1.0);
-            for (late, early) in scores[lag..].iter().zip(&scores) {
-                let product = early * late.transpose();
-                meat += if lag == 0 { product } else { bartlett * (product + product.transpose()) };
-            }
-        }
+        meat += newey_west(&scores, LAGS);
     }
     inverse * meat * inverse.transpose()
 }

@@ -131,7 +131,9 @@ impl MessageCounts {
 }
 
 impl Sender {
-    fn new(system: SystemId, component: ComponentId) -> Self {
+    /// A sender of which nothing was heard yet.
+    #[must_use]
+    pub fn new(system: SystemId, component: ComponentId) -> Self {
         Self {
             system,
             component,
@@ -144,7 +146,8 @@ impl Sender {
         }
     }
 
-    fn tally(&mut self, frame: &Frame<'_>) {
+    /// Counts one of its frames, given in the order of arrival.
+    pub fn tally(&mut self, frame: &Frame<'_>) {
         let header = frame.header();
         let sequence = header.sequence;
         let number = u32::try_from(self.frames & u64::from(u32::MAX >> 1)).unwrap_or(0);

@@ -86,6 +86,12 @@ impl Airframe {
         &self.arms_m[..self.rotor_count]
     }
 
+    /// [`Self::arms_m`] with zeros beyond the rotor count: a loop of fixed length.
+    #[inline]
+    pub(super) fn all_arms_m(&self) -> &[Vector3<f64>; MAX_ROTORS] {
+        &self.arms_m
+    }
+
     /// Sign of each rotor's reaction torque about +z.
     #[must_use]
     pub fn yaw_signs(&self) -> &[f64] {

@@ -32,6 +32,8 @@ pub struct Condition<'a> {
     pub air_velocity_m_s: Vector3<f64>,
     /// where the centre of mass is against where the airframe has it, body, m
     center_of_mass_m: Vector3<f64>,
+    /// each hub from the true centre of mass, body, m
+    arm_m: [Vector3<f64>; MAX_ROTORS],
     /// velocity of each hub through the air, body, m/s
     hub_air_velocity_m_s: [Vector3<f64>; MAX_ROTORS],
 }
@@ -41,44 +43,45 @@ impl<'a> Condition<'a> {
     #[must_use]
     #[inline]
     pub fn new(airframe: &'a Airframe, state: &'a State, input: &'a Input, wind_m_s: Vector3<f64>) -> Self {
+        Self::about((airframe, Vector3::zeros()), state, input, wind_m_s)
+    }
+
+    /// The condition of an airframe whose centre of mass is elsewhere than it has it, by so much (body, m).
+    #[inline]
+    pub(super) fn about(
+        (airframe, center_of_mass_m): (&'a Airframe, Vector3<f64>),
+        state: &'a State,
+        input: &'a Input,
+        wind_m_s: Vector3<f64>,
+    ) -> Self {
         let air_velocity_m_s = state.attitude.inverse_transform_vector(&(state.velocity_m_s - wind_m_s));
-        let mut at = Self {
-            airframe,
-            state,
-            input,
-            air_velocity_m_s,
-            center_of_mass_m: Vector3::zeros(),
-            hub_air_velocity_m_s: [Vector3::zeros(); MAX_ROTORS],
-        };
-        at.hubs_move();
-        at
+        let nominal = airframe.all_arms_m();
+        let arm_m: [_; MAX_ROTORS] = std::array::from_fn(|hub| nominal[hub] - center_of_mass_m);
+        let turning = |hub: usize| state.rates_rad_s.cross(&arm_m[hub]);
+        let hub_air_velocity_m_s = std::array::from_fn(|hub| air_velocity_m_s + turning(hub));
+        Self { airframe, state, input, air_velocity_m_s, center_of_mass_m, arm_m, hub_air_velocity_m_s }
     }
 
     /// The same with the centre of mass elsewhere in the airframe (body, m).
     #[must_use]
-    pub fn with_center_of_mass(mut self, center_of_mass_m: Vector3<f64>) -> Self {
-        self.center_of_mass_m = center_of_mass_m;
-        self.hubs_move();
-        self
-    }
-
-    fn hubs_move(&mut self) {
-        for (hub, arm) in self.hub_air_velocity_m_s.iter_mut().zip(self.airframe.arms_m()) {
-            let arm = arm - self.center_of_mass_m;
-            *hub = self.air_velocity_m_s + self.state.rates_rad_s.cross(&arm);
-        }
+    pub fn with_center_of_mass(self, center_of_mass_m: Vector3<f64>) -> Self {
+        let moved_m = center_of_mass_m - self.center_of_mass_m;
+        let arm_m = self.arm_m.map(|arm| arm - moved_m);
+        let turning_m_s = self.state.rates_rad_s.cross(&moved_m);
+        let hub_air_velocity_m_s = self.hub_air_velocity_m_s.map(|air| air - turning_m_s);
+        Self { center_of_mass_m, arm_m, hub_air_velocity_m_s, ..self }
     }
 
     /// Each hub's position from the true centre of mass (body, m) and velocity through the air (body, m/s).
     #[inline]
-    pub fn hubs(&self) -> impl Iterator<Item = (Vector3<f64>, &Vector3<f64>)> {
-        self.arms_m().zip(&self.hub_air_velocity_m_s)
+    pub fn hubs(&self) -> impl Iterator<Item = (&Vector3<f64>, &Vector3<f64>)> {
+        self.arms_m().iter().zip(&self.hub_air_velocity_m_s)
     }
 
     /// Hub positions from the true centre of mass, body, m.
     #[inline]
-    pub fn arms_m(&self) -> impl Iterator<Item = Vector3<f64>> {
-        self.airframe.arms_m().iter().map(|arm| arm - self.center_of_mass_m)
+    pub fn arms_m(&self) -> &[Vector3<f64>] {
+        &self.arm_m[..self.airframe.rotor_count()]
     }
 
     /// Height of a point of the body (`arm_m` from the centre of mass) over the ground, world z = 0, m.
@@ -157,12 +160,21 @@ pub enum Hook {
 /// An effect's parameter values and own states, and where it writes the rates of the latter.
 #[derive(Debug)]
 pub struct Own<'a> {
-    /// in the order of [`Effect::parameters`]
+    /// in the order of [`Effect::parameters`], then of [`Effect::finer_parameters`] where they are given
     pub parameters: &'a [f64],
     /// as many as [`Effect::state_count`]
     pub states: &'a [f64],
     /// 1/s of each state; the effect writes them in whichever hook it likes, unset ones stay zero
     pub rates: &'a mut [f64],
+}
+
+impl Own<'_> {
+    /// The first three parameters, of effects that have one for each axis.
+    #[must_use]
+    #[inline]
+    pub fn axes(&self) -> Vector3<f64> {
+        Vector3::new(self.parameters[0], self.parameters[1], self.parameters[2])
+    }
 }
 
 /// One physical effect: equation, parameters, and the sentence by which the report names it.
@@ -181,8 +193,20 @@ pub trait Effect: Debug + Sync {
     /// name, unit, bounds
     fn parameters(&self) -> &'static [Parameter];
 
+    /// name, unit, bounds of what a finer form of the effect has beyond [`Effect::parameters`]: given all, or
+    /// none, which is the common form
+    fn finer_parameters(&self) -> &'static [Parameter] {
+        &[]
+    }
+
     /// which of the functions below do something: the others are not called in a simulation
     fn hooks(&self) -> &'static [Hook];
+
+    /// Whether it acts between the command and the rotor's speed: where the speed is measured there is
+    /// nothing left of it.
+    fn is_before_speed(&self) -> bool {
+        self.hooks().iter().any(|hook| matches!(hook, Hook::Commands | Hook::RotorSpeed))
+    }
 
     /// what this airframe's description lacks for the effect to be computed
     fn missing(&self, _airframe: &Airframe) -> Option<&'static str> {
@@ -218,16 +242,12 @@ pub trait Effect: Debug + Sync {
     /// alters the rotors' thrust at their speed, and their reaction torque with it
     fn rotor_thrust(&self, _at: &Condition, _own: &mut Own, _rotors: &mut Rotors) {}
 
-    /// adds force and torque beyond the rotors' thrust
-    fn wrench(&self, _at: &Condition, _rotors: &Rotors, _own: &mut Own) -> Wrench {
-        Wrench::zero()
-    }
+    /// adds force and torque beyond the rotors' thrust to `sum`
+    fn wrench(&self, _at: &Condition, _rotors: &Rotors, _own: &mut Own, _sum: &mut Wrench) {}
 
-    /// adds what follows from the vehicle's acceleration, that is, from all force and torque `applied`
-    /// to it (gravity apart)
-    fn reaction(&self, _at: &Condition, _applied: &Wrench, _own: &mut Own) -> Wrench {
-        Wrench::zero()
-    }
+    /// adds what follows from the vehicle's acceleration, that is, from all force and torque on it that
+    /// `sum` holds already (gravity apart)
+    fn reaction(&self, _at: &Condition, _own: &mut Own, _sum: &mut Wrench) {}
 
     /// alters what the sensors show; `angular_acceleration_rad_s2` is the true one, body
     fn measure(
@@ -268,7 +288,7 @@ pub fn effect_wrench(effect: &dyn Effect, at: &Condition, rotors: &Rotors, own: 
     }
     effect.rotor_thrust(&at, own, &mut changed);
     let mut sum = at.thrust_wrench(&changed.thrust_n);
-    sum += effect.wrench(&at, &changed, own);
-    sum += effect.reaction(&at, &sum, own);
+    effect.wrench(&at, &changed, own, &mut sum);
+    effect.reaction(&at, own, &mut sum);
     sum - before
 }

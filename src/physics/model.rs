@@ -17,6 +17,8 @@ pub struct Input {
     pub time_s: f64,
     /// rotor speed commanded, over the hover speed (-)
     pub speed_command: [f64; MAX_ROTORS],
+    /// its rate, 1/s, where the speeds are measured ones; commands step, and have none
+    pub speed_rate_1_s: [f64; MAX_ROTORS],
     /// world, m/s
     pub wind_m_s: Vector3<f64>,
     /// V, where known
@@ -31,7 +33,8 @@ impl Input {
         for (speed, command) in speed_command.iter_mut().zip(commands).take(airframe.rotor_count()) {
             *speed = airframe.relative_speed(*command);
         }
-        Self { time_s, speed_command, wind_m_s: Vector3::zeros(), battery_voltage_v: None }
+        let speed_rate_1_s = [0.0; MAX_ROTORS];
+        Self { time_s, speed_command, speed_rate_1_s, wind_m_s: Vector3::zeros(), battery_voltage_v: None }
     }
 }
 
@@ -44,10 +47,10 @@ pub struct ActiveEffect {
 
 impl ActiveEffect {
     /// # Errors
-    /// If the number of values is not that of the effect's parameters.
+    /// If the number of values is not that of the effect's parameters, with or without the finer ones.
     pub fn new(effect: &'static dyn Effect, parameters: &[f64]) -> Result<Self, PhysicsError> {
         let (expected, got) = (effect.parameters().len(), parameters.len());
-        if expected != got {
+        if got != expected && got != expected + effect.finer_parameters().len() {
             return Err(PhysicsError::ParameterCount { id: effect.id(), expected, got });
         }
         Ok(Self { effect, parameters: parameters.to_vec() })
@@ -62,14 +65,14 @@ impl ActiveEffect {
         let refuse = |name: &str, expected: String, got: String| {
             Err(PhysicsError::EffectParameter { id: effect.id(), name: name.to_owned(), expected, got })
         };
-        if let Some((name, _)) =
-            values.iter().find(|(name, _)| effect.parameters().iter().all(|p| p.name != *name))
-        {
-            let names: Vec<_> = effect.parameters().iter().map(|p| p.name).collect();
+        let (common, finer) = (effect.parameters(), effect.finer_parameters());
+        let names: Vec<_> = common.iter().chain(finer).map(|parameter| parameter.name).collect();
+        if let Some((name, _)) = values.iter().find(|(name, _)| !names.contains(name)) {
             return refuse(name, format!("one of {}", names.join(", ")), "an unknown name".to_owned());
         }
-        let mut parameters = Vec::with_capacity(effect.parameters().len());
-        for parameter in effect.parameters() {
+        let is_finer = finer.iter().any(|parameter| values.iter().any(|(name, _)| *name == parameter.name));
+        let mut parameters = Vec::with_capacity(names.len());
+        for parameter in common.iter().chain(if is_finer { finer } else { &[] }) {
             let range = format!("{} to {} {}", parameter.min, parameter.max, parameter.unit);
             match values.iter().find(|(name, _)| *name == parameter.name) {
                 Some((_, value)) if (parameter.min..=parameter.max).contains(value) => {
@@ -88,7 +91,7 @@ impl ActiveEffect {
         self.effect
     }
 
-    /// Its values, in the order of [`Effect::parameters`].
+    /// Its values, in the order of [`Effect::parameters`], then of [`Effect::finer_parameters`] if it has them.
     #[must_use]
     pub fn parameters(&self) -> &[f64] {
         &self.parameters
@@ -118,21 +121,30 @@ pub struct Model {
     by_hook: ByHook,
 }
 
-/// Indices of the effects that act through each hook.
+/// An effect where it acts, with its part of the own states.
+#[derive(Debug, Clone)]
+struct Acting {
+    active: ActiveEffect,
+    slot: Range<usize>,
+}
+
+/// The effects that act through each hook, side by side for the inner loop.
 #[derive(Debug, Clone, Default)]
 struct ByHook {
-    air: Vec<usize>,
-    center_of_mass: Vec<usize>,
-    rotor_speed: Vec<usize>,
-    rotor_thrust: Vec<usize>,
-    wrench: Vec<usize>,
-    reaction: Vec<usize>,
+    air: Vec<Acting>,
+    center_of_mass: Vec<Acting>,
+    rotor_speed: Vec<Acting>,
+    rotor_thrust: Vec<Acting>,
+    wrench: Vec<Acting>,
+    reaction: Vec<Acting>,
 }
 
 impl ByHook {
-    fn of(effects: &[ActiveEffect]) -> Self {
+    fn of(effects: &[ActiveEffect], slots: &[Range<usize>]) -> Self {
         let through = |hook: Hook| {
-            (0..effects.len()).filter(|index| effects[*index].effect.hooks().contains(&hook)).collect()
+            let acts = |(active, _): &(&ActiveEffect, _)| active.effect.hooks().contains(&hook);
+            let all = effects.iter().zip(slots).filter(acts);
+            all.map(|(active, slot)| Acting { active: active.clone(), slot: slot.clone() }).collect()
         };
         Self {
             air: through(Hook::Air),
@@ -163,11 +175,8 @@ impl Model {
     /// The same vehicle for rotors whose speeds are measured: without what lies between command and speed.
     #[must_use]
     pub fn with_measured_speeds(&self) -> Self {
-        let before = |active: &&ActiveEffect| {
-            let hooks = active.effect.hooks();
-            !hooks.contains(&Hook::Commands) && !hooks.contains(&Hook::RotorSpeed)
-        };
-        let effects = self.effects.iter().filter(before).cloned().collect();
+        let after = |active: &&ActiveEffect| !active.effect.is_before_speed();
+        let effects = self.effects.iter().filter(after).cloned().collect();
         Self::assembled(self.body, self.airframe.clone(), effects)
     }
 
@@ -178,7 +187,7 @@ impl Model {
             own_state_count += active.effect.state_count(&airframe);
             slots.push(start..own_state_count);
         }
-        Self { body, airframe, by_hook: ByHook::of(&effects), effects, slots, own_state_count }
+        Self { body, airframe, by_hook: ByHook::of(&effects, &slots), effects, slots, own_state_count }
     }
 
     /// What was put on top of the rigid body.
@@ -196,10 +205,14 @@ impl Model {
     /// Own states of vehicles that have long followed their command. Fills the head of `states`.
     pub fn initial_states(&self, state: &State, input: &Input, states: &mut [f64]) {
         let at = Condition::new(&self.airframe, state, input, input.wind_m_s);
-        let rotors = Rotors::as_commanded(&self.airframe, &input.speed_command);
+        let mut rotors = Rotors::as_commanded(&self.airframe, &input.speed_command);
         for (active, slot) in self.effects.iter().zip(&self.slots) {
-            if let Some(own) = states.get_mut(slot.clone()) {
-                active.effect.initial_states(&at, &rotors, own);
+            if let Some(states) = states.get_mut(slot.clone()) {
+                active.effect.initial_states(&at, &rotors, states);
+                // the next effect's command is what this one makes of it
+                let (parameters, mut rates) = (&active.parameters, vec![0.0; states.len()]);
+                let mut own = Own { parameters, states, rates: &mut rates };
+                active.effect.rotor_speed(&at, &mut own, &mut rotors);
             }
         }
     }
@@ -208,69 +221,32 @@ impl Model {
     /// [`Self::own_state_count`] long; an effect whose part is missing sees none.
     pub fn evaluate(&self, state: &State, input: &Input, states: &[f64], rates: &mut [f64]) -> Evaluation {
         let mut rotors = Rotors::still();
+        rates.fill(0.0);
         let wrench = self.wrench(state, input, OwnStates { states, rates }, &mut rotors);
         Evaluation { wrench, rotors }
     }
 
-    /// [`Self::evaluate`] for the inner loop: `rotors` is overwritten.
+    /// [`Self::evaluate`] for the inner loop: `rotors` is overwritten, the rates must come as zero.
     pub(crate) fn wrench(
-        &self,
-        state: &State,
-        input: &Input,
-        states: OwnStates,
-        rotors: &mut Rotors,
-    ) -> Wrench {
-        self.loads(state, input, states, rotors, Turning::Commanded)
-    }
-
-    /// Force and torque (body, about the centre of mass, gravity apart) where the rotors' relative speed
-    /// and its rate are known: `rotors` gives both and is overwritten with the thrusts after all effects.
-    /// What acts between command and speed is left out. `states` and `rates` as in [`Self::evaluate`].
-    pub fn wrench_of_rotors(
-        &self,
-        state: &State,
-        input: &Input,
-        (states, rates): (&[f64], &mut [f64]),
-        rotors: &mut Rotors,
-    ) -> Wrench {
-        self.loads(state, input, OwnStates { states, rates }, rotors, Turning::Known)
-    }
-
-    fn loads(
         &self,
         state: &State,
         input: &Input,
         mut states: OwnStates,
         rotors: &mut Rotors,
-        turning: Turning,
     ) -> Wrench {
-        states.rates.fill(0.0);
         let hooks = &self.by_hook;
-        let mut wind_m_s = input.wind_m_s;
-        self.each(&hooks.air, &mut states, |effect, own| wind_m_s += effect.wind_m_s(input, own));
-        let mut at = Condition::new(&self.airframe, state, input, wind_m_s);
-        if !hooks.center_of_mass.is_empty() {
-            let mut center_m = Vector3::zeros();
-            self.each(&hooks.center_of_mass, &mut states, |effect, own| {
-                center_m += effect.center_of_mass_m(own);
-            });
-            at = at.with_center_of_mass(center_m);
-        }
-        match turning {
-            Turning::Commanded => {
-                rotors.speed = input.speed_command;
-                rotors.acceleration_1_s = [0.0; MAX_ROTORS];
-                self.each(&hooks.rotor_speed, &mut states, |effect, own| {
-                    effect.rotor_speed(&at, own, rotors)
-                });
-            }
-            Turning::Known => {}
-        }
+        let (mut wind_m_s, mut center_m) = (input.wind_m_s, Vector3::zeros());
+        each(&hooks.air, &mut states, |effect, own| wind_m_s += effect.wind_m_s(input, own));
+        each(&hooks.center_of_mass, &mut states, |effect, own| center_m += effect.center_of_mass_m(own));
+        let at = Condition::about((&self.airframe, center_m), state, input, wind_m_s);
+        rotors.speed = input.speed_command;
+        rotors.acceleration_1_s = input.speed_rate_1_s;
+        each(&hooks.rotor_speed, &mut states, |effect, own| effect.rotor_speed(&at, own, rotors));
         rotors.thrust_from_speed(&self.airframe);
-        self.each(&hooks.rotor_thrust, &mut states, |effect, own| effect.rotor_thrust(&at, own, rotors));
+        each(&hooks.rotor_thrust, &mut states, |effect, own| effect.rotor_thrust(&at, own, rotors));
         let mut wrench = at.thrust_wrench(&rotors.thrust_n);
-        self.each(&hooks.wrench, &mut states, |effect, own| wrench += effect.wrench(&at, rotors, own));
-        self.each(&hooks.reaction, &mut states, |effect, own| wrench += effect.reaction(&at, &wrench, own));
+        each(&hooks.wrench, &mut states, |effect, own| effect.wrench(&at, rotors, own, &mut wrench));
+        each(&hooks.reaction, &mut states, |effect, own| effect.reaction(&at, own, &mut wrench));
         wrench
     }
 
@@ -292,28 +268,19 @@ impl Model {
         }
         seen
     }
-
-    fn each(
-        &self,
-        indices: &[usize],
-        all: &mut OwnStates,
-        mut visit: impl FnMut(&'static dyn Effect, &mut Own),
-    ) {
-        for (active, slot) in indices.iter().map(|index| (&self.effects[*index], &self.slots[*index])) {
-            let (states, rates) = (all.states.get(slot.clone()), all.rates.get_mut(slot.clone()));
-            let parameters = &active.parameters;
-            let mut own =
-                Own { parameters, states: states.unwrap_or_default(), rates: rates.unwrap_or_default() };
-            visit(active.effect, &mut own);
-        }
-    }
 }
 
-/// Whether the rotors turn as commanded, through the effects in between, or as is known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Turning {
-    Commanded,
-    Known,
+/// Calls `visit` with each effect and its own parameters and states.
+#[inline]
+fn each(acting: &[Acting], all: &mut OwnStates, mut visit: impl FnMut(&'static dyn Effect, &mut Own)) {
+    for Acting { active, slot } in acting {
+        let mut own = Own { parameters: &active.parameters, states: &[], rates: &mut [] };
+        if !slot.is_empty() {
+            own.states = all.states.get(slot.clone()).unwrap_or_default();
+            own.rates = all.rates.get_mut(slot.clone()).unwrap_or_default();
+        }
+        visit(active.effect, &mut own);
+    }
 }
 
 /// Own states of all effects and where their rates go, [`Model::own_state_count`] of each.

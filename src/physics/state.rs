@@ -119,6 +119,21 @@ impl Wrench {
     pub fn at(arm_m: &Vector3<f64>, force_n: Vector3<f64>) -> Self {
         Self { force_n, torque_nm: arm_m.cross(&force_n) }
     }
+
+    /// Adds a force (body, N) that acts at `arm_m` (body, m, from the centre of mass).
+    #[inline]
+    pub fn push_at(&mut self, arm_m: &Vector3<f64>, force_n: &Vector3<f64>) {
+        self.force_n += force_n;
+        self.torque_nm += arm_m.cross(force_n);
+    }
+
+    /// [`Self::push_at`] for a force along the rotor axis, body z.
+    #[inline]
+    pub fn lift_at(&mut self, arm_m: &Vector3<f64>, force_n: f64) {
+        self.force_n.z += force_n;
+        self.torque_nm.x += arm_m.y * force_n;
+        self.torque_nm.y -= arm_m.x * force_n;
+    }
 }
 
 impl Add for Wrench {
@@ -129,8 +144,10 @@ impl Add for Wrench {
 }
 
 impl AddAssign for Wrench {
+    #[inline]
     fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
+        self.force_n += other.force_n;
+        self.torque_nm += other.torque_nm;
     }
 }
 

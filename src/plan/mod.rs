@@ -36,4 +36,5 @@ pub use feasible::{Conflict, StartPlace, feasible};
 pub use information::{GramSampler, Matrix7};
 pub use noise::{NoiseModel, PARAMETERS, RowSpacing, parameter_scale};
 pub use optimise::{Round, Search};
+pub use space::{AxisStart, SeriesSpace};
 pub use transition::{FlightPlan, TransitionError, flight_path};

@@ -17,6 +17,8 @@ pub struct ErrorTable {
     pub rows: Vec<ErrorRow>,
     /// models that are missing, and why
     pub missing: Vec<String>,
+    /// what to know when reading it
+    pub notes: Vec<String>,
 }
 
 /// One signal's errors.
@@ -58,6 +60,7 @@ impl ErrorTable {
             models: columns.iter().map(|(name, _)| name.clone()).collect(),
             rows: rows.iter().enumerate().map(row).collect(),
             missing: columns.iter().filter_map(why).collect(),
+            notes: Vec::new(),
         }
     }
 
@@ -87,8 +90,8 @@ impl ErrorTable {
             }
             page.push('\n');
         }
-        for missing in &self.missing {
-            let _ = writeln!(page, "  {missing}");
+        for line in self.missing.iter().chain(&self.notes) {
+            let _ = writeln!(page, "  {line}");
         }
         page
     }

@@ -192,7 +192,8 @@ fn px4_range(parameter: &impl Fn(&str) -> Option<f64>) -> Option<PwmRange> {
 
 /// Which output channel (from 0) drives each motor: `SERVOn_FUNCTION` 33..40 (ArduPilot),
 /// `PWM_MAIN_FUNCn` 101..112 (PX4); in order where the log does not say.
-fn motor_channels(recording: &Recording, rotors: usize, notes: &mut Vec<String>) -> Vec<usize> {
+#[must_use]
+pub fn motor_channels(recording: &Recording, rotors: usize, notes: &mut Vec<String>) -> Vec<usize> {
     let (name, first): (&dyn Fn(usize) -> String, f64) = match recording.autopilot {
         Autopilot::ArduPilot => (&|channel| format!("SERVO{channel}_FUNCTION"), 33.0),
         Autopilot::Px4 => (&|channel| format!("PWM_MAIN_FUNC{channel}"), 101.0),

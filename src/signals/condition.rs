@@ -59,7 +59,7 @@ pub struct Signals {
     /// what the commands' jitter adds to the wrench if the rotors follow all of it (N, N m); they follow
     /// a share of it between none and all
     pub jitter_wrench: Option<Vec<Vector4<f64>>>,
-    /// V, where it is recorded
+    /// V; `None` where it is not recorded
     pub battery_voltage_v: Option<Vec<f64>>,
     /// what was commanded
     pub reference: Option<Reference>,
@@ -197,7 +197,7 @@ pub fn condition(
         rotor_thrust_n: felt.rotor_thrust_n,
         wrench: felt.wrench,
         jitter_wrench: felt.jitter_wrench,
-        battery_voltage_v: battery_voltage(recording, &grid),
+        battery_voltage_v: battery_voltage_v(recording, &grid),
         reference: reference(recording, &grid),
         quality: Quality {
             sources,
@@ -307,11 +307,12 @@ impl Motion {
     }
 }
 
-/// Straight lines between samples: the voltage is sent a few times a second, and sags slowly.
-fn battery_voltage(recording: &Recording, grid: &Grid) -> Option<Vec<f64>> {
-    let (_, stream) = best(recording, Quantity::BatteryVoltage, |s| s.width == 1)?;
-    let flat = super::linear_onto(stream, 0.0, grid)?;
-    flat.iter().all(|voltage| voltage.is_finite()).then_some(flat)
+/// By straight lines between the samples that are known.
+fn battery_voltage_v(recording: &Recording, grid: &Grid) -> Option<Vec<f64>> {
+    let (_, raw) = best(recording, Quantity::BatteryVoltage, |s| s.width == 1)?;
+    let known = raw.time_s.iter().zip(&raw.values).filter(|(_, volts)| (0.1..1e3).contains(*volts));
+    let (time_s, values) = known.map(|(time_s, volts)| (*time_s, *volts)).unzip();
+    super::linear_onto(&Stream { time_s, width: 1, values }, 0.0, grid)
 }
 
 /// The commanded acceleration and yaw, by first-order hold; `None` where they were not recorded.

@@ -14,16 +14,22 @@ impl Biquad {
     /// Filters in place, starting from the steady state of the first sample.
     fn run(&self, column: &mut [f64]) {
         let Some(&first) = column.first() else { return };
-        // unit gain at zero frequency: in the steady state output = input
-        let mut z1 = first * (1.0 - self.b[0]);
-        let mut z2 = first * (self.b[2] - self.a[1]);
+        let mut memory = self.steady(first);
         for value in column {
-            let input = *value;
-            let output = self.b[0] * input + z1;
-            z1 = self.b[1] * input - self.a[0] * output + z2;
-            z2 = self.b[2] * input - self.a[1] * output;
-            *value = output;
+            *value = self.next(&mut memory, *value);
         }
+    }
+
+    /// Memory after an input that was always the same: with unit gain at zero frequency the output is it.
+    fn steady(&self, input: f64) -> [f64; 2] {
+        [input * (1.0 - self.b[0]), input * (self.b[2] - self.a[1])]
+    }
+
+    fn next(&self, [z1, z2]: &mut [f64; 2], input: f64) -> f64 {
+        let output = self.b[0] * input + *z1;
+        *z1 = self.b[1] * input - self.a[0] * output + *z2;
+        *z2 = self.b[2] * input - self.a[1] * output;
+        output
     }
 }
 
@@ -64,6 +70,17 @@ impl Butterworth {
         self.pad / 2
     }
 
+    /// One way only, sample by sample: the same for every signal that passes, so that signals stay in step.
+    /// Starts from the steady state of its first sample.
+    pub fn next(&self, memory: &mut ButterworthMemory, input: f64) -> f64 {
+        let mut value = input;
+        let sections = memory.0.get_or_insert_with(|| self.sections.map(|section| section.steady(input)));
+        for (section, memory) in self.sections.iter().zip(sections) {
+            value = section.next(memory, value);
+        }
+        value
+    }
+
     /// The filtered column, as long as the input; the ends are extended by odd reflection.
     #[must_use]
     pub fn filtfilt(&self, column: &[f64]) -> Vec<f64> {
@@ -78,6 +95,10 @@ impl Butterworth {
         work[pad..pad + column.len()].to_vec()
     }
 }
+
+/// What [`Butterworth::next`] remembers of one signal.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ButterworthMemory(Option<[[f64; 2]; 2]>);
 
 /// Extends both ends by point reflection, at most by the column's length less one.
 fn odd_reflection(column: &[f64], pad: usize) -> Vec<f64> {
@@ -193,33 +214,42 @@ impl FilterPair {
     /// `f_D` of the column; starts from zero.
     #[must_use]
     pub fn low_pass(&self, column: &[f64]) -> Vec<f64> {
-        if !self.midpoint {
-            return self.filtered(column.iter().copied());
-        }
-        let next = column.iter().skip(1).chain(column.last());
-        self.filtered(column.iter().zip(next).map(|(now, next)| f64::midpoint(*now, *next)))
+        let mut memory = PairMemory::default();
+        column.iter().map(|input| self.next_low_pass(&mut memory, *input)).collect()
     }
 
     /// `g_D` of the column: `gain (input - f_D input)`.
     #[must_use]
     pub fn rate(&self, column: &[f64]) -> Vec<f64> {
-        let mut low = self.filtered(column.iter().copied());
-        for (low, input) in low.iter_mut().zip(column) {
-            *low = self.rate_gain * (input - *low);
-        }
-        low
+        let mut memory = PairMemory::default();
+        column.iter().map(|input| self.next_rate(&mut memory, *input)).collect()
     }
 
-    fn filtered(&self, input: impl Iterator<Item = f64>) -> Vec<f64> {
-        let mut state = 0.0;
-        input
-            .map(|input| {
-                let output = state;
-                state = self.pole * state + (1.0 - self.pole) * input;
-                output
-            })
-            .collect()
+    /// [`Self::low_pass`] sample by sample.
+    pub fn next_low_pass(&self, memory: &mut PairMemory, input: f64) -> f64 {
+        self.step(memory, input, self.midpoint)
     }
+
+    /// [`Self::rate`] sample by sample.
+    pub fn next_rate(&self, memory: &mut PairMemory, input: f64) -> f64 {
+        self.rate_gain * (input - self.step(memory, input, false))
+    }
+
+    /// Over the interval that ends now its first value is held, or the mean of its ends.
+    fn step(&self, memory: &mut PairMemory, input: f64, midpoint: bool) -> f64 {
+        if let Some(last) = memory.last.replace(input) {
+            let held = if midpoint { f64::midpoint(last, input) } else { last };
+            memory.state = self.pole * memory.state + (1.0 - self.pole) * held;
+        }
+        memory.state
+    }
+}
+
+/// What the filters of a [`FilterPair`] remember of one signal.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PairMemory {
+    state: f64,
+    last: Option<f64>,
 }
 
 #[cfg(test)]

@@ -18,15 +18,16 @@ mod weak;
 
 pub use actuation::ThrustPreference;
 pub use actuators::{
-    RotorThrusts, ThrustSource, propulsion_from_log, thrusts_from_commands, thrusts_from_speeds,
+    RotorThrusts, ThrustSource, motor_channels, propulsion_from_log, thrusts_from_commands,
+    thrusts_from_speeds,
 };
 pub use align::StreamOffset;
 pub use condition::{ConditionSettings, Quality, Reference, Signals, condition, stride};
-pub use filter::{Butterworth, FilterPair, WindowedFir, central_difference};
+pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use latency::{ActuationLatency, delayed_wrench};
-pub use noise::{median, white_level};
-pub use select::{best, is_live, mean_rate_hz, median_period_s};
+pub use noise::{median, white_level, white_level_of};
+pub use select::{best, best_rank, is_live, mean_rate_hz, median_period_s};
 pub use spectrum::{hann_windowed, highest_harmonic_hz, power_at};
 pub use usable::{Evidence, Usable, in_air, usable};
 pub use weak::{MAX_ORDER, WeakKernel};

@@ -2,9 +2,7 @@
 
 use crate::log::Stream;
 
-/// Standard deviation of the white part of each channel: 1.4826 MAD of the fourth difference over
-/// `sqrt(70)`. A smooth signal hardly moves a fourth difference, and the median makes lost samples
-/// harmless. Empty with fewer than 20 samples.
+/// Standard deviation of the white part of each channel of a stream. Empty with fewer than 20 samples.
 #[must_use]
 pub fn white_level(stream: &Stream) -> Vec<f64> {
     if stream.len() < 20 {
@@ -12,16 +10,22 @@ pub fn white_level(stream: &Stream) -> Vec<f64> {
     }
     (0..stream.width)
         .map(|channel| {
-            let mut differences: Vec<f64> = (4..stream.len())
-                .map(|i| {
-                    let at = |back: usize| stream.sample(i - back)[channel];
-                    (at(0) - 4.0 * at(1) + 6.0 * at(2) - 4.0 * at(3) + at(4)).abs()
-                })
-                .filter(|d| d.is_finite())
-                .collect();
-            median(&mut differences) * 1.4826 / 70.0_f64.sqrt()
+            white_level_of(&(0..stream.len()).map(|i| stream.sample(i)[channel]).collect::<Vec<_>>())
         })
         .collect()
+}
+
+/// Standard deviation of the white part of an evenly sampled series: 1.4826 MAD of the fourth difference over
+/// `sqrt(70)`. A smooth signal hardly moves a fourth difference, and the median makes lost samples
+/// harmless. NaN with fewer than five samples.
+#[must_use]
+pub fn white_level_of(series: &[f64]) -> f64 {
+    let mut differences: Vec<f64> = series
+        .windows(5)
+        .map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).abs())
+        .filter(|d| d.is_finite())
+        .collect();
+    median(&mut differences) * 1.4826 / 70.0_f64.sqrt()
 }
 
 /// Median, reordering the values; NaN where there are none.

@@ -74,13 +74,20 @@ pub fn best(
             key.quantity == quantity && stream.len() >= 10 && is_live(stream) && fits(stream)
         })
         .collect();
-    let fastest = candidates.iter().map(|(_, stream)| mean_rate_hz(stream)).fold(0.0, f64::max);
+    let rated: Vec<(&str, f64)> =
+        candidates.iter().map(|(key, stream)| (key.source, mean_rate_hz(stream))).collect();
+    best_rank(quantity, &rated).map(|index| candidates[index])
+}
+
+/// Which of several sources of a quantity (message and samples a second, in the order of their keys) is used:
+/// among those within a factor of 1.6 of the fastest, the first of the quantity's order of preference.
+#[must_use]
+pub fn best_rank(quantity: Quantity, sources: &[(&str, f64)]) -> Option<usize> {
+    let fastest = sources.iter().map(|(_, rate_hz)| *rate_hz).fold(0.0, f64::max);
     let order = preference(quantity);
     let rank = |source: &str| order.iter().position(|name| *name == source).unwrap_or(order.len());
-    candidates
-        .into_iter()
-        .filter(|(_, stream)| mean_rate_hz(stream) * 1.6 >= fastest)
-        .min_by_key(|(key, _)| (rank(key.source), key.instance))
+    let fast = sources.iter().enumerate().filter(|(_, (_, rate_hz))| rate_hz * 1.6 >= fastest);
+    fast.min_by_key(|(index, (source, _))| (rank(source), *index)).map(|(index, _)| index)
 }
 
 #[cfg(test)]

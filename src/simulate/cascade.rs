@@ -98,6 +98,17 @@ impl Pid {
     }
 }
 
+/// What a cascade last asked of its inner loops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wanted {
+    /// body to world
+    pub attitude: UnitQuaternion<f64>,
+    /// body, rad/s
+    pub rates_rad_s: Vector3<f64>,
+    /// along body z, N
+    pub thrust_n: f64,
+}
+
 /// Position P, velocity PID, attitude P, rate PID, mixer.
 #[derive(Debug, Clone)]
 pub struct AutopilotCascade {
@@ -106,6 +117,7 @@ pub struct AutopilotCascade {
     allocation: Allocation,
     velocity: Pid,
     rates: Pid,
+    wanted: Wanted,
 }
 
 impl AutopilotCascade {
@@ -120,7 +132,18 @@ impl AutopilotCascade {
             allocation: Allocation::new(vehicle, command_min)?,
             velocity: Pid::new(gains.velocity, gains.derivative_pole_rad_s),
             rates: Pid::new(gains.rates, gains.derivative_pole_rad_s),
+            wanted: Wanted {
+                attitude: UnitQuaternion::identity(),
+                rates_rad_s: Vector3::zeros(),
+                thrust_n: 0.0,
+            },
         })
+    }
+
+    /// What the last call of [`Self::commands`] asked of the inner loops.
+    #[must_use]
+    pub fn wanted(&self) -> &Wanted {
+        &self.wanted
     }
 
     /// Forgets integrals and derivatives, as at arming.
@@ -139,6 +162,7 @@ impl AutopilotCascade {
         let w = &estimate.rates_rad_s;
         let torque = self.body.inertia_kg_m2 * turning + w.cross(&(self.body.inertia_kg_m2 * w));
         let thrust_n = self.body.mass_kg * acceleration.dot(&up);
+        self.wanted = Wanted { attitude, rates_rad_s: rates, thrust_n };
         self.allocation.commands(&Vector4::new(thrust_n, torque.x, torque.y, torque.z))
     }
 

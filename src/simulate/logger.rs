@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::controller::Setpoint;
-use super::sensors::{NoiseLevels, TelemetrySettings, noise};
+use super::sensors::{NoiseLevels, TelemetrySettings};
 use super::{SimulateError, not_negative, positive, whole_steps};
 use crate::log::{Quantity, Recording, Stream, StreamKey};
 use crate::physics::{MAX_ROTORS, State};
@@ -167,7 +167,7 @@ fn write(schedule: &mut Schedule, measured: &Measured, seen: &State, with: &mut 
             put(1, seen.rates_rad_s.as_slice());
         }
         Message::Imu => {
-            let force = measured.specific_force_m_s2 + noise(with.rng) * with.noise.specific_force_m_s2;
+            let force = with.noise.measure_force(with.rng, &measured.specific_force_m_s2);
             put(0, force.as_slice());
             put(1, seen.rates_rad_s.as_slice());
         }

@@ -15,11 +15,11 @@ mod sensors;
 mod vehicles;
 
 pub use allocation::Allocation;
-pub use cascade::{AutopilotCascade, AutopilotGains, LoopGains};
+pub use cascade::{AutopilotCascade, AutopilotGains, LoopGains, Wanted};
 pub use controller::{CascadeController, CascadeGains, Setpoint};
 pub use flight::{Disturbance, FlightSettings, SimulatedFlight, Truth, simulate_flight};
 pub use ground::{GroundContact, GroundSettings};
-pub use plant::{PLANT_STATES, Plant, Push};
+pub use plant::{PLANT_STATES, Plant, PlantMemory, Push};
 pub use reference::{RandomTrajectory, Reference};
 pub use sensors::{NoiseLevels, StreamSkew, TelemetryRates, TelemetrySettings};
 pub use vehicles::{VehiclePair, random_vehicle};

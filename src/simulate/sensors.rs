@@ -56,10 +56,15 @@ impl NoiseLevels {
             rates_rad_s: state.rates_rad_s + noise(rng) * self.rates_rad_s,
         }
     }
+
+    /// The specific force (m/s^2) as an accelerometer with this noise would give it.
+    pub fn measure_force(&self, rng: &mut Pcg64Mcg, specific_force_m_s2: &Vector3<f64>) -> Vector3<f64> {
+        specific_force_m_s2 + noise(rng) * self.specific_force_m_s2
+    }
 }
 
 /// White noise of unit standard deviation on three components.
-pub(super) fn noise(rng: &mut Pcg64Mcg) -> Vector3<f64> {
+fn noise(rng: &mut Pcg64Mcg) -> Vector3<f64> {
     Vector3::from_fn(|_, _| StandardNormal.sample(rng))
 }
 

@@ -73,6 +73,7 @@ fn random_propulsion(rng: &mut Pcg64Mcg, mass_kg: f64, arm_m: f64) -> Propulsion
         torque_per_thrust_m: rng.random_range(0.014..0.045),
         rotor_radius_m: Some(arm_m * rng.random_range(0.55..0.7)),
         time_constant_s: None,
+        time_constant_down_s: None,
     }
 }
 

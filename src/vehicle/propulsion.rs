@@ -51,8 +51,10 @@ pub struct Propulsion {
     pub torque_per_thrust_m: f64,
     /// m
     pub rotor_radius_m: Option<f64>,
-    /// s, first-order response of thrust to command, where known beforehand
+    /// s, first-order response of the rotor's speed to the command, where known beforehand
     pub time_constant_s: Option<f64>,
+    /// s, the same of a rotor that slows down, where it differs
+    pub time_constant_down_s: Option<f64>,
 }
 
 impl Propulsion {
@@ -133,6 +135,7 @@ mod tests {
                 torque_per_thrust_m: 0.016,
                 rotor_radius_m: None,
                 time_constant_s: None,
+                time_constant_down_s: None,
             };
             for u in [0.0, 0.2, 0.7, 1.0] {
                 let thrust = propulsion.thrust_from_command_n(u);
@@ -150,6 +153,7 @@ mod tests {
             torque_per_thrust_m: 0.007,
             rotor_radius_m: None,
             time_constant_s: None,
+            time_constant_down_s: None,
         };
         assert!((propulsion.normalized(1550.0) - 0.5).abs() < 1e-12);
         // 18.86 (0.35 * 0.5 + 0.65 * 0.25) = 6.36525 N

@@ -98,6 +98,7 @@ impl Hummingbird {
                 torque_per_thrust_m: self.k_m / self.k_eta,
                 rotor_radius_m: Some(0.1),
                 time_constant_s: None,
+                time_constant_down_s: None,
             },
             rotors: rotors.collect(),
             limits: Limits::default(),

@@ -1,14 +1,15 @@
 //! Open loop: recorded actuators played back from measured states over short windows.
 
+mod floor;
+
+pub use floor::{CommandNoise, StateNoise, playback_floor};
+
 use super::{CompareError, MeanSquare};
 use crate::physics::{Input, MAX_ROTORS, Model, State};
 use crate::signals::{Grid, Signals, ThrustSource};
 use crate::simulate::{Allocation, Plant, Push};
 use crate::vehicle::Vehicle;
-use nalgebra::{UnitQuaternion, Vector3};
-use rand::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
-use rand_pcg::Pcg64Mcg;
+use nalgebra::Vector3;
 use std::cmp::Ordering;
 
 /// How playback is done.
@@ -57,8 +58,9 @@ impl Fit {
 /// Plays the recorded actuators back through a model.
 ///
 /// `signals` must be conditioned with `vehicle`, which `model` is made of, because its thrust law turns
-/// commands into thrusts. Where the rotor speeds were measured, effects between command and speed are
-/// left out; where the log holds force and torque, they are shared out to the rotors.
+/// commands into thrusts. Where the rotor speeds were measured, effects between command and speed (lag, delay,
+/// sag with the battery) are left out, and the rotors spin up as measured; where the log holds force and
+/// torque, they are shared out to the rotors. The battery's voltage is the recorded one.
 ///
 /// # Errors
 /// If attitude or rates are missing, no window fits, or the model cannot be simulated.
@@ -115,61 +117,6 @@ pub fn playback_windows(
     Ok(out)
 }
 
-/// White noise of the measured state, one standard deviation an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct StateNoise {
-    /// m
-    pub position_m: f64,
-    /// m/s
-    pub velocity_m_s: f64,
-    /// rad, about each body axis
-    pub attitude_rad: f64,
-    /// rad/s
-    pub rates_rad_s: f64,
-}
-
-/// What [`playback_windows`] would find of a model that is right: the sensors' noise at the start of each
-/// window, carried along by the model, and at every instant that is compared. One seeded draw a window.
-///
-/// # Errors
-/// As [`playback`].
-pub fn playback_floor(
-    (model, vehicle): (&Model, &Vehicle),
-    signals: &Signals,
-    settings: &PlaybackSettings,
-    (noise, seed): (&StateNoise, u64),
-) -> Result<Vec<WindowErrors>, CompareError> {
-    let model = played(model, signals);
-    let played = Played::of((&model, vehicle), None, signals, settings)?;
-    let mut generator = Pcg64Mcg::seed_from_u64(seed);
-    let mut out = Vec::with_capacity(played.starts.len());
-    for &start in &played.starts {
-        let mut errors = [MeanSquare::default(); 4];
-        let measured = played.states.at(start);
-        let truth = played.window(start, &measured)?;
-        let simulated = played.window(start, &noise.on(&measured, &mut generator))?;
-        for (truth, simulated) in truth.iter().zip(&simulated) {
-            played.states.compare(simulated, &noise.on(truth, &mut generator), &mut errors);
-        }
-        out.push(played.errors(start, &errors));
-    }
-    Ok(out)
-}
-
-impl StateNoise {
-    fn on(&self, state: &State, generator: &mut Pcg64Mcg) -> State {
-        let mut draw = |size: f64| {
-            Vector3::from_fn(|_, _| size * Distribution::<f64>::sample(&StandardNormal, generator))
-        };
-        State {
-            position_m: state.position_m + draw(self.position_m),
-            velocity_m_s: state.velocity_m_s + draw(self.velocity_m_s),
-            attitude: state.attitude * UnitQuaternion::from_scaled_axis(draw(self.attitude_rad)),
-            rates_rad_s: state.rates_rad_s + draw(self.rates_rad_s),
-        }
-    }
-}
-
 /// Where rotor speeds were measured, what lies between command and speed is left out.
 fn played(model: &Model, signals: &Signals) -> Model {
     let measured_speeds = signals.quality.thrust_source == ThrustSource::MeasuredSpeed;
@@ -181,7 +128,7 @@ struct Played<'a> {
     model: &'a Model,
     push: Option<Push<'a>>,
     states: MeasuredStates<'a>,
-    commands: Commands,
+    commands: Commands<'a>,
     step_s: f64,
     substeps: u32,
     /// instants
@@ -291,16 +238,16 @@ impl<'a> MeasuredStates<'a> {
     }
 }
 
-/// Relative rotor speeds asked for (or measured) at each instant.
-struct Commands {
-    grid: Grid,
+/// Relative rotor speeds asked for (or measured) at each instant, and the battery's voltage.
+struct Commands<'a> {
+    signals: &'a Signals,
     delay_instants: f64,
     thrusts_n: Vec<[f64; MAX_ROTORS]>,
-    model: Model,
+    model: &'a Model,
 }
 
-impl Commands {
-    fn of(model: &Model, vehicle: &Vehicle, signals: &Signals) -> Result<Self, CompareError> {
+impl<'a> Commands<'a> {
+    fn of(model: &'a Model, vehicle: &Vehicle, signals: &'a Signals) -> Result<Self, CompareError> {
         let rotors = model.airframe.rotor_count();
         let mut thrusts_n = vec![[0.0; MAX_ROTORS]; signals.grid.count];
         if signals.rotor_thrust_n.is_empty() {
@@ -313,12 +260,7 @@ impl Commands {
                 thrusts_n[..rotors].copy_from_slice(recorded);
             }
         }
-        Ok(Self {
-            grid: signals.grid,
-            delay_instants: model.command_delay_s() / signals.grid.step_s,
-            thrusts_n,
-            model: model.clone(),
-        })
+        Ok(Self { signals, delay_instants: model.command_delay_s() / signals.grid.step_s, thrusts_n, model })
     }
 
     /// What acts `share` of the way from one instant to the next.
@@ -331,12 +273,24 @@ impl Commands {
             left -= 1;
         }
         let (right, part) = ((left + 1).min(last), place - left as f64);
-        let time_s = self.grid.time_s(index) + share * self.grid.step_s;
-        let mut input = Input::from_commands(&self.model.airframe, time_s, &[]);
-        for rotor in 0..self.model.airframe.rotor_count() {
+        let Signals { grid, quality, battery_voltage_v, .. } = self.signals;
+        let airframe = &self.model.airframe;
+        let mut input = Input::from_commands(airframe, grid.time_s(index) + share * grid.step_s, &[]);
+        let measured = quality.thrust_source == ThrustSource::MeasuredSpeed;
+        for rotor in 0..airframe.rotor_count() {
             let (a, b) = (self.thrusts_n[left][rotor], self.thrusts_n[right][rotor]);
-            input.speed_command[rotor] = self.model.airframe.relative_speed_of_thrust(a + part * (b - a));
+            let speed = airframe.relative_speed_of_thrust(a + part * (b - a));
+            input.speed_command[rotor] = speed;
+            if measured && speed > 0.0 {
+                // T = T_hover n^2, so n' = T' / (2 T_hover n)
+                let thrust_rate_n_s = (b - a) / grid.step_s;
+                input.speed_rate_1_s[rotor] = thrust_rate_n_s / (2.0 * airframe.hover_thrust_n * speed);
+            }
         }
+        // of now: commands travel, the battery does not
+        let next = (index + 1).min(last);
+        input.battery_voltage_v =
+            battery_voltage_v.as_ref().map(|volts| volts[index] + share * (volts[next] - volts[index]));
         input
     }
 }

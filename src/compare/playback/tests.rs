@@ -1,6 +1,6 @@
 use super::*;
 use crate::physics::ActiveEffect;
-use crate::physics::effects::{LinearDrag, MotorLag, TransportDelay};
+use crate::physics::effects::{BatterySag, LinearDrag, MotorLag, RotorInertia, TransportDelay};
 use crate::signals::{ConditionSettings, ThrustPreference, condition};
 use crate::simulate::{
     FlightSettings, RandomTrajectory, Reference, TelemetrySettings, Truth, random_vehicle, simulate_flight,
@@ -59,6 +59,46 @@ fn concealed_lag_and_delay_show_in_commands_and_not_in_measured_speeds() {
     assert!(with[3] < 0.5 * without[3], "rates {} to {}", without[3], with[3]);
     let (vehicle, signals) = flown(late(), 0.1, ThrustPreference::Measured);
     assert_eq!(fit(&vehicle, &signals, vec![], 0.5), fit(&vehicle, &signals, late(), 0.5));
+}
+
+#[test]
+fn flywheels_show_in_measured_speeds_as_they_spin_up() {
+    let flywheels = || vec![ActiveEffect::new(&RotorInertia, &[3e-5]).unwrap()];
+    let (vehicle, mut signals) = flown(flywheels(), 0.1, ThrustPreference::Measured);
+    let without = fit(&vehicle, &signals, vec![], 0.5)[3];
+    let with = fit(&vehicle, &signals, flywheels(), 0.5)[3];
+    assert!(with < 0.8 * without, "rates {without} to {with}");
+    // thrust that rises by 2 N/s from 1 N on: n = sqrt(T / T_hover), n' = T' / (2 T_hover n)
+    let rotors = vehicle.rotors.len();
+    for (place, thrust_n) in signals.rotor_thrust_n.iter_mut().enumerate() {
+        *thrust_n = 1.0 + 2.0 * signals.grid.step_s * (place / rotors) as f64;
+    }
+    let model = Model::new(&vehicle, vec![]).unwrap();
+    let hover_n = model.airframe.hover_thrust_n;
+    let at = |signals: &Signals| Commands::of(&model, &vehicle, signals).unwrap().at(100, 0.5);
+    let (measured, thrust_n) = (at(&signals), 1.0 + 201.0 * signals.grid.step_s);
+    let speed = (thrust_n / hover_n).sqrt();
+    assert!((measured.speed_command[0] - speed).abs() < 1e-9);
+    assert!((measured.speed_rate_1_s[0] - 2.0 / (2.0 * hover_n * speed)).abs() < 1e-9);
+    // commands are no speeds
+    signals.quality.thrust_source = ThrustSource::Command;
+    assert_eq!(at(&signals).speed_rate_1_s, [0.0; MAX_ROTORS]);
+}
+
+#[test]
+fn the_recorded_voltage_sags_the_thrust_of_commands_and_not_of_measured_speeds() {
+    let sag = || vec![ActiveEffect::new(&BatterySag, &[2.0, 17.0]).unwrap()];
+    let (vehicle, signals) = flown(sag(), 0.1, ThrustPreference::Commands);
+    // 16.4 V and 10 mV less each second; the log starts with the flight
+    let volts = signals.battery_voltage_v.as_ref().unwrap();
+    for index in [0, volts.len() / 2, volts.len() - 1] {
+        let expected = 16.4 - 0.01 * signals.grid.time_s(index);
+        assert!((volts[index] - expected).abs() < 0.02, "{} V, expected {expected} V", volts[index]);
+    }
+    let (without, with) = (fit(&vehicle, &signals, vec![], 0.5), fit(&vehicle, &signals, sag(), 0.5));
+    assert!(with[1] < 0.5 * without[1], "velocity {} to {}", without[1], with[1]);
+    let (vehicle, signals) = flown(sag(), 0.1, ThrustPreference::Measured);
+    assert_eq!(fit(&vehicle, &signals, vec![], 0.5), fit(&vehicle, &signals, sag(), 0.5));
 }
 
 #[test]

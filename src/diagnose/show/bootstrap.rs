@@ -39,6 +39,9 @@ struct Block {
     count: Vec<f64>,
 }
 
+/// Errors before and after of each quantity; `None` where it was nowhere measured.
+type Roots = Vec<Option<(f64, f64)>>;
+
 /// Squared errors of several quantities gathered into blocks.
 #[derive(Debug, Clone)]
 pub(super) struct Blocks {
@@ -84,7 +87,7 @@ impl Blocks {
     /// nowhere measured.
     pub(super) fn compared(&self, draws: usize, seed: u64) -> (Vec<Option<Compared>>, Option<Interval>) {
         let whole = self.roots(&mut (0..self.blocks.len()));
-        let mut drawn: Vec<Vec<Option<(f64, f64)>>> = Vec::new();
+        let mut drawn: Vec<Roots> = Vec::new();
         if self.blocks.len() >= LEAST_BLOCKS {
             let mut generator = Pcg64Mcg::seed_from_u64(seed);
             for _ in 0..draws {
@@ -92,7 +95,7 @@ impl Blocks {
                 drawn.push(self.roots(&mut picks));
             }
         }
-        let interval = |of: &dyn Fn(&[Option<(f64, f64)>]) -> Option<f64>| -> Option<Interval> {
+        let interval = |of: &dyn Fn(&Roots) -> Option<f64>| -> Option<Interval> {
             let value = of(&whole)?;
             let spread: Vec<f64> = drawn.iter().filter_map(|roots| of(roots)).collect();
             Some(Interval { value, range: percentiles(spread) })
@@ -112,7 +115,7 @@ impl Blocks {
         (each, interval(&mean_improvement))
     }
 
-    fn roots(&self, picks: &mut dyn Iterator<Item = usize>) -> Vec<Option<(f64, f64)>> {
+    fn roots(&self, picks: &mut dyn Iterator<Item = usize>) -> Roots {
         let mut sums = vec![[0.0; 3]; self.quantities];
         for pick in picks {
             let block = &self.blocks[pick];
@@ -129,7 +132,8 @@ impl Blocks {
     }
 }
 
-fn mean_improvement(roots: &[Option<(f64, f64)>]) -> Option<f64> {
+#[expect(clippy::ptr_arg, reason = "passed as a function of resampled errors")]
+fn mean_improvement(roots: &Roots) -> Option<f64> {
     let each: Vec<f64> =
         roots.iter().flatten().map(|(before, after)| improvement_percent(*before, *after)).collect();
     (!each.is_empty()).then(|| each.iter().sum::<f64>() / each.len() as f64)

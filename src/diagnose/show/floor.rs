@@ -1,9 +1,10 @@
 //! Noise of the measured state, from the recording itself.
 
-use crate::compare::StateNoise;
+use crate::compare::{CommandNoise, StateNoise};
 use crate::log::{Quantity, Stream};
-use crate::signals::{Signals, white_level};
-use nalgebra::Vector3;
+use crate::physics::MAX_ROTORS;
+use crate::signals::{Signals, ThrustSource, median, white_level};
+use nalgebra::{SMatrix, SVector, Vector3};
 
 /// White noise of each part of the state; zero where it is not recorded. Real autopilots' estimates are
 /// smoother than white noise, so what comes of this is a lower bound there.
@@ -28,14 +29,57 @@ pub fn state_noise(signals: &Signals) -> StateNoise {
     }
 }
 
+/// Share of the logged commands' jitter, as variance, that the rotors do otherwise: a loop twice as fast as
+/// the log gives one half; slower logs give more, up to one.
+const OTHERWISE: f64 = 0.5;
+/// Fourth differences beyond this many medians are manoeuvres or gaps.
+const OUTLIER: f64 = 6.0;
+
+/// Jitter of logged commands, by the covariance of their fourth differences over the rotors; `None` where
+/// rotor speeds were measured, or there is too little of it.
+#[must_use]
+pub fn command_noise(signals: &Signals) -> Option<CommandNoise> {
+    if signals.quality.thrust_source != ThrustSource::Command || signals.rotor_thrust_n.is_empty() {
+        return None;
+    }
+    let rotors = signals.rotor_thrust_n.len() / signals.grid.count.max(1);
+    let every = samples_apart(signals, Quantity::ActuatorCommand);
+    let at = |index: usize, rotor: usize| signals.rotor_thrust_n[index * rotors + rotor];
+    let differences: Vec<SVector<f64, MAX_ROTORS>> = (4 * every..signals.grid.count)
+        .step_by(every)
+        .filter(|&index| signals.usable[index - 4 * every..=index].iter().all(|usable| *usable))
+        .map(|index| {
+            let back = |n: usize, rotor: usize| at(index - n * every, rotor);
+            SVector::from_fn(|rotor, _| {
+                if rotor >= rotors {
+                    return 0.0;
+                }
+                back(0, rotor) - 4.0 * back(1, rotor) + 6.0 * back(2, rotor) - 4.0 * back(3, rotor)
+                    + back(4, rotor)
+            })
+        })
+        .collect();
+    let mut sizes: Vec<f64> = differences.iter().map(SVector::norm).collect();
+    let most = OUTLIER * median(&mut sizes);
+    let kept: Vec<&SVector<f64, MAX_ROTORS>> =
+        differences.iter().filter(|difference| difference.norm() <= most).collect();
+    if kept.len() < 50 {
+        return None;
+    }
+    let mut covariance = SMatrix::<f64, MAX_ROTORS, MAX_ROTORS>::zeros();
+    for difference in &kept {
+        covariance += *difference * difference.transpose();
+    }
+    // white noise enlarges a fourth difference's variance by 70
+    covariance *= OTHERWISE / (70.0 * kept.len() as f64);
+    let least = 1e-9 * covariance.trace().max(f64::MIN_POSITIVE);
+    let factor_n = (covariance + SMatrix::identity() * least).cholesky()?.l();
+    Some(CommandNoise { factor_n, period_s: signals.grid.step_s * every as f64 })
+}
+
 /// Of every so many instants as the stream had samples: between its samples the grid is interpolated.
 fn levels(signals: &Signals, flat: Vec<f64>, width: usize, quantity: Quantity) -> Vec<f64> {
-    let rate_hz = signals.quality.sources.iter().find(|(q, ..)| *q == quantity).map(|(.., rate)| *rate);
-    let period_s = rate_hz.filter(|rate| *rate > 0.0).map_or(signals.grid.step_s, |rate| 1.0 / rate);
-    let every = (1..1000)
-        .find(|n| f64::from(*n) * signals.grid.step_s > 0.75 * period_s)
-        .and_then(|n| usize::try_from(n).ok())
-        .unwrap_or(1);
+    let every = samples_apart(signals, quantity);
     let mut stream = Stream { time_s: Vec::new(), width, values: Vec::new() };
     for (index, sample) in flat.chunks_exact(width).enumerate().step_by(every) {
         if signals.usable[index] {
@@ -44,6 +88,16 @@ fn levels(signals: &Signals, flat: Vec<f64>, width: usize, quantity: Quantity) -
         }
     }
     white_level(&stream)
+}
+
+/// Instants of the grid from one sample of the stream to the next.
+fn samples_apart(signals: &Signals, quantity: Quantity) -> usize {
+    let rate_hz = signals.quality.sources.iter().find(|(q, ..)| *q == quantity).map(|(.., rate)| *rate);
+    let period_s = rate_hz.filter(|rate| *rate > 0.0).map_or(signals.grid.step_s, |rate| 1.0 / rate);
+    (1..1000)
+        .find(|n| f64::from(*n) * signals.grid.step_s > 0.75 * period_s)
+        .and_then(|n| usize::try_from(n).ok())
+        .unwrap_or(1)
 }
 
 fn rms(levels: &[f64]) -> f64 {

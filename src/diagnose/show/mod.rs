@@ -15,7 +15,7 @@ mod weak;
 
 pub use bootstrap::{Compared, Interval};
 pub use closed_loop::ClosedLoop;
-pub use floor::state_noise;
+pub use floor::{command_noise, state_noise};
 pub use open_loop::{OpenLoop, WINDOWS_S};
 pub use other_vehicle::Agreement;
 pub use split::{Split, split_last_periods};
@@ -74,7 +74,7 @@ impl Default for ShowSettings {
 /// The fit on flights that were not used.
 #[derive(Debug, Clone)]
 pub struct Shown {
-    /// s of flight that windows of 0.5 s begin in
+    /// how many flights
     pub flights: usize,
     /// blocks that the intervals come from
     pub blocks: usize,
@@ -176,12 +176,10 @@ pub fn on_holdout(
     let weak = weak::residuals(&ready, explanation, empirical, settings)?;
     let (agreement, other_vehicle) = other_vehicle::judged(&ready, explanation, &weak)?;
     let closed_loop = closed_loop::flown_again(&ready, empirical, vehicle, settings);
-    if open_loop.iter().any(|of| of.floor_is_white) {
-        notes.push(
-            "the floor is what white noise of the sensors alone would leave; noise that the autopilot's estimator has smoothed, and command jitter, are not in it"
-                .to_owned(),
-        );
-    }
+    notes.push(
+        "the floor is what white noise of the sensors and of the logged commands would leave of a model that is right; noise that an autopilot's estimator has smoothed is not in it"
+            .to_owned(),
+    );
     Ok(Shown {
         flights: ready.len(),
         blocks,

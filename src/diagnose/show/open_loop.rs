@@ -1,8 +1,10 @@
 //! Open-loop prediction from the measured state, fed the recorded actuators.
 
-use super::floor::state_noise;
+use super::floor::{command_noise, state_noise};
 use super::{Blocks, Compared, Interval, Ready, ShowError, ShowSettings, flown};
-use crate::compare::{PlaybackSettings, StateNoise, WindowErrors, playback_floor, playback_windows};
+use crate::compare::{
+    CommandNoise, PlaybackSettings, StateNoise, WindowErrors, playback_floor, playback_windows,
+};
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
 use crate::physics::{Model, PhysicsError};
@@ -26,8 +28,6 @@ pub struct OpenLoop {
     pub attitude_rad: Option<Compared>,
     /// rad/s
     pub rates_rad_s: Option<Compared>,
-    /// the floors come from white sensor noise alone
-    pub floor_is_white: bool,
 }
 
 impl OpenLoop {
@@ -43,6 +43,7 @@ struct Models {
     before: Model,
     after: Model,
     noise: StateNoise,
+    commands: Option<CommandNoise>,
 }
 
 /// All window lengths, the mean improvement at 0.5 s, and the number of its blocks.
@@ -66,6 +67,7 @@ fn models_of(ready: &Ready) -> Result<Models, PhysicsError> {
         before: flown(&ready.pair.before)?,
         after: flown(&ready.pair.after)?,
         noise: state_noise(ready.flight.signals),
+        commands: command_noise(ready.flight.signals),
     })
 }
 
@@ -97,7 +99,7 @@ fn one_length(
             || {
                 let seed = settings.seed ^ index as u64;
                 let of = (&models.after, &ready.pair.after.vehicle);
-                playback_floor(of, signals, &playback, (&models.noise, seed))
+                playback_floor(of, signals, &playback, (&models.noise, models.commands.as_ref(), seed))
             },
         );
         let (before, after, noise) =
@@ -126,7 +128,6 @@ fn one_length(
         velocity_m_s: each[1],
         attitude_rad: each[2],
         rates_rad_s: each[3],
-        floor_is_white: true,
     };
     Ok((of, improvement, blocks.len()))
 }

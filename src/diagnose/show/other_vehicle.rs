@@ -5,6 +5,7 @@ use super::weak::Weak;
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::rows::{CHANNEL_NAMES, Nuisance};
 use crate::diagnose::search::Fitted;
+use crate::estimate::{NAMES, UNITS};
 use crate::physics::PhysicsError;
 
 /// A parameter's value on the held-out flights against that of the model.
@@ -43,8 +44,6 @@ const MASS_SHARE: f64 = 0.08;
 const INERTIA_SHARE: f64 = 0.35;
 /// And it shows: a channel's residual is this much larger than the held-out flight's own fit leaves.
 const RESIDUAL_RATIO: f64 = 1.3;
-
-const INERTIA_NAMES: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
 
 /// One linear step about the carried model gives the held-out flights' own values.
 pub(super) fn judged(
@@ -115,10 +114,10 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
     let mut out = Vec::new();
     for (index, column) in own.rows.nuisances.iter().enumerate() {
         let (name, unit, value) = match column.nuisance {
-            Nuisance::Mass => ("mass", "kg", body.mass_kg),
+            Nuisance::Mass => (NAMES[0], UNITS[0], body.mass_kg),
             Nuisance::Inertia(entry) => {
                 let (row, column) = PLACES[entry];
-                (INERTIA_NAMES[entry], "kg m^2", body.inertia_kg_m2[(row, column)])
+                (NAMES[1 + entry], UNITS[1 + entry], body.inertia_kg_m2[(row, column)])
             }
             _ => continue,
         };
@@ -134,7 +133,7 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
     let mut index = own.rows.nuisances.len();
     for present in &own.base.present {
         for &free in &present.free {
-            let parameter = &present.effect.parameters()[free];
+            let Some(parameter) = present.parameter(free) else { continue };
             out.push(Agreement {
                 name: format!("{}.{}", present.effect.id(), parameter.name),
                 unit: parameter.unit,

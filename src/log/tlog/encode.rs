@@ -13,7 +13,7 @@ use crate::frames::{
 };
 use crate::log::frame::Frame;
 use crate::log::recording::{Quantity, Recording, Stream};
-use crate::units::rad_s_from_rpm;
+use crate::units::{narrow, rad_s_from_rpm, whole};
 
 /// Time between heartbeats, s.
 const HEARTBEAT_S: f64 = 1.0;
@@ -262,16 +262,4 @@ fn micros(time_s: f64) -> u64 {
 
 fn millis(time_s: f64) -> u32 {
     u32::try_from(micros(time_s) / 1000).unwrap_or(u32::MAX)
-}
-
-/// MAVLink's floats have 32 bits.
-#[expect(clippy::cast_possible_truncation, reason = "rounding to the message's precision is what is wanted")]
-fn narrow(value: f64) -> f32 {
-    value as f32
-}
-
-/// The nearest whole number; the cast itself holds at the bounds and turns NaN into 0.
-#[expect(clippy::cast_possible_truncation, reason = "rounded before, saturates")]
-fn whole(value: f64) -> i32 {
-    value.round() as i32
 }

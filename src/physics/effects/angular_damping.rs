@@ -1,7 +1,5 @@
 //! Turning is held back in proportion to the body rates.
 
-use nalgebra::Vector3;
-
 use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `tau = -diag(bx, by, bz) w`: the inflow at each rotor changes as its hub rises and sinks.
@@ -31,9 +29,9 @@ impl Effect for AngularDamping {
         &[Hook::Wrench]
     }
 
-    fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own) -> Wrench {
-        let damping = Vector3::from_column_slice(own.parameters);
-        Wrench { force_n: Vector3::zeros(), torque_nm: -at.state.rates_rad_s.component_mul(&damping) }
+    fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
+        let damping = own.axes();
+        sum.torque_nm -= at.state.rates_rad_s.component_mul(&damping);
     }
 
     fn is_linear(&self) -> bool {

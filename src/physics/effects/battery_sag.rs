@@ -2,8 +2,9 @@
 
 use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `T_i = T (V / V_full)^exponent`, reaction torque alike; nothing where the voltage is not known. With
-/// speed in proportion to voltage the exponent is 2; with speed controlled by the ESC it is 0.
+/// `T_i = T (V / V_full)^exponent`, reaction torque alike, because the rotors turn slower by the root of that;
+/// nothing where the voltage is not known, or the rotors' speed is. With speed in proportion to voltage the
+/// exponent is 2; with speed controlled by the ESC it is 0.
 #[derive(Debug, Clone, Copy)]
 pub struct BatterySag;
 
@@ -31,13 +32,13 @@ impl Effect for BatterySag {
     }
 
     fn hooks(&self) -> &'static [Hook] {
-        &[Hook::RotorThrust]
+        &[Hook::RotorSpeed]
     }
 
-    fn rotor_thrust(&self, at: &Condition, own: &mut Own, rotors: &mut Rotors) {
-        let factor = ratio(at, own.parameters).powf(own.parameters[0]);
-        for thrust_n in &mut rotors.thrust_n {
-            *thrust_n *= factor;
+    fn rotor_speed(&self, at: &Condition, own: &mut Own, rotors: &mut Rotors) {
+        let factor = ratio(at, own.parameters).powf(own.parameters[0] / 2.0);
+        for speed in rotors.speed.iter_mut().chain(&mut rotors.acceleration_1_s) {
+            *speed *= factor;
         }
     }
 

@@ -1,6 +1,6 @@
 //! Blades flap in the airstream and the hubs turn the body.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
 use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
@@ -13,14 +13,15 @@ pub struct BladeFlapping;
 
 const PARAMETERS: &[Parameter] = &[Parameter { name: "k", unit: "N m/(m/s)", min: -0.2, max: 0.2 }];
 
-/// The torque for one N m/(m/s).
-fn per_coefficient(at: &Condition, rotors: &Rotors) -> Wrench {
-    let share = 1.0 / at.airframe.rotor_count() as f64;
-    let mut torque_nm = Vector3::zeros();
+/// The torque for one N m/(m/s), N m.
+fn per_coefficient(at: &Condition, rotors: &Rotors) -> Vector3<f64> {
+    let mut flow_m_s = Vector2::zeros();
     for ((_, air), speed) in at.hubs().zip(&rotors.speed) {
-        torque_nm += Vector3::z().cross(air) * (share * speed);
+        flow_m_s += air.xy() * *speed;
     }
-    Wrench { force_n: Vector3::zeros(), torque_nm }
+    let flow_m_s = flow_m_s / at.airframe.rotor_count() as f64;
+    // e_z x
+    Vector3::new(-flow_m_s.y, flow_m_s.x, 0.0)
 }
 
 impl Effect for BladeFlapping {
@@ -40,8 +41,8 @@ impl Effect for BladeFlapping {
         &[Hook::Wrench]
     }
 
-    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
-        per_coefficient(at, rotors) * own.parameters[0]
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
+        sum.torque_nm += per_coefficient(at, rotors) * own.parameters[0];
     }
 
     fn is_linear(&self) -> bool {
@@ -50,7 +51,7 @@ impl Effect for BladeFlapping {
 
     fn regressor(&self, at: &Condition, rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
         if let Some(column) = columns.first_mut() {
-            *column = per_coefficient(at, rotors);
+            *column = Wrench { force_n: Vector3::zeros(), torque_nm: per_coefficient(at, rotors) };
         }
     }
 }

@@ -58,14 +58,12 @@ impl Effect for CeilingEffect {
         airframe.propulsion.rotor_radius_m.is_none().then_some("rotor_radius")
     }
 
-    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
-        let mut sum = Wrench::zero();
-        for (arm, thrust_n) in at.arms_m().zip(&rotors.thrust_n) {
-            let near = nearness(at, &arm, own.parameters);
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
+        for (arm, thrust_n) in at.arms_m().iter().zip(&rotors.thrust_n) {
+            let near = nearness(at, arm, own.parameters);
             let gain = 1.0 / (1.0 - near.squared / own.parameters[0]) - 1.0;
-            sum += Wrench::at(&arm, Vector3::z() * (thrust_n * gain));
+            sum.lift_at(arm, thrust_n * gain);
         }
-        sum
     }
 
     fn has_regressor(&self) -> bool {
@@ -76,14 +74,14 @@ impl Effect for CeilingEffect {
         let a1 = parameters[0];
         let [by_a1, by_a2, by_height] = columns else { return };
         (*by_a1, *by_a2, *by_height) = (Wrench::zero(), Wrench::zero(), Wrench::zero());
-        for (arm, thrust_n) in at.arms_m().zip(&rotors.thrust_n) {
-            let near = nearness(at, &arm, parameters);
+        for (arm, thrust_n) in at.arms_m().iter().zip(&rotors.thrust_n) {
+            let near = nearness(at, arm, parameters);
             let factor = 1.0 / (1.0 - near.squared / a1);
-            let lift = |gain: f64| Wrench::at(&arm, Vector3::z() * (thrust_n * factor * factor * gain));
-            *by_a1 += lift(-near.squared / (a1 * a1));
-            let slope = lift(-2.0 * near.squared / (a1 * near.distance_m));
-            *by_a2 += slope;
-            *by_height += if near.held { Wrench::zero() } else { slope };
+            let scale_n = thrust_n * factor * factor * near.squared / a1;
+            by_a1.lift_at(arm, -scale_n / a1);
+            let slope_n_m = -2.0 * scale_n / near.distance_m;
+            by_a2.lift_at(arm, slope_n_m);
+            by_height.lift_at(arm, if near.held { 0.0 } else { slope_n_m });
         }
     }
 }

@@ -34,7 +34,7 @@ impl Effect for ComOffset {
     }
 
     fn center_of_mass_m(&self, own: &Own) -> Vector3<f64> {
-        Vector3::from_column_slice(own.parameters)
+        own.axes()
     }
 
     fn is_linear(&self) -> bool {

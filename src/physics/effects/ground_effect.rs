@@ -7,9 +7,10 @@ use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, 
 /// Thrust of the rotor at height z over the ground (world z = 0) times
 /// `1 / (1 - rho (R / 4z)^2) + Ca exp(-Cb z / R)`. With Ca = 0 the form of Cheeseman and Bennett 1955 (rho = 1
 /// for one rotor, more for several), with rho = 0 the exponential form; an estimate holds one of them at
-/// zero. z is the height of the centre of mass plus `levelling` times the hub's height over it: with 1 the lower
-/// rotors of a banked vehicle are lifted more and it levels out, with 0 all are lifted alike; flow between the
-/// rotors makes it anything in between. The reaction torque stays, since the rotor's speed and drag do.
+/// zero. In the finer form z is the height of the centre of mass plus `levelling` times the hub's height over it:
+/// with 1, as without it, the lower rotors of a banked vehicle are lifted more and it levels out, with 0 all are
+/// lifted alike; flow between the rotors makes it anything in between. The reaction torque stays, since the
+/// rotor's speed and drag do.
 ///
 /// Sanchez-Cuevas et al. 2017 (10.1155/2017/1823056) measured two to four times the first form.
 #[derive(Debug, Clone, Copy)]
@@ -19,22 +20,19 @@ const PARAMETERS: &[Parameter] = &[
     Parameter { name: "rho", unit: "-", min: 0.0, max: 8.0 },
     Parameter { name: "ca", unit: "-", min: 0.0, max: 1.0 },
     Parameter { name: "cb", unit: "-", min: 0.2, max: 8.0 },
-    Parameter { name: "levelling", unit: "-", min: 0.0, max: 1.0 },
 ];
+
+const FINER: &[Parameter] = &[Parameter { name: "levelling", unit: "-", min: 0.0, max: 1.0 }];
 
 /// Lower than this no rotor turns over the ground; it also keeps the first form from its pole.
 const LEAST_RADII: f64 = 0.75;
 
-/// Height of a hub over the ground that counts, in rotor radii.
-fn height_in_radii(at: &Condition, arm: &Vector3<f64>, levelling: f64) -> f64 {
+/// Height over the ground that counts for a hub, in rotor radii.
+fn height_in_radii(at: &Condition, arm: &Vector3<f64>, parameters: &[f64]) -> f64 {
     let radius_m = at.airframe.propulsion.rotor_radius_m.unwrap_or(f64::INFINITY);
-    let height_m = at.state.position_m.z + levelling * hub_over_center_m(at, arm);
-    (height_m / radius_m).max(LEAST_RADII)
-}
-
-/// World, m.
-fn hub_over_center_m(at: &Condition, arm: &Vector3<f64>) -> f64 {
-    at.height_of(arm) - at.state.position_m.z
+    let levelling = parameters.get(PARAMETERS.len()).copied().unwrap_or(1.0);
+    let over_center_m = at.height_of(arm) - at.state.position_m.z;
+    ((at.state.position_m.z + levelling * over_center_m) / radius_m).max(LEAST_RADII)
 }
 
 /// Factor on thrust.
@@ -55,6 +53,10 @@ impl Effect for GroundEffect {
         PARAMETERS
     }
 
+    fn finer_parameters(&self) -> &'static [Parameter] {
+        FINER
+    }
+
     fn hooks(&self) -> &'static [Hook] {
         &[Hook::Wrench]
     }
@@ -63,15 +65,13 @@ impl Effect for GroundEffect {
         airframe.propulsion.rotor_radius_m.is_none().then_some("rotor_radius")
     }
 
-    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
-        let [rho, ca, cb, levelling] = [0, 1, 2, 3].map(|index| own.parameters[index]);
-        let mut sum = Wrench::zero();
-        for (arm, thrust_n) in at.arms_m().zip(&rotors.thrust_n) {
-            let radii = height_in_radii(at, &arm, levelling);
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
+        let [rho, ca, cb] = [own.parameters[0], own.parameters[1], own.parameters[2]];
+        for (arm, thrust_n) in at.arms_m().iter().zip(&rotors.thrust_n) {
+            let radii = height_in_radii(at, arm, own.parameters);
             let gain = cheeseman_bennett(rho, radii) - 1.0 + ca * (-cb * radii).exp();
-            sum += Wrench::at(&arm, Vector3::z() * (thrust_n * gain));
+            sum.lift_at(arm, thrust_n * gain);
         }
-        sum
     }
 
     fn has_regressor(&self) -> bool {
@@ -79,24 +79,16 @@ impl Effect for GroundEffect {
     }
 
     fn regressor(&self, at: &Condition, rotors: &Rotors, parameters: &[f64], columns: &mut [Wrench]) {
-        let [rho, ca, cb, levelling] = [0, 1, 2, 3].map(|index| parameters[index]);
-        let [by_rho, by_ca, by_cb, by_levelling] = columns else { return };
-        for column in [&mut *by_rho, &mut *by_ca, &mut *by_cb, &mut *by_levelling] {
-            *column = Wrench::zero();
-        }
-        let radius_m = at.airframe.propulsion.rotor_radius_m.unwrap_or(f64::INFINITY);
-        for (arm, thrust_n) in at.arms_m().zip(&rotors.thrust_n) {
-            let radii = height_in_radii(at, &arm, levelling);
-            let lift = |gain: f64| Wrench::at(&arm, Vector3::z() * (thrust_n * gain));
+        let [rho, ca, cb] = [parameters[0], parameters[1], parameters[2]];
+        let [by_rho, by_ca, by_cb, ..] = columns else { return };
+        (*by_rho, *by_ca, *by_cb) = (Wrench::zero(), Wrench::zero(), Wrench::zero());
+        for (arm, thrust_n) in at.arms_m().iter().zip(&rotors.thrust_n) {
+            let radii = height_in_radii(at, arm, parameters);
             let share = cheeseman_bennett(rho, radii);
-            *by_rho += lift(share * share / (16.0 * radii * radii));
+            by_rho.lift_at(arm, thrust_n * share * share / (16.0 * radii * radii));
             let decay = (-cb * radii).exp();
-            *by_ca += lift(decay);
-            *by_cb += lift(-ca * radii * decay);
-            if radii > LEAST_RADII {
-                let slope = -share * share * rho / (8.0 * radii.powi(3)) - ca * cb * decay;
-                *by_levelling += lift(slope * hub_over_center_m(at, &arm) / radius_m);
-            }
+            by_ca.lift_at(arm, thrust_n * decay);
+            by_cb.lift_at(arm, -thrust_n * ca * radii * decay);
         }
     }
 }

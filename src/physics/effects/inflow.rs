@@ -1,11 +1,10 @@
 //! Climbing costs thrust.
 
-use nalgebra::Vector3;
-
 use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = -(kz / N) n_i (v_air + w x r_i)_z e_z` at each hub, with `kz` of the whole vehicle at hover: the blades
 /// meet the air at a smaller angle. The same term as the `dz` of rotor drag, which a report gives here.
+/// In the finer form the torque is `at_hubs` of that, 0 where a body's drag acts at the centre of mass.
 ///
 /// Bangura and Mahony 2012; Svacha et al. 2017.
 #[derive(Debug, Clone, Copy)]
@@ -13,12 +12,17 @@ pub struct Inflow;
 
 const PARAMETERS: &[Parameter] = &[Parameter { name: "kz", unit: "N/(m/s)", min: 0.0, max: 5.0 }];
 
+const FINER: &[Parameter] = &[Parameter { name: "at_hubs", unit: "-", min: 0.0, max: 1.0 }];
+
 /// Force and torque for one N/(m/s).
-fn per_coefficient(at: &Condition, rotors: &Rotors) -> Wrench {
+fn per_coefficient(at: &Condition, rotors: &Rotors, parameters: &[f64]) -> Wrench {
+    let lever = parameters.get(PARAMETERS.len()).copied().unwrap_or(1.0);
     let share = -1.0 / at.airframe.rotor_count() as f64;
-    at.hubs().zip(&rotors.speed).fold(Wrench::zero(), |sum, ((arm, air), speed)| {
-        sum + Wrench::at(&arm, Vector3::z() * (share * speed * air.z))
-    })
+    let mut sum = Wrench::zero();
+    for ((arm, air), speed) in at.hubs().zip(&rotors.speed) {
+        sum.lift_at(&(arm * lever), share * speed * air.z);
+    }
+    sum
 }
 
 impl Effect for Inflow {
@@ -34,21 +38,25 @@ impl Effect for Inflow {
         PARAMETERS
     }
 
+    fn finer_parameters(&self) -> &'static [Parameter] {
+        FINER
+    }
+
     fn hooks(&self) -> &'static [Hook] {
         &[Hook::Wrench]
     }
 
-    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
-        per_coefficient(at, rotors) * own.parameters[0]
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
+        *sum += per_coefficient(at, rotors, own.parameters) * own.parameters[0];
     }
 
     fn is_linear(&self) -> bool {
         true
     }
 
-    fn regressor(&self, at: &Condition, rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
+    fn regressor(&self, at: &Condition, rotors: &Rotors, parameters: &[f64], columns: &mut [Wrench]) {
         if let Some(column) = columns.first_mut() {
-            *column = per_coefficient(at, rotors);
+            *column = per_coefficient(at, rotors, parameters);
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = -(D / N) n_i (v_air + w x r_i)` at hub `r_i`, with `D = diag(dx, dy, dz)` the drag of the
 /// whole vehicle at hover and `n_i` the rotor's speed over its hover speed; torque `r_i x F_i`.
+/// In the finer form the torque is `at_hubs` of that: 0 where the drag is the body's and acts at the centre of mass.
 ///
 /// Martin and Salaun 2010; Faessler et al. 2018 (arXiv 1712.02402).
 #[derive(Debug, Clone, Copy)]
@@ -16,6 +17,13 @@ const PARAMETERS: &[Parameter] = &[
     Parameter { name: "dy", unit: "N/(m/s)", min: 0.0, max: 5.0 },
     Parameter { name: "dz", unit: "N/(m/s)", min: 0.0, max: 5.0 },
 ];
+
+const FINER: &[Parameter] = &[Parameter { name: "at_hubs", unit: "-", min: 0.0, max: 1.0 }];
+
+/// Share of the arm at which the drag acts.
+fn at_hubs(parameters: &[f64]) -> f64 {
+    parameters.get(PARAMETERS.len()).copied().unwrap_or(1.0)
+}
 
 impl Effect for LinearDrag {
     fn id(&self) -> &'static str {
@@ -30,33 +38,35 @@ impl Effect for LinearDrag {
         PARAMETERS
     }
 
+    fn finer_parameters(&self) -> &'static [Parameter] {
+        FINER
+    }
+
     fn hooks(&self) -> &'static [Hook] {
         &[Hook::Wrench]
     }
 
-    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
         let share = -1.0 / at.airframe.rotor_count() as f64;
-        let drag = Vector3::from_column_slice(own.parameters);
-        let mut sum = Wrench::zero();
+        let (drag, lever) = (own.axes(), at_hubs(own.parameters));
         for ((arm, air), speed) in at.hubs().zip(&rotors.speed) {
-            let force = air.component_mul(&drag) * (share * speed);
-            sum += Wrench::at(&arm, force);
+            sum.push_at(&(arm * lever), &(air.component_mul(&drag) * (share * speed)));
         }
-        sum
     }
 
     fn is_linear(&self) -> bool {
         true
     }
 
-    fn regressor(&self, at: &Condition, rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
+    fn regressor(&self, at: &Condition, rotors: &Rotors, parameters: &[f64], columns: &mut [Wrench]) {
+        let lever = at_hubs(parameters);
         let share = -1.0 / at.airframe.rotor_count() as f64;
         for (axis, column) in columns.iter_mut().enumerate().take(PARAMETERS.len()) {
             *column = Wrench::zero();
             for ((arm, air), speed) in at.hubs().zip(&rotors.speed) {
                 let mut force = Vector3::zeros();
                 force[axis] = air[axis] * share * speed;
-                *column += Wrench::at(&arm, force);
+                column.push_at(&(arm * lever), &force);
             }
         }
     }

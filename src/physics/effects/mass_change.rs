@@ -1,7 +1,5 @@
 //! The vehicle becomes lighter or heavier in flight.
 
-use nalgebra::Vector3;
-
 use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// From `time` on the mass is `m + delta` at the same centre and inertia: all force `F` accelerates it by
@@ -37,9 +35,9 @@ impl Effect for MassChange {
         &[Hook::Reaction]
     }
 
-    fn reaction(&self, at: &Condition, applied: &Wrench, own: &mut Own) -> Wrench {
+    fn reaction(&self, at: &Condition, own: &mut Own, sum: &mut Wrench) {
         let share = changed_kg(at, own.parameters) / (at.airframe.mass_kg + changed_kg(at, own.parameters));
-        Wrench { force_n: applied.force_n * -share, torque_nm: Vector3::zeros() }
+        sum.force_n -= sum.force_n * share;
     }
 
     fn has_regressor(&self) -> bool {

@@ -1,16 +1,34 @@
 //! Rotors take time to reach the commanded speed.
 
-use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors};
+use crate::physics::{ActiveEffect, Airframe, Condition, Effect, Hook, Own, Parameter, Rotors};
+use crate::vehicle::Propulsion;
 
-/// `Omega' = (Omega_command - Omega) / time_constant`, one state a rotor.
+/// `Omega' = (Omega_command - Omega) / time_constant`, one state a rotor. In the finer form, with
+/// `time_constant_down`, `time_constant` is that of a rotor that speeds up and the other that of one that slows
+/// down: the motor drives it up, often only the air holds it back.
 #[derive(Debug, Clone, Copy)]
 pub struct MotorLag;
 
 /// Faster than this the rotor follows at once for every rate that a log has.
 const LEAST_TIME_CONSTANT_S: f64 = 1e-4;
 
-const PARAMETERS: &[Parameter] =
-    &[Parameter { name: "time_constant", unit: "s", min: LEAST_TIME_CONSTANT_S, max: 0.5 }];
+const fn time_constant(name: &'static str) -> Parameter {
+    Parameter { name, unit: "s", min: LEAST_TIME_CONSTANT_S, max: 0.5 }
+}
+
+const PARAMETERS: &[Parameter] = &[time_constant("time_constant")];
+const FINER: &[Parameter] = &[time_constant("time_constant_down")];
+
+impl MotorLag {
+    /// The lag that a vehicle's description states; `None` where it states none, or zero.
+    #[must_use]
+    pub fn stated(propulsion: &Propulsion) -> Option<ActiveEffect> {
+        let up_s = propulsion.time_constant_s.filter(|up_s| *up_s > 0.0)?;
+        let both_s = [up_s, propulsion.time_constant_down_s.unwrap_or(up_s)];
+        let given = if propulsion.time_constant_down_s.is_some() { &both_s[..] } else { &both_s[..1] };
+        ActiveEffect::new(&Self, given).ok()
+    }
+}
 
 impl Effect for MotorLag {
     fn id(&self) -> &'static str {
@@ -23,6 +41,10 @@ impl Effect for MotorLag {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn finer_parameters(&self) -> &'static [Parameter] {
+        FINER
     }
 
     fn hooks(&self) -> &'static [Hook] {
@@ -40,9 +62,12 @@ impl Effect for MotorLag {
     }
 
     fn rotor_speed(&self, _at: &Condition, own: &mut Own, rotors: &mut Rotors) {
-        let time_constant_s = own.parameters[0].max(LEAST_TIME_CONSTANT_S);
+        let bandwidth = |time_constant_s: f64| 1.0 / time_constant_s.max(LEAST_TIME_CONSTANT_S);
+        let up_1_s = bandwidth(own.parameters[0]);
+        let down_1_s = own.parameters.get(1).map_or(up_1_s, |down_s| bandwidth(*down_s));
         for (rotor, state) in own.states.iter().enumerate() {
-            let rate = (rotors.speed[rotor] - state) / time_constant_s;
+            let missing = rotors.speed[rotor] - state;
+            let rate = missing * if missing > 0.0 { up_1_s } else { down_1_s };
             own.rates[rotor] = rate;
             rotors.speed[rotor] = *state;
             rotors.acceleration_1_s[rotor] = rate;

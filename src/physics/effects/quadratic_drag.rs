@@ -1,7 +1,5 @@
 //! The body drags with the square of the airspeed.
 
-use nalgebra::Vector3;
-
 use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F = -|v_air| diag(cx, cy, cz) v_air` at the centre of mass; `c = rho CdA / 2` of a face.
@@ -33,10 +31,10 @@ impl Effect for QuadraticDrag {
         &[Hook::Wrench]
     }
 
-    fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own) -> Wrench {
-        let area = Vector3::from_column_slice(own.parameters);
+    fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
+        let area = own.axes();
         let v = at.air_velocity_m_s;
-        Wrench { force_n: v.component_mul(&area) * -v.norm(), torque_nm: Vector3::zeros() }
+        sum.force_n -= v.component_mul(&area) * v.norm();
     }
 
     fn is_linear(&self) -> bool {

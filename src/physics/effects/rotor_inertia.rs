@@ -46,8 +46,8 @@ impl Effect for RotorInertia {
         airframe.hover_speed_rad_s.is_none().then_some("thrust_coefficient (rotor speeds in rad/s)")
     }
 
-    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
-        per_inertia(at, rotors) * own.parameters[0]
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
+        *sum += per_inertia(at, rotors) * own.parameters[0];
     }
 
     fn is_linear(&self) -> bool {

@@ -48,13 +48,13 @@ impl Effect for SlungLoad {
         states[2] = -1.0;
     }
 
-    fn reaction(&self, at: &Condition, applied: &Wrench, own: &mut Own) -> Wrench {
+    fn reaction(&self, at: &Condition, own: &mut Own, sum: &mut Wrench) {
         let [load_kg, length_m] = [own.parameters[0], own.parameters[1]];
         let vehicle_kg = at.airframe.mass_kg;
         let cord = Vector3::from_column_slice(&own.states[..3]).normalize();
         let swing = Vector3::from_column_slice(&own.states[3..]);
         let swing = swing - cord * cord.dot(&swing);
-        let force_n = at.state.attitude * applied.force_n;
+        let force_n = at.state.attitude * sum.force_n;
         let reduced_kg = vehicle_kg * load_kg / (vehicle_kg + load_kg);
         // tension per kilogram of load stays defined when there is no load
         let tension_m_s2 = reduced_kg / load_kg.max(f64::MIN_POSITIVE)
@@ -63,6 +63,6 @@ impl Effect for SlungLoad {
         let turning = (cord * -tension_m_s2 - (force_n + pull_n) / vehicle_kg) / length_m;
         own.rates[..3].copy_from_slice(swing.as_slice());
         own.rates[3..].copy_from_slice(turning.as_slice());
-        Wrench { force_n: at.state.attitude.inverse_transform_vector(&pull_n), torque_nm: Vector3::zeros() }
+        sum.force_n += at.state.attitude.inverse_transform_vector(&pull_n);
     }
 }

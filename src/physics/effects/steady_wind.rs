@@ -32,6 +32,6 @@ impl Effect for SteadyWind {
     }
 
     fn wind_m_s(&self, _input: &Input, own: &Own) -> Vector3<f64> {
-        Vector3::from_column_slice(own.parameters)
+        own.axes()
     }
 }

@@ -49,9 +49,9 @@ impl Effect for Tether {
         &[Hook::Wrench]
     }
 
-    fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own) -> Wrench {
+    fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
         let [line_kg_m, stiffness_n_m, length_m] = [own.parameters[0], own.parameters[1], own.parameters[2]];
-        in_body(at, weight_per_mass(at) * line_kg_m - stretch(at, length_m) * stiffness_n_m)
+        *sum += in_body(at, weight_per_mass(at) * line_kg_m - stretch(at, length_m) * stiffness_n_m);
     }
 
     fn has_regressor(&self) -> bool {

@@ -16,9 +16,11 @@ const PARAMETERS: &[Parameter] = &[
 
 /// Each rotor's thrust along `lean` at its hub.
 fn across(at: &Condition, rotors: &Rotors, lean: &Vector3<f64>) -> Wrench {
-    at.arms_m()
-        .zip(&rotors.thrust_n)
-        .fold(Wrench::zero(), |sum, (arm, thrust_n)| sum + Wrench::at(&arm, lean * *thrust_n))
+    let mut sum = Wrench::zero();
+    for (arm, thrust_n) in at.arms_m().iter().zip(&rotors.thrust_n) {
+        sum.push_at(arm, &(lean * *thrust_n));
+    }
+    sum
 }
 
 impl Effect for ThrustTilt {
@@ -38,9 +40,9 @@ impl Effect for ThrustTilt {
         &[Hook::Wrench]
     }
 
-    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
         let lean = Vector3::new(own.parameters[1], -own.parameters[0], 0.0);
-        across(at, rotors, &lean)
+        *sum += across(at, rotors, &lean);
     }
 
     fn is_linear(&self) -> bool {

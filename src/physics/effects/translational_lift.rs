@@ -1,7 +1,5 @@
 //! Flying sideways gives thrust.
 
-use nalgebra::Vector3;
-
 use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = (kh / N) ((v_air + w x r_i)_x^2 + (..)_y^2) e_z` at each hub, with `kh` of the whole vehicle.
@@ -15,10 +13,11 @@ const PARAMETERS: &[Parameter] = &[Parameter { name: "kh", unit: "N/(m/s)^2", mi
 /// Force and torque for one N/(m/s)^2.
 fn per_coefficient(at: &Condition) -> Wrench {
     let share = 1.0 / at.airframe.rotor_count() as f64;
-    at.hubs().fold(Wrench::zero(), |sum, (arm, air)| {
-        let across = air.xy().norm_squared();
-        sum + Wrench::at(&arm, Vector3::z() * (share * across))
-    })
+    let mut sum = Wrench::zero();
+    for (arm, air) in at.hubs() {
+        sum.lift_at(arm, share * air.xy().norm_squared());
+    }
+    sum
 }
 
 impl Effect for TranslationalLift {
@@ -38,8 +37,8 @@ impl Effect for TranslationalLift {
         &[Hook::Wrench]
     }
 
-    fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own) -> Wrench {
-        per_coefficient(at) * own.parameters[0]
+    fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
+        *sum += per_coefficient(at) * own.parameters[0];
     }
 
     fn is_linear(&self) -> bool {

@@ -1,14 +1,14 @@
 //! Descending into its own wake a rotor loses thrust.
 
-use nalgebra::Vector3;
-
 use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 use crate::units::AIR_DENSITY_KG_M3;
 
 /// `F_i = -loss T_i e(x) e_z` at each hub, with `x = v_z / v_h` the climb over the induced velocity of hover,
 /// `v_h = sqrt(T_i / (2 rho A))`. `e(x)` is by how much Leishman's measured induced velocity exceeds that of
-/// momentum theory, `k(x) / k(0) - (sqrt(x^2/4 + 1) - x/2)`, where it does (-1.45 < x < 0), and fades with
-/// lateral airspeed as `1 / (1 + (v_xy / v_h)^2)`. The fluctuation that goes with it is not modelled.
+/// momentum theory, `k(x) / k(0) - (sqrt(x^2/4 + 1) - x/2)`, where it does, that is above x = -1.45, and once the
+/// ring has formed: not above x = -0.4, and smoothly from there to x = -0.6. It is 0.09 where it is largest, at
+/// x = -1.1, and fades with lateral airspeed, which carries the ring away, as `1 / (1 + (v_xy / v_h)^2)`. The
+/// fluctuation that goes with it is not modelled.
 ///
 /// Leishman 2006, section 2.13.
 #[derive(Debug, Clone, Copy)]
@@ -19,13 +19,18 @@ const PARAMETERS: &[Parameter] = &[Parameter { name: "loss", unit: "-", min: 0.0
 /// Induced over hover velocity in descent, by powers of x (Leishman's fit of measurements).
 const INDUCED: [f64; 5] = [1.15, -1.125, -1.372, -1.718, -0.655];
 
+/// Climb ratios between which the ring forms.
+const FORMING: (f64, f64) = (-0.4, -0.6);
+
 /// Excess of the induced velocity at the climb ratio x.
 fn excess(x: f64) -> f64 {
-    if !(-2.0..0.0).contains(&x) {
+    if !(-2.0..FORMING.0).contains(&x) {
         return 0.0;
     }
     let measured = INDUCED.iter().rev().fold(0.0, |sum, k| sum * x + k) / INDUCED[0];
-    (measured - ((x * x / 4.0 + 1.0).sqrt() - x / 2.0)).max(0.0)
+    let formed = ((x - FORMING.0) / (FORMING.1 - FORMING.0)).min(1.0);
+    let formed = formed * formed * (3.0 - 2.0 * formed);
+    formed * (measured - ((x * x / 4.0 + 1.0).sqrt() - x / 2.0)).max(0.0)
 }
 
 /// Force and torque for a loss of 1.
@@ -37,7 +42,7 @@ fn per_loss(at: &Condition, rotors: &Rotors) -> Wrench {
         let hover_m_s = (thrust_n.max(1e-9) / disc_kg_m).sqrt();
         let air = air / hover_m_s;
         let lost_n = thrust_n * excess(air.z) / (1.0 + air.xy().norm_squared());
-        sum += Wrench::at(&arm, Vector3::z() * -lost_n);
+        sum.lift_at(arm, -lost_n);
     }
     sum
 }
@@ -63,8 +68,8 @@ impl Effect for VortexRing {
         airframe.propulsion.rotor_radius_m.is_none().then_some("rotor_radius")
     }
 
-    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
-        per_loss(at, rotors) * own.parameters[0]
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
+        *sum += per_loss(at, rotors) * own.parameters[0];
     }
 
     fn is_linear(&self) -> bool {

@@ -13,7 +13,7 @@ use super::sensors::{NoiseLevels, TelemetrySettings};
 use super::{LOST_M, SimulateError, not_negative, positive, whole_steps};
 use crate::log::Recording;
 use crate::physics::effects::MotorLag;
-use crate::physics::{ActiveEffect, Evaluation, Input, MAX_ROTORS, Model, State, Wrench};
+use crate::physics::{ActiveEffect, Effect, Evaluation, Input, MAX_ROTORS, Model, State, Wrench};
 use crate::vehicle::{Actuator, Propulsion, Vehicle};
 
 /// Everything about a flight but vehicle, effects and reference. The defaults are those of the
@@ -34,7 +34,8 @@ pub struct FlightSettings {
     pub control_noise: NoiseLevels,
     /// factor on [`Self::control_noise`] (-)
     pub control_noise_scale: f64,
-    /// first-order lag of the rotors, s; 0 lets them follow at once
+    /// first-order lag of the rotors, s; 0 lets them follow at once. A motor lag among the true effects comes in
+    /// its place
     pub motor_time_constant_s: f64,
     /// time from command to its arrival at the motors, s, in whole steps
     pub transport_delay_s: f64,
@@ -129,7 +130,8 @@ pub fn simulate_flight(
     settings: &FlightSettings,
 ) -> Result<SimulatedFlight, SimulateError> {
     let mut effects = Vec::with_capacity(truth.effects.len() + 1);
-    if not_negative("motor_time_constant_s", settings.motor_time_constant_s)? > 0.0 {
+    let own_lag = truth.effects.iter().any(|active| active.effect().id() == MotorLag.id());
+    if not_negative("motor_time_constant_s", settings.motor_time_constant_s)? > 0.0 && !own_lag {
         effects.push(ActiveEffect::new(&MotorLag, &[settings.motor_time_constant_s])?);
     }
     effects.extend(truth.effects.iter().cloned());

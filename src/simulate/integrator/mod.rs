@@ -12,11 +12,13 @@ pub fn rk4_step<const N: usize>(
     step_s: f64,
 ) -> SVector<f64, N> {
     let half_s = step_s / 2.0;
+    // entry by entry: no vector is copied on the way
+    let along = |slope: &SVector<f64, N>, by_s: f64| state.zip_map(slope, |x, slope| x + slope * by_s);
     let k1 = derivative(time_s, state);
-    let k2 = derivative(time_s + half_s, &(state + k1 * half_s));
-    let k3 = derivative(time_s + half_s, &(state + k2 * half_s));
-    let k4 = derivative(time_s + step_s, &(state + k3 * step_s));
-    state + (k1 + (k2 + k3) * 2.0 + k4) * (step_s / 6.0)
+    let k2 = derivative(time_s + half_s, &along(&k1, half_s));
+    let k3 = derivative(time_s + half_s, &along(&k2, half_s));
+    let k4 = derivative(time_s + step_s, &along(&k3, step_s));
+    SVector::from_fn(|i, _| state[i] + (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) * (step_s / 6.0))
 }
 
 /// What an adaptive integration has to keep: `|error| <= absolute + relative |state|`, each component.

@@ -12,6 +12,10 @@ pub const PLANT_STATES: usize = 32;
 /// Something beyond every effect that pushes the vehicle, as force and torque in the body frame.
 pub type Push<'a> = &'a dyn Fn(f64, &State) -> Wrench;
 
+/// Where a [`Plant`] is, own states of the effects included, while nobody steps it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlantMemory(SVector<f64, PLANT_STATES>);
+
 /// A vehicle in flight.
 pub struct Plant<'a> {
     model: &'a Model,
@@ -38,6 +42,18 @@ impl<'a> Plant<'a> {
         state.write(&mut vector);
         model.initial_states(state, input, &mut vector.as_mut_slice()[RIGID_STATES..RIGID_STATES + count]);
         Ok(Self { model, push, vector })
+    }
+
+    /// The vehicle that [`Self::memory`] was taken of; `model` must be the one it was taken with.
+    #[must_use]
+    pub fn resume(model: &'a Model, push: Option<Push<'a>>, memory: PlantMemory) -> Self {
+        Self { model, push, vector: memory.0 }
+    }
+
+    /// All of its state, for [`Self::resume`].
+    #[must_use]
+    pub fn memory(&self) -> PlantMemory {
+        PlantMemory(self.vector)
     }
 
     /// Where it is.

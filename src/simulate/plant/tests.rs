@@ -52,6 +52,20 @@ fn a_lagging_rotor_answers_a_step_as_the_exponential_does() {
     assert!((plant.evaluate(&faster).rotors.speed[0] - expected).abs() < 1e-9);
 }
 
+#[test]
+fn a_rotor_that_slows_down_has_its_own_exponential() {
+    let vehicle = random_vehicle(4).truth;
+    let model = plain(&vehicle, vec![ActiveEffect::new(&MotorLag, &[0.05, 0.1]).unwrap()]);
+    let mut plant = Plant::new(&model, None, &drifting(Vector3::zeros()), &input(&model, 1.0)).unwrap();
+    for (target, from, time_constant_s) in [(1.2, 1.0, 0.05_f64), (0.9, 1.2 - 0.2 * (-1.0_f64).exp(), 0.1)] {
+        for _ in 0..50 {
+            plant.step(&input(&model, target), STEP_S);
+        }
+        let expected = target + (from - target) * (-0.05 / time_constant_s).exp();
+        assert!((plant.evaluate(&input(&model, target)).rotors.speed[0] - expected).abs() < 1e-9);
+    }
+}
+
 /// Kinetic and potential energy of vehicle and load, J, and their momentum, N s.
 fn totals(plant: &Plant, vehicle: &Vehicle, (load_kg, length_m): (f64, f64)) -> (f64, Vector3<f64>) {
     let (state, own) = (plant.state(), plant.vector.as_slice());

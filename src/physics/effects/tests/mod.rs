@@ -1,5 +1,6 @@
 mod laws;
 mod limits;
+mod speed;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -28,6 +29,7 @@ fn vehicle() -> Vehicle {
             torque_per_thrust_m: 0.016,
             rotor_radius_m: Some(0.165),
             time_constant_s: None,
+            time_constant_down_s: None,
         },
         rotors: vec![
             rotor(0.17, 0.17, Spin::Cw),
@@ -223,7 +225,7 @@ fn effects_are_made_by_name_within_their_bounds() {
 fn an_effect_that_the_description_does_not_carry_is_refused() {
     let mut bare = vehicle();
     bare.propulsion.rotor_radius_m = None;
-    let ground = ActiveEffect::new(&GroundEffect, &[1.0, 0.0, 1.0, 1.0]).unwrap();
+    let ground = ActiveEffect::new(&GroundEffect, &[1.0, 0.0, 1.0]).unwrap();
     let refused = Model::new(&bare, vec![ground]).unwrap_err();
     assert!(refused.to_string().contains("rotor_radius"), "{refused}");
 }

@@ -1,0 +1,286 @@
+//! `mavid record --connect ADDRESS --out FILE.tlog`: captures a link until told to stop.
+//!
+//! It only listens, unless `--heartbeat` asks it to speak as a ground station and to request messages.
+//! Exit status 3 where the file misses frames or nothing came.
+
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use mavid::link::{
+    LinkEvent, LinkOptions, LinkReader, LinkStats, LinkWriter, Received, ReceivedFrame, RecordError,
+    Recorder, RecorderStatus, Signing,
+};
+use mavid::log::{ComponentId, SystemId};
+use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
+use serde::Serialize;
+use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
+
+use super::{CommandError, Outcome, network, output};
+use crate::cli::RecordArgs;
+
+const HEARTBEAT: u32 = 0;
+/// HEARTBEAT.autopilot of what is no vehicle.
+const NO_AUTOPILOT: u8 = 8;
+const AUTOPILOT_AT: usize = 5;
+/// Without an end that the user gave.
+const YEAR: Duration = Duration::from_secs(365 * 86_400);
+/// Messages that identification uses and the rates asked for, Hz. A vehicle gives what it can.
+const MESSAGES: &[(u32, f32)] = &[
+    (31, 100.0),  // ATTITUDE_QUATERNION
+    (32, 50.0),   // LOCAL_POSITION_NED
+    (36, 100.0),  // SERVO_OUTPUT_RAW
+    (83, 50.0),   // ATTITUDE_TARGET
+    (85, 20.0),   // POSITION_TARGET_LOCAL_NED
+    (105, 100.0), // HIGHRES_IMU
+    (27, 100.0),  // RAW_IMU
+    (147, 2.0),   // BATTERY_STATUS
+    (245, 5.0),   // EXTENDED_SYS_STATE
+    (291, 10.0),  // ESC_STATUS
+    (331, 50.0),  // ODOMETRY
+    (375, 100.0), // ACTUATOR_OUTPUT_STATUS
+];
+
+/// The JSON document.
+#[derive(Debug, Serialize)]
+struct Document {
+    schema: u32,
+    log: String,
+    duration_s: f64,
+    /// frames and bytes in the file, sent ones included
+    frames: u64,
+    bytes: u64,
+    received_frames: u64,
+    sent_frames: u64,
+    /// frames that the file misses
+    dropped: u64,
+    /// frames with a signing key left out
+    redacted: u64,
+    unknown_messages: u64,
+    bad_checksums: u64,
+    noise_bytes: u64,
+    resyncs: u64,
+    lost_frames: u64,
+    badly_signed: u64,
+    replayed: u64,
+    unsigned: u64,
+    link_losses: u64,
+    stranger_datagrams: u64,
+    senders: Vec<SenderLine>,
+}
+
+#[derive(Debug, Serialize)]
+struct SenderLine {
+    system: u32,
+    component: u8,
+    frames: u64,
+    lost: u64,
+    duplicates: u64,
+}
+
+/// Runs the verb.
+pub fn run(json: bool, args: &RecordArgs) -> Result<Outcome, CommandError> {
+    let signing = args.signing_key_file.as_deref().map(Signing::open).transpose();
+    let signing = signing.map_err(|error| CommandError::Input(error.to_string()))?;
+    network::block_on(record(json, args, signing))
+}
+
+async fn record(json: bool, args: &RecordArgs, signing: Option<Signing>) -> Result<Outcome, CommandError> {
+    let address = network::address(&args.connect)?;
+    let recorder = Recorder::create(&args.out, args.force).map_err(|error| refused(&error))?;
+    let options = LinkOptions { recorder: Some(recorder.clone()), signing, ..LinkOptions::default() };
+    let opened = network::open(&address, options).await;
+    if opened.is_err() {
+        // nothing was recorded; a file that cannot be removed is an empty one
+        let _ = std::fs::remove_file(&args.out);
+    }
+    let (reader, writer) = opened?;
+    let start = Instant::now();
+    let mut capture = Capture { reader, writer, bar: bar(), asked: Vec::new(), recorder };
+    let ended = capture.until(start, args).await;
+    let stats = capture.reader.stats();
+    capture.bar.finish_and_clear();
+    // whether or not the link held, what came is brought onto the disk
+    let status = capture.recorder.finish().await.map_err(|error| CommandError::Failure(error.to_string()))?;
+    ended?;
+    let document = document(args, start.elapsed().as_secs_f64(), &status, &stats);
+    if json {
+        output::json(&document)?;
+    } else {
+        output::text(&text(&document))?;
+    }
+    if let Some(failure) = &status.failure {
+        return Err(CommandError::Failure(format!("cannot write {}: {failure}", args.out.display())));
+    }
+    Ok(if status.dropped > 0 || stats.received_frames == 0 { Outcome::DoneWithLoss } else { Outcome::Done })
+}
+
+fn refused(error: &RecordError) -> CommandError {
+    match error {
+        RecordError::Exists { .. } => CommandError::Input(format!("{error}: --force replaces it")),
+        _ => CommandError::Failure(error.to_string()),
+    }
+}
+
+/// A running capture.
+struct Capture {
+    reader: LinkReader,
+    writer: LinkWriter,
+    recorder: Recorder,
+    bar: ProgressBar,
+    /// vehicles that were asked for their messages
+    asked: Vec<(SystemId, ComponentId)>,
+}
+
+impl Capture {
+    /// Until the time is over, or somebody interrupts.
+    async fn until(&mut self, start: Instant, args: &RecordArgs) -> Result<(), CommandError> {
+        let length = args.duration.map_or(YEAR, |seconds| Duration::from_secs_f64(seconds).min(YEAR));
+        let mut second = interval(Duration::from_secs(1));
+        second.set_missed_tick_behavior(MissedTickBehavior::Skip);
+        let interrupted = network::interrupted();
+        tokio::pin!(interrupted);
+        loop {
+            tokio::select! {
+                received = self.reader.receive() => match received {
+                    Ok(Received::Frame(frame)) => self.frame(&frame, args.heartbeat),
+                    Ok(Received::Event(event)) => self.event(&event),
+                    Err(error) => return Err(CommandError::Failure(error.to_string())),
+                },
+                _ = second.tick() => self.second(start, args.heartbeat),
+                () = sleep_until(start + length) => return Ok(()),
+                stopped = &mut interrupted => return stopped,
+            }
+        }
+    }
+
+    fn second(&self, start: Instant, heartbeat: bool) {
+        if heartbeat {
+            // while nobody is there, there is nobody to tell
+            let _ = self.writer.send_message(&network::heartbeat());
+        }
+        let status = self.recorder.status();
+        let lost = self.reader.stats().lost();
+        self.bar.set_message(format!(
+            "{:.0} s, {} frames, {:.1} kB, {lost} lost on the link",
+            start.elapsed().as_secs_f64(),
+            status.frames,
+            status.bytes as f64 / 1e3
+        ));
+        self.bar.tick();
+    }
+
+    fn event(&self, event: &LinkEvent) {
+        let text = match event {
+            LinkEvent::Connected { peer } => format!("connected: {peer}"),
+            LinkEvent::Lost { why } => format!("lost: {why}"),
+            LinkEvent::Restored { peer } => format!("connected again: {peer}"),
+            LinkEvent::Stranger { peer } => format!("warning: {peer} sends here too; it is not recorded"),
+            LinkEvent::RecordingFails => "warning: the disk does not take the recording".into(),
+            LinkEvent::RecordingGoesOn => "the recording goes on".into(),
+        };
+        self.bar.suspend(|| output::message(&text));
+    }
+
+    /// Asks a vehicle, once, for what identification uses.
+    fn frame(&mut self, frame: &ReceivedFrame, speaks: bool) {
+        let sender = (frame.header.system, frame.header.component);
+        let is_vehicle =
+            frame.header.message_id == HEARTBEAT && frame.payload().u8(AUTOPILOT_AT) != NO_AUTOPILOT;
+        if !speaks || !is_vehicle || self.asked.contains(&sender) {
+            return;
+        }
+        self.asked.push(sender);
+        for (message, rate_hz) in MESSAGES {
+            // a link lost meanwhile: the vehicle keeps what it has
+            let _ = self.writer.send_message(&request(sender, *message, *rate_hz));
+        }
+    }
+}
+
+fn request((system, component): (SystemId, ComponentId), message: u32, rate_hz: f32) -> MavMessage {
+    MavMessage::COMMAND_LONG(dialect::COMMAND_LONG_DATA {
+        command: dialect::MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
+        // ids are far below 2^24, where 32-bit floats are exact
+        param1: f32::from(u16::try_from(message).unwrap_or(0)),
+        param2: 1e6 / rate_hz,
+        target_system: u8::try_from(system.0).unwrap_or(0),
+        target_component: component.0,
+        ..Default::default()
+    })
+}
+
+fn bar() -> ProgressBar {
+    let bar = ProgressBar::new_spinner();
+    match ProgressStyle::with_template("{spinner} {msg}") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+fn document(args: &RecordArgs, duration_s: f64, status: &RecorderStatus, stats: &LinkStats) -> Document {
+    let senders = stats.senders.values().map(|sender| SenderLine {
+        system: sender.system.0,
+        component: sender.component.0,
+        frames: sender.frames,
+        lost: sender.lost,
+        duplicates: sender.duplicates,
+    });
+    Document {
+        schema: 1,
+        log: args.out.display().to_string(),
+        duration_s,
+        frames: status.frames,
+        bytes: status.bytes,
+        received_frames: stats.received_frames,
+        sent_frames: stats.sent_frames,
+        dropped: status.dropped,
+        redacted: status.redacted,
+        unknown_messages: stats.unknown,
+        bad_checksums: stats.bad_crc,
+        noise_bytes: stats.skipped_bytes,
+        resyncs: stats.resyncs,
+        lost_frames: stats.lost(),
+        badly_signed: stats.badly_signed,
+        replayed: stats.replayed,
+        unsigned: stats.unsigned,
+        link_losses: stats.losses,
+        stranger_datagrams: stats.stranger_datagrams,
+        senders: senders.collect(),
+    }
+}
+
+fn text(document: &Document) -> String {
+    let mut lines = vec![format!(
+        "{}: {} frames, {} bytes in {:.1} s; {} received, {} sent, {} lost on the link, {} with a wrong checksum, \
+         {} bytes of noise",
+        document.log,
+        document.frames,
+        document.bytes,
+        document.duration_s,
+        document.received_frames,
+        document.sent_frames,
+        document.lost_frames,
+        document.bad_checksums,
+        document.noise_bytes
+    )];
+    for sender in &document.senders {
+        lines.push(format!(
+            "system {} component {}: {} frames, {} lost",
+            sender.system, sender.component, sender.frames, sender.lost
+        ));
+    }
+    let distrusted = document.badly_signed + document.replayed + document.unsigned;
+    if distrusted > 0 {
+        lines.push(format!(
+            "signatures: {} wrong, {} replayed, {} missing",
+            document.badly_signed, document.replayed, document.unsigned
+        ));
+    }
+    if document.dropped > 0 {
+        lines.push(format!("warning: {} frames are missing in the file", document.dropped));
+    }
+    if document.received_frames == 0 {
+        lines.push("warning: nothing came".into());
+    }
+    lines.join("\n")
+}

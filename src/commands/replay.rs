@@ -1,0 +1,100 @@
+//! `mavid replay FILE.tlog [--to ADDRESS] [--speed N]`: plays a recorded flight back as live traffic.
+//!
+//! Only what vehicles sent goes out, without commands; what the other end sends is dropped.
+
+use std::io::IsTerminal;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use mavid::link::{LinkOptions, Replay, ReplayError};
+use serde::Serialize;
+
+use super::{CommandError, Outcome, network, output};
+use crate::cli::ReplayArgs;
+
+/// The JSON document.
+#[derive(Debug, Serialize)]
+struct Document {
+    schema: u32,
+    log: String,
+    to: String,
+    /// the log's own length
+    duration_s: f64,
+    /// 0: as fast as possible
+    speed: f64,
+    frames: u64,
+    /// commands, and what others than vehicles sent
+    left_out: u64,
+    /// had nobody to go to
+    unsent: u64,
+    /// sent by the other end, dropped
+    discarded: u64,
+    /// the user ended it before the log did
+    interrupted: bool,
+}
+
+/// Runs the verb.
+pub fn run(json: bool, args: &ReplayArgs) -> Result<Outcome, CommandError> {
+    let replay = Replay::open(&args.log, args.speed).map_err(|error| failed(&error))?;
+    network::block_on(play(json, args, &replay))
+}
+
+fn failed(error: &ReplayError) -> CommandError {
+    match error {
+        ReplayError::Link(_) => CommandError::Failure(error.to_string()),
+        _ => CommandError::Input(error.to_string()),
+    }
+}
+
+async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome, CommandError> {
+    let (mut reader, writer) = network::open(&network::address(&args.to)?, LinkOptions::default()).await?;
+    if !writer.is_connected() {
+        output::message(&format!("waiting for somebody at {}", args.to));
+    }
+    let bar = bar(replay.frames());
+    let played = tokio::select! {
+        played = replay.play(&mut reader, &writer, |frame| bar.set_position(frame)) => Some(played),
+        stopped = network::interrupted() => stopped.map(|()| None)?,
+    };
+    bar.finish_and_clear();
+    let interrupted = played.is_none();
+    let counts = played.transpose().map_err(|error| failed(&error))?.unwrap_or_default();
+    let document = Document {
+        schema: 1,
+        log: args.log.display().to_string(),
+        to: args.to.clone(),
+        duration_s: replay.duration().as_secs_f64(),
+        speed: args.speed,
+        frames: if interrupted { writer.stats().sent_frames } else { counts.frames },
+        left_out: counts.left_out,
+        unsent: counts.unsent,
+        discarded: counts.discarded,
+        interrupted,
+    };
+    if json {
+        output::json(&document)?;
+    } else {
+        output::text(&format!(
+            "{} to {}: {} frames played, {} left out (commands, and what is of no vehicle), {} unsent; {} frames from \
+             the other end dropped{}",
+            document.log,
+            document.to,
+            document.frames,
+            document.left_out,
+            document.unsent,
+            document.discarded,
+            if interrupted { "; interrupted" } else { "" }
+        ))?;
+    }
+    Ok(if document.unsent > 0 { Outcome::DoneWithLoss } else { Outcome::Done })
+}
+
+fn bar(frames: u64) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(frames);
+    match ProgressStyle::with_template("playing {wide_bar} {pos}/{len} {eta}") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

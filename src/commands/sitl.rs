@@ -1,0 +1,177 @@
+//! `mavid sitl`: the embedded simulated vehicle on its own, for any ground station.
+
+use std::path::Path;
+use std::time::Duration;
+
+use mavid::config::{LoadedVehicle, parse_vehicle, read_vehicle};
+use mavid::link::{Address, LinkOptions};
+use mavid::log::{ComponentId, SystemId};
+use mavid::sitl::{
+    ArduPilotRelease, AutopilotKind, LinkRole, Pace, SensorSettings, Settings, Vehicle, serve,
+};
+use serde::Serialize;
+
+use super::effects::{effects, effects_file};
+use super::{CommandError, Outcome, network, output};
+use crate::cli::{ArduPilotVersion, AutopilotName, SitlArgs};
+
+/// The vehicle that flies where none is given.
+const DEFAULT_VEHICLE: &str = include_str!("../../configs/x500.toml");
+/// The port on which PX4 takes its peer for a companion computer.
+const ONBOARD_PORT: u16 = 14540;
+
+/// What runs. Says nothing of what is concealed.
+#[derive(Debug, Serialize)]
+struct Document {
+    schema: u32,
+    vehicle: String,
+    autopilot: &'static str,
+    system: u8,
+    listen: Vec<String>,
+    /// times real time; none in lock-step
+    speed: Option<f64>,
+}
+
+/// Runs the verb.
+pub fn run(json: bool, args: &SitlArgs) -> Result<Outcome, CommandError> {
+    let settings = settings(args)?;
+    let addresses = addresses(args, settings.autopilot)?;
+    let pace = pace(args)?;
+    let document = Document {
+        schema: 1,
+        vehicle: settings.vehicle.name.clone(),
+        autopilot: if settings.autopilot == AutopilotKind::Px4 { "px4" } else { "ardupilot" },
+        system: settings.system,
+        listen: addresses.iter().map(Address::to_string).collect(),
+        speed: if let Pace::Times(speed) = pace { Some(speed) } else { None },
+    };
+    let limit = args.duration.map(|seconds| seconds_from("duration", seconds)).transpose()?;
+    let vehicle = Vehicle::new(settings).map_err(|error| CommandError::Input(error.to_string()))?;
+    network::block_on(fly(vehicle, &addresses, (pace, limit), json, &document))?;
+    Ok(Outcome::Done)
+}
+
+async fn fly(
+    vehicle: Vehicle,
+    addresses: &[Address],
+    time: (Pace, Option<Duration>),
+    json: bool,
+    document: &Document,
+) -> Result<(), CommandError> {
+    let mut links = Vec::with_capacity(addresses.len());
+    for address in addresses {
+        let options = LinkOptions {
+            system: SystemId(document.system.into()),
+            component: ComponentId(1),
+            ..LinkOptions::default()
+        };
+        let ends = network::open(&address.to_string(), options).await?;
+        links.push((role(address), ends));
+    }
+    if json {
+        output::json(document)?;
+    } else {
+        output::text(&page(document))?;
+    }
+    let stop = async {
+        // where the signal cannot be had, the program is ended by the system
+        if network::interrupted().await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    };
+    let flown = serve(vehicle, links, time, stop).await;
+    output::message(&format!("stopped after {:.1} s of the vehicle's time", flown.as_secs_f64()));
+    Ok(())
+}
+
+fn page(document: &Document) -> String {
+    let pace =
+        document.speed.map_or("in lock-step".to_owned(), |speed| format!("at {speed} times real time"));
+    let links: Vec<String> = document.listen.iter().map(|address| format!("\n  {address}")).collect();
+    format!(
+        "{} flown by {}, system {}, {pace}, on{}\nCtrl-C ends it.",
+        document.vehicle,
+        if document.autopilot == "px4" { "PX4" } else { "ArduPilot" },
+        document.system,
+        links.concat()
+    )
+}
+
+fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
+    let kind = match (args.autopilot, args.ardupilot_version) {
+        (AutopilotName::Px4, _) => AutopilotKind::Px4,
+        (AutopilotName::Ardupilot, ArduPilotVersion::V4_6) => {
+            AutopilotKind::ArduPilot(ArduPilotRelease::V4_6)
+        }
+        (AutopilotName::Ardupilot, ArduPilotVersion::V4_7) => {
+            AutopilotKind::ArduPilot(ArduPilotRelease::V4_7)
+        }
+    };
+    let LoadedVehicle { vehicle, warnings, model } = loaded(args.vehicle.as_deref())?;
+    for warning in &warnings {
+        output::message(&format!("warning: {warning}"));
+    }
+    let mut acting = effects(&model.effects, &vehicle)?;
+    if let Some(path) = &args.effects {
+        acting.extend(effects_file(path, &vehicle)?);
+    }
+    let base = Settings::new(vehicle, kind);
+    let sensors = SensorSettings { noise_scale: args.noise, ..base.sensors };
+    Ok(Settings {
+        effects: acting,
+        seed: args.seed,
+        system: args.system,
+        sensors,
+        esc_telemetry: args.esc_telemetry,
+        transmitter: args.transmitter,
+        latency: seconds_from("latency", args.latency)?,
+        loss: args.loss,
+        warm_up: args.warm_up.map(|seconds| seconds_from("warm-up", seconds)).transpose()?,
+        ..base
+    })
+}
+
+fn loaded(path: Option<&Path>) -> Result<LoadedVehicle, CommandError> {
+    Ok(match path {
+        Some(path) => read_vehicle(path)?,
+        None => parse_vehicle(DEFAULT_VEHICLE, "the vehicle within the program")?,
+    })
+}
+
+fn seconds_from(name: &str, value: f64) -> Result<Duration, CommandError> {
+    Duration::try_from_secs_f64(value).map_err(|_| {
+        CommandError::Input(format!("--{name}: expected seconds, zero or above and finite, got {value}"))
+    })
+}
+
+fn pace(args: &SitlArgs) -> Result<Pace, CommandError> {
+    if args.lockstep {
+        return Ok(Pace::Lockstep);
+    }
+    if !(args.speed > 0.0 && args.speed <= 1000.0) {
+        let text = format!("--speed: expected above 0 and at most 1000, got {}", args.speed);
+        return Err(CommandError::Input(text));
+    }
+    Ok(Pace::Times(args.speed))
+}
+
+/// Those given, or those of the autopilot's own simulator.
+fn addresses(args: &SitlArgs, kind: AutopilotKind) -> Result<Vec<Address>, CommandError> {
+    let own: &[&str] = match kind {
+        AutopilotKind::Px4 => &["udpout:127.0.0.1:14550", "udpout:127.0.0.1:14540"],
+        AutopilotKind::ArduPilot(_) => &["tcpin:127.0.0.1:5760"],
+    };
+    let texts: Vec<&str> =
+        if args.listen.is_empty() { own.to_vec() } else { args.listen.iter().map(String::as_str).collect() };
+    let parse = |text: &&str| text.parse().map_err(|error| CommandError::Input(format!("--listen: {error}")));
+    texts.iter().map(parse).collect()
+}
+
+fn role(address: &Address) -> LinkRole {
+    match address {
+        Address::UdpIn { port, .. } | Address::UdpOut { port, .. } if *port == ONBOARD_PORT => {
+            LinkRole::Onboard
+        }
+        _ => LinkRole::GroundStation,
+    }
+}

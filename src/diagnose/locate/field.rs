@@ -1,0 +1,302 @@
+//! A force that belongs to the room and not to the vehicle: a smooth function of position, in world axes.
+//!
+//! A library of vehicle effects gives such a field a wrong name sooner or later. So it is a rival of every
+//! name: tested on what the names leave, and compared with what they took.
+
+use super::super::rows::{AXES, CHANNELS, Channels, channels};
+use super::super::search::Fitted;
+use super::super::trace::Trace;
+use nalgebra::{DMatrix, DVector, Vector3};
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// What a force field explains.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FieldTest {
+    /// share of the residual energy left by the named effects that the field explains (0..1)
+    pub gain: f64,
+    /// normal deviate of the field on what the named effects leave
+    pub z: f64,
+    /// chance of the cluster test over twelve blocks, for display: weak with so many columns
+    pub p_cluster: f64,
+    /// world axis of the force (0 x, 1 y, 2 z)
+    pub component: usize,
+    /// world axis along which it changes
+    pub along: usize,
+    /// where along it, m: centre of the bump that fits best
+    pub where_m: f64,
+    /// full width at half height of that bump, m
+    pub extent_m: f64,
+    /// its height, N, along `component`
+    pub force_n: f64,
+    /// energy that the field takes of what the named effects leave, sigma squared
+    pub energy: f64,
+    /// energy that the field takes in the named effects' stead, in the same unit
+    pub energy_alone: f64,
+    /// certain and large enough to matter
+    pub certain: bool,
+    /// certain, and alone explains more than all named effects together
+    pub beats_named: bool,
+    /// named effects that do not act alike everywhere in the room
+    pub uneven: Vec<Uneven>,
+}
+
+/// A named effect whose strength depends on where the vehicle is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Uneven {
+    /// which effect
+    pub id: &'static str,
+    /// normal deviate against the same strength everywhere
+    pub z: f64,
+    /// change of the strength over one standard deviation of position, relative to it
+    pub spread: f64,
+}
+
+/// Smooth functions along one axis.
+const HATS: usize = 7;
+/// Normal deviate of a field. Beyond that of a name: eight directions and places of six columns each are tried,
+/// and their largest on flights without a field reaches four.
+const FIELD_Z: f64 = 5.5;
+/// Stretches of the flight, and in how many of them a field must explain something. The cluster test says
+/// nothing with six columns over twelve stretches.
+const STRETCHES: usize = 12;
+const LEAST_STRETCHES: usize = 8;
+/// Directions and places that are tried: vertical force along the height belongs to ground, ceiling, tether.
+const TRIED: [(usize, usize); 8] = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1), (0, 2), (1, 2)];
+/// Least share of the residual energy.
+const FIELD_GAIN: f64 = 0.01;
+/// Least height of the bump, of gravity.
+const FIELD_G: f64 = 0.004;
+/// An effect is uneven beyond this normal deviate and relative change.
+const UNEVEN_Z: f64 = 5.5;
+const UNEVEN_SPREAD: f64 = 0.25;
+
+/// Tests for a force field; `None` where position or attitude are not known. `named_energy` is what the named
+/// effects took, in sigma squared of what they leave.
+#[must_use]
+pub fn field_test(
+    traces: &[Trace],
+    (before, after): (&Fitted, &Fitted),
+    named_energy: f64,
+) -> Option<FieldTest> {
+    if traces.is_empty() || !traces.iter().all(|trace| trace.known.position && trace.known.attitude) {
+        return None;
+    }
+    let ranges: Vec<(f64, f64)> = (0..3).map(|axis| flown(traces, axis)).collect();
+    let tested: Vec<_> = TRIED
+        .par_iter()
+        .filter_map(|&(component, along)| {
+            let columns = hats(traces, (component, along), ranges[along]);
+            let evidence = after.weighted.test(&columns)?;
+            Some((component, along, evidence, columns))
+        })
+        .collect();
+    let (component, along, evidence, columns) = tested.into_iter().max_by(|a, b| {
+        let seen = |z: f64| z > FIELD_Z;
+        seen(a.2.z).cmp(&seen(b.2.z)).then(a.2.energy.total_cmp(&b.2.energy))
+    })?;
+    let (where_m, extent_m, force_n) =
+        bump(traces, after, (component, along), ranges[along]).unwrap_or((0.0, 0.0, 0.0));
+    let body = &after.base.vehicle;
+    let least_n = FIELD_G * body.body.mass_kg * body.gravity_m_s2;
+    let certain = evidence.z > FIELD_Z
+        && evidence.gain >= FIELD_GAIN
+        && force_n.abs() >= least_n
+        && all_along(after, &columns, &evidence.theta);
+    let energy_alone = if certain { taken(before, after, &columns) } else { evidence.energy };
+    Some(FieldTest {
+        gain: evidence.gain,
+        z: evidence.z,
+        p_cluster: evidence.p_cluster,
+        component,
+        along,
+        where_m,
+        extent_m,
+        force_n,
+        energy: evidence.energy,
+        energy_alone,
+        certain,
+        beats_named: certain && energy_alone > named_energy,
+        uneven: uneven(traces, after),
+    })
+}
+
+/// Whether the columns explain something in most stretches of the flight, none of which gives half of it.
+fn all_along(after: &Fitted, columns: &[Channels], theta: &[f64]) -> bool {
+    let Some((_, partialled)) = after.weighted.partialled(columns) else { return false };
+    let left = &after.weighted.left;
+    let rest = left - partialled * DVector::from_column_slice(theta);
+    let rows = after.rows.len();
+    let gains: Vec<f64> = (0..STRETCHES)
+        .map(|stretch| {
+            let (from, to) = (rows * stretch / STRETCHES, rows * (stretch + 1) / STRETCHES);
+            (0..CHANNELS)
+                .flat_map(|channel| channel * rows + from..channel * rows + to)
+                .map(|at| left[at] * left[at] - rest[at] * rest[at])
+                .sum()
+        })
+        .collect();
+    let total: f64 = gains.iter().sum();
+    let helped = gains.iter().filter(|gain| **gain > 0.0).count();
+    helped >= LEAST_STRETCHES && gains.iter().all(|gain| *gain < 0.5 * total)
+}
+
+/// Range of a world axis that holds 96 of 100 rows, m.
+fn flown(traces: &[Trace], axis: usize) -> (f64, f64) {
+    let mut values: Vec<f64> = traces
+        .iter()
+        .flat_map(|trace| trace.centers.iter().map(move |&center| trace.states[center].position_m[axis]))
+        .collect();
+    values.sort_by(f64::total_cmp);
+    let last = values.len().saturating_sub(1);
+    let at = |percent: usize| values.get(last * percent / 100).copied().unwrap_or(0.0);
+    (at(2), at(98))
+}
+
+/// `K` of a world force along `component` whose strength is `shape` of the position along `along`.
+fn force_column(
+    traces: &[Trace],
+    (component, along): (usize, usize),
+    shape: impl Fn(f64) -> f64,
+) -> Channels {
+    let mut out = Channels::default();
+    let direction = Vector3::from_fn(|axis, _| if axis == component { 1.0 } else { 0.0 });
+    for trace in traces {
+        let forces: Vec<Vector3<f64>> = trace
+            .states
+            .iter()
+            .zip(&trace.usable)
+            .map(|(state, usable)| {
+                if *usable {
+                    state.attitude.inverse_transform_vector(&direction) * shape(state.position_m[along])
+                } else {
+                    Vector3::zeros()
+                }
+            })
+            .collect();
+        let torque = std::array::from_fn(|_| vec![0.0; trace.rows()]);
+        let both = channels(trace, trace.weak_vector(0, &forces), torque);
+        out.iter_mut().zip(both).for_each(|(to, from)| to.extend(from));
+    }
+    out
+}
+
+/// Smooth hats that add up to a constant; the constant itself is wind's and tilt's, so one hat is left out and
+/// each is freed of its mean.
+fn hats(traces: &[Trace], place: (usize, usize), (low, high): (f64, f64)) -> Vec<Channels> {
+    let spacing = ((high - low) / (HATS - 1) as f64).max(1e-3);
+    let hat = |index: usize, at: f64| {
+        let from = (at.clamp(low, high) - low - index as f64 * spacing) / spacing;
+        if from.abs() < 1.0 { (0.5 * PI * from).cos().powi(2) } else { 0.0 }
+    };
+    let positions: Vec<f64> = traces
+        .iter()
+        .flat_map(|trace| trace.centers.iter().map(move |&center| trace.states[center].position_m[place.1]))
+        .collect();
+    (1..HATS)
+        .map(|index| {
+            let mean =
+                positions.iter().map(|at| hat(index, *at)).sum::<f64>() / positions.len().max(1) as f64;
+            force_column(traces, place, |at| hat(index, at) - mean)
+        })
+        .collect()
+}
+
+/// Centre, full width at half height (m) and height (N) of the Gaussian bump that explains most.
+fn bump(
+    traces: &[Trace],
+    fitted: &Fitted,
+    place: (usize, usize),
+    (low, high): (f64, f64),
+) -> Option<(f64, f64, f64)> {
+    const CENTERS: usize = 25;
+    const WIDTHS: [f64; 4] = [0.04, 0.08, 0.15, 0.3];
+    // no window of the recording resolves less
+    let range = (high - low).max(1e-3);
+    let tried: Vec<(f64, f64)> = WIDTHS
+        .iter()
+        .flat_map(|width| {
+            (0..CENTERS).map(move |i| (low + range * i as f64 / (CENTERS - 1) as f64, width * range))
+        })
+        .collect();
+    let best = tried
+        .into_par_iter()
+        .filter_map(|(center, width)| {
+            let column = force_column(traces, place, |at| (-0.5 * ((at - center) / width).powi(2)).exp());
+            let (_, partialled) = fitted.weighted.partialled(&[column])?;
+            let column = partialled.column(0);
+            let norm = column.norm_squared();
+            let along = column.dot(&fitted.weighted.left);
+            Some((along * along / norm, center, width, along / norm))
+        })
+        .max_by(|a, b| a.0.total_cmp(&b.0))?;
+    // full width at half height of a Gaussian
+    let full = 2.0 * (2.0 * std::f64::consts::LN_2).sqrt();
+    Some((best.1, full * best.2, best.3))
+}
+
+/// Energy that the columns take from the rigid body's residual, in sigma squared of what the names leave.
+fn taken(before: &Fitted, after: &Fitted, columns: &[Channels]) -> f64 {
+    let Some((_, partialled)) = before.weighted.partialled(columns) else { return 0.0 };
+    let left = &before.weighted.left;
+    let normal: DMatrix<f64> = partialled.tr_mul(&partialled);
+    let Some(factor) = normal.cholesky() else { return 0.0 };
+    let theta: DVector<f64> = factor.solve(&partialled.tr_mul(left));
+    let rest = left - &partialled * theta;
+    let rows = before.rows.len();
+    (0..AXES)
+        .filter(|&channel| after.weighted.sigma[channel] > 0.0)
+        .map(|channel| {
+            let part = |v: &DVector<f64>| v.rows(channel * rows, rows).norm_squared();
+            let scale = before.weighted.sigma[channel] / after.weighted.sigma[channel];
+            (part(left) - part(&rest)) * scale * scale
+        })
+        .sum()
+}
+
+/// Named effects whose strength changes with the horizontal position.
+fn uneven(traces: &[Trace], after: &Fitted) -> Vec<Uneven> {
+    let place = |axis: usize| -> Vec<f64> {
+        let values: Vec<f64> = traces
+            .iter()
+            .flat_map(|trace| trace.centers.iter().map(move |&center| trace.states[center].position_m[axis]))
+            .collect();
+        let count = values.len().max(1) as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let std = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count).sqrt().max(1e-6);
+        values.into_iter().map(|v| (v - mean) / std).collect()
+    };
+    let places = [place(0), place(1)];
+    let mut out = Vec::new();
+    let mut first = 0;
+    for present in &after.base.present {
+        let own = &after.rows.effects[first..first + present.free.len()];
+        first += present.free.len();
+        let columns: Vec<Channels> = own
+            .iter()
+            .flat_map(|column| {
+                places.iter().map(move |place| {
+                    std::array::from_fn(|channel| {
+                        column[channel].iter().zip(place).map(|(value, at)| value * at).collect()
+                    })
+                })
+            })
+            .collect();
+        let Some(evidence) = after.weighted.test(&columns) else { continue };
+        let spread = evidence
+            .theta
+            .iter()
+            .enumerate()
+            .filter_map(|(index, theta)| {
+                let slot = *present.free.get(index / places.len())?;
+                let nothing = if present.effect.id() == "weak_rotor" { 1.0 } else { 0.0 };
+                let strength = (present.values[slot] - nothing).abs();
+                (strength > 0.0).then(|| theta.abs() / strength)
+            })
+            .fold(0.0, f64::max);
+        if evidence.z > UNEVEN_Z && spread > UNEVEN_SPREAD {
+            out.push(Uneven { id: present.effect.id(), z: evidence.z, spread });
+        }
+    }
+    out
+}

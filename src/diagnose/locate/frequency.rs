@@ -1,0 +1,170 @@
+//! The residual over frequency: the band in which it exceeds noise, and what it moves with.
+
+use super::super::rows::AXES;
+use super::super::trace::Trace;
+use super::spectrum::{Ordinate, noise_shapes};
+use super::view::{Followed, View};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// Frequencies between which most of a channel's misfit lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// a tenth of the energy beyond noise lies below, Hz
+    pub low_hz: f64,
+    /// and a tenth above, Hz
+    pub high_hz: f64,
+    /// share of it at the trajectory's harmonics, where the flight repeats (0..1)
+    pub harmonic: Option<f64>,
+}
+
+/// How much of a channel's residual moves with a state, linearly and at one frequency.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coherence {
+    /// index in [`super::super::CHANNEL_NAMES`]
+    pub channel: usize,
+    /// with what
+    pub with: Followed,
+    /// mean of the squared coherence to 2 Hz, weighted by the residual's power (0..1)
+    pub mean: f64,
+    /// what noise alone stays below in 95 of 100 single frequencies
+    pub noise: f64,
+    /// Hz, where residual power times coherence is greatest
+    pub frequency_hz: f64,
+}
+
+/// Length of a window, s.
+const WINDOW_S: f64 = 8.0;
+/// Highest frequency of the mean, Hz.
+const HIGHEST_HZ: f64 = 2.0;
+/// Fewest windows that say anything.
+const LEAST_WINDOWS: usize = 5;
+
+/// The band of one channel; `None` where nothing exceeds noise.
+pub(super) fn band(view: &View, ordinates: &[Ordinate], noise_variance: f64) -> Option<Band> {
+    let [force, _] = noise_shapes(view, ordinates);
+    let total: f64 = force.iter().sum();
+    let count = ordinates.len() as f64;
+    // the same variance as white noise of the force would have it
+    let share = 2.0 * super::spectrum::HIGHEST_HZ * view.step_s;
+    let scale = noise_variance / share * count / total.max(f64::MIN_POSITIVE);
+    let beyond: Vec<f64> =
+        ordinates.iter().zip(&force).map(|(o, shape)| (o.power - 3.0 * scale * shape).max(0.0)).collect();
+    let energy: f64 = beyond.iter().sum();
+    if energy <= 0.0 {
+        return None;
+    }
+    let mut order: Vec<usize> = (0..ordinates.len()).collect();
+    order.sort_by(|&a, &b| ordinates[a].frequency_hz.total_cmp(&ordinates[b].frequency_hz));
+    let at = |level: f64| {
+        let mut sum = 0.0;
+        order
+            .iter()
+            .find(|&&i| {
+                sum += beyond[i];
+                sum >= level * energy
+            })
+            .map_or(0.0, |&i| ordinates[i].frequency_hz)
+    };
+    let repeats = view.flights.iter().any(|(_, period_s)| period_s.is_some());
+    let harmonic: f64 = ordinates.iter().zip(&beyond).filter(|(o, _)| o.harmonic).map(|(_, b)| b).sum();
+    Some(Band { low_hz: at(0.1), high_hz: at(0.9), harmonic: repeats.then_some(harmonic / energy) })
+}
+
+/// Coherence of every channel with thrust, its rate, airspeed and body rates by Welch's method.
+pub(super) fn coherences(view: &View, traces: &[Trace]) -> Vec<Coherence> {
+    let inputs: Vec<&(Followed, Vec<f64>)> = view
+        .states
+        .iter()
+        .filter(|(state, _)| {
+            matches!(
+                state,
+                Followed::Thrust | Followed::ThrustRate | Followed::Airspeed(_) | Followed::Rate(_)
+            )
+        })
+        .collect();
+    let length = (0..view.len()).find(|&rows| rows as f64 * view.step_s >= WINDOW_S);
+    let Some(length) = length.filter(|_| !traces.is_empty()) else { return Vec::new() };
+    let windows = windows(view, length);
+    if windows.len() < LEAST_WINDOWS {
+        return Vec::new();
+    }
+    // neighbouring Hann windows that overlap by half share a little: they count for this much
+    let free = 0.95 * windows.len() as f64;
+    let noise = 1.0 - 0.05_f64.powf(1.0 / (free - 1.0));
+    let spectra = |series: &[f64]| -> Vec<Vec<(f64, f64)>> {
+        windows.iter().map(|&from| windowed(&series[from..from + length], view.step_s)).collect()
+    };
+    let of_inputs: Vec<_> = inputs.par_iter().map(|(_, values)| spectra(values)).collect();
+    let of_channels: Vec<_> =
+        (0..AXES).into_par_iter().map(|channel| spectra(&view.residual[channel])).collect();
+    let mut out = Vec::new();
+    for (channel, residual) in of_channels.iter().enumerate() {
+        for ((state, _), input) in inputs.iter().zip(&of_inputs) {
+            let (mean, frequency_hz) = squared(residual, input, length as f64 * view.step_s);
+            out.push(Coherence { channel, with: *state, mean, noise, frequency_hz });
+        }
+    }
+    out.sort_by(|a, b| b.mean.total_cmp(&a.mean));
+    out
+}
+
+/// First rows of half-overlapping windows.
+fn windows(view: &View, length: usize) -> Vec<usize> {
+    let mut out = Vec::new();
+    for run in &view.runs {
+        let mut from = run.start;
+        while from + length <= run.end {
+            out.push(from);
+            from += length / 2;
+        }
+    }
+    out
+}
+
+/// Fourier coefficients of a windowed series from the first bin to the highest frequency.
+fn windowed(series: &[f64], step_s: f64) -> Vec<(f64, f64)> {
+    let count = series.len() as f64;
+    let mean = series.iter().sum::<f64>() / count;
+    let tapered: Vec<f64> = series
+        .iter()
+        .enumerate()
+        .map(|(i, value)| (value - mean) * (0.5 - 0.5 * (TAU * i as f64 / count).cos()))
+        .collect();
+    let mut out = Vec::new();
+    let mut bin = 1.0;
+    while bin / (count * step_s) <= HIGHEST_HZ {
+        let (turn_sin, turn_cos) = (TAU * bin / count).sin_cos();
+        let (mut re, mut im, mut s, mut c) = (0.0, 0.0, 0.0_f64, 1.0_f64);
+        for value in &tapered {
+            re += value * c;
+            im -= value * s;
+            (s, c) = (s * turn_cos + c * turn_sin, c * turn_cos - s * turn_sin);
+        }
+        out.push((re, im));
+        bin += 1.0;
+    }
+    out
+}
+
+/// Power-weighted mean of the squared coherence, and the frequency that gives most to it.
+fn squared(residual: &[Vec<(f64, f64)>], input: &[Vec<(f64, f64)>], length_s: f64) -> (f64, f64) {
+    let bins = residual.first().map_or(0, Vec::len);
+    let (mut weighted, mut power, mut best) = (0.0, 0.0, (0.0, 0.0));
+    for bin in 0..bins {
+        let (mut rr, mut ii, mut re, mut im) = (0.0, 0.0, 0.0, 0.0);
+        for (r, i) in residual.iter().zip(input).map(|(r, i)| (r[bin], i[bin])) {
+            rr += r.0 * r.0 + r.1 * r.1;
+            ii += i.0 * i.0 + i.1 * i.1;
+            re += r.0 * i.0 + r.1 * i.1;
+            im += r.1 * i.0 - r.0 * i.1;
+        }
+        let moved = if ii > 0.0 { (re * re + im * im) / ii } else { 0.0 };
+        weighted += moved;
+        power += rr;
+        if moved > best.1 {
+            best = ((bin + 1) as f64 / length_s, moved);
+        }
+    }
+    (if power > 0.0 { weighted / power } else { 0.0 }, best.0)
+}

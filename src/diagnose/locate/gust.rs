@@ -1,0 +1,138 @@
+//! Gusts: a red horizontal force that a known drag turns into wind.
+
+use super::aperiodic::{Quantity, RED_STATISTIC, Redness, beside_harmonics, red_fit, red_shape};
+use super::spectrum::{Ordinate, Whittle, noise_shapes, whittle};
+use super::view::{Followed, View};
+use crate::diagnose::search::Fitted;
+use nalgebra::DMatrix;
+use std::f64::consts::TAU;
+
+/// Gusts by their force through the drag.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GustFound {
+    /// each horizontal axis, m/s
+    pub sigma_m_s: f64,
+    /// standard error, that of the drag among it
+    pub sigma_std_m_s: f64,
+    /// s
+    pub correlation_s: f64,
+    /// standard error
+    pub correlation_std_s: f64,
+    /// drag that makes a force of it, N/(m/s)
+    pub drag_n_s_m: f64,
+    /// likelihood ratio of the red part, both axes, as in [`Redness`]
+    pub statistic: f64,
+}
+
+/// Axes of a gust differ in strength by no more than this.
+const ALIKE: f64 = 3.0;
+/// Lateral drag of the accepted effects with its standard error, N/(m/s) at the speeds flown.
+fn lateral_drag(view: &View, fitted: &Fitted) -> Option<(f64, f64)> {
+    let mut first = fitted.rows.nuisances.len();
+    let (mut drag, mut variance) = (0.0, 0.0);
+    let speed = view.states.iter().find(|(state, _)| *state == Followed::Speed).map(|(_, values)| values);
+    let mean_speed = speed.map_or(0.0, |values| values.iter().sum::<f64>() / values.len().max(1) as f64);
+    for present in &fitted.base.present {
+        // a quadratic drag's slope, mean of along and across the motion
+        let slope = match present.effect.id() {
+            "linear_drag" => 1.0,
+            "quadratic_drag" => 1.5 * mean_speed,
+            _ => 0.0,
+        };
+        if slope > 0.0 {
+            drag += slope * 0.5 * (present.values[0] + present.values[1]);
+            for (index, slot) in present.free.iter().enumerate() {
+                if *slot < 2 {
+                    variance += (0.5 * slope).powi(2) * fitted.covariance[(first + index, first + index)];
+                }
+            }
+        }
+        first += present.free.len();
+    }
+    (drag > 0.0 && variance.is_finite()).then(|| (drag, variance.max(0.0).sqrt()))
+}
+
+/// Gusts: both horizontal axes red alike, and a drag through which they act.
+pub(super) fn gust(view: &View, fitted: &Fitted, redness: &[Redness]) -> Option<GustFound> {
+    let axes: Vec<&Redness> = redness.iter().filter(|red| matches!(red.of, Quantity::World(_))).collect();
+    let [x, y] = axes.as_slice() else { return None };
+    let alike = x.rms < ALIKE * y.rms && y.rms < ALIKE * x.rms;
+    let each = x.statistic.min(y.statistic) > 0.5 * RED_STATISTIC;
+    if !(alike && each && (x.certain || y.certain)) {
+        return None;
+    }
+    let (drag, drag_std) = lateral_drag(view, fitted)?;
+    let world = view.world_force_n.as_ref()?;
+    let mut ordinates = beside_harmonics(view, &world[0]);
+    ordinates.extend(beside_harmonics(view, &world[1]));
+    let (at_s, _, statistic) = red_fit(view, &ordinates)?;
+    let (correlation_s, fit) = refined(view, &ordinates, at_s)?;
+    let (relative_variance, correlation_std_s) = red_errors(view, &ordinates, &fit, correlation_s)?;
+    let sigma_m_s = fit.coefficients[2].sqrt() / drag;
+    let relative = (0.25 * relative_variance + (drag_std / drag).powi(2)).sqrt();
+    Some(GustFound {
+        sigma_m_s,
+        sigma_std_m_s: sigma_m_s * relative,
+        correlation_s,
+        correlation_std_s,
+        drag_n_s_m: drag,
+        statistic,
+    })
+}
+
+/// Between the times that were tried, by a search on the deviance.
+fn refined(view: &View, ordinates: &[Ordinate], at_s: f64) -> Option<(f64, Whittle)> {
+    let power: Vec<f64> = ordinates.iter().map(|o| o.power).collect();
+    let [force, velocity] = noise_shapes(view, ordinates);
+    let fit = |correlation_s: f64| {
+        let red = red_shape(view, ordinates, &force, correlation_s);
+        whittle(&power, &[&force, &velocity, &red])
+    };
+    let mut best = (at_s, fit(at_s)?);
+    let mut step = 1.25;
+    while step > 1.01 {
+        let tried = [best.0 / step, best.0 * step];
+        let better = tried
+            .into_iter()
+            .filter_map(|time_s| Some((time_s, fit(time_s)?)))
+            .filter(|(_, found)| found.deviance < best.1.deviance)
+            .min_by(|a, b| a.1.deviance.total_cmp(&b.1.deviance));
+        match better {
+            Some(found) if (0.05..60.0).contains(&found.0) => best = found,
+            _ => step = step.sqrt(),
+        }
+    }
+    Some(best)
+}
+
+/// Relative variance of the red variance, and standard error of the correlation time, by Whittle's information.
+fn red_errors(view: &View, ordinates: &[Ordinate], fit: &Whittle, correlation_s: f64) -> Option<(f64, f64)> {
+    let [force, velocity] = noise_shapes(view, ordinates);
+    let red = red_shape(view, ordinates, &force, correlation_s);
+    let mut information = DMatrix::<f64>::zeros(4, 4);
+    for (i, o) in ordinates.iter().enumerate() {
+        let turn = (TAU * o.frequency_hz * correlation_s).powi(2);
+        let of_red = fit.coefficients[2] * red[i];
+        let slopes = [
+            of_red,
+            // by the logarithm of the correlation time
+            of_red * (1.0 - turn) / (1.0 + turn),
+            fit.coefficients[0] * force[i],
+            fit.coefficients[1] * velocity[i],
+        ]
+        .map(|slope| slope / fit.spectrum[i]);
+        for a in 0..4 {
+            for b in 0..4 {
+                information[(a, b)] += slopes[a] * slopes[b];
+            }
+        }
+    }
+    // a noise shape that is not there has no error
+    for index in 2..4 {
+        if information[(index, index)] <= 0.0 {
+            information[(index, index)] = 1.0;
+        }
+    }
+    let covariance = information.cholesky()?.inverse();
+    Some((covariance[(0, 0)], correlation_s * covariance[(1, 1)].sqrt()))
+}

@@ -1,0 +1,240 @@
+//! Spectra of weak-form residuals, and what white sensor noise makes of them.
+//!
+//! White noise of a measured force arrives as the test function's own spectrum, white noise of a measured
+//! velocity as that of its derivative. What is more than a mix of both at low frequency is not the sensors'.
+
+use super::view::View;
+use crate::signals::WeakKernel;
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::TAU;
+
+/// Highest frequency that the fits look at, Hz; the kernel lets little pass beyond.
+pub(super) const HIGHEST_HZ: f64 = 4.0;
+/// Shortest stretch that is transformed, s.
+const SHORTEST_S: f64 = 10.0;
+
+/// One ordinate of a periodogram.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Ordinate {
+    pub(super) frequency_hz: f64,
+    /// white noise of variance v has v on average
+    pub(super) power: f64,
+    /// at a multiple of the trajectory's frequency
+    pub(super) harmonic: bool,
+}
+
+/// Periodogram of a series of the view's rows, all runs together, each freed of its line. A run of a flight
+/// that repeats is cut to whole periods.
+pub(super) fn periodogram(view: &View, series: &[f64]) -> Vec<Ordinate> {
+    let mut out = Vec::new();
+    for run in &view.runs {
+        let period_s = view.period_s_at(run.start);
+        let run_s = run.len() as f64 * view.step_s;
+        if run_s < SHORTEST_S {
+            continue;
+        }
+        let whole_s = period_s.map_or(run_s, |period_s| {
+            let mut whole_s = period_s;
+            while whole_s + period_s <= run_s + 1e-6 {
+                whole_s += period_s;
+            }
+            whole_s.min(run_s)
+        });
+        let mut from = run.start;
+        while (run.end - from) as f64 * view.step_s > whole_s + 0.5 * view.step_s {
+            from += 1;
+        }
+        let values = without_line(&series[from..run.end]);
+        transform(&values, (view.step_s, period_s), &mut out);
+    }
+    out
+}
+
+fn transform(values: &[f64], (step_s, period_s): (f64, Option<f64>), out: &mut Vec<Ordinate>) {
+    let length_s = values.len() as f64 * step_s;
+    let mut bin = 1.0;
+    while bin / length_s <= HIGHEST_HZ {
+        let frequency_hz = bin / length_s;
+        let (turn_sin, turn_cos) = (TAU * frequency_hz * step_s).sin_cos();
+        let (mut re, mut im, mut s, mut c) = (0.0, 0.0, 0.0_f64, 1.0_f64);
+        for value in values {
+            re += value * c;
+            im += value * s;
+            (s, c) = (s * turn_cos + c * turn_sin, c * turn_cos - s * turn_sin);
+        }
+        let harmonic = period_s.is_some_and(|period_s| {
+            let turns = frequency_hz * period_s;
+            turns > 0.5 && (turns - turns.round()).abs() < 0.6 * period_s / length_s
+        });
+        let power = (re * re + im * im) / values.len() as f64;
+        out.push(Ordinate { frequency_hz, power, harmonic });
+        bin += 1.0;
+    }
+}
+
+/// Less the least-squares line.
+pub(super) fn without_line(values: &[f64]) -> Vec<f64> {
+    let count = values.len() as f64;
+    let middle = 0.5 * (count - 1.0);
+    let mean = values.iter().sum::<f64>() / count.max(1.0);
+    let (mut up, mut down) = (0.0, 0.0);
+    for (index, value) in values.iter().enumerate() {
+        let x = index as f64 - middle;
+        up += x * value;
+        down += x * x;
+    }
+    let slope = if down > 0.0 { up / down } else { 0.0 };
+    values.iter().enumerate().map(|(index, value)| value - mean - slope * (index as f64 - middle)).collect()
+}
+
+/// Power with which the kernel's order lets a frequency pass, of 1 for order 0 at zero.
+pub(super) fn kernel_power(
+    kernel: &WeakKernel,
+    (order, grid_step_s): (usize, f64),
+    frequency_hz: f64,
+) -> f64 {
+    let half = kernel.half_count;
+    let (mut re, mut im) = (0.0, 0.0);
+    // the answer to a wave is the wave times the kernel's transform
+    let waves: [Vec<f64>; 2] = [0.0, 0.25].map(|shift: f64| {
+        (0..=2 * half)
+            .map(|i| (TAU * (frequency_hz * (i as f64 - half as f64) * grid_step_s - shift)).cos())
+            .collect()
+    });
+    re += kernel.at(order, &waves[0], half);
+    im += kernel.at(order, &waves[1], half);
+    re * re + im * im
+}
+
+/// A spectrum as a sum of shapes, fitted by Whittle's likelihood.
+#[derive(Debug, Clone)]
+pub(super) struct Whittle {
+    /// of each shape, not negative
+    pub(super) coefficients: Vec<f64>,
+    /// of the whole at each ordinate
+    pub(super) spectrum: Vec<f64>,
+    /// `sum ln S + I/S`
+    pub(super) deviance: f64,
+}
+
+/// Fits `power` (one an ordinate) by `shapes` (each one value an ordinate); `None` where nothing fits.
+pub(super) fn whittle(power: &[f64], shapes: &[&[f64]]) -> Option<Whittle> {
+    let count = power.len();
+    if count < shapes.len() + 2 {
+        return None;
+    }
+    let mean = power.iter().sum::<f64>() / count as f64;
+    if mean.is_nan() || mean <= 0.0 {
+        return None;
+    }
+    let mut spectrum = vec![mean; count];
+    let mut coefficients = vec![0.0; shapes.len()];
+    for _ in 0..25 {
+        let next = weighted_fit(power, shapes, &spectrum)?;
+        let moved = next.iter().zip(&coefficients).any(|(a, b)| (a - b).abs() > 1e-5 * a.abs().max(b.abs()));
+        coefficients = next;
+        spectrum = (0..count)
+            .map(|i| shapes.iter().zip(&coefficients).map(|(s, c)| s[i] * c).sum::<f64>().max(1e-9 * mean))
+            .collect();
+        if !moved {
+            break;
+        }
+    }
+    let deviance = power.iter().zip(&spectrum).map(|(i, s)| s.ln() + i / s).sum();
+    Some(Whittle { coefficients, spectrum, deviance })
+}
+
+/// Least squares weighted by the inverse square of `spectrum`, negative shapes left out.
+fn weighted_fit(power: &[f64], shapes: &[&[f64]], spectrum: &[f64]) -> Option<Vec<f64>> {
+    let mut used: Vec<usize> = (0..shapes.len()).collect();
+    while !used.is_empty() {
+        let size = used.len();
+        let mut normal = DMatrix::<f64>::zeros(size, size);
+        let mut right = DVector::<f64>::zeros(size);
+        for (row, (power, spectrum)) in power.iter().zip(spectrum).enumerate() {
+            let weight = spectrum.powi(-2);
+            for (a, &i) in used.iter().enumerate() {
+                right[a] += weight * shapes[i][row] * power;
+                for (b, &j) in used.iter().enumerate() {
+                    normal[(a, b)] += weight * shapes[i][row] * shapes[j][row];
+                }
+            }
+        }
+        let scale = normal.diagonal().map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });
+        let scaled = DMatrix::from_fn(size, size, |i, j| normal[(i, j)] * scale[i] * scale[j]);
+        let solved = scaled.cholesky()?.solve(&right.component_mul(&scale)).component_mul(&scale);
+        let least = (0..size).min_by(|&a, &b| (solved[a] / scale[a]).total_cmp(&(solved[b] / scale[b])))?;
+        if solved[least] >= 0.0 {
+            let mut out = vec![0.0; shapes.len()];
+            used.iter().zip(solved.iter()).for_each(|(&place, value)| out[place] = *value);
+            return Some(out);
+        }
+        used.remove(least);
+    }
+    None
+}
+
+/// Variance that white sensor noise gives a channel: the kernels' shapes fitted between 1.5 and 4 Hz, where
+/// hardly any physics is, and continued to all frequencies.
+pub(super) fn noise_variance(view: &View, ordinates: &[Ordinate]) -> Option<f64> {
+    const FROM_HZ: f64 = 1.5;
+    let high: Vec<Ordinate> =
+        ordinates.iter().filter(|o| o.frequency_hz >= FROM_HZ && !o.harmonic).copied().collect();
+    let power: Vec<f64> = high.iter().map(|o| o.power).collect();
+    let [force, velocity] = noise_shapes(view, &high);
+    let fit = whittle(&power, &[&force, &velocity])?;
+    let [force, velocity] = noise_shapes(view, ordinates);
+    let runs = ordinates.len() as f64;
+    // both sides of the spectrum over its whole width, 1 / step
+    let share = 2.0 * HIGHEST_HZ * view.step_s;
+    let mean = (0..ordinates.len())
+        .map(|i| fit.coefficients[0] * force[i] + fit.coefficients[1] * velocity[i])
+        .sum::<f64>()
+        / runs.max(1.0);
+    Some(mean * share)
+}
+
+/// What white noise of force and of velocity look like at the ordinates.
+pub(super) fn noise_shapes(view: &View, ordinates: &[Ordinate]) -> [Vec<f64>; 2] {
+    // per unit of the force's: 1/s^2 at the middle of the band
+    let scale = (TAU * 0.5 * HIGHEST_HZ).powi(-2);
+    [(0, 1.0), (1, scale)].map(|(order, scale)| {
+        ordinates
+            .iter()
+            .map(|o| scale * kernel_power(&view.kernel, (order, view.grid_step_s), o.frequency_hz))
+            .collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::view::Followed;
+    use super::super::view::tests::{synthetic, white};
+    use super::*;
+
+    #[test]
+    fn the_noise_is_told_from_what_is_slow() {
+        let noise = white(1);
+        let plain = synthetic(|i, _| noise[i], Some(10.0), (Followed::WorldX, &f64::sin));
+        let slow =
+            synthetic(|i, t| noise[i] + 3.0 * (0.4 * t).sin(), Some(10.0), (Followed::WorldX, &f64::sin));
+        let expected = plain.kernel.noise_gain(0);
+        for view in [&plain, &slow] {
+            let found = noise_variance(view, &periodogram(view, &view.residual[2])).unwrap();
+            assert!((found / expected - 1.0).abs() < 0.25, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_sum_of_shapes_is_found_and_none_is_negative() {
+        let shapes: [Vec<f64>; 2] = [
+            (0..200).map(|i| 1.0 + f64::from(i)).collect(),
+            (0..200).map(|i| 300.0 / (1.0 + f64::from(i))).collect(),
+        ];
+        let power: Vec<f64> = (0..200).map(|i| 2.0 * shapes[0][i] + 5.0 * shapes[1][i]).collect();
+        let fit = whittle(&power, &[&shapes[0], &shapes[1]]).unwrap();
+        assert!((fit.coefficients[0] - 2.0).abs() < 1e-3 && (fit.coefficients[1] - 5.0).abs() < 1e-3);
+        let only = whittle(&shapes[0], &[&shapes[0], &shapes[1]]).unwrap();
+        assert!(only.coefficients.iter().all(|c| *c >= 0.0));
+    }
+}

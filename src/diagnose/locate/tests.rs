@@ -1,0 +1,92 @@
+use super::*;
+use crate::diagnose::{ExplainSettings, Explanation, Verdict, explain};
+use crate::physics::effects::by_id;
+use crate::physics::{ActiveEffect, Wrench};
+use crate::signals::{ConditionSettings, condition};
+use crate::simulate::{
+    Disturbance, FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight,
+};
+use nalgebra::Vector3;
+
+fn explained(seed: u64, conceal: impl Fn(&mut Truth, f64)) -> Explanation {
+    let pair = random_vehicle(seed.wrapping_mul(7919));
+    let trajectory = RandomTrajectory::default().draw(seed.wrapping_mul(104_729)).unwrap();
+    let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
+    let weight_n = pair.truth.body.mass_kg * 9.81;
+    let mut truth = Truth::clean(pair.truth);
+    conceal(&mut truth, weight_n);
+    let settings = FlightSettings { seed, ..FlightSettings::default() };
+    let flight = simulate_flight(truth, &pair.nominal, &reference, &settings).unwrap();
+    let conditioning = ConditionSettings { transient_s: Some(1.0), ..ConditionSettings::default() };
+    let signals = condition(&flight.recording, &pair.nominal, &conditioning).unwrap();
+    explain(&[signals], &pair.nominal, &ExplainSettings::default()).unwrap()
+}
+
+fn effect(id: &str, values: &[f64]) -> ActiveEffect {
+    ActiveEffect::new(by_id(id).unwrap(), values).unwrap()
+}
+
+#[test]
+fn a_region_of_the_room_is_found_where_it_is_and_no_vehicle_effect_named() {
+    let found = explained(6001, |truth, weight_n| {
+        truth.disturbance = Some(Disturbance::new(move |_, state| {
+            let bump = (-0.5 * ((state.position_m.x - 0.2) / 0.2).powi(2)).exp();
+            let force = Vector3::z() * (-0.06 * weight_n * bump);
+            Wrench { force_n: state.attitude.inverse_transform_vector(&force), torque_nm: Vector3::zeros() }
+        }));
+    });
+    assert_eq!(found.verdict, Verdict::Unexplained);
+    assert!(found.named.is_empty());
+    let field = found.field.unwrap();
+    assert!(field.certain && field.beats_named, "{field:?}");
+    assert_eq!((field.component, field.along), (2, 0));
+    assert!((field.where_m - 0.2).abs() < 0.1, "{field:?}");
+    let located = found.located_before.unwrap();
+    let lives = located.lives_on().unwrap();
+    assert_eq!((lives.channel, lives.state), (2, Followed::WorldX));
+    assert!((lives.peak_at - 0.2).abs() < 0.2, "{}", lives.peak_at);
+    assert!(located.axes[2].share > 0.5, "{:?}", located.axes);
+}
+
+#[test]
+fn gusts_are_named_through_the_drag() {
+    let found = explained(6002, |truth, _| {
+        truth.effects.push(effect("gust", &[0.3, 1.0, 11.0]));
+        truth.effects.push(effect("linear_drag", &[0.3, 0.3, 0.0]));
+    });
+    let gust = found.aperiodic.gust.unwrap();
+    assert!((gust.sigma_m_s - 0.3).abs() < 0.1, "{gust:?}");
+    assert!((0.4..2.5).contains(&gust.correlation_s), "{gust:?}");
+    assert!(gust.sigma_std_m_s > 0.0 && gust.sigma_std_m_s < 0.1, "{gust:?}");
+    let names: Vec<&str> = found.named.iter().map(|named| named.id).collect();
+    assert_eq!(names, ["linear_drag", "gust"]);
+    assert_eq!(found.verdict, Verdict::Explained);
+}
+
+#[test]
+fn a_drag_is_neither_a_field_nor_noise_and_acts_alike_everywhere() {
+    let found = explained(6003, |truth, weight_n| {
+        let drag = 0.02 * weight_n;
+        truth.effects.push(effect("linear_drag", &[drag, drag, 0.0]));
+    });
+    assert_eq!(found.verdict, Verdict::Explained);
+    let field = found.field.unwrap();
+    assert!(!field.certain && field.uneven.is_empty(), "{field:?}");
+    assert!(!found.aperiodic.is_lacking() && found.aperiodic.gust.is_none(), "{:?}", found.aperiodic);
+    let before = found.located_before.unwrap();
+    assert!(matches!(before.lives_on().unwrap().state, Followed::Airspeed(0 | 1)));
+    let band = before.bands[0].unwrap();
+    assert!(band.high_hz < 1.0 && band.harmonic.unwrap() > 0.9, "{band:?}");
+    let with = before.coherences.first().unwrap();
+    assert!(matches!(with.with, Followed::Airspeed(_)) && with.mean > 0.8, "{with:?}");
+}
+
+#[test]
+fn where_nothing_is_missing_nothing_is_located() {
+    let found = explained(6004, |_, _| {});
+    assert_eq!(found.verdict, Verdict::NothingMissing);
+    let located = found.located_after.unwrap();
+    assert!(located.lives_on().is_none() && located.axes.iter().all(|axis| axis.excess == 0.0));
+    assert!(!found.field.unwrap().certain && !found.aperiodic.is_lacking());
+    assert!(found.aperiodic.redness.len() == 6);
+}

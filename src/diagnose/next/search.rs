@@ -1,0 +1,141 @@
+//! Random starts and random moves inside the limits. The distance has no slope that is cheap to have.
+
+use super::NextSettings;
+use super::foresight::Foresight;
+use crate::plan::{AxisStart, Bound, Dynamics, Instant, SeriesSpace, bounds_of};
+use crate::trajectory::FourierTrajectory;
+use crate::vehicle::{Limits, Vehicle};
+use nalgebra::DVector;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use rayon::prelude::*;
+
+/// Instants of a period at which the bounds are held.
+const INSTANTS: u32 = 100;
+/// Every bound is kept with this share of its scale to spare, for what lies between the instants.
+const SPARE: f64 = 0.02;
+/// Halvings of a factor.
+const HALVINGS: u32 = 14;
+/// First size of a move, relative to the series; it shrinks by [`SHRINK`] when a move fails.
+const MOVE: f64 = 0.5;
+const SHRINK: f64 = 0.97;
+
+/// The best series and the distance of every pair.
+pub(super) fn best(
+    foresight: &Foresight,
+    limits: &Limits,
+    vehicle: &Vehicle,
+    settings: &NextSettings,
+) -> Option<(FourierTrajectory, Vec<f64>)> {
+    let room = Room::new(foresight, limits, vehicle, settings);
+    (0..settings.starts)
+        .into_par_iter()
+        .filter_map(|start| climb(foresight, &room, settings, start))
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(trajectory, _, distances)| (trajectory, distances))
+}
+
+/// Series that start and end at rest in the middle of the room, and what holds them.
+struct Room {
+    space: SeriesSpace,
+    bounds: Vec<Bound>,
+    dynamics: Dynamics,
+}
+
+impl Room {
+    fn new(foresight: &Foresight, limits: &Limits, vehicle: &Vehicle, settings: &NextSettings) -> Self {
+        let height = match (limits.z_min_m, limits.z_max_m) {
+            (Some(low), Some(high)) => f64::midpoint(low, high),
+            (Some(low), None) => low + 1.0,
+            (None, Some(high)) => 0.5 * high,
+            (None, None) => 1.5,
+        };
+        // x, y and yaw stay near zero; where in height it hovers is free
+        let start = [AxisStart::At(0.0), AxisStart::At(0.0), AxisStart::Near(height), AxisStart::At(0.0)];
+        Self {
+            space: SeriesSpace::new(settings.period_s, settings.harmonics, start),
+            bounds: bounds_of(limits, vehicle),
+            dynamics: Dynamics::new(&foresight.base().vehicle),
+        }
+    }
+
+    fn keeps(&self, unknowns: &DVector<f64>) -> bool {
+        let trajectory = self.space.trajectory(unknowns);
+        (0..INSTANTS).all(|k| {
+            let time_s = self.space.period_s() * f64::from(k) / f64::from(INSTANTS);
+            let instant = Instant::new(trajectory.derivatives(time_s), &self.dynamics);
+            self.bounds.iter().all(|bound| {
+                let value = instant.value(bound.quantity, &self.dynamics);
+                let spare = SPARE * bound.scale();
+                value.is_finite()
+                    && bound.min.is_none_or(|min| value >= min + spare.min(0.5 * bound.scale()))
+                    && bound.max.is_none_or(|max| value <= max - spare)
+            })
+        })
+    }
+
+    /// The series made as large as the bounds allow; larger motion tells more.
+    fn filled(&self, unknowns: &DVector<f64>) -> Option<DVector<f64>> {
+        let (mut low, mut high) = (0.0, 4.0);
+        if self.keeps(&(unknowns * high)) {
+            return Some(unknowns * high);
+        }
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(low, high);
+            if self.keeps(&(unknowns * middle)) { low = middle } else { high = middle }
+        }
+        (low > 0.0).then(|| unknowns * low)
+    }
+
+    /// Each axis filled alone, then all together: no axis is small because another is at its bound.
+    fn drawn(&self, random: &mut Pcg64Mcg) -> Option<DVector<f64>> {
+        let mut sum = DVector::zeros(self.space.dimension());
+        for axis in 0..4 {
+            let mut alone = DVector::zeros(self.space.dimension());
+            for index in self.space.unknowns_of(axis) {
+                alone[index] = random.random_range(-1.0..1.0);
+            }
+            if let Some(filled) = self.filled(&alone) {
+                sum += filled;
+            }
+        }
+        self.filled(&sum)
+    }
+}
+
+/// One start: moves of one axis at a time are kept where the smallest distance grows.
+fn climb(
+    foresight: &Foresight,
+    room: &Room,
+    settings: &NextSettings,
+    start: u64,
+) -> Option<(FourierTrajectory, f64, Vec<f64>)> {
+    let seed = settings.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(start);
+    let mut random = Pcg64Mcg::seed_from_u64(seed);
+    let judge = |unknowns: &DVector<f64>| {
+        let trajectory = room.space.trajectory(unknowns);
+        let distances = foresight.distances(&trajectory)?;
+        let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
+        least.is_finite().then_some((trajectory, least, distances))
+    };
+    let mut at = room.drawn(&mut random)?;
+    let mut best = judge(&at)?;
+    let mut size = MOVE;
+    for _ in 0..settings.moves {
+        let axis = random.random_range(0..4_usize);
+        let range = room.space.unknowns_of(axis);
+        let scale = size * at.rows(range.start, range.len()).amax().max(0.1 * at.amax());
+        let mut trial = at.clone();
+        for index in range {
+            trial[index] += scale * random.random_range(-1.0..1.0);
+        }
+        let judged = room.filled(&trial).and_then(|trial| judge(&trial).map(|judged| (trial, judged)));
+        match judged {
+            Some((trial, judged)) if judged.1 > best.1 => {
+                (at, best) = (trial, judged);
+            }
+            _ => size = (size * SHRINK).max(0.05),
+        }
+    }
+    Some(best)
+}

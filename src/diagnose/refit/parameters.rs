@@ -1,0 +1,149 @@
+//! What is estimated, as numbers that may be anything: whatever they are, the model is physical.
+
+use crate::diagnose::base::Base;
+use crate::diagnose::rows::Nuisance;
+use crate::diagnose::search::Fitted;
+use crate::estimate::{
+    LogCholesky, NAMES, THETA, UNITS, inertia_of, log_cholesky, second_moments, theta_of, unpack,
+};
+use nalgebra::{DMatrix, DVector};
+
+/// How an effect's parameter is written.
+#[derive(Debug, Clone, Copy)]
+enum Scale {
+    /// `exp(x)`: from zero on
+    Log,
+    /// as it is
+    Plain,
+}
+
+/// The unknowns: log mass and log-Cholesky inertia, latency, and the effects' free parameters.
+#[derive(Debug, Clone)]
+pub(super) struct Unknowns {
+    base: Base,
+    start: DVector<f64>,
+    floor: f64,
+    /// effect, slot, scale
+    slots: Vec<(usize, usize, Scale)>,
+}
+
+/// Where the latency stands among the unknowns.
+const LATENCY: usize = THETA;
+/// And where the effects begin.
+const EFFECTS: usize = THETA + 1;
+
+impl Unknowns {
+    /// About a base; `None` where its inertia is not physical.
+    pub(super) fn of(base: &Base) -> Option<Self> {
+        let theta = theta_of(&base.vehicle.body);
+        let floor = 1e-4 * second_moments(&base.vehicle.body.inertia_kg_m2).trace() / 3.0;
+        let body = log_cholesky(&theta, floor)?;
+        let mut slots = Vec::new();
+        let mut start: Vec<f64> = body.iter().copied().collect();
+        start.push(base.latency.total_s());
+        for (effect, present) in base.present.iter().enumerate() {
+            for &slot in &present.free {
+                let value = present.values[slot];
+                let from_zero = present.parameter(slot).is_some_and(|parameter| parameter.min >= 0.0);
+                let scale = if from_zero && value > 1e-9 { Scale::Log } else { Scale::Plain };
+                start.push(match scale {
+                    Scale::Log => value.ln(),
+                    Scale::Plain => value,
+                });
+                slots.push((effect, slot, scale));
+            }
+        }
+        Some(Self { base: base.clone(), start: DVector::from_vec(start), floor, slots })
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.start.len()
+    }
+
+    pub(super) fn start(&self) -> DVector<f64> {
+        self.start.clone()
+    }
+
+    /// The model at a point.
+    pub(super) fn base(&self, point: &DVector<f64>) -> Base {
+        let mut base = self.base.clone();
+        let theta = unpack(&LogCholesky::from_iterator(point.iter().take(THETA).copied()), self.floor);
+        base.vehicle.body.mass_kg = theta[0];
+        base.vehicle.body.inertia_kg_m2 = inertia_of(&theta);
+        let latency_s = point[LATENCY];
+        if base.latency.lag_s > 0.0 {
+            base.latency.lag_s = (latency_s - base.latency.delay_s).max(1e-4);
+        } else {
+            base.latency.delay_s = latency_s;
+        }
+        for (index, &(effect, slot, scale)) in self.slots.iter().enumerate() {
+            let value = match scale {
+                Scale::Log => point[EFFECTS + index].exp(),
+                Scale::Plain => point[EFFECTS + index],
+            };
+            base.present[effect].values[slot] = base.present[effect].possible(slot, value);
+        }
+        base
+    }
+
+    /// The parameters themselves, SI.
+    pub(super) fn natural(&self, point: &DVector<f64>) -> Vec<f64> {
+        let base = self.base(point);
+        let mut out: Vec<f64> = theta_of(&base.vehicle.body).iter().copied().collect();
+        out.push(base.latency.total_s());
+        out.extend(self.slots.iter().map(|&(effect, slot, _)| base.present[effect].values[slot]));
+        out
+    }
+
+    /// Slope of [`Self::natural`] by the unknowns.
+    pub(super) fn slope(&self, point: &DVector<f64>) -> DMatrix<f64> {
+        let size = self.len();
+        let mut slope = DMatrix::zeros(size, size);
+        for column in 0..size {
+            let step = self.step(column);
+            let (mut up, mut down) = (point.clone(), point.clone());
+            up[column] += step;
+            down[column] -= step;
+            for (row, (a, b)) in self.natural(&up).iter().zip(self.natural(&down)).enumerate() {
+                slope[(row, column)] = (a - b) / (2.0 * step);
+            }
+        }
+        slope
+    }
+
+    /// By how much an unknown is moved to see what it does.
+    pub(super) fn step(&self, index: usize) -> f64 {
+        match index {
+            LATENCY => 1e-3,
+            0..LATENCY => 1e-3,
+            _ => match self.slots[index - EFFECTS].2 {
+                Scale::Log => 1e-3,
+                Scale::Plain => 1e-3 * self.start[index].abs().max(1e-3),
+            },
+        }
+    }
+
+    /// Names and units.
+    pub(super) fn names(&self) -> Vec<(String, &'static str)> {
+        let mut out: Vec<(String, &'static str)> =
+            NAMES.iter().zip(UNITS).map(|(name, unit)| ((*name).to_owned(), unit)).collect();
+        out.push(("latency".to_owned(), "s"));
+        for &(effect, slot, _) in &self.slots {
+            let present = &self.base.present[effect];
+            let (name, unit) = present.parameter(slot).map_or(("", "-"), |of| (of.name, of.unit));
+            out.push((format!("{}.{name}", present.effect.id()), unit));
+        }
+        out
+    }
+
+    /// Column of the weak form that stands for each unknown.
+    pub(super) fn weak_columns(&self, fitted: &Fitted) -> Vec<Option<usize>> {
+        let place =
+            |wanted: Nuisance| fitted.rows.nuisances.iter().position(|column| column.nuisance == wanted);
+        let mut out = vec![place(Nuisance::Mass)];
+        out.extend((0..THETA - 1).map(|entry| place(Nuisance::Inertia(entry))));
+        out.push(place(Nuisance::Latency));
+        out.extend((0..self.slots.len()).map(|index| Some(fitted.rows.nuisances.len() + index)));
+        out
+    }
+}

@@ -1,0 +1,99 @@
+//! What a check found: what was expected, what came, and what to do.
+
+use serde::Serialize;
+use std::fmt;
+
+/// How bad.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Level {
+    /// as it should be
+    Ok,
+    /// the flight may begin, and the operator should know
+    Warning,
+    /// the flight must not begin
+    Refusal,
+}
+
+impl Level {
+    /// As in messages and JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ok => "ok",
+            Self::Warning => "warning",
+            Self::Refusal => "refusal",
+        }
+    }
+}
+
+/// What one check found.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Finding {
+    /// how bad
+    pub level: Level,
+    /// what was checked, such as `fence`
+    pub subject: &'static str,
+    /// what was expected
+    pub expected: String,
+    /// what came
+    pub came: String,
+    /// what to do; empty where nothing is to be done
+    pub remedy: String,
+}
+
+impl Finding {
+    /// All is well.
+    #[must_use]
+    pub fn ok(subject: &'static str, expected: impl Into<String>, came: impl Into<String>) -> Self {
+        Self {
+            level: Level::Ok,
+            subject,
+            expected: expected.into(),
+            came: came.into(),
+            remedy: String::new(),
+        }
+    }
+
+    /// The operator should know.
+    #[must_use]
+    pub fn warning(
+        subject: &'static str,
+        expected: impl Into<String>,
+        came: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self {
+            level: Level::Warning,
+            subject,
+            expected: expected.into(),
+            came: came.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    /// The flight must not begin.
+    #[must_use]
+    pub fn refusal(
+        subject: &'static str,
+        expected: impl Into<String>,
+        came: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self { level: Level::Refusal, ..Self::warning(subject, expected, came, remedy) }
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { level, subject, expected, came, remedy } = self;
+        write!(f, "{}: {subject}: expected {expected}, came {came}", level.name())?;
+        if remedy.is_empty() { Ok(()) } else { write!(f, "; {remedy}") }
+    }
+}
+
+/// The worst of all; [`Level::Ok`] for none.
+#[must_use]
+pub fn worst(findings: &[Finding]) -> Level {
+    findings.iter().map(|finding| finding.level).max().unwrap_or(Level::Ok)
+}

@@ -1,0 +1,130 @@
+//! ArduCopter's failsafes.
+
+use super::Parameters;
+use super::failsafe::{Choice, Sentence, Topic, has_bit, rounded};
+use crate::fly::finding::Level::{Ok, Warning};
+
+const GROUND_STATION_LOST: &[Choice] = &[
+    (0, "does nothing and stays in GUIDED", Warning),
+    (1, "returns to its launch place", Ok),
+    (2, "returns to its launch place", Ok),
+    (3, "returns by the way it came, or straight", Ok),
+    (4, "returns by the way it came, or lands", Ok),
+    (5, "lands where it is", Ok),
+    (6, "lands by its mission's landing sequence, or returns", Ok),
+    (7, "brakes, or lands", Ok),
+];
+
+const TRANSMITTER_LOST: &[Choice] = &[
+    (0, "does nothing", Warning),
+    (1, "returns to its launch place", Ok),
+    (2, "returns to its launch place", Ok),
+    (3, "lands where it is", Ok),
+    (4, "returns by the way it came, or straight", Ok),
+    (5, "returns by the way it came, or lands", Ok),
+    (6, "lands by its mission's landing sequence, or returns", Ok),
+    (7, "brakes, or lands", Ok),
+];
+
+const ESTIMATE_BAD: &[Choice] = &[
+    (0, "only reports", Warning),
+    (1, "lands", Ok),
+    (2, "changes to AltHold: it drifts with the wind", Warning),
+    (3, "lands", Ok),
+];
+
+const BATTERY_LOW: &[Choice] = &[
+    (0, "only warns", Warning),
+    (1, "lands where it is", Ok),
+    (2, "returns to its launch place", Ok),
+    (3, "returns by the way it came, or straight", Ok),
+    (4, "returns by the way it came, or lands", Ok),
+    (5, "stops its motors in the air", Warning),
+    (6, "lands by its mission's landing sequence, or returns", Ok),
+    (7, "brakes, or lands", Ok),
+];
+
+const FENCE: &[Choice] = &[
+    (0, "only reports", Warning),
+    (1, "returns to its launch place, or lands", Ok),
+    (2, "lands where it is", Ok),
+    (3, "returns by the way it came, or lands", Ok),
+    (4, "brakes, or lands", Ok),
+    (5, "returns by the way it came, or lands", Ok),
+];
+
+/// Bit of GUID_OPTIONS by which the yaw stick is ignored.
+const IGNORE_YAW: u32 = 2;
+
+pub(super) fn declaration(parameters: &Parameters, own_system: u8) -> Vec<Sentence> {
+    let topic = |about| Topic { parameters, about };
+    vec![
+        setpoints(&topic("setpoints stop")),
+        ground_station(&topic("ground station lost"), own_system),
+        topic("transmitter lost").choose("If the transmitter is lost", "FS_THR_ENABLE", TRANSMITTER_LOST),
+        sticks(&topic("pilot's sticks")),
+        topic("estimate bad").choose("If the position estimate turns bad", "FS_EKF_ACTION", ESTIMATE_BAD),
+        topic("battery low").choose("If the battery runs low", "BATT_FS_LOW_ACT", BATTERY_LOW),
+        fence(&topic("fence")),
+    ]
+}
+
+fn setpoints(topic: &Topic<'_>) -> Sentence {
+    let what = "If setpoints stop";
+    match topic.parameters.get("GUID_TIMEOUT") {
+        None => topic.unknown(what, "GUID_TIMEOUT"),
+        Some(seconds) => topic.say(
+            Ok,
+            format!(
+                "{what}: it keeps the last velocity for {} s (GUID_TIMEOUT), then holds its position and \
+                 stays in GUIDED.",
+                rounded(seconds)
+            ),
+        ),
+    }
+}
+
+/// Heartbeats count only if they come from the one system that the vehicle was told.
+fn ground_station(topic: &Topic<'_>, own_system: u8) -> Sentence {
+    let what = format!("If this ground station is not heard for {}", topic.number("FS_GCS_TIMEOUT", "s"));
+    let sentence = topic.choose(&what, "FS_GCS_ENABLE", GROUND_STATION_LOST);
+    if topic.parameters.get("FS_GCS_ENABLE").is_none_or(|enable| enable < 0.5) {
+        return sentence;
+    }
+    match topic.parameters.get("SYSID_MYGCS") {
+        Some(system) if (system - f64::from(own_system)).abs() < 0.5 => sentence,
+        Some(system) => topic.say(
+            Warning,
+            format!(
+                "If this ground station (system {own_system}) is lost, the vehicle does not notice: it listens to \
+                 system {system} ({}).",
+                topic.parameters.name_of("SYSID_MYGCS")
+            ),
+        ),
+        None => topic.unknown("Whether the vehicle notices the loss of this ground station", "SYSID_MYGCS"),
+    }
+}
+
+fn sticks(topic: &Topic<'_>) -> Sentence {
+    let what = "If the pilot moves the sticks in GUIDED";
+    match topic.parameters.get("GUID_OPTIONS") {
+        None => topic.unknown(what, "GUID_OPTIONS"),
+        Some(mask) => {
+            let yaw = if has_bit(mask, IGNORE_YAW) { "nothing happens" } else { "only the yaw stick acts" };
+            topic.say(
+                Warning,
+                format!("{what}: {yaw} (GUID_OPTIONS = {mask}); only the mode switch takes over."),
+            )
+        }
+    }
+}
+
+fn fence(topic: &Topic<'_>) -> Sentence {
+    match topic.parameters.get("FENCE_ENABLE") {
+        None => topic.unknown("If it leaves its fence", "FENCE_ENABLE"),
+        Some(enable) if enable < 0.5 => {
+            topic.say(Warning, "There is no fence (FENCE_ENABLE = 0): nothing stops it at a border.")
+        }
+        Some(_) => topic.choose("If it leaves its fence", "FENCE_ACTION", FENCE),
+    }
+}

@@ -1,0 +1,260 @@
+//! The trajectory against the vehicle's own fence.
+
+use super::extremes::{place_and_velocity, samples};
+use super::geometry::{Geodetic, Zone};
+use super::{Situation, Stopping};
+use crate::fly::finding::Finding;
+use crate::fly::parameters::{Parameters, has_bit};
+use crate::log::Autopilot;
+use nalgebra::Vector3;
+
+/// MAV_CMD_NAV_FENCE_*
+const POLYGON_INSIDE: u16 = 5001;
+const POLYGON_OUTSIDE: u16 = 5002;
+const CIRCLE_INSIDE: u16 = 5003;
+const CIRCLE_OUTSIDE: u16 = 5004;
+
+/// Bits of FENCE_TYPE.
+const HEIGHT_MAX: u32 = 0;
+const RADIUS: u32 = 1;
+const AREAS: u32 = 2;
+const HEIGHT_MIN: u32 = 3;
+
+/// One item of a mission of type fence.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FenceItem {
+    /// MAV_CMD_NAV_FENCE_*
+    pub command: u16,
+    /// corners of its polygon, or radius in m
+    pub parameter: f64,
+    /// a corner, or the centre
+    pub place: Geodetic,
+}
+
+/// A vehicle's fence in its local frame.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Fence {
+    /// areas, m north and west of the local frame's origin
+    pub zones: Vec<Zone>,
+    /// m from home
+    pub radius_m: Option<f64>,
+    /// m above home
+    pub height_max_m: Option<f64>,
+    /// m above home
+    pub height_min_m: Option<f64>,
+    /// m that the autopilot keeps from all of these by itself
+    pub margin_m: f64,
+    /// the fence could not be read in whole, and why
+    pub unknown: Vec<String>,
+}
+
+impl Fence {
+    /// What is in force, from parameters and the items of the fence mission (in its order); `origin` is that of
+    /// the local frame, without which items cannot be placed.
+    #[must_use]
+    pub fn new(parameters: &Parameters, items: &[FenceItem], origin: Option<&Geodetic>) -> Self {
+        let mut fence = Self::default();
+        let areas = match parameters.autopilot {
+            Autopilot::ArduPilot => fence.ardupilot(parameters),
+            Autopilot::Px4 => fence.px4(parameters),
+            Autopilot::Other | Autopilot::Unknown => true,
+        };
+        match (areas && !items.is_empty(), origin) {
+            (true, Some(origin)) => fence.place(items, origin),
+            (true, None) => {
+                fence
+                    .unknown
+                    .push("the local frame's origin is not known, so its areas have no place".into());
+            }
+            (false, _) => {}
+        }
+        fence
+    }
+
+    /// Whether areas are in force.
+    fn ardupilot(&mut self, parameters: &Parameters) -> bool {
+        let Some(enable) = parameters.get("FENCE_ENABLE") else {
+            self.unknown.push("FENCE_ENABLE did not answer".into());
+            return true;
+        };
+        if enable < 0.5 {
+            return false;
+        }
+        let Some(kinds) = parameters.get("FENCE_TYPE") else {
+            self.unknown.push("FENCE_TYPE did not answer".into());
+            return true;
+        };
+        let mut read = |bit: u32, name: &str| {
+            let in_force = has_bit(kinds, bit);
+            let value = parameters.get(name).filter(|_| in_force);
+            if in_force && value.is_none() {
+                self.unknown.push(format!("{name} did not answer"));
+            }
+            value
+        };
+        let (radius_m, max_m, min_m) = (
+            read(RADIUS, "FENCE_RADIUS"),
+            read(HEIGHT_MAX, "FENCE_ALT_MAX"),
+            read(HEIGHT_MIN, "FENCE_ALT_MIN"),
+        );
+        self.radius_m = radius_m;
+        self.height_max_m = max_m;
+        self.height_min_m = min_m;
+        self.margin_m = parameters.get("FENCE_MARGIN").unwrap_or(0.0);
+        has_bit(kinds, AREAS)
+    }
+
+    fn px4(&mut self, parameters: &Parameters) -> bool {
+        for name in ["GF_ACTION", "GF_MAX_HOR_DIST", "GF_MAX_VER_DIST"] {
+            if parameters.get(name).is_none() {
+                self.unknown.push(format!("{name} did not answer"));
+            }
+        }
+        // zero means none
+        let positive = |name: &str| parameters.get(name).filter(|value| *value > 0.0);
+        self.radius_m = positive("GF_MAX_HOR_DIST");
+        self.height_max_m = positive("GF_MAX_VER_DIST");
+        true
+    }
+
+    fn place(&mut self, items: &[FenceItem], origin: &Geodetic) {
+        let mut rest = items;
+        while let Some((first, after)) = rest.split_first() {
+            let inside = matches!(first.command, POLYGON_INSIDE | CIRCLE_INSIDE);
+            match first.command {
+                CIRCLE_INSIDE | CIRCLE_OUTSIDE => {
+                    let center_m = first.place.north_west_m(origin);
+                    self.zones.push(Zone::Circle { inside, center_m, radius_m: first.parameter });
+                    rest = after;
+                }
+                POLYGON_INSIDE | POLYGON_OUTSIDE => {
+                    let own = |item: &&FenceItem| {
+                        item.command == first.command && (item.parameter - first.parameter).abs() < 0.5
+                    };
+                    let mut count = 0;
+                    while (count as f64) < first.parameter && rest.get(count).as_ref().is_some_and(own) {
+                        count += 1;
+                    }
+                    if (count as f64) < first.parameter || count < 3 {
+                        self.unknown.push(format!("a polygon has {count} of {} corners", first.parameter));
+                    } else {
+                        let corners_m = rest[..count].iter().map(|item| item.place.north_west_m(origin));
+                        self.zones.push(Zone::Polygon { inside, corners_m: corners_m.collect() });
+                    }
+                    rest = &rest[count.max(1)..];
+                }
+                // the place to return to is no border
+                _ => rest = after,
+            }
+        }
+    }
+
+    /// No border at all.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.zones.is_empty()
+            && [self.radius_m, self.height_max_m, self.height_min_m].iter().all(Option::is_none)
+    }
+
+    /// Distance to each border, m, positive where the vehicle may be; places in the local frame.
+    fn spares_m(&self, place: &Vector3<f64>, home: &Vector3<f64>) -> Vec<(f64, &'static str)> {
+        let from_home = place - home;
+        let bounds = [
+            (self.radius_m.map(|radius| radius - from_home.xy().norm()), "the fence's radius about home"),
+            (self.height_max_m.map(|max| max - from_home.z), "the fence's greatest height"),
+            (self.height_min_m.map(|min| from_home.z - min), "the fence's least height"),
+        ];
+        let bounds = bounds.into_iter().filter_map(|(spare, name)| spare.map(|spare| (spare, name)));
+        let zones = self.zones.iter().map(|zone| (zone.spare_m([place.x, place.y]), zone.name()));
+        bounds.chain(zones).collect()
+    }
+}
+
+/// The nearest approach to any border.
+struct Nearest {
+    spare_m: f64,
+    border: &'static str,
+    time_s: f64,
+}
+
+pub(super) fn findings(situation: &Situation<'_>, stopping: &Stopping) -> Vec<Finding> {
+    let fence = situation.fence;
+    let unknown = fence.unknown.iter().map(|why| {
+        let remedy = "read the fence again, or look at it in another ground station";
+        Finding::warning("fence", "the vehicle's whole fence", why.clone(), remedy)
+    });
+    let mut findings: Vec<Finding> = unknown.collect();
+    if fence.is_empty() {
+        if findings.is_empty() {
+            findings.push(Finding::warning(
+                "fence",
+                "a fence round the place of the flight",
+                "none in force",
+                "set one: it is the last thing that stops a vehicle that flies away",
+            ));
+        }
+        return findings;
+    }
+    let Some(home) = situation.home_m else {
+        findings.push(Finding::refusal(
+            "fence",
+            "home, from which the fence is measured",
+            "not known",
+            "wait for a position estimate, or set home",
+        ));
+        return findings;
+    };
+    let (flown, stopped) = nearest(situation, stopping, &home);
+    findings.extend(flown.map(|nearest| judge_path(&nearest, fence.margin_m)));
+    findings.extend(stopped.and_then(|nearest| judge_stop(&nearest, stopping)));
+    findings
+}
+
+fn nearest(
+    situation: &Situation<'_>,
+    stopping: &Stopping,
+    home: &Vector3<f64>,
+) -> (Option<Nearest>, Option<Nearest>) {
+    let (mut flown, mut stopped): (Option<Nearest>, Option<Nearest>) = (None, None);
+    for (time_s, entry) in samples(situation.path) {
+        let (place, velocity) = place_and_velocity(&entry);
+        let rest = stopping.rest(&place, &velocity);
+        for (slot, place) in [(&mut flown, place), (&mut stopped, rest)] {
+            for (spare_m, border) in situation.fence.spares_m(&(place + situation.origin_m), home) {
+                if slot.as_ref().is_none_or(|least| spare_m < least.spare_m) {
+                    *slot = Some(Nearest { spare_m, border, time_s });
+                }
+            }
+        }
+    }
+    (flown, stopped)
+}
+
+fn judge_path(nearest: &Nearest, margin_m: f64) -> Finding {
+    let Nearest { spare_m, border, time_s } = nearest;
+    let expected = format!("at least {margin_m:.1} m from {border}");
+    if *spare_m < margin_m || spare_m.is_nan() {
+        let came = if *spare_m < 0.0 {
+            format!("{:.2} m beyond it at {time_s:.1} s", -spare_m)
+        } else {
+            format!("{spare_m:.2} m at {time_s:.1} s")
+        };
+        let remedy = "move the start, plan a smaller trajectory, or correct the fence";
+        return Finding::refusal("fence", expected, came, remedy);
+    }
+    Finding::ok("fence", expected, format!("{spare_m:.2} m at the nearest, at {time_s:.1} s"))
+}
+
+fn judge_stop(nearest: &Nearest, stopping: &Stopping) -> Option<Finding> {
+    (nearest.spare_m < 0.0).then(|| {
+        Finding::warning(
+            "fence",
+            format!("rest inside it from every point, {}", stopping.basis),
+            format!(
+                "{:.2} m beyond {} if stopped at {:.1} s",
+                -nearest.spare_m, nearest.border, nearest.time_s
+            ),
+            "move the start away from that border",
+        )
+    })
+}

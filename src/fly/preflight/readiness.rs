@@ -1,0 +1,88 @@
+//! Whether the vehicle itself is ready.
+
+use crate::fly::finding::Finding;
+use crate::log::Autopilot;
+use std::time::Duration;
+
+/// The estimate must have been good for so long.
+pub const ESTIMATE_GOOD_FOR: Duration = Duration::from_secs(5);
+
+/// What the vehicle says of itself.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Readiness {
+    /// its own pre-arm checks; `None` where it does not say
+    pub may_arm: Option<bool>,
+    /// why not, as far as it said (STATUSTEXT)
+    pub reasons: Vec<String>,
+    /// parts that are on and not healthy
+    pub unhealthy: Vec<String>,
+    /// for how long the position estimate has been good; `None` where nothing is known of it
+    pub estimate_good_for: Option<Duration>,
+    /// what is wrong with the estimate
+    pub estimate_faults: Vec<String>,
+    /// home is set
+    pub home_set: bool,
+    /// position and velocity in the local frame arrive
+    pub position_arrives: bool,
+    /// motors may turn already
+    pub armed: bool,
+}
+
+pub(super) fn findings(readiness: &Readiness, autopilot: Autopilot) -> Vec<Finding> {
+    let mut findings = vec![estimate(readiness), pre_arm(readiness, autopilot)];
+    findings.push(if readiness.unhealthy.is_empty() {
+        Finding::ok("health", "every part healthy", "no fault said")
+    } else {
+        let remedy = "find out why: the vehicle says it in its messages";
+        Finding::refusal("health", "every part healthy", readiness.unhealthy.join(", "), remedy)
+    });
+    findings.push(if readiness.home_set {
+        Finding::ok("home", "set", "set")
+    } else {
+        let remedy = "wait for a position estimate, or set home: a return would lead nowhere";
+        Finding::refusal("home", "set", "not set", remedy)
+    });
+    if readiness.armed {
+        let remedy = "land and disarm first: a flight begins on the ground";
+        findings.push(Finding::refusal("arming", "disarmed, on the ground", "armed", remedy));
+    }
+    findings
+}
+
+fn estimate(readiness: &Readiness) -> Finding {
+    let expected = format!("good for {} s", ESTIMATE_GOOD_FOR.as_secs());
+    let remedy = "wait; if it stays so, look for GPS reception, compass and the position source";
+    if !readiness.position_arrives {
+        return Finding::refusal("estimate", expected, "no local position arrives", remedy);
+    }
+    match readiness.estimate_good_for {
+        _ if !readiness.estimate_faults.is_empty() => {
+            Finding::refusal("estimate", expected, readiness.estimate_faults.join(", "), remedy)
+        }
+        None => Finding::warning("estimate", expected, "nothing said of its health", remedy),
+        Some(good_for) if good_for < ESTIMATE_GOOD_FOR => {
+            let came = format!("good for {:.1} s", good_for.as_secs_f64());
+            Finding::refusal("estimate", expected, came, "wait")
+        }
+        Some(good_for) => {
+            Finding::ok("estimate", expected, format!("good for {:.0} s", good_for.as_secs_f64()))
+        }
+    }
+}
+
+fn pre_arm(readiness: &Readiness, autopilot: Autopilot) -> Finding {
+    let expected = "the autopilot's own checks passed";
+    let said =
+        if readiness.reasons.is_empty() { "no reason said".to_owned() } else { readiness.reasons.join("; ") };
+    let remedy = match autopilot {
+        Autopilot::ArduPilot => {
+            "its checks depend on the mode: set GUIDED, then wait for the position estimate"
+        }
+        _ => "mend what it names",
+    };
+    match readiness.may_arm {
+        Some(true) => Finding::ok("pre-arm", expected, "passed"),
+        Some(false) => Finding::refusal("pre-arm", expected, format!("failed: {said}"), remedy),
+        None => Finding::warning("pre-arm", expected, "not said", "it will refuse to arm if they fail"),
+    }
+}

@@ -1,0 +1,108 @@
+//! The trajectory against the room and the vehicle's limits.
+
+use super::extremes::{place_and_velocity, samples};
+use super::{Situation, Stopping};
+use crate::fly::finding::Finding;
+use crate::plan::{Dynamics, Margin, Quantity, bounds_of, check};
+use crate::vehicle::Limits;
+use nalgebra::Vector3;
+
+/// Rounding of a planned trajectory that just touches a bound, as a share of the bound.
+const TOUCH: f64 = 1e-6;
+
+pub(super) fn findings(situation: &Situation<'_>, stopping: &Stopping) -> Vec<Finding> {
+    let bounds = bounds_of(situation.limits, situation.vehicle);
+    let dynamics = Dynamics::new(situation.vehicle);
+    let path = |time_s| situation.path.derivatives(time_s).unwrap_or([[f64::NAN; 5]; 4]);
+    let margins = check(path, situation.path.duration_s(), &bounds, &dynamics).margins;
+    let mut findings: Vec<Finding> = margins.iter().filter(|margin| is_broken(margin)).map(refusal).collect();
+    if findings.is_empty() {
+        let spare = margins.iter().min_by(|a, b| relative(a).total_cmp(&relative(b)));
+        findings.push(match spare {
+            Some(margin) => Finding::ok(
+                "limits",
+                format!("{} bounds of room and vehicle kept", margins.len()),
+                format!(
+                    "the nearest is {}: {:.3} of {:.3} at {:.1} s",
+                    margin.quantity.name(),
+                    margin.value,
+                    margin.limit,
+                    margin.time_s
+                ),
+            ),
+            None => Finding::warning(
+                "limits",
+                "bounds of the room",
+                "none",
+                "give the room in the vehicle file's [limits], or fly where there is nothing to hit",
+            ),
+        });
+    }
+    findings.extend(braking(situation, stopping));
+    findings
+}
+
+fn is_broken(margin: &Margin) -> bool {
+    let spare = margin.spare();
+    spare.is_nan() || spare < -TOUCH * margin.limit.abs().max(1.0)
+}
+
+fn relative(margin: &Margin) -> f64 {
+    margin.spare() / margin.limit.abs().max(1e-9)
+}
+
+fn refusal(margin: &Margin) -> Finding {
+    let side = if margin.upper { "at most" } else { "at least" };
+    let remedy = match margin.quantity {
+        Quantity::RotorThrust(_) | Quantity::Thrust | Quantity::Torque(_) => {
+            "the vehicle cannot do it: plan a gentler trajectory"
+        }
+        Quantity::Path { .. } | Quantity::Roll | Quantity::Pitch => {
+            "plan the trajectory for these limits, or correct them"
+        }
+    };
+    Finding::refusal(
+        "limits",
+        format!("{} {side} {:.3}", margin.quantity.name(), margin.limit),
+        format!("{:.3} at {:.1} s", margin.value, margin.time_s),
+        remedy,
+    )
+}
+
+/// Whether the vehicle, told to stop anywhere on the path, comes to rest inside the room.
+fn braking(situation: &Situation<'_>, stopping: &Stopping) -> Option<Finding> {
+    let limits = situation.limits;
+    let mut worst: Option<(f64, f64, &'static str)> = None;
+    for (time_s, entry) in samples(situation.path) {
+        let (place, velocity) = place_and_velocity(&entry);
+        for (beyond_m, wall) in beyond(&stopping.rest(&place, &velocity), limits) {
+            if beyond_m > 0.0 && worst.is_none_or(|(most, ..)| beyond_m > most) {
+                worst = Some((beyond_m, time_s, wall));
+            }
+        }
+    }
+    let has_walls = !beyond(&Vector3::zeros(), limits).is_empty();
+    let expected = format!("rest inside the room from every point, {}", stopping.basis);
+    match worst {
+        Some((beyond_m, time_s, wall)) => Some(Finding::warning(
+            "stopping distance",
+            expected,
+            format!("{beyond_m:.2} m beyond {wall} if stopped at {time_s:.1} s"),
+            "leave that much room behind the wall, or plan a slower trajectory",
+        )),
+        None => has_walls.then(|| Finding::ok("stopping distance", expected, "inside at every point")),
+    }
+}
+
+/// How far a place lies beyond each wall of the room, m; negative inside.
+fn beyond(place_m: &Vector3<f64>, limits: &Limits) -> Vec<(f64, &'static str)> {
+    [
+        (limits.x_max_m.map(|max| place_m.x.abs() - max), "x_max_m"),
+        (limits.y_max_m.map(|max| place_m.y.abs() - max), "y_max_m"),
+        (limits.z_max_m.map(|max| place_m.z - max), "z_max_m"),
+        (limits.z_min_m.map(|min| min - place_m.z), "z_min_m"),
+    ]
+    .into_iter()
+    .filter_map(|(beyond_m, wall)| beyond_m.map(|beyond_m| (beyond_m, wall)))
+    .collect()
+}

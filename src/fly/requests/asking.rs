@@ -1,0 +1,270 @@
+//! One SET_MESSAGE_INTERVAL after the other, then a look at what arrives.
+
+use super::report::{RatesReport, StreamReport};
+use super::{Capacity, StreamRequest};
+use crate::fly::address::{is_from, single, target_of};
+use crate::log::{Frame, Vehicle};
+use mavlink::dialects::ardupilotmega::{COMMAND_LONG_DATA, MavCmd, MavMessage};
+use std::time::Duration;
+
+const COMMAND_ACK_ID: u32 = 77;
+/// MAV_CMD_SET_MESSAGE_INTERVAL
+const SET_MESSAGE_INTERVAL: u16 = 511;
+/// MAV_RESULT
+const ACCEPTED: u8 = 0;
+const TEMPORARILY_REJECTED: u8 = 1;
+const IN_PROGRESS: u8 = 5;
+/// A refused rate above this is asked for once more at half of it, Hz.
+const WORTH_HALVING_HZ: f64 = 50.0;
+
+/// How patiently.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RequestSettings {
+    /// until a request counts as lost
+    pub timeout: Duration,
+    /// requests of one message
+    pub tries: u32,
+    /// until streams run at their new rates
+    pub settle: Duration,
+    /// over which arrivals are counted
+    pub window: Duration,
+    /// the ground station's system and component: acknowledgements for others are not ours
+    pub own: (u8, u8),
+}
+
+impl Default for RequestSettings {
+    fn default() -> Self {
+        Self {
+            timeout: Duration::from_millis(1500),
+            tries: 6,
+            settle: Duration::from_millis(500),
+            window: Duration::from_secs(4),
+            own: (255, 190),
+        }
+    }
+}
+
+/// What the vehicle said to a request.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Answer {
+    /// not asked (yet)
+    NotAsked,
+    /// accepted
+    Accepted,
+    /// refused, with its MAV_RESULT
+    Refused(u8),
+    /// no answer to any try
+    Silent,
+}
+
+/// One message of the set.
+#[derive(Debug)]
+struct Asked {
+    request: StreamRequest,
+    answer: Answer,
+    rate_hz: f64,
+    tries: u32,
+    halved: bool,
+    count: u32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    Asking { index: usize, sent: Option<Duration> },
+    Settling { until: Duration },
+    Measuring { since: Duration, until: Duration },
+    Done,
+}
+
+/// Asks a vehicle for a set of messages. Call [`Self::poll`] until it gives nothing, pass on each frame,
+/// and again, until [`Self::is_done`].
+#[derive(Debug)]
+pub struct Requests {
+    vehicle: Vehicle,
+    capacity: Capacity,
+    settings: RequestSettings,
+    streams: Vec<Asked>,
+    phase: Phase,
+    bytes: f64,
+    window_s: f64,
+}
+
+impl Requests {
+    /// Of a set, over a link.
+    #[must_use]
+    pub fn new(
+        vehicle: Vehicle,
+        set: Vec<StreamRequest>,
+        capacity: Capacity,
+        settings: RequestSettings,
+    ) -> Self {
+        let streams = set
+            .into_iter()
+            .map(|request| Asked {
+                request,
+                answer: Answer::NotAsked,
+                rate_hz: request.rate_hz,
+                tries: 0,
+                halved: false,
+                count: 0,
+            })
+            .collect();
+        let phase = Phase::Asking { index: 0, sent: None };
+        Self { vehicle, capacity, settings, streams, phase, bytes: 0.0, window_s: 0.0 }
+    }
+
+    /// The next request that is due, if any; moves on with the clock.
+    pub fn poll(&mut self, now: Duration) -> Option<MavMessage> {
+        loop {
+            match self.phase {
+                Phase::Asking { index, sent } => {
+                    if index >= self.streams.len() {
+                        self.phase = Phase::Settling { until: now + self.settings.settle };
+                    } else if !self.is_wanted(index) {
+                        self.phase = Phase::Asking { index: index + 1, sent: None };
+                    } else if sent.is_some_and(|sent| now < sent + self.settings.timeout) {
+                        return None;
+                    } else if self.streams[index].tries >= self.settings.tries {
+                        self.streams[index].answer = Answer::Silent;
+                    } else {
+                        self.streams[index].tries += 1;
+                        self.phase = Phase::Asking { index, sent: Some(now) };
+                        return Some(self.message(index));
+                    }
+                }
+                Phase::Settling { until } if now >= until => {
+                    self.bytes = 0.0;
+                    self.streams.iter_mut().for_each(|stream| stream.count = 0);
+                    self.phase = Phase::Measuring { since: now, until: now + self.settings.window };
+                }
+                Phase::Measuring { since, until } if now >= until => {
+                    self.window_s = (now - since).as_secs_f64();
+                    self.phase = match self.first_replacement() {
+                        Some(index) => Phase::Asking { index, sent: None },
+                        None => Phase::Done,
+                    };
+                }
+                Phase::Settling { .. } | Phase::Measuring { .. } | Phase::Done => return None,
+            }
+        }
+    }
+
+    /// When [`Self::poll`] has something to do again; `None` when done.
+    #[must_use]
+    pub fn next_due(&self) -> Option<Duration> {
+        match self.phase {
+            Phase::Asking { sent, .. } => {
+                Some(sent.map_or(Duration::ZERO, |sent| sent + self.settings.timeout))
+            }
+            Phase::Settling { until } | Phase::Measuring { until, .. } => Some(until),
+            Phase::Done => None,
+        }
+    }
+
+    /// Takes a frame that arrived.
+    pub fn take_frame(&mut self, frame: &Frame<'_>) {
+        if !is_from(&self.vehicle, frame) {
+            return;
+        }
+        self.bytes += frame.bytes().len() as f64;
+        let id = frame.header().message_id;
+        if let Some(stream) = self.streams.iter_mut().find(|stream| stream.request.message_id == id) {
+            stream.count += 1;
+        }
+        if id == COMMAND_ACK_ID {
+            self.acknowledged(frame);
+        }
+    }
+
+    /// The window is over and nothing is left to ask for.
+    #[must_use]
+    pub fn is_done(&self) -> bool {
+        self.phase == Phase::Done
+    }
+
+    /// Messages answered and asked for.
+    #[must_use]
+    pub fn progress(&self) -> (usize, usize) {
+        let settled = self.streams.iter().filter(|stream| stream.answer != Answer::NotAsked).count();
+        (settled, self.streams.len())
+    }
+
+    /// What arrived and whether it suffices.
+    #[must_use]
+    pub fn report(&self) -> RatesReport {
+        let window_s = if self.window_s > 0.0 { self.window_s } else { f64::NAN };
+        let streams = self.streams.iter().map(|stream| StreamReport {
+            request: StreamRequest { rate_hz: stream.rate_hz, ..stream.request },
+            answer: stream.answer,
+            arrived_hz: f64::from(stream.count) / window_s,
+        });
+        RatesReport::new(streams.collect(), self.vehicle.autopilot, self.capacity, self.bytes / window_s)
+    }
+
+    fn acknowledged(&mut self, frame: &Frame<'_>) {
+        let payload = frame.payload();
+        let (for_system, for_component) = (payload.u8(8), payload.u8(9));
+        let (own_system, own_component) = self.settings.own;
+        let for_others = for_system != 0 && for_system != own_system
+            || for_component != 0 && for_component != own_component;
+        let Phase::Asking { index, sent: Some(_) } = self.phase else { return };
+        if payload.u16(0) != SET_MESSAGE_INTERVAL || for_others {
+            return;
+        }
+        let stream = &mut self.streams[index];
+        match payload.u8(2) {
+            ACCEPTED => stream.answer = Answer::Accepted,
+            // to be asked again after the time-out
+            TEMPORARILY_REJECTED | IN_PROGRESS => return,
+            _ if !stream.halved && stream.rate_hz > WORTH_HALVING_HZ => {
+                stream.halved = true;
+                stream.rate_hz /= 2.0;
+                stream.tries = 0;
+            }
+            result => {
+                stream.rate_hz = stream.request.rate_hz;
+                stream.answer = Answer::Refused(result);
+            }
+        }
+        self.phase = Phase::Asking { index, sent: None };
+    }
+
+    /// Not answered yet, and no replacement of something that runs.
+    fn is_wanted(&self, index: usize) -> bool {
+        let stream = &self.streams[index];
+        stream.answer == Answer::NotAsked
+            && stream.request.instead_of.is_none_or(|id| {
+                let replaced = self.streams.iter().find(|other| other.request.message_id == id);
+                replaced.is_none_or(|replaced| self.is_missing(replaced))
+            })
+    }
+
+    /// Refused, or silent; before the first window nothing that was accepted is missing.
+    fn is_missing(&self, stream: &Asked) -> bool {
+        match stream.answer {
+            Answer::Refused(_) | Answer::Silent => true,
+            Answer::Accepted => self.window_s > 0.0 && stream.count == 0,
+            Answer::NotAsked => false,
+        }
+    }
+
+    /// Something that was accepted never came, and its replacement was not asked for.
+    fn first_replacement(&self) -> Option<usize> {
+        (0..self.streams.len()).find(|index| self.is_wanted(*index))
+    }
+
+    fn message(&self, index: usize) -> MavMessage {
+        let stream = &self.streams[index];
+        let (target_system, target_component) = target_of(&self.vehicle);
+        // parameters 3, 4 and 7 must be zero: PX4 takes anything else for another command
+        MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+            command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
+            target_system,
+            target_component,
+            confirmation: 0,
+            param1: single(f64::from(stream.request.message_id)),
+            param2: single((1e6 / stream.rate_hz).round()),
+            ..Default::default()
+        })
+    }
+}

@@ -1,0 +1,175 @@
+//! Whether what arrives suffices.
+
+use super::capacity::bytes_s;
+use super::{Answer, Capacity, Need, StreamRequest, granted_hz};
+use crate::fly::finding::Finding;
+use crate::log::Autopilot;
+
+/// A stream at less than this share of what the autopilot should give is slower than asked for.
+const SHORT_SHARE: f64 = 0.8;
+
+/// One message.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StreamReport {
+    /// what was asked for; its rate is the one that was asked for last
+    pub request: StreamRequest,
+    /// what the vehicle said
+    pub answer: Answer,
+    /// Hz over the window; NaN before there was one
+    pub arrived_hz: f64,
+}
+
+impl StreamReport {
+    /// It comes at about the rate that the autopilot makes of the request.
+    #[must_use]
+    pub fn is_as_asked(&self, autopilot: Autopilot) -> bool {
+        granted_hz(autopilot, self.request.rate_hz)
+            .is_some_and(|granted| self.arrived_hz >= SHORT_SHARE * granted)
+    }
+
+    /// One line: asked for, answered, arrived.
+    #[must_use]
+    pub fn line(&self) -> String {
+        let StreamRequest { name, rate_hz, .. } = self.request;
+        let said = match self.answer {
+            Answer::NotAsked => "not asked for".to_owned(),
+            Answer::Accepted => "accepted".to_owned(),
+            Answer::Refused(result) => format!("refused (MAV_RESULT {result})"),
+            Answer::Silent => "no answer".to_owned(),
+        };
+        format!("{name}: asked {rate_hz:.1} Hz, {said}, {:.1} Hz arrive", self.arrived_hz)
+    }
+}
+
+/// One need and the best of what serves it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NeedReport {
+    /// which
+    pub need: Need,
+    /// its fastest message
+    pub best: Option<StreamReport>,
+    /// Hz below which it is not served
+    pub least_hz: f64,
+    /// Hz from which on it is served well
+    pub good_hz: f64,
+    /// without it no flight
+    pub to_fly: bool,
+}
+
+/// What was asked for, what arrived, and whether that suffices.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RatesReport {
+    /// one a message of the set
+    pub streams: Vec<StreamReport>,
+    /// one a need
+    pub needs: Vec<NeedReport>,
+    /// bytes a second that the set was expected to take
+    pub expected_bytes_s: f64,
+    /// bytes a second of all that arrived
+    pub arrived_bytes_s: f64,
+    /// of the link
+    pub capacity: Capacity,
+    autopilot: Autopilot,
+}
+
+/// Least and good rates (Hz) of a need, and whether flying needs it. Below 40 Hz the torque of a roll or
+/// pitch motion blurs: `inspect` then calls its inertia not determined.
+fn thresholds(need: Need) -> (f64, f64, bool) {
+    match need {
+        Need::BodyRates | Need::Actuators => (40.0, 90.0, false),
+        Need::Attitude => (5.0, 45.0, true),
+        Need::Position => (5.0, 25.0, true),
+        Need::Acceleration => (20.0, 90.0, false),
+        Need::Setpoints => (5.0, 15.0, false),
+        Need::Battery => (0.2, 0.4, true),
+        Need::State => (0.4, 1.5, true),
+        Need::Estimator => (0.5, 0.9, false),
+    }
+}
+
+impl RatesReport {
+    pub(super) fn new(
+        streams: Vec<StreamReport>,
+        autopilot: Autopilot,
+        capacity: Capacity,
+        arrived_bytes_s: f64,
+    ) -> Self {
+        let needs = Need::ALL.map(|need| {
+            let serving = streams.iter().filter(|s| s.request.needs.contains(&need) && s.arrived_hz > 0.0);
+            let best = serving.copied().max_by(|a, b| a.arrived_hz.total_cmp(&b.arrived_hz));
+            let (least_hz, good_hz, to_fly) = thresholds(need);
+            NeedReport { need, best, least_hz, good_hz, to_fly }
+        });
+        let set: Vec<StreamRequest> = streams.iter().map(|stream| stream.request).collect();
+        Self {
+            needs: needs.to_vec(),
+            expected_bytes_s: bytes_s(&set),
+            streams,
+            arrived_bytes_s,
+            capacity,
+            autopilot,
+        }
+    }
+
+    /// Everything that identification needs arrives.
+    #[must_use]
+    pub fn suffices_to_identify(&self) -> bool {
+        let needed = [Need::BodyRates, Need::Attitude, Need::Position, Need::Actuators];
+        self.needs.iter().filter(|report| needed.contains(&report.need)).all(NeedReport::is_served)
+    }
+
+    /// What the operator should know: a refusal where flying needs what does not come, a warning where
+    /// identification does.
+    #[must_use]
+    pub fn findings(&self) -> Vec<Finding> {
+        let needs = self.needs.iter().map(NeedReport::finding);
+        let slow = self.streams.iter().filter(|s| s.answer == Answer::Accepted && s.arrived_hz > 0.0);
+        let slow = slow.filter(|s| !s.is_as_asked(self.autopilot)).map(|s| {
+            Finding::warning(
+                "message rate",
+                format!("{} at {:.0} Hz", s.request.name, s.request.rate_hz),
+                format!("{:.1} Hz", s.arrived_hz),
+                "the link or the autopilot holds it back: another ground station, a slow link, or a data rate limit",
+            )
+        });
+        self.link().into_iter().chain(needs).chain(slow).collect()
+    }
+
+    fn link(&self) -> Option<Finding> {
+        (self.expected_bytes_s > self.capacity.bytes_s).then(|| {
+            Finding::warning(
+                "link",
+                format!("room for {:.1} kB/s", 1e-3 * self.expected_bytes_s),
+                format!("{:.1} kB/s", 1e-3 * self.capacity.bytes_s),
+                "fly over this link and identify from the on-board log, or connect by a faster one",
+            )
+        })
+    }
+}
+
+impl NeedReport {
+    /// Arrives at the least rate or faster.
+    #[must_use]
+    pub fn is_served(&self) -> bool {
+        self.best.is_some_and(|best| best.arrived_hz >= self.least_hz)
+    }
+
+    fn finding(&self) -> Finding {
+        let Self { need, best, least_hz, good_hz, to_fly } = self;
+        let came = best.map_or_else(
+            || "nothing".to_owned(),
+            |best| format!("{} at {:.1} Hz", best.request.name, best.arrived_hz),
+        );
+        let expected = format!("{} at {good_hz} Hz, {least_hz} Hz at least", need.name());
+        if !self.is_served() && *to_fly {
+            let remedy =
+                "the flight cannot be watched without it: check the link and the autopilot's stream settings";
+            return Finding::refusal("messages", expected, came, remedy);
+        }
+        if !self.is_served() {
+            let remedy = "identify from the on-board log, or raise what the link carries";
+            return Finding::warning("messages", expected, came, remedy);
+        }
+        Finding::ok("messages", expected, came)
+    }
+}

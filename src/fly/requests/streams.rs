@@ -1,0 +1,197 @@
+//! Which messages, how often, and what for.
+
+use crate::log::Autopilot;
+
+/// What a message is good for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Need {
+    /// angular rates of the body
+    BodyRates,
+    /// orientation of the body
+    Attitude,
+    /// position and velocity: also to fly
+    Position,
+    /// what the motors were told, or how they turn
+    Actuators,
+    /// acceleration, beside what velocity tells
+    Acceleration,
+    /// what the autopilot made of the setpoints
+    Setpoints,
+    /// voltage and charge: to fly
+    Battery,
+    /// mode, landed or in the air: to fly
+    State,
+    /// health of the position estimate: to fly
+    Estimator,
+}
+
+impl Need {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::BodyRates,
+        Self::Attitude,
+        Self::Position,
+        Self::Actuators,
+        Self::Acceleration,
+        Self::Setpoints,
+        Self::Battery,
+        Self::State,
+        Self::Estimator,
+    ];
+
+    /// For reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::BodyRates => "body rates",
+            Self::Attitude => "attitude",
+            Self::Position => "position and velocity",
+            Self::Actuators => "actuator outputs",
+            Self::Acceleration => "acceleration",
+            Self::Setpoints => "the autopilot's setpoints",
+            Self::Battery => "battery",
+            Self::State => "mode and landed state",
+            Self::Estimator => "health of the estimate",
+        }
+    }
+}
+
+/// One message to ask for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StreamRequest {
+    /// MAVLink's id
+    pub message_id: u32,
+    /// MAVLink's name
+    pub name: &'static str,
+    /// messages a second to ask for
+    pub rate_hz: f64,
+    /// bytes of a frame on the wire
+    pub frame_bytes: f64,
+    /// what for
+    pub needs: &'static [Need],
+    /// asked for only where the message of this id is refused or does not come
+    pub instead_of: Option<u32>,
+}
+
+const fn stream(
+    message_id: u32,
+    name: &'static str,
+    rate_hz: f64,
+    frame_bytes: f64,
+    needs: &'static [Need],
+) -> StreamRequest {
+    StreamRequest { message_id, name, rate_hz, frame_bytes, needs, instead_of: None }
+}
+
+impl StreamRequest {
+    const fn instead_of(self, message_id: u32) -> Self {
+        Self { instead_of: Some(message_id), ..self }
+    }
+
+    const fn at(self, rate_hz: f64) -> Self {
+        Self { rate_hz, ..self }
+    }
+}
+
+const ATTITUDE_QUATERNION: StreamRequest =
+    stream(31, "ATTITUDE_QUATERNION", 100.0, 48.0, &[Need::BodyRates, Need::Attitude]);
+const HIGHRES_IMU: StreamRequest =
+    stream(105, "HIGHRES_IMU", 100.0, 75.0, &[Need::BodyRates, Need::Acceleration]);
+const RAW_IMU: StreamRequest =
+    stream(27, "RAW_IMU", 100.0, 41.0, &[Need::BodyRates, Need::Acceleration]).instead_of(105);
+const SCALED_IMU: StreamRequest =
+    stream(26, "SCALED_IMU", 100.0, 36.0, &[Need::BodyRates, Need::Acceleration]).instead_of(27);
+const LOCAL_POSITION_NED: StreamRequest = stream(32, "LOCAL_POSITION_NED", 50.0, 40.0, &[Need::Position]);
+const ODOMETRY: StreamRequest = stream(331, "ODOMETRY", 30.0, 245.0, &[Need::Position]);
+const SERVO_OUTPUT_RAW: StreamRequest = stream(36, "SERVO_OUTPUT_RAW", 100.0, 49.0, &[Need::Actuators]);
+const ACTUATOR_OUTPUT_STATUS: StreamRequest =
+    stream(375, "ACTUATOR_OUTPUT_STATUS", 100.0, 40.0, &[Need::Actuators]);
+const ESC_STATUS: StreamRequest = stream(291, "ESC_STATUS", 50.0, 69.0, &[Need::Actuators]);
+const ESC_TELEMETRY: StreamRequest = stream(11030, "ESC_TELEMETRY_1_TO_4", 50.0, 56.0, &[Need::Actuators]);
+const ATTITUDE_TARGET: StreamRequest = stream(83, "ATTITUDE_TARGET", 50.0, 49.0, &[Need::Setpoints]);
+const POSITION_TARGET: StreamRequest =
+    stream(85, "POSITION_TARGET_LOCAL_NED", 20.0, 63.0, &[Need::Setpoints]);
+const BATTERY_STATUS: StreamRequest = stream(147, "BATTERY_STATUS", 2.0, 53.0, &[Need::Battery]);
+const SYS_STATUS: StreamRequest = stream(1, "SYS_STATUS", 2.0, 43.0, &[Need::Battery, Need::State]);
+const EXTENDED_SYS_STATE: StreamRequest = stream(245, "EXTENDED_SYS_STATE", 5.0, 14.0, &[Need::State]);
+const CURRENT_MODE: StreamRequest = stream(436, "CURRENT_MODE", 10.0, 21.0, &[Need::State]);
+const ESTIMATOR_STATUS: StreamRequest = stream(230, "ESTIMATOR_STATUS", 5.0, 54.0, &[Need::Estimator]);
+const EKF_STATUS_REPORT: StreamRequest = stream(193, "EKF_STATUS_REPORT", 5.0, 38.0, &[Need::Estimator]);
+const HOME_POSITION: StreamRequest = stream(242, "HOME_POSITION", 0.5, 72.0, &[]);
+const GPS_GLOBAL_ORIGIN: StreamRequest = stream(49, "GPS_GLOBAL_ORIGIN", 0.5, 32.0, &[]);
+
+const PX4: &[StreamRequest] = &[
+    ATTITUDE_QUATERNION,
+    HIGHRES_IMU,
+    LOCAL_POSITION_NED,
+    ODOMETRY,
+    SERVO_OUTPUT_RAW,
+    ACTUATOR_OUTPUT_STATUS,
+    ESC_STATUS,
+    ATTITUDE_TARGET,
+    POSITION_TARGET,
+    BATTERY_STATUS,
+    SYS_STATUS,
+    EXTENDED_SYS_STATE,
+    CURRENT_MODE,
+    ESTIMATOR_STATUS,
+    HOME_POSITION,
+    GPS_GLOBAL_ORIGIN,
+];
+
+const ARDUPILOT: &[StreamRequest] = &[
+    ATTITUDE_QUATERNION,
+    HIGHRES_IMU,
+    RAW_IMU,
+    SCALED_IMU,
+    LOCAL_POSITION_NED,
+    SERVO_OUTPUT_RAW,
+    ESC_TELEMETRY,
+    ATTITUDE_TARGET,
+    POSITION_TARGET,
+    BATTERY_STATUS,
+    SYS_STATUS,
+    EXTENDED_SYS_STATE,
+    EKF_STATUS_REPORT,
+    HOME_POSITION,
+    GPS_GLOBAL_ORIGIN,
+];
+
+/// The set that identification needs. What an autopilot is known to refuse is not asked of it, so that its
+/// refusals mean something.
+#[must_use]
+pub fn request_set(autopilot: Autopilot) -> Vec<StreamRequest> {
+    match autopilot {
+        Autopilot::Px4 => PX4.to_vec(),
+        Autopilot::ArduPilot => ARDUPILOT.to_vec(),
+        Autopilot::Other | Autopilot::Unknown => {
+            let mut all = PX4.to_vec();
+            all.extend(ARDUPILOT.iter().filter(|stream| PX4.iter().all(|of| of.name != stream.name)));
+            all
+        }
+    }
+}
+
+/// What is needed to fly, for a link on which the whole set has no room: identification then reads the
+/// on-board log.
+#[must_use]
+pub fn slow_request_set(autopilot: Autopilot) -> Vec<StreamRequest> {
+    let estimator = match autopilot {
+        Autopilot::Px4 => ESTIMATOR_STATUS,
+        _ => EKF_STATUS_REPORT,
+    };
+    let mode = (autopilot == Autopilot::Px4).then_some(CURRENT_MODE.at(5.0));
+    [
+        ATTITUDE_QUATERNION.at(10.0),
+        LOCAL_POSITION_NED.at(10.0),
+        BATTERY_STATUS.at(0.5),
+        SYS_STATUS.at(0.5),
+        EXTENDED_SYS_STATE.at(2.0),
+        estimator.at(1.0),
+        HOME_POSITION.at(0.2),
+        GPS_GLOBAL_ORIGIN.at(0.2),
+    ]
+    .into_iter()
+    .chain(mode)
+    .collect()
+}

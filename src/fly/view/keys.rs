@@ -1,0 +1,101 @@
+//! From keys to commands. One key for what is safe, a typed word for what is not.
+
+use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+
+/// What must be typed to stop the motors in the air.
+pub const KILL_WORD: &str = "kill";
+/// Opens the field for the word: its letters would otherwise be commands.
+const WORD_KEY: char = ':';
+
+/// What the operator asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum KeyCommand {
+    /// stop and stay
+    Hold,
+    /// come down here
+    Land,
+    /// come back
+    Return,
+    /// stop the motors now, wherever the vehicle is
+    Kill,
+    /// hold, and end the program
+    Quit,
+}
+
+/// The keyboard's state.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Keys {
+    word: Option<String>,
+}
+
+impl Keys {
+    /// Takes one key event.
+    pub fn press(&mut self, event: KeyEvent) -> Option<KeyCommand> {
+        if event.kind == KeyEventKind::Release {
+            return None;
+        }
+        if event.modifiers.contains(KeyModifiers::CONTROL) {
+            return matches!(event.code, KeyCode::Char('c')).then_some(KeyCommand::Quit);
+        }
+        match (&mut self.word, event.code) {
+            (_, KeyCode::Esc) => self.word = None,
+            (None, KeyCode::Char(WORD_KEY)) => self.word = Some(String::new()),
+            (None, KeyCode::Char('h' | 'H' | ' ')) => return Some(KeyCommand::Hold),
+            (None, KeyCode::Char('l' | 'L')) => return Some(KeyCommand::Land),
+            (None, KeyCode::Char('r' | 'R')) => return Some(KeyCommand::Return),
+            (Some(word), KeyCode::Backspace) => {
+                word.pop();
+            }
+            (Some(word), KeyCode::Char(letter)) if word.len() < 2 * KILL_WORD.len() => word.push(letter),
+            (Some(_), KeyCode::Enter) => {
+                return self.word.take().filter(|word| word == KILL_WORD).map(|_| KeyCommand::Kill);
+            }
+            _ => {}
+        }
+        None
+    }
+
+    /// The word as far as it is typed; `None` while keys are commands.
+    #[must_use]
+    pub fn typed(&self) -> Option<&str> {
+        self.word.as_deref()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn press(keys: &mut Keys, text: &str) -> Vec<KeyCommand> {
+        let code = |letter| if letter == '\n' { KeyCode::Enter } else { KeyCode::Char(letter) };
+        text.chars().filter_map(|letter| keys.press(KeyEvent::from(code(letter)))).collect()
+    }
+
+    #[test]
+    fn one_key_holds_lands_and_returns() {
+        let said = press(&mut Keys::default(), "hlrx");
+        assert_eq!(said, [KeyCommand::Hold, KeyCommand::Land, KeyCommand::Return]);
+    }
+
+    #[test]
+    fn only_the_whole_word_kills() {
+        let mut keys = Keys::default();
+        assert_eq!(press(&mut keys, ":kil\n"), []);
+        assert_eq!(press(&mut keys, ":kill"), []);
+        assert_eq!(keys.typed(), Some("kill"));
+        assert_eq!(press(&mut keys, "\n"), [KeyCommand::Kill]);
+        // without the field its letters are what they always are
+        assert_eq!(press(&mut keys, "kill\n"), [KeyCommand::Land, KeyCommand::Land]);
+        assert_eq!(press(&mut keys, ":ki"), []);
+        keys.press(KeyEvent::from(KeyCode::Esc));
+        assert_eq!(press(&mut keys, "h"), [KeyCommand::Hold]);
+    }
+
+    #[test]
+    fn control_c_ends_it_even_while_typing() {
+        let mut keys = Keys::default();
+        press(&mut keys, ":k");
+        let event = KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL);
+        assert_eq!(keys.press(event), Some(KeyCommand::Quit));
+    }
+}

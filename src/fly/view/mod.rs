@@ -1,0 +1,19 @@
+//! The flight as a person watches it: a terminal view, or plain lines.
+//!
+//! [`ViewModel`] is filled by whoever runs the flight; [`render`] draws it and decides nothing.
+
+mod keys;
+mod model;
+mod plain;
+mod render;
+mod screen;
+mod spark;
+
+pub use keys::{KILL_WORD, KeyCommand, Keys};
+pub use model::{
+    Attitude, Battery, EventLine, HISTORY, LinkView, ParameterRow, Phase, Trace, Tracking, ViewModel,
+};
+pub use plain::PlainLog;
+pub use render::render;
+pub use screen::Screen;
+pub use spark::spark;

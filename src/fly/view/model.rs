@@ -1,0 +1,195 @@
+//! What the view shows.
+
+use crate::estimate::Finding;
+use crate::fly::finding::Level;
+use crate::fly::live::LiveEstimate;
+use std::collections::VecDeque;
+
+/// Values that a trace keeps; older ones are forgotten.
+pub const HISTORY: usize = 120;
+/// Events kept.
+const EVENTS: usize = 200;
+
+/// The last values of something.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trace(VecDeque<f64>);
+
+impl Trace {
+    /// Adds a value.
+    pub fn push(&mut self, value: f64) {
+        if self.0.len() == HISTORY {
+            self.0.pop_front();
+        }
+        self.0.push_back(value);
+    }
+
+    /// From the oldest to the newest.
+    pub fn values(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + Clone + '_ {
+        self.0.iter().copied()
+    }
+}
+
+/// How the flight stands, for the colour of its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Phase {
+    /// before takeoff
+    #[default]
+    Preparing,
+    /// in the air, as planned
+    Flying,
+    /// ended before its time
+    Aborted,
+    /// on the ground, done
+    Done,
+}
+
+/// The link.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LinkView {
+    /// s since the last frame of the vehicle; `None` before the first
+    pub age_s: Option<f64>,
+    /// frames a second
+    pub frames_hz: f64,
+    /// bytes a second
+    pub bytes_s: f64,
+    /// share of the frames that got lost, by their sequence numbers (-)
+    pub loss: Option<f64>,
+}
+
+/// The battery.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Battery {
+    /// percent of a full charge
+    pub percent: Option<f64>,
+    /// V
+    pub voltage_v: Option<f64>,
+    /// low or worse by the autopilot's own judgement
+    pub is_low: bool,
+}
+
+/// How well the vehicle follows.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tracking {
+    /// m between reference and position; `None` while nothing is followed
+    pub error_m: Option<f64>,
+    /// m at which the flight is aborted
+    pub limit_m: Option<f64>,
+    /// m, lately
+    pub history_m: Trace,
+}
+
+/// Attitude and motion, world NWU.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[expect(missing_docs, reason = "each name says quantity and unit")]
+pub struct Attitude {
+    pub roll_deg: f64,
+    pub pitch_deg: f64,
+    pub yaw_deg: f64,
+    pub position_m: [f64; 3],
+    pub velocity_m_s: [f64; 3],
+}
+
+/// One line of the list of events.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EventLine {
+    /// s since the connection
+    pub time_s: f64,
+    /// how bad
+    pub level: Level,
+    /// what happened
+    pub text: String,
+}
+
+/// One parameter as it converges.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParameterRow {
+    /// as in files
+    pub name: &'static str,
+    /// as in files
+    pub unit: &'static str,
+    /// `None` until the flight says something
+    pub value: Option<f64>,
+    /// standard error, same unit; zero for what is given
+    pub std: Option<f64>,
+    /// lately
+    pub history: Trace,
+}
+
+/// Everything that the view shows.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ViewModel {
+    /// vehicle and autopilot
+    pub title: String,
+    /// what the flight is doing, in a few words
+    pub state: String,
+    /// its colour
+    pub phase: Phase,
+    /// the autopilot's mode
+    pub mode: String,
+    /// motors may turn
+    pub armed: bool,
+    /// s since the connection
+    pub elapsed_s: f64,
+    /// s of the trajectory flown, and of all of it
+    pub progress_s: Option<(f64, f64)>,
+    /// link
+    pub link: LinkView,
+    /// battery
+    pub battery: Battery,
+    /// tracking
+    pub tracking: Tracking,
+    /// attitude and motion
+    pub attitude: Option<Attitude>,
+    /// parameters, in the order of files
+    pub parameters: Vec<ParameterRow>,
+    /// s of flight that they rest on
+    pub parameters_used_s: f64,
+    /// what happened
+    pub events: VecDeque<EventLine>,
+    /// events that happened in all, those forgotten among them
+    pub event_count: u64,
+    /// what is being typed, where a word is asked for
+    pub typed: Option<String>,
+}
+
+impl ViewModel {
+    /// Adds an event.
+    pub fn event(&mut self, level: Level, text: impl Into<String>) {
+        if self.events.len() == EVENTS {
+            self.events.pop_front();
+        }
+        self.events.push_back(EventLine { time_s: self.elapsed_s, level, text: text.into() });
+        self.event_count += 1;
+    }
+
+    /// Takes the tracking error (m) of this moment.
+    pub fn track(&mut self, error_m: f64) {
+        self.tracking.error_m = Some(error_m);
+        self.tracking.history_m.push(error_m);
+    }
+
+    /// Takes what the flight says of the parameters.
+    pub fn estimate(&mut self, estimate: &LiveEstimate) {
+        if self.parameters.is_empty() {
+            let blank = |parameter: &crate::fly::live::LiveParameter| ParameterRow {
+                name: parameter.name,
+                unit: parameter.unit,
+                value: None,
+                std: None,
+                history: Trace::default(),
+            };
+            self.parameters = estimate.parameters.iter().map(blank).collect();
+        }
+        self.parameters_used_s = estimate.used_s;
+        for (row, parameter) in self.parameters.iter_mut().zip(&estimate.parameters) {
+            (row.value, row.std) = match parameter.finding {
+                Finding::Determined { value, std } => (Some(value), Some(std)),
+                Finding::Given { value } => (Some(value), Some(0.0)),
+                Finding::NotDetermined { .. } => (None, None),
+            };
+            if let Some(value) = row.value {
+                row.history.push(value);
+            }
+        }
+    }
+}

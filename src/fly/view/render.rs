@@ -1,0 +1,177 @@
+//! Draws the model.
+
+use super::keys::KILL_WORD;
+use super::model::{ParameterRow, Phase, ViewModel};
+use super::plain::with_error;
+use super::spark::spark;
+use crate::fly::finding::Level;
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::text::{Line, Span};
+use ratatui::widgets::{Block, Paragraph};
+
+/// A link that was silent for so long is late, s; for so long is lost.
+const LATE_S: f64 = 0.5;
+const LOST_S: f64 = 2.0;
+/// Columns of a parameter's name, and of its value with error and unit.
+const NAME_COLUMNS: usize = 6;
+const VALUE_COLUMNS: usize = 32;
+
+/// Draws the whole view.
+pub fn render(frame: &mut Frame<'_>, model: &ViewModel) {
+    let rows = u16::try_from(model.parameters.len()).unwrap_or(u16::MAX).max(1);
+    let [head, gauges, motion, parameters, events, foot] = Layout::vertical([
+        Constraint::Length(1),
+        Constraint::Length(3),
+        Constraint::Length(4),
+        Constraint::Length(rows.saturating_add(2)),
+        Constraint::Min(3),
+        Constraint::Length(1),
+    ])
+    .areas(frame.area());
+    frame.render_widget(Paragraph::new(header(model)), head);
+    gauge_row(frame, model, gauges);
+    boxed(frame, "Motion (north, west, up)", motion_lines(model), motion);
+    let title = format!("Parameters from {:.0} s of flight", model.parameters_used_s);
+    boxed(frame, &title, parameter_lines(model, parameters.width), parameters);
+    event_list(frame, model, events);
+    frame.render_widget(Paragraph::new(help(model)), foot);
+}
+
+fn boxed(frame: &mut Frame<'_>, title: &str, lines: Vec<Line<'_>>, area: Rect) {
+    frame.render_widget(Paragraph::new(lines).block(Block::bordered().title(title.to_owned())), area);
+}
+
+fn header(model: &ViewModel) -> Line<'_> {
+    let color = match model.phase {
+        Phase::Preparing => Color::Cyan,
+        Phase::Flying => Color::Green,
+        Phase::Aborted => Color::Red,
+        Phase::Done => Color::Blue,
+    };
+    let progress = model
+        .progress_s
+        .map_or_else(String::new, |(done_s, all_s)| format!("  {done_s:.0} of {all_s:.0} s flown"));
+    Line::from(vec![
+        Span::styled(model.title.as_str(), Style::new().add_modifier(Modifier::BOLD)),
+        Span::raw("  "),
+        Span::styled(model.state.as_str(), Style::new().fg(color).add_modifier(Modifier::BOLD)),
+        Span::raw(format!(
+            "  {}  {}  {:.0} s{progress}",
+            if model.mode.is_empty() { "mode unknown" } else { &model.mode },
+            if model.armed { "ARMED" } else { "disarmed" },
+            model.elapsed_s
+        )),
+    ])
+}
+
+fn gauge_row(frame: &mut Frame<'_>, model: &ViewModel, area: Rect) {
+    let [link, battery, tracking] =
+        Layout::horizontal([Constraint::Fill(4), Constraint::Fill(2), Constraint::Fill(3)]).areas(area);
+    boxed(frame, "Link", vec![link_line(model)], link);
+    boxed(frame, "Battery", vec![battery_line(model)], battery);
+    boxed(frame, "Tracking error", vec![tracking_line(model, tracking.width)], tracking);
+}
+
+fn link_line(model: &ViewModel) -> Line<'_> {
+    let link = &model.link;
+    let Some(age_s) = link.age_s else { return Line::styled("nothing heard", Color::Red) };
+    let color = match age_s {
+        age_s if age_s >= LOST_S => Color::Red,
+        age_s if age_s >= LATE_S => Color::Yellow,
+        _ => Color::Green,
+    };
+    let loss = link.loss.map_or_else(String::new, |loss| format!(" {:.1} % lost", 100.0 * loss));
+    let text = format!("{age_s:.1} s {:.0}/s {:.1} kB/s{loss}", link.frames_hz, 1e-3 * link.bytes_s);
+    Line::styled(text, color)
+}
+
+fn battery_line(model: &ViewModel) -> Line<'_> {
+    let battery = &model.battery;
+    let percent = battery.percent.map(|percent| format!("{percent:.0} %"));
+    let voltage = battery.voltage_v.map(|voltage_v| format!("{voltage_v:.2} V"));
+    let parts: Vec<String> = percent.into_iter().chain(voltage).collect();
+    let text = if parts.is_empty() { "not said".to_owned() } else { parts.join("  ") };
+    Line::styled(text, if battery.is_low { Color::Red } else { Color::Reset })
+}
+
+fn tracking_line(model: &ViewModel, columns: u16) -> Line<'_> {
+    let tracking = &model.tracking;
+    let Some(error_m) = tracking.error_m else { return Line::raw("nothing followed") };
+    let limit = tracking.limit_m.map_or_else(String::new, |limit_m| format!(" of {limit_m:.1}"));
+    let text = format!("{error_m:.2}{limit} m ");
+    let color = match tracking.limit_m {
+        Some(limit_m) if error_m >= limit_m => Color::Red,
+        Some(limit_m) if error_m >= 0.5 * limit_m => Color::Yellow,
+        _ => Color::Green,
+    };
+    let room = usize::from(columns).saturating_sub(text.len() + 2);
+    Line::from(vec![Span::styled(text, color), Span::raw(spark(tracking.history_m.values(), room))])
+}
+
+fn motion_lines(model: &ViewModel) -> Vec<Line<'_>> {
+    let Some(attitude) = &model.attitude else { return vec![Line::raw("no attitude yet")] };
+    let [x, y, z] = attitude.position_m;
+    let [vx, vy, vz] = attitude.velocity_m_s;
+    vec![
+        Line::raw(format!(
+            "roll {:+6.1}  pitch {:+6.1}  yaw {:+6.1} deg",
+            attitude.roll_deg, attitude.pitch_deg, attitude.yaw_deg
+        )),
+        Line::raw(format!(
+            "position {x:+7.2} {y:+7.2} {z:+7.2} m   velocity {vx:+6.2} {vy:+6.2} {vz:+6.2} m/s"
+        )),
+    ]
+}
+
+fn parameter_lines(model: &ViewModel, columns: u16) -> Vec<Line<'_>> {
+    if model.parameters.is_empty() {
+        return vec![Line::raw("nothing yet: it takes some seconds of the trajectory")];
+    }
+    let room = usize::from(columns).saturating_sub(NAME_COLUMNS + VALUE_COLUMNS + 4);
+    model.parameters.iter().map(|row| parameter_line(row, room)).collect()
+}
+
+fn parameter_line(row: &ParameterRow, room: usize) -> Line<'_> {
+    let value = match row.value.zip(row.std) {
+        Some((value, std)) => format!("{} {}", with_error(value, std), row.unit),
+        None => "not determined yet".to_owned(),
+    };
+    Line::from(vec![
+        Span::styled(format!("{:<NAME_COLUMNS$}", row.name), Style::new().add_modifier(Modifier::BOLD)),
+        Span::raw(format!("{value:<VALUE_COLUMNS$} ")),
+        Span::styled(spark(row.history.values(), room), Color::Cyan),
+    ])
+}
+
+fn event_list(frame: &mut Frame<'_>, model: &ViewModel, area: Rect) {
+    let room = usize::from(area.height.saturating_sub(2));
+    let first = model.events.len().saturating_sub(room);
+    let lines: Vec<Line<'_>> = model
+        .events
+        .iter()
+        .skip(first)
+        .map(|event| {
+            let color = match event.level {
+                Level::Ok => Color::Reset,
+                Level::Warning => Color::Yellow,
+                Level::Refusal => Color::Red,
+            };
+            Line::styled(format!("{:7.1} {}", event.time_s, event.text), color)
+        })
+        .collect();
+    boxed(frame, "Events", lines, area);
+}
+
+fn help(model: &ViewModel) -> Line<'_> {
+    match &model.typed {
+        Some(typed) => Line::styled(
+            format!("type {KILL_WORD} and Enter to stop the motors NOW, Esc to leave: {typed}_"),
+            Style::new().fg(Color::Red).add_modifier(Modifier::BOLD),
+        ),
+        None => Line::raw(format!(
+            "h hold   l land   r return   :{KILL_WORD} Enter stops the motors   Ctrl-C end"
+        )),
+    }
+}

@@ -1,0 +1,47 @@
+//! Why a link cannot be used.
+
+use std::io;
+
+/// Why a link cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum LinkError {
+    /// it could not be opened
+    #[error("cannot open {address}: {source}")]
+    Open {
+        /// which one
+        address: String,
+        /// what the system said
+        source: io::Error,
+    },
+    /// the machine has no such links
+    #[error("cannot open {address}: {kind} links are not available on this system")]
+    Unavailable {
+        /// which one
+        address: String,
+        /// what kind
+        kind: &'static str,
+    },
+    /// nobody is at the other end now; what was given was not sent and will not be
+    #[error("not sent: nobody at the other end of {address}")]
+    NotConnected {
+        /// which link
+        address: String,
+    },
+    /// the other end takes less than it is sent; what was given was not sent
+    #[error("not sent: {queued} frames wait already on {address}")]
+    QueueFull {
+        /// which link
+        address: String,
+        /// frames that wait
+        queued: usize,
+    },
+    /// what was given is not one whole frame
+    #[error("expected one whole MAVLink frame, got {bytes} bytes that are none")]
+    NotAFrame {
+        /// how many bytes were given
+        bytes: usize,
+    },
+    /// the link has ended: its task is gone, or the replay is over
+    #[error("the link has ended")]
+    Closed,
+}

@@ -1,0 +1,37 @@
+//! MAVLink over sockets and serial ports: whole frames in, whole frames out, with reconnection, statistics
+//! and a recording.
+//!
+//! ```text
+//! bytes -> stamp -> Splitter -> recording -> statistics -> LinkReader
+//! LinkWriter -> queue or latest-wins slot -> sequence -> bytes -> recording
+//! ```
+//!
+//! [`Link::open`] starts one task for a link and gives its two halves. It connects again by itself; the
+//! reader hears of it as [`LinkEvent`]s, and while there is nobody to talk to the writer refuses, so that no
+//! old command goes out to a vehicle that comes back.
+
+mod address;
+mod clock;
+mod error;
+mod incoming;
+mod open;
+mod outgoing;
+mod reader;
+mod recorder;
+mod replay;
+mod shared;
+mod signing;
+mod stats;
+mod transport;
+mod writer;
+
+pub use address::{Address, AddressError};
+pub use clock::{HostClock, HostStamp};
+pub use error::LinkError;
+pub use open::{Ends, Link, LinkOptions};
+pub use reader::{LinkEvent, LinkReader, Received, ReceivedFrame};
+pub use recorder::{RecordError, Recorder, RecorderStatus, Store};
+pub use replay::{Replay, ReplayCounts, ReplayError};
+pub use signing::{Signing, SigningError, SigningKey};
+pub use stats::LinkStats;
+pub use writer::LinkWriter;

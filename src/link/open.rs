@@ -1,0 +1,117 @@
+//! Opens links.
+
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+use tokio::sync::{mpsc, watch};
+
+use super::address::Address;
+use super::clock::HostClock;
+use super::error::LinkError;
+use super::incoming::Incoming;
+use super::outgoing::Outgoing;
+use super::reader::LinkReader;
+use super::recorder::Recorder;
+use super::shared::Shared;
+use super::signing::Signing;
+use super::transport::{self, Transport};
+use super::writer::LinkWriter;
+use crate::log::{ComponentId, SystemId};
+
+/// Frames that may wait to be sent.
+const QUEUE: usize = 4096;
+/// How long a link that both halves have left goes on sending what they gave.
+const LINGER: Duration = Duration::from_secs(1);
+
+/// How a link is to be.
+#[derive(Debug, Clone)]
+pub struct LinkOptions {
+    /// system id of the messages sent (default 255, a ground station)
+    pub system: SystemId,
+    /// component id of the messages sent (default 190, a ground station's)
+    pub component: ComponentId,
+    /// where the stamps come from: share one clock among the links of a process
+    pub clock: HostClock,
+    /// a `udpin` link forgets its peer after this silence and answers the next that sends a heartbeat
+    pub peer_timeout: Duration,
+    /// signs what is sent, and believes only what is signed; without it signed frames pass unchecked
+    pub signing: Option<Signing>,
+    /// records every frame received and sent
+    pub recorder: Option<Recorder>,
+}
+
+impl Default for LinkOptions {
+    fn default() -> Self {
+        Self {
+            system: SystemId(255),
+            component: ComponentId(190),
+            clock: HostClock::start(),
+            peer_timeout: Duration::from_secs(3),
+            signing: None,
+            recorder: None,
+        }
+    }
+}
+
+/// Both halves of a link.
+pub type Ends = (LinkReader, LinkWriter);
+
+/// Opens links.
+#[derive(Debug)]
+pub struct Link;
+
+impl Link {
+    /// Opens a link and starts its task on the current tokio runtime. The task ends when both halves are
+    /// dropped; what was given to the writer before is still sent.
+    ///
+    /// `udpin`, `tcpin` and `pty` links are open before anybody is at the other end: wait for
+    /// [`LinkEvent::Connected`](super::LinkEvent::Connected).
+    ///
+    /// # Errors
+    /// The address cannot be resolved, bound, connected to or opened now. Later losses are events.
+    pub async fn open(address: &Address, options: LinkOptions) -> Result<Ends, LinkError> {
+        let transport = transport::open(address, options.peer_timeout).await?;
+        Ok(start(address.to_string(), transport, &options))
+    }
+
+    /// Two links in memory that talk to each other: for a vehicle and a ground station in one process, and
+    /// for tests with a paused clock.
+    #[must_use]
+    pub fn pair(first: LinkOptions, second: LinkOptions) -> (Ends, Ends) {
+        let (one, two) = tokio::io::duplex(1 << 16);
+        let start = |stream, options| start("memory".into(), Transport::Memory(Some(stream)), &options);
+        (start(one, first), start(two, second))
+    }
+}
+
+fn start(name: String, transport: Transport, options: &LinkOptions) -> Ends {
+    let shared = Arc::new(Shared::new(name, transport.local()));
+    shared.open.store(transport.is_connected(), Ordering::Release);
+    let (to_reader, from_task) = mpsc::unbounded_channel();
+    let (to_task, queue) = mpsc::channel(QUEUE);
+    let (alive, gone) = watch::channel(());
+    let alive = Arc::new(alive);
+    let incoming = Incoming::new(to_reader, shared.clone(), options);
+    let outgoing = Outgoing::new(queue, shared.clone(), options);
+    tokio::spawn(drive(transport, incoming, outgoing, gone, shared.clone()));
+    (LinkReader::new(from_task, shared.clone(), Some(alive.clone())), LinkWriter::new(to_task, shared, alive))
+}
+
+async fn drive(
+    mut transport: Transport,
+    mut incoming: Incoming,
+    mut outgoing: Outgoing,
+    mut gone: watch::Receiver<()>,
+    shared: Arc<Shared>,
+) {
+    let left = async {
+        // nothing is ever sent on it: it only ends
+        let _ = gone.changed().await;
+        let _ = tokio::time::timeout(LINGER, shared.drained.notified()).await;
+    };
+    tokio::select! {
+        () = transport.serve(&mut incoming, &mut outgoing) => {}
+        () = left => {}
+    }
+}

@@ -1,0 +1,187 @@
+//! The recording of a link: every frame received and sent, byte for byte, with its stamp.
+//!
+//! A recorder never makes a link wait. Frames go to a thread of its own, which writes them to the file and
+//! syncs it each second and whenever a vehicle arms, disarms or changes its mode: killed at any moment, the
+//! program loses no more than the last second. What the disk does not take in time waits in memory, up to a
+//! bound; beyond it frames are dropped, counted, and the link's reader is told.
+
+mod watch;
+mod worker;
+
+use std::fs::{File, OpenOptions};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
+
+use tokio::sync::oneshot;
+
+use super::clock::HostStamp;
+use crate::log::{Frame, STAMP_BYTES};
+
+pub use worker::Store;
+use worker::{Order, work};
+
+/// Bytes that may wait for a slow disk: 20 minutes of a lively link.
+const WAITING_BYTES: usize = 64 << 20;
+/// SETUP_SIGNING carries the signing key: it is left out.
+const SETUP_SIGNING: u32 = 256;
+
+/// Why there is no recording.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// the file is there already
+    #[error("{} exists already", path.display())]
+    Exists {
+        /// which file
+        path: PathBuf,
+    },
+    /// the file cannot be made
+    #[error("cannot write {}: {source}", path.display())]
+    Create {
+        /// which file
+        path: PathBuf,
+        /// what the system said
+        source: io::Error,
+    },
+    /// no thread for it
+    #[error("cannot start the thread that writes the recording: {0}")]
+    Thread(io::Error),
+    /// the thread is gone
+    #[error("the recording has ended")]
+    Ended,
+}
+
+/// What became of the frames.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct RecorderStatus {
+    /// frames handed to the file
+    pub frames: u64,
+    /// bytes handed to the file, stamps included
+    pub bytes: u64,
+    /// frames lost: the disk failed, or was slow for too long
+    pub dropped: u64,
+    /// SETUP_SIGNING frames left out, since they carry the signing key
+    pub redacted: u64,
+    /// what the system last said when writing failed; `None` while it works
+    pub failure: Option<String>,
+}
+
+/// The recording of one or more links. Clones write to the same file, which is complete when the last of
+/// them is gone, or after [`finish`](Self::finish).
+#[derive(Debug, Clone)]
+pub struct Recorder {
+    orders: mpsc::Sender<Order>,
+    state: Arc<State>,
+    waiting_max: usize,
+}
+
+/// What a recorder and its thread share.
+#[derive(Debug, Default)]
+struct State {
+    waiting_bytes: AtomicUsize,
+    frames: AtomicU64,
+    bytes: AtomicU64,
+    dropped: AtomicU64,
+    redacted: AtomicU64,
+    failing: AtomicBool,
+    /// frames were dropped, and the disk has not caught up yet
+    behind: AtomicBool,
+    failure: Mutex<Option<String>>,
+}
+
+impl Recorder {
+    /// Records to a new file; one that is there already is replaced only where `replace` says so.
+    ///
+    /// # Errors
+    /// The file exists or cannot be made, or the system gives no thread.
+    pub fn create(path: &Path, replace: bool) -> Result<Self, RecordError> {
+        let mut options = OpenOptions::new();
+        options.write(true);
+        if replace {
+            options.create(true).truncate(true);
+        } else {
+            options.create_new(true);
+        }
+        let file: File = options.open(path).map_err(|source| match source.kind() {
+            io::ErrorKind::AlreadyExists => RecordError::Exists { path: path.into() },
+            _ => RecordError::Create { path: path.into(), source },
+        })?;
+        Self::to_store(file, WAITING_BYTES)
+    }
+
+    /// Records to any store. At most `waiting_max` bytes wait for it.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn to_store(store: impl Store + 'static, waiting_max: usize) -> Result<Self, RecordError> {
+        let (orders, to_do) = mpsc::channel();
+        let state = Arc::new(State::default());
+        let shared = state.clone();
+        std::thread::Builder::new()
+            .name("recorder".into())
+            .spawn(move || work(store, &to_do, &shared))
+            .map_err(RecordError::Thread)?;
+        Ok(Self { orders, state, waiting_max })
+    }
+
+    /// Records a frame; never waits. Whether the recording is whole: a frame may have been dropped.
+    pub(super) fn record(&self, stamp: HostStamp, frame: &Frame<'_>) -> bool {
+        if frame.header().message_id == SETUP_SIGNING {
+            self.state.redacted.fetch_add(1, Ordering::Relaxed);
+            return true;
+        }
+        let bytes = frame.bytes().len() + STAMP_BYTES;
+        let waiting = self.state.waiting_bytes.fetch_add(bytes, Ordering::Relaxed) + bytes;
+        let order = Order::Frame { stamp_us: stamp.utc_us, bytes: frame.bytes().into() };
+        if waiting > self.waiting_max || self.orders.send(order).is_err() {
+            self.state.waiting_bytes.fetch_sub(bytes, Ordering::Relaxed);
+            self.state.dropped.fetch_add(1, Ordering::Relaxed);
+            self.state.behind.store(true, Ordering::Relaxed);
+            return false;
+        }
+        // it has caught up where half of the room is free: one frame that fits again is not worth telling
+        if waiting <= self.waiting_max / 2 {
+            self.state.behind.store(false, Ordering::Relaxed);
+        }
+        !self.state.failing.load(Ordering::Relaxed) && !self.state.behind.load(Ordering::Relaxed)
+    }
+
+    /// Asks for everything recorded so far to be brought onto the disk now; does not wait.
+    pub fn flush(&self) {
+        // a recorder that has ended has nothing to flush
+        let _ = self.orders.send(Order::Flush(None));
+    }
+
+    /// Waits until everything recorded so far is on the disk, and says what became of it.
+    ///
+    /// # Errors
+    /// The recorder's thread is gone.
+    pub async fn finish(&self) -> Result<RecorderStatus, RecordError> {
+        let (done, answer) = oneshot::channel();
+        self.orders.send(Order::Flush(Some(done))).map_err(|_| RecordError::Ended)?;
+        answer.await.map_err(|_| RecordError::Ended)?;
+        Ok(self.status())
+    }
+
+    /// What became of the frames so far.
+    #[must_use]
+    pub fn status(&self) -> RecorderStatus {
+        let count = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
+        RecorderStatus {
+            frames: count(&self.state.frames),
+            bytes: count(&self.state.bytes),
+            dropped: count(&self.state.dropped),
+            redacted: count(&self.state.redacted),
+            failure: self.state.failure.lock().unwrap_or_else(PoisonError::into_inner).clone(),
+        }
+    }
+}
+
+impl State {
+    fn note_failure(&self, error: Option<&io::Error>) {
+        self.failing.store(error.is_some(), Ordering::Relaxed);
+        let text = error.map(ToString::to_string);
+        *self.failure.lock().unwrap_or_else(PoisonError::into_inner) = text;
+    }
+}

@@ -1,0 +1,302 @@
+//! Plays a recorded flight back at the pace of its stamps.
+
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+use tokio::sync::mpsc;
+use tokio::time::{Instant, sleep, sleep_until};
+
+use super::clock::HostStamp;
+use super::error::LinkError;
+use super::incoming::WAITING;
+use super::reader::{LinkEvent, LinkReader, Received, ReceivedFrame};
+use super::shared::Shared;
+use super::writer::LinkWriter;
+use crate::log::{Frame, LogError, SystemId, TlogReader};
+
+const HEARTBEAT: u32 = 0;
+/// HEARTBEAT.autopilot of what is no vehicle.
+const NO_AUTOPILOT: u8 = 8;
+const AUTOPILOT_AT: usize = 5;
+/// A longer pause, or a step back, is the seam of two logs: played without waiting.
+const SEAM: Duration = Duration::from_secs(3600);
+/// How long to wait for a reader that is behind.
+const BEHIND: Duration = Duration::from_millis(1);
+
+/// Messages that make who hears them act: a replay leaves them out, whoever sent them.
+const COMMANDS: &[u32] = &[
+    5,   // CHANGE_OPERATOR_CONTROL
+    11,  // SET_MODE
+    23,  // PARAM_SET
+    39,  // MISSION_ITEM
+    41,  // MISSION_SET_CURRENT
+    44,  // MISSION_COUNT
+    45,  // MISSION_CLEAR_ALL
+    48,  // SET_GPS_GLOBAL_ORIGIN
+    66,  // REQUEST_DATA_STREAM
+    69,  // MANUAL_CONTROL
+    70,  // RC_CHANNELS_OVERRIDE
+    73,  // MISSION_ITEM_INT
+    75,  // COMMAND_INT
+    76,  // COMMAND_LONG
+    80,  // COMMAND_CANCEL
+    82,  // SET_ATTITUDE_TARGET
+    84,  // SET_POSITION_TARGET_LOCAL_NED
+    86,  // SET_POSITION_TARGET_GLOBAL_INT
+    110, // FILE_TRANSFER_PROTOCOL
+    121, // LOG_ERASE
+    126, // SERIAL_CONTROL
+    139, // SET_ACTUATOR_CONTROL_TARGET
+    232, // GPS_INPUT
+    243, // SET_HOME_POSITION
+    256, // SETUP_SIGNING
+    385, // TUNNEL
+];
+
+/// Why a log cannot be played back.
+#[derive(Debug, thiserror::Error)]
+pub enum ReplayError {
+    /// it cannot be read
+    #[error("{}: {source}", path.display())]
+    Log {
+        /// which file
+        path: PathBuf,
+        /// why
+        source: LogError,
+    },
+    /// the speed is no speed
+    #[error("expected a speed of 0 (as fast as possible) or more, got {got}")]
+    Speed {
+        /// what was given
+        got: f64,
+    },
+    /// the link it should go to has ended
+    #[error(transparent)]
+    Link(#[from] LinkError),
+}
+
+/// What was played.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ReplayCounts {
+    /// frames played
+    pub frames: u64,
+    /// frames left out: commands, and what others than vehicles sent
+    pub left_out: u64,
+    /// frames that had nobody to go to
+    pub unsent: u64,
+    /// frames that the other end sent; nobody acted on them
+    pub discarded: u64,
+}
+
+/// A recorded flight, ready to be played back.
+///
+/// Only what vehicles sent is played, without commands: a replay that reaches a real vehicle does nothing
+/// there. Stamps that step back, or over more than an hour, are played without waiting.
+#[derive(Debug, Clone)]
+pub struct Replay {
+    path: PathBuf,
+    vehicles: BTreeSet<SystemId>,
+    frames: u64,
+    duration: Duration,
+    speed: f64,
+}
+
+impl Replay {
+    /// Looks through a telemetry log. `speed` 1 plays as fast as it was, 0 as fast as possible.
+    ///
+    /// # Errors
+    /// The log cannot be read, or `speed` is negative or no number.
+    pub fn open(path: &Path, speed: f64) -> Result<Self, ReplayError> {
+        if !speed.is_finite() || speed < 0.0 {
+            return Err(ReplayError::Speed { got: speed });
+        }
+        let mut replay =
+            Self { path: path.into(), vehicles: BTreeSet::new(), frames: 0, duration: Duration::ZERO, speed };
+        let mut reader = replay.reader()?;
+        let mut pauses = Pauses::default();
+        while let Some(record) = reader.next_record().map_err(|source| replay.error(source))? {
+            let (header, payload) = (record.frame.header(), record.frame.payload());
+            if header.message_id == HEARTBEAT && payload.u8(AUTOPILOT_AT) != NO_AUTOPILOT {
+                replay.vehicles.insert(header.system);
+            }
+            replay.frames += 1;
+            replay.duration += pauses.next(record.stamp_us);
+        }
+        Ok(replay)
+    }
+
+    /// Frames in the log.
+    #[must_use]
+    pub fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    /// From the first frame to the last, at the log's own pace.
+    #[must_use]
+    pub fn duration(&self) -> Duration {
+        self.duration
+    }
+
+    /// Plays on the current tokio runtime into a reader, as if it were a link. There is no writer. A frame's
+    /// stamp has the present moment and the log's time. At the end the reader says that the link has ended.
+    #[must_use]
+    pub fn start(self) -> LinkReader {
+        let shared = Arc::new(Shared::new(self.path.display().to_string(), None));
+        let (to_reader, from_task) = mpsc::unbounded_channel();
+        let reader = LinkReader::new(from_task, shared.clone(), None);
+        tokio::spawn(async move {
+            let peer = shared.name.clone();
+            let deliver = |received| {
+                shared.waiting.fetch_add(1, Ordering::Relaxed);
+                to_reader.send(received).is_ok()
+            };
+            deliver(Received::Event(LinkEvent::Connected { peer }));
+            let Ok(mut player) = self.player() else { return };
+            while let Some((due, stamp_us, bytes)) = player.next() {
+                sleep_until(due).await;
+                while shared.waiting.load(Ordering::Relaxed) >= WAITING {
+                    sleep(BEHIND).await;
+                }
+                let stamp = HostStamp { at: Instant::now(), utc_us: stamp_us };
+                let Some(frame) = Frame::at_start(&bytes) else { continue };
+                shared.stats().tally(&frame);
+                if !deliver(Received::Frame(ReceivedFrame::new(stamp, frame))) {
+                    return;
+                }
+            }
+        });
+        reader
+    }
+
+    /// Plays into an open link until the log's end. What the other end sends is counted and dropped.
+    /// `progress` is told of each frame's number.
+    ///
+    /// # Errors
+    /// The log cannot be read any more, or the link has ended.
+    pub async fn play(
+        &self,
+        reader: &mut LinkReader,
+        writer: &LinkWriter,
+        mut progress: impl FnMut(u64),
+    ) -> Result<ReplayCounts, ReplayError> {
+        let mut counts = ReplayCounts::default();
+        while !writer.is_connected() {
+            discard(reader.receive().await?, &mut counts);
+        }
+        let mut player = self.player()?;
+        while let Some((due, _, bytes)) = player.next() {
+            let pause = sleep_until(due);
+            tokio::pin!(pause);
+            loop {
+                tokio::select! {
+                    biased;
+                    () = &mut pause => break,
+                    received = reader.receive() => discard(received?, &mut counts),
+                }
+            }
+            while let Some(received) = reader.try_receive()? {
+                discard(received, &mut counts);
+            }
+            match send(writer, &bytes).await {
+                Ok(()) => counts.frames += 1,
+                Err(LinkError::NotConnected { .. }) => counts.unsent += 1,
+                Err(error) => return Err(error.into()),
+            }
+            progress(player.number);
+        }
+        writer.flush().await?;
+        counts.left_out = player.left_out;
+        Ok(counts)
+    }
+
+    fn reader(&self) -> Result<TlogReader<File>, ReplayError> {
+        let opened = File::open(&self.path);
+        let opened = opened.map_err(|source| LogError::Open { path: self.path.clone(), source });
+        opened.map(TlogReader::new).map_err(|source| self.error(source))
+    }
+
+    fn error(&self, source: LogError) -> ReplayError {
+        ReplayError::Log { path: self.path.clone(), source }
+    }
+
+    fn player(&self) -> Result<Player<'_>, ReplayError> {
+        Ok(Player {
+            replay: self,
+            reader: self.reader()?,
+            pauses: Pauses::default(),
+            due: Instant::now(),
+            number: 0,
+            left_out: 0,
+        })
+    }
+
+    fn plays(&self, frame: &Frame<'_>) -> bool {
+        let header = frame.header();
+        self.vehicles.contains(&header.system) && !COMMANDS.contains(&header.message_id)
+    }
+}
+
+/// Waits where too much waits already.
+async fn send(writer: &LinkWriter, bytes: &[u8]) -> Result<(), LinkError> {
+    match writer.send(bytes) {
+        Err(LinkError::QueueFull { .. }) => {
+            writer.flush().await?;
+            writer.send(bytes)
+        }
+        sent => sent,
+    }
+}
+
+fn discard(received: Received, counts: &mut ReplayCounts) {
+    counts.discarded += u64::from(matches!(received, Received::Frame(_)));
+}
+
+/// Goes through the log and says when each frame is due.
+struct Player<'a> {
+    replay: &'a Replay,
+    reader: TlogReader<File>,
+    pauses: Pauses,
+    due: Instant,
+    number: u64,
+    left_out: u64,
+}
+
+impl Player<'_> {
+    /// When the next frame is due, its stamp, its bytes. A log that fails midway ends there: it was read
+    /// whole before.
+    fn next(&mut self) -> Option<(Instant, u64, Vec<u8>)> {
+        loop {
+            let record = self.reader.next_record().ok()??;
+            self.number += 1;
+            let pause = self.pauses.next(record.stamp_us);
+            if self.replay.speed > 0.0 {
+                self.due += pause.div_f64(self.replay.speed);
+            }
+            if self.replay.plays(&record.frame) {
+                return Some((self.due, record.stamp_us, record.frame.bytes().to_vec()));
+            }
+            self.left_out += 1;
+        }
+    }
+}
+
+/// From stamps to the pauses between them.
+#[derive(Debug, Default)]
+struct Pauses {
+    last_us: Option<u64>,
+}
+
+impl Pauses {
+    fn next(&mut self, stamp_us: u64) -> Duration {
+        let step = self
+            .last_us
+            .and_then(|last| stamp_us.checked_sub(last))
+            .map_or(Duration::ZERO, Duration::from_micros);
+        self.last_us = Some(stamp_us);
+        if step > SEAM { Duration::ZERO } else { step }
+    }
+}

@@ -1,0 +1,47 @@
+//! What the halves of a link and its task share.
+
+use std::net::SocketAddr;
+use std::sync::atomic::{AtomicBool, AtomicUsize};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use mavlink::dialects::ardupilotmega::MavMessage;
+use tokio::sync::{Notify, watch};
+
+use super::stats::LinkStats;
+
+/// What the halves of a link and its task share.
+#[derive(Debug, Default)]
+pub(super) struct Shared {
+    /// the address, for messages
+    pub name: String,
+    /// where a socket listens or sends from
+    pub local: Option<SocketAddr>,
+    /// frames given now are sent
+    pub open: AtomicBool,
+    /// frames and events that wait for the reader
+    pub waiting: AtomicUsize,
+    /// the slot of which only the latest message matters was filled
+    pub filled: Notify,
+    /// all writers are gone and all that they gave is sent
+    pub drained: Notify,
+    latest: Mutex<Option<Box<MavMessage>>>,
+    stats: Mutex<LinkStats>,
+}
+
+impl Shared {
+    pub fn new(name: String, local: Option<SocketAddr>) -> Self {
+        Self { name, local, ..Self::default() }
+    }
+
+    /// No code holding these locks panics; a poisoned one would still hold whole values.
+    pub fn stats(&self) -> MutexGuard<'_, LinkStats> {
+        self.stats.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub fn latest(&self) -> MutexGuard<'_, Option<Box<MavMessage>>> {
+        self.latest.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Held by the halves of a link: when the last is gone the task ends.
+pub(super) type Alive = Arc<watch::Sender<()>>;

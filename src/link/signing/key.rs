@@ -1,0 +1,108 @@
+//! The secret.
+
+use std::fmt;
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use super::SigningError;
+
+const KEY_BYTES: usize = 32;
+
+/// The secret that signs. It is never shown.
+#[derive(Clone, PartialEq, Eq)]
+pub struct SigningKey([u8; KEY_BYTES]);
+
+impl fmt::Debug for SigningKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("SigningKey(..)")
+    }
+}
+
+impl SigningKey {
+    /// The key of these bytes.
+    #[must_use]
+    pub fn from_bytes(bytes: [u8; KEY_BYTES]) -> Self {
+        Self(bytes)
+    }
+
+    /// The key of a passphrase: its SHA-256, as Mission Planner, QGroundControl and MAVProxy do.
+    #[must_use]
+    pub fn from_passphrase(passphrase: &str) -> Self {
+        Self(Sha256::digest(passphrase.as_bytes()).into())
+    }
+
+    /// The key in a file, which holds one of
+    /// - 64 hexadecimal digits, white space around them does not count;
+    /// - 32 bytes, not all of them printable ASCII;
+    /// - any other UTF-8 text: a passphrase, without the line's end.
+    ///
+    /// # Errors
+    /// The file cannot be read or holds none of these.
+    pub fn read(path: &Path) -> Result<Self, SigningError> {
+        let bytes = std::fs::read(path).map_err(|source| SigningError::File {
+            what: "read",
+            path: path.into(),
+            source,
+        })?;
+        Self::parse(&bytes).map_err(|got| SigningError::Key { path: path.into(), got })
+    }
+
+    fn parse(bytes: &[u8]) -> Result<Self, &'static str> {
+        let printable = bytes.iter().all(|byte| matches!(byte, b' '..=b'~' | b'\r' | b'\n' | b'\t'));
+        if !printable && let Ok(raw) = <[u8; KEY_BYTES]>::try_from(bytes) {
+            return Ok(Self(raw));
+        }
+        let text = std::str::from_utf8(bytes).map_err(|_| "other bytes than 32, which are no text")?;
+        if let Some(key) = from_hex(text.trim()) {
+            return Ok(Self(key));
+        }
+        match text.trim_end_matches(['\r', '\n']) {
+            "" => Err("nothing"),
+            passphrase if passphrase.contains(['\r', '\n']) => Err("several lines"),
+            passphrase => Ok(Self::from_passphrase(passphrase)),
+        }
+    }
+
+    pub(super) fn bytes(&self) -> &[u8; KEY_BYTES] {
+        &self.0
+    }
+}
+
+fn from_hex(text: &str) -> Option<[u8; KEY_BYTES]> {
+    let digits = text.as_bytes();
+    if digits.len() != 2 * KEY_BYTES {
+        return None;
+    }
+    let mut key = [0; KEY_BYTES];
+    for (byte, pair) in key.iter_mut().zip(digits.chunks_exact(2)) {
+        let digit = |at: usize| char::from(pair[at]).to_digit(16).and_then(|digit| u8::try_from(digit).ok());
+        *byte = digit(0)? << 4 | digit(1)?;
+    }
+    Some(key)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_file_is_raw_hexadecimal_or_a_passphrase() {
+        let raw: [u8; 32] = std::array::from_fn(|index| u8::try_from(7 * index).unwrap());
+        assert_eq!(SigningKey::parse(&raw).unwrap(), SigningKey(raw));
+        let hex: String = raw.iter().map(|byte| format!("{byte:02x}")).collect();
+        assert_eq!(
+            SigningKey::parse(format!("  {}\n", hex.to_uppercase()).as_bytes()).unwrap(),
+            SigningKey(raw)
+        );
+        // SHA-256 of "abc", FIPS 180-2
+        let abc = from_hex("ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad").unwrap();
+        assert_eq!(SigningKey::parse(b"abc\r\n").unwrap(), SigningKey(abc));
+        let words = b"a passphrase of 32 characters ..";
+        assert_eq!((words.len(), SigningKey::parse(words).unwrap().0 == *words), (32, false));
+        for wrong in [&b""[..], b"\n", b"two\nlines\n", &[0xFF; 31]] {
+            assert!(SigningKey::parse(wrong).is_err(), "{wrong:?}");
+        }
+        assert_eq!(format!("{:?}", SigningKey(abc)), "SigningKey(..)");
+    }
+}

@@ -1,0 +1,66 @@
+//! Links over serial ports.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use serialport::{DataBits, FlowControl, Parity, StopBits};
+
+use super::super::incoming::Incoming;
+use super::super::outgoing::Outgoing;
+use super::backoff::Backoff;
+use super::threads::{self, Port};
+
+/// A call that waits longer returns, so that its thread can see whether it is still wanted.
+const CALL: Duration = Duration::from_millis(50);
+
+/// Opens a serial port, and opens it again.
+pub(in crate::link) struct Serial {
+    path: PathBuf,
+    baud: u32,
+    flow_control: bool,
+    first: Option<Port>,
+}
+
+impl std::fmt::Debug for Serial {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Serial").field("path", &self.path).field("baud", &self.baud).finish_non_exhaustive()
+    }
+}
+
+impl Serial {
+    pub fn open(path: &Path, baud: u32, flow_control: bool) -> io::Result<Self> {
+        let mut serial = Self { path: path.into(), baud, flow_control, first: None };
+        serial.first = Some(serial.port()?);
+        Ok(serial)
+    }
+
+    pub async fn serve(&mut self, incoming: &mut Incoming, outgoing: &mut Outgoing) {
+        let mut backoff = Backoff::new();
+        loop {
+            let port = self.first.take().map_or_else(|| self.port(), Ok);
+            if let Ok(port) = port {
+                backoff.reset();
+                outgoing.connected();
+                incoming.connected(self.path.display().to_string());
+                let why = threads::session(port, incoming, outgoing).await;
+                incoming.lost(why);
+                outgoing.discard();
+            }
+            backoff.wait().await;
+        }
+    }
+
+    fn port(&self) -> io::Result<Port> {
+        let flow = if self.flow_control { FlowControl::Hardware } else { FlowControl::None };
+        let reader = serialport::new(self.path.to_string_lossy(), self.baud)
+            .data_bits(DataBits::Eight)
+            .parity(Parity::None)
+            .stop_bits(StopBits::One)
+            .flow_control(flow)
+            .timeout(CALL)
+            .open()?;
+        let writer = reader.try_clone()?;
+        Ok(Port { reader: Box::new(reader), writer: Box::new(writer) })
+    }
+}

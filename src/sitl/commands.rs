@@ -1,0 +1,183 @@
+//! COMMAND_LONG and COMMAND_INT.
+
+use std::time::Duration;
+
+use super::autopilot::{Answer, Severity};
+use super::message::Message;
+use super::streams::{AUTOPILOT_VERSION, HEARTBEAT, HOME_POSITION, IntervalRefusal};
+use super::{AutopilotKind, Mode, Vehicle};
+use crate::log::Payload;
+use crate::units::whole;
+
+/// MAV_CMD.
+mod cmd {
+    pub(super) const LOITER_UNLIMITED: u16 = 17;
+    pub(super) const RETURN_TO_LAUNCH: u16 = 20;
+    pub(super) const LAND: u16 = 21;
+    pub(super) const TAKEOFF: u16 = 22;
+    pub(super) const DO_SET_MODE: u16 = 176;
+    pub(super) const DO_SET_HOME: u16 = 179;
+    pub(super) const DO_FLIGHT_TERMINATION: u16 = 185;
+    pub(super) const PREFLIGHT_REBOOT: u16 = 246;
+    pub(super) const ARM_DISARM: u16 = 400;
+    pub(super) const GET_HOME_POSITION: u16 = 410;
+    pub(super) const GET_MESSAGE_INTERVAL: u16 = 510;
+    pub(super) const SET_MESSAGE_INTERVAL: u16 = 511;
+    pub(super) const REQUEST_MESSAGE: u16 = 512;
+    pub(super) const REQUEST_CAPABILITIES: u16 = 520;
+}
+
+/// COMMAND_ACK
+const COMMAND_ACK: u32 = 77;
+/// MESSAGE_INTERVAL
+const MESSAGE_INTERVAL: u32 = 244;
+/// The parameter that forces arming and disarming.
+const FORCE: f64 = 21_196.0;
+/// MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
+const CUSTOM_MODE: i32 = 1;
+
+/// A command from a ground station.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Command {
+    number: u16,
+    target: (u8, u8),
+    /// param1 to param4 and param7, the fifth here
+    params: [f64; 5],
+}
+
+impl Command {
+    pub(super) fn long(payload: Payload) -> Self {
+        let [p1, p2, p3, p4, _, _, p7] = payload.f32s(0);
+        Self {
+            number: payload.u16(28),
+            target: (payload.u8(30), payload.u8(31)),
+            params: [p1, p2, p3, p4, p7],
+        }
+    }
+
+    pub(super) fn int(payload: Payload) -> Self {
+        let [p1, p2, p3, p4] = payload.f32s(0);
+        Self {
+            number: payload.u16(28),
+            target: (payload.u8(30), payload.u8(31)),
+            params: [p1, p2, p3, p4, payload.f32(24)],
+        }
+    }
+}
+
+/// A parameter as a whole number that is not negative.
+fn id_of(param: f64) -> u32 {
+    u32::try_from(whole(param)).unwrap_or(u32::MAX)
+}
+
+impl Vehicle {
+    /// Does what a command asks and acknowledges it.
+    pub(super) fn command(&mut self, link: usize, command: &Command, sender: (u8, u8), now: Duration) {
+        if !self.is_for_us(command.target) {
+            return;
+        }
+        let answer = self.obey(link, command, now);
+        self.acknowledge(link, command.number, answer, sender);
+        if command.number == cmd::PREFLIGHT_REBOOT && answer == Answer::Accepted {
+            self.reboot();
+        }
+    }
+
+    pub(super) fn acknowledge(&mut self, link: usize, number: u16, answer: Answer, to: (u8, u8)) {
+        let message = Message::new(COMMAND_ACK).u16(number).u8(answer as u8).u8(0).i32(0).u8(to.0).u8(to.1);
+        self.send(link, &message);
+    }
+
+    fn obey(&mut self, link: usize, command: &Command, now: Duration) -> Answer {
+        let [p1, p2, p3, p4, p7] = command.params;
+        match command.number {
+            cmd::ARM_DISARM if p1 >= 0.5 => self.autopilot.arm(p2 == FORCE, now),
+            cmd::ARM_DISARM => self.autopilot.disarm(p2 == FORCE),
+            cmd::DO_SET_MODE => self.do_set_mode([p1, p2, p3], now),
+            cmd::TAKEOFF => self.autopilot.take_off(p7, now),
+            cmd::LAND => self.autopilot.set_mode(Mode::Land, now),
+            cmd::RETURN_TO_LAUNCH => self.autopilot.set_mode(Mode::Return, now),
+            cmd::LOITER_UNLIMITED => self.autopilot.set_mode(Mode::Hold, now),
+            cmd::DO_SET_HOME if p1 == 1.0 && self.autopilot.estimator.is_good(now) => {
+                self.autopilot.home_m = Some(self.autopilot.estimator.state.position_m);
+                Answer::Accepted
+            }
+            cmd::DO_FLIGHT_TERMINATION if p1 >= 0.5 => {
+                self.autopilot.switch_off("Terminated");
+                Answer::Accepted
+            }
+            cmd::PREFLIGHT_REBOOT if self.autopilot.is_armed() => Answer::Denied,
+            cmd::PREFLIGHT_REBOOT => Answer::Accepted,
+            cmd::SET_MESSAGE_INTERVAL => self.set_message_interval(link, id_of(p1), p2, [p3, p4, p7]),
+            cmd::GET_MESSAGE_INTERVAL => self.get_message_interval(link, id_of(p1)),
+            cmd::REQUEST_MESSAGE => self.request_message(link, id_of(p1)),
+            cmd::REQUEST_CAPABILITIES => self.request_message(link, AUTOPILOT_VERSION),
+            cmd::GET_HOME_POSITION => self.request_message(link, HOME_POSITION),
+            _ => Answer::Unsupported,
+        }
+    }
+
+    /// PX4: main and sub mode in the second and third parameter; ArduPilot: the mode's number in the second.
+    fn do_set_mode(&mut self, [flags, main, sub]: [f64; 3], now: Duration) -> Answer {
+        if whole(flags) & CUSTOM_MODE == 0 {
+            return Answer::Denied;
+        }
+        let custom_mode = match self.settings.autopilot {
+            AutopilotKind::Px4 => (id_of(main) & 0xFF) << 16 | (id_of(sub) & 0xFF) << 24,
+            AutopilotKind::ArduPilot(_) => id_of(main),
+        };
+        self.set_custom_mode(custom_mode, now)
+    }
+
+    /// A mode by its number in HEARTBEAT.
+    pub(super) fn set_custom_mode(&mut self, custom_mode: u32, now: Duration) -> Answer {
+        let kind = self.settings.autopilot;
+        match Mode::from_custom_mode(kind, custom_mode) {
+            Some(mode) => self.autopilot.set_mode(mode, now),
+            None if kind.is_px4() => Answer::TemporarilyRejected,
+            None => Answer::Failed,
+        }
+    }
+
+    fn set_message_interval(&mut self, link: usize, id: u32, interval_us: f64, unused: [f64; 3]) -> Answer {
+        let px4 = self.settings.autopilot.is_px4();
+        // the parameters that mean nothing yet must be zero or absent; ArduPilot looks at the third alone
+        let looked_at = if px4 { &unused[..] } else { &unused[..1] };
+        if looked_at.iter().any(|param| *param != 0.0 && !param.is_nan()) {
+            return if px4 { Answer::Failed } else { Answer::Denied };
+        }
+        if id == HEARTBEAT {
+            return if px4 { Answer::Failed } else { Answer::Denied };
+        }
+        let Some(streams) = self.links.get_mut(link).map(|link| &mut link.streams) else {
+            return Answer::Failed;
+        };
+        match streams.set_interval(id, interval_us) {
+            Ok(()) => Answer::Accepted,
+            Err(_) if px4 => Answer::Failed,
+            Err(refusal) => {
+                if refusal == IntervalRefusal::UnknownMessage {
+                    self.autopilot.say(Severity::Info, format!("No ap_message for mavlink id ({id})"));
+                }
+                Answer::Denied
+            }
+        }
+    }
+
+    fn get_message_interval(&mut self, link: usize, id: u32) -> Answer {
+        // zero: not available
+        let interval_us = self.links.get(link).and_then(|link| link.streams.interval_us(id)).unwrap_or(0);
+        let id = u16::try_from(id).unwrap_or(u16::MAX);
+        self.send(link, &Message::new(MESSAGE_INTERVAL).i32(interval_us).u16(id));
+        Answer::Accepted
+    }
+
+    fn request_message(&mut self, link: usize, id: u32) -> Answer {
+        let known = self.links.get(link).is_some_and(|link| link.streams.has(id)) || id == HEARTBEAT;
+        if !known {
+            return if self.settings.autopilot.is_px4() { Answer::Denied } else { Answer::Failed };
+        }
+        self.send_now(link, id);
+        Answer::Accepted
+    }
+}

@@ -1,0 +1,184 @@
+//! SET_POSITION_TARGET_LOCAL_NED as each autopilot reads it.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::AutopilotKind;
+use crate::frames::{Body, World, body_from_frd, world_from_ned, yaw_from_ned};
+use crate::log::Payload;
+use crate::physics::State;
+
+/// What a setpoint asks for, world; what is not asked for is NaN or `None`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Demand {
+    /// m
+    pub(super) position_m: Vector3<f64>,
+    /// m/s
+    pub(super) velocity_m_s: Vector3<f64>,
+    /// m/s^2
+    pub(super) acceleration_m_s2: Vector3<f64>,
+    /// about up
+    pub(super) yaw_rad: Option<f64>,
+    /// about up
+    pub(super) yaw_rate_rad_s: Option<f64>,
+}
+
+/// Why a message is no setpoint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Refusal {
+    /// dropped in silence
+    Dropped,
+    /// PX4 says which frame it does not support
+    Frame(u8),
+    /// ArduPilot stops the vehicle
+    Stop,
+}
+
+/// MAV_FRAME.
+const LOCAL_NED: u8 = 1;
+const LOCAL_OFFSET_NED: u8 = 7;
+const BODY_NED: u8 = 8;
+const BODY_OFFSET_NED: u8 = 9;
+
+/// type_mask: 1 means ignore.
+const POSITION: u16 = 0b111;
+const VELOCITY: u16 = 0b111 << 3;
+const ACCELERATION: u16 = 0b111 << 6;
+const FORCE: u16 = 1 << 9;
+const YAW: u16 = 1 << 10;
+const YAW_RATE: u16 = 1 << 11;
+
+/// The message's fields as they come.
+struct Fields {
+    frame: u8,
+    mask: u16,
+    position: [f64; 3],
+    velocity: [f64; 3],
+    acceleration: [f64; 3],
+    yaw_rad: Option<f64>,
+    yaw_rate_rad_s: Option<f64>,
+}
+
+impl Fields {
+    fn read(payload: Payload) -> Self {
+        let mask = payload.u16(48);
+        let kept = |bit: u16, value: f64| (mask & bit == 0 && value.is_finite()).then(|| yaw_from_ned(value));
+        Self {
+            frame: payload.u8(52),
+            mask,
+            position: payload.f32s(4),
+            velocity: payload.f32s(16),
+            acceleration: payload.f32s(28),
+            yaw_rad: kept(YAW, payload.f32(40)),
+            yaw_rate_rad_s: kept(YAW_RATE, payload.f32(44)),
+        }
+    }
+}
+
+impl Demand {
+    /// What the message asks of a vehicle that is in `estimate`.
+    pub(super) fn read(kind: AutopilotKind, payload: Payload, estimate: &State) -> Result<Self, Refusal> {
+        let fields = Fields::read(payload);
+        match kind {
+            AutopilotKind::Px4 => px4(&fields, estimate),
+            AutopilotKind::ArduPilot(_) => ardupilot(&fields, estimate),
+        }
+    }
+
+    /// PX4 flies it: each axis has a position, velocity or acceleration, and the horizontal ones come in
+    /// pairs.
+    pub(super) fn is_complete(&self) -> bool {
+        let has = |axis: usize| {
+            [&self.position_m, &self.velocity_m_s, &self.acceleration_m_s2].map(|v| v[axis].is_finite())
+        };
+        (0..3).all(|axis| has(axis).contains(&true)) && has(0) == has(1)
+    }
+}
+
+fn heading(estimate: &State) -> UnitQuaternion<f64> {
+    UnitQuaternion::from_euler_angles(0.0, 0.0, estimate.attitude.euler_angles().2)
+}
+
+/// PX4: each axis alone is ignored or not; position, velocity and acceleration are honoured together.
+fn px4(fields: &Fields, estimate: &State) -> Result<Demand, Refusal> {
+    if fields.mask & FORCE != 0 {
+        return Err(Refusal::Dropped);
+    }
+    let masked = |first_bit: u16, values: [f64; 3]| {
+        let mut values = values;
+        for (axis, value) in values.iter_mut().enumerate() {
+            if fields.mask & (first_bit << axis) != 0 {
+                *value = f64::NAN;
+            }
+        }
+        values
+    };
+    let position = masked(1, fields.position);
+    let velocity = masked(1 << 3, fields.velocity);
+    let acceleration = masked(1 << 6, fields.acceleration);
+    let (position_m, velocity_m_s, acceleration_m_s2) = match fields.frame {
+        LOCAL_NED => (world_from_ned(position).0, world_from_ned(velocity).0, world_from_ned(acceleration).0),
+        BODY_NED => {
+            let turn = heading(estimate);
+            let turned = |values| turn * body_from_frd(values).0;
+            (Vector3::repeat(f64::NAN), turned(velocity), turned(acceleration))
+        }
+        other => return Err(Refusal::Frame(other)),
+    };
+    let nothing = [position_m, velocity_m_s, acceleration_m_s2].iter().flatten().all(|value| value.is_nan());
+    if nothing {
+        return Err(Refusal::Dropped);
+    }
+    let (yaw_rad, yaw_rate_rad_s) = (fields.yaw_rad, fields.yaw_rate_rad_s);
+    Ok(Demand { position_m, velocity_m_s, acceleration_m_s2, yaw_rad, yaw_rate_rad_s })
+}
+
+/// ArduPilot: any bit of a group ignores the whole vector; what it cannot use stops the vehicle.
+fn ardupilot(fields: &Fields, estimate: &State) -> Result<Demand, Refusal> {
+    let frame = fields.frame;
+    if fields.mask & FORCE != 0 || !matches!(frame, LOCAL_NED | LOCAL_OFFSET_NED | BODY_NED | BODY_OFFSET_NED)
+    {
+        return Err(Refusal::Stop);
+    }
+    let body = matches!(frame, BODY_NED | BODY_OFFSET_NED);
+    let turn = heading(estimate);
+    let vector = |group: u16, values: [f64; 3]| {
+        if fields.mask & group != 0 {
+            return Ok(Vector3::repeat(f64::NAN));
+        }
+        if values.iter().any(|value| !value.is_finite()) {
+            return Err(Refusal::Stop);
+        }
+        Ok(if body {
+            turn * body_from_frd(values).0
+        } else {
+            let World(vector) = world_from_ned(values);
+            vector
+        })
+    };
+    let mut position_m = vector(POSITION, fields.position)?;
+    if frame != LOCAL_NED {
+        position_m += estimate.position_m;
+    }
+    let velocity_m_s = vector(VELOCITY, fields.velocity)?;
+    let mut acceleration_m_s2 = vector(ACCELERATION, fields.acceleration)?;
+    let has = |vector: &Vector3<f64>| vector.x.is_finite();
+    match (has(&position_m), has(&velocity_m_s), has(&acceleration_m_s2)) {
+        (false, false, false) => return Err(Refusal::Stop),
+        // an acceleration counts with a velocity, or alone
+        (true, false, true) => acceleration_m_s2 = Vector3::repeat(f64::NAN),
+        _ => {}
+    }
+    let turned = if body { estimate.attitude.euler_angles().2 } else { 0.0 };
+    let yaw_rad = fields.yaw_rad.map(|yaw| yaw + turned);
+    Ok(Demand { position_m, velocity_m_s, acceleration_m_s2, yaw_rad, yaw_rate_rad_s: fields.yaw_rate_rad_s })
+}
+
+/// A world position as MAVLink has it.
+pub(super) fn ned(vector: Vector3<f64>) -> [f64; 3] {
+    crate::frames::ned_from_world(World(vector))
+}
+
+/// A body vector as MAVLink has it.
+pub(super) fn frd(vector: Vector3<f64>) -> [f64; 3] {
+    crate::frames::frd_from_body(Body(vector))
+}

@@ -1,0 +1,260 @@
+//! From a mode to the setpoint of the cascade.
+
+use std::time::Duration;
+
+use nalgebra::Vector3;
+
+use super::demand::Demand;
+use super::shaper::{Shaper, ShaperLimits, Wish};
+use super::tuning::Tuning;
+use crate::physics::State;
+use crate::simulate::{AutopilotGains, Setpoint};
+
+/// What the vehicle is about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Task {
+    /// stops, stays
+    Hold,
+    /// straight up to this height, local frame, m
+    Takeoff(f64),
+    /// down until it stands
+    Land,
+    /// home, then down
+    Return(Leg),
+    /// PX4: the setpoint goes straight to the controller
+    Direct(Demand),
+    /// ArduPilot: the setpoint is shaped first; when it came
+    Shaped(Demand, Duration),
+}
+
+/// Parts of a return.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Leg {
+    /// to this height, m
+    Climb(f64),
+    /// over home at this height, m
+    Across(f64),
+}
+
+/// Speed above which the nose turns to where the vehicle flies, m/s.
+const TURNING_SPEED_M_S: f64 = 1.0;
+/// Rate at which the heading follows, rad/s.
+const TURNING_RATE_RAD_S: f64 = 1.05;
+/// As near counts as arrived, m.
+const ARRIVED_M: f64 = 0.25;
+/// Above this height over home the landing descends faster, m.
+const SLOW_BELOW_M: f64 = 10.0;
+
+/// Keeps the reference of the task at hand.
+#[derive(Debug)]
+pub(super) struct Guidance {
+    pub(super) task: Task,
+    shaper: Shaper,
+    yaw_rad: f64,
+    gains: AutopilotGains,
+}
+
+impl Guidance {
+    pub(super) fn new(state: &State, gains: AutopilotGains) -> Self {
+        Self {
+            task: Task::Hold,
+            shaper: Shaper::at(state.position_m, state.velocity_m_s),
+            yaw_rad: state.attitude.euler_angles().2,
+            gains,
+        }
+    }
+
+    /// Begins a task from where the vehicle is and as it moves.
+    pub(super) fn begin(&mut self, task: Task, state: &State) {
+        let shaped = |task: &Task| !matches!(task, Task::Direct(_));
+        if !(shaped(&self.task) && shaped(&task)) {
+            self.restart(state);
+        }
+        self.task = task;
+    }
+
+    /// The reference is where the vehicle is.
+    pub(super) fn restart(&mut self, state: &State) {
+        self.shaper = Shaper::at(state.position_m, state.velocity_m_s);
+        self.yaw_rad = state.attitude.euler_angles().2;
+    }
+
+    /// The position estimate jumped, and what is stored with it.
+    pub(super) fn shift(&mut self, by_m: Vector3<f64>) {
+        self.shaper.position_m += by_m;
+        if let Task::Direct(demand) | Task::Shaped(demand, _) = &mut self.task {
+            demand.position_m += by_m;
+        }
+    }
+
+    /// The task wants to leave the ground.
+    pub(super) fn wants_up(&self, state: &State) -> bool {
+        match &self.task {
+            Task::Takeoff(height_m) => *height_m > state.position_m.z,
+            Task::Direct(demand) => {
+                demand.position_m.z - state.position_m.z > 0.2
+                    || demand.velocity_m_s.z > 0.1
+                    || (demand.position_m.z.is_nan()
+                        && demand.velocity_m_s.z.is_nan()
+                        && demand.acceleration_m_s2.z > 0.5)
+            }
+            _ => false,
+        }
+    }
+
+    /// The task wants to go down, at the latest here.
+    pub(super) fn wants_down(&self, setpoint: &Setpoint, state: &State) -> bool {
+        matches!(self.task, Task::Land)
+            || setpoint.velocity_m_s.z < -0.1
+            || setpoint.position_m.z - state.position_m.z < -0.3
+    }
+
+    /// A takeoff has reached its height.
+    pub(super) fn has_taken_off(&self, state: &State) -> bool {
+        matches!(self.task, Task::Takeoff(height_m) if state.position_m.z > height_m - ARRIVED_M)
+    }
+
+    /// The setpoint for the period that begins now.
+    pub(super) fn setpoint(
+        &mut self,
+        state: &State,
+        home_m: &Vector3<f64>,
+        (tuning, now): (&Tuning, Duration),
+        period_s: f64,
+    ) -> Setpoint {
+        if let Task::Direct(demand) = self.task {
+            return self.direct(&demand, state, &tuning.limits, period_s);
+        }
+        self.next_leg(state, home_m);
+        let (wish, limits) = self.wish(state, home_m, (tuning, now));
+        self.shaper.step(&wish, &limits, period_s);
+        let yaw_rate_rad_s = self.turn(tuning, now, period_s);
+        Setpoint {
+            position_m: self.shaper.position_m,
+            velocity_m_s: self.shaper.velocity_m_s,
+            acceleration_m_s2: self.shaper.acceleration_m_s2,
+            yaw_rad: self.yaw_rad,
+            yaw_rate_rad_s,
+        }
+    }
+
+    fn next_leg(&mut self, state: &State, home_m: &Vector3<f64>) {
+        match self.task {
+            Task::Return(Leg::Climb(height_m)) if state.position_m.z > height_m - ARRIVED_M => {
+                self.task = Task::Return(Leg::Across(height_m));
+            }
+            Task::Return(Leg::Across(_)) if (state.position_m - home_m).xy().norm() < ARRIVED_M => {
+                self.task = Task::Land;
+            }
+            _ => {}
+        }
+    }
+
+    fn wish(
+        &self,
+        state: &State,
+        home_m: &Vector3<f64>,
+        (tuning, now): (&Tuning, Duration),
+    ) -> (Wish, ShaperLimits) {
+        let mut limits = tuning.limits;
+        let zero = Vector3::zeros();
+        let mut wish =
+            Wish { position_m: Vector3::repeat(f64::NAN), velocity_m_s: zero, acceleration_m_s2: zero };
+        match self.task {
+            Task::Hold | Task::Direct(_) => {}
+            Task::Takeoff(height_m) => {
+                limits.climb_m_s = tuning.takeoff_speed_m_s;
+                wish.position_m.z = height_m;
+            }
+            Task::Land => {
+                let high = state.position_m.z - home_m.z > SLOW_BELOW_M;
+                let speed = if high { tuning.limits.descent_m_s } else { tuning.land_speed_m_s };
+                wish.velocity_m_s.z = -speed.max(tuning.land_speed_m_s);
+            }
+            Task::Return(Leg::Climb(height_m)) => wish.position_m.z = height_m,
+            Task::Return(Leg::Across(height_m)) => {
+                wish.position_m = Vector3::new(home_m.x, home_m.y, height_m);
+            }
+            Task::Shaped(demand, came) => {
+                let stale = now.saturating_sub(came) > tuning.setpoint_timeout;
+                wish = shaped_wish(&demand, stale, &self.shaper);
+            }
+        }
+        (wish, limits)
+    }
+
+    /// The heading goes on; returns the rate that is fed forward, rad/s.
+    fn turn(&mut self, tuning: &Tuning, now: Duration, period_s: f64) -> f64 {
+        let speed = self.shaper.velocity_m_s.xy();
+        match self.task {
+            Task::Shaped(Demand { yaw_rad: Some(yaw_rad), yaw_rate_rad_s, .. }, _) => {
+                self.yaw_rad = yaw_rad;
+                yaw_rate_rad_s.unwrap_or(0.0)
+            }
+            Task::Shaped(Demand { yaw_rate_rad_s: Some(rate), .. }, came)
+                if now.saturating_sub(came) <= tuning.setpoint_timeout =>
+            {
+                self.yaw_rad += rate * period_s;
+                rate
+            }
+            Task::Shaped(Demand { yaw_rate_rad_s: None, .. }, _) | Task::Return(_)
+                if tuning.yaw_follows_path && speed.norm() > TURNING_SPEED_M_S =>
+            {
+                let off = speed.y.atan2(speed.x) - self.yaw_rad;
+                let off = off.sin().atan2(off.cos());
+                let most = TURNING_RATE_RAD_S * period_s;
+                self.yaw_rad += off.clamp(-most, most);
+                0.0
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// PX4: `v = v_ff + P (p - p_now)` within the speed limits; an axis without position follows its velocity,
+    /// one with neither its acceleration alone.
+    fn direct(&mut self, demand: &Demand, state: &State, limits: &ShaperLimits, period_s: f64) -> Setpoint {
+        let mut velocity = Vector3::zeros();
+        for axis in 0..3 {
+            let ahead = demand.velocity_m_s[axis];
+            let back = (demand.position_m[axis] - state.position_m[axis]) * self.gains.position[axis];
+            velocity[axis] = match (back.is_nan(), ahead.is_nan()) {
+                (false, false) => back + ahead,
+                (false, true) => back,
+                (true, false) => ahead,
+                (true, true) => state.velocity_m_s[axis],
+            };
+        }
+        let level = velocity.xy().cap_magnitude(self.gains.speed_max_m_s);
+        let climb = velocity.z.clamp(-limits.descent_m_s, limits.climb_m_s);
+        match (demand.yaw_rad, demand.yaw_rate_rad_s) {
+            (Some(yaw_rad), _) => self.yaw_rad = yaw_rad,
+            (None, Some(rate)) => self.yaw_rad += rate * period_s,
+            (None, None) => {}
+        }
+        Setpoint {
+            // the position error is in the velocity already
+            position_m: state.position_m,
+            velocity_m_s: Vector3::new(level.x, level.y, climb),
+            acceleration_m_s2: demand.acceleration_m_s2.map(|a| if a.is_nan() { 0.0 } else { a }),
+            yaw_rad: self.yaw_rad,
+            yaw_rate_rad_s: demand.yaw_rate_rad_s.unwrap_or(0.0),
+        }
+    }
+}
+
+/// ArduPilot: with position the velocity and acceleration are fed forward; after GUID_TIMEOUT both are zero
+/// and the position is kept.
+fn shaped_wish(demand: &Demand, stale: bool, shaper: &Shaper) -> Wish {
+    let given = |vector: &Vector3<f64>| vector.x.is_finite() && !stale;
+    let has_position = demand.position_m.x.is_finite();
+    let velocity_m_s = if given(&demand.velocity_m_s) {
+        demand.velocity_m_s
+    } else if given(&demand.acceleration_m_s2) && !has_position {
+        shaper.velocity_m_s
+    } else {
+        Vector3::zeros()
+    };
+    let acceleration_m_s2 =
+        if given(&demand.acceleration_m_s2) { demand.acceleration_m_s2 } else { Vector3::zeros() };
+    Wish { position_m: demand.position_m, velocity_m_s, acceleration_m_s2 }
+}

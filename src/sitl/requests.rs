@@ -1,0 +1,161 @@
+//! Messages from a ground station, by their fields' places on the wire: an enumeration value that the dialect
+//! does not know loses nothing.
+
+use std::time::Duration;
+
+use super::Vehicle;
+use super::autopilot::Severity;
+use super::commands::Command;
+use super::message::Message;
+use super::mission::{self, FENCE, MissionResult};
+use super::telemetry::Telemetry;
+use crate::log::{Frame, Payload};
+
+/// Messages that are listened to.
+mod id {
+    pub(super) const HEARTBEAT: u32 = 0;
+    pub(super) const PING: u32 = 4;
+    pub(super) const SET_MODE: u32 = 11;
+    pub(super) const PARAM_REQUEST_READ: u32 = 20;
+    pub(super) const PARAM_REQUEST_LIST: u32 = 21;
+    pub(super) const PARAM_SET: u32 = 23;
+    pub(super) const MISSION_REQUEST_LIST: u32 = 43;
+    pub(super) const MISSION_COUNT: u32 = 44;
+    pub(super) const MISSION_REQUEST_INT: u32 = 51;
+    pub(super) const REQUEST_DATA_STREAM: u32 = 66;
+    pub(super) const COMMAND_INT: u32 = 75;
+    pub(super) const COMMAND_LONG: u32 = 76;
+    pub(super) const SET_POSITION_TARGET_LOCAL_NED: u32 = 84;
+    pub(super) const TIMESYNC: u32 = 111;
+}
+
+/// MAV_TYPE_GCS
+const GROUND_STATION: u8 = 6;
+
+impl Vehicle {
+    /// One checked frame of another system.
+    pub(super) fn handle(&mut self, link: usize, frame: &Frame, now: Duration) {
+        let header = frame.header();
+        let payload = frame.payload();
+        // a system id beyond eight bits cannot be answered by its number
+        let sender = (u8::try_from(header.system.0).unwrap_or(0), header.component.0);
+        match header.message_id {
+            id::HEARTBEAT => self.heartbeat_of(link, frame, sender, now),
+            id::COMMAND_LONG => self.command(link, &Command::long(payload), sender, now),
+            id::COMMAND_INT => self.command(link, &Command::int(payload), sender, now),
+            id::SET_MODE if payload.u8(4) == self.settings.system => {
+                let answer = self.set_custom_mode(payload.u32(0), now);
+                // ArduPilot acknowledges the message, PX4 the command that it becomes
+                let number = if self.settings.autopilot.is_px4() { 176 } else { 11 };
+                self.acknowledge(link, number, answer, sender);
+            }
+            id::SET_POSITION_TARGET_LOCAL_NED if self.is_for_us((payload.u8(50), payload.u8(51))) => {
+                self.autopilot.take_setpoint(payload, now);
+            }
+            id::PARAM_REQUEST_LIST if self.is_for_us((payload.u8(0), payload.u8(1))) => {
+                if let Some(link) = self.links.get_mut(link) {
+                    link.start_download();
+                }
+            }
+            id::PARAM_REQUEST_READ if self.is_for_us((payload.u8(2), payload.u8(3))) => {
+                self.read_parameter(link, payload);
+            }
+            id::PARAM_SET if self.is_for_us((payload.u8(4), payload.u8(5))) => {
+                self.set_parameter(link, payload);
+            }
+            id::REQUEST_DATA_STREAM if !self.settings.autopilot.is_px4() => {
+                self.request_data_stream(link, payload);
+            }
+            id::TIMESYNC if payload.u64(0) == 0 => {
+                let asked = i64::from_le_bytes(payload.u64(8).to_le_bytes());
+                self.send(link, &Telemetry::timesync_answer(now, asked, sender));
+            }
+            id::PING if payload.u8(12) == 0 => {
+                let answer =
+                    Message::new(id::PING).u64(payload.u64(0)).u32(payload.u32(8)).u8(sender.0).u8(sender.1);
+                self.send(link, &answer);
+            }
+            id::MISSION_REQUEST_LIST | id::MISSION_REQUEST_INT | id::MISSION_COUNT => {
+                self.mission(link, header.message_id, payload, sender);
+            }
+            _ => {}
+        }
+    }
+
+    /// A ground station's heartbeat keeps its failsafe quiet, and ArduPilot passes it on to its other links.
+    fn heartbeat_of(&mut self, link: usize, frame: &Frame, (system, _): (u8, u8), now: Duration) {
+        if frame.payload().u8(4) == GROUND_STATION {
+            self.autopilot.ground_station_seen(system, now);
+        }
+        if !self.settings.autopilot.is_px4() {
+            let bytes = frame.bytes().to_vec();
+            self.pass_on(&bytes, Some(link));
+        }
+    }
+
+    fn read_parameter(&mut self, link: usize, payload: Payload) {
+        let index = payload.i16(0);
+        let at = match usize::try_from(index) {
+            Ok(index) => Some(index),
+            Err(_) => self.parameters.find(&payload.text(4, 16)),
+        };
+        if let Some(message) = at.and_then(|at| self.parameters.message(at)) {
+            self.send(link, &message);
+        }
+    }
+
+    fn set_parameter(&mut self, link: usize, payload: Payload) {
+        let name = payload.text(6, 16);
+        let px4 = self.settings.autopilot.is_px4();
+        let Some(at) = self.parameters.find(&name) else {
+            if px4 {
+                self.autopilot.say(Severity::Error, format!("unknown param: {name}"));
+            }
+            return;
+        };
+        let Some(value) = self.parameters.decode(at, payload.u8(22), payload) else {
+            if px4 {
+                self.autopilot.say(Severity::Error, format!("param types mismatch param: {name}"));
+            }
+            return;
+        };
+        self.parameters.set(&name, value);
+        self.retune();
+        if let Some(message) = self.parameters.message(at) {
+            // ArduPilot tells every link
+            if px4 { self.send(link, &message) } else { self.broadcast(&message) }
+        }
+    }
+
+    fn request_data_stream(&mut self, link: usize, payload: Payload) {
+        if !self.is_for_us((payload.u8(2), payload.u8(3))) {
+            return;
+        }
+        let rate_hz = if payload.u8(5) == 0 { 0.0 } else { f64::from(payload.u16(0)) };
+        if let Some(link) = self.links.get_mut(link) {
+            link.streams.set_group(payload.u8(4), rate_hz);
+        }
+    }
+
+    /// A stored fence can be read; there is no mission and no rally point, and nothing can be stored.
+    fn mission(&mut self, link: usize, message_id: u32, payload: Payload, sender: (u8, u8)) {
+        let (at, kind_at) = match message_id {
+            id::MISSION_REQUEST_LIST => (0, 2),
+            _ => (2, 4),
+        };
+        if !self.is_for_us((payload.u8(at), payload.u8(at + 1))) {
+            return;
+        }
+        let kind = payload.u8(kind_at);
+        let fence = if kind == FENCE { &self.settings.fence[..] } else { &[] };
+        let answer = match message_id {
+            id::MISSION_REQUEST_LIST => mission::count(fence.len(), sender, kind),
+            id::MISSION_REQUEST_INT => match fence.get(usize::from(payload.u16(0))) {
+                Some(item) => mission::item(item, payload.u16(0), sender),
+                None => mission::acknowledged(MissionResult::InvalidSequence, sender, kind),
+            },
+            _ => mission::acknowledged(MissionResult::Unsupported, sender, kind),
+        };
+        self.send(link, &answer);
+    }
+}

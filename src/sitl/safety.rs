@@ -1,0 +1,222 @@
+//! Failsafes and the reasons for which the vehicle does not arm.
+
+use std::time::Duration;
+
+use super::Mode;
+use super::autopilot::{Autopilot, Severity};
+use super::battery::Charge;
+use super::guidance::Task;
+use super::tuning::Action;
+
+/// What the failsafes know.
+#[derive(Debug)]
+pub(super) struct Safety {
+    /// a pilot holds the sticks
+    transmitter: bool,
+    last_setpoint: Option<Duration>,
+    setpoints_lost: bool,
+    ground_seen: Option<Duration>,
+    ground_lost: bool,
+    position_lost: bool,
+    charge: Charge,
+}
+
+impl Safety {
+    pub(super) fn new(transmitter: bool) -> Self {
+        Self {
+            transmitter,
+            last_setpoint: None,
+            setpoints_lost: false,
+            ground_seen: None,
+            ground_lost: false,
+            position_lost: false,
+            charge: Charge::Ok,
+        }
+    }
+
+    pub(super) fn setpoint_came(&mut self, now: Duration) {
+        self.last_setpoint = Some(now);
+    }
+
+    pub(super) fn pilot_is_there(&mut self) {
+        self.transmitter = true;
+    }
+
+    pub(super) fn has_transmitter(&self) -> bool {
+        self.transmitter
+    }
+
+    /// A mode was chosen: what was lost in the one before no longer matters.
+    pub(super) fn mode_chosen(&mut self) {
+        self.setpoints_lost = false;
+    }
+
+    pub(super) fn disarmed(&mut self) {
+        self.setpoints_lost = false;
+        self.position_lost = false;
+    }
+
+    pub(super) fn charge(&self) -> Charge {
+        self.charge
+    }
+
+    /// Some failsafe is active.
+    pub(super) fn is_active(&self) -> bool {
+        self.setpoints_lost || self.position_lost || self.charge == Charge::Critical
+    }
+}
+
+impl Autopilot {
+    /// The last setpoint is young enough for OFFBOARD.
+    pub(super) fn has_signal(&self, now: Duration) -> bool {
+        let age = self.safety.last_setpoint.map(|last| now.saturating_sub(last));
+        age.is_some_and(|age| age <= self.tuning.setpoint_timeout)
+    }
+
+    /// A heartbeat of a ground station came in.
+    pub(super) fn ground_station_seen(&mut self, system: u8, now: Duration) {
+        if self.tuning.ground_system.is_some_and(|counts| counts != system) {
+            return;
+        }
+        self.safety.ground_seen = Some(now);
+        if std::mem::take(&mut self.safety.ground_lost) && self.kind.is_px4() {
+            self.say(Severity::Info, "Connection to ground control station regained");
+        }
+    }
+
+    /// Why it does not arm now, as the vehicle says it.
+    pub(super) fn arming_refusals(&self, now: Duration) -> Vec<String> {
+        let mut reasons = Vec::new();
+        let no_position = self.mode.needs_position() && !self.estimator.is_good(now);
+        if !self.kind.is_px4() {
+            if self.mode.refuses_arming() {
+                reasons.push(format!("Arm: {} mode not armable", self.mode.name(self.kind)));
+            }
+            if no_position {
+                reasons.push("Arm: Need Position Estimate".to_owned());
+            }
+            if self.safety.charge != Charge::Ok {
+                reasons.push("Arm: Battery 1 failsafe".to_owned());
+            }
+            return reasons;
+        }
+        if no_position {
+            reasons.push("Preflight Fail: ekf2 missing data".to_owned());
+        }
+        if self.mode == Mode::Guided && !self.has_signal(now) {
+            reasons.push("Preflight Fail: No offboard signal".to_owned());
+        }
+        if self.safety.charge != Charge::Ok {
+            reasons.push("Preflight Fail: low battery".to_owned());
+        }
+        if self.tuning.ground_loss != Action::Warn
+            && (self.safety.ground_seen.is_none() || self.safety.ground_lost)
+        {
+            reasons.push("Preflight Fail: No connection to the ground control station".to_owned());
+        }
+        if !reasons.is_empty() {
+            reasons.push("Arming denied: Resolve system health failures first".to_owned());
+        }
+        reasons
+    }
+
+    /// Everything that is lost, and what is done about it.
+    pub(super) fn check_safety(&mut self, now: Duration) {
+        self.check_battery();
+        self.check_ground(now);
+        if self.is_armed() && !self.is_landed() {
+            self.check_position(now);
+        }
+        if self.is_armed() && self.kind.is_px4() {
+            self.check_setpoints(now);
+        }
+    }
+
+    /// PX4: without setpoints it leaves OFFBOARD, and goes back to it by itself when they resume.
+    fn check_setpoints(&mut self, now: Duration) {
+        let lost = self.intended == Mode::Guided && !self.has_signal(now);
+        let was = std::mem::replace(&mut self.safety.setpoints_lost, lost);
+        if lost && !was {
+            self.say(Severity::Critical, "No offboard signal");
+            self.say(Severity::Critical, "Failsafe activated");
+            self.act(self.tuning.setpoint_loss);
+        } else if was && !lost && self.intended == Mode::Guided && !self.safety.position_lost {
+            self.enter(Mode::Guided);
+        }
+    }
+
+    fn check_position(&mut self, now: Duration) {
+        let lost = self.mode.needs_position() && !self.estimator.is_good(now);
+        if lost && !self.safety.position_lost {
+            self.safety.position_lost = true;
+            if self.kind.is_px4() {
+                self.say(Severity::Critical, "Failsafe activated");
+                self.act(Action::Descend(Mode::Land));
+            } else {
+                self.say(Severity::Critical, "EKF Failsafe: changed to LAND Mode");
+                self.act(Action::Enter(Mode::Land));
+            }
+        } else if self.estimator.is_good(now) {
+            self.safety.position_lost = false;
+        }
+    }
+
+    fn check_ground(&mut self, now: Duration) {
+        let silent = self.safety.ground_seen.map(|seen| now.saturating_sub(seen));
+        if self.safety.ground_lost || silent.is_none_or(|silent| silent <= self.tuning.ground_timeout) {
+            return;
+        }
+        self.safety.ground_lost = true;
+        if self.kind.is_px4() {
+            self.say(Severity::Warning, "Connection to ground control station lost");
+        } else if self.tuning.ground_loss != Action::Warn {
+            self.say(Severity::Warning, "GCS Failsafe");
+        }
+        if self.is_armed() {
+            self.act(self.tuning.ground_loss);
+        }
+    }
+
+    fn check_battery(&mut self) {
+        let charge = self.battery.charge(&self.tuning.battery_thresholds);
+        if charge <= self.safety.charge {
+            return;
+        }
+        self.safety.charge = charge;
+        let volts = self.battery.volts();
+        let (text, action) = match (self.kind.is_px4(), charge) {
+            (true, Charge::Critical) => {
+                ("Critical battery, return now".to_owned(), self.tuning.critical_battery)
+            }
+            (true, _) => ("Low battery, return advised".to_owned(), self.tuning.low_battery),
+            (false, Charge::Critical) => {
+                (format!("Battery 1 is critical {volts:.2}V used 0 mAh"), self.tuning.critical_battery)
+            }
+            (false, _) => (format!("Battery 1 is low {volts:.2}V used 0 mAh"), self.tuning.low_battery),
+        };
+        self.say(Severity::Warning, text);
+        if self.is_armed() {
+            self.act(action);
+        }
+    }
+
+    fn act(&mut self, action: Action) {
+        match action {
+            Action::Warn => {}
+            Action::Enter(mode) => {
+                // a failsafe of setpoints leaves what was asked for; every other one replaces it
+                if !self.safety.setpoints_lost {
+                    self.intended = mode;
+                }
+                self.enter(mode);
+            }
+            Action::Descend(mode) => {
+                let state = self.estimator.state;
+                self.mode = mode;
+                let held = self.safety.transmitter && mode.is_manual();
+                self.guidance.begin(if held { Task::Hold } else { Task::Land }, &state);
+            }
+            Action::Terminate => self.switch_off("Terminated"),
+        }
+    }
+}

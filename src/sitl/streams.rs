@@ -1,0 +1,322 @@
+//! Which messages each autopilot sends, unasked and asked, and what becomes of an interval that is asked for.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use super::{AutopilotKind, LinkRole};
+
+/// Messages of PX4 with rates on its ground-station link and on its onboard link, Hz.
+const PX4: &[(u32, f64, f64)] = &[
+    (SYS_STATUS, 1.0, 5.0),
+    (SYSTEM_TIME, 1.0, 1.0),
+    (PING, 0.1, 0.1),
+    (LINK_NODE_STATUS, 1.0, 1.0),
+    (GPS_RAW_INT, 1.0, 5.0),
+    (ATTITUDE, 50.0, 100.0),
+    (ATTITUDE_QUATERNION, 10.0, 50.0),
+    (LOCAL_POSITION_NED, 30.0, 30.0),
+    (GLOBAL_POSITION_INT, 10.0, 50.0),
+    (SERVO_OUTPUT_RAW, 50.0, 10.0),
+    (GPS_GLOBAL_ORIGIN, 1.0, 1.0),
+    (RC_CHANNELS, 5.0, 20.0),
+    (VFR_HUD, 4.0, 10.0),
+    (ATTITUDE_TARGET, 2.0, 10.0),
+    (POSITION_TARGET_LOCAL_NED, 1.5, 10.0),
+    (HIGHRES_IMU, 0.0, 50.0),
+    (TIMESYNC, 1.0, 10.0),
+    (ALTITUDE, 1.0, 10.0),
+    (BATTERY_STATUS, 0.5, 0.5),
+    (AUTOPILOT_VERSION, 0.0, 0.0),
+    (ESTIMATOR_STATUS, 0.5, 1.0),
+    (HOME_POSITION, 0.5, 1.0),
+    (EXTENDED_SYS_STATE, 1.0, 5.0),
+    (ESC_INFO, 1.0, 1.0),
+    (ESC_STATUS, 1.0, 10.0),
+    (ODOMETRY, 0.0, 30.0),
+    (ACTUATOR_OUTPUT_STATUS, 0.0, 0.0),
+    (CURRENT_EVENT_SEQUENCE, 0.5, 0.5),
+    (CURRENT_MODE, 0.5, 0.5),
+];
+
+/// Messages of ArduPilot; only TIMESYNC comes unasked.
+const ARDUPILOT: &[u32] = &[
+    SYS_STATUS,
+    SYSTEM_TIME,
+    GPS_RAW_INT,
+    RAW_IMU,
+    ATTITUDE,
+    ATTITUDE_QUATERNION,
+    LOCAL_POSITION_NED,
+    GLOBAL_POSITION_INT,
+    SERVO_OUTPUT_RAW,
+    GPS_GLOBAL_ORIGIN,
+    RC_CHANNELS,
+    VFR_HUD,
+    ATTITUDE_TARGET,
+    POSITION_TARGET_LOCAL_NED,
+    TIMESYNC,
+    SCALED_IMU2,
+    BATTERY_STATUS,
+    AUTOPILOT_VERSION,
+    EKF_STATUS_REPORT,
+    RPM,
+    HOME_POSITION,
+    EXTENDED_SYS_STATE,
+    ESC_TELEMETRY_1_TO_4,
+];
+
+/// Groups of REQUEST_DATA_STREAM.
+const GROUPS: &[(u8, &[u32])] = &[
+    (1, &[RAW_IMU, SCALED_IMU2]),
+    (2, &[SYS_STATUS, GPS_RAW_INT]),
+    (3, &[SERVO_OUTPUT_RAW, RC_CHANNELS]),
+    (6, &[LOCAL_POSITION_NED, GLOBAL_POSITION_INT]),
+    (10, &[ATTITUDE, ESC_TELEMETRY_1_TO_4]),
+    (11, &[VFR_HUD]),
+    (12, &[BATTERY_STATUS, EKF_STATUS_REPORT, SYSTEM_TIME, RPM]),
+];
+
+pub(super) const HEARTBEAT: u32 = 0;
+pub(super) const SYS_STATUS: u32 = 1;
+pub(super) const SYSTEM_TIME: u32 = 2;
+pub(super) const PING: u32 = 4;
+pub(super) const LINK_NODE_STATUS: u32 = 8;
+pub(super) const GPS_RAW_INT: u32 = 24;
+pub(super) const RAW_IMU: u32 = 27;
+pub(super) const ATTITUDE: u32 = 30;
+pub(super) const ATTITUDE_QUATERNION: u32 = 31;
+pub(super) const LOCAL_POSITION_NED: u32 = 32;
+pub(super) const GLOBAL_POSITION_INT: u32 = 33;
+pub(super) const SERVO_OUTPUT_RAW: u32 = 36;
+pub(super) const GPS_GLOBAL_ORIGIN: u32 = 49;
+pub(super) const RC_CHANNELS: u32 = 65;
+pub(super) const VFR_HUD: u32 = 74;
+pub(super) const ATTITUDE_TARGET: u32 = 83;
+pub(super) const POSITION_TARGET_LOCAL_NED: u32 = 85;
+pub(super) const HIGHRES_IMU: u32 = 105;
+pub(super) const TIMESYNC: u32 = 111;
+pub(super) const SCALED_IMU2: u32 = 116;
+pub(super) const ALTITUDE: u32 = 141;
+pub(super) const BATTERY_STATUS: u32 = 147;
+pub(super) const AUTOPILOT_VERSION: u32 = 148;
+pub(super) const EKF_STATUS_REPORT: u32 = 193;
+pub(super) const RPM: u32 = 226;
+pub(super) const ESTIMATOR_STATUS: u32 = 230;
+pub(super) const HOME_POSITION: u32 = 242;
+pub(super) const EXTENDED_SYS_STATE: u32 = 245;
+pub(super) const ESC_INFO: u32 = 290;
+pub(super) const ESC_STATUS: u32 = 291;
+pub(super) const ODOMETRY: u32 = 331;
+pub(super) const ACTUATOR_OUTPUT_STATUS: u32 = 375;
+pub(super) const CURRENT_EVENT_SEQUENCE: u32 = 411;
+pub(super) const CURRENT_MODE: u32 = 436;
+pub(super) const ESC_TELEMETRY_1_TO_4: u32 = 11_030;
+
+/// ArduPilot refuses whatever is faster than this share of its loop rate (-).
+const ARDUPILOT_LOAD: f64 = 0.8;
+/// How much longer ArduPilot's intervals are while parameters are downloaded.
+const DOWNLOAD_SLOWDOWN: u32 = 4;
+/// PX4 sends this much before the end of an interval: 0.3 of its loop's least delay of 1.5 ms.
+const PX4_EARLY: Duration = Duration::from_micros(450);
+/// PX4's position estimate is new at this period.
+const PX4_ESTIMATE_PERIOD: Duration = Duration::from_micros(8000);
+
+/// Why an interval is not set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum IntervalRefusal {
+    /// this autopilot never sends the message
+    UnknownMessage,
+    /// faster than it can
+    TooFast,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Stream {
+    id: u32,
+    /// none: switched off
+    interval: Option<Duration>,
+    default: Option<Duration>,
+    last: Option<Duration>,
+}
+
+/// The messages that one link carries by themselves.
+#[derive(Debug)]
+pub(super) struct Streams {
+    kind: AutopilotKind,
+    all: BTreeMap<u32, Stream>,
+}
+
+fn period(rate_hz: f64) -> Option<Duration> {
+    (rate_hz > 0.0).then(|| Duration::from_secs_f64(1.0 / rate_hz))
+}
+
+impl Streams {
+    pub(super) fn new(kind: AutopilotKind, role: LinkRole) -> Self {
+        let stream = |id: u32, rate_hz: f64| {
+            let default = period(rate_hz);
+            (id, Stream { id, interval: default, default, last: None })
+        };
+        let all = match kind {
+            AutopilotKind::Px4 => PX4
+                .iter()
+                .map(|(id, ground_hz, onboard_hz)| {
+                    stream(*id, if role == LinkRole::Onboard { *onboard_hz } else { *ground_hz })
+                })
+                .collect(),
+            AutopilotKind::ArduPilot(_) => {
+                ARDUPILOT.iter().map(|id| stream(*id, if *id == TIMESYNC { 0.1 } else { 0.0 })).collect()
+            }
+        };
+        Self { kind, all }
+    }
+
+    /// This autopilot can send the message.
+    pub(super) fn has(&self, id: u32) -> bool {
+        self.all.contains_key(&id)
+    }
+
+    /// MAV_CMD_SET_MESSAGE_INTERVAL: microseconds, 0 the default, negative off.
+    pub(super) fn set_interval(&mut self, id: u32, interval_us: f64) -> Result<(), IntervalRefusal> {
+        let kind = self.kind;
+        let stream = self.all.get_mut(&id).ok_or(IntervalRefusal::UnknownMessage)?;
+        if interval_us < 0.0 || !interval_us.is_finite() {
+            stream.interval = None;
+            return Ok(());
+        }
+        if interval_us < 1.0 {
+            stream.interval = stream.default;
+            return Ok(());
+        }
+        let asked = Duration::from_secs_f64(interval_us * 1e-6);
+        stream.interval = Some(match kind {
+            AutopilotKind::Px4 => asked,
+            AutopilotKind::ArduPilot(_) => ardupilot_interval(asked, kind)?,
+        });
+        Ok(())
+    }
+
+    /// REQUEST_DATA_STREAM: a group of messages at one rate, Hz.
+    pub(super) fn set_group(&mut self, group: u8, rate_hz: f64) {
+        for (number, ids) in GROUPS {
+            if group != 0 && group != *number {
+                continue;
+            }
+            for id in *ids {
+                let interval_us = if rate_hz > 0.0 { 1e6 / rate_hz } else { -1.0 };
+                // what is too fast keeps its rate
+                let _ = self.set_interval(*id, interval_us);
+            }
+        }
+    }
+
+    /// Microseconds between messages, -1 where it is off; `None` where there is no such message.
+    pub(super) fn interval_us(&self, id: u32) -> Option<i32> {
+        let stream = self.all.get(&id)?;
+        Some(stream.interval.map_or(-1, |interval| i32::try_from(interval.as_micros()).unwrap_or(i32::MAX)))
+    }
+
+    /// Messages that are due in this loop period; they count as sent.
+    pub(super) fn due(&mut self, now: Duration, downloading: bool) -> Vec<u32> {
+        let kind = self.kind;
+        let mut due = Vec::new();
+        for stream in self.all.values_mut() {
+            let is_due = match kind {
+                AutopilotKind::Px4 => px4_is_due(stream, now),
+                AutopilotKind::ArduPilot(_) => ardupilot_is_due(stream, now, downloading),
+            };
+            if is_due {
+                due.push(stream.id);
+            }
+        }
+        due
+    }
+}
+
+/// Whole milliseconds from 1 to 60000.
+fn ardupilot_interval(asked: Duration, kind: AutopilotKind) -> Result<Duration, IntervalRefusal> {
+    let cut = Duration::from_millis(u64::try_from(asked.as_millis()).unwrap_or(u64::MAX).clamp(1, 60_000));
+    if cut.mul_f64(ARDUPILOT_LOAD) < kind.loop_period() {
+        return Err(IntervalRefusal::TooFast);
+    }
+    Ok(cut)
+}
+
+/// ArduPilot: the first loop period in which the interval has passed since the last message.
+fn ardupilot_is_due(stream: &mut Stream, now: Duration, downloading: bool) -> bool {
+    let Some(mut interval) = stream.interval else { return false };
+    if downloading {
+        interval *= DOWNLOAD_SLOWDOWN;
+    }
+    let due = stream.last.is_none_or(|last| now.saturating_sub(last) >= interval);
+    if due {
+        stream.last = Some(now);
+    }
+    due
+}
+
+/// PX4 (`MavlinkStream::update`): on its loop's grid, keeping the phase of the interval while it is less than
+/// half an interval late.
+fn px4_is_due(stream: &mut Stream, now: Duration) -> bool {
+    let Some(interval) = stream.interval else { return false };
+    let is_estimate = matches!(stream.id, LOCAL_POSITION_NED | GLOBAL_POSITION_INT | ODOMETRY);
+    if is_estimate && !now.as_micros().is_multiple_of(PX4_ESTIMATE_PERIOD.as_micros()) {
+        return false;
+    }
+    let Some(last) = stream.last else {
+        stream.last = Some(now);
+        return true;
+    };
+    let Some(passed) = now.checked_sub(last) else { return false };
+    if passed + PX4_EARLY <= interval {
+        return false;
+    }
+    stream.last = Some(if passed < interval.mul_f64(1.5) { last + interval } else { now });
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sitl::ArduPilotRelease;
+
+    fn measured_hz(kind: AutopilotKind, id: u32, asked_hz: f64) -> Result<f64, IntervalRefusal> {
+        let mut streams = Streams::new(kind, LinkRole::GroundStation);
+        streams.set_interval(id, 1e6 / asked_hz)?;
+        let (mut now, mut count) = (Duration::ZERO, 0);
+        while now < Duration::from_secs(20) {
+            now += kind.loop_period();
+            count += u32::from(streams.due(now, false).contains(&id));
+        }
+        Ok(f64::from(count) / 20.0)
+    }
+
+    #[test]
+    fn rates_are_those_that_were_measured_of_both_autopilots() {
+        let px4 = |id, asked_hz| measured_hz(AutopilotKind::Px4, id, asked_hz);
+        let near = |got: Result<f64, IntervalRefusal>, want: f64| {
+            assert!((got.unwrap() - want).abs() < 0.011 * want, "{got:?} {want}");
+        };
+        near(px4(ATTITUDE, 100.0), 100.0);
+        near(px4(ATTITUDE, 200.0), 125.0);
+        near(px4(HIGHRES_IMU, 250.0), 250.0);
+        near(px4(LOCAL_POSITION_NED, 250.0), 125.0);
+        let ardupilot =
+            |asked_hz| measured_hz(AutopilotKind::ArduPilot(ArduPilotRelease::V4_7), ATTITUDE, asked_hz);
+        near(ardupilot(100.0), 100.0);
+        near(ardupilot(200.0), 200.0);
+        near(ardupilot(250.0), 200.0);
+        assert_eq!(ardupilot(400.0), Err(IntervalRefusal::TooFast));
+    }
+
+    #[test]
+    fn each_autopilot_refuses_what_it_does_not_send() {
+        let refused = Err(IntervalRefusal::UnknownMessage);
+        let ardupilot = AutopilotKind::ArduPilot(ArduPilotRelease::V4_6);
+        for id in [ESC_STATUS, ESC_INFO, ACTUATOR_OUTPUT_STATUS, ESTIMATOR_STATUS, ODOMETRY, ALTITUDE] {
+            assert_eq!(measured_hz(ardupilot, id, 10.0), refused, "{id}");
+        }
+        for id in [RAW_IMU, ESC_TELEMETRY_1_TO_4, EKF_STATUS_REPORT] {
+            assert_eq!(measured_hz(AutopilotKind::Px4, id, 10.0), refused, "{id}");
+        }
+    }
+}

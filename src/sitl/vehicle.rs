@@ -1,0 +1,302 @@
+//! The vehicle as a whole: the clock that drives it, and its links.
+
+use std::time::Duration;
+
+use nalgebra::Vector3;
+
+use super::autopilot::{Autopilot, Text};
+use super::craft::Craft;
+use super::link::Link;
+use super::message::Message;
+use super::parameters::{Parameters, Pulses};
+use super::streams::HEARTBEAT;
+use super::telemetry::{Snapshot, Telemetry};
+use super::tuning::Tuning;
+use super::{Fault, LinkId, LinkRole, Settings, SitlError};
+use crate::log::{Check, CrcSeeds, Frame};
+use crate::physics::MAX_ROTORS;
+
+/// MAV_COMP_ID_AUTOPILOT1
+const COMPONENT: u8 = 1;
+/// STATUSTEXT and its chunks.
+const STATUSTEXT: u32 = 253;
+const CHUNK_BYTES: usize = 50;
+/// Time between heartbeats.
+const HEARTBEAT_PERIOD: Duration = Duration::from_secs(1);
+
+/// A frame that the vehicle sends.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Outgoing {
+    /// on which connection
+    pub link: LinkId,
+    /// when it arrives, since the vehicle was made
+    pub time: Duration,
+    /// one MAVLink 2 frame
+    pub bytes: Vec<u8>,
+}
+
+/// A simulated vehicle.
+#[derive(Debug)]
+pub struct Vehicle {
+    pub(super) settings: Settings,
+    pub(super) parameters: Parameters,
+    pub(super) autopilot: Autopilot,
+    pub(super) links: Vec<Link>,
+    craft: Craft,
+    telemetry: Telemetry,
+    pulses: Pulses,
+    seeds: CrcSeeds,
+    /// time of the next loop period, since the vehicle was made
+    next: Duration,
+    /// the latest time that was heard of
+    clock: Duration,
+    booted: Duration,
+    silent_until: Duration,
+    snapshot: Option<Snapshot>,
+    texts: u16,
+}
+
+impl Vehicle {
+    /// A vehicle that boots now, standing on the ground, with no link.
+    ///
+    /// # Errors
+    /// If vehicle, effects or a setting are not possible.
+    pub fn new(settings: Settings) -> Result<Self, SitlError> {
+        settings.check()?;
+        let kind = settings.autopilot;
+        let parameters = Parameters::new(&settings)?;
+        let pulses = Pulses::of(&settings.vehicle, kind);
+        let autopilot = Autopilot::new(&settings, Tuning::of(kind, &parameters))?;
+        let step = kind.loop_period() / kind.steps_a_loop();
+        Ok(Self {
+            craft: Craft::new(&settings, step)?,
+            telemetry: Telemetry::new(&settings),
+            autopilot,
+            parameters,
+            pulses,
+            links: Vec::new(),
+            seeds: CrcSeeds::new(),
+            next: Duration::ZERO,
+            clock: Duration::ZERO,
+            booted: Duration::ZERO,
+            silent_until: Duration::ZERO,
+            snapshot: None,
+            texts: 0,
+            settings,
+        })
+    }
+
+    /// A new connection.
+    pub fn open_link(&mut self, role: LinkRole) -> LinkId {
+        let id = LinkId(self.links.len());
+        self.links.push(Link::new(id, self.settings.autopilot, role));
+        id
+    }
+
+    /// Takes bytes that came in on a link at a time since the vehicle was made. Bytes may be cut anywhere;
+    /// what follows from them comes out of [`Self::advance`].
+    pub fn receive(&mut self, link: LinkId, bytes: &[u8], at: Duration) {
+        self.clock = self.clock.max(at);
+        let Some(splitter) = self.links.get_mut(link.0).map(|link| &mut link.splitter) else { return };
+        if self.clock < self.silent_until {
+            return;
+        }
+        splitter.feed(bytes);
+        let mut frames = Vec::new();
+        while let Some(frame) = splitter.next_frame() {
+            if frame.check(&self.seeds) == Check::Right {
+                frames.push(frame.bytes().to_vec());
+            }
+        }
+        let now = self.now();
+        for frame in &frames {
+            match Frame::at_start(frame) {
+                Some(frame) if frame.header().system.0 != u32::from(self.settings.system) => {
+                    self.handle(link.0, &frame, now);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Goes on until a time since the vehicle was made; returns what has arrived at the other ends by then,
+    /// link by link in the order of its arrival. A time in the past changes nothing.
+    pub fn advance(&mut self, to: Duration) -> Vec<Outgoing> {
+        while self.next <= to {
+            self.clock = self.clock.max(self.next);
+            self.run_loop();
+            self.next += self.settings.autopilot.loop_period();
+        }
+        self.clock = self.clock.max(to);
+        self.send_texts();
+        let mut out = Vec::new();
+        for link in &mut self.links {
+            if self.clock < self.silent_until {
+                link.drop_waiting();
+            }
+            link.arrived(self.clock, &mut out);
+        }
+        out
+    }
+
+    /// Time of the next loop period since the vehicle was made: nothing new happens by itself before.
+    #[must_use]
+    pub fn next_loop(&self) -> Duration {
+        self.next
+    }
+
+    /// Something goes wrong from now on.
+    pub fn fault(&mut self, fault: Fault) {
+        let now = self.now();
+        match fault {
+            Fault::PilotTakesOver(mode) => {
+                self.autopilot.safety.pilot_is_there();
+                self.autopilot.set_mode(mode, now);
+            }
+            Fault::EstimatorJump(by_m) => {
+                let by_m = Vector3::from(by_m);
+                self.autopilot.estimator.jump(by_m);
+                self.autopilot.guidance.shift(by_m);
+            }
+            Fault::EstimatorHealth(healthy) => self.autopilot.estimator.set_health(healthy),
+            Fault::Battery(remaining) => self.autopilot.battery.set_remaining(remaining),
+            Fault::RotorStops(rotor) => self.craft.stop_rotor(rotor),
+            Fault::LinkSilence(duration) => self.silent_until = self.clock + duration,
+            Fault::Reboot => self.reboot(),
+            Fault::ForeignHeartbeat { system, component } => {
+                let message = Message::new(HEARTBEAT).u32(0).u8(6).u8(8).u8(0).u8(4).u8(3);
+                let frame = message.frame(&self.seeds, 0, (system, component));
+                self.pass_on(&frame, None);
+            }
+            Fault::Push { force_n, torque_nm, duration } => {
+                self.craft.shove(force_n.into(), torque_nm.into(), duration.as_secs_f64());
+            }
+        }
+    }
+
+    /// Since boot.
+    fn now(&self) -> Duration {
+        self.clock.saturating_sub(self.booted)
+    }
+
+    fn run_loop(&mut self) {
+        let now = self.next.saturating_sub(self.booted);
+        let kind = self.settings.autopilot;
+        let period_s = kind.loop_period().as_secs_f64();
+        self.craft.set_battery_v(self.autopilot.battery.volts());
+        let wanted = self.autopilot.tick(&self.craft.motion(), now, period_s);
+        let (pulses_us, outputs) = self.put_out(&wanted);
+        let shown = self.craft.step(&outputs);
+        for _ in 1..kind.steps_a_loop() {
+            self.craft.step(&outputs);
+        }
+        self.snapshot = Some(Snapshot { now, shown, pulses_us });
+        self.send_texts();
+        self.send_due(now);
+    }
+
+    /// Whole microseconds, and what the rotors make of them.
+    fn put_out(&self, wanted: &[f64; MAX_ROTORS]) -> ([u16; MAX_ROTORS], [f64; MAX_ROTORS]) {
+        let armed = self.autopilot.is_armed();
+        let pulses = &self.pulses;
+        let pulses_us = wanted.map(|u| if armed { pulses.pulse_us(u) } else { pulses.off_pulse_us() });
+        let outputs = pulses_us.map(|pulse| if armed { pulses.output(pulse) } else { 0.0 });
+        (pulses_us, outputs)
+    }
+
+    fn send_due(&mut self, now: Duration) {
+        let beats = now.as_micros().is_multiple_of(HEARTBEAT_PERIOD.as_micros());
+        for link in 0..self.links.len() {
+            if beats {
+                self.send_now(link, HEARTBEAT);
+            }
+            let downloading = self.links[link].is_downloading();
+            for index in self.links[link].next_parameters(self.parameters.len()) {
+                if let Some(message) = self.parameters.message(index) {
+                    self.send(link, &message);
+                }
+            }
+            for id in self.links[link].streams.due(now, downloading) {
+                self.send_now(link, id);
+            }
+        }
+    }
+
+    /// The message of this id as it is now.
+    pub(super) fn send_now(&mut self, link: usize, id: u32) {
+        let Some(snapshot) = &self.snapshot else { return };
+        if let Some(message) = self.telemetry.message(id, snapshot, &self.autopilot) {
+            self.send(link, &message);
+        }
+    }
+
+    pub(super) fn send(&mut self, link: usize, message: &Message) {
+        let lost = self.settings.loss > 0.0 && self.telemetry.chance() < self.settings.loss;
+        let Some(link) = self.links.get_mut(link) else { return };
+        if lost {
+            link.lose();
+            return;
+        }
+        let arrives = self.clock + self.settings.latency;
+        link.send(message, arrives, (&self.seeds, (self.settings.system, COMPONENT)));
+    }
+
+    pub(super) fn broadcast(&mut self, message: &Message) {
+        for link in 0..self.links.len() {
+            self.send(link, message);
+        }
+    }
+
+    /// Passes a frame of another system on to every link but the one that it came from.
+    pub(super) fn pass_on(&mut self, frame: &[u8], from: Option<usize>) {
+        let arrives = self.clock + self.settings.latency;
+        for (index, link) in self.links.iter_mut().enumerate() {
+            if from != Some(index) {
+                link.pass_on(frame, arrives);
+            }
+        }
+    }
+
+    /// Texts longer than a message go out in numbered chunks.
+    fn send_texts(&mut self) {
+        while let Some(Text { severity, text }) = self.autopilot.texts.pop_front() {
+            let bytes = text.as_bytes();
+            let is_long = bytes.len() > CHUNK_BYTES;
+            if is_long {
+                self.texts = self.texts.wrapping_add(1).max(1);
+            }
+            for (chunk, part) in bytes.chunks(CHUNK_BYTES).enumerate() {
+                let id = if is_long { self.texts } else { 0 };
+                let message = Message::new(STATUSTEXT)
+                    .u8(severity as u8)
+                    .text(part, CHUNK_BYTES)
+                    .u16(id)
+                    .u8(u8::try_from(chunk).unwrap_or(u8::MAX));
+                self.broadcast(&message);
+            }
+        }
+    }
+
+    /// The target of a message is this autopilot, or everyone.
+    pub(super) fn is_for_us(&self, (system, component): (u8, u8)) -> bool {
+        (system == 0 || system == self.settings.system) && (component == 0 || component == COMPONENT)
+    }
+
+    /// Parameters have changed.
+    pub(super) fn retune(&mut self) {
+        self.autopilot.tuning = Tuning::of(self.settings.autopilot, &self.parameters);
+    }
+
+    /// The autopilot starts anew from the next loop period; parameters and the vehicle's motion stay.
+    pub(super) fn reboot(&mut self) {
+        let tuning = self.autopilot.tuning;
+        // what could be built once can be built again
+        if let Ok(autopilot) = Autopilot::new(&self.settings, tuning) {
+            self.autopilot = autopilot;
+        }
+        self.booted = self.next;
+        for link in &mut self.links {
+            link.restart(self.settings.autopilot);
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! An explained model on flights that it has not seen; refitted another way; and the flight to fly next.
+
+#![allow(clippy::panic, clippy::unwrap_used, reason = "a test ends where it fails")]
+
+use mavid::diagnose::next::{NextError, NextSettings, design};
+use mavid::diagnose::refit::{RefitSettings, refit};
+use mavid::diagnose::show::{HeldOut, ShowError, ShowSettings, Shown, on_holdout, split_last_periods};
+use mavid::diagnose::{Along, Empirical, ExplainSettings, Explanation, Verdict, explain};
+use mavid::log::Recording;
+use mavid::physics::effects::by_id;
+use mavid::physics::{ActiveEffect, Wrench};
+use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
+use mavid::simulate::{
+    Disturbance, FlightSettings, RandomTrajectory, Reference, Truth, VehiclePair, random_vehicle,
+    simulate_flight,
+};
+use mavid::trajectory::FourierTrajectory;
+use mavid::vehicle::Vehicle;
+use nalgebra::Vector3;
+
+const VEHICLE: u64 = 21;
+
+fn effect(id: &str, values: &[f64]) -> ActiveEffect {
+    ActiveEffect::new(by_id(id).unwrap(), values).unwrap()
+}
+
+fn trajectory(seed: u64) -> FourierTrajectory {
+    RandomTrajectory { speed_max_m_s: 2.0, ..RandomTrajectory::default() }.draw(seed).unwrap()
+}
+
+/// A flight of a vehicle, and its signals as seen with the nominal one.
+fn flown(
+    (truth, nominal): (&Vehicle, &Vehicle),
+    concealed: (Vec<ActiveEffect>, Option<Disturbance>),
+    path: FourierTrajectory,
+    (seed, duration_s): (u64, f64),
+) -> (Recording, Signals) {
+    let reference = Reference { trajectory: path, hover_s: 4.0, ramp_s: 2.0 };
+    let settings = FlightSettings { seed, duration_s, ..FlightSettings::default() };
+    let truth = Truth { vehicle: truth.clone(), effects: concealed.0, disturbance: concealed.1 };
+    let recording = simulate_flight(truth, nominal, &reference, &settings).unwrap().recording;
+    let settings = ConditionSettings {
+        transient_s: Some(1.0),
+        thrust: ThrustPreference::Commands,
+        ..ConditionSettings::default()
+    };
+    let signals = condition(&recording, nominal, &settings).unwrap();
+    (recording, signals)
+}
+
+fn pair() -> VehiclePair {
+    random_vehicle(VEHICLE)
+}
+
+/// Explained from one flight with these effects.
+fn explained(vehicles: &VehiclePair, effects: Vec<ActiveEffect>) -> (Explanation, Signals) {
+    let flight = flown((&vehicles.truth, &vehicles.nominal), (effects, None), trajectory(5), (1, 44.0));
+    let found =
+        explain(std::slice::from_ref(&flight.1), &vehicles.nominal, &ExplainSettings::default()).unwrap();
+    (found, flight.1)
+}
+
+fn shown(explanation: &Explanation, nominal: &Vehicle, flight: &(Recording, Signals)) -> Shown {
+    let held = HeldOut { name: "holdout", signals: &flight.1, recording: Some(&flight.0) };
+    on_holdout((explanation, None), &[held], nominal, &ShowSettings::default()).unwrap()
+}
+
+#[test]
+fn drag_pays_on_a_flight_that_was_not_used_and_the_vehicle_is_the_same() {
+    let vehicles = pair();
+    let drag = || vec![effect("linear_drag", &[0.25, 0.25, 0.0])];
+    let (found, _) = explained(&vehicles, drag());
+    assert_eq!(found.named.iter().map(|named| named.id).collect::<Vec<_>>(), ["linear_drag"]);
+    let both = (&vehicles.truth, &vehicles.nominal);
+    let holdout = flown(both, (drag(), None), trajectory(6), (2, 34.0));
+    let shown = shown(&found, &vehicles.nominal, &holdout);
+    let gain = shown.improvement_percent.unwrap();
+    let (low, high) = gain.range.unwrap();
+    assert!(low > 5.0 && low < gain.value && gain.value < high, "{gain:?}");
+    let velocity = shown.half_second().unwrap().velocity_m_s.unwrap();
+    let floor = velocity.floor.unwrap();
+    assert!(
+        floor < velocity.after.value && velocity.after.value < 0.7 * velocity.before.value,
+        "{velocity:?}"
+    );
+    // windows grow, errors grow
+    let errors: Vec<f64> = shown.open_loop.iter().map(|of| of.position_m.unwrap().after.value).collect();
+    assert!(errors[0] < errors[1] && errors[1] < errors[2], "{errors:?}");
+    // the force rows fall to what the flight's own fit leaves
+    let force = shown.weak[0].unwrap();
+    assert!(force.after.value < 0.6 * force.before.value && force.after.value < 1.1 * force.floor.unwrap());
+    let closed = shown.closed_loop.as_ref().unwrap();
+    assert!(closed.signals[0].unwrap().after.value < closed.signals[0].unwrap().before.value);
+    assert_eq!(shown.other_vehicle, None);
+    let drag = shown.agreement.iter().find(|of| of.name == "linear_drag.dx").unwrap();
+    assert!(drag.sigmas().abs() < 5.0 && (drag.held_out / 0.25 - 1.0).abs() < 0.1, "{drag:?}");
+
+    // the same log of a vehicle with other mass and inertia is found out
+    let mut heavier = vehicles.truth.clone();
+    heavier.body.mass_kg *= 1.2;
+    heavier.body.inertia_kg_m2 *= 1.5;
+    let stranger = flown((&heavier, &vehicles.nominal), (Vec::new(), None), trajectory(6), (3, 34.0));
+    let shown = self::shown(&found, &vehicles.nominal, &stranger);
+    let reason = shown.other_vehicle.unwrap();
+    assert!(reason.contains("mass"), "{reason}");
+}
+
+#[test]
+fn nothing_missing_changes_nothing_and_no_flight_is_refused() {
+    let vehicles = pair();
+    let (found, flight) = explained(&vehicles, Vec::new());
+    assert_eq!(found.verdict, Verdict::NothingMissing);
+    let split = split_last_periods(&flight).unwrap();
+    assert!((split.period_s.unwrap() - 10.0).abs() < 0.1);
+    let last = |signals: &Signals| signals.usable.iter().rposition(|usable| *usable).unwrap();
+    let first = split.holdout.usable.iter().position(|usable| *usable).unwrap();
+    assert!(last(&split.identify) < first && last(&split.holdout) == last(&flight));
+    let held = HeldOut { name: "end", signals: &split.holdout, recording: None };
+    let settings = ShowSettings { same_flight: true, ..ShowSettings::default() };
+    let shown = on_holdout((&found, None), &[held], &vehicles.nominal, &settings).unwrap();
+    assert_eq!(shown.improvement_percent.unwrap().value, 0.0);
+    assert_eq!(shown.other_vehicle, None);
+    let mut nothing = flight.clone();
+    nothing.usable.fill(false);
+    let held = HeldOut { name: "ground", signals: &nothing, recording: None };
+    let refused = on_holdout((&found, None), &[held], &vehicles.nominal, &settings);
+    assert!(matches!(refused, Err(ShowError::TooShort { .. })));
+    let refused = on_holdout((&found, None), &[], &vehicles.nominal, &settings);
+    assert!(matches!(refused, Err(ShowError::NoFlight)));
+    let next = design(&found, &[flight], &vehicles.nominal, &NextSettings::default());
+    assert!(matches!(next, Err(NextError::NothingToTell)));
+}
+
+#[test]
+fn the_moment_of_a_mass_change_is_found_again() {
+    let vehicles = pair();
+    let change = |time_s: f64| vec![effect("mass_change", &[time_s, -0.12 * vehicles.truth.body.mass_kg])];
+    let (found, _) = explained(&vehicles, change(22.0));
+    assert_eq!(found.named.first().map(|named| named.id), Some("mass_change"));
+    let both = (&vehicles.truth, &vehicles.nominal);
+    let holdout = flown(both, (change(15.0), None), trajectory(6), (4, 34.0));
+    let shown = shown(&found, &vehicles.nominal, &holdout);
+    assert!(shown.improvement_percent.unwrap().range.unwrap().0 > 5.0);
+    let note = shown.notes.iter().find(|note| note.contains("mass change")).unwrap();
+    assert!(note.contains("at 14.") || note.contains("at 15."), "{note}");
+}
+
+#[test]
+fn a_force_fixed_in_the_room_is_predicted_without_a_name() {
+    let vehicles = pair();
+    let push = 0.08 * vehicles.truth.body.mass_kg * 9.81;
+    let field = || {
+        Some(Disturbance::new(move |_, state| {
+            let near = ((state.position_m.x - 0.2) / 0.25).powi(2);
+            let force = Vector3::new(0.0, 0.0, -push * (-0.5 * near).exp());
+            Wrench { force_n: state.attitude.inverse_transform_vector(&force), ..Wrench::zero() }
+        }))
+    };
+    let both = (&vehicles.truth, &vehicles.nominal);
+    let (_, flight) = flown(both, (Vec::new(), field()), trajectory(5), (1, 44.0));
+    let flights = [flight];
+    let settings = ExplainSettings::default();
+    let found = explain(&flights, &vehicles.nominal, &settings).unwrap();
+    assert!(matches!(found.verdict, Verdict::Unexplained | Verdict::PartlyExplained), "{:?}", found.verdict);
+    let term = Empirical::fit(&found, &flights, &vehicles.nominal, &settings).unwrap().unwrap();
+    assert_eq!(term.along, Along::Position(0));
+    let holdout = flown(both, (Vec::new(), field()), trajectory(6), (2, 34.0));
+    let held = HeldOut { name: "holdout", signals: &holdout.1, recording: Some(&holdout.0) };
+    let shown =
+        on_holdout((&found, Some(&term)), &[held], &vehicles.nominal, &ShowSettings::default()).unwrap();
+    assert!(shown.improvement_percent.unwrap().range.unwrap().0 > 0.0, "{:?}", shown.improvement_percent);
+    assert!(shown.closed_loop.is_err());
+}
+
+#[test]
+fn shooting_agrees_with_the_weak_form() {
+    let vehicles = pair();
+    let (found, flight) = explained(&vehicles, vec![effect("linear_drag", &[0.25, 0.25, 0.0])]);
+    let refit = refit(&found, &[flight], &vehicles.nominal, &RefitSettings::default()).unwrap();
+    assert!(refit.segments > 50 && refit.cost.1 <= refit.cost.0, "{:?}", refit.cost);
+    let mass = &refit.parameters[0];
+    assert!((mass.shooting / vehicles.truth.body.mass_kg - 1.0).abs() < 0.01, "{mass:?}");
+    let drag = refit.parameters.iter().find(|of| of.name == "linear_drag.dx").unwrap();
+    assert!((drag.shooting / 0.25 - 1.0).abs() < 0.15 && drag.shooting_std > 0.0, "{drag:?}");
+    assert!(drag.sigmas().abs() < 5.0, "{drag:?}");
+}
+
+/// The distance that the next flight was said to bring is the one that it brings.
+#[test]
+fn the_next_flight_keeps_its_promise() {
+    let vehicles = pair();
+    let drag = || vec![effect("linear_drag", &[0.03, 0.03, 0.0])];
+    let (found, flight) = explained(&vehicles, drag());
+    let settings = NextSettings { starts: 2, moves: 40, ..NextSettings::default() };
+    let next = design(&found, std::slice::from_ref(&flight), &vehicles.nominal, &settings).unwrap();
+    assert!(next.limits_are_flown && next.sentence().contains("sigma"));
+    let promised = next.pairs[0];
+    // a search of random moves finds more than its first draw, and no less than now
+    assert!(promised.after > promised.now, "{}", next.sentence());
+    let both = (&vehicles.truth, &vehicles.nominal);
+    let (_, then) = flown(both, (drag(), None), next.trajectory.clone(), (9, 6.0 + next.seconds));
+    let after = explain(std::slice::from_ref(&then), &vehicles.nominal, &ExplainSettings::default()).unwrap();
+    let again = design(&after, &[then], &vehicles.nominal, &NextSettings { starts: 1, moves: 0, ..settings });
+    let reached = again.unwrap().pairs.into_iter().find(|pair| pair.other == promised.other);
+    let reached = reached.unwrap_or_else(|| panic!("{} is no longer a rival", promised.other)).now;
+    assert!((reached / promised.after - 1.0).abs() < 0.35, "promised {}, reached {reached}", promised.after);
+}

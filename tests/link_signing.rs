@@ -1,0 +1,109 @@
+//! Signed links, with each other and with pymavlink.
+
+#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+
+#[path = "support/python.rs"]
+mod python;
+mod support;
+
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use mavid::link::{Ends, Link, LinkOptions, LinkReader, Received, ReceivedFrame, Signing, SigningKey};
+use mavlink::dialects::ardupilotmega::MavMessage;
+use serde_json::json;
+use support::{header, heartbeat, unknown, v1, v2};
+use tokio::time::timeout;
+
+const KEY: [u8; 32] = [7; 32];
+
+fn options(key: Option<[u8; 32]>) -> LinkOptions {
+    let signing = key.map(|key| Signing::with_key(SigningKey::from_bytes(key)));
+    LinkOptions { signing, ..LinkOptions::default() }
+}
+
+async fn frame(reader: &mut LinkReader) -> ReceivedFrame {
+    loop {
+        let received = timeout(Duration::from_secs(20), reader.receive()).await.unwrap().unwrap();
+        if let Received::Frame(frame) = received {
+            return frame;
+        }
+    }
+}
+
+/// A pair that is connected.
+async fn pair(first: LinkOptions, second: LinkOptions) -> (Ends, Ends) {
+    let (mut one, mut two) = Link::pair(first, second);
+    for reader in [&mut one.0, &mut two.0] {
+        assert!(matches!(reader.receive().await.unwrap(), Received::Event(_)));
+    }
+    (one, two)
+}
+
+#[tokio::test]
+async fn only_what_is_signed_with_the_key_is_delivered() {
+    let ((mut reader, _out), (_in, writer)) = pair(options(Some(KEY)), options(Some(KEY))).await;
+    let forged = v2(header(1, 0), &heartbeat());
+    let radio = v1(header(51, 0), &MavMessage::RADIO_STATUS(Default::default()));
+    for bytes in [&forged, &radio, &unknown(5, b"unsigned")] {
+        writer.send(bytes).unwrap();
+    }
+    writer.send_message(&heartbeat()).unwrap();
+    assert_eq!(frame(&mut reader).await.bytes(), radio);
+    let signed = frame(&mut reader).await;
+    assert!(signed.header.is_signed());
+    assert_eq!(signed.message().unwrap(), heartbeat());
+    // the same again, and changed on the way
+    writer.send(signed.bytes()).unwrap();
+    let mut changed = signed.bytes().to_vec();
+    *changed.last_mut().unwrap() ^= 1;
+    writer.send(&changed).unwrap();
+    writer.send_message(&heartbeat()).unwrap();
+    assert_eq!(frame(&mut reader).await.header.sequence, 1);
+    let stats = reader.stats();
+    assert_eq!((stats.unsigned, stats.replayed, stats.badly_signed), (2, 1, 1));
+    assert_eq!(stats.received_frames, 7);
+}
+
+#[tokio::test]
+async fn without_a_key_signed_frames_pass_unchecked() {
+    let ((mut reader, _out), (_in, writer)) = pair(options(None), options(Some(KEY))).await;
+    writer.send_message(&heartbeat()).unwrap();
+    assert!(frame(&mut reader).await.header.is_signed());
+}
+
+#[tokio::test]
+async fn pymavlink_takes_our_signatures_and_we_take_its() {
+    let ((mut raw, _out), (_in, writer)) = pair(options(None), options(Some(KEY))).await;
+    let mut frames = Vec::new();
+    for _ in 0..3 {
+        writer.send_message(&heartbeat()).unwrap();
+        frames.push(frame(&mut raw).await.bytes().to_vec());
+    }
+    // once more the same, and one with a changed signature
+    frames.push(frames[2].clone());
+    writer.send_message(&heartbeat()).unwrap();
+    frames.push(frame(&mut raw).await.bytes().to_vec());
+    *frames[4].last_mut().unwrap() ^= 1;
+    let since_2015 =
+        SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_micros() - 1_420_070_400_000_000;
+    let hex = |bytes: &[u8]| bytes.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+    let given = json!({
+        "key": hex(&KEY),
+        "time": u64::try_from(since_2015 / 10).unwrap(),
+        "frames": frames.iter().map(|frame| hex(frame)).collect::<Vec<_>>(),
+    });
+    let answer = match python::ask("signing_with_pymavlink.py", &[], &given) {
+        Ok(answer) => answer,
+        Err(missing) => return support::skip(&missing),
+    };
+    assert_eq!(answer["accepted"], json!([true, true, true, false, false]));
+    let ((mut reader, _out), (_in, bare)) = pair(options(Some(KEY)), options(None)).await;
+    for (sequence, signed) in (0_u8..).zip(answer["frames"].as_array().unwrap()) {
+        let text = signed.as_str().unwrap();
+        let bytes: Vec<u8> =
+            (0..text.len()).step_by(2).map(|at| u8::from_str_radix(&text[at..at + 2], 16).unwrap()).collect();
+        bare.send(&bytes).unwrap();
+        assert_eq!(frame(&mut reader).await.header.sequence, sequence);
+    }
+    assert_eq!(reader.stats().badly_signed + reader.stats().replayed, 0);
+}

@@ -1,0 +1,365 @@
+//! What both autopilots have in common: commands, faults, determinism, effects.
+
+use std::time::Duration;
+
+use mavid::physics::ActiveEffect;
+use mavid::sitl::{Fault, FenceItem, LinkRole, Mode, Settings, SitlError, Vehicle};
+
+use crate::ground::{Ground, Target, heartbeat, settings};
+use crate::{ACCEPTED, COPTER, DENIED, FAILED, PX4, TEMPORARILY_REJECTED, UNSUPPORTED, assert_at};
+
+/// All bytes of a short flight.
+fn flight(settings: Settings) -> Vec<(Duration, u32, Vec<u8>)> {
+    let mut ground = Ground::new(settings);
+    ground.take_off(2.0);
+    ground.set_interval(32, 20.0);
+    let goal = Target::at([1.0, 1.0, -2.0]).message();
+    ground.stream(0.5, &goal);
+    assert_eq!(ground.set_mode(Mode::Guided), ACCEPTED);
+    ground.stream(1.5, &goal);
+    ground.received
+}
+
+#[test]
+fn the_same_calls_give_the_same_bytes_and_another_seed_gives_others() {
+    for kind in [PX4, COPTER] {
+        let first = flight(settings(kind));
+        assert_eq!(first, flight(settings(kind)));
+        assert_ne!(first, flight(Settings { seed: 1, ..settings(kind) }));
+    }
+}
+
+#[test]
+fn how_often_the_clock_is_read_changes_nothing() {
+    let run = |step_us: u64| {
+        let mut vehicle = Vehicle::new(settings(PX4)).unwrap();
+        vehicle.open_link(LinkRole::Onboard);
+        let mut frames = Vec::new();
+        let mut now = Duration::ZERO;
+        while now < Duration::from_secs(3) {
+            now = (now + Duration::from_micros(step_us)).min(Duration::from_secs(3));
+            frames.extend(vehicle.advance(now));
+        }
+        frames
+    };
+    let fine = run(700);
+    assert_eq!(fine, run(1_000_000));
+    assert!(fine.windows(2).all(|pair| pair[0].time <= pair[1].time));
+}
+
+#[test]
+fn a_concealed_effect_changes_the_flight_and_is_told_nowhere() {
+    let drag = ActiveEffect::named("linear_drag", &[("dx", 0.9), ("dy", 0.9), ("dz", 0.0)]).unwrap();
+    let plain = flight(settings(PX4));
+    let dragged = flight(Settings { effects: vec![drag], ..settings(PX4) });
+    assert_ne!(plain, dragged);
+    let place = |flight: &[(Duration, u32, Vec<u8>)]| {
+        let last = flight.iter().rev().find(|(_, id, _)| *id == 32).unwrap();
+        mavid::log::Frame::at_start(&last.2).unwrap().payload().f32s::<3>(4)
+    };
+    assert!(
+        (place(&plain)[0] - place(&dragged)[0]).abs() > 0.01,
+        "{:?} {:?}",
+        place(&plain),
+        place(&dragged)
+    );
+    for (_, id, bytes) in &dragged {
+        // SIMSTATE, SIM_STATE, HIL_*
+        assert!(![90, 91, 92, 93, 107, 108, 113, 114, 115, 164].contains(id));
+        let text = String::from_utf8_lossy(bytes);
+        assert!(!text.contains("SIM_") && !text.contains("SIH_") && !text.contains("drag"));
+    }
+}
+
+#[test]
+fn a_steady_wind_leans_the_vehicle() {
+    let lean = |effects| {
+        let mut ground = Ground::new(Settings { effects, ..settings(PX4) });
+        ground.take_off(2.0);
+        ground.wait(5.0);
+        let ground = &ground;
+        let pitch: Vec<f64> = ground
+            .received
+            .iter()
+            .rev()
+            .filter(|(_, id, _)| *id == 30)
+            .take(50)
+            .map(|(_, _, bytes)| mavid::log::Frame::at_start(bytes).unwrap().payload().f32(8))
+            .collect();
+        pitch.iter().sum::<f64>() / pitch.len() as f64
+    };
+    let drag = || ActiveEffect::named("linear_drag", &[("dx", 0.9), ("dy", 0.9), ("dz", 0.0)]).unwrap();
+    let wind = ActiveEffect::named("steady_wind", &[("north", 4.0), ("west", 0.0), ("up", 0.0)]);
+    let Ok(wind) = wind else { panic!("{wind:?}") };
+    let calm = lean(vec![drag()]);
+    let windy = lean(vec![drag(), wind]);
+    // a wind to the north: it leans back, nose up. 0.9 * 4 / (2.06 * 9.81) = 0.18
+    assert!(calm.abs() < 0.02 && (0.1..0.26).contains(&windy), "{calm} {windy}");
+}
+
+#[test]
+fn commands_are_answered_as_they_should_be() {
+    for kind in [PX4, COPTER] {
+        let mut ground = Ground::of(kind);
+        ground.wait(3.0);
+        assert_eq!(ground.command(31_999, [0.0; 7]), UNSUPPORTED, "no dialect knows it");
+        assert_eq!(ground.command(176, [0.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0]), DENIED, "not a custom mode");
+        let unknown = ground.command(176, [1.0, 99.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(unknown, if kind == PX4 { TEMPORARILY_REJECTED } else { FAILED });
+        assert_eq!(ground.command(510, [30.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), ACCEPTED);
+        assert_eq!(ground.last(244).unwrap().u16(4), 30);
+        assert_eq!(ground.command(512, [148.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), ACCEPTED);
+        let capabilities = ground.last(148).unwrap().u64(0);
+        assert_eq!(capabilities & 16 != 0, kind == PX4, "parameters as bytes");
+        assert_eq!(capabilities & 131_072 != 0, kind != PX4, "parameters as values");
+        assert_eq!(capabilities & (128 | 8192), 128 | 8192);
+        assert_eq!(ground.command(410, [0.0; 7]), ACCEPTED);
+        let home = ground.last(242).unwrap();
+        assert!((f64::from(home.i32(0)) - 47.397_742e7).abs() < 10.0, "{}", home.i32(0));
+        // to another system: nobody answers
+        ground.forget();
+        let mut payload = vec![0; 28];
+        payload.extend(400_u16.to_le_bytes());
+        payload.extend([77, 1, 0]);
+        ground.send_raw(76, 152, &payload);
+        assert_eq!(ground.count(77), 0);
+        // COMMAND_INT
+        let mut payload = vec![0; 28];
+        payload[..4].copy_from_slice(&1.0_f32.to_le_bytes());
+        payload.extend(400_u16.to_le_bytes());
+        payload.extend([1, 1, 0, 0, 1]);
+        ground.send_raw(75, 158, &payload);
+        let ack = ground.last(77).unwrap();
+        assert_eq!((ack.u16(0), ack.u8(2)), (400, ACCEPTED));
+        assert_eq!((ack.u8(8), ack.u8(9)), (255, 190), "to whom it answers");
+        assert_eq!(ground.command(246, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), DENIED, "armed");
+    }
+}
+
+#[test]
+fn set_mode_works_by_its_message_too() {
+    for (kind, number, answered) in [(PX4, 6_u32 << 16, 176), (COPTER, 4, 11)] {
+        let mut ground = Ground::of(kind);
+        ground.wait(0.5);
+        let mut payload = number.to_le_bytes().to_vec();
+        payload.extend([1, 1]);
+        ground.send_raw(11, 89, &payload);
+        assert_eq!(ground.last(77).unwrap().u16(0), answered);
+        ground.wait(1.0);
+        assert_eq!(ground.heartbeat().0, number);
+    }
+}
+
+#[test]
+fn clocks_are_answered() {
+    for kind in [PX4, COPTER] {
+        let mut ground = Ground::of(kind);
+        ground.wait(1.5);
+        ground.forget();
+        let mut payload = 0_i64.to_le_bytes().to_vec();
+        payload.extend(123_456_789_012_i64.to_le_bytes());
+        ground.send_raw(111, 34, &payload);
+        let answer = ground.received.iter().find(|(_, id, _)| *id == 111).unwrap();
+        let answer = mavid::log::Frame::at_start(&answer.2).unwrap().payload();
+        assert_eq!((answer.u64(0), answer.u64(8)), (1_500_000_000, 123_456_789_012));
+        let mut ping = 99_u64.to_le_bytes().to_vec();
+        ping.extend([7, 0, 0, 0, 0, 0]);
+        ground.send_raw(4, 237, &ping);
+        let answer = ground.last(4).unwrap();
+        assert_eq!((answer.u64(0), answer.u32(8), answer.u8(12)), (99, 7, 255));
+        assert_eq!(ground.command(512, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), ACCEPTED);
+        let time = ground.last(2).unwrap();
+        assert_eq!(time.u64(0), 1_700_000_000_000_000 + u64::from(time.u32(8)) * 1000);
+    }
+}
+
+#[test]
+fn every_parameter_comes_once_by_list_and_by_index() {
+    for kind in [PX4, COPTER] {
+        let mut ground = Ground::of(kind);
+        ground.wait(0.1);
+        ground.send_raw(21, 159, &[1, 1]);
+        ground.wait(2.0);
+        let values: Vec<_> = ground
+            .received
+            .iter()
+            .filter(|(_, id, _)| *id == 22)
+            .map(|(_, _, bytes)| mavid::log::Frame::at_start(bytes).unwrap().payload())
+            .map(|payload| (payload.u16(6), payload.u16(4), payload.text(8, 16)))
+            .collect();
+        let count = values[0].1;
+        assert!(count > 100);
+        let indices: Vec<u16> = values.iter().map(|value| value.0).collect();
+        assert_eq!(indices, (0..count).collect::<Vec<_>>());
+        let mut names: Vec<&String> = values.iter().map(|value| &value.2).collect();
+        names.dedup();
+        assert_eq!(names.len(), usize::from(count));
+        assert!(names.iter().all(|name| !name.starts_with("SIM_") && !name.starts_with("SIH_")));
+        ground.forget();
+        let mut payload = 3_i16.to_le_bytes().to_vec();
+        payload.extend([1, 1]);
+        payload.extend([0; 16]);
+        ground.send_raw(20, 214, &payload);
+        assert_eq!(ground.last(22).unwrap().text(8, 16), values[3].2);
+    }
+}
+
+#[test]
+fn a_stored_fence_can_be_read_and_nothing_can_be_stored() {
+    let corner = |latitude_deg| FenceItem { command: 5001, param1: 3.0, latitude_deg, longitude_deg: 8.5 };
+    let fence = vec![corner(47.1), corner(47.2), corner(47.3)];
+    let mut ground = Ground::new(Settings { fence, ..settings(PX4) });
+    ground.wait(0.1);
+    ground.send_raw(43, 132, &[1, 1, 1]);
+    let count = ground.last(44).unwrap();
+    assert_eq!((count.u16(0), count.u8(4)), (3, 1));
+    ground.send_raw(51, 196, &[1, 0, 1, 1, 1]);
+    let item = ground.last(73).unwrap();
+    assert_eq!((item.i32(16), item.u16(28), item.u16(30)), (472_000_000, 1, 5001));
+    ground.send_raw(51, 196, &[3, 0, 1, 1, 1]);
+    assert_eq!(ground.last(47).unwrap().u8(2), 13, "no such item");
+    ground.send_raw(43, 132, &[1, 1, 0]);
+    assert_eq!(ground.last(44).unwrap().u16(0), 0, "no mission");
+    ground.send_raw(44, 221, &[2, 0, 1, 1, 1]);
+    assert_eq!(ground.last(47).unwrap().u8(2), 3, "not supported");
+}
+
+#[test]
+fn a_reboot_starts_the_clock_anew_and_disarms() {
+    for kind in [PX4, COPTER] {
+        let mut ground = Ground::of(kind);
+        ground.wait(3.0);
+        assert_eq!(ground.command(511, [30.0, 1e5, 0.0, 0.0, 0.0, 0.0, 0.0]), ACCEPTED);
+        assert_eq!(ground.arm(), ACCEPTED);
+        ground.wait(1.0);
+        assert!(ground.last(30).unwrap().u32(0) > 3900);
+        ground.fault(Fault::Reboot);
+        ground.wait(0.5);
+        assert_eq!(ground.command(512, [30.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), ACCEPTED);
+        assert!(ground.last(30).unwrap().u32(0) < 600);
+        ground.wait(1.0);
+        assert!(!ground.is_armed());
+    }
+}
+
+#[test]
+fn a_silent_link_carries_nothing_either_way() {
+    let mut ground = Ground::of(PX4);
+    ground.take_off(2.0);
+    ground.fault(Fault::LinkSilence(Duration::from_secs(2)));
+    ground.forget();
+    ground.wait(1.9);
+    assert!(ground.received.is_empty());
+    assert_eq!(ground.command(21, [0.0; 7]), u8::MAX);
+    ground.wait(1.2);
+    assert!(ground.count(30) > 10);
+    assert_eq!(ground.mode(), Some(Mode::Hold), "the command was not heard");
+}
+
+#[test]
+fn a_push_tilts_it_and_a_rotor_that_stops_brings_it_down() {
+    let mut ground = Ground::of(PX4);
+    ground.take_off(3.0);
+    let tilt = |ground: &Ground| {
+        let attitude = ground.last(30).unwrap();
+        attitude.f32(4).hypot(attitude.f32(8))
+    };
+    assert!(tilt(&ground) < 0.1);
+    ground.fault(Fault::Push {
+        force_n: [0.0; 3],
+        torque_nm: [3.5, 0.0, 0.0],
+        duration: Duration::from_millis(150),
+    });
+    let mut worst: f64 = 0.0;
+    for _ in 0..20 {
+        ground.wait(0.02);
+        worst = worst.max(tilt(&ground));
+    }
+    assert!(worst > 0.35, "{worst}");
+    ground.wait(6.0);
+    assert_at(&ground, [0.0, 0.0, -3.0], 0.5);
+    ground.fault(Fault::RotorStops(0));
+    ground.wait(4.0);
+    assert!(ground.position()[2] > -2.0, "{:?}", ground.position());
+}
+
+#[test]
+fn a_foreign_heartbeat_comes_as_it_is() {
+    let mut ground = Ground::of(PX4);
+    ground.wait(0.5);
+    ground.fault(Fault::ForeignHeartbeat { system: 255, component: 190 });
+    ground.wait(0.1);
+    let foreign = ground
+        .received
+        .iter()
+        .filter(|(_, id, _)| *id == 0)
+        .map(|(_, _, bytes)| *mavid::log::Frame::at_start(bytes).unwrap().header())
+        .any(|header| header.system.0 == 255 && header.component.0 == 190);
+    assert!(foreign);
+}
+
+#[test]
+fn frames_take_their_time_and_some_get_lost() {
+    let latency = Duration::from_millis(200);
+    let mut ground = Ground::new(Settings { latency, loss: 0.2, ..settings(PX4) });
+    ground.wait(10.0);
+    let first = ground.received.first().unwrap();
+    assert!(first.0 >= latency);
+    let sequences: Vec<u8> = ground
+        .received
+        .iter()
+        .map(|(_, _, bytes)| mavid::log::Frame::at_start(bytes).unwrap().header().sequence)
+        .collect();
+    let gaps: usize = sequences.windows(2).map(|pair| usize::from(pair[1].wrapping_sub(pair[0])) - 1).sum();
+    let lost = gaps as f64 / (gaps + sequences.len()) as f64;
+    assert!((lost - 0.2).abs() < 0.02, "{lost}");
+    let beat = heartbeat();
+    ground.send(&beat);
+}
+
+#[test]
+fn wrong_settings_are_told() {
+    let bad = [
+        Settings { loss: 1.0, ..settings(PX4) },
+        Settings { system: 0, ..settings(PX4) },
+        Settings { start_m: [f64::NAN, 0.0], ..settings(PX4) },
+        Settings { battery_v: 0.0, ..settings(PX4) },
+        Settings { motor_time_constant_s: -1.0, ..settings(PX4) },
+        Settings { parameters: vec![("WP_SPD".into(), 1.0)], ..settings(PX4) },
+    ];
+    for settings in bad {
+        let error = Vehicle::new(settings).unwrap_err();
+        assert!(matches!(error, SitlError::Setting { .. }), "{error}");
+    }
+}
+
+#[test]
+fn any_bytes_may_come_in() {
+    let mut ground = Ground::of(COPTER);
+    ground.wait(2.5);
+    let mut state = 1_u32;
+    for _ in 0..300 {
+        let mut bytes: Vec<u8> = (0..97)
+            .map(|_| {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                state.to_be_bytes()[0]
+            })
+            .collect();
+        // among them every message with a random payload and a right checksum
+        let whole = ground.raw(bytes[0] % 120, 0, &bytes[1..60]);
+        bytes.extend(whole);
+        ground.vehicle.receive(ground.link, &bytes, ground.now);
+        ground.wait(0.02);
+    }
+    for id in [4, 11, 20, 21, 23, 43, 44, 51, 66, 75, 76, 84, 111_u8] {
+        let seed = mavid::log::CrcSeeds::new().get(id.into()).unwrap();
+        for fill in [0x00, 0x01, 0x7F, 0xFF] {
+            let frame = ground.raw(id, seed, &[fill; 60]);
+            ground.vehicle.receive(ground.link, &frame, ground.now);
+            ground.wait(0.02);
+        }
+    }
+    ground.forget();
+    ground.wait(2.0);
+    assert!(ground.count(0) >= 1);
+}
