@@ -4,6 +4,10 @@
 //! It rests on other equations than the weak form (simulation, not integrals of measured derivatives; no
 //! accelerometer), so that its agreement with it is a check. It shares the weak form's regressors for
 //! nothing but the start.
+//!
+//! It is a check, not the estimate: its rotor torques are the logged commands, whose jitter acts as noise on
+//! the right-hand side and makes inertia some percent too large, which the weak form, with the commands on
+//! the left, avoids. Lags, heights and other nonlinear parameters it finds as well or better.
 
 mod parameters;
 mod segments;
@@ -100,6 +104,11 @@ pub enum RefitError {
         /// needed
         needed: usize,
     },
+    /// no mass distribution has it
+    #[error(
+        "the identified inertia is that of no body (one principal moment exceeds the sum of the others): a refit that keeps to physics cannot start from it"
+    )]
+    NoBody,
     /// the information is singular
     #[error("the segments do not determine all parameters")]
     NotDetermined,
@@ -139,7 +148,7 @@ pub fn refit(
     if let Some(own) = fitted.base.present.iter().find(|of| of.effect.state_count(&airframe) > 0) {
         return Err(RefitError::OwnStates { id: own.effect.id() });
     }
-    let unknowns = Unknowns::of(&fitted.base).ok_or(RefitError::NotDetermined)?;
+    let unknowns = Unknowns::of(&fitted.base).ok_or(RefitError::NoBody)?;
     let segments = segments::cut(&traces, settings);
     if segments.len() < LEAST_SEGMENTS {
         let (segments, segment_s) = (segments.len(), settings.segment_s);

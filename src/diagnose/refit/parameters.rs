@@ -17,14 +17,25 @@ enum Scale {
     Plain,
 }
 
+/// A free parameter of an effect.
+#[derive(Debug, Clone, Copy)]
+struct Slot {
+    /// among the base's effects
+    effect: usize,
+    /// among its values
+    slot: usize,
+    scale: Scale,
+    /// among the free parameters of all effects
+    free: usize,
+}
+
 /// The unknowns: log mass and log-Cholesky inertia, latency, and the effects' free parameters.
 #[derive(Debug, Clone)]
 pub(super) struct Unknowns {
     base: Base,
     start: DVector<f64>,
     floor: f64,
-    /// effect, slot, scale
-    slots: Vec<(usize, usize, Scale)>,
+    slots: Vec<Slot>,
 }
 
 /// Where the latency stands among the unknowns.
@@ -41,16 +52,24 @@ impl Unknowns {
         let mut slots = Vec::new();
         let mut start: Vec<f64> = body.iter().copied().collect();
         start.push(base.latency.total_s());
+        let mut free = 0;
         for (effect, present) in base.present.iter().enumerate() {
             for &slot in &present.free {
-                let value = present.values[slot];
-                let from_zero = present.parameter(slot).is_some_and(|parameter| parameter.min >= 0.0);
+                let (value, Some(parameter)) = (present.values[slot], present.parameter(slot)) else {
+                    continue;
+                };
+                free += 1;
+                // what physics holds at a bound stays there
+                if value <= parameter.min || value >= parameter.max {
+                    continue;
+                }
+                let from_zero = parameter.min >= 0.0;
                 let scale = if from_zero && value > 1e-9 { Scale::Log } else { Scale::Plain };
                 start.push(match scale {
                     Scale::Log => value.ln(),
                     Scale::Plain => value,
                 });
-                slots.push((effect, slot, scale));
+                slots.push(Slot { effect, slot, scale, free: free - 1 });
             }
         }
         Some(Self { base: base.clone(), start: DVector::from_vec(start), floor, slots })
@@ -76,7 +95,7 @@ impl Unknowns {
         } else {
             base.latency.delay_s = latency_s;
         }
-        for (index, &(effect, slot, scale)) in self.slots.iter().enumerate() {
+        for (index, &Slot { effect, slot, scale, .. }) in self.slots.iter().enumerate() {
             let value = match scale {
                 Scale::Log => point[EFFECTS + index].exp(),
                 Scale::Plain => point[EFFECTS + index],
@@ -91,7 +110,7 @@ impl Unknowns {
         let base = self.base(point);
         let mut out: Vec<f64> = theta_of(&base.vehicle.body).iter().copied().collect();
         out.push(base.latency.total_s());
-        out.extend(self.slots.iter().map(|&(effect, slot, _)| base.present[effect].values[slot]));
+        out.extend(self.slots.iter().map(|at| base.present[at.effect].values[at.slot]));
         out
     }
 
@@ -114,9 +133,8 @@ impl Unknowns {
     /// By how much an unknown is moved to see what it does.
     pub(super) fn step(&self, index: usize) -> f64 {
         match index {
-            LATENCY => 1e-3,
-            0..LATENCY => 1e-3,
-            _ => match self.slots[index - EFFECTS].2 {
+            0..=LATENCY => 1e-3,
+            _ => match self.slots[index - EFFECTS].scale {
                 Scale::Log => 1e-3,
                 Scale::Plain => 1e-3 * self.start[index].abs().max(1e-3),
             },
@@ -128,7 +146,7 @@ impl Unknowns {
         let mut out: Vec<(String, &'static str)> =
             NAMES.iter().zip(UNITS).map(|(name, unit)| ((*name).to_owned(), unit)).collect();
         out.push(("latency".to_owned(), "s"));
-        for &(effect, slot, _) in &self.slots {
+        for &Slot { effect, slot, .. } in &self.slots {
             let present = &self.base.present[effect];
             let (name, unit) = present.parameter(slot).map_or(("", "-"), |of| (of.name, of.unit));
             out.push((format!("{}.{name}", present.effect.id()), unit));
@@ -143,7 +161,7 @@ impl Unknowns {
         let mut out = vec![place(Nuisance::Mass)];
         out.extend((0..THETA - 1).map(|entry| place(Nuisance::Inertia(entry))));
         out.push(place(Nuisance::Latency));
-        out.extend((0..self.slots.len()).map(|index| Some(fitted.rows.nuisances.len() + index)));
+        out.extend(self.slots.iter().map(|at| Some(fitted.rows.nuisances.len() + at.free)));
         out
     }
 }
