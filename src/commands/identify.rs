@@ -139,5 +139,3 @@ fn conditioned(
     refuse_twins(&inputs.iter().collect::<Vec<_>>())?;
     Ok((flights, inputs))
 }
-
-/// Writes a file of results.
