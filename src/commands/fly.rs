@@ -20,7 +20,7 @@ use ratatui::crossterm::event;
 use serde::Serialize;
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 
-use super::identify::{Identified, write};
+use super::identify::Identified;
 use super::{CommandError, Outcome, output};
 use crate::cli::{FlyArgs, IdentifyArgs, OriginName};
 
@@ -252,9 +252,9 @@ fn identify(args: &FlyArgs) -> Result<Identified, CommandError> {
     };
     let identified = Identified::from(&identify)?;
     identified.write(&identify)?;
-    write(&dir.join("identification.txt"), &format!("{}\n", identified.page()))?;
+    output::file(&dir.join("identification.txt"), &format!("{}\n", identified.page()))?;
     let json = serde_json::to_string_pretty(&identified.document())
         .map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))?;
-    write(&dir.join("identification.json"), &json)?;
+    output::file(&dir.join("identification.json"), &json)?;
     Ok(identified)
 }
