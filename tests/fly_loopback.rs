@@ -4,7 +4,6 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
-#[allow(dead_code)]
 #[path = "support/flying.rs"]
 mod flying;
 
@@ -36,7 +35,7 @@ fn trajectory(folder: &Path) -> PathBuf {
     let stored = StoredTrajectory {
         series: flying::series(),
         repeats: 3,
-        limits: Limits::default(),
+        limits: Limits { x_max_m: Some(5.0), y_max_m: Some(5.0), z_max_m: Some(4.0), ..Limits::default() },
         criterion: None,
         margins: [].into(),
         standard_errors: [].into(),

@@ -275,10 +275,11 @@ mod tests {
         }
     }
 
-    /// A recording of PX4 with one sample of commands and its pulse range.
-    fn recording(values: [f64; 4]) -> Recording {
+    /// A recording of PX4 with a second of commands that go up and down by `step`, and its pulse range.
+    fn recording(low: f64, step: f64) -> Recording {
         let key = StreamKey { quantity: Quantity::ActuatorCommand, source: "SERVO_OUTPUT_RAW", instance: 0 };
-        let stream = Stream { time_s: vec![0.0], width: 4, values: values.to_vec() };
+        let time_s: Vec<f64> = (0..100).map(|index| 0.01 * f64::from(index)).collect();
+        let stream = Stream { time_s, width: 4, values: [[low; 4], [low + step; 4]].concat().repeat(50) };
         Recording {
             streams: [(key, stream)].into(),
             parameters: [("PWM_MAIN_MIN1".to_owned(), 1000.0), ("PWM_MAIN_MAX1".to_owned(), 2000.0)].into(),
@@ -290,7 +291,7 @@ mod tests {
     #[test]
     fn pulses_of_a_vehicle_stated_in_fractions_are_read_by_the_autopilots_range() {
         let vehicle = vehicle();
-        let (pulses, fractions) = (recording([1500.0; 4]), recording([0.5; 4]));
+        let (pulses, fractions) = (recording(1500.0, 100.0), recording(0.5, 0.1));
         let thrust_n = |recording: &Recording| {
             let thrusts = thrusts_from_commands(recording, &vehicle).unwrap();
             (thrusts.stream.values[0], thrusts.notes.len())

@@ -18,6 +18,8 @@ const GIVE_UP_AFTER: Duration = Duration::from_secs(5);
 const HEARTBEAT_MAX: Duration = Duration::from_secs(6);
 /// No position for this long is no estimate.
 const POSITION_MAX: Duration = Duration::from_secs(2);
+/// Other messages come meanwhile: what is silent is the estimate, not the link.
+const STILL_HEARD: Duration = Duration::from_millis(500);
 /// Innovation tests fail for an instant; an estimate bad for this long is bad.
 const ESTIMATOR_BAD: Duration = Duration::from_secs(1);
 /// A report of the mode before ours may have been under way when ours was engaged.
@@ -124,7 +126,7 @@ impl Flight {
         }
         // after a silence the first message is seldom a position
         let since = telemetry.motion.map_or(telemetry.resumed, |motion| motion.at.max(telemetry.resumed));
-        let heard = now.saturating_sub(telemetry.heard) < PAUSE_AFTER;
+        let heard = now.saturating_sub(telemetry.heard) < STILL_HEARD;
         if heard && now.saturating_sub(since) > POSITION_MAX {
             return Some(Cause::Estimator("no local position arrives".to_owned()));
         }
