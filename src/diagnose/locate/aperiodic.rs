@@ -105,7 +105,7 @@ const TREND_G: f64 = 0.005;
 /// Likelihood ratio of redness.
 pub(super) const RED_STATISTIC: f64 = 30.0;
 /// Least rms of a red force, of the weight.
-const RED_G: f64 = 0.003;
+const RED_G: f64 = 0.002;
 /// Least torque of any kind, of the torque's rms.
 const LEAST_TORQUE: f64 = 0.1;
 /// Correlation times that are tried, s: from the kernel's width to half a minute.

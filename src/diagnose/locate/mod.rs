@@ -65,8 +65,8 @@ impl Localisation {
     }
 }
 
-/// The noise's variance is known to about a quarter; less beyond it is none.
-const BEYOND_NOISE: f64 = 1.5;
+/// The noise's variance is continued from frequencies above; less than twice it is none.
+const BEYOND_NOISE: f64 = 2.0;
 
 /// Locates a fit's residual; `None` without rows.
 #[must_use]

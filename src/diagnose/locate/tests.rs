@@ -86,7 +86,8 @@ fn where_nothing_is_missing_nothing_is_located() {
     let found = explained(6004, |_, _| {});
     assert_eq!(found.verdict, Verdict::NothingMissing);
     let located = found.located_after.unwrap();
-    assert!(located.lives_on().is_none() && located.axes.iter().all(|axis| axis.excess == 0.0));
+    assert!(located.lives_on().is_none(), "{:?}", located.lives_on());
+    assert!(located.axes.iter().all(|axis| axis.excess == 0.0), "{:?}", located.axes);
     assert!(!found.field.unwrap().certain && !found.aperiodic.is_lacking());
     assert!(found.aperiodic.redness.len() == 6);
 }
