@@ -278,7 +278,7 @@ fn moved(story: &Story) -> BTreeMap<&'static str, Moved> {
     let search = &story.explanation.search;
     rigid_body(&search.before)
         .iter()
-        .zip(rigid_body(&search.after))
+        .zip(rigid_body(story.fitted()))
         .zip(nominal)
         .map(|((before, after), nominal)| {
             let moved = Moved { nominal, before: before.value, after: after.value, unit: after.unit };

@@ -67,6 +67,19 @@ pub fn variables(traces: &[Trace], fitted: &Fitted) -> Vec<Variable> {
     out
 }
 
+impl Binned {
+    /// The state at which the mean is farthest from the median of the means.
+    #[must_use]
+    pub fn peak_at(&self) -> Option<f64> {
+        let mut sorted = self.mean.clone();
+        sorted.sort_by(f64::total_cmp);
+        let median = *sorted.get(sorted.len() / 2)?;
+        let away = |mean: &f64| (mean - median).abs();
+        let far = self.at.iter().zip(&self.mean).max_by(|a, b| away(a.1).total_cmp(&away(b.1)));
+        far.map(|(at, _)| *at)
+    }
+}
+
 impl Variable {
     /// One value a row.
     #[must_use]
@@ -116,6 +129,7 @@ mod tests {
         let follows: Vec<f64> = values.iter().map(|v| -0.4 * v).collect();
         let binned = variable.bin(&follows);
         assert!(binned.share > 0.9, "{}", binned.share);
+        assert!(binned.peak_at().is_some_and(|at| at.abs() > 0.9));
         assert!(binned.mean[0] > 0.3 && binned.mean[BINS - 1] < -0.3);
         let noise: Vec<f64> =
             (0..800_u32).map(|i| f64::from(i.wrapping_mul(0x9E37_79B9) >> 16) / 65536.0 - 0.5).collect();

@@ -142,7 +142,7 @@ impl Story {
         let nominal = body_values(&self.given.vehicle.body);
         let rows: Vec<Vec<Cell>> = rigid_body(&search.before)
             .iter()
-            .zip(rigid_body(&search.after))
+            .zip(rigid_body(self.fitted()))
             .zip(nominal)
             .map(|((before, after), nominal)| {
                 let moved = (after.value - before.value) / after.std.max(f64::MIN_POSITIVE);

@@ -20,6 +20,8 @@ pub struct StateShare {
     pub variable: String,
     /// percent
     pub share_percent: f64,
+    /// value of the variable at which the misfit is largest, SI
+    pub peak_at: Option<f64>,
 }
 
 /// The misfit by axis, time, state and frequency.
@@ -68,13 +70,22 @@ impl Located {
         self.time_s = spans(&before.rows.time_s, &rolling(residual), 2.0 * after.weighted.sigma[axis]);
         self.state = variables(traces, before)
             .iter()
-            .map(|variable| StateShare {
-                variable: variable.name.to_owned(),
-                share_percent: 100.0 * variable.bin(residual).share,
+            .map(|variable| {
+                let binned = variable.bin(residual);
+                StateShare {
+                    variable: variable.name.to_owned(),
+                    share_percent: 100.0 * binned.share,
+                    peak_at: binned.peak_at(),
+                }
             })
             .filter(|state| state.share_percent > LEAST_SHARE_PERCENT)
             .collect();
         self.state.sort_by(|a, b| b.share_percent.total_cmp(&a.share_percent));
+        self.place = self.state.first().and_then(|first| {
+            let along = first.variable.strip_prefix("world_")?;
+            let at = first.peak_at?;
+            Some(format!("in the room where {along} is about {at:.1} m ({:.0} %)", first.share_percent))
+        });
     }
 }
 

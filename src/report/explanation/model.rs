@@ -51,7 +51,7 @@ impl Story {
 
     /// Names and rows of the correlation of everything that was estimated together.
     fn correlations(&self) -> (Vec<String>, Vec<String>) {
-        let fitted = &self.explanation.search.after;
+        let fitted = self.fitted();
         let mut kept: Vec<(usize, String)> = Vec::new();
         for (index, column) in fitted.rows.nuisances.iter().enumerate() {
             let name = match column.nuisance {

@@ -109,7 +109,7 @@ fn predicted_lines(page: &mut String, predicted: Option<&Predicted>) {
 fn body_lines(page: &mut String, story: &Story) {
     let search = &story.explanation.search;
     let nominal = body_values(&story.given.vehicle.body);
-    let (before, after) = (rigid_body(&search.before), rigid_body(&search.after));
+    let (before, after) = (rigid_body(&search.before), rigid_body(story.fitted()));
     let _ = writeln!(page, "\n  rigid body{:>13}{:>16}{:>28}", "nominal", "alone", "with the effects");
     for ((before, after), nominal) in before.iter().zip(&after).zip(nominal) {
         let _ = writeln!(

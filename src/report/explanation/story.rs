@@ -102,13 +102,20 @@ impl Story {
     /// Mass and inertia of the final model.
     #[must_use]
     pub fn rigid_body(&self) -> Vec<Estimate> {
-        rigid_body(&self.explanation.search.after)
+        rigid_body(self.fitted())
+    }
+
+    /// The fit that the model rests on: where nothing serves, that of the rigid body alone.
+    #[must_use]
+    pub fn fitted(&self) -> &Fitted {
+        let search = &self.explanation.search;
+        if self.verdict() == Verdict::Unexplained { &search.before } else { &search.after }
     }
 
     /// The vehicle as identified.
     #[must_use]
     pub fn vehicle(&self) -> &Vehicle {
-        &self.explanation.search.after.base.vehicle
+        &self.fitted().base.vehicle
     }
 
     /// Effects for the model file: those that were found, and a latency that was named.
