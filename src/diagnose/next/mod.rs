@@ -113,6 +113,16 @@ pub enum NextError {
         "lag and delay of the rotors differ above the trajectory's frequencies: rotor speed telemetry, or doublets of 5 Hz and more, tell them apart"
     )]
     LatencyOnly,
+    /// bound to a moment or to the battery
+    #[error(
+        "no trajectory tells {named} from {other}: weigh the vehicle before and after, swap the pack in between, and record the battery's voltage"
+    )]
+    NotByMotion {
+        /// the one that was named
+        named: &'static str,
+        /// the other
+        other: &'static str,
+    },
     /// limits without room
     #[error("no trajectory inside the limits tells {named} from {other}")]
     NoRoom {
@@ -173,6 +183,9 @@ pub fn design(
     })
 }
 
+/// Effects that depend on when, not on how the vehicle moves.
+const NOT_BY_MOTION: [&str; 2] = ["mass_change", "battery_sag"];
+
 /// The pairs of the confusable sets; where every name is certain, the pair that is nearest to each other.
 fn questions(explanation: &Explanation, traces: &[Trace]) -> Result<Vec<Question>, NextError> {
     let all = foresight::questions(explanation, traces);
@@ -184,8 +197,15 @@ fn questions(explanation: &Explanation, traces: &[Trace]) -> Result<Vec<Question
             .any(|named| named.confusable_with.iter().any(|other| other.id == question.candidate.id))
     };
     let mut sets: Vec<Question> = all.iter().filter(|question| in_set(question)).cloned().collect();
+    let by_motion = |question: &Question| {
+        ![question.named, question.candidate.id].iter().any(|id| NOT_BY_MOTION.contains(id))
+    };
+    if let Some(Question { named, candidate, .. }) = sets.first().filter(|_| !sets.iter().any(by_motion)) {
+        return Err(NextError::NotByMotion { named, other: candidate.id });
+    }
+    sets.retain(by_motion);
     if sets.is_empty() {
-        let nearest = all.into_iter().min_by(|a, b| a.now.total_cmp(&b.now));
+        let nearest = all.into_iter().filter(by_motion).min_by(|a, b| a.now.total_cmp(&b.now));
         sets.extend(nearest);
     }
     if sets.is_empty() {

@@ -67,7 +67,7 @@ pub(super) fn judged(
         .enumerate()
         .filter_map(|(channel, compared)| {
             let compared = compared.as_ref()?;
-            let ratio = compared.after.value / compared.floor?;
+            let ratio = compared.after.value / weak.own_rms[channel];
             (ratio > RESIDUAL_RATIO).then_some((channel, ratio))
         })
         .collect();

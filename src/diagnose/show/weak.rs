@@ -15,6 +15,8 @@ use rayon::prelude::*;
 pub(super) struct Weak {
     pub(super) compared: Vec<Option<Compared>>,
     pub(super) own: Vec<Fitted>,
+    /// what everything fitted to the held-out flights themselves leaves
+    pub(super) own_rms: [f64; CHANNELS],
 }
 
 /// Root mean square of each channel (N, N m). What the identification found of the nuisances that are
@@ -58,13 +60,15 @@ pub(super) fn residuals(
         }
     }
     let (mut compared, _) = blocks.compared(settings.draws, settings.seed);
+    let root = |sum: f64| (sum / rows.max(1) as f64).sqrt();
     for (entry, sum) in compared.iter_mut().zip(floor) {
         // force that is read once only has no second reading
         *entry = entry
             .filter(|compared| compared.before.value > 0.0 && sum > 0.0)
-            .map(|compared| Compared { floor: Some((sum / rows.max(1) as f64).sqrt()), ..compared });
+            // a flight's own fit has no empirical term
+            .map(|compared| Compared { floor: empirical.is_none().then(|| root(sum)), ..compared });
     }
-    Ok(Weak { compared, own: parts.into_iter().map(|(.., own)| own).collect() })
+    Ok(Weak { own_rms: floor.map(root), compared, own: parts.into_iter().map(|(.., own)| own).collect() })
 }
 
 /// The residual less the share of each nuisance that the base does not hold: the sensors' own (a bias, the
