@@ -22,7 +22,10 @@ const SIZES: &[(&str, &[(&str, f64, Scale)])] = &[
     ("weak_rotor", &[("rotor", 1.0, Scale::One), ("factor", 0.92, Scale::One)]),
     ("com_offset", &[("x", 0.005, Scale::One), ("y", -0.004, Scale::One), ("z", 0.0, Scale::One)]),
     ("thrust_tilt", &[("x", 0.025, Scale::One), ("y", -0.02, Scale::One)]),
-    ("angular_damping", &[("bx", 0.8, Scale::Inertia), ("by", 0.8, Scale::Inertia), ("bz", 0.8, Scale::Inertia)]),
+    (
+        "angular_damping",
+        &[("bx", 0.8, Scale::Inertia), ("by", 0.8, Scale::Inertia), ("bz", 0.8, Scale::Inertia)],
+    ),
     ("blade_flapping", &[("k", 0.5, Scale::Inertia)]),
     ("inflow", &[("kz", 0.4, Scale::Mass)]),
     ("translational_lift", &[("kh", 0.12, Scale::Mass)]),
@@ -45,7 +48,8 @@ fn main() {
         let found = arguments.iter().position(|a| a == name);
         found.and_then(|i| arguments.get(i + 1)).cloned()
     };
-    let number = |name: &str, default: u64| text(name).map_or(default, |t| t.parse().expect("a whole number"));
+    let number =
+        |name: &str, default: u64| text(name).map_or(default, |t| t.parse().expect("a whole number"));
     let (clean, each, first) = (number("--clean", 60), number("--each", 6), number("--seed", 1));
     report_clean(first, clean);
     println!("\neffect               flights  named  set  others  verdicts; median relative size error %");
@@ -68,7 +72,8 @@ fn report_clean(first: u64, count: u64) {
             limits.entry((limit.id, limit.parameter, limit.unit)).or_default().push(limit.limit);
         }
         if explanation.verdict != Verdict::NothingMissing {
-            let names: Vec<&str> = explanation.named.iter().chain(&explanation.closest).map(|n| n.id).collect();
+            let names: Vec<&str> =
+                explanation.named.iter().chain(&explanation.closest).map(|n| n.id).collect();
             println!("false: seed {seed} {} {names:?} {}", explanation.verdict.name(), conditions(*seed));
         }
     }
@@ -76,7 +81,11 @@ fn report_clean(first: u64, count: u64) {
     println!("smallest size that is named (z = 4), median and 90th percentile of these flights:");
     for ((id, parameter, unit), mut sizes) in limits {
         sizes.sort_by(f64::total_cmp);
-        println!("  {id:20} {parameter:14} {:10.3e} {:10.3e} {unit}", sizes[sizes.len() / 2], sizes[sizes.len() * 9 / 10]);
+        println!(
+            "  {id:20} {parameter:14} {:10.3e} {:10.3e} {unit}",
+            sizes[sizes.len() / 2],
+            sizes[sizes.len() * 9 / 10]
+        );
     }
 }
 
@@ -129,7 +138,10 @@ fn report_effect(id: &'static str, values: &'static [(&'static str, f64, Scale)]
     }
     errors.sort_by(f64::total_cmp);
     let median = errors.get(errors.len() / 2).copied().unwrap_or(f64::NAN);
-    println!("{id:20} {:7} {named:6} {within:4} {others:7}  {verdicts:?} {median:.1} % {strangers:?}", found.len());
+    println!(
+        "{id:20} {:7} {named:6} {within:4} {others:7}  {verdicts:?} {median:.1} % {strangers:?}",
+        found.len()
+    );
 }
 
 fn conditions(seed: u64) -> String {

@@ -186,8 +186,12 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         last = test_all(flights, &after, &candidates);
         let count = last.len() as f64;
         let back = |tested: &Tested| refused.contains(&tested.candidate.id);
-        let mut passed: Vec<Tested> =
-            last.iter().filter(|tested| !back(tested)).filter(|tested| passes(tested, &after, gates, count)).cloned().collect();
+        let mut passed: Vec<Tested> = last
+            .iter()
+            .filter(|tested| !back(tested))
+            .filter(|tested| passes(tested, &after, gates, count))
+            .cloned()
+            .collect();
         let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);
         let worth = |tested: &Tested| tested.evidence.energy - price * tested.evidence.theta.len() as f64;
         passed.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
