@@ -12,8 +12,11 @@ use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
+/// Name, value, and what it grows with, of each parameter.
+type Sizes = &'static [(&'static str, f64, Scale)];
+
 /// Effects at sizes that vehicles have; `m` is the mass, kg, `i` the mean of Ixx and Iyy.
-const SIZES: &[(&str, &[(&str, f64, Scale)])] = &[
+const SIZES: &[(&str, Sizes)] = &[
     ("linear_drag", &[("dx", 0.3, Scale::Mass), ("dy", 0.3, Scale::Mass), ("dz", 0.0, Scale::One)]),
     ("quadratic_drag", &[("cx", 0.12, Scale::Mass), ("cy", 0.12, Scale::Mass), ("cz", 0.12, Scale::Mass)]),
     ("ground_effect", &[("rho", 4.0, Scale::One), ("ca", 0.0, Scale::One), ("cb", 1.0, Scale::One)]),
@@ -90,7 +93,7 @@ fn report_clean(first: u64, count: u64) {
 }
 
 /// Flights with one effect concealed.
-fn report_effect(id: &'static str, values: &'static [(&'static str, f64, Scale)], first: u64, count: u64) {
+fn report_effect(id: &'static str, values: Sizes, first: u64, count: u64) {
     let found: Vec<(u64, Explanation, Vec<f64>)> = (first..first + count)
         .into_par_iter()
         .filter_map(|seed| {

@@ -28,6 +28,8 @@ pub enum Verb {
     Identify(IdentifyArgs),
     /// Fly a vehicle along a trajectory in simulation and write its log
     Simulate(SimulateArgs),
+    /// Fly a vehicle along a trajectory, record the flight and identify the vehicle from it
+    Fly(FlyArgs),
     /// Run the embedded simulated vehicle, for any ground station
     Sitl(SitlArgs),
     /// Compare models with recorded flights: flown again, predicted, played back
@@ -150,6 +152,62 @@ pub struct IdentifyArgs {
     /// use commands even where rotor speeds are measured
     #[arg(long)]
     pub commands: bool,
+}
+
+/// Arguments of `mavid fly`.
+#[derive(Debug, Args)]
+pub struct FlyArgs {
+    /// udpin:HOST:PORT, udpout:HOST:PORT, tcpin:HOST:PORT, tcpout:HOST:PORT or serial:PATH:BAUD
+    #[arg(long, value_name = "ADDRESS")]
+    pub connect: String,
+    /// trajectory.toml
+    #[arg(long, value_name = "FILE")]
+    pub trajectory: PathBuf,
+    /// vehicle.toml, or a model
+    #[arg(long, value_name = "FILE")]
+    pub vehicle: PathBuf,
+    /// new folder for recording, events, parameters and results
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// arm a vehicle that is not the embedded simulated one
+    #[arg(long)]
+    pub arm: bool,
+    /// the vehicle's MAVLink system id; without it the only vehicle on the link
+    #[arg(long, value_name = "ID", value_parser = clap::value_parser!(u32).range(1..=255))]
+    pub system_id: Option<u32>,
+    /// our own MAVLink system id
+    #[arg(long, value_name = "ID", default_value_t = 255, value_parser = clap::value_parser!(u32).range(1..=255))]
+    pub station_id: u32,
+    /// periods to fly, instead of the trajectory's own
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub repeats: Option<u32>,
+    /// setpoints a second
+    #[arg(long, value_name = "HZ", default_value_t = 50, value_parser = clap::value_parser!(u32).range(20..=200))]
+    pub setpoint_hz: u32,
+    /// where the trajectory's horizontal origin lies; its heights count from the ground
+    #[arg(long, value_enum, default_value = "local")]
+    pub origin: OriginName,
+    /// distance to the reference at which the flight is aborted, m
+    #[arg(long, value_name = "M", default_value_t = 1.0)]
+    pub tracking_max: f64,
+    /// tilt at which the flight is aborted, degrees [default: 20 more than planned]
+    #[arg(long, value_name = "DEG")]
+    pub tilt_max: Option<f64>,
+    /// key that signs what is sent
+    #[arg(long, value_name = "FILE")]
+    pub signing_key_file: Option<PathBuf>,
+    /// lines instead of the terminal view
+    #[arg(long)]
+    pub plain: bool,
+}
+
+/// Where a trajectory's horizontal origin lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum OriginName {
+    /// at the origin of the vehicle's local position
+    Local,
+    /// so that the vehicle stands below the place of its takeoff
+    Here,
 }
 
 /// Arguments of `mavid validate`.

@@ -1,7 +1,7 @@
 //! `mavid identify LOG... --vehicle V`: parameters from recorded flights.
 
 use mavid::config::{LoadedVehicle, read_vehicle};
-use mavid::estimate::{IdentifySettings, apply_anchor, identify};
+use mavid::estimate::{Identification, IdentifySettings, ThrustScale, apply_anchor, identify};
 use mavid::report::{
     IdentificationDocument, InputFile, history_charts, identification_page, model_toml, svg,
 };
@@ -13,38 +13,87 @@ use super::flights::{ReadAs, is_csv, load, refuse_twins};
 use super::{CommandError, Outcome, output};
 use crate::cli::IdentifyArgs;
 
+/// An identification with all that is told of it.
+#[derive(Debug)]
+pub struct Identified {
+    vehicle: Vehicle,
+    flights: Vec<Signals>,
+    inputs: Vec<InputFile>,
+    identification: Identification,
+    scale: Option<ThrustScale>,
+}
+
+impl Identified {
+    /// Loads, conditions and identifies.
+    pub fn from(args: &IdentifyArgs) -> Result<Self, CommandError> {
+        let LoadedVehicle { vehicle, warnings, .. } = read_vehicle(&args.vehicle)?;
+        for warning in &warnings {
+            output::message(&format!("warning: {}: {warning}", args.vehicle.display()));
+        }
+        let settings = settings(args)?;
+        let (flights, inputs) = conditioned(args, &vehicle)?;
+        let mut identification = identify(&flights, &vehicle, &settings)
+            .map_err(|error| CommandError::Input(error.to_string()))?;
+        let scale = apply_anchor(&mut identification, &vehicle);
+        Ok(Self { vehicle, flights, inputs, identification, scale })
+    }
+
+    fn quality(&self) -> Vec<&Quality> {
+        self.flights.iter().map(|signals| &signals.quality).collect()
+    }
+
+    /// As JSON.
+    pub fn document(&self) -> IdentificationDocument {
+        let quality = self.quality();
+        IdentificationDocument::new(
+            &self.identification,
+            &self.vehicle,
+            &quality,
+            &self.inputs,
+            self.scale.as_ref(),
+        )
+    }
+
+    /// For people.
+    pub fn page(&self) -> String {
+        let page =
+            identification_page(&self.identification, &self.vehicle, &self.quality(), self.scale.as_ref());
+        page.trim_end().to_owned()
+    }
+
+    /// Writes model and chart where the arguments say so.
+    pub fn write(&self, args: &IdentifyArgs) -> Result<(), CommandError> {
+        if let Some(path) = &args.out {
+            let text = model_toml(&self.identification, &self.vehicle, &self.inputs, self.scale.as_ref())?;
+            output::file(path, &text)?;
+        }
+        if let Some(path) = &args.chart {
+            output::file(path, &svg(&history_charts(&self.identification)))?;
+        }
+        Ok(())
+    }
+
+    /// Says what the recordings lost.
+    pub fn outcome(&self) -> Outcome {
+        let mut outcome = Outcome::Done;
+        for input in self.inputs.iter().filter(|input| !input.losses.is_empty()) {
+            output::message(&format!("{}: {}", input.path, input.losses.join("; ")));
+            outcome = Outcome::DoneWithLoss;
+        }
+        outcome
+    }
+}
+
 /// Runs the verb.
 pub fn run(json: bool, args: &IdentifyArgs) -> Result<Outcome, CommandError> {
-    let LoadedVehicle { vehicle, warnings, .. } = read_vehicle(&args.vehicle)?;
-    for warning in &warnings {
-        output::message(&format!("warning: {}: {warning}", args.vehicle.display()));
-    }
-    let settings = settings(args)?;
-    let (flights, inputs) = conditioned(args, &vehicle)?;
-    let mut identification =
-        identify(&flights, &vehicle, &settings).map_err(|error| CommandError::Input(error.to_string()))?;
-    let scale = apply_anchor(&mut identification, &vehicle);
-    let quality: Vec<&Quality> = flights.iter().map(|signals| &signals.quality).collect();
+    let identified = Identified::from(args)?;
     if json {
-        let document =
-            IdentificationDocument::new(&identification, &vehicle, &quality, &inputs, scale.as_ref());
-        output::json(&document)?;
+        output::json(&identified.document())?;
     } else {
-        output::text(identification_page(&identification, &vehicle, &quality, scale.as_ref()).trim_end())?;
+        output::text(&identified.page())?;
     }
-    if let Some(path) = &args.out {
-        let text = model_toml(&identification, &vehicle, &inputs, scale.as_ref())?;
-        output::file(path, &text)?;
-    }
-    if let Some(path) = &args.chart {
-        output::file(path, &svg(&history_charts(&identification)))?;
-    }
-    let mut outcome = Outcome::Done;
-    for input in inputs.iter().filter(|input| !input.losses.is_empty()) {
-        output::message(&format!("{}: {}", input.path, input.losses.join("; ")));
-        outcome = Outcome::DoneWithLoss;
-    }
-    Ok(outcome)
+    identified.write(args)?;
+    Ok(identified.outcome())
 }
 
 fn settings(args: &IdentifyArgs) -> Result<IdentifySettings, CommandError> {

@@ -6,6 +6,7 @@ mod effects;
 mod explain;
 mod export;
 mod flights;
+mod fly;
 mod identify;
 mod inspect;
 mod network;
@@ -88,6 +89,7 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
         Verb::Plan(args) => plan::run(cli.json, args),
         Verb::Identify(args) => identify::run(cli.json, args),
         Verb::Simulate(args) => simulate::run(cli.json, args),
+        Verb::Fly(args) => fly::run(cli.json, args),
         Verb::Sitl(args) => sitl::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, args),
         Verb::Inspect(args) => inspect::run(cli.json, args),

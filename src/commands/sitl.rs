@@ -65,7 +65,7 @@ async fn fly(
             component: ComponentId(1),
             ..LinkOptions::default()
         };
-        let ends = network::open(&address.to_string(), options).await?;
+        let ends = network::open(address, options).await?;
         links.push((role(address), ends));
     }
     if json {

@@ -1,12 +1,46 @@
 //! The ground station's side of an identification flight.
 //!
-//! Everything here is pure: values and state machines that are driven by frames and a clock. Times are
-//! [`std::time::Duration`]s of the host's monotonic clock since any fixed start.
+//! [`Flight`] is the whole flight as a state machine without I/O: frames, keys and the clock go in, messages,
+//! notes and the outcome come out. [`Streamer`] makes the setpoints from the [`Guide`] that the flight renews
+//! with every step, and stops by itself where the flight does not. Times are [`std::time::Duration`]s of the
+//! host's monotonic clock since any fixed start.
+//!
+//! ```text
+//! frames, keys, clock -> Flight -> commands, notes, outcome
+//!                          | Guide
+//!                          v
+//!                 clock -> Streamer -> setpoints
+//! ```
 
 mod address;
+mod commander;
+mod course;
 pub mod finding;
+mod flight;
+mod health;
 pub mod live;
+mod modes;
+mod outcome;
 pub mod parameters;
 pub mod preflight;
 pub mod requests;
+mod roster;
+mod runner;
+mod safety;
+mod setpoint;
+mod sortie;
+mod target;
+mod telemetry;
 pub mod view;
+
+pub use commander::{Answer, AnswerResult, Manner};
+pub use course::{Around, Course, PathClock, PathTime, Track, transfer};
+pub use flight::{Action, Event, Flight, Key, Status};
+pub use health::{BatteryLevel, EstimatorReport, SystemReport};
+pub use modes::{Mode, Stack};
+pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
+pub use runner::{Console, EVENTS, PARAMETERS, Record, Ride, RunError, StreamFigures, TLOG, run};
+pub use safety::{Guide, Lead, Streamed, Streamer};
+pub use setpoint::{Place, Setpoint};
+pub use sortie::{Origin, Settings, Sortie};
+pub use target::{Order, Target, heartbeat};

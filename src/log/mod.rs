@@ -11,6 +11,7 @@ mod clock;
 mod crc;
 pub mod csv;
 mod decode;
+mod embedded;
 mod error;
 mod frame;
 mod load;
@@ -24,6 +25,7 @@ pub use builder::RecordingBuilder;
 pub use clock::{Anchor, Stamp};
 pub use crc::{CrcSeeds, checksum};
 pub use decode::{DecodeReport, Decoder, Event, Source, StreamId, Vehicle};
+pub use embedded::EMBEDDED_UID2;
 pub use error::LogError;
 pub use frame::{
     Check, ComponentId, Frame, Header, MARKER_V1, MARKER_V2, MAX_FRAME_BYTES, Payload, Start, SystemId,

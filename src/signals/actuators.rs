@@ -7,7 +7,7 @@
 use super::SignalsError;
 use super::grid::LARGEST_VALUE;
 use super::select::best;
-use crate::log::{Autopilot, Quantity, Recording, Stream};
+use crate::log::{Autopilot, Quantity, Recording, Stream, StreamKey};
 use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
 
 /// What the thrusts rest on.
@@ -147,7 +147,12 @@ fn in_unit(stream: &Stream, channels: &[usize], actuator: Actuator) -> bool {
 pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propulsion, Vec<String>) {
     let mut propulsion = *stated;
     let mut notes = Vec::new();
-    let Actuator::Pwm(Some(stated_range)) = stated.actuator else { return (propulsion, notes) };
+    let stated_range = match stated.actuator {
+        Actuator::Pwm(Some(range)) => Some(range),
+        // an autopilot sends pulse widths whatever the file calls its commands
+        Actuator::Speed | Actuator::Thrust if !holds_fractions(recording) => None,
+        Actuator::Speed | Actuator::Thrust | Actuator::Pwm(None) => return (propulsion, notes),
+    };
     let parameter = |name: &str| recording.parameters.get(name).copied();
     let (range, expo) = match recording.autopilot {
         Autopilot::ArduPilot => (ardupilot_range(&parameter), parameter("MOT_THST_EXPO")),
@@ -155,11 +160,14 @@ pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propu
         Autopilot::Unknown | Autopilot::Other => (None, None),
     };
     if let Some(range) = range.filter(|range| range.max_us > range.min_us) {
-        if range != stated_range {
-            notes.push(format!(
-                "pulse range {:.0} to {:.0} us from the log's parameters, the vehicle file says {:.0} to {:.0} us",
-                range.min_us, range.max_us, stated_range.min_us, stated_range.max_us
-            ));
+        let (from, to) = (range.min_us, range.max_us);
+        let taken = format!("pulse range {from:.0} to {to:.0} us from the log's parameters");
+        match stated_range {
+            Some(stated) if stated == range => {}
+            Some(PwmRange { min_us, max_us }) => {
+                notes.push(format!("{taken}, the vehicle file says {min_us:.0} to {max_us:.0} us"));
+            }
+            None => notes.push(format!("{taken}, the vehicle file speaks of 0..1")),
         }
         propulsion.actuator = Actuator::Pwm(Some(range));
     }
@@ -172,6 +180,15 @@ pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propu
         propulsion.law = ThrustLaw::Curve { thrust_max_n, expo };
     }
     (propulsion, notes)
+}
+
+/// Commands in 0..1 are among the streams.
+fn holds_fractions(recording: &Recording) -> bool {
+    let commands = |(key, _): &(&StreamKey, &Stream)| key.quantity == Quantity::ActuatorCommand;
+    recording.streams.iter().filter(commands).any(|(_, stream)| {
+        let channels: Vec<usize> = (0..stream.width).collect();
+        in_unit(stream, &channels, Actuator::Speed)
+    })
 }
 
 /// ArduPilot: u = 0 at `MOT_SPIN_MIN`, u = 1 at `MOT_SPIN_MAX` of the pulse range.
@@ -215,5 +232,74 @@ pub fn motor_channels(recording: &Recording, rotors: usize, notes: &mut Vec<Stri
             channels
         }
         None => (0..rotors).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vehicle::{Anchor, Limits, RigidBody, Rotor, Spin};
+    use nalgebra::{Matrix3, Vector3};
+
+    fn vehicle() -> Vehicle {
+        let rotor = |x: f64, y: f64, spin| Rotor {
+            name: format!("{x} {y}"),
+            position_m: Vector3::new(x, y, 0.0),
+            spin,
+        };
+        Vehicle {
+            name: "a cross".to_owned(),
+            body: RigidBody {
+                mass_kg: 2.0,
+                inertia_kg_m2: Matrix3::identity(),
+                center_of_mass_m: Vector3::zeros(),
+            },
+            propulsion: Propulsion {
+                actuator: Actuator::Speed,
+                law: ThrustLaw::Speed { speed_max_rad_s: 1000.0 },
+                thrust_coefficient: Some(1e-5),
+                torque_per_thrust_m: 0.016,
+                rotor_radius_m: None,
+                time_constant_s: None,
+                time_constant_down_s: None,
+            },
+            rotors: vec![
+                rotor(0.2, 0.2, Spin::Cw),
+                rotor(0.2, -0.2, Spin::Ccw),
+                rotor(-0.2, -0.2, Spin::Cw),
+                rotor(-0.2, 0.2, Spin::Ccw),
+            ],
+            limits: Limits::default(),
+            anchor: Anchor::Thrust,
+            gravity_m_s2: 9.81,
+        }
+    }
+
+    /// A recording of PX4 with one sample of commands and its pulse range.
+    fn recording(values: [f64; 4]) -> Recording {
+        let key = StreamKey { quantity: Quantity::ActuatorCommand, source: "SERVO_OUTPUT_RAW", instance: 0 };
+        let stream = Stream { time_s: vec![0.0], width: 4, values: values.to_vec() };
+        Recording {
+            streams: [(key, stream)].into(),
+            parameters: [("PWM_MAIN_MIN1".to_owned(), 1000.0), ("PWM_MAIN_MAX1".to_owned(), 2000.0)].into(),
+            autopilot: Autopilot::Px4,
+            ..Recording::default()
+        }
+    }
+
+    #[test]
+    fn pulses_of_a_vehicle_stated_in_fractions_are_read_by_the_autopilots_range() {
+        let vehicle = vehicle();
+        let (pulses, fractions) = (recording([1500.0; 4]), recording([0.5; 4]));
+        let thrust_n = |recording: &Recording| {
+            let thrusts = thrusts_from_commands(recording, &vehicle).unwrap();
+            (thrusts.stream.values[0], thrusts.notes.len())
+        };
+        let (from_pulses_n, notes) = thrust_n(&pulses);
+        // 1e-5 (0.5 * 1000)^2
+        assert!((from_pulses_n - 2.5).abs() < 1e-12 && notes == 1);
+        assert_eq!(thrust_n(&fractions), (from_pulses_n, 0));
+        let unknown = Recording { parameters: [].into(), ..pulses };
+        assert!(thrusts_from_commands(&unknown, &vehicle).is_err());
     }
 }

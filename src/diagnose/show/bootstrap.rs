@@ -97,7 +97,7 @@ impl Blocks {
         }
         let interval = |of: &dyn Fn(&Roots) -> Option<f64>| -> Option<Interval> {
             let value = of(&whole)?;
-            let spread: Vec<f64> = drawn.iter().filter_map(|roots| of(roots)).collect();
+            let spread: Vec<f64> = drawn.iter().filter_map(of).collect();
             Some(Interval { value, range: percentiles(spread) })
         };
         let each = (0..self.quantities)
@@ -132,7 +132,6 @@ impl Blocks {
     }
 }
 
-#[expect(clippy::ptr_arg, reason = "passed as a function of resampled errors")]
 fn mean_improvement(roots: &Roots) -> Option<f64> {
     let each: Vec<f64> =
         roots.iter().flatten().map(|(before, after)| improvement_percent(*before, *after)).collect();

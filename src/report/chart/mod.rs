@@ -140,7 +140,7 @@ mod tests {
             spans: vec![[0.5, 1.0]],
             ..Panel::default()
         };
-        let text = svg(&[panel.clone()]);
+        let text = svg(std::slice::from_ref(&panel));
         assert!(text.starts_with("<svg") && text.trim_end().ends_with("</svg>"));
         assert!(text.contains("a&lt;b") && !text.contains("NaN"));
         // the band's upper end is the highest that is drawn: it has a place inside

@@ -1,0 +1,260 @@
+//! `mavid fly --connect ADDRESS --trajectory T --vehicle V --out DIR`: flies, records, identifies.
+
+use std::io::IsTerminal;
+use std::path::Path;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use mavid::config::{StoredTrajectory, read_trajectory, read_vehicle};
+use mavid::fly::view::{KeyCommand, Keys, PlainLog, Screen, ViewModel};
+use mavid::fly::{
+    self, Around, Console, Course, Ending, Origin, Outcome as FlightOutcome, Record, Ride, Sortie,
+};
+use mavid::link::Signing;
+use mavid::log::{ComponentId, SystemId};
+use mavid::report::IdentificationDocument;
+use mavid::units::rad_from_deg;
+use mavid::vehicle::{Limits, Vehicle};
+use ratatui::crossterm::event;
+use serde::Serialize;
+use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
+
+use super::identify::Identified;
+use super::{CommandError, Outcome, output};
+use crate::cli::{FlyArgs, IdentifyArgs, OriginName};
+
+/// A ground station's component id.
+const STATION: ComponentId = ComponentId(190);
+/// How long the view waits for a key or a new picture.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// What was flown and what it says.
+#[derive(Serialize)]
+struct Document {
+    schema: u32,
+    directory: String,
+    flight: FlightOutcome,
+    setpoints: fly::StreamFigures,
+    /// frames of the recording, and those that it lost
+    recorded_frames: u64,
+    dropped_frames: u64,
+    /// `None` where the flight says nothing
+    identification: Option<IdentificationDocument>,
+    identification_failure: Option<String>,
+}
+
+/// Runs the verb.
+pub fn run(json: bool, args: &FlyArgs) -> Result<Outcome, CommandError> {
+    let ride = ride(args)?;
+    let record = fly_it(ride, args.plain)?;
+    let landed = record.outcome.ending == Ending::Landed;
+    say(&record);
+    let identified = landed.then(|| identify(args));
+    let (identified, failure) = match identified {
+        Some(Ok(identified)) => (Some(identified), None),
+        Some(Err(error)) => (None, Some(error.to_string())),
+        None => (None, None),
+    };
+    if let Some(failure) = &failure {
+        output::message(&format!("not identified: {failure}"));
+    }
+    if json {
+        output::json(&Document {
+            schema: 1,
+            directory: args.out.display().to_string(),
+            flight: record.outcome.clone(),
+            setpoints: record.stream,
+            recorded_frames: record.recorder.frames,
+            dropped_frames: record.recorder.dropped,
+            identification: identified.as_ref().map(Identified::document),
+            identification_failure: failure.clone(),
+        })?;
+    } else if let Some(identified) = &identified {
+        output::text(&identified.page())?;
+    }
+    let lost = record.recorder.dropped > 0 || record.events_failure.is_some();
+    match (&record.outcome, &failure) {
+        (FlightOutcome { ending: Ending::NotFlown, cause, .. }, _) => {
+            let why = cause.as_ref().map_or("no reason given".to_owned(), ToString::to_string);
+            Err(CommandError::Failure(format!("not flown: {why}")))
+        }
+        (_, Some(why)) if record.outcome.is_whole() => Err(CommandError::Failure(why.clone())),
+        (outcome, None) if outcome.is_whole() && outcome.losses.is_empty() && !lost => {
+            Ok(identified.map_or(Outcome::Done, |identified| identified.outcome()))
+        }
+        _ => Ok(Outcome::DoneWithLoss),
+    }
+}
+
+/// Everything that is read and checked before the link is opened.
+fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
+    let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
+    let address = args.connect.parse().map_err(|error| input(&error))?;
+    let loaded = read_vehicle(&args.vehicle)?;
+    for warning in &loaded.warnings {
+        output::message(&format!("warning: {}: {warning}", args.vehicle.display()));
+    }
+    let trajectory = read_trajectory(&args.trajectory)?;
+    let sortie = sortie(args, &trajectory, &loaded.vehicle)?;
+    let signing =
+        args.signing_key_file.as_deref().map(Signing::open).transpose().map_err(|error| input(&error))?;
+    let tlog = args.out.join(fly::TLOG);
+    if tlog.exists() {
+        let name = tlog.display();
+        return Err(CommandError::Input(format!("--out: {name} exists already; expected a new folder")));
+    }
+    std::fs::create_dir_all(&args.out).map_err(|error| {
+        CommandError::Input(format!("cannot make the folder {}: {error}", args.out.display()))
+    })?;
+    copy(&args.trajectory, &args.out.join("trajectory.toml"))?;
+    copy(&args.vehicle, &args.out.join("vehicle.toml"))?;
+    Ok(Ride { sortie, vehicle: loaded.vehicle, address, signing, dir: args.out.clone() })
+}
+
+fn copy(from: &Path, to: &Path) -> Result<(), CommandError> {
+    let failed =
+        |error| CommandError::Input(format!("cannot copy {} to {}: {error}", from.display(), to.display()));
+    let text = std::fs::read(from).map_err(failed)?;
+    std::fs::write(to, text).map_err(failed)
+}
+
+fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> Result<Sortie, CommandError> {
+    for (name, value) in [("--tracking-max", Some(args.tracking_max)), ("--tilt-max", args.tilt_max)] {
+        if let Some(value) = value.filter(|value| !value.is_finite() || *value <= 0.0) {
+            return Err(CommandError::Input(format!("{name}: expected a positive number, got {value}")));
+        }
+    }
+    let around = trajectory.transitions.map(|stored| Around {
+        takeoff: stored.takeoff,
+        landing: stored.landing,
+        to_start_s: stored.to_start_s,
+        to_landing_s: stored.to_landing_s,
+    });
+    // those that it was planned for, where it says so
+    let limits = if trajectory.limits == Limits::default() { vehicle.limits } else { trajectory.limits };
+    let repeats = args.repeats.unwrap_or(trajectory.repeats);
+    let course = Course::new(&trajectory.series, repeats, around.as_ref(), &limits, vehicle)
+        .map_err(|error| CommandError::Input(format!("{}: {error}", args.trajectory.display())))?;
+    Ok(Sortie {
+        course,
+        limits,
+        gravity_m_s2: vehicle.gravity_m_s2,
+        system: args.system_id.map(SystemId),
+        may_arm: args.arm,
+        settings: fly::Settings {
+            station: (SystemId(args.station_id), STATION),
+            setpoint_period: Duration::from_secs(1) / args.setpoint_hz,
+            origin: match args.origin {
+                OriginName::Local => Origin::Local,
+                OriginName::Here => Origin::Here,
+            },
+            tracking_max_m: args.tracking_max,
+            tilt_max_rad: args.tilt_max.map(rad_from_deg),
+            await_clearance: true,
+            ..fly::Settings::default()
+        },
+    })
+}
+
+/// The flight, with its view on another thread: neither a slow terminal nor a key holds it up.
+fn fly_it(ride: Ride, plain: bool) -> Result<Record, CommandError> {
+    let failed = |error: &dyn std::fmt::Display| CommandError::Failure(error.to_string());
+    let runtime =
+        tokio::runtime::Builder::new_multi_thread().enable_all().build().map_err(|error| failed(&error))?;
+    let (show, pictures) = channel();
+    let (pressed, keys) = unbounded_channel();
+    let drawn = !plain && std::io::stderr().is_terminal() && std::io::stdin().is_terminal();
+    let viewer = thread::Builder::new()
+        .name("view".into())
+        .spawn(move || if drawn { draw(&pictures, &pressed) } else { tell(&pictures) })
+        .map_err(|error| failed(&error))?;
+    let record = runtime.block_on(fly::run(ride, Console { show, keys }));
+    // its pictures have ended with the flight
+    let _ = viewer.join();
+    record.map_err(|error| failed(&error))
+}
+
+/// Lines.
+fn tell(pictures: &Receiver<ViewModel>) {
+    let mut log = PlainLog::default();
+    for model in pictures {
+        for line in log.lines(&model) {
+            output::message(&line);
+        }
+    }
+}
+
+/// The terminal view; lines where the terminal cannot be drawn on.
+fn draw(pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<KeyCommand>) {
+    let Ok(mut screen) = Screen::open(std::io::stderr) else { return tell(pictures) };
+    let mut keys = Keys::default();
+    loop {
+        while event::poll(Duration::ZERO).unwrap_or(false) {
+            if let Ok(event::Event::Key(key)) = event::read()
+                && let Some(command) = keys.press(key)
+            {
+                // a flight that is over takes no keys
+                let _ = pressed.send(command);
+            }
+        }
+        match pictures.recv_timeout(LOOK) {
+            Ok(mut model) => {
+                model.typed = keys.typed().map(str::to_owned);
+                if screen.draw(&model).is_err() {
+                    return tell(pictures);
+                }
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return,
+        }
+    }
+}
+
+fn say(record: &Record) {
+    let FlightOutcome { cause, ending, flown, losses } = &record.outcome;
+    let how = match ending {
+        Ending::NotFlown => "not flown".to_owned(),
+        Ending::Landed => "landed".to_owned(),
+        Ending::InTheAir(mode) => format!("left in the air, mode {mode}"),
+    };
+    let why = cause.as_ref().map_or_else(String::new, |cause| format!(": {cause}"));
+    output::message(&format!("{how}{why}"));
+    output::message(&format!(
+        "{} periods, {:.3} m rms off the reference, {:.3} m at most; tilt {:.1} degrees, planned {:.1}",
+        flown.periods, flown.tracking_rms_m, flown.tracking_max_m, flown.tilt_max_deg, flown.tilt_planned_deg
+    ));
+    let stream = &record.stream;
+    output::message(&format!(
+        "{} setpoints, {} of them more than 3 ms late, {} refused by the link; {} frames recorded, {} lost",
+        stream.sent, stream.late, stream.refused, record.recorder.frames, record.recorder.dropped
+    ));
+    for loss in losses.iter().chain(&record.events_failure) {
+        output::message(&format!("warning: {loss}"));
+    }
+}
+
+/// The offline pipeline on the flight just flown, its results beside the recording.
+fn identify(args: &FlyArgs) -> Result<Identified, CommandError> {
+    let dir = &args.out;
+    let identify = IdentifyArgs {
+        logs: vec![dir.join(fly::TLOG)],
+        vehicle: args.vehicle.clone(),
+        out: Some(dir.join("model.toml")),
+        chart: Some(dir.join("parameters.svg")),
+        csv_map: None,
+        system: args.system_id,
+        transient: None,
+        cutoff: None,
+        fir: false,
+        sigma: mavid::estimate::PAPER_SIGMA,
+        commands: false,
+    };
+    let identified = Identified::from(&identify)?;
+    identified.write(&identify)?;
+    output::file(&dir.join("identification.txt"), &format!("{}\n", identified.page()))?;
+    let json = serde_json::to_string_pretty(&identified.document())
+        .map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))?;
+    output::file(&dir.join("identification.json"), &json)?;
+    Ok(identified)
+}

@@ -1,0 +1,249 @@
+//! Commands that wait for their answer: sent again until one comes, or until patience ends.
+
+use std::time::Duration;
+
+use mavlink::dialects::ardupilotmega::MavMessage;
+
+use super::target::{Order, Target};
+use crate::log::Payload;
+
+/// MAV_RESULT as a COMMAND_ACK carries it.
+const ACCEPTED: u8 = 0;
+const TEMPORARILY_REJECTED: u8 = 1;
+const FAILED: u8 = 4;
+const IN_PROGRESS: u8 = 5;
+
+/// How a command is sent and what its answers mean.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Manner {
+    /// until the next sending where no answer comes
+    pub repeat: Duration,
+    /// after this long it counts as unanswered or refused
+    pub patience: Duration,
+    /// `FAILED` is asked again too, as `TEMPORARILY_REJECTED` is: ArduPilot arms that way until its
+    /// estimator is ready
+    pub failed_is_temporary: bool,
+}
+
+/// Pause before a rejected command is sent again.
+const AFTER_REJECTION: Duration = Duration::from_secs(1);
+
+impl Manner {
+    /// An ordinary command.
+    pub const PATIENT: Self = Self {
+        repeat: Duration::from_millis(500),
+        patience: Duration::from_secs(5),
+        failed_is_temporary: false,
+    };
+    /// A command that ends the flight: three times within a third of a second.
+    pub const URGENT: Self = Self {
+        repeat: Duration::from_millis(100),
+        patience: Duration::from_millis(350),
+        failed_is_temporary: false,
+    };
+}
+
+/// How a command ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// the command
+    pub order: Order,
+    /// what came of it
+    pub result: AnswerResult,
+}
+
+/// What came of a command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AnswerResult {
+    /// it is done, or will be
+    Accepted,
+    /// MAV_RESULT and the autopilot's additional number
+    Refused {
+        /// MAV_RESULT
+        result: u8,
+        /// `result_param2`
+        detail: i32,
+    },
+    /// no COMMAND_ACK came
+    Unanswered,
+}
+
+impl AnswerResult {
+    /// In words.
+    #[must_use]
+    pub fn text(self) -> String {
+        let (result, detail) = match self {
+            Self::Accepted => return "accepted".to_owned(),
+            Self::Unanswered => return "no answer".to_owned(),
+            Self::Refused { result, detail } => (result, detail),
+        };
+        let name = match result {
+            1 => "temporarily rejected",
+            2 => "denied",
+            3 => "unsupported",
+            4 => "failed",
+            6 => "cancelled",
+            7 => "only as COMMAND_LONG",
+            8 => "only as COMMAND_INT",
+            9 => "unsupported frame",
+            _ => "refused",
+        };
+        if detail == 0 {
+            format!("{name} (result {result})")
+        } else {
+            format!("{name} (result {result}, detail {detail})")
+        }
+    }
+}
+
+#[derive(Debug)]
+struct Pending {
+    order: Order,
+    manner: Manner,
+    since: Duration,
+    next: Duration,
+    sent: u8,
+    rejection: Option<(u8, i32)>,
+}
+
+/// All commands that wait for their answer; one of a kind.
+#[derive(Debug, Default)]
+pub struct Commander {
+    pending: Vec<Pending>,
+}
+
+impl Commander {
+    /// A command to be sent with the next [`Commander::poll`]. It replaces one of its kind that waits.
+    pub fn give(&mut self, now: Duration, order: Order, manner: Manner) {
+        self.pending.retain(|waiting| waiting.order.command != order.command);
+        self.pending.push(Pending { order, manner, since: now, next: now, sent: 0, rejection: None });
+    }
+
+    /// Whether a command of this kind waits for its answer.
+    #[must_use]
+    pub fn waits_for(&self, order: &Order) -> bool {
+        self.pending.iter().any(|waiting| waiting.order == *order)
+    }
+
+    /// Whether a command of the same kind, whatever its parameters, waits for its answer.
+    #[must_use]
+    pub fn waits_for_kind(&self, order: &Order) -> bool {
+        self.pending.iter().any(|waiting| waiting.order.command == order.command)
+    }
+
+    /// Forgets all of them.
+    pub fn clear(&mut self) {
+        self.pending.clear();
+    }
+
+    /// What is to be sent now, and what is given up.
+    pub fn poll(&mut self, now: Duration, target: Target) -> (Vec<MavMessage>, Vec<Answer>) {
+        let (mut messages, mut answers) = (Vec::new(), Vec::new());
+        self.pending.retain_mut(|waiting| {
+            if now.saturating_sub(waiting.since) >= waiting.manner.patience && waiting.sent > 0 {
+                let result = waiting.rejection.map_or(AnswerResult::Unanswered, |(result, detail)| {
+                    AnswerResult::Refused { result, detail }
+                });
+                answers.push(Answer { order: waiting.order, result });
+                return false;
+            }
+            if now >= waiting.next {
+                messages.push(target.command(&waiting.order, waiting.sent));
+                waiting.sent = waiting.sent.saturating_add(1);
+                waiting.next = now + waiting.manner.repeat;
+            }
+            true
+        });
+        (messages, answers)
+    }
+
+    /// Takes a COMMAND_ACK (its payload); gives what it ends.
+    pub fn hear(&mut self, now: Duration, ack: Payload<'_>) -> Option<Answer> {
+        let (command, result) = (ack.u16(0), ack.u8(2));
+        let detail = ack.i32(4);
+        let at = self
+            .pending
+            .iter()
+            .position(|waiting| u32::from(command) == waiting.order.command as u32 && waiting.sent > 0)?;
+        let waiting = &mut self.pending[at];
+        let temporary =
+            result == TEMPORARILY_REJECTED || result == FAILED && waiting.manner.failed_is_temporary;
+        if result == IN_PROGRESS {
+            waiting.since = now;
+            waiting.next = now + waiting.manner.patience;
+            return None;
+        }
+        let late = now + AFTER_REJECTION >= waiting.since + waiting.manner.patience;
+        if temporary && !late {
+            waiting.rejection = Some((result, detail));
+            waiting.next = now + AFTER_REJECTION;
+            return None;
+        }
+        let order = self.pending.remove(at).order;
+        let result = if result == ACCEPTED {
+            AnswerResult::Accepted
+        } else {
+            AnswerResult::Refused { result, detail }
+        };
+        Some(Answer { order, result })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::{ComponentId, SystemId};
+
+    fn target() -> Target {
+        Target::new(SystemId(1), ComponentId(1)).unwrap()
+    }
+
+    fn ms(value: u64) -> Duration {
+        Duration::from_millis(value)
+    }
+
+    fn ack(command: u16, result: u8) -> [u8; 3] {
+        let [low, high] = command.to_le_bytes();
+        [low, high, result]
+    }
+
+    #[test]
+    fn an_unanswered_command_is_sent_again_and_given_up() {
+        let mut commander = Commander::default();
+        commander.give(ms(0), Order::arm(true), Manner::URGENT);
+        let mut sent = Vec::new();
+        for step in 0..60 {
+            let (messages, answers) = commander.poll(ms(10 * step), target());
+            sent.extend(messages.iter().map(|_| 10 * step));
+            if let [answer] = answers.as_slice() {
+                assert_eq!(answer.result, AnswerResult::Unanswered);
+                assert_eq!(sent, [0, 100, 200, 300]);
+                return;
+            }
+        }
+        panic!("never given up");
+    }
+
+    #[test]
+    fn a_temporary_rejection_is_asked_again_until_patience_ends() {
+        let mut commander = Commander::default();
+        commander.give(ms(0), Order::arm(true), Manner::PATIENT);
+        assert_eq!(commander.poll(ms(0), target()).0.len(), 1);
+        assert!(commander.hear(ms(20), Payload(&ack(400, 1))).is_none());
+        assert!(commander.poll(ms(600), target()).0.is_empty(), "it waits a second");
+        assert_eq!(commander.poll(ms(1020), target()).0.len(), 1);
+        assert!(commander.hear(ms(1050), Payload(&ack(176, 0))).is_none(), "of another command");
+        let answer = commander.hear(ms(1060), Payload(&ack(400, 0))).unwrap();
+        assert_eq!(answer.result, AnswerResult::Accepted);
+        assert!(commander.hear(ms(1070), Payload(&ack(400, 0))).is_none(), "answered already");
+    }
+
+    #[test]
+    fn a_refusal_says_why() {
+        let mut commander = Commander::default();
+        commander.give(ms(0), Order::arm(true), Manner::PATIENT);
+        commander.poll(ms(0), target());
+        let answer = commander.hear(ms(5), Payload(&[0x90, 1, 2, 0, 9, 0, 0, 0])).unwrap();
+        assert_eq!(answer.result.text(), "denied (result 2, detail 9)");
+    }
+}

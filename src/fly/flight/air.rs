@@ -1,0 +1,221 @@
+//! In the air: up, to the start, along the trajectory.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use nalgebra::Vector3;
+
+use super::{Flight, Phase};
+use crate::fly::commander::Manner;
+use crate::fly::course::{PathClock, Track, transfer};
+use crate::fly::health::BatteryLevel;
+use crate::fly::modes::{Mode, Stack};
+use crate::fly::outcome::{Cause, Level};
+use crate::fly::safety::{Lead, Sustained};
+use crate::fly::setpoint::{Place, wrapped};
+use crate::fly::sortie::Origin;
+use crate::fly::target::Order;
+use crate::units::narrow;
+
+/// Of the climb and of the way to the start.
+const CLIMB_M_S: f64 = 0.8;
+const TRANSFER_M_S: f64 = 1.0;
+const TURN_RAD_S: f64 = 0.5;
+/// While it spools up the vehicle is not outrun by the climb: no further ahead than this.
+const LEAD_MAX_M: f64 = 0.6;
+/// A climb is over so near to its height, at so little speed.
+const CLIMBED_M: f64 = 0.3;
+const CLIMBED_M_S: f64 = 0.3;
+/// The start gate.
+const GATE_M: f64 = 0.3;
+const GATE_M_S: f64 = 0.2;
+const GATE_YAW_RAD: f64 = 0.15;
+const GATE_HOLDS: Duration = Duration::from_secs(1);
+
+impl Flight {
+    /// The plan's zero in the vehicle's local frame.
+    pub(in crate::fly) fn offset_m(&self, stand_m: &Vector3<f64>) -> Vector3<f64> {
+        let [x, y, ..] = self.sortie.course.takeoff();
+        match self.sortie.settings.origin {
+            Origin::Local => Vector3::new(0.0, 0.0, stand_m.z),
+            Origin::Here => Vector3::new(stand_m.x - x, stand_m.y - y, stand_m.z),
+        }
+    }
+
+    /// Where the course begins, for a vehicle that stands at `stand_m`; local frame.
+    pub(super) fn start_from(&self, stand_m: &Vector3<f64>) -> Place {
+        let [x, y, z, yaw_rad] = self.sortie.course.takeoff();
+        Place { position_m: Vector3::new(x, y, z) + self.offset_m(stand_m), yaw_rad }
+    }
+
+    fn start(&self) -> Option<Place> {
+        self.stand.map(|stand| self.start_from(&stand.position_m))
+    }
+
+    /// Above where it stood, at the height of the start.
+    fn top(&self) -> Option<Place> {
+        let (stand, start) = (self.stand?, self.start()?);
+        let position_m = Vector3::new(stand.position_m.x, stand.position_m.y, start.position_m.z);
+        Some(Place { position_m, ..stand })
+    }
+
+    pub(super) fn begin_climb(&mut self, now: Duration) {
+        let (Some(stand), Some(top), Some((_, stack))) = (self.stand, self.top(), self.target()) else {
+            return;
+        };
+        match stack {
+            Stack::Px4 => {
+                let path = Arc::new(transfer(&stand, &top, CLIMB_M_S, TURN_RAD_S));
+                self.lead_along(Track { path, offset_m: Vector3::zeros(), clock: PathClock::start(now) });
+            }
+            Stack::ArduPilot => {
+                let height_m = top.position_m.z - stand.position_m.z;
+                self.commander.give(now, Order::takeoff(narrow(height_m)), Manner::PATIENT);
+            }
+        }
+        self.enter(now, Phase::Climb);
+    }
+
+    fn lead_along(&mut self, track: Track) {
+        self.watch.tracking.restart();
+        self.guide.lead = Lead::Along(track);
+    }
+
+    pub(super) fn climb(&mut self, now: Duration) {
+        let Some(top) = self.top() else { return };
+        let Some((position_m, velocity_m_s)) = self.motion_now() else { return };
+        let told = self.guide.setpoint(now).map(|setpoint| setpoint.position_m.z);
+        let mut led_to_the_top = true;
+        if let Lead::Along(track) = &mut self.guide.lead {
+            let ahead = told.is_some_and(|told| told - position_m.z > LEAD_MAX_M);
+            track.clock.set_running(!ahead, now);
+            led_to_the_top = track.is_over(now);
+        }
+        let below_m = top.position_m.z - position_m.z;
+        if led_to_the_top && below_m < CLIMBED_M && velocity_m_s.z.abs() < CLIMBED_M_S {
+            self.begin_transfer(now);
+        } else if now.saturating_sub(self.entered) > self.sortie.settings.reach_timeout {
+            self.end(now, Cause::NotReached(format!("no takeoff: still {below_m:.2} m below its height")));
+        }
+    }
+
+    fn begin_transfer(&mut self, now: Duration) {
+        let (Some(here), Some(start)) = (self.place_now(), self.start()) else { return };
+        // from where it was led to, or from where it is after a takeoff by command
+        let from = self.guide.setpoint(now).map_or(here, |setpoint| setpoint.place());
+        let path = Arc::new(transfer(&from, &start, TRANSFER_M_S, TURN_RAD_S));
+        self.lead_along(Track { path, offset_m: Vector3::zeros(), clock: PathClock::start(now) });
+        self.enter(now, Phase::Transfer);
+    }
+
+    pub(super) fn transfer(&mut self, now: Duration) {
+        let Some(start) = self.start() else { return };
+        if matches!(&self.guide.lead, Lead::Along(track) if track.is_over(now)) {
+            self.guide.lead = Lead::Hold(start);
+            self.enter(now, Phase::Gate(Sustained::default()));
+        }
+    }
+
+    pub(super) fn gate(&mut self, now: Duration) {
+        let missing = self.gate_misses(now);
+        let Phase::Gate(open) = &mut self.phase else { return };
+        if open.update(now, missing.is_empty()) >= GATE_HOLDS {
+            self.begin_course(now);
+        } else if now.saturating_sub(self.entered) > self.sortie.settings.reach_timeout {
+            self.end(now, Cause::NotReached(format!("the start gate stays shut: {}", missing.join("; "))));
+        }
+    }
+
+    fn gate_misses(&self, now: Duration) -> Vec<String> {
+        let (Some(start), Some(here), Some((_, velocity_m_s))) =
+            (self.start(), self.place_now(), self.motion_now())
+        else {
+            return vec!["its position is not known".to_owned()];
+        };
+        let mut missing = Vec::new();
+        let off_m = (here.position_m - start.position_m).norm();
+        if off_m > GATE_M {
+            missing.push(format!("{off_m:.2} m off the start, {GATE_M} m are allowed"));
+        }
+        let speed_m_s = velocity_m_s.norm();
+        if speed_m_s > GATE_M_S {
+            missing.push(format!("{speed_m_s:.2} m/s, {GATE_M_S} m/s are allowed"));
+        }
+        let turned_rad = wrapped(here.yaw_rad - start.yaw_rad).abs();
+        if turned_rad > GATE_YAW_RAD {
+            missing.push(format!("heading {turned_rad:.2} rad off, {GATE_YAW_RAD} rad are allowed"));
+        }
+        if let Some(contact) = &self.contact {
+            missing.extend(contact.telemetry.estimator_faults(now));
+        }
+        if self.battery_level() > BatteryLevel::Good {
+            missing.push("the battery is low".to_owned());
+        }
+        if self.watch.is_paused() {
+            missing.push("nothing is heard of the vehicle".to_owned());
+        }
+        missing
+    }
+
+    fn begin_course(&mut self, now: Duration) {
+        let Some(stand) = self.stand else { return };
+        let path = self.sortie.course.path().clone();
+        let offset_m = self.offset_m(&stand.position_m);
+        self.lead_along(Track { path, offset_m, clock: PathClock::start(now) });
+        self.enter(now, Phase::Course);
+    }
+
+    pub(super) fn fly_course(&mut self, now: Duration) {
+        let Lead::Along(track) = &self.guide.lead else { return };
+        let along_s = track.clock.at(now).along_s;
+        let period = self.sortie.course.period_at(along_s);
+        if period > self.flown.periods + 1 {
+            self.flown.periods = period - 1;
+            let text = format!("period {} of {}", self.flown.periods, self.sortie.course.repeats());
+            self.note(now, Level::Information, "period", format!("{text} flown"));
+        }
+        if self.battery_level() == BatteryLevel::Low
+            && let Some(course) = self.sortie.course.ending_soon(along_s)
+        {
+            let loss =
+                format!("battery low: {} of {} periods", course.repeats(), self.sortie.course.repeats());
+            self.note(now, Level::Warning, "battery", loss.clone());
+            self.losses.push(loss);
+            if let Lead::Along(track) = &mut self.guide.lead {
+                track.path = course.path().clone();
+            }
+            self.sortie.course = course;
+        }
+        if matches!(&self.guide.lead, Lead::Along(track) if track.is_over(now)) {
+            self.begin_landing(now);
+        }
+    }
+
+    /// Tells the safety rules what the vehicle is told, and pauses the path while nothing is heard.
+    pub(super) fn follow(&mut self, now: Duration) {
+        let paused = self.watch.is_paused();
+        if let (Phase::Transfer | Phase::Course, Lead::Along(track)) = (&self.phase, &mut self.guide.lead) {
+            track.clock.set_running(!paused, now);
+        }
+        if let Some(setpoint) = self.guide.setpoint(now) {
+            self.watch.tracking.told(now, setpoint.position_m);
+            self.watch.masters.told(now, setpoint.position_m);
+        }
+    }
+
+    /// Position and smoothed velocity, m and m/s, world, local.
+    pub(super) fn motion_now(&self) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        let telemetry = &self.contact.as_ref()?.telemetry;
+        Some((telemetry.motion?.value.position_m, telemetry.smooth_velocity_m_s()?))
+    }
+
+    /// The vehicle is in our mode; anything else while we fly it is somebody else's will.
+    pub(super) fn left_our_mode(&self) -> Option<String> {
+        let telemetry = &self.contact.as_ref()?.telemetry;
+        let state = telemetry.state?.value;
+        let stack = telemetry.stack();
+        (!stack.is_in(Mode::External, state.custom_mode)).then(|| {
+            format!("{} left for {}", stack.name_of(Mode::External), stack.mode_name(state.custom_mode))
+        })
+    }
+}

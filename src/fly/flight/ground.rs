@@ -1,0 +1,332 @@
+//! On the ground: find the vehicle, see that it may fly, engage our mode, arm.
+
+use std::time::Duration;
+
+use super::{Flight, Phase};
+use crate::fly::commander::{Answer, AnswerResult, Manner};
+use crate::fly::health::BatteryLevel;
+use crate::fly::modes::{Mode, Stack};
+use crate::fly::outcome::{Cause, Level};
+use crate::fly::roster::Choice;
+use crate::fly::safety::Lead;
+use crate::fly::setpoint::Place;
+use crate::fly::sortie::Origin;
+use crate::fly::target::Order;
+use crate::fly::telemetry::Telemetry;
+use crate::log::{EMBEDDED_UID2, Payload};
+use mavlink::dialects::ardupilotmega::MavCmd;
+
+/// The estimate must have been good for this long.
+const ESTIMATOR_GOOD: Duration = Duration::from_secs(5);
+/// Setpoints before OFFBOARD.
+const PRIME: Duration = Duration::from_millis(1500);
+/// A position older than this is none.
+const POSITION_FRESH: Duration = Duration::from_millis(500);
+/// A trajectory that starts further from the vehicle, m, is in the wrong place.
+const START_MAX_M: f64 = 5.0;
+const AUTOPILOT_VERSION: u16 = 148;
+const UID2_OFFSET: usize = 60;
+
+/// Messages that the safety rules rest on, and how often, Hz: LOCAL_POSITION_NED, ATTITUDE_QUATERNION,
+/// SYS_STATUS, EXTENDED_SYS_STATE, BATTERY_STATUS, CURRENT_MODE, POSITION_TARGET_LOCAL_NED, and the
+/// estimator's own report.
+const STREAMS: [(f32, f32); 7] =
+    [(32.0, 30.0), (31.0, 50.0), (1.0, 2.0), (245.0, 5.0), (147.0, 1.0), (436.0, 10.0), (85.0, 5.0)];
+const PX4_STREAMS: [(f32, f32); 2] = [(230.0, 2.0), (331.0, 30.0)];
+const ARDUPILOT_STREAMS: [(f32, f32); 1] = [(193.0, 2.0)];
+
+/// What is asked before the flight.
+#[derive(Debug)]
+pub(super) struct Checking {
+    wanted: Vec<Order>,
+    embedded: Option<bool>,
+    all_asked: bool,
+}
+
+impl Checking {
+    fn new(stack: Stack) -> Self {
+        let own: &[(f32, f32)] = match stack {
+            Stack::Px4 => &PX4_STREAMS,
+            Stack::ArduPilot => &ARDUPILOT_STREAMS,
+        };
+        // taken from the end: the version first
+        let mut wanted: Vec<Order> =
+            own.iter().chain(&STREAMS).map(|(id, rate_hz)| interval(*id, *rate_hz)).collect();
+        wanted.push(Order::request_message(AUTOPILOT_VERSION));
+        Self { wanted, embedded: None, all_asked: false }
+    }
+
+    pub(super) fn has_asked(&self) -> bool {
+        self.all_asked
+    }
+}
+
+fn interval(id: f32, rate_hz: f32) -> Order {
+    let interval_us = (1e6 / rate_hz).round();
+    Order {
+        command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
+        parameters: [id, interval_us, 0.0, 0.0, 0.0, 0.0, 0.0],
+    }
+}
+
+/// Answers to questions come soon or not at all.
+const QUESTION: Manner = Manner {
+    repeat: Duration::from_millis(400),
+    patience: Duration::from_millis(1500),
+    failed_is_temporary: false,
+};
+
+impl Flight {
+    pub(super) fn connect(&mut self, now: Duration) {
+        match self.roster.choose(now, self.sortie.system) {
+            Choice::Vehicle(vehicle, target, stack) => {
+                let text =
+                    format!("system {} component {}, {}", target.system, target.component, stack.name());
+                self.note(now, Level::Information, "vehicle", text);
+                let telemetry = Telemetry::new(vehicle, stack, now);
+                self.contact = Some(super::Contact { target, telemetry });
+                self.guide.target = Some((target, stack));
+                self.enter(now, Phase::Check(Checking::new(stack)));
+            }
+            Choice::Refuse(why) => self.end(now, Cause::Refused(why)),
+            Choice::Wait if now.saturating_sub(self.entered) > self.sortie.settings.connect_timeout => {
+                let wanted =
+                    self.sortie.system.map_or("a vehicle".to_owned(), |system| format!("system {system}"));
+                let heard = self.roster.heard();
+                self.end(now, Cause::Refused(format!("expected a HEARTBEAT of {wanted}, heard {heard}")));
+            }
+            Choice::Wait => {}
+        }
+    }
+
+    /// AUTOPILOT_VERSION: the embedded vehicle says that it is one.
+    pub(super) fn version(&mut self, now: Duration, payload: Payload<'_>) {
+        let embedded =
+            EMBEDDED_UID2.iter().enumerate().all(|(at, byte)| payload.u8(UID2_OFFSET + at) == *byte);
+        if let Phase::Check(checking) = &mut self.phase
+            && checking.embedded.replace(embedded).is_none()
+            && embedded
+        {
+            self.note(now, Level::Information, "vehicle", "the embedded simulated vehicle");
+        }
+    }
+
+    pub(super) fn check(&mut self, now: Duration) {
+        let Phase::Check(checking) = &mut self.phase else { return };
+        let question = interval(0.0, 1.0);
+        let version = Order::request_message(AUTOPILOT_VERSION);
+        if !self.commander.waits_for_kind(&question) && !self.commander.waits_for_kind(&version) {
+            match checking.wanted.pop() {
+                Some(order) => self.commander.give(now, order, QUESTION),
+                None => checking.all_asked = true,
+            }
+        }
+        if !checking.all_asked {
+            return;
+        }
+        let embedded = checking.embedded == Some(true);
+        if let Some(Err(why)) = &self.clearance {
+            let why = why.clone();
+            self.end(now, Cause::Refused(why));
+            return;
+        }
+        let cleared = !self.sortie.settings.await_clearance || self.clearance.is_some();
+        let mut missing = self.missing(now);
+        if !cleared {
+            missing.push("its parameters and message rates are not checked".to_owned());
+        }
+        if !missing.is_empty() {
+            self.give_up_waiting(now, "the vehicle is not ready", &missing);
+            return;
+        }
+        if !embedded && !self.sortie.may_arm {
+            let why = "all checks passed; this is not the embedded simulated vehicle, so it is armed only \
+                       with --arm";
+            self.end(now, Cause::Refused(why.to_owned()));
+            return;
+        }
+        match self.target() {
+            Some((_, Stack::Px4)) => {
+                self.hold_here();
+                self.enter(now, Phase::Prime);
+            }
+            _ => self.begin_engage(now),
+        }
+    }
+
+    /// What a vehicle on the ground lacks before our mode is engaged.
+    fn missing(&self, now: Duration) -> Vec<String> {
+        let Some(contact) = &self.contact else { return Vec::new() };
+        let telemetry = &contact.telemetry;
+        let mut missing = Vec::new();
+        if telemetry.state.is_none() {
+            missing.push("its mode is not known".to_owned());
+        }
+        if telemetry.is_armed() {
+            missing.push("it is armed".to_owned());
+        }
+        if telemetry.battery_level() > BatteryLevel::Good {
+            missing.push("its battery is low".to_owned());
+        }
+        // ArduPilot looks for its position only in GUIDED
+        if telemetry.stack() == Stack::Px4 {
+            missing.extend(self.missing_estimate(now));
+        }
+        missing
+    }
+
+    /// What the estimate lacks for a takeoff.
+    fn missing_estimate(&self, now: Duration) -> Vec<String> {
+        let Some(contact) = &self.contact else { return Vec::new() };
+        let telemetry = &contact.telemetry;
+        let mut missing = telemetry.estimator_faults(now);
+        let motion = telemetry.motion.filter(|motion| now.saturating_sub(motion.at) < POSITION_FRESH);
+        let good =
+            |since: Option<Duration>| since.is_some_and(|since| now.saturating_sub(since) >= ESTIMATOR_GOOD);
+        match motion {
+            None => missing.push("no local position arrives".to_owned()),
+            Some(_) if !good(telemetry.position_since) => {
+                missing.push("its position is known for less than 5 s".to_owned());
+            }
+            Some(_) if telemetry.estimator.is_some() && !good(telemetry.estimator_good_since) => {
+                missing.push("its estimate is good for less than 5 s".to_owned());
+            }
+            Some(motion) => {
+                let start = self.start_from(&motion.value.position_m);
+                let away_m = (start.position_m - motion.value.position_m).xy().norm();
+                if away_m > START_MAX_M && self.sortie.settings.origin == Origin::Local {
+                    missing.push(format!(
+                        "the trajectory starts {away_m:.1} m from where it stands ({START_MAX_M} m are \
+                         allowed; --origin here flies it from there)"
+                    ));
+                }
+            }
+        }
+        missing
+    }
+
+    /// Ends the flight where the wait for what is `missing` was too long.
+    fn give_up_waiting(&mut self, now: Duration, what: &str, missing: &[String]) {
+        if now.saturating_sub(self.entered) > self.sortie.settings.ready_timeout {
+            let mut reasons = missing.to_vec();
+            reasons.extend(self.complaints());
+            self.end(now, Cause::Refused(format!("{what}: {}", reasons.join("; "))));
+        }
+    }
+
+    fn complaints(&self) -> Vec<String> {
+        let said = self.contact.as_ref().map(|contact| contact.telemetry.complaints_since(self.entered));
+        said.unwrap_or_default().into_iter().map(|text| format!("it says \"{text}\"")).collect()
+    }
+
+    /// Setpoints that say: stay here.
+    fn hold_here(&mut self) {
+        if let Some(place) = self.place_now() {
+            self.guide.lead = Lead::Hold(place);
+        }
+    }
+
+    /// Where the vehicle is, with the yaw that it has.
+    pub(super) fn place_now(&self) -> Option<Place> {
+        let telemetry = &self.contact.as_ref()?.telemetry;
+        let position_m = telemetry.motion?.value.position_m;
+        let yaw_rad = telemetry.attitude.map_or(0.0, |attitude| attitude.value.euler().2);
+        Some(Place { position_m, yaw_rad })
+    }
+
+    pub(super) fn prime(&mut self, now: Duration) {
+        self.hold_here();
+        if now.saturating_sub(self.entered) >= PRIME {
+            self.begin_engage(now);
+        }
+    }
+
+    fn begin_engage(&mut self, now: Duration) {
+        let Some((_, stack)) = self.target() else { return };
+        self.commander.give(now, Order::set_mode(stack, Mode::External), Manner::PATIENT);
+        self.enter(now, Phase::Engage);
+    }
+
+    pub(super) fn engage(&mut self, now: Duration) {
+        let Some((_, stack)) = self.target() else { return };
+        if self.guide.lead != Lead::Silent {
+            self.hold_here();
+        }
+        if self.is_in(Mode::External) {
+            self.engaged = now;
+            self.enter(now, Phase::Ready);
+        } else if now.saturating_sub(self.entered) > 2 * Manner::PATIENT.patience {
+            let mode = stack.name_of(Mode::External);
+            self.end(now, Cause::Refused(format!("{mode} was accepted and is not entered")));
+        }
+    }
+
+    pub(super) fn ready(&mut self, now: Duration) {
+        if self.guide.lead != Lead::Silent {
+            self.hold_here();
+        }
+        let mut missing = self.missing_estimate(now);
+        let system = self.contact.as_ref().and_then(|contact| contact.telemetry.system.clone());
+        if system.is_some_and(|system| system.value.may_arm == Some(false)) {
+            missing.push("its pre-arm checks fail".to_owned());
+        }
+        if !missing.is_empty() {
+            self.give_up_waiting(now, "the vehicle is not ready to arm", &missing);
+            return;
+        }
+        let manner = Manner {
+            patience: self.sortie.settings.reach_timeout,
+            failed_is_temporary: self.target().is_some_and(|(_, stack)| stack == Stack::ArduPilot),
+            ..Manner::PATIENT
+        };
+        self.commander.give(now, Order::arm(true), manner);
+        self.enter(now, Phase::Arm);
+    }
+
+    pub(super) fn arm(&mut self, now: Duration) {
+        if self.guide.lead != Lead::Silent {
+            self.hold_here();
+        }
+        if self.is_armed() {
+            self.stand = self.place_now();
+            self.begin_climb(now);
+        } else if now.saturating_sub(self.entered) > 2 * self.sortie.settings.reach_timeout {
+            self.end(now, Cause::Refused("arming was accepted and the vehicle is not armed".to_owned()));
+        }
+    }
+
+    /// A command has ended.
+    pub(super) fn answered(&mut self, now: Duration, answer: &Answer) {
+        let name = answer.order.name();
+        let question = matches!(self.phase, Phase::Check(_));
+        if answer.result == AnswerResult::Accepted {
+            if !question {
+                self.note(now, Level::Information, "command", format!("{name} accepted"));
+            }
+            return;
+        }
+        let mut reasons = vec![answer.result.text()];
+        if !question {
+            reasons.extend(self.complaints());
+        }
+        let text = format!("{name}: {}", reasons.join("; "));
+        self.note(now, Level::Warning, "command", text.clone());
+        let decides = match self.phase {
+            Phase::Engage => answer.order.command == MavCmd::MAV_CMD_DO_SET_MODE,
+            Phase::Arm => answer.order.command == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
+            Phase::Climb => answer.order.command == MavCmd::MAV_CMD_NAV_TAKEOFF,
+            _ => false,
+        };
+        if decides {
+            self.end(now, Cause::Refused(text));
+        }
+    }
+
+    /// The vehicle says that it is in this mode.
+    pub(super) fn is_in(&self, mode: Mode) -> bool {
+        self.contact.as_ref().is_some_and(|contact| {
+            let telemetry = &contact.telemetry;
+            telemetry.state.is_some_and(|state| telemetry.stack().is_in(mode, state.value.custom_mode))
+        })
+    }
+}

@@ -1,0 +1,268 @@
+//! Out of our mode: hold, land, return, by the vehicle's own modes. The planned landing is one of these.
+
+use std::time::Duration;
+
+use super::{Flight, Key, Phase};
+use crate::fly::commander::Manner;
+use crate::fly::modes::Mode;
+use crate::fly::outcome::{Cause, Ending, Level};
+use crate::fly::safety::{Lead, Sustained};
+use crate::fly::setpoint::Place;
+use crate::fly::target::Order;
+
+/// A mode that is not entered within this time is not going to be.
+const HOLD_BY: Duration = Duration::from_secs(3);
+const LAND_BY: Duration = Duration::from_secs(5);
+/// A mode that was accepted, or not answered, is asked for again after this time.
+const ASK_AGAIN: Duration = Duration::from_millis(400);
+/// An autopilot that disarms after its landing may change its mode before it is heard to stand on the ground.
+const GROUND_IS_HEARD: Duration = Duration::from_millis(1500);
+/// From the order to land to the ground; a vehicle that returns first flies home.
+const GROUND_BY: Duration = Duration::from_secs(180);
+/// On the ground, the autopilot disarms by itself; after this long it is told to.
+const DISARM_AFTER: Duration = Duration::from_secs(3);
+/// A program that is told to end waits no longer.
+const STOP_WITHIN: Duration = Duration::from_secs(1);
+/// How hard a vehicle that is told to hold may be expected to brake, m/s^2.
+const BRAKING_M_S2: f64 = 3.0;
+
+/// On the way out.
+#[derive(Debug)]
+pub(super) struct Leaving {
+    wish: Mode,
+    wished: Duration,
+    /// when it was last asked for
+    asked: Duration,
+    /// when the wished mode was first seen
+    reached: Option<Duration>,
+    /// seen in another mode after that
+    left: Sustained,
+    /// somebody decides what follows a hold
+    by_operator: bool,
+    /// the program ends by then
+    stop_by: Option<Duration>,
+    landed: Sustained,
+}
+
+impl Leaving {
+    fn to(wish: Mode, now: Duration) -> Self {
+        Self {
+            wish,
+            wished: now,
+            asked: now,
+            reached: None,
+            left: Sustained::default(),
+            by_operator: false,
+            stop_by: None,
+            landed: Sustained::default(),
+        }
+    }
+
+    pub(super) fn name(&self) -> &'static str {
+        match self.wish {
+            Mode::External | Mode::Hold => "hold",
+            Mode::Land => "land",
+            Mode::Return => "return",
+        }
+    }
+}
+
+impl Flight {
+    /// To the vehicle's hold mode.
+    pub(super) fn begin_hold(&mut self, now: Duration) {
+        self.leave_to(now, Leaving::to(Mode::Hold, now));
+    }
+
+    /// To the ground.
+    pub(super) fn begin_landing(&mut self, now: Duration) {
+        self.leave_to(now, Leaving::to(Mode::Land, now));
+    }
+
+    fn leave_to(&mut self, now: Duration, leaving: Leaving) {
+        // setpoints go on until the mode is seen, but say: stop here
+        if self.guide.lead != Lead::Silent {
+            let planned = self.cause.is_none();
+            let place = if planned { self.guide.setpoint(now).map(|told| told.place()) } else { None };
+            if let Some(place) = place.or_else(|| self.stopping_place()) {
+                self.guide.lead = Lead::Hold(place);
+            }
+        }
+        self.ask(now, leaving.wish);
+        self.enter(now, Phase::Leave(leaving));
+    }
+
+    /// Where the vehicle comes to rest if it brakes now.
+    fn stopping_place(&self) -> Option<Place> {
+        let (position_m, velocity_m_s) = self.motion_now()?;
+        let yaw_rad = self.place_now()?.yaw_rad;
+        let ahead_m = velocity_m_s * (velocity_m_s.norm() / (2.0 * BRAKING_M_S2));
+        Some(Place { position_m: position_m + ahead_m, yaw_rad })
+    }
+
+    fn ask(&mut self, now: Duration, wish: Mode) {
+        if let Phase::Leave(leaving) = &mut self.phase {
+            leaving.asked = now;
+        }
+        if let Some((_, stack)) = self.target() {
+            self.commander.give(now, Order::set_mode(stack, wish), Manner::URGENT);
+        }
+    }
+
+    pub(super) fn leave(&mut self, now: Duration) {
+        let armed = self.is_armed();
+        let Phase::Leave(leaving) = &self.phase else { return };
+        let (wish, wished, stop_by) = (leaving.wish, leaving.wished, leaving.stop_by);
+        let (seen, on_ground) = (self.is_in(wish), self.is_on_ground());
+        if !armed {
+            self.finish(now, if self.stand.is_some() { Ending::Landed } else { Ending::NotFlown });
+            return;
+        }
+        if stop_by.is_some_and(|by| now >= by || seen) {
+            let mode = self.mode_name();
+            self.finish(now, Ending::InTheAir(mode));
+            return;
+        }
+        let Phase::Leave(leaving) = &mut self.phase else { return };
+        match (seen, leaving.reached) {
+            (true, None) => {
+                leaving.reached = Some(now);
+                self.guide.lead = Lead::Silent;
+            }
+            (true, Some(_)) => {
+                leaving.left.update(now, false);
+            }
+            // somebody else has chosen another mode after ours; one on the ground says nothing
+            (false, Some(_)) => {
+                if leaving.left.update(now, !on_ground) > GROUND_IS_HEARD {
+                    let mode = self.mode_name();
+                    self.end(now, Cause::Override(format!("{} left for {mode}", self.phase.name())));
+                    return;
+                }
+            }
+            (false, None) => {
+                self.insist(now, wish, wished);
+                return;
+            }
+        }
+        self.wait_for_the_ground(now, wish, wished);
+    }
+
+    /// The mode is not seen yet: ask again, then for the next one.
+    fn insist(&mut self, now: Duration, wish: Mode, wished: Duration) {
+        let waited = now.saturating_sub(wished);
+        let next = match wish {
+            Mode::External | Mode::Hold if waited > HOLD_BY => Some(Mode::Land),
+            Mode::Land if waited > LAND_BY => Some(Mode::Return),
+            Mode::Return if waited > LAND_BY => {
+                let mode = self.mode_name();
+                self.cause.get_or_insert(Cause::Unresponsive(format!("no mode is taken; it is in {mode}")));
+                self.note(now, Level::Error, "abort", "the vehicle takes no mode: hands off");
+                self.hands_off(now);
+                return;
+            }
+            _ => None,
+        };
+        match next {
+            Some(next) => {
+                self.note(now, Level::Error, "abort", format!("{} is not entered", self.phase.name()));
+                self.wish(now, next);
+            }
+            None => {
+                let due = matches!(&self.phase, Phase::Leave(leaving)
+                    if now.saturating_sub(leaving.asked) >= ASK_AGAIN);
+                if due {
+                    self.ask(now, wish);
+                }
+            }
+        }
+    }
+
+    fn wish(&mut self, now: Duration, wish: Mode) {
+        if let Phase::Leave(leaving) = &mut self.phase {
+            (leaving.wish, leaving.wished, leaving.reached) = (wish, now, None);
+            let name = leaving.name();
+            self.note(now, Level::Information, "phase", name);
+            self.ask(now, wish);
+        }
+    }
+
+    fn wait_for_the_ground(&mut self, now: Duration, wish: Mode, wished: Duration) {
+        let (on_ground, hold_then_land) = (self.is_on_ground(), self.sortie.settings.hold_then_land);
+        let Phase::Leave(leaving) = &mut self.phase else { return };
+        let landed_for = leaving.landed.update(now, on_ground);
+        let held = !leaving.by_operator && now.saturating_sub(wished) > hold_then_land;
+        let disarm = Order::arm(false);
+        if wish == Mode::Hold {
+            if held {
+                self.note(now, Level::Warning, "abort", "held long enough: to the ground");
+                self.wish(now, Mode::Land);
+            }
+        } else if landed_for > DISARM_AFTER && !self.commander.waits_for(&disarm) {
+            self.commander.give(now, disarm, Manner::PATIENT);
+        } else if now.saturating_sub(wished) > GROUND_BY {
+            self.cause.get_or_insert(Cause::NotReached("the ground is not reached".to_owned()));
+            let mode = self.mode_name();
+            self.finish(now, Ending::InTheAir(mode));
+        }
+    }
+
+    fn is_on_ground(&self) -> bool {
+        self.contact.as_ref().is_some_and(|contact| contact.telemetry.is_landed())
+    }
+
+    /// The operator's keys.
+    pub(super) fn key(&mut self, now: Duration, key: Key) {
+        if key == Key::Kill {
+            self.note(now, Level::Error, "abort", "motors off by the operator");
+            self.cause.get_or_insert(Cause::Operator);
+            self.guide.lead = Lead::Silent;
+            self.commander.clear();
+            self.commander.give(now, Order::kill(), Manner::URGENT);
+            if self.contact.is_some() {
+                self.enter(now, Phase::Watch);
+            } else {
+                self.finish(now, Ending::NotFlown);
+            }
+            return;
+        }
+        let next = match (&self.phase, key) {
+            (Phase::Leave(_), Key::To(mode)) => Some(mode),
+            (Phase::Leave(leaving), _) => match leaving.wish {
+                Mode::External | Mode::Hold => Some(Mode::Land),
+                Mode::Land | Mode::Return => Some(Mode::Return),
+            },
+            _ => None,
+        };
+        match next {
+            Some(next) => {
+                self.cause.get_or_insert(Cause::Operator);
+                self.wish(now, next);
+            }
+            // the operator's own order is no blind re-entry
+            None if matches!(self.phase, Phase::Watch) => self.begin_hold(now),
+            None => self.end(now, Cause::Operator),
+        }
+        if let Phase::Leave(leaving) = &mut self.phase {
+            leaving.by_operator = true;
+            if let Key::To(mode) = key
+                && mode != leaving.wish
+            {
+                self.wish(now, mode);
+            }
+        }
+    }
+
+    /// The program is told to end: the vehicle is left holding, or to what it does already.
+    pub(super) fn stop(&mut self, now: Duration, by: &str) {
+        if matches!(self.phase, Phase::Watch) {
+            let mode = self.mode_name();
+            self.finish(now, Ending::InTheAir(mode));
+            return;
+        }
+        self.end(now, Cause::Signal(by.to_owned()));
+        if let Phase::Leave(leaving) = &mut self.phase {
+            self.cause.get_or_insert(Cause::Signal(by.to_owned()));
+            leaving.stop_by.get_or_insert(now + STOP_WITHIN);
+        }
+    }
+}

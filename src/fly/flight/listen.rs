@@ -1,0 +1,78 @@
+//! What the flight makes of the frames that it hears.
+
+use std::time::Duration;
+
+use super::{Flight, Phase};
+use crate::fly::outcome::{Cause, Level};
+use crate::fly::telemetry::Novelty;
+use crate::log::{Check, Frame};
+
+impl Flight {
+    pub(super) fn hear(&mut self, now: Duration, frame: Frame<'_>) {
+        if frame.check(&self.seeds) != Check::Right {
+            return;
+        }
+        self.roster.hear(now, frame);
+        let Some(contact) = &mut self.contact else { return };
+        let header = frame.header();
+        if (header.system, header.component) != (contact.target.system, contact.target.component) {
+            if let Some(cause) = self.watch.masters.hear(frame, contact.target) {
+                self.end(now, cause);
+            }
+            return;
+        }
+        let news = contact.telemetry.take(now, frame);
+        match header.message_id {
+            // COMMAND_ACK; its addressee is an extension that may be zero
+            77 => {
+                let payload = frame.payload();
+                let ours = payload.u8(8) == 0 || u32::from(payload.u8(8)) == self.sortie.settings.station.0.0;
+                if ours && let Some(answer) = self.commander.hear(now, payload) {
+                    self.answered(now, &answer);
+                }
+            }
+            148 => self.version(now, frame.payload()),
+            _ => {}
+        }
+        for novelty in news {
+            self.learn(now, novelty);
+        }
+        self.check_motion(now);
+    }
+
+    fn learn(&mut self, now: Duration, novelty: Novelty) {
+        let Some((_, stack)) = self.target() else { return };
+        match novelty {
+            Novelty::State { from, to } => {
+                let mode = stack.mode_name(to.custom_mode);
+                let armed = if to.armed { "armed" } else { "disarmed" };
+                if from.is_none_or(|from| (from.custom_mode, from.armed) != (to.custom_mode, to.armed)) {
+                    self.note(now, Level::Information, "mode", format!("{mode}, {armed}"));
+                }
+            }
+            Novelty::Text(severity, text) => {
+                let level = match severity {
+                    0..=3 => Level::Error,
+                    4 => Level::Warning,
+                    _ => Level::Information,
+                };
+                self.note(now, level, "vehicle", text);
+            }
+            Novelty::Reboot if self.phase.is_airborne() => self.end(now, Cause::Reboot),
+            Novelty::Reboot => {
+                self.end(now, Cause::Refused("the autopilot started anew; expected it to stay on".into()));
+            }
+            Novelty::EstimatorReset(what) if self.phase.is_airborne() => {
+                self.end(now, Cause::EstimatorReset(what));
+            }
+            Novelty::EstimatorReset(what) => self.note(now, Level::Warning, "estimator", what),
+            Novelty::Target(place_m) => {
+                if matches!(self.phase, Phase::Course)
+                    && let Some(cause) = self.watch.masters.check(now, &place_m)
+                {
+                    self.end(now, cause);
+                }
+            }
+        }
+    }
+}

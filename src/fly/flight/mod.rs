@@ -1,0 +1,361 @@
+//! The flight as a state machine: messages and a clock in, messages out. It does no I/O.
+
+mod air;
+mod ground;
+mod leave;
+mod listen;
+mod status;
+mod watch;
+
+pub use status::Status;
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use mavlink::dialects::ardupilotmega::MavMessage;
+
+use super::commander::Commander;
+use super::health::BatteryLevel;
+use super::modes::{Mode, Stack};
+use super::outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
+use super::roster::Roster;
+use super::safety::{Guide, Lead};
+use super::setpoint::Place;
+use super::sortie::Sortie;
+use super::target::{Target, heartbeat};
+use super::telemetry::Telemetry;
+use crate::log::{self, CrcSeeds, Frame};
+use crate::units::deg_from_rad;
+use ground::Checking;
+use leave::Leaving;
+use watch::Watch;
+
+/// Between our own heartbeats.
+const HEARTBEAT_PERIOD: Duration = Duration::from_secs(1);
+
+/// What the flight hears.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Event<'a> {
+    /// a frame from the link
+    Frame(Frame<'a>),
+    /// time went on; wanted every 10 ms
+    Tick,
+    /// the operator
+    Key(Key),
+    /// parameters, message rates and limits are checked: whether the flight may go on
+    Cleared(Result<(), String>),
+    /// the program is told to end, by what
+    Stop(String),
+    /// the stream of setpoints was late by this much and has ended
+    Stalled(Duration),
+    /// the link is lost (`false`) or there again
+    Link(bool),
+}
+
+/// What the operator wants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Key {
+    /// once: hold; twice: land; three times: return
+    Abort,
+    /// to hold, land or return, whatever was before
+    To(Mode),
+    /// motors off now, wherever the vehicle is; only after a typed word
+    Kill,
+}
+
+/// What the flight wants done.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Action {
+    /// send it, in order
+    Send(MavMessage),
+    /// tell people and the log of events
+    Note(Note),
+    /// the flight is over
+    Finished(Outcome),
+}
+
+/// Where in the flight.
+#[derive(Debug)]
+enum Phase {
+    /// until the vehicle is found
+    Connect,
+    /// until it may fly
+    Check(Checking),
+    /// setpoints before OFFBOARD
+    Prime,
+    /// our mode is asked for
+    Engage,
+    /// in our mode, until the estimator is good
+    Ready,
+    /// arming is asked for
+    Arm,
+    /// up from the ground
+    Climb,
+    /// to where the course begins
+    Transfer,
+    /// until it stands still there
+    Gate(super::safety::Sustained),
+    /// along the trajectory
+    Course,
+    /// to hold, to the ground or home, in the vehicle's own mode
+    Leave(Leaving),
+    /// hands off
+    Watch,
+    /// over
+    Done,
+}
+
+impl Phase {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Connect => "connect",
+            Self::Check(_) => "check",
+            Self::Prime => "stream",
+            Self::Engage => "engage",
+            Self::Ready => "ready",
+            Self::Arm => "arm",
+            Self::Climb => "take off",
+            Self::Transfer => "go to start",
+            Self::Gate(_) => "start gate",
+            Self::Course => "trajectory",
+            Self::Leave(leaving) => leaving.name(),
+            Self::Watch => "hands off",
+            Self::Done => "over",
+        }
+    }
+
+    /// Our mode is engaged and setpoints are ours.
+    fn is_ours(&self) -> bool {
+        matches!(self, Self::Ready | Self::Arm | Self::Climb | Self::Transfer | Self::Gate(_) | Self::Course)
+    }
+
+    /// The vehicle may be off the ground by our doing.
+    fn is_airborne(&self) -> bool {
+        matches!(
+            self,
+            Self::Climb | Self::Transfer | Self::Gate(_) | Self::Course | Self::Leave(_) | Self::Watch
+        )
+    }
+}
+
+/// The vehicle that was chosen.
+#[derive(Debug)]
+struct Contact {
+    target: Target,
+    telemetry: Telemetry,
+}
+
+/// A flight.
+#[derive(Debug)]
+pub struct Flight {
+    sortie: Sortie,
+    seeds: CrcSeeds,
+    roster: Roster,
+    contact: Option<Contact>,
+    commander: Commander,
+    phase: Phase,
+    /// when the phase was entered
+    entered: Duration,
+    /// when our mode was engaged
+    engaged: Duration,
+    /// where it stood when it was armed
+    stand: Option<Place>,
+    guide: Guide,
+    watch: Watch,
+    actions: VecDeque<Action>,
+    heartbeat_due: Duration,
+    clearance: Option<Result<(), String>>,
+    cause: Option<Cause>,
+    flown: Flown,
+    losses: Vec<String>,
+}
+
+impl Flight {
+    /// A flight that begins at zero of the clock that it will be told.
+    #[must_use]
+    pub fn new(sortie: Sortie) -> Self {
+        let watch = Watch::new(&sortie);
+        let flown = Flown {
+            tilt_planned_deg: deg_from_rad(sortie.course.tilt_max_rad(sortie.gravity_m_s2)),
+            ..Flown::default()
+        };
+        Self {
+            sortie,
+            seeds: CrcSeeds::new(),
+            roster: Roster::default(),
+            contact: None,
+            commander: Commander::default(),
+            phase: Phase::Connect,
+            entered: Duration::ZERO,
+            engaged: Duration::ZERO,
+            stand: None,
+            guide: Guide::silent(Duration::ZERO),
+            watch,
+            actions: VecDeque::new(),
+            heartbeat_due: Duration::ZERO,
+            clearance: None,
+            cause: None,
+            flown,
+            losses: Vec::new(),
+        }
+    }
+
+    /// Takes what happened at `now` and goes on.
+    pub fn handle(&mut self, now: Duration, event: Event<'_>) {
+        if matches!(self.phase, Phase::Done) {
+            return;
+        }
+        match event {
+            Event::Frame(frame) => self.hear(now, frame),
+            Event::Tick => {}
+            Event::Key(key) => self.key(now, key),
+            Event::Cleared(verdict) => self.clearance = Some(verdict),
+            Event::Stop(by) => self.stop(now, &by),
+            Event::Stalled(gap) => {
+                self.end(now, Cause::Stalled(format!("{} ms late", gap.as_millis())));
+            }
+            Event::Link(up) => {
+                let (level, text) =
+                    if up { (Level::Information, "link is up") } else { (Level::Warning, "link is down") };
+                self.note(now, level, "link", text);
+            }
+        }
+        self.step(now);
+    }
+
+    /// What is to be done next; ask until `None`.
+    pub fn next_action(&mut self) -> Option<Action> {
+        self.actions.pop_front()
+    }
+
+    /// What is to be streamed. It is as old as the last [`Flight::handle`].
+    #[must_use]
+    pub fn guide(&self) -> &Guide {
+        &self.guide
+    }
+
+    /// The flight is over.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        matches!(self.phase, Phase::Done)
+    }
+
+    /// The vehicle, once it is found.
+    #[must_use]
+    pub fn target(&self) -> Option<(Target, Stack)> {
+        self.contact.as_ref().map(|contact| (contact.target, contact.telemetry.stack()))
+    }
+
+    /// The vehicle as the log knows it, once it is found.
+    #[must_use]
+    pub fn vehicle(&self) -> Option<log::Vehicle> {
+        self.contact.as_ref().map(|contact| contact.telemetry.vehicle())
+    }
+
+    /// What tells a known message by its checksum.
+    #[must_use]
+    pub fn seeds(&self) -> &CrcSeeds {
+        &self.seeds
+    }
+
+    /// What is flown.
+    #[must_use]
+    pub fn sortie(&self) -> &Sortie {
+        &self.sortie
+    }
+
+    /// The flight's own message requests are done and it waits for [`Event::Cleared`].
+    #[must_use]
+    pub fn wants_clearance(&self) -> bool {
+        matches!(&self.phase, Phase::Check(checking) if checking.has_asked()) && self.clearance.is_none()
+    }
+
+    /// One step of time: the safety rules first, then the phase, then what is to be sent.
+    fn step(&mut self, now: Duration) {
+        self.guide.issued = now;
+        self.supervise(now);
+        match &self.phase {
+            Phase::Connect => self.connect(now),
+            Phase::Check(_) => self.check(now),
+            Phase::Prime => self.prime(now),
+            Phase::Engage => self.engage(now),
+            Phase::Ready => self.ready(now),
+            Phase::Arm => self.arm(now),
+            Phase::Climb => self.climb(now),
+            Phase::Transfer => self.transfer(now),
+            Phase::Gate(_) => self.gate(now),
+            Phase::Course => self.fly_course(now),
+            Phase::Leave(_) => self.leave(now),
+            Phase::Watch => self.watch_others(now),
+            Phase::Done => return,
+        }
+        self.follow(now);
+        if let Some((target, _)) = self.target() {
+            let (messages, answers) = self.commander.poll(now, target);
+            self.actions.extend(messages.into_iter().map(Action::Send));
+            for answer in answers {
+                self.answered(now, &answer);
+            }
+        }
+        if now >= self.heartbeat_due {
+            self.heartbeat_due = (self.heartbeat_due + HEARTBEAT_PERIOD).max(now);
+            self.actions.push_back(Action::Send(heartbeat()));
+        }
+    }
+
+    fn enter(&mut self, now: Duration, phase: Phase) {
+        self.note(now, Level::Information, "phase", phase.name());
+        self.phase = phase;
+        self.entered = now;
+    }
+
+    fn note(&mut self, now: Duration, level: Level, kind: &'static str, text: impl Into<String>) {
+        self.actions.push_back(Action::Note(Note::new(now, level, kind, text)));
+    }
+
+    /// Ends the flight for a cause. The first counts, unless a later one takes our hands off.
+    fn end(&mut self, now: Duration, cause: Cause) {
+        if matches!(self.phase, Phase::Watch | Phase::Done) {
+            return;
+        }
+        let response = cause.response();
+        let leaving = matches!(self.phase, Phase::Leave(_));
+        if leaving && response != Response::HandsOff {
+            return;
+        }
+        self.note(now, Level::Error, "abort", cause.to_string());
+        self.cause.get_or_insert(cause);
+        if !self.phase.is_airborne() && !self.is_armed() {
+            self.finish(now, Ending::NotFlown);
+            return;
+        }
+        match response {
+            Response::HandsOff => self.hands_off(now),
+            Response::Hold => self.begin_hold(now),
+            Response::Land => self.begin_landing(now),
+        }
+    }
+
+    fn is_armed(&self) -> bool {
+        self.contact.as_ref().is_some_and(|contact| contact.telemetry.is_armed())
+    }
+
+    fn finish(&mut self, now: Duration, ending: Ending) {
+        self.guide.lead = Lead::Silent;
+        self.commander.clear();
+        let (rms_m, max_m) = self.watch.tracking.figures_m();
+        let flown = Flown {
+            tracking_rms_m: rms_m,
+            tracking_max_m: max_m,
+            tilt_max_deg: deg_from_rad(self.watch.envelope.greatest_tilt_rad()),
+            ..self.flown.clone()
+        };
+        self.enter(now, Phase::Done);
+        let (cause, losses) = (self.cause.clone(), self.losses.clone());
+        self.actions.push_back(Action::Finished(Outcome { cause, ending, flown, losses }));
+    }
+
+    fn battery_level(&self) -> BatteryLevel {
+        self.contact.as_ref().map_or(BatteryLevel::Good, |contact| contact.telemetry.battery_level())
+    }
+}

@@ -1,0 +1,75 @@
+//! What a display shows of a flight.
+
+use std::time::Duration;
+
+use super::{Flight, Phase};
+use crate::fly::health::BatteryLevel;
+use crate::fly::safety::Lead;
+
+/// What a display shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Status {
+    /// name of the phase
+    pub phase: &'static str,
+    /// off the ground by our doing
+    pub airborne: bool,
+    /// ended before its time
+    pub aborted: bool,
+    /// s along the trajectory, and all of it
+    pub progress_s: Option<(f64, f64)>,
+    /// the vehicle's mode in its own words
+    pub mode: Option<String>,
+    /// motors may turn
+    pub armed: bool,
+    /// period flown, of how many
+    pub period: (u32, u32),
+    /// distance to the reference, m
+    pub tracking_m: f64,
+    /// since the vehicle was heard, s
+    pub link_age_s: Option<f64>,
+    /// low or worse by the autopilot's own judgement
+    pub battery_is_low: bool,
+    /// percent
+    pub battery_percent: Option<i8>,
+    /// V
+    pub battery_v: Option<f64>,
+    /// x, y, z, m, world, local
+    pub position_m: Option<[f64; 3]>,
+    /// why the estimate cannot be flown by
+    pub estimator_faults: Vec<String>,
+}
+
+impl Flight {
+    /// For a display.
+    #[must_use]
+    pub fn status(&self, now: Duration) -> Status {
+        let telemetry = self.contact.as_ref().map(|contact| &contact.telemetry);
+        let state = telemetry.and_then(|telemetry| Some((telemetry.stack(), telemetry.state?.value)));
+        let motion = telemetry.and_then(|telemetry| telemetry.motion);
+        Status {
+            phase: self.phase.name(),
+            airborne: self.phase.is_airborne(),
+            aborted: self.cause.is_some(),
+            progress_s: self.progress_s(now),
+            mode: state.map(|(stack, state)| stack.mode_name(state.custom_mode)),
+            armed: state.is_some_and(|(_, state)| state.armed),
+            period: (self.flown.periods, self.sortie.course.repeats()),
+            tracking_m: self.watch.tracking.latest_m(),
+            link_age_s: telemetry.map(|telemetry| now.saturating_sub(telemetry.heard).as_secs_f64()),
+            battery_is_low: self.battery_level() > BatteryLevel::Good,
+            battery_percent: telemetry.and_then(|telemetry| telemetry.battery?.value.1),
+            battery_v: telemetry.and_then(|telemetry| telemetry.battery_v),
+            position_m: motion.map(|motion| motion.value.position_m.into()),
+            estimator_faults: telemetry.map(|telemetry| telemetry.estimator_faults(now)).unwrap_or_default(),
+        }
+    }
+
+    fn progress_s(&self, now: Duration) -> Option<(f64, f64)> {
+        match (&self.phase, &self.guide.lead) {
+            (Phase::Course, Lead::Along(track)) => {
+                Some((track.clock.at(now).along_s, track.path.duration_s()))
+            }
+            _ => None,
+        }
+    }
+}

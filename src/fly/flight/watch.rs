@@ -1,0 +1,237 @@
+//! The safety rules, asked at every step.
+
+use std::time::Duration;
+
+use super::{Flight, Phase};
+use crate::fly::health::BatteryLevel;
+use crate::fly::modes::Mode;
+use crate::fly::outcome::{Cause, Ending, Level};
+use crate::fly::safety::{Envelope, Lead, Masters, Sustained, Tracking};
+use crate::fly::sortie::Sortie;
+use crate::units::rad_from_deg;
+
+/// Silence after which the trajectory waits.
+const PAUSE_AFTER: Duration = Duration::from_secs(2);
+/// Silence after which the flight is given up.
+const GIVE_UP_AFTER: Duration = Duration::from_secs(5);
+/// The mode is not known without a HEARTBEAT of this time; other messages may still come.
+const HEARTBEAT_MAX: Duration = Duration::from_secs(6);
+/// No position for this long is no estimate.
+const POSITION_MAX: Duration = Duration::from_secs(2);
+/// Innovation tests fail for an instant; an estimate bad for this long is bad.
+const ESTIMATOR_BAD: Duration = Duration::from_secs(1);
+/// A report of the mode before ours may have been under way when ours was engaged.
+const ENGAGING: Duration = Duration::from_millis(1500);
+const LATE_REPORT: Duration = Duration::from_millis(400);
+/// An autopilot that declares an emergency changes its mode by itself, within this time.
+const FAILSAFE_ACTS: Duration = Duration::from_secs(1);
+/// Beyond what is planned, degrees.
+const TILT_BEYOND_DEG: f64 = 20.0;
+const TILT_LEAST_DEG: f64 = 25.0;
+const TILT_MOST_DEG: f64 = 60.0;
+
+/// What the safety rules remember.
+#[derive(Debug)]
+pub(super) struct Watch {
+    pub(super) tracking: Tracking,
+    pub(super) masters: Masters,
+    pub(super) envelope: Envelope,
+    other_mode: Sustained,
+    failsafe: Sustained,
+    unhealthy: Sustained,
+    paused_since: Option<Duration>,
+}
+
+impl Watch {
+    pub(super) fn new(sortie: &Sortie) -> Self {
+        let settings = &sortie.settings;
+        let planned_rad = sortie.course.tilt_max_rad(sortie.gravity_m_s2);
+        let tilt_max_rad = settings.tilt_max_rad.unwrap_or_else(|| {
+            (planned_rad + rad_from_deg(TILT_BEYOND_DEG))
+                .clamp(rad_from_deg(TILT_LEAST_DEG), rad_from_deg(TILT_MOST_DEG))
+        });
+        Self {
+            tracking: Tracking::default(),
+            masters: Masters::new(settings.station.0, settings.station.1),
+            envelope: Envelope::new(sortie.limits, settings.room_margin_m, tilt_max_rad),
+            other_mode: Sustained::default(),
+            failsafe: Sustained::default(),
+            unhealthy: Sustained::default(),
+            paused_since: None,
+        }
+    }
+
+    /// Nothing is heard: the trajectory waits.
+    pub(super) fn is_paused(&self) -> bool {
+        self.paused_since.is_some()
+    }
+}
+
+impl Flight {
+    /// All rules that hold while the vehicle is ours.
+    pub(super) fn supervise(&mut self, now: Duration) {
+        if self.contact.is_none() || matches!(self.phase, Phase::Done) {
+            return;
+        }
+        if self.phase.is_ours() {
+            let cause = self.check_mode(now).or_else(|| self.check_vehicle(now));
+            if let Some(cause) = cause {
+                self.end(now, cause);
+                return;
+            }
+        }
+        if self.phase.is_ours() || matches!(self.phase, Phase::Leave(_)) {
+            self.check_link(now);
+        }
+    }
+
+    fn check_mode(&mut self, now: Duration) -> Option<Cause> {
+        let left = self.left_our_mode();
+        let lasts = self.watch.other_mode.update(now, left.is_some());
+        let engaging = now.saturating_sub(self.engaged) < ENGAGING;
+        if let Some(what) = left
+            && (!engaging || lasts >= LATE_REPORT)
+        {
+            let said = self.contact.as_ref().map(|contact| {
+                let recent = now.saturating_sub(Duration::from_secs(3));
+                contact.telemetry.complaints_since(recent)
+            });
+            let said = said.filter(|said| !said.is_empty()).map(|said| format!(" ({})", said.join("; ")));
+            return Some(Cause::Override(what + &said.unwrap_or_default()));
+        }
+        let flying = self.phase.is_airborne();
+        if flying && !self.is_armed() {
+            return Some(Cause::Override("it was disarmed".to_owned()));
+        }
+        None
+    }
+
+    fn check_vehicle(&mut self, now: Duration) -> Option<Cause> {
+        let flying = self.phase.is_airborne();
+        let telemetry = &self.contact.as_ref()?.telemetry;
+        if !flying {
+            return None;
+        }
+        if telemetry.battery_level() == BatteryLevel::Critical {
+            return Some(Cause::Battery("it is critical".to_owned()));
+        }
+        let bad =
+            telemetry.estimator_bad_since.is_some_and(|since| now.saturating_sub(since) >= ESTIMATOR_BAD);
+        let unhealthy = telemetry.system.as_ref().is_some_and(|seen| !seen.value.unhealthy.is_empty());
+        let unhealthy = self.watch.unhealthy.update(now, unhealthy) >= ESTIMATOR_BAD;
+        if bad || unhealthy {
+            return Some(Cause::Estimator(telemetry.estimator_faults(now).join("; ")));
+        }
+        // after a silence the first message is seldom a position
+        let since = telemetry.motion.map_or(telemetry.resumed, |motion| motion.at.max(telemetry.resumed));
+        let heard = now.saturating_sub(telemetry.heard) < PAUSE_AFTER;
+        if heard && now.saturating_sub(since) > POSITION_MAX {
+            return Some(Cause::Estimator("no local position arrives".to_owned()));
+        }
+        if self.watch.failsafe.update(now, telemetry.is_in_failsafe()) >= FAILSAFE_ACTS {
+            let said = telemetry.complaints_since(now.saturating_sub(Duration::from_secs(5))).join("; ");
+            return Some(Cause::Failsafe(format!(
+                "declared, and the mode is still ours; it says \"{said}\""
+            )));
+        }
+        None
+    }
+
+    /// Rules on where the vehicle is, asked when a frame of it came.
+    pub(super) fn check_motion(&mut self, now: Duration) {
+        if !self.phase.is_ours() || !self.phase.is_airborne() {
+            return;
+        }
+        let Some(contact) = &self.contact else { return };
+        let telemetry = &contact.telemetry;
+        let tilted = telemetry
+            .attitude
+            .filter(|attitude| attitude.at == now)
+            .and_then(|attitude| self.watch.envelope.check_tilt(now, &attitude.value));
+        let motion = telemetry.motion.filter(|motion| motion.at == now);
+        let on_course = matches!(self.phase, Phase::Course);
+        let mut cause = tilted;
+        if let (Some(motion), Some(stand)) = (motion, self.stand) {
+            let position_m = motion.value.position_m;
+            let offset_m = self.offset_m(&stand.position_m);
+            let limit_m = self.sortie.settings.tracking_max_m;
+            let off = self.watch.tracking.check(now, &position_m, limit_m, 0.0);
+            if on_course {
+                self.watch.tracking.count();
+                let outside = self.watch.envelope.check_room(now, &(position_m - offset_m));
+                cause = cause.or(outside);
+            }
+            cause = cause.or(off);
+        }
+        if let Some(cause) = cause {
+            self.end(now, cause);
+        }
+    }
+
+    fn check_link(&mut self, now: Duration) {
+        let Some(contact) = &self.contact else { return };
+        let silent = now.saturating_sub(contact.telemetry.heard);
+        let no_mode = now.saturating_sub(contact.telemetry.heartbeat);
+        if silent > GIVE_UP_AFTER || no_mode > HEARTBEAT_MAX {
+            let what = if silent > GIVE_UP_AFTER { "anything" } else { "a HEARTBEAT" };
+            let age_s = silent.max(no_mode.min(HEARTBEAT_MAX)).as_secs_f64();
+            self.end(now, Cause::LinkLost(format!("{age_s:.1} s without {what} of the vehicle")));
+            return;
+        }
+        match (silent > PAUSE_AFTER, self.watch.paused_since) {
+            (true, None) => {
+                self.watch.paused_since = Some(now);
+                self.note(now, Level::Warning, "link", "2 s without a message: the trajectory waits");
+            }
+            (false, Some(since)) => {
+                self.watch.paused_since = None;
+                let lasted_s = now.saturating_sub(since).as_secs_f64();
+                if matches!(self.phase, Phase::Course) {
+                    self.flown.paused_s += lasted_s;
+                    self.losses.push(format!("the trajectory waited {lasted_s:.1} s for the link"));
+                }
+                self.note(
+                    now,
+                    Level::Warning,
+                    "link",
+                    format!("heard again after {lasted_s:.1} s of waiting"),
+                );
+            }
+            _ => {}
+        }
+    }
+
+    /// Lets go: nothing is sent any more but heartbeats, and no mode is asked for again.
+    pub(super) fn hands_off(&mut self, now: Duration) {
+        self.guide.lead = Lead::Silent;
+        self.commander.clear();
+        self.enter(now, Phase::Watch);
+    }
+
+    /// Others fly the vehicle, or nobody hears it.
+    pub(super) fn watch_others(&mut self, now: Duration) {
+        let Some(contact) = &self.contact else { return };
+        let heard = now.saturating_sub(contact.telemetry.heard) < PAUSE_AFTER;
+        if heard && !self.is_armed() {
+            let ending = if self.stand.is_some() { Ending::Landed } else { Ending::NotFlown };
+            self.finish(now, ending);
+            return;
+        }
+        let ours = heard && self.is_in(Mode::External);
+        if ours && matches!(self.cause, Some(Cause::LinkLost(_))) {
+            self.note(now, Level::Warning, "link", "heard again, still in our mode: it is told to hold");
+            self.begin_hold(now);
+        } else if now.saturating_sub(self.entered) > self.sortie.settings.watch_max {
+            let mode = if heard { self.mode_name() } else { "not heard".to_owned() };
+            self.finish(now, Ending::InTheAir(mode));
+        }
+    }
+
+    /// The vehicle's mode in its own words.
+    pub(super) fn mode_name(&self) -> String {
+        let state = self.contact.as_ref().and_then(|contact| {
+            Some(contact.telemetry.stack().mode_name(contact.telemetry.state?.value.custom_mode))
+        });
+        state.unwrap_or_else(|| "not known".to_owned())
+    }
+}

@@ -1,0 +1,175 @@
+//! How a flight ends, and what is told on the way.
+
+use std::fmt;
+use std::time::Duration;
+
+use serde::Serialize;
+
+/// Why a flight ended other than planned.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(tag = "id", content = "detail", rename_all = "snake_case")]
+pub enum Cause {
+    /// the operator's key
+    Operator,
+    /// the program was told to end: Ctrl-C, SIGTERM, SIGHUP, a panic
+    Signal(String),
+    /// something before takeoff was not as it must be, or was refused
+    Refused(String),
+    /// the vehicle did not get where it had to be in time
+    NotReached(String),
+    /// the vehicle left our mode without our command: its pilot, another station, or a failsafe
+    Override(String),
+    /// the autopilot's own failsafe acts
+    Failsafe(String),
+    /// further off the reference than allowed
+    Tracking(String),
+    /// tilted further than allowed
+    Tilt(String),
+    /// outside the room, margin included
+    Room(String),
+    /// nothing was heard of the vehicle
+    LinkLost(String),
+    /// its position estimate is not good
+    Estimator(String),
+    /// its position estimate jumped
+    EstimatorReset(String),
+    /// battery
+    Battery(String),
+    /// somebody else commands the vehicle
+    SecondMaster(String),
+    /// its clock started anew
+    Reboot,
+    /// setpoints could not be made in time
+    Stalled(String),
+    /// it does not do what it is told
+    Unresponsive(String),
+}
+
+/// What is done at once for a cause.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Response {
+    /// nothing is sent any more but heartbeats: somebody else flies, or nobody hears
+    HandsOff,
+    /// the vehicle's own hold mode, and to the ground after a while
+    Hold,
+    /// to the ground now
+    Land,
+}
+
+impl Cause {
+    /// What is done at once.
+    #[must_use]
+    pub fn response(&self) -> Response {
+        match self {
+            Self::Override(_) | Self::Failsafe(_) | Self::LinkLost(_) | Self::Reboot => Response::HandsOff,
+            Self::Estimator(_) | Self::Battery(_) | Self::NotReached(_) | Self::Refused(_) => Response::Land,
+            _ => Response::Hold,
+        }
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Operator => f.write_str("aborted by the operator"),
+            Self::Signal(name) => write!(f, "ended by {name}"),
+            Self::Refused(why) | Self::NotReached(why) => f.write_str(why),
+            Self::Override(what) => write!(f, "taken over: {what}"),
+            Self::Failsafe(what) => write!(f, "the autopilot's failsafe: {what}"),
+            Self::Tracking(what) => write!(f, "off the reference: {what}"),
+            Self::Tilt(what) => write!(f, "tilted too far: {what}"),
+            Self::Room(what) => write!(f, "outside the room: {what}"),
+            Self::LinkLost(what) => write!(f, "link lost: {what}"),
+            Self::Estimator(what) => write!(f, "position estimate not good: {what}"),
+            Self::EstimatorReset(what) => write!(f, "position estimate jumped: {what}"),
+            Self::Battery(what) => write!(f, "battery: {what}"),
+            Self::SecondMaster(what) => write!(f, "a second ground station commands: {what}"),
+            Self::Reboot => f.write_str("the autopilot started anew"),
+            Self::Stalled(what) => write!(f, "setpoints not in time: {what}"),
+            Self::Unresponsive(what) => write!(f, "the vehicle does not answer: {what}"),
+        }
+    }
+}
+
+/// Where the vehicle was left.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(tag = "id", content = "detail", rename_all = "snake_case")]
+pub enum Ending {
+    /// never left the ground
+    NotFlown,
+    /// on the ground, motors off
+    Landed,
+    /// in the air, in this mode, or not known
+    InTheAir(String),
+}
+
+/// What was flown, measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Default)]
+pub struct Flown {
+    /// periods of the series flown to their end
+    pub periods: u32,
+    /// distance to the reference along the trajectory, root mean square, m
+    pub tracking_rms_m: f64,
+    /// greatest distance, m
+    pub tracking_max_m: f64,
+    /// greatest tilt, degrees
+    pub tilt_max_deg: f64,
+    /// greatest tilt that the reference asks for, degrees
+    pub tilt_planned_deg: f64,
+    /// s for which the trajectory waited for the link
+    pub paused_s: f64,
+}
+
+/// How a flight ended.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Outcome {
+    /// why not as planned; `None` for a whole flight
+    pub cause: Option<Cause>,
+    /// where the vehicle is
+    pub ending: Ending,
+    /// what was flown
+    pub flown: Flown,
+    /// what makes a whole flight less than it should be
+    pub losses: Vec<String>,
+}
+
+impl Outcome {
+    /// The whole trajectory was flown and the vehicle is on the ground.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.cause.is_none() && self.ending == Ending::Landed
+    }
+}
+
+/// How much a note matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Level {
+    /// goes on as planned
+    Information,
+    /// somebody should know
+    Warning,
+    /// ends the flight
+    Error,
+}
+
+/// A line of the flight's log of events.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Note {
+    /// s on the flight's clock
+    pub time_s: f64,
+    /// how much it matters
+    pub level: Level,
+    /// of what kind: `phase`, `vehicle`, `command`, `mode`, `link`, `stream`, `abort`, `end`
+    pub kind: &'static str,
+    /// for people
+    pub text: String,
+}
+
+impl Note {
+    /// At `now` of the flight's clock.
+    #[must_use]
+    pub fn new(now: Duration, level: Level, kind: &'static str, text: impl Into<String>) -> Self {
+        Self { time_s: now.as_secs_f64(), level, kind, text: text.into() }
+    }
+}

@@ -1,0 +1,173 @@
+//! Before the flight: parameters are downloaded, message rates asked for and measured, and all of it checked.
+
+use std::time::Duration;
+
+use mavlink::dialects::ardupilotmega::MavMessage;
+
+use crate::fly::finding::{Finding, Level};
+use crate::fly::flight::Flight;
+use crate::fly::parameters::{Download, DownloadSettings, Parameters, wanted};
+use crate::fly::preflight::{
+    BatteryState, Fence, FenceDownload, FenceOutcome, Geodetic, Readiness, Situation, preflight,
+};
+use crate::fly::requests::{Capacity, LinkKind, RequestSettings, Requests, request_set, slow_request_set};
+use crate::log::{self, Frame, Payload};
+use crate::vehicle::Vehicle;
+use nalgebra::Vector3;
+
+/// Subjects that the flight itself waits for: no refusal yet.
+const AWAITED: [&str; 4] = ["estimate", "pre-arm", "home", "health"];
+
+const GPS_GLOBAL_ORIGIN: u32 = 49;
+
+/// What came of it.
+#[derive(Debug)]
+pub(super) struct Cleared {
+    pub(super) parameters: Parameters,
+    pub(super) findings: Vec<Finding>,
+    pub(super) lines: Vec<String>,
+}
+
+impl Cleared {
+    /// Whether the flight may go on, and why not.
+    pub(super) fn verdict(&self) -> Result<(), String> {
+        let refusals: Vec<String> = self
+            .findings
+            .iter()
+            .filter(|finding| finding.level == Level::Refusal && !AWAITED.contains(&finding.subject))
+            .map(|finding| {
+                let Finding { subject, expected, came, remedy, .. } = finding;
+                format!("{subject}: expected {expected}, got {came} ({remedy})")
+            })
+            .collect();
+        if refusals.is_empty() { Ok(()) } else { Err(refusals.join("; ")) }
+    }
+}
+
+#[derive(Debug)]
+enum Stage {
+    Parameters(Box<Download>),
+    Rates(Box<Parameters>, Box<Requests>),
+    Over,
+}
+
+/// One stage after the other. Parameters first: ArduPilot slows its messages while they are sent.
+#[derive(Debug)]
+pub(super) struct Clearance {
+    vehicle: log::Vehicle,
+    link: LinkKind,
+    stage: Stage,
+    fence: FenceDownload,
+    /// where the local frame lies, as GPS_GLOBAL_ORIGIN says
+    origin: Option<Geodetic>,
+}
+
+impl Clearance {
+    pub(super) fn new(vehicle: log::Vehicle, rotors: usize, link: LinkKind) -> Self {
+        let download = Download::new(vehicle, wanted(vehicle.autopilot, rotors), DownloadSettings::default());
+        let (stage, fence) = (Stage::Parameters(Box::new(download)), FenceDownload::new(vehicle));
+        Self { vehicle, link, stage, fence, origin: None }
+    }
+
+    pub(super) fn take_event(&mut self, event: &log::Event<'_>) {
+        if let Stage::Parameters(download) = &mut self.stage {
+            download.take(event);
+        }
+    }
+
+    pub(super) fn take_frame(&mut self, frame: &Frame<'_>) {
+        let header = frame.header();
+        if header.system == self.vehicle.system && header.message_id == GPS_GLOBAL_ORIGIN {
+            self.origin = Some(geodetic(frame.payload()));
+        }
+        self.fence.take_frame(frame);
+        match &mut self.stage {
+            Stage::Parameters(download) => download.take_frame(frame),
+            Stage::Rates(_, requests) => requests.take_frame(frame),
+            Stage::Over => {}
+        }
+    }
+
+    /// What is to be sent now.
+    pub(super) fn poll(&mut self, now: Duration) -> Option<MavMessage> {
+        let message = match &mut self.stage {
+            Stage::Parameters(download) => download.poll(now),
+            Stage::Rates(_, requests) => requests.poll(now),
+            Stage::Over => None,
+        };
+        let message = message.or_else(|| self.fence.poll(now));
+        if message.is_none()
+            && self.fence.outcome().is_some()
+            && let Stage::Parameters(download) = &self.stage
+            && download.is_done(now)
+            && let Stage::Parameters(download) = std::mem::replace(&mut self.stage, Stage::Over)
+        {
+            let capacity = Capacity::new(self.link, self.vehicle.autopilot);
+            let whole = request_set(self.vehicle.autopilot);
+            let set = if capacity.fits(&whole) { whole } else { slow_request_set(self.vehicle.autopilot) };
+            let requests = Requests::new(self.vehicle, set, capacity, RequestSettings::default());
+            self.stage = Stage::Rates(Box::new(download.finish()), Box::new(requests));
+        }
+        message
+    }
+
+    /// What came of it, once, when it is over.
+    pub(super) fn finished(&mut self, flight: &Flight, vehicle: &Vehicle, now: Duration) -> Option<Cleared> {
+        if !matches!(&self.stage, Stage::Rates(_, requests) if requests.is_done()) {
+            return None;
+        }
+        let Stage::Rates(parameters, requests) = std::mem::replace(&mut self.stage, Stage::Over) else {
+            return None;
+        };
+        let report = requests.report();
+        let mut findings = self.findings(flight, vehicle, (&parameters, now));
+        findings.extend(report.findings());
+        let lines = report.streams.iter().map(|stream| stream.line()).collect();
+        Some(Cleared { parameters: *parameters, findings, lines })
+    }
+
+    fn findings(
+        &self,
+        flight: &Flight,
+        vehicle: &Vehicle,
+        (parameters, now): (&Parameters, Duration),
+    ) -> Vec<Finding> {
+        let status = flight.status(now);
+        let sortie = flight.sortie();
+        let mut fence = Fence::new(parameters, self.fence.items(), self.origin.as_ref());
+        if let Some(FenceOutcome::Incomplete { came, of }) = self.fence.outcome() {
+            let of = of.map_or("an unknown number of".to_owned(), |of| of.to_string());
+            fence.unknown.push(format!("{came} of {of} items came"));
+        }
+        let battery = BatteryState {
+            remaining_percent: status.battery_percent.map(f64::from),
+            is_low: status.battery_is_low,
+            endurance_s: None,
+        };
+        let readiness = Readiness {
+            estimate_faults: status.estimator_faults,
+            position_arrives: status.position_m.is_some(),
+            armed: status.armed,
+            ..Readiness::default()
+        };
+        preflight(&Situation {
+            path: sortie.course.path(),
+            origin_m: status
+                .position_m
+                .map_or_else(Vector3::zeros, |[x, y, z]| flight.offset_m(&Vector3::new(x, y, z))),
+            home_m: None,
+            vehicle,
+            limits: &sortie.limits,
+            parameters,
+            fence: &fence,
+            battery: &battery,
+            readiness: &readiness,
+            own_system: u8::try_from(sortie.settings.station.0.0).unwrap_or(u8::MAX),
+        })
+    }
+}
+
+fn geodetic(origin: Payload<'_>) -> Geodetic {
+    let degrees = |offset: usize| 1e-7 * f64::from(origin.i32(offset));
+    Geodetic { latitude_deg: degrees(0), longitude_deg: degrees(4) }
+}

@@ -1,0 +1,271 @@
+//! The flight with what belongs to it on the host: its clock, its view, the checks before it.
+
+use std::path::PathBuf;
+use std::sync::mpsc::Sender;
+use std::time::{Duration, Instant};
+
+use super::PARAMETERS;
+use super::clearance::{Clearance, Cleared};
+use super::journal::Journal;
+use super::stream::SharedGuide;
+use crate::fly::finding;
+use crate::fly::flight::{Action, Event, Flight, Key};
+use crate::fly::live::{LiveIdentification, LiveSettings};
+use crate::fly::modes::Mode;
+use crate::fly::outcome::{Level, Note, Outcome};
+use crate::fly::parameters::Parameters;
+use crate::fly::requests::LinkKind;
+use crate::fly::safety::Lead;
+use crate::fly::view::{Battery, KeyCommand, LinkView, Phase, ViewModel};
+use crate::link::{LinkEvent, LinkWriter, ReceivedFrame};
+use crate::log::{Decoder, Frame, Record};
+use crate::vehicle::Vehicle;
+
+/// Between two pictures of the state, and between two live estimates.
+const SHOW: Duration = Duration::from_millis(200);
+const ESTIMATE: Duration = Duration::from_secs(1);
+
+/// Where the flight's records go and what flies.
+#[derive(Debug)]
+pub(super) struct Place {
+    pub(super) dir: PathBuf,
+    pub(super) vehicle: Vehicle,
+    pub(super) link: LinkKind,
+    pub(super) address: String,
+}
+
+/// A flight under way.
+#[derive(Debug)]
+pub(super) struct Drive {
+    flight: Flight,
+    guide: SharedGuide,
+    writer: LinkWriter,
+    clock: Instant,
+    place: Place,
+    clearance: Option<Clearance>,
+    decoder: Option<Decoder>,
+    live: Option<LiveIdentification>,
+    notes: Vec<Note>,
+    model: ViewModel,
+    shown: Duration,
+    estimated: Duration,
+    frames: (u64, u64),
+    refused: u64,
+    outcome: Option<Outcome>,
+}
+
+impl Drive {
+    pub(super) fn new(
+        flight: Flight,
+        guide: SharedGuide,
+        writer: LinkWriter,
+        clock: Instant,
+        place: Place,
+    ) -> Self {
+        let mut model = ViewModel { title: place.vehicle.name.clone(), ..ViewModel::default() };
+        model.tracking.limit_m = Some(flight.sortie().settings.tracking_max_m);
+        let waits = format!("{}: waiting for a vehicle", place.address);
+        let notes = vec![Note::new(clock.elapsed(), Level::Information, "link", waits)];
+        Self {
+            flight,
+            guide,
+            writer,
+            clock,
+            place,
+            clearance: None,
+            decoder: None,
+            live: None,
+            notes,
+            model,
+            shown: Duration::ZERO,
+            estimated: Duration::ZERO,
+            frames: (0, 0),
+            refused: 0,
+            outcome: None,
+        }
+    }
+
+    pub(super) fn outcome(&self) -> Option<Outcome> {
+        self.outcome.clone()
+    }
+
+    pub(super) fn handle(&mut self, event: Event<'_>) {
+        let now = self.clock.elapsed();
+        self.flight.handle(now, event);
+        self.guide.set(self.flight.guide());
+        while let Some(action) = self.flight.next_action() {
+            match action {
+                Action::Send(message) => {
+                    self.refused += u64::from(self.writer.send_message(&message).is_err())
+                }
+                Action::Note(note) => self.notes.push(note),
+                Action::Finished(outcome) => self.outcome = Some(outcome),
+            }
+        }
+        self.clear(now);
+    }
+
+    pub(super) fn frame(&mut self, received: &ReceivedFrame) {
+        let Some(frame) = Frame::at_start(received.bytes()) else { return };
+        self.handle(Event::Frame(frame));
+        if self.decoder.is_none() {
+            self.decoder = self.flight.vehicle().map(|who| Decoder::new(who, None, received.stamp.utc_us));
+        }
+        let known = frame.check(self.flight.seeds()) == crate::log::Check::Right;
+        let record = Record { stamp_us: received.stamp.utc_us, offset: 0, known, frame };
+        if let Some(clearance) = &mut self.clearance
+            && known
+        {
+            clearance.take_frame(&frame);
+        }
+        let (clearance, live) = (&mut self.clearance, &mut self.live);
+        if let Some(decoder) = &mut self.decoder {
+            decoder.decode(&record, &mut |event| {
+                if let Some(clearance) = clearance {
+                    clearance.take_event(&event);
+                }
+                if let Some(live) = live {
+                    live.take(&event);
+                }
+            });
+        }
+    }
+
+    pub(super) fn link_event(&mut self, event: &LinkEvent) {
+        let now = self.clock.elapsed();
+        let (up, level, text) = match event {
+            LinkEvent::Connected { peer } => (Some(true), Level::Information, format!("connected to {peer}")),
+            LinkEvent::Restored { peer } => {
+                (Some(true), Level::Warning, format!("connected again to {peer}"))
+            }
+            LinkEvent::Lost { why } => (Some(false), Level::Warning, format!("lost: {why}")),
+            other => (None, Level::Warning, format!("{other:?}")),
+        };
+        self.notes.push(Note::new(now, level, "link", text));
+        if let Some(up) = up {
+            self.handle(Event::Link(up));
+        }
+    }
+
+    pub(super) fn key(&mut self, key: KeyCommand) {
+        let event = match key {
+            KeyCommand::Hold => Event::Key(Key::To(Mode::Hold)),
+            KeyCommand::Land => Event::Key(Key::To(Mode::Land)),
+            KeyCommand::Return => Event::Key(Key::To(Mode::Return)),
+            KeyCommand::Kill => Event::Key(Key::Kill),
+            KeyCommand::Quit => Event::Stop("the operator".to_owned()),
+        };
+        self.handle(event);
+    }
+
+    /// The checks before the flight, once it waits for them.
+    fn clear(&mut self, now: Duration) {
+        if !self.flight.wants_clearance() {
+            return;
+        }
+        let Some(who) = self.flight.vehicle() else { return };
+        let rotors = self.place.vehicle.rotors.len();
+        let link = self.place.link;
+        let clearance = self.clearance.get_or_insert_with(|| Clearance::new(who, rotors, link));
+        while let Some(message) = clearance.poll(now) {
+            self.refused += u64::from(self.writer.send_message(&message).is_err());
+        }
+        if let Some(cleared) = clearance.finished(&self.flight, &self.place.vehicle, now) {
+            self.cleared(now, &cleared);
+        }
+    }
+
+    fn cleared(&mut self, now: Duration, cleared: &Cleared) {
+        for line in &cleared.lines {
+            self.notes.push(Note::new(now, Level::Information, "rate", line.clone()));
+        }
+        for finding in &cleared.findings {
+            let level = match finding.level {
+                finding::Level::Ok => Level::Information,
+                _ => Level::Warning,
+            };
+            self.notes.push(Note::new(now, level, "check", finding.to_string()));
+        }
+        self.keep_parameters(now, &cleared.parameters);
+        self.live =
+            Some(LiveIdentification::new(&self.place.vehicle, &cleared.parameters, &LiveSettings::default()));
+        self.handle(Event::Cleared(cleared.verdict()));
+    }
+
+    fn keep_parameters(&mut self, now: Duration, parameters: &Parameters) {
+        let path = self.place.dir.join(PARAMETERS);
+        let written = parameters
+            .to_toml()
+            .map_err(|error| error.to_string())
+            .and_then(|text| std::fs::write(&path, text).map_err(|error| error.to_string()));
+        if let Err(error) = written {
+            let text = format!("cannot write {}: {error}", path.display());
+            self.notes.push(Note::new(now, Level::Error, "file", text));
+        }
+    }
+
+    /// Hands notes and pictures of the state on.
+    pub(super) fn report(&mut self, journal: &Journal, show: &Sender<ViewModel>) {
+        let now = self.clock.elapsed();
+        self.model.elapsed_s = now.as_secs_f64();
+        for note in std::mem::take(&mut self.notes) {
+            journal.write(&note);
+            let level = match note.level {
+                Level::Information => finding::Level::Ok,
+                Level::Warning => finding::Level::Warning,
+                Level::Error => finding::Level::Refusal,
+            };
+            self.model.event(level, format!("{}: {}", note.kind, note.text));
+        }
+        if now.saturating_sub(self.shown) < SHOW && self.outcome.is_none() {
+            return;
+        }
+        self.picture(now);
+        self.shown = now;
+        // nobody has to watch
+        let _ = show.send(self.model.clone());
+    }
+
+    fn picture(&mut self, now: Duration) {
+        let status = self.flight.status(now);
+        let follows = self.flight.guide().lead != Lead::Silent;
+        let stats = self.writer.stats();
+        let passed_s = now.saturating_sub(self.shown).as_secs_f64().max(1e-3);
+        let hz = |total: u64, before: u64| total.saturating_sub(before) as f64 / passed_s;
+        let model = &mut self.model;
+        model.link = LinkView {
+            age_s: status.link_age_s,
+            frames_hz: hz(stats.received_frames, self.frames.0),
+            bytes_s: hz(stats.received_bytes, self.frames.1),
+            loss: None,
+        };
+        self.frames = (stats.received_frames, stats.received_bytes);
+        model.phase = match (status.aborted, status.airborne) {
+            (true, _) => Phase::Aborted,
+            (false, true) => Phase::Flying,
+            (false, false) if status.phase == "over" => Phase::Done,
+            (false, false) => Phase::Preparing,
+        };
+        model.state = status.phase.to_owned();
+        model.mode = status.mode.unwrap_or_default();
+        model.armed = status.armed;
+        model.progress_s = status.progress_s;
+        model.battery = Battery {
+            percent: status.battery_percent.map(f64::from),
+            voltage_v: status.battery_v,
+            is_low: status.battery_is_low,
+        };
+        if follows && status.airborne {
+            model.track(status.tracking_m);
+        }
+        if let Some(live) = &mut self.live {
+            live.set_active(status.progress_s.is_some());
+            if now.saturating_sub(self.estimated) >= ESTIMATE {
+                self.estimated = now;
+                if let Some(estimate) = live.estimate() {
+                    model.estimate(&estimate);
+                }
+            }
+        }
+    }
+}

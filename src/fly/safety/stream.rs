@@ -1,0 +1,215 @@
+//! The stream of setpoints, and the watch over its freshness.
+//!
+//! A setpoint is made when it is sent, for that instant; none is ever sent twice, and what was missed is
+//! not made up. Whoever supervises the flight renews the [`Guide`] many times a second. Where he does not,
+//! or where this stream itself was held up, the vehicle is told to hold and then left to its own failsafe.
+
+use std::time::Duration;
+
+use crate::fly::course::Track;
+use crate::fly::modes::{Mode, Stack};
+use crate::fly::setpoint::{Place, Setpoint};
+use crate::fly::target::{Order, Target};
+use mavlink::dialects::ardupilotmega::MavMessage;
+
+/// A supervisor or a stream that stalled for longer holds the vehicle.
+const HOLD_AFTER: Duration = Duration::from_millis(100);
+/// One that stalled for longer is silent: the autopilot's own failsafe is to act.
+const SILENT_AFTER: Duration = Duration::from_millis(300);
+
+/// What the setpoints follow.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Lead {
+    /// nothing is sent
+    Silent,
+    /// a place
+    Hold(Place),
+    /// a path
+    Along(Track),
+}
+
+/// What is to be streamed, renewed with every tick of the flight.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Guide {
+    /// what the setpoints follow
+    pub lead: Lead,
+    /// when it was renewed
+    pub issued: Duration,
+    /// whom the setpoints are for, and by which rules; `None` while no vehicle is chosen
+    pub target: Option<(Target, Stack)>,
+}
+
+impl Guide {
+    /// Nothing to stream.
+    #[must_use]
+    pub fn silent(issued: Duration) -> Self {
+        Self { lead: Lead::Silent, issued, target: None }
+    }
+
+    /// The setpoint of an instant; `None` where nothing is to be sent.
+    #[must_use]
+    pub fn setpoint(&self, time: Duration) -> Option<Setpoint> {
+        match &self.lead {
+            Lead::Silent => None,
+            Lead::Hold(place) => Some(Setpoint::hold(time, place)),
+            Lead::Along(track) => track.setpoint(time),
+        }
+    }
+}
+
+/// What is to be sent now.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Streamed {
+    /// a setpoint, and its message
+    Setpoint(Setpoint, MavMessage),
+    /// a stall: the place to hold, and the command to hold there
+    Stalled {
+        /// how long
+        gap: Duration,
+        /// the hold setpoint, unless the stall is too long for any
+        setpoint: Option<MavMessage>,
+        /// the hold mode
+        command: MavMessage,
+    },
+}
+
+/// Makes the setpoints at their times.
+#[derive(Debug)]
+pub struct Streamer {
+    period: Duration,
+    next: Duration,
+    /// last time it was asked while there was something to stream
+    polled: Option<Duration>,
+    last: Option<Setpoint>,
+    stalled: bool,
+}
+
+impl Streamer {
+    /// One setpoint each `period`.
+    #[must_use]
+    pub fn new(period: Duration) -> Self {
+        Self { period, next: Duration::ZERO, polled: None, last: None, stalled: false }
+    }
+
+    /// When it is to be asked next.
+    #[must_use]
+    pub fn due(&self) -> Duration {
+        self.next
+    }
+
+    /// What to send at `now`. After a stall it stays silent until the flight has nothing to stream.
+    pub fn poll(&mut self, now: Duration, guide: &Guide) -> Option<Streamed> {
+        if now < self.next {
+            return None;
+        }
+        self.advance(now);
+        let (Some(setpoint), Some((target, stack))) = (guide.setpoint(now), guide.target) else {
+            *self = Self { next: self.next, ..Self::new(self.period) };
+            return None;
+        };
+        let own = self.polled.replace(now).map_or(Duration::ZERO, |last| now.saturating_sub(last));
+        if self.stalled {
+            return None;
+        }
+        let gap = own.max(now.saturating_sub(guide.issued));
+        if gap <= HOLD_AFTER {
+            self.last = Some(setpoint);
+            return Some(Streamed::Setpoint(setpoint, setpoint.message(target)));
+        }
+        self.stalled = true;
+        let place = self.last.unwrap_or(setpoint).place();
+        let hold = (gap <= SILENT_AFTER).then(|| Setpoint::hold(now, &place).message(target));
+        let command = target.command(&Order::set_mode(stack, Mode::Hold), 0);
+        Some(Streamed::Stalled { gap, setpoint: hold, command })
+    }
+
+    /// To the next instant of the grid; those that were missed are gone.
+    fn advance(&mut self, now: Duration) {
+        self.next += self.period;
+        if self.next <= now {
+            self.next = now + self.period;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::{ComponentId, SystemId};
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
+
+    fn ms(value: u64) -> Duration {
+        Duration::from_millis(value)
+    }
+
+    fn guide(issued: Duration) -> Guide {
+        let place = Place { position_m: Vector3::new(1.0, 0.0, 2.0), yaw_rad: 0.0 };
+        let target = Target::new(SystemId(1), ComponentId(1)).unwrap();
+        Guide { lead: Lead::Hold(place), issued, target: Some((target, Stack::Px4)) }
+    }
+
+    #[test]
+    fn setpoints_come_at_their_period() {
+        let mut streamer = Streamer::new(ms(20));
+        let sent: Vec<u64> = (0..200)
+            .filter(|t| matches!(streamer.poll(ms(*t), &guide(ms(*t))), Some(Streamed::Setpoint(..))))
+            .collect();
+        assert_eq!(sent, (0..10).map(|k| 20 * k).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_late_supervisor_holds_the_vehicle_and_the_stream_ends() {
+        let mut streamer = Streamer::new(ms(20));
+        let mut seen = Vec::new();
+        for t in 0..1000 {
+            // renewed until 400 ms
+            match streamer.poll(ms(t), &guide(ms(t.min(400)))) {
+                Some(Streamed::Setpoint(..)) => assert!(t <= 500, "at {t} ms"),
+                Some(Streamed::Stalled { setpoint, command, .. }) => {
+                    assert!(setpoint.is_some());
+                    let MavMessage::COMMAND_LONG(data) = command else { panic!() };
+                    assert_eq!((data.param2, data.param3), (4.0, 3.0), "PX4's hold");
+                    seen.push(t);
+                }
+                None => {}
+            }
+        }
+        assert_eq!(seen, [520]);
+    }
+
+    #[test]
+    fn after_a_long_stall_no_setpoint_goes_out() {
+        let mut streamer = Streamer::new(ms(20));
+        assert!(streamer.poll(ms(0), &guide(ms(0))).is_some());
+        let Some(Streamed::Stalled { gap, setpoint, .. }) = streamer.poll(ms(450), &guide(ms(450))) else {
+            panic!("a stall")
+        };
+        assert_eq!((gap, setpoint), (ms(450), None));
+        assert!(streamer.poll(ms(470), &guide(ms(470))).is_none());
+        assert!(streamer.poll(ms(490), &Guide::silent(ms(490))).is_none());
+        assert!(streamer.poll(ms(510), &guide(ms(510))).is_some(), "a new stream");
+    }
+
+    proptest! {
+        /// However late it is asked and however late the flight is: each setpoint is for the instant at which
+        /// it goes out, never one twice, never one from a flight that is not alive.
+        #[test]
+        fn nothing_stale_ever_goes_out(steps in proptest::collection::vec((1_u64..130, any::<bool>()), 1..200)) {
+            let mut streamer = Streamer::new(ms(10));
+            let (mut now, mut issued, mut last) = (ms(0), ms(0), None);
+            for (passed, renewed) in steps {
+                now += ms(passed);
+                if renewed {
+                    issued = now;
+                }
+                if let Some(Streamed::Setpoint(setpoint, _)) = streamer.poll(now, &guide(issued)) {
+                    prop_assert_eq!(setpoint.time, now);
+                    prop_assert!(last.is_none_or(|last| last < now));
+                    prop_assert!(now - issued <= HOLD_AFTER);
+                    last = Some(now);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! What is to be flown, by which vehicle, and within which bounds.
+
+use std::time::Duration;
+
+use super::course::Course;
+use crate::log::{ComponentId, SystemId};
+use crate::vehicle::Limits;
+
+/// One flight, as ordered.
+#[derive(Debug, Clone)]
+pub struct Sortie {
+    /// what is flown
+    pub course: Course,
+    /// what the vehicle must keep
+    pub limits: Limits,
+    /// m/s^2
+    pub gravity_m_s2: f64,
+    /// the vehicle by its system id; without it the only one on the link
+    pub system: Option<SystemId>,
+    /// the order to arm a vehicle that is not the embedded simulated one
+    pub may_arm: bool,
+    /// how
+    pub settings: Settings,
+}
+
+/// Where the plan's horizontal origin lies. Its heights always count from the ground where the vehicle
+/// stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Origin {
+    /// at the origin of the vehicle's local position
+    #[default]
+    Local,
+    /// so that the vehicle stands below the plan's takeoff place
+    Here,
+}
+
+/// How a flight is conducted. The times and distances are those of `fly`'s safety rules.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// our own ids
+    pub station: (SystemId, ComponentId),
+    /// between setpoints
+    pub setpoint_period: Duration,
+    /// where the plan lies
+    pub origin: Origin,
+    /// distance to the reference that is allowed, m
+    pub tracking_max_m: f64,
+    /// around the vehicle's room, m
+    pub room_margin_m: f64,
+    /// from upright, rad; without it 20 degrees more than planned
+    pub tilt_max_rad: Option<f64>,
+    /// until a vehicle is heard
+    pub connect_timeout: Duration,
+    /// until the vehicle is ready to arm
+    pub ready_timeout: Duration,
+    /// for a takeoff, and for the start to be reached
+    pub reach_timeout: Duration,
+    /// in a hold that nobody ends, before it lands
+    pub hold_then_land: Duration,
+    /// how long a vehicle that others fly is watched
+    pub watch_max: Duration,
+    /// somebody else checks parameters and message rates and says so by [`Event::Cleared`](super::Event)
+    pub await_clearance: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            station: (SystemId(255), ComponentId(190)),
+            setpoint_period: Duration::from_millis(20),
+            origin: Origin::Local,
+            tracking_max_m: 1.0,
+            room_margin_m: 1.0,
+            tilt_max_rad: None,
+            connect_timeout: Duration::from_secs(30),
+            ready_timeout: Duration::from_secs(120),
+            reach_timeout: Duration::from_secs(30),
+            hold_then_land: Duration::from_secs(10),
+            watch_max: Duration::from_secs(120),
+            await_clearance: false,
+        }
+    }
+}

@@ -1,0 +1,367 @@
+//! What is known of the vehicle, from its messages.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use super::health::{BatteryLevel, EstimatorReport, SystemReport, battery_status, level_of_percent};
+use super::modes::Stack;
+use crate::frames::Attitude;
+use crate::log::{self, Decoder, Frame, Header, Payload, Quantity, Record};
+
+/// A value with when it arrived, on the flight's clock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seen<T> {
+    /// when
+    pub at: Duration,
+    /// what
+    pub value: T,
+}
+
+/// Place and motion of one instant, world NWU.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion {
+    /// s of the vehicle's clock
+    pub time_s: f64,
+    /// m
+    pub position_m: Vector3<f64>,
+    /// m/s
+    pub velocity_m_s: Vector3<f64>,
+}
+
+/// The vehicle's own flight state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FlightState {
+    /// HEARTBEAT.custom_mode
+    pub custom_mode: u32,
+    /// motors may turn
+    pub armed: bool,
+    /// MAV_STATE
+    pub system_status: u8,
+}
+
+/// MAV_STATE values at which the autopilot itself has taken measures.
+const STATE_CRITICAL: u8 = 5;
+const STATE_EMERGENCY: u8 = 6;
+const STATE_TERMINATION: u8 = 8;
+/// MAV_LANDED_STATE.
+const ON_GROUND: f64 = 1.0;
+const ARMED: u8 = 128;
+/// Texts that are kept for reasons of a refusal.
+const TEXTS: usize = 64;
+/// A step of position beyond what velocity explains, m: the estimate was reset.
+const JUMP_M: f64 = 0.7;
+/// Samples further apart, s, say nothing about jumps.
+const JUMP_GAP_S: f64 = 0.5;
+/// Positions further apart are not one stream.
+const POSITION_GAP: Duration = Duration::from_secs(1);
+/// The estimator's reports pass through tests that fail for an instant; faults this long count.
+const STATUS_VALID: Duration = Duration::from_secs(3);
+
+/// What a frame brought that somebody must hear of at once.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Novelty {
+    /// mode, arming or system status changed
+    State {
+        /// before; `None` for the first
+        from: Option<FlightState>,
+        /// now
+        to: FlightState,
+    },
+    /// the vehicle said something: MAV_SEVERITY and text
+    Text(u8, String),
+    /// its clock started anew
+    Reboot,
+    /// its position estimate jumped
+    EstimatorReset(String),
+    /// it says that it flies to this place, m, world (POSITION_TARGET_LOCAL_NED)
+    Target(Vector3<f64>),
+}
+
+/// What is known of the vehicle.
+#[derive(Debug)]
+pub struct Telemetry {
+    decoder: Decoder,
+    stack: Stack,
+    /// last frame of its autopilot
+    pub heard: Duration,
+    /// when it was heard again after a silence, or first
+    pub resumed: Duration,
+    /// last HEARTBEAT
+    pub heartbeat: Duration,
+    /// mode, arming
+    pub state: Option<Seen<FlightState>>,
+    /// place and velocity
+    pub motion: Option<Seen<Motion>>,
+    /// orientation
+    pub attitude: Option<Seen<Attitude>>,
+    /// on the ground, as EXTENDED_SYS_STATE says
+    pub landed: Option<Seen<bool>>,
+    /// what the estimator says
+    pub estimator: Option<Seen<EstimatorReport>>,
+    /// since when the estimator is good without a break
+    pub estimator_good_since: Option<Duration>,
+    /// since when it is bad without a break
+    pub estimator_bad_since: Option<Duration>,
+    /// since when positions arrive without a gap of a second
+    pub position_since: Option<Duration>,
+    /// sensors, pre-arm checks
+    pub system: Option<Seen<SystemReport>>,
+    /// fullness
+    pub battery: Option<Seen<(BatteryLevel, Option<i8>)>>,
+    /// V
+    pub battery_v: Option<f64>,
+    texts: VecDeque<(Duration, u8, String)>,
+    newest: Option<u8>,
+    velocity_m_s: Option<Vector3<f64>>,
+}
+
+impl Telemetry {
+    /// Of the vehicle whose HEARTBEAT was heard at `now`.
+    #[must_use]
+    pub fn new(vehicle: log::Vehicle, stack: Stack, now: Duration) -> Self {
+        Self {
+            decoder: Decoder::new(vehicle, None, micros(now)),
+            stack,
+            heard: now,
+            resumed: now,
+            heartbeat: now,
+            state: None,
+            motion: None,
+            attitude: None,
+            landed: None,
+            estimator: None,
+            estimator_good_since: None,
+            estimator_bad_since: None,
+            position_since: None,
+            system: None,
+            battery: None,
+            battery_v: None,
+            texts: VecDeque::new(),
+            newest: None,
+            velocity_m_s: None,
+        }
+    }
+
+    /// Takes a frame of the vehicle's autopilot with a right checksum.
+    pub fn take(&mut self, now: Duration, frame: Frame<'_>) -> Vec<Novelty> {
+        let header = frame.header();
+        if now.saturating_sub(self.heard) > POSITION_GAP {
+            self.resumed = now;
+        }
+        self.heard = now;
+        let late = self.is_late(header);
+        let mut news = Vec::new();
+        self.status(now, header.message_id, frame.payload(), late, &mut news);
+        self.samples(now, frame, &mut news);
+        news
+    }
+
+    /// A frame that was sent before the newest one heard: its state is older than what is known.
+    fn is_late(&mut self, header: &Header) -> bool {
+        let newest = *self.newest.get_or_insert(header.sequence);
+        let late = header.sequence.wrapping_sub(newest) > 128;
+        if !late {
+            self.newest = Some(header.sequence);
+        }
+        late
+    }
+
+    /// What is read by byte: an unknown enumeration value elsewhere in a message must not hide the mode.
+    fn status(&mut self, now: Duration, id: u32, payload: Payload<'_>, late: bool, news: &mut Vec<Novelty>) {
+        match id {
+            0 => {
+                self.heartbeat = now;
+                let (custom_mode, armed) = (payload.u32(0), payload.u8(6) & ARMED != 0);
+                let state = FlightState { custom_mode, armed, system_status: payload.u8(7) };
+                self.note_state(now, state, late, news);
+            }
+            436 => {
+                if let Some(Seen { value, .. }) = self.state {
+                    let state = FlightState { custom_mode: payload.u32(0), ..value };
+                    self.note_state(now, state, late, news);
+                }
+            }
+            1 => {
+                let report = SystemReport::from_sys_status(payload);
+                if self.battery.is_none_or(|battery| now.saturating_sub(battery.at) > STATUS_VALID)
+                    && let Some(percent) = report.battery_percent
+                {
+                    let value = (level_of_percent(percent), Some(percent));
+                    self.battery = Some(Seen { at: now, value });
+                }
+                self.system = Some(Seen { at: now, value: report });
+            }
+            147 if payload.u8(32) == 0 => {
+                self.battery = Some(Seen { at: now, value: battery_status(payload) });
+            }
+            193 => self.note_estimator(now, EstimatorReport::from_ekf_status_report(payload)),
+            230 => self.note_estimator(now, EstimatorReport::from_estimator_status(payload)),
+            _ => {}
+        }
+    }
+
+    fn note_state(&mut self, now: Duration, state: FlightState, late: bool, news: &mut Vec<Novelty>) {
+        let from = self.state.map(|seen| seen.value);
+        if late && from.is_some() {
+            return;
+        }
+        self.state = Some(Seen { at: now, value: state });
+        if from != Some(state) {
+            news.push(Novelty::State { from, to: state });
+        }
+    }
+
+    fn note_estimator(&mut self, now: Duration, report: EstimatorReport) {
+        if report.is_good() {
+            self.estimator_good_since.get_or_insert(now);
+            self.estimator_bad_since = None;
+        } else {
+            self.estimator_bad_since.get_or_insert(now);
+            self.estimator_good_since = None;
+        }
+        self.estimator = Some(Seen { at: now, value: report });
+    }
+
+    fn samples(&mut self, now: Duration, frame: Frame<'_>, news: &mut Vec<Novelty>) {
+        let record = Record { stamp_us: micros(now), offset: 0, known: true, frame };
+        let (mut position, mut velocity) = (None, None);
+        let (attitude, landed, volts) = (&mut self.attitude, &mut self.landed, &mut self.battery_v);
+        self.decoder.decode(&record, &mut |event| match event {
+            log::Event::Sample { stream, time_s, values } => match (stream.quantity, values) {
+                (Quantity::Position, &[x, y, z]) => position = Some((time_s, Vector3::new(x, y, z))),
+                (Quantity::Velocity, &[x, y, z]) => velocity = Some(Vector3::new(x, y, z)),
+                (Quantity::Attitude, &[w, x, y, z]) => {
+                    let value = Attitude(UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)));
+                    *attitude = Some(Seen { at: now, value });
+                }
+                (Quantity::LandedState, &[state]) => {
+                    *landed = Some(Seen { at: now, value: (state - ON_GROUND).abs() < 0.5 });
+                }
+                (Quantity::BatteryVoltage, &[value]) => *volts = Some(value),
+                (Quantity::PositionSetpoint, &[x, y, z]) if (x + y + z).is_finite() => {
+                    news.push(Novelty::Target(Vector3::new(x, y, z)));
+                }
+                _ => {}
+            },
+            log::Event::Text { severity, text, .. } => news.push(Novelty::Text(severity, text.to_owned())),
+            log::Event::ClockReset { .. } => news.push(Novelty::Reboot),
+            log::Event::EstimatorReset { .. } => {
+                news.push(Novelty::EstimatorReset("ODOMETRY.reset_counter changed".to_owned()));
+            }
+            log::Event::Parameter { .. } => {}
+        });
+        for novelty in &*news {
+            if let Novelty::Text(severity, text) = novelty {
+                self.texts.push_back((now, *severity, text.clone()));
+                if self.texts.len() > TEXTS {
+                    self.texts.pop_front();
+                }
+            }
+        }
+        if let (Some((time_s, position_m)), Some(velocity_m_s)) = (position, velocity)
+            && position_m.iter().chain(&velocity_m_s).all(|value| value.is_finite())
+        {
+            self.note_motion(now, Motion { time_s, position_m, velocity_m_s }, news);
+        }
+    }
+
+    fn note_motion(&mut self, now: Duration, motion: Motion, news: &mut Vec<Novelty>) {
+        if let Some(Seen { value: last, .. }) = self.motion {
+            let passed_s = motion.time_s - last.time_s;
+            // a message that others overtook
+            if passed_s < 0.0 && passed_s > -1.0 {
+                return;
+            }
+            let mean = 0.5 * (motion.velocity_m_s + last.velocity_m_s);
+            let jump_m = (motion.position_m - last.position_m - mean * passed_s).norm();
+            if (0.0..JUMP_GAP_S).contains(&passed_s) && jump_m > JUMP_M {
+                news.push(Novelty::EstimatorReset(format!(
+                    "position stepped by {jump_m:.2} m beyond what velocity explains"
+                )));
+            }
+            let weight = (passed_s / 0.3).clamp(0.0, 1.0);
+            if let Some(smooth) = &mut self.velocity_m_s {
+                *smooth += weight * (motion.velocity_m_s - *smooth);
+            }
+        }
+        self.velocity_m_s.get_or_insert(motion.velocity_m_s);
+        let gap = self.motion.is_none_or(|last| now.saturating_sub(last.at) > POSITION_GAP);
+        self.position_since = self.position_since.filter(|_| !gap).or(Some(now));
+        self.motion = Some(Seen { at: now, value: motion });
+    }
+
+    /// Who it is.
+    #[must_use]
+    pub fn vehicle(&self) -> log::Vehicle {
+        *self.decoder.vehicle()
+    }
+
+    /// Which autopilot's rules it follows.
+    #[must_use]
+    pub fn stack(&self) -> Stack {
+        self.stack
+    }
+
+    /// Velocity over the last third of a second, m/s.
+    #[must_use]
+    pub fn smooth_velocity_m_s(&self) -> Option<Vector3<f64>> {
+        self.velocity_m_s
+    }
+
+    /// Motors may turn; `false` where nothing is known.
+    #[must_use]
+    pub fn is_armed(&self) -> bool {
+        self.state.is_some_and(|state| state.value.armed)
+    }
+
+    /// It says that it stands on the ground.
+    #[must_use]
+    pub fn is_landed(&self) -> bool {
+        self.landed.is_some_and(|landed| landed.value)
+    }
+
+    /// The autopilot has taken measures of its own.
+    #[must_use]
+    pub fn is_in_failsafe(&self) -> bool {
+        let bad = [STATE_CRITICAL, STATE_EMERGENCY, STATE_TERMINATION];
+        self.state.is_some_and(|state| bad.contains(&state.value.system_status))
+    }
+
+    /// Warnings and errors that the vehicle said since `since`, the same only once.
+    #[must_use]
+    pub fn complaints_since(&self, since: Duration) -> Vec<String> {
+        let mut found: Vec<String> = Vec::new();
+        for (at, severity, text) in &self.texts {
+            if *at >= since && *severity <= 4 && !found.contains(text) {
+                found.push(text.clone());
+            }
+        }
+        found
+    }
+
+    /// How full the battery is; good where it does not say.
+    #[must_use]
+    pub fn battery_level(&self) -> BatteryLevel {
+        self.battery.map_or(BatteryLevel::Good, |battery| battery.value.0)
+    }
+
+    /// Why its position cannot be flown by now; empty where it can.
+    #[must_use]
+    pub fn estimator_faults(&self, now: Duration) -> Vec<String> {
+        let mut faults = match &self.estimator {
+            Some(seen) if now.saturating_sub(seen.at) < STATUS_VALID => seen.value.faults.clone(),
+            _ => Vec::new(),
+        };
+        if let Some(seen) = &self.system {
+            faults.extend(seen.value.unhealthy.iter().map(|name| format!("{name} is not healthy")));
+        }
+        faults
+    }
+}
+
+/// The flight's clock as host stamps of the decoder.
+fn micros(now: Duration) -> u64 {
+    u64::try_from(now.as_micros()).unwrap_or(u64::MAX)
+}

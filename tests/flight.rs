@@ -1,0 +1,351 @@
+//! The whole flight against the embedded vehicle, as both autopilots, and each way in which it may end.
+
+#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+
+#[path = "support/flying.rs"]
+mod flying;
+
+use std::time::Duration;
+
+use flying::{Flying, vehicle_settings};
+use mavid::fly::{Cause, Ending, Event, Key, Origin};
+use mavid::log::SystemId;
+use mavid::sitl::{ArduPilotRelease, AutopilotKind, Fault, Mode};
+
+const PX4: AutopilotKind = AutopilotKind::Px4;
+const COPTER: AutopilotKind = AutopilotKind::ArduPilot(ArduPilotRelease::V4_7);
+const BOTH: [AutopilotKind; 2] = [PX4, COPTER];
+
+const SET_MODE: u32 = 176;
+const ARM: u32 = 400;
+const AUTOPILOT_VERSION: u32 = 148;
+
+/// In trajectory: a fault, and how the flight ends.
+fn after(kind: AutopilotKind, fault: Fault) -> (Flying, Duration) {
+    let mut flying = Flying::of(kind);
+    flying.fly_into_the_trajectory(5.0);
+    let since = flying.now;
+    flying.vehicle.fault(fault);
+    flying.finish();
+    (flying, since)
+}
+
+#[test]
+fn a_whole_flight_takes_off_flies_lands_and_disarms() {
+    for kind in BOTH {
+        let mut flying = Flying::of(kind);
+        let outcome = flying.finish();
+        assert!(outcome.is_whole() && outcome.losses.is_empty(), "{outcome:?} {}", flying.story());
+        assert_eq!(outcome.flown.periods, 3);
+        assert!(outcome.flown.tracking_rms_m < 0.3, "{:?}", outcome.flown);
+        assert!(outcome.flown.tilt_max_deg > 1.0 && outcome.flown.tilt_max_deg < 30.0, "{:?}", outcome.flown);
+        assert!(!flying.flight.status(flying.now).armed);
+        let (gaps, stale): (Vec<_>, Vec<_>) = (
+            flying
+                .setpoints
+                .windows(2)
+                .filter(|pair| pair[1].0 - pair[0].0 != Duration::from_millis(20))
+                .collect(),
+            flying.setpoints.iter().filter(|(at, setpoint)| *at != setpoint.time).collect(),
+        );
+        assert!(stale.is_empty());
+        assert!(gaps.is_empty(), "{kind:?}: {gaps:?}");
+    }
+}
+
+#[test]
+fn px4_is_given_setpoints_before_offboard_and_the_copter_takes_off_by_command() {
+    let mut flying = Flying::of(PX4);
+    flying.fly_into_the_trajectory(0.0);
+    let engaged = flying.commands.iter().find(|(_, number, _)| *number == SET_MODE).unwrap().0;
+    let before = flying.setpoints.iter().filter(|(at, _)| *at < engaged).count();
+    assert!(before >= 75, "1.5 s of stream, {before} setpoints");
+    let mut flying = Flying::of(COPTER);
+    flying.fly_into_the_trajectory(0.0);
+    let of = |number: u32| flying.commands.iter().find(|command| command.1 == number).unwrap().0;
+    assert!(of(SET_MODE) < of(ARM) && of(ARM) < of(22));
+    assert!(flying.setpoints[0].0 > of(22), "setpoints on the ground are ignored");
+}
+
+#[test]
+fn a_vehicle_that_is_not_the_embedded_one_is_not_armed_without_the_order() {
+    let mut flying = Flying::of(PX4);
+    flying.swallowed = vec![AUTOPILOT_VERSION];
+    let outcome = flying.finish();
+    assert_eq!(outcome.ending, Ending::NotFlown);
+    assert!(flying.cause().to_string().contains("--arm"), "{}", flying.cause());
+    assert_eq!((flying.commands_since(ARM, Duration::ZERO), flying.setpoints.len()), (0, 0));
+    assert_eq!(flying.commands_since(SET_MODE, Duration::ZERO), 0);
+    let mut flying = Flying::new(vehicle_settings(PX4), |sortie| sortie.may_arm = true);
+    flying.swallowed = vec![AUTOPILOT_VERSION];
+    assert!(flying.finish().is_whole(), "{}", flying.story());
+}
+
+#[test]
+fn only_a_vehicle_that_is_named_is_flown() {
+    let mut flying = Flying::new(vehicle_settings(PX4), |sortie| sortie.system = Some(SystemId(9)));
+    assert_eq!(flying.finish().ending, Ending::NotFlown);
+    assert!(flying.cause().to_string().contains("system 9, heard system 1"), "{}", flying.cause());
+    assert!(flying.commands.is_empty());
+}
+
+#[test]
+fn an_estimate_that_is_not_good_keeps_it_on_the_ground() {
+    for kind in BOTH {
+        let mut settings = vehicle_settings(kind);
+        settings.warm_up = Some(Duration::from_secs(3600));
+        let mut flying = Flying::new(settings, |_| {});
+        assert_eq!(flying.finish().ending, Ending::NotFlown);
+        assert!(flying.cause().to_string().contains("not ready"), "{}", flying.cause());
+        assert!(!flying.flight.status(flying.now).armed);
+    }
+}
+
+#[test]
+fn it_flies_where_it_stands_or_in_the_local_frame() {
+    let mut settings = vehicle_settings(PX4);
+    settings.start_m = [8.0, -3.0];
+    let mut flying = Flying::new(settings.clone(), |_| {});
+    assert_eq!(flying.finish().ending, Ending::NotFlown);
+    assert!(flying.cause().to_string().contains("--origin here"), "{}", flying.cause());
+    let mut flying = Flying::new(settings, |sortie| sortie.settings.origin = Origin::Here);
+    flying.fly_into_the_trajectory(4.0);
+    let [x, y, _] = flying.flight.status(flying.now).position_m.unwrap();
+    assert!((x - 8.0).abs() < 1.5 && (y + 3.0).abs() < 1.5, "{x} {y}");
+}
+
+#[test]
+fn a_pilot_takes_over_and_nothing_is_sent_again() {
+    for kind in BOTH {
+        let mut flying = Flying::new(vehicle_settings(kind), |sortie| {
+            sortie.settings.watch_max = Duration::from_secs(20);
+        });
+        flying.fly_into_the_trajectory(5.0);
+        flying.vehicle.fault(Fault::PilotTakesOver(Mode::Position));
+        flying.until(1.2, "a stop", |flying| flying.phase() == "hands off");
+        let since = flying.now;
+        let outcome = flying.finish();
+        assert!(matches!(outcome.cause, Some(Cause::Override(_))), "{}", flying.story());
+        assert!(matches!(outcome.ending, Ending::InTheAir(_)));
+        assert_eq!(flying.setpoints_since(since), 0);
+        let commands: usize = flying.commands.iter().filter(|(at, ..)| *at > since).count();
+        assert_eq!(commands, 0);
+    }
+}
+
+#[test]
+fn the_abort_key_holds_then_lands_then_returns() {
+    for kind in BOTH {
+        let mut flying = Flying::of(kind);
+        flying.fly_into_the_trajectory(5.0);
+        for (phase, stays_s) in [("hold", 30.0), ("land", 0.5), ("return", 2.0)] {
+            flying.event(Event::Key(Key::Abort));
+            assert_eq!(flying.phase(), phase);
+            let pressed = flying.now - Duration::from_millis(1);
+            flying.wait(stays_s);
+            assert!((1..=4).contains(&flying.commands_since(SET_MODE, pressed)), "{}", flying.story());
+            assert_eq!(flying.phase(), phase, "nobody but the operator goes on: {}", flying.story());
+            let late = pressed + Duration::from_millis(450);
+            assert_eq!(flying.setpoints_since(late), 0, "setpoints end once the mode is seen");
+        }
+        let outcome = flying.finish();
+        assert_eq!((outcome.cause, outcome.ending), (Some(Cause::Operator), Ending::Landed));
+    }
+}
+
+#[test]
+fn a_kill_stops_the_motors() {
+    let mut flying = Flying::of(PX4);
+    flying.fly_into_the_trajectory(2.0);
+    flying.event(Event::Key(Key::Kill));
+    let outcome = flying.finish();
+    assert_eq!(outcome.cause, Some(Cause::Operator));
+    let (_, _, parameters) = flying.commands.iter().rfind(|(_, number, _)| *number == ARM).unwrap();
+    assert_eq!(parameters[..2], [0.0, 21_196.0]);
+}
+
+#[test]
+fn a_signal_leaves_the_vehicle_holding_within_a_second() {
+    for kind in BOTH {
+        let mut flying = Flying::of(kind);
+        flying.fly_into_the_trajectory(5.0);
+        let since = flying.now;
+        flying.event(Event::Stop("SIGTERM".to_owned()));
+        let outcome = flying.finish();
+        assert!(flying.now - since <= Duration::from_millis(1020), "{:?}", flying.now - since);
+        assert!(matches!(outcome.cause, Some(Cause::Signal(_))));
+        let Ending::InTheAir(mode) = outcome.ending else { panic!("{}", flying.story()) };
+        assert!(["AUTO.LOITER", "BRAKE"].contains(&mode.as_str()), "{mode}");
+    }
+}
+
+#[test]
+fn a_signal_on_the_ground_ends_at_once() {
+    let mut flying = Flying::of(PX4);
+    flying.wait(2.0);
+    flying.event(Event::Stop("SIGINT".to_owned()));
+    assert_eq!(flying.outcome.clone().unwrap().ending, Ending::NotFlown);
+    assert_eq!(flying.commands_since(ARM, Duration::ZERO), 0);
+}
+
+#[test]
+fn a_vehicle_that_is_pushed_off_its_path_holds_and_lands() {
+    for kind in BOTH {
+        let force_n = [0.0, 14.0, 0.0];
+        let push = Fault::Push { force_n, torque_nm: [0.0; 3], duration: Duration::from_secs(6) };
+        let (flying, since) = after(kind, push);
+        assert!(
+            matches!(flying.cause(), Cause::Tracking(_) | Cause::Tilt(_)),
+            "{} {}",
+            flying.cause(),
+            flying.story()
+        );
+        assert_eq!(flying.outcome.as_ref().unwrap().ending, Ending::Landed);
+        assert!(flying.commands_since(SET_MODE, since) >= 2, "hold, then land");
+    }
+}
+
+#[test]
+fn a_rotor_that_stops_ends_the_flight() {
+    let mut flying = Flying::of(PX4);
+    flying.fly_into_the_trajectory(5.0);
+    let since = flying.now;
+    flying.vehicle.fault(Fault::RotorStops(0));
+    flying.until(2.0, "an abort", |flying| flying.phase() != "trajectory");
+    assert!(flying.now - since < Duration::from_secs(2), "{}", flying.story());
+    let abort = flying.notes.iter().find(|note| note.kind == "abort").unwrap();
+    assert!(abort.text.contains("tilted") || abort.text.contains("off the reference"), "{abort:?}");
+}
+
+#[test]
+fn an_estimate_that_jumps_ends_the_trajectory() {
+    for kind in BOTH {
+        let (flying, since) = after(kind, Fault::EstimatorJump([2.0, 0.0, 0.0]));
+        assert!(matches!(flying.cause(), Cause::EstimatorReset(_)), "{} {}", flying.cause(), flying.story());
+        assert_eq!(flying.outcome.as_ref().unwrap().ending, Ending::Landed);
+        let late = since + Duration::from_millis(600);
+        assert_eq!(flying.setpoints_since(late), 0);
+    }
+}
+
+#[test]
+fn an_estimate_that_fails_lands_the_vehicle() {
+    for kind in BOTH {
+        let (flying, _) = after(kind, Fault::EstimatorHealth(false));
+        assert!(
+            matches!(flying.cause(), Cause::Estimator(_) | Cause::Override(_)),
+            "{} {}",
+            flying.cause(),
+            flying.story()
+        );
+    }
+}
+
+#[test]
+fn a_low_battery_ends_with_the_period_and_a_critical_one_at_once() {
+    for kind in BOTH {
+        let mut flying = Flying::of(kind);
+        flying.fly_into_the_trajectory(7.0);
+        flying.vehicle.fault(Fault::Battery(0.12));
+        let outcome = flying.finish();
+        assert!(outcome.is_whole(), "{outcome:?} {}", flying.story());
+        assert!(outcome.flown.periods < 3 && outcome.losses[0].contains("battery"), "{outcome:?}");
+        let (flying, _) = after(kind, Fault::Battery(0.03));
+        assert!(
+            matches!(flying.cause(), Cause::Battery(_) | Cause::Override(_) | Cause::Failsafe(_)),
+            "{}",
+            flying.cause()
+        );
+        assert_eq!(flying.outcome.as_ref().unwrap().ending, Ending::Landed);
+    }
+}
+
+#[test]
+fn a_second_ground_station_with_our_ids_ends_the_flight() {
+    for kind in BOTH {
+        let (flying, _) = after(kind, Fault::ForeignHeartbeat { system: 255, component: 190 });
+        assert!(matches!(flying.cause(), Cause::SecondMaster(_)), "{}", flying.cause());
+        assert_eq!(flying.outcome.as_ref().unwrap().ending, Ending::Landed);
+        let mut flying = Flying::of(kind);
+        flying.fly_into_the_trajectory(2.0);
+        flying.vehicle.fault(Fault::ForeignHeartbeat { system: 254, component: 190 });
+        assert!(flying.finish().is_whole(), "another one that only listens is none");
+    }
+}
+
+#[test]
+fn a_reboot_is_seen_and_nothing_is_sent_after_it() {
+    let (flying, since) = after(PX4, Fault::Reboot);
+    assert!(matches!(flying.cause(), Cause::Reboot | Cause::Override(_)), "{}", flying.cause());
+    let late = since + Duration::from_millis(1200);
+    assert_eq!((flying.setpoints_since(late), flying.commands_since(SET_MODE, since)), (0, 0));
+}
+
+#[test]
+fn a_short_silence_pauses_the_trajectory_and_a_long_one_ends_it() {
+    let mut flying = Flying::of(COPTER);
+    flying.fly_into_the_trajectory(5.0);
+    flying.vehicle.fault(Fault::LinkSilence(Duration::from_millis(2600)));
+    let outcome = flying.finish();
+    assert!(outcome.is_whole(), "{}", flying.story());
+    assert!(outcome.flown.paused_s > 0.4 && outcome.losses.len() == 1, "{outcome:?}");
+    let (flying, since) = after(COPTER, Fault::LinkSilence(Duration::from_secs(9)));
+    assert!(matches!(flying.cause(), Cause::LinkLost(_)), "{}", flying.cause());
+    let late = since + Duration::from_millis(5020);
+    assert_eq!(flying.setpoints_since(late), 0, "no blind resume");
+    assert_eq!(flying.outcome.as_ref().unwrap().ending, Ending::Landed, "{}", flying.story());
+}
+
+/// PX4 falls out of OFFBOARD unheard and comes back to it with the first setpoint that it hears: what is seen
+/// is a vehicle that is not where it was led.
+#[test]
+fn px4_fails_safe_in_a_silence_and_the_trajectory_is_not_resumed_elsewhere() {
+    let (flying, _) = after(PX4, Fault::LinkSilence(Duration::from_millis(3500)));
+    assert!(
+        matches!(flying.cause(), Cause::Override(_) | Cause::Tracking(_)),
+        "{} {}",
+        flying.cause(),
+        flying.story()
+    );
+    let outcome = flying.outcome.as_ref().unwrap();
+    assert!(outcome.flown.periods < 2 && outcome.ending == Ending::Landed, "{outcome:?}");
+}
+
+#[test]
+fn a_flight_that_is_not_looked_after_holds_and_lands() {
+    for (kind, silent_ms) in [(PX4, 200), (COPTER, 200), (COPTER, 600)] {
+        let mut flying = Flying::of(kind);
+        flying.fly_into_the_trajectory(5.0);
+        let since = flying.now;
+        for _ in 0..silent_ms / 10 {
+            flying.step(false);
+        }
+        assert!(flying.setpoints_since(since + Duration::from_millis(100)) == 0);
+        let outcome = flying.finish();
+        assert!(matches!(outcome.cause, Some(Cause::Stalled(_))), "{}", flying.story());
+        assert_eq!(outcome.ending, Ending::Landed);
+    }
+}
+
+#[test]
+fn over_a_bad_link_the_flight_ends_and_no_setpoint_is_stale() {
+    for kind in BOTH {
+        for seed in 0..3 {
+            let mut flying = Flying::of(kind);
+            for (way, extra) in [(&mut flying.up, 0), (&mut flying.down, 7)] {
+                way.reseed(seed + extra);
+                way.loss = 0.2;
+                way.delay = Duration::from_millis(150);
+                way.jitter = Duration::from_millis(100);
+            }
+            let outcome = flying.finish();
+            assert!(
+                matches!(outcome.ending, Ending::Landed | Ending::NotFlown),
+                "{kind:?} {seed}: {outcome:?} {}",
+                flying.story()
+            );
+            assert!(flying.setpoints.iter().all(|(at, setpoint)| *at == setpoint.time));
+            assert!(flying.setpoints.windows(2).all(|pair| pair[0].0 < pair[1].0));
+        }
+    }
+}

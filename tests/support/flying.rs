@@ -1,0 +1,277 @@
+//! A flight and the embedded vehicle on one clock, with what may lie between them. No sockets, no real time.
+
+#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Duration;
+
+use mavid::config::read_vehicle;
+use mavid::fly::{
+    Action, Around, Cause, Course, Event, Flight, Note, Outcome, Setpoint, Settings, Sortie, Streamed,
+    Streamer,
+};
+use mavid::log::Frame;
+use mavid::sitl::{AutopilotKind, LinkId, LinkRole, Settings as VehicleSettings, Vehicle};
+use mavid::trajectory::{FourierAxis, FourierTrajectory};
+use mavlink::dialects::ardupilotmega::MavMessage;
+use mavlink::{MAVLinkV2MessageRaw, MavHeader};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// Between two looks at the clock.
+const STEP: Duration = Duration::from_millis(10);
+
+/// What lies between two ends: loss, delay, and delay that differs from frame to frame.
+pub struct Way {
+    pub loss: f64,
+    pub delay: Duration,
+    pub jitter: Duration,
+    random: Pcg64,
+    under_way: BTreeMap<(Duration, u64), Vec<u8>>,
+    count: u64,
+}
+
+impl Way {
+    fn new(seed: u64) -> Self {
+        Self {
+            loss: 0.0,
+            delay: Duration::ZERO,
+            jitter: Duration::ZERO,
+            random: Pcg64::seed_from_u64(seed),
+            under_way: BTreeMap::new(),
+            count: 0,
+        }
+    }
+
+    pub fn reseed(&mut self, seed: u64) {
+        self.random = Pcg64::seed_from_u64(seed);
+    }
+
+    fn give(&mut self, now: Duration, frame: Vec<u8>) {
+        if self.random.random::<f64>() < self.loss {
+            return;
+        }
+        self.count += 1;
+        let arrives = now + self.delay + self.jitter.mul_f64(self.random.random::<f64>());
+        self.under_way.insert((arrives, self.count), frame);
+    }
+
+    fn take(&mut self, now: Duration) -> Vec<Vec<u8>> {
+        let later = self.under_way.split_off(&(now + Duration::from_nanos(1), 0));
+        std::mem::replace(&mut self.under_way, later).into_values().collect()
+    }
+}
+
+/// One flight.
+pub struct Flying {
+    pub flight: Flight,
+    pub vehicle: Vehicle,
+    pub now: Duration,
+    pub notes: Vec<Note>,
+    pub outcome: Option<Outcome>,
+    /// with the time at which each was sent
+    pub setpoints: Vec<(Duration, Setpoint)>,
+    /// number and parameters of each command sent, with its time
+    pub commands: Vec<(Duration, u32, [f32; 7])>,
+    pub up: Way,
+    pub down: Way,
+    /// frames of these messages get lost on their way down
+    pub swallowed: Vec<u32>,
+    /// what the stream has to tell the flight
+    stalled: Option<Duration>,
+    streamer: Streamer,
+    link: LinkId,
+    sequence: u8,
+}
+
+/// A lively trajectory of a few seconds.
+pub fn series() -> FourierTrajectory {
+    let axis = |a: f64, b: f64, c: f64| FourierAxis { a: vec![a, 0.3 * b], b: vec![b, -0.2 * a], c };
+    FourierTrajectory {
+        period_s: 6.0,
+        axes: [axis(0.5, 0.3, 0.0), axis(-0.3, 0.6, 0.0), axis(0.2, 0.1, 1.5), axis(0.1, 0.1, 0.0)],
+    }
+}
+
+pub const AROUND: Around = Around {
+    takeoff: [0.0, 0.0, 1.5, 0.0],
+    landing: [0.0, 0.0, 1.5, 0.0],
+    to_start_s: 3.0,
+    to_landing_s: 3.0,
+};
+
+pub fn vehicle_settings(kind: AutopilotKind) -> VehicleSettings {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
+    let vehicle = read_vehicle(&file).unwrap().vehicle;
+    VehicleSettings { warm_up: Some(Duration::from_secs(2)), ..VehicleSettings::new(vehicle, kind) }
+}
+
+pub fn sortie(vehicle: &VehicleSettings) -> Sortie {
+    let limits = vehicle.vehicle.limits;
+    let course = Course::new(&series(), 3, Some(&AROUND), &limits, &vehicle.vehicle).unwrap();
+    Sortie {
+        course,
+        limits,
+        gravity_m_s2: vehicle.vehicle.gravity_m_s2,
+        system: None,
+        may_arm: false,
+        settings: Settings { ready_timeout: Duration::from_secs(30), ..Settings::default() },
+    }
+}
+
+impl Flying {
+    pub fn new(settings: VehicleSettings, change: impl FnOnce(&mut Sortie)) -> Self {
+        let mut sortie = sortie(&settings);
+        change(&mut sortie);
+        let mut vehicle = Vehicle::new(settings).unwrap();
+        let link = vehicle.open_link(LinkRole::GroundStation);
+        Self {
+            streamer: Streamer::new(sortie.settings.setpoint_period),
+            flight: Flight::new(sortie),
+            vehicle,
+            now: Duration::ZERO,
+            notes: Vec::new(),
+            outcome: None,
+            setpoints: Vec::new(),
+            commands: Vec::new(),
+            up: Way::new(1),
+            down: Way::new(2),
+            swallowed: Vec::new(),
+            stalled: None,
+            link,
+            sequence: 0,
+        }
+    }
+
+    pub fn of(kind: AutopilotKind) -> Self {
+        Self::new(vehicle_settings(kind), |_| {})
+    }
+
+    fn send(&mut self, message: &MavMessage) {
+        if let MavMessage::COMMAND_LONG(data) = message {
+            let parameters =
+                [data.param1, data.param2, data.param3, data.param4, data.param5, data.param6, data.param7];
+            self.commands.push((self.now, data.command as u32, parameters));
+        }
+        let mut raw = MAVLinkV2MessageRaw::new();
+        let header = MavHeader { system_id: 255, component_id: 190, sequence: self.sequence };
+        raw.serialize_message(header, message);
+        self.sequence = self.sequence.wrapping_add(1);
+        self.up.give(self.now, raw.raw_bytes().to_vec());
+    }
+
+    fn act(&mut self) {
+        while let Some(action) = self.flight.next_action() {
+            match action {
+                Action::Send(message) => self.send(&message),
+                Action::Note(note) => self.notes.push(note),
+                Action::Finished(outcome) => self.outcome = Some(outcome),
+            }
+        }
+    }
+
+    /// Something happens to the flight now.
+    pub fn event(&mut self, event: Event<'_>) {
+        self.flight.handle(self.now, event);
+        self.act();
+    }
+
+    /// Ten milliseconds; the flight is not looked after where `alive` is false.
+    pub fn step(&mut self, alive: bool) {
+        self.now += STEP;
+        for bytes in self.up.take(self.now) {
+            self.vehicle.receive(self.link, &bytes, self.now);
+        }
+        for outgoing in self.vehicle.advance(self.now) {
+            let id = Frame::at_start(&outgoing.bytes).unwrap().header().message_id;
+            if !self.swallowed.contains(&id) {
+                self.down.give(outgoing.time, outgoing.bytes);
+            }
+        }
+        if alive {
+            if let Some(gap) = self.stalled.take() {
+                self.event(Event::Stalled(gap));
+            }
+            for bytes in self.down.take(self.now) {
+                self.event(Event::Frame(Frame::at_start(&bytes).unwrap()));
+            }
+            self.event(Event::Tick);
+        }
+        self.stream();
+    }
+
+    fn stream(&mut self) {
+        match self.streamer.poll(self.now, self.flight.guide()) {
+            Some(Streamed::Setpoint(setpoint, message)) => {
+                self.setpoints.push((self.now, setpoint));
+                self.send(&message);
+            }
+            Some(Streamed::Stalled { gap, setpoint, command }) => {
+                self.stalled = Some(gap);
+                if let Some(setpoint) = setpoint {
+                    self.send(&setpoint);
+                }
+                self.send(&command);
+            }
+            None => {}
+        }
+    }
+
+    /// Time goes on until `done`, at most by so many seconds.
+    pub fn until(&mut self, seconds: f64, what: &str, mut done: impl FnMut(&Self) -> bool) {
+        let end = self.now + Duration::from_secs_f64(seconds);
+        while !done(self) {
+            assert!(self.now < end, "{what} not within {seconds} s: {}", self.story());
+            self.step(true);
+        }
+    }
+
+    pub fn wait(&mut self, seconds: f64) {
+        let end = self.now + Duration::from_secs_f64(seconds);
+        while self.now < end {
+            self.step(true);
+        }
+    }
+
+    pub fn phase(&self) -> &'static str {
+        self.flight.status(self.now).phase
+    }
+
+    /// Until `seconds` into the trajectory.
+    pub fn fly_into_the_trajectory(&mut self, seconds: f64) {
+        self.until(120.0, "trajectory", |flying| flying.phase() == "trajectory");
+        self.wait(seconds);
+        assert_eq!(self.phase(), "trajectory", "{}", self.story());
+    }
+
+    /// Until the flight is over.
+    pub fn finish(&mut self) -> Outcome {
+        self.until(400.0, "an end", |flying| flying.outcome.is_some());
+        self.outcome.clone().unwrap()
+    }
+
+    pub fn cause(&self) -> Cause {
+        self.outcome.clone().and_then(|outcome| outcome.cause).unwrap()
+    }
+
+    /// All that was noted.
+    pub fn story(&self) -> String {
+        let lines: Vec<String> = self
+            .notes
+            .iter()
+            .map(|note| format!("{:7.2} {:?} {}: {}", note.time_s, note.level, note.kind, note.text))
+            .collect();
+        format!("at {:?}\n{}\n{:?}", self.now, lines.join("\n"), self.flight.status(self.now))
+    }
+
+    /// Commands of a kind sent after a time.
+    pub fn commands_since(&self, number: u32, since: Duration) -> usize {
+        self.commands.iter().filter(|(at, command, _)| *at > since && *command == number).count()
+    }
+
+    /// Setpoints sent after a time.
+    pub fn setpoints_since(&self, since: Duration) -> usize {
+        self.setpoints.iter().filter(|(at, _)| *at > since).count()
+    }
+}
