@@ -262,6 +262,9 @@ pub struct ExplainArgs {
     /// flight is held back for it
     #[arg(long, value_name = "LOG", num_args = 1..)]
     pub holdout: Vec<PathBuf>,
+    /// design the flight that best tells apart what these flights cannot, and write its trajectory here
+    #[arg(long, value_name = "TRAJECTORY.TOML")]
+    pub next: Option<PathBuf>,
     /// write report.html, model.toml and explanation.json into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -1,8 +1,10 @@
 //! `mavid explain LOG... --vehicle V`: which physics the model left out.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use mavid::config::read_vehicle;
+use mavid::config::{StoredTrajectory, read_vehicle, trajectory_to_toml};
+use mavid::diagnose::next::{NextFlight, NextSettings, design};
 use mavid::diagnose::show::{HeldOut, Split, split_last_periods};
 use mavid::diagnose::{Empirical, ExplainSettings, Trace, explain};
 use mavid::log::Recording;
@@ -54,8 +56,10 @@ pub fn run(json: bool, args: &ExplainArgs) -> Result<Outcome, CommandError> {
         .filter_map(|signals| Trace::new(signals, &given.vehicle, settings.half_width_s).ok())
         .collect();
     let mut story = Story::new(given, explanation);
-    story.locate(&traces);
     show(&mut story, &flights, (&held, back.as_ref()), shown_on);
+    if let Some(path) = &args.next {
+        story.next = Some(next_flight(&story, &signals, path)?);
+    }
     if let Some(folder) = &args.out {
         write(folder, &story, &traces)?;
     }
@@ -154,6 +158,33 @@ fn show(story: &mut Story, flights: &[Flown], (held, back): (&[Flown], Option<&S
         story.shown_on = ShownOn::Nothing { reason: error.to_string() };
     }
     story.empirical = empirical;
+}
+
+/// Designs and writes the flight that tells apart what these cannot; `Err` inside: why there is none.
+fn next_flight(
+    story: &Story,
+    signals: &[Signals],
+    path: &Path,
+) -> Result<Result<NextFlight, String>, CommandError> {
+    let found = design(&story.explanation, signals, &story.given.vehicle, &NextSettings::default());
+    let next = match found {
+        Ok(next) => next,
+        Err(why) => {
+            output::message(&format!("--next: nothing written: {why}"));
+            return Ok(Err(why.to_string()));
+        }
+    };
+    let stored = StoredTrajectory {
+        series: next.trajectory.clone(),
+        repeats: next.repeats,
+        limits: next.limits,
+        criterion: next.pairs.first().map(|pair| ("t_optimality_sigma".to_owned(), pair.after)),
+        margins: BTreeMap::new(),
+        standard_errors: BTreeMap::new(),
+        transitions: None,
+    };
+    output::file(path, &trajectory_to_toml(&stored)?)?;
+    Ok(Ok(next))
 }
 
 fn losses(input: &InputFile) -> Option<String> {

@@ -99,7 +99,7 @@ impl<'a> Source<'a> {
         self.taken.push(id);
         let active = self.effects.iter().find(|active| active.effect().id() == id);
         active.map_or(0.0, |active| {
-            let names = active.effect().parameters().iter();
+            let names = active.effect().parameters().iter().chain(active.effect().finer_parameters());
             names.zip(active.parameters()).find(|(p, _)| p.name == parameter).map_or(0.0, |(_, value)| *value)
         })
     }

@@ -19,7 +19,7 @@ figure{margin:1rem 0}\
 svg{display:block;width:100%;height:auto;max-width:52rem;font:11px system-ui,sans-serif;color:var(--ink)}\
 .wide{overflow-x:auto}\
 table{border-collapse:collapse;font-size:.9rem;font-variant-numeric:tabular-nums;margin:.4rem 0 1rem}\
-caption{text-align:left;color:var(--soft);padding:.2rem 0}\
+p.cap{color:var(--soft);font-size:.9rem;margin:1rem 0 0;break-after:avoid}\
 th,td{padding:.2rem .8rem .2rem 0;border-bottom:1px solid var(--line);text-align:left;vertical-align:top}\
 td.n,th.n{text-align:right}\
 code{font-size:.85rem;overflow-wrap:anywhere}\
@@ -107,7 +107,7 @@ impl Page {
             .collect();
         let _ = writeln!(
             self.body,
-            "<div class=\"wide\"><table><caption>{}</caption><thead><tr>{heads}</tr></thead><tbody>\n{rows}</tbody></table></div>",
+            "<p class=\"cap\">{}</p><div class=\"wide\"><table><thead><tr>{heads}</tr></thead><tbody>\n{rows}</tbody></table></div>",
             escape(caption)
         );
     }

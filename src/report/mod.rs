@@ -10,7 +10,7 @@ mod validation;
 
 pub use chart::{Band, Bars, Line, Panel, Strip, Stroke, svg};
 pub use explanation::{
-    AxisShare, Estimate, ExplanationDocument, Given, Located, Predicted, ShownOn, StateShare, Story,
+    AxisShare, Estimate, ExplanationDocument, Field, Given, Located, Predicted, ShownOn, StateShare, Story,
     explanation_page, for_readers,
 };
 pub use identification::{

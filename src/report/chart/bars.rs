@@ -12,8 +12,8 @@ pub struct Bars {
     pub unit: String,
     /// name of each group
     pub names: Vec<String>,
-    /// label, and one value a name; what is not finite is left out
-    pub series: Vec<(String, Vec<f64>)>,
+    /// label, which of the colours, and one value a name; what is not finite is left out
+    pub series: Vec<(String, usize, Vec<f64>)>,
 }
 
 const LEFT: f64 = 130.0;
@@ -32,7 +32,7 @@ impl Bars {
     }
 
     fn draw(&self, out: &mut String, group: f64) {
-        let all = self.series.iter().flat_map(|(_, values)| values).filter(|value| value.is_finite());
+        let all = self.series.iter().flat_map(|(.., values)| values).filter(|value| value.is_finite());
         let most = all.fold(f64::MIN_POSITIVE, |most, value| most.max(*value));
         let _ = write!(out, r#"<text x="8" y="16" font-weight="bold">{}</text>"#, escape(&self.title));
         for (place, name) in self.names.iter().enumerate() {
@@ -44,7 +44,7 @@ impl Bars {
                 y + group / 2.0,
                 escape(name)
             );
-            for (index, (_, values)) in self.series.iter().enumerate() {
+            for (index, (_, hue, values)) in self.series.iter().enumerate() {
                 let Some(value) = values.get(place).filter(|value| value.is_finite()) else { continue };
                 let wide = (WIDTH - LEFT - RIGHT) * (value / most).max(0.0);
                 let top = y + BAR * index as f64;
@@ -52,7 +52,7 @@ impl Bars {
                     out,
                     r#"<rect x="{LEFT}" y="{top:.1}" width="{wide:.1}" height="{}" fill="{}"/><text x="{:.1}" y="{:.1}" font-size="9">{} {}</text>"#,
                     BAR - 1.5,
-                    colour(index),
+                    colour(*hue),
                     LEFT + wide + 4.0,
                     top + BAR - 3.0,
                     crate::report::number::significant(*value, 2),
@@ -60,14 +60,14 @@ impl Bars {
                 );
             }
         }
-        for (index, (label, _)) in self.series.iter().enumerate() {
+        for (index, (label, hue, _)) in self.series.iter().enumerate() {
             let y = TOP + 4.0 + 16.0 * index as f64;
             let _ = write!(
                 out,
                 r#"<rect x="{}" y="{}" width="16" height="8" fill="{}"/><text x="{}" y="{}">{}</text>"#,
                 WIDTH - RIGHT + 44.0,
                 y - 7.0,
-                colour(index),
+                colour(*hue),
                 WIDTH - RIGHT + 64.0,
                 y,
                 escape(label)

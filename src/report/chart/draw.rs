@@ -122,7 +122,6 @@ fn draw_line(out: &mut String, sheet: &Sheet, line: &Line, colour: &str) {
             continue;
         };
         let _ = match line.stroke {
-            Stroke::Dots => write!(path, "M{x:.1} {y:.1}h0"),
             Stroke::Stems => write!(path, "M{x:.1} {:.1}V{y:.1}", TOP + Sheet::HIGH),
             Stroke::Solid | Stroke::Dashed => {
                 write!(path, "{}{x:.1} {y:.1}", if broken { 'M' } else { 'L' })
@@ -133,7 +132,6 @@ fn draw_line(out: &mut String, sheet: &Sheet, line: &Line, colour: &str) {
     let how = match line.stroke {
         Stroke::Solid => r#"stroke-width="1.4""#,
         Stroke::Dashed => r#"stroke-width="1.4" stroke-dasharray="5 3""#,
-        Stroke::Dots => r#"stroke-width="2.5" stroke-linecap="round" stroke-opacity="0.35""#,
         Stroke::Stems => r#"stroke-width="2""#,
     };
     let _ = write!(out, r#"<path d="{path}" fill="none" stroke="{colour}" {how}/>"#);

@@ -18,8 +18,6 @@ pub enum Stroke {
     Solid,
     /// likewise, broken
     Dashed,
-    /// a dot at each point
-    Dots,
     /// from the axis up to each point
     Stems,
 }

@@ -1,5 +1,6 @@
 //! The answer in one sentence.
 
+use super::located::Located;
 use super::show::Predicted;
 use super::story::Story;
 use super::words::{called, clause};
@@ -18,7 +19,7 @@ impl Story {
                 "{}{}; but something else is there that no known effect accounts for, {}.",
                 self.clauses(),
                 self.gain(),
-                self.whereabouts()
+                whereabouts(&Located::left(&self.explanation))
             ),
             Verdict::Unexplained => self.unexplained(),
         }
@@ -107,29 +108,8 @@ impl Story {
         });
         format!(
             "Something is there that no known effect accounts for, {}{closest}{term}.",
-            self.whereabouts()
+            whereabouts(&self.located)
         )
-    }
-
-    /// Where the misfit lives: axis, place, band.
-    fn whereabouts(&self) -> String {
-        let mut parts = Vec::new();
-        if let Some(axis) = self.located.axes.first() {
-            parts.push(format!(
-                "mainly as {} ({:.0} % of it)",
-                axis.axis.replace("force_", "a force along body ").replace("torque_", "a torque about body "),
-                axis.share_percent
-            ));
-        }
-        if let Some(place) = &self.located.place {
-            parts.push(place.clone());
-        } else if let Some(state) = self.located.state.first() {
-            parts.push(format!("following {} ({:.0} %)", state.variable, state.share_percent));
-        }
-        if let Some([low, high]) = self.located.band_hz {
-            parts.push(format!("at {} to {} Hz", significant(low, 2), significant(high, 2)));
-        }
-        if parts.is_empty() { "nowhere in particular".to_owned() } else { parts.join(", ") }
     }
 
     /// The largest limit of an effect's parameters.
@@ -137,6 +117,32 @@ impl Story {
         let limits = self.explanation.limits.iter().filter(|limit| limit.id == id);
         limits.copied().max_by(|a, b| a.limit.total_cmp(&b.limit))
     }
+}
+
+/// Where a misfit lives: axis, place or state, band.
+fn whereabouts(located: &Located) -> String {
+    let mut parts = Vec::new();
+    if let Some(field) = &located.field {
+        parts.push(format!(
+            "{} N along world {} where {} is about {:.1} m in the room, {} m wide",
+            significant(field.force_n, 2),
+            field.force_along,
+            field.changes_along,
+            field.at_m,
+            significant(field.extent_m, 1)
+        ));
+    } else if let Some(axis) = located.axes.first() {
+        let what =
+            axis.axis.replace("force_", "a force along body ").replace("torque_", "a torque about body ");
+        parts.push(format!("mainly as {what} ({:.0} % of it)", axis.share_percent));
+        if let Some(state) = located.state.first() {
+            parts.push(format!("following {} ({:.0} %)", state.variable, state.share_percent));
+        }
+    }
+    if let Some([low, high]) = located.band_hz {
+        parts.push(format!("at {} to {} Hz", significant(low, 2), significant(high, 2)));
+    }
+    if parts.is_empty() { "nowhere in particular".to_owned() } else { parts.join(", ") }
 }
 
 fn seen_from(limit: &DetectionLimit) -> String {

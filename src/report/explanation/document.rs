@@ -27,6 +27,7 @@ pub struct ExplanationDocument {
     residual: BTreeMap<&'static str, ResidualValue>,
     detection_limits: Vec<LimitValue>,
     data_quality: DataQuality,
+    next_flight: Option<NextValue>,
     warnings: Vec<String>,
 }
 
@@ -161,6 +162,23 @@ struct FlightValue {
     notes: Vec<String>,
 }
 
+#[derive(Debug, Clone, Serialize)]
+struct NextValue {
+    /// why there is none
+    reason: Option<String>,
+    seconds: Option<f64>,
+    /// what it tells apart, in standard deviations
+    pairs: Vec<NextPair>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct NextPair {
+    named: &'static str,
+    other: &'static str,
+    now: f64,
+    after: f64,
+}
+
 impl ExplanationDocument {
     /// From the story.
     #[must_use]
@@ -188,6 +206,7 @@ impl ExplanationDocument {
             residual: residual(story),
             detection_limits: limits(story),
             data_quality: data_quality(story),
+            next_flight: next(story),
             warnings: story.given.warnings.clone(),
         }
     }
@@ -325,6 +344,26 @@ fn residual(story: &Story) -> BTreeMap<&'static str, ResidualValue> {
 fn limits(story: &Story) -> Vec<LimitValue> {
     let limits = story.explanation.limits.iter();
     limits.map(|l| LimitValue { id: l.id, parameter: l.parameter, limit: l.limit, unit: l.unit }).collect()
+}
+
+fn next(story: &Story) -> Option<NextValue> {
+    Some(match story.next.as_ref()? {
+        Err(why) => NextValue { reason: Some(why.clone()), seconds: None, pairs: Vec::new() },
+        Ok(next) => NextValue {
+            reason: None,
+            seconds: Some(next.seconds),
+            pairs: next
+                .pairs
+                .iter()
+                .map(|pair| NextPair {
+                    named: pair.named,
+                    other: pair.other,
+                    now: pair.now,
+                    after: pair.after,
+                })
+                .collect(),
+        },
+    })
 }
 
 fn data_quality(story: &Story) -> DataQuality {

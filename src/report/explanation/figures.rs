@@ -1,16 +1,17 @@
 //! The plots of the report.
 
-use super::follow::{Binned, variables};
-use super::located::{rolling, spans};
 use super::story::Story;
+use crate::diagnose::locate::Follow;
 use crate::diagnose::{AXES, CHANNEL_NAMES, Fitted, LackOfFit, Trace, lack_of_fit};
 use crate::report::chart::{Band, Bars, Line, Panel, Strip, Stroke};
 use std::ops::Range;
 
 /// Points of a line at most: a chart is some 440 dots wide.
 const POINTS: usize = 900;
-/// Dots of a scatter at most.
-const DOTS: usize = 500;
+/// Colours and words of the model before and after.
+const BEFORE: usize = 1;
+const AFTER: usize = 2;
+const FOUND: &str = "model found";
 /// s of a cell of the heat strip.
 const CELL_S: f64 = 1.0;
 
@@ -32,9 +33,8 @@ fn axis_name(axis: usize) -> String {
 
 impl Story {
     /// The axis with the largest share of the misfit; where nothing is missing, the first.
-    pub(super) fn worst_axis(&self) -> usize {
-        let worst = self.located.axes.first().map(|axis| axis.axis);
-        CHANNEL_NAMES.iter().position(|name| Some(*name) == worst).unwrap_or(0)
+    fn worst_axis(&self) -> usize {
+        self.located.worst_axis().unwrap_or(0)
     }
 
     /// What the body did along the worst axis, and what the models make of the recorded commands: one panel
@@ -61,8 +61,11 @@ impl Story {
                 };
                 let time_s = &before.rows.time_s[rows.clone()];
                 let line = |label: &str, y: Vec<f64>, colour| line(label, time_s, &y, colour);
-                let noise = after.weighted.sigma[axis];
-                let misfit = &before.rows.residual[axis][rows.clone()];
+                let located = self.explanation.located_before.as_ref();
+                let spans = located.map_or_else(Vec::new, |located| {
+                    let here = located.spans.iter().filter(|s| s.channel == axis && s.flight == flight);
+                    here.map(|span| [span.from_s, span.to_s]).collect()
+                });
                 Some(Panel {
                     title: format!(
                         "{quantity} along body {}, flight {}",
@@ -72,11 +75,11 @@ impl Story {
                     x_label: "time (s)".to_owned(),
                     y_label: unit.to_owned(),
                     lines: vec![
-                        line("rigid body", simulated(before), 1),
-                        line("with what was found", simulated(after), 2),
+                        line("rigid body", simulated(before), BEFORE),
+                        line(FOUND, simulated(after), AFTER),
                         line("recorded", recorded.clone(), 0),
                     ],
-                    spans: spans(time_s, &rolling(misfit), 2.0 * noise),
+                    spans,
                     spans_label: "mismatch".to_owned(),
                     ..Panel::default()
                 })
@@ -97,50 +100,44 @@ impl Story {
             title: format!("what is left of {}, recorded less simulated", axis_name(axis)),
             x_label: "time (s)".to_owned(),
             y_label: if axis < 3 { "N" } else { "N m" }.to_owned(),
-            lines: vec![of("rigid body", &search.before, 1), of("with what was found", &search.after, 2)],
+            lines: vec![of("rigid body", &search.before, BEFORE), of(FOUND, &search.after, AFTER)],
             ..Panel::default()
         })
     }
 
-    /// The residual of the worst axis against the state that it follows most, and that state's label.
-    pub(super) fn followed(&self, traces: &[Trace]) -> Option<Panel> {
-        let axis = self.worst_axis();
-        let search = &self.explanation.search;
-        let residual = &search.before.rows.residual[axis];
-        let (variable, before) = variables(traces, &search.before)
-            .into_iter()
-            .map(|variable| {
-                let binned = variable.bin(residual);
-                (variable, binned)
-            })
-            .max_by(|a, b| a.1.share.total_cmp(&b.1.share))?;
-        let after = variable.bin(&search.after.rows.residual[axis]);
-        if before.at.is_empty() {
-            return None;
-        }
-        let every = residual.len().div_ceil(DOTS).max(1);
-        let dots = Line {
-            x: variable.values().iter().step_by(every).copied().collect(),
-            y: residual.iter().step_by(every).copied().collect(),
-            stroke: Stroke::Dots,
-            colour: Some(6),
-            ..Line::default()
-        };
-        let mean = |label: &str, binned: &Binned, colour| Line {
+    /// The residual against the state that it follows most, before and after, with the bands of the bins.
+    pub(super) fn followed(&self) -> Option<Panel> {
+        let before = self.explanation.located_before.as_ref()?;
+        let most = before.follows.first()?;
+        let same = |follow: &&Follow| follow.channel == most.channel && follow.state == most.state;
+        let after = self.explanation.located_after.as_ref().and_then(|after| after.follows.iter().find(same));
+        let line = |label: &str, follow: &Follow, colour| Line {
             label: label.to_owned(),
-            x: binned.at.clone(),
-            y: binned.mean.clone(),
+            x: follow.bins.iter().map(|bin| bin.center).collect(),
+            y: follow.bins.iter().map(|bin| bin.mean).collect(),
             colour: Some(colour),
             ..Line::default()
         };
-        Some(Panel {
-            title: format!("what is left of {} against {}", axis_name(axis), variable.label),
-            x_label: variable.label.to_owned(),
-            y_label: if axis < 3 { "N" } else { "N m" }.to_owned(),
-            lines: vec![dots, mean("rigid body", &before, 1), mean("with what was found", &after, 2)],
-            bands: vec![band(&before, 1), band(&after, 2)],
+        let band = |follow: &Follow, colour| Band {
+            x: follow.bins.iter().map(|bin| bin.center).collect(),
+            low: follow.bins.iter().map(|bin| bin.low).collect(),
+            high: follow.bins.iter().map(|bin| bin.high).collect(),
+            colour,
+        };
+        let state = most.state.name().replace('_', " ");
+        let mut panel = Panel {
+            title: format!("what is left of {} against {state}", axis_name(most.channel)),
+            x_label: format!("{state} ({})", most.state.unit()),
+            y_label: if CHANNEL_NAMES[most.channel].contains("force") { "N" } else { "N m" }.to_owned(),
+            lines: vec![line("rigid body", most, BEFORE)],
+            bands: vec![band(most, BEFORE)],
             ..Panel::default()
-        })
+        };
+        if let Some(after) = after {
+            panel.lines.push(line(FOUND, after, AFTER));
+            panel.bands.push(band(after, AFTER));
+        }
+        Some(panel)
     }
 
     /// Residual of each axis before and after, over what is left in the end.
@@ -154,8 +151,8 @@ impl Story {
             unit: String::new(),
             names: (0..AXES).map(axis_name).collect(),
             series: vec![
-                ("rigid body".to_owned(), ratio(&search.before)),
-                ("after".to_owned(), ratio(&search.after)),
+                ("rigid body".to_owned(), BEFORE, ratio(&search.before)),
+                (FOUND.to_owned(), AFTER, ratio(&search.after)),
             ],
         }
     }
@@ -215,7 +212,7 @@ impl Story {
             title: format!("{}: power at the harmonics over that beside them", axis_name(axis)),
             x_label: format!("frequency (Hz); the trajectory repeats every {:.1} s", after.period_s),
             y_label: "ratio".to_owned(),
-            lines: vec![line("rigid body", &before, 1, -shift), line("after", after, 2, shift)],
+            lines: vec![line("rigid body", &before, BEFORE, -shift), line(FOUND, after, AFTER, shift)],
             log: (false, true),
             ..Panel::default()
         })
@@ -231,11 +228,6 @@ fn line(label: &str, time_s: &[f64], y: &[f64], colour: usize) -> Line {
         colour: Some(colour),
         ..Line::default()
     }
-}
-
-fn band(binned: &Binned, colour: usize) -> Band {
-    let end = |sign: f64| binned.mean.iter().zip(&binned.two_sigma).map(|(m, s)| m + sign * s).collect();
-    Band { x: binned.at.clone(), low: end(-1.0), high: end(1.0), colour }
 }
 
 /// The measured specific force or angular acceleration behind the weak form, one value a row.

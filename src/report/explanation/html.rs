@@ -26,6 +26,7 @@ impl Story {
         self.shown_section(&mut page);
         self.parameters_section(&mut page);
         self.evidence_section(&mut page);
+        self.next_section(&mut page);
         self.limits_section(&mut page);
         self.quality_section(&mut page);
         self.provenance_section(&mut page);
@@ -37,17 +38,17 @@ impl Story {
         for panel in self.recorded_and_simulated(traces).iter().take(3) {
             page.figure(
                 &inline(panel),
-                "Behind the weak form's kernel of 0.4 s. Shaded: where the rigid body alone misses by more than twice what is left in the end.",
+                "Behind the weak form's kernel of 0.4 s. Shaded: where the rigid body alone misses by more than noise.",
             );
         }
         if let Some(panel) = self.residual_along_time(traces) {
             page.figure(&inline(&panel), "The same as a difference.");
         }
         page.heading("Where they differ");
-        if let Some(panel) = self.followed(traces) {
+        if let Some(panel) = self.followed() {
             page.figure(
                 &inline(&panel),
-                "Means over bins with as many rows each, and two standard errors of them; dots: single rows of the rigid body.",
+                "Mean residual in bins of the state, with bands that hold 95 of 100 resamplings of the flight's periods.",
             );
         }
         page.figure(&self.axes_chart().inline(), "Root mean square of each axis.");
@@ -194,6 +195,15 @@ impl Story {
                 lack.periods,
                 lack.period_s
             ));
+        }
+    }
+
+    fn next_section(&self, page: &mut Page) {
+        let Some(next) = &self.next else { return };
+        page.heading("The next flight");
+        match next {
+            Ok(next) => page.paragraph(&format!("{}.", next.sentence())),
+            Err(why) => page.note(&format!("None was designed: {why}.")),
         }
     }
 

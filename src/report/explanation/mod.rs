@@ -3,7 +3,6 @@
 mod answer;
 mod document;
 mod figures;
-mod follow;
 mod html;
 mod located;
 mod model;
@@ -14,7 +13,7 @@ mod story;
 mod words;
 
 pub use document::ExplanationDocument;
-pub use located::{AxisShare, Located, StateShare};
+pub use located::{AxisShare, Field, Located, StateShare};
 pub use page::explanation_page;
 pub use readers::for_readers;
 pub use show::{Predicted, ShownOn};

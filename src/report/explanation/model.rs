@@ -15,7 +15,8 @@ impl Story {
         let mut text = vehicle_to_toml(self.vehicle())?;
         for effect in self.effects_of_model() {
             let _ = writeln!(text, "\n[[effect]]\nid = \"{}\"", effect.effect().id());
-            for (parameter, value) in effect.effect().parameters().iter().zip(effect.parameters()) {
+            let (common, finer) = (effect.effect().parameters(), effect.effect().finer_parameters());
+            for (parameter, value) in common.iter().chain(finer).zip(effect.parameters()) {
                 let _ = writeln!(text, "{} = {value:?} # {}", parameter.name, parameter.unit);
             }
         }
@@ -65,7 +66,7 @@ impl Story {
         let mut index = fitted.rows.nuisances.len();
         for present in &fitted.base.present {
             for &free in &present.free {
-                let parameter = present.effect.parameters()[free].name;
+                let parameter = present.parameter(free).map_or("", |parameter| parameter.name);
                 kept.push((index, format!("{}.{parameter}", present.effect.id())));
                 index += 1;
             }

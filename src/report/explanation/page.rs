@@ -19,6 +19,11 @@ pub fn explanation_page(story: &Story) -> String {
     fit_lines(&mut page, story);
     body_lines(&mut page, story);
     limit_lines(&mut page, story);
+    match &story.next {
+        Some(Ok(next)) => drop(writeln!(page, "\n  next flight: {}", next.sentence())),
+        Some(Err(why)) => drop(writeln!(page, "\n  no next flight: {why}")),
+        None => {}
+    }
     quality_lines(&mut page, story);
     for warning in &story.given.warnings {
         let _ = writeln!(page, "  warning: {warning}");
@@ -65,7 +70,7 @@ fn located_lines(page: &mut String, story: &Story) {
             .state
             .iter()
             .take(4)
-            .map(|state| format!("{} {:.0} %", state.variable, state.share_percent))
+            .map(|state| format!("{} with {} {:.0} %", state.axis, state.variable, state.share_percent))
             .collect();
         let _ = writeln!(page, "  following: {}", state.join(", "));
     }

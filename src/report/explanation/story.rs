@@ -3,10 +3,9 @@
 use super::located::Located;
 use super::readers::for_readers;
 use super::show::{Predicted, ShownOn};
+use crate::diagnose::next::NextFlight;
 use crate::diagnose::show::Shown;
-use crate::diagnose::{
-    CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, Named, Nuisance, Trace, Verdict,
-};
+use crate::diagnose::{CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, Named, Nuisance, Verdict};
 use crate::physics::ActiveEffect;
 use crate::report::InputFile;
 use crate::signals::Quality;
@@ -68,6 +67,8 @@ pub struct Story {
     pub shown_on: ShownOn,
     /// where simulation and recording differ
     pub located: Located,
+    /// what to fly to tell apart what this flight cannot; `Err`: why there is none; `None`: not asked for
+    pub next: Option<Result<NextFlight, String>>,
 }
 
 impl Story {
@@ -78,6 +79,7 @@ impl Story {
             effects: for_readers(&explanation.named),
             closest: for_readers(&explanation.closest),
             located: Located::of(&explanation),
+            next: None,
             identify: None,
             holdout: None,
             shown: None,
@@ -86,11 +88,6 @@ impl Story {
             given,
             explanation,
         }
-    }
-
-    /// Adds when and along which state the misfit lives; `traces` are those of the flights explained.
-    pub fn locate(&mut self, traces: &[Trace]) {
-        self.located.add_states(&self.explanation, traces);
     }
 
     /// In one word.
