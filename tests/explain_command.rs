@@ -1,5 +1,6 @@
 //! `mavid explain` and `mavid export` at their process boundary.
 
+#![allow(clippy::print_stderr, reason = "says what it skips")]
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
 use std::path::{Path, PathBuf};

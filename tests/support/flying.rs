@@ -1,5 +1,6 @@
 //! A flight and the embedded vehicle on one clock, with what may lie between them. No sockets, no real time.
 
+#![allow(dead_code, reason = "each test binary uses a part")]
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
 use std::collections::BTreeMap;

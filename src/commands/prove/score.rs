@@ -166,7 +166,9 @@ mod tests {
     use crate::commands::prove::case::Parameter;
     use std::collections::BTreeMap;
 
-    fn verdict(word: &str, effects: &[(&str, &[(&str, f64)], &[&str])]) -> Verdict {
+    type Said<'a> = (&'a str, &'a [(&'a str, f64)], &'a [&'a str]);
+
+    fn verdict(word: &str, effects: &[Said<'_>]) -> Verdict {
         let effects = effects.iter().map(|(id, parameters, confusable)| Effect {
             id: (*id).to_owned(),
             parameters: parameters
