@@ -4,10 +4,10 @@
 //! channel, or the autocovariance of the scores (Newey-West), whichever is larger. Physics that nothing
 //! explains enlarges it, so the evidence turns cautious where the model is wrong.
 
+use super::deviate::normal_deviate;
 use super::rows::{CHANNELS, Channels, Rows};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
-use statrs::function::gamma::ln_gamma;
 use std::ops::Range;
 
 /// Rows over which the kernels of neighbouring rows overlap.
@@ -404,52 +404,4 @@ fn spread(values: &[f64]) -> f64 {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
     (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
-}
-
-/// The normal deviate that is exceeded (on both sides) as seldom as `wald` by a chi square of `size`
-/// degrees of freedom; by logarithms, so that nothing underflows.
-#[must_use]
-pub fn normal_deviate(wald: f64, size: usize) -> f64 {
-    if wald.is_nan() || wald <= 0.0 {
-        return 0.0;
-    }
-    if size == 1 {
-        return wald.sqrt();
-    }
-    let target = ln_chi_square_sf(wald, size as f64);
-    // ln P(|Z| > z)
-    let two_sided = |z: f64| ln_chi_square_sf(z * z, 1.0);
-    let (mut low, mut high) = (0.0, wald.sqrt());
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if two_sided(middle) > target { low = middle } else { high = middle }
-    }
-    0.5 * (low + high)
-}
-
-/// Logarithm of the chance that a chi square of `k` degrees of freedom exceeds `x`.
-fn ln_chi_square_sf(x: f64, k: f64) -> f64 {
-    let (a, h) = (0.5 * k, 0.5 * x);
-    if h < a + 30.0 {
-        let upper = statrs::function::gamma::checked_gamma_ur(a, h).unwrap_or(0.0);
-        return upper.max(f64::MIN_POSITIVE).ln();
-    }
-    // continued fraction of the upper incomplete gamma function, by Lentz's method
-    let mut b = h + 1.0 - a;
-    let mut c = f64::MAX.sqrt();
-    let mut d = 1.0 / b;
-    let mut fraction = d;
-    for i in 1..200 {
-        let n = f64::from(i);
-        let term = -n * (n - a);
-        b += 2.0;
-        d = 1.0 / (term * d + b);
-        c = b + term / c;
-        let factor = d * c;
-        fraction *= factor;
-        if (factor - 1.0).abs() < 1e-12 {
-            break;
-        }
-    }
-    a * h.ln() - h - ln_gamma(a) + fraction.ln()
 }

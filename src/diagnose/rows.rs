@@ -7,10 +7,9 @@
 
 use super::along::{Turning, wrench_along};
 use super::base::{Base, Present};
+use super::nuisances::{momentum_rows, nuisances};
 use super::trace::Trace;
 use crate::physics::{Model, PhysicsError, Wrench};
-use crate::regression::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor};
-use crate::signals::central_difference;
 use nalgebra::{Vector3, Vector4};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -100,16 +99,6 @@ struct Along {
     by_motion: Vec<Wrench>,
 }
 
-/// Thrust-axis tilt and accelerometer tilt look alike; frames are true to about a quarter of a degree.
-const TILT_STD_RAD: f64 = 0.005;
-/// An accelerometer's filter differs from the gyroscopes' by some milliseconds.
-const FORCE_LATENCY_STD_S: f64 = 0.004;
-/// Anything between none and all.
-const JITTER_STD: f64 = 0.288_675;
-/// An attitude estimate is level to about half a degree.
-const LEVEL_STD_RAD: f64 = 0.01;
-/// An accelerometer alone: nothing says better how far it is off, m/s^2.
-const BIAS_STD_M_S2: f64 = 0.2;
 /// Passes over the motion's rotor thrusts, which depend on the effects that depend on them.
 const MOTION_PASSES: usize = 2;
 
@@ -295,7 +284,7 @@ pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3
     [fx, fy, fz, tx, ty, tz, kx, ky, kz]
 }
 
-fn nothing(trace: &Trace) -> [Vec<f64>; 3] {
+pub(super) fn nothing(trace: &Trace) -> [Vec<f64>; 3] {
     std::array::from_fn(|_| vec![0.0; trace.rows()])
 }
 
@@ -361,97 +350,6 @@ fn residual(
         for (row, value) in out[3 + axis].iter_mut().enumerate() {
             let turning: f64 = (0..6).map(|k| momentum[k][axis][row] * six[k]).sum();
             *value = turning - *value;
-        }
-    }
-    out
-}
-
-/// For each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2.
-fn momentum_rows(trace: &Trace) -> [[Vec<f64>; 3]; 6] {
-    let rates: Vec<Vector3<f64>> = trace.states.iter().map(|state| state.rates_rad_s).collect();
-    let turning = trace.weak_vector(1, &rates);
-    let products =
-        RATE_PAIRS.map(|(i, j)| trace.weak(0, &rates.iter().map(|w| w[i] * w[j]).collect::<Vec<f64>>()));
-    let mut out: [[Vec<f64>; 3]; 6] = Default::default();
-    for row in 0..trace.rows() {
-        let turning = Vector3::from_fn(|axis, _| turning[axis][row]);
-        let phi = momentum_regressor(0.0, &turning)
-            + gyroscopic_from_products(&std::array::from_fn(|k| products[k][row]));
-        for (entry, axes) in out.iter_mut().enumerate() {
-            for (axis, values) in axes.iter_mut().enumerate() {
-                values.push(phi[(1 + axis, 1 + entry)]);
-            }
-        }
-    }
-    out
-}
-
-fn nuisances(trace: &Trace, base: &Base, commanded: &Turning, by_commands: &[Wrench]) -> Vec<NuisanceColumn> {
-    let none = || vec![0.0; trace.rows()];
-    let force = |values: [Vec<f64>; 3]| channels(trace, values, nothing(trace));
-    let torque = |values: [Vec<f64>; 3]| channels(trace, nothing(trace), values);
-    let column = |nuisance, prior_std, values: Channels| NuisanceColumn { nuisance, values, prior_std };
-    let mass_kg = base.vehicle.body.mass_kg;
-    let mut out = Vec::new();
-    // more mass than assumed: more force than assumed was there, in proportion to it
-    let forces: Vec<Vector3<f64>> = by_commands.iter().map(|w| w.force_n / -mass_kg).collect();
-    out.push(column(Nuisance::Mass, None, force(trace.weak_vector(0, &forces))));
-    for (entry, axes) in momentum_rows(trace).into_iter().enumerate() {
-        let values = axes.map(|values| values.into_iter().map(|v| -v).collect::<Vec<f64>>());
-        out.push(column(Nuisance::Inertia(entry), None, torque(values)));
-    }
-    // by the commands for the force, by the motion for the torques
-    let thrust: Vec<f64> = commanded.thrust_n.iter().map(|thrusts| thrusts.iter().sum::<f64>()).collect();
-    let late: Vec<f64> = central_difference(&thrust, trace.grid.step_s).iter().map(|d| -d).collect();
-    let late = trace.weak(0, &late);
-    let turning = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
-    let late_torque = [0, 1, 2].map(|axis| {
-        let column: Vec<f64> = turning.iter().map(|t| -t[axis]).collect();
-        trace.weak(0, &central_difference(&column, trace.grid.step_s))
-    });
-    let both = channels(trace, [none(), none(), late.clone()], late_torque);
-    out.push(column(Nuisance::Latency, None, both));
-    let late = force([none(), none(), late]);
-    out.push(column(Nuisance::ForceLatency, Some(FORCE_LATENCY_STD_S), late));
-    let thrust = trace.weak(0, &thrust);
-    let negative: Vec<f64> = thrust.iter().map(|t| -t).collect();
-    let tilt = Some(TILT_STD_RAD);
-    out.push(column(Nuisance::Tilt(0), tilt, force([none(), negative, none()])));
-    out.push(column(Nuisance::Tilt(1), tilt, force([thrust, none(), none()])));
-    if let Some(jitter) = &trace.jitter {
-        let channel =
-            |row: usize| trace.weak(0, &jitter.iter().map(|jitter| -jitter[row]).collect::<Vec<f64>>());
-        let values = channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);
-        out.push(column(Nuisance::Jitter, Some(JITTER_STD), values));
-    }
-    out.extend(sensor_nuisances(trace, mass_kg));
-    out
-}
-
-/// The accelerometer's bias, and the level of the attitude that the kinematics rest on.
-fn sensor_nuisances(trace: &Trace, mass_kg: f64) -> Vec<NuisanceColumn> {
-    let mut out = Vec::new();
-    if trace.has_accelerometer() {
-        let prior_std = if trace.reads_force_twice() { None } else { Some(BIAS_STD_M_S2) };
-        for axis in 0..3 {
-            let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
-            values[axis].fill(mass_kg);
-            out.push(NuisanceColumn { nuisance: Nuisance::AccelerometerBias(axis), values, prior_std });
-        }
-    }
-    if trace.known.attitude && trace.known.velocity {
-        let first = if trace.has_accelerometer() { SECOND } else { 0 };
-        for axis in 0..2 {
-            // gravity leans by the error's cross product with up
-            let lean = Vector3::ith(axis, 1.0).cross(&Vector3::z()) * (mass_kg * trace.gravity_m_s2);
-            let leaning: Vec<Vector3<f64>> =
-                trace.states.iter().map(|state| state.attitude.inverse_transform_vector(&lean)).collect();
-            let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
-            for (slot, column) in trace.weak_vector(0, &leaning).into_iter().enumerate() {
-                values[first + slot] = column;
-            }
-            let nuisance = Nuisance::Level(axis);
-            out.push(NuisanceColumn { nuisance, values, prior_std: Some(LEVEL_STD_RAD) });
         }
     }
     out

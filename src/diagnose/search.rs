@@ -5,6 +5,7 @@ use super::candidates::{Candidate, candidates, drag_and_wind};
 use super::evidence::{Evidence, Weighted};
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::rows::{Channels, Nuisance, Rows};
+use super::settle::{SETTLED_S, settle};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;
@@ -228,47 +229,6 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
 const SETTLINGS: usize = 2;
 /// What a column must explain to be worth having, in independent squared sigmas.
 const COLUMN_PRICE: f64 = 12.0;
-/// A latency that moves by less than this when it is estimated with the effects changes nothing, s.
-const SETTLED_S: f64 = 0.001;
-
-/// Effects that the later ones have made superfluous go, and the latency is estimated with those that stay.
-/// Returns whether any went, and by how much the latency moved, s.
-fn settle(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64), PhysicsError> {
-    let mut index = after.rows.nuisances.len();
-    let mut kept: Vec<Present> = Vec::new();
-    let mut dropped = false;
-    for present in &after.base.present {
-        let mut pruned = present.clone();
-        let mut strength = 0.0;
-        for (place, &slot) in present.free.iter().enumerate() {
-            let std = after.covariance[(index + place, index + place)].max(0.0).sqrt();
-            let z = (present.values[slot] - present.nothing_at(slot)).abs() / std.max(f64::MIN_POSITIVE);
-            let finer = slot >= present.effect.parameters().len();
-            if !finer && z < PRUNED {
-                pruned.values[slot] = present.nothing_at(slot);
-                pruned.free.retain(|free| *free != slot);
-                dropped = true;
-            } else if !finer {
-                strength = f64::max(strength, z);
-            }
-        }
-        index += present.free.len();
-        if strength > KEPT {
-            kept.push(pruned);
-        }
-    }
-    dropped |= kept.len() < after.base.present.len();
-    let before_s = after.base.latency.total_s();
-    let base = Base { present: kept, ..after.base.clone() };
-    *after = fit(flights, base, Newton::Free)?;
-    Ok((dropped, (after.base.latency.total_s() - before_s).abs()))
-}
-
-/// An accepted effect stays while it is this many standard deviations from nothing.
-const KEPT: f64 = 4.0;
-/// A parameter of it goes back to nothing when it is nearer than this.
-const PRUNED: f64 = 2.5;
-
 /// The candidate's effects at the values that the evidence has.
 fn started(tested: &Tested) -> Vec<Present> {
     let mut theta = tested.evidence.theta.iter();

@@ -150,7 +150,7 @@ pub fn summary(scored: &[Scored]) -> Summary {
         false_names_where_nothing_is: count(&|case| case.expected.is_empty() && !case.named.is_empty()),
         missed: scored.iter().map(|case| case.missed.len()).sum(),
         sizes: sizes.len(),
-        sizes_within_10_percent: sizes.iter().filter(|size| size.error_percent.abs() <= 10.0).count(),
+        sizes_within_10_percent: sizes.iter().filter(|size| size.error_percent.abs() <= 10.0 + 1e-9).count(),
         worst_size_error_percent: errors.max_by(f64::total_cmp),
         sizes_within_2_sigma: sizes.iter().filter(|size| size.sigmas.is_some_and(|s| s.abs() <= 2.0)).count(),
         holdouts: count(&|case| case.improvement_percent.is_some()),

@@ -111,7 +111,7 @@ fn channel_of(axis: &str) -> Option<usize> {
 fn axis_shares(found: &Localisation) -> Vec<AxisShare> {
     let mut axes: Vec<AxisShare> = (0..AXES)
         .map(|axis| {
-            let second = if axis < 3 { found.axes[SECOND + axis].share } else { 0.0 };
+            let second = found.axes.get(SECOND + axis).map_or(0.0, |second| second.share);
             AxisShare { axis: CHANNEL_NAMES[axis], share_percent: 100.0 * (found.axes[axis].share + second) }
         })
         .filter(|axis| axis.share_percent > LEAST_SHARE_PERCENT)

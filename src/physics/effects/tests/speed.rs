@@ -45,7 +45,7 @@ fn a_finer_form_is_given_whole_or_not_at_all() {
         assert!(lag(&values).is_err(), "{values:?}");
     }
     assert!(ActiveEffect::new(&MotorLag, &[0.02, 0.04, 0.06]).is_err());
-    assert!(ActiveEffect::new(&LinearDrag, &[0.1, 0.1, 0.1, 0.1]).is_err());
+    assert!(ActiveEffect::new(&LinearDrag, &[0.1, 0.1, 0.1, 0.1, 0.1]).is_err());
 }
 
 #[test]

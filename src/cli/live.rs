@@ -1,0 +1,122 @@
+//! Verbs that speak to vehicles or stand for one.
+
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// Arguments of `mavid sitl`.
+#[derive(Debug, Args)]
+pub struct SitlArgs {
+    /// vehicle.toml or model.toml: what flies; without it a Holybro X500
+    #[arg(long, value_name = "FILE")]
+    pub vehicle: Option<PathBuf>,
+    /// effects to conceal from whoever connects: [[effect]] tables with `id` and the parameters by name
+    #[arg(long, value_name = "FILE")]
+    pub effects: Option<PathBuf>,
+    /// a link: udpin:HOST:PORT, udpout:HOST:PORT, tcpin:HOST:PORT, tcpout:HOST:PORT or pty:PATH; may be given
+    /// several times [default: those of the autopilot's own simulator]
+    #[arg(long, value_name = "ADDRESS")]
+    pub listen: Vec<String>,
+    /// whose behaviour
+    #[arg(long, value_enum, default_value = "px4")]
+    pub autopilot: AutopilotName,
+    /// whose names and units of parameters ArduPilot has
+    #[arg(long, value_enum, default_value = "4.7")]
+    pub ardupilot_version: ArduPilotVersion,
+    /// times real time
+    #[arg(long, value_name = "N", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub speed: f64,
+    /// as fast as the ground station: time goes on by 20 ms for whatever it sends, or when it is silent
+    #[arg(long, conflicts_with = "speed")]
+    pub lockstep: bool,
+    /// same seed, same flight
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// factor on the sensors' noise
+    #[arg(long, default_value_t = 1.0)]
+    pub noise: f64,
+    /// MAVLink system id
+    #[arg(long, value_name = "ID", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..))]
+    pub system: u8,
+    /// rotor speeds are telemetered
+    #[arg(long)]
+    pub esc_telemetry: bool,
+    /// a pilot's transmitter is on, its sticks centred
+    #[arg(long)]
+    pub transmitter: bool,
+    /// s from boot until the position estimate is good [default: the autopilot's own]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub warm_up: Option<f64>,
+    /// s that each frame takes on its way out
+    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub latency: f64,
+    /// share of the frames that get lost on their way out
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub loss: f64,
+    /// end after so many s of the vehicle's time
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub duration: Option<f64>,
+}
+
+/// Names of the autopilots.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum AutopilotName {
+    /// PX4 multicopter
+    Px4,
+    /// ArduCopter
+    Ardupilot,
+}
+
+/// Releases of ArduPilot that differ in their parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ArduPilotVersion {
+    /// centimetres and centidegrees
+    #[value(name = "4.6")]
+    V4_6,
+    /// metres and degrees
+    #[value(name = "4.7")]
+    V4_7,
+}
+
+/// Arguments of `mavid record`.
+#[derive(Debug, Args)]
+pub struct RecordArgs {
+    /// udpin:HOST:PORT, udpout:HOST:PORT, tcpout:HOST:PORT, tcpin:HOST:PORT or serial:PATH:BAUD[:rtscts]
+    #[arg(long, value_name = "ADDRESS")]
+    pub connect: String,
+    /// telemetry log to write
+    #[arg(long, value_name = "FILE.tlog")]
+    pub out: PathBuf,
+    /// s to record; without it until interrupted
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub duration: Option<f64>,
+    /// replace a file that is there already
+    #[arg(long)]
+    pub force: bool,
+    /// speak as a ground station: send a heartbeat each second, and ask the vehicle for the messages that
+    /// identification uses
+    #[arg(long)]
+    pub heartbeat: bool,
+    /// MAVLink 2 signing key: a file with 32 bytes, 64 hexadecimal digits, or a passphrase
+    #[arg(long, value_name = "FILE")]
+    pub signing_key_file: Option<PathBuf>,
+}
+
+/// Arguments of `mavid replay`.
+#[derive(Debug, Args)]
+pub struct ReplayArgs {
+    /// telemetry log to play
+    pub log: PathBuf,
+    /// where to: an address as for `mavid record`
+    #[arg(long, value_name = "ADDRESS", default_value = "udpout:127.0.0.1:14550")]
+    pub to: String,
+    /// how many times faster than it was; 0 is as fast as possible
+    #[arg(long, value_name = "N", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub speed: f64,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+        _ => Err(format!("expected a number above 0, got `{text}`")),
+    }
+}
