@@ -107,7 +107,7 @@ impl Weighted {
             sigma: *sigma,
             nuisances,
             precision,
-            normal: scaled_cholesky(&normal),
+            normal: normal.cholesky(),
             left: DVector::zeros(0),
             energy: 0.0,
         };
@@ -191,8 +191,8 @@ impl Weighted {
         let (plain, partialled) = self.partialled(columns)?;
         let normal = plain.tr_mul(&partialled);
         let normal = 0.5 * (&normal + normal.transpose());
-        let inverse = scaled_cholesky(&normal)?.inverse();
-        let theta = &inverse * partialled.tr_mul(&weighted_left(self));
+        let inverse = normal.clone().cholesky()?.inverse();
+        let theta = &inverse * partialled.tr_mul(&self.left);
         let energy = theta.dot(&(&normal * &theta));
         let after = &self.left - &partialled * &theta;
         let prior = self.prior_part(&plain);
@@ -379,10 +379,6 @@ impl TraceOfScaled for DMatrix<f64> {
     }
 }
 
-fn weighted_left(weighted: &Weighted) -> DVector<f64> {
-    weighted.left.clone()
-}
-
 /// Channel after channel, each over its sigma.
 fn weighted(column: &Channels, sigma: &[f64; CHANNELS]) -> DVector<f64> {
     let count = column[0].len();
@@ -393,11 +389,6 @@ fn weighted(column: &Channels, sigma: &[f64; CHANNELS]) -> DVector<f64> {
             values.iter().map(move |value| value * weight)
         }),
     )
-}
-
-/// Cholesky of a symmetric matrix whose diagonal may span many decades.
-fn scaled_cholesky(matrix: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
-    matrix.clone().cholesky()
 }
 
 fn spread(values: &[f64]) -> f64 {
