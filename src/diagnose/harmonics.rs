@@ -54,7 +54,7 @@ impl LackOfFit {
 }
 
 /// The period of a repeated trajectory by the autocorrelation of `signals` (rows at `time_s`); `None` where
-/// nothing repeats at least [`LEAST_PERIODS`] times.
+/// nothing repeats at least three times.
 #[must_use]
 pub fn period_s(time_s: &[f64], signals: &[&[f64]]) -> Option<f64> {
     let (first, last) = middle(time_s)?;
