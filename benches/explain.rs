@@ -32,7 +32,7 @@ const SIZES: &[(&str, Sizes)] = &[
     ("blade_flapping", &[("k", 0.5, Scale::Inertia)]),
     ("inflow", &[("kz", 0.4, Scale::Mass)]),
     ("translational_lift", &[("kh", 0.12, Scale::Mass)]),
-    ("slung_load", &[("mass", 0.08, Scale::Mass), ("length", 0.8, Scale::One)]),
+    ("slung_load", &[("mass", 0.08, Scale::Mass), ("length", 0.8, Scale::One), ("damping", 0.3, Scale::One)]),
     ("mass_change", &[("time", 26.0, Scale::One), ("delta", -0.08, Scale::Mass)]),
     ("motor_lag", &[("time_constant", 0.04, Scale::One)]),
     ("transport_delay", &[("delay", 0.03, Scale::One)]),
@@ -119,7 +119,7 @@ fn report_effect(id: &'static str, values: Sizes, first: u64, count: u64) {
     let mut verdicts: BTreeMap<&str, usize> = BTreeMap::new();
     let mut errors = Vec::new();
     let mut strangers: BTreeMap<&str, usize> = BTreeMap::new();
-    for (_, explanation, truth) in &found {
+    for (seed, explanation, truth) in &found {
         *verdicts.entry(explanation.verdict.name()).or_default() += 1;
         let is_it = |name: &&mavid::diagnose::Named| name.id == id;
         let in_set = |name: &&mavid::diagnose::Named| name.confusable_with.iter().any(|other| other.id == id);
@@ -133,6 +133,11 @@ fn report_effect(id: &'static str, values: Sizes, first: u64, count: u64) {
             }
         } else if explanation.named.iter().any(|name| in_set(&name)) {
             within += 1;
+        }
+        let ids: Vec<&str> =
+            explanation.named.iter().chain(&explanation.closest).map(|name| name.id).collect();
+        if explanation.verdict != Verdict::Explained || ids != [id] {
+            println!("  seed {seed}: {} {ids:?} {} {:?}", explanation.verdict.name(), conditions(*seed), explanation.search.latency);
         }
         for name in explanation.named.iter().filter(|name| name.id != id && !in_set(name)) {
             others += 1;
@@ -172,6 +177,10 @@ fn settings(seed: u64) -> FlightSettings {
 fn fly(seed: u64, effects: impl Fn(&Vehicle) -> Vec<ActiveEffect>, id: Option<&str>) -> Option<Explanation> {
     let pair = random_vehicle(seed.wrapping_mul(7919));
     let mut random = RandomTrajectory::default();
+    if id == Some("slung_load") {
+        // gently, as loads are flown
+        (random.speed_max_m_s, random.acceleration_max_m_s2) = (1.0, 0.8);
+    }
     if id == Some("ground_effect") {
         random.height_m = (0.3, 1.2);
     }

@@ -21,6 +21,9 @@ const MASS_CHANGE_EVERY_S: f64 = 4.0;
 /// Lengths of a load's cord that are tried, m: their periods lie 20 % apart.
 const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
 
+/// What the air takes of a load's swing before more is known, 1/s.
+const SWING_DAMPING_1_S: f64 = 0.2;
+
 /// An effect by its identifier; `None` where there is no such effect.
 pub(super) fn present(id: &str, values: &[f64], free: &[usize]) -> Option<Present> {
     let effect = by_id(id)?;
@@ -46,8 +49,11 @@ pub fn candidates(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
             add(&[present("linear_drag", &[0.0, 0.0, 0.0, at_hubs], &[0, 1, 2])]);
             add(&[present("inflow", &[0.0, at_hubs], &[0])]);
         }
-        add(&[present("quadratic_drag", &[0.0; 3], &[0, 1])]);
-        add(&[present("quadratic_drag", &[0.0; 3], &[0, 1, 2])]);
+        // of a round body, or of flat faces
+        for by_face in [0.0, 1.0] {
+            add(&[present("quadratic_drag", &[0.0, 0.0, 0.0, by_face], &[0, 1])]);
+            add(&[present("quadratic_drag", &[0.0, 0.0, 0.0, by_face], &[0, 1, 2])]);
+        }
         add(&[present("blade_flapping", &[0.0], &[0])]);
         add(&[present("translational_lift", &[0.0], &[0])]);
         add(&[present("vortex_ring", &[0.0], &[0])]);
@@ -60,7 +66,6 @@ pub fn candidates(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
     }
     add(&[present("thrust_curve", &[0.0], &[0])]);
     add(&[present("com_offset", &[0.0; 3], &[0, 1])]);
-    add(&[present("thrust_tilt", &[0.0; 2], &[0, 1])]);
     add(&[present("rotor_inertia", &[0.0], &[0])]);
     add(&[present("angular_damping", &[0.0; 3], &[0, 1, 2])]);
     add(&[present("angular_damping", &[0.0; 3], &[0, 1])]);
@@ -75,7 +80,7 @@ pub fn candidates(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
     }
     if velocity {
         for length_m in CORD_LENGTHS_M {
-            add(&[present("slung_load", &[0.0, length_m], &[0])]);
+            add(&[present("slung_load", &[0.0, length_m, SWING_DAMPING_1_S], &[0])]);
         }
     }
     if let [flight] = flights {

@@ -11,6 +11,9 @@ use nalgebra::{DMatrix, DVector};
 
 /// Effects closer than this many standard deviations are not told apart.
 const APART: f64 = 5.0;
+/// What leaves more than this share of an effect's norm does not resemble it, however weak the effect is
+/// (a cosine below one half).
+const UNLIKE: f64 = 0.866;
 
 /// Distance, in standard deviations, between what the effect at `place` does and the nearest that another
 /// candidate could do in its stead; those below [`APART`].
@@ -29,7 +32,7 @@ pub fn confusable_with(
             continue;
         };
         let (id, distance) = (other.candidate.id, left / inflation);
-        if distance < APART {
+        if distance < APART && left < UNLIKE * signal.sum.norm() {
             let known = out.iter_mut().find(|confusable| confusable.id == id);
             match known {
                 Some(known) => {

@@ -56,6 +56,12 @@ pub struct Evidence {
 }
 
 impl Evidence {
+    /// Norm of the coefficients, in their unit.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.theta.iter().map(|value| value * value).sum::<f64>().sqrt()
+    }
+
     /// Standard error of one coefficient.
     #[must_use]
     pub fn std(&self, index: usize) -> f64 {

@@ -5,10 +5,10 @@ use super::candidates::Candidate;
 use super::confusable::confusable_with;
 use super::explanation::{Confusable, DetectionLimit, Explanation, Named, NamedParameter, Strength, Verdict};
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
-use super::latency::LatencyFinding;
+use super::latency::{LatencyFinding, REFUSED, held_s};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
 use super::rows::{AXES, CHANNELS};
-use super::search::{Fitted, Gates, Search, Step, Tested, search};
+use super::search::{Fitted, Gates, Search, Step, TILT_NUISANCE_RAD, Tested, search};
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
 use crate::physics::effects::by_id;
@@ -60,8 +60,6 @@ const LACK_FORCE_G: f64 = 0.002;
 const LACK_TORQUE: f64 = 0.1;
 /// A lag or delay is named beyond sampling and a fast motor, s.
 const FAST_MOTOR_S: f64 = 0.004;
-/// A mounting tilt is a nuisance below half a degree, rad.
-const TILT_NUISANCE_RAD: f64 = 0.0087;
 /// A centre of mass is not known better, m.
 const COM_NUISANCE_M: f64 = 0.000_15;
 /// No line that holds anything weighs less, kg/m.
@@ -298,23 +296,37 @@ fn confusable(traces: &[Trace], found: &Search, place: usize, step: &Step) -> Ve
 fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<Named> {
     let LatencyFinding { total_s, std_s, parts, against_lag, against_delay } = found.latency;
     let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
-    let known_s = vehicle.propulsion.time_constant_s.unwrap_or(0.0);
-    let ordinary_s = known_s + FAST_MOTOR_S + 0.5 * period_s;
+    let motor_s = vehicle.propulsion.time_constant_s.unwrap_or(0.0);
+    let ordinary_s = motor_s + FAST_MOTOR_S + 0.5 * period_s;
     if total_s - ordinary_s < 4.0 * std_s {
         return None;
     }
     let is_lag = parts.lag_s > parts.delay_s;
-    let (id, other, name, value) = if is_lag {
-        ("motor_lag", "transport_delay", "time_constant", parts.lag_s)
+    let (id, other, name) = if is_lag {
+        ("motor_lag", "transport_delay", "time_constant")
     } else {
-        ("transport_delay", "motor_lag", "delay", parts.delay_s)
+        ("transport_delay", "motor_lag", "delay")
     };
-    let told_apart = if is_lag { against_delay } else { against_lag } > 4.0;
+    let (value, std) = if is_lag {
+        (parts.lag_s, std_s)
+    } else if parts.lag_s > 0.0 {
+        (parts.delay_s - held_s(traces), std_s)
+    } else {
+        // the motor, which also lags, and the command's hold are in the total
+        let (motor_s, unsure_s) = match vehicle.propulsion.time_constant_s {
+            Some(known_s) => (known_s, 0.0),
+            None => (FAST_MOTOR_S, 0.5 * FAST_MOTOR_S),
+        };
+        (parts.delay_s - held_s(traces) - motor_s, std_s.hypot(unsure_s))
+    };
+    let (own, others) =
+        if is_lag { (against_lag, against_delay) } else { (against_delay, against_lag) };
+    let told_apart = others > REFUSED && own < 0.5 * REFUSED;
     let z = (total_s - ordinary_s) / std_s;
     Some(Named {
         id,
         sentence: by_id(id)?.sentence(),
-        parameters: vec![NamedParameter { name, value, std: std_s, unit: "s" }],
+        parameters: vec![NamedParameter { name, value, std, unit: "s" }],
         strength: Strength { z, gain: 0.0, energy: z * z, count: 1 },
         confusable_with: if told_apart {
             Vec::new()

@@ -36,7 +36,7 @@ const HELD: f64 = 0.25;
 /// Gyroscopes noisier than this let no kind be told.
 const NOISY_RAD_S: f64 = 0.03;
 /// A kind is refused beyond this many standard deviations.
-const REFUSED: f64 = 6.0;
+pub(super) const REFUSED: f64 = 6.0;
 
 /// Fits the rigid body alone, with the latency that is left when what could be taken for one (damping and
 /// drag move with the derivative of force and torque, too) is allowed for.
@@ -80,9 +80,13 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
 
 /// A lag behind the time for which a command holds.
 fn lag_of(flights: &[Trace], total_s: f64) -> ActuationLatency {
-    let held_s = flights.iter().map(|trace| HELD * trace.command_period_s).fold(0.0, f64::max);
-    let delay_s = held_s.min(0.5 * total_s);
+    let delay_s = held_s(flights).min(0.5 * total_s);
     ActuationLatency { delay_s, lag_s: total_s - delay_s }
+}
+
+/// By which holding the commands delays them, s.
+pub(super) fn held_s(flights: &[Trace]) -> f64 {
+    flights.iter().map(|trace| HELD * trace.command_period_s).fold(0.0, f64::max)
 }
 
 /// Effects whose columns resemble that of a latency.

@@ -10,6 +10,7 @@ mod evidence;
 mod explain;
 mod explanation;
 mod harmonics;
+mod hubs;
 mod latency;
 pub mod locate;
 pub mod next;
@@ -18,6 +19,7 @@ pub mod refit;
 mod rows;
 mod search;
 mod settle;
+mod sharpen;
 pub mod show;
 mod trace;
 

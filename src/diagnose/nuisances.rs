@@ -9,8 +9,6 @@ use crate::regression::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor
 use crate::signals::central_difference;
 use nalgebra::Vector3;
 
-/// Thrust-axis tilt and accelerometer tilt look alike; frames are true to about a quarter of a degree.
-const TILT_STD_RAD: f64 = 0.005;
 /// An accelerometer's filter differs from the gyroscopes' by some milliseconds.
 const FORCE_LATENCY_STD_S: f64 = 0.004;
 /// Anything between none and all.
@@ -19,6 +17,9 @@ const JITTER_STD: f64 = 0.288_675;
 const LEVEL_STD_RAD: f64 = 0.01;
 /// An accelerometer alone: nothing says better how far it is off, m/s^2.
 const BIAS_STD_M_S2: f64 = 0.2;
+/// The effect that a large tilt is.
+pub(super) const THRUST_TILT: &str = "thrust_tilt";
+
 /// For each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2.
 pub(super) fn momentum_rows(trace: &Trace) -> [[Vec<f64>; 3]; 6] {
     let rates: Vec<Vector3<f64>> = trace.states.iter().map(|state| state.rates_rad_s).collect();
@@ -73,9 +74,11 @@ pub(super) fn nuisances(
     out.push(column(Nuisance::ForceLatency, Some(FORCE_LATENCY_STD_S), late));
     let thrust = trace.weak(0, &thrust);
     let negative: Vec<f64> = thrust.iter().map(|t| -t).collect();
-    let tilt = Some(TILT_STD_RAD);
-    out.push(column(Nuisance::Tilt(0), tilt, force([none(), negative, none()])));
-    out.push(column(Nuisance::Tilt(1), tilt, force([thrust, none(), none()])));
+    // no thrust axis is known to a tenth of a degree; one that leans much is an effect
+    if !base.present.iter().any(|present| present.effect.id() == THRUST_TILT) {
+        out.push(column(Nuisance::Tilt(0), None, force([none(), negative, none()])));
+        out.push(column(Nuisance::Tilt(1), None, force([thrust, none(), none()])));
+    }
     if let Some(jitter) = &trace.jitter {
         let channel =
             |row: usize| trace.weak(0, &jitter.iter().map(|jitter| -jitter[row]).collect::<Vec<f64>>());

@@ -1,11 +1,14 @@
 //! The forward search: fit, test every candidate, take the one that explains most, fit again.
 
 use super::base::{Base, Present};
-use super::candidates::{Candidate, candidates, drag_and_wind};
+use super::candidates::{Candidate, candidates, drag_and_wind, present};
 use super::evidence::{Evidence, Weighted};
+use super::hubs::one_place;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
+use super::nuisances::THRUST_TILT;
 use super::rows::{Channels, Nuisance, Rows};
 use super::settle::{SETTLED_S, settle};
+use super::sharpen::sharpened;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;
@@ -186,7 +189,11 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         let candidates = candidates(&after.base.vehicle, flights);
         last = test_all(flights, &after, &candidates);
         let count = last.len() as f64;
-        let back = |tested: &Tested| refused.contains(&tested.candidate.id);
+        let lean = lean(flights, &after);
+        last.extend(lean.clone());
+        let back = |tested: &Tested| {
+            refused.contains(&tested.candidate.id) || tested.candidate.id == THRUST_TILT
+        };
         let mut passed: Vec<Tested> = last
             .iter()
             .filter(|tested| !back(tested))
@@ -198,20 +205,32 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         passed.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
         match passed.first().cloned() {
             Some(taken) if steps.len() < gates.steps => {
+                let taken = sharpened(flights, &after, taken);
                 let mut base = after.base.clone();
                 base.present.extend(started(&taken).into_iter().map(released));
                 after = fit(flights, base, Newton::Held)?;
                 steps.push(Step { taken, rivals: passed.split_off(1) });
+            }
+            _ if steps.len() < gates.steps
+                && let Some(taken) = lean.filter(|lean| {
+                    lean.evidence.size() > TILT_NUISANCE_RAD && passes(lean, &after, gates, count)
+                }) =>
+            {
+                let mut base = after.base.clone();
+                base.present.extend(started(&taken));
+                after = fit(flights, base, Newton::Held)?;
+                steps.push(Step { taken, rivals: Vec::new() });
             }
             _ if settled == SETTLINGS || steps.is_empty() => break,
             _ => {
                 settled += 1;
                 let before = after.base.present.clone();
                 let (dropped, moved) = settle(flights, &mut after)?;
+                let placed = one_place(flights, &mut after, price)?;
                 let gone = before.iter().map(|present| present.effect.id());
                 let kept = |id: &&'static str| after.base.present.iter().any(|p| p.effect.id() == *id);
                 refused.extend(gone.filter(|id| !kept(id)));
-                if !dropped && moved < SETTLED_S {
+                if !dropped && !placed && moved < SETTLED_S {
                     break;
                 }
             }
@@ -275,7 +294,7 @@ fn test_all(flights: &[Trace], fitted: &Fitted, candidates: &[Candidate]) -> Vec
     out
 }
 
-fn columns_of(flights: &[Trace], fitted: &Fitted, candidate: &Candidate) -> Option<Vec<Channels>> {
+pub(super) fn columns_of(flights: &[Trace], fitted: &Fitted, candidate: &Candidate) -> Option<Vec<Channels>> {
     let mut columns = Vec::new();
     for part in &candidate.parts {
         columns.extend(fitted.rows.columns_of(flights, &fitted.base, part).ok()?);
@@ -306,11 +325,11 @@ fn drags_along_z(present: &Present) -> bool {
 /// Wind acts through drag: both together, or wind alone where drag is known already.
 fn test_drag_and_wind(flights: &[Trace], fitted: &Fitted, at_hubs: f64) -> Option<Tested> {
     let (drag, wind, unit) = drag_and_wind(at_hubs)?;
-    let present = |id: &str| fitted.base.present.iter().any(|present| present.effect.id() == id);
-    if present("steady_wind") || !flights.iter().all(|trace| trace.known.velocity && trace.known.attitude) {
+    let known = |id: &str| fitted.base.present.iter().any(|present| present.effect.id() == id);
+    if known("steady_wind") || !flights.iter().all(|trace| trace.known.velocity && trace.known.attitude) {
         return None;
     }
-    if present("linear_drag") || present("quadratic_drag") {
+    if known("linear_drag") || known("quadratic_drag") {
         if at_hubs < 1.0 {
             return None; // its columns come through the drag that is there
         }
@@ -328,6 +347,23 @@ fn test_drag_and_wind(flights: &[Trace], fitted: &Fitted, at_hubs: f64) -> Optio
     let more = fitted.weighted.conditional(&columns, 2)?;
     let candidate = Candidate { id: "steady_wind", parts: vec![drag, wind], through: Some(unit) };
     (more > 4.0).then_some(Tested { candidate, evidence })
+}
+
+/// A mounting is true to about half a degree, rad: less than that is a nuisance.
+pub(super) const TILT_NUISANCE_RAD: f64 = 0.0087;
+
+/// A tilt of the thrust axis, which is a nuisance until nothing else passes.
+fn lean(flights: &[Trace], fitted: &Fitted) -> Option<Tested> {
+    let tilt = present(THRUST_TILT, &[0.0; 2], &[0, 1])?;
+    let candidate = Candidate { id: THRUST_TILT, parts: vec![tilt], through: None };
+    if is_present(&fitted.base, &candidate) {
+        return None;
+    }
+    let columns = columns_of(flights, fitted, &candidate)?;
+    let mut rows = fitted.rows.clone();
+    rows.nuisances.retain(|column| !matches!(column.nuisance, Nuisance::Tilt(_)));
+    let evidence = Weighted::at(&rows, &fitted.weighted.sigma).test(&columns)?;
+    Some(Tested { candidate, evidence })
 }
 
 /// Significant, spread over the flight, possible, and large enough to matter.

@@ -5,7 +5,7 @@ use super::super::rows::{AXES, Channels, SECOND};
 use super::super::search::Fitted;
 use super::super::trace::Trace;
 use super::Localisation;
-use super::gust::{GustFound, gust};
+use super::gust::{GustFound, axial_drag_n_s_m, gust, lateral_drag};
 use super::spectrum::{Ordinate, Whittle, noise_shapes, periodogram, whittle};
 use super::view::{Followed, View};
 use nalgebra::Vector3;
@@ -54,7 +54,9 @@ pub struct Redness {
     pub correlation_s: f64,
     /// rms of the weight, or of the torque's rms
     pub relative: f64,
-    /// certain and large enough to matter
+    /// N, what the velocity's own slow error makes of the drag (rms)
+    pub of_velocity_n: f64,
+    /// certain, large enough to matter, and more than the velocity's error makes
     pub certain: bool,
 }
 
@@ -104,6 +106,10 @@ const TREND_Z: f64 = 5.5;
 const TREND_G: f64 = 0.005;
 /// Likelihood ratio of redness.
 pub(super) const RED_STATISTIC: f64 = 30.0;
+/// Likelihood ratio of a redness in what the force's two readings contradict each other by.
+const CONTRADICTION_STATISTIC: f64 = 10.0;
+/// A red force is no force unless it is larger than this many times what the velocity's error makes.
+pub(super) const CONTRADICTED: f64 = 2.0;
 /// Least rms of a red force, of the weight.
 const RED_G: f64 = 0.002;
 /// Least torque of any kind, of the torque's rms.
@@ -269,8 +275,32 @@ fn redness(view: &View, fitted: &Fitted, of: Quantity, series: &[f64]) -> Option
     let rms = fit.coefficients[2].sqrt();
     let relative = rms / scale(fitted, of).max(f64::MIN_POSITIVE);
     let least = if matches!(of, Quantity::Torque(_)) { LEAST_TORQUE } else { RED_G };
-    let certain = statistic > RED_STATISTIC && relative > least;
-    Some(Redness { of, statistic, rms, correlation_s, relative, certain })
+    let of_velocity_n = force_of_velocity_error_n(view, fitted, of);
+    let certain = statistic > RED_STATISTIC && relative > least && rms > CONTRADICTED * of_velocity_n;
+    Some(Redness { of, statistic, rms, correlation_s, relative, of_velocity_n, certain })
+}
+
+/// What the velocity's own slow error makes of the drag, N (rms): an estimated velocity that wanders does not
+/// follow from the accelerometer, and the two readings of the force contradict each other by the error's rate.
+fn force_of_velocity_error_n(view: &View, fitted: &Fitted, of: Quantity) -> f64 {
+    let (axis, across) = match of {
+        Quantity::World(axis) => (axis, true),
+        Quantity::BodyZ => (2, false),
+        Quantity::Lift | Quantity::Torque(_) => return 0.0,
+    };
+    let Some(contradiction) = &view.contradiction_n else { return 0.0 };
+    let ordinates = beside_harmonics(view, &contradiction[axis]);
+    match red_fit(view, &ordinates) {
+        Some((correlation_s, fit, statistic)) if statistic > CONTRADICTION_STATISTIC => {
+            let drag_n_s_m = if across {
+                lateral_drag(view, fitted).map_or(0.0, |(drag_n_s_m, _)| drag_n_s_m)
+            } else {
+                axial_drag_n_s_m(fitted)
+            };
+            fit.coefficients[2].sqrt() * correlation_s * drag_n_s_m / fitted.base.vehicle.body.mass_kg
+        }
+        _ => 0.0,
+    }
 }
 
 /// The state that the residual follows most surely, where no flight repeats.

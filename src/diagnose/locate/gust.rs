@@ -1,6 +1,6 @@
 //! Gusts: a red horizontal force that a known drag turns into wind.
 
-use super::aperiodic::{Quantity, RED_STATISTIC, Redness, beside_harmonics, red_fit, red_shape};
+use super::aperiodic::{CONTRADICTED, Quantity, RED_STATISTIC, Redness, beside_harmonics, red_fit, red_shape};
 use super::spectrum::{Ordinate, Whittle, noise_shapes, whittle};
 use super::view::{Followed, View};
 use crate::diagnose::search::Fitted;
@@ -27,7 +27,7 @@ pub struct GustFound {
 /// Axes of a gust differ in strength by no more than this.
 const ALIKE: f64 = 3.0;
 /// Lateral drag of the accepted effects with its standard error, N/(m/s) at the speeds flown.
-fn lateral_drag(view: &View, fitted: &Fitted) -> Option<(f64, f64)> {
+pub(super) fn lateral_drag(view: &View, fitted: &Fitted) -> Option<(f64, f64)> {
     let mut first = fitted.rows.nuisances.len();
     let (mut drag, mut variance) = (0.0, 0.0);
     let speed = view.states.iter().find(|(state, _)| *state == Followed::Speed).map(|(_, values)| values);
@@ -52,12 +52,24 @@ fn lateral_drag(view: &View, fitted: &Fitted) -> Option<(f64, f64)> {
     (drag > 0.0 && variance.is_finite()).then(|| (drag, variance.max(0.0).sqrt()))
 }
 
+/// Drag of the accepted effects along body z, N/(m/s).
+pub(super) fn axial_drag_n_s_m(fitted: &Fitted) -> f64 {
+    let along_z = fitted.base.present.iter().filter_map(|present| match present.effect.id() {
+        "linear_drag" => present.values.get(2),
+        "inflow" => present.values.first(),
+        _ => None,
+    });
+    along_z.sum()
+}
+
 /// Gusts: both horizontal axes red alike, and a drag through which they act.
 pub(super) fn gust(view: &View, fitted: &Fitted, redness: &[Redness]) -> Option<GustFound> {
     let axes: Vec<&Redness> = redness.iter().filter(|red| matches!(red.of, Quantity::World(_))).collect();
     let [x, y] = axes.as_slice() else { return None };
     let alike = x.rms < ALIKE * y.rms && y.rms < ALIKE * x.rms;
     let each = x.statistic.min(y.statistic) > 0.5 * RED_STATISTIC;
+    // no wind where the velocity's error alone makes as much
+    let each = each && axes.iter().all(|red| red.rms > CONTRADICTED * red.of_velocity_n);
     if !(alike && each && (x.certain || y.certain)) {
         return None;
     }

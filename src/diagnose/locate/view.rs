@@ -1,7 +1,7 @@
 //! A fit's residual row by row, beside the states that it may follow.
 
 use super::super::harmonics::flown_period_s;
-use super::super::rows::{AXES, CHANNELS};
+use super::super::rows::{AXES, CHANNELS, SECOND};
 use super::super::search::Fitted;
 use super::super::trace::Trace;
 use crate::signals::{WeakKernel, central_difference};
@@ -111,6 +111,8 @@ pub(super) struct View {
     pub(super) thrust_n: Vec<f64>,
     /// force on world x, y, z, N; `None` without attitude
     pub(super) world_force_n: Option<[Vec<f64>; 3]>,
+    /// first reading of the force less its second, on world x, y, z, N; `None` where there is but one
+    pub(super) contradiction_n: Option<[Vec<f64>; 3]>,
     /// weak form's test function
     pub(super) kernel: WeakKernel,
     /// s, of the recordings' grid
@@ -141,12 +143,19 @@ impl View {
             states: Vec::new(),
             thrust_n: Vec::with_capacity(rows),
             world_force_n: None,
+            contradiction_n: None,
             kernel: first.kernel.clone(),
             grid_step_s: first.grid.step_s,
         };
         view.lay_out(traces);
         view.add_states(traces, fitted);
-        view.turn(traces);
+        view.world_force_n = in_world(traces, |axis, row| view.residual[axis][row]);
+        if traces.iter().all(Trace::reads_force_twice) {
+            let second = |axis: usize, row: usize| {
+                left[(SECOND + axis) * rows + row] * sigma[SECOND + axis]
+            };
+            view.contradiction_n = in_world(traces, |axis, row| view.residual[axis][row] - second(axis, row));
+        }
         Some(view)
     }
 
@@ -252,24 +261,6 @@ impl View {
         }
     }
 
-    /// The residual force in the world.
-    fn turn(&mut self, traces: &[Trace]) {
-        if !traces.iter().all(|trace| trace.known.attitude) {
-            return;
-        }
-        let mut world: [Vec<f64>; 3] = Default::default();
-        let mut row = 0;
-        for trace in traces {
-            for &center in &trace.centers {
-                let body = Vector3::from_fn(|axis, _| self.residual[axis][row]);
-                let force = trace.states[center].attitude * body;
-                world.iter_mut().zip(force.iter()).for_each(|(axis, value)| axis.push(*value));
-                row += 1;
-            }
-        }
-        self.world_force_n = Some(world);
-    }
-
     /// Number of rows.
     pub(super) fn len(&self) -> usize {
         self.time_s.len()
@@ -279,6 +270,20 @@ impl View {
     pub(super) fn period_s_at(&self, row: usize) -> Option<f64> {
         self.flights.iter().find(|(rows, _)| rows.contains(&row)).and_then(|(_, period_s)| *period_s)
     }
+}
+
+/// A force that is given on body axes by axis and row, turned into the world; `None` without attitude.
+fn in_world(traces: &[Trace], body_n: impl Fn(usize, usize) -> f64) -> Option<[Vec<f64>; 3]> {
+    if !traces.iter().all(|trace| trace.known.attitude) {
+        return None;
+    }
+    let mut world: [Vec<f64>; 3] = Default::default();
+    let centers = traces.iter().flat_map(|trace| trace.centers.iter().map(move |&center| (trace, center)));
+    for (row, (trace, center)) in centers.enumerate() {
+        let force = trace.states[center].attitude * Vector3::from_fn(|axis, _| body_n(axis, row));
+        world.iter_mut().zip(force.iter()).for_each(|(axis, value)| axis.push(*value));
+    }
+    Some(world)
 }
 
 fn moves(values: &[f64]) -> bool {
@@ -333,6 +338,7 @@ pub(super) mod tests {
             ],
             thrust_n: vec![10.0; rows],
             world_force_n: None,
+            contradiction_n: None,
             kernel,
             grid_step_s,
             time_s,

@@ -1,8 +1,11 @@
 //! The body drags with the square of the airspeed.
 
+use nalgebra::Vector3;
+
 use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `F = -|v_air| diag(cx, cy, cz) v_air` at the centre of mass; `c = rho CdA / 2` of a face.
+/// `F = -|v_air| diag(cx, cy, cz) v_air` at the centre of mass; `c = rho CdA / 2` of a face. In the finer form
+/// `by_face` of it goes with each face's own speed, `F_i = -c_i |v_i| v_i`, as flat faces have it.
 ///
 /// Hoerner 1965; ArduPilot's ballistic coefficients.
 #[derive(Debug, Clone, Copy)]
@@ -13,6 +16,14 @@ const PARAMETERS: &[Parameter] = &[
     Parameter { name: "cy", unit: "N/(m/s)^2", min: 0.0, max: 2.0 },
     Parameter { name: "cz", unit: "N/(m/s)^2", min: 0.0, max: 2.0 },
 ];
+
+const FINER: &[Parameter] = &[Parameter { name: "by_face", unit: "-", min: 0.0, max: 1.0 }];
+
+/// The speed that each axis' force goes with, m/s.
+fn speed_m_s(v: &Vector3<f64>, parameters: &[f64]) -> Vector3<f64> {
+    let by_face = parameters.get(PARAMETERS.len()).copied().unwrap_or(0.0);
+    v.map(|v_i| (1.0 - by_face) * v.norm() + by_face * v_i.abs())
+}
 
 impl Effect for QuadraticDrag {
     fn id(&self) -> &'static str {
@@ -27,6 +38,10 @@ impl Effect for QuadraticDrag {
         PARAMETERS
     }
 
+    fn finer_parameters(&self) -> &'static [Parameter] {
+        FINER
+    }
+
     fn hooks(&self) -> &'static [Hook] {
         &[Hook::Wrench]
     }
@@ -34,18 +49,19 @@ impl Effect for QuadraticDrag {
     fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
         let area = own.axes();
         let v = at.air_velocity_m_s;
-        sum.force_n -= v.component_mul(&area) * v.norm();
+        sum.force_n -= v.component_mul(&area).component_mul(&speed_m_s(&v, own.parameters));
     }
 
     fn is_linear(&self) -> bool {
         true
     }
 
-    fn regressor(&self, at: &Condition, _rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
+    fn regressor(&self, at: &Condition, _rotors: &Rotors, parameters: &[f64], columns: &mut [Wrench]) {
         let v = at.air_velocity_m_s;
+        let speed = speed_m_s(&v, parameters);
         for (axis, column) in columns.iter_mut().enumerate().take(PARAMETERS.len()) {
             *column = Wrench::zero();
-            column.force_n[axis] = -v.norm() * v[axis];
+            column.force_n[axis] = -speed[axis] * v[axis];
         }
     }
 }

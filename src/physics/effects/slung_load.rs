@@ -9,7 +9,8 @@ use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, 
 /// apart), the cord pulls with `T = M m / (M + m) (L |q'|^2 - q . F / M)` along `q`, and
 /// `L q'' = -(T q / m) - (F + T q) / M`.
 ///
-/// Sreenath, Lee and Kumar 2013, without torque, since the cord is at the centre of mass.
+/// Sreenath, Lee and Kumar 2013, without torque, since the cord is at the centre of mass. In the finer form
+/// the air damps the swing: `q''` less `damping q'`.
 #[derive(Debug, Clone, Copy)]
 pub struct SlungLoad;
 
@@ -17,6 +18,8 @@ const PARAMETERS: &[Parameter] = &[
     Parameter { name: "mass", unit: "kg", min: 0.0, max: 5.0 },
     Parameter { name: "length", unit: "m", min: 0.05, max: 20.0 },
 ];
+
+const FINER: &[Parameter] = &[Parameter { name: "damping", unit: "1/s", min: 0.0, max: 10.0 }];
 
 /// Direction and its rate.
 const STATES: usize = 6;
@@ -32,6 +35,10 @@ impl Effect for SlungLoad {
 
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
+    }
+
+    fn finer_parameters(&self) -> &'static [Parameter] {
+        FINER
     }
 
     fn hooks(&self) -> &'static [Hook] {
@@ -50,6 +57,7 @@ impl Effect for SlungLoad {
 
     fn reaction(&self, at: &Condition, own: &mut Own, sum: &mut Wrench) {
         let [load_kg, length_m] = [own.parameters[0], own.parameters[1]];
+        let damping_1_s = own.parameters.get(PARAMETERS.len()).copied().unwrap_or(0.0);
         let vehicle_kg = at.airframe.mass_kg;
         let cord = Vector3::from_column_slice(&own.states[..3]).normalize();
         let swing = Vector3::from_column_slice(&own.states[3..]);
@@ -60,7 +68,8 @@ impl Effect for SlungLoad {
         let tension_m_s2 = reduced_kg / load_kg.max(f64::MIN_POSITIVE)
             * (length_m * swing.norm_squared() - cord.dot(&force_n) / vehicle_kg);
         let pull_n = cord * (tension_m_s2 * load_kg);
-        let turning = (cord * -tension_m_s2 - (force_n + pull_n) / vehicle_kg) / length_m;
+        let turning = (cord * -tension_m_s2 - (force_n + pull_n) / vehicle_kg) / length_m
+            - swing * damping_1_s;
         own.rates[..3].copy_from_slice(swing.as_slice());
         own.rates[3..].copy_from_slice(turning.as_slice());
         sum.force_n += at.state.attitude.inverse_transform_vector(&pull_n);
