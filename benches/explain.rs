@@ -137,7 +137,12 @@ fn report_effect(id: &'static str, values: Sizes, first: u64, count: u64) {
         let ids: Vec<&str> =
             explanation.named.iter().chain(&explanation.closest).map(|name| name.id).collect();
         if explanation.verdict != Verdict::Explained || ids != [id] {
-            println!("  seed {seed}: {} {ids:?} {} {:?}", explanation.verdict.name(), conditions(*seed), explanation.search.latency);
+            println!(
+                "  seed {seed}: {} {ids:?} {} {:?}",
+                explanation.verdict.name(),
+                conditions(*seed),
+                explanation.search.latency
+            );
         }
         for name in explanation.named.iter().filter(|name| name.id != id && !in_set(name)) {
             others += 1;

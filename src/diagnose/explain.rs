@@ -297,7 +297,8 @@ fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<N
     let LatencyFinding { total_s, std_s, parts, against_lag, against_delay } = found.latency;
     let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
     let motor_s = vehicle.propulsion.time_constant_s.unwrap_or(0.0);
-    let ordinary_s = motor_s + FAST_MOTOR_S + 0.5 * period_s;
+    let late_s = traces.iter().map(|trace| trace.inertial_late_s).fold(0.0, f64::max);
+    let ordinary_s = motor_s + FAST_MOTOR_S + 0.5 * period_s + late_s;
     if total_s - ordinary_s < 4.0 * std_s {
         return None;
     }
@@ -319,8 +320,7 @@ fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<N
         };
         (parts.delay_s - held_s(traces) - motor_s, std_s.hypot(unsure_s))
     };
-    let (own, others) =
-        if is_lag { (against_lag, against_delay) } else { (against_delay, against_lag) };
+    let (own, others) = if is_lag { (against_lag, against_delay) } else { (against_delay, against_lag) };
     let told_apart = others > REFUSED && own < 0.5 * REFUSED;
     let z = (total_s - ordinary_s) / std_s;
     Some(Named {

@@ -78,15 +78,16 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
     Ok((held, finding))
 }
 
-/// A lag behind the time for which a command holds.
+/// A lag behind what delays the recording itself.
 fn lag_of(flights: &[Trace], total_s: f64) -> ActuationLatency {
     let delay_s = held_s(flights).min(0.5 * total_s);
     ActuationLatency { delay_s, lag_s: total_s - delay_s }
 }
 
-/// By which holding the commands delays them, s.
+/// What is no vehicle's: commands that hold, and the delay of the inertial unit's filters, s.
 pub(super) fn held_s(flights: &[Trace]) -> f64 {
-    flights.iter().map(|trace| HELD * trace.command_period_s).fold(0.0, f64::max)
+    let held = |trace: &Trace| HELD * trace.command_period_s + trace.inertial_late_s;
+    flights.iter().map(held).fold(0.0, f64::max)
 }
 
 /// Effects whose columns resemble that of a latency.

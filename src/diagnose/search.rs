@@ -5,6 +5,7 @@ use super::candidates::{Candidate, candidates, drag_and_wind, present};
 use super::evidence::{Evidence, Weighted};
 use super::hubs::one_place;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
+use super::locate::mass_step_std_kg;
 use super::nuisances::THRUST_TILT;
 use super::rows::{Channels, Nuisance, Rows};
 use super::settle::{SETTLED_S, settle};
@@ -191,9 +192,8 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         let count = last.len() as f64;
         let lean = lean(flights, &after);
         last.extend(lean.clone());
-        let back = |tested: &Tested| {
-            refused.contains(&tested.candidate.id) || tested.candidate.id == THRUST_TILT
-        };
+        let back =
+            |tested: &Tested| refused.contains(&tested.candidate.id) || tested.candidate.id == THRUST_TILT;
         let mut passed: Vec<Tested> = last
             .iter()
             .filter(|tested| !back(tested))
@@ -208,7 +208,12 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
                 let taken = sharpened(flights, &after, taken);
                 let mut base = after.base.clone();
                 base.present.extend(started(&taken).into_iter().map(released));
-                after = fit(flights, base, Newton::Held)?;
+                let fitted = fit(flights, base, Newton::Held)?;
+                if wanders(flights, &fitted, &taken) {
+                    refused.push(taken.candidate.id);
+                    continue;
+                }
+                after = fitted;
                 steps.push(Step { taken, rivals: passed.split_off(1) });
             }
             _ if steps.len() < gates.steps
@@ -270,6 +275,18 @@ fn started(tested: &Tested) -> Vec<Present> {
     }
     parts
 }
+
+/// A step of the mass that a wandering force could be.
+fn wanders(flights: &[Trace], fitted: &Fitted, taken: &Tested) -> bool {
+    let changes = taken.candidate.parts.iter().filter(|part| part.effect.id() == "mass_change");
+    changes.into_iter().any(|part| {
+        let delta_kg = taken.evidence.theta[0].abs();
+        delta_kg < WANDERED * mass_step_std_kg(flights, fitted, part.values[0])
+    })
+}
+
+/// A step counts beyond this many of a wandering force's standard errors.
+const WANDERED: f64 = 4.0;
 
 /// Parameters that only show once the effect is there are estimated from then on.
 fn released(mut present: Present) -> Present {

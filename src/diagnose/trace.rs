@@ -39,6 +39,8 @@ pub struct Trace {
     pub gyro_noise_rad_s: f64,
     /// s between commands (or measured speeds) as logged
     pub command_period_s: f64,
+    /// s, by which the inertial unit's readings are later than the attitude: its filters' delay
+    pub inertial_late_s: f64,
     /// m/s^2, body, accelerometer
     specific_force_m_s2: Option<Vec<Vector3<f64>>>,
     /// N, as commanded (or measured), each rotor
@@ -150,6 +152,7 @@ impl Trace {
             measured_speeds: signals.quality.thrust_source == ThrustSource::MeasuredSpeed,
             gyro_noise_rad_s: gyro_noise_rad_s(rates),
             command_period_s: command_period_s(signals),
+            inertial_late_s: inertial_late_s(signals),
             specific_force_m_s2: measured.cloned(),
             commanded_n,
             jitter: signals.jitter_wrench.clone(),
@@ -331,6 +334,12 @@ fn gyro_noise_rad_s(rates: &[Vector3<f64>]) -> f64 {
     (0..3)
         .map(|axis| white_level_of(&rates.iter().map(|rate| rate[axis]).collect::<Vec<_>>()))
         .fold(0.0, f64::max)
+}
+
+/// An attitude that is early against the gyroscopes was not foreseen: the gyroscopes are late.
+fn inertial_late_s(signals: &Signals) -> f64 {
+    let attitude = signals.quality.offsets.iter().find(|(quantity, _)| *quantity == Quantity::Attitude);
+    attitude.filter(|(_, offset)| offset.repaired).map_or(0.0, |(_, offset)| (-offset.late_s).max(0.0))
 }
 
 /// Of the stream that the thrusts rest on.

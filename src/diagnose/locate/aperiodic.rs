@@ -106,6 +106,8 @@ const TREND_Z: f64 = 5.5;
 const TREND_G: f64 = 0.005;
 /// Likelihood ratio of redness.
 pub(super) const RED_STATISTIC: f64 = 30.0;
+/// Likelihood ratio beyond which a force wanders.
+const WANDERING: f64 = 12.0;
 /// Likelihood ratio of a redness in what the force's two readings contradict each other by.
 const CONTRADICTION_STATISTIC: f64 = 10.0;
 /// A red force is no force unless it is larger than this many times what the velocity's error makes.
@@ -139,6 +141,29 @@ pub fn aperiodic(traces: &[Trace], fitted: &Fitted, located: &Localisation) -> A
         state: state_lack(&view, fitted, located),
         redness,
     }
+}
+
+/// Standard error of a step of the mass, kg, where the force along body z wanders: what noise of long
+/// correlation makes of the difference between before and after. Zero where nothing is redder than sensors.
+#[must_use]
+pub fn mass_step_std_kg(traces: &[Trace], fitted: &Fitted, at_s: f64) -> f64 {
+    let Some(mut view) = View::new(traces, fitted) else { return 0.0 };
+    quieten(&mut view, fitted);
+    let Some((correlation_s, fit, statistic)) = red_fit(&view, &beside_harmonics(&view, &view.residual[2]))
+    else {
+        return 0.0;
+    };
+    if statistic < WANDERING {
+        return 0.0;
+    }
+    let count = |what: &dyn Fn(f64) -> bool| {
+        view.time_s.iter().filter(|time_s| what(**time_s)).count() as f64 * view.step_s
+    };
+    let (before_s, after_s) = (count(&|t| t < at_s), count(&|t| t >= at_s));
+    // the mean of a Gauss-Markov process over a time: 2 s^2 T / L, at most s^2
+    let variance = fit.coefficients[2];
+    let of_mean = |length_s: f64| (2.0 * variance * correlation_s / length_s.max(1e-3)).min(variance);
+    (of_mean(before_s) + of_mean(after_s)).sqrt() / fitted.base.vehicle.gravity_m_s2
 }
 
 /// Leaves out the time about a mass change, which is known to some seconds only: a step at the wrong time is

@@ -1,6 +1,8 @@
 //! Gusts: a red horizontal force that a known drag turns into wind.
 
-use super::aperiodic::{CONTRADICTED, Quantity, RED_STATISTIC, Redness, beside_harmonics, red_fit, red_shape};
+use super::aperiodic::{
+    CONTRADICTED, Quantity, RED_STATISTIC, Redness, beside_harmonics, red_fit, red_shape,
+};
 use super::spectrum::{Ordinate, Whittle, noise_shapes, whittle};
 use super::view::{Followed, View};
 use crate::diagnose::search::Fitted;

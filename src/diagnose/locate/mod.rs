@@ -10,7 +10,7 @@ mod states;
 mod time;
 mod view;
 
-pub use aperiodic::{Aperiodic, Quantity, Redness, StateLack, Trend, aperiodic};
+pub use aperiodic::{Aperiodic, Quantity, Redness, StateLack, Trend, aperiodic, mass_step_std_kg};
 pub use field::{FieldTest, Uneven, field_test};
 pub use frequency::{Band, Coherence};
 pub use gust::GustFound;

@@ -151,9 +151,7 @@ impl View {
         view.add_states(traces, fitted);
         view.world_force_n = in_world(traces, |axis, row| view.residual[axis][row]);
         if traces.iter().all(Trace::reads_force_twice) {
-            let second = |axis: usize, row: usize| {
-                left[(SECOND + axis) * rows + row] * sigma[SECOND + axis]
-            };
+            let second = |axis: usize, row: usize| left[(SECOND + axis) * rows + row] * sigma[SECOND + axis];
             view.contradiction_n = in_world(traces, |axis, row| view.residual[axis][row] - second(axis, row));
         }
         Some(view)

@@ -68,8 +68,8 @@ impl Effect for SlungLoad {
         let tension_m_s2 = reduced_kg / load_kg.max(f64::MIN_POSITIVE)
             * (length_m * swing.norm_squared() - cord.dot(&force_n) / vehicle_kg);
         let pull_n = cord * (tension_m_s2 * load_kg);
-        let turning = (cord * -tension_m_s2 - (force_n + pull_n) / vehicle_kg) / length_m
-            - swing * damping_1_s;
+        let turning =
+            (cord * -tension_m_s2 - (force_n + pull_n) / vehicle_kg) / length_m - swing * damping_1_s;
         own.rates[..3].copy_from_slice(swing.as_slice());
         own.rates[3..].copy_from_slice(turning.as_slice());
         sum.force_n += at.state.attitude.inverse_transform_vector(&pull_n);
