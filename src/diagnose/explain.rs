@@ -52,14 +52,14 @@ pub enum ExplainError {
 }
 
 /// Fewest rows that twelve blocks make sense of.
-const LEAST_ROWS: usize = 120;
+pub(super) const LEAST_ROWS: usize = 120;
 /// Chance below which something is left at the harmonics.
 const LACK_P: f64 = 1e-6;
 /// and it must be larger than this in force (of gravity) or torque (of the torque's own rms).
 const LACK_FORCE_G: f64 = 0.002;
 const LACK_TORQUE: f64 = 0.1;
 /// A lag or delay is named beyond sampling and a fast motor, s.
-const FAST_MOTOR_S: f64 = 0.004;
+pub(super) const FAST_MOTOR_S: f64 = 0.004;
 /// A mounting tilt is a nuisance below half a degree, rad.
 const TILT_NUISANCE_RAD: f64 = 0.0087;
 /// A centre of mass is not known better, m.

@@ -17,8 +17,10 @@ mod nuisances;
 pub mod refit;
 mod rows;
 mod search;
+mod sensors;
 mod settle;
 pub mod show;
+pub mod together;
 mod trace;
 
 pub use along::{Thrusts, Turning, wrench_along};

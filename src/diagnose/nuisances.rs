@@ -4,7 +4,8 @@ use super::along::Turning;
 use super::base::Base;
 use super::rows::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
 use super::trace::Trace;
-use crate::physics::Wrench;
+use crate::physics::effects::FrameMisalignment;
+use crate::physics::{Effect, Wrench};
 use crate::regression::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor};
 use crate::signals::central_difference;
 use nalgebra::Vector3;
@@ -82,12 +83,14 @@ pub(super) fn nuisances(
         let values = channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);
         out.push(column(Nuisance::Jitter, Some(JITTER_STD), values));
     }
-    out.extend(sensor_nuisances(trace, mass_kg));
+    let leans = base.present.iter().any(|present| present.effect.id() == FrameMisalignment.id());
+    out.extend(sensor_nuisances(trace, mass_kg, leans));
     out
 }
 
-/// The accelerometer's bias, and the level of the attitude that the kinematics rest on.
-fn sensor_nuisances(trace: &Trace, mass_kg: f64) -> Vec<NuisanceColumn> {
+/// The accelerometer's bias, and the level of the attitude that the kinematics rest on, unless the base has an
+/// effect for it.
+fn sensor_nuisances(trace: &Trace, mass_kg: f64, leans: bool) -> Vec<NuisanceColumn> {
     let mut out = Vec::new();
     if trace.has_accelerometer() {
         let prior_std = if trace.reads_force_twice() { None } else { Some(BIAS_STD_M_S2) };
@@ -97,7 +100,7 @@ fn sensor_nuisances(trace: &Trace, mass_kg: f64) -> Vec<NuisanceColumn> {
             out.push(NuisanceColumn { nuisance: Nuisance::AccelerometerBias(axis), values, prior_std });
         }
     }
-    if trace.known.attitude && trace.known.velocity {
+    if trace.known.attitude && trace.known.velocity && !leans {
         let first = if trace.has_accelerometer() { SECOND } else { 0 };
         for axis in 0..2 {
             // gravity leans by the error's cross product with up

@@ -58,6 +58,8 @@ const CONVERGED: f64 = 0.05;
 pub enum Newton {
     /// estimated
     Free,
+    /// its delay is estimated, whatever its lag
+    Delay,
     /// as given
     Held,
 }
@@ -112,9 +114,9 @@ fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
                     body.inertia_kg_m2[(column, row)] += by;
                 }
             }
-            Nuisance::Latency if newton == Newton::Free => {
+            Nuisance::Latency if newton != Newton::Held => {
                 let by = by.clamp(-0.05, 0.05);
-                if base.latency.lag_s > 0.0 {
+                if base.latency.lag_s > 0.0 && newton == Newton::Free {
                     base.latency.lag_s = (base.latency.lag_s + by).max(1e-4);
                 } else {
                     base.latency.delay_s = (base.latency.delay_s + by).clamp(-0.03, 0.3);

@@ -162,6 +162,22 @@ impl Trace {
         Ok(trace)
     }
 
+    /// The same flight with another motion: states and specific force (m/s^2, body), one entry a grid instant.
+    pub(super) fn with_motion(
+        &self,
+        states: Vec<State>,
+        specific_force_m_s2: Option<Vec<Vector3<f64>>>,
+    ) -> Result<Self, TraceError> {
+        let mut trace = Self { states, specific_force_m_s2, ..self.clone() };
+        trace.smooth()?;
+        Ok(trace)
+    }
+
+    /// What the accelerometer showed, m/s^2, body; `None` where it is not recorded.
+    pub(super) fn specific_force_m_s2(&self) -> Option<&[Vector3<f64>]> {
+        self.specific_force_m_s2.as_deref()
+    }
+
     /// Number of weak-form rows.
     #[must_use]
     pub fn rows(&self) -> usize {
