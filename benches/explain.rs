@@ -34,6 +34,14 @@ const SIZES: &[(&str, Sizes)] = &[
     ("translational_lift", &[("kh", 0.12, Scale::Mass)]),
     ("slung_load", &[("mass", 0.08, Scale::Mass), ("length", 0.8, Scale::One), ("damping", 0.3, Scale::One)]),
     ("mass_change", &[("time", 26.0, Scale::One), ("delta", -0.08, Scale::Mass)]),
+    ("frame_misalignment", &[("x", 0.035, Scale::One), ("y", -0.026, Scale::One), ("z", 0.0, Scale::One)]),
+    ("imu_misalignment", &[("x", 0.035, Scale::One), ("y", -0.026, Scale::One), ("z", 0.03, Scale::One)]),
+    ("imu_offset", &[("x", 0.05, Scale::One), ("y", -0.03, Scale::One), ("z", 0.04, Scale::One)]),
+    ("rotor_inertia", &[("jr", 0.003, Scale::Inertia)]),
+    (
+        "tether",
+        &[("line_mass", 0.03, Scale::Mass), ("stiffness", 0.0, Scale::One), ("length", 500.0, Scale::One)],
+    ),
     ("motor_lag", &[("time_constant", 0.04, Scale::One)]),
     ("transport_delay", &[("delay", 0.03, Scale::One)]),
 ];

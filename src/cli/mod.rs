@@ -155,6 +155,9 @@ pub struct IdentifyArgs {
     /// use commands even where rotor speeds are measured
     #[arg(long)]
     pub commands: bool,
+    /// identify these physical effects together with the rigid body, by the names that `explain` gives them
+    #[arg(long, value_name = "EFFECT,...", value_delimiter = ',')]
+    pub with: Vec<String>,
 }
 
 /// Arguments of `mavid fly`.

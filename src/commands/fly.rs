@@ -249,6 +249,7 @@ fn identify(args: &FlyArgs) -> Result<Identified, CommandError> {
         fir: false,
         sigma: mavid::estimate::PAPER_SIGMA,
         commands: false,
+        with: Vec::new(),
     };
     let identified = Identified::from(&identify)?;
     identified.write(&identify)?;

@@ -1,15 +1,18 @@
 //! `mavid identify LOG... --vehicle V`: parameters from recorded flights.
 
 use mavid::config::{LoadedVehicle, read_vehicle};
+use mavid::diagnose::ExplainSettings;
+use mavid::diagnose::together::{Wanted, together};
 use mavid::estimate::{Identification, IdentifySettings, ThrustScale, apply_anchor, identify};
 use mavid::report::{
-    IdentificationDocument, InputFile, history_charts, identification_page, model_toml, svg,
+    IdentificationDocument, InputFile, WithEffects, history_charts, identification_page, model_toml, svg,
 };
 use mavid::signals::{ConditionSettings, Quality, Signals, ThrustPreference, condition};
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
-use super::flights::{ReadAs, is_csv, load, refuse_twins};
+use super::effects::effects;
+use super::flights::{Flight, ReadAs, is_csv, load, refuse_twins};
 use super::{CommandError, Outcome, output};
 use crate::cli::IdentifyArgs;
 
@@ -21,21 +24,27 @@ pub struct Identified {
     inputs: Vec<InputFile>,
     identification: Identification,
     scale: Option<ThrustScale>,
+    with: Option<WithEffects>,
 }
 
 impl Identified {
     /// Loads, conditions and identifies.
     pub fn from(args: &IdentifyArgs) -> Result<Self, CommandError> {
-        let LoadedVehicle { vehicle, warnings, .. } = read_vehicle(&args.vehicle)?;
-        for warning in &warnings {
+        let wanted = wanted(args)?;
+        let loaded = read_vehicle(&args.vehicle)?;
+        let LoadedVehicle { vehicle, warnings, .. } = &loaded;
+        for warning in warnings {
             output::message(&format!("warning: {}: {warning}", args.vehicle.display()));
         }
         let settings = settings(args)?;
-        let (flights, inputs) = conditioned(args, &vehicle)?;
-        let mut identification = identify(&flights, &vehicle, &settings)
-            .map_err(|error| CommandError::Input(error.to_string()))?;
-        let scale = apply_anchor(&mut identification, &vehicle);
-        Ok(Self { vehicle, flights, inputs, identification, scale })
+        let recorded = recorded(args)?;
+        let with = wanted.map(|wanted| with_effects(args, (&recorded, &loaded), &wanted)).transpose()?;
+        let flights = conditioned(&recorded, vehicle, &usual(args))?;
+        let mut identification =
+            identify(&flights, vehicle, &settings).map_err(|error| CommandError::Input(error.to_string()))?;
+        let scale = apply_anchor(&mut identification, vehicle);
+        let inputs = recorded.into_iter().map(|flight| flight.input).collect();
+        Ok(Self { vehicle: loaded.vehicle, flights, inputs, identification, scale, with })
     }
 
     fn quality(&self) -> Vec<&Quality> {
@@ -45,26 +54,37 @@ impl Identified {
     /// As JSON.
     pub fn document(&self) -> IdentificationDocument {
         let quality = self.quality();
-        IdentificationDocument::new(
+        let document = IdentificationDocument::new(
             &self.identification,
             &self.vehicle,
             &quality,
             &self.inputs,
             self.scale.as_ref(),
-        )
+        );
+        match &self.with {
+            Some(with) => document.with(with),
+            None => document,
+        }
     }
 
     /// For people.
     pub fn page(&self) -> String {
-        let page =
-            identification_page(&self.identification, &self.vehicle, &self.quality(), self.scale.as_ref());
+        let page = match &self.with {
+            Some(with) => with.page(),
+            None => {
+                identification_page(&self.identification, &self.vehicle, &self.quality(), self.scale.as_ref())
+            }
+        };
         page.trim_end().to_owned()
     }
 
     /// Writes model and chart where the arguments say so.
     pub fn write(&self, args: &IdentifyArgs) -> Result<(), CommandError> {
         if let Some(path) = &args.out {
-            let text = model_toml(&self.identification, &self.vehicle, &self.inputs, self.scale.as_ref())?;
+            let text = match &self.with {
+                Some(with) => with.model_toml(&self.inputs)?,
+                None => model_toml(&self.identification, &self.vehicle, &self.inputs, self.scale.as_ref())?,
+            };
             output::file(path, &text)?;
         }
         if let Some(path) = &args.chart {
@@ -116,26 +136,72 @@ fn settings(args: &IdentifyArgs) -> Result<IdentifySettings, CommandError> {
     })
 }
 
-/// Loads and conditions every flight, side by side; the same file twice is refused.
-fn conditioned(
-    args: &IdentifyArgs,
-    vehicle: &Vehicle,
-) -> Result<(Vec<Signals>, Vec<InputFile>), CommandError> {
+/// The effects that were asked for; `None` without any.
+fn wanted(args: &IdentifyArgs) -> Result<Option<Wanted>, CommandError> {
+    if args.with.is_empty() {
+        return Ok(None);
+    }
+    Wanted::of(&args.with).map(Some).map_err(|error| CommandError::Input(format!("--with: {error}")))
+}
+
+/// Loads every flight, side by side; the same file twice is refused.
+fn recorded(args: &IdentifyArgs) -> Result<Vec<Flight>, CommandError> {
     let read_as = ReadAs { csv_map: args.csv_map.as_ref(), system: args.system };
-    let settings = ConditionSettings {
+    let done: Vec<Result<Flight, CommandError>> =
+        args.logs.par_iter().map(|path| load(path, &read_as)).collect();
+    let flights = done.into_iter().collect::<Result<Vec<_>, _>>()?;
+    refuse_twins(&flights.iter().map(|flight| &flight.input).collect::<Vec<_>>())?;
+    Ok(flights)
+}
+
+fn usual(args: &IdentifyArgs) -> ConditionSettings {
+    ConditionSettings {
         transient_s: args.transient,
         thrust: if args.commands { ThrustPreference::Commands } else { ThrustPreference::Measured },
         ..ConditionSettings::default()
+    }
+}
+
+/// Conditions every flight, side by side.
+fn conditioned(
+    flights: &[Flight],
+    vehicle: &Vehicle,
+    settings: &ConditionSettings,
+) -> Result<Vec<Signals>, CommandError> {
+    let one = |flight: &Flight| {
+        condition(&flight.recording, vehicle, settings)
+            .map_err(|error| CommandError::Input(format!("{}: {error}", flight.input.path)))
     };
-    let one = |path: &std::path::PathBuf| {
-        let flight = load(path, &read_as)?;
-        let signals = condition(&flight.recording, vehicle, &settings)
-            .map_err(|error| CommandError::Input(format!("{}: {error}", path.display())))?;
-        Ok((signals, flight.input))
+    let done: Vec<Result<Signals, CommandError>> = flights.par_iter().map(one).collect();
+    done.into_iter().collect()
+}
+
+/// Left out at the beginning of a flight, s, as `explain` does.
+const TRANSIENT_S: f64 = 1.0;
+
+/// The named effects together with the rigid body, on the rows on which `explain` would find them.
+fn with_effects(
+    args: &IdentifyArgs,
+    (recorded, loaded): (&[Flight], &LoadedVehicle),
+    wanted: &Wanted,
+) -> Result<WithEffects, CommandError> {
+    let vehicle = &loaded.vehicle;
+    let of_file =
+        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", args.vehicle.display()));
+    let known = effects(&loaded.model.effects, vehicle).map_err(|error| of_file(&error))?;
+    wanted.check_wind(&known).map_err(|error| CommandError::Input(format!("--with: {error}")))?;
+    let by_commands = args.commands || wanted.need_commands();
+    let settings = ConditionSettings {
+        transient_s: Some(args.transient.unwrap_or(TRANSIENT_S)),
+        thrust: if by_commands { ThrustPreference::Commands } else { ThrustPreference::BestSampled },
+        ..ConditionSettings::default()
     };
-    let done: Vec<Result<(Signals, InputFile), CommandError>> = args.logs.par_iter().map(one).collect();
-    let (flights, inputs): (Vec<Signals>, Vec<InputFile>) =
-        done.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
-    refuse_twins(&inputs.iter().collect::<Vec<_>>())?;
-    Ok((flights, inputs))
+    let flights = conditioned(recorded, vehicle, &settings)?;
+    let half_width_s = ExplainSettings::default().half_width_s;
+    let together = together(&flights, (vehicle, &known), wanted, half_width_s).map_err(|error| {
+        let logs: Vec<&str> = recorded.iter().map(|flight| flight.input.path.as_str()).collect();
+        CommandError::Input(format!("{}: {error}", logs.join(", ")))
+    })?;
+    let quality = flights.into_iter().map(|signals| signals.quality).collect();
+    Ok(WithEffects { together, vehicle: vehicle.clone(), quality })
 }

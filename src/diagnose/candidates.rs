@@ -19,7 +19,7 @@ pub struct Candidate {
 /// Times of a mass change that are tried, s apart.
 const MASS_CHANGE_EVERY_S: f64 = 4.0;
 /// Lengths of a load's cord that are tried, m: their periods lie 20 % apart.
-const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
+pub(super) const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
 
 /// What the air takes of a load's swing before more is known, 1/s.
 const SWING_DAMPING_1_S: f64 = 0.2;
@@ -102,7 +102,7 @@ pub fn drag_and_wind(at_hubs: f64) -> Option<(Present, Present, Present)> {
 }
 
 /// Highest voltage that is held for a while, V.
-fn full_voltage(flights: &[Trace]) -> Option<f64> {
+pub(super) fn full_voltage(flights: &[Trace]) -> Option<f64> {
     let mut full: Option<f64> = None;
     for trace in flights {
         let voltage = trace.voltage_v.as_ref()?;
@@ -113,7 +113,7 @@ fn full_voltage(flights: &[Trace]) -> Option<f64> {
     full.filter(|full_v| (2.5..60.0).contains(full_v))
 }
 
-fn change_times(trace: &Trace) -> Vec<f64> {
+pub(super) fn change_times(trace: &Trace) -> Vec<f64> {
     let (Some(first), Some(last)) = (trace.centers.first(), trace.centers.last()) else { return Vec::new() };
     let (first_s, last_s) = (trace.grid.time_s(*first), trace.grid.time_s(*last));
     let mut out = Vec::new();

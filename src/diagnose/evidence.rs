@@ -27,9 +27,9 @@ pub struct Weighted {
     /// residual standard deviation of each channel, N and N m
     pub sigma: [f64; CHANNELS],
     /// nuisances and the base's own effects, weighted
-    nuisances: DMatrix<f64>,
+    pub(super) nuisances: DMatrix<f64>,
     precision: DVector<f64>,
-    normal: Option<Cholesky<f64, Dyn>>,
+    pub(super) normal: Option<Cholesky<f64, Dyn>>,
     /// what the nuisances leave, weighted
     pub left: DVector<f64>,
     /// residual energy in units of sigma squared

@@ -7,8 +7,9 @@ use super::explanation::{Confusable, DetectionLimit, Explanation, Named, NamedPa
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
 use super::latency::{LatencyFinding, REFUSED, held_s};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
+use super::mounting::ordinary_size;
 use super::rows::{AXES, CHANNELS};
-use super::search::{Fitted, Gates, Search, Step, TILT_NUISANCE_RAD, Tested, search};
+use super::search::{Fitted, Gates, Search, Step, Tested, search};
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
 use crate::physics::effects::by_id;
@@ -52,14 +53,14 @@ pub enum ExplainError {
 }
 
 /// Fewest rows that twelve blocks make sense of.
-const LEAST_ROWS: usize = 120;
+pub(super) const LEAST_ROWS: usize = 120;
 /// Chance below which something is left at the harmonics.
 const LACK_P: f64 = 1e-6;
 /// and it must be larger than this in force (of gravity) or torque (of the torque's own rms).
 const LACK_FORCE_G: f64 = 0.002;
 const LACK_TORQUE: f64 = 0.1;
 /// A lag or delay is named beyond sampling and a fast motor, s.
-const FAST_MOTOR_S: f64 = 0.004;
+pub(super) const FAST_MOTOR_S: f64 = 0.004;
 /// A centre of mass is not known better, m.
 const COM_NUISANCE_M: f64 = 0.000_15;
 /// No line that holds anything weighs less, kg/m.
@@ -260,7 +261,7 @@ fn is_ordinary(present: &Present, base: &Base) -> bool {
     let size = |slots: &[usize]| slots.iter().map(|&slot| present.values[slot].powi(2)).sum::<f64>().sqrt();
     let rotors = base.present.iter().filter(|other| other.effect.id() == "weak_rotor");
     match present.effect.id() {
-        "thrust_tilt" => size(&[0, 1]) < TILT_NUISANCE_RAD,
+        id if ordinary_size(id).is_some_and(|ordinary| size(&present.free) < ordinary) => true,
         "com_offset" => size(&[0, 1, 2]) < COM_NUISANCE_M,
         "tether" => present.values[0] < LEAST_LINE_KG_M && present.values[1] == 0.0,
         // one that is stronger, or several that differ: the rotors' scatter
@@ -297,7 +298,8 @@ fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<N
     let LatencyFinding { total_s, std_s, parts, against_lag, against_delay } = found.latency;
     let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
     let motor_s = vehicle.propulsion.time_constant_s.unwrap_or(0.0);
-    let late_s = traces.iter().map(|trace| trace.inertial_late_s).fold(0.0, f64::max);
+    let of_sensors_s = |trace: &Trace| trace.inertial_late_s + trace.inertial_unsure_s;
+    let late_s = traces.iter().map(of_sensors_s).fold(0.0, f64::max);
     let ordinary_s = motor_s + FAST_MOTOR_S + 0.5 * period_s + late_s;
     if total_s - ordinary_s < 4.0 * std_s {
         return None;

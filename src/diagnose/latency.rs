@@ -7,11 +7,12 @@
 use super::base::{Base, Present};
 use super::candidates::present;
 use super::evidence::Weighted;
-use super::rows::{Nuisance, Rows, SECOND};
+use super::rows::{Channels, Nuisance, Rows, SECOND, append, channels, nothing};
 use super::search::{Fitted, Newton, fit};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
-use crate::signals::ActuationLatency;
+use crate::signals::{ActuationLatency, delayed_wrench};
+use nalgebra::Vector4;
 
 /// What the latency consists of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -129,7 +130,10 @@ fn second_order(flights: &[Trace], fitted: &Fitted) -> Result<Option<(f64, f64, 
     let mut first = rows.nuisances.remove(place).values;
     first[2].fill(0.0);
     first[SECOND + 2].fill(0.0);
-    let second = rows.latency_curvature(flights, &base);
+    let second = torque_rows(flights, |trace| {
+        // -K(M'')
+        turning(trace, &base, 2, ActuationLatency::default())
+    });
     let Some(evidence) = Weighted::new(&rows).test(&[first, second]) else { return Ok(None) };
     let (c1, c2) = (evidence.theta[0], evidence.theta[1]);
     let (s1, s2) = (evidence.std(0), evidence.std(1));
@@ -137,4 +141,28 @@ fn second_order(flights: &[Trace], fitted: &Fitted) -> Result<Option<(f64, f64, 
     let spread = (s2 * s2 + c1 * c1 * s1 * s1 - 2.0 * c1 * evidence.covariance[(0, 1)]).max(1e-30).sqrt();
     let delay_s = c1 - (c1 * c1 - 2.0 * c2).max(0.0).sqrt();
     Ok(Some(((c2 / s2).abs(), ((c2 - 0.5 * c1 * c1) / spread).abs(), delay_s)))
+}
+
+/// What more of the base's lag and less of its delay does to the torque rows, per s: `-K(M')` behind the lag, by
+/// the measured motion.
+pub(super) fn lag_column(flights: &[Trace], base: &Base) -> Channels {
+    let behind = ActuationLatency { delay_s: 0.0, lag_s: base.latency.lag_s };
+    torque_rows(flights, |trace| turning(trace, base, 1, behind))
+}
+
+/// Columns that have nothing in the force rows.
+fn torque_rows(flights: &[Trace], columns: impl Fn(&Trace) -> [Vec<f64>; 3]) -> Channels {
+    let mut out = Channels::default();
+    for trace in flights {
+        append(&mut out, &channels(trace, nothing(trace), columns(trace)));
+    }
+    out
+}
+
+/// `-K` of a derivative of the torque that the measured motion took, behind a latency.
+fn turning(trace: &Trace, base: &Base, order: usize, behind: ActuationLatency) -> [Vec<f64>; 3] {
+    let torque = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
+    let torque: Vec<Vector4<f64>> = torque.iter().map(|t| Vector4::new(t.x, t.y, t.z, 0.0)).collect();
+    let late = delayed_wrench(&torque, trace.grid.step_s, behind);
+    [0, 1, 2].map(|axis| trace.weak(order, &late.iter().map(|t| -t[axis]).collect::<Vec<f64>>()))
 }

@@ -13,14 +13,17 @@ mod harmonics;
 mod hubs;
 mod latency;
 pub mod locate;
+mod mounting;
 pub mod next;
 mod nuisances;
 pub mod refit;
 mod rows;
 mod search;
+mod sensors;
 mod settle;
 mod sharpen;
 pub mod show;
+pub mod together;
 mod trace;
 
 pub use along::{Thrusts, Turning, wrench_along};

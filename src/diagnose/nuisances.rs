@@ -2,6 +2,7 @@
 
 use super::along::Turning;
 use super::base::Base;
+use super::mounting::{FRAME_MISALIGNMENT, THRUST_TILT};
 use super::rows::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
 use super::trace::Trace;
 use crate::physics::Wrench;
@@ -17,9 +18,6 @@ const JITTER_STD: f64 = 0.288_675;
 const LEVEL_STD_RAD: f64 = 0.01;
 /// An accelerometer alone: nothing says better how far it is off, m/s^2.
 const BIAS_STD_M_S2: f64 = 0.2;
-/// The effect that a large tilt is.
-pub(super) const THRUST_TILT: &str = "thrust_tilt";
-
 /// For each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2.
 pub(super) fn momentum_rows(trace: &Trace) -> [[Vec<f64>; 3]; 6] {
     let rates: Vec<Vector3<f64>> = trace.states.iter().map(|state| state.rates_rad_s).collect();
@@ -85,12 +83,14 @@ pub(super) fn nuisances(
         let values = channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);
         out.push(column(Nuisance::Jitter, Some(JITTER_STD), values));
     }
-    out.extend(sensor_nuisances(trace, mass_kg));
+    let leans = base.present.iter().any(|present| present.effect.id() == FRAME_MISALIGNMENT);
+    out.extend(sensor_nuisances(trace, mass_kg, leans));
     out
 }
 
-/// The accelerometer's bias, and the level of the attitude that the kinematics rest on.
-fn sensor_nuisances(trace: &Trace, mass_kg: f64) -> Vec<NuisanceColumn> {
+/// The accelerometer's bias, and the level of the attitude that the kinematics rest on, unless the base has an
+/// effect for it.
+fn sensor_nuisances(trace: &Trace, mass_kg: f64, leans: bool) -> Vec<NuisanceColumn> {
     let mut out = Vec::new();
     if trace.has_accelerometer() {
         let prior_std = if trace.reads_force_twice() { None } else { Some(BIAS_STD_M_S2) };
@@ -100,7 +100,7 @@ fn sensor_nuisances(trace: &Trace, mass_kg: f64) -> Vec<NuisanceColumn> {
             out.push(NuisanceColumn { nuisance: Nuisance::AccelerometerBias(axis), values, prior_std });
         }
     }
-    if trace.known.attitude && trace.known.velocity {
+    if trace.known.attitude && trace.known.velocity && !leans {
         let first = if trace.has_accelerometer() { SECOND } else { 0 };
         for axis in 0..2 {
             // gravity leans by the error's cross product with up

@@ -8,6 +8,7 @@
 use super::along::{Turning, wrench_along};
 use super::base::{Base, Present};
 use super::nuisances::{momentum_rows, nuisances};
+use super::sensors::{is_of_sensors, true_motion};
 use super::trace::Trace;
 use crate::physics::{Model, PhysicsError, Wrench};
 use nalgebra::{Vector3, Vector4};
@@ -107,8 +108,9 @@ impl Rows {
     ///
     /// # Errors
     /// [`PhysicsError`] where the base is not physical.
-    pub fn new(flights: &[Trace], base: &Base) -> Result<Self, PhysicsError> {
+    pub fn new(recorded: &[Trace], base: &Base) -> Result<Self, PhysicsError> {
         let model = base.model(&[])?;
+        let flights = &true_motion(recorded, base)[..];
         let parts: Vec<(Along, Channels, Vec<NuisanceColumn>)> =
             flights.par_iter().map(|trace| one_flight(trace, base, &model)).collect();
         let mut rows = Self {
@@ -139,7 +141,7 @@ impl Rows {
             rows.flights.push(along);
         }
         rows.torque_rms = std::array::from_fn(|axis| (squares[axis] / rows.len().max(1) as f64).sqrt());
-        rows.effects = rows.present_columns(flights, base)?;
+        rows.effects = rows.present_columns((recorded, flights), base)?;
         Ok(rows)
     }
 
@@ -177,6 +179,12 @@ impl Rows {
             let mut moved = candidate.clone();
             let step = step_of(candidate, index);
             moved.values[index] += step;
+            if is_of_sensors(candidate.effect) {
+                let mut with = base.clone();
+                with.present.push(moved);
+                columns.push(per_step(residuals(flights, &with)?, &self.residual, step));
+                continue;
+            }
             let model = base.model(std::slice::from_ref(&moved))?;
             columns.push(self.difference(flights, &model, None, step));
         }
@@ -205,21 +213,12 @@ impl Rows {
         Ok(columns)
     }
 
-    /// The second-order term of a latency in the torque rows: `-K(M'')` by the measured motion.
-    #[must_use]
-    pub fn latency_curvature(&self, flights: &[Trace], base: &Base) -> Channels {
-        let mut out = Channels::default();
-        for trace in flights {
-            let torque = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
-            let none = || vec![0.0; trace.rows()];
-            let [x, y, z] =
-                [0, 1, 2].map(|axis| trace.weak(2, &torque.iter().map(|t| -t[axis]).collect::<Vec<f64>>()));
-            append(&mut out, &channels(trace, [none(), none(), none()], [x, y, z]));
-        }
-        out
-    }
-
-    fn present_columns(&self, flights: &[Trace], base: &Base) -> Result<Vec<Channels>, PhysicsError> {
+    /// `flights`: the true motion of what was recorded.
+    fn present_columns(
+        &self,
+        (recorded, flights): (&[Trace], &[Trace]),
+        base: &Base,
+    ) -> Result<Vec<Channels>, PhysicsError> {
         let places: Vec<(usize, usize)> = base
             .present
             .iter()
@@ -233,9 +232,13 @@ impl Rows {
                 let moved = |by: f64| {
                     let mut moved = base.clone();
                     moved.present[effect].values[index] += by;
-                    moved.model(&[])
+                    moved
                 };
-                let (up, down) = (moved(0.5 * step)?, moved(-0.5 * step)?);
+                let (up, down) = (moved(0.5 * step), moved(-0.5 * step));
+                if is_of_sensors(base.present[effect].effect) {
+                    return sensor_column(recorded, (&up, &down), step);
+                }
+                let (up, down) = (up.model(&[])?, down.model(&[])?);
                 Ok(self.difference(flights, &up, Some(&down), step))
             })
             .collect()
@@ -263,13 +266,40 @@ impl Rows {
     }
 }
 
+/// What an effect on the sensors does to the residual, per `step` between both bases.
+fn sensor_column(
+    recorded: &[Trace],
+    (up, down): (&Base, &Base),
+    step: f64,
+) -> Result<Channels, PhysicsError> {
+    Ok(per_step(residuals(recorded, up)?, &residuals(recorded, down)?, step))
+}
+
+/// The residual of the flights' true motion.
+fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
+    let model = base.model(&[])?;
+    let parts: Vec<Channels> =
+        true_motion(recorded, base).par_iter().map(|trace| one_flight(trace, base, &model).1).collect();
+    let mut out = Channels::default();
+    parts.iter().for_each(|part| append(&mut out, part));
+    Ok(out)
+}
+
+/// By how much the residual falls.
+fn per_step(mut up: Channels, down: &Channels, step: f64) -> Channels {
+    for (up, down) in up.iter_mut().zip(down) {
+        up.iter_mut().zip(down).for_each(|(up, down)| *up = (down - *up) / step);
+    }
+    up
+}
+
 /// By how much a parameter is moved to see what it does.
 fn step_of(present: &Present, index: usize) -> f64 {
     let span = present.parameter(index).map_or(1.0, |parameter| (parameter.max - parameter.min).min(1.0));
     (1e-4 * span).max(1e-3 * present.values[index].abs())
 }
 
-fn append(to: &mut Channels, from: &Channels) {
+pub(super) fn append(to: &mut Channels, from: &Channels) {
     to.iter_mut().zip(from).for_each(|(to, from)| to.extend_from_slice(from));
 }
 

@@ -1,13 +1,13 @@
 //! The forward search: fit, test every candidate, take the one that explains most, fit again.
 
 use super::base::{Base, Present};
-use super::candidates::{Candidate, candidates, drag_and_wind, present};
+use super::candidates::{Candidate, candidates, drag_and_wind};
 use super::evidence::{Evidence, Weighted};
 use super::hubs::one_place;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::locate::mass_step_std_kg;
-use super::nuisances::THRUST_TILT;
-use super::rows::{Channels, Nuisance, Rows};
+use super::mounting::{mountings, ordinary_size};
+use super::rows::{Channels, Nuisance, Rows, SECOND};
 use super::settle::{SETTLED_S, settle};
 use super::sharpen::sharpened;
 use super::trace::Trace;
@@ -62,6 +62,8 @@ const CONVERGED: f64 = 0.05;
 pub enum Newton {
     /// estimated
     Free,
+    /// its delay is estimated, whatever its lag
+    Delay,
     /// as given
     Held,
 }
@@ -116,9 +118,9 @@ fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
                     body.inertia_kg_m2[(column, row)] += by;
                 }
             }
-            Nuisance::Latency if newton == Newton::Free => {
+            Nuisance::Latency if newton != Newton::Held => {
                 let by = by.clamp(-0.05, 0.05);
-                if base.latency.lag_s > 0.0 {
+                if base.latency.lag_s > 0.0 && newton == Newton::Free {
                     base.latency.lag_s = (base.latency.lag_s + by).max(1e-4);
                 } else {
                     base.latency.delay_s = (base.latency.delay_s + by).clamp(-0.03, 0.3);
@@ -190,19 +192,24 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         let candidates = candidates(&after.base.vehicle, flights);
         last = test_all(flights, &after, &candidates);
         let count = last.len() as f64;
-        let lean = lean(flights, &after);
-        last.extend(lean.clone());
-        let back =
-            |tested: &Tested| refused.contains(&tested.candidate.id) || tested.candidate.id == THRUST_TILT;
-        let mut passed: Vec<Tested> = last
-            .iter()
-            .filter(|tested| !back(tested))
-            .filter(|tested| passes(tested, &after, gates, count))
-            .cloned()
-            .collect();
         let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);
-        let worth = |tested: &Tested| tested.evidence.energy - price * tested.evidence.theta.len() as f64;
-        passed.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+        let ranked = |tested: &[Tested]| {
+            let worth = |tested: &Tested| tested.evidence.energy - price * tested.evidence.theta.len() as f64;
+            let mut passed: Vec<Tested> = tested
+                .iter()
+                .filter(|tested| !refused.contains(&tested.candidate.id))
+                .filter(|tested| passes(tested, &after, gates, count))
+                .cloned()
+                .collect();
+            passed.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+            passed
+        };
+        let mut passed = ranked(&last);
+        if passed.is_empty() {
+            let mounted = mountings(flights, &after);
+            passed = ranked(&mounted);
+            last.extend(mounted);
+        }
         match passed.first().cloned() {
             Some(taken) if steps.len() < gates.steps => {
                 let taken = sharpened(flights, &after, taken);
@@ -215,16 +222,6 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
                 }
                 after = fitted;
                 steps.push(Step { taken, rivals: passed.split_off(1) });
-            }
-            _ if steps.len() < gates.steps
-                && let Some(taken) = lean.filter(|lean| {
-                    lean.evidence.size() > TILT_NUISANCE_RAD && passes(lean, &after, gates, count)
-                }) =>
-            {
-                let mut base = after.base.clone();
-                base.present.extend(started(&taken));
-                after = fit(flights, base, Newton::Held)?;
-                steps.push(Step { taken, rivals: Vec::new() });
             }
             _ if settled == SETTLINGS || steps.is_empty() => break,
             _ => {
@@ -320,7 +317,7 @@ pub(super) fn columns_of(flights: &[Trace], fitted: &Fitted, candidate: &Candida
 }
 
 /// The same effect, for rotors the same rotor.
-fn is_present(base: &Base, candidate: &Candidate) -> bool {
+pub(super) fn is_present(base: &Base, candidate: &Candidate) -> bool {
     candidate.parts.iter().all(|part| {
         base.present.iter().any(|present| {
             present.effect.id() == part.effect.id()
@@ -366,35 +363,21 @@ fn test_drag_and_wind(flights: &[Trace], fitted: &Fitted, at_hubs: f64) -> Optio
     (more > 4.0).then_some(Tested { candidate, evidence })
 }
 
-/// A mounting is true to about half a degree, rad: less than that is a nuisance.
-pub(super) const TILT_NUISANCE_RAD: f64 = 0.0087;
-
-/// A tilt of the thrust axis, which is a nuisance until nothing else passes.
-fn lean(flights: &[Trace], fitted: &Fitted) -> Option<Tested> {
-    let tilt = present(THRUST_TILT, &[0.0; 2], &[0, 1])?;
-    let candidate = Candidate { id: THRUST_TILT, parts: vec![tilt], through: None };
-    if is_present(&fitted.base, &candidate) {
-        return None;
-    }
-    let columns = columns_of(flights, fitted, &candidate)?;
-    let mut rows = fitted.rows.clone();
-    rows.nuisances.retain(|column| !matches!(column.nuisance, Nuisance::Tilt(_)));
-    let evidence = Weighted::at(&rows, &fitted.weighted.sigma).test(&columns)?;
-    Some(Tested { candidate, evidence })
-}
-
 /// Significant, spread over the flight, possible, and large enough to matter.
 fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates: f64) -> bool {
     let evidence = &tested.evidence;
     let weight_n = fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2;
+    let force = |channel: usize| evidence.rms[channel] > gates.matters.0 * weight_n;
     let matters = (0..3).any(|axis| {
-        evidence.rms[axis] > gates.matters.0 * weight_n
+        force(axis)
+            || force(SECOND + axis)
             || evidence.rms[3 + axis] > gates.matters.1 * fitted.rows.torque_rms[axis]
     });
     evidence.z.abs() > gates.z
         && evidence.p_cluster < gates.p_cluster / candidates
         && evidence.gain >= gates.gain
         && matters
+        && ordinary_size(tested.candidate.id).is_none_or(|ordinary| evidence.size() > ordinary)
         && possible(tested)
 }
 

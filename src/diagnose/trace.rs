@@ -41,6 +41,8 @@ pub struct Trace {
     pub command_period_s: f64,
     /// s, by which the inertial unit's readings are later than the attitude: its filters' delay
     pub inertial_late_s: f64,
+    /// s, by which attitude and velocity disagree about that
+    pub inertial_unsure_s: f64,
     /// m/s^2, body, accelerometer
     specific_force_m_s2: Option<Vec<Vector3<f64>>>,
     /// N, as commanded (or measured), each rotor
@@ -152,7 +154,10 @@ impl Trace {
             measured_speeds: signals.quality.thrust_source == ThrustSource::MeasuredSpeed,
             gyro_noise_rad_s: gyro_noise_rad_s(rates),
             command_period_s: command_period_s(signals),
-            inertial_late_s: inertial_late_s(signals),
+            inertial_late_s: early_s(signals, Quantity::Attitude).unwrap_or(0.0).max(0.0),
+            inertial_unsure_s: early_s(signals, Quantity::Attitude)
+                .zip(early_s(signals, Quantity::Velocity))
+                .map_or(0.0, |(attitude_s, velocity_s)| (attitude_s - velocity_s).abs()),
             specific_force_m_s2: measured.cloned(),
             commanded_n,
             jitter: signals.jitter_wrench.clone(),
@@ -163,6 +168,22 @@ impl Trace {
         };
         trace.smooth()?;
         Ok(trace)
+    }
+
+    /// The same flight with another motion: states and specific force (m/s^2, body), one entry a grid instant.
+    pub(super) fn with_motion(
+        &self,
+        states: Vec<State>,
+        specific_force_m_s2: Option<Vec<Vector3<f64>>>,
+    ) -> Result<Self, TraceError> {
+        let mut trace = Self { states, specific_force_m_s2, ..self.clone() };
+        trace.smooth()?;
+        Ok(trace)
+    }
+
+    /// What the accelerometer showed, m/s^2, body; `None` where it is not recorded.
+    pub(super) fn specific_force_m_s2(&self) -> Option<&[Vector3<f64>]> {
+        self.specific_force_m_s2.as_deref()
     }
 
     /// Number of weak-form rows.
@@ -336,10 +357,11 @@ fn gyro_noise_rad_s(rates: &[Vector3<f64>]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// An attitude that is early against the gyroscopes was not foreseen: the gyroscopes are late.
-fn inertial_late_s(signals: &Signals) -> f64 {
-    let attitude = signals.quality.offsets.iter().find(|(quantity, _)| *quantity == Quantity::Attitude);
-    attitude.filter(|(_, offset)| offset.repaired).map_or(0.0, |(_, offset)| (-offset.late_s).max(0.0))
+/// By how much a quantity's stamps precede the inertial unit's. One that is early was not foreseen: the
+/// gyroscopes are late.
+fn early_s(signals: &Signals, of: Quantity) -> Option<f64> {
+    let offset = signals.quality.offsets.iter().find(|(quantity, _)| *quantity == of);
+    offset.filter(|(_, offset)| offset.repaired).map(|(_, offset)| -offset.late_s)
 }
 
 /// Of the stream that the thrusts rest on.

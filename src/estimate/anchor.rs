@@ -68,7 +68,9 @@ pub fn rescaled(estimated: &Estimated, weighed_kg: f64) -> Estimated {
     Estimated { theta, covariance, explained: estimated.explained }
 }
 
-fn thrust_scale(best: &MethodResult, vehicle: &Vehicle) -> ThrustScale {
+/// By how much the rotors are stronger than stated, if the mass is the vehicle's weighed one.
+#[must_use]
+pub fn thrust_scale(best: &MethodResult, vehicle: &Vehicle) -> ThrustScale {
     let (name, unit, stated) = match vehicle.propulsion.law {
         ThrustLaw::Speed { .. } => {
             ("thrust_coefficient", "N/(rad/s)^2", vehicle.propulsion.thrust_coefficient.unwrap_or(f64::NAN))

@@ -14,7 +14,7 @@ mod rotor_check;
 mod theta;
 mod weak;
 
-pub use anchor::{ThrustScale, apply_anchor, identified_vehicle, rescaled};
+pub use anchor::{ThrustScale, apply_anchor, identified_vehicle, rescaled, thrust_scale};
 pub use identify::{EstimateError, Identification, IdentifySettings, Method, identify};
 pub use information::WeakInformation;
 pub use live::RecursiveEstimator;

@@ -4,6 +4,7 @@ mod chart;
 mod explanation;
 mod html;
 mod identification;
+mod model_parts;
 mod number;
 mod quality;
 mod validation;
@@ -14,7 +15,7 @@ pub use explanation::{
     explanation_page, for_readers,
 };
 pub use identification::{
-    IdentificationDocument, InputFile, history_charts, identification_page, model_toml,
+    IdentificationDocument, InputFile, WithEffects, history_charts, identification_page, model_toml,
 };
 pub use number::{significant, spoken, with_error};
 pub use validation::{

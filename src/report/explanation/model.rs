@@ -3,7 +3,7 @@
 use super::show::ShownOn;
 use super::story::Story;
 use crate::config::{ConfigError, vehicle_to_toml};
-use crate::diagnose::Nuisance;
+use crate::report::model_parts::{correlations, effect_tables};
 use std::fmt::Write;
 
 impl Story {
@@ -13,13 +13,7 @@ impl Story {
     /// [`ConfigError`] where a value has no form in TOML.
     pub fn model_toml(&self) -> Result<String, ConfigError> {
         let mut text = vehicle_to_toml(self.vehicle())?;
-        for effect in self.effects_of_model() {
-            let _ = writeln!(text, "\n[[effect]]\nid = \"{}\"", effect.effect().id());
-            let (common, finer) = (effect.effect().parameters(), effect.effect().finer_parameters());
-            for (parameter, value) in common.iter().chain(finer).zip(effect.parameters()) {
-                let _ = writeln!(text, "{} = {value:?} # {}", parameter.name, parameter.unit);
-            }
-        }
+        text.push_str(&effect_tables(&self.effects_of_model()));
         self.identified(&mut text);
         self.provenance(&mut text);
         Ok(text)
@@ -38,7 +32,7 @@ impl Story {
         }
         let latency = &self.explanation.search.latency;
         let _ = writeln!(text, "{}", entry("latency", latency.total_s, latency.std_s, "s"));
-        let (names, rows) = self.correlations();
+        let (names, rows) = correlations(self.fitted());
         let _ = writeln!(text, "correlation_of = {names:?}\ncorrelation = [\n{}\n]", rows.join(",\n"));
         for effect in &self.effects {
             let _ = writeln!(text, "\n[identified.effects.{}]", effect.id);
@@ -48,45 +42,6 @@ impl Story {
             let others: Vec<&str> = effect.confusable_with.iter().map(|other| other.id).collect();
             let _ = writeln!(text, "confusable_with = {others:?}");
         }
-    }
-
-    /// Names and rows of the correlation of everything that was estimated together.
-    fn correlations(&self) -> (Vec<String>, Vec<String>) {
-        let fitted = self.fitted();
-        let mut kept: Vec<(usize, String)> = Vec::new();
-        for (index, column) in fitted.rows.nuisances.iter().enumerate() {
-            let name = match column.nuisance {
-                Nuisance::Mass => "mass".to_owned(),
-                Nuisance::Inertia(entry) => super::story::BODY_NAMES[1 + entry].to_owned(),
-                Nuisance::Latency => "latency".to_owned(),
-                _ => continue,
-            };
-            kept.push((index, name));
-        }
-        let mut index = fitted.rows.nuisances.len();
-        for present in &fitted.base.present {
-            for &free in &present.free {
-                let parameter = present.parameter(free).map_or("", |parameter| parameter.name);
-                kept.push((index, format!("{}.{parameter}", present.effect.id())));
-                index += 1;
-            }
-        }
-        let covariance = &fitted.covariance;
-        let rows = kept
-            .iter()
-            .map(|(i, _)| {
-                let cells: Vec<String> = kept
-                    .iter()
-                    .map(|(j, _)| {
-                        let scale = (covariance[(*i, *i)] * covariance[(*j, *j)]).sqrt();
-                        let r = covariance[(*i, *j)] / scale;
-                        if r.is_finite() { format!("{r:.4}") } else { "nan".to_owned() }
-                    })
-                    .collect();
-                format!("  [{}]", cells.join(", "))
-            })
-            .collect();
-        (kept.into_iter().map(|(_, name)| name).collect(), rows)
     }
 
     fn provenance(&self, text: &mut String) {

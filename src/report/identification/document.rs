@@ -7,6 +7,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 use super::page::verdict;
+use super::with::{With, WithEffects};
 
 /// One recording that went in.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -39,11 +40,13 @@ pub struct IdentificationDocument {
     data_quality: DataQuality,
     history: BTreeMap<&'static str, HistoryColumns>,
     notes: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    with: Option<With>,
 }
 
 /// A number with its standard error, or why there is none.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct Value {
+pub(super) struct Value {
     value: Option<f64>,
     std: Option<f64>,
     unit: &'static str,
@@ -64,7 +67,7 @@ struct Best {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct Thrust {
+pub(super) struct Thrust {
     name: &'static str,
     #[serde(flatten)]
     value: Value,
@@ -170,11 +173,7 @@ impl IdentificationDocument {
                 correlation_of: NAMES,
                 correlation: correlation(&best.result),
             },
-            thrust: scale.map(|scale| Thrust {
-                name: scale.name,
-                value: value(&scale.value, scale.unit),
-                factor: value(&scale.factor, "-"),
-            }),
+            thrust: scale.map(thrust),
             condition_number: identification.condition_number,
             scaled_condition_number: identification.scaled_condition_number,
             latency: latency_value(identification),
@@ -192,7 +191,14 @@ impl IdentificationDocument {
             data_quality: data_quality(identification, quality, inputs),
             history: history_columns(identification),
             notes: identification.notes.clone(),
+            with: None,
         }
+    }
+
+    /// With the effects that were identified together with the rigid body.
+    #[must_use]
+    pub fn with(self, effects: &WithEffects) -> Self {
+        Self { with: Some(effects.document()), ..self }
     }
 }
 
@@ -216,7 +222,12 @@ fn value(finding: &Finding, unit: &'static str) -> Value {
     }
 }
 
-fn values(result: &MethodResult) -> BTreeMap<&'static str, Value> {
+pub(super) fn thrust(scale: &ThrustScale) -> Thrust {
+    let ThrustScale { name, unit, factor, .. } = scale;
+    Thrust { name, value: value(&scale.value, unit), factor: value(factor, "-") }
+}
+
+pub(super) fn values(result: &MethodResult) -> BTreeMap<&'static str, Value> {
     result.parameters.iter().map(|p| (p.name, value(&p.finding, p.unit))).collect()
 }
 

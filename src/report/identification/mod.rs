@@ -3,9 +3,11 @@
 mod document;
 mod model;
 mod page;
+mod with;
 
 pub use document::{IdentificationDocument, InputFile};
 pub use model::{history_charts, model_toml};
 pub use page::identification_page;
+pub use with::WithEffects;
 
 pub(super) use document::thrust_name;

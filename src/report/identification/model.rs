@@ -1,6 +1,8 @@
 //! The model file, and the parameters along time.
 
-use crate::estimate::{Finding, Identification, NAMES, THETA, ThrustScale, UNITS, identified_vehicle};
+use crate::estimate::{
+    Finding, Identification, MethodResult, NAMES, THETA, ThrustScale, UNITS, identified_vehicle,
+};
 use crate::report::chart::{Line, Panel};
 use crate::vehicle::Vehicle;
 use std::fmt::Write;
@@ -21,7 +23,26 @@ pub fn model_toml(
     let mut text = crate::config::vehicle_to_toml(&identified_vehicle(vehicle, best, scale))?;
     let _ = writeln!(text, "\n[identified]\nmethod = \"{}\"", best.method.name());
     let _ = writeln!(text, "# what the flight did not determine keeps its nominal value in [body]");
-    for parameter in &best.parameters {
+    text.push_str(&identified_entries(best, scale));
+    let _ = writeln!(text, "correlation_of = {NAMES:?}");
+    let rows: Vec<String> = correlation(best)
+        .iter()
+        .map(|row| {
+            let cells: Vec<String> =
+                row.iter().map(|r| r.map_or_else(|| "nan".into(), |r| format!("{r:.4}"))).collect();
+            format!("  [{}]", cells.join(", "))
+        })
+        .collect();
+    let _ = writeln!(text, "correlation = [\n{}\n]", rows.join(",\n"));
+    text.push_str(&provenance(inputs));
+    let _ = writeln!(text, "cutoff_hz = {:.4}", identification.cutoff_hz);
+    Ok(text)
+}
+
+/// The rigid body's lines of `[identified]`.
+pub(super) fn identified_entries(body: &MethodResult, scale: Option<&ThrustScale>) -> String {
+    let mut text = String::new();
+    for parameter in &body.parameters {
         let _ = match &parameter.finding {
             Finding::Determined { value, std } => writeln!(
                 text,
@@ -44,24 +65,17 @@ pub fn model_toml(
         let (name, unit) = scale.map_or(("", ""), |scale| (scale.name, scale.unit));
         let _ = writeln!(text, "{name} = {{ value = {value:e}, std = {std:e}, unit = \"{unit}\" }}");
     }
-    let _ = writeln!(text, "correlation_of = {NAMES:?}");
-    let rows: Vec<String> = correlation(best)
-        .iter()
-        .map(|row| {
-            let cells: Vec<String> =
-                row.iter().map(|r| r.map_or_else(|| "nan".into(), |r| format!("{r:.4}"))).collect();
-            format!("  [{}]", cells.join(", "))
-        })
-        .collect();
-    let _ = writeln!(text, "correlation = [\n{}\n]", rows.join(",\n"));
-    let _ = writeln!(text, "\n[provenance]\nprogram = \"mavid {}\"", env!("CARGO_PKG_VERSION"));
+    text
+}
+
+/// Program and inputs.
+pub(super) fn provenance(inputs: &[InputFile]) -> String {
     let files: Vec<String> = inputs
         .iter()
         .map(|input| format!("  {{ path = {:?}, sha256 = \"{}\" }}", input.path, input.sha256))
         .collect();
-    let _ = writeln!(text, "inputs = [\n{}\n]", files.join(",\n"));
-    let _ = writeln!(text, "cutoff_hz = {:.4}", identification.cutoff_hz);
-    Ok(text)
+    let version = env!("CARGO_PKG_VERSION");
+    format!("\n[provenance]\nprogram = \"mavid {version}\"\ninputs = [\n{}\n]\n", files.join(",\n"))
 }
 
 /// The paper's figures 4 and 5: mass and inertia along time, by method.

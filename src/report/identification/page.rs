@@ -69,7 +69,7 @@ pub fn identification_page(
 }
 
 /// Five digits after the point where that shows the value, powers of ten where it would not.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     if value == 0.0 || value.abs() >= 2e-4 { format!("{value:.5}") } else { format!("{value:.3e}") }
 }
 
@@ -139,6 +139,16 @@ fn quality_lines(identification: &Identification, quality: &[&Quality]) -> Strin
             identification.scaled_condition_number
         );
     }
+    page.push_str(&flight_lines(quality));
+    for note in &identification.notes {
+        let _ = writeln!(page, "  {note}");
+    }
+    page
+}
+
+/// What was used of each flight.
+pub(super) fn flight_lines(quality: &[&Quality]) -> String {
+    let mut page = String::new();
     for (index, quality) in quality.iter().enumerate() {
         let _ = writeln!(
             page,
@@ -161,9 +171,6 @@ fn quality_lines(identification: &Identification, quality: &[&Quality]) -> Strin
         for note in &quality.notes {
             let _ = writeln!(page, "    {note}");
         }
-    }
-    for note in &identification.notes {
-        let _ = writeln!(page, "  {note}");
     }
     page
 }

@@ -1,0 +1,197 @@
+//! What `identify --with` finds of effects that a simulated flight conceals: sizes against the truth.
+//!
+//! `cargo bench --bench with -- [--each N] [--seed S] [--only EFFECT] [--show]`
+#![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, reason = "a benchmark prints")]
+
+use mavid::diagnose::ExplainSettings;
+use mavid::diagnose::together::{Found, Together, TogetherError, Wanted, together};
+use mavid::physics::ActiveEffect;
+use mavid::signals::{ConditionSettings, ThrustPreference, condition};
+use mavid::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight};
+use mavid::vehicle::Vehicle;
+use rayon::prelude::*;
+
+/// What a size grows with: nothing, the mass, or the mean of Ixx and Iyy.
+#[derive(Clone, Copy)]
+enum Scale {
+    One,
+    Mass,
+    Inertia,
+}
+
+use Scale::{Inertia, Mass, One};
+
+/// An effect at a size that vehicles have.
+type Sizes = (&'static str, &'static [(&'static str, f64, Scale)]);
+
+const DRAG: Sizes = ("linear_drag", &[("dx", 0.3, Mass), ("dy", 0.3, Mass), ("dz", 0.0, One)]);
+
+/// What is concealed and asked for, set by set.
+const SETS: &[&[Sizes]] = &[
+    &[DRAG],
+    &[("quadratic_drag", &[("cx", 0.12, Mass), ("cy", 0.12, Mass), ("cz", 0.12, Mass)])],
+    &[("ground_effect", &[("rho", 4.0, One), ("ca", 0.0, One), ("cb", 1.0, One)])],
+    &[("ceiling_effect", &[("a1", 5.0, One), ("a2", 0.0, One), ("height", 2.6, One)])],
+    &[("motor_lag", &[("time_constant", 0.04, One)])],
+    &[("transport_delay", &[("delay", 0.03, One)])],
+    &[("thrust_curve", &[("curvature", 0.15, One)])],
+    &[("battery_sag", &[("exponent", 1.5, One), ("full_voltage", 16.4, One)])],
+    &[("weak_rotor", &[("rotor", 1.0, One), ("factor", 0.92, One)])],
+    &[("com_offset", &[("x", 0.005, One), ("y", -0.004, One), ("z", 0.0, One)])],
+    &[("thrust_tilt", &[("x", 0.025, One), ("y", -0.02, One)])],
+    &[("rotor_inertia", &[("jr", 0.003, Inertia)])],
+    &[("angular_damping", &[("bx", 0.8, Inertia), ("by", 0.8, Inertia), ("bz", 0.8, Inertia)])],
+    &[("blade_flapping", &[("k", 0.5, Inertia)])],
+    &[("inflow", &[("kz", 0.4, Mass)])],
+    &[("translational_lift", &[("kh", 0.12, Mass)])],
+    &[DRAG, ("steady_wind", &[("north", 2.0, One), ("west", -1.5, One), ("up", 0.0, One)])],
+    &[("slung_load", &[("mass", 0.08, Mass), ("length", 0.8, One)])],
+    &[("mass_change", &[("time", 26.0, One), ("delta", -0.08, Mass)])],
+    &[("imu_misalignment", &[("x", 0.03, One), ("y", -0.02, One), ("z", 0.04, One)])],
+    &[("imu_offset", &[("x", 0.04, One), ("y", -0.03, One), ("z", 0.02, One)])],
+    &[("frame_misalignment", &[("x", 0.03, One), ("y", -0.02, One), ("z", 0.0, One)])],
+    &[("tether", &[("line_mass", 0.03, Mass), ("stiffness", 0.0, One), ("length", 500.0, One)])],
+    &[("vortex_ring", &[("loss", 3.0, One)])],
+    &[("motor_lag", &[("time_constant", 0.04, One)]), ("transport_delay", &[("delay", 0.02, One)])],
+    &[DRAG, ("com_offset", &[("x", 0.005, One), ("y", -0.004, One), ("z", 0.0, One)])],
+    &[
+        ("mass_change", &[("time", 26.0, One), ("delta", -0.08, Mass)]),
+        ("weak_rotor", &[("rotor", 2.0, One), ("factor", 0.94, One)]),
+    ],
+];
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    let text = |name: &str| {
+        let found = arguments.iter().position(|a| a == name);
+        found.and_then(|i| arguments.get(i + 1)).cloned()
+    };
+    let number =
+        |name: &str, default: u64| text(name).map_or(default, |t| t.parse().expect("a whole number"));
+    let (each, first) = (number("--each", 4), number("--seed", 1));
+    let show = arguments.iter().any(|a| a == "--show");
+    println!("set                            flights  parameters  within 20 %  within 3 std  z least; worst");
+    for set in SETS {
+        let ids: Vec<&str> = set.iter().map(|(id, _)| *id).collect();
+        if text("--only").is_none_or(|only| ids.join(",") == only) {
+            report(set, &ids.join(","), (first, each), show);
+        }
+    }
+}
+
+fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), show: bool) {
+    let found: Vec<(u64, Result<Together, TogetherError>, Vec<ActiveEffect>)> =
+        (first..first + each).into_par_iter().filter_map(|seed| fly(seed, set)).collect();
+    let (mut count, mut near, mut covered) = (0, 0, 0);
+    let (mut least, mut worst) = (f64::INFINITY, 0.0_f64);
+    for (seed, together, truth) in &found {
+        let together = match together {
+            Ok(together) => together,
+            Err(error) => {
+                println!("{name}: seed {seed}: {error}");
+                continue;
+            }
+        };
+        for (effect, truth) in together.effects.iter().zip(truth) {
+            least = least.min(effect.z);
+            let sized = effect.parameters.iter().zip(truth.parameters());
+            for (slot, (parameter, &truth)) in sized.enumerate() {
+                if show {
+                    println!(
+                        "  seed {seed} {}.{} truth {truth:.5} {:?}",
+                        effect.effect.id(),
+                        parameter.name,
+                        parameter.found
+                    );
+                }
+                let nothing = if effect.effect.id() == "weak_rotor" && slot == 1 { 1.0 } else { 0.0 };
+                let amount = truth - nothing;
+                match &parameter.found {
+                    Found::Determined { value, std } if amount != 0.0 => {
+                        count += 1;
+                        let off = value - truth;
+                        near += usize::from(off.abs() < 0.2 * amount.abs());
+                        covered += usize::from(off.abs() < 3.0 * std);
+                        worst = worst.max((off / amount).abs());
+                    }
+                    Found::NotDetermined { reason, .. } if amount != 0.0 => {
+                        println!(
+                            "  seed {seed} {}.{} not determined: {reason}",
+                            effect.effect.id(),
+                            parameter.name
+                        );
+                    }
+                    Found::AtBound { value, wanted, std } if amount != 0.0 => {
+                        println!(
+                            "  seed {seed} {}.{} at {value}: {wanted} +- {std}",
+                            effect.effect.id(),
+                            parameter.name
+                        );
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+    println!(
+        "{name:30} {:7} {count:11} {near:12} {covered:13}  {least:6.1}; {:.1} %",
+        found.len(),
+        100.0 * worst
+    );
+}
+
+fn fly(
+    seed: u64,
+    set: &'static [Sizes],
+) -> Option<(u64, Result<Together, TogetherError>, Vec<ActiveEffect>)> {
+    let pair = random_vehicle(seed.wrapping_mul(7919));
+    let effects: Vec<ActiveEffect> = set.iter().map(|sizes| sized(sizes, &pair.truth)).collect();
+    let has = |id: &str| set.iter().any(|(other, _)| *other == id);
+    let mut random = RandomTrajectory::default();
+    if has("ground_effect") {
+        random.height_m = (0.3, 1.2);
+    }
+    if has("vortex_ring") {
+        (random.height_m, random.speed_max_m_s, random.acceleration_max_m_s2) = ((1.0, 9.0), 5.0, 5.0);
+    }
+    if has("rotor_inertia") {
+        (random.yaw_max_rad, random.yaw_rate_max_rad_s) = (1.0, 3.0);
+    }
+    let trajectory = random.draw(seed.wrapping_mul(104_729)).ok()?;
+    let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
+    let mut settings = FlightSettings { seed, ..FlightSettings::default() };
+    if has("battery_sag") {
+        settings.battery_drop_v_s = 0.03;
+    }
+    let mut nominal = pair.nominal;
+    // what is not asked for is stated
+    nominal.propulsion.time_constant_s = Some(settings.motor_time_constant_s);
+    let truth = Truth { vehicle: pair.truth, effects: effects.clone(), disturbance: None };
+    let flight = simulate_flight(truth, &nominal, &reference, &settings).ok()?;
+    let names: Vec<String> = set.iter().map(|(id, _)| (*id).to_owned()).collect();
+    let wanted = Wanted::of(&names).expect("known effects");
+    let how = ConditionSettings {
+        transient_s: Some(1.0),
+        thrust: if wanted.need_commands() {
+            ThrustPreference::Commands
+        } else {
+            ThrustPreference::BestSampled
+        },
+        ..ConditionSettings::default()
+    };
+    let signals = condition(&flight.recording, &nominal, &how).ok()?;
+    let half_width_s = ExplainSettings::default().half_width_s;
+    Some((seed, together(&[signals], (&nominal, &[]), &wanted, half_width_s), effects))
+}
+
+fn sized((id, values): &Sizes, vehicle: &Vehicle) -> ActiveEffect {
+    let inertia = vehicle.body.inertia_kg_m2;
+    let scale = |scale: Scale| match scale {
+        One => 1.0,
+        Mass => vehicle.body.mass_kg,
+        Inertia => 0.5 * (inertia[(0, 0)] + inertia[(1, 1)]),
+    };
+    let sized: Vec<(&str, f64)> =
+        values.iter().map(|(name, value, by)| (*name, value * scale(*by))).collect();
+    ActiveEffect::named(id, &sized).expect("a possible effect")
+}

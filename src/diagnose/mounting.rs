@@ -1,0 +1,65 @@
+//! How thrust axis and sensors sit: off a little in every vehicle, and an effect where they are off by much.
+//!
+//! These are nuisances, or as small as nuisances, and are tried only when nothing else passes: almost any force
+//! that does not change looks a little like a lean.
+
+use super::candidates::{Candidate, present};
+use super::evidence::Weighted;
+use super::rows::Nuisance;
+use super::search::{Fitted, Tested, columns_of, is_present};
+use super::trace::Trace;
+use rayon::prelude::*;
+
+/// The effect that a large tilt of the thrust is.
+pub(super) const THRUST_TILT: &str = "thrust_tilt";
+/// The effect that a large error of the attitude's level is.
+pub(super) const FRAME_MISALIGNMENT: &str = "frame_misalignment";
+
+/// Mountings are true to about half a degree, rad.
+const ORDINARY_RAD: f64 = 0.0087;
+/// No inertial unit sits at the centre of mass to better than this, m.
+const ORDINARY_M: f64 = 0.005;
+
+/// Identifier, the parameters that are estimated, how many there are, and the size below which it has no name.
+const MOUNTINGS: [(&str, &[usize], usize, f64); 4] = [
+    (THRUST_TILT, &[0, 1], 2, ORDINARY_RAD),
+    // turned about the vertical nothing changes
+    (FRAME_MISALIGNMENT, &[0, 1], 3, ORDINARY_RAD),
+    ("imu_misalignment", &[0, 1, 2], 3, ORDINARY_RAD),
+    ("imu_offset", &[0, 1, 2], 3, ORDINARY_M),
+];
+
+/// The size (norm of the parameters) below which a mounting is like any other; `None` for other effects.
+pub(super) fn ordinary_size(id: &str) -> Option<f64> {
+    MOUNTINGS.iter().find(|(mounting, ..)| *mounting == id).map(|(.., size)| *size)
+}
+
+/// Whether a nuisance column stands for small sizes of the effect.
+fn is_small(id: &str, nuisance: Nuisance) -> bool {
+    match nuisance {
+        Nuisance::Tilt(_) => id == THRUST_TILT,
+        Nuisance::Level(_) => id == FRAME_MISALIGNMENT,
+        _ => false,
+    }
+}
+
+/// Each that the recordings show, tested without the nuisance that stands for it.
+pub(super) fn mountings(flights: &[Trace], fitted: &Fitted) -> Vec<Tested> {
+    let twice = flights.iter().all(Trace::reads_force_twice);
+    MOUNTINGS
+        .par_iter()
+        .filter(|(id, ..)| twice || *id == THRUST_TILT)
+        .filter_map(|&(id, free, count, _)| {
+            let part = present(id, &[0.0; 3][..count], free)?;
+            let candidate = Candidate { id, parts: vec![part], through: None };
+            if is_present(&fitted.base, &candidate) {
+                return None;
+            }
+            let columns = columns_of(flights, fitted, &candidate)?;
+            let mut rows = fitted.rows.clone();
+            rows.nuisances.retain(|column| !is_small(id, column.nuisance));
+            let evidence = Weighted::at(&rows, &fitted.weighted.sigma).test(&columns)?;
+            Some(Tested { candidate, evidence })
+        })
+        .collect()
+}

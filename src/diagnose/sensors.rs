@@ -1,0 +1,65 @@
+//! Effects that only the sensors see: the motion that was is what they showed, undone.
+//!
+//! An effect says what ideal sensors show of a true motion ([`Effect::measure`]); here that is solved for the
+//! true motion, so that its equation stands in one place.
+
+use super::base::{Base, Present};
+use super::trace::Trace;
+use crate::physics::{Effect, Hook, Measurement, State};
+use crate::signals::central_difference;
+use nalgebra::Vector3;
+use std::borrow::Cow;
+
+/// Passes of the fixed point: each leaves the effect's size (below 0.2) of the error before.
+const PASSES: usize = 8;
+
+/// Acts on nothing but what the sensors show.
+pub(super) fn is_of_sensors(effect: &dyn Effect) -> bool {
+    effect.hooks() == [Hook::Sensors]
+}
+
+/// The flights' true motion, given the base's effects on the sensors.
+pub(super) fn true_motion<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [Trace]> {
+    let faults: Vec<&Present> = base.present.iter().filter(|present| is_of_sensors(present.effect)).collect();
+    if faults.is_empty() {
+        return Cow::Borrowed(flights);
+    }
+    Cow::Owned(flights.iter().map(|trace| undone(trace, &faults)).collect())
+}
+
+/// One flight's.
+fn undone(trace: &Trace, faults: &[&Present]) -> Trace {
+    let shown_force = trace.specific_force_m_s2();
+    let mut states = trace.states.clone();
+    let mut force: Vec<Vector3<f64>> =
+        shown_force.map_or_else(|| vec![Vector3::zeros(); states.len()], <[_]>::to_vec);
+    for _ in 0..PASSES {
+        let turning = angular_acceleration(&states, trace.grid.step_s);
+        for (index, shown) in trace.states.iter().enumerate() {
+            let now = states[index];
+            let mut seen = Measurement { state: now, specific_force_m_s2: force[index] };
+            for fault in faults {
+                fault.effect.measure(&now, &turning[index], &fault.values, &mut seen);
+            }
+            states[index] = State {
+                position_m: now.position_m + shown.position_m - seen.state.position_m,
+                velocity_m_s: now.velocity_m_s + shown.velocity_m_s - seen.state.velocity_m_s,
+                attitude: shown.attitude * seen.state.attitude.inverse() * now.attitude,
+                rates_rad_s: now.rates_rad_s + shown.rates_rad_s - seen.state.rates_rad_s,
+            };
+            if let Some(shown) = shown_force {
+                force[index] += shown[index] - seen.specific_force_m_s2;
+            }
+        }
+    }
+    // the low-pass that was possible before is possible now
+    trace.with_motion(states, shown_force.map(|_| force)).unwrap_or_else(|_| trace.clone())
+}
+
+/// Unfiltered, rad/s^2: the weak form smooths what is made of it.
+fn angular_acceleration(states: &[State], step_s: f64) -> Vec<Vector3<f64>> {
+    let axes: [Vec<f64>; 3] = std::array::from_fn(|axis| {
+        central_difference(&states.iter().map(|state| state.rates_rad_s[axis]).collect::<Vec<_>>(), step_s)
+    });
+    (0..states.len()).map(|i| Vector3::new(axes[0][i], axes[1][i], axes[2][i])).collect()
+}

@@ -1,0 +1,132 @@
+//! Which form of each effect: all are fitted, the likeliest is taken.
+
+use super::wanted::Wanted;
+use crate::diagnose::base::{Base, Present};
+use crate::diagnose::rows::CHANNELS;
+use crate::diagnose::search::{Fitted, Newton, fit};
+use crate::diagnose::trace::Trace;
+use crate::physics::{Airframe, PhysicsError};
+use rayon::prelude::*;
+
+/// A form of an effect that was taken.
+#[derive(Debug, Clone)]
+pub(super) struct Chosen {
+    /// start values and what is estimated of them
+    pub(super) form: Present,
+    /// how many forms were tried
+    pub(super) tried: usize,
+    /// of what was found by trying alone (the moment of a change): its standard error
+    pub(super) tried_std: Option<(usize, f64)>,
+}
+
+/// Round about a change's moment, s: how far, and how finely.
+const ABOUT_S: f64 = 4.0;
+const EVERY_S: f64 = 0.25;
+
+/// Sum over the rows of the logarithm of each channel's standard deviation: minus the logarithm of the likelihood, up to a
+/// constant.
+pub(super) fn misfit(fitted: &Fitted) -> f64 {
+    let rows = fitted.rows.len() as f64;
+    let used = (0..CHANNELS).map(|channel| fitted.weighted.sigma[channel]).filter(|sigma| *sigma > 0.0);
+    used.map(|sigma| rows * sigma.ln()).sum()
+}
+
+/// One form of every effect that has columns of its own, in the order in which they were asked for.
+pub(super) fn choose(
+    flights: &[Trace],
+    base: &Base,
+    wanted: &Wanted,
+    airframe: &Airframe,
+) -> Result<Vec<Chosen>, PhysicsError> {
+    let forms: Vec<Vec<Present>> =
+        wanted.with_columns().map(|effect| wanted.forms(effect.id(), flights, airframe)).collect();
+    let open = forms.iter().filter(|forms| forms.len() > 1).count();
+    // what has one form is there from the beginning; of two that have several, the first is chosen once more
+    let mut picked: Vec<Option<Present>> =
+        forms.iter().map(|forms| if forms.len() == 1 { forms.first().cloned() } else { None }).collect();
+    let sweeps = if open > 1 { 2 } else { 1 };
+    let mut spread = vec![None; forms.len()];
+    for _ in 0..sweeps {
+        for (place, forms) in forms.iter().enumerate().filter(|(_, forms)| forms.len() > 1) {
+            let mut tried = forms.clone();
+            let mut best = likeliest(flights, base, &picked, (place, &tried))?;
+            if tried.first().is_some_and(|form| form.effect.id() == "mass_change") {
+                let about_s = best.form.values[0];
+                tried = about(&best.form, about_s, flights);
+                best = likeliest(flights, base, &picked, (place, &tried))?;
+                spread[place] = Some((0, moment_std_s(&best, &tried)));
+            }
+            picked[place] = Some(best.form);
+        }
+    }
+    let taken = picked.into_iter().zip(&forms).zip(spread);
+    Ok(taken
+        .filter_map(|((form, forms), tried_std)| Some(Chosen { form: form?, tried: forms.len(), tried_std }))
+        .collect())
+}
+
+/// The likeliest form, with the misfits of all.
+struct Likeliest {
+    form: Present,
+    misfits: Vec<f64>,
+    /// by how much slow noise makes rows count for less
+    deviation: f64,
+}
+
+fn likeliest(
+    flights: &[Trace],
+    base: &Base,
+    picked: &[Option<Present>],
+    (place, forms): (usize, &[Present]),
+) -> Result<Likeliest, PhysicsError> {
+    let fits: Vec<(f64, f64, usize)> = forms
+        .par_iter()
+        .map(|form| {
+            let mut base = base.clone();
+            for (other, present) in picked.iter().enumerate() {
+                base.present.extend(if other == place { Some(form.clone()) } else { present.clone() });
+            }
+            let fitted = fit(flights, base, Newton::Held)?;
+            Ok((misfit(&fitted), fitted.weighted.long_run_deviation(), fitted.rows.len()))
+        })
+        .collect::<Result<_, PhysicsError>>()?;
+    let deviation = fits.iter().map(|(_, deviation, _)| *deviation).fold(f64::INFINITY, f64::min);
+    let price = |form: &Present, rows: usize| {
+        0.5 * form.free.len() as f64 * (rows.max(2) as f64).ln() * deviation.powi(2)
+    };
+    let misfits: Vec<f64> =
+        fits.iter().zip(forms).map(|((misfit, _, rows), form)| misfit + price(form, *rows)).collect();
+    let best = misfits.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(index, _)| index);
+    Ok(Likeliest { form: forms[best].clone(), misfits, deviation })
+}
+
+/// The same change at moments round about the one that was found.
+fn about(form: &Present, time_s: f64, flights: &[Trace]) -> Vec<Present> {
+    let flown = flights.first().and_then(|trace| {
+        Some((trace.grid.time_s(*trace.centers.first()?), trace.grid.time_s(*trace.centers.last()?)))
+    });
+    let (first_s, last_s) = flown.unwrap_or((time_s, time_s));
+    let mut out = Vec::new();
+    let mut at_s = time_s - ABOUT_S;
+    while at_s <= time_s + ABOUT_S {
+        if at_s > first_s && at_s < last_s {
+            let mut moved = form.clone();
+            moved.values[0] = at_s;
+            out.push(moved);
+        }
+        at_s += EVERY_S;
+    }
+    if out.is_empty() { vec![form.clone()] } else { out }
+}
+
+/// Standard error of a moment by the likelihood's fall about it, and by how finely moments were tried.
+fn moment_std_s(best: &Likeliest, tried: &[Present]) -> f64 {
+    let least = best.misfits.iter().copied().fold(f64::INFINITY, f64::min);
+    let weights = best.misfits.iter().map(|misfit| (-(misfit - least) / best.deviation.powi(2)).exp());
+    let (mut sum, mut square) = (0.0, 0.0);
+    for (weight, form) in weights.zip(tried) {
+        sum += weight;
+        square += weight * (form.values[0] - best.form.values[0]).powi(2);
+    }
+    (square / sum.max(f64::MIN_POSITIVE) + EVERY_S.powi(2) / 12.0).sqrt()
+}

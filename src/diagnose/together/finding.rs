@@ -1,0 +1,287 @@
+//! What is said of each effect.
+
+use super::held::{Held, Settled, from_nothing, is_amount};
+use super::latency::{LEAST_LAG_S, Split};
+use super::wanted::Wanted;
+use crate::diagnose::base::Present;
+use crate::diagnose::deviate::normal_deviate;
+use crate::diagnose::explain::FAST_MOTOR_S;
+use crate::diagnose::latency::{LatencyFinding, held_s};
+use crate::diagnose::search::Fitted;
+use crate::diagnose::trace::Trace;
+use crate::physics::{ActiveEffect, Effect};
+use crate::vehicle::Vehicle;
+use nalgebra::{DMatrix, DVector};
+
+/// Beyond this many standard errors an effect is there.
+const SIGNIFICANT: f64 = 3.0;
+
+/// What the flight says of a parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Found {
+    /// estimated
+    Determined {
+        /// in the parameter's unit
+        value: f64,
+        /// standard error, same unit
+        std: f64,
+    },
+    /// the flight asks for a value that physics does not allow: held at the bound
+    AtBound {
+        /// the bound, in the parameter's unit
+        value: f64,
+        /// what the flight asks for
+        wanted: f64,
+        /// its standard error
+        std: f64,
+    },
+    /// set, not estimated
+    Given {
+        /// in the parameter's unit
+        value: f64,
+        /// where it comes from
+        why: String,
+    },
+    /// the flight does not say
+    NotDetermined {
+        /// what it is held at in the model
+        held: f64,
+        /// why
+        reason: String,
+    },
+}
+
+impl Found {
+    /// What the model has, in the parameter's unit.
+    #[must_use]
+    pub fn value(&self) -> f64 {
+        match self {
+            Self::Determined { value, .. } | Self::AtBound { value, .. } | Self::Given { value, .. } => {
+                *value
+            }
+            Self::NotDetermined { held, .. } => *held,
+        }
+    }
+}
+
+/// A parameter of an effect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParameterFound {
+    /// as in files
+    pub name: &'static str,
+    /// SI
+    pub unit: &'static str,
+    /// least and greatest that is plausible
+    pub plausible: (f64, f64),
+    /// what the flight says
+    pub found: Found,
+}
+
+/// An effect that was asked for.
+#[derive(Debug, Clone)]
+pub struct EffectFound {
+    /// which
+    pub effect: &'static dyn Effect,
+    /// in the order of its values
+    pub parameters: Vec<ParameterFound>,
+    /// normal deviate of the amounts from nothing, the number of forms that were tried allowed for; of a lag
+    /// or delay from what a fast motor makes
+    pub z: f64,
+    /// forms that were tried: rotors, moments, lengths, laws
+    pub tried: usize,
+}
+
+impl EffectFound {
+    /// It stands out of the noise.
+    #[must_use]
+    pub fn is_significant(&self) -> bool {
+        self.z > SIGNIFICANT
+    }
+
+    /// For a simulation; `None` where the flight determines nothing of it.
+    #[must_use]
+    pub fn acting(&self) -> Option<ActiveEffect> {
+        let known = |p: &ParameterFound| matches!(p.found, Found::Determined { .. } | Found::AtBound { .. });
+        let values: Vec<f64> = self.parameters.iter().map(|p| p.found.value()).collect();
+        self.parameters.iter().any(known).then(|| ActiveEffect::new(self.effect, &values).ok())?
+    }
+}
+
+/// All effects in the order in which they were asked for. `by_mass`: factor that puts forces on the scale of a
+/// weighed mass.
+pub(super) fn effects(
+    (flights, vehicle): (&[Trace], &Vehicle),
+    wanted: &Wanted,
+    (fitted, settled): (&Fitted, &[Settled]),
+    (latency, split): (&LatencyFinding, Split),
+    by_mass: Option<f64>,
+) -> Vec<EffectFound> {
+    let first = fitted.base.present.len() - settled.len();
+    wanted
+        .effects()
+        .iter()
+        .map(|&effect| {
+            let place = settled.iter().position(|of| of.chosen.form.effect.id() == effect.id());
+            match place {
+                Some(place) => of_columns(
+                    fitted,
+                    first + place,
+                    &settled[place],
+                    (vehicle, wanted.has("inflow"), by_mass),
+                ),
+                None => of_latency(effect, flights, (latency, split), stated_s(vehicle)),
+            }
+        })
+        .collect()
+}
+
+/// A lag that the vehicle's description states, s.
+fn stated_s(vehicle: &Vehicle) -> f64 {
+    vehicle.propulsion.time_constant_s.unwrap_or(0.0)
+}
+
+/// An effect that has columns of its own, at `place` of the base.
+fn of_columns(
+    fitted: &Fitted,
+    place: usize,
+    settled: &Settled,
+    (vehicle, has_inflow, by_mass): (&Vehicle, bool, Option<f64>),
+) -> EffectFound {
+    let present = &fitted.base.present[place];
+    let before: usize = fitted.base.present[..place].iter().map(|of| of.free.len()).sum();
+    let column = |nth: usize| fitted.rows.nuisances.len() + before + nth;
+    let scale = Scale { fitted, by_mass };
+    let mut parameters = Vec::new();
+    for (slot, &value) in present.values.iter().enumerate() {
+        let Some(parameter) = present.parameter(slot) else { continue };
+        let held = settled.held.iter().find(|(of, _)| *of == slot).map(|(_, held)| held.clone());
+        let scaled = scale.is_scaled(parameter.unit);
+        let times = if scaled { by_mass.unwrap_or(1.0) } else { 1.0 };
+        let found = match (present.free.iter().position(|free| *free == slot), held) {
+            (Some(nth), _) => {
+                let std =
+                    if scaled { scale.std(column(nth), value) } else { fitted_std(fitted, column(nth)) };
+                Found::Determined { value: value * times, std }
+            }
+            (None, Some(Held::AtBound { wanted, std })) => {
+                Found::AtBound { value: value * times, wanted: wanted * times, std: std * times }
+            }
+            (None, Some(Held::NotDetermined(reason))) => Found::NotDetermined { held: value * times, reason },
+            (None, None) => match settled.chosen.tried_std {
+                Some((of, std)) if of == slot => Found::Determined { value, std },
+                _ => set(present, slot, value, (vehicle, has_inflow)),
+            },
+        };
+        let plausible = (parameter.min, parameter.max);
+        parameters.push(ParameterFound { name: parameter.name, unit: parameter.unit, plausible, found });
+    }
+    let amounts: Vec<(usize, f64)> = present
+        .free
+        .iter()
+        .enumerate()
+        .filter(|(_, slot)| is_amount(present, **slot))
+        .map(|(nth, &slot)| (column(nth), from_nothing(present, slot, 1.0)))
+        .collect();
+    EffectFound {
+        effect: present.effect,
+        parameters,
+        z: deviate(fitted, &amounts, settled.chosen.tried),
+        tried: settled.chosen.tried,
+    }
+}
+
+/// Why a parameter that was neither estimated nor held is what it is.
+fn set(present: &Present, slot: usize, value: f64, (vehicle, has_inflow): (&Vehicle, bool)) -> Found {
+    let given = |why: &str| Found::Given { value, why: why.to_owned() };
+    let unknown = |reason: &str| Found::NotDetermined { held: value, reason: reason.to_owned() };
+    match (present.effect.id(), slot) {
+        ("weak_rotor", 0) => {
+            let names = vehicle.rotors.iter().enumerate().find(|(index, _)| *index as f64 == value);
+            given(names.map_or("the likeliest", |(_, rotor)| rotor.name.as_str()))
+        }
+        ("battery_sag", 1) => given(
+            "the highest recorded: the thrust that the vehicle file states is taken to be that at this voltage",
+        ),
+        ("ground_effect", 0..=2) => given("the other law is the likelier one"),
+        ("ceiling_effect", 1) => {
+            given("acts only as its sum with the distance; the height given here holds it")
+        }
+        ("linear_drag", 2) if has_inflow => given("is the inflow's kz"),
+        ("tether", _) => unknown("the line was not taut in this flight, or pulled too little to show"),
+        ("frame_misalignment", _) => unknown(
+            "position, velocity and attitude turn alike: no equation of the vehicle's own motion sees a heading",
+        ),
+        _ => given("as it was set"),
+    }
+}
+
+/// Lag or delay, in the latency.
+fn of_latency(
+    effect: &'static dyn Effect,
+    flights: &[Trace],
+    (latency, split): (&LatencyFinding, Split),
+    stated_s: f64,
+) -> EffectFound {
+    let is_lag = effect.id() == "motor_lag";
+    let (value, least, ordinary_s) = if is_lag {
+        (latency.parts.lag_s, LEAST_LAG_S, FAST_MOTOR_S)
+    } else {
+        // the sampled command's hold is not the vehicle's
+        let fast_s = if stated_s > 0.0 || split.is_some() { 0.0 } else { FAST_MOTOR_S };
+        (latency.parts.delay_s - held_s(flights), 0.0, fast_s)
+    };
+    let std = split.map_or(latency.std_s, |(lag, delay)| if is_lag { lag } else { delay });
+    let found = if value > least {
+        Found::Determined { value, std }
+    } else {
+        Found::AtBound { value: least, wanted: value, std }
+    };
+    let parameters = effect
+        .parameters()
+        .iter()
+        .map(|of| ParameterFound {
+            name: of.name,
+            unit: of.unit,
+            plausible: (of.min, of.max),
+            found: found.clone(),
+        })
+        .collect();
+    EffectFound { effect, parameters, z: ((value - ordinary_s) / std).max(0.0), tried: 1 }
+}
+
+fn fitted_std(fitted: &Fitted, column: usize) -> f64 {
+    fitted.covariance[(column, column)].max(0.0).sqrt()
+}
+
+/// Forces by the scale of a weighed mass.
+struct Scale<'a> {
+    fitted: &'a Fitted,
+    by_mass: Option<f64>,
+}
+
+impl Scale<'_> {
+    /// Force, mass and inertia follow the scale; lengths, angles, times and ratios do not.
+    fn is_scaled(&self, unit: &str) -> bool {
+        self.by_mass.is_some() && (unit.starts_with('N') || unit.starts_with("kg"))
+    }
+
+    /// Standard error of `value m_w / m` by the chain rule; the mass is the first column.
+    fn std(&self, column: usize, value: f64) -> f64 {
+        let covariance = &self.fitted.covariance;
+        let share = value / self.fitted.base.vehicle.body.mass_kg;
+        let variance = covariance[(column, column)] - 2.0 * share * covariance[(column, 0)]
+            + share * share * covariance[(0, 0)];
+        self.by_mass.unwrap_or(1.0) * variance.max(0.0).sqrt()
+    }
+}
+
+/// Normal deviate of the amounts, given as column and distance from nothing, after `tried` forms: the chance of
+/// the likeliest of them is at most so many times that of one.
+fn deviate(fitted: &Fitted, amounts: &[(usize, f64)], tried: usize) -> f64 {
+    let size = amounts.len();
+    let away = DVector::from_iterator(size, amounts.iter().map(|(_, away)| *away));
+    let covariance = DMatrix::from_fn(size, size, |i, j| fitted.covariance[(amounts[i].0, amounts[j].0)]);
+    let wald = covariance.cholesky().map_or(0.0, |factor| away.dot(&factor.solve(&away)));
+    let z = if size == 0 { 0.0 } else { normal_deviate(wald, size) };
+    (z * z - 2.0 * (tried.max(1) as f64).ln()).max(0.0).sqrt()
+}

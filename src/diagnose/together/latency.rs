@@ -1,0 +1,79 @@
+//! Lag and delay that were named: held as that kind, their sum estimated with everything else.
+
+use super::wanted::Wanted;
+use crate::diagnose::base::Base;
+use crate::diagnose::latency::{LatencyFinding, held_s, lag_column};
+use crate::diagnose::search::{Fitted, Newton, fit};
+use crate::diagnose::trace::Trace;
+use crate::physics::{ActiveEffect, PhysicsError};
+use crate::signals::ActuationLatency;
+use crate::vehicle::Vehicle;
+
+/// A lag does not vanish while it is estimated, s.
+pub(super) const LEAST_LAG_S: f64 = 1e-4;
+/// Passes over the share of the lag.
+const PASSES: usize = 8;
+/// A share that moves by less than this many standard errors has converged.
+const CONVERGED: f64 = 0.05;
+
+/// Standard errors of lag and delay where both were named, s.
+pub(super) type Split = Option<(f64, f64)>;
+
+/// Where the latency starts, and what of it is estimated. A kind that was not named is as the vehicle states it.
+pub(super) fn held_as(
+    wanted: &Wanted,
+    flights: &[Trace],
+    (vehicle, known): (&Vehicle, &[ActiveEffect]),
+    first: LatencyFinding,
+    found: ActuationLatency,
+) -> (ActuationLatency, Newton) {
+    let of_file = |id: &str| {
+        let known = known.iter().find(|of| of.effect().id() == id);
+        known.and_then(|of| of.parameters().first().copied())
+    };
+    let held_s = held_s(flights);
+    let beyond_s = first.total_s - held_s;
+    match (wanted.has("motor_lag"), wanted.has("transport_delay")) {
+        (false, false) => (found, Newton::Free),
+        (true, false) => {
+            let delay_s = of_file("transport_delay").unwrap_or(0.0);
+            let lag_s = (beyond_s - delay_s).max(10.0 * LEAST_LAG_S);
+            (ActuationLatency { delay_s: delay_s + held_s, lag_s }, Newton::Free)
+        }
+        (false, true) => {
+            let lag_s = of_file("motor_lag").or(vehicle.propulsion.time_constant_s).unwrap_or(0.0);
+            (ActuationLatency { delay_s: first.total_s - lag_s, lag_s }, Newton::Delay)
+        }
+        (true, true) => {
+            let lag_s = (0.5 * beyond_s).max(10.0 * LEAST_LAG_S);
+            (ActuationLatency { delay_s: first.total_s - lag_s, lag_s }, Newton::Delay)
+        }
+    }
+}
+
+/// Where both kinds were named: shares the sum out by what a lag smooths and a delay does not.
+pub(super) fn split(
+    flights: &[Trace],
+    mut after: Fitted,
+    wanted: &Wanted,
+) -> Result<(Fitted, Split), PhysicsError> {
+    if !(wanted.has("motor_lag") && wanted.has("transport_delay")) {
+        return Ok((after, None));
+    }
+    let mut lag_std_s = f64::INFINITY;
+    for _ in 0..PASSES {
+        let column = lag_column(flights, &after.base);
+        let Some(evidence) = after.weighted.test(&[column]) else { break };
+        lag_std_s = evidence.std(0);
+        let before_s = after.base.latency.lag_s;
+        let most_s = (after.base.latency.total_s() - held_s(flights)).max(LEAST_LAG_S);
+        let lag_s = (before_s + evidence.theta[0]).clamp(LEAST_LAG_S, most_s);
+        let latency = ActuationLatency { lag_s, delay_s: after.base.latency.total_s() - lag_s };
+        after = fit(flights, Base { latency, ..after.base }, Newton::Delay)?;
+        if (lag_s - before_s).abs() < CONVERGED * lag_std_s {
+            break;
+        }
+    }
+    let total_std_s = crate::diagnose::latency::finding_of(&after).std_s;
+    Ok((after, Some((lag_std_s, lag_std_s.hypot(total_std_s)))))
+}
