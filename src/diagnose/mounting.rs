@@ -1,7 +1,7 @@
 //! How thrust axis and sensors sit: off a little in every vehicle, and an effect where they are off by much.
 //!
-//! These are nuisances, or as small as nuisances, and are tried only when nothing else passes: almost any force
-//! that does not change looks a little like a lean.
+//! What stands in a nuisance's place is tried only when nothing else passes: almost any force that does not
+//! change looks a little like a lean.
 
 use super::candidates::{Candidate, present};
 use super::evidence::Weighted;
@@ -43,11 +43,21 @@ fn is_small(id: &str, nuisance: Nuisance) -> bool {
     }
 }
 
-/// Each that the recordings show, tested without the nuisance that stands for it.
-pub(super) fn mountings(flights: &[Trace], fitted: &Fitted) -> Vec<Tested> {
+/// Whether a mounting waits until nothing else passes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Turn {
+    /// what only the inertial unit sees, and no nuisance stands for
+    First,
+    /// what a nuisance stands for
+    Last,
+}
+
+/// Each of a turn that the recordings show, tested without the nuisance that stands for it.
+pub(super) fn mountings(flights: &[Trace], fitted: &Fitted, turn: Turn) -> Vec<Tested> {
     let twice = flights.iter().all(Trace::reads_force_twice);
     MOUNTINGS
         .par_iter()
+        .filter(|(id, ..)| (turn == Turn::Last) == [THRUST_TILT, FRAME_MISALIGNMENT].contains(id))
         .filter(|(id, ..)| twice || *id == THRUST_TILT)
         .filter_map(|&(id, free, count, _)| {
             let part = present(id, &[0.0; 3][..count], free)?;

@@ -6,7 +6,7 @@ use super::evidence::{Evidence, Weighted};
 use super::hubs::one_place;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::locate::mass_step_std_kg;
-use super::mounting::{mountings, ordinary_size};
+use super::mounting::{Turn, mountings, ordinary_size};
 use super::rows::{Channels, Nuisance, Rows, SECOND};
 use super::settle::{SETTLED_S, settle};
 use super::sharpen::sharpened;
@@ -191,6 +191,7 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
     loop {
         let candidates = candidates(&after.base.vehicle, flights);
         last = test_all(flights, &after, &candidates);
+        last.extend(mountings(flights, &after, Turn::First));
         let count = last.len() as f64;
         let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);
         let ranked = |tested: &[Tested]| {
@@ -206,7 +207,7 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         };
         let mut passed = ranked(&last);
         if passed.is_empty() {
-            let mounted = mountings(flights, &after);
+            let mounted = mountings(flights, &after, Turn::Last);
             passed = ranked(&mounted);
             last.extend(mounted);
         }
