@@ -37,7 +37,7 @@ const SIZES: &[(&str, Sizes)] = &[
     ("frame_misalignment", &[("x", 0.035, Scale::One), ("y", -0.026, Scale::One), ("z", 0.0, Scale::One)]),
     ("imu_misalignment", &[("x", 0.035, Scale::One), ("y", -0.026, Scale::One), ("z", 0.03, Scale::One)]),
     ("imu_offset", &[("x", 0.05, Scale::One), ("y", -0.03, Scale::One), ("z", 0.04, Scale::One)]),
-    ("rotor_inertia", &[("jr", 0.003, Scale::Inertia)]),
+    ("rotor_inertia", &[("jr", 0.001, Scale::Inertia)]),
     (
         "tether",
         &[("line_mass", 0.03, Scale::Mass), ("stiffness", 0.0, Scale::One), ("length", 500.0, Scale::One)],
@@ -151,6 +151,16 @@ fn report_effect(id: &'static str, values: Sizes, first: u64, count: u64) {
                 conditions(*seed),
                 explanation.search.latency
             );
+            if std::env::var("D").is_ok() {
+                let mut last = explanation.search.last.clone();
+                last.sort_by(|a, b| b.evidence.energy.total_cmp(&a.evidence.energy));
+                for t in last.iter().take(8) {
+                    println!("      {:16} z {:.1} pc {:.1e} gain {:.4} theta {:?} rms {:?}", t.candidate.id, t.evidence.z, t.evidence.p_cluster, t.evidence.gain, t.evidence.theta, t.evidence.rms);
+                }
+                if let Some(l) = &explanation.lack_of_fit { println!("      lack p {:?} excess {:?}", l.p_value, l.excess_rms); }
+                if let Some(f) = &explanation.field { println!("      field {} z {} gain {} force {}", f.certain, f.z, f.gain, f.force_n); }
+                println!("      red {:?} trend {:?}", explanation.aperiodic.redness.iter().filter(|r| r.certain).map(|r| r.of).collect::<Vec<_>>(), explanation.aperiodic.trend.filter(|t| t.certain));
+            }
         }
         for name in explanation.named.iter().filter(|name| name.id != id && !in_set(name)) {
             others += 1;
