@@ -42,9 +42,16 @@ const SIZES: &[(&str, Sizes)] = &[
         "tether",
         &[("line_mass", 0.03, Scale::Mass), ("stiffness", 0.0, Scale::One), ("length", 500.0, Scale::One)],
     ),
+    ("ceiling_effect", &[("a1", 3.5, Scale::One), ("a2", 0.03, Scale::One), ("height", 2.35, Scale::One)]),
+    ("vortex_ring", &[("loss", 2.0, Scale::One)]),
+    ("gust", &[("sigma", 0.4, Scale::One), ("correlation_time", 1.0, Scale::One), ("seed", 7.0, Scale::One)]),
+    ("steady_wind", &[("north", 2.5, Scale::One), ("west", 1.5, Scale::One), ("up", 0.0, Scale::One)]),
     ("motor_lag", &[("time_constant", 0.04, Scale::One)]),
     ("transport_delay", &[("delay", 0.03, Scale::One)]),
 ];
+
+/// Effects that show only through a drag, which is concealed with them.
+const THROUGH_DRAG: [&str; 2] = ["gust", "steady_wind"];
 
 #[derive(Clone, Copy)]
 enum Scale {
@@ -130,6 +137,8 @@ fn report_effect(id: &'static str, values: Sizes, first: u64, count: u64) {
     for (seed, explanation, truth) in &found {
         *verdicts.entry(explanation.verdict.name()).or_default() += 1;
         let is_it = |name: &&mavid::diagnose::Named| name.id == id;
+        let companion =
+            |name: &mavid::diagnose::Named| THROUGH_DRAG.contains(&id) && name.id == "linear_drag";
         let in_set = |name: &&mavid::diagnose::Named| name.confusable_with.iter().any(|other| other.id == id);
         if let Some(name) = explanation.named.iter().find(is_it) {
             named += 1;
@@ -155,14 +164,37 @@ fn report_effect(id: &'static str, values: Sizes, first: u64, count: u64) {
                 let mut last = explanation.search.last.clone();
                 last.sort_by(|a, b| b.evidence.energy.total_cmp(&a.evidence.energy));
                 for t in last.iter().take(8) {
-                    println!("      {:16} z {:.1} pc {:.1e} gain {:.4} theta {:?} rms {:?}", t.candidate.id, t.evidence.z, t.evidence.p_cluster, t.evidence.gain, t.evidence.theta, t.evidence.rms);
+                    println!(
+                        "      {:16} z {:.1} pc {:.1e} gain {:.4} theta {:?} rms {:?}",
+                        t.candidate.id,
+                        t.evidence.z,
+                        t.evidence.p_cluster,
+                        t.evidence.gain,
+                        t.evidence.theta,
+                        t.evidence.rms
+                    );
                 }
-                if let Some(l) = &explanation.lack_of_fit { println!("      lack p {:?} excess {:?}", l.p_value, l.excess_rms); }
-                if let Some(f) = &explanation.field { println!("      field {} z {} gain {} force {}", f.certain, f.z, f.gain, f.force_n); }
-                println!("      red {:?} trend {:?}", explanation.aperiodic.redness.iter().filter(|r| r.certain).map(|r| r.of).collect::<Vec<_>>(), explanation.aperiodic.trend.filter(|t| t.certain));
+                if let Some(l) = &explanation.lack_of_fit {
+                    println!("      lack p {:?} excess {:?}", l.p_value, l.excess_rms);
+                }
+                if let Some(f) = &explanation.field {
+                    println!("      field {} z {} gain {} force {}", f.certain, f.z, f.gain, f.force_n);
+                }
+                println!(
+                    "      red {:?} trend {:?}",
+                    explanation
+                        .aperiodic
+                        .redness
+                        .iter()
+                        .filter(|r| r.certain)
+                        .map(|r| r.of)
+                        .collect::<Vec<_>>(),
+                    explanation.aperiodic.trend.filter(|t| t.certain)
+                );
             }
         }
-        for name in explanation.named.iter().filter(|name| name.id != id && !in_set(name)) {
+        for name in explanation.named.iter().filter(|name| name.id != id && !in_set(name) && !companion(name))
+        {
             others += 1;
             *strangers.entry(name.id).or_default() += 1;
         }
@@ -173,6 +205,12 @@ fn report_effect(id: &'static str, values: Sizes, first: u64, count: u64) {
         "{id:20} {:7} {named:6} {within:4} {others:7}  {verdicts:?} {median:.1} % {strangers:?}",
         found.len()
     );
+}
+
+/// The drag through which the air's motion acts.
+fn drag(vehicle: &Vehicle) -> ActiveEffect {
+    let d = 0.3 * vehicle.body.mass_kg;
+    ActiveEffect::named("linear_drag", &[("dx", d), ("dy", d), ("dz", 0.0)]).expect("a possible effect")
 }
 
 fn conditions(seed: u64) -> String {
@@ -204,6 +242,11 @@ fn fly(seed: u64, effects: impl Fn(&Vehicle) -> Vec<ActiveEffect>, id: Option<&s
         // gently, as loads are flown
         (random.speed_max_m_s, random.acceleration_max_m_s2) = (1.0, 0.8);
     }
+    if id == Some("vortex_ring") {
+        // down fast, as it takes
+        random.height_m = (2.0, 14.0);
+        (random.speed_max_m_s, random.acceleration_max_m_s2) = (5.0, 5.0);
+    }
     if id == Some("ground_effect") {
         random.height_m = (0.3, 1.2);
     }
@@ -213,7 +256,8 @@ fn fly(seed: u64, effects: impl Fn(&Vehicle) -> Vec<ActiveEffect>, id: Option<&s
     if id == Some("battery_sag") {
         settings.battery_drop_v_s = 0.03;
     }
-    let effects = effects(&pair.truth);
+    let mut effects = effects(&pair.truth);
+    effects.extend(id.filter(|id| THROUGH_DRAG.contains(id)).map(|_| drag(&pair.truth)));
     let truth = Truth { vehicle: pair.truth, effects, disturbance: None };
     let flight = simulate_flight(truth, &pair.nominal, &reference, &settings).ok()?;
     let how = ConditionSettings {

@@ -33,7 +33,12 @@ impl Present {
     /// Value at which a parameter's effect vanishes.
     #[must_use]
     pub fn nothing_at(&self, slot: usize) -> f64 {
-        if self.effect.id() == "weak_rotor" && slot == 1 { 1.0 } else { 0.0 }
+        match (self.effect.id(), slot) {
+            ("weak_rotor", 1) => 1.0,
+            // it divides
+            ("ceiling_effect", 0) => self.parameter(slot).map_or(0.0, |parameter| parameter.max),
+            _ => 0.0,
+        }
     }
 }
 

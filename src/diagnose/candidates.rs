@@ -2,6 +2,7 @@
 
 use super::base::Present;
 use super::trace::Trace;
+use crate::physics::Airframe;
 use crate::physics::effects::by_id;
 use crate::vehicle::Vehicle;
 
@@ -22,7 +23,12 @@ const MASS_CHANGE_EVERY_S: f64 = 4.0;
 pub(super) const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
 
 /// What the air takes of a load's swing before more is known, 1/s.
-const SWING_DAMPING_1_S: f64 = 0.2;
+pub(super) const SWING_DAMPING_1_S: f64 = 0.2;
+
+/// Distances of a ceiling over the highest rotor that are tried, rotor radii.
+const CEILINGS_RADII: [f64; 7] = [0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0];
+/// A ceiling's a1 that is as good as none: the thrust grows with its inverse.
+const NO_CEILING: f64 = 50.0;
 
 /// An effect by its identifier; `None` where there is no such effect.
 pub(super) fn present(id: &str, values: &[f64], free: &[usize]) -> Option<Present> {
@@ -63,6 +69,10 @@ pub fn candidates(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
         add(&[present("ground_effect", &[0.0, 0.0, 1.0, 0.0], &[0])]);
         add(&[present("ground_effect", &[0.0, 0.0, 1.0, 1.0], &[0])]);
         add(&[present("tether", &[0.0, 0.0, 500.0], &[0])]);
+        let ceilings = Airframe::new(vehicle).map(|airframe| ceilings_m(flights, &airframe));
+        for height_m in ceilings.unwrap_or_default() {
+            add(&[present("ceiling_effect", &[NO_CEILING, 0.0, height_m], &[0])]);
+        }
     }
     add(&[present("thrust_curve", &[0.0], &[0])]);
     add(&[present("com_offset", &[0.0; 3], &[0, 1])]);
@@ -123,4 +133,17 @@ pub(super) fn change_times(trace: &Trace) -> Vec<f64> {
         time_s += MASS_CHANGE_EVERY_S;
     }
     out
+}
+
+/// Heights that a ceiling may have over the flown ones, m.
+pub(super) fn ceilings_m(flights: &[Trace], airframe: &Airframe) -> Vec<f64> {
+    let radius_m = airframe.propulsion.rotor_radius_m.unwrap_or(0.0);
+    let hub_m = |trace: &Trace, row: usize| {
+        let state = &trace.states[row];
+        let over = airframe.arms_m().iter().map(|arm| (state.attitude * arm).z).fold(f64::MIN, f64::max);
+        state.position_m.z + over
+    };
+    let flown = flights.iter().flat_map(|trace| trace.centers.iter().map(move |&row| hub_m(trace, row)));
+    let top_m = flown.fold(f64::MIN, f64::max);
+    CEILINGS_RADII.iter().map(|radii| top_m + radii * radius_m).filter(|height_m| *height_m >= 0.5).collect()
 }

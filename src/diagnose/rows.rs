@@ -293,8 +293,15 @@ fn per_step(mut up: Channels, down: &Channels, step: f64) -> Channels {
     up
 }
 
+/// a1 of ceilings that were measured.
+const USUAL_CEILING: f64 = 5.0;
+
 /// By how much a parameter is moved to see what it does.
 fn step_of(present: &Present, index: usize) -> f64 {
+    if present.effect.id() == "ceiling_effect" && present.values[index] == present.nothing_at(index) {
+        // a1 divides, and is taken to a usual ceiling's at once: its slope at nothing leads nowhere
+        return USUAL_CEILING - present.values[index];
+    }
     let span = present.parameter(index).map_or(1.0, |parameter| (parameter.max - parameter.min).min(1.0));
     (1e-4 * span).max(1e-3 * present.values[index].abs())
 }

@@ -18,6 +18,8 @@ fn scale_of(id: &str) -> Option<Scale> {
     match id {
         // s
         "mass_change" => Some(Scale::Even { slot: 0, step: 0.5, least: 0.03 }),
+        // m
+        "ceiling_effect" => Some(Scale::Even { slot: 2, step: 0.03, least: 0.003 }),
         // of the length
         "slung_load" => Some(Scale::Relative { slot: 1, step: 0.04, least: 0.002 }),
         _ => None,

@@ -126,8 +126,7 @@ pub(super) fn is_amount(present: &Present, slot: usize) -> bool {
 
 /// Where an amount does nothing, or as little as it may.
 fn nothing(present: &Present, slot: usize) -> f64 {
-    let most = present.parameter(slot).map_or(0.0, |parameter| parameter.max);
-    if present.effect.id() == "ceiling_effect" { most } else { present.nothing_at(slot) }
+    present.nothing_at(slot)
 }
 
 /// Standard errors by which an amount differs from nothing.

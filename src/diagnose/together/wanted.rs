@@ -2,7 +2,9 @@
 
 use super::TogetherError;
 use crate::diagnose::base::Present;
-use crate::diagnose::candidates::{CORD_LENGTHS_M, change_times, full_voltage, present};
+use crate::diagnose::candidates::{
+    CORD_LENGTHS_M, SWING_DAMPING_1_S, ceilings_m, change_times, full_voltage, present,
+};
 use crate::diagnose::trace::Trace;
 use crate::physics::effects::{ALL, by_id};
 use crate::physics::{ActiveEffect, Airframe, Effect};
@@ -15,8 +17,6 @@ const OF_AIR: [&str; 6] =
 /// Names of what is identified in any case.
 const ALWAYS: [&str; 3] = ["thrust_scale", "torque_scale", "inertia_products"];
 
-/// Distances of a ceiling over the highest rotor that are tried, rotor radii.
-const CEILINGS_RADII: [f64; 7] = [0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0];
 /// Decays of the exponential ground effect that are tried.
 const DECAYS: [f64; 3] = [0.4, 0.8, 1.6];
 /// Lengths of a tether that are tried, of the farthest distance flown.
@@ -146,6 +146,7 @@ impl Wanted {
             }
             "linear_drag" => hubs.map(|at_hubs| one(&[0.0, 0.0, 0.0, at_hubs], &[0, 1, 2, 3])).to_vec(),
             "inflow" => hubs.map(|at_hubs| one(&[0.0, at_hubs], &[0, 1])).to_vec(),
+            "quadratic_drag" => hubs.map(|by_face| one(&[0.0, 0.0, 0.0, by_face], &[0, 1, 2, 3])).to_vec(),
             "ground_effect" => {
                 let inverse = hubs.map(|levelling| one(&[0.0, 0.0, 1.0, levelling], &[0, 3]));
                 let exponential = DECAYS.map(|decay| one(&[0.0, 0.1, decay, 1.0], &[1, 2, 3]));
@@ -161,7 +162,9 @@ impl Wanted {
             "battery_sag" => {
                 full_voltage(flights).into_iter().map(|full_v| one(&[0.0, full_v], &[0])).collect()
             }
-            "slung_load" => CORD_LENGTHS_M.map(|length_m| one(&[0.0, length_m], &[0, 1])).to_vec(),
+            "slung_load" => {
+                CORD_LENGTHS_M.map(|length_m| one(&[0.0, length_m, SWING_DAMPING_1_S], &[0, 1, 2])).to_vec()
+            }
             "mass_change" => {
                 let times = flights.first().map(change_times).unwrap_or_default();
                 times.into_iter().map(|time_s| one(&[time_s, 0.0], &[1])).collect()
@@ -193,19 +196,6 @@ pub(super) fn is_latency(id: &str) -> bool {
 /// All names, for messages.
 pub(super) fn names() -> String {
     ALL.iter().map(|effect| effect.id()).collect::<Vec<_>>().join(", ")
-}
-
-/// Heights that a ceiling may have over the flown ones, m.
-fn ceilings_m(flights: &[Trace], airframe: &Airframe) -> Vec<f64> {
-    let radius_m = airframe.propulsion.rotor_radius_m.unwrap_or(0.0);
-    let hub_m = |trace: &Trace, row: usize| {
-        let state = &trace.states[row];
-        let over = airframe.arms_m().iter().map(|arm| (state.attitude * arm).z).fold(f64::MIN, f64::max);
-        state.position_m.z + over
-    };
-    let flown = flights.iter().flat_map(|trace| trace.centers.iter().map(move |&row| hub_m(trace, row)));
-    let top_m = flown.fold(f64::MIN, f64::max);
-    CEILINGS_RADII.iter().map(|radii| top_m + radii * radius_m).filter(|height_m| *height_m >= 0.5).collect()
 }
 
 /// From the world's origin, m.
