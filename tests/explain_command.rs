@@ -1,0 +1,195 @@
+//! `mavid explain` and `mavid export` at their process boundary.
+
+#![allow(clippy::print_stderr, reason = "says what it skips")]
+#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn mavid(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_mavid")).args(arguments).output().unwrap()
+}
+
+fn fixture(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name).display().to_string()
+}
+
+fn temporary(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// A practice case beside the repository, or a word that it is not there.
+fn case(name: &str) -> Option<PathBuf> {
+    let shared = std::env::var_os("MAVID_SHARED")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
+    let folder = shared.join("cases").join(name);
+    if !folder.is_dir() {
+        eprintln!("skipped: no {}", folder.display());
+        return None;
+    }
+    Some(folder)
+}
+
+#[test]
+fn a_complete_rigid_body_has_nothing_missing_and_says_what_it_would_have_seen() {
+    let out = temporary("explain-p01");
+    let (log, vehicle) = (fixture("p01_identify_0_25s.tlog"), fixture("p01_vehicle.toml"));
+    let output = mavid(&["explain", &log, "--vehicle", &vehicle, "--out", out.to_str().unwrap(), "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["schema"], 1);
+    assert_eq!(document["verdict"], "nothing_missing");
+    assert_eq!(document["effects"].as_array().unwrap().len(), 0);
+    assert!(document["answer"].as_str().unwrap().starts_with("Nothing is missing"));
+    let limits = document["detection_limits"].as_array().unwrap();
+    let drag = limits.iter().find(|limit| limit["id"] == "linear_drag").unwrap();
+    assert!((0.001..0.1).contains(&drag["limit"].as_f64().unwrap()), "{drag}");
+    let mass = &document["parameters"]["mass"];
+    assert!((mass["value"].as_f64().unwrap() / 2.06 - 1.0).abs() < 0.01 && mass["unit"] == "kg");
+    for key in ["axes", "time_s", "state", "band_hz"] {
+        assert!(document["localisation"].get(key).is_some(), "{key}");
+    }
+    assert!(document["fit"]["identify"]["before"]["velocity_m_s"].as_f64().unwrap() > 0.0);
+    // the model goes where a vehicle goes
+    let model = out.join("model.toml");
+    let checked = mavid(&["vehicle", model.to_str().unwrap(), "--json"]);
+    assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
+    whole_report(&out.join("report.html"));
+}
+
+/// One file, closed, with nothing loaded from anywhere.
+fn whole_report(path: &Path) {
+    let report = std::fs::read_to_string(path).unwrap();
+    assert!(report.len() < 1_000_000, "{} bytes", report.len());
+    for word in ["http:", "https:", "<script", "src=", "@import", "url(", "NaN"] {
+        assert!(!report.contains(word), "{word}");
+    }
+    let mut open: Vec<&str> = Vec::new();
+    for tag in report.split('<').skip(1).filter_map(|part| part.split('>').next()) {
+        let name = tag.split([' ', '/']).find(|part| !part.is_empty()).unwrap_or_default();
+        if tag.starts_with('!') || tag.ends_with('/') || name == "meta" {
+            continue;
+        }
+        if tag.starts_with('/') {
+            assert_eq!(open.pop(), Some(name));
+        } else {
+            open.push(name);
+        }
+    }
+    assert!(open.is_empty(), "{open:?}");
+}
+
+#[test]
+fn bad_input_is_refused_with_what_was_expected_and_what_came() {
+    let (log, vehicle) = (fixture("p01_identify_0_25s.tlog"), fixture("p01_vehicle.toml"));
+    let idle = temporary("explain-idle.csv");
+    std::fs::write(&idle, motion_without_actuators()).unwrap();
+    for (arguments, words) in [
+        (vec![log.as_str(), "--holdout", &log], "same recording"),
+        (vec![log.as_str(), "--transient", "-1"], "--transient: expected seconds from 0 on, got -1"),
+        (vec![log.as_str(), "--csv-map", "map.toml"], "expected a .csv among the logs"),
+        (vec![log.as_str(), "--out", &log], "expected a folder"),
+        (vec!["no-such.tlog"], "no-such.tlog"),
+        (vec![idle.to_str().unwrap()], "no actuator outputs for 4 rotors"),
+    ] {
+        let mut all = vec!["explain"];
+        all.extend(&arguments);
+        all.extend(["--vehicle", vehicle.as_str(), "--json"]);
+        let output = mavid(&all);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
+        assert_eq!(stdout(&output), "", "{arguments:?}");
+        assert!(stderr(&output).contains(words), "{arguments:?}: {}", stderr(&output));
+    }
+}
+
+/// Twenty seconds of rates and acceleration and nothing else.
+fn motion_without_actuators() -> String {
+    let mut text = "time_s,rate_x_rad_s,rate_y_rad_s,rate_z_rad_s,specific_force_x_m_s2,specific_force_y_m_s2,specific_force_z_m_s2\n".to_owned();
+    for index in 0..2000_u32 {
+        let t = f64::from(index) * 0.01;
+        text.push_str(&format!("{t},{},{},0.1,0.0,0.1,9.81\n", t.sin(), t.cos()));
+    }
+    text
+}
+
+#[test]
+fn drag_is_named_shown_on_the_hold_out_and_carried_into_every_command() {
+    let Some(folder) = case("p02-linear-drag") else { return };
+    let file = |name: &str| folder.join(name).display().to_string();
+    let out = temporary("explain-p02");
+    let (log, holdout, vehicle) = (file("identify.tlog"), file("holdout.tlog"), file("vehicle.toml"));
+    let output = mavid(&[
+        "explain",
+        &log,
+        "--vehicle",
+        &vehicle,
+        "--holdout",
+        &holdout,
+        "--out",
+        out.to_str().unwrap(),
+        "--json",
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["verdict"], "explained");
+    assert_eq!(document["effects"][0]["id"], "linear_drag");
+    let answer = document["answer"].as_str().unwrap();
+    assert!(
+        answer.starts_with("Drag was left out: 0.1") && answer.contains("on the hold-out falls by"),
+        "{answer}"
+    );
+    assert!(document["fit"]["holdout"]["improvement_percent"].as_f64().unwrap() > 20.0);
+    // drag acts along both
+    let axis = document["localisation"]["axes"][0]["axis"].as_str().unwrap();
+    assert!(["force_x", "force_y"].contains(&axis), "{axis}");
+    whole_report(&out.join("report.html"));
+    let model = out.join("model.toml");
+    let model = model.to_str().unwrap();
+    // its own model explains the flight: nothing more is missing
+    let again = mavid(&["validate", &holdout, "--model", &vehicle, "--model", model, "--json"]);
+    assert_eq!(again.status.code(), Some(0), "{}", stderr(&again));
+    for to in ["px4-sih", "ardupilot-sitl", "sdf", "mjcf", "rotorpy"] {
+        let exported = mavid(&["export", model, "--to", to, "--json"]);
+        assert_eq!(exported.status.code(), Some(0), "{to}: {}", stderr(&exported));
+        let document: Value = serde_json::from_slice(&exported.stdout).unwrap();
+        assert!(document["text"].as_str().unwrap().len() > 200);
+    }
+}
+
+#[test]
+fn a_hold_out_of_another_vehicle_is_found_out_and_said() {
+    let (Some(folder), Some(other)) = (case("p02-linear-drag"), case("p04-motor-lag")) else { return };
+    let out = temporary("explain-other");
+    let (log, vehicle) = (folder.join("identify.tlog"), folder.join("vehicle.toml"));
+    let output = mavid(&[
+        "explain",
+        log.to_str().unwrap(),
+        "--vehicle",
+        vehicle.to_str().unwrap(),
+        "--holdout",
+        other.join("holdout.tlog").to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+        "--json",
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let warnings = document["warnings"].as_array().unwrap();
+    let said = warnings.iter().any(|warning| {
+        warning
+            .as_str()
+            .unwrap()
+            .starts_with("the hold-out is not of the vehicle that was identified: mass 0.9")
+    });
+    assert!(said, "{warnings:?}");
+}
