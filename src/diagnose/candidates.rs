@@ -89,7 +89,9 @@ pub fn candidates(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
         add(&[present("battery_sag", &[0.0, full_v], &[0])]);
     }
     if velocity {
-        for length_m in CORD_LENGTHS_M {
+        // a load that lies on the ground does not swing
+        let height_m = highest_m(flights);
+        for length_m in CORD_LENGTHS_M.into_iter().filter(|length_m| *length_m < height_m) {
             add(&[present("slung_load", &[0.0, length_m, SWING_DAMPING_1_S], &[0])]);
         }
     }
@@ -109,6 +111,17 @@ pub fn drag_and_wind(at_hubs: f64) -> Option<(Present, Present, Present)> {
     let unit = present("linear_drag", &[1.0, 1.0, 0.0, at_hubs], &[])?;
     let wind = present("steady_wind", &[0.0; 3], &[0, 1])?;
     Some((drag, wind, unit))
+}
+
+/// Above the ground where position is known and the ground is zero, else boundless, m.
+fn highest_m(flights: &[Trace]) -> f64 {
+    if !flights.iter().all(|trace| trace.known.position) {
+        return f64::INFINITY;
+    }
+    let flown =
+        flights.iter().flat_map(|trace| trace.centers.iter().map(|&row| trace.states[row].position_m.z));
+    let highest_m = flown.fold(f64::MIN, f64::max);
+    if highest_m > 0.0 { highest_m } else { f64::INFINITY }
 }
 
 /// Highest voltage that is held for a while, V.
