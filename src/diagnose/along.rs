@@ -2,8 +2,8 @@
 
 use super::trace::Trace;
 use crate::physics::{Airframe, Input, MAX_ROTORS, Model, Wrench};
-use crate::signals::central_difference;
-use nalgebra::Vector3;
+use crate::signals::{ActuationLatency, central_difference, delayed_wrench};
+use nalgebra::{Vector3, Vector4};
 
 /// One thrust a rotor, N; those beyond the rotor count are zero.
 pub type Thrusts = [f64; MAX_ROTORS];
@@ -65,6 +65,35 @@ pub fn wrench_along(model: &Model, trace: &Trace, turning: &Turning) -> Vec<Wren
             let slope = if index == 0 { *rate } else { 1.5 * rate - 0.5 * *before };
             *state += trace.grid.step_s * slope;
             *before = *rate;
+        }
+    }
+    out
+}
+
+/// Thrusts behind an actuation latency. The lag acts on the rotors' speed, as a motor's does.
+pub(super) fn felt(
+    commanded_n: &[Thrusts],
+    airframe: &Airframe,
+    step_s: f64,
+    latency: ActuationLatency,
+) -> Vec<Thrusts> {
+    const HALF: usize = MAX_ROTORS / 2;
+    if latency == ActuationLatency::default() {
+        return commanded_n.to_vec();
+    }
+    let mut out = vec![[0.0; MAX_ROTORS]; commanded_n.len()];
+    for first in [0, HALF] {
+        if first >= airframe.rotor_count() {
+            break;
+        }
+        let speeds: Vec<Vector4<f64>> = commanded_n
+            .iter()
+            .map(|thrusts| Vector4::from_fn(|i, _| airframe.relative_speed_of_thrust(thrusts[first + i])))
+            .collect();
+        for (out, speed) in out.iter_mut().zip(delayed_wrench(&speeds, step_s, latency)) {
+            for i in 0..HALF {
+                out[first + i] = airframe.thrust_n(speed[i]);
+            }
         }
     }
     out

@@ -205,11 +205,8 @@ impl Weighted {
         let gamma = self.gammas(&after);
         let by_residual = &inverse * (self.meat_of_residual(&partialled, &gamma) + &prior) * &inverse;
         let by_score = &inverse * (self.meat_of_scores(&partialled, &after, &gamma) + &prior) * &inverse;
-        let covariance = if by_residual.trace_of_scaled(&normal) > by_score.trace_of_scaled(&normal) {
-            by_residual
-        } else {
-            by_score
-        };
+        let larger = scaled_trace(&by_residual, &normal) > scaled_trace(&by_score, &normal);
+        let covariance = if larger { by_residual } else { by_score };
         let size = columns.len();
         let wald = covariance.clone().cholesky().map_or(0.0, |c| theta.dot(&c.solve(&theta)));
         Some(Evidence {
@@ -375,14 +372,8 @@ impl Weighted {
 }
 
 /// Sum of a covariance's diagonal in units of the information about each parameter.
-trait TraceOfScaled {
-    fn trace_of_scaled(&self, normal: &DMatrix<f64>) -> f64;
-}
-
-impl TraceOfScaled for DMatrix<f64> {
-    fn trace_of_scaled(&self, normal: &DMatrix<f64>) -> f64 {
-        (0..self.nrows()).map(|i| self[(i, i)] * normal[(i, i)]).sum()
-    }
+fn scaled_trace(covariance: &DMatrix<f64>, normal: &DMatrix<f64>) -> f64 {
+    covariance.diagonal().dot(&normal.diagonal())
 }
 
 /// Channel after channel, each over its sigma.

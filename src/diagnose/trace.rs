@@ -1,11 +1,11 @@
 //! One flight as the weak form sees it: measured states, and the rotor thrusts in two readings.
 
-use super::along::{Thrusts, Turning};
+use super::along::{Thrusts, Turning, felt};
 use crate::log::Quantity;
 use crate::physics::{Airframe, MAX_ROTORS, State};
 use crate::signals::{
     ActuationLatency, Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference,
-    delayed_wrench, stride, white_level_of,
+    stride, white_level_of,
 };
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
@@ -370,33 +370,4 @@ fn command_period_s(signals: &Signals) -> f64 {
     let rate_hz =
         signals.quality.sources.iter().find(|(quantity, ..)| of_thrust(*quantity)).map(|(.., rate)| *rate);
     rate_hz.filter(|rate_hz| *rate_hz > 0.0).map_or(signals.grid.step_s, |rate_hz| 1.0 / rate_hz)
-}
-
-/// Thrusts behind an actuation latency. The lag acts on the rotors' speed, as a motor's does.
-fn felt(
-    commanded_n: &[Thrusts],
-    airframe: &Airframe,
-    step_s: f64,
-    latency: ActuationLatency,
-) -> Vec<Thrusts> {
-    const HALF: usize = MAX_ROTORS / 2;
-    if latency == ActuationLatency::default() {
-        return commanded_n.to_vec();
-    }
-    let mut out = vec![[0.0; MAX_ROTORS]; commanded_n.len()];
-    for first in [0, HALF] {
-        if first >= airframe.rotor_count() {
-            break;
-        }
-        let speeds: Vec<Vector4<f64>> = commanded_n
-            .iter()
-            .map(|thrusts| Vector4::from_fn(|i, _| airframe.relative_speed_of_thrust(thrusts[first + i])))
-            .collect();
-        for (out, speed) in out.iter_mut().zip(delayed_wrench(&speeds, step_s, latency)) {
-            for i in 0..HALF {
-                out[first + i] = airframe.thrust_n(speed[i]);
-            }
-        }
-    }
-    out
 }

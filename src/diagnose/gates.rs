@@ -1,0 +1,69 @@
+//! What is asked of a candidate before it is named.
+
+use super::mounting::ordinary_size;
+use super::rows::SECOND;
+use super::search::{Fitted, Tested};
+
+/// What is asked of a candidate before it is named.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gates {
+    /// normal deviate
+    pub z: f64,
+    /// family-wise chance of the cluster test, shared out to the candidates
+    pub p_cluster: f64,
+    /// share of the residual energy
+    pub gain: f64,
+    /// least force that matters, of the weight, or torque, of the torque that the motion took (rms)
+    pub matters: (f64, f64),
+    /// most effects that are accepted
+    pub steps: usize,
+}
+
+impl Default for Gates {
+    fn default() -> Self {
+        Self { z: 4.0, p_cluster: 0.02, gain: 0.004, matters: (4e-4, 0.04), steps: 6 }
+    }
+}
+
+/// Effects that are tried at many heights or lengths, the largest of which counts.
+const GRIDDED: [&str; 2] = ["ceiling_effect", "slung_load"];
+/// What that adds to the normal deviate asked for.
+const GRID_Z: f64 = 1.0;
+
+/// Significant, spread over the flight, possible, and large enough to matter.
+pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates: f64) -> bool {
+    let evidence = &tested.evidence;
+    let weight_n = fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2;
+    let force = |channel: usize| evidence.rms[channel] > gates.matters.0 * weight_n;
+    let matters = (0..3).any(|axis| {
+        force(axis)
+            || force(SECOND + axis)
+            || evidence.rms[3 + axis] > gates.matters.1 * fitted.rows.torque_rms[axis]
+    });
+    let z = if GRIDDED.contains(&tested.candidate.id) { gates.z + GRID_Z } else { gates.z };
+    evidence.z.abs() > z
+        && evidence.p_cluster < gates.p_cluster / candidates
+        && evidence.gain >= gates.gain
+        && matters
+        && ordinary_size(tested.candidate.id).is_none_or(|ordinary| evidence.size() > ordinary)
+        && possible(tested)
+}
+
+/// Each coefficient's sign and size is one that physics allows, within two standard errors.
+fn possible(tested: &Tested) -> bool {
+    if tested.candidate.through.is_some() {
+        // the wind's columns carry the drag's strength
+        return tested.evidence.theta[0] > 0.0 && tested.evidence.theta[1] > 0.0;
+    }
+    let mut index = 0;
+    let mut all = true;
+    for part in &tested.candidate.parts {
+        for &free in &part.free {
+            let value = part.values[free] + tested.evidence.theta[index];
+            let slack = 2.0 * tested.evidence.std(index);
+            all &= (part.possible(free, value) - value).abs() < slack;
+            index += 1;
+        }
+    }
+    all
+}
