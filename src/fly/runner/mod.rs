@@ -129,6 +129,7 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
     let options = LinkOptions {
         system,
         component,
+        patient: true,
         signing: ride.signing,
         recorder: Some(recorder.clone()),
         ..LinkOptions::default()
