@@ -25,8 +25,8 @@ pub fn with_stated_lag(mut effects: Vec<ActiveEffect>, vehicle: &Vehicle) -> Vec
 /// The effects of a file that holds nothing but `[[effect]]` tables.
 pub fn effects_file(path: &Path, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
     let origin = path.display().to_string();
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| CommandError::Input(format!("{origin}: {error}")))?;
+    let text =
+        std::fs::read_to_string(path).map_err(|error| CommandError::Input(format!("{origin}: {error}")))?;
     effects_text(&text, &origin, vehicle)
 }
 

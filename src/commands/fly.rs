@@ -74,9 +74,8 @@ impl Document {
 pub fn run(json: bool, args: &FlyArgs) -> Result<Outcome, CommandError> {
     let ride = ride(args)?;
     let drawn = !args.plain && std::io::stderr().is_terminal() && std::io::stdin().is_terminal();
-    let record = fly_it(ride, move |pictures, pressed| {
-        if drawn { draw(pictures, pressed) } else { tell(pictures) }
-    })?;
+    let record =
+        fly_it(ride, move |pictures, pressed| if drawn { draw(pictures, pressed) } else { tell(pictures) })?;
     say(&record);
     let landed = record.outcome.ending == Ending::Landed;
     let analysis = landed.then(|| Analysis::of(&args.out, &args.vehicle, args.system_id));

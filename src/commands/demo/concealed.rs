@@ -69,7 +69,9 @@ pub fn table(rows: &[Compared], vehicle: &Vehicle) -> String {
         };
         let name = format!("{} {}", row.effect, row.parameter);
         let unit = if row.unit == "-" { "" } else { row.unit };
-        lines.push(format!("  {name:<28} {:>12}   {found} {unit}", shown(row.concealed)).trim_end().to_owned());
+        lines.push(
+            format!("  {name:<28} {:>12}   {found} {unit}", shown(row.concealed)).trim_end().to_owned(),
+        );
     }
     lines.join("\n")
 }

@@ -107,8 +107,9 @@ fn folder(args: &DemoArgs) -> Result<PathBuf, CommandError> {
         let name = tlog.display();
         return Err(CommandError::Input(format!("--out: {name} exists already; expected a new folder")));
     }
-    std::fs::create_dir_all(&folder)
-        .map_err(|error| CommandError::Input(format!("cannot make the folder {}: {error}", folder.display())))?;
+    std::fs::create_dir_all(&folder).map_err(|error| {
+        CommandError::Input(format!("cannot make the folder {}: {error}", folder.display()))
+    })?;
     Ok(folder)
 }
 

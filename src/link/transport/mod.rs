@@ -48,7 +48,9 @@ pub(super) async fn open(
         }
         Address::UdpOut { host, port } => udp::UdpOut::open(host, *port).await.map(Transport::UdpOut),
         Address::TcpIn { host, port } => tcp::TcpIn::open(host, *port).await.map(Transport::TcpIn),
-        Address::TcpOut { host, port } => tcp::TcpOut::open(host, *port, patient).await.map(Transport::TcpOut),
+        Address::TcpOut { host, port } => {
+            tcp::TcpOut::open(host, *port, patient).await.map(Transport::TcpOut)
+        }
         Address::Serial { path, baud, flow_control } => {
             serial::Serial::open(path, *baud, *flow_control).map(Transport::Serial)
         }

@@ -1,0 +1,213 @@
+//! `mavid fly` against `mavid sitl`, two processes in real time: both autopilots over UDP, TCP and a serial port, from
+//! the plan to the explained flight. The flights run side by side and are asleep for most of their time.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+
+use std::io::{BufRead, BufReader};
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread;
+
+use mavid::config::load_vehicle;
+use mavid::log::{Check, CrcSeeds, TlogReader};
+use serde_json::Value;
+
+const MAVID: &str = env!("CARGO_BIN_EXE_mavid");
+const SET_POSITION_TARGET_LOCAL_NED: u32 = 84;
+const PERIODS: u64 = 4;
+
+/// ArduPilot's GUIDED makes a lively trajectory calm unless it is allowed more than its defaults.
+const LIVELY: &[&str] =
+    &["WP_ACC=10", "WP_ACC_Z=6", "WP_SPD_UP=4", "WP_SPD_DN=4", "PSC_NE_JERK=40", "PSC_D_JERK=40"];
+
+/// A process that ends with its owner.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+fn config(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(name).display().to_string()
+}
+
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fly_loopback").join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir_all(&path).unwrap();
+    path
+}
+
+/// A port that nobody has.
+fn free_port() -> u16 {
+    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+}
+
+/// Starts the vehicle; returns with the address at which it listens, as it says.
+fn vehicle(autopilot: &str, listen: &str) -> (Running, String) {
+    let mut command = Command::new(MAVID);
+    command.args(["--json", "sitl", "--vehicle", &config("x500.toml"), "--autopilot", autopilot]);
+    command.args(["--warm-up", "2", "--esc-telemetry", "--listen", listen]);
+    if autopilot == "ardupilot" {
+        command.args(LIVELY.iter().flat_map(|parameter| ["--param", parameter]));
+    }
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    let lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    let running = Running(child);
+    // the document's last line is a lone brace
+    let said: Vec<String> = lines.map_while(Result::ok).take_while(|line| line != "}").collect();
+    let document: Value = serde_json::from_str(&format!("{}}}", said.join("\n"))).unwrap();
+    (running, document["listen"][0].as_str().unwrap().to_owned())
+}
+
+fn fly(out: &Path, connect: &str, trajectory: &Path) -> Output {
+    Command::new(MAVID)
+        .args(["--json", "fly", "--plain", "--connect", connect, "--vehicle", &config("x500.toml")])
+        .args(["--trajectory", &trajectory.display().to_string(), "--out", &out.display().to_string()])
+        .output()
+        .unwrap()
+}
+
+/// Which end of a link waits for the other.
+#[derive(Clone, Copy)]
+enum Link {
+    /// the vehicle listens, as ArduPilot's simulator does
+    VehicleListens(&'static str),
+    /// the ground station listens, and is started last
+    GroundListens(&'static str),
+    Serial,
+}
+
+fn flight(name: &str, autopilot: &str, link: Link, trajectory: &Path) -> (PathBuf, Output) {
+    let folder = folder(name);
+    let out = folder.join("flight");
+    let (_vehicle, connect) = match link {
+        Link::VehicleListens(kind) => {
+            let (vehicle, listens) = vehicle(autopilot, &format!("{kind}in:127.0.0.1:0"));
+            (vehicle, listens.replace("in:", "out:"))
+        }
+        Link::GroundListens(kind) => {
+            let port = free_port();
+            let (vehicle, _) = vehicle(autopilot, &format!("{kind}out:127.0.0.1:{port}"));
+            (vehicle, format!("{kind}in:127.0.0.1:{port}"))
+        }
+        Link::Serial => {
+            let path = folder.join("tty").display().to_string();
+            (vehicle(autopilot, &format!("pty:{path}")).0, format!("serial:{path}:921600"))
+        }
+    };
+    let output = fly(&out, &connect, trajectory);
+    (out, output)
+}
+
+fn planned() -> PathBuf {
+    let path = folder("plan").join("trajectory.toml");
+    let status = Command::new(MAVID)
+        .args(["plan", &config("x500.toml"), "--limits", &config("demo/limits.toml"), "--criterion", "d-opt"])
+        .args(["--period", "6", "--repeats", &PERIODS.to_string(), "--starts", "8"])
+        .args(["--out", &path.display().to_string()])
+        .stdout(Stdio::null())
+        .status()
+        .unwrap();
+    assert!(status.success());
+    path
+}
+
+#[test]
+fn both_autopilots_fly_over_every_link_and_are_identified() {
+    let trajectory = planned();
+    let flights = [
+        ("px4_udp", "px4", Link::GroundListens("udp")),
+        ("px4_tcp", "px4", Link::VehicleListens("tcp")),
+        ("px4_serial", "px4", Link::Serial),
+        ("ardupilot_udp", "ardupilot", Link::VehicleListens("udp")),
+        ("ardupilot_tcp", "ardupilot", Link::GroundListens("tcp")),
+        ("ardupilot_serial", "ardupilot", Link::Serial),
+    ];
+    thread::scope(|scope| {
+        let trajectory = &trajectory;
+        let under_way = flights.map(|(name, autopilot, link)| {
+            (name, scope.spawn(move || flight(name, autopilot, link, trajectory)))
+        });
+        for (name, flight) in under_way {
+            let (out, output) = flight.join().unwrap();
+            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert_eq!(output.status.code(), Some(0), "{name}: {said}");
+            let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+            is_whole(&document, name);
+            is_identified(&document, name);
+            setpoints_are_new(&out.join("flight.tlog"), document["setpoints"]["sent"].as_u64().unwrap());
+            for file in [
+                "events.jsonl",
+                "parameters.toml",
+                "trajectory.toml",
+                "vehicle.toml",
+                "model.toml",
+                "identification.txt",
+                "identification.json",
+                "parameters.svg",
+                "explained/report.html",
+                "explained/model.toml",
+                "explained/explanation.json",
+            ] {
+                assert!(out.join(file).exists(), "{name}: {file}");
+            }
+        }
+    });
+}
+
+fn is_whole(document: &Value, name: &str) {
+    assert_eq!(document["flight"]["ending"]["id"], "landed", "{name}");
+    assert_eq!(document["flight"]["cause"], Value::Null, "{name}");
+    assert_eq!(document["flight"]["flown"]["periods"], PERIODS, "{name}");
+    assert_eq!(
+        (&document["dropped_frames"], &document["setpoints"]["refused"]),
+        (&0.into(), &0.into()),
+        "{name}"
+    );
+    assert!(document["flight"]["flown"]["tracking_rms_m"].as_f64().unwrap() < 0.3, "{name}");
+    // what verdict the explanation comes to is for its own tests
+    assert!(document["explanation"]["verdict"].is_string(), "{name}");
+}
+
+/// The tolerances of the cases: mass within 0.5 %, moments within 3 %, products within 3 % of `sqrt(Iii Ijj)`.
+fn is_identified(document: &Value, name: &str) {
+    let truth = load_vehicle(Path::new(&config("x500.toml"))).unwrap().body;
+    let found = |parameter: &str| {
+        let value = &document["identification"]["best"]["parameters"][parameter]["value"];
+        value.as_f64().unwrap_or_else(|| panic!("{name}: {parameter} is {value}"))
+    };
+    let mass = found("mass");
+    assert!((mass / truth.mass_kg - 1.0).abs() < 0.005, "{name}: {mass} kg");
+    let inertia = truth.inertia_kg_m2;
+    for (parameter, i, j) in
+        [("ixx", 0, 0), ("iyy", 1, 1), ("izz", 2, 2), ("ixy", 0, 1), ("ixz", 0, 2), ("iyz", 1, 2)]
+    {
+        let scale = (inertia[(i, i)] * inertia[(j, j)]).sqrt();
+        let error = (found(parameter) - inertia[(i, j)]) / scale;
+        assert!(error.abs() < 0.03, "{name}: {parameter} off by {:.1} %", 100.0 * error);
+    }
+}
+
+/// Every setpoint that was counted is in the recording, each for a later instant than the one before: none was
+/// repeated, none was stale.
+fn setpoints_are_new(tlog: &Path, sent: u64) {
+    let seeds = CrcSeeds::new();
+    let bytes = std::fs::read(tlog).unwrap();
+    let mut reader = TlogReader::new(bytes.as_slice());
+    let mut times_ms = Vec::new();
+    while let Some(record) = reader.next_record().unwrap() {
+        if record.frame.header().message_id == SET_POSITION_TARGET_LOCAL_NED {
+            assert_eq!(record.frame.check(&seeds), Check::Right);
+            times_ms.push(record.frame.payload().u32(0));
+        }
+    }
+    assert_eq!(times_ms.len() as u64, sent);
+    assert!(sent > 24 * 50, "{sent} setpoints");
+    assert!(times_ms.windows(2).all(|pair| pair[1] > pair[0]), "a setpoint is not newer than the one before");
+}
