@@ -247,8 +247,14 @@ pub fn say(record: &Record) {
     ));
     let stream = &record.stream;
     output::message(&format!(
-        "{} setpoints, {} of them more than 3 ms late, {} refused by the link; {} frames recorded, {} lost",
-        stream.sent, stream.late, stream.refused, record.recorder.frames, record.recorder.dropped
+        "{} setpoints, {} of them more than 3 ms late, {} overtaken by the next, {} refused by the link; {} frames \
+         recorded, {} lost",
+        stream.sent,
+        stream.late,
+        stream.overtaken,
+        stream.refused,
+        record.recorder.frames,
+        record.recorder.dropped
     ));
     for loss in losses.iter().chain(&record.events_failure) {
         output::message(&format!("warning: {loss}"));

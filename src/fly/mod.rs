@@ -20,6 +20,7 @@ mod flight;
 mod health;
 pub mod live;
 mod modes;
+mod order;
 mod outcome;
 pub mod parameters;
 pub mod preflight;

@@ -159,6 +159,7 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
     let _ = tokio::time::timeout(FLUSH, writer.flush()).await;
     let link = writer.stats();
     let recorder = recorder.finish().await?;
+    let stream = stream.on_link(&link);
     Ok(Record { outcome, stream, recorder, link, events_failure })
 }
 
