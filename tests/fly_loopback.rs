@@ -6,78 +6,22 @@
 
 #[path = "support/lossy.rs"]
 mod lossy;
+#[path = "support/processes.rs"]
+mod processes;
 
-use std::io::{BufRead, BufReader};
-use std::net::TcpListener;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::Output;
 use std::thread;
 use std::time::Duration;
 
 use lossy::{Faults, LossyProxy};
 use mavid::config::load_vehicle;
 use mavid::log::{Check, CrcSeeds, TlogReader};
+use processes::{config, fly, folder, free_port, planned, vehicle};
 use serde_json::Value;
 
-const MAVID: &str = env!("CARGO_BIN_EXE_mavid");
 const SET_POSITION_TARGET_LOCAL_NED: u32 = 84;
 const PERIODS: u64 = 4;
-
-/// ArduPilot's GUIDED makes a lively trajectory calm unless it is allowed more than its defaults.
-const LIVELY: &[&str] =
-    &["WP_ACC=10", "WP_ACC_Z=6", "WP_SPD_UP=4", "WP_SPD_DN=4", "PSC_NE_JERK=40", "PSC_D_JERK=40"];
-
-/// A process that ends with its owner.
-struct Running(Child);
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-fn config(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(name).display().to_string()
-}
-
-fn folder(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fly_loopback").join(name);
-    let _ = std::fs::remove_dir_all(&path);
-    std::fs::create_dir_all(&path).unwrap();
-    path
-}
-
-/// A port that nobody has.
-fn free_port() -> u16 {
-    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
-}
-
-/// Starts the vehicle; returns with the address at which it listens, as it says.
-fn vehicle(autopilot: &str, listen: &str) -> (Running, String) {
-    let mut command = Command::new(MAVID);
-    command.args(["--json", "sitl", "--vehicle", &config("x500.toml"), "--autopilot", autopilot]);
-    command.args(["--warm-up", "2", "--esc-telemetry", "--listen", listen]);
-    if autopilot == "ardupilot" {
-        command.args(LIVELY.iter().flat_map(|parameter| ["--param", parameter]));
-    }
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
-    let lines = BufReader::new(child.stdout.take().unwrap()).lines();
-    let running = Running(child);
-    // the document's last line is a lone brace
-    let said: Vec<String> = lines.map_while(Result::ok).take_while(|line| line != "}").collect();
-    let document: Value = serde_json::from_str(&format!("{}}}", said.join("\n"))).unwrap();
-    (running, document["listen"][0].as_str().unwrap().to_owned())
-}
-
-fn fly(out: &Path, connect: &str, trajectory: &Path, repeats: u64) -> Output {
-    Command::new(MAVID)
-        .args(["--json", "fly", "--plain", "--connect", connect, "--vehicle", &config("x500.toml")])
-        .args(["--trajectory", &trajectory.display().to_string(), "--out", &out.display().to_string()])
-        .args(["--repeats", &repeats.to_string()])
-        .output()
-        .unwrap()
-}
 
 /// Which end of a link waits for the other.
 #[derive(Clone, Copy)]
@@ -107,26 +51,13 @@ fn flight(name: &str, autopilot: &str, link: Link, trajectory: &Path) -> (PathBu
             (vehicle(autopilot, &format!("pty:{path}")).0, format!("serial:{path}:921600"))
         }
     };
-    let output = fly(&out, &connect, trajectory, PERIODS);
+    let output = fly(&out, &connect, trajectory, &[]);
     (out, output)
-}
-
-fn planned(name: &str) -> PathBuf {
-    let path = folder(name).join("trajectory.toml");
-    let status = Command::new(MAVID)
-        .args(["plan", &config("x500.toml"), "--limits", &config("demo/limits.toml"), "--criterion", "d-opt"])
-        .args(["--period", "6", "--repeats", &PERIODS.to_string(), "--starts", "8"])
-        .args(["--out", &path.display().to_string()])
-        .stdout(Stdio::null())
-        .status()
-        .unwrap();
-    assert!(status.success());
-    path
 }
 
 #[test]
 fn both_autopilots_fly_over_every_link_and_are_identified() {
-    let trajectory = planned("plan");
+    let trajectory = planned("plan", PERIODS);
     let flights = [
         ("px4_udp", "px4", Link::GroundListens("udp")),
         ("px4_tcp", "px4", Link::VehicleListens("tcp")),
@@ -171,7 +102,7 @@ fn both_autopilots_fly_over_every_link_and_are_identified() {
 /// A fifth of the datagrams lost, a fifth of a second each way, one in ten held back, some twice.
 #[tokio::test(flavor = "multi_thread", worker_threads = 1)]
 async fn over_a_bad_network_the_flight_ends_on_the_ground_and_nothing_of_its_log_is_lost() {
-    let trajectory = planned("bad_network_plan");
+    let trajectory = planned("bad_network_plan", 1);
     let port = free_port();
     let faults = Faults {
         seed: 3,
@@ -187,7 +118,7 @@ async fn over_a_bad_network_the_flight_ends_on_the_ground_and_nothing_of_its_log
         let (out, address) = (out.clone(), proxy.address);
         move || {
             let _vehicle = vehicle("px4", &format!("udpout:{address}"));
-            fly(&out, &format!("udpin:127.0.0.1:{port}"), &trajectory, 1)
+            fly(&out, &format!("udpin:127.0.0.1:{port}"), &trajectory, &[])
         }
     })
     .await

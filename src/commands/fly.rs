@@ -181,8 +181,12 @@ pub fn fly_it(
     watch: impl FnOnce(&Receiver<ViewModel>, &UnboundedSender<KeyCommand>) + Send + 'static,
 ) -> Result<Record, CommandError> {
     let failed = |error: &dyn std::fmt::Display| CommandError::Failure(error.to_string());
-    let runtime =
-        tokio::runtime::Builder::new_multi_thread().enable_all().build().map_err(|error| failed(&error))?;
+    // the link's tasks carry the setpoints
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .on_thread_start(fly::raise_priority)
+        .build()
+        .map_err(|error| failed(&error))?;
     let (show, pictures) = channel();
     let (pressed, keys) = unbounded_channel();
     let viewer = thread::Builder::new()

@@ -10,8 +10,10 @@
 mod clearance;
 mod drive;
 mod journal;
+mod priority;
 mod stream;
 
+pub use priority::raise_priority;
 pub use stream::StreamFigures;
 
 use std::io;

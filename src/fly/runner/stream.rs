@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use tokio::sync::mpsc::UnboundedSender;
 
+use super::priority::raise_priority;
 use crate::fly::safety::{Guide, Lead, Streamed, Streamer};
 use crate::link::{LinkStats, LinkWriter};
 
@@ -77,7 +78,10 @@ impl Stream {
     ) -> io::Result<Self> {
         let over = Arc::new(AtomicBool::new(false));
         let ended = over.clone();
-        let work = move || send_setpoints(Streamer::new(period), clock, &guide, &writer, (&stalled, &ended));
+        let work = move || {
+            raise_priority();
+            send_setpoints(Streamer::new(period), clock, &guide, &writer, (&stalled, &ended))
+        };
         let thread = thread::Builder::new().name("setpoints".into()).spawn(work)?;
         Ok(Self { thread, over })
     }
