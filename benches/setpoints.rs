@@ -120,8 +120,10 @@ fn main() -> ExitCode {
     let connect = format!("udpout:127.0.0.1:{port}");
     let rate = RATE_HZ.to_string();
     let output = under_load(cores, || fly(&out, &connect, &trajectory, &["--setpoint-hz", &rate]));
-    let document: Value = serde_json::from_slice(&output.stdout)
-        .unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&output.stderr)));
+    let Ok(document) = serde_json::from_slice::<Value>(&output.stdout) else {
+        println!("{}", String::from_utf8_lossy(&output.stderr));
+        return ExitCode::FAILURE;
+    };
     let seen = seen.lock().unwrap().clone();
     let (late, lost) = lateness(&seen);
     // a whole share of at most all of them

@@ -2,7 +2,7 @@
 //! the plan to the explained flight. The flights run side by side and are asleep for most of their time.
 
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
 
 #[path = "support/lossy.rs"]
 mod lossy;
