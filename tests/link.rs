@@ -165,6 +165,20 @@ async fn tcp_connects_again_and_a_server_takes_the_next_client() {
     assert!(matches!(event(&mut client).await, LinkEvent::Restored { .. }));
 }
 
+#[tokio::test]
+async fn a_patient_client_waits_for_its_server() {
+    let port = TcpListener::bind("127.0.0.1:0").await.unwrap().local_addr().unwrap().port();
+    let address = |kind: &str| format!("{kind}:127.0.0.1:{port}").parse::<Address>().unwrap();
+    let patient = LinkOptions { patient: true, ..LinkOptions::default() };
+    let (mut client, _client_out) = Link::open(&address("tcpout"), patient.clone()).await.unwrap();
+    assert!(!client.is_connected());
+    let (mut server, _server_out) = Link::open(&address("tcpin"), vehicle()).await.unwrap();
+    assert!(matches!(event(&mut client).await, LinkEvent::Connected { .. }));
+    assert!(matches!(event(&mut server).await, LinkEvent::Connected { .. }));
+    let unknown = "tcpout:no host:5760".parse::<Address>().unwrap();
+    assert!(Link::open(&unknown, patient).await.is_err());
+}
+
 #[tokio::test(start_paused = true)]
 async fn of_setpoints_only_the_latest_waits() {
     let ((mut first, first_out), (second, second_out)) = Link::pair(vehicle(), LinkOptions::default());

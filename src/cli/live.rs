@@ -3,6 +3,20 @@
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
+/// Arguments of `mavid demo`.
+#[derive(Debug, Args)]
+pub struct DemoArgs {
+    /// new folder for everything [default: mavid-demo, or the first of mavid-demo-2, -3, ... that is free]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// what to conceal instead of the demo's own: [[effect]] tables with `id` and the parameters by name
+    #[arg(long, value_name = "FILE")]
+    pub effects: Option<PathBuf>,
+    /// lines instead of a progress bar
+    #[arg(long)]
+    pub plain: bool,
+}
+
 /// Arguments of `mavid sitl`.
 #[derive(Debug, Args)]
 pub struct SitlArgs {
@@ -46,6 +60,9 @@ pub struct SitlArgs {
     /// s from boot until the position estimate is good [default: the autopilot's own]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub warm_up: Option<f64>,
+    /// a parameter of the autopilot instead of its default; may be given several times
+    #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
+    pub param: Vec<(String, f64)>,
     /// s that each frame takes on its way out
     #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true)]
     pub latency: f64,
@@ -112,6 +129,15 @@ pub struct ReplayArgs {
     /// how many times faster than it was; 0 is as fast as possible
     #[arg(long, value_name = "N", default_value_t = 1.0, allow_negative_numbers = true)]
     pub speed: f64,
+}
+
+fn parameter(text: &str) -> Result<(String, f64), String> {
+    let expected = || format!("expected NAME=VALUE with a number, got `{text}`");
+    let (name, value) = text.split_once('=').ok_or_else(expected)?;
+    match value.parse::<f64>() {
+        Ok(number) if number.is_finite() && !name.is_empty() => Ok((name.to_owned(), number)),
+        _ => Err(expected()),
+    }
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -3,7 +3,7 @@
 mod live;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-pub use live::{ArduPilotVersion, AutopilotName, RecordArgs, ReplayArgs, SitlArgs};
+pub use live::{ArduPilotVersion, AutopilotName, DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 use std::path::PathBuf;
 
 /// Learns a multirotor's parameters from a recorded flight and says which physics the model left out
@@ -23,6 +23,8 @@ const AFTER_HELP: &str = "Exit status: 0 done, 1 failure, 2 bad usage or input, 
 /// The verbs.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
+    /// Plan, fly, identify and explain a simulated vehicle with something wrong about it, in under two minutes
+    Demo(DemoArgs),
     /// Check a vehicle file (or a model) and say what it means
     Vehicle(VehicleArgs),
     /// Plan an excitation trajectory inside limits, or check one

@@ -24,9 +24,16 @@ pub fn with_stated_lag(mut effects: Vec<ActiveEffect>, vehicle: &Vehicle) -> Vec
 
 /// The effects of a file that holds nothing but `[[effect]]` tables.
 pub fn effects_file(path: &Path, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
-    let named = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
-    let text = std::fs::read_to_string(path).map_err(|error| named(&error))?;
-    let file: EffectsFile = toml::from_str(&text).map_err(|error| named(&error))?;
+    let origin = path.display().to_string();
+    let text =
+        std::fs::read_to_string(path).map_err(|error| CommandError::Input(format!("{origin}: {error}")))?;
+    effects_text(&text, &origin, vehicle)
+}
+
+/// The same from text; `origin` names it in errors.
+pub fn effects_text(text: &str, origin: &str, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
+    let named = |error: &dyn std::fmt::Display| CommandError::Input(format!("{origin}: {error}"));
+    let file: EffectsFile = toml::from_str(text).map_err(|error| named(&error))?;
     effects(&file.effect, vehicle).map_err(|error| named(&error))
 }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use mavid::config::{StoredTrajectory, read_vehicle, trajectory_to_toml};
 use mavid::diagnose::next::{NextFlight, NextSettings, design};
 use mavid::diagnose::show::{HeldOut, Split, split_last_periods};
-use mavid::diagnose::{Empirical, ExplainSettings, Trace, explain};
+use mavid::diagnose::{Empirical, ExplainSettings, Named, Trace, explain};
 use mavid::log::Recording;
 use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page};
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
@@ -18,61 +18,118 @@ use super::flights::{Flight, ReadAs, is_csv, load, refuse_twins};
 use super::{CommandError, Outcome, output};
 use crate::cli::ExplainArgs;
 
+/// Names of what [`Explained::write`] writes.
+const MODEL: &str = "model.toml";
+pub const REPORT: &str = "report.html";
+const DOCUMENT: &str = "explanation.json";
+
+/// An explanation with all that is told of it.
+#[derive(Debug)]
+pub struct Explained {
+    story: Story,
+    traces: Vec<Trace>,
+}
+
+impl Explained {
+    /// Loads, conditions, explains and shows; writes the next flight where one is asked for.
+    pub fn from(args: &ExplainArgs) -> Result<Self, CommandError> {
+        check(args)?;
+        let loaded = read_vehicle(&args.vehicle)?;
+        let vehicle = loaded.vehicle;
+        let mut warnings = loaded.warnings;
+        let refuse = |error: &dyn std::fmt::Display| {
+            CommandError::Input(format!("{}: {error}", args.vehicle.display()))
+        };
+        let known = effects(&loaded.model.effects, &vehicle).map_err(|error| refuse(&error))?;
+        let mut flights = flown(&args.logs, args, &vehicle)?;
+        let held = flown(&args.holdout, args, &vehicle)?;
+        refuse_twins(&flights.iter().chain(&held).map(|flight| &flight.input).collect::<Vec<_>>())?;
+        let (shown_on, back) = if held.is_empty() {
+            hold_back(&mut flights)
+        } else {
+            (ShownOn::Flights(held.iter().map(|flight| flight.input.clone()).collect()), None)
+        };
+        let settings = ExplainSettings::default();
+        let signals: Vec<Signals> = flights.iter().map(|flight| flight.signals.clone()).collect();
+        let explanation = explain(&signals, &vehicle, &settings).map_err(|error| {
+            let logs: Vec<String> = args.logs.iter().map(|log| log.display().to_string()).collect();
+            CommandError::Input(format!("{}: {error}", logs.join(", ")))
+        })?;
+        warnings.extend(flights.iter().chain(&held).filter_map(|flight| losses(&flight.input)));
+        let given = Given {
+            vehicle,
+            known,
+            inputs: flights.iter().map(|flight| flight.input.clone()).collect(),
+            quality: flights.iter().map(|flight| flight.signals.quality.clone()).collect(),
+            settings,
+            transient_s: args.transient,
+            warnings,
+        };
+        let traces: Vec<Trace> = signals
+            .iter()
+            .filter_map(|signals| Trace::new(signals, &given.vehicle, settings.half_width_s).ok())
+            .collect();
+        let mut story = Story::new(given, explanation);
+        show(&mut story, &flights, (&held, back.as_ref()), shown_on);
+        if let Some(path) = &args.next {
+            story.next = Some(next_flight(&story, &signals, path)?);
+        }
+        Ok(Self { story, traces })
+    }
+
+    /// The effects that are named.
+    pub fn named(&self) -> &[Named] {
+        &self.story.effects
+    }
+
+    /// The answer in one sentence.
+    pub fn answer(&self) -> String {
+        self.story.answer()
+    }
+
+    /// As JSON.
+    pub fn document(&self) -> ExplanationDocument {
+        ExplanationDocument::new(&self.story)
+    }
+
+    /// For people.
+    pub fn page(&self) -> String {
+        explanation_page(&self.story).trim_end().to_owned()
+    }
+
+    /// Writes model, report and document into a folder, which is made.
+    pub fn write(&self, folder: &Path) -> Result<(), CommandError> {
+        std::fs::create_dir_all(folder)
+            .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", folder.display())))?;
+        output::file(&folder.join(MODEL), &self.story.model_toml()?)?;
+        output::file(&folder.join(REPORT), &self.story.report_html(&self.traces))?;
+        let document = serde_json::to_string_pretty(&self.document())
+            .map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))?;
+        output::file(&folder.join(DOCUMENT), &document)
+    }
+
+    /// Says what is to be known about the data.
+    pub fn outcome(&self) -> Outcome {
+        for warning in &self.story.given.warnings {
+            output::message(&format!("warning: {warning}"));
+        }
+        let lossless = self.story.given.inputs.iter().all(|input| input.losses.is_empty());
+        if lossless { Outcome::Done } else { Outcome::DoneWithLoss }
+    }
+}
+
 /// Runs the verb.
 pub fn run(json: bool, args: &ExplainArgs) -> Result<Outcome, CommandError> {
-    check(args)?;
-    let loaded = read_vehicle(&args.vehicle)?;
-    let vehicle = loaded.vehicle;
-    let mut warnings = loaded.warnings;
-    let refuse =
-        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", args.vehicle.display()));
-    let known = effects(&loaded.model.effects, &vehicle).map_err(|error| refuse(&error))?;
-    let mut flights = flown(&args.logs, args, &vehicle)?;
-    let held = flown(&args.holdout, args, &vehicle)?;
-    refuse_twins(&flights.iter().chain(&held).map(|flight| &flight.input).collect::<Vec<_>>())?;
-    let (shown_on, back) = if held.is_empty() {
-        hold_back(&mut flights)
-    } else {
-        (ShownOn::Flights(held.iter().map(|flight| flight.input.clone()).collect()), None)
-    };
-    let settings = ExplainSettings::default();
-    let signals: Vec<Signals> = flights.iter().map(|flight| flight.signals.clone()).collect();
-    let explanation = explain(&signals, &vehicle, &settings).map_err(|error| {
-        let logs: Vec<String> = args.logs.iter().map(|log| log.display().to_string()).collect();
-        CommandError::Input(format!("{}: {error}", logs.join(", ")))
-    })?;
-    warnings.extend(flights.iter().chain(&held).filter_map(|flight| losses(&flight.input)));
-    let given = Given {
-        vehicle,
-        known,
-        inputs: flights.iter().map(|flight| flight.input.clone()).collect(),
-        quality: flights.iter().map(|flight| flight.signals.quality.clone()).collect(),
-        settings,
-        transient_s: args.transient,
-        warnings,
-    };
-    let traces: Vec<Trace> = signals
-        .iter()
-        .filter_map(|signals| Trace::new(signals, &given.vehicle, settings.half_width_s).ok())
-        .collect();
-    let mut story = Story::new(given, explanation);
-    show(&mut story, &flights, (&held, back.as_ref()), shown_on);
-    if let Some(path) = &args.next {
-        story.next = Some(next_flight(&story, &signals, path)?);
-    }
+    let explained = Explained::from(args)?;
     if let Some(folder) = &args.out {
-        write(folder, &story, &traces)?;
+        explained.write(folder)?;
     }
     if json {
-        output::json(&ExplanationDocument::new(&story))?;
+        output::json(&explained.document())?;
     } else {
-        output::text(explanation_page(&story).trim_end())?;
+        output::text(&explained.page())?;
     }
-    for warning in &story.given.warnings {
-        output::message(&format!("warning: {warning}"));
-    }
-    let lossless = story.given.inputs.iter().all(|input| input.losses.is_empty());
-    Ok(if lossless { Outcome::Done } else { Outcome::DoneWithLoss })
+    Ok(explained.outcome())
 }
 
 fn check(args: &ExplainArgs) -> Result<(), CommandError> {
@@ -189,14 +246,4 @@ fn next_flight(
 
 fn losses(input: &InputFile) -> Option<String> {
     (!input.losses.is_empty()).then(|| format!("{}: {}", input.path, input.losses.join("; ")))
-}
-
-fn write(folder: &Path, story: &Story, traces: &[Trace]) -> Result<(), CommandError> {
-    std::fs::create_dir_all(folder)
-        .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", folder.display())))?;
-    output::file(&folder.join("model.toml"), &story.model_toml()?)?;
-    output::file(&folder.join("report.html"), &story.report_html(traces))?;
-    let document = serde_json::to_string_pretty(&ExplanationDocument::new(story))
-        .map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))?;
-    output::file(&folder.join("explanation.json"), &document)
 }

@@ -13,16 +13,18 @@ use mavid::fly::{
 };
 use mavid::link::Signing;
 use mavid::log::{ComponentId, SystemId};
-use mavid::report::IdentificationDocument;
+use mavid::report::{ExplanationDocument, IdentificationDocument};
 use mavid::units::rad_from_deg;
 use mavid::vehicle::{Limits, Vehicle};
 use ratatui::crossterm::event;
 use serde::Serialize;
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 
+use super::after_flight::Analysis;
+use super::explain::Explained;
 use super::identify::Identified;
 use super::{CommandError, Outcome, output};
-use crate::cli::{FlyArgs, IdentifyArgs, OriginName};
+use crate::cli::{FlyArgs, OriginName};
 
 /// A ground station's component id.
 const STATION: ComponentId = ComponentId(190);
@@ -31,7 +33,7 @@ const LOOK: Duration = Duration::from_millis(50);
 
 /// What was flown and what it says.
 #[derive(Serialize)]
-struct Document {
+pub struct Document {
     schema: u32,
     directory: String,
     flight: FlightOutcome,
@@ -42,53 +44,69 @@ struct Document {
     /// `None` where the flight says nothing
     identification: Option<IdentificationDocument>,
     identification_failure: Option<String>,
+    explanation: Option<ExplanationDocument>,
+    explanation_failure: Option<String>,
+    report: Option<String>,
+}
+
+impl Document {
+    /// Of a flight recorded in a folder; without an analysis it did not land.
+    pub fn new(record: &Record, folder: &Path, analysis: Option<&Analysis>) -> Self {
+        let identified = analysis.map(|analysis| &analysis.identified);
+        let explained = analysis.map(|analysis| &analysis.explained);
+        Self {
+            schema: 1,
+            directory: folder.display().to_string(),
+            flight: record.outcome.clone(),
+            setpoints: record.stream,
+            recorded_frames: record.recorder.frames,
+            dropped_frames: record.recorder.dropped,
+            identification: identified.and_then(|done| done.as_ref().ok()).map(Identified::document),
+            identification_failure: identified.and_then(|done| done.as_ref().err()).cloned(),
+            explanation: explained.and_then(|done| done.as_ref().ok()).map(Explained::document),
+            explanation_failure: explained.and_then(|done| done.as_ref().err()).cloned(),
+            report: analysis.and_then(Analysis::report).map(|path| path.display().to_string()),
+        }
+    }
 }
 
 /// Runs the verb.
 pub fn run(json: bool, args: &FlyArgs) -> Result<Outcome, CommandError> {
     let ride = ride(args)?;
-    let record = fly_it(ride, args.plain)?;
-    let landed = record.outcome.ending == Ending::Landed;
+    let drawn = !args.plain && std::io::stderr().is_terminal() && std::io::stdin().is_terminal();
+    let record =
+        fly_it(ride, move |pictures, pressed| if drawn { draw(pictures, pressed) } else { tell(pictures) })?;
     say(&record);
-    let identified = landed.then(|| identify(args));
-    let (identified, failure) = match identified {
-        Some(Ok(identified)) => (Some(identified), None),
-        Some(Err(error)) => (None, Some(error.to_string())),
-        None => (None, None),
-    };
-    if let Some(failure) = &failure {
-        output::message(&format!("not identified: {failure}"));
-    }
+    let landed = record.outcome.ending == Ending::Landed;
+    let analysis = landed.then(|| Analysis::of(&args.out, &args.vehicle, args.system_id));
     if json {
-        output::json(&Document {
-            schema: 1,
-            directory: args.out.display().to_string(),
-            flight: record.outcome.clone(),
-            setpoints: record.stream,
-            recorded_frames: record.recorder.frames,
-            dropped_frames: record.recorder.dropped,
-            identification: identified.as_ref().map(Identified::document),
-            identification_failure: failure.clone(),
-        })?;
-    } else if let Some(identified) = &identified {
-        output::text(&identified.page())?;
+        output::json(&Document::new(&record, &args.out, analysis.as_ref()))?;
+    } else if let Some(analysis) = &analysis {
+        output::text(&analysis.page())?;
     }
-    let lost = record.recorder.dropped > 0 || record.events_failure.is_some();
-    match (&record.outcome, &failure) {
-        (FlightOutcome { ending: Ending::NotFlown, cause, .. }, _) => {
-            let why = cause.as_ref().map_or("no reason given".to_owned(), ToString::to_string);
-            Err(CommandError::Failure(format!("not flown: {why}")))
-        }
-        (_, Some(why)) if record.outcome.is_whole() => Err(CommandError::Failure(why.clone())),
-        (outcome, None) if outcome.is_whole() && outcome.losses.is_empty() && !lost => {
-            Ok(identified.map_or(Outcome::Done, |identified| identified.outcome()))
-        }
+    outcome(&record, analysis.as_ref())
+}
+
+/// How a flight and what was made of it end the program.
+pub fn outcome(record: &Record, analysis: Option<&Analysis>) -> Result<Outcome, CommandError> {
+    let outcome = &record.outcome;
+    if outcome.ending == Ending::NotFlown {
+        let why = outcome.cause.as_ref().map_or("no reason given".to_owned(), ToString::to_string);
+        return Err(CommandError::Failure(format!("not flown: {why}")));
+    }
+    let whole = outcome.is_whole()
+        && outcome.losses.is_empty()
+        && record.recorder.dropped == 0
+        && record.events_failure.is_none();
+    match analysis.map(Analysis::outcome) {
+        Some(Err(failure)) if outcome.is_whole() => Err(failure),
+        Some(Ok(outcome)) if whole => Ok(outcome),
         _ => Ok(Outcome::DoneWithLoss),
     }
 }
 
 /// Everything that is read and checked before the link is opened.
-fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
+pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
     let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
     let address = args.connect.parse().map_err(|error| input(&error))?;
     let loaded = read_vehicle(&args.vehicle)?;
@@ -157,17 +175,23 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
     })
 }
 
-/// The flight, with its view on another thread: neither a slow terminal nor a key holds it up.
-fn fly_it(ride: Ride, plain: bool) -> Result<Record, CommandError> {
+/// The flight, watched by another thread: neither a slow terminal nor a key holds it up.
+pub fn fly_it(
+    ride: Ride,
+    watch: impl FnOnce(&Receiver<ViewModel>, &UnboundedSender<KeyCommand>) + Send + 'static,
+) -> Result<Record, CommandError> {
     let failed = |error: &dyn std::fmt::Display| CommandError::Failure(error.to_string());
-    let runtime =
-        tokio::runtime::Builder::new_multi_thread().enable_all().build().map_err(|error| failed(&error))?;
+    // the link's tasks carry the setpoints
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .on_thread_start(fly::raise_priority)
+        .build()
+        .map_err(|error| failed(&error))?;
     let (show, pictures) = channel();
     let (pressed, keys) = unbounded_channel();
-    let drawn = !plain && std::io::stderr().is_terminal() && std::io::stdin().is_terminal();
     let viewer = thread::Builder::new()
         .name("view".into())
-        .spawn(move || if drawn { draw(&pictures, &pressed) } else { tell(&pictures) })
+        .spawn(move || watch(&pictures, &pressed))
         .map_err(|error| failed(&error))?;
     let record = runtime.block_on(fly::run(ride, Console { show, keys }));
     // its pictures have ended with the flight
@@ -211,7 +235,8 @@ fn draw(pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<KeyCommand>) {
     }
 }
 
-fn say(record: &Record) {
+/// Says how it went.
+pub fn say(record: &Record) {
     let FlightOutcome { cause, ending, flown, losses } = &record.outcome;
     let how = match ending {
         Ending::NotFlown => "not flown".to_owned(),
@@ -226,36 +251,16 @@ fn say(record: &Record) {
     ));
     let stream = &record.stream;
     output::message(&format!(
-        "{} setpoints, {} of them more than 3 ms late, {} refused by the link; {} frames recorded, {} lost",
-        stream.sent, stream.late, stream.refused, record.recorder.frames, record.recorder.dropped
+        "{} setpoints, {} of them more than 3 ms late, {} overtaken by the next, {} refused by the link; {} frames \
+         recorded, {} lost",
+        stream.sent,
+        stream.late,
+        stream.overtaken,
+        stream.refused,
+        record.recorder.frames,
+        record.recorder.dropped
     ));
     for loss in losses.iter().chain(&record.events_failure) {
         output::message(&format!("warning: {loss}"));
     }
-}
-
-/// The offline pipeline on the flight just flown, its results beside the recording.
-fn identify(args: &FlyArgs) -> Result<Identified, CommandError> {
-    let dir = &args.out;
-    let identify = IdentifyArgs {
-        logs: vec![dir.join(fly::TLOG)],
-        vehicle: args.vehicle.clone(),
-        out: Some(dir.join("model.toml")),
-        chart: Some(dir.join("parameters.svg")),
-        csv_map: None,
-        system: args.system_id,
-        transient: None,
-        cutoff: None,
-        fir: false,
-        sigma: mavid::estimate::PAPER_SIGMA,
-        commands: false,
-        with: Vec::new(),
-    };
-    let identified = Identified::from(&identify)?;
-    identified.write(&identify)?;
-    output::file(&dir.join("identification.txt"), &format!("{}\n", identified.page()))?;
-    let json = serde_json::to_string_pretty(&identified.document())
-        .map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))?;
-    output::file(&dir.join("identification.json"), &json)?;
-    Ok(identified)
 }

@@ -2,6 +2,8 @@
 //!
 //! To add a verb: a variant in [`Verb`], a file here with `run(json, args)`, and an arm in [`run`].
 
+mod after_flight;
+mod demo;
 mod effects;
 mod explain;
 mod export;
@@ -85,6 +87,7 @@ impl CommandError {
 /// Runs the verb.
 pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
     match &cli.verb {
+        Verb::Demo(args) => demo::run(cli.json, args),
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
         Verb::Plan(args) => plan::run(cli.json, args),
         Verb::Identify(args) => identify::run(cli.json, args),

@@ -21,7 +21,7 @@ use crate::cli::{CriterionName, PlanArgs};
 
 /// What `mavid plan` says.
 #[derive(Debug, Serialize)]
-struct Summary {
+pub struct Summary {
     schema: u32,
     criterion: Criterion,
     criterion_value: Option<f64>,
@@ -59,6 +59,17 @@ impl From<PlanError> for CommandError {
 
 /// Runs the verb.
 pub fn run(json: bool, args: &PlanArgs) -> Result<Outcome, CommandError> {
+    let summary = make(args)?;
+    if json {
+        output::json(&summary)?;
+    } else {
+        output::text(&page(&summary))?;
+    }
+    Ok(if summary.first_violation.is_some() { Outcome::DoneWithLoss } else { Outcome::Done })
+}
+
+/// Plans or checks, and writes the trajectory where one is asked for.
+pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
     let vehicle = read_vehicle(&args.vehicle)?.vehicle;
     let limits = args.limits.as_deref().map_or(Ok(vehicle.limits), read_limits)?;
     let mut request = request_of(args)?;
@@ -88,12 +99,7 @@ pub fn run(json: bool, args: &PlanArgs) -> Result<Outcome, CommandError> {
         store(path, series, (&limits, &request), &summary)?;
         output::message(&format!("wrote {}", path.display()));
     }
-    if json {
-        output::json(&summary)?;
-    } else {
-        output::text(&page(&summary))?;
-    }
-    Ok(if summary.first_violation.is_some() { Outcome::DoneWithLoss } else { Outcome::Done })
+    Ok(summary)
 }
 
 fn planned(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Result<Plan, CommandError> {

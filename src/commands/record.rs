@@ -24,6 +24,8 @@ const NO_AUTOPILOT: u8 = 8;
 const AUTOPILOT_AT: usize = 5;
 /// Without an end that the user gave.
 const YEAR: Duration = Duration::from_secs(365 * 86_400);
+/// How long the last frames may take to leave.
+const FLUSH: Duration = Duration::from_secs(1);
 /// Messages that identification uses and the rates asked for, Hz. A vehicle gives what it can.
 const MESSAGES: &[(u32, f32)] = &[
     (31, 100.0),  // ATTITUDE_QUATERNION
@@ -97,6 +99,8 @@ async fn record(json: bool, args: &RecordArgs, signing: Option<Signing>) -> Resu
     let start = Instant::now();
     let mut capture = Capture { reader, writer, bar: bar(), asked: Vec::new(), recorder };
     let ended = capture.until(start, args).await;
+    // what was asked for last is sent, recorded and counted, or the link is gone
+    let _ = tokio::time::timeout(FLUSH, capture.writer.flush()).await;
     let stats = capture.reader.stats();
     capture.bar.finish_and_clear();
     // whether or not the link held, what came is brought onto the disk

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use mavid::config::{LoadedVehicle, parse_vehicle, read_vehicle};
-use mavid::link::{Address, LinkOptions};
+use mavid::link::{Address, LinkOptions, LinkReader};
 use mavid::log::{ComponentId, SystemId};
 use mavid::sitl::{
     ArduPilotRelease, AutopilotKind, LinkRole, Pace, SensorSettings, Settings, Vehicle, serve,
@@ -16,7 +16,7 @@ use super::{CommandError, Outcome, network, output};
 use crate::cli::{ArduPilotVersion, AutopilotName, SitlArgs};
 
 /// The vehicle that flies where none is given.
-const DEFAULT_VEHICLE: &str = include_str!("../../configs/x500.toml");
+pub const DEFAULT_VEHICLE: &str = include_str!("../../configs/x500.toml");
 /// The port on which PX4 takes its peer for a companion computer.
 const ONBOARD_PORT: u16 = 14540;
 
@@ -42,12 +42,12 @@ pub fn run(json: bool, args: &SitlArgs) -> Result<Outcome, CommandError> {
         vehicle: settings.vehicle.name.clone(),
         autopilot: if settings.autopilot == AutopilotKind::Px4 { "px4" } else { "ardupilot" },
         system: settings.system,
-        listen: addresses.iter().map(Address::to_string).collect(),
+        listen: Vec::new(),
         speed: if let Pace::Times(speed) = pace { Some(speed) } else { None },
     };
     let limit = args.duration.map(|seconds| seconds_from("duration", seconds)).transpose()?;
     let vehicle = Vehicle::new(settings).map_err(|error| CommandError::Input(error.to_string()))?;
-    network::block_on(fly(vehicle, &addresses, (pace, limit), json, &document))?;
+    network::block_on(fly(vehicle, &addresses, (pace, limit), json, document))?;
     Ok(Outcome::Done)
 }
 
@@ -56,22 +56,24 @@ async fn fly(
     addresses: &[Address],
     time: (Pace, Option<Duration>),
     json: bool,
-    document: &Document,
+    mut document: Document,
 ) -> Result<(), CommandError> {
     let mut links = Vec::with_capacity(addresses.len());
     for address in addresses {
         let options = LinkOptions {
             system: SystemId(document.system.into()),
             component: ComponentId(1),
+            patient: true,
             ..LinkOptions::default()
         };
         let ends = network::open(address, options).await?;
+        document.listen.push(bound(address, &ends.0).to_string());
         links.push((role(address), ends));
     }
     if json {
-        output::json(document)?;
+        output::json(&document)?;
     } else {
-        output::text(&page(document))?;
+        output::text(&page(&document))?;
     }
     let stop = async {
         // where the signal cannot be had, the program is ended by the system
@@ -127,6 +129,7 @@ fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
         latency: seconds_from("latency", args.latency)?,
         loss: args.loss,
         warm_up: args.warm_up.map(|seconds| seconds_from("warm-up", seconds)).transpose()?,
+        parameters: args.param.clone(),
         ..base
     })
 }
@@ -165,6 +168,16 @@ fn addresses(args: &SitlArgs, kind: AutopilotKind) -> Result<Vec<Address>, Comma
         if args.listen.is_empty() { own.to_vec() } else { args.listen.iter().map(String::as_str).collect() };
     let parse = |text: &&str| text.parse().map_err(|error| CommandError::Input(format!("--listen: {error}")));
     texts.iter().map(parse).collect()
+}
+
+/// With the port that the system chose, where the address left it open.
+fn bound(address: &Address, reader: &LinkReader) -> Address {
+    let chosen = reader.local_address().map(|local| local.port());
+    match (address.clone(), chosen) {
+        (Address::UdpIn { host, port: 0 }, Some(port)) => Address::UdpIn { host, port },
+        (Address::TcpIn { host, port: 0 }, Some(port)) => Address::TcpIn { host, port },
+        (given, _) => given,
+    }
 }
 
 fn role(address: &Address) -> LinkRole {

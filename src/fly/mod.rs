@@ -20,6 +20,7 @@ mod flight;
 mod health;
 pub mod live;
 mod modes;
+mod order;
 mod outcome;
 pub mod parameters;
 pub mod preflight;
@@ -39,7 +40,9 @@ pub use flight::{Action, Event, Flight, Key, Status};
 pub use health::{BatteryLevel, EstimatorReport, SystemReport};
 pub use modes::{Mode, Stack};
 pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
-pub use runner::{Console, EVENTS, PARAMETERS, Record, Ride, RunError, StreamFigures, TLOG, run};
+pub use runner::{
+    Console, EVENTS, PARAMETERS, Record, Ride, RunError, StreamFigures, TLOG, raise_priority, run,
+};
 pub use safety::{Guide, Lead, Streamed, Streamer};
 pub use setpoint::{Place, Setpoint};
 pub use sortie::{Origin, Settings, Sortie};

@@ -7,8 +7,9 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::health::{BatteryLevel, EstimatorReport, SystemReport, battery_status, level_of_percent};
 use super::modes::Stack;
+use super::order::SendingOrder;
 use crate::frames::Attitude;
-use crate::log::{self, Decoder, Frame, Header, Payload, Quantity, Record};
+use crate::log::{self, Decoder, Frame, Payload, Quantity, Record};
 
 /// A value with when it arrived, on the flight's clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,7 +114,9 @@ pub struct Telemetry {
     /// V
     pub battery_v: Option<f64>,
     texts: VecDeque<(Duration, u8, String)>,
-    newest: Option<u8>,
+    order: SendingOrder,
+    /// place of the frame from which `state` is
+    state_place: i64,
     velocity_m_s: Option<Vector3<f64>>,
 }
 
@@ -139,7 +142,8 @@ impl Telemetry {
             battery: None,
             battery_v: None,
             texts: VecDeque::new(),
-            newest: None,
+            order: SendingOrder::default(),
+            state_place: i64::MIN,
             velocity_m_s: None,
         }
     }
@@ -147,40 +151,31 @@ impl Telemetry {
     /// Takes a frame of the vehicle's autopilot with a right checksum.
     pub fn take(&mut self, now: Duration, frame: Frame<'_>) -> Vec<Novelty> {
         let header = frame.header();
-        if now.saturating_sub(self.heard) > POSITION_GAP {
+        let silence = now.saturating_sub(self.heard);
+        if silence > POSITION_GAP {
             self.resumed = now;
         }
         self.heard = now;
-        let late = self.is_late(header);
+        let place = self.order.place(header.sequence, silence);
         let mut news = Vec::new();
-        self.status(now, header.message_id, frame.payload(), late, &mut news);
+        self.status(now, header.message_id, frame.payload(), place, &mut news);
         self.samples(now, frame, &mut news);
         news
     }
 
-    /// A frame that was sent before the newest one heard: its state is older than what is known.
-    fn is_late(&mut self, header: &Header) -> bool {
-        let newest = *self.newest.get_or_insert(header.sequence);
-        let late = header.sequence.wrapping_sub(newest) > 128;
-        if !late {
-            self.newest = Some(header.sequence);
-        }
-        late
-    }
-
     /// What is read by byte: an unknown enumeration value elsewhere in a message must not hide the mode.
-    fn status(&mut self, now: Duration, id: u32, payload: Payload<'_>, late: bool, news: &mut Vec<Novelty>) {
+    fn status(&mut self, now: Duration, id: u32, payload: Payload<'_>, place: i64, news: &mut Vec<Novelty>) {
         match id {
             0 => {
                 self.heartbeat = now;
                 let (custom_mode, armed) = (payload.u32(0), payload.u8(6) & ARMED != 0);
                 let state = FlightState { custom_mode, armed, system_status: payload.u8(7) };
-                self.note_state(now, state, late, news);
+                self.note_state(now, state, place, news);
             }
             436 => {
                 if let Some(Seen { value, .. }) = self.state {
                     let state = FlightState { custom_mode: payload.u32(0), ..value };
-                    self.note_state(now, state, late, news);
+                    self.note_state(now, state, place, news);
                 }
             }
             1 => {
@@ -202,11 +197,13 @@ impl Telemetry {
         }
     }
 
-    fn note_state(&mut self, now: Duration, state: FlightState, late: bool, news: &mut Vec<Novelty>) {
-        let from = self.state.map(|seen| seen.value);
-        if late && from.is_some() {
+    /// A state that was sent before the one that is known says nothing.
+    fn note_state(&mut self, now: Duration, state: FlightState, place: i64, news: &mut Vec<Novelty>) {
+        if place < self.state_place {
             return;
         }
+        self.state_place = place;
+        let from = self.state.map(|seen| seen.value);
         self.state = Some(Seen { at: now, value: state });
         if from != Some(state) {
             news.push(Novelty::State { from, to: state });

@@ -35,6 +35,9 @@ pub struct LinkOptions {
     pub clock: HostClock,
     /// a `udpin` link forgets its peer after this silence and answers the next that sends a heartbeat
     pub peer_timeout: Duration,
+    /// a `tcpout` link that is refused is open all the same, and goes on trying: whichever end is started first,
+    /// the other is waited for
+    pub patient: bool,
     /// signs what is sent, and believes only what is signed; without it signed frames pass unchecked
     pub signing: Option<Signing>,
     /// records every frame received and sent
@@ -48,6 +51,7 @@ impl Default for LinkOptions {
             component: ComponentId(190),
             clock: HostClock::start(),
             peer_timeout: Duration::from_secs(3),
+            patient: false,
             signing: None,
             recorder: None,
         }
@@ -65,13 +69,13 @@ impl Link {
     /// Opens a link and starts its task on the current tokio runtime. The task ends when both halves are
     /// dropped; what was given to the writer before is still sent.
     ///
-    /// `udpin`, `tcpin` and `pty` links are open before anybody is at the other end: wait for
-    /// [`LinkEvent::Connected`](super::LinkEvent::Connected).
+    /// `udpin`, `tcpin` and `pty` links, and patient `tcpout` links, are open before anybody is at the other end:
+    /// wait for [`LinkEvent::Connected`](super::LinkEvent::Connected).
     ///
     /// # Errors
     /// The address cannot be resolved, bound, connected to or opened now. Later losses are events.
     pub async fn open(address: &Address, options: LinkOptions) -> Result<Ends, LinkError> {
-        let transport = transport::open(address, options.peer_timeout).await?;
+        let transport = transport::open(address, (options.peer_timeout, options.patient)).await?;
         Ok(start(address.to_string(), transport, &options))
     }
 

@@ -39,7 +39,7 @@ pub struct LinkStats {
     pub sent_frames: u64,
     /// frames given for sending that the link's loss overtook
     pub unsent: u64,
-    /// messages of which a later one took the place before they were sent
+    /// messages of the slot that were not sent: a later one took their place, or they were withdrawn
     pub replaced: u64,
     /// times that the other end was lost
     pub losses: u64,

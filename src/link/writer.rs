@@ -69,7 +69,8 @@ impl LinkWriter {
 
     /// Empties the slot: a setpoint that was not sent yet will not be.
     pub fn clear_latest(&self) {
-        self.shared.latest().take();
+        let withdrawn = self.shared.latest().take().is_some();
+        self.shared.stats().replaced += u64::from(withdrawn);
     }
 
     /// Waits until all that was given before is sent, or dropped by the loss of the link.

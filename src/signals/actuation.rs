@@ -1,7 +1,7 @@
 //! What drives the body: rotors, or force and torque as the log holds them.
 
 use super::actuators::{RotorThrusts, ThrustSource, thrusts_from_commands, thrusts_from_speeds};
-use super::select::{best, mean_rate_hz};
+use super::select::{best, flowing_rate_hz};
 use super::{Grid, SignalsError, linear_onto};
 use crate::log::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
@@ -35,7 +35,7 @@ fn rotor_thrusts(
         ThrustPreference::Commands => commands(),
         ThrustPreference::BestSampled => match (speeds(), commands()) {
             (Some(speeds), Ok(commands))
-                if mean_rate_hz(&speeds.stream) < SAMPLED_ALIKE * mean_rate_hz(&commands.stream) =>
+                if flowing_rate_hz(&speeds.stream) < SAMPLED_ALIKE * flowing_rate_hz(&commands.stream) =>
             {
                 Ok(commands)
             }

@@ -170,7 +170,7 @@ fn ardupilot(p: &Parameters) -> Tuning {
             descent_m_s: limit("WPNAV_SPEED_DN", "WP_SPD_DN"),
             acceleration_m_s2: limit("WPNAV_ACCEL", "WP_ACC"),
             vertical_acceleration_m_s2: limit("WPNAV_ACCEL_Z", "WP_ACC_Z"),
-            jerk_m_s3: p.first(&[("PSC_JERK_NE", 1.0), ("PSC_JERK_XY", 1.0)]).max(LEAST),
+            jerk_m_s3: p.first(&[("PSC_NE_JERK", 1.0), ("PSC_JERK_XY", 1.0)]).max(LEAST),
         },
         takeoff_speed_m_s: limit("WPNAV_SPEED_UP", "WP_SPD_UP"),
         land_speed_m_s: limit("LAND_SPEED", "LAND_SPD_MS"),

@@ -210,7 +210,7 @@ fn lively(settings: Settings) -> f64 {
 #[test]
 fn its_limits_in_guided_make_it_miss_a_lively_trajectory_unless_they_are_raised() {
     let limited = lively(settings(COPTER));
-    let raised = lively(with(&[("WP_ACC", 20.0), ("PSC_JERK_NE", 100.0), ("WP_SPD", 20.0)]));
+    let raised = lively(with(&[("WP_ACC", 20.0), ("PSC_NE_JERK", 100.0), ("WP_SPD", 20.0)]));
     assert!(limited > 2.0 * raised && raised < 0.3, "{limited} {raised}");
     let old = Settings {
         parameters: [("WPNAV_ACCEL", 2000.0), ("PSC_JERK_XY", 100.0), ("WPNAV_SPEED", 2000.0)]

@@ -56,13 +56,17 @@ struct ParametersFile {
 }
 
 impl Parameters {
-    /// The value in the unit of the older name, whichever of a renamed parameter's two names answered;
+    /// The newer name that answered for this older one.
+    fn answered(&self, name: &str) -> Option<&'static Renamed> {
+        RENAMED.iter().find(|renamed| renamed.old == name && self.values.contains_key(renamed.new))
+    }
+
+    /// The value in the unit of the older name, whichever of a renamed parameter's names answered;
     /// `name` is the older one.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<f64> {
-        let renamed = || RENAMED.iter().find(|renamed| renamed.old == name);
         self.values.get(name).copied().or_else(|| {
-            let renamed = renamed()?;
+            let renamed = self.answered(name)?;
             self.values.get(renamed.new).map(|value| value * renamed.scale)
         })
     }
@@ -70,21 +74,13 @@ impl Parameters {
     /// The name by which this vehicle knows a parameter (older name given), for messages and advice.
     #[must_use]
     pub fn name_of<'a>(&self, name: &'a str) -> &'a str {
-        let renamed = RENAMED.iter().find(|renamed| renamed.old == name);
-        match renamed {
-            Some(renamed) if self.values.contains_key(renamed.new) => renamed.new,
-            _ => name,
-        }
+        self.answered(name).map_or(name, |renamed| renamed.new)
     }
 
     /// A value in the older name's unit, written in the unit that this vehicle uses, for advice.
     #[must_use]
     pub fn in_own_unit(&self, name: &str, value: f64) -> f64 {
-        let renamed = RENAMED.iter().find(|renamed| renamed.old == name);
-        match renamed {
-            Some(renamed) if self.values.contains_key(renamed.new) => value / renamed.scale,
-            _ => value,
-        }
+        self.answered(name).map_or(value, |renamed| value / renamed.scale)
     }
 
     /// The text of `parameters.toml`.

@@ -39,6 +39,9 @@ pub const RENAMED: &[Renamed] = &[
     renamed("WPNAV_JERK", "WP_JERK", 1.0),
     renamed("PSC_JERK_XY", "PSC_NE_JERK", 1.0),
     renamed("PSC_JERK_Z", "PSC_D_JERK", 1.0),
+    // before 4.7 was released
+    renamed("PSC_JERK_XY", "PSC_JERK_NE", 1.0),
+    renamed("PSC_JERK_Z", "PSC_JERK_D", 1.0),
     renamed("ANGLE_MAX", "ATC_ANGLE_MAX", 100.0),
     renamed("ATC_ACCEL_R_MAX", "ATC_ACC_R_MAX", 100.0),
     renamed("ATC_ACCEL_P_MAX", "ATC_ACC_P_MAX", 100.0),
@@ -198,14 +201,14 @@ pub fn wanted(autopilot: Autopilot, rotors: usize) -> Vec<Wanted> {
         Autopilot::Other | Autopilot::Unknown => return Vec::new(),
     };
     let named = table.iter().flat_map(|(purpose, names)| {
-        names.iter().map(|name| Wanted { names: both_names(name), purpose: *purpose })
+        names.iter().map(|name| Wanted { names: all_names(name), purpose: *purpose })
     });
     let thrust = |name: String| Wanted { names: vec![name], purpose: Purpose::Thrust };
     named.chain(numbered.into_iter().map(thrust)).collect()
 }
 
-fn both_names(name: &str) -> Vec<String> {
-    let new = RENAMED.iter().find(|renamed| renamed.old == name).map(|renamed| renamed.new.to_owned());
+fn all_names(name: &str) -> Vec<String> {
+    let new = RENAMED.iter().filter(|renamed| renamed.old == name).map(|renamed| renamed.new.to_owned());
     std::iter::once(name.to_owned()).chain(new).collect()
 }
 

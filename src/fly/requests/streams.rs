@@ -102,12 +102,12 @@ const RAW_IMU: StreamRequest =
 const SCALED_IMU: StreamRequest =
     stream(26, "SCALED_IMU", 100.0, 36.0, &[Need::BodyRates, Need::Acceleration]).instead_of(27);
 const LOCAL_POSITION_NED: StreamRequest = stream(32, "LOCAL_POSITION_NED", 50.0, 40.0, &[Need::Position]);
-const ODOMETRY: StreamRequest = stream(331, "ODOMETRY", 30.0, 245.0, &[Need::Position]);
+const ODOMETRY: StreamRequest = stream(331, "ODOMETRY", 20.0, 245.0, &[Need::Position]);
 const SERVO_OUTPUT_RAW: StreamRequest = stream(36, "SERVO_OUTPUT_RAW", 100.0, 49.0, &[Need::Actuators]);
 const ACTUATOR_OUTPUT_STATUS: StreamRequest =
     stream(375, "ACTUATOR_OUTPUT_STATUS", 100.0, 40.0, &[Need::Actuators]);
-const ESC_STATUS: StreamRequest = stream(291, "ESC_STATUS", 50.0, 69.0, &[Need::Actuators]);
-const ESC_TELEMETRY: StreamRequest = stream(11030, "ESC_TELEMETRY_1_TO_4", 50.0, 56.0, &[Need::Actuators]);
+const ESC_STATUS: StreamRequest = stream(291, "ESC_STATUS", 100.0, 69.0, &[Need::Actuators]);
+const ESC_TELEMETRY: StreamRequest = stream(11030, "ESC_TELEMETRY_1_TO_4", 100.0, 56.0, &[Need::Actuators]);
 const ATTITUDE_TARGET: StreamRequest = stream(83, "ATTITUDE_TARGET", 50.0, 49.0, &[Need::Setpoints]);
 const POSITION_TARGET: StreamRequest =
     stream(85, "POSITION_TARGET_LOCAL_NED", 20.0, 63.0, &[Need::Setpoints]);

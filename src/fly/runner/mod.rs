@@ -10,8 +10,10 @@
 mod clearance;
 mod drive;
 mod journal;
+mod priority;
 mod stream;
 
+pub use priority::raise_priority;
 pub use stream::StreamFigures;
 
 use std::io;
@@ -129,6 +131,7 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
     let options = LinkOptions {
         system,
         component,
+        patient: true,
         signing: ride.signing,
         recorder: Some(recorder.clone()),
         ..LinkOptions::default()
@@ -158,6 +161,7 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
     let _ = tokio::time::timeout(FLUSH, writer.flush()).await;
     let link = writer.stats();
     let recorder = recorder.finish().await?;
+    let stream = stream.on_link(&link);
     Ok(Record { outcome, stream, recorder, link, events_failure })
 }
 

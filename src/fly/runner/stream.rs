@@ -9,8 +9,9 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use tokio::sync::mpsc::UnboundedSender;
 
+use super::priority::raise_priority;
 use crate::fly::safety::{Guide, Lead, Streamed, Streamer};
-use crate::link::LinkWriter;
+use crate::link::{LinkStats, LinkWriter};
 
 /// A setpoint further from its time is late.
 const LATE: Duration = Duration::from_millis(3);
@@ -42,12 +43,21 @@ impl SharedGuide {
 /// How the setpoints went out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct StreamFigures {
-    /// setpoints given to the link
+    /// setpoints that went out
     pub sent: u64,
-    /// of these, more than 3 ms after their time
+    /// setpoints made more than 3 ms after their time
     pub late: u64,
+    /// not sent, for the next was there already or the stream had ended
+    pub overtaken: u64,
     /// refused by the link
     pub refused: u64,
+}
+
+impl StreamFigures {
+    /// Of setpoints given to a link, what became of them there.
+    pub(super) fn on_link(self, link: &LinkStats) -> Self {
+        Self { sent: self.sent.saturating_sub(link.replaced), overtaken: link.replaced, ..self }
+    }
 }
 
 /// The stream while it runs.
@@ -68,7 +78,10 @@ impl Stream {
     ) -> io::Result<Self> {
         let over = Arc::new(AtomicBool::new(false));
         let ended = over.clone();
-        let work = move || send_setpoints(Streamer::new(period), clock, &guide, &writer, (&stalled, &ended));
+        let work = move || {
+            raise_priority();
+            send_setpoints(Streamer::new(period), clock, &guide, &writer, (&stalled, &ended))
+        };
         let thread = thread::Builder::new().name("setpoints".into()).spawn(work)?;
         Ok(Self { thread, over })
     }

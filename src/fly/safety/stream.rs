@@ -123,12 +123,11 @@ impl Streamer {
         Some(Streamed::Stalled { gap, setpoint: hold, command })
     }
 
-    /// To the next instant of the grid; those that were missed are gone.
+    /// To the next instant of the grid, the multiples of the period; those that were missed are gone.
     fn advance(&mut self, now: Duration) {
-        self.next += self.period;
-        if self.next <= now {
-            self.next = now + self.period;
-        }
+        let late = now.saturating_sub(self.next).as_nanos() / self.period.as_nanos().max(1);
+        let missed = u32::try_from(late).unwrap_or(u32::MAX);
+        self.next += self.period.saturating_mul(missed.saturating_add(1));
     }
 }
 
@@ -156,6 +155,16 @@ mod tests {
             .filter(|t| matches!(streamer.poll(ms(*t), &guide(ms(*t))), Some(Streamed::Setpoint(..))))
             .collect();
         assert_eq!(sent, (0..10).map(|k| 20 * k).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn one_that_comes_late_is_followed_by_the_next_of_the_grid() {
+        let mut streamer = Streamer::new(ms(20));
+        let sent: Vec<u64> = [0, 23, 39, 40, 85, 99, 100]
+            .into_iter()
+            .filter(|t| streamer.poll(ms(*t), &guide(ms(*t))).is_some())
+            .collect();
+        assert_eq!(sent, [0, 23, 40, 85, 100], "60 is missed");
     }
 
     #[test]

@@ -38,14 +38,19 @@ pub(super) enum Transport {
 }
 
 /// Opens what an address names.
-pub(super) async fn open(address: &Address, peer_timeout: Duration) -> Result<Transport, LinkError> {
+pub(super) async fn open(
+    address: &Address,
+    (peer_timeout, patient): (Duration, bool),
+) -> Result<Transport, LinkError> {
     let opened = match address {
         Address::UdpIn { host, port } => {
             udp::UdpIn::open(host, *port, peer_timeout).await.map(Transport::UdpIn)
         }
         Address::UdpOut { host, port } => udp::UdpOut::open(host, *port).await.map(Transport::UdpOut),
         Address::TcpIn { host, port } => tcp::TcpIn::open(host, *port).await.map(Transport::TcpIn),
-        Address::TcpOut { host, port } => tcp::TcpOut::open(host, *port).await.map(Transport::TcpOut),
+        Address::TcpOut { host, port } => {
+            tcp::TcpOut::open(host, *port, patient).await.map(Transport::TcpOut)
+        }
         Address::Serial { path, baud, flow_control } => {
             serial::Serial::open(path, *baud, *flow_control).map(Transport::Serial)
         }
@@ -71,7 +76,11 @@ impl Transport {
 
     /// Whether there is somebody to send to as soon as it is open.
     pub fn is_connected(&self) -> bool {
-        matches!(self, Self::UdpOut(_) | Self::TcpOut(_) | Self::Serial(_) | Self::Memory(_))
+        match self {
+            Self::UdpOut(_) | Self::Serial(_) | Self::Memory(_) => true,
+            Self::TcpOut(tcp) => tcp.is_connected(),
+            _ => false,
+        }
     }
 
     /// Carries bytes, connecting again as often as needed; ends only where that is impossible.

@@ -58,8 +58,18 @@ pub(in crate::link) struct TcpOut {
 }
 
 impl TcpOut {
-    pub async fn open(host: &str, port: u16) -> io::Result<Self> {
-        Ok(Self { host: host.into(), port, first: Some(connect(host, port).await?) })
+    /// A patient one is open as well while the other end refuses or is silent.
+    pub async fn open(host: &str, port: u16, patient: bool) -> io::Result<Self> {
+        let first = match connect(host, port).await {
+            Ok(first) => Some(first),
+            Err(error) if patient && is_absence(&error) => None,
+            Err(error) => return Err(error),
+        };
+        Ok(Self { host: host.into(), port, first })
+    }
+
+    pub fn is_connected(&self) -> bool {
+        self.first.is_some()
     }
 
     pub async fn serve(&mut self, incoming: &mut Incoming, outgoing: &mut Outgoing) {
@@ -76,6 +86,11 @@ impl TcpOut {
             backoff.wait().await;
         }
     }
+}
+
+/// The other end may come yet.
+fn is_absence(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::ConnectionRefused | io::ErrorKind::TimedOut)
 }
 
 async fn connect(host: &str, port: u16) -> io::Result<(TcpStream, SocketAddr)> {

@@ -1,0 +1,102 @@
+//! What follows every flight: its recording is identified and explained, and the results lie beside it.
+
+use std::path::{Path, PathBuf};
+
+use mavid::fly;
+
+use super::explain::{Explained, REPORT};
+use super::identify::Identified;
+use super::{CommandError, Outcome, output};
+use crate::cli::{ExplainArgs, IdentifyArgs};
+
+/// Folder of the explanation in that of the flight.
+const EXPLAINED: &str = "explained";
+/// s of flight that `explain` leaves out at the beginning, as by itself.
+const TRANSIENT_S: f64 = 1.0;
+
+/// What a flight says; a part that it cannot say holds why.
+#[derive(Debug)]
+pub struct Analysis {
+    /// written beside the recording
+    pub identified: Result<Identified, String>,
+    /// written into a folder of its own
+    pub explained: Result<Explained, String>,
+    folder: PathBuf,
+}
+
+impl Analysis {
+    /// Of the flight in this folder.
+    pub fn of(folder: &Path, vehicle: &Path, system: Option<u32>) -> Self {
+        let identified = identify(folder, vehicle, system).map_err(|error| error.to_string());
+        let explained = explain(folder, vehicle, system).map_err(|error| error.to_string());
+        for (what, failure) in
+            [("identified", identified.as_ref().err()), ("explained", explained.as_ref().err())]
+        {
+            if let Some(failure) = failure {
+                output::message(&format!("not {what}: {failure}"));
+            }
+        }
+        Self { identified, explained, folder: folder.to_owned() }
+    }
+
+    /// Where the report lies, if there is one.
+    pub fn report(&self) -> Option<PathBuf> {
+        self.explained.is_ok().then(|| self.folder.join(EXPLAINED).join(REPORT))
+    }
+
+    /// For people: parameters, then the explanation's answer and where its report lies.
+    pub fn page(&self) -> String {
+        let mut parts: Vec<String> = self.identified.iter().map(Identified::page).collect();
+        parts.extend(self.explained.iter().map(Explained::answer));
+        parts.extend(self.report().map(|path| format!("report: {}", path.display())));
+        parts.join("\n\n")
+    }
+
+    /// The first part that failed, and otherwise what was lost, which it says.
+    pub fn outcome(&self) -> Result<Outcome, CommandError> {
+        let failed = |why: &String| CommandError::Failure(why.clone());
+        self.identified.as_ref().map_err(failed)?;
+        self.explained.as_ref().map_err(failed).map(Explained::outcome)
+    }
+}
+
+fn identify(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Identified, CommandError> {
+    let args = IdentifyArgs {
+        logs: vec![folder.join(fly::TLOG)],
+        vehicle: vehicle.to_owned(),
+        out: Some(folder.join("model.toml")),
+        chart: Some(folder.join("parameters.svg")),
+        csv_map: None,
+        system,
+        transient: None,
+        cutoff: None,
+        fir: false,
+        sigma: mavid::estimate::PAPER_SIGMA,
+        commands: false,
+        with: Vec::new(),
+    };
+    let identified = Identified::from(&args)?;
+    identified.write(&args)?;
+    output::file(&folder.join("identification.txt"), &format!("{}\n", identified.page()))?;
+    let json = serde_json::to_string_pretty(&identified.document())
+        .map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))?;
+    output::file(&folder.join("identification.json"), &json)?;
+    Ok(identified)
+}
+
+fn explain(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Explained, CommandError> {
+    let out = folder.join(EXPLAINED);
+    let args = ExplainArgs {
+        logs: vec![folder.join(fly::TLOG)],
+        vehicle: vehicle.to_owned(),
+        holdout: Vec::new(),
+        next: None,
+        out: None,
+        csv_map: None,
+        system,
+        transient: TRANSIENT_S,
+    };
+    let explained = Explained::from(&args)?;
+    explained.write(&out)?;
+    Ok(explained)
+}

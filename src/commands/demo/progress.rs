@@ -1,0 +1,98 @@
+//! How far the demo is: one bar, or lines where nothing can be drawn.
+
+use std::sync::mpsc::Receiver;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use mavid::fly::view::ViewModel;
+
+use crate::commands::output;
+
+/// Hundredths of the whole at which the stages end.
+pub const PLANNED: u64 = 3;
+const READY: u64 = 25;
+const FLOWN: u64 = 80;
+pub const LANDED: u64 = 95;
+/// Of the bar's own picture.
+const TICK: Duration = Duration::from_millis(100);
+
+/// The display.
+#[derive(Debug, Clone)]
+pub struct Progress {
+    bar: Option<ProgressBar>,
+}
+
+impl Progress {
+    /// A bar, or lines.
+    pub fn new(drawn: bool) -> Self {
+        let bar = drawn.then(|| {
+            let bar = ProgressBar::new(100);
+            if let Ok(style) = ProgressStyle::with_template("{spinner} {bar:40} {elapsed:>4} {msg}") {
+                bar.set_style(style);
+            }
+            bar.enable_steady_tick(TICK);
+            bar
+        });
+        Self { bar }
+    }
+
+    /// A line that stays.
+    pub fn say(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| output::message(text)),
+            None => output::message(text),
+        }
+    }
+
+    /// What is done now, at how many hundredths of the whole.
+    pub fn stage(&self, text: &str, at: u64) {
+        match &self.bar {
+            Some(bar) => {
+                bar.set_position(at);
+                bar.set_message(text.to_owned());
+            }
+            None => output::message(text),
+        }
+    }
+
+    /// Follows a flight until it is over.
+    pub fn follow(&self, pictures: &Receiver<ViewModel>) {
+        let mut last = String::new();
+        for model in pictures {
+            let text = words(&model);
+            if let Some(bar) = &self.bar {
+                bar.set_position(hundredths(&model).max(bar.position()));
+                bar.set_message(text);
+            } else if model.state != last {
+                output::message(&format!("[{:5.1} s] {text}", model.elapsed_s));
+                last = model.state;
+            }
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn end(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn words(model: &ViewModel) -> String {
+    let along = model.progress_s.map(|(done_s, all_s)| format!(", {done_s:.0} of {all_s:.0} s"));
+    let mode = if model.mode.is_empty() { String::new() } else { format!(", {}", model.mode) };
+    format!("{}{mode}{}", model.state, along.unwrap_or_default())
+}
+
+fn hundredths(model: &ViewModel) -> u64 {
+    let seconds = Duration::try_from_secs_f64(model.elapsed_s).map_or(0, |elapsed| elapsed.as_secs());
+    match model.progress_s {
+        Some((done_s, all_s)) if all_s > 0.0 => {
+            let share = (done_s / all_s).clamp(0.0, 1.0);
+            let steps = u64::try_from(mavid::units::whole(share * 1000.0)).unwrap_or(0);
+            READY + (FLOWN - READY) * steps / 1000
+        }
+        _ if model.state == "land" => LANDED.min(FLOWN + seconds % (LANDED - FLOWN)),
+        _ => READY.min(PLANNED + seconds),
+    }
+}
