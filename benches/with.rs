@@ -1,6 +1,6 @@
 //! What `identify --with` finds of effects that a simulated flight conceals: sizes against the truth.
 //!
-//! `cargo bench --bench with -- [--each N] [--seed S] [--only EFFECT] [--show]`
+//! `cargo bench --bench with -- [--each N] [--seed S] [--only EFFECT,...] [--noise FACTOR] [--show]`
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, reason = "a benchmark prints")]
 
 use mavid::diagnose::ExplainSettings;
@@ -39,7 +39,7 @@ const SETS: &[&[Sizes]] = &[
     &[("weak_rotor", &[("rotor", 1.0, One), ("factor", 0.92, One)])],
     &[("com_offset", &[("x", 0.005, One), ("y", -0.004, One), ("z", 0.0, One)])],
     &[("thrust_tilt", &[("x", 0.025, One), ("y", -0.02, One)])],
-    &[("rotor_inertia", &[("jr", 0.003, Inertia)])],
+    &[("rotor_inertia", &[("jr", 0.001, Inertia)])],
     &[("angular_damping", &[("bx", 0.8, Inertia), ("by", 0.8, Inertia), ("bz", 0.8, Inertia)])],
     &[("blade_flapping", &[("k", 0.5, Inertia)])],
     &[("inflow", &[("kz", 0.4, Mass)])],
@@ -52,10 +52,7 @@ const SETS: &[&[Sizes]] = &[
     &[("frame_misalignment", &[("x", 0.03, One), ("y", -0.02, One), ("z", 0.0, One)])],
     &[("tether", &[("line_mass", 0.03, Mass), ("stiffness", 0.0, One), ("length", 500.0, One)])],
     &[("vortex_ring", &[("loss", 3.0, One)])],
-    &[
-        ("motor_lag", &[("time_constant", 0.04, One)]),
-        ("transport_delay", &[("delay", 0.02, One)]),
-    ],
+    &[("motor_lag", &[("time_constant", 0.04, One)]), ("transport_delay", &[("delay", 0.02, One)])],
     &[DRAG, ("com_offset", &[("x", 0.005, One), ("y", -0.004, One), ("z", 0.0, One)])],
     &[
         ("mass_change", &[("time", 26.0, One), ("delta", -0.08, Mass)]),
@@ -72,19 +69,20 @@ fn main() {
     let number =
         |name: &str, default: u64| text(name).map_or(default, |t| t.parse().expect("a whole number"));
     let (each, first) = (number("--each", 4), number("--seed", 1));
+    let noise = text("--noise").map_or(1.0, |t| t.parse().expect("a factor"));
     let show = arguments.iter().any(|a| a == "--show");
     println!("set                            flights  parameters  within 20 %  within 3 std  z least; worst");
     for set in SETS {
         let ids: Vec<&str> = set.iter().map(|(id, _)| *id).collect();
         if text("--only").is_none_or(|only| ids.join(",") == only) {
-            report(set, &ids.join(","), (first, each), show);
+            report(set, &ids.join(","), (first, each), (noise, show));
         }
     }
 }
 
-fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), show: bool) {
+fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), (noise, show): (f64, bool)) {
     let found: Vec<(u64, Result<Together, TogetherError>, Vec<ActiveEffect>)> =
-        (first..first + each).into_par_iter().filter_map(|seed| fly(seed, set)).collect();
+        (first..first + each).into_par_iter().filter_map(|seed| fly(seed, noise, set)).collect();
     let (mut count, mut near, mut covered) = (0, 0, 0);
     let (mut least, mut worst) = (f64::INFINITY, 0.0_f64);
     for (seed, together, truth) in &found {
@@ -100,7 +98,12 @@ fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), show: bo
             let sized = effect.parameters.iter().zip(truth.parameters());
             for (slot, (parameter, &truth)) in sized.enumerate() {
                 if show {
-                    println!("  seed {seed} {}.{} truth {truth:.5} {:?}", effect.effect.id(), parameter.name, parameter.found);
+                    println!(
+                        "  seed {seed} {}.{} truth {truth:.5} {:?}",
+                        effect.effect.id(),
+                        parameter.name,
+                        parameter.found
+                    );
                 }
                 let nothing = if effect.effect.id() == "weak_rotor" && slot == 1 { 1.0 } else { 0.0 };
                 let amount = truth - nothing;
@@ -113,21 +116,34 @@ fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), show: bo
                         worst = worst.max((off / amount).abs());
                     }
                     Found::NotDetermined { reason, .. } if amount != 0.0 => {
-                        println!("  seed {seed} {}.{} not determined: {reason}", effect.effect.id(), parameter.name);
+                        println!(
+                            "  seed {seed} {}.{} not determined: {reason}",
+                            effect.effect.id(),
+                            parameter.name
+                        );
                     }
                     Found::AtBound { value, wanted, std } if amount != 0.0 => {
-                        println!("  seed {seed} {}.{} at {value}: {wanted} +- {std}", effect.effect.id(), parameter.name);
+                        println!(
+                            "  seed {seed} {}.{} at {value}: {wanted} +- {std}",
+                            effect.effect.id(),
+                            parameter.name
+                        );
                     }
                     _ => {}
                 }
             }
         }
     }
-    println!("{name:30} {:7} {count:11} {near:12} {covered:13}  {least:6.1}; {:.1} %", found.len(), 100.0 * worst);
+    println!(
+        "{name:30} {:7} {count:11} {near:12} {covered:13}  {least:6.1}; {:.1} %",
+        found.len(),
+        100.0 * worst
+    );
 }
 
 fn fly(
     seed: u64,
+    noise: f64,
     set: &'static [Sizes],
 ) -> Option<(u64, Result<Together, TogetherError>, Vec<ActiveEffect>)> {
     let pair = random_vehicle(seed.wrapping_mul(7919));
@@ -146,6 +162,7 @@ fn fly(
     let trajectory = random.draw(seed.wrapping_mul(104_729)).ok()?;
     let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
     let mut settings = FlightSettings { seed, ..FlightSettings::default() };
+    settings.telemetry.noise_scale = noise;
     if has("battery_sag") {
         settings.battery_drop_v_s = 0.03;
     }
@@ -158,7 +175,12 @@ fn fly(
     let wanted = Wanted::of(&names).expect("known effects");
     let how = ConditionSettings {
         transient_s: Some(1.0),
-        thrust: if wanted.need_commands() { ThrustPreference::Commands } else { ThrustPreference::BestSampled },
+        thrust: if wanted.need_commands() {
+            ThrustPreference::Commands
+        } else {
+            ThrustPreference::BestSampled
+        },
+        askew: wanted.has("imu_misalignment"),
         ..ConditionSettings::default()
     };
     let signals = condition(&flight.recording, &nominal, &how).ok()?;
@@ -173,6 +195,7 @@ fn sized((id, values): &Sizes, vehicle: &Vehicle) -> ActiveEffect {
         Mass => vehicle.body.mass_kg,
         Inertia => 0.5 * (inertia[(0, 0)] + inertia[(1, 1)]),
     };
-    let sized: Vec<(&str, f64)> = values.iter().map(|(name, value, by)| (*name, value * scale(*by))).collect();
+    let sized: Vec<(&str, f64)> =
+        values.iter().map(|(name, value, by)| (*name, value * scale(*by))).collect();
     ActiveEffect::named(id, &sized).expect("a possible effect")
 }

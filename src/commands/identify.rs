@@ -40,8 +40,8 @@ impl Identified {
         let recorded = recorded(args)?;
         let with = wanted.map(|wanted| with_effects(args, (&recorded, &loaded), &wanted)).transpose()?;
         let flights = conditioned(&recorded, vehicle, &usual(args))?;
-        let mut identification = identify(&flights, vehicle, &settings)
-            .map_err(|error| CommandError::Input(error.to_string()))?;
+        let mut identification =
+            identify(&flights, vehicle, &settings).map_err(|error| CommandError::Input(error.to_string()))?;
         let scale = apply_anchor(&mut identification, vehicle);
         let inputs = recorded.into_iter().map(|flight| flight.input).collect();
         Ok(Self { vehicle: loaded.vehicle, flights, inputs, identification, scale, with })
@@ -71,12 +71,9 @@ impl Identified {
     pub fn page(&self) -> String {
         let page = match &self.with {
             Some(with) => with.page(),
-            None => identification_page(
-                &self.identification,
-                &self.vehicle,
-                &self.quality(),
-                self.scale.as_ref(),
-            ),
+            None => {
+                identification_page(&self.identification, &self.vehicle, &self.quality(), self.scale.as_ref())
+            }
         };
         page.trim_end().to_owned()
     }
@@ -86,9 +83,7 @@ impl Identified {
         if let Some(path) = &args.out {
             let text = match &self.with {
                 Some(with) => with.model_toml(&self.inputs)?,
-                None => {
-                    model_toml(&self.identification, &self.vehicle, &self.inputs, self.scale.as_ref())?
-                }
+                None => model_toml(&self.identification, &self.vehicle, &self.inputs, self.scale.as_ref())?,
             };
             output::file(path, &text)?;
         }
@@ -191,15 +186,15 @@ fn with_effects(
     wanted: &Wanted,
 ) -> Result<WithEffects, CommandError> {
     let vehicle = &loaded.vehicle;
-    let of_file = |error: &dyn std::fmt::Display| {
-        CommandError::Input(format!("{}: {error}", args.vehicle.display()))
-    };
+    let of_file =
+        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", args.vehicle.display()));
     let known = effects(&loaded.model.effects, vehicle).map_err(|error| of_file(&error))?;
     wanted.check_wind(&known).map_err(|error| CommandError::Input(format!("--with: {error}")))?;
     let by_commands = args.commands || wanted.need_commands();
     let settings = ConditionSettings {
         transient_s: Some(args.transient.unwrap_or(TRANSIENT_S)),
         thrust: if by_commands { ThrustPreference::Commands } else { ThrustPreference::BestSampled },
+        askew: wanted.has("imu_misalignment"),
         ..ConditionSettings::default()
     };
     let flights = conditioned(recorded, vehicle, &settings)?;

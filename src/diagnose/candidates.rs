@@ -19,7 +19,7 @@ pub struct Candidate {
 /// Times of a mass change that are tried, s apart.
 const MASS_CHANGE_EVERY_S: f64 = 4.0;
 /// Lengths of a load's cord that are tried, m: their periods lie 20 % apart.
-pub(super) const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
+const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
 
 /// An effect by its identifier; `None` where there is no such effect.
 pub(super) fn present(id: &str, values: &[f64], free: &[usize]) -> Option<Present> {

@@ -20,6 +20,7 @@ mod search;
 mod sensors;
 mod settle;
 pub mod show;
+mod spin_up;
 pub mod together;
 mod trace;
 

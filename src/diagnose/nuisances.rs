@@ -4,7 +4,7 @@ use super::along::Turning;
 use super::base::Base;
 use super::rows::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
 use super::trace::Trace;
-use crate::physics::effects::FrameMisalignment;
+use crate::physics::effects::{FrameMisalignment, ThrustTilt};
 use crate::physics::{Effect, Wrench};
 use crate::regression::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor};
 use crate::signals::central_difference;
@@ -75,16 +75,17 @@ pub(super) fn nuisances(
     let thrust = trace.weak(0, &thrust);
     let negative: Vec<f64> = thrust.iter().map(|t| -t).collect();
     let tilt = Some(TILT_STD_RAD);
-    out.push(column(Nuisance::Tilt(0), tilt, force([none(), negative, none()])));
-    out.push(column(Nuisance::Tilt(1), tilt, force([thrust, none(), none()])));
+    if !base.estimates(ThrustTilt.id()) {
+        out.push(column(Nuisance::Tilt(0), tilt, force([none(), negative, none()])));
+        out.push(column(Nuisance::Tilt(1), tilt, force([thrust, none(), none()])));
+    }
     if let Some(jitter) = &trace.jitter {
         let channel =
             |row: usize| trace.weak(0, &jitter.iter().map(|jitter| -jitter[row]).collect::<Vec<f64>>());
         let values = channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);
         out.push(column(Nuisance::Jitter, Some(JITTER_STD), values));
     }
-    let leans = base.present.iter().any(|present| present.effect.id() == FrameMisalignment.id());
-    out.extend(sensor_nuisances(trace, mass_kg, leans));
+    out.extend(sensor_nuisances(trace, mass_kg, base.estimates(FrameMisalignment.id())));
     out
 }
 

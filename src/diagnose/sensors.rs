@@ -20,8 +20,7 @@ pub(super) fn is_of_sensors(effect: &dyn Effect) -> bool {
 
 /// The flights' true motion, given the base's effects on the sensors.
 pub(super) fn true_motion<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [Trace]> {
-    let faults: Vec<&Present> =
-        base.present.iter().filter(|present| is_of_sensors(present.effect)).collect();
+    let faults: Vec<&Present> = base.present.iter().filter(|present| is_of_sensors(present.effect)).collect();
     if faults.is_empty() {
         return Cow::Borrowed(flights);
     }

@@ -15,14 +15,15 @@ pub use finding::{EffectFound, Found, ParameterFound};
 pub use wanted::Wanted;
 
 use super::base::{Base, Present};
+use super::deviate::normal_deviate;
 use super::explain::LEAST_ROWS;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::rows::CHANNELS;
 use super::search::{Fitted, Newton, fit};
 use super::trace::{Trace, TraceError};
 use crate::estimate::{
-    Estimated, Finding, Method, MethodResult, THETA, ThetaCovariance, ThrustScale, identified_vehicle,
-    nearest_physical, rescaled, theta_of, thrust_scale,
+    Estimated, Finding, Method, MethodResult, THETA, Theta, ThetaCovariance, ThrustScale, identified_vehicle,
+    is_physical, nearest_physical, rescaled, theta_of, thrust_scale,
 };
 use crate::physics::{ActiveEffect, Airframe, PhysicsError};
 use crate::signals::Signals;
@@ -45,7 +46,10 @@ pub enum TogetherError {
         id: &'static str,
     },
     /// no effect beside the rigid body
-    #[error("{id} is identified with mass and inertia in any case; name the effects beside them: {}", wanted::names())]
+    #[error(
+        "{id} is identified with mass and inertia in any case; name the effects beside them: {}",
+        wanted::names()
+    )]
     Always {
         /// which
         id: String,
@@ -81,7 +85,9 @@ pub enum TogetherError {
         flights: usize,
     },
     /// too little flight
-    #[error("{seconds:.1} s of flight can be used, at least {needed_s:.0} s are needed to tell effects from noise")]
+    #[error(
+        "{seconds:.1} s of flight can be used, at least {needed_s:.0} s are needed to tell effects from noise"
+    )]
     TooShort {
         /// s that can be used
         seconds: f64,
@@ -94,6 +100,17 @@ pub enum TogetherError {
     /// the vehicle is not physical, or lacks what an effect needs
     #[error(transparent)]
     Physics(#[from] PhysicsError),
+}
+
+/// An inertia that a body can have: no principal moment exceeds the sum of the others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Physical {
+    /// it is one
+    AsEstimated,
+    /// it was moved to the nearest that is, within its error
+    Moved,
+    /// it is not, by more than its error: left as estimated
+    No,
 }
 
 /// Rigid body and effects, identified together.
@@ -119,8 +136,8 @@ pub struct Together {
     pub latency: LatencyFinding,
     /// it is among the named effects
     pub latency_named: bool,
-    /// the inertia was moved to the nearest that a body can have
-    pub made_physical: bool,
+    /// whether the inertia is one that a body can have
+    pub physical: Physical,
 }
 
 impl Together {
@@ -157,10 +174,8 @@ pub fn together(
     half_width_s: f64,
 ) -> Result<Together, TogetherError> {
     wanted.check_wind(known)?;
-    let traces: Vec<Trace> = flights
-        .iter()
-        .map(|signals| Trace::new(signals, vehicle, half_width_s))
-        .collect::<Result<_, _>>()?;
+    let traces: Vec<Trace> =
+        flights.iter().map(|signals| Trace::new(signals, vehicle, half_width_s)).collect::<Result<_, _>>()?;
     let airframe = Airframe::new(vehicle)?;
     wanted.check_flights(&traces, &airframe)?;
     let rows: usize = traces.iter().map(Trace::rows).sum();
@@ -169,7 +184,8 @@ pub fn together(
         return Err(TogetherError::TooShort { seconds, needed_s });
     }
     let kept: Vec<&ActiveEffect> = known.iter().filter(|of| !wanted.has(of.effect().id())).collect();
-    let rigid = Base { present: kept.iter().filter_map(|of| acting_as_is(of)).collect(), ..Base::rigid(vehicle) };
+    let rigid =
+        Base { present: kept.iter().filter_map(|of| acting_as_is(of)).collect(), ..Base::rigid(vehicle) };
     let (plain, first) = fit_latency(&traces, rigid.clone())?;
     let latency_named = wanted.effects().iter().any(|effect| wanted::is_latency(effect.id()));
     let before = if latency_named { fit(&traces, rigid, Newton::Held)? } else { plain.clone() };
@@ -205,11 +221,7 @@ fn put_together(
     let Fits { before, after, settled, split, first } = fits;
     let nominal = theta_of(&vehicle.body);
     let (mut estimated, mut estimated_before) = (estimated(&after), estimated(&before));
-    let mut made_physical = false;
-    if let Some(theta) = nearest_physical(&estimated.theta, &estimated.covariance, &nominal) {
-        made_physical = theta != estimated.theta;
-        estimated.theta = theta;
-    }
+    let physical = made_physical(&mut estimated, &nominal);
     let result = |estimated: &Estimated| MethodResult::new(Method::Weak, estimated, &nominal);
     let (mut body, mut body_before) = (result(&estimated), result(&estimated_before));
     let mut scale = None;
@@ -222,8 +234,11 @@ fn put_together(
         body.parameters[0].finding = Finding::Given { value: weighed };
         body_before.parameters[0].finding = Finding::Given { value: weighed };
     }
-    let latency =
-        LatencyFinding { against_lag: first.against_lag, against_delay: first.against_delay, ..finding_of(&after) };
+    let latency = LatencyFinding {
+        against_lag: first.against_lag,
+        against_delay: first.against_delay,
+        ..finding_of(&after)
+    };
     let by_mass = scale.is_some().then(|| vehicle.body.mass_kg / after.base.vehicle.body.mass_kg);
     let effects = finding::effects((traces, vehicle), wanted, (&after, &settled), (&latency, split), by_mass);
     let mut acting: Vec<ActiveEffect> = kept.iter().map(|of| (*of).clone()).collect();
@@ -239,9 +254,30 @@ fn put_together(
         effects,
         acting,
         latency,
-        made_physical,
+        physical,
     }
 }
+
+/// Moves an inertia that no body has to the nearest that is one, if that lies within its error.
+fn made_physical(estimated: &mut Estimated, nominal: &Theta) -> Physical {
+    if is_physical(&estimated.theta) {
+        return Physical::AsEstimated;
+    }
+    let Some(theta) = nearest_physical(&estimated.theta, &estimated.covariance, nominal) else {
+        return Physical::No;
+    };
+    let moved = theta - estimated.theta;
+    let factor = estimated.covariance.cholesky();
+    let wald = factor.map_or(f64::INFINITY, |factor| moved.dot(&factor.solve(&moved)));
+    if normal_deviate(wald, THETA) > WITHIN_ERROR {
+        return Physical::No;
+    }
+    estimated.theta = theta;
+    Physical::Moved
+}
+
+/// Standard errors by which an inertia may be moved.
+const WITHIN_ERROR: f64 = 3.0;
 
 /// Mass and inertia of a fit: the first columns of its nuisances, in the same order.
 fn estimated(fitted: &Fitted) -> Estimated {

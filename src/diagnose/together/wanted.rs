@@ -2,7 +2,7 @@
 
 use super::TogetherError;
 use crate::diagnose::base::Present;
-use crate::diagnose::candidates::{CORD_LENGTHS_M, change_times, full_voltage, present};
+use crate::diagnose::candidates::{change_times, full_voltage, present};
 use crate::diagnose::trace::Trace;
 use crate::physics::effects::{ALL, by_id};
 use crate::physics::{ActiveEffect, Airframe, Effect};
@@ -19,6 +19,10 @@ const ALWAYS: [&str; 3] = ["thrust_scale", "torque_scale", "inertia_products"];
 const CEILINGS_RADII: [f64; 7] = [0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0];
 /// Decays of the exponential ground effect that are tried.
 const DECAYS: [f64; 3] = [0.4, 0.8, 1.6];
+/// Shortest and longest cord of a load that is tried, m, and the ratio of neighbours: a tenth of a period apart
+/// after a minute.
+const CORDS_M: (f64, f64) = (0.2, 4.0);
+const CORDS_RATIO: f64 = 1.015;
 /// Lengths of a tether that are tried, of the farthest distance flown.
 const TAUT_AT: [f64; 6] = [0.4, 0.55, 0.7, 0.8, 0.9, 0.96];
 
@@ -155,11 +159,13 @@ impl Wanted {
                 .into_iter()
                 .map(|height_m| one(&[3.0, 0.0, height_m], &[0, 2]))
                 .collect(),
-            "weak_rotor" => (0..airframe.rotor_count()).map(|rotor| one(&[rotor as f64, 1.0], &[1])).collect(),
+            "weak_rotor" => {
+                (0..airframe.rotor_count()).map(|rotor| one(&[rotor as f64, 1.0], &[1])).collect()
+            }
             "battery_sag" => {
                 full_voltage(flights).into_iter().map(|full_v| one(&[0.0, full_v], &[0])).collect()
             }
-            "slung_load" => CORD_LENGTHS_M.map(|length_m| one(&[0.0, length_m], &[0, 1])).to_vec(),
+            "slung_load" => cords_m().into_iter().map(|length_m| one(&[0.0, length_m], &[0])).collect(),
             "mass_change" => {
                 let times = flights.first().map(change_times).unwrap_or_default();
                 times.into_iter().map(|time_s| one(&[time_s, 0.0], &[1])).collect()
@@ -168,7 +174,9 @@ impl Wanted {
                 let far_m = farthest_m(flights);
                 let slack = one(&[0.0, 0.0, 500.0], &[0]);
                 let taut = TAUT_AT.iter().map(|share| share * far_m).filter(|length_m| *length_m > 0.5);
-                std::iter::once(slack).chain(taut.map(|length_m| one(&[0.0, 0.0, length_m], &[0, 1, 2]))).collect()
+                std::iter::once(slack)
+                    .chain(taut.map(|length_m| one(&[0.0, 0.0, length_m], &[0, 1, 2])))
+                    .collect()
             }
             // its heading is for no equation of the vehicle's own motion to see; up comes when the rest is known
             "frame_misalignment" | "steady_wind" => vec![one(&[0.0; 3], &[0, 1])],
@@ -189,6 +197,15 @@ pub(super) fn is_latency(id: &str) -> bool {
 /// All names, for messages.
 pub(super) fn names() -> String {
     ALL.iter().map(|effect| effect.id()).collect::<Vec<_>>().join(", ")
+}
+
+/// Lengths of a cord that are tried, m.
+fn cords_m() -> Vec<f64> {
+    let mut out = vec![CORDS_M.0];
+    while let Some(last_m) = out.last().map(|length_m| length_m * CORDS_RATIO).filter(|m| *m <= CORDS_M.1) {
+        out.push(last_m);
+    }
+    out
 }
 
 /// Heights that a ceiling may have over the flown ones, m.

@@ -2,7 +2,7 @@
 
 use crate::config::{ConfigError, vehicle_to_toml};
 use crate::diagnose::CHANNEL_NAMES;
-use crate::diagnose::together::{EffectFound, Found, ParameterFound, Together};
+use crate::diagnose::together::{EffectFound, Found, ParameterFound, Physical, Together};
 use crate::estimate::{Finding, Parameter, theta_of};
 use crate::report::model_parts::{correlation, correlations, effect_tables};
 use crate::signals::Quality;
@@ -37,6 +37,7 @@ pub(super) struct With {
     latency: Latency,
     misfit: BTreeMap<&'static str, Misfit>,
     made_physical: bool,
+    warnings: Vec<&'static str>,
     correlation_of: Vec<String>,
     correlation: Vec<Vec<Option<f64>>>,
     flights: Vec<Used>,
@@ -117,7 +118,8 @@ impl WithEffects {
                 .misfits()
                 .map(|(name, without, with, unit)| (name, Misfit { without, with, unit }))
                 .collect(),
-            made_physical: together.made_physical,
+            made_physical: together.physical == Physical::Moved,
+            warnings: physical(together.physical).into_iter().collect(),
             correlation_of,
             correlation,
             flights: self
@@ -167,11 +169,8 @@ impl WithEffects {
             }
         }
         page.push_str(&self.scale_line());
-        if together.made_physical {
-            let _ = writeln!(
-                page,
-                "  the estimate was not an inertia that a body can have; moved to the nearest that is"
-            );
+        if let Some(sentence) = physical(together.physical) {
+            let _ = writeln!(page, "  {sentence}");
         }
         let _ = writeln!(page, "\n  {:<26}{:>13}{:>13}  unit", "misfit, rms", "without them", "with them");
         for (name, without, with, unit) in self.misfits() {
@@ -179,7 +178,8 @@ impl WithEffects {
         }
         page.push('\n');
         let latency = &together.latency;
-        let how = if together.latency_named { "held as the kind that was named" } else { "estimated with them" };
+        let how =
+            if together.latency_named { "held as the kind that was named" } else { "estimated with them" };
         let _ = writeln!(
             page,
             "  actuation latency {:.1} +- {:.1} ms, {how}",
@@ -234,9 +234,24 @@ impl WithEffects {
     }
 }
 
+/// What is to be said of the inertia.
+fn physical(of: Physical) -> Option<&'static str> {
+    match of {
+        Physical::AsEstimated => None,
+        Physical::Moved => Some(
+            "the estimate was not an inertia that a body can have; moved to the nearest that is, within its error",
+        ),
+        Physical::No => Some(
+            "warning: no body has this inertia (one principal moment exceeds the sum of the others), by more than its error; left as \
+             estimated. Are arms, thrust and torque per thrust as the vehicle file states them?",
+        ),
+    }
+}
+
 /// How sure an effect is.
 fn evidence(effect: &EffectFound) -> String {
-    let tried = if effect.tried > 1 { format!(" after {} forms were tried", effect.tried) } else { String::new() };
+    let tried =
+        if effect.tried > 1 { format!(" after {} forms were tried", effect.tried) } else { String::new() };
     let there = if effect.is_significant() { "" } else { "; not to be told from nothing" };
     format!("{} {:.1} standard errors from nothing{tried}{there}", effect.effect.sentence(), effect.z)
 }
@@ -264,11 +279,7 @@ fn body_line(with: &Parameter, without: &Parameter, nominal: f64) -> String {
 fn beyond(parameter: &ParameterFound, wanted: f64, std: f64) -> String {
     let (least, most) = parameter.plausible;
     let away = if wanted < least { least - wanted } else { wanted - most };
-    let what = if away > 3.0 * std {
-        "that is not this effect"
-    } else {
-        "the bound is within the error"
-    };
+    let what = if away > 3.0 * std { "that is not this effect" } else { "the bound is within the error" };
     format!("the flight asks for {wanted:.3e} +- {std:.1e}, physics allows {least} to {most}: {what}")
 }
 
@@ -287,7 +298,9 @@ fn effect_line(effect: &EffectFound, parameter: &ParameterFound) -> String {
                 beyond(parameter, *wanted, *std)
             )
         }
-        Found::Given { value, why } => format!("{name:<34}{:>13}{:>13}  {unit}; {why}", number(*value), "(set)"),
+        Found::Given { value, why } => {
+            format!("{name:<34}{:>13}{:>13}  {unit}; {why}", number(*value), "(set)")
+        }
         Found::NotDetermined { reason, .. } => format!("{name:<34} not determined: {reason}"),
     }
 }
@@ -353,7 +366,9 @@ fn model_line(parameter: &ParameterFound) -> String {
             "{name} = {{ value = {value:e}, std = {std:e}, unit = \"{unit}\", status = \"at_bound\", wanted = {wanted:e} }}"
         ),
         Found::Given { value, why } => {
-            format!("{name} = {{ value = {value:e}, std = 0.0, unit = \"{unit}\", status = \"given\", reason = {why:?} }}")
+            format!(
+                "{name} = {{ value = {value:e}, std = 0.0, unit = \"{unit}\", status = \"given\", reason = {why:?} }}"
+            )
         }
         Found::NotDetermined { reason, .. } => {
             format!("{name} = {{ status = \"not_determined\", reason = {reason:?} }}")
