@@ -1,6 +1,6 @@
 //! What `identify --with` finds of effects that a simulated flight conceals: sizes against the truth.
 //!
-//! `cargo bench --bench with -- [--each N] [--seed S] [--only EFFECT] [--show]`
+//! `cargo bench --bench with -- [--each N] [--seed S] [--only EFFECT,...] [--noise FACTOR] [--show]`
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, reason = "a benchmark prints")]
 
 use mavid::diagnose::ExplainSettings;
@@ -39,7 +39,7 @@ const SETS: &[&[Sizes]] = &[
     &[("weak_rotor", &[("rotor", 1.0, One), ("factor", 0.92, One)])],
     &[("com_offset", &[("x", 0.005, One), ("y", -0.004, One), ("z", 0.0, One)])],
     &[("thrust_tilt", &[("x", 0.025, One), ("y", -0.02, One)])],
-    &[("rotor_inertia", &[("jr", 0.003, Inertia)])],
+    &[("rotor_inertia", &[("jr", 0.001, Inertia)])],
     &[("angular_damping", &[("bx", 0.8, Inertia), ("by", 0.8, Inertia), ("bz", 0.8, Inertia)])],
     &[("blade_flapping", &[("k", 0.5, Inertia)])],
     &[("inflow", &[("kz", 0.4, Mass)])],
@@ -69,19 +69,20 @@ fn main() {
     let number =
         |name: &str, default: u64| text(name).map_or(default, |t| t.parse().expect("a whole number"));
     let (each, first) = (number("--each", 4), number("--seed", 1));
+    let noise = text("--noise").map_or(1.0, |t| t.parse().expect("a factor"));
     let show = arguments.iter().any(|a| a == "--show");
     println!("set                            flights  parameters  within 20 %  within 3 std  z least; worst");
     for set in SETS {
         let ids: Vec<&str> = set.iter().map(|(id, _)| *id).collect();
         if text("--only").is_none_or(|only| ids.join(",") == only) {
-            report(set, &ids.join(","), (first, each), show);
+            report(set, &ids.join(","), (first, each), (noise, show));
         }
     }
 }
 
-fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), show: bool) {
+fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), (noise, show): (f64, bool)) {
     let found: Vec<(u64, Result<Together, TogetherError>, Vec<ActiveEffect>)> =
-        (first..first + each).into_par_iter().filter_map(|seed| fly(seed, set)).collect();
+        (first..first + each).into_par_iter().filter_map(|seed| fly(seed, noise, set)).collect();
     let (mut count, mut near, mut covered) = (0, 0, 0);
     let (mut least, mut worst) = (f64::INFINITY, 0.0_f64);
     for (seed, together, truth) in &found {
@@ -142,6 +143,7 @@ fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), show: bo
 
 fn fly(
     seed: u64,
+    noise: f64,
     set: &'static [Sizes],
 ) -> Option<(u64, Result<Together, TogetherError>, Vec<ActiveEffect>)> {
     let pair = random_vehicle(seed.wrapping_mul(7919));
@@ -160,6 +162,7 @@ fn fly(
     let trajectory = random.draw(seed.wrapping_mul(104_729)).ok()?;
     let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
     let mut settings = FlightSettings { seed, ..FlightSettings::default() };
+    settings.telemetry.noise_scale = noise;
     if has("battery_sag") {
         settings.battery_drop_v_s = 0.03;
     }
@@ -177,6 +180,7 @@ fn fly(
         } else {
             ThrustPreference::BestSampled
         },
+        askew: wanted.has("imu_misalignment"),
         ..ConditionSettings::default()
     };
     let signals = condition(&flight.recording, &nominal, &how).ok()?;

@@ -194,6 +194,7 @@ fn with_effects(
     let settings = ConditionSettings {
         transient_s: Some(args.transient.unwrap_or(TRANSIENT_S)),
         thrust: if by_commands { ThrustPreference::Commands } else { ThrustPreference::BestSampled },
+        askew: wanted.has("imu_misalignment"),
         ..ConditionSettings::default()
     };
     let flights = conditioned(recorded, vehicle, &settings)?;

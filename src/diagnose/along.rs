@@ -33,12 +33,24 @@ impl Turning {
     }
 }
 
+/// Weights of the last slopes, newest first, until enough of them are known. The fourth order keeps a pendulum that
+/// is pushed at its own frequency as wide as it is; the second makes it ever wider.
+const ADAMS_BASHFORTH: [[f64; ORDER]; ORDER] = [
+    [1.0, 0.0, 0.0, 0.0],
+    [1.5, -0.5, 0.0, 0.0],
+    [23.0 / 12.0, -16.0 / 12.0, 5.0 / 12.0, 0.0],
+    [55.0 / 24.0, -59.0 / 24.0, 37.0 / 24.0, -9.0 / 24.0],
+];
+const ORDER: usize = 4;
+
 /// Force and torque of the model at each grid instant (body, N, N m), the effects' own states carried
 /// along. Instants that no row uses are left zero, unless states run through them.
 #[must_use]
 pub fn wrench_along(model: &Model, trace: &Trace, turning: &Turning) -> Vec<Wrench> {
     let count = model.own_state_count();
-    let (mut states, mut rates, mut rates_before) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
+    let (mut states, mut rates) = (vec![0.0; count], vec![0.0; count]);
+    // newest first
+    let mut past: [Vec<f64>; ORDER] = std::array::from_fn(|_| vec![0.0; count]);
     let mut out = vec![Wrench::zero(); trace.grid.count];
     for index in 0..trace.grid.count {
         if count == 0 && !trace.usable[index] {
@@ -60,11 +72,13 @@ pub fn wrench_along(model: &Model, trace: &Trace, turning: &Turning) -> Vec<Wren
             model.initial_states(state, &input, &mut states);
         }
         out[index] = model.evaluate(state, &input, &states, &mut rates).wrench;
-        // Adams-Bashforth of second order
-        for ((state, rate), before) in states.iter_mut().zip(&rates).zip(&mut rates_before) {
-            let slope = if index == 0 { *rate } else { 1.5 * rate - 0.5 * *before };
-            *state += trace.grid.step_s * slope;
-            *before = *rate;
+        past.rotate_right(1);
+        past[0].copy_from_slice(&rates);
+        for (rates, weight) in past.iter().zip(ADAMS_BASHFORTH[index.min(ORDER - 1)]) {
+            states
+                .iter_mut()
+                .zip(rates)
+                .for_each(|(state, rate)| *state += trace.grid.step_s * weight * rate);
         }
     }
     out

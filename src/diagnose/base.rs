@@ -60,6 +60,12 @@ impl Base {
         Self { vehicle: vehicle.clone(), latency: ActuationLatency::default(), present: Vec::new() }
     }
 
+    /// Some of an effect's parameters are estimated.
+    #[must_use]
+    pub fn estimates(&self, id: &str) -> bool {
+        self.present.iter().any(|present| present.effect.id() == id && !present.free.is_empty())
+    }
+
     /// The model with its effects, and `more` of them.
     ///
     /// # Errors

@@ -24,6 +24,7 @@ mod sensors;
 mod settle;
 mod sharpen;
 pub mod show;
+mod spin_up;
 pub mod together;
 mod trace;
 

@@ -73,7 +73,7 @@ pub(super) fn nuisances(
     let thrust = trace.weak(0, &thrust);
     let negative: Vec<f64> = thrust.iter().map(|t| -t).collect();
     // no thrust axis is known to a tenth of a degree; one that leans much is an effect
-    if !base.present.iter().any(|present| present.effect.id() == THRUST_TILT) {
+    if !base.estimates(THRUST_TILT) {
         out.push(column(Nuisance::Tilt(0), None, force([none(), negative, none()])));
         out.push(column(Nuisance::Tilt(1), None, force([thrust, none(), none()])));
     }
@@ -83,8 +83,7 @@ pub(super) fn nuisances(
         let values = channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);
         out.push(column(Nuisance::Jitter, Some(JITTER_STD), values));
     }
-    let leans = base.present.iter().any(|present| present.effect.id() == FRAME_MISALIGNMENT);
-    out.extend(sensor_nuisances(trace, mass_kg, leans));
+    out.extend(sensor_nuisances(trace, mass_kg, base.estimates(FRAME_MISALIGNMENT)));
     out
 }
 

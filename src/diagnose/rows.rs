@@ -9,6 +9,7 @@ use super::along::{Turning, wrench_along};
 use super::base::{Base, Present};
 use super::nuisances::{momentum_rows, nuisances};
 use super::sensors::{is_of_sensors, true_motion};
+use super::spin_up::SpinUp;
 use super::trace::Trace;
 use crate::physics::{Model, PhysicsError, Wrench};
 use nalgebra::{Vector3, Vector4};
@@ -234,7 +235,10 @@ impl Rows {
                     moved.present[effect].values[index] += by;
                     moved
                 };
-                let (up, down) = (moved(0.5 * step), moved(-0.5 * step));
+                // not beyond what is possible: a load has no negative mass
+                let (present, value) = (&base.present[effect], base.present[effect].values[index]);
+                let below = present.possible(index, value - 0.5 * step) - value;
+                let (up, down) = (moved(below + step), moved(below));
                 if is_of_sensors(base.present[effect].effect) {
                     return sensor_column(recorded, (&up, &down), step);
                 }
@@ -328,6 +332,7 @@ pub(super) fn nothing(trace: &Trace) -> [Vec<f64>; 3] {
 /// Residual and nuisances of one flight.
 fn one_flight(trace: &Trace, base: &Base, model: &Model) -> (Along, Channels, Vec<NuisanceColumn>) {
     let airframe = &model.airframe;
+    let spin_up = SpinUp::of(base, airframe);
     let (mass_kg, inertia) = (base.vehicle.body.mass_kg, base.vehicle.body.inertia_kg_m2);
     let (felt, commanded) = trace.by_commands(airframe, base.latency);
     let by_commands = wrench_along(model, trace, &commanded);
@@ -343,7 +348,11 @@ fn one_flight(trace: &Trace, base: &Base, model: &Model) -> (Along, Channels, Ve
             let rest = *all - airframe.thrust_wrench(thrusts);
             Vector4::new(rest.force_n.z, rest.torque_nm.x, rest.torque_nm.y, rest.torque_nm.z)
         });
-        beyond = Some(of_effects.collect::<Vec<_>>());
+        let mut of_effects: Vec<Vector4<f64>> = of_effects.collect();
+        if let Some(spin_up) = &spin_up {
+            spin_up.share(trace, (airframe, &motion), &inertia, &mut of_effects);
+        }
+        beyond = Some(of_effects);
     }
     let residual = residual(trace, base, model, (&felt, &commanded, &motion), (&by_commands, &by_motion));
     let nuisances = nuisances(trace, base, &commanded, &by_commands);

@@ -7,7 +7,7 @@
 
 use super::{Grid, WeakKernel, cubic_onto};
 use crate::log::Stream;
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 /// An offset of one stream against the inertial unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,8 +74,32 @@ pub fn attitude_offset(
             let turning: Vec<Vector3<f64>> = seen.iter().zip(rate).map(|(e, w)| e.cross(w)).collect();
             frame.difference(&seen, &turning, &mut residual);
         }
+        if frame.askew {
+            let columns = [Vector3::x(), Vector3::y(), Vector3::z()].map(|angle| {
+                let mut column = Vec::with_capacity(residual.len());
+                for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+                    let seen = attitude.iter().map(|q| q.inverse_transform_vector(&axis));
+                    let turned: Vec<Vector3<f64>> =
+                        seen.zip(rate).map(|(e, w)| e.cross(&angle.cross(w))).collect();
+                    frame.difference(&vec![Vector3::zeros(); turned.len()], &turned, &mut column);
+                }
+                column
+            });
+            partial_out(&mut residual, &columns);
+        }
         Some(residual)
     })
+}
+
+/// Takes what the columns make out of a residual.
+fn partial_out(residual: &mut [f64], columns: &[Vec<f64>; 3]) {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let normal = Matrix3::from_fn(|i, j| dot(&columns[i], &columns[j]));
+    let Some(factor) = normal.cholesky() else { return };
+    let theta = factor.solve(&Vector3::from_fn(|i, _| dot(&columns[i], residual)));
+    for (column, theta) in columns.iter().zip(theta.iter()) {
+        residual.iter_mut().zip(column).for_each(|(residual, column)| *residual -= theta * column);
+    }
 }
 
 /// Offset of a world velocity stream against the inertial unit, the attitude already in place.
@@ -98,6 +122,17 @@ pub fn velocity_offset(
         let mut residual = Vec::with_capacity(3 * frame.centers.len());
         frame.difference(&body, &rate_of_change, &mut residual);
         frame.remove_means(&mut residual);
+        if frame.askew {
+            let columns = [Vector3::x(), Vector3::y(), Vector3::z()].map(|angle| {
+                let turned: Vec<Vector3<f64>> =
+                    inertial.specific_force.iter().map(|force| angle.cross(force)).collect();
+                let mut column = Vec::with_capacity(residual.len());
+                frame.difference(&vec![Vector3::zeros(); turned.len()], &turned, &mut column);
+                frame.remove_means(&mut column);
+                column
+            });
+            partial_out(&mut residual, &columns);
+        }
         Some(residual)
     })
 }
@@ -120,6 +155,8 @@ pub fn position_offset(
 /// Where the comparison is made.
 #[derive(Debug, Clone, Copy)]
 pub struct AlignFrame<'a> {
+    /// the inertial unit may sit askew: its angles are estimated with the offsets
+    pub askew: bool,
     /// common time base
     pub grid: &'a Grid,
     /// weak form's kernel on it

@@ -24,11 +24,19 @@ pub struct ConditionSettings {
     pub weak_half_width_s: f64,
     /// which thrusts are used where the log has both
     pub thrust: ThrustPreference,
+    /// the inertial unit may sit askew in the body: offsets between streams are estimated together with its angles
+    pub askew: bool,
 }
 
 impl Default for ConditionSettings {
     fn default() -> Self {
-        Self { step_s: None, transient_s: None, weak_half_width_s: 0.2, thrust: ThrustPreference::Measured }
+        Self {
+            step_s: None,
+            transient_s: None,
+            weak_half_width_s: 0.2,
+            thrust: ThrustPreference::Measured,
+            askew: false,
+        }
     }
 }
 
@@ -172,7 +180,7 @@ pub fn condition(
             reason: used.summary(),
         });
     }
-    let frame = AlignFrame { grid: &grid, kernel: &kernel, centers: &centers };
+    let frame = AlignFrame { askew: settings.askew, grid: &grid, kernel: &kernel, centers: &centers };
     let motion = Motion::aligned(&chosen, rate, &frame, vehicle.gravity_m_s2);
     let felt = actuation.onto(&grid, vehicle);
     let mut sources: Vec<(Quantity, &'static str, f64)> = chosen

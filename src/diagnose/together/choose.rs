@@ -2,7 +2,7 @@
 
 use super::wanted::Wanted;
 use crate::diagnose::base::{Base, Present};
-use crate::diagnose::rows::CHANNELS;
+use crate::diagnose::rows::{AXES, CHANNELS};
 use crate::diagnose::search::{Fitted, Newton, fit};
 use crate::diagnose::trace::Trace;
 use crate::physics::{Airframe, PhysicsError};
@@ -19,16 +19,29 @@ pub(super) struct Chosen {
     pub(super) tried_std: Option<(usize, f64)>,
 }
 
+/// Lengths of a cord round about the likeliest that was tried, shares of it: how far, and how finely.
+const LENGTH_ABOUT: f64 = 0.02;
+const LENGTH_EVERY: f64 = 0.0025;
 /// Round about a change's moment, s: how far, and how finely.
 const ABOUT_S: f64 = 4.0;
 const EVERY_S: f64 = 0.25;
 
-/// Sum over the rows of the logarithm of each channel's standard deviation: minus the logarithm of the likelihood, up to a
-/// constant.
-pub(super) fn misfit(fitted: &Fitted) -> f64 {
+/// Sum over the rows of the logarithm of each channel's standard deviation, forces as the accelerations that were
+/// measured: minus the logarithm of the likelihood, up to a constant.
+fn misfit(fitted: &Fitted) -> f64 {
     let rows = fitted.rows.len() as f64;
-    let used = (0..CHANNELS).map(|channel| fitted.weighted.sigma[channel]).filter(|sigma| *sigma > 0.0);
-    used.map(|sigma| rows * sigma.ln()).sum()
+    let mass_kg = fitted.base.vehicle.body.mass_kg;
+    let measured = |channel: usize| {
+        let of_torque = (3..AXES).contains(&channel);
+        fitted.weighted.sigma[channel] / if of_torque { 1.0 } else { mass_kg }
+    };
+    let used: Vec<f64> = (0..CHANNELS).map(measured).filter(|sigma| *sigma != 0.0).collect();
+    // a form that cannot be carried along the flight is no candidate
+    if used.iter().all(|sigma| *sigma > 0.0) {
+        used.iter().map(|sigma| rows * sigma.ln()).sum()
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// One form of every effect that has columns of its own, in the order in which they were asked for.
@@ -48,11 +61,13 @@ pub(super) fn choose(
     let mut spread = vec![None; forms.len()];
     for _ in 0..sweeps {
         for (place, forms) in forms.iter().enumerate().filter(|(_, forms)| forms.len() > 1) {
-            let mut tried = forms.clone();
-            let mut best = likeliest(flights, base, &picked, (place, &tried))?;
-            if tried.first().is_some_and(|form| form.effect.id() == "mass_change") {
-                let about_s = best.form.values[0];
-                tried = about(&best.form, about_s, flights);
+            if forms.iter().all(|form| form.effect.id() == "slung_load") {
+                picked[place] = Some(length(flights, base, &picked, (place, forms))?);
+                continue;
+            }
+            let mut best = likeliest(flights, base, &picked, (place, forms))?;
+            if best.form.effect.id() == "mass_change" {
+                let tried = moments_about(&best.form, flights);
                 best = likeliest(flights, base, &picked, (place, &tried))?;
                 spread[place] = Some((0, moment_std_s(&best, &tried)));
             }
@@ -82,10 +97,8 @@ fn likeliest(
     let fits: Vec<(f64, f64, usize)> = forms
         .par_iter()
         .map(|form| {
-            let mut base = base.clone();
-            for (other, present) in picked.iter().enumerate() {
-                base.present.extend(if other == place { Some(form.clone()) } else { present.clone() });
-            }
+            let mut base = with_others(base, picked, place);
+            base.present.push(form.clone());
             let fitted = fit(flights, base, Newton::Held)?;
             Ok((misfit(&fitted), fitted.weighted.long_run_deviation(), fitted.rows.len()))
         })
@@ -100,8 +113,61 @@ fn likeliest(
     Ok(Likeliest { form: forms[best].clone(), misfits, deviation })
 }
 
+/// A load to start from is no more than this share of the mass.
+const MOST_OF_MASS: f64 = 0.5;
+
+/// The base with what was picked, but for one place.
+fn with_others(base: &Base, picked: &[Option<Present>], place: usize) -> Base {
+    let mut base = base.clone();
+    let others = picked.iter().enumerate().filter(|(other, _)| *other != place);
+    base.present.extend(others.filter_map(|(_, present)| present.clone()));
+    base
+}
+
+/// The cord's length, and its load to start from: by what a small load explains, since the pendulum keeps its phase
+/// over the whole flight for lengths that are nearly right alone.
+fn length(
+    flights: &[Trace],
+    base: &Base,
+    picked: &[Option<Present>],
+    (place, forms): (usize, &[Present]),
+) -> Result<Present, PhysicsError> {
+    let fitted = fit(flights, with_others(base, picked, place), Newton::Held)?;
+    let most = |forms: &[Present]| {
+        let tested: Vec<(f64, Present)> = forms
+            .par_iter()
+            .filter_map(|form| {
+                let columns = fitted.rows.columns_of(flights, &fitted.base, form).ok()?;
+                let evidence = fitted.weighted.test(&columns)?;
+                let load_kg = evidence.theta.first().copied().filter(|load_kg| *load_kg > 0.0)?;
+                let mut form = form.clone();
+                form.values[0] = form.possible(0, load_kg);
+                Some((evidence.energy, form))
+            })
+            .collect();
+        tested.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, form)| form)
+    };
+    let Some(coarse) = most(forms) else { return Ok(forms[0].clone()) };
+    let mut finely = Vec::new();
+    let mut share = 1.0 - LENGTH_ABOUT;
+    while share <= 1.0 + LENGTH_ABOUT {
+        let mut form = coarse.clone();
+        form.values = vec![0.0, coarse.values[1] * share];
+        finely.push(form);
+        share += LENGTH_EVERY;
+    }
+    let mut found = most(&finely).unwrap_or(coarse);
+    // the rigid body holds the load's mass; without it the same thrust swings a longer cord at the same pace
+    let all_kg = fitted.base.vehicle.body.mass_kg;
+    found.values[0] = found.values[0].min(MOST_OF_MASS * all_kg);
+    found.values[1] *= all_kg / (all_kg - found.values[0]);
+    found.free = vec![0, 1];
+    Ok(found)
+}
+
 /// The same change at moments round about the one that was found.
-fn about(form: &Present, time_s: f64, flights: &[Trace]) -> Vec<Present> {
+fn moments_about(form: &Present, flights: &[Trace]) -> Vec<Present> {
+    let time_s = form.values[0];
     let flown = flights.first().and_then(|trace| {
         Some((trace.grid.time_s(*trace.centers.first()?), trace.grid.time_s(*trace.centers.last()?)))
     });

@@ -6,15 +6,13 @@ use super::wanted::Wanted;
 use crate::diagnose::base::Present;
 use crate::diagnose::deviate::normal_deviate;
 use crate::diagnose::explain::FAST_MOTOR_S;
+use crate::diagnose::gates::Gates;
 use crate::diagnose::latency::{LatencyFinding, held_s};
 use crate::diagnose::search::Fitted;
 use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, Effect};
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
-
-/// Beyond this many standard errors an effect is there.
-const SIGNIFICANT: f64 = 3.0;
 
 /// What the flight says of a parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,10 +90,10 @@ pub struct EffectFound {
 }
 
 impl EffectFound {
-    /// It stands out of the noise.
+    /// It stands out of the noise as far as a name needs it to.
     #[must_use]
     pub fn is_significant(&self) -> bool {
-        self.z > SIGNIFICANT
+        self.z > Gates::default().z
     }
 
     /// For a simulation; `None` where the flight determines nothing of it.
@@ -182,12 +180,10 @@ fn of_columns(
         .filter(|(_, slot)| is_amount(present, **slot))
         .map(|(nth, &slot)| (column(nth), from_nothing(present, slot, 1.0)))
         .collect();
-    EffectFound {
-        effect: present.effect,
-        parameters,
-        z: deviate(fitted, &amounts, settled.chosen.tried),
-        tried: settled.chosen.tried,
-    }
+    let at_bound =
+        |(slot, held): &&(usize, Held)| matches!(held, Held::AtBound { .. }) && is_amount(present, *slot);
+    let (bounded, tried) = (settled.held.iter().filter(at_bound).count(), settled.chosen.tried);
+    EffectFound { effect: present.effect, parameters, z: deviate(fitted, &amounts, (bounded, tried)), tried }
 }
 
 /// Why a parameter that was neither estimated nor held is what it is.
@@ -275,13 +271,13 @@ impl Scale<'_> {
     }
 }
 
-/// Normal deviate of the amounts, given as column and distance from nothing, after `tried` forms: the chance of
-/// the likeliest of them is at most so many times that of one.
-fn deviate(fitted: &Fitted, amounts: &[(usize, f64)], tried: usize) -> f64 {
+/// Normal deviate of the amounts, given as column and distance from nothing, where `bounded` further ones could have
+/// been and `tried` forms were: the chance of the likeliest of these is at most so many times that of one.
+fn deviate(fitted: &Fitted, amounts: &[(usize, f64)], (bounded, tried): (usize, usize)) -> f64 {
     let size = amounts.len();
     let away = DVector::from_iterator(size, amounts.iter().map(|(_, away)| *away));
     let covariance = DMatrix::from_fn(size, size, |i, j| fitted.covariance[(amounts[i].0, amounts[j].0)]);
     let wald = covariance.cholesky().map_or(0.0, |factor| away.dot(&factor.solve(&away)));
-    let z = if size == 0 { 0.0 } else { normal_deviate(wald, size) };
+    let z = if size == 0 { 0.0 } else { normal_deviate(wald, size + bounded) };
     (z * z - 2.0 * (tried.max(1) as f64).ln()).max(0.0).sqrt()
 }

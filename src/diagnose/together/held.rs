@@ -46,6 +46,9 @@ pub(super) fn settle(
     let before = base.present.len();
     let start = |settled: &[Settled]| {
         let mut base = base.clone();
+        // what hangs below is no part of the vehicle
+        let load_kg: f64 = settled.iter().filter_map(|of| load_kg(&of.chosen.form)).sum();
+        base.vehicle.body.mass_kg -= load_kg;
         base.present.extend(settled.iter().map(|of| of.chosen.form.clone()));
         base
     };
@@ -76,6 +79,11 @@ pub(super) fn settle(
         }
         fitted = fit(flights, next, newton)?;
     }
+}
+
+/// Mass of a slung load that an effect starts with, kg.
+fn load_kg(form: &Present) -> Option<f64> {
+    form.values.first().copied().filter(|_| form.effect.id() == "slung_load")
 }
 
 /// Where columns cannot be told from each other at all, the last one goes. Whether there was one.
@@ -184,6 +192,7 @@ fn hold_at_bounds(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
         let outside = present.possible(slot, wanted) != wanted && present.possible(slot, wanted) == value;
         if outside {
             of.chosen.form.free.retain(|free| *free != slot);
+            of.chosen.form.values[slot] = value;
             of.held.push((slot, Held::AtBound { wanted, std }));
             any = true;
         }

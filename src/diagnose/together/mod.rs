@@ -15,14 +15,15 @@ pub use finding::{EffectFound, Found, ParameterFound};
 pub use wanted::Wanted;
 
 use super::base::{Base, Present};
+use super::deviate::normal_deviate;
 use super::explain::LEAST_ROWS;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::rows::CHANNELS;
 use super::search::{Fitted, Newton, fit};
 use super::trace::{Trace, TraceError};
 use crate::estimate::{
-    Estimated, Finding, Method, MethodResult, THETA, ThetaCovariance, ThrustScale, identified_vehicle,
-    nearest_physical, rescaled, theta_of, thrust_scale,
+    Estimated, Finding, Method, MethodResult, THETA, Theta, ThetaCovariance, ThrustScale, identified_vehicle,
+    is_physical, nearest_physical, rescaled, theta_of, thrust_scale,
 };
 use crate::physics::{ActiveEffect, Airframe, PhysicsError};
 use crate::signals::Signals;
@@ -101,6 +102,17 @@ pub enum TogetherError {
     Physics(#[from] PhysicsError),
 }
 
+/// An inertia that a body can have: no principal moment exceeds the sum of the others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Physical {
+    /// it is one
+    AsEstimated,
+    /// it was moved to the nearest that is, within its error
+    Moved,
+    /// it is not, by more than its error: left as estimated
+    No,
+}
+
 /// Rigid body and effects, identified together.
 #[derive(Debug, Clone)]
 pub struct Together {
@@ -124,8 +136,8 @@ pub struct Together {
     pub latency: LatencyFinding,
     /// it is among the named effects
     pub latency_named: bool,
-    /// the inertia was moved to the nearest that a body can have
-    pub made_physical: bool,
+    /// whether the inertia is one that a body can have
+    pub physical: Physical,
 }
 
 impl Together {
@@ -209,11 +221,7 @@ fn put_together(
     let Fits { before, after, settled, split, first } = fits;
     let nominal = theta_of(&vehicle.body);
     let (mut estimated, mut estimated_before) = (estimated(&after), estimated(&before));
-    let mut made_physical = false;
-    if let Some(theta) = nearest_physical(&estimated.theta, &estimated.covariance, &nominal) {
-        made_physical = theta != estimated.theta;
-        estimated.theta = theta;
-    }
+    let physical = made_physical(&mut estimated, &nominal);
     let result = |estimated: &Estimated| MethodResult::new(Method::Weak, estimated, &nominal);
     let (mut body, mut body_before) = (result(&estimated), result(&estimated_before));
     let mut scale = None;
@@ -246,9 +254,30 @@ fn put_together(
         effects,
         acting,
         latency,
-        made_physical,
+        physical,
     }
 }
+
+/// Moves an inertia that no body has to the nearest that is one, if that lies within its error.
+fn made_physical(estimated: &mut Estimated, nominal: &Theta) -> Physical {
+    if is_physical(&estimated.theta) {
+        return Physical::AsEstimated;
+    }
+    let Some(theta) = nearest_physical(&estimated.theta, &estimated.covariance, nominal) else {
+        return Physical::No;
+    };
+    let moved = theta - estimated.theta;
+    let factor = estimated.covariance.cholesky();
+    let wald = factor.map_or(f64::INFINITY, |factor| moved.dot(&factor.solve(&moved)));
+    if normal_deviate(wald, THETA) > WITHIN_ERROR {
+        return Physical::No;
+    }
+    estimated.theta = theta;
+    Physical::Moved
+}
+
+/// Standard errors by which an inertia may be moved.
+const WITHIN_ERROR: f64 = 3.0;
 
 /// Mass and inertia of a fit: the first columns of its nuisances, in the same order.
 fn estimated(fitted: &Fitted) -> Estimated {

@@ -19,6 +19,10 @@ const ALWAYS: [&str; 3] = ["thrust_scale", "torque_scale", "inertia_products"];
 
 /// Decays of the exponential ground effect that are tried.
 const DECAYS: [f64; 3] = [0.4, 0.8, 1.6];
+/// Shortest and longest cord of a load that is tried, m, and the ratio of neighbours: a tenth of a period apart
+/// after a minute.
+const CORDS_M: (f64, f64) = (0.2, 4.0);
+const CORDS_RATIO: f64 = 1.015;
 /// Lengths of a tether that are tried, of the farthest distance flown.
 const TAUT_AT: [f64; 6] = [0.4, 0.55, 0.7, 0.8, 0.9, 0.96];
 
@@ -163,7 +167,11 @@ impl Wanted {
                 full_voltage(flights).into_iter().map(|full_v| one(&[0.0, full_v], &[0])).collect()
             }
             "slung_load" => {
-                CORD_LENGTHS_M.map(|length_m| one(&[0.0, length_m, SWING_DAMPING_1_S], &[0, 1, 2])).to_vec()
+                let free = cords_m().into_iter().map(|length_m| one(&[0.0, length_m], &[0]));
+                let damped = CORD_LENGTHS_M
+                    .into_iter()
+                    .map(|length_m| one(&[0.0, length_m, SWING_DAMPING_1_S], &[0, 1, 2]));
+                free.chain(damped).collect()
             }
             "mass_change" => {
                 let times = flights.first().map(change_times).unwrap_or_default();
@@ -196,6 +204,15 @@ pub(super) fn is_latency(id: &str) -> bool {
 /// All names, for messages.
 pub(super) fn names() -> String {
     ALL.iter().map(|effect| effect.id()).collect::<Vec<_>>().join(", ")
+}
+
+/// Lengths of a cord that are tried, m.
+fn cords_m() -> Vec<f64> {
+    let mut out = vec![CORDS_M.0];
+    while let Some(last_m) = out.last().map(|length_m| length_m * CORDS_RATIO).filter(|m| *m <= CORDS_M.1) {
+        out.push(last_m);
+    }
+    out
 }
 
 /// From the world's origin, m.

@@ -63,9 +63,8 @@ impl Effect for SlungLoad {
         let swing = Vector3::from_column_slice(&own.states[3..]);
         let swing = swing - cord * cord.dot(&swing);
         let force_n = at.state.attitude * sum.force_n;
-        let reduced_kg = vehicle_kg * load_kg / (vehicle_kg + load_kg);
-        // tension per kilogram of load stays defined when there is no load
-        let tension_m_s2 = reduced_kg / load_kg.max(f64::MIN_POSITIVE)
+        // per kilogram of load: a load of nothing swings all the same
+        let tension_m_s2 = vehicle_kg / (vehicle_kg + load_kg)
             * (length_m * swing.norm_squared() - cord.dot(&force_n) / vehicle_kg);
         let pull_n = cord * (tension_m_s2 * load_kg);
         let turning =

@@ -2,7 +2,7 @@
 
 use crate::config::{ConfigError, vehicle_to_toml};
 use crate::diagnose::CHANNEL_NAMES;
-use crate::diagnose::together::{EffectFound, Found, ParameterFound, Together};
+use crate::diagnose::together::{EffectFound, Found, ParameterFound, Physical, Together};
 use crate::estimate::{Finding, Parameter, theta_of};
 use crate::report::model_parts::{correlation, correlations, effect_tables};
 use crate::signals::Quality;
@@ -37,6 +37,7 @@ pub(super) struct With {
     latency: Latency,
     misfit: BTreeMap<&'static str, Misfit>,
     made_physical: bool,
+    warnings: Vec<&'static str>,
     correlation_of: Vec<String>,
     correlation: Vec<Vec<Option<f64>>>,
     flights: Vec<Used>,
@@ -117,7 +118,8 @@ impl WithEffects {
                 .misfits()
                 .map(|(name, without, with, unit)| (name, Misfit { without, with, unit }))
                 .collect(),
-            made_physical: together.made_physical,
+            made_physical: together.physical == Physical::Moved,
+            warnings: physical(together.physical).into_iter().collect(),
             correlation_of,
             correlation,
             flights: self
@@ -167,11 +169,8 @@ impl WithEffects {
             }
         }
         page.push_str(&self.scale_line());
-        if together.made_physical {
-            let _ = writeln!(
-                page,
-                "  the estimate was not an inertia that a body can have; moved to the nearest that is"
-            );
+        if let Some(sentence) = physical(together.physical) {
+            let _ = writeln!(page, "  {sentence}");
         }
         let _ = writeln!(page, "\n  {:<26}{:>13}{:>13}  unit", "misfit, rms", "without them", "with them");
         for (name, without, with, unit) in self.misfits() {
@@ -232,6 +231,20 @@ impl WithEffects {
         }
         text.push_str(&provenance(inputs));
         Ok(text)
+    }
+}
+
+/// What is to be said of the inertia.
+fn physical(of: Physical) -> Option<&'static str> {
+    match of {
+        Physical::AsEstimated => None,
+        Physical::Moved => Some(
+            "the estimate was not an inertia that a body can have; moved to the nearest that is, within its error",
+        ),
+        Physical::No => Some(
+            "warning: no body has this inertia (one principal moment exceeds the sum of the others), by more than its error; left as \
+             estimated. Are arms, thrust and torque per thrust as the vehicle file states them?",
+        ),
     }
 }
 

@@ -1,0 +1,74 @@
+//! The yaw torque that rotors take to spin up, out of the motion.
+//!
+//! With the rotors' inertia `jr` the yaw torque of the measured motion is that of their drag and `L` times its rate,
+//! `tau = tau_drag + L tau_drag'`, about hover with `L = jr Omega / (2 c T)` of one rotor's speed, thrust and torque per
+//! thrust. `L` is often longer than the motion's periods, so `tau_drag` is `tau` behind a lag of `L`; subtracting what
+//! the last pass found would not converge.
+
+use super::along::Turning;
+use super::base::Base;
+use super::trace::Trace;
+use crate::physics::effects::RotorInertia;
+use crate::physics::{Airframe, Condition, Effect, Input, MAX_ROTORS, Own, Rotors, State, Wrench};
+use crate::signals::{ActuationLatency, delayed_wrench};
+use nalgebra::{Matrix3, Vector3, Vector4};
+
+/// The rotors' inertia in a base.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SpinUp {
+    jr_kg_m2: f64,
+    /// of yaw torque behind the motion's, s
+    lag_s: f64,
+}
+
+impl SpinUp {
+    /// `None` where the base has no rotor inertia, or the rotors no speed.
+    pub(super) fn of(base: &Base, airframe: &Airframe) -> Option<Self> {
+        let present = base.present.iter().find(|present| present.effect.id() == RotorInertia.id())?;
+        let jr_kg_m2 = present.values.first().copied().filter(|jr| *jr > 0.0)?;
+        let drag_nm = airframe.propulsion.torque_per_thrust_m * airframe.hover_thrust_n;
+        let lag_s = jr_kg_m2 * airframe.hover_speed_rad_s? / (2.0 * drag_nm);
+        lag_s.is_finite().then_some(Self { jr_kg_m2, lag_s })
+    }
+
+    /// Puts the torque of spinning up (N m about z) in place of the one that `effects` (`[Fz tau]` beside the
+    /// rotors' own) have of `motion`.
+    pub(super) fn share(
+        &self,
+        trace: &Trace,
+        (airframe, motion): (&Airframe, &Turning),
+        inertia: &Matrix3<f64>,
+        effects: &mut [Vector4<f64>],
+    ) {
+        let turning = trace.turning_torque(inertia);
+        let beside: Vec<Vector4<f64>> = effects
+            .iter()
+            .enumerate()
+            .map(|(index, effects)| {
+                let spinning_nm = self.torque_nm(airframe, &trace.states[index], motion, index);
+                Vector4::new(turning[index].z - (effects[3] - spinning_nm), 0.0, 0.0, 0.0)
+            })
+            .collect();
+        let behind = ActuationLatency { delay_s: 0.0, lag_s: self.lag_s };
+        let of_drag = delayed_wrench(&beside, trace.grid.step_s, behind);
+        for (index, effects) in effects.iter_mut().enumerate() {
+            // the rest of what the motion took beside the other effects
+            effects[3] = turning[index].z - of_drag[index].x;
+        }
+    }
+
+    /// What the effect itself makes of the rotors' motion about z, N m.
+    fn torque_nm(&self, airframe: &Airframe, state: &State, motion: &Turning, index: usize) -> f64 {
+        let input = Input::from_commands(airframe, 0.0, &[]);
+        let at = Condition::new(airframe, state, &input, Vector3::zeros());
+        let mut rotors = Rotors::still();
+        for rotor in 0..airframe.rotor_count().min(MAX_ROTORS) {
+            rotors.speed[rotor] = airframe.relative_speed_of_thrust(motion.thrust_n[index][rotor]);
+        }
+        rotors.acceleration_1_s = motion.acceleration_1_s[index];
+        let mut sum = Wrench::zero();
+        let mut own = Own { parameters: &[self.jr_kg_m2], states: &[], rates: &mut [] };
+        RotorInertia.wrench(&at, &rotors, &mut own, &mut sum);
+        sum.torque_nm.z
+    }
+}
