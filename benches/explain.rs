@@ -328,6 +328,11 @@ fn fly(
         // gently, as loads are flown
         (random.speed_max_m_s, random.acceleration_max_m_s2) = (1.0, 0.8);
     }
+    if with.plain {
+        // slow and fast flights, as the marks' own
+        random.speed_max_m_s = [0.8, 1.6, 3.0][(seed % 3) as usize];
+        (random.acceleration_max_m_s2, random.height_m) = (4.5, (0.5, 4.0));
+    }
     if id == Some("vortex_ring") {
         // down fast, as it takes
         random.height_m = (2.0, 14.0);
