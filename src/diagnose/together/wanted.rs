@@ -222,3 +222,36 @@ fn farthest_m(flights: &[Trace]) -> f64 {
         .flat_map(|trace| trace.centers.iter().map(move |&row| trace.states[row].position_m.norm()));
     flown.fold(0.0, f64::max)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_effect_is_taken_or_refused_with_a_reason() {
+        for effect in ALL {
+            match Wanted::of(&[format!(" {} ", effect.id())]) {
+                Ok(wanted) => assert!(wanted.has(effect.id()) && wanted.effects().len() == 1),
+                Err(error) => assert_eq!((error, effect.id()), (TogetherError::Gust, "gust")),
+            }
+        }
+        assert!(Wanted::of(&["motor_lag".to_owned()]).is_ok_and(|wanted| wanted.need_commands()));
+        assert!(Wanted::of(&["com_offset".to_owned()]).is_ok_and(|wanted| !wanted.need_commands()));
+    }
+
+    #[test]
+    fn wind_that_the_files_drag_carries_is_not_alone() {
+        let wind = Wanted::of(&["steady_wind".to_owned()]);
+        let drag = ActiveEffect::named("linear_drag", &[("dx", 0.1), ("dy", 0.1), ("dz", 0.0)]);
+        let (wind, drag) = (wind.unwrap(), drag.unwrap());
+        assert_eq!(wind.check_wind(&[]), Err(TogetherError::WindAlone));
+        assert_eq!(wind.check_wind(&[drag]), Ok(()));
+    }
+
+    #[test]
+    fn cords_reach_from_the_shortest_to_the_longest() {
+        let cords = cords_m();
+        assert!(cords.windows(2).all(|pair| pair[1] > pair[0]) && cords[0] == CORDS_M.0);
+        assert!(cords.last().is_some_and(|last| *last <= CORDS_M.1 && *last * CORDS_RATIO > CORDS_M.1));
+    }
+}
