@@ -175,12 +175,15 @@ const PAIRS: [(&str, &str); 10] = [
     ("quadratic_drag", "transport_delay"),
 ];
 
+/// Seed, names, and the confusable set of each.
+type Pair = (u64, Vec<&'static str>, Vec<Vec<&'static str>>);
+
 /// Flights with two effects concealed: how often both are named and nothing else.
 fn report_pairs(first: u64, count: u64) {
     for (one, other) in PAIRS.iter().filter(|_| count > 0) {
         let sizes = |id: &str| SIZES.iter().find(|(known, _)| *known == id).map(|(_, sizes)| *sizes);
         let (Some(of_one), Some(of_other)) = (sizes(one), sizes(other)) else { continue };
-        let found: Vec<(u64, Vec<&str>, Vec<Vec<&str>>)> = (first..first + count)
+        let found: Vec<Pair> = (first..first + count)
             .into_par_iter()
             .filter_map(|seed| {
                 let both = |vehicle: &Vehicle| {

@@ -77,7 +77,7 @@ fn owned(event: Event<'_>) -> Said {
         },
         Event::Parameter { name, value } => Said::Parameter(name.to_owned(), value),
         Event::Text { time_s, text, .. } => Said::Text(time_s, text.to_owned()),
-        Event::ClockReset { time_s } => Said::ClockReset(time_s),
+        Event::ClockReset { time_s, .. } => Said::ClockReset(time_s),
         Event::EstimatorReset { time_s } => Said::EstimatorReset(time_s),
     }
 }

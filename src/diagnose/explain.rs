@@ -3,6 +3,7 @@
 use super::base::{Base, Present};
 use super::candidates::Candidate;
 use super::confusable::confusable_with;
+use super::deviate::normal_deviate;
 use super::explanation::{Confusable, DetectionLimit, Explanation, Named, NamedParameter, Strength, Verdict};
 use super::gates::Gates;
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
@@ -16,6 +17,7 @@ use crate::physics::PhysicsError;
 use crate::physics::effects::by_id;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
+use nalgebra::DVector;
 
 /// How a recording is explained.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -225,6 +227,7 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
     let mut out = Vec::new();
     for (place, present) in fitted.base.present.iter().enumerate() {
         let mut parameters = Vec::new();
+        let first = index;
         for slot in 0..present.values.len() {
             let Some(parameter) = present.parameter(slot) else { continue };
             let free = present.free.contains(&slot);
@@ -249,7 +252,7 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
             id: present.effect.id(),
             sentence: present.effect.sentence(),
             parameters,
-            strength: step.map_or_else(Strength::default, strength),
+            strength: step.map_or_else(|| fitted_strength(fitted, present, first), strength),
             confusable_with: step.map_or_else(Vec::new, |step| confusable(traces, found, place, step)),
         });
     }
@@ -273,6 +276,18 @@ fn is_ordinary(present: &Present, base: &Base) -> bool {
         }
         _ => false,
     }
+}
+
+/// Of an effect that came in with another: how far its parameters are from nothing.
+fn fitted_strength(fitted: &Fitted, present: &Present, first: usize) -> Strength {
+    let count = present.free.len();
+    let away = DVector::from_iterator(
+        count,
+        present.free.iter().map(|&slot| present.values[slot] - present.nothing_at(slot)),
+    );
+    let covariance = fitted.covariance.view((first, first), (count, count)).into_owned();
+    let wald = covariance.cholesky().map_or(0.0, |factor| away.dot(&factor.solve(&away)));
+    Strength { z: normal_deviate(wald, count), gain: 0.0, energy: wald, count }
 }
 
 fn strength(step: &Step) -> Strength {

@@ -240,7 +240,7 @@ impl Rows {
                 let below = present.possible(index, value - 0.5 * step) - value;
                 let (up, down) = (moved(below + step), moved(below));
                 if is_of_sensors(base.present[effect].effect) {
-                    return sensor_column(recorded, (&up, &down), step);
+                    return Ok(per_step(residuals(recorded, &up)?, &residuals(recorded, &down)?, step));
                 }
                 let (up, down) = (up.model(&[])?, down.model(&[])?);
                 Ok(self.difference(flights, &up, Some(&down), step))
@@ -268,15 +268,6 @@ impl Rows {
         }
         out
     }
-}
-
-/// What an effect on the sensors does to the residual, per `step` between both bases.
-fn sensor_column(
-    recorded: &[Trace],
-    (up, down): (&Base, &Base),
-    step: f64,
-) -> Result<Channels, PhysicsError> {
-    Ok(per_step(residuals(recorded, up)?, &residuals(recorded, down)?, step))
 }
 
 /// The residual of the flights' true motion.

@@ -49,6 +49,8 @@ const STATE_TERMINATION: u8 = 8;
 /// MAV_LANDED_STATE.
 const ON_GROUND: f64 = 1.0;
 const ARMED: u8 = 128;
+/// An autopilot that started anew has been on for no longer than this beyond the silence before, s.
+const STARTED_S: f64 = 20.0;
 /// Texts that are kept for reasons of a refusal.
 const TEXTS: usize = 64;
 /// A step of position beyond what velocity explains, m: the estimate was reset.
@@ -159,7 +161,7 @@ impl Telemetry {
         let place = self.order.place(header.sequence, silence);
         let mut news = Vec::new();
         self.status(now, header.message_id, frame.payload(), place, &mut news);
-        self.samples(now, frame, &mut news);
+        self.samples((now, silence), frame, &mut news);
         news
     }
 
@@ -221,7 +223,7 @@ impl Telemetry {
         self.estimator = Some(Seen { at: now, value: report });
     }
 
-    fn samples(&mut self, now: Duration, frame: Frame<'_>, news: &mut Vec<Novelty>) {
+    fn samples(&mut self, (now, silence): (Duration, Duration), frame: Frame<'_>, news: &mut Vec<Novelty>) {
         let record = Record { stamp_us: micros(now), offset: 0, known: true, frame };
         let (mut position, mut velocity) = (None, None);
         let (attitude, landed, volts) = (&mut self.attitude, &mut self.landed, &mut self.battery_v);
@@ -243,7 +245,11 @@ impl Telemetry {
                 _ => {}
             },
             log::Event::Text { severity, text, .. } => news.push(Novelty::Text(severity, text.to_owned())),
-            log::Event::ClockReset { .. } => news.push(Novelty::Reboot),
+            // a network that holds frames back for seconds shows old stamps, which are not those of a start
+            log::Event::ClockReset { stamp_s, .. } if stamp_s < silence.as_secs_f64() + STARTED_S => {
+                news.push(Novelty::Reboot);
+            }
+            log::Event::ClockReset { .. } => {}
             log::Event::EstimatorReset { .. } => {
                 news.push(Novelty::EstimatorReset("ODOMETRY.reset_counter changed".to_owned()));
             }

@@ -86,7 +86,7 @@ impl ClockTally {
                     self.arrival(place.host_us, *time_s);
                 }
             }
-            Event::ClockReset { time_s } => self.reset(*time_s),
+            Event::ClockReset { time_s, .. } => self.reset(*time_s),
             Event::EstimatorReset { time_s } => keep(&mut self.estimator_resets_s, *time_s),
             Event::Parameter { .. } | Event::Text { .. } => {}
         }

@@ -47,7 +47,7 @@ impl Tally {
             }
             Event::Parameter { name, value } => return self.parameters.take(name, value),
             Event::Text { time_s, severity, text } => self.text(time_s, severity, text),
-            Event::ClockReset { time_s } => {
+            Event::ClockReset { time_s, .. } => {
                 self.streams.reset();
                 self.timeline.reset(time_s);
             }

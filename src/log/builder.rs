@@ -44,7 +44,7 @@ impl RecordingBuilder {
                 self.rest.parameters.insert(name.to_owned(), value);
             }
             Event::Text { time_s, text, .. } => self.rest.texts.push((time_s, text.to_owned())),
-            Event::ClockReset { time_s } => self.rest.clock_resets_s.push(time_s),
+            Event::ClockReset { time_s, .. } => self.rest.clock_resets_s.push(time_s),
             Event::EstimatorReset { time_s } => self.rest.estimator_resets_s.push(time_s),
         }
     }

@@ -37,6 +37,19 @@ pub enum Stamp {
     Us(u64),
 }
 
+impl Stamp {
+    /// As it stands, s; zero where there is none.
+    #[must_use]
+    pub fn seconds(self) -> f64 {
+        match self {
+            Self::Absent => 0.0,
+            Self::BootMs(ms) => f64::from(ms) * 1e-3,
+            Self::BootUs32(us) => f64::from(us) * 1e-6,
+            Self::Us(us) => us as f64 * 1e-6,
+        }
+    }
+}
+
 /// Which clock a stamp is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Base {

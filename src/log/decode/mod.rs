@@ -90,6 +90,8 @@ pub enum Event<'a> {
     ClockReset {
         /// s
         time_s: f64,
+        /// s, the first stamp of the new clock: after a start anew the time since then
+        stamp_s: f64,
     },
     /// the position estimate jumped (ODOMETRY.reset_counter)
     EstimatorReset {
@@ -222,11 +224,12 @@ impl Decoder {
         sink: &mut impl FnMut(Event<'_>),
     ) {
         self.report.decoded += 1;
-        let time_us = match self.clock.place(source.stamp(payload), host_us) {
+        let stamp = source.stamp(payload);
+        let time_us = match self.clock.place(stamp, host_us) {
             Placed::At(time_us) => time_us,
             Placed::Restarted(time_us) => {
                 self.last_reset_counter = None;
-                sink(Event::ClockReset { time_s: seconds(time_us) });
+                sink(Event::ClockReset { time_s: seconds(time_us), stamp_s: stamp.seconds() });
                 time_us
             }
             Placed::Stale => {
