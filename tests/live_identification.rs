@@ -110,7 +110,7 @@ fn a_restarted_clock_and_gaps_do_not_disturb_it() {
     // a second without any frame in the middle, then the same flight again on a restarted clock
     let holed: Vec<_> = all.iter().filter(|(_, time_s, _)| !(12.0..13.0).contains(time_s)).cloned().collect();
     feed(&mut broken, &holed);
-    broken.take(&Event::ClockReset { time_s: 30.0 });
+    broken.take(&Event::ClockReset { stamp_s: 0.0, time_s: 30.0 });
     feed(&mut broken, &samples(&recording(), -3.0));
     let (whole, broken) = (whole.estimate().unwrap(), broken.estimate().unwrap());
     assert!(broken.used_s > 1.5 * whole.used_s, "{} {}", broken.used_s, whole.used_s);
