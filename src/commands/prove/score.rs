@@ -104,8 +104,8 @@ pub fn scored(verdict: &Verdict, answer: &Answer) -> Scored {
 fn sizes(effect: &Effect, answer: &Answer) -> Vec<SizeError> {
     let Some(size) = answer.sizes.get(&effect.id) else { return Vec::new() };
     let truth_of = |index: usize, name: &str| match size {
-        // one number for an effect with several estimated parameters is each one's
-        Size::One(value) if index == 0 || effect.id == "linear_drag" => Some(*value),
+        // one number for an effect with several estimated parameters is each one's of that unit
+        Size::One(value) if effect.parameters[index].unit == effect.parameters[0].unit => Some(*value),
         Size::One(_) => None,
         Size::List(values) => values.get(index).copied(),
         Size::Named(values) => values.get(name).copied(),
