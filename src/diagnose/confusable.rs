@@ -45,6 +45,15 @@ pub fn confusable_with(
     out
 }
 
+/// Whether what the effect at `place` does looks like what a candidate could do: a cosine of one half or more.
+#[must_use]
+pub fn resembles(flights: &[Trace], fitted: &Fitted, place: usize, candidate: &Candidate) -> bool {
+    let Some(signal) = Signal::new(&fitted.rows, &fitted.base, place, None) else { return false };
+    signal
+        .beyond(flights, &fitted.rows, &fitted.base, candidate)
+        .is_some_and(|left| left < UNLIKE * signal.sum.norm())
+}
+
 /// What one of a base's effects does in its rows, beyond what nuisances and the other effects could do.
 pub(super) struct Signal {
     id: &'static str,

@@ -2,7 +2,7 @@
 
 use super::base::{Base, Present};
 use super::candidates::Candidate;
-use super::confusable::confusable_with;
+use super::confusable::{confusable_with, resembles};
 use super::deviate::normal_deviate;
 use super::explanation::{Confusable, DetectionLimit, Explanation, Named, NamedParameter, Strength, Verdict};
 use super::gates::Gates;
@@ -302,7 +302,8 @@ fn confusable(traces: &[Trace], found: &Search, place: usize, step: &Step) -> Ve
     for rival in &step.rivals {
         let close = rival.evidence.energy > RIVAL * step.taken.evidence.energy;
         let known = out.iter().any(|confusable| confusable.id == rival.candidate.id);
-        if close && !known && rival.candidate.id != id {
+        let rivals = close && !known && rival.candidate.id != id;
+        if rivals && resembles(traces, &found.after, place, &rival.candidate) {
             out.push(Confusable { id: rival.candidate.id, distinguishability: None });
         }
     }
