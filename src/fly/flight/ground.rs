@@ -41,6 +41,8 @@ const ARDUPILOT_STREAMS: [(f32, f32); 2] = [(193.0, 2.0), (0.0, 5.0)];
 pub(super) struct Checking {
     wanted: Vec<Order>,
     embedded: Option<bool>,
+    /// how often the version was asked for again
+    asked_again: u8,
     all_asked: bool,
 }
 
@@ -54,7 +56,7 @@ impl Checking {
         let mut wanted: Vec<Order> =
             own.iter().chain(&STREAMS).map(|(id, rate_hz)| interval(*id, *rate_hz)).collect();
         wanted.push(Order::request_message(AUTOPILOT_VERSION));
-        Self { wanted, embedded: None, all_asked: false }
+        Self { wanted, embedded: None, asked_again: 0, all_asked: false }
     }
 
     pub(super) fn has_asked(&self) -> bool {
@@ -70,6 +72,8 @@ fn interval(id: f32, rate_hz: f32) -> Order {
     }
 }
 
+/// How often a version that did not come is asked for again.
+const ASKED_AGAIN: u8 = 4;
 /// Answers to questions come soon or not at all.
 const QUESTION: Manner = Manner {
     repeat: Duration::from_millis(400),
@@ -119,6 +123,11 @@ impl Flight {
         if !self.commander.waits_for_kind(&question) && !self.commander.waits_for_kind(&version) {
             match checking.wanted.pop() {
                 Some(order) => self.commander.give(now, order, QUESTION),
+                // the answer to the request may arrive and the message be lost
+                None if checking.embedded.is_none() && checking.asked_again < ASKED_AGAIN => {
+                    checking.asked_again += 1;
+                    self.commander.give(now, version, QUESTION);
+                }
                 None => checking.all_asked = true,
             }
         }
