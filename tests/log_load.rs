@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/python.rs"]
+mod python;
 mod support;
 
 use std::path::{Path, PathBuf};
@@ -119,10 +121,10 @@ fn streamed_samples_are_those_of_the_recording() {
 
 /// What the Python reader prints; `None`, with a message, where it cannot run.
 fn pymavlink(what: &str, log: &Path) -> Option<String> {
-    let python = std::env::var("MAVID_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let python = python::interpreter();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers/read_with_pymavlink.py");
     let Ok(output) = Command::new(&python).arg(script).arg(what).arg(log).output() else {
-        support::skip(&format!("{python} does not run"));
+        support::skip(&format!("{} does not run", python.display()));
         return None;
     };
     if output.status.code() == Some(77) {

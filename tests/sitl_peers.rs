@@ -1,5 +1,5 @@
-//! `mavid sitl` as a program, commanded by pymavlink over UDP and TCP. Skipped, with a message, where Python or
-//! pymavlink is missing (`tests/peers/setup.sh` installs it).
+//! `mavid sitl` as a program, commanded by pymavlink and by MAVSDK over UDP and TCP. Skipped, with a message, where Python
+//! or the package is missing (`tests/peers/setup.sh` installs them).
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
@@ -89,5 +89,34 @@ fn pymavlink_flies_ardupilot_guided_fast_over_tcp() {
         Ok(answer) => flown(&answer, 3, 3.0),
         Err(why) => return support::skip(&why),
     }
+    assert_eq!(sitl.interrupt().0, Some(0));
+}
+
+/// Real time: MAVSDK has clocks of its own.
+#[test]
+fn mavsdk_finds_px4_healthy_stores_a_fence_and_flies_offboard() {
+    let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let listen = format!("udpout:127.0.0.1:{port}");
+    let sitl = Sitl::start(&["--warm-up", "2", "--listen", &listen]);
+    let connection = format!("udpin://127.0.0.1:{port}");
+    let answer = match python::ask("fly_with_mavsdk.py", &[&connection], &json!(null)) {
+        Ok(answer) => answer,
+        Err(why) => return support::skip(&why),
+    };
+    assert_eq!((&answer["autopilot"], &answer["version"]), (&json!("PX4"), &json!([1, 16])));
+    let health = answer["health"].as_object().unwrap();
+    assert!(health.len() >= 7 && health.values().all(|ok| ok == true), "{health:?}");
+    assert!(answer["parameters"].as_u64().unwrap() > 100);
+    assert_eq!(answer["fence"], json!([4, 60.0]));
+    assert_eq!((&answer["mission"], &answer["early"]), (&json!("UNSUPPORTED"), &json!("NO_SETPOINT_SET")));
+    assert_eq!(answer["in_air"], json!([true, "IN_AIR"]));
+    let there = python::numbers(&answer["there"]);
+    assert!((there[0] - 1.5).abs() < 0.35 && (there[1] - 1.0).abs() < 0.35, "{there:?}");
+    let drifted = python::numbers(&answer["drifted"]);
+    assert!(drifted[1] > 3.2 && (drifted[2] + 3.0).abs() < 0.7, "{drifted:?}");
+    let landed_at = python::numbers(&answer["landed_at"]);
+    assert!(landed_at[1] > 3.2 && landed_at[2].abs() < 0.2, "{landed_at:?}");
+    let texts = answer["texts"].to_string();
+    assert!(texts.contains("Takeoff detected") && texts.contains("Disarmed by landing"), "{texts}");
     assert_eq!(sitl.interrupt().0, Some(0));
 }

@@ -184,7 +184,10 @@ pub fn fly_it(
     // the link's tasks carry the setpoints
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .enable_all()
-        .on_thread_start(fly::raise_priority)
+        .on_thread_start(|| {
+            // the thread of setpoints says where this is refused
+            let _ = fly::raise_priority();
+        })
         .build()
         .map_err(|error| failed(&error))?;
     let (show, pictures) = channel();

@@ -9,6 +9,8 @@ use std::fmt;
 pub enum Level {
     /// as it should be
     Ok,
+    /// not yet as it should be; the flight itself waits for it
+    Awaited,
     /// the flight may begin, and the operator should know
     Warning,
     /// the flight must not begin
@@ -21,6 +23,7 @@ impl Level {
     pub fn name(self) -> &'static str {
         match self {
             Self::Ok => "ok",
+            Self::Awaited => "awaited",
             Self::Warning => "warning",
             Self::Refusal => "refusal",
         }

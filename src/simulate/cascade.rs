@@ -140,7 +140,7 @@ impl AutopilotCascade {
         })
     }
 
-    /// What the last call of [`Self::commands`] asked of the inner loops.
+    /// What the last call of [`Self::commands`] or [`Self::turn`] asked of the inner loops.
     #[must_use]
     pub fn wanted(&self) -> &Wanted {
         &self.wanted
@@ -158,11 +158,35 @@ impl AutopilotCascade {
         let attitude = attitude_of_thrust(&acceleration, setpoint.yaw_rad);
         let up = estimate.attitude * Vector3::z();
         let rates = self.rates_wanted(&attitude, estimate, setpoint.yaw_rate_rad_s);
+        let thrust_n = self.body.mass_kg * acceleration.dot(&up);
+        self.wanted = Wanted { attitude, rates_rad_s: rates, thrust_n };
+        self.rate_commands(estimate, period_s)
+    }
+
+    /// The same from the attitude loop inwards: towards an attitude (body to world), with the rate about z fed
+    /// forward about the world's vertical, or at `rates_rad_s` (body) where there is none; thrust along body z in N.
+    pub fn turn(
+        &mut self,
+        attitude: Option<UnitQuaternion<f64>>,
+        rates_rad_s: &Vector3<f64>,
+        thrust_n: f64,
+        (estimate, period_s): (&State, f64),
+    ) -> [f64; MAX_ROTORS] {
+        let most = self.gains.rates_max_rad_s;
+        let rates_rad_s = match &attitude {
+            Some(attitude) => self.rates_wanted(attitude, estimate, rates_rad_s.z),
+            None => rates_rad_s.zip_map(&most, |rate, most| rate.clamp(-most, most)),
+        };
+        self.velocity.reset();
+        self.wanted = Wanted { attitude: attitude.unwrap_or(estimate.attitude), rates_rad_s, thrust_n };
+        self.rate_commands(estimate, period_s)
+    }
+
+    fn rate_commands(&mut self, estimate: &State, period_s: f64) -> [f64; MAX_ROTORS] {
+        let Wanted { rates_rad_s: rates, thrust_n, .. } = self.wanted;
         let turning = self.rates.update(&rates, &estimate.rates_rad_s, period_s);
         let w = &estimate.rates_rad_s;
         let torque = self.body.inertia_kg_m2 * turning + w.cross(&(self.body.inertia_kg_m2 * w));
-        let thrust_n = self.body.mass_kg * acceleration.dot(&up);
-        self.wanted = Wanted { attitude, rates_rad_s: rates, thrust_n };
         self.allocation.commands(&Vector4::new(thrust_n, torque.x, torque.y, torque.z))
     }
 

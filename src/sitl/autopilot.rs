@@ -6,13 +6,11 @@ use std::time::Duration;
 use nalgebra::Vector3;
 
 use super::battery::Battery;
-use super::demand::{Demand, Refusal};
 use super::estimator::Estimator;
 use super::guidance::{Guidance, Leg, Task};
 use super::safety::Safety;
 use super::tuning::Tuning;
 use super::{AutopilotKind, Mode, Settings, SitlError};
-use crate::log::Payload;
 use crate::physics::{MAX_ROTORS, State};
 use crate::simulate::{AutopilotCascade, AutopilotGains, Setpoint};
 
@@ -155,7 +153,7 @@ impl Autopilot {
         let state = self.estimator.state;
         if self.is_landed() {
             self.cascade.reset();
-            if !self.guidance.wants_up(&state) {
+            if !self.guidance.wants_up(&state, self.weight_n / self.thrust_max_n) {
                 return [IDLE; MAX_ROTORS];
             }
             (self.landed_since, self.standing_since, self.has_flown) = (None, None, true);
@@ -164,7 +162,13 @@ impl Autopilot {
         }
         let home_m = self.home_m.unwrap_or_else(Vector3::zeros);
         self.setpoint = self.guidance.setpoint(&state, &home_m, (&self.tuning, now), period_s);
-        let outputs = self.cascade.commands(&self.setpoint, &state, period_s);
+        let outputs = match self.guidance.task {
+            Task::Turn(demand) => {
+                let thrust_n = demand.thrust * self.thrust_max_n;
+                self.cascade.turn(demand.attitude, &demand.rates_rad_s, thrust_n, (&state, period_s))
+            }
+            _ => self.cascade.commands(&self.setpoint, &state, period_s),
+        };
         self.watch_ground(now);
         if self.guidance.has_taken_off(&state) {
             self.guidance.begin(Task::Hold, &state);
@@ -337,45 +341,5 @@ impl Autopilot {
         }
         self.guidance.begin(Task::Takeoff(target_m), &state);
         Answer::Accepted
-    }
-
-    /// SET_POSITION_TARGET_LOCAL_NED.
-    pub(super) fn take_setpoint(&mut self, payload: Payload, now: Duration) {
-        let state = self.estimator.state;
-        let demand = Demand::read(self.kind, payload, &state);
-        if self.kind.is_px4() {
-            match demand {
-                Ok(demand) => {
-                    self.safety.setpoint_came(now);
-                    if self.mode == Mode::Guided {
-                        let task = if demand.is_complete() { Task::Direct(demand) } else { Task::Hold };
-                        self.guidance.begin(task, &state);
-                    }
-                }
-                Err(Refusal::Frame(frame)) => {
-                    let text = format!("SET_POSITION_TARGET_LOCAL_NED coordinate frame {frame} unsupported");
-                    self.say(Severity::Error, text);
-                }
-                Err(_) => {}
-            }
-            return;
-        }
-        if self.mode != Mode::Guided || !self.is_armed() || self.is_landed() {
-            return;
-        }
-        match demand {
-            // outside the fence: dropped, nobody is told
-            Ok(demand) if self.is_fenced_out(&demand.position_m) => {}
-            Ok(demand) => self.guidance.begin(Task::Shaped(demand, now), &state),
-            Err(_) => self.guidance.begin(Task::Hold, &state),
-        }
-    }
-
-    fn is_fenced_out(&self, position_m: &Vector3<f64>) -> bool {
-        let home_m = self.home_m.unwrap_or_else(Vector3::zeros);
-        let from_home = position_m - home_m;
-        self.tuning
-            .fence
-            .is_some_and(|(radius_m, height_m)| from_home.xy().norm() > radius_m || from_home.z > height_m)
     }
 }

@@ -1,9 +1,11 @@
-//! SET_POSITION_TARGET_LOCAL_NED as each autopilot reads it.
+//! SET_POSITION_TARGET_LOCAL_NED as each autopilot reads it, SET_ATTITUDE_TARGET as PX4 does.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::AutopilotKind;
-use crate::frames::{Body, World, body_from_frd, world_from_ned, yaw_from_ned};
+use crate::frames::{
+    Attitude, Body, World, attitude_from_frd_ned, body_from_frd, world_from_ned, yaw_from_ned,
+};
 use crate::log::Payload;
 use crate::physics::State;
 
@@ -20,6 +22,40 @@ pub(super) struct Demand {
     pub(super) yaw_rad: Option<f64>,
     /// about up
     pub(super) yaw_rate_rad_s: Option<f64>,
+}
+
+/// What SET_ATTITUDE_TARGET asks for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct AttitudeDemand {
+    /// body to world; `None`: the rates alone count
+    pub(super) attitude: Option<UnitQuaternion<f64>>,
+    /// body, rad/s; with an attitude only the last, about the vertical
+    pub(super) rates_rad_s: Vector3<f64>,
+    /// share of full thrust, 0 to 1
+    pub(super) thrust: f64,
+}
+
+impl AttitudeDemand {
+    /// `None` where it asks for nothing that can be flown: neither an attitude nor all three rates, no thrust,
+    /// or what is no number.
+    pub(super) fn read(payload: Payload) -> Option<Self> {
+        let mask = payload.u8(38);
+        let thrust = payload.f32(32);
+        let [x, y, z] = body_from_frd(payload.f32s(20)).0.into();
+        if mask & THRUST != 0 || !thrust.is_finite() {
+            return None;
+        }
+        let thrust = thrust.clamp(0.0, 1.0);
+        if mask & ATTITUDE == 0 {
+            let Attitude(attitude) = attitude_from_frd_ned(payload.f32s(4))?;
+            let yaw_rate = if mask & TURN_YAW == 0 && z.is_finite() { z } else { 0.0 };
+            let rates_rad_s = Vector3::new(0.0, 0.0, yaw_rate);
+            return Some(Self { attitude: Some(attitude), rates_rad_s, thrust });
+        }
+        let rates_rad_s = Vector3::new(x, y, z);
+        let all = mask & TURN == 0 && rates_rad_s.iter().all(|rate| rate.is_finite());
+        all.then_some(Self { attitude: None, rates_rad_s, thrust })
+    }
 }
 
 /// Why a message is no setpoint.
@@ -46,6 +82,12 @@ const ACCELERATION: u16 = 0b111 << 6;
 const FORCE: u16 = 1 << 9;
 const YAW: u16 = 1 << 10;
 const YAW_RATE: u16 = 1 << 11;
+
+/// type_mask of SET_ATTITUDE_TARGET: rates, that about z, thrust, attitude.
+const TURN: u8 = 0b111;
+const TURN_YAW: u8 = 1 << 2;
+const THRUST: u8 = 1 << 6;
+const ATTITUDE: u8 = 1 << 7;
 
 /// The message's fields as they come.
 struct Fields {

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use nalgebra::Vector3;
 
-use super::demand::Demand;
+use super::demand::{AttitudeDemand, Demand};
 use super::shaper::{Shaper, ShaperLimits, Wish};
 use super::tuning::Tuning;
 use crate::physics::State;
@@ -23,6 +23,8 @@ pub(super) enum Task {
     Return(Leg),
     /// PX4: the setpoint goes straight to the controller
     Direct(Demand),
+    /// PX4: so does the attitude, or the rates, with the thrust
+    Turn(AttitudeDemand),
     /// ArduPilot: the setpoint is shaped first; when it came
     Shaped(Demand, Duration),
 }
@@ -66,7 +68,7 @@ impl Guidance {
 
     /// Begins a task from where the vehicle is and as it moves.
     pub(super) fn begin(&mut self, task: Task, state: &State) {
-        let shaped = |task: &Task| !matches!(task, Task::Direct(_));
+        let shaped = |task: &Task| !matches!(task, Task::Direct(_) | Task::Turn(_));
         if !(shaped(&self.task) && shaped(&task)) {
             self.restart(state);
         }
@@ -87,10 +89,11 @@ impl Guidance {
         }
     }
 
-    /// The task wants to leave the ground.
-    pub(super) fn wants_up(&self, state: &State) -> bool {
+    /// The task wants to leave the ground; `hover` is the share of full thrust that carries the weight.
+    pub(super) fn wants_up(&self, state: &State, hover: f64) -> bool {
         match &self.task {
             Task::Takeoff(height_m) => *height_m > state.position_m.z,
+            Task::Turn(demand) => demand.thrust > hover,
             Task::Direct(demand) => {
                 demand.position_m.z - state.position_m.z > 0.2
                     || demand.velocity_m_s.z > 0.1
@@ -104,7 +107,7 @@ impl Guidance {
 
     /// The task wants to go down, at the latest here.
     pub(super) fn wants_down(&self, setpoint: &Setpoint, state: &State) -> bool {
-        matches!(self.task, Task::Land)
+        matches!(self.task, Task::Land | Task::Turn(_))
             || setpoint.velocity_m_s.z < -0.1
             || setpoint.position_m.z - state.position_m.z < -0.3
     }
@@ -125,6 +128,9 @@ impl Guidance {
         if let Task::Direct(demand) = self.task {
             return self.direct(&demand, state, &tuning.limits, period_s);
         }
+        if let Task::Turn(_) = self.task {
+            return self.drifting(state);
+        }
         self.next_leg(state, home_m);
         let (wish, limits) = self.wish(state, home_m, (tuning, now));
         self.shaper.step(&wish, &limits, period_s);
@@ -135,6 +141,18 @@ impl Guidance {
             acceleration_m_s2: self.shaper.acceleration_m_s2,
             yaw_rad: self.yaw_rad,
             yaw_rate_rad_s,
+        }
+    }
+
+    /// No place is asked for: the vehicle is where it should be.
+    fn drifting(&mut self, state: &State) -> Setpoint {
+        self.restart(state);
+        Setpoint {
+            position_m: state.position_m,
+            velocity_m_s: state.velocity_m_s,
+            acceleration_m_s2: Vector3::zeros(),
+            yaw_rad: self.yaw_rad,
+            yaw_rate_rad_s: 0.0,
         }
     }
 
@@ -161,7 +179,7 @@ impl Guidance {
         let mut wish =
             Wish { position_m: Vector3::repeat(f64::NAN), velocity_m_s: zero, acceleration_m_s2: zero };
         match self.task {
-            Task::Hold | Task::Direct(_) => {}
+            Task::Hold | Task::Direct(_) | Task::Turn(_) => {}
             Task::Takeoff(height_m) => {
                 limits.climb_m_s = tuning.takeoff_speed_m_s;
                 wish.position_m.z = height_m;

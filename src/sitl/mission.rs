@@ -1,6 +1,13 @@
-//! What a ground station has stored on the vehicle: a fence to be read; uploads are refused.
+//! What a ground station stores on the vehicle by the mission protocol: a fence. Missions and rally points are
+//! refused.
 
+use std::time::Duration;
+
+use super::Vehicle;
+use super::autopilot::Severity;
 use super::message::Message;
+use super::requests::id;
+use crate::log::Payload;
 use crate::units::whole;
 
 /// One item of a stored fence.
@@ -17,26 +24,59 @@ pub struct FenceItem {
 }
 
 /// MAV_MISSION_TYPE_FENCE
-pub(super) const FENCE: u8 = 1;
+const FENCE: u8 = 1;
+/// MAV_MISSION_TYPE_ALL
+const ALL: u8 = 255;
+/// MAV_FRAME of items whose places are on Earth: above sea, above home, and the same in integers.
+const ON_EARTH: [u8; 4] = [0, 3, 5, 6];
 /// MAV_FRAME_GLOBAL
 const GLOBAL: u8 = 0;
+/// MAV_CMD_NAV_FENCE_*: corners of a polygon to stay in or out of, circles to stay in or out of.
+const CORNERS: [u16; 2] = [5001, 5002];
+const CIRCLES: [u16; 2] = [5003, 5004];
+/// Most items of a fence.
+const CAPACITY: u16 = 64;
+/// An item that does not come is asked for again, and an upload without news is given up.
+const ASK_AGAIN: Duration = Duration::from_millis(250);
+const GIVE_UP: Duration = Duration::from_secs(5);
 
 /// MAV_MISSION_RESULT.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum MissionResult {
+enum MissionResult {
+    Accepted = 0,
+    Failed = 1,
+    UnsupportedFrame = 2,
     Unsupported = 3,
+    NoSpace = 4,
+    Invalid = 5,
     InvalidSequence = 13,
+    Denied = 14,
+    Cancelled = 15,
 }
 
-/// MISSION_COUNT.
-pub(super) fn count(items: usize, (system, component): (u8, u8), mission_type: u8) -> Message {
+/// An upload under way.
+#[derive(Debug)]
+pub(super) struct Upload {
+    link: usize,
+    sender: (u8, u8),
+    items: Vec<FenceItem>,
+    count: usize,
+    asked: Duration,
+    heard: Duration,
+}
+
+fn count(items: usize, (system, component): (u8, u8), mission_type: u8) -> Message {
     let items = u16::try_from(items).unwrap_or(u16::MAX);
-    Message::new(44).u16(items).u8(system).u8(component).u8(mission_type).u32(0)
+    Message::new(id::MISSION_COUNT).u16(items).u8(system).u8(component).u8(mission_type).u32(0)
 }
 
-/// MISSION_ITEM_INT.
-pub(super) fn item(item: &FenceItem, sequence: u16, (system, component): (u8, u8)) -> Message {
-    Message::new(73)
+fn request(sequence: usize, (system, component): (u8, u8)) -> Message {
+    let sequence = u16::try_from(sequence).unwrap_or(u16::MAX);
+    Message::new(id::MISSION_REQUEST_INT).u16(sequence).u8(system).u8(component).u8(FENCE)
+}
+
+fn item(item: &FenceItem, sequence: u16, (system, component): (u8, u8)) -> Message {
+    Message::new(id::MISSION_ITEM_INT)
         .f32s(&[item.param1, 0.0, 0.0, 0.0])
         .i32(whole(item.latitude_deg * 1e7))
         .i32(whole(item.longitude_deg * 1e7))
@@ -51,11 +91,164 @@ pub(super) fn item(item: &FenceItem, sequence: u16, (system, component): (u8, u8
         .u8(FENCE)
 }
 
-/// MISSION_ACK.
-pub(super) fn acknowledged(
-    result: MissionResult,
-    (system, component): (u8, u8),
-    mission_type: u8,
-) -> Message {
-    Message::new(47).u8(system).u8(component).u8(result as u8).u8(mission_type).u32(0)
+fn acknowledged(result: MissionResult, (system, component): (u8, u8), mission_type: u8) -> Message {
+    Message::new(id::MISSION_ACK).u8(system).u8(component).u8(result as u8).u8(mission_type).u32(0)
+}
+
+/// An item of a fence from MISSION_ITEM_INT.
+fn read(payload: Payload) -> Result<FenceItem, MissionResult> {
+    let item = FenceItem {
+        command: payload.u16(30),
+        param1: payload.f32(0),
+        latitude_deg: f64::from(payload.i32(16)) * 1e-7,
+        longitude_deg: f64::from(payload.i32(20)) * 1e-7,
+    };
+    if !ON_EARTH.contains(&payload.u8(34)) {
+        return Err(MissionResult::UnsupportedFrame);
+    }
+    if !CORNERS.contains(&item.command) && !CIRCLES.contains(&item.command) {
+        return Err(MissionResult::Unsupported);
+    }
+    let on_earth = item.latitude_deg.abs() <= 90.0 && item.longitude_deg.abs() <= 180.0;
+    if !(on_earth && item.param1.is_finite() && item.param1 > 0.0) {
+        return Err(MissionResult::Invalid);
+    }
+    Ok(item)
+}
+
+/// Each polygon has three corners or more, all of them, one behind the other.
+fn is_whole(items: &[FenceItem]) -> bool {
+    let mut rest = items;
+    while let Some(first) = rest.first() {
+        let size = if CORNERS.contains(&first.command) { whole(first.param1) } else { 1 };
+        let Some((figure, others)) = usize::try_from(size).ok().and_then(|size| rest.split_at_checked(size))
+        else {
+            return false;
+        };
+        let alike =
+            figure.iter().all(|corner| (corner.command, corner.param1) == (first.command, first.param1));
+        let enough = CIRCLES.contains(&first.command) || figure.len() >= 3;
+        if !(alike && enough) {
+            return false;
+        }
+        rest = others;
+    }
+    true
+}
+
+impl Vehicle {
+    /// A message of the mission protocol.
+    pub(super) fn mission(
+        &mut self,
+        link: usize,
+        message_id: u32,
+        payload: Payload,
+        from: ((u8, u8), Duration),
+    ) {
+        let (sender, _) = from;
+        let (at, kind_at) = match message_id {
+            id::MISSION_REQUEST_LIST | id::MISSION_CLEAR_ALL => (0, 2),
+            id::MISSION_ACK => (0, 3),
+            id::MISSION_ITEM_INT => (32, 37),
+            _ => (2, 4),
+        };
+        if !self.is_for_us((payload.u8(at), payload.u8(at + 1))) {
+            return;
+        }
+        let kind = payload.u8(kind_at);
+        let fence = if kind == FENCE { &self.settings.fence[..] } else { &[] };
+        let answer = match message_id {
+            id::MISSION_REQUEST_LIST => count(fence.len(), sender, kind),
+            id::MISSION_REQUEST_INT => match fence.get(usize::from(payload.u16(0))) {
+                Some(stored) => item(stored, payload.u16(0), sender),
+                None => acknowledged(MissionResult::InvalidSequence, sender, kind),
+            },
+            id::MISSION_CLEAR_ALL => {
+                if matches!(kind, FENCE | ALL) {
+                    self.settings.fence.clear();
+                }
+                // there is never a mission nor a rally point
+                acknowledged(MissionResult::Accepted, sender, kind)
+            }
+            id::MISSION_COUNT if kind == FENCE => {
+                return self.begin_upload(link, usize::from(payload.u16(0)), from);
+            }
+            id::MISSION_ITEM_INT if kind == FENCE => return self.take_item(link, payload, from),
+            // the ground station has all that it asked for, or gives its upload up
+            id::MISSION_ACK => {
+                let given_up = payload.u8(2) != MissionResult::Accepted as u8;
+                if given_up && self.upload.as_ref().is_some_and(|upload| upload.sender == sender) {
+                    self.upload = None;
+                }
+                return;
+            }
+            _ => acknowledged(MissionResult::Unsupported, sender, kind),
+        };
+        self.send(link, &answer);
+    }
+
+    fn begin_upload(&mut self, link: usize, count: usize, (sender, now): ((u8, u8), Duration)) {
+        let busy = self.upload.as_ref().is_some_and(|upload| upload.sender != sender);
+        let answer = match count {
+            _ if busy => acknowledged(MissionResult::Denied, sender, FENCE),
+            _ if count > usize::from(CAPACITY) => acknowledged(MissionResult::NoSpace, sender, FENCE),
+            0 => {
+                self.settings.fence.clear();
+                acknowledged(MissionResult::Accepted, sender, FENCE)
+            }
+            _ => {
+                let items = Vec::with_capacity(count);
+                self.upload = Some(Upload { link, sender, items, count, asked: now, heard: now });
+                request(0, sender)
+            }
+        };
+        self.send(link, &answer);
+    }
+
+    fn take_item(&mut self, link: usize, payload: Payload, (sender, now): ((u8, u8), Duration)) {
+        let Some(upload) = self.upload.as_mut().filter(|upload| upload.sender == sender) else {
+            self.send(link, &acknowledged(MissionResult::Failed, sender, FENCE));
+            return;
+        };
+        upload.heard = now;
+        // one that came twice is passed over
+        if usize::from(payload.u16(28)) != upload.items.len() {
+            return;
+        }
+        let result = match read(payload) {
+            Err(result) => result,
+            Ok(item) => {
+                upload.items.push(item);
+                if upload.items.len() < upload.count {
+                    upload.asked = now;
+                    let next = request(upload.items.len(), sender);
+                    self.send(link, &next);
+                    return;
+                }
+                if is_whole(&upload.items) {
+                    self.settings.fence.clone_from(&upload.items);
+                    MissionResult::Accepted
+                } else {
+                    MissionResult::Invalid
+                }
+            }
+        };
+        self.upload = None;
+        self.send(link, &acknowledged(result, sender, FENCE));
+    }
+
+    /// Asks again for what did not come.
+    pub(super) fn pursue_upload(&mut self, now: Duration) {
+        let Some(upload) = &mut self.upload else { return };
+        let (link, sender) = (upload.link, upload.sender);
+        if now.saturating_sub(upload.heard) >= GIVE_UP {
+            self.upload = None;
+            self.autopilot.say(Severity::Warning, "Fence upload timed out");
+            self.send(link, &acknowledged(MissionResult::Cancelled, sender, FENCE));
+        } else if now.saturating_sub(upload.asked) >= ASK_AGAIN {
+            upload.asked = now;
+            let again = request(upload.items.len(), sender);
+            self.send(link, &again);
+        }
+    }
 }

@@ -28,6 +28,7 @@ mod parameters;
 mod requests;
 mod safety;
 mod serve;
+mod setpoints;
 mod settings;
 mod shaper;
 mod streams;

@@ -7,26 +7,29 @@ use super::Vehicle;
 use super::autopilot::Severity;
 use super::commands::Command;
 use super::message::Message;
-use super::mission::{self, FENCE, MissionResult};
 use super::telemetry::Telemetry;
 use crate::log::{Frame, Payload};
 
 /// Messages that are listened to.
-mod id {
-    pub(super) const HEARTBEAT: u32 = 0;
-    pub(super) const PING: u32 = 4;
-    pub(super) const SET_MODE: u32 = 11;
-    pub(super) const PARAM_REQUEST_READ: u32 = 20;
-    pub(super) const PARAM_REQUEST_LIST: u32 = 21;
-    pub(super) const PARAM_SET: u32 = 23;
-    pub(super) const MISSION_REQUEST_LIST: u32 = 43;
-    pub(super) const MISSION_COUNT: u32 = 44;
-    pub(super) const MISSION_REQUEST_INT: u32 = 51;
-    pub(super) const REQUEST_DATA_STREAM: u32 = 66;
-    pub(super) const COMMAND_INT: u32 = 75;
-    pub(super) const COMMAND_LONG: u32 = 76;
-    pub(super) const SET_POSITION_TARGET_LOCAL_NED: u32 = 84;
-    pub(super) const TIMESYNC: u32 = 111;
+pub(super) mod id {
+    pub(in crate::sitl) const HEARTBEAT: u32 = 0;
+    pub(in crate::sitl) const PING: u32 = 4;
+    pub(in crate::sitl) const SET_MODE: u32 = 11;
+    pub(in crate::sitl) const PARAM_REQUEST_READ: u32 = 20;
+    pub(in crate::sitl) const PARAM_REQUEST_LIST: u32 = 21;
+    pub(in crate::sitl) const PARAM_SET: u32 = 23;
+    pub(in crate::sitl) const MISSION_REQUEST_LIST: u32 = 43;
+    pub(in crate::sitl) const MISSION_COUNT: u32 = 44;
+    pub(in crate::sitl) const MISSION_CLEAR_ALL: u32 = 45;
+    pub(in crate::sitl) const MISSION_ACK: u32 = 47;
+    pub(in crate::sitl) const MISSION_REQUEST_INT: u32 = 51;
+    pub(in crate::sitl) const REQUEST_DATA_STREAM: u32 = 66;
+    pub(in crate::sitl) const MISSION_ITEM_INT: u32 = 73;
+    pub(in crate::sitl) const COMMAND_INT: u32 = 75;
+    pub(in crate::sitl) const COMMAND_LONG: u32 = 76;
+    pub(in crate::sitl) const SET_ATTITUDE_TARGET: u32 = 82;
+    pub(in crate::sitl) const SET_POSITION_TARGET_LOCAL_NED: u32 = 84;
+    pub(in crate::sitl) const TIMESYNC: u32 = 111;
 }
 
 /// MAV_TYPE_GCS
@@ -52,6 +55,9 @@ impl Vehicle {
             id::SET_POSITION_TARGET_LOCAL_NED if self.is_for_us((payload.u8(50), payload.u8(51))) => {
                 self.autopilot.take_setpoint(payload, now);
             }
+            id::SET_ATTITUDE_TARGET if self.is_for_us((payload.u8(36), payload.u8(37))) => {
+                self.autopilot.take_attitude(payload, now);
+            }
             id::PARAM_REQUEST_LIST if self.is_for_us((payload.u8(0), payload.u8(1))) => {
                 if let Some(link) = self.links.get_mut(link) {
                     link.start_download();
@@ -75,8 +81,13 @@ impl Vehicle {
                     Message::new(id::PING).u64(payload.u64(0)).u32(payload.u32(8)).u8(sender.0).u8(sender.1);
                 self.send(link, &answer);
             }
-            id::MISSION_REQUEST_LIST | id::MISSION_REQUEST_INT | id::MISSION_COUNT => {
-                self.mission(link, header.message_id, payload, sender);
+            id::MISSION_REQUEST_LIST
+            | id::MISSION_REQUEST_INT
+            | id::MISSION_COUNT
+            | id::MISSION_CLEAR_ALL
+            | id::MISSION_ACK
+            | id::MISSION_ITEM_INT => {
+                self.mission(link, header.message_id, payload, (sender, now));
             }
             _ => {}
         }
@@ -135,27 +146,5 @@ impl Vehicle {
         if let Some(link) = self.links.get_mut(link) {
             link.streams.set_group(payload.u8(4), rate_hz);
         }
-    }
-
-    /// A stored fence can be read; there is no mission and no rally point, and nothing can be stored.
-    fn mission(&mut self, link: usize, message_id: u32, payload: Payload, sender: (u8, u8)) {
-        let (at, kind_at) = match message_id {
-            id::MISSION_REQUEST_LIST => (0, 2),
-            _ => (2, 4),
-        };
-        if !self.is_for_us((payload.u8(at), payload.u8(at + 1))) {
-            return;
-        }
-        let kind = payload.u8(kind_at);
-        let fence = if kind == FENCE { &self.settings.fence[..] } else { &[] };
-        let answer = match message_id {
-            id::MISSION_REQUEST_LIST => mission::count(fence.len(), sender, kind),
-            id::MISSION_REQUEST_INT => match fence.get(usize::from(payload.u16(0))) {
-                Some(item) => mission::item(item, payload.u16(0), sender),
-                None => mission::acknowledged(MissionResult::InvalidSequence, sender, kind),
-            },
-            _ => mission::acknowledged(MissionResult::Unsupported, sender, kind),
-        };
-        self.send(link, &answer);
     }
 }

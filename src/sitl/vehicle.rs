@@ -8,6 +8,7 @@ use super::autopilot::{Autopilot, Text};
 use super::craft::Craft;
 use super::link::Link;
 use super::message::Message;
+use super::mission::Upload;
 use super::parameters::{Parameters, Pulses};
 use super::streams::HEARTBEAT;
 use super::telemetry::{Snapshot, Telemetry};
@@ -54,6 +55,8 @@ pub struct Vehicle {
     silent_until: Duration,
     snapshot: Option<Snapshot>,
     texts: u16,
+    /// a fence that comes in
+    pub(super) upload: Option<Upload>,
 }
 
 impl Vehicle {
@@ -82,6 +85,7 @@ impl Vehicle {
             silent_until: Duration::ZERO,
             snapshot: None,
             texts: 0,
+            upload: None,
             settings,
         })
     }
@@ -191,6 +195,7 @@ impl Vehicle {
             self.craft.step(&outputs);
         }
         self.snapshot = Some(Snapshot { now, shown, pulses_us });
+        self.pursue_upload(now);
         self.send_texts();
         self.send_due(now);
     }
@@ -295,6 +300,7 @@ impl Vehicle {
             self.autopilot = autopilot;
         }
         self.booted = self.next;
+        self.upload = None;
         for link in &mut self.links {
             link.restart(self.settings.autopilot);
         }

@@ -204,8 +204,21 @@ fn every_parameter_comes_once_by_list_and_by_index() {
     }
 }
 
+/// MISSION_ITEM_INT of a fence as it is on the wire.
+fn fence_item(sequence: u16, command: u16, param1: f32, latitude: i32) -> Vec<u8> {
+    let mut payload = param1.to_le_bytes().to_vec();
+    payload.extend([0; 12]);
+    payload.extend(latitude.to_le_bytes());
+    payload.extend(85_000_000_i32.to_le_bytes());
+    payload.extend([0; 4]);
+    payload.extend(sequence.to_le_bytes());
+    payload.extend(command.to_le_bytes());
+    payload.extend([1, 1, 3, 0, 1, 1]);
+    payload
+}
+
 #[test]
-fn a_stored_fence_can_be_read_and_nothing_can_be_stored() {
+fn a_stored_fence_can_be_read_and_cleared_and_there_is_no_mission() {
     let corner = |latitude_deg| FenceItem { command: 5001, param1: 3.0, latitude_deg, longitude_deg: 8.5 };
     let fence = vec![corner(47.1), corner(47.2), corner(47.3)];
     let mut ground = Ground::new(Settings { fence, ..settings(PX4) });
@@ -220,8 +233,66 @@ fn a_stored_fence_can_be_read_and_nothing_can_be_stored() {
     assert_eq!(ground.last(47).unwrap().u8(2), 13, "no such item");
     ground.send_raw(43, 132, &[1, 1, 0]);
     assert_eq!(ground.last(44).unwrap().u16(0), 0, "no mission");
+    ground.send_raw(44, 221, &[2, 0, 1, 1, 0]);
+    assert_eq!(ground.last(47).unwrap().u8(2), 3, "a mission is not supported");
+    ground.send_raw(45, 232, &[1, 1, 1]);
+    assert_eq!(ground.last(47).unwrap().u8(2), 0);
+    ground.send_raw(43, 132, &[1, 1, 1]);
+    assert_eq!(ground.last(44).unwrap().u16(0), 0, "cleared");
+}
+
+#[test]
+fn a_fence_is_stored_item_by_item_and_what_is_none_is_refused() {
+    let mut ground = Ground::of(PX4);
+    ground.wait(0.1);
+    let asked = |ground: &Ground| ground.last(51).unwrap().u16(0);
+    let answer = |ground: &Ground| ground.last(47).unwrap().u8(2);
+    ground.send_raw(44, 221, &[4, 0, 1, 1, 1]);
+    assert_eq!(asked(&ground), 0);
+    ground.send_raw(73, 38, &fence_item(0, 5001, 3.0, 471_000_000));
+    assert_eq!(asked(&ground), 1);
+    // the item is lost: asked for again, and one that comes twice does not count twice
+    let before = ground.count(51);
+    ground.wait(0.6);
+    assert_eq!((ground.count(51), asked(&ground)), (before + 2, 1));
+    ground.send_raw(73, 38, &fence_item(0, 5001, 3.0, 471_000_000));
+    ground.send_raw(73, 38, &fence_item(1, 5001, 3.0, 472_000_000));
+    ground.send_raw(73, 38, &fence_item(2, 5001, 3.0, 473_000_000));
+    assert_eq!(ground.count(47), 0);
+    ground.send_raw(73, 38, &fence_item(3, 5003, 60.0, 471_500_000));
+    assert_eq!(answer(&ground), 0, "accepted");
+    ground.send_raw(43, 132, &[1, 1, 1]);
+    assert_eq!(ground.last(44).unwrap().u16(0), 4);
+    ground.send_raw(51, 196, &[3, 0, 1, 1, 1]);
+    let circle = ground.last(73).unwrap();
+    assert_eq!((circle.f32(0), circle.i32(16), circle.u16(30)), (60.0, 471_500_000, 5003));
+
+    // two corners, a waypoint, a circle without radius, places in the local frame: refused, the stored fence stays
     ground.send_raw(44, 221, &[2, 0, 1, 1, 1]);
-    assert_eq!(ground.last(47).unwrap().u8(2), 3, "not supported");
+    ground.send_raw(73, 38, &fence_item(0, 5001, 2.0, 471_000_000));
+    ground.send_raw(73, 38, &fence_item(1, 5001, 2.0, 472_000_000));
+    assert_eq!(answer(&ground), 5);
+    let mut local = fence_item(0, 5003, 60.0, 471_000_000);
+    local[34] = 1;
+    for (item, refusal) in [
+        (fence_item(0, 16, 60.0, 471_000_000), 3),
+        (fence_item(0, 5003, 0.0, 471_000_000), 5),
+        (fence_item(0, 5003, f32::NAN, 471_000_000), 5),
+        (fence_item(0, 5003, 60.0, 971_000_000), 5),
+        (local, 2),
+    ] {
+        ground.send_raw(44, 221, &[1, 0, 1, 1, 1]);
+        ground.send_raw(73, 38, &item);
+        assert_eq!(answer(&ground), refusal, "{item:?}");
+    }
+    ground.send_raw(44, 221, &[65, 0, 1, 1, 1]);
+    assert_eq!(answer(&ground), 4, "no space");
+    // an upload that is left alone ends
+    ground.send_raw(44, 221, &[1, 0, 1, 1, 1]);
+    ground.wait(6.0);
+    assert_eq!(answer(&ground), 15, "cancelled");
+    ground.send_raw(43, 132, &[1, 1, 1]);
+    assert_eq!(ground.last(44).unwrap().u16(0), 4);
 }
 
 #[test]

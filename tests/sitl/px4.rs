@@ -1,7 +1,9 @@
 //! PX4: OFFBOARD, its failsafes, arming, parameters.
 
 use mavid::sitl::{Fault, Mode, Settings};
-use mavlink::dialects::ardupilotmega::MavFrame;
+use mavlink::dialects::ardupilotmega::{
+    AttitudeTargetTypemask, MavFrame, MavMessage, SET_ATTITUDE_TARGET_DATA,
+};
 
 use crate::ground::{Ground, Target, settings};
 use crate::{ACCEPTED, DENIED, FAILED, PX4, TEMPORARILY_REJECTED, assert_at};
@@ -246,6 +248,51 @@ fn body_velocities_turn_with_the_heading() {
     ground.stream(4.0, &ahead.message());
     let [north, moved_east, _] = ground.position();
     assert!(moved_east > 1.0 && north.abs() < 0.4, "{north} {moved_east}");
+}
+
+/// SET_ATTITUDE_TARGET.
+fn attitude_target(type_mask: u8, pitch_rad: f32, rates: [f32; 3], thrust: f32) -> MavMessage {
+    let (sin, cos) = (0.5 * pitch_rad).sin_cos();
+    MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
+        target_system: 1,
+        target_component: 1,
+        type_mask: AttitudeTargetTypemask::from_bits_truncate(type_mask),
+        q: [cos, 0.0, sin, 0.0],
+        body_roll_rate: rates[0],
+        body_pitch_rate: rates[1],
+        body_yaw_rate: rates[2],
+        thrust,
+        ..SET_ATTITUDE_TARGET_DATA::default()
+    })
+}
+
+#[test]
+fn an_attitude_with_a_thrust_is_flown_and_so_are_rates() {
+    let mut ground = offboard(settings(PX4));
+    ground.request_parameter("MPC_THR_HOVER");
+    let hover = mavid::units::narrow(ground.parameter("MPC_THR_HOVER").unwrap().f32(0));
+    // nose down by 6 degrees, with the thrust that carries the weight then: it goes north at its height
+    let lean = 6_f32.to_radians();
+    ground.stream(2.0, &attitude_target(0b111, -lean, [0.0; 3], hover / lean.cos()));
+    let [north_m, east_m, down_m] = ground.position();
+    // g tan(6 degrees) t^2 / 2
+    assert!((north_m - 2.06).abs() < 0.5 && east_m.abs() < 0.3, "{north_m} {east_m}");
+    assert!((down_m + 3.0).abs() < 0.4, "{down_m}");
+    // level again by the rate about the body's y, then no thrust share that lifts: it sinks
+    ground.stream(0.5, &attitude_target(1 << 7, 0.0, [0.0, 2.0 * lean, 0.0], hover));
+    assert!((ground.last(30).unwrap().f32(8)).abs() < 0.04, "{:?}", ground.last(30).unwrap().f32(8));
+    ground.stream(1.0, &attitude_target(0b111, 0.0, [0.0; 3], 0.8 * hover));
+    let sunk_m = ground.position()[2] - down_m;
+    // g / 5 t^2 / 2
+    assert!((0.5..1.6).contains(&sunk_m), "{sunk_m}");
+    // without a thrust, or with nothing to turn to, it is no setpoint: OFFBOARD ends
+    for useless in
+        [attitude_target(1 << 6, 0.0, [0.0; 3], hover), attitude_target(0b1000_0001, 0.0, [0.0; 3], hover)]
+    {
+        let mut ground = offboard(settings(PX4));
+        ground.stream(1.5, &useless);
+        assert!(ground.has_text("No offboard signal"), "{:?}", ground.texts());
+    }
 }
 
 #[test]

@@ -12,7 +12,7 @@ use serde_json::Value;
 const MISSING: i32 = 77;
 
 /// The interpreter: `MAVID_PYTHON`, that of `tests/peers/setup.sh`, or the system's.
-fn interpreter() -> PathBuf {
+pub fn interpreter() -> PathBuf {
     if let Some(python) = std::env::var_os("MAVID_PYTHON") {
         return python.into();
     }

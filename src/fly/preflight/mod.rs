@@ -72,7 +72,7 @@ fn failsafes(situation: &Situation<'_>) -> Vec<Finding> {
     said.into_iter()
         .map(|sentence| match sentence.level {
             Level::Ok => Finding::ok("failsafe", "a declared and safe end", sentence.text),
-            Level::Warning | Level::Refusal => warning(sentence.text),
+            Level::Awaited | Level::Warning | Level::Refusal => warning(sentence.text),
         })
         .collect()
 }

@@ -15,7 +15,7 @@ use crate::log::{self, Frame, Payload};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
-/// Subjects that the flight itself waits for: no refusal yet.
+/// Subjects that the flight itself waits for before it arms: no refusal here.
 const AWAITED: [&str; 4] = ["estimate", "pre-arm", "home", "health"];
 
 const GPS_GLOBAL_ORIGIN: u32 = 49;
@@ -34,7 +34,7 @@ impl Cleared {
         let refusals: Vec<String> = self
             .findings
             .iter()
-            .filter(|finding| finding.level == Level::Refusal && !AWAITED.contains(&finding.subject))
+            .filter(|finding| finding.level == Level::Refusal)
             .map(|finding| {
                 let Finding { subject, expected, came, remedy, .. } = finding;
                 format!("{subject}: expected {expected}, got {came} ({remedy})")
@@ -121,6 +121,11 @@ impl Clearance {
         };
         let report = requests.report();
         let mut findings = self.findings(flight, vehicle, (&parameters, now));
+        for finding in &mut findings {
+            if finding.level == Level::Refusal && AWAITED.contains(&finding.subject) {
+                finding.level = Level::Awaited;
+            }
+        }
         findings.extend(report.findings());
         let lines = report.streams.iter().map(|stream| stream.line()).collect();
         Some(Cleared { parameters: *parameters, findings, lines })

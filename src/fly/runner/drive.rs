@@ -85,6 +85,11 @@ impl Drive {
         }
     }
 
+    /// Something that the operator should know.
+    pub(super) fn warn(&mut self, kind: &'static str, text: &str) {
+        self.notes.push(Note::new(self.clock.elapsed(), Level::Warning, kind, text));
+    }
+
     pub(super) fn outcome(&self) -> Option<Outcome> {
         self.outcome.clone()
     }
@@ -181,7 +186,7 @@ impl Drive {
         }
         for finding in &cleared.findings {
             let level = match finding.level {
-                finding::Level::Ok => Level::Information,
+                finding::Level::Ok | finding::Level::Awaited => Level::Information,
                 _ => Level::Warning,
             };
             self.notes.push(Note::new(now, level, "check", finding.to_string()));

@@ -48,6 +48,10 @@ const FLUSH: Duration = Duration::from_secs(1);
 const LAST_WORDS: u32 = 3;
 const LAST_WORD_PAUSE: Duration = Duration::from_millis(100);
 
+/// What is said where setpoints get no thread of their own rank.
+const NO_PRIORITY: &str = "the system permits no real-time threads (on Linux: CAP_SYS_NICE, or RLIMIT_RTPRIO of at \
+     least 1): while every core is busy, some setpoints go out late";
+
 /// Names of the files of a flight in its folder.
 pub const TLOG: &str = "flight.tlog";
 /// Log of events, JSON lines.
@@ -146,7 +150,10 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
     let flight = Flight::new(ride.sortie);
     let (link, address) = (kind_of(&ride.address), ride.address.to_string());
     let place = drive::Place { dir: ride.dir, vehicle: ride.vehicle, link, address };
-    let drive = Drive::new(flight, guide.clone(), writer.clone(), clock, place);
+    let mut drive = Drive::new(flight, guide.clone(), writer.clone(), clock, place);
+    if !stream.is_real_time {
+        drive.warn("setpoints", NO_PRIORITY);
+    }
     // a task of its own: were it to panic, there is still somebody to tell the vehicle
     let task = tokio::spawn(conduct(drive, reader, console, journal, stalls));
     let (outcome, events_failure) = match task.await {

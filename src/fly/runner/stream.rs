@@ -2,7 +2,7 @@
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -65,6 +65,8 @@ impl StreamFigures {
 pub(super) struct Stream {
     thread: JoinHandle<StreamFigures>,
     over: Arc<AtomicBool>,
+    /// it has a real-time thread
+    pub(super) is_real_time: bool,
 }
 
 impl Stream {
@@ -78,12 +80,14 @@ impl Stream {
     ) -> io::Result<Self> {
         let over = Arc::new(AtomicBool::new(false));
         let ended = over.clone();
+        let (raised, is_raised) = mpsc::channel();
         let work = move || {
-            raise_priority();
+            // whoever starts it waits for this word
+            let _ = raised.send(raise_priority());
             send_setpoints(Streamer::new(period), clock, &guide, &writer, (&stalled, &ended))
         };
         let thread = thread::Builder::new().name("setpoints".into()).spawn(work)?;
-        Ok(Self { thread, over })
+        Ok(Self { thread, over, is_real_time: is_raised.recv().unwrap_or(false) })
     }
 
     /// Ends it.

@@ -154,7 +154,7 @@ fn event_list(frame: &mut Frame<'_>, model: &ViewModel, area: Rect) {
         .skip(first)
         .map(|event| {
             let color = match event.level {
-                Level::Ok => Color::Reset,
+                Level::Ok | Level::Awaited => Color::Reset,
                 Level::Warning => Color::Yellow,
                 Level::Refusal => Color::Red,
             };

@@ -1,0 +1,66 @@
+//! Setpoints as they come in.
+
+use std::time::Duration;
+
+use nalgebra::Vector3;
+
+use super::Mode;
+use super::autopilot::{Autopilot, Severity};
+use super::demand::{AttitudeDemand, Demand, Refusal};
+use super::guidance::Task;
+use crate::log::Payload;
+
+impl Autopilot {
+    /// SET_ATTITUDE_TARGET as PX4 reads it. ArduPilot's, with a climb rate in place of a thrust, is not there.
+    pub(super) fn take_attitude(&mut self, payload: Payload, now: Duration) {
+        if !self.kind.is_px4() {
+            return;
+        }
+        let Some(demand) = AttitudeDemand::read(payload) else { return };
+        self.safety.setpoint_came(now);
+        if self.mode == Mode::Guided {
+            let state = self.estimator.state;
+            self.guidance.begin(Task::Turn(demand), &state);
+        }
+    }
+
+    /// SET_POSITION_TARGET_LOCAL_NED.
+    pub(super) fn take_setpoint(&mut self, payload: Payload, now: Duration) {
+        let state = self.estimator.state;
+        let demand = Demand::read(self.kind, payload, &state);
+        if self.kind.is_px4() {
+            match demand {
+                Ok(demand) => {
+                    self.safety.setpoint_came(now);
+                    if self.mode == Mode::Guided {
+                        let task = if demand.is_complete() { Task::Direct(demand) } else { Task::Hold };
+                        self.guidance.begin(task, &state);
+                    }
+                }
+                Err(Refusal::Frame(frame)) => {
+                    let text = format!("SET_POSITION_TARGET_LOCAL_NED coordinate frame {frame} unsupported");
+                    self.say(Severity::Error, text);
+                }
+                Err(_) => {}
+            }
+            return;
+        }
+        if self.mode != Mode::Guided || !self.is_armed() || self.is_landed() {
+            return;
+        }
+        match demand {
+            // outside the fence: dropped, nobody is told
+            Ok(demand) if self.is_fenced_out(&demand.position_m) => {}
+            Ok(demand) => self.guidance.begin(Task::Shaped(demand, now), &state),
+            Err(_) => self.guidance.begin(Task::Hold, &state),
+        }
+    }
+
+    fn is_fenced_out(&self, position_m: &Vector3<f64>) -> bool {
+        let home_m = self.home_m.unwrap_or_else(Vector3::zeros);
+        let from_home = position_m - home_m;
+        self.tuning
+            .fence
+            .is_some_and(|(radius_m, height_m)| from_home.xy().norm() > radius_m || from_home.z > height_m)
+    }
+}
