@@ -30,6 +30,17 @@ impl Present {
         self.parameter(slot).map_or(value, |parameter| value.clamp(parameter.min, parameter.max))
     }
 
+    /// Standard errors by which a parameter is away from where its effect vanishes.
+    #[must_use]
+    pub fn away_from_nothing(&self, slot: usize, std: f64) -> f64 {
+        let away = match self.effect.id() {
+            // it divides: nothing lies at infinity, and the distance to it is in the inverse
+            "ceiling_effect" => self.values[slot],
+            _ => self.values[slot] - self.nothing_at(slot),
+        };
+        away / std.max(f64::MIN_POSITIVE)
+    }
+
     /// Value at which a parameter's effect vanishes.
     #[must_use]
     pub fn nothing_at(&self, slot: usize) -> f64 {

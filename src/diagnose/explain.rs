@@ -69,7 +69,7 @@ const COM_NUISANCE_M: f64 = 0.000_15;
 /// No line that holds anything weighs less, kg/m.
 const LEAST_LINE_KG_M: f64 = 0.005;
 /// Rotors of one vehicle differ by as much.
-const SCATTER: f64 = 0.15;
+const SCATTER: f64 = 0.08;
 /// Rivals that explain nearly as much as what was taken.
 const RIVAL: f64 = 0.93;
 
@@ -119,11 +119,12 @@ fn beyond(traces: &[Trace], found: &Search) -> Beyond {
     }
 }
 
-/// The harmonic test on each flight that repeats; the worst of them.
+/// The harmonic test on each flight that repeats; the worst of them, with the excess energy of all.
 fn lacks(traces: &[Trace], fitted: &Fitted) -> Option<LackOfFit> {
     let (rows, left) = (fitted.rows.len(), fitted.weighted.left.as_slice());
     let mut from = 0;
     let mut worst: Option<LackOfFit> = None;
+    let mut excess = 0.0;
     for trace in traces {
         let to = from + trace.rows();
         let time_s = &fitted.rows.time_s[from..to];
@@ -131,6 +132,7 @@ fn lacks(traces: &[Trace], fitted: &Fitted) -> Option<LackOfFit> {
             let residual: [&[f64]; CHANNELS] =
                 std::array::from_fn(|channel| &left[channel * rows + from..channel * rows + to]);
             let found = lack_of_fit(time_s, residual, period_s);
+            excess += found.as_ref().map_or(0.0, |found| found.excess_energy);
             if let Some(found) = found
                 && worst.as_ref().is_none_or(|worst| found.p_least() < worst.p_least())
             {
@@ -139,7 +141,7 @@ fn lacks(traces: &[Trace], fitted: &Fitted) -> Option<LackOfFit> {
         }
         from = to;
     }
-    worst
+    worst.map(|worst| LackOfFit { excess_energy: excess, ..worst })
 }
 
 /// Whether what is left at the harmonics is certain and large enough to matter.
@@ -358,13 +360,18 @@ fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<N
 /// The smallest coefficient that this flight would have shown, for every candidate that was not named.
 fn limits(last: &[Tested]) -> Vec<DetectionLimit> {
     let mut out: Vec<DetectionLimit> = Vec::new();
-    for tested in last.iter().filter(|tested| tested.candidate.through.is_none()) {
+    // a ceiling's a1 has no smallest size: it divides
+    let has_size =
+        |tested: &&Tested| tested.candidate.through.is_none() && tested.candidate.id != "ceiling_effect";
+    for tested in last.iter().filter(has_size) {
         let Candidate { id, parts, .. } = &tested.candidate;
         let mut index = 0;
         for part in parts {
             for &free in &part.free {
                 let Some(parameter) = part.parameter(free) else { continue };
-                let limit = 4.0 * tested.evidence.std(index);
+                // a mounting needs more than to be certain
+                let certain = 4.0 * tested.evidence.std(index);
+                let limit = certain.max(ordinary_size(id).unwrap_or(0.0));
                 index += 1;
                 let same = out.iter_mut().find(|l| l.id == *id && l.parameter == parameter.name);
                 match same {

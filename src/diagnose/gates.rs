@@ -1,7 +1,7 @@
 //! What is asked of a candidate before it is named.
 
 use super::mounting::ordinary_size;
-use super::rows::SECOND;
+use super::rows::{SECOND, moved_to};
 use super::search::{Fitted, Tested};
 
 /// What is asked of a candidate before it is named.
@@ -49,19 +49,29 @@ pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates
         && possible(tested)
 }
 
+/// No multirotor flies in more wind, m/s.
+const STORM_M_S: f64 = 20.0;
+
 /// Each coefficient's sign and size is one that physics allows, within two standard errors.
 fn possible(tested: &Tested) -> bool {
     if tested.candidate.through.is_some() {
         // the wind's columns carry the drag's strength
-        return tested.evidence.theta[0] > 0.0 && tested.evidence.theta[1] > 0.0;
+        let theta = &tested.evidence.theta;
+        let drag_n_s_m = 0.5 * (theta[0] + theta[1]);
+        let strongest = theta[2..].iter().fold(0.0, |most: f64, push_n| most.max(push_n.abs()));
+        return theta[0] > 0.0 && theta[1] > 0.0 && strongest < STORM_M_S * drag_n_s_m;
     }
     let mut index = 0;
     let mut all = true;
     for part in &tested.candidate.parts {
         for &free in &part.free {
-            let value = part.values[free] + tested.evidence.theta[index];
-            let slack = 2.0 * tested.evidence.std(index);
-            all &= (part.possible(free, value) - value).abs() < slack;
+            let (by, slack) = (tested.evidence.theta[index], 2.0 * tested.evidence.std(index));
+            // towards what is possible by two standard errors
+            let reaches = |by: f64| {
+                let value = moved_to(part, free, by);
+                part.possible(free, value) == value
+            };
+            all &= reaches(by) || reaches(by - slack) || reaches(by + slack);
             index += 1;
         }
     }

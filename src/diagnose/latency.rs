@@ -122,7 +122,9 @@ pub fn finding_of(fitted: &Fitted) -> LatencyFinding {
 /// Standard deviations against a lag and against a delay, and the delay if it is some of both.
 fn second_order(flights: &[Trace], fitted: &Fitted) -> Result<Option<(f64, f64, f64)>, PhysicsError> {
     let mut base = fitted.base.clone();
-    base.latency = ActuationLatency::default();
+    // beyond the delay that every recording has
+    let held_s = held_s(flights);
+    base.latency = ActuationLatency { delay_s: held_s, lag_s: 0.0 };
     let mut rows = Rows::new(flights, &base)?;
     let Some(place) = rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Latency) else {
         return Ok(None);
@@ -139,7 +141,7 @@ fn second_order(flights: &[Trace], fitted: &Fitted) -> Result<Option<(f64, f64, 
     let (s1, s2) = (evidence.std(0), evidence.std(1));
     // c2 - c1^2/2 takes its error from both
     let spread = (s2 * s2 + c1 * c1 * s1 * s1 - 2.0 * c1 * evidence.covariance[(0, 1)]).max(1e-30).sqrt();
-    let delay_s = c1 - (c1 * c1 - 2.0 * c2).max(0.0).sqrt();
+    let delay_s = held_s + c1 - (c1 * c1 - 2.0 * c2).max(0.0).sqrt();
     Ok(Some(((c2 / s2).abs(), ((c2 - 0.5 * c1 * c1) / spread).abs(), delay_s)))
 }
 

@@ -175,6 +175,7 @@ impl Rows {
         base: &Base,
         candidate: &Present,
     ) -> Result<Vec<Channels>, PhysicsError> {
+        let motion = true_motion(flights, base);
         let mut columns = Vec::with_capacity(candidate.free.len());
         for &index in &candidate.free {
             let mut moved = candidate.clone();
@@ -187,7 +188,7 @@ impl Rows {
                 continue;
             }
             let model = base.model(std::slice::from_ref(&moved))?;
-            columns.push(self.difference(flights, &model, None, step));
+            columns.push(self.difference(&motion, &model, None, step));
         }
         Ok(columns)
     }
@@ -202,14 +203,14 @@ impl Rows {
         base: &Base,
         candidate: &Present,
     ) -> Result<Vec<Channels>, PhysicsError> {
-        let without = base.model(&[])?;
+        let (without, motion) = (base.model(&[])?, true_motion(flights, base));
         let mut columns = Vec::with_capacity(candidate.free.len());
         for &index in &candidate.free {
             let mut moved = candidate.clone();
             let step = step_of(candidate, index);
             moved.values[index] += step;
             let model = base.model(std::slice::from_ref(&moved))?;
-            columns.push(self.difference(flights, &model, Some(&without), step));
+            columns.push(self.difference(&motion, &model, Some(&without), step));
         }
         Ok(columns)
     }
@@ -286,6 +287,17 @@ fn per_step(mut up: Channels, down: &Channels, step: f64) -> Channels {
         up.iter_mut().zip(down).for_each(|(up, down)| *up = (down - *up) / step);
     }
     up
+}
+
+/// Where a coefficient of a candidate's column takes the parameter.
+pub(super) fn moved_to(present: &Present, index: usize, by: f64) -> f64 {
+    let from = present.values[index];
+    if present.effect.id() == "ceiling_effect" && from == present.nothing_at(index) {
+        // so much of a usual ceiling's, and the effect goes with the inverse
+        let share = by / (USUAL_CEILING - from);
+        return if share > 0.0 { USUAL_CEILING / share } else { from };
+    }
+    from + by
 }
 
 /// a1 of ceilings that were measured.

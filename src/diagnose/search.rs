@@ -8,7 +8,7 @@ use super::hubs::one_place;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::locate::mass_step_std_kg;
 use super::mounting::{Turn, mountings};
-use super::rows::{Channels, Nuisance, Rows};
+use super::rows::{Channels, Nuisance, Rows, moved_to};
 use super::settle::{SETTLED_S, settle};
 use super::sharpen::sharpened;
 use super::trace::Trace;
@@ -196,6 +196,7 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
                 let taken = sharpened(flights, &after, taken);
                 let mut base = after.base.clone();
                 base.present.extend(started(&taken).into_iter().map(released));
+                lift_load(&mut base);
                 let fitted = fit(flights, base, Newton::Held)?;
                 if wanders(flights, &fitted, &taken) {
                     refused.push(taken.candidate.id);
@@ -219,10 +220,13 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
             }
         }
     }
+    let found = finding_of(&after);
     let latency = LatencyFinding {
         against_lag: latency.against_lag,
         against_delay: latency.against_delay,
-        ..finding_of(&after)
+        // what could be taken for a latency makes it uncertain, whether it is in the model or not
+        std_s: found.std_s.max(latency.std_s),
+        ..found
     };
     Ok(Search { before, after, latency, steps, last })
 }
@@ -238,7 +242,7 @@ fn started(tested: &Tested) -> Vec<Present> {
     for part in &mut parts {
         for &free in &part.free {
             if let Some(by) = theta.next() {
-                part.values[free] = part.possible(free, part.values[free] + by);
+                part.values[free] = part.possible(free, moved_to(part, free, *by));
             }
         }
     }
@@ -266,9 +270,23 @@ fn wanders(flights: &[Trace], fitted: &Fitted, taken: &Tested) -> bool {
 /// A step counts beyond this many of a wandering force's standard errors.
 const WANDERED: f64 = 4.0;
 
+/// The load that has just come in was in the mass before, and the cord that fitted then is shorter than the one
+/// that swings as fast below the lighter vehicle.
+fn lift_load(base: &mut Base) {
+    let Some(load) = base.present.last_mut().filter(|present| present.effect.id() == "slung_load") else {
+        return;
+    };
+    let (all_kg, load_kg) = (base.vehicle.body.mass_kg, load.values[0].min(0.5 * base.vehicle.body.mass_kg));
+    load.values[1] = load.possible(1, load.values[1] * all_kg / (all_kg - load_kg));
+    base.vehicle.body.mass_kg = all_kg - load_kg;
+}
+
 /// Parameters that only show once the effect is there are estimated from then on.
 fn released(mut present: Present) -> Present {
     let finer = present.effect.parameters().len();
+    if present.effect.id() == "slung_load" {
+        present.free.push(1);
+    }
     if present.values.len() > finer && present.effect.id() != "motor_lag" {
         present.free.push(finer);
     }

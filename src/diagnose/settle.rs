@@ -19,13 +19,14 @@ pub(super) fn settle(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64
         let mut strength = 0.0;
         for (place, &slot) in present.free.iter().enumerate() {
             let std = after.covariance[(index + place, index + place)].max(0.0).sqrt();
-            let z = (present.values[slot] - present.nothing_at(slot)).abs() / std.max(f64::MIN_POSITIVE);
+            let z = present.away_from_nothing(slot, std).abs();
             let finer = slot >= present.effect.parameters().len();
-            if !finer && z < PRUNED {
+            let amount = !finer && !(present.effect.id() == "slung_load" && slot == 1);
+            if amount && z < PRUNED {
                 pruned.values[slot] = present.nothing_at(slot);
                 pruned.free.retain(|free| *free != slot);
                 dropped = true;
-            } else if !finer {
+            } else if amount {
                 strength = f64::max(strength, z);
             }
         }

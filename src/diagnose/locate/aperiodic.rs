@@ -6,7 +6,7 @@ use super::super::search::Fitted;
 use super::super::trace::Trace;
 use super::Localisation;
 use super::gust::{GustFound, axial_drag_n_s_m, gust, lateral_drag};
-use super::spectrum::{Ordinate, Whittle, noise_shapes, periodogram, whittle};
+use super::spectrum::{Ordinate, VELOCITY_SCALE_S2, Whittle, noise_shapes, periodogram, whittle};
 use super::view::{Followed, View};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -300,14 +300,14 @@ fn redness(view: &View, fitted: &Fitted, of: Quantity, series: &[f64]) -> Option
     let rms = fit.coefficients[2].sqrt();
     let relative = rms / scale(fitted, of).max(f64::MIN_POSITIVE);
     let least = if matches!(of, Quantity::Torque(_)) { LEAST_TORQUE } else { RED_G };
-    let of_velocity_n = force_of_velocity_error_n(view, fitted, of);
+    let of_velocity_n = force_of_velocity_error_n(view, fitted, (of, correlation_s));
     let certain = statistic > RED_STATISTIC && relative > least && rms > CONTRADICTED * of_velocity_n;
     Some(Redness { of, statistic, rms, correlation_s, relative, of_velocity_n, certain })
 }
 
 /// What the velocity's own slow error makes of the drag, N (rms): an estimated velocity that wanders does not
 /// follow from the accelerometer, and the two readings of the force contradict each other by the error's rate.
-fn force_of_velocity_error_n(view: &View, fitted: &Fitted, of: Quantity) -> f64 {
+fn force_of_velocity_error_n(view: &View, fitted: &Fitted, (of, correlation_s): (Quantity, f64)) -> f64 {
     let (axis, across) = match of {
         Quantity::World(axis) => (axis, true),
         Quantity::BodyZ => (2, false),
@@ -315,17 +315,30 @@ fn force_of_velocity_error_n(view: &View, fitted: &Fitted, of: Quantity) -> f64 
     };
     let Some(contradiction) = &view.contradiction_n else { return 0.0 };
     let ordinates = beside_harmonics(view, &contradiction[axis]);
-    match red_fit(view, &ordinates) {
-        Some((correlation_s, fit, statistic)) if statistic > CONTRADICTION_STATISTIC => {
-            let drag_n_s_m = if across {
-                lateral_drag(view, fitted).map_or(0.0, |(drag_n_s_m, _)| drag_n_s_m)
-            } else {
-                axial_drag_n_s_m(fitted)
-            };
-            fit.coefficients[2].sqrt() * correlation_s * drag_n_s_m / fitted.base.vehicle.body.mass_kg
-        }
-        _ => 0.0,
-    }
+    let mass_kg = fitted.base.vehicle.body.mass_kg;
+    let drag_n_s_m = if across {
+        lateral_drag(view, fitted).map_or(0.0, |(drag_n_s_m, _)| drag_n_s_m)
+    } else {
+        axial_drag_n_s_m(fitted)
+    };
+    // an error whose rate wanders, and one that is itself a first-order Gauss-Markov process as a gust is
+    let of_rate_m_s = red_fit(view, &ordinates)
+        .filter(|(.., statistic)| *statistic > CONTRADICTION_STATISTIC)
+        .map_or(0.0, |(correlation_s, fit, _)| fit.coefficients[2].sqrt() * correlation_s / mass_kg);
+    let of_process_m_s = velocity_error_m_s(view, &ordinates, correlation_s).unwrap_or(0.0) / mass_kg;
+    drag_n_s_m * of_rate_m_s.max(of_process_m_s)
+}
+
+/// Standard deviation, times the mass (kg m/s), of a velocity's Gauss-Markov error that the contradiction shows
+/// with certainty.
+fn velocity_error_m_s(view: &View, ordinates: &[Ordinate], correlation_s: f64) -> Option<f64> {
+    let power: Vec<f64> = ordinates.iter().map(|o| o.power).collect();
+    let [force, velocity] = noise_shapes(view, ordinates);
+    let plain = whittle(&power, &[&force, &velocity])?;
+    let rate = red_shape(view, ordinates, &velocity, correlation_s);
+    let fit = whittle(&power, &[&force, &velocity, &rate])?;
+    let certain = 2.0 * (plain.deviance - fit.deviance) > CONTRADICTION_STATISTIC;
+    certain.then(|| (fit.coefficients[2] * VELOCITY_SCALE_S2).sqrt())
 }
 
 /// The state that the residual follows most surely, where no flight repeats.

@@ -10,6 +10,8 @@ use std::f64::consts::TAU;
 
 /// Highest frequency that the fits look at, Hz; the kernel lets little pass beyond.
 pub(super) const HIGHEST_HZ: f64 = 4.0;
+/// Of the shape of velocity noise, so that both shapes are alike at the middle of the band, s^2.
+pub(super) const VELOCITY_SCALE_S2: f64 = 1.0 / (TAU * 0.5 * HIGHEST_HZ * TAU * 0.5 * HIGHEST_HZ);
 /// Shortest stretch that is transformed, s.
 const SHORTEST_S: f64 = 10.0;
 
@@ -196,9 +198,7 @@ pub(super) fn noise_variance(view: &View, ordinates: &[Ordinate]) -> Option<f64>
 
 /// What white noise of force and of velocity look like at the ordinates.
 pub(super) fn noise_shapes(view: &View, ordinates: &[Ordinate]) -> [Vec<f64>; 2] {
-    // per unit of the force's: 1/s^2 at the middle of the band
-    let scale = (TAU * 0.5 * HIGHEST_HZ).powi(-2);
-    [(0, 1.0), (1, scale)].map(|(order, scale)| {
+    [(0, 1.0), (1, VELOCITY_SCALE_S2)].map(|(order, scale)| {
         ordinates
             .iter()
             .map(|o| scale * kernel_power(&view.kernel, (order, view.grid_step_s), o.frequency_hz))

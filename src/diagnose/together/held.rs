@@ -139,13 +139,7 @@ fn nothing(present: &Present, slot: usize) -> f64 {
 
 /// Standard errors by which an amount differs from nothing.
 pub(super) fn from_nothing(present: &Present, slot: usize, std: f64) -> f64 {
-    // a ceiling's a1 divides: nothing lies at infinity, and the distance to it is in 1/a1
-    let away = if present.effect.id() == "ceiling_effect" {
-        present.values[slot]
-    } else {
-        present.values[slot] - present.nothing_at(slot)
-    };
-    away / std.max(f64::MIN_POSITIVE)
+    present.away_from_nothing(slot, std)
 }
 
 fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
