@@ -45,6 +45,12 @@ fn a_vehicle_played_by_pymavlink_is_flown_to_the_ground_and_its_log_is_read_by_p
     assert_eq!(document["flight"]["flown"]["periods"], 2, "{said}");
     assert_eq!(document["dropped_frames"], 0, "{said}");
 
+    let events = std::fs::read_to_string(out.join("events.jsonl")).unwrap();
+    for ready in ["ok: home", "ok: estimate", "ok: pre-arm", "ok: health"] {
+        assert!(events.contains(ready), "{ready}: {events}");
+    }
+    assert!(!events.contains("refusal:"), "{events}");
+
     assert_eq!(seen["modes"], json!(["HOLD", "OFFBOARD", "LAND", "HOLD"]), "{seen}");
     assert_eq!(seen["losses"], 0, "{seen}");
     assert!(seen["highest_m"].as_f64().unwrap() > 1.0, "{seen}");

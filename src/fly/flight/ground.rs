@@ -26,6 +26,8 @@ const POSITION_FRESH: Duration = Duration::from_millis(500);
 const START_MAX_M: f64 = 5.0;
 const AUTOPILOT_VERSION: u16 = 148;
 const UID2_OFFSET: usize = 60;
+/// One in five datagrams lost: the version stays away once in three thousand flights.
+const VERSION_CHANCES: u32 = 4;
 
 /// Messages that the safety rules rest on, and how often, Hz: LOCAL_POSITION_NED, ATTITUDE_QUATERNION,
 /// SYS_STATUS, EXTENDED_SYS_STATE, BATTERY_STATUS, CURRENT_MODE, POSITION_TARGET_LOCAL_NED, and the
@@ -41,9 +43,9 @@ const ARDUPILOT_STREAMS: [(f32, f32); 2] = [(193.0, 2.0), (0.0, 5.0)];
 pub(super) struct Checking {
     wanted: Vec<Order>,
     embedded: Option<bool>,
-    /// how often the version was asked for again
-    asked_again: u8,
     all_asked: bool,
+    /// how often the version may be asked for again
+    version_chances: u32,
 }
 
 impl Checking {
@@ -56,7 +58,7 @@ impl Checking {
         let mut wanted: Vec<Order> =
             own.iter().chain(&STREAMS).map(|(id, rate_hz)| interval(*id, *rate_hz)).collect();
         wanted.push(Order::request_message(AUTOPILOT_VERSION));
-        Self { wanted, embedded: None, asked_again: 0, all_asked: false }
+        Self { wanted, embedded: None, all_asked: false, version_chances: VERSION_CHANCES }
     }
 
     pub(super) fn has_asked(&self) -> bool {
@@ -72,8 +74,6 @@ fn interval(id: f32, rate_hz: f32) -> Order {
     }
 }
 
-/// How often a version that did not come is asked for again.
-const ASKED_AGAIN: u8 = 4;
 /// Answers to questions come soon or not at all.
 const QUESTION: Manner = Manner {
     repeat: Duration::from_millis(400),
@@ -123,9 +123,9 @@ impl Flight {
         if !self.commander.waits_for_kind(&question) && !self.commander.waits_for_kind(&version) {
             match checking.wanted.pop() {
                 Some(order) => self.commander.give(now, order, QUESTION),
-                // the answer to the request may arrive and the message be lost
-                None if checking.embedded.is_none() && checking.asked_again < ASKED_AGAIN => {
-                    checking.asked_again += 1;
+                // the answer's acknowledgement came and the answer itself was lost
+                None if checking.embedded.is_none() && checking.version_chances > 0 => {
+                    checking.version_chances -= 1;
                     self.commander.give(now, version, QUESTION);
                 }
                 None => checking.all_asked = true,

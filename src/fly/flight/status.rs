@@ -37,6 +37,12 @@ pub struct Status {
     pub position_m: Option<[f64; 3]>,
     /// why the estimate cannot be flown by
     pub estimator_faults: Vec<String>,
+    /// how long the estimate has been good; `None` where nothing was said of it
+    pub estimate_good_for: Option<Duration>,
+    /// the vehicle's own checks; `None` where it does not say
+    pub may_arm: Option<bool>,
+    /// its parts that are on and not healthy
+    pub unhealthy: Vec<&'static str>,
 }
 
 impl Flight {
@@ -46,6 +52,7 @@ impl Flight {
         let telemetry = self.contact.as_ref().map(|contact| &contact.telemetry);
         let state = telemetry.and_then(|telemetry| Some((telemetry.stack(), telemetry.state?.value)));
         let motion = telemetry.and_then(|telemetry| telemetry.motion);
+        let system = telemetry.and_then(|telemetry| Some(&telemetry.system.as_ref()?.value));
         Status {
             phase: self.phase.name(),
             airborne: self.phase.is_airborne(),
@@ -61,6 +68,10 @@ impl Flight {
             battery_v: telemetry.and_then(|telemetry| telemetry.battery_v),
             position_m: motion.map(|motion| motion.value.position_m.into()),
             estimator_faults: telemetry.map(|telemetry| telemetry.estimator_faults(now)).unwrap_or_default(),
+            estimate_good_for: telemetry
+                .and_then(|telemetry| Some(now.saturating_sub(telemetry.estimator_good_since?))),
+            may_arm: system.and_then(|system| system.may_arm),
+            unhealthy: system.map(|system| system.unhealthy.clone()).unwrap_or_default(),
         }
     }
 

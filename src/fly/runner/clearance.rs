@@ -19,6 +19,7 @@ use nalgebra::Vector3;
 const AWAITED: [&str; 4] = ["estimate", "pre-arm", "home", "health"];
 
 const GPS_GLOBAL_ORIGIN: u32 = 49;
+const HOME_POSITION: u32 = 242;
 
 /// What came of it.
 #[derive(Debug)]
@@ -60,13 +61,15 @@ pub(super) struct Clearance {
     fence: FenceDownload,
     /// where the local frame lies, as GPS_GLOBAL_ORIGIN says
     origin: Option<Geodetic>,
+    /// it said where its home is
+    home_set: bool,
 }
 
 impl Clearance {
     pub(super) fn new(vehicle: log::Vehicle, rotors: usize, link: LinkKind) -> Self {
         let download = Download::new(vehicle, wanted(vehicle.autopilot, rotors), DownloadSettings::default());
         let (stage, fence) = (Stage::Parameters(Box::new(download)), FenceDownload::new(vehicle));
-        Self { vehicle, link, stage, fence, origin: None }
+        Self { vehicle, link, stage, fence, origin: None, home_set: false }
     }
 
     pub(super) fn take_event(&mut self, event: &log::Event<'_>) {
@@ -80,6 +83,7 @@ impl Clearance {
         if header.system == self.vehicle.system && header.message_id == GPS_GLOBAL_ORIGIN {
             self.origin = Some(geodetic(frame.payload()));
         }
+        self.home_set |= header.system == self.vehicle.system && header.message_id == HOME_POSITION;
         self.fence.take_frame(frame);
         match &mut self.stage {
             Stage::Parameters(download) => download.take_frame(frame),
@@ -150,7 +154,11 @@ impl Clearance {
             endurance_s: None,
         };
         let readiness = Readiness {
+            may_arm: status.may_arm,
+            unhealthy: status.unhealthy.into_iter().map(str::to_owned).collect(),
+            estimate_good_for: status.estimate_good_for,
             estimate_faults: status.estimator_faults,
+            home_set: self.home_set,
             position_arrives: status.position_m.is_some(),
             armed: status.armed,
             ..Readiness::default()
