@@ -256,13 +256,14 @@ impl Telemetry {
             log::Event::Parameter { .. } => {}
         });
         let oriented = self.attitude.filter(|seen| seen.at == now).map(|seen| seen.value);
-        let pose = if let (Some((time_s, position_m)), Some(velocity_m_s), Some(attitude), Some(rates_rad_s)) =
-            (position, velocity, oriented, rates)
-        {
-            Some(Pose { time_s, position_m, velocity_m_s, attitude, rates_rad_s })
-        } else {
-            None
-        };
+        let pose =
+            if let (Some((time_s, position_m)), Some(velocity_m_s), Some(attitude), Some(rates_rad_s)) =
+                (position, velocity, oriented, rates)
+            {
+                Some(Pose { time_s, position_m, velocity_m_s, attitude, rates_rad_s })
+            } else {
+                None
+            };
         if frame.header().message_id == ODOMETRY {
             self.note_pose(pose, reset, news);
         }
