@@ -312,6 +312,17 @@ fn px4_fails_safe_in_a_silence_and_the_trajectory_is_not_resumed_elsewhere() {
     assert!(outcome.flown.periods < 2 && outcome.ending == Ending::Landed, "{outcome:?}");
 }
 
+/// The failsafe that it flies is left to it: its mode from before the silence is not taken for its mode now.
+#[test]
+fn px4_that_fell_out_of_offboard_in_a_long_silence_is_told_nothing() {
+    let (flying, since) = after(PX4, Fault::LinkSilence(Duration::from_secs(8)));
+    assert!(matches!(flying.cause(), Cause::LinkLost(_)), "{}", flying.cause());
+    let silent = since + Duration::from_millis(5020);
+    assert_eq!(flying.setpoints_since(silent), 0);
+    assert_eq!(flying.commands_since(SET_MODE, silent), 0, "{}", flying.story());
+    assert_eq!(flying.outcome.as_ref().unwrap().ending, Ending::Landed, "{}", flying.story());
+}
+
 #[test]
 fn a_flight_that_is_not_looked_after_holds_and_lands() {
     for (kind, silent_ms) in [(PX4, 200), (COPTER, 200), (COPTER, 600)] {

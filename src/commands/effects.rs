@@ -11,7 +11,21 @@ use super::CommandError;
 
 /// The effects of a model file. A rotor may be given by its name.
 pub fn effects(tables: &[toml::Table], vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
-    tables.iter().map(|table| effect(table, vehicle)).collect()
+    let all = tables.iter().map(|table| effect(table, vehicle)).collect::<Result<Vec<_>, _>>()?;
+    for (index, active) in all.iter().enumerate() {
+        let id = active.effect().id();
+        // each rotor may be weak in its own way
+        let again = |other: &&ActiveEffect| {
+            other.effect().id() == id
+                && (id != "weak_rotor" || other.parameters()[0] == active.parameters()[0])
+        };
+        if all[..index].iter().any(|other| again(&other)) {
+            return Err(CommandError::Input(format!(
+                "[[effect]]: expected each effect once, {id} comes twice"
+            )));
+        }
+    }
+    Ok(all)
 }
 
 /// With the motor lag that the vehicle's `time_constant` states, if no effect is one.

@@ -41,6 +41,14 @@ impl Explained {
             CommandError::Input(format!("{}: {error}", args.vehicle.display()))
         };
         let known = effects(&loaded.model.effects, &vehicle).map_err(|error| refuse(&error))?;
+        if !known.is_empty() {
+            let names: Vec<&str> = known.iter().map(|active| active.effect().id()).collect();
+            warnings.push(format!(
+                "{}: its effects ({}) are left out and looked for anew",
+                args.vehicle.display(),
+                names.join(", ")
+            ));
+        }
         let mut flights = flown(&args.logs, args, &vehicle)?;
         let held = flown(&args.holdout, args, &vehicle)?;
         refuse_twins(&flights.iter().chain(&held).map(|flight| &flight.input).collect::<Vec<_>>())?;
@@ -58,7 +66,7 @@ impl Explained {
         warnings.extend(flights.iter().chain(&held).filter_map(|flight| losses(&flight.input)));
         let given = Given {
             vehicle,
-            known,
+            known: Vec::new(),
             inputs: flights.iter().map(|flight| flight.input.clone()).collect(),
             quality: flights.iter().map(|flight| flight.signals.quality.clone()).collect(),
             settings,
@@ -99,8 +107,7 @@ impl Explained {
 
     /// Writes model, report and document into a folder, which is made.
     pub fn write(&self, folder: &Path) -> Result<(), CommandError> {
-        std::fs::create_dir_all(folder)
-            .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", folder.display())))?;
+        output::folder(folder)?;
         output::file(&folder.join(MODEL), &self.story.model_toml()?)?;
         output::file(&folder.join(REPORT), &self.story.report_html(&self.traces))?;
         let document = serde_json::to_string_pretty(&self.document())
@@ -144,6 +151,21 @@ fn check(args: &ExplainArgs) -> Result<(), CommandError> {
     }
     if let Some(path) = args.out.as_ref().filter(|path| path.exists() && !path.is_dir()) {
         return Err(CommandError::Input(format!("--out: expected a folder, {} is a file", path.display())));
+    }
+    let inputs: Vec<&PathBuf> = args.logs.iter().chain(&args.holdout).chain([&args.vehicle]).collect();
+    output::refuse_overwriting(&inputs, &args.next.iter().collect::<Vec<_>>())?;
+    // a target that cannot be written is told before the work
+    if let Some(folder) = &args.out {
+        output::folder(folder)?;
+    }
+    if let Some(parent) = args.next.as_deref().and_then(Path::parent)
+        && !parent.as_os_str().is_empty()
+        && !parent.is_dir()
+    {
+        return Err(CommandError::Input(format!(
+            "--next: expected a file in a folder that exists, {} does not",
+            parent.display()
+        )));
     }
     Ok(())
 }

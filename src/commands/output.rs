@@ -1,7 +1,7 @@
 //! Standard output for results, standard error for the rest.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
@@ -38,4 +38,30 @@ fn line(mut out: impl Write, text: &str) -> Result<(), CommandError> {
         }
         _ => Ok(()),
     }
+}
+
+/// Makes a folder for results.
+pub fn folder(path: &Path) -> Result<(), CommandError> {
+    std::fs::create_dir_all(path)
+        .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", path.display())))
+}
+
+/// Results do not overwrite what they come from, nor each other.
+pub fn refuse_overwriting(inputs: &[&PathBuf], outputs: &[&PathBuf]) -> Result<(), CommandError> {
+    let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+    for (index, output) in outputs.iter().enumerate() {
+        if inputs.iter().any(|input| real(input) == real(output)) {
+            return Err(CommandError::Input(format!(
+                "expected results in a file of their own, {} is read",
+                output.display()
+            )));
+        }
+        if outputs[..index].iter().any(|other| real(other) == real(output)) {
+            return Err(CommandError::Input(format!(
+                "expected one file a result, {} is given for two",
+                output.display()
+            )));
+        }
+    }
+    Ok(())
 }

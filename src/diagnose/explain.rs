@@ -11,7 +11,7 @@ use super::latency::{LatencyFinding, REFUSED, held_s};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
 use super::mounting::ordinary_size;
 use super::rows::{AXES, CHANNELS};
-use super::search::{Fitted, Search, Step, Tested, search};
+use super::search::{Fitted, Newton, Search, Step, Tested, fit, search};
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
 use crate::physics::effects::by_id;
@@ -91,9 +91,21 @@ pub fn explain(
         let (seconds, needed_s) = (rows as f64 * 0.05, LEAST_ROWS as f64 * 0.05);
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
-    let found = search(&traces, vehicle, &settings.gates)?;
+    let mut found = search(&traces, vehicle, &settings.gates)?;
+    leave_out_ordinary(&traces, &mut found)?;
     let beyond = beyond(&traces, &found);
     Ok(judge(&traces, vehicle, found, beyond))
+}
+
+/// What gets no name is not in the model either.
+fn leave_out_ordinary(traces: &[Trace], found: &mut Search) -> Result<(), PhysicsError> {
+    let mut base = found.after.base.clone();
+    let all = found.after.base.clone();
+    base.present.retain(|present| !is_ordinary(present, &all));
+    if base.present.len() < all.present.len() {
+        found.after = fit(traces, base, Newton::Held)?;
+    }
+    Ok(())
 }
 
 /// What is left beside all names, and where.
@@ -244,9 +256,6 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
                 parameters.push(NamedParameter { name: parameter.name, value, std, unit: parameter.unit });
             }
         }
-        if is_ordinary(present, &fitted.base) {
-            continue;
-        }
         let step = found.steps.iter().find(|step| {
             step.taken.candidate.parts.iter().any(|part| part.effect.id() == present.effect.id())
         });
@@ -352,7 +361,7 @@ fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<N
         confusable_with: if told_apart {
             Vec::new()
         } else {
-            vec![Confusable { id: other, distinguishability: Some(against_lag.max(against_delay)) }]
+            vec![Confusable { id: other, distinguishability: Some((others - own).max(0.0)) }]
         },
     })
 }

@@ -198,7 +198,7 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
                 base.present.extend(started(&taken).into_iter().map(released));
                 lift_load(&mut base);
                 let fitted = fit(flights, base, Newton::Held)?;
-                if wanders(flights, &fitted, &taken) {
+                if wanders(flights, &fitted, &taken) || at_bound(&fitted, &taken) {
                     refused.push(taken.candidate.id);
                     continue;
                 }
@@ -256,6 +256,20 @@ fn started(tested: &Tested) -> Vec<Present> {
         }
     }
     parts
+}
+
+/// The fit takes a parameter of it as far as physics allows: whatever it is, it is not that.
+fn at_bound(fitted: &Fitted, taken: &Tested) -> bool {
+    let just_taken = &fitted.base.present[fitted.base.present.len() - taken.candidate.parts.len()..];
+    just_taken.iter().any(|present| {
+        let common = present.effect.parameters().iter().enumerate();
+        let mut free = common.filter(|(slot, _)| present.free.contains(slot));
+        free.any(|(slot, parameter)| {
+            let value = present.values[slot];
+            let bound = value <= parameter.min || value >= parameter.max;
+            bound && value != present.nothing_at(slot)
+        })
+    })
 }
 
 /// A step of the mass that a wandering force could be.

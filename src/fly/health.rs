@@ -11,6 +11,8 @@ const POSITION_ABSOLUTE: u16 = 1 << 4;
 const HEIGHT_ABSOLUTE: u16 = 1 << 5;
 const HEIGHT_ABOVE_GROUND: u16 = 1 << 6;
 const CONSTANT_POSITION: u16 = 1 << 7;
+/// It could tell the position from what aids it now.
+const PREDICTED: u16 = 1 << 8 | 1 << 9;
 /// Innovation tests above this reject the measurement.
 const RATIO_MAX: f64 = 1.0;
 
@@ -22,11 +24,15 @@ pub struct EstimatorReport {
 }
 
 impl EstimatorReport {
-    /// ESTIMATOR_STATUS (PX4).
+    /// ESTIMATOR_STATUS (PX4). Its constant position means also a vehicle that stands on the ground, whose
+    /// position is as good as ever; only without anything that aids it is the position made up.
     #[must_use]
     pub fn from_estimator_status(payload: Payload<'_>) -> Self {
         let ratios = [("velocity", 8), ("horizontal position", 12), ("vertical position", 16)];
-        Self::new(payload.u16(40), ratios.map(|(name, offset)| (name, payload.f32(offset))))
+        let flags = payload.u16(40);
+        let stands = flags & PREDICTED != 0;
+        let flags = if stands { flags & !CONSTANT_POSITION } else { flags };
+        Self::new(flags, ratios.map(|(name, offset)| (name, payload.f32(offset))))
     }
 
     /// EKF_STATUS_REPORT (ArduPilot).
@@ -161,6 +167,20 @@ mod tests {
         report[20..].copy_from_slice(&0b1010_0111_u16.to_le_bytes());
         let faults = EstimatorReport::from_ekf_status_report(Payload(&report)).faults;
         assert!(faults.contains(&"position is held constant".to_owned()), "{faults:?}");
+    }
+
+    #[test]
+    fn a_px4_that_stands_on_the_ground_has_its_position() {
+        let mut report = [0_u8; 42];
+        for (flags, faults) in [
+            (0b11_1111_1111_u16, &[][..]),
+            (0b11_0111_1111, &[]),
+            (0b00_1010_0111, &["no horizontal position", "position is held constant"]),
+            (0b00_1011_1111, &["position is held constant"]),
+        ] {
+            report[40..].copy_from_slice(&flags.to_le_bytes());
+            assert_eq!(EstimatorReport::from_estimator_status(Payload(&report)).faults, faults, "{flags:b}");
+        }
     }
 
     #[test]

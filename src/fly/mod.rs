@@ -25,6 +25,7 @@ mod outcome;
 pub mod parameters;
 pub mod preflight;
 pub mod requests;
+mod reset;
 mod roster;
 mod runner;
 mod safety;

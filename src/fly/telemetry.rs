@@ -8,6 +8,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use super::health::{BatteryLevel, EstimatorReport, SystemReport, battery_status, level_of_percent};
 use super::modes::Stack;
 use super::order::SendingOrder;
+use super::reset::{Pose, Step};
 use crate::frames::Attitude;
 use crate::log::{self, Decoder, Frame, Payload, Quantity, Record};
 
@@ -46,6 +47,7 @@ pub struct FlightState {
 const STATE_CRITICAL: u8 = 5;
 const STATE_EMERGENCY: u8 = 6;
 const STATE_TERMINATION: u8 = 8;
+const ODOMETRY: u32 = 331;
 /// MAV_LANDED_STATE.
 const ON_GROUND: f64 = 1.0;
 const ARMED: u8 = 128;
@@ -76,8 +78,10 @@ pub enum Novelty {
     Text(u8, String),
     /// its clock started anew
     Reboot,
-    /// its position estimate jumped
+    /// its estimate jumped
     EstimatorReset(String),
+    /// its estimate was reset by so little that it can be flown through
+    EstimatorStep(String),
     /// it says that it flies to this place, m, world (POSITION_TARGET_LOCAL_NED)
     Target(Vector3<f64>),
 }
@@ -117,6 +121,8 @@ pub struct Telemetry {
     pub battery_v: Option<f64>,
     texts: VecDeque<(Duration, u8, String)>,
     order: SendingOrder,
+    /// last ODOMETRY
+    pose: Option<Pose>,
     /// place of the frame from which `state` is
     state_place: i64,
     velocity_m_s: Option<Vector3<f64>>,
@@ -145,6 +151,7 @@ impl Telemetry {
             battery_v: None,
             texts: VecDeque::new(),
             order: SendingOrder::default(),
+            pose: None,
             state_place: i64::MIN,
             velocity_m_s: None,
         }
@@ -225,7 +232,7 @@ impl Telemetry {
 
     fn samples(&mut self, (now, silence): (Duration, Duration), frame: Frame<'_>, news: &mut Vec<Novelty>) {
         let record = Record { stamp_us: micros(now), offset: 0, known: true, frame };
-        let (mut position, mut velocity) = (None, None);
+        let (mut position, mut velocity, mut rates, mut reset) = (None, None, None, false);
         let (attitude, landed, volts) = (&mut self.attitude, &mut self.landed, &mut self.battery_v);
         self.decoder.decode(&record, &mut |event| match event {
             log::Event::Sample { stream, time_s, values } => match (stream.quantity, values) {
@@ -235,6 +242,7 @@ impl Telemetry {
                     let value = Attitude(UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)));
                     *attitude = Some(Seen { at: now, value });
                 }
+                (Quantity::AngularRate, &[x, y, z]) => rates = Some(Vector3::new(x, y, z)),
                 (Quantity::LandedState, &[state]) => {
                     *landed = Some(Seen { at: now, value: (state - ON_GROUND).abs() < 0.5 });
                 }
@@ -250,11 +258,21 @@ impl Telemetry {
                 news.push(Novelty::Reboot);
             }
             log::Event::ClockReset { .. } => {}
-            log::Event::EstimatorReset { .. } => {
-                news.push(Novelty::EstimatorReset("ODOMETRY.reset_counter changed".to_owned()));
-            }
+            log::Event::EstimatorReset { .. } => reset = true,
             log::Event::Parameter { .. } => {}
         });
+        let oriented = self.attitude.filter(|seen| seen.at == now).map(|seen| seen.value);
+        let pose =
+            if let (Some((time_s, position_m)), Some(velocity_m_s), Some(attitude), Some(rates_rad_s)) =
+                (position, velocity, oriented, rates)
+            {
+                Some(Pose { time_s, position_m, velocity_m_s, attitude, rates_rad_s })
+            } else {
+                None
+            };
+        if frame.header().message_id == ODOMETRY {
+            self.note_pose(pose, reset, news);
+        }
         for novelty in &*news {
             if let Novelty::Text(severity, text) = novelty {
                 self.texts.push_back((now, *severity, text.clone()));
@@ -267,6 +285,20 @@ impl Telemetry {
             && position_m.iter().chain(&velocity_m_s).all(|value| value.is_finite())
         {
             self.note_motion(now, Motion { time_s, position_m, velocity_m_s }, news);
+        }
+    }
+
+    /// ODOMETRY came; its counter says that something of it was `reset`.
+    fn note_pose(&mut self, pose: Option<Pose>, reset: bool, news: &mut Vec<Novelty>) {
+        let before = std::mem::replace(&mut self.pose, pose);
+        if reset {
+            let step = pose.map_or(Step::Unknown, |after| Step::between(before.as_ref(), &after));
+            let text = format!("ODOMETRY.reset_counter changed, {step}");
+            news.push(if step.is_small() {
+                Novelty::EstimatorStep(text)
+            } else {
+                Novelty::EstimatorReset(text)
+            });
         }
     }
 

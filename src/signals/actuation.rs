@@ -7,6 +7,17 @@ use crate::log::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector4;
 
+/// Channels of commands that do not stay at one value: a PX4 reports its whole row of outputs, those without
+/// a motor at the value of a disarmed one.
+fn channels_that_move(commands: &Stream) -> usize {
+    let moves = |channel: &usize| {
+        let mut values = commands.values.iter().skip(*channel).step_by(commands.width.max(1));
+        let first = values.find(|value| value.is_finite());
+        first.is_some_and(|first| values.any(|value| value.is_finite() && value != first))
+    };
+    (0..commands.width).filter(moves).count()
+}
+
 /// Commands or measured rotor speeds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ThrustPreference {
@@ -116,9 +127,11 @@ impl Actuation {
             )),
             _ => {}
         }
-        if let Some(width) = recorded(Quantity::ActuatorCommand).filter(|width| *width > needed) {
+        let moving = recording.streams.iter().filter(|(key, _)| key.quantity == Quantity::ActuatorCommand);
+        let moving = moving.map(|(_, stream)| channels_that_move(stream)).max();
+        if let Some(count) = moving.filter(|count| *count > needed) {
             notes.push(format!(
-                "the log has {width} actuator channels in use, the vehicle file {needed} rotors: is it this vehicle's?"
+                "the log has {count} actuator channels in use, the vehicle file {needed} rotors: is it this vehicle's?"
             ));
         }
         notes
@@ -158,4 +171,18 @@ pub(super) struct Felt {
     pub(super) rotor_thrust_n: Vec<f64>,
     pub(super) wrench: Vec<Vector4<f64>>,
     pub(super) jitter_wrench: Option<Vec<Vector4<f64>>>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_output_that_stays_where_it_is_drives_nothing() {
+        let rows =
+            [[f64::NAN, 1500.0, 900.0, 0.0], [1400.0, 1510.0, 900.0, 0.0], [1420.0, 1490.0, 900.0, 0.0]];
+        let commands = Stream { time_s: vec![0.0, 0.1, 0.2], width: 4, values: rows.concat() };
+        assert_eq!(channels_that_move(&commands), 2);
+        assert_eq!(channels_that_move(&Stream::default()), 0);
+    }
 }

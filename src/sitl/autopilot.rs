@@ -161,6 +161,9 @@ impl Autopilot {
             self.say(Severity::Info, "Takeoff detected");
         }
         let home_m = self.home_m.unwrap_or_else(Vector3::zeros);
+        if self.kind.is_px4() {
+            self.estimator.align_at(state.position_m.z - home_m.z);
+        }
         self.setpoint = self.guidance.setpoint(&state, &home_m, (&self.tuning, now), period_s);
         let outputs = match self.guidance.task {
             Task::Turn(demand) => {
@@ -193,6 +196,7 @@ impl Autopilot {
         let needed = Duration::from_millis(if self.kind.is_px4() { 500 } else { 1000 });
         if now.saturating_sub(since) >= needed {
             self.landed_since = Some(now);
+            self.estimator.stand();
             if self.kind.is_px4() {
                 self.say(Severity::Info, "Landing detected");
             }

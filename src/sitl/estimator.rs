@@ -10,6 +10,9 @@ use super::Settings;
 use crate::physics::State;
 use crate::simulate::NoiseLevels;
 
+/// Where PX4 aligns its heading in the air, m above the ground.
+const ALIGNED_ABOVE_M: f64 = 1.5;
+
 /// An estimator that is as good as its noise, needs time after boot, and can be made to jump or fail.
 #[derive(Debug)]
 pub(super) struct Estimator {
@@ -20,6 +23,8 @@ pub(super) struct Estimator {
     shift_m: Vector3<f64>,
     /// counts jumps, as ODOMETRY does
     pub(super) reset_counter: u8,
+    /// its heading is aligned since it took off
+    aligned: bool,
     /// the last estimate
     pub(super) state: State,
 }
@@ -34,6 +39,7 @@ impl Estimator {
             healthy: true,
             shift_m: Vector3::zeros(),
             reset_counter: 0,
+            aligned: false,
             state: State::at_rest(Vector3::new(north_m, west_m, 0.0), settings.start_yaw_rad),
         }
     }
@@ -60,6 +66,20 @@ impl Estimator {
         self.shift_m += by_m;
         self.state.position_m += by_m;
         self.reset_counter = self.reset_counter.wrapping_add(1);
+    }
+
+    /// PX4 resets its heading once in each flight, when it is this high, and counts that however small the
+    /// step is; here there is none.
+    pub(super) fn align_at(&mut self, height_m: f64) {
+        if height_m > ALIGNED_ABOVE_M && !self.aligned {
+            self.aligned = true;
+            self.reset_counter = self.reset_counter.wrapping_add(1);
+        }
+    }
+
+    /// It stands on the ground: the next flight aligns anew.
+    pub(super) fn stand(&mut self) {
+        self.aligned = false;
     }
 
     /// Where the position estimate is against the simulation's, world, m.

@@ -130,6 +130,9 @@ pub(super) enum IntervalRefusal {
     TooFast,
 }
 
+/// PX4 tells its mode so often where it does not change.
+const PX4_MODE_PERIOD: Duration = Duration::from_millis(500);
+
 #[derive(Debug, Clone, Copy)]
 struct Stream {
     id: u32,
@@ -144,6 +147,7 @@ struct Stream {
 pub(super) struct Streams {
     kind: AutopilotKind,
     all: BTreeMap<u32, Stream>,
+    mode_changed: bool,
 }
 
 fn period(rate_hz: f64) -> Option<Duration> {
@@ -167,7 +171,7 @@ impl Streams {
                 ARDUPILOT.iter().map(|id| stream(*id, if *id == TIMESYNC { 0.1 } else { 0.0 })).collect()
             }
         };
-        Self { kind, all }
+        Self { kind, all, mode_changed: false }
     }
 
     /// This autopilot can send the message.
@@ -215,12 +219,19 @@ impl Streams {
         Some(stream.interval.map_or(-1, |interval| i32::try_from(interval.as_micros()).unwrap_or(i32::MAX)))
     }
 
+    /// The mode is another one.
+    pub(super) fn mode_changed(&mut self) {
+        self.mode_changed = true;
+    }
+
     /// Messages that are due in this loop period; they count as sent.
     pub(super) fn due(&mut self, now: Duration, downloading: bool) -> Vec<u32> {
+        let news = std::mem::take(&mut self.mode_changed);
         let kind = self.kind;
         let mut due = Vec::new();
         for stream in self.all.values_mut() {
             let is_due = match kind {
+                AutopilotKind::Px4 if stream.id == CURRENT_MODE => px4_mode_is_due(stream, now, news),
                 AutopilotKind::Px4 => px4_is_due(stream, now),
                 AutopilotKind::ArduPilot(_) => ardupilot_is_due(stream, now, downloading),
             };
@@ -274,6 +285,17 @@ fn px4_is_due(stream: &mut Stream, now: Duration) -> bool {
     true
 }
 
+/// PX4 has a mode to tell when it changes and twice a second, however often it is asked for.
+fn px4_mode_is_due(stream: &mut Stream, now: Duration, changed: bool) -> bool {
+    let Some(interval) = stream.interval else { return false };
+    let passed = stream.last.map(|last| now.saturating_sub(last));
+    let due = changed || passed.is_none_or(|passed| passed + PX4_EARLY > interval.max(PX4_MODE_PERIOD));
+    if due {
+        stream.last = Some(now);
+    }
+    due
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -300,6 +322,7 @@ mod tests {
         near(px4(ATTITUDE, 200.0), 125.0);
         near(px4(HIGHRES_IMU, 250.0), 250.0);
         near(px4(LOCAL_POSITION_NED, 250.0), 125.0);
+        near(px4(CURRENT_MODE, 10.0), 2.0);
         let ardupilot =
             |asked_hz| measured_hz(AutopilotKind::ArduPilot(ArduPilotRelease::V4_7), ATTITUDE, asked_hz);
         near(ardupilot(100.0), 100.0);

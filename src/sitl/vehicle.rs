@@ -13,7 +13,7 @@ use super::parameters::{Parameters, Pulses};
 use super::streams::HEARTBEAT;
 use super::telemetry::{Snapshot, Telemetry};
 use super::tuning::Tuning;
-use super::{Fault, LinkId, LinkRole, Settings, SitlError};
+use super::{Fault, LinkId, LinkRole, Mode, Settings, SitlError};
 use crate::log::{Check, CrcSeeds, Frame};
 use crate::physics::MAX_ROTORS;
 
@@ -54,6 +54,8 @@ pub struct Vehicle {
     booted: Duration,
     silent_until: Duration,
     snapshot: Option<Snapshot>,
+    /// mode flown and mode asked for, as the links were told last
+    told_mode: Option<(Mode, Mode)>,
     texts: u16,
     /// a fence that comes in
     pub(super) upload: Option<Upload>,
@@ -84,6 +86,7 @@ impl Vehicle {
             booted: Duration::ZERO,
             silent_until: Duration::ZERO,
             snapshot: None,
+            told_mode: None,
             texts: 0,
             upload: None,
             settings,
@@ -196,6 +199,10 @@ impl Vehicle {
         }
         self.snapshot = Some(Snapshot { now, shown, pulses_us });
         self.pursue_upload(now);
+        let mode = (self.autopilot.mode, self.autopilot.intended);
+        if self.told_mode.replace(mode) != Some(mode) {
+            self.links.iter_mut().for_each(|link| link.streams.mode_changed());
+        }
         self.send_texts();
         self.send_due(now);
     }

@@ -313,6 +313,29 @@ fn a_jump_of_the_estimate_is_counted_and_the_stored_setpoint_goes_with_it() {
 }
 
 #[test]
+fn its_heading_is_aligned_once_in_a_flight_and_that_is_counted() {
+    let mut ground = Ground::new(settings(PX4));
+    assert_eq!(ground.set_interval(331, 30.0), ACCEPTED);
+    assert_eq!(ground.set_interval(230, 5.0), ACCEPTED);
+    ground.wait(3.0);
+    let counter = |ground: &Ground| ground.last(331).unwrap().u8(230);
+    let constant = |ground: &Ground| ground.last(230).unwrap().u16(40) & 128 != 0;
+    let before = counter(&ground);
+    assert!(constant(&ground), "it stands");
+    let hover = Target::at([0.0, 0.0, -1.0]).message();
+    ground.stream(1.5, &hover);
+    assert_eq!(ground.set_mode(Mode::Guided), ACCEPTED);
+    assert_eq!(ground.arm(), ACCEPTED);
+    ground.stream(6.0, &hover);
+    assert_eq!((counter(&ground), constant(&ground)), (before, false));
+    ground.stream(6.0, &Target::at([0.0, 0.0, -3.0]).message());
+    assert_eq!(counter(&ground), before + 1);
+    ground.stream(4.0, &hover);
+    ground.stream(4.0, &Target::at([0.0, 0.0, -3.0]).message());
+    assert_eq!(counter(&ground), before + 1);
+}
+
+#[test]
 fn a_bad_estimate_ends_offboard_and_shows() {
     let mut ground = offboard(settings(PX4));
     ground.set_interval(230, 10.0);

@@ -65,7 +65,9 @@ impl Flight {
             Novelty::EstimatorReset(what) if self.phase.is_airborne() => {
                 self.end(now, Cause::EstimatorReset(what));
             }
-            Novelty::EstimatorReset(what) => self.note(now, Level::Warning, "estimator", what),
+            Novelty::EstimatorReset(what) | Novelty::EstimatorStep(what) => {
+                self.note(now, Level::Warning, "estimator", what);
+            }
             Novelty::Target(place_m) => {
                 if matches!(self.phase, Phase::Course)
                     && let Some(cause) = self.watch.masters.check(now, &place_m)

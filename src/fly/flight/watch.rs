@@ -173,7 +173,8 @@ impl Flight {
     fn check_link(&mut self, now: Duration) {
         let Some(contact) = &self.contact else { return };
         let silent = now.saturating_sub(contact.telemetry.heard);
-        let no_mode = now.saturating_sub(contact.telemetry.heartbeat);
+        // what comes first after a silence is seldom a HEARTBEAT
+        let no_mode = now.saturating_sub(contact.telemetry.heartbeat.max(contact.telemetry.resumed));
         if silent > GIVE_UP_AFTER || no_mode > HEARTBEAT_MAX {
             let what = if silent > GIVE_UP_AFTER { "anything" } else { "a HEARTBEAT" };
             let age_s = silent.max(no_mode.min(HEARTBEAT_MAX)).as_secs_f64();
@@ -219,7 +220,10 @@ impl Flight {
             self.finish(now, ending);
             return;
         }
-        let ours = heard && self.is_in(Mode::External);
+        // the mode from before the silence is not known to be its mode still
+        let telemetry = &contact.telemetry;
+        let said = telemetry.state.is_some_and(|state| state.at >= telemetry.resumed);
+        let ours = heard && said && self.is_in(Mode::External);
         if ours && matches!(self.cause, Some(Cause::LinkLost(_))) {
             self.note(now, Level::Warning, "link", "heard again, still in our mode: it is told to hold");
             self.begin_hold(now);

@@ -124,7 +124,7 @@ impl RatesReport {
     pub fn findings(&self) -> Vec<Finding> {
         let needs = self.needs.iter().map(NeedReport::finding);
         let slow = self.streams.iter().filter(|s| s.answer == Answer::Accepted && s.arrived_hz > 0.0);
-        let slow = slow.filter(|s| !s.is_as_asked(self.autopilot)).map(|s| {
+        let slow = slow.filter(|s| !s.request.on_change && !s.is_as_asked(self.autopilot)).map(|s| {
             Finding::warning(
                 "message rate",
                 format!("{} at {:.0} Hz", s.request.name, s.request.rate_hz),

@@ -71,6 +71,8 @@ pub struct StreamRequest {
     pub needs: &'static [Need],
     /// asked for only where the message of this id is refused or does not come
     pub instead_of: Option<u32>,
+    /// the rate is the greatest: the autopilot sends it when something changes, and seldom else
+    pub on_change: bool,
 }
 
 const fn stream(
@@ -80,12 +82,16 @@ const fn stream(
     frame_bytes: f64,
     needs: &'static [Need],
 ) -> StreamRequest {
-    StreamRequest { message_id, name, rate_hz, frame_bytes, needs, instead_of: None }
+    StreamRequest { message_id, name, rate_hz, frame_bytes, needs, instead_of: None, on_change: false }
 }
 
 impl StreamRequest {
     const fn instead_of(self, message_id: u32) -> Self {
         Self { instead_of: Some(message_id), ..self }
+    }
+
+    const fn on_change(self) -> Self {
+        Self { on_change: true, ..self }
     }
 
     const fn at(self, rate_hz: f64) -> Self {
@@ -114,7 +120,7 @@ const POSITION_TARGET: StreamRequest =
 const BATTERY_STATUS: StreamRequest = stream(147, "BATTERY_STATUS", 2.0, 53.0, &[Need::Battery]);
 const SYS_STATUS: StreamRequest = stream(1, "SYS_STATUS", 2.0, 43.0, &[Need::Battery, Need::State]);
 const EXTENDED_SYS_STATE: StreamRequest = stream(245, "EXTENDED_SYS_STATE", 5.0, 14.0, &[Need::State]);
-const CURRENT_MODE: StreamRequest = stream(436, "CURRENT_MODE", 10.0, 21.0, &[Need::State]);
+const CURRENT_MODE: StreamRequest = stream(436, "CURRENT_MODE", 10.0, 21.0, &[Need::State]).on_change();
 const ESTIMATOR_STATUS: StreamRequest = stream(230, "ESTIMATOR_STATUS", 5.0, 54.0, &[Need::Estimator]);
 const EKF_STATUS_REPORT: StreamRequest = stream(193, "EKF_STATUS_REPORT", 5.0, 38.0, &[Need::Estimator]);
 const HOME_POSITION: StreamRequest = stream(242, "HOME_POSITION", 0.5, 72.0, &[]);

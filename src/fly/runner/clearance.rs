@@ -11,6 +11,7 @@ use crate::fly::preflight::{
     BatteryState, Fence, FenceDownload, FenceOutcome, Geodetic, Readiness, Situation, preflight,
 };
 use crate::fly::requests::{Capacity, LinkKind, RequestSettings, Requests, request_set, slow_request_set};
+use crate::frames::world_from_ned;
 use crate::log::{self, Frame, Payload};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
@@ -61,15 +62,15 @@ pub(super) struct Clearance {
     fence: FenceDownload,
     /// where the local frame lies, as GPS_GLOBAL_ORIGIN says
     origin: Option<Geodetic>,
-    /// it said where its home is
-    home_set: bool,
+    /// home, as HOME_POSITION says: m, world, local
+    home_m: Option<Vector3<f64>>,
 }
 
 impl Clearance {
     pub(super) fn new(vehicle: log::Vehicle, rotors: usize, link: LinkKind) -> Self {
         let download = Download::new(vehicle, wanted(vehicle.autopilot, rotors), DownloadSettings::default());
         let (stage, fence) = (Stage::Parameters(Box::new(download)), FenceDownload::new(vehicle));
-        Self { vehicle, link, stage, fence, origin: None, home_set: false }
+        Self { vehicle, link, stage, fence, origin: None, home_m: None }
     }
 
     pub(super) fn take_event(&mut self, event: &log::Event<'_>) {
@@ -83,7 +84,9 @@ impl Clearance {
         if header.system == self.vehicle.system && header.message_id == GPS_GLOBAL_ORIGIN {
             self.origin = Some(geodetic(frame.payload()));
         }
-        self.home_set |= header.system == self.vehicle.system && header.message_id == HOME_POSITION;
+        if header.system == self.vehicle.system && header.message_id == HOME_POSITION {
+            self.home_m = Some(world_from_ned(frame.payload().f32s(12)).0);
+        }
         self.fence.take_frame(frame);
         match &mut self.stage {
             Stage::Parameters(download) => download.take_frame(frame),
@@ -158,7 +161,7 @@ impl Clearance {
             unhealthy: status.unhealthy.into_iter().map(str::to_owned).collect(),
             estimate_good_for: status.estimate_good_for,
             estimate_faults: status.estimator_faults,
-            home_set: self.home_set,
+            home_set: self.home_m.is_some(),
             position_arrives: status.position_m.is_some(),
             armed: status.armed,
             ..Readiness::default()
@@ -168,7 +171,7 @@ impl Clearance {
             origin_m: status
                 .position_m
                 .map_or_else(Vector3::zeros, |[x, y, z]| flight.offset_m(&Vector3::new(x, y, z))),
-            home_m: None,
+            home_m: self.home_m,
             vehicle,
             limits: &sortie.limits,
             parameters,

@@ -102,7 +102,7 @@ impl Story {
                 },
             );
             format!(
-                "; an empirical force along {}, not a mechanism, stands in for it{gain}",
+                "; an empirical force that follows {}, not a mechanism, stands in for it{gain}",
                 spoken_along(term.along)
             )
         });

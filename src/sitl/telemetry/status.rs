@@ -181,6 +181,8 @@ impl Telemetry {
             let flags = if good { flags } else { flags | CONSTANT_POSITION };
             return Message::new(id).f32s(&[ratio, ratio, 0.05, 0.05, 0.0]).u16(flags).f32(0.0);
         }
+        // PX4 says so also of a vehicle that stands on the ground
+        let flags = if scene.autopilot.is_landed() { flags | CONSTANT_POSITION } else { flags };
         let accuracy_m = if good { 0.3 } else { 50.0 };
         Message::new(id)
             .u64(scene.us(0.0))
