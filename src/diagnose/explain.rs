@@ -82,10 +82,8 @@ pub fn explain(
     vehicle: &Vehicle,
     settings: &ExplainSettings,
 ) -> Result<Explanation, ExplainError> {
-    let traces: Vec<Trace> = flights
-        .iter()
-        .map(|signals| Trace::new(signals, vehicle, settings.half_width_s))
-        .collect::<Result<_, _>>()?;
+    let trace = |signals| Trace::new(signals, vehicle, settings.half_width_s);
+    let traces: Vec<Trace> = flights.iter().map(trace).collect::<Result<_, _>>()?;
     let rows: usize = traces.iter().map(Trace::rows).sum();
     if rows < LEAST_ROWS {
         let (seconds, needed_s) = (rows as f64 * 0.05, LEAST_ROWS as f64 * 0.05);

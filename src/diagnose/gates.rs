@@ -1,7 +1,8 @@
 //! What is asked of a candidate before it is named.
 
+use super::base::moved_to;
 use super::mounting::ordinary_size;
-use super::rows::{SECOND, moved_to};
+use super::rows::SECOND;
 use super::search::{Fitted, Tested};
 
 /// What is asked of a candidate before it is named.

@@ -6,7 +6,7 @@
 //! on the left of its row: rotor thrusts by the commands for forces, by the measured motion for torques.
 
 use super::along::{Turning, wrench_along};
-use super::base::{Base, Present};
+use super::base::{Base, Present, step_of};
 use super::nuisances::{momentum_rows, nuisances};
 use super::sensors::{is_of_sensors, true_motion};
 use super::spin_up::SpinUp;
@@ -287,30 +287,6 @@ fn per_step(mut up: Channels, down: &Channels, step: f64) -> Channels {
         up.iter_mut().zip(down).for_each(|(up, down)| *up = (down - *up) / step);
     }
     up
-}
-
-/// Where a coefficient of a candidate's column takes the parameter.
-pub(super) fn moved_to(present: &Present, index: usize, by: f64) -> f64 {
-    let from = present.values[index];
-    if present.effect.id() == "ceiling_effect" && from == present.nothing_at(index) {
-        // so much of a usual ceiling's, and the effect goes with the inverse
-        let share = by / (USUAL_CEILING - from);
-        return if share > 0.0 { USUAL_CEILING / share } else { from };
-    }
-    from + by
-}
-
-/// a1 of ceilings that were measured.
-const USUAL_CEILING: f64 = 5.0;
-
-/// By how much a parameter is moved to see what it does.
-fn step_of(present: &Present, index: usize) -> f64 {
-    if present.effect.id() == "ceiling_effect" && present.values[index] == present.nothing_at(index) {
-        // a1 divides, and is taken to a usual ceiling's at once: its slope at nothing leads nowhere
-        return USUAL_CEILING - present.values[index];
-    }
-    let span = present.parameter(index).map_or(1.0, |parameter| (parameter.max - parameter.min).min(1.0));
-    (1e-4 * span).max(1e-3 * present.values[index].abs())
 }
 
 pub(super) fn append(to: &mut Channels, from: &Channels) {

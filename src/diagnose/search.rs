@@ -1,6 +1,6 @@
 //! The forward search: fit, test every candidate, take the one that explains most, fit again.
 
-use super::base::{Base, Present};
+use super::base::{Base, Present, moved_to};
 use super::candidates::{Candidate, candidates, drag_and_wind};
 use super::evidence::{Evidence, Weighted};
 use super::gates::{Gates, passes};
@@ -8,7 +8,7 @@ use super::hubs::one_place;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::locate::mass_step_std_kg;
 use super::mounting::{Turn, mountings};
-use super::rows::{Channels, Nuisance, Rows, moved_to};
+use super::rows::{Channels, Nuisance, Rows};
 use super::settle::{SETTLED_S, settle};
 use super::sharpen::sharpened;
 use super::trace::Trace;

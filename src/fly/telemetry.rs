@@ -262,25 +262,22 @@ impl Telemetry {
             log::Event::Parameter { .. } => {}
         });
         let oriented = self.attitude.filter(|seen| seen.at == now).map(|seen| seen.value);
-        let pose =
-            if let (Some((time_s, position_m)), Some(velocity_m_s), Some(attitude), Some(rates_rad_s)) =
-                (position, velocity, oriented, rates)
-            {
-                Some(Pose { time_s, position_m, velocity_m_s, attitude, rates_rad_s })
-            } else {
-                None
-            };
+        let pose = position.zip(velocity).zip(oriented.zip(rates));
+        let pose = pose.map(|(((time_s, position_m), velocity_m_s), (attitude, rates_rad_s))| Pose {
+            time_s,
+            position_m,
+            velocity_m_s,
+            attitude,
+            rates_rad_s,
+        });
         if frame.header().message_id == ODOMETRY {
             self.note_pose(pose, reset, news);
         }
-        for novelty in &*news {
-            if let Novelty::Text(severity, text) = novelty {
-                self.texts.push_back((now, *severity, text.clone()));
-                if self.texts.len() > TEXTS {
-                    self.texts.pop_front();
-                }
-            }
-        }
+        self.texts.extend(news.iter().filter_map(|novelty| match novelty {
+            Novelty::Text(severity, text) => Some((now, *severity, text.clone())),
+            _ => None,
+        }));
+        self.texts.drain(..self.texts.len().saturating_sub(TEXTS));
         if let (Some((time_s, position_m)), Some(velocity_m_s)) = (position, velocity)
             && position_m.iter().chain(&velocity_m_s).all(|value| value.is_finite())
         {

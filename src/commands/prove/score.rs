@@ -105,7 +105,11 @@ fn sizes(effect: &Effect, answer: &Answer) -> Vec<SizeError> {
     let Some(size) = answer.sizes.get(&effect.id) else { return Vec::new() };
     let truth_of = |index: usize, name: &str| match size {
         // one number for an effect with several estimated parameters is each one's of that unit
-        Size::One(value) if effect.parameters[index].unit == effect.parameters[0].unit => Some(*value),
+        Size::One(value) if index == 0 => Some(*value),
+        Size::One(value) => {
+            let [first, this] = [0, index].map(|place| effect.parameters[place].unit.as_str());
+            (this == first && this != "-").then_some(*value)
+        }
         Size::One(_) => None,
         Size::List(values) => values.get(index).copied(),
         Size::Named(values) => values.get(name).copied(),
