@@ -110,7 +110,6 @@ fn sizes(effect: &Effect, answer: &Answer) -> Vec<SizeError> {
             let [first, this] = [0, index].map(|place| effect.parameters[place].unit.as_str());
             (this == first && this != "-").then_some(*value)
         }
-        Size::One(_) => None,
         Size::List(values) => values.get(index).copied(),
         Size::Named(values) => values.get(name).copied(),
     };
