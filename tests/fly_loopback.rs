@@ -25,6 +25,9 @@ const PERIODS: u64 = 4;
 
 /// Which end of a link waits for the other.
 #[derive(Clone, Copy)]
+/// Flights in real time share the machine with nothing but each other.
+static MACHINE: std::sync::Mutex<()> = std::sync::Mutex::new(());
+
 enum Link {
     /// the vehicle listens, as ArduPilot's simulator does
     VehicleListens(&'static str),
@@ -57,6 +60,7 @@ fn flight(name: &str, autopilot: &str, link: Link, trajectory: &Path) -> (PathBu
 
 #[test]
 fn both_autopilots_fly_over_every_link_and_are_identified() {
+    let _alone = MACHINE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let trajectory = planned("plan", PERIODS);
     let flights = [
         ("px4_udp", "px4", Link::GroundListens("udp")),
@@ -117,6 +121,7 @@ async fn over_a_bad_network_the_flight_ends_on_the_ground_and_nothing_of_its_log
     let output = tokio::task::spawn_blocking({
         let (out, address) = (out.clone(), proxy.address);
         move || {
+            let _alone = MACHINE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             let _vehicle = vehicle("px4", &format!("udpout:{address}"));
             fly(&out, &format!("udpin:127.0.0.1:{port}"), &trajectory, &[])
         }

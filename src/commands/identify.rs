@@ -30,6 +30,8 @@ pub struct Identified {
 impl Identified {
     /// Loads, conditions and identifies.
     pub fn from(args: &IdentifyArgs) -> Result<Self, CommandError> {
+        let inputs: Vec<&PathBuf> = args.logs.iter().chain([&args.vehicle]).collect();
+        output::refuse_overwriting(&inputs, &args.out.iter().chain(&args.chart).collect::<Vec<_>>())?;
         let wanted = wanted(args)?;
         let loaded = read_vehicle(&args.vehicle)?;
         let LoadedVehicle { vehicle, warnings, .. } = &loaded;

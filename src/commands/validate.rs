@@ -1,6 +1,6 @@
 //! `mavid validate LOG... --model A --model B...`: the paper's two validations and open-loop playback.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use mavid::compare::{
     PlaybackSettings, TenSignals, autopilot_flight, playback, recorded_tracking_m, resimulated,
@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::effects::{effects, with_stated_lag};
-use super::flights::{Flight, ReadAs, load};
+use super::flights::{Flight, ReadAs, load, refuse_twins};
 use super::{CommandError, Outcome, output};
 use crate::cli::ValidateArgs;
 
@@ -60,10 +60,16 @@ pub fn run(json: bool, args: &ValidateArgs) -> Result<Outcome, CommandError> {
         let got = args.transient;
         return Err(CommandError::Input(format!("--transient: expected seconds from 0 on, got {got}")));
     }
-    let models: Vec<Named> = args.models.iter().map(|path| named(path)).collect::<Result<_, _>>()?;
+    // a target that cannot be written is told before the work
+    if let Some(folder) = &args.out {
+        output::folder(folder)?;
+    }
+    let mut models: Vec<Named> = args.models.iter().map(|path| named(path)).collect::<Result<_, _>>()?;
+    told_apart(&mut models, &args.models);
     let read_as = ReadAs { csv_map: args.csv_map.as_ref(), system: args.system };
     let one = |path: &std::path::PathBuf| flight_tables(load(path, &read_as)?, &models, args.transient);
     let flights: Vec<FlightTables> = args.logs.par_iter().map(one).collect::<Result<_, _>>()?;
+    refuse_twins(&flights.iter().map(|flight| &flight.input).collect::<Vec<_>>())?;
     if let Some(folder) = &args.out {
         write_charts(folder, &flights)?;
     }
@@ -84,6 +90,16 @@ pub fn run(json: bool, args: &ValidateArgs) -> Result<Outcome, CommandError> {
         outcome = Outcome::DoneWithLoss;
     }
     Ok(outcome)
+}
+
+/// Models whose files have one name are called by their paths.
+fn told_apart(models: &mut [Named], paths: &[PathBuf]) {
+    let names: Vec<String> = models.iter().map(|model| model.name.clone()).collect();
+    for ((model, path), name) in models.iter_mut().zip(paths).zip(&names) {
+        if names.iter().filter(|other| *other == name).count() > 1 {
+            model.name = path.display().to_string();
+        }
+    }
 }
 
 fn named(path: &Path) -> Result<Named, CommandError> {
@@ -114,6 +130,12 @@ fn flight_tables(flight: Flight, models: &[Named], transient_s: f64) -> Result<F
     let airborne = first.quality.airborne_s.first().copied().unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
     let end_s = first.grid.time_s(first.grid.count.saturating_sub(1)).min(airborne.1);
     let span_s = (first.grid.start_s.max(airborne.0) + transient_s, end_s);
+    if span_s.1 <= span_s.0 {
+        return Err(CommandError::Input(format!(
+            "{}: expected flight beyond the first {transient_s} s (--transient), the vehicle is in the air until {:.1} s",
+            flight.input.path, span_s.1
+        )));
+    }
     let (closed_loop, charts) = closed_loop(&flight, first, models, span_s);
     let mut tables = vec![closed_loop];
     tables.extend(predictions(models, &signals, span_s));
@@ -128,6 +150,16 @@ fn flight_tables(flight: Flight, models: &[Named], transient_s: f64) -> Result<F
             })
             .collect();
         tables.push(playback_table(format!("Open-loop playback over windows of {window_s} s"), &fits));
+    }
+    let is_empty = |table: &ErrorTable| table.rows.iter().all(|row| row.rms.iter().all(Option::is_none));
+    if tables.iter().all(is_empty) {
+        let mut reasons: Vec<String> = tables.into_iter().flat_map(|table| table.missing).collect();
+        reasons.dedup();
+        return Err(CommandError::Input(format!(
+            "{}: nothing to compare: {}",
+            flight.input.path,
+            reasons.join("; ")
+        )));
     }
     Ok(FlightTables { input: flight.input, span_s, tables, charts })
 }
