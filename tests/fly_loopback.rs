@@ -23,11 +23,11 @@ use serde_json::Value;
 const SET_POSITION_TARGET_LOCAL_NED: u32 = 84;
 const PERIODS: u64 = 4;
 
-/// Which end of a link waits for the other.
-#[derive(Clone, Copy)]
 /// Flights in real time share the machine with nothing but each other.
 static MACHINE: std::sync::Mutex<()> = std::sync::Mutex::new(());
 
+/// Which end of a link waits for the other.
+#[derive(Clone, Copy)]
 enum Link {
     /// the vehicle listens, as ArduPilot's simulator does
     VehicleListens(&'static str),

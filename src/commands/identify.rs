@@ -1,5 +1,7 @@
 //! `mavid identify LOG... --vehicle V`: parameters from recorded flights.
 
+use std::path::PathBuf;
+
 use mavid::config::{LoadedVehicle, read_vehicle};
 use mavid::diagnose::ExplainSettings;
 use mavid::diagnose::together::{Wanted, together};

@@ -67,7 +67,7 @@ pub fn run(json: bool, args: &ValidateArgs) -> Result<Outcome, CommandError> {
     let mut models: Vec<Named> = args.models.iter().map(|path| named(path)).collect::<Result<_, _>>()?;
     told_apart(&mut models, &args.models);
     let read_as = ReadAs { csv_map: args.csv_map.as_ref(), system: args.system };
-    let one = |path: &std::path::PathBuf| flight_tables(load(path, &read_as)?, &models, args.transient);
+    let one = |path: &PathBuf| flight_tables(load(path, &read_as)?, &models, args.transient);
     let flights: Vec<FlightTables> = args.logs.par_iter().map(one).collect::<Result<_, _>>()?;
     refuse_twins(&flights.iter().map(|flight| &flight.input).collect::<Vec<_>>())?;
     if let Some(folder) = &args.out {
