@@ -237,7 +237,7 @@ pub struct ValidateArgs {
     #[arg(long, value_name = "ID")]
     pub system: Option<u32>,
     /// s of flight left out at the beginning
-    #[arg(long, value_name = "S", default_value_t = 10.0)]
+    #[arg(long, value_name = "S", default_value_t = 10.0, allow_negative_numbers = true)]
     pub transient: f64,
 }
 

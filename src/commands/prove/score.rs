@@ -180,7 +180,7 @@ mod tests {
                     name: (*name).to_owned(),
                     value: *value,
                     std: 0.01,
-                    unit: "-".to_owned(),
+                    unit: if name.starts_with('d') { "N/(m/s)" } else { "-" }.to_owned(),
                 })
                 .collect(),
             confusable_with: confusable.iter().map(|id| (*id).to_owned()).collect(),
@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn names_sets_and_verdicts_are_scored() {
-        let drag = ("linear_drag", &[("dx", 0.33), ("dy", 0.29)][..], &[][..]);
+        let drag = ("linear_drag", &[("dx", 0.33), ("dy", 0.29), ("at_hubs", 1.0)][..], &[][..]);
         let right = scored(
             &verdict("explained", &[drag]),
             &answer(&["linear_drag"], &[("linear_drag", Size::One(0.3))]),
