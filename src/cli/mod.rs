@@ -136,12 +136,9 @@ pub struct IdentifyArgs {
     /// write the parameters along time here as a chart
     #[arg(long, value_name = "FILE.SVG")]
     pub chart: Option<PathBuf>,
-    /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
-    #[arg(long, value_name = "FILE")]
-    pub csv_map: Option<PathBuf>,
-    /// system id of the vehicle, where a log holds several
-    #[arg(long, value_name = "ID")]
-    pub system: Option<u32>,
+    /// how the recordings are read
+    #[command(flatten)]
+    pub read: ReadArgs,
     /// s of flight left out at the beginning [default: 10, at most a fifth of the flight]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub transient: Option<f64>,
@@ -230,15 +227,23 @@ pub struct ValidateArgs {
     /// write charts of each flight flown again into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
-    #[arg(long, value_name = "FILE")]
-    pub csv_map: Option<PathBuf>,
-    /// system id of the vehicle, where a log holds several
-    #[arg(long, value_name = "ID")]
-    pub system: Option<u32>,
+    /// how the recordings are read
+    #[command(flatten)]
+    pub read: ReadArgs,
     /// s of flight left out at the beginning
     #[arg(long, value_name = "S", default_value_t = 10.0, allow_negative_numbers = true)]
     pub transient: f64,
+}
+
+/// How recordings are read.
+#[derive(Debug, Default, Args)]
+pub struct ReadArgs {
+    /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
+    #[arg(long, value_name = "FILE")]
+    pub csv_map: Option<PathBuf>,
+    /// MAVLink system id of the vehicle, where a log holds several
+    #[arg(long, value_name = "ID")]
+    pub system: Option<u32>,
 }
 
 /// Arguments of `mavid inspect`.
@@ -249,12 +254,9 @@ pub struct InspectArgs {
     /// vehicle.toml or model.toml: says how well each parameter can be identified
     #[arg(long)]
     pub vehicle: Option<PathBuf>,
-    /// what the columns of a CSV file mean (default: configs/csv/default.toml)
-    #[arg(long)]
-    pub csv_map: Option<PathBuf>,
-    /// the vehicle's MAVLink system id, where a log holds several
-    #[arg(long)]
-    pub system: Option<u32>,
+    /// how the recordings are read
+    #[command(flatten)]
+    pub read: ReadArgs,
 }
 
 /// Arguments of `mavid explain`.
@@ -276,12 +278,9 @@ pub struct ExplainArgs {
     /// write report.html, model.toml and explanation.json into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
-    #[arg(long, value_name = "FILE")]
-    pub csv_map: Option<PathBuf>,
-    /// system id of the vehicle, where a log holds several
-    #[arg(long, value_name = "ID")]
-    pub system: Option<u32>,
+    /// how the recordings are read
+    #[command(flatten)]
+    pub read: ReadArgs,
     /// s of flight left out at the beginning
     #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
     pub transient: f64,

@@ -7,7 +7,7 @@ use mavid::fly;
 use super::explain::{Explained, REPORT};
 use super::identify::Identified;
 use super::{CommandError, Outcome, output};
-use crate::cli::{ExplainArgs, IdentifyArgs};
+use crate::cli::{ExplainArgs, IdentifyArgs, ReadArgs};
 
 /// Folder of the explanation in that of the flight.
 const EXPLAINED: &str = "explained";
@@ -66,8 +66,7 @@ fn identify(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Identi
         vehicle: vehicle.to_owned(),
         out: Some(folder.join("model.toml")),
         chart: Some(folder.join("parameters.svg")),
-        csv_map: None,
-        system,
+        read: ReadArgs { csv_map: None, system },
         transient: None,
         cutoff: None,
         fir: false,
@@ -92,8 +91,7 @@ fn explain(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Explain
         holdout: Vec::new(),
         next: None,
         out: None,
-        csv_map: None,
-        system,
+        read: ReadArgs { csv_map: None, system },
         transient: TRANSIENT_S,
     };
     let explained = Explained::from(&args)?;

@@ -14,7 +14,7 @@ use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
 use super::effects::effects;
-use super::flights::{Flight, ReadAs, is_csv, load, refuse_twins};
+use super::flights::{Flight, is_csv, load, refuse_twins};
 use super::{CommandError, Outcome, output};
 use crate::cli::ExplainArgs;
 
@@ -66,7 +66,6 @@ impl Explained {
         warnings.extend(flights.iter().chain(&held).filter_map(|flight| losses(&flight.input)));
         let given = Given {
             vehicle,
-            known: Vec::new(),
             inputs: flights.iter().map(|flight| flight.input.clone()).collect(),
             quality: flights.iter().map(|flight| flight.signals.quality.clone()).collect(),
             settings,
@@ -120,7 +119,9 @@ impl Explained {
         for warning in &self.story.given.warnings {
             output::message(&format!("warning: {warning}"));
         }
-        let lossless = self.story.given.inputs.iter().all(|input| input.losses.is_empty());
+        let held: &[InputFile] =
+            if let ShownOn::Flights(inputs) = &self.story.shown_on { inputs } else { &[] };
+        let lossless = self.story.given.inputs.iter().chain(held).all(|input| input.losses.is_empty());
         if lossless { Outcome::Done } else { Outcome::DoneWithLoss }
     }
 }
@@ -146,7 +147,7 @@ fn check(args: &ExplainArgs) -> Result<(), CommandError> {
             "--transient: expected seconds from 0 on, got {transient_s}"
         )));
     }
-    if args.csv_map.is_some() && !args.logs.iter().chain(&args.holdout).any(|log| is_csv(log)) {
+    if args.read.csv_map.is_some() && !args.logs.iter().chain(&args.holdout).any(|log| is_csv(log)) {
         return Err(CommandError::Input("--csv-map: expected a .csv among the logs, got none".into()));
     }
     if let Some(path) = args.out.as_ref().filter(|path| path.exists() && !path.is_dir()) {
@@ -185,14 +186,13 @@ impl Flown {
 
 /// Loads and conditions every flight, side by side.
 fn flown(logs: &[PathBuf], args: &ExplainArgs, vehicle: &Vehicle) -> Result<Vec<Flown>, CommandError> {
-    let read_as = ReadAs { csv_map: args.csv_map.as_ref(), system: args.system };
     let settings = ConditionSettings {
         transient_s: Some(args.transient),
         thrust: ThrustPreference::BestSampled,
         ..ConditionSettings::default()
     };
     let one = |path: &PathBuf| {
-        let Flight { recording, input } = load(path, &read_as)?;
+        let Flight { recording, input } = load(path, &args.read)?;
         let signals = condition(&recording, vehicle, &settings)
             .map_err(|error| CommandError::Input(format!("{}: {error}", path.display())))?;
         Ok(Flown { recording, signals, input })

@@ -5,18 +5,10 @@ use mavid::log::{LoadOptions, Recording, SystemId, csv};
 use mavid::report::InputFile;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::CommandError;
-
-/// How to read recordings.
-#[derive(Debug, Clone)]
-pub struct ReadAs<'a> {
-    /// what a CSV's columns mean
-    pub csv_map: Option<&'a PathBuf>,
-    /// the vehicle, where a log holds several
-    pub system: Option<u32>,
-}
+use crate::cli::ReadArgs;
 
 /// A recording and the file that it came from.
 #[derive(Debug)]
@@ -33,15 +25,16 @@ pub fn is_csv(path: &Path) -> bool {
 }
 
 /// Reads one recording.
-pub fn load(path: &Path, read_as: &ReadAs<'_>) -> Result<Flight, CommandError> {
+pub fn load(path: &Path, read: &ReadArgs) -> Result<Flight, CommandError> {
     let named = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
     let (recording, losses) = if is_csv(path) {
-        let mapping = read_as.csv_map.map_or_else(default_csv_mapping, |file| load_csv_mapping(file))?;
+        let mapping =
+            read.csv_map.as_ref().map_or_else(default_csv_mapping, |file| load_csv_mapping(file))?;
         let (recording, report) =
             csv::read_csv(path, &mapping).map_err(|error| CommandError::Input(error.to_string()))?;
         (recording, report.losses())
     } else {
-        let options = LoadOptions { system: read_as.system.map(SystemId) };
+        let options = LoadOptions { system: read.system.map(SystemId) };
         let loaded = mavid::log::load(path, &options).map_err(|error| named(&error))?;
         (loaded.recording, loaded.report.losses())
     };

@@ -14,7 +14,7 @@ use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
 use super::effects::effects;
-use super::flights::{Flight, ReadAs, is_csv, load, refuse_twins};
+use super::flights::{Flight, is_csv, load, refuse_twins};
 use super::{CommandError, Outcome, output};
 use crate::cli::IdentifyArgs;
 
@@ -129,7 +129,7 @@ fn settings(args: &IdentifyArgs) -> Result<IdentifySettings, CommandError> {
     if let Some(value) = args.transient.filter(|value| !value.is_finite() || *value < 0.0) {
         return Err(CommandError::Input(format!("--transient: expected seconds from 0 on, got {value}")));
     }
-    if args.csv_map.is_some() && !args.logs.iter().any(|log| is_csv(log)) {
+    if args.read.csv_map.is_some() && !args.logs.iter().any(|log| is_csv(log)) {
         return Err(CommandError::Input("--csv-map: expected a .csv among the logs, got none".into()));
     }
     Ok(IdentifySettings {
@@ -150,9 +150,8 @@ fn wanted(args: &IdentifyArgs) -> Result<Option<Wanted>, CommandError> {
 
 /// Loads every flight, side by side; the same file twice is refused.
 fn recorded(args: &IdentifyArgs) -> Result<Vec<Flight>, CommandError> {
-    let read_as = ReadAs { csv_map: args.csv_map.as_ref(), system: args.system };
     let done: Vec<Result<Flight, CommandError>> =
-        args.logs.par_iter().map(|path| load(path, &read_as)).collect();
+        args.logs.par_iter().map(|path| load(path, &args.read)).collect();
     let flights = done.into_iter().collect::<Result<Vec<_>, _>>()?;
     refuse_twins(&flights.iter().map(|flight| &flight.input).collect::<Vec<_>>())?;
     Ok(flights)

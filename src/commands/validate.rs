@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::effects::{effects, with_stated_lag};
-use super::flights::{Flight, ReadAs, load, refuse_twins};
+use super::flights::{Flight, load, refuse_twins};
 use super::{CommandError, Outcome, output};
 use crate::cli::ValidateArgs;
 
@@ -66,8 +66,7 @@ pub fn run(json: bool, args: &ValidateArgs) -> Result<Outcome, CommandError> {
     }
     let mut models: Vec<Named> = args.models.iter().map(|path| named(path)).collect::<Result<_, _>>()?;
     told_apart(&mut models, &args.models);
-    let read_as = ReadAs { csv_map: args.csv_map.as_ref(), system: args.system };
-    let one = |path: &PathBuf| flight_tables(load(path, &read_as)?, &models, args.transient);
+    let one = |path: &PathBuf| flight_tables(load(path, &args.read)?, &models, args.transient);
     let flights: Vec<FlightTables> = args.logs.par_iter().map(one).collect::<Result<_, _>>()?;
     refuse_twins(&flights.iter().map(|flight| &flight.input).collect::<Vec<_>>())?;
     if let Some(folder) = &args.out {

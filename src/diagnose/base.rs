@@ -41,6 +41,17 @@ impl Present {
         away / std.max(f64::MIN_POSITIVE)
     }
 
+    /// Whether a parameter says how much of the effect there is; the others say what it is like.
+    #[must_use]
+    pub fn is_amount(&self, slot: usize) -> bool {
+        match self.effect.id() {
+            "slung_load" | "ceiling_effect" => slot == 0,
+            "mass_change" | "weak_rotor" => slot == 1,
+            "tether" | "ground_effect" => slot < 2,
+            _ => slot < self.effect.parameters().len(),
+        }
+    }
+
     /// Value at which a parameter's effect vanishes.
     #[must_use]
     pub fn nothing_at(&self, slot: usize) -> f64 {
@@ -75,6 +86,18 @@ pub(super) fn step_of(present: &Present, index: usize) -> f64 {
     }
     let span = present.parameter(index).map_or(1.0, |parameter| (parameter.max - parameter.min).min(1.0));
     (1e-4 * span).max(1e-3 * present.values[index].abs())
+}
+
+/// A load to start from is no more than this share of the mass.
+const MOST_OF_MASS: f64 = 0.5;
+
+/// A load that was in the mass `all_kg` (kg) of a rigid body until now: returns the vehicle's own, kg. Without the
+/// load the same thrust swings a longer cord at the same pace.
+pub(super) fn lift_load(load: &mut Present, all_kg: f64) -> f64 {
+    load.values[0] = load.values[0].min(MOST_OF_MASS * all_kg);
+    let own_kg = all_kg - load.values[0];
+    load.values[1] = load.possible(1, load.values[1] * all_kg / own_kg);
+    own_kg
 }
 
 /// What the recording is compared with.

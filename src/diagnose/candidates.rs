@@ -39,68 +39,78 @@ pub(super) fn present(id: &str, values: &[f64], free: &[usize]) -> Option<Presen
 /// All candidates that the vehicle's description and the recordings allow.
 #[must_use]
 pub fn candidates(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
-    let mut out: Vec<Candidate> = Vec::new();
-    let mut add = |parts: &[Option<Present>]| {
-        let parts: Option<Vec<Present>> = parts.iter().cloned().collect();
-        if let Some(parts) = parts.filter(|parts| !parts.is_empty()) {
-            out.push(Candidate { id: parts[0].effect.id(), parts, through: None });
-        }
-    };
     let known = |what: fn(&Trace) -> bool| flights.iter().all(what);
     let velocity = known(|trace| trace.known.velocity && trace.known.attitude);
+    let mut tried: Vec<Option<Present>> = vec![
+        present("thrust_curve", &[0.0], &[0]),
+        present("com_offset", &[0.0; 3], &[0, 1]),
+        present("rotor_inertia", &[0.0], &[0]),
+        present("angular_damping", &[0.0; 3], &[0, 1, 2]),
+        present("angular_damping", &[0.0; 3], &[0, 1]),
+    ];
     if velocity {
-        // of the rotors, at their hubs, or of the body, at its centre
-        for at_hubs in [1.0, 0.0] {
-            add(&[present("linear_drag", &[0.0, 0.0, 0.0, at_hubs], &[0, 1])]);
-            add(&[present("linear_drag", &[0.0, 0.0, 0.0, at_hubs], &[0, 1, 2])]);
-            add(&[present("inflow", &[0.0, at_hubs], &[0])]);
-        }
-        // of a round body, or of flat faces
-        for by_face in [0.0, 1.0] {
-            add(&[present("quadratic_drag", &[0.0, 0.0, 0.0, by_face], &[0, 1])]);
-            add(&[present("quadratic_drag", &[0.0, 0.0, 0.0, by_face], &[0, 1, 2])]);
-        }
-        add(&[present("blade_flapping", &[0.0], &[0])]);
-        add(&[present("translational_lift", &[0.0], &[0])]);
-        add(&[present("vortex_ring", &[0.0], &[0])]);
+        tried.extend(of_air());
     }
     if known(|trace| trace.known.position && trace.known.attitude) {
-        // all rotors lifted alike, or each by its own height
-        add(&[present("ground_effect", &[0.0, 0.0, 1.0, 0.0], &[0])]);
-        add(&[present("ground_effect", &[0.0, 0.0, 1.0, 1.0], &[0])]);
-        add(&[present("tether", &[0.0, 0.0, 500.0], &[0])]);
-        let ceilings = Airframe::new(vehicle).map(|airframe| ceilings_m(flights, &airframe));
-        for height_m in ceilings.unwrap_or_default() {
-            add(&[present("ceiling_effect", &[NO_CEILING, 0.0, height_m], &[0])]);
-        }
+        tried.extend(of_place(vehicle, flights));
     }
-    add(&[present("thrust_curve", &[0.0], &[0])]);
-    add(&[present("com_offset", &[0.0; 3], &[0, 1])]);
-    add(&[present("rotor_inertia", &[0.0], &[0])]);
-    add(&[present("angular_damping", &[0.0; 3], &[0, 1, 2])]);
-    add(&[present("angular_damping", &[0.0; 3], &[0, 1])]);
     let mut number = 0.0;
     for _ in &vehicle.rotors {
-        add(&[present("weak_rotor", &[number, 1.0], &[1])]);
+        tried.push(present("weak_rotor", &[number, 1.0], &[1]));
         number += 1.0;
     }
     let by_commands = known(|trace| !trace.measured_speeds);
     if let Some(full_v) = full_voltage(flights).filter(|_| by_commands) {
-        add(&[present("battery_sag", &[0.0, full_v], &[0])]);
+        tried.push(present("battery_sag", &[0.0, full_v], &[0]));
     }
     if velocity {
         // a load that lies on the ground does not swing
         let height_m = highest_m(flights);
-        for length_m in CORD_LENGTHS_M.into_iter().filter(|length_m| *length_m < height_m) {
-            add(&[present("slung_load", &[0.0, length_m, SWING_DAMPING_1_S], &[0])]);
-        }
+        let cords = CORD_LENGTHS_M.into_iter().filter(|length_m| *length_m < height_m);
+        tried.extend(cords.map(|length_m| present("slung_load", &[0.0, length_m, SWING_DAMPING_1_S], &[0])));
     }
     if let [flight] = flights {
-        for time_s in change_times(flight) {
-            add(&[present("mass_change", &[time_s, 0.0], &[1])]);
-        }
+        let times = change_times(flight).into_iter();
+        tried.extend(times.map(|time_s| present("mass_change", &[time_s, 0.0], &[1])));
     }
-    out
+    let alone = |part: Present| Candidate { id: part.effect.id(), parts: vec![part], through: None };
+    tried.into_iter().flatten().map(alone).collect()
+}
+
+/// Forces of the air on a vehicle that moves through it.
+fn of_air() -> Vec<Option<Present>> {
+    let mut tried = Vec::new();
+    // of the rotors, at their hubs, or of the body, at its centre
+    for at_hubs in [1.0, 0.0] {
+        tried.push(present("linear_drag", &[0.0, 0.0, 0.0, at_hubs], &[0, 1]));
+        tried.push(present("linear_drag", &[0.0, 0.0, 0.0, at_hubs], &[0, 1, 2]));
+        tried.push(present("inflow", &[0.0, at_hubs], &[0]));
+    }
+    // of a round body, or of flat faces
+    for by_face in [0.0, 1.0] {
+        tried.push(present("quadratic_drag", &[0.0, 0.0, 0.0, by_face], &[0, 1]));
+        tried.push(present("quadratic_drag", &[0.0, 0.0, 0.0, by_face], &[0, 1, 2]));
+    }
+    tried.extend(["blade_flapping", "translational_lift", "vortex_ring"].map(|id| present(id, &[0.0], &[0])));
+    tried
+}
+
+/// What depends on where the vehicle is.
+fn of_place(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Option<Present>> {
+    let mut tried = vec![
+        // all rotors lifted alike, or each by its own height
+        present("ground_effect", &[0.0, 0.0, 1.0, 0.0], &[0]),
+        present("ground_effect", &[0.0, 0.0, 1.0, 1.0], &[0]),
+        present("tether", &[0.0, 0.0, 500.0], &[0]),
+    ];
+    let ceilings_m = Airframe::new(vehicle).map(|airframe| ceilings_m(flights, &airframe));
+    tried.extend(
+        ceilings_m
+            .unwrap_or_default()
+            .into_iter()
+            .map(|height_m| present("ceiling_effect", &[NO_CEILING, 0.0, height_m], &[0])),
+    );
+    tried
 }
 
 /// Wind, tried together with drag at the hubs or at the centre: its columns are those that it has through a

@@ -16,13 +16,14 @@ const APART: f64 = 5.0;
 const UNLIKE: f64 = 0.866;
 
 /// Distance, in standard deviations, between what the effect at `place` does and the nearest that another
-/// candidate could do in its stead; those below [`APART`].
+/// candidate could do in its stead; those below [`APART`]. Of `rivals`, which explained as much, those that look
+/// alike.
 #[must_use]
 pub fn confusable_with(
     flights: &[Trace],
     fitted: &Fitted,
     place: usize,
-    others: &[Tested],
+    (others, rivals): (&[Tested], &[&Tested]),
 ) -> Vec<Confusable> {
     let mut out: Vec<Confusable> = Vec::new();
     let Some(signal) = Signal::new(&fitted.rows, &fitted.base, place, None) else { return out };
@@ -42,16 +43,15 @@ pub fn confusable_with(
             }
         }
     }
+    for rival in rivals {
+        let id = rival.candidate.id;
+        let left = signal.beyond(flights, &fitted.rows, &fitted.base, &rival.candidate);
+        let alike = left.is_some_and(|left| left < UNLIKE * signal.sum.norm());
+        if alike && out.iter().all(|confusable| confusable.id != id) {
+            out.push(Confusable { id, distinguishability: None });
+        }
+    }
     out
-}
-
-/// Whether what the effect at `place` does looks like what a candidate could do: a cosine of one half or more.
-#[must_use]
-pub fn resembles(flights: &[Trace], fitted: &Fitted, place: usize, candidate: &Candidate) -> bool {
-    let Some(signal) = Signal::new(&fitted.rows, &fitted.base, place, None) else { return false };
-    signal
-        .beyond(flights, &fitted.rows, &fitted.base, candidate)
-        .is_some_and(|left| left < UNLIKE * signal.sum.norm())
 }
 
 /// What one of a base's effects does in its rows, beyond what nuisances and the other effects could do.

@@ -2,7 +2,7 @@
 
 use super::base::{Base, Present};
 use super::candidates::Candidate;
-use super::confusable::{confusable_with, resembles};
+use super::confusable::confusable_with;
 use super::deviate::normal_deviate;
 use super::explanation::{Confusable, DetectionLimit, Explanation, Named, NamedParameter, Strength, Verdict};
 use super::gates::Gates;
@@ -306,17 +306,9 @@ fn strength(step: &Step) -> Strength {
 
 /// Effects that explain as much, or that this flight cannot tell from it.
 fn confusable(traces: &[Trace], found: &Search, place: usize, step: &Step) -> Vec<Confusable> {
-    let id = found.after.base.present[place].effect.id();
-    let mut out = confusable_with(traces, &found.after, place, &found.last);
-    for rival in &step.rivals {
-        let close = rival.evidence.energy > RIVAL * step.taken.evidence.energy;
-        let known = out.iter().any(|confusable| confusable.id == rival.candidate.id);
-        let rivals = close && !known && rival.candidate.id != id;
-        if rivals && resembles(traces, &found.after, place, &rival.candidate) {
-            out.push(Confusable { id: rival.candidate.id, distinguishability: None });
-        }
-    }
-    out
+    let close = |rival: &&Tested| rival.evidence.energy > RIVAL * step.taken.evidence.energy;
+    let rivals: Vec<&Tested> = step.rivals.iter().filter(close).collect();
+    confusable_with(traces, &found.after, place, (&found.last, &rivals))
 }
 
 /// A lag or delay beyond what sampling and a fast motor make.

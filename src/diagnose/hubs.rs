@@ -69,8 +69,5 @@ fn is_share(present: &Present, slot: usize) -> bool {
 
 /// Twice the negative logarithm of the likelihood, and `price` a column.
 fn cost(fitted: &Fitted, price: f64) -> f64 {
-    let rows = fitted.rows.len() as f64;
-    let misfit: f64 =
-        fitted.weighted.sigma.iter().filter(|sigma| **sigma > 0.0).map(|sigma| 2.0 * rows * sigma.ln()).sum();
-    misfit + price * fitted.rows.effects.len() as f64
+    2.0 * fitted.misfit() + price * fitted.rows.effects.len() as f64
 }

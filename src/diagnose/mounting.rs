@@ -66,9 +66,13 @@ pub(super) fn mountings(flights: &[Trace], fitted: &Fitted, turn: Turn) -> Vec<T
                 return None;
             }
             let columns = columns_of(flights, fitted, &candidate)?;
-            let mut rows = fitted.rows.clone();
-            rows.nuisances.retain(|column| !is_small(id, column.nuisance));
-            let evidence = Weighted::at(&rows, &fitted.weighted.sigma).test(&columns)?;
+            let evidence = if turn == Turn::First {
+                fitted.weighted.test(&columns)?
+            } else {
+                let mut rows = fitted.rows.clone();
+                rows.nuisances.retain(|column| !is_small(id, column.nuisance));
+                Weighted::at(&rows, &fitted.weighted.sigma).test(&columns)?
+            };
             Some(Tested { candidate, evidence })
         })
         .collect()

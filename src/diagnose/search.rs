@@ -1,6 +1,6 @@
 //! The forward search: fit, test every candidate, take the one that explains most, fit again.
 
-use super::base::{Base, Present, moved_to};
+use super::base::{Base, Present, lift_load, moved_to};
 use super::candidates::{Candidate, candidates, drag_and_wind};
 use super::evidence::{Evidence, Weighted};
 use super::gates::{Gates, passes};
@@ -8,7 +8,7 @@ use super::hubs::one_place;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::locate::mass_step_std_kg;
 use super::mounting::{Turn, mountings};
-use super::rows::{Channels, Nuisance, Rows};
+use super::rows::{AXES, CHANNELS, Channels, Nuisance, Rows};
 use super::settle::{SETTLED_S, settle};
 use super::sharpen::sharpened;
 use super::trace::Trace;
@@ -30,6 +30,27 @@ pub struct Fitted {
     pub coefficients: DVector<f64>,
     /// their covariance
     pub covariance: DMatrix<f64>,
+}
+
+impl Fitted {
+    /// Sum over the rows of the logarithm of each channel's standard deviation, forces as the accelerations that
+    /// were measured: minus the logarithm of the likelihood, up to a constant.
+    #[must_use]
+    pub fn misfit(&self) -> f64 {
+        let rows = self.rows.len() as f64;
+        let mass_kg = self.base.vehicle.body.mass_kg;
+        let measured = |channel: usize| {
+            let of_torque = (3..AXES).contains(&channel);
+            self.weighted.sigma[channel] / if of_torque { 1.0 } else { mass_kg }
+        };
+        let used: Vec<f64> = (0..CHANNELS).map(measured).filter(|sigma| *sigma != 0.0).collect();
+        // a form that cannot be carried along the flight is no candidate
+        if used.iter().all(|sigma| *sigma > 0.0) {
+            used.iter().map(|sigma| rows * sigma.ln()).sum()
+        } else {
+            f64::INFINITY
+        }
+    }
 }
 
 /// Most Gauss-Newton passes.
@@ -175,15 +196,9 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         let count = last.len() as f64;
         let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);
         let ranked = |tested: &[Tested]| {
-            let worth = |tested: &Tested| tested.evidence.energy - price * tested.evidence.theta.len() as f64;
-            let mut passed: Vec<Tested> = tested
-                .iter()
-                .filter(|tested| !refused.contains(&tested.candidate.id))
-                .filter(|tested| passes(tested, &after, gates, count))
-                .cloned()
-                .collect();
-            passed.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
-            passed
+            let open = tested.iter().filter(|tested| !refused.contains(&tested.candidate.id));
+            let passed = open.filter(|tested| passes(tested, &after, gates, count));
+            by_worth(passed.cloned().collect(), price)
         };
         let mut passed = ranked(&last);
         if passed.is_empty() {
@@ -194,10 +209,7 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         match passed.first().cloned() {
             Some(taken) if steps.len() < gates.steps => {
                 let taken = sharpened(flights, &after, taken);
-                let mut base = after.base.clone();
-                base.present.extend(started(&taken).into_iter().map(released));
-                lift_load(&mut base);
-                let fitted = fit(flights, base, Newton::Held)?;
+                let fitted = with_taken(flights, &after, &taken)?;
                 if wanders(flights, &fitted, &taken) || at_bound(&fitted, &taken) {
                     refused.push(taken.candidate.id);
                     continue;
@@ -229,6 +241,23 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         ..found
     };
     Ok(Search { before, after, latency, steps, last })
+}
+
+/// What explains most for its columns first, each at `price`, sigma squared.
+fn by_worth(mut tested: Vec<Tested>, price: f64) -> Vec<Tested> {
+    let worth = |tested: &Tested| tested.evidence.energy - price * tested.evidence.theta.len() as f64;
+    tested.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+    tested
+}
+
+/// Fitted again with what was taken.
+fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitted, PhysicsError> {
+    let mut base = after.base.clone();
+    base.present.extend(started(taken).into_iter().map(released));
+    if let Some(load) = base.present.last_mut().filter(|present| present.effect.id() == "slung_load") {
+        base.vehicle.body.mass_kg = lift_load(load, base.vehicle.body.mass_kg);
+    }
+    fit(flights, base, Newton::Held)
 }
 
 /// How often the search may go on after that.
@@ -283,17 +312,6 @@ fn wanders(flights: &[Trace], fitted: &Fitted, taken: &Tested) -> bool {
 
 /// A step counts beyond this many of a wandering force's standard errors.
 const WANDERED: f64 = 4.0;
-
-/// The load that has just come in was in the mass before, and the cord that fitted then is shorter than the one
-/// that swings as fast below the lighter vehicle.
-fn lift_load(base: &mut Base) {
-    let Some(load) = base.present.last_mut().filter(|present| present.effect.id() == "slung_load") else {
-        return;
-    };
-    let (all_kg, load_kg) = (base.vehicle.body.mass_kg, load.values[0].min(0.5 * base.vehicle.body.mass_kg));
-    load.values[1] = load.possible(1, load.values[1] * all_kg / (all_kg - load_kg));
-    base.vehicle.body.mass_kg = all_kg - load_kg;
-}
 
 /// Parameters that only show once the effect is there are estimated from then on.
 fn released(mut present: Present) -> Present {

@@ -20,8 +20,7 @@ pub(super) fn settle(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64
         for (place, &slot) in present.free.iter().enumerate() {
             let std = after.covariance[(index + place, index + place)].max(0.0).sqrt();
             let z = present.away_from_nothing(slot, std).abs();
-            let finer = slot >= present.effect.parameters().len();
-            let amount = !finer && (present.effect.id() != "slung_load" || slot != 1);
+            let amount = present.is_amount(slot);
             if amount && z < PRUNED {
                 pruned.values[slot] = present.nothing_at(slot);
                 pruned.free.retain(|free| *free != slot);

@@ -59,10 +59,10 @@ fn inspect(args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, 
         let text = format!("expected a log named *.tlog or *.csv, got {}", path.display());
         return Err(CommandError::Input(text));
     }
-    if args.csv_map.is_some() {
+    if args.read.csv_map.is_some() {
         return Err(CommandError::Input("--csv-map is for *.csv logs; this one is a *.tlog".into()));
     }
-    let options = LoadOptions { system: args.system.map(SystemId) };
+    let options = LoadOptions { system: args.read.system.map(SystemId) };
     let bar = progress::of_file(path);
     let inspection = inspect_tlog(path, &options, vehicle, &mut |bytes| bar.set_position(bytes));
     bar.finish_and_clear();
@@ -70,10 +70,10 @@ fn inspect(args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, 
 }
 
 fn csv(path: &Path, args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, CommandError> {
-    if args.system.is_some() {
+    if args.read.system.is_some() {
         return Err(CommandError::Input("--system is for *.tlog logs; this one is a *.csv".into()));
     }
-    let mapping = match &args.csv_map {
+    let mapping = match &args.read.csv_map {
         Some(file) => load_csv_mapping(file)?,
         None => default_csv_mapping()?,
     };

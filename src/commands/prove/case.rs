@@ -11,8 +11,9 @@ use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
 use mavid::vehicle::Vehicle;
 use serde::Serialize;
 
+use crate::cli::ReadArgs;
 use crate::commands::CommandError;
-use crate::commands::flights::{ReadAs, load};
+use crate::commands::flights::load;
 
 /// The vehicle file of a case.
 pub const VEHICLE: &str = "vehicle.toml";
@@ -162,7 +163,7 @@ fn flight(
     vehicle: &Vehicle,
     sha256: &mut Vec<String>,
 ) -> Result<(Recording, Signals), CommandError> {
-    let loaded = load(log, &ReadAs { csv_map: None, system: None })?;
+    let loaded = load(log, &ReadArgs::default())?;
     let settings = ConditionSettings {
         transient_s: Some(TRANSIENT_S),
         thrust: ThrustPreference::Commands,

@@ -1,9 +1,8 @@
 //! Which form of each effect: all are fitted, the likeliest is taken.
 
 use super::wanted::Wanted;
-use crate::diagnose::base::{Base, Present};
-use crate::diagnose::rows::{AXES, CHANNELS};
-use crate::diagnose::search::{Fitted, Newton, fit};
+use crate::diagnose::base::{Base, Present, lift_load};
+use crate::diagnose::search::{Newton, fit};
 use crate::diagnose::trace::Trace;
 use crate::physics::{Airframe, PhysicsError};
 use rayon::prelude::*;
@@ -25,24 +24,6 @@ const LENGTH_EVERY: f64 = 0.0025;
 /// Round about a change's moment, s: how far, and how finely.
 const ABOUT_S: f64 = 4.0;
 const EVERY_S: f64 = 0.25;
-
-/// Sum over the rows of the logarithm of each channel's standard deviation, forces as the accelerations that were
-/// measured: minus the logarithm of the likelihood, up to a constant.
-fn misfit(fitted: &Fitted) -> f64 {
-    let rows = fitted.rows.len() as f64;
-    let mass_kg = fitted.base.vehicle.body.mass_kg;
-    let measured = |channel: usize| {
-        let of_torque = (3..AXES).contains(&channel);
-        fitted.weighted.sigma[channel] / if of_torque { 1.0 } else { mass_kg }
-    };
-    let used: Vec<f64> = (0..CHANNELS).map(measured).filter(|sigma| *sigma != 0.0).collect();
-    // a form that cannot be carried along the flight is no candidate
-    if used.iter().all(|sigma| *sigma > 0.0) {
-        used.iter().map(|sigma| rows * sigma.ln()).sum()
-    } else {
-        f64::INFINITY
-    }
-}
 
 /// One form of every effect that has columns of its own, in the order in which they were asked for.
 pub(super) fn choose(
@@ -100,7 +81,7 @@ fn likeliest(
             let mut base = with_others(base, picked, place);
             base.present.push(form.clone());
             let fitted = fit(flights, base, Newton::Held)?;
-            Ok((misfit(&fitted), fitted.weighted.long_run_deviation(), fitted.rows.len()))
+            Ok((fitted.misfit(), fitted.weighted.long_run_deviation(), fitted.rows.len()))
         })
         .collect::<Result<_, PhysicsError>>()?;
     let deviation = fits.iter().map(|(_, deviation, _)| *deviation).fold(f64::INFINITY, f64::min);
@@ -112,9 +93,6 @@ fn likeliest(
     let best = misfits.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(index, _)| index);
     Ok(Likeliest { form: forms[best].clone(), misfits, deviation })
 }
-
-/// A load to start from is no more than this share of the mass.
-const MOST_OF_MASS: f64 = 0.5;
 
 /// The base with what was picked, but for one place.
 fn with_others(base: &Base, picked: &[Option<Present>], place: usize) -> Base {
@@ -157,10 +135,7 @@ fn length(
         share += LENGTH_EVERY;
     }
     let mut found = most(&finely).unwrap_or(coarse);
-    // the rigid body holds the load's mass; without it the same thrust swings a longer cord at the same pace
-    let all_kg = fitted.base.vehicle.body.mass_kg;
-    found.values[0] = found.values[0].min(MOST_OF_MASS * all_kg);
-    found.values[1] *= all_kg / (all_kg - found.values[0]);
+    lift_load(&mut found, fitted.base.vehicle.body.mass_kg);
     found.free = vec![0, 1];
     Ok(found)
 }

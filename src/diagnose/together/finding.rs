@@ -1,6 +1,6 @@
 //! What is said of each effect.
 
-use super::held::{Held, Settled, from_nothing, is_amount};
+use super::held::{Held, Settled};
 use super::latency::{LEAST_LAG_S, Split};
 use super::wanted::Wanted;
 use crate::diagnose::base::Present;
@@ -177,11 +177,11 @@ fn of_columns(
         .free
         .iter()
         .enumerate()
-        .filter(|(_, slot)| is_amount(present, **slot))
-        .map(|(nth, &slot)| (column(nth), from_nothing(present, slot, 1.0)))
+        .filter(|(_, slot)| present.is_amount(**slot))
+        .map(|(nth, &slot)| (column(nth), present.away_from_nothing(slot, 1.0)))
         .collect();
     let at_bound =
-        |(slot, held): &&(usize, Held)| matches!(held, Held::AtBound { .. }) && is_amount(present, *slot);
+        |(slot, held): &&(usize, Held)| matches!(held, Held::AtBound { .. }) && present.is_amount(*slot);
     let (bounded, tried) = (settled.held.iter().filter(at_bound).count(), settled.chosen.tried);
     EffectFound { effect: present.effect, parameters, z: deviate(fitted, &amounts, (bounded, tried)), tried }
 }

@@ -122,37 +122,17 @@ fn own_share(weighted: &Weighted, index: usize) -> Option<f64> {
     (plain > 0.0).then(|| own / plain)
 }
 
-/// The parameters that say how much of the effect there is; the others say what it is like.
-pub(super) fn is_amount(present: &Present, slot: usize) -> bool {
-    match present.effect.id() {
-        "slung_load" | "ceiling_effect" => slot == 0,
-        "mass_change" | "weak_rotor" => slot == 1,
-        "tether" | "ground_effect" => slot < 2,
-        _ => slot < present.effect.parameters().len(),
-    }
-}
-
-/// Where an amount does nothing, or as little as it may.
-fn nothing(present: &Present, slot: usize) -> f64 {
-    present.nothing_at(slot)
-}
-
-/// Standard errors by which an amount differs from nothing.
-pub(super) fn from_nothing(present: &Present, slot: usize, std: f64) -> f64 {
-    present.away_from_nothing(slot, std)
-}
-
 fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
     let present = &fitted.base.present[place];
     let all = estimates(fitted, place);
     let seen = all.iter().any(|(slot, _, std, _)| {
-        is_amount(present, *slot) && from_nothing(present, *slot, *std).abs() > SEEN
+        present.is_amount(*slot) && present.away_from_nothing(*slot, *std).abs() > SEEN
     });
     let mut anew = false;
     for (slot, _, std, own) in all {
         let Some(parameter) = present.parameter(slot) else { continue };
         let range = parameter.max - parameter.min;
-        let amount = is_amount(present, slot);
+        let amount = present.is_amount(slot);
         let reason = if !amount && !seen {
             "the effect itself does not stand out of the noise".to_owned()
         } else {
@@ -170,7 +150,7 @@ fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
         };
         of.chosen.form.free.retain(|free| *free != slot);
         if amount {
-            of.chosen.form.values[slot] = nothing(present, slot);
+            of.chosen.form.values[slot] = present.nothing_at(slot);
         }
         of.held.push((slot, Held::NotDetermined(reason)));
         anew = true;

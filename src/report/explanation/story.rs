@@ -30,8 +30,6 @@ pub struct Estimate {
 pub struct Given {
     /// nominal
     pub vehicle: Vehicle,
-    /// effects that the vehicle's file has already
-    pub known: Vec<ActiveEffect>,
     /// flights that were explained
     pub inputs: Vec<InputFile>,
     /// where their signals come from
@@ -118,7 +116,7 @@ impl Story {
     /// Effects for the model file: those that were found, and a latency that was named.
     #[must_use]
     pub fn effects_of_model(&self) -> Vec<ActiveEffect> {
-        let mut effects = self.given.known.clone();
+        let mut effects = Vec::new();
         if self.verdict() == Verdict::Unexplained {
             return effects;
         }
