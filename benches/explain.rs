@@ -39,7 +39,7 @@ const SIZES: &[(&str, Sizes)] = &[
     ("frame_misalignment", &[("x", 0.035, Scale::One), ("y", -0.026, Scale::One), ("z", 0.0, Scale::One)]),
     ("imu_misalignment", &[("x", 0.035, Scale::One), ("y", -0.026, Scale::One), ("z", 0.03, Scale::One)]),
     ("imu_offset", &[("x", 0.05, Scale::One), ("y", -0.03, Scale::One), ("z", 0.04, Scale::One)]),
-    ("rotor_inertia", &[("jr", 0.001, Scale::Inertia)]),
+    ("rotor_inertia", &[("jr", 0.0015, Scale::Inertia)]),
     (
         "tether",
         &[("line_mass", 0.03, Scale::Mass), ("stiffness", 0.0, Scale::One), ("length", 500.0, Scale::One)],
@@ -277,6 +277,37 @@ fn report_effect(id: &'static str, values: Sizes, first: u64, count: u64) {
                 explanation.search.latency
             );
         }
+        if std::env::var("SHOW").is_ok_and(|want| want == seed.to_string()) {
+            for step in &explanation.search.steps {
+                println!(
+                    "    took {} {:?} e {:.0}",
+                    step.taken.candidate.id, step.taken.evidence.theta, step.taken.evidence.energy
+                );
+            }
+            let mut last: Vec<_> = explanation.search.last.iter().collect();
+            last.sort_by(|a, b| b.evidence.energy.total_cmp(&a.evidence.energy));
+            for tested in last.iter().take(14) {
+                let e = &tested.evidence;
+                println!(
+                    "    {:18} {:?} theta {:?} std {:.3e} z {:.1} pc {:.1e} gain {:.4} e {:.1} rms {:?}",
+                    tested.candidate.id,
+                    tested.candidate.parts[0].values,
+                    e.theta,
+                    e.std(0),
+                    e.z,
+                    e.p_cluster,
+                    e.gain,
+                    e.energy,
+                    e.rms
+                );
+            }
+            println!(
+                "    sigma {:?} torque {:?} {:?}",
+                explanation.search.after.weighted.sigma,
+                explanation.search.after.rows.torque_rms,
+                explanation.search.after.base.present
+            );
+        }
         for name in explanation.named.iter().filter(|name| name.id != id && !in_set(name) && !companion(name))
         {
             others += 1;
@@ -289,6 +320,14 @@ fn report_effect(id: &'static str, values: Sizes, first: u64, count: u64) {
         "{id:20} {:7} {named:6} {within:4} {others:7}  {verdicts:?} {median:.1} % {strangers:?}",
         found.len()
     );
+}
+
+/// Speed of the air through the rotors in hover, by momentum theory.
+fn hover_inflow_m_s(vehicle: &Vehicle) -> f64 {
+    const AIR_KG_M3: f64 = 1.225;
+    let radius_m = vehicle.propulsion.rotor_radius_m.expect("a random vehicle has a rotor radius");
+    let disc_m2 = vehicle.rotors.len() as f64 * std::f64::consts::PI * radius_m.powi(2);
+    (vehicle.body.mass_kg * vehicle.gravity_m_s2 / (2.0 * AIR_KG_M3 * disc_m2)).sqrt()
 }
 
 /// The drag through which the air's motion acts.
@@ -325,7 +364,7 @@ fn fly(
     id: Option<&str>,
     with: Conditions,
 ) -> Option<Explanation> {
-    let pair = random_vehicle(seed.wrapping_mul(7919));
+    let mut pair = random_vehicle(seed.wrapping_mul(7919));
     let mut random = RandomTrajectory::default();
     if id == Some("slung_load") {
         // gently, as loads are flown
@@ -337,9 +376,13 @@ fn fly(
         (random.acceleration_max_m_s2, random.height_m) = (4.5, (0.5, 4.0));
     }
     if id == Some("vortex_ring") {
-        // down fast, as it takes
-        random.height_m = (2.0, 14.0);
-        (random.speed_max_m_s, random.acceleration_max_m_s2) = (5.0, 5.0);
+        // down long and fast, as it takes
+        (random.height_m, random.harmonics) = ((2.0, 24.0), 3);
+        (random.speed_max_m_s, random.acceleration_max_m_s2) = (1.2 * hover_inflow_m_s(&pair.truth), 5.0);
+    }
+    if id == Some("ceiling_effect") {
+        // below it
+        random.height_m = (0.8, 2.0);
     }
     if id == Some("ground_effect") {
         random.height_m = (0.3, 1.2);
@@ -348,6 +391,11 @@ fn fly(
     let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
     let mut settings =
         if with.plain { FlightSettings { seed, ..FlightSettings::default() } } else { settings(seed) };
+    if id == Some("rotor_inertia") {
+        // motors as rotors of some inertia have them: known, and what spins up does so in that time
+        settings.motor_time_constant_s = 0.02;
+        pair.nominal.propulsion.time_constant_s = Some(0.02);
+    }
     settings.telemetry.share_controller_noise = with.fed_back;
     if id == Some("battery_sag") {
         settings.battery_drop_v_s = 0.03;

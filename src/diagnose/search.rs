@@ -10,7 +10,7 @@ use super::locate::mass_step_std_kg;
 use super::mounting::{Turn, mountings};
 use super::rows::{AXES, CHANNELS, Channels, Nuisance, Rows};
 use super::settle::{SETTLED_S, settle};
-use super::sharpen::sharpened;
+use super::sharpen::{between_grid, sharpened};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;
@@ -192,6 +192,7 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
     loop {
         let candidates = candidates(&after.base.vehicle, flights);
         last = test_all(flights, &after, &candidates);
+        last.extend(between_grid(flights, &after, &last));
         last.extend(mountings(flights, &after, Turn::First));
         let count = last.len() as f64;
         let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);

@@ -26,6 +26,17 @@ fn scale_of(id: &str) -> Option<Scale> {
     }
 }
 
+/// The likeliest cord brought between the grid's lengths: a load that swings freely is out of step with its
+/// neighbours on the grid, and they explain too little of it to be taken.
+pub(super) fn between_grid(flights: &[Trace], fitted: &Fitted, tested: &[Tested]) -> Option<Tested> {
+    let loads = tested.iter().filter(|tested| tested.candidate.id == "slung_load");
+    let most = loads.max_by(|a, b| a.evidence.energy.total_cmp(&b.evidence.energy))?;
+    (most.evidence.gain > WORTH_SHARPENING).then(|| sharpened(flights, fitted, most.clone()))
+}
+
+/// Share of the residual that a cord of the grid has to explain.
+const WORTH_SHARPENING: f64 = 0.01;
+
 /// Neighbours on either side that are tried first.
 const NEIGHBOURS: i32 = 6;
 
