@@ -25,6 +25,9 @@ pub(super) const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0]
 /// What the air takes of a load's swing before more is known, 1/s.
 pub(super) const SWING_DAMPING_1_S: f64 = 0.2;
 
+/// Decays per rotor radius of the ground's exponential form that are tried.
+const GROUND_DECAYS: [f64; 5] = [0.4, 0.7, 1.2, 2.0, 3.5];
+
 /// Distances of a ceiling over the highest rotor that are tried, rotor radii.
 const CEILINGS_RADII: [f64; 7] = [0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0];
 /// A ceiling's a1 that is as good as none: the thrust grows with its inverse.
@@ -42,7 +45,7 @@ pub fn candidates(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
     let known = |what: fn(&Trace) -> bool| flights.iter().all(what);
     let velocity = known(|trace| trace.known.velocity && trace.known.attitude);
     let mut tried: Vec<Option<Present>> = vec![
-        present("thrust_curve", &[0.0], &[0]),
+        present("thrust_curve", &[0.0, 0.0], &[0]),
         present("com_offset", &[0.0; 3], &[0, 1]),
         present("rotor_inertia", &[0.0], &[0]),
         present("angular_damping", &[0.0; 3], &[0, 1, 2]),
@@ -103,6 +106,12 @@ fn of_place(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Option<Present>> {
         present("ground_effect", &[0.0, 0.0, 1.0, 1.0], &[0]),
         present("tether", &[0.0, 0.0, 500.0], &[0]),
     ];
+    // the exponential form, for each height over which it dies down
+    for decay in GROUND_DECAYS {
+        tried.extend(
+            [1.0, 0.0].map(|levelling| present("ground_effect", &[0.0, 0.0, decay, levelling], &[1])),
+        );
+    }
     let ceilings_m = Airframe::new(vehicle).map(|airframe| ceilings_m(flights, &airframe));
     tried.extend(
         ceilings_m

@@ -5,11 +5,10 @@ use super::candidates::Candidate;
 use super::confusable::confusable_with;
 use super::deviate::normal_deviate;
 use super::explanation::{Confusable, DetectionLimit, Explanation, Named, NamedParameter, Strength, Verdict};
-use super::gates::Gates;
+use super::gates::{Gates, WEAKEST_CEILING, ordinary_size};
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
 use super::latency::{LatencyFinding, REFUSED, held_s};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
-use super::mounting::ordinary_size;
 use super::rows::{AXES, CHANNELS};
 use super::search::{Fitted, Newton, Search, Step, Tested, fit, search};
 use super::trace::{Trace, TraceError};
@@ -249,7 +248,7 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
             } else {
                 0.0
             };
-            if free || present.values[slot] != 0.0 {
+            if free || present.values[slot] != 0.0 && !is_of_other_form(present, slot) {
                 let value = present.values[slot];
                 parameters.push(NamedParameter { name: parameter.name, value, std, unit: parameter.unit });
             }
@@ -268,13 +267,20 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
     out
 }
 
+/// The ground's decay says nothing where its form has none.
+fn is_of_other_form(present: &Present, slot: usize) -> bool {
+    present.effect.id() == "ground_effect" && slot == 2 && present.values[1] == 0.0
+}
+
 /// What every vehicle has a little of, or what is too small to be what the effect is called: it stays in the
 /// model and gets no name.
 fn is_ordinary(present: &Present, base: &Base) -> bool {
     let size = |slots: &[usize]| slots.iter().map(|&slot| present.values[slot].powi(2)).sum::<f64>().sqrt();
+    let amounts: Vec<usize> = present.free.iter().copied().filter(|slot| present.is_amount(*slot)).collect();
     let rotors = base.present.iter().filter(|other| other.effect.id() == "weak_rotor");
     match present.effect.id() {
-        id if ordinary_size(id).is_some_and(|ordinary| size(&present.free) < ordinary) => true,
+        id if ordinary_size(id).is_some_and(|ordinary| size(&amounts) < ordinary) => true,
+        "ceiling_effect" => present.values[0] > WEAKEST_CEILING,
         "com_offset" => size(&[0, 1, 2]) < COM_NUISANCE_M,
         "tether" => present.values[0] < LEAST_LINE_KG_M && present.values[1] == 0.0,
         // one that is stronger, or several that differ: the rotors' scatter

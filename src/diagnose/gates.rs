@@ -1,7 +1,7 @@
 //! What is asked of a candidate before it is named.
 
 use super::base::moved_to;
-use super::mounting::ordinary_size;
+use super::mounting;
 use super::rows::SECOND;
 use super::search::{Fitted, Tested};
 
@@ -30,6 +30,17 @@ impl Default for Gates {
 const GRIDDED: [&str; 2] = ["ceiling_effect", "slung_load"];
 /// What that adds to the normal deviate asked for.
 const GRID_Z: f64 = 1.0;
+
+/// No thrust curve is known to better than this (-).
+const ORDINARY_BEND: f64 = 0.02;
+
+/// The size (norm of the amounts) below which an effect is like any vehicle's; `None` for those that no vehicle has.
+pub(super) fn ordinary_size(id: &str) -> Option<f64> {
+    if id == "thrust_curve" { Some(ORDINARY_BEND) } else { mounting::ordinary_size(id) }
+}
+
+/// A ceiling whose a1 is larger lifts by less than a twentieth where it almost touches: that is none.
+pub(super) const WEAKEST_CEILING: f64 = 20.0;
 
 /// Significant, spread over the flight, possible, and large enough to matter.
 pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates: f64) -> bool {
@@ -70,7 +81,8 @@ fn possible(tested: &Tested) -> bool {
             // towards what is possible by two standard errors
             let reaches = |by: f64| {
                 let value = moved_to(part, free, by);
-                part.possible(free, value) == value
+                let ceiling = part.effect.id() == "ceiling_effect" && free == 0;
+                part.possible(free, value) == value && !(ceiling && value > WEAKEST_CEILING)
             };
             all &= reaches(by) || reaches(by - slack) || reaches(by + slack);
             index += 1;

@@ -320,6 +320,9 @@ fn released(mut present: Present) -> Present {
     if present.effect.id() == "slung_load" {
         present.free.push(1);
     }
+    if present.effect.id() == "ground_effect" && present.free == [1] {
+        present.free.push(2);
+    }
     if present.values.len() > finer && present.effect.id() != "motor_lag" {
         present.free.push(finer);
     }

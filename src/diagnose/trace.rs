@@ -142,6 +142,7 @@ impl Trace {
                 all
             })
             .collect();
+        let (inertial_late_s, inertial_unsure_s) = inertial_late(signals);
         let mut trace = Self {
             grid,
             usable: signals.usable.clone(),
@@ -154,10 +155,8 @@ impl Trace {
             measured_speeds: signals.quality.thrust_source == ThrustSource::MeasuredSpeed,
             gyro_noise_rad_s: gyro_noise_rad_s(rates),
             command_period_s: command_period_s(signals),
-            inertial_late_s: early_s(signals, Quantity::Attitude).unwrap_or(0.0).max(0.0),
-            inertial_unsure_s: early_s(signals, Quantity::Attitude)
-                .zip(early_s(signals, Quantity::Velocity))
-                .map_or(0.0, |(attitude_s, velocity_s)| (attitude_s - velocity_s).abs()),
+            inertial_late_s,
+            inertial_unsure_s,
             specific_force_m_s2: measured.cloned(),
             commanded_n,
             jitter: signals.jitter_wrench.clone(),
@@ -355,6 +354,18 @@ fn gyro_noise_rad_s(rates: &[Vector3<f64>]) -> f64 {
     (0..3)
         .map(|axis| white_level_of(&rates.iter().map(|rate| rate[axis]).collect::<Vec<_>>()))
         .fold(0.0, f64::max)
+}
+
+/// s by which the inertial unit is late, and by which that is uncertain: what attitude and velocity have in common when
+/// both are early. Where the velocity is not, the attitude's own stamps may be to blame as well.
+fn inertial_late(signals: &Signals) -> (f64, f64) {
+    let attitude_s = early_s(signals, Quantity::Attitude);
+    match attitude_s.zip(early_s(signals, Quantity::Velocity)) {
+        Some((attitude_s, velocity_s)) if attitude_s > 0.0 && velocity_s > 0.0 => {
+            (attitude_s.min(velocity_s), (attitude_s - velocity_s).abs())
+        }
+        _ => (0.0, attitude_s.unwrap_or(0.0).max(0.0)),
+    }
 }
 
 /// By how much a quantity's stamps precede the inertial unit's. One that is early was not foreseen: the

@@ -2,18 +2,20 @@
 
 use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `T_i = T (1 + c (T / T_hover - 1))`: nothing at hover, where the scale is known, and a slope there of `1 + c`
-/// times that of the law; reaction torque alike.
+/// `T_i = T (1 + c x + e x^2)` with `x = T / T_hover - 1`: nothing at hover, where the scale is known, and a slope there
+/// of `1 + c` times that of the law; reaction torque alike. In the finer form the curve has a `bow` e of its own.
 ///
-/// PX4's THR_MDL_FAC and ArduPilot's MOT_THST_EXPO are other forms of this curve.
+/// PX4's THR_MDL_FAC and ArduPilot's MOT_THST_EXPO are other forms of this curve: thrust with a share f of the square of
+/// the speed and `1 - f` of the speed itself is `c = -(1 - f) / 2` and, to this order, `e = -3 c / 4`.
 #[derive(Debug, Clone, Copy)]
 pub struct ThrustCurve;
 
 const PARAMETERS: &[Parameter] = &[Parameter { name: "curvature", unit: "-", min: -0.5, max: 0.5 }];
+const FINER: &[Parameter] = &[Parameter { name: "bow", unit: "-", min: -1.0, max: 1.0 }];
 
-/// Change of a rotor's thrust for one unit of curvature, N.
-fn bend_n(at: &Condition, thrust_n: f64) -> f64 {
-    thrust_n * (thrust_n / at.airframe.hover_thrust_n - 1.0)
+/// Thrust beyond that of hover, as a share of it (-).
+fn beyond_hover(at: &Condition, thrust_n: f64) -> f64 {
+    thrust_n / at.airframe.hover_thrust_n - 1.0
 }
 
 impl Effect for ThrustCurve {
@@ -29,13 +31,19 @@ impl Effect for ThrustCurve {
         PARAMETERS
     }
 
+    fn finer_parameters(&self) -> &'static [Parameter] {
+        FINER
+    }
+
     fn hooks(&self) -> &'static [Hook] {
         &[Hook::RotorThrust]
     }
 
     fn rotor_thrust(&self, at: &Condition, own: &mut Own, rotors: &mut Rotors) {
+        let bow = own.parameters.get(PARAMETERS.len()).copied().unwrap_or(0.0);
         for thrust_n in &mut rotors.thrust_n {
-            *thrust_n += own.parameters[0] * bend_n(at, *thrust_n);
+            let x = beyond_hover(at, *thrust_n);
+            *thrust_n *= 1.0 + (own.parameters[0] + bow * x) * x;
         }
     }
 
@@ -45,7 +53,8 @@ impl Effect for ThrustCurve {
 
     fn regressor(&self, at: &Condition, rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
         if let Some(column) = columns.first_mut() {
-            *column = at.thrust_wrench(&rotors.thrust_n.map(|thrust_n| bend_n(at, thrust_n)));
+            let bent_n = rotors.thrust_n.map(|thrust_n| thrust_n * beyond_hover(at, thrust_n));
+            *column = at.thrust_wrench(&bent_n);
         }
     }
 }

@@ -146,16 +146,19 @@ fn axes(values: &Values<'_>, names: &[&str], unit: &str) -> String {
 
 fn ground(values: &Values<'_>, vehicle: &Vehicle) -> String {
     let radius = vehicle.propulsion.rotor_radius_m;
-    let rho = values.value("rho");
+    let (rho, ca, cb) = (values.value("rho"), values.value("ca"), values.value("cb"));
     // two radii up
-    let gain_percent = 100.0 * (1.0 / (1.0 - rho / 64.0) - 1.0);
+    let gain_percent = 100.0 * (1.0 / (1.0 - rho / 64.0) - 1.0 + ca * (-2.0 * cb).exp());
     let height = radius.map_or(String::new(), |radius_m| {
-        format!(", {} % more thrust at {} m", significant(gain_percent, 2), significant(2.0 * radius_m, 2))
+        format!("{} % more thrust at {} m", significant(gain_percent, 2), significant(2.0 * radius_m, 2))
     });
-    format!(
-        "Ground effect was left out: {} times that of Cheeseman and Bennett{height}, fading with height",
-        values.said("rho", 1.0)
-    )
+    let by = if ca > 0.0 {
+        format!("falling by e every {} rotor radii", significant(1.0 / cb, 2))
+    } else {
+        format!("{} times that of Cheeseman and Bennett, fading with height", values.said("rho", 1.0))
+    };
+    let parts: Vec<String> = [by, height].into_iter().filter(|part| !part.is_empty()).collect();
+    format!("Ground effect was left out: {}", parts.join(", "))
 }
 
 /// Compass points, clockwise from north.
