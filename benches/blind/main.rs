@@ -1,0 +1,89 @@
+//! What `explain` says of flights that another maker made: other formulae, another integrator, another controller,
+//! a log as a ground station writes it. Nothing here knows the library's physics.
+//!
+//! `cargo bench --bench blind -- [--cases N per effect] [--clean N] [--pairs N] [--outside N] [--seed S] [--only EFFECT]
+//! [--write DIR]`: `--write` puts the flights down as cases with their answers, which `mavid prove` scores.
+#![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, reason = "a benchmark prints")]
+
+mod maker;
+mod score;
+mod write;
+
+use std::path::PathBuf;
+
+use maker::catalogue::{Case, EFFECTS, OUTSIDE, PAIRS};
+use score::{clean, effects, outside, pairs};
+
+/// What is asked for.
+struct Request {
+    cases: u64,
+    clean: u64,
+    pairs: u64,
+    outside: u64,
+    seed: u64,
+    only: Option<String>,
+    write: Option<PathBuf>,
+}
+
+fn main() {
+    let request = request();
+    let wanted = |entry: &&&'static str| {
+        request.only.as_ref().is_none_or(|only| **entry == only || maker::catalogue::identifier(entry) == only)
+    };
+    let seeds = |count: u64| (request.seed..request.seed + count).collect::<Vec<_>>();
+    let known: Vec<&'static str> = EFFECTS.iter().filter(wanted).copied().collect();
+    let unknown: Vec<&'static str> = OUTSIDE.iter().filter(wanted).copied().collect();
+    if let Some(folder) = &request.write {
+        let mut cases: Vec<Case> = Vec::new();
+        cases.extend(seeds(request.clean).into_iter().map(|seed| Case::new(seed, &[])));
+        let each = |entries: &[&'static str], count| {
+            seeds(count).into_iter().map(|seed| Case::new(seed, entries)).collect::<Vec<_>>()
+        };
+        cases.extend(known.iter().flat_map(|entry| each(&[entry], request.cases)));
+        cases.extend(unknown.iter().flat_map(|entry| each(&[entry], request.outside)));
+        cases.extend(PAIRS.iter().flat_map(|pair| each(pair, request.pairs.div_ceil(10))));
+        write::write(folder, &cases);
+        return;
+    }
+    if request.cases > 0 {
+        effects(&known, &seeds(request.cases));
+    }
+    if request.clean > 0 {
+        clean(&seeds(request.clean));
+    }
+    if request.pairs > 0 {
+        pairs(request.seed, request.pairs);
+    }
+    if request.outside > 0 && !unknown.is_empty() {
+        outside(&unknown, &seeds(request.outside));
+    }
+}
+
+/// Reads the arguments.
+fn request() -> Request {
+    let arguments: Vec<String> = std::env::args().collect();
+    let value = |name: &str| {
+        let place = arguments.iter().position(|argument| argument == name)?;
+        Some(arguments.get(place + 1).unwrap_or_else(|| panic_text(name)).clone())
+    };
+    let number = |name: &str, otherwise: u64| {
+        value(name).map_or(otherwise, |text| text.parse().unwrap_or_else(|_| panic_text(name)))
+    };
+    let only = value("--only");
+    let all = only.is_none();
+    Request {
+        cases: number("--cases", 6),
+        clean: number("--clean", if all { 20 } else { 0 }),
+        pairs: number("--pairs", if all { 10 } else { 0 }),
+        outside: number("--outside", 6),
+        seed: number("--seed", 1),
+        only,
+        write: value("--write").map(PathBuf::from),
+    }
+}
+
+/// Ends with what an argument lacks.
+fn panic_text<T>(name: &str) -> T {
+    println!("{name}: expected a value after it");
+    std::process::exit(2);
+}

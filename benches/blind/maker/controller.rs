@@ -1,0 +1,123 @@
+//! Geometric tracking control on SE(3) (Lee, Leok, McClamroch, CDC 2010) on noisy estimates.
+
+use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3, Vector4};
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::GRAVITY;
+use super::body::{State, place, rotation, three};
+use super::path::{Path, Wanted};
+use super::vehicle::Craft;
+
+/// What the estimates are wrong by, one sigma, anew each time.
+#[derive(Debug, Clone, Copy)]
+pub struct Doubt {
+    /// m
+    pub position: f64,
+    /// m/s
+    pub velocity: f64,
+    /// rad
+    pub attitude: f64,
+    /// rad/s
+    pub rates: f64,
+    /// of an actuator value
+    pub output: f64,
+}
+
+/// A controller that believes the maker.
+pub struct Controller {
+    mass: f64,
+    inertia: Matrix3<f64>,
+    /// from thrust and torque to the rotors' squared speeds
+    mix: Matrix4<f64>,
+    speed_max: f64,
+    doubt: Doubt,
+    /// m s
+    sum: Vector3<f64>,
+}
+
+/// Gains: position 1/s^2, velocity 1/s, the sum 1/s^3, attitude 1/s^2, rates 1/s.
+const GAINS: [f64; 5] = [4.0, 3.4, 1.0, 55.0, 12.0];
+
+/// Yaw is turned more gently.
+const YAW: f64 = 0.35;
+
+impl Controller {
+    pub fn new(craft: &Craft, doubt: Doubt) -> Self {
+        let columns: [_; 4] = std::array::from_fn(|rotor| {
+            let (hub, thrust) = (craft.hubs[rotor], craft.thrust_coefficient);
+            Vector4::new(
+                thrust,
+                thrust * hub.y,
+                -thrust * hub.x,
+                -craft.spins[rotor] * craft.torque_coefficient,
+            )
+        });
+        let mix = Matrix4::from_columns(&columns).try_inverse().unwrap_or_else(Matrix4::identity);
+        Self {
+            mass: craft.said_mass,
+            inertia: Matrix3::from_diagonal(&craft.said_inertia),
+            mix,
+            speed_max: craft.speed_max,
+            doubt,
+            sum: Vector3::zeros(),
+        }
+    }
+
+    /// Actuator values `time` s into the flight; `step` s since the last.
+    pub fn outputs(
+        &mut self,
+        path: &Path,
+        (time, step): (f64, f64),
+        state: &State,
+        dice: &mut impl Rng,
+    ) -> [f64; 4] {
+        let wanted = path.at(time);
+        let mut noise = |sigma: f64| {
+            Vector3::from_fn(|_, _| {
+                let drawn: f64 = StandardNormal.sample(dice);
+                sigma * drawn
+            })
+        };
+        let at = three(state, place::POSITION) + noise(self.doubt.position);
+        let velocity = three(state, place::VELOCITY) + noise(self.doubt.velocity);
+        let turn = rotation(state) * Rotation3::new(noise(self.doubt.attitude)).matrix();
+        let rates = three(state, place::RATES) + noise(self.doubt.rates);
+        let [kp, kv, ki, kr, kw] = GAINS;
+        let off = at - wanted.position;
+        self.sum = (self.sum + off * step).map(|sum| sum.clamp(-2.0, 2.0));
+        let push = up(&wanted) - kp * off - kv * (velocity - wanted.velocity) - ki * self.sum;
+        let thrust = self.mass * push.dot(&turn.column(2)).max(0.2 * GRAVITY);
+        let to = attitude(&push, wanted.yaw);
+        // how the reference itself turns, from what it asks for a little later
+        let soon = path.at(time + 0.01);
+        let between = attitude(&up(&wanted), wanted.yaw).transpose() * attitude(&up(&soon), soon.yaw);
+        let ahead = Rotation3::from_matrix_unchecked(between).scaled_axis() / 0.01;
+        let skew = 0.5 * (to.transpose() * turn - turn.transpose() * to);
+        let lean = Vector3::new(skew[(2, 1)], skew[(0, 2)], skew[(1, 0)]);
+        let turning = rates - turn.transpose() * to * ahead;
+        let mut answer = -kr * lean - kw * turning;
+        answer.z *= YAW;
+        let torque = self.inertia * answer + rates.cross(&(self.inertia * rates));
+        let squares = self.mix * Vector4::new(thrust, torque.x, torque.y, torque.z);
+        let drawn = noise(self.doubt.output);
+        let fourth = noise(self.doubt.output).x;
+        std::array::from_fn(|rotor| {
+            let extra = if rotor < 3 { drawn[rotor] } else { fourth };
+            (squares[rotor].max(0.0).sqrt() / self.speed_max + extra).clamp(0.05, 1.0)
+        })
+    }
+}
+
+/// Specific force that a reference asks for, m/s^2, world.
+fn up(wanted: &Wanted) -> Vector3<f64> {
+    wanted.acceleration + Vector3::new(0.0, 0.0, GRAVITY)
+}
+
+/// Body to world with z along a push and x towards a yaw.
+fn attitude(push: &Vector3<f64>, yaw: f64) -> Matrix3<f64> {
+    let z = push.normalize();
+    let ahead = Vector3::new(yaw.cos(), yaw.sin(), 0.0);
+    let y = z.cross(&ahead).normalize();
+    Matrix3::from_columns(&[y.cross(&z), y, z])
+}
