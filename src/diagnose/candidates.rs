@@ -104,7 +104,7 @@ fn of_place(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Option<Present>> {
         // all rotors lifted alike, or each by its own height
         present("ground_effect", &[0.0, 0.0, 1.0, 0.0], &[0]),
         present("ground_effect", &[0.0, 0.0, 1.0, 1.0], &[0]),
-        present("tether", &[0.0, 0.0, 500.0], &[0]),
+        present("tether", &[0.0, 0.0, 500.0, 0.0], &[0]),
     ];
     // the exponential form, for each height over which it dies down
     for decay in GROUND_DECAYS {

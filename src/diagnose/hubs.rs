@@ -68,6 +68,6 @@ fn is_share(present: &Present, slot: usize) -> bool {
 }
 
 /// Twice the negative logarithm of the likelihood, and `price` a column.
-fn cost(fitted: &Fitted, price: f64) -> f64 {
+pub(super) fn cost(fitted: &Fitted, price: f64) -> f64 {
     2.0 * fitted.misfit() + price * fitted.rows.effects.len() as f64
 }

@@ -9,6 +9,7 @@ mod empirical;
 mod evidence;
 mod explain;
 mod explanation;
+mod forms;
 mod gates;
 mod harmonics;
 mod hubs;

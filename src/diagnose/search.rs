@@ -3,6 +3,7 @@
 use super::base::{Base, Present, lift_load, moved_to};
 use super::candidates::{Candidate, candidates, drag_and_wind};
 use super::evidence::{Evidence, Weighted};
+use super::forms::other_form;
 use super::gates::{Gates, passes};
 use super::hubs::one_place;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
@@ -223,7 +224,7 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
                 settled += 1;
                 let before = after.base.present.clone();
                 let (dropped, moved) = settle(flights, &mut after)?;
-                let placed = one_place(flights, &mut after, price)?;
+                let placed = one_place(flights, &mut after, price)? | other_form(flights, &mut after, price)?;
                 let gone = before.iter().map(|present| present.effect.id());
                 let kept = |id: &&'static str| after.base.present.iter().any(|p| p.effect.id() == *id);
                 refused.extend(gone.filter(|id| !kept(id)));

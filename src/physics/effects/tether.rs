@@ -5,8 +5,10 @@ use nalgebra::Vector3;
 use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// The line that was lifted weighs `line_mass` per metre of height, and beyond `length` from the anchor at the
-/// world's origin it pulls back like a spring: `F = -line_mass g z e_z - stiffness (|p| - length)+ p / |p|`,
-/// at the centre of mass.
+/// world's origin it pulls back like a spring: `F = -line_mass z (g + carried a_z) e_z - stiffness (|p| - length)+ p / |p|`,
+/// at the centre of mass. `carried`, in the finer form and else zero, is the share of the line that goes up and down
+/// with the vehicle: a line that hangs free does, one that is paid out does not. The acceleration a_z is that which the
+/// rotors give vehicle and line.
 #[derive(Debug, Clone, Copy)]
 pub struct Tether;
 
@@ -16,14 +18,29 @@ const PARAMETERS: &[Parameter] = &[
     Parameter { name: "length", unit: "m", min: 0.5, max: 500.0 },
 ];
 
+const FINER: &[Parameter] = &[Parameter { name: "carried", unit: "-", min: 0.0, max: 1.0 }];
+
 fn in_body(at: &Condition, world_n: Vector3<f64>) -> Wrench {
     let force_n = at.state.attitude.inverse_transform_vector(&world_n);
     Wrench { force_n, torque_nm: Vector3::zeros() }
 }
 
-/// World force for one kg/m of line.
+/// Line off the ground, m.
+fn lifted_m(at: &Condition) -> f64 {
+    at.state.position_m.z.max(0.0)
+}
+
+/// World force for one kg/m of line that is not carried.
 fn weight_per_mass(at: &Condition) -> Vector3<f64> {
-    Vector3::z() * (-at.airframe.gravity_m_s2 * at.state.position_m.z.max(0.0))
+    Vector3::z() * (-at.airframe.gravity_m_s2 * lifted_m(at))
+}
+
+/// What it takes to accelerate a line of `line_kg`, of which `carried` goes with the vehicle, world, N.
+fn inertia_n(at: &Condition, rotors: &Rotors, line_kg: f64, carried: f64) -> Vector3<f64> {
+    let lift_n = (at.state.attitude * at.thrust_wrench(&rotors.thrust_n).force_n).z;
+    let weight_n = (at.airframe.mass_kg + line_kg) * at.airframe.gravity_m_s2;
+    let moved_kg = at.airframe.mass_kg + carried * line_kg;
+    Vector3::z() * (-carried * line_kg * (lift_n - weight_n) / moved_kg)
 }
 
 /// How far the line is stretched, outwards, world, m.
@@ -45,13 +62,20 @@ impl Effect for Tether {
         PARAMETERS
     }
 
+    fn finer_parameters(&self) -> &'static [Parameter] {
+        FINER
+    }
+
     fn hooks(&self) -> &'static [Hook] {
         &[Hook::Wrench]
     }
 
-    fn wrench(&self, at: &Condition, _rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
+    fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
         let [line_kg_m, stiffness_n_m, length_m] = [own.parameters[0], own.parameters[1], own.parameters[2]];
-        *sum += in_body(at, weight_per_mass(at) * line_kg_m - stretch(at, length_m) * stiffness_n_m);
+        let carried = own.parameters.get(PARAMETERS.len()).copied().unwrap_or(0.0);
+        let inertia_n = inertia_n(at, rotors, line_kg_m * lifted_m(at), carried);
+        let weight_n = weight_per_mass(at) * line_kg_m;
+        *sum += in_body(at, weight_n + inertia_n - stretch(at, length_m) * stiffness_n_m);
     }
 
     fn has_regressor(&self) -> bool {

@@ -2,20 +2,25 @@
 
 use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `T_i = T (1 + c x + e x^2)` with `x = T / T_hover - 1`: nothing at hover, where the scale is known, and a slope there
-/// of `1 + c` times that of the law; reaction torque alike. In the finer form the curve has a `bow` e of its own.
+/// `T_i = T + 2 T_hover s (s - 1) (c + e (s - 1))` with `s = sqrt(T / T_hover)`, the speed that the law says over that of
+/// hover: nothing at hover, where the scale is known, and a slope there of `1 + c` times that of the law; reaction
+/// torque alike. In the finer form the curve has a `bow` e of its own.
 ///
-/// PX4's THR_MDL_FAC and ArduPilot's MOT_THST_EXPO are other forms of this curve: thrust with a share f of the square of
-/// the speed and `1 - f` of the speed itself is `c = -(1 - f) / 2` and, to this order, `e = -3 c / 4`.
+/// A thrust with a share f of the square of the command and `1 - f` of the command itself, as PX4's THR_MDL_FAC and
+/// ArduPilot's MOT_THST_EXPO have it, is `c = (f - 1) / 2` of a law with the square alone (f for commands relative to
+/// hover).
 #[derive(Debug, Clone, Copy)]
 pub struct ThrustCurve;
 
 const PARAMETERS: &[Parameter] = &[Parameter { name: "curvature", unit: "-", min: -0.5, max: 0.5 }];
 const FINER: &[Parameter] = &[Parameter { name: "bow", unit: "-", min: -1.0, max: 1.0 }];
 
-/// Thrust beyond that of hover, as a share of it (-).
-fn beyond_hover(at: &Condition, thrust_n: f64) -> f64 {
-    thrust_n / at.airframe.hover_thrust_n - 1.0
+/// Change of a rotor's thrust for one unit of curvature, N, and of bow.
+fn bend_n(at: &Condition, thrust_n: f64) -> (f64, f64) {
+    let hover_n = at.airframe.hover_thrust_n;
+    let speed = (thrust_n / hover_n).max(0.0).sqrt();
+    let bent_n = 2.0 * hover_n * speed * (speed - 1.0);
+    (bent_n, bent_n * (speed - 1.0))
 }
 
 impl Effect for ThrustCurve {
@@ -42,8 +47,8 @@ impl Effect for ThrustCurve {
     fn rotor_thrust(&self, at: &Condition, own: &mut Own, rotors: &mut Rotors) {
         let bow = own.parameters.get(PARAMETERS.len()).copied().unwrap_or(0.0);
         for thrust_n in &mut rotors.thrust_n {
-            let x = beyond_hover(at, *thrust_n);
-            *thrust_n *= 1.0 + (own.parameters[0] + bow * x) * x;
+            let (by_curvature_n, by_bow_n) = bend_n(at, *thrust_n);
+            *thrust_n += own.parameters[0] * by_curvature_n + bow * by_bow_n;
         }
     }
 
@@ -53,8 +58,7 @@ impl Effect for ThrustCurve {
 
     fn regressor(&self, at: &Condition, rotors: &Rotors, _parameters: &[f64], columns: &mut [Wrench]) {
         if let Some(column) = columns.first_mut() {
-            let bent_n = rotors.thrust_n.map(|thrust_n| thrust_n * beyond_hover(at, thrust_n));
-            *column = at.thrust_wrench(&bent_n);
+            *column = at.thrust_wrench(&rotors.thrust_n.map(|thrust_n| bend_n(at, thrust_n).0));
         }
     }
 }

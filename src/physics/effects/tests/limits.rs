@@ -84,8 +84,13 @@ fn thrust_curve_leaves_hover_alone_and_bends_elsewhere() {
         Input { speed_command: [2.0_f64.sqrt(); MAX_ROTORS], ..Input::from_commands(&airframe, 0.0, &[]) };
     let at = Condition::new(&airframe, &state, &input, Vector3::zeros());
     let rotors = Rotors::as_commanded(&airframe, &input.speed_command);
-    // twice the hover thrust: 2 (1 + 0.3 (2 - 1)) - 2 = 0.6
-    assert!((wrench_of(&ThrustCurve, &at, &rotors, &[0.3]).force_n.z - 0.6 * WEIGHT_N).abs() < 1e-9);
+    // twice the hover thrust: 2 * 0.3 (2 - sqrt 2) = 0.35147
+    let more = |theta: &[f64]| wrench_of(&ThrustCurve, &at, &rotors, theta).force_n.z / WEIGHT_N;
+    assert!((more(&[0.3]) - 0.351_472).abs() < 1e-6);
+    // a law of 0.4 s^2 + 0.6 s against s^2: 0.8 + 0.6 sqrt 2 - 2
+    assert!((more(&[-0.3]) - (0.8 + 0.6 * 2.0_f64.sqrt() - 2.0)).abs() < 1e-9);
+    // the bow bends by sqrt 2 - 1 of that, and not at all about hover
+    assert!((more(&[0.0, 0.3]) - 0.351_472 * (2.0_f64.sqrt() - 1.0)).abs() < 1e-6);
 }
 
 #[test]
@@ -283,6 +288,17 @@ fn a_misaligned_reference_alone_sees_it() {
 fn a_tether_weighs_with_height_and_holds_when_taut() {
     let at = |position_m| change(&Tether, &[0.02, 10.0, 5.0], &State::at_rest(position_m, 0.7)).force_n;
     assert!((at(Vector3::new(0.0, 0.0, 4.0)).z + 0.02 * 9.81 * 4.0).abs() < 1e-9);
+    // climbing with half of g, and the line with it
+    let airframe = Airframe::new(&vehicle()).unwrap();
+    let state = State::at_rest(Vector3::new(0.0, 0.0, 4.0), 0.7);
+    let mass_kg = airframe.mass_kg;
+    let lift = 1.5 * (mass_kg + 0.02 * 4.0) / mass_kg;
+    let input =
+        Input { speed_command: [lift.sqrt(); MAX_ROTORS], ..Input::from_commands(&airframe, 0.0, &[]) };
+    let climb = Condition::new(&airframe, &state, &input, Vector3::zeros());
+    let rotors = Rotors::as_commanded(&airframe, &input.speed_command);
+    let carried = wrench_of(&Tether, &climb, &rotors, &[0.02, 0.0, 500.0, 1.0]).force_n.z;
+    assert!((carried + 1.5 * 0.02 * 9.81 * 4.0).abs() < 2e-3, "{carried}");
     // 6 m along the ground: one metre of stretch, 10 N towards the anchor
     assert!((at(Vector3::new(6.0, 0.0, 0.0)).norm() - 10.0).abs() < 1e-9);
     assert!(at(Vector3::new(4.9, 0.0, 0.0)).norm() < 1e-12);
