@@ -13,6 +13,8 @@ pub type Thrusts = [f64; MAX_ROTORS];
 pub struct Turning {
     /// N
     pub thrust_n: Vec<Thrusts>,
+    /// the speed that belongs to it, relative to hover
+    pub speed: Vec<Thrusts>,
     /// rate of the speed relative to hover, 1/s
     pub acceleration_1_s: Vec<Thrusts>,
 }
@@ -21,15 +23,17 @@ impl Turning {
     /// Speeds that belong to the thrusts, and their rate.
     #[must_use]
     pub fn new(thrust_n: Vec<Thrusts>, airframe: &Airframe, step_s: f64) -> Self {
-        let mut acceleration_1_s = vec![[0.0; MAX_ROTORS]; thrust_n.len()];
+        let mut speed = vec![[0.0; MAX_ROTORS]; thrust_n.len()];
+        let mut acceleration_1_s = speed.clone();
         for rotor in 0..airframe.rotor_count() {
-            let speed: Vec<f64> =
+            let of_rotor: Vec<f64> =
                 thrust_n.iter().map(|thrusts| airframe.relative_speed_of_thrust(thrusts[rotor])).collect();
-            for (out, rate) in acceleration_1_s.iter_mut().zip(central_difference(&speed, step_s)) {
-                out[rotor] = rate;
+            let rates = central_difference(&of_rotor, step_s);
+            for (index, (value, rate)) in of_rotor.iter().zip(rates).enumerate() {
+                (speed[index][rotor], acceleration_1_s[index][rotor]) = (*value, rate);
             }
         }
-        Self { thrust_n, acceleration_1_s }
+        Self { thrust_n, speed, acceleration_1_s }
     }
 }
 
@@ -56,17 +60,13 @@ pub fn wrench_along(model: &Model, trace: &Trace, turning: &Turning) -> Vec<Wren
         if count == 0 && !trace.usable[index] {
             continue;
         }
-        let mut input = Input {
+        let input = Input {
             time_s: trace.grid.time_s(index),
-            speed_command: [0.0; MAX_ROTORS],
+            speed_command: turning.speed[index],
             speed_rate_1_s: turning.acceleration_1_s[index],
             wind_m_s: Vector3::zeros(),
             battery_voltage_v: trace.voltage_v.as_ref().map(|v| v[index]),
         };
-        for rotor in 0..model.airframe.rotor_count() {
-            input.speed_command[rotor] =
-                model.airframe.relative_speed_of_thrust(turning.thrust_n[index][rotor]);
-        }
         let state = &trace.states[index];
         if index == 0 {
             model.initial_states(state, &input, &mut states);

@@ -108,9 +108,7 @@ fn of_place(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Option<Present>> {
     ];
     // the exponential form, for each height over which it dies down
     for decay in GROUND_DECAYS {
-        tried.extend(
-            [1.0, 0.0].map(|levelling| present("ground_effect", &[0.0, 0.0, decay, levelling], &[1])),
-        );
+        tried.push(present("ground_effect", &[0.0, 0.0, decay, 1.0], &[1]));
     }
     let ceilings_m = Airframe::new(vehicle).map(|airframe| ceilings_m(flights, &airframe));
     tried.extend(

@@ -28,6 +28,7 @@ pub mod show;
 mod spin_up;
 pub mod together;
 mod trace;
+mod trial;
 
 pub use along::{Thrusts, Turning, wrench_along};
 pub use base::{Base, Present};

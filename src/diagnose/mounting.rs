@@ -6,8 +6,9 @@
 use super::candidates::{Candidate, present};
 use super::evidence::Weighted;
 use super::rows::Nuisance;
-use super::search::{Fitted, Tested, columns_of, is_present};
+use super::search::{Fitted, Tested};
 use super::trace::Trace;
+use super::trial::{columns_of, is_present};
 use rayon::prelude::*;
 
 /// The effect that a large tilt of the thrust is.

@@ -5,7 +5,7 @@
 //! by the kinematics: what acts on the vehicle shows in both, a fault of a sensor in one of them. A parameter's column is built from the signals that are not
 //! on the left of its row: rotor thrusts by the commands for forces, by the measured motion for torques.
 
-use super::along::{Turning, wrench_along};
+use super::along::{Thrusts, Turning, wrench_along};
 use super::base::{Base, Present, step_of};
 use super::nuisances::{momentum_rows, nuisances};
 use super::sensors::{is_of_sensors, true_motion};
@@ -95,6 +95,7 @@ pub struct Rows {
 /// One flight's rotors and loads under the base.
 #[derive(Debug, Clone)]
 struct Along {
+    felt: Vec<Thrusts>,
     commanded: Turning,
     motion: Turning,
     by_commands: Vec<Wrench>,
@@ -184,7 +185,7 @@ impl Rows {
             if is_of_sensors(candidate.effect) {
                 let mut with = base.clone();
                 with.present.push(moved);
-                columns.push(per_step(residuals(flights, &with)?, &self.residual, step));
+                columns.push(per_step(self.shown(flights, &with)?, &self.residual, step));
                 continue;
             }
             let model = base.model(std::slice::from_ref(&moved))?;
@@ -241,12 +242,25 @@ impl Rows {
                 let below = present.possible(index, value - 0.5 * step) - value;
                 let (up, down) = (moved(below + step), moved(below));
                 if is_of_sensors(base.present[effect].effect) {
-                    return Ok(per_step(residuals(recorded, &up)?, &residuals(recorded, &down)?, step));
+                    return Ok(per_step(self.shown(recorded, &up)?, &self.shown(recorded, &down)?, step));
                 }
                 let (up, down) = (up.model(&[])?, down.model(&[])?);
                 Ok(self.difference(flights, &up, Some(&down), step))
             })
             .collect()
+    }
+
+    /// The residual with other effects on the sensors; what acts on the vehicle stays as it is, which is as much
+    /// smaller as the effects are small.
+    fn shown(&self, recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
+        let model = base.model(&[])?;
+        let mut out = Channels::default();
+        for (trace, along) in true_motion(recorded, base).iter().zip(&self.flights) {
+            let rotors = (&along.felt[..], &along.commanded, &along.motion);
+            let part = residual(trace, base, &model, rotors, (&along.by_commands, &along.by_motion));
+            append(&mut out, &part);
+        }
+        Ok(out)
     }
 
     /// `K` of the change of force and torque per `step`, against the base or against `down`.
@@ -269,16 +283,6 @@ impl Rows {
         }
         out
     }
-}
-
-/// The residual of the flights' true motion.
-fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
-    let model = base.model(&[])?;
-    let parts: Vec<Channels> =
-        true_motion(recorded, base).par_iter().map(|trace| one_flight(trace, base, &model).1).collect();
-    let mut out = Channels::default();
-    parts.iter().for_each(|part| append(&mut out, part));
-    Ok(out)
 }
 
 /// By how much the residual falls.
@@ -335,7 +339,7 @@ fn one_flight(trace: &Trace, base: &Base, model: &Model) -> (Along, Channels, Ve
     }
     let residual = residual(trace, base, model, (&felt, &commanded, &motion), (&by_commands, &by_motion));
     let nuisances = nuisances(trace, base, &commanded, &by_commands);
-    (Along { commanded, motion, by_commands, by_motion }, residual, nuisances)
+    (Along { felt, commanded, motion, by_commands, by_motion }, residual, nuisances)
 }
 
 /// `m K(a) - K(F)` and `D(J w) + K(w x J w) - K(M)`, with the effects' part from the smooth thrusts.
@@ -343,7 +347,7 @@ fn residual(
     trace: &Trace,
     base: &Base,
     model: &Model,
-    (felt, commanded, motion): (&[super::along::Thrusts], &Turning, &Turning),
+    (felt, commanded, motion): (&[Thrusts], &Turning, &Turning),
     (by_commands, by_motion): (&[Wrench], &[Wrench]),
 ) -> Channels {
     let airframe = &model.airframe;

@@ -1,7 +1,7 @@
 //! The forward search: fit, test every candidate, take the one that explains most, fit again.
 
 use super::base::{Base, Present, lift_load, moved_to};
-use super::candidates::{Candidate, candidates, drag_and_wind};
+use super::candidates::{Candidate, candidates};
 use super::evidence::{Evidence, Weighted};
 use super::forms::other_form;
 use super::gates::{Gates, passes};
@@ -9,14 +9,14 @@ use super::hubs::one_place;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::locate::mass_step_std_kg;
 use super::mounting::{Turn, mountings};
-use super::rows::{AXES, CHANNELS, Channels, Nuisance, Rows};
+use super::rows::{AXES, CHANNELS, Nuisance, Rows};
 use super::settle::{SETTLED_S, settle};
 use super::sharpen::{between_grid, sharpened};
 use super::trace::Trace;
+use super::trial::test_all;
 use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 /// A base fitted to the flights.
 #[derive(Debug, Clone)]
@@ -328,73 +328,4 @@ fn released(mut present: Present) -> Present {
         present.free.push(finer);
     }
     present
-}
-
-fn test_all(flights: &[Trace], fitted: &Fitted, candidates: &[Candidate]) -> Vec<Tested> {
-    let mut out: Vec<Tested> = candidates
-        .par_iter()
-        .filter(|candidate| !is_present(&fitted.base, candidate))
-        .filter_map(|candidate| {
-            let columns = columns_of(flights, fitted, candidate)?;
-            let evidence = fitted.weighted.test(&columns)?;
-            Some(Tested { candidate: candidate.clone(), evidence })
-        })
-        .collect();
-    out.extend([1.0, 0.0].into_iter().filter_map(|at_hubs| test_drag_and_wind(flights, fitted, at_hubs)));
-    out
-}
-
-pub(super) fn columns_of(flights: &[Trace], fitted: &Fitted, candidate: &Candidate) -> Option<Vec<Channels>> {
-    let mut columns = Vec::new();
-    for part in &candidate.parts {
-        columns.extend(fitted.rows.columns_of(flights, &fitted.base, part).ok()?);
-    }
-    Some(columns)
-}
-
-/// The same effect, for rotors the same rotor.
-pub(super) fn is_present(base: &Base, candidate: &Candidate) -> bool {
-    candidate.parts.iter().all(|part| {
-        base.present.iter().any(|present| {
-            present.effect.id() == part.effect.id()
-                && (part.effect.id() != "weak_rotor" || present.values[0] == part.values[0])
-                || drags_along_z(present) && drags_along_z(part)
-        })
-    })
-}
-
-/// Inflow and the z of drag are one term.
-fn drags_along_z(present: &Present) -> bool {
-    match present.effect.id() {
-        "inflow" => true,
-        "linear_drag" => present.free.contains(&2),
-        _ => false,
-    }
-}
-
-/// Wind acts through drag: both together, or wind alone where drag is known already.
-fn test_drag_and_wind(flights: &[Trace], fitted: &Fitted, at_hubs: f64) -> Option<Tested> {
-    let (drag, wind, unit) = drag_and_wind(at_hubs)?;
-    let known = |id: &str| fitted.base.present.iter().any(|present| present.effect.id() == id);
-    if known("steady_wind") || !flights.iter().all(|trace| trace.known.velocity && trace.known.attitude) {
-        return None;
-    }
-    if known("linear_drag") || known("quadratic_drag") {
-        if at_hubs < 1.0 {
-            return None; // its columns come through the drag that is there
-        }
-        let candidate = Candidate { id: "steady_wind", parts: vec![wind], through: None };
-        let columns = columns_of(flights, fitted, &candidate)?;
-        let evidence = fitted.weighted.test(&columns)?;
-        return Some(Tested { candidate, evidence });
-    }
-    let mut with_unit = fitted.base.clone();
-    with_unit.present.push(unit.clone());
-    let mut columns = fitted.rows.columns_of(flights, &fitted.base, &drag).ok()?;
-    columns.extend(fitted.rows.columns_through(flights, &with_unit, &wind).ok()?);
-    let evidence = fitted.weighted.test(&columns)?;
-    // wind is named only for what it adds to drag
-    let more = fitted.weighted.conditional(&columns, 2)?;
-    let candidate = Candidate { id: "steady_wind", parts: vec![drag, wind], through: Some(unit) };
-    (more > 4.0).then_some(Tested { candidate, evidence })
 }

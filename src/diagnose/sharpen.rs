@@ -2,8 +2,9 @@
 //! cord is.
 
 use super::candidates::Candidate;
-use super::search::{Fitted, Tested, columns_of};
+use super::search::{Fitted, Tested};
 use super::trace::Trace;
+use super::trial::columns_of;
 
 /// The slot that lies on a grid, its first step and where refining ends.
 #[derive(Debug, Clone, Copy)]

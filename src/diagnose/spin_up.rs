@@ -9,7 +9,7 @@ use super::along::Turning;
 use super::base::Base;
 use super::trace::Trace;
 use crate::physics::effects::RotorInertia;
-use crate::physics::{Airframe, Condition, Effect, Input, MAX_ROTORS, Own, Rotors, State, Wrench};
+use crate::physics::{Airframe, Condition, Effect, Input, Own, Rotors, State, Wrench};
 use crate::signals::{ActuationLatency, delayed_wrench};
 use nalgebra::{Matrix3, Vector3, Vector4};
 
@@ -62,9 +62,7 @@ impl SpinUp {
         let input = Input::from_commands(airframe, 0.0, &[]);
         let at = Condition::new(airframe, state, &input, Vector3::zeros());
         let mut rotors = Rotors::still();
-        for rotor in 0..airframe.rotor_count().min(MAX_ROTORS) {
-            rotors.speed[rotor] = airframe.relative_speed_of_thrust(motion.thrust_n[index][rotor]);
-        }
+        rotors.speed = motion.speed[index];
         rotors.acceleration_1_s = motion.acceleration_1_s[index];
         let mut sum = Wrench::zero();
         let mut own = Own { parameters: &[self.jr_kg_m2], states: &[], rates: &mut [] };
