@@ -272,7 +272,7 @@ impl Rows {
 }
 
 /// The residual of the flights' true motion.
-fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
+pub(super) fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
     let model = base.model(&[])?;
     let parts: Vec<Channels> =
         true_motion(recorded, base).par_iter().map(|trace| one_flight(trace, base, &model).1).collect();

@@ -2,6 +2,7 @@
 
 use super::held::{Held, Settled};
 use super::latency::{LEAST_LAG_S, Split};
+use super::scale::follows_force;
 use super::wanted::Wanted;
 use crate::diagnose::base::Present;
 use crate::diagnose::deviate::normal_deviate;
@@ -256,9 +257,8 @@ struct Scale<'a> {
 }
 
 impl Scale<'_> {
-    /// Force, mass and inertia follow the scale; lengths, angles, times and ratios do not.
     fn is_scaled(&self, unit: &str) -> bool {
-        self.by_mass.is_some() && (unit.starts_with('N') || unit.starts_with("kg"))
+        self.by_mass.is_some() && follows_force(unit)
     }
 
     /// Standard error of `value m_w / m` by the chain rule; the mass is the first column.
