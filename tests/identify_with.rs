@@ -245,7 +245,7 @@ fn a_weighed_mass_puts_forces_on_its_scale() {
         format!("{wrong}\n[identify]\nanchor = \"mass\"\n")
     };
     let weighed = folder.join("weighed.toml");
-    std::fs::write(&weighed, wrong).unwrap();
+    std::fs::write(&weighed, &wrong).unwrap();
     let said = document(&[&log, "--vehicle", &weighed.display().to_string(), "--with", "linear_drag"]);
     assert_found(effect(&said, "linear_drag"), "dx", 0.6, 0.1);
     let found = said["with"]["thrust"]["value"].as_f64().unwrap();
