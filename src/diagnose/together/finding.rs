@@ -157,6 +157,7 @@ fn of_columns(
         let scaled = scale.is_scaled(parameter.unit);
         let times = if scaled { by_mass.unwrap_or(1.0) } else { 1.0 };
         let found = match (present.free.iter().position(|free| *free == slot), held) {
+            (_, Some(Held::NotDetermined(reason))) => Found::NotDetermined { held: value * times, reason },
             (Some(nth), _) => {
                 let std =
                     if scaled { scale.std(column(nth), value) } else { fitted_std(fitted, column(nth)) };
@@ -165,7 +166,6 @@ fn of_columns(
             (None, Some(Held::AtBound { wanted, std })) => {
                 Found::AtBound { value: value * times, wanted: wanted * times, std: std * times }
             }
-            (None, Some(Held::NotDetermined(reason))) => Found::NotDetermined { held: value * times, reason },
             (None, None) => match settled.chosen.tried_std {
                 Some((of, std)) if of == slot => Found::Determined { value, std },
                 _ => set(present, slot, value, (vehicle, has_inflow)),

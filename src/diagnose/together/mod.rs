@@ -194,9 +194,9 @@ pub fn together(
     let (start, newton) = latency::held_as(wanted, &traces, (vehicle, known), first, plain.base.latency);
     let base = Base { latency: start, ..plain.base };
     let chosen = choose::choose(&traces, &base, wanted, &airframe)?;
-    let (after, settled) = of_file.settle(&traces, base, &chosen, newton)?;
+    let (after, mut settled) = of_file.settle(&traces, base, &chosen, newton)?;
     let (mut after, split) = latency::split(&traces, after, wanted)?;
-    swing::allow_for_noise(&traces, &mut after)?;
+    swing::allow_for_noise(&traces, &mut after, &mut settled)?;
     Ok(put_together(&traces, (vehicle, &kept), wanted, Fits { before, after, settled, split, first }))
 }
 

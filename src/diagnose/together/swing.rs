@@ -4,6 +4,7 @@
 //! residual does not show that. So the motion is made noisier by as much as it is noisy, several times, and the estimates'
 //! scatter is added to their covariance.
 
+use super::held::{Held, Settled, estimates};
 use crate::diagnose::evidence::weighted;
 use crate::diagnose::rows::residuals;
 use crate::diagnose::search::Fitted;
@@ -17,10 +18,33 @@ use rayon::prelude::*;
 
 /// Noisier motions.
 const REPLICATES: u64 = 12;
+/// A load whose mass is fewer standard errors from nothing swings as no measured motion tells.
+const FOLLOWED: f64 = 4.0;
+const LOAD: &str = "slung_load";
 
-/// Adds it, where a load is estimated.
-pub(super) fn allow_for_noise(flights: &[Trace], fitted: &mut Fitted) -> Result<(), PhysicsError> {
-    if !fitted.base.estimates("slung_load") {
+/// Adds it, where a load is estimated. A swing that the noise hides says nothing of its load.
+pub(super) fn allow_for_noise(
+    flights: &[Trace],
+    fitted: &mut Fitted,
+    settled: &mut [Settled],
+) -> Result<(), PhysicsError> {
+    scatter(flights, fitted)?;
+    let before = fitted.base.present.len() - settled.len();
+    for (index, of) in settled.iter_mut().enumerate().filter(|(_, of)| of.chosen.form.effect.id() == LOAD) {
+        let all = estimates(fitted, before + index);
+        let seen = all.iter().any(|(slot, value, std, _)| *slot == 0 && *value > FOLLOWED * std);
+        if !seen {
+            let why = "either there is no load, or its swing hardly dies down and the noise of the motion that swings it \
+                       hides where it goes";
+            let slots = 0..of.chosen.form.values.len();
+            of.held = slots.map(|slot| (slot, Held::NotDetermined(why.to_owned()))).collect();
+        }
+    }
+    Ok(())
+}
+
+fn scatter(flights: &[Trace], fitted: &mut Fitted) -> Result<(), PhysicsError> {
+    if !fitted.base.estimates(LOAD) {
         return Ok(());
     }
     let (rows, weights) = (&fitted.rows, &fitted.weighted);
