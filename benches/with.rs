@@ -1,6 +1,8 @@
 //! What `identify --with` finds of effects that a simulated flight conceals: sizes against the truth.
 //!
-//! `cargo bench --bench with -- [--each N] [--seed S] [--only EFFECT,...] [--noise FACTOR] [--show]`
+//! `cargo bench --bench with -- [--each N] [--seed S] [--only EFFECT,...] [--noise FACTOR] [--fed-back] [--show]
+//!
+//! `--fed-back`: the controller flies on the very noise that is logged.`
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, reason = "a benchmark prints")]
 
 use mavid::diagnose::ExplainSettings;
@@ -46,6 +48,7 @@ const SETS: &[&[Sizes]] = &[
     &[("translational_lift", &[("kh", 0.12, Mass)])],
     &[DRAG, ("steady_wind", &[("north", 2.0, One), ("west", -1.5, One), ("up", 0.0, One)])],
     &[("slung_load", &[("mass", 0.08, Mass), ("length", 0.8, One)])],
+    &[("slung_load", &[("mass", 0.08, Mass), ("length", 0.8, One), ("damping", 0.2, One)])],
     &[("mass_change", &[("time", 26.0, One), ("delta", -0.08, Mass)])],
     &[("imu_misalignment", &[("x", 0.03, One), ("y", -0.02, One), ("z", 0.04, One)])],
     &[("imu_offset", &[("x", 0.04, One), ("y", -0.03, One), ("z", 0.02, One)])],
@@ -70,20 +73,31 @@ fn main() {
         |name: &str, default: u64| text(name).map_or(default, |t| t.parse().expect("a whole number"));
     let (each, first) = (number("--each", 4), number("--seed", 1));
     let noise = text("--noise").map_or(1.0, |t| t.parse().expect("a factor"));
-    let show = arguments.iter().any(|a| a == "--show");
-    println!("set                            flights  parameters  within 20 %  within 3 std  z least; worst");
+    let flag = |name: &str| arguments.iter().any(|a| a == name);
+    let how = How { noise, fed_back: flag("--fed-back"), show: flag("--show") };
+    println!(
+        "set                            flights  parameters  within 20 %  within 3 std  rms in std  z least; worst"
+    );
     for set in SETS {
         let ids: Vec<&str> = set.iter().map(|(id, _)| *id).collect();
         if text("--only").is_none_or(|only| ids.join(",") == only) {
-            report(set, &ids.join(","), (first, each), (noise, show));
+            report(set, &ids.join(","), (first, each), how);
         }
     }
 }
 
-fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), (noise, show): (f64, bool)) {
+/// How flights are made and told.
+#[derive(Clone, Copy)]
+struct How {
+    noise: f64,
+    fed_back: bool,
+    show: bool,
+}
+
+fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), how: How) {
     let found: Vec<(u64, Result<Together, TogetherError>, Vec<ActiveEffect>)> =
-        (first..first + each).into_par_iter().filter_map(|seed| fly(seed, noise, set)).collect();
-    let (mut count, mut near, mut covered) = (0, 0, 0);
+        (first..first + each).into_par_iter().filter_map(|seed| fly(seed, how, set)).collect();
+    let (mut count, mut near, mut covered, mut squares) = (0_u32, 0, 0, 0.0);
     let (mut least, mut worst) = (f64::INFINITY, 0.0_f64);
     for (seed, together, truth) in &found {
         let together = match together {
@@ -97,7 +111,7 @@ fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), (noise, 
             least = least.min(effect.z);
             let sized = effect.parameters.iter().zip(truth.parameters());
             for (slot, (parameter, &truth)) in sized.enumerate() {
-                if show {
+                if how.show {
                     println!(
                         "  seed {seed} {}.{} truth {truth:.5} {:?}",
                         effect.effect.id(),
@@ -113,6 +127,7 @@ fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), (noise, 
                         let off = value - truth;
                         near += usize::from(off.abs() < 0.2 * amount.abs());
                         covered += usize::from(off.abs() < 3.0 * std);
+                        squares += (off / std).powi(2);
                         worst = worst.max((off / amount).abs());
                     }
                     Found::NotDetermined { reason, .. } if amount != 0.0 => {
@@ -135,15 +150,16 @@ fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), (noise, 
         }
     }
     println!(
-        "{name:30} {:7} {count:11} {near:12} {covered:13}  {least:6.1}; {:.1} %",
+        "{name:30} {:7} {count:11} {near:12} {covered:13} {:11.2}  {least:6.1}; {:.1} %",
         found.len(),
+        (squares / f64::from(count).max(1.0)).sqrt(),
         100.0 * worst
     );
 }
 
 fn fly(
     seed: u64,
-    noise: f64,
+    how: How,
     set: &'static [Sizes],
 ) -> Option<(u64, Result<Together, TogetherError>, Vec<ActiveEffect>)> {
     let pair = random_vehicle(seed.wrapping_mul(7919));
@@ -162,7 +178,8 @@ fn fly(
     let trajectory = random.draw(seed.wrapping_mul(104_729)).ok()?;
     let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
     let mut settings = FlightSettings { seed, ..FlightSettings::default() };
-    settings.telemetry.noise_scale = noise;
+    settings.telemetry.noise_scale = how.noise;
+    settings.telemetry.share_controller_noise = how.fed_back;
     if has("battery_sag") {
         settings.battery_drop_v_s = 0.03;
     }
@@ -173,7 +190,7 @@ fn fly(
     let flight = simulate_flight(truth, &nominal, &reference, &settings).ok()?;
     let names: Vec<String> = set.iter().map(|(id, _)| (*id).to_owned()).collect();
     let wanted = Wanted::of(&names).expect("known effects");
-    let how = ConditionSettings {
+    let conditions = ConditionSettings {
         transient_s: Some(1.0),
         thrust: if wanted.need_commands() {
             ThrustPreference::Commands
@@ -183,7 +200,7 @@ fn fly(
         askew: wanted.has("imu_misalignment"),
         ..ConditionSettings::default()
     };
-    let signals = condition(&flight.recording, &nominal, &how).ok()?;
+    let signals = condition(&flight.recording, &nominal, &conditions).ok()?;
     let half_width_s = ExplainSettings::default().half_width_s;
     Some((seed, together(&[signals], (&nominal, &[]), &wanted, half_width_s), effects))
 }

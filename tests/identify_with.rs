@@ -245,12 +245,21 @@ fn a_weighed_mass_puts_forces_on_its_scale() {
         format!("{wrong}\n[identify]\nanchor = \"mass\"\n")
     };
     let weighed = folder.join("weighed.toml");
-    std::fs::write(&weighed, wrong).unwrap();
+    std::fs::write(&weighed, &wrong).unwrap();
     let said = document(&[&log, "--vehicle", &weighed.display().to_string(), "--with", "linear_drag"]);
     assert_found(effect(&said, "linear_drag"), "dx", 0.6, 0.1);
     let found = said["with"]["thrust"]["value"].as_f64().unwrap();
     assert!((found / stated - 1.0).abs() < 0.01, "{found}");
     assert_eq!(said["with"]["parameters"]["mass"]["status"], "given");
+
+    // what the file knows of the drag is on the scale of the weighed mass, too
+    let known = folder.join("known.toml");
+    std::fs::write(&known, format!("{wrong}\n{DRAG}")).unwrap();
+    let known = document(&[&log, "--vehicle", &known.display().to_string(), "--with", "com_offset"]);
+    for channel in ["force_x", "force_y"] {
+        let left = |document: &Value| document["with"]["misfit"][channel]["with"].as_f64().unwrap();
+        assert!(left(&known) < 1.02 * left(&said), "{channel}: {} {} N", left(&known), left(&said));
+    }
 }
 
 #[test]
@@ -266,6 +275,10 @@ fn wrong_sets_are_refused_with_what_was_expected() {
     let wind = with("steady_wind");
     assert!(wind.contains("forces of the air") && wind.contains("linear_drag"), "{wind}");
     assert!(with("com_offset,steady_wind").contains("got none of them"));
+    for filter in [&["--cutoff", "5"][..], &["--fir"], &["--sigma", "3"]] {
+        let both = [&[log.as_str(), "--vehicle", &vehicle, "--with", "linear_drag"], filter].concat();
+        assert!(refusal(&both).contains("expected them without --with"), "{filter:?}");
+    }
     let p04 = path("fixtures/p04_identify_10_22s.tlog");
     let two = refusal(&[&log, &p04, "--vehicle", &vehicle, "--with", "mass_change"]);
     assert!(two.contains("expected one recording, got 2"), "{two}");

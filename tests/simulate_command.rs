@@ -121,3 +121,25 @@ fn bad_effects_are_refused_with_what_was_expected() {
         assert!(said.contains(expected), "{text}: {said}");
     }
 }
+
+#[test]
+fn a_log_overwrites_nothing_that_is_read_and_is_a_tlog() {
+    let folder = folder("bad-out");
+    let place = |name: &str| folder.join(name).display().to_string();
+    let (vehicle, trajectory) = (place("vehicle.toml"), place("trajectory.toml"));
+    std::fs::copy(config("x500.toml"), &vehicle).unwrap();
+    std::fs::copy(config("trajectories/table2.toml"), &trajectory).unwrap();
+    let before = std::fs::read_to_string(&vehicle).unwrap();
+    for (out, expected) in [
+        (vehicle.clone(), "is read"),
+        (trajectory.clone(), "is read"),
+        (place("flight.csv"), "expected the name of a .tlog"),
+    ] {
+        let output = mavid(&["simulate", &vehicle, "--trajectory", &trajectory, "--out", &out]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{out}: {said}");
+        assert!(said.contains(expected), "{out}: {said}");
+    }
+    assert_eq!(std::fs::read_to_string(&vehicle).unwrap(), before);
+    assert!(!folder.join("flight.csv").exists());
+}

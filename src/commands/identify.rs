@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use mavid::config::{LoadedVehicle, read_vehicle};
 use mavid::diagnose::ExplainSettings;
 use mavid::diagnose::together::{Wanted, together};
-use mavid::estimate::{Identification, IdentifySettings, ThrustScale, apply_anchor, identify};
+use mavid::estimate::{Identification, IdentifySettings, PAPER_SIGMA, ThrustScale, apply_anchor, identify};
 use mavid::report::{
     IdentificationDocument, InputFile, WithEffects, history_charts, identification_page, model_toml, svg,
 };
@@ -125,6 +125,14 @@ fn settings(args: &IdentifyArgs) -> Result<IdentifySettings, CommandError> {
         if let Some(value) = value.filter(|value| !value.is_finite() || *value <= 0.0) {
             return Err(CommandError::Input(format!("{name}: expected a positive number, got {value}")));
         }
+    }
+    let filtered = args.cutoff.is_some() || args.fir || args.sigma != PAPER_SIGMA;
+    if filtered && !args.with.is_empty() {
+        return Err(CommandError::Input(
+            "--cutoff, --fir and --sigma are for the methods LS, GD, FMLS and FMGD; expected them without --with, which fits the \
+             weak form, where nothing is differentiated and nothing is low-passed"
+                .into(),
+        ));
     }
     if let Some(value) = args.transient.filter(|value| !value.is_finite() || *value < 0.0) {
         return Err(CommandError::Input(format!("--transient: expected seconds from 0 on, got {value}")));

@@ -9,6 +9,7 @@ use mavid::simulate::{FlightSettings, Reference, TelemetrySettings, Truth, simul
 use serde::Serialize;
 
 use super::effects::{effects, effects_file, with_stated_lag};
+use super::flights::is_csv;
 use super::{CommandError, Outcome, output};
 use crate::cli::SimulateArgs;
 
@@ -35,6 +36,12 @@ struct Document {
 /// Runs the verb.
 pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
+    let read = [&args.vehicle, &args.trajectory].into_iter().chain(&args.effects).chain(&args.nominal);
+    output::refuse_overwriting(&read.collect::<Vec<_>>(), &[&args.out])?;
+    if is_csv(&args.out) {
+        let name = args.out.display();
+        return Err(CommandError::Input(format!("--out: expected the name of a .tlog, got {name}")));
+    }
     let loaded = read_vehicle(&args.vehicle)?;
     for warning in &loaded.warnings {
         output::message(&format!("warning: {warning}"));

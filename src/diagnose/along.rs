@@ -48,7 +48,8 @@ const ADAMS_BASHFORTH: [[f64; ORDER]; ORDER] = [
 const ORDER: usize = 4;
 
 /// Force and torque of the model at each grid instant (body, N, N m), the effects' own states carried
-/// along. Instants that no row uses are left zero, unless states run through them.
+/// along. What hangs on the vehicle is swung by the motion that was measured, not by what the model makes of it, which
+/// would lose step with it. Instants that no row uses are left zero, unless states run through them.
 #[must_use]
 pub fn wrench_along(model: &Model, trace: &Trace, turning: &Turning) -> Vec<Wrench> {
     let count = model.own_state_count();
@@ -72,6 +73,11 @@ pub fn wrench_along(model: &Model, trace: &Trace, turning: &Turning) -> Vec<Wren
             model.initial_states(state, &input, &mut states);
         }
         out[index] = model.evaluate(state, &input, &states, &mut rates).wrench;
+        if count == 0 {
+            continue;
+        }
+        let felt_n = trace.felt_m_s2[index] * model.body.mass_kg;
+        model.reaction_rates((state, &input), &felt_n, &states, &mut rates);
         past.rotate_right(1);
         past[0].copy_from_slice(&rates);
         for (rates, weight) in past.iter().zip(ADAMS_BASHFORTH[index.min(ORDER - 1)]) {

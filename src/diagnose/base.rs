@@ -91,13 +91,11 @@ pub(super) fn step_of(present: &Present, index: usize) -> f64 {
 /// A load to start from is no more than this share of the mass.
 const MOST_OF_MASS: f64 = 0.5;
 
-/// A load that was in the mass `all_kg` (kg) of a rigid body until now: returns the vehicle's own, kg. Without the
-/// load the same thrust swings a longer cord at the same pace.
+/// A load that was in the mass `all_kg` (kg) of a rigid body until now: returns the vehicle's own, kg. Its swing is that
+/// of the measured motion, whatever the load.
 pub(super) fn lift_load(load: &mut Present, all_kg: f64) -> f64 {
     load.values[0] = load.values[0].min(MOST_OF_MASS * all_kg);
-    let own_kg = all_kg - load.values[0];
-    load.values[1] = load.possible(1, load.values[1] * all_kg / own_kg);
-    own_kg
+    all_kg - load.values[0]
 }
 
 /// What the recording is compared with.

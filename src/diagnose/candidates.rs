@@ -20,10 +20,10 @@ pub struct Candidate {
 /// Times of a mass change that are tried, s apart.
 const MASS_CHANGE_EVERY_S: f64 = 4.0;
 /// Lengths of a load's cord that are tried, m: their periods lie 20 % apart.
-pub(super) const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
+const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
 
 /// What the air takes of a load's swing before more is known, 1/s.
-pub(super) const SWING_DAMPING_1_S: f64 = 0.2;
+const SWING_DAMPING_1_S: f64 = 0.2;
 
 /// Decays per rotor radius of the ground's exponential form that are tried.
 const GROUND_DECAYS: [f64; 5] = [0.4, 0.7, 1.2, 2.0, 3.5];

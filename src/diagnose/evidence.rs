@@ -377,7 +377,7 @@ fn scaled_trace(covariance: &DMatrix<f64>, normal: &DMatrix<f64>) -> f64 {
 }
 
 /// Channel after channel, each over its sigma.
-fn weighted(column: &Channels, sigma: &[f64; CHANNELS]) -> DVector<f64> {
+pub(super) fn weighted(column: &Channels, sigma: &[f64; CHANNELS]) -> DVector<f64> {
     let count = column[0].len();
     DVector::from_iterator(
         CHANNELS * count,

@@ -145,11 +145,25 @@ fn second_order(flights: &[Trace], fitted: &Fitted) -> Result<Option<(f64, f64, 
     Ok(Some(((c2 / s2).abs(), ((c2 - 0.5 * c1 * c1) / spread).abs(), delay_s)))
 }
 
-/// What more of the base's lag and less of its delay does to the torque rows, per s: `-K(M')` behind the lag, by
-/// the measured motion.
-pub(super) fn lag_column(flights: &[Trace], base: &Base) -> Channels {
-    let behind = ActuationLatency { delay_s: 0.0, lag_s: base.latency.lag_s };
-    torque_rows(flights, |trace| turning(trace, base, 1, behind))
+/// What more of the base's lag and less of its delay does, per s: `-K(M')` behind the lag in the torque rows, by the
+/// measured motion, and `-K(T')` behind it in the force rows, by the smoothed commands.
+pub(super) fn lag_column(flights: &[Trace], fitted: &Fitted) -> Channels {
+    let behind = ActuationLatency { delay_s: 0.0, lag_s: fitted.base.latency.lag_s };
+    let mut out = Channels::default();
+    for (index, trace) in flights.iter().enumerate() {
+        let mut force = nothing(trace);
+        if let Some(commanded) = fitted.rows.commanded(index) {
+            let thrust: Vec<Vector4<f64>> = commanded
+                .thrust_n
+                .iter()
+                .map(|thrusts| Vector4::new(thrusts.iter().sum(), 0.0, 0.0, 0.0))
+                .collect();
+            let late = delayed_wrench(&thrust, trace.grid.step_s, behind);
+            force[2] = trace.weak(1, &late.iter().map(|thrust| -thrust[0]).collect::<Vec<f64>>());
+        }
+        append(&mut out, &channels(trace, force, turning(trace, &fitted.base, 1, behind)));
+    }
+    out
 }
 
 /// Columns that have nothing in the force rows.

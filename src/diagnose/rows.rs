@@ -285,6 +285,16 @@ impl Rows {
     }
 }
 
+/// The residual of the flights' true motion.
+pub(super) fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
+    let model = base.model(&[])?;
+    let parts: Vec<Channels> =
+        true_motion(recorded, base).par_iter().map(|trace| one_flight(trace, base, &model).1).collect();
+    let mut out = Channels::default();
+    parts.iter().for_each(|part| append(&mut out, part));
+    Ok(out)
+}
+
 /// By how much the residual falls.
 fn per_step(mut up: Channels, down: &Channels, step: f64) -> Channels {
     for (up, down) in up.iter_mut().zip(down) {

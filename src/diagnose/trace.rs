@@ -53,6 +53,8 @@ pub struct Trace {
     smooth_rate: Vec<Vector3<f64>>,
     smooth_turning: Vec<Vector3<f64>>,
     smooth_lift: Vec<f64>,
+    /// specific force, body, m/s^2: the accelerometer's, else the smoothed one of the kinematics
+    pub(super) felt_m_s2: Vec<Vector3<f64>>,
     /// m/s^2
     pub gravity_m_s2: f64,
 }
@@ -163,6 +165,7 @@ impl Trace {
             smooth_rate: Vec::new(),
             smooth_turning: Vec::new(),
             smooth_lift: Vec::new(),
+            felt_m_s2: Vec::new(),
             gravity_m_s2: vehicle.gravity_m_s2,
         };
         trace.smooth()?;
@@ -260,16 +263,16 @@ impl Trace {
         };
         self.smooth_rate = vectors(&rates);
         self.smooth_turning = vectors(&turning);
-        let lift: Vec<f64> = match &self.specific_force_m_s2 {
-            Some(force) => force.iter().map(|f| f.z).collect(),
-            None => self.kinematic_lift(),
-        };
-        self.smooth_lift = filter.filtfilt(&lift);
+        let measured = self.specific_force_m_s2.clone();
+        let force = measured.clone().unwrap_or_else(|| self.kinematic_force());
+        let along = |axis: usize| filter.filtfilt(&force.iter().map(|force| force[axis]).collect::<Vec<_>>());
+        self.smooth_lift = along(2);
+        self.felt_m_s2 = measured.unwrap_or_else(|| vectors(&[along(0), along(1), self.smooth_lift.clone()]));
         Ok(())
     }
 
-    /// Specific force along body z by differentiation, m/s^2: only for use behind the low-pass.
-    fn kinematic_lift(&self) -> Vec<f64> {
+    /// Specific force by differentiation, body, m/s^2: only for use behind the low-pass.
+    fn kinematic_force(&self) -> Vec<Vector3<f64>> {
         let velocity: Vec<Vec<f64>> =
             (0..3).map(|axis| self.states.iter().map(|s| s.velocity_m_s[axis]).collect()).collect();
         let acceleration: Vec<Vec<f64>> =
@@ -278,7 +281,7 @@ impl Trace {
             .map(|i| {
                 let world = Vector3::new(acceleration[0][i], acceleration[1][i], acceleration[2][i]);
                 let felt = world + Vector3::z() * self.gravity_m_s2;
-                self.states[i].attitude.inverse_transform_vector(&felt).z
+                self.states[i].attitude.inverse_transform_vector(&felt)
             })
             .collect()
     }

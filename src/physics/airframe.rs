@@ -86,12 +86,6 @@ impl Airframe {
         &self.arms_m[..self.rotor_count]
     }
 
-    /// [`Self::arms_m`] with zeros beyond the rotor count: a loop of fixed length.
-    #[inline]
-    pub(super) fn all_arms_m(&self) -> &[Vector3<f64>; MAX_ROTORS] {
-        &self.arms_m
-    }
-
     /// Sign of each rotor's reaction torque about +z.
     #[must_use]
     pub fn yaw_signs(&self) -> &[f64] {
@@ -119,7 +113,7 @@ impl Airframe {
 
     /// Force and torque of rotor thrusts (N); those beyond the rotor count do nothing.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn thrust_wrench(&self, thrust_n: &[f64; MAX_ROTORS]) -> Wrench {
         let mut sum = Vector4::zeros();
         for (column, thrust) in self.mixer.column_iter().zip(thrust_n).take(self.rotor_count) {

@@ -34,7 +34,7 @@ pub struct Condition<'a> {
     center_of_mass_m: Vector3<f64>,
     /// each hub from the true centre of mass, body, m
     arm_m: [Vector3<f64>; MAX_ROTORS],
-    /// velocity of each hub through the air, body, m/s
+    /// velocity of each hub through the air, body, m/s; once for all effects
     hub_air_velocity_m_s: [Vector3<f64>; MAX_ROTORS],
 }
 
@@ -47,7 +47,7 @@ impl<'a> Condition<'a> {
     }
 
     /// The condition of an airframe whose centre of mass is elsewhere than it has it, by so much (body, m).
-    #[inline]
+    #[inline(always)]
     pub(super) fn about(
         (airframe, center_of_mass_m): (&'a Airframe, Vector3<f64>),
         state: &'a State,
@@ -55,11 +55,22 @@ impl<'a> Condition<'a> {
         wind_m_s: Vector3<f64>,
     ) -> Self {
         let air_velocity_m_s = state.attitude.inverse_transform_vector(&(state.velocity_m_s - wind_m_s));
-        let nominal = airframe.all_arms_m();
-        let arm_m: [_; MAX_ROTORS] = std::array::from_fn(|hub| nominal[hub] - center_of_mass_m);
-        let turning = |hub: usize| state.rates_rad_s.cross(&arm_m[hub]);
-        let hub_air_velocity_m_s = std::array::from_fn(|hub| air_velocity_m_s + turning(hub));
-        Self { airframe, state, input, air_velocity_m_s, center_of_mass_m, arm_m, hub_air_velocity_m_s }
+        let mut at = Self {
+            airframe,
+            state,
+            input,
+            air_velocity_m_s,
+            center_of_mass_m,
+            arm_m: [Vector3::zeros(); MAX_ROTORS],
+            hub_air_velocity_m_s: [Vector3::zeros(); MAX_ROTORS],
+        };
+        // no more hubs than there are
+        let hubs = at.arm_m.iter_mut().zip(&mut at.hub_air_velocity_m_s);
+        for ((arm, air), nominal) in hubs.zip(airframe.arms_m()) {
+            *arm = nominal - center_of_mass_m;
+            *air = air_velocity_m_s + state.rates_rad_s.cross(arm);
+        }
+        at
     }
 
     /// The same with the centre of mass elsewhere in the airframe (body, m).

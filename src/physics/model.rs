@@ -227,6 +227,7 @@ impl Model {
     }
 
     /// [`Self::evaluate`] for the inner loop: `rotors` is overwritten, the rates must come as zero.
+    #[inline(always)]
     pub(crate) fn wrench(
         &self,
         state: &State,
@@ -248,6 +249,35 @@ impl Model {
         each(&hooks.wrench, &mut states, |effect, own| effect.wrench(&at, rotors, own, &mut wrench));
         each(&hooks.reaction, &mut states, |effect, own| effect.reaction(&at, own, &mut wrench));
         wrench
+    }
+
+    /// Rates of the own states of what hangs on the vehicle, where the force on the vehicle was measured: `felt_n`, with
+    /// what the effects add (body, N, gravity apart). States and rates are as in [`Self::evaluate`]; the other
+    /// rates are left as they are.
+    pub fn reaction_rates(
+        &self,
+        (state, input): (&State, &Input),
+        felt_n: &Vector3<f64>,
+        states: &[f64],
+        rates: &mut [f64],
+    ) {
+        if self.by_hook.reaction.is_empty() {
+            return;
+        }
+        let at = Condition::new(&self.airframe, state, input, input.wind_m_s);
+        each(&self.by_hook.reaction, &mut OwnStates { states, rates }, |effect, own| {
+            let mut pull_n = |without_n: Vector3<f64>| {
+                let mut sum = Wrench { force_n: without_n, torque_nm: Vector3::zeros() };
+                effect.reaction(&at, own, &mut sum);
+                sum.force_n - without_n
+            };
+            // the pull goes with the force on the vehicle without it: two places give the line
+            let first_n = pull_n(*felt_n);
+            let second_n = pull_n(felt_n - first_n);
+            let square = first_n.norm_squared();
+            let slope = if square > 0.0 { (second_n - first_n).dot(&first_n) / square } else { 0.0 };
+            pull_n(felt_n - first_n / (1.0 - slope));
+        });
     }
 
     /// How long before now the commands were sent that act now, s. Whoever holds the commands looks

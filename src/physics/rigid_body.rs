@@ -43,14 +43,16 @@ impl RigidBodyModel {
     /// (1) is written there for the velocity in the body frame; turned into the world frame its
     /// `m S(w) v` cancels.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn derivative(&self, state: &State, wrench: &Wrench) -> StateDerivative {
         let w = &state.rates_rad_s;
         let spin = Quaternion::from_parts(0.0, *w * 0.5);
         let gravity = Vector3::new(0.0, 0.0, self.gravity_m_s2);
+        // the quotient does not wait for the force
+        let per_kg = 1.0 / self.mass_kg;
         StateDerivative {
             velocity_m_s: state.velocity_m_s,
-            acceleration_m_s2: state.attitude * (wrench.force_n / self.mass_kg) - gravity,
+            acceleration_m_s2: state.attitude * (wrench.force_n * per_kg) - gravity,
             quaternion_rate: state.attitude.quaternion() * spin,
             angular_acceleration_rad_s2: self.inertia_inverse
                 * (wrench.torque_nm - w.cross(&(self.inertia_kg_m2 * w))),

@@ -18,9 +18,12 @@ pub(super) struct Chosen {
     pub(super) tried_std: Option<(usize, f64)>,
 }
 
-/// Lengths of a cord round about the likeliest that was tried, shares of it: how far, and how finely.
-const LENGTH_ABOUT: f64 = 0.02;
+/// Lengths of a cord round about the likeliest that was tried: steps of so large a share to either side.
 const LENGTH_EVERY: f64 = 0.0025;
+const LENGTH_STEPS: i32 = 8;
+/// A swing that is damped: lengths lie farther apart, and these times the damping are tried.
+const DAMPED_EVERY: f64 = 0.01;
+const DAMPINGS: [f64; 5] = [0.4, 0.65, 1.0, 1.5, 2.2];
 /// Round about a change's moment, s: how far, and how finely.
 const ABOUT_S: f64 = 4.0;
 const EVERY_S: f64 = 0.25;
@@ -102,8 +105,8 @@ fn with_others(base: &Base, picked: &[Option<Present>], place: usize) -> Base {
     base
 }
 
-/// The cord's length, and its load to start from: by what a small load explains, since the pendulum keeps its phase
-/// over the whole flight for lengths that are nearly right alone.
+/// The cord's length and the swing's damping, and the load to start from: by what a small load explains, since the
+/// pendulum keeps its phase over the whole flight for lengths that are nearly right alone.
 fn length(
     flights: &[Trace],
     base: &Base,
@@ -126,17 +129,20 @@ fn length(
         tested.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, form)| form)
     };
     let Some(coarse) = most(forms) else { return Ok(forms[0].clone()) };
+    let damped = coarse.values[2] > 0.0;
+    let (every, dampings) = if damped { (DAMPED_EVERY, &DAMPINGS[..]) } else { (LENGTH_EVERY, &[1.0][..]) };
     let mut finely = Vec::new();
-    let mut share = 1.0 - LENGTH_ABOUT;
-    while share <= 1.0 + LENGTH_ABOUT {
+    for (times, step) in
+        dampings.iter().flat_map(|times| (-LENGTH_STEPS..=LENGTH_STEPS).map(move |step| (times, step)))
+    {
         let mut form = coarse.clone();
-        form.values = vec![0.0, coarse.values[1] * share];
+        let length_m = coarse.values[1] * (1.0 + every * f64::from(step));
+        form.values = vec![0.0, form.possible(1, length_m), coarse.values[2] * times];
         finely.push(form);
-        share += LENGTH_EVERY;
     }
     let mut found = most(&finely).unwrap_or(coarse);
     lift_load(&mut found, fitted.base.vehicle.body.mass_kg);
-    found.free = vec![0, 1];
+    found.free = (0..found.values.len()).collect();
     Ok(found)
 }
 

@@ -2,6 +2,7 @@
 
 use super::held::{Held, Settled};
 use super::latency::{LEAST_LAG_S, Split};
+use super::scale::follows_force;
 use super::wanted::Wanted;
 use crate::diagnose::base::Present;
 use crate::diagnose::deviate::normal_deviate;
@@ -156,6 +157,7 @@ fn of_columns(
         let scaled = scale.is_scaled(parameter.unit);
         let times = if scaled { by_mass.unwrap_or(1.0) } else { 1.0 };
         let found = match (present.free.iter().position(|free| *free == slot), held) {
+            (_, Some(Held::NotDetermined(reason))) => Found::NotDetermined { held: value * times, reason },
             (Some(nth), _) => {
                 let std =
                     if scaled { scale.std(column(nth), value) } else { fitted_std(fitted, column(nth)) };
@@ -164,7 +166,6 @@ fn of_columns(
             (None, Some(Held::AtBound { wanted, std })) => {
                 Found::AtBound { value: value * times, wanted: wanted * times, std: std * times }
             }
-            (None, Some(Held::NotDetermined(reason))) => Found::NotDetermined { held: value * times, reason },
             (None, None) => match settled.chosen.tried_std {
                 Some((of, std)) if of == slot => Found::Determined { value, std },
                 _ => set(present, slot, value, (vehicle, has_inflow)),
@@ -256,9 +257,8 @@ struct Scale<'a> {
 }
 
 impl Scale<'_> {
-    /// Force, mass and inertia follow the scale; lengths, angles, times and ratios do not.
     fn is_scaled(&self, unit: &str) -> bool {
-        self.by_mass.is_some() && (unit.starts_with('N') || unit.starts_with("kg"))
+        self.by_mass.is_some() && follows_force(unit)
     }
 
     /// Standard error of `value m_w / m` by the chain rule; the mass is the first column.

@@ -102,7 +102,7 @@ fn column(fitted: &Fitted, place: usize, nth: usize) -> usize {
 }
 
 /// Slot, value, standard error, share of its column that is its own (`None`: the column is nothing).
-fn estimates(fitted: &Fitted, place: usize) -> Vec<(usize, f64, f64, Option<f64>)> {
+pub(super) fn estimates(fitted: &Fitted, place: usize) -> Vec<(usize, f64, f64, Option<f64>)> {
     let present = &fitted.base.present[place];
     let of = |(nth, &slot): (usize, &usize)| {
         let at = column(fitted, place, nth);

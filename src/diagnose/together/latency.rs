@@ -62,7 +62,7 @@ pub(super) fn split(
     }
     let mut lag_std_s = f64::INFINITY;
     for _ in 0..PASSES {
-        let column = lag_column(flights, &after.base);
+        let column = lag_column(flights, &after);
         let Some(evidence) = after.weighted.test(&[column]) else { break };
         lag_std_s = evidence.std(0);
         let before_s = after.base.latency.lag_s;

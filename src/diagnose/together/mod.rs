@@ -9,15 +9,17 @@ mod choose;
 mod finding;
 mod held;
 mod latency;
+mod scale;
+mod swing;
 mod wanted;
 
 pub use finding::{EffectFound, Found, ParameterFound};
 pub use wanted::Wanted;
 
-use super::base::{Base, Present};
+use super::base::Base;
 use super::deviate::normal_deviate;
 use super::explain::LEAST_ROWS;
-use super::latency::{LatencyFinding, finding_of, fit_latency};
+use super::latency::{LatencyFinding, finding_of};
 use super::rows::CHANNELS;
 use super::search::{Fitted, Newton, fit};
 use super::trace::{Trace, TraceError};
@@ -29,6 +31,7 @@ use crate::physics::{ActiveEffect, Airframe, PhysicsError};
 use crate::signals::Signals;
 use crate::vehicle::{Anchor, Vehicle};
 use held::Settled;
+use scale::Kept;
 
 /// Why effects cannot be identified.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -184,23 +187,17 @@ pub fn together(
         return Err(TogetherError::TooShort { seconds, needed_s });
     }
     let kept: Vec<&ActiveEffect> = known.iter().filter(|of| !wanted.has(of.effect().id())).collect();
-    let rigid =
-        Base { present: kept.iter().filter_map(|of| acting_as_is(of)).collect(), ..Base::rigid(vehicle) };
-    let (plain, first) = fit_latency(&traces, rigid.clone())?;
+    let of_file = Kept { vehicle, effects: &kept };
+    let (rigid, plain, first) = of_file.fit_latency(&traces)?;
     let latency_named = wanted.effects().iter().any(|effect| wanted::is_latency(effect.id()));
     let before = if latency_named { fit(&traces, rigid, Newton::Held)? } else { plain.clone() };
     let (start, newton) = latency::held_as(wanted, &traces, (vehicle, known), first, plain.base.latency);
     let base = Base { latency: start, ..plain.base };
     let chosen = choose::choose(&traces, &base, wanted, &airframe)?;
-    let (after, settled) = held::settle(&traces, &base, chosen, newton)?;
-    let (after, split) = latency::split(&traces, after, wanted)?;
+    let (after, mut settled) = of_file.settle(&traces, base, &chosen, newton)?;
+    let (mut after, split) = latency::split(&traces, after, wanted)?;
+    swing::allow_for_noise(&traces, &mut after, &mut settled)?;
     Ok(put_together(&traces, (vehicle, &kept), wanted, Fits { before, after, settled, split, first }))
-}
-
-/// An effect of the vehicle's file as part of the base; what acts before the rotor's speed goes through the latency.
-fn acting_as_is(known: &ActiveEffect) -> Option<Present> {
-    let (effect, values) = (known.effect(), known.parameters().to_vec());
-    (!wanted::is_latency(effect.id())).then_some(Present { effect, values, free: Vec::new() })
 }
 
 /// What the fits gave.

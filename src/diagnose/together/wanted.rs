@@ -2,9 +2,7 @@
 
 use super::TogetherError;
 use crate::diagnose::base::Present;
-use crate::diagnose::candidates::{
-    CORD_LENGTHS_M, SWING_DAMPING_1_S, ceilings_m, change_times, full_voltage, present,
-};
+use crate::diagnose::candidates::{ceilings_m, change_times, full_voltage, present};
 use crate::diagnose::trace::Trace;
 use crate::physics::effects::{ALL, by_id};
 use crate::physics::{ActiveEffect, Airframe, Effect};
@@ -19,10 +17,11 @@ const ALWAYS: [&str; 3] = ["thrust_scale", "torque_scale", "inertia_products"];
 
 /// Decays of the exponential ground effect that are tried.
 const DECAYS: [f64; 3] = [0.4, 0.8, 1.6];
-/// Shortest and longest cord of a load that is tried, m, and the ratio of neighbours: a tenth of a period apart
-/// after a minute.
+/// Shortest and longest cord of a load that is tried, m.
 const CORDS_M: (f64, f64) = (0.2, 4.0);
-const CORDS_RATIO: f64 = 1.015;
+/// What the air takes of its swing, 1/s, with the ratio of the cords that are tried: neighbours stay in step while the
+/// swing lasts, or are a tenth of a period apart after a minute.
+const SWINGS: [(f64, f64); 3] = [(0.0, 1.015), (0.1, 1.03), (0.5, 1.1)];
 /// Lengths of a tether that are tried, of the farthest distance flown.
 const TAUT_AT: [f64; 6] = [0.4, 0.55, 0.7, 0.8, 0.9, 0.96];
 
@@ -167,11 +166,10 @@ impl Wanted {
                 full_voltage(flights).into_iter().map(|full_v| one(&[0.0, full_v], &[0])).collect()
             }
             "slung_load" => {
-                let free = cords_m().into_iter().map(|length_m| one(&[0.0, length_m], &[0]));
-                let damped = CORD_LENGTHS_M
-                    .into_iter()
-                    .map(|length_m| one(&[0.0, length_m, SWING_DAMPING_1_S], &[0, 1, 2]));
-                free.chain(damped).collect()
+                let of = |(damping_1_s, ratio): (f64, f64)| {
+                    cords_m(ratio).into_iter().map(move |length_m| one(&[0.0, length_m, damping_1_s], &[0]))
+                };
+                SWINGS.into_iter().flat_map(of).collect()
             }
             "mass_change" => {
                 let times = flights.first().map(change_times).unwrap_or_default();
@@ -206,10 +204,10 @@ pub(super) fn names() -> String {
     ALL.iter().map(|effect| effect.id()).collect::<Vec<_>>().join(", ")
 }
 
-/// Lengths of a cord that are tried, m.
-fn cords_m() -> Vec<f64> {
+/// Lengths of a cord that are tried, m, each so many times the one before.
+fn cords_m(ratio: f64) -> Vec<f64> {
     let mut out = vec![CORDS_M.0];
-    while let Some(last_m) = out.last().map(|length_m| length_m * CORDS_RATIO).filter(|m| *m <= CORDS_M.1) {
+    while let Some(last_m) = out.last().map(|length_m| length_m * ratio).filter(|m| *m <= CORDS_M.1) {
         out.push(last_m);
     }
     out
@@ -250,8 +248,10 @@ mod tests {
 
     #[test]
     fn cords_reach_from_the_shortest_to_the_longest() {
-        let cords = cords_m();
-        assert!(cords.windows(2).all(|pair| pair[1] > pair[0]) && cords[0] == CORDS_M.0);
-        assert!(cords.last().is_some_and(|last| *last <= CORDS_M.1 && *last * CORDS_RATIO > CORDS_M.1));
+        for (_, ratio) in SWINGS {
+            let cords = cords_m(ratio);
+            assert!(cords.windows(2).all(|pair| pair[1] > pair[0]) && cords[0] == CORDS_M.0);
+            assert!(cords.last().is_some_and(|last| *last <= CORDS_M.1 && *last * ratio > CORDS_M.1));
+        }
     }
 }

@@ -20,9 +20,9 @@ fn per_coefficient(at: &Condition, rotors: &Rotors, parameters: &[f64]) -> Wrenc
     let share = -1.0 / at.airframe.rotor_count() as f64;
     let mut sum = Wrench::zero();
     for ((arm, air), speed) in at.hubs().zip(&rotors.speed) {
-        sum.lift_at(&(arm * lever), share * speed * air.z);
+        sum.lift_at(arm, speed * air.z);
     }
-    sum
+    Wrench { force_n: sum.force_n * share, torque_nm: sum.torque_nm * (share * lever) }
 }
 
 impl Effect for Inflow {

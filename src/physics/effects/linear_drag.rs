@@ -47,11 +47,12 @@ impl Effect for LinearDrag {
     }
 
     fn wrench(&self, at: &Condition, rotors: &Rotors, own: &mut Own, sum: &mut Wrench) {
-        let share = -1.0 / at.airframe.rotor_count() as f64;
-        let (drag, lever) = (own.axes(), at_hubs(own.parameters));
+        let drag = own.axes() * (-1.0 / at.airframe.rotor_count() as f64);
+        let mut at_hub = Wrench::zero();
         for ((arm, air), speed) in at.hubs().zip(&rotors.speed) {
-            sum.push_at(&(arm * lever), &(air.component_mul(&drag) * (share * speed)));
+            at_hub.push_at(arm, &(air.component_mul(&drag) * *speed));
         }
+        *sum += Wrench { torque_nm: at_hub.torque_nm * at_hubs(own.parameters), ..at_hub };
     }
 
     fn is_linear(&self) -> bool {

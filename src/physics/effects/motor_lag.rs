@@ -65,12 +65,11 @@ impl Effect for MotorLag {
         let bandwidth = |time_constant_s: f64| 1.0 / time_constant_s.max(LEAST_TIME_CONSTANT_S);
         let up_1_s = bandwidth(own.parameters[0]);
         let down_1_s = own.parameters.get(1).map_or(up_1_s, |down_s| bandwidth(*down_s));
-        for (rotor, state) in own.states.iter().enumerate() {
-            let missing = rotors.speed[rotor] - state;
-            let rate = missing * if missing > 0.0 { up_1_s } else { down_1_s };
-            own.rates[rotor] = rate;
-            rotors.speed[rotor] = *state;
-            rotors.acceleration_1_s[rotor] = rate;
+        let turning = rotors.speed.iter_mut().zip(&mut rotors.acceleration_1_s);
+        for ((speed, acceleration), (state, rate)) in turning.zip(own.states.iter().zip(&mut *own.rates)) {
+            let missing = *speed - state;
+            *rate = missing * if missing > 0.0 { up_1_s } else { down_1_s };
+            (*speed, *acceleration) = (*state, *rate);
         }
     }
 }

@@ -15,9 +15,9 @@ fn per_coefficient(at: &Condition) -> Wrench {
     let share = 1.0 / at.airframe.rotor_count() as f64;
     let mut sum = Wrench::zero();
     for (arm, air) in at.hubs() {
-        sum.lift_at(arm, share * air.xy().norm_squared());
+        sum.lift_at(arm, air.xy().norm_squared());
     }
-    sum
+    sum * share
 }
 
 impl Effect for TranslationalLift {

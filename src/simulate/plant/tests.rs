@@ -102,6 +102,25 @@ fn a_slung_load_in_free_fall_keeps_energy_and_momentum() {
 }
 
 #[test]
+fn a_load_swings_alike_by_the_force_without_it_and_by_the_force_that_was_felt() {
+    let vehicle = random_vehicle(5).truth;
+    for damping in [0.0, 0.3] {
+        let load = ActiveEffect::new(&SlungLoad, &[0.3, 0.8, damping]).unwrap();
+        let model = plain(&vehicle, vec![load]);
+        let mut state = drifting(Vector3::new(1.0, 0.5, 0.0));
+        state.attitude = UnitQuaternion::from_euler_angles(0.2, -0.3, 0.5);
+        let input = input(&model, 1.1);
+        let states = [0.3, -0.2, -(1.0_f64 - 0.13).sqrt(), 0.4, 1.0, 0.08];
+        let (mut by_model, mut by_motion) = ([0.0; 6], [0.0; 6]);
+        let felt_n = model.evaluate(&state, &input, &states, &mut by_model).wrench.force_n;
+        model.reaction_rates((&state, &input), &felt_n, &states, &mut by_motion);
+        for (a, b) in by_model.iter().zip(by_motion) {
+            assert!((a - b).abs() < 1e-12 * (1.0 + a.abs()), "{by_model:?} {by_motion:?}");
+        }
+    }
+}
+
+#[test]
 fn a_slung_load_swings_at_the_frequency_of_the_double_body() {
     let vehicle = random_vehicle(6).truth;
     let (m, load_kg, length_m) = (vehicle.body.mass_kg, 0.2, 1.0);

@@ -1,0 +1,84 @@
+//! What the noise of the measured motion, which swings a slung load, does to the estimates.
+//!
+//! A swing that hardly dies down adds noise up over the whole flight, and all rows then miss it together: the rows' own
+//! residual does not show that. So the motion is made noisier by as much as it is noisy, several times, and the estimates'
+//! scatter is added to their covariance.
+
+use super::held::{Held, Settled, estimates};
+use crate::diagnose::evidence::weighted;
+use crate::diagnose::rows::residuals;
+use crate::diagnose::search::Fitted;
+use crate::diagnose::trace::Trace;
+use crate::physics::PhysicsError;
+use crate::signals::white_level_of;
+use nalgebra::{DMatrix, Vector3};
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+use rayon::prelude::*;
+
+/// Noisier motions.
+const REPLICATES: u64 = 12;
+/// A load whose mass is fewer standard errors from nothing swings as no measured motion tells.
+const FOLLOWED: f64 = 4.0;
+const LOAD: &str = "slung_load";
+
+/// Adds it, where a load is estimated. A swing that the noise hides says nothing of its load.
+pub(super) fn allow_for_noise(
+    flights: &[Trace],
+    fitted: &mut Fitted,
+    settled: &mut [Settled],
+) -> Result<(), PhysicsError> {
+    scatter(flights, fitted)?;
+    let before = fitted.base.present.len() - settled.len();
+    for (index, of) in settled.iter_mut().enumerate().filter(|(_, of)| of.chosen.form.effect.id() == LOAD) {
+        let all = estimates(fitted, before + index);
+        let seen = all.iter().any(|(slot, value, std, _)| *slot == 0 && *value > FOLLOWED * std);
+        if !seen {
+            let why = "either there is no load, or its swing hardly dies down and the noise of the motion that swings it \
+                       hides where it goes";
+            let slots = 0..of.chosen.form.values.len();
+            of.held = slots.map(|slot| (slot, Held::NotDetermined(why.to_owned()))).collect();
+        }
+    }
+    Ok(())
+}
+
+fn scatter(flights: &[Trace], fitted: &mut Fitted) -> Result<(), PhysicsError> {
+    if !fitted.base.estimates(LOAD) {
+        return Ok(());
+    }
+    let (rows, weights) = (&fitted.rows, &fitted.weighted);
+    let Some(normal) = &weights.normal else { return Ok(()) };
+    let moved = |seed: u64| {
+        let mut rng = Pcg64Mcg::new(u128::from(seed) + 1);
+        let noisy: Vec<Trace> = flights.iter().map(|trace| noisier(trace, &mut rng)).collect();
+        let mut change = residuals(&noisy, &fitted.base)?;
+        for (change, before) in change.iter_mut().zip(&rows.residual) {
+            change.iter_mut().zip(before).for_each(|(change, before)| *change -= before);
+        }
+        let change = weighted(&change, &weights.sigma);
+        Ok(normal.solve(&weights.nuisances.tr_mul(&change)))
+    };
+    let moves: Vec<_> =
+        (0..REPLICATES).into_par_iter().map(moved).collect::<Result<Vec<_>, PhysicsError>>()?;
+    let mut scatter = DMatrix::zeros(fitted.covariance.nrows(), fitted.covariance.ncols());
+    for by in &moves {
+        scatter += by * by.transpose() / REPLICATES as f64;
+    }
+    fitted.covariance += scatter;
+    Ok(())
+}
+
+/// The same flight, swung by a motion with as much white noise again.
+fn noisier(trace: &Trace, rng: &mut Pcg64Mcg) -> Trace {
+    let mut trace = trace.clone();
+    let level = Vector3::from_fn(|axis, _| {
+        let series: Vec<f64> = trace.felt_m_s2.iter().map(|felt| felt[axis]).collect();
+        Some(white_level_of(&series)).filter(|level| level.is_finite()).unwrap_or(0.0)
+    });
+    for felt in &mut trace.felt_m_s2 {
+        let noise = Vector3::from_fn(|_, _| StandardNormal.sample(rng));
+        *felt += level.component_mul(&noise);
+    }
+    trace
+}
