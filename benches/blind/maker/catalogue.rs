@@ -24,6 +24,7 @@ pub const EFFECTS: &[&str] = &[
     "weak_rotor",
     "battery_sag",
     "thrust_curve",
+    "thrust_curve+stated",
     "inflow",
     "inflow+momentum",
     "steady_wind",
@@ -40,10 +41,14 @@ pub const EFFECTS: &[&str] = &[
     "imu_misalignment+acc",
     "imu_offset",
     "frame_misalignment",
+    "frame_misalignment+attitude",
     "vortex_ring",
     "ceiling_effect",
     "ceiling_effect+exponential",
 ];
+
+/// Nothing concealed, in the rooms of the effects that need one of their own.
+pub const CONTROLS: &[&str] = &["nothing+fast", "nothing+climb", "nothing+low", "nothing+gentle"];
 
 /// Of no library.
 pub const OUTSIDE: &[&str] = &["force_region", "updraft", "wall", "arm"];
@@ -174,14 +179,14 @@ impl Case {
                 self.note(id, &values);
             }
             "ceiling_effect" => {
-                let top = self.room.heights.1 + 0.5 * self.craft.radius;
+                let top = self.room.heights.1 + self.craft.radius;
                 self.hidden.ceiling = Some(if entry.ends_with("exponential") {
                     Ceiling::Exponential(top, dice.random_range(0.3..0.8))
                 } else {
-                    Ceiling::Suction(top, dice.random_range(2.5..5.0), 0.2 * self.craft.radius)
+                    Ceiling::Suction(top, dice.random_range(3.0..6.0), 0.3 * self.craft.radius)
                 });
                 self.room.lively_climb = true;
-                self.note(id, &[]);
+                self.note(id, &[("height", top)]);
             }
             "motor_lag" => {
                 let up = dice.random_range(0.02..0.07);
@@ -191,6 +196,7 @@ impl Case {
             }
             "transport_delay" => {
                 self.hidden.delay = dice.random_range(0.012..0.035);
+                // beyond the motors' own 4 ms and the half tick that every flight has
                 self.note(id, &[("delay", self.hidden.delay)]);
             }
             "com_offset" => {
@@ -207,9 +213,14 @@ impl Case {
             }
             "battery_sag" => self.sag(id, dice),
             "thrust_curve" => {
-                let f = dice.random_range(0.2..0.8);
+                let f = dice.random_range(0.3..0.9);
                 self.hidden.curve = Some(f);
                 self.room.lively_climb = true;
+                if entry.ends_with("stated") {
+                    // the file has the same law with another number
+                    let off = if dice.random_bool(0.5) { 0.25 } else { -0.25 };
+                    self.craft.said_curve = Some((f + off).clamp(0.05, 0.95));
+                }
                 self.note(id, &[("slope", self.slope(f))]);
             }
             "inflow" => self.inflow(entry, dice),
@@ -219,16 +230,16 @@ impl Case {
                 self.note(id, &[]);
             }
             "vortex_ring" => {
-                self.hidden.inflow = Some(Inflow::VortexRing(dice.random_range(0.6..1.0)));
-                self.room.heights = (2.0, 16.0);
-                (self.room.speed, self.room.acceleration) = (5.0, 8.0);
-                self.room.lively_climb = true;
-                self.note(id, &[]);
+                let share = dice.random_range(0.6..1.0);
+                self.hidden.inflow = Some(Inflow::VortexRing(share));
+                self.descents();
+                self.note(id, &[("share", share)]);
             }
             "steady_wind" | "gust" => {
                 self.draggy(dice);
                 self.windy(id, dice);
             }
+            "nothing" => self.only_the_room(entry),
             "mass_change" => {
                 let (when, by) = (dice.random_range(15.0..40.0_f64), dice.random_range(-0.25..-0.05));
                 let when = (when * 250.0).round() / 250.0;
@@ -256,7 +267,7 @@ impl Case {
                 self.note(id, &[("x", x), ("y", y)]);
             }
             "rotor_inertia" => {
-                let size = self.craft.inertia[(2, 2)] * dice.random_range(0.8e-3..3e-3);
+                let size = self.craft.inertia[(2, 2)] * dice.random_range(0.4e-3..1.5e-3);
                 self.hidden.rotor_inertia = size;
                 self.note(id, &[("jr", size)]);
             }
@@ -277,8 +288,9 @@ impl Case {
                 let load = Load {
                     mass: mass * dice.random_range(0.06..0.15),
                     length: dice.random_range(0.5..1.1),
-                    drag: 0.02 * mass,
+                    drag: 0.0,
                 };
+                let load = Load { drag: 0.1 * load.mass, ..load };
                 self.hidden.load = Some(load);
                 (self.room.speed, self.room.acceleration) = (1.2, 1.2);
                 self.room.heights = (load.length + 0.3, load.length + 1.8);
@@ -300,6 +312,7 @@ impl Case {
             "frame_misalignment" => {
                 let (x, y) = angles(&mut |low, high| dice.random_range(low..high));
                 self.hidden.frame_turned = Rotation3::new(Vector3::new(x, y, 0.5 * (x - y)));
+                self.hidden.attitude_in_frame = entry != id;
                 self.note(id, &[("x", x.abs()), ("y", y.abs())]);
             }
             "imu_offset" => {
@@ -310,6 +323,24 @@ impl Case {
             }
             _ => self.outside(id, dice),
         }
+    }
+
+    /// The room of an effect without the effect.
+    fn only_the_room(&mut self, entry: &str) {
+        let low = 1.4 * self.craft.radius;
+        match entry {
+            "nothing+fast" => self.descents(),
+            "nothing+low" => self.room.heights = (low, low + 0.9),
+            "nothing+gentle" => (self.room.speed, self.room.acceleration) = (1.2, 1.2),
+            _ => (self.room.speed, self.room.lively_climb) = (2.5, true),
+        }
+    }
+
+    /// Down fast, as a vortex ring takes.
+    fn descents(&mut self) {
+        self.room.heights = (2.0, 16.0);
+        (self.room.speed, self.room.acceleration) = (5.0, 8.0);
+        self.room.lively_climb = true;
     }
 
     /// What no library has.
@@ -323,8 +354,8 @@ impl Case {
             }
             "wall" => Outside::Wall(1.8, mass * dice.random_range(3.0..8.0)),
             "arm" => {
-                let rate = std::f64::consts::TAU * dice.random_range(3.0..8.0);
-                Outside::Arm(dice.random_range(0..4), rate, 0.03)
+                let rate = std::f64::consts::TAU * dice.random_range(6.0..10.0);
+                Outside::Arm(dice.random_range(0..4), rate, 0.12)
             }
             _ => {
                 let size = mass * dice.random_range(0.5..1.5);

@@ -17,8 +17,6 @@ pub const TICK: f64 = 0.004;
 /// What is true at a tick.
 #[derive(Debug, Clone)]
 pub struct Instant {
-    /// s since the beginning
-    pub time: f64,
     /// m, world, of the centre of mass
     pub position: Vector3<f64>,
     /// m/s
@@ -129,7 +127,6 @@ fn instant(drive: &Drive, time: f64, state: &State, path: &Path) -> Instant {
         (motion.volts, motion.amperes)
     };
     Instant {
-        time,
         position: three(state, place::POSITION),
         velocity: three(state, place::VELOCITY),
         rotation: turn,
