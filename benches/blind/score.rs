@@ -87,7 +87,11 @@ fn tell(answer: &Answer) {
         );
     }
     if let Some(load) = case.hidden.load {
-        println!("    load {:.3} of the vehicle's mass", load.mass / case.craft.mass);
+        let widest = answer.flown.iter().map(|now| now.swing).fold(0.0, f64::max).to_degrees();
+        println!(
+            "    load {:.3} of the vehicle's mass, swings up to {widest:.0} degrees",
+            load.mass / case.craft.mass
+        );
     }
     let limits: Vec<String> = explanation
         .limits

@@ -37,6 +37,8 @@ pub struct Instant {
     pub volts: f64,
     /// A
     pub amperes: f64,
+    /// rad by which the load's cord leans
+    pub swing: f64,
     /// what was asked for
     pub wanted: Wanted,
 }
@@ -137,6 +139,10 @@ fn instant(drive: &Drive, time: f64, state: &State, path: &Path) -> Instant {
         command: drive.command,
         volts,
         amperes,
+        swing: drive.hidden.load.map_or(0.0, |_| {
+            let cord = three(state, place::LOAD) - three(state, place::POSITION);
+            cord.xy().norm().atan2(-cord.z)
+        }),
         wanted: path.at(time),
     }
 }
