@@ -11,7 +11,7 @@ mod write;
 
 use std::path::PathBuf;
 
-use maker::catalogue::{Case, EFFECTS, OUTSIDE, PAIRS};
+use maker::catalogue::{CONTROLS, Case, EFFECTS, OUTSIDE, PAIRS};
 use score::{clean, effects, outside, pairs};
 
 /// What is asked for.
@@ -28,7 +28,10 @@ struct Request {
 fn main() {
     let request = request();
     let wanted = |entry: &&&'static str| {
-        request.only.as_ref().is_none_or(|only| **entry == only || maker::catalogue::identifier(entry) == only)
+        request
+            .only
+            .as_ref()
+            .is_none_or(|only| **entry == only || maker::catalogue::identifier(entry) == only)
     };
     let seeds = |count: u64| (request.seed..request.seed + count).collect::<Vec<_>>();
     let known: Vec<&'static str> = EFFECTS.iter().filter(wanted).copied().collect();
@@ -49,7 +52,10 @@ fn main() {
         effects(&known, &seeds(request.cases));
     }
     if request.clean > 0 {
-        clean(&seeds(request.clean));
+        clean(&[], &seeds(request.clean));
+        for control in CONTROLS {
+            clean(&[*control], &seeds(request.clean.div_ceil(4)));
+        }
     }
     if request.pairs > 0 {
         pairs(request.seed, request.pairs);

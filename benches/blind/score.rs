@@ -12,7 +12,7 @@ use statrs::distribution::{Beta, ContinuousCDF};
 use crate::maker::catalogue::{Case, OUTSIDE, PAIRS, identifier};
 use crate::maker::flight::Instant;
 use crate::maker::hidden::{Ceiling, Ground, Inflow};
-use crate::maker::rotors::{below_ceiling, induced, near_ground};
+use crate::maker::rotors::{below_ceiling, hover_flow, induced, near_ground, ring_excess};
 
 /// What became of a case.
 pub struct Answer {
@@ -75,6 +75,31 @@ fn tell(answer: &Answer) {
         case.room.speed,
         case.conditions,
     );
+    // whether the flight showed it at all
+    let lowest = answer.flown.iter().map(|now| now.velocity.z).fold(0.0, f64::min);
+    let hover = case.craft.hover_speed();
+    if let Some(Inflow::VortexRing(share)) = case.hidden.inflow {
+        let flow = hover_flow(&case.craft, hover);
+        println!(
+            "    down at {:.2} of hover's flow {flow:.1} m/s; {:.1} % of thrust lost there",
+            lowest / flow,
+            100.0 * share * ring_excess(lowest / flow)
+        );
+    }
+    if let Some(load) = case.hidden.load {
+        let widest = answer.flown.iter().map(|now| now.swing).fold(0.0, f64::max).to_degrees();
+        println!(
+            "    load {:.3} of the vehicle's mass, swings up to {widest:.0} degrees",
+            load.mass / case.craft.mass
+        );
+    }
+    let limits: Vec<String> = explanation
+        .limits
+        .iter()
+        .filter(|limit| case.expect.contains(&limit.id))
+        .map(|limit| format!("{} {} {:.2e}", limit.id, limit.parameter, limit.limit))
+        .collect();
+    println!("    would have been named from {limits:?}; latency {:?}", explanation.search.latency);
 }
 
 /// A name with its values and what it may be taken for.
@@ -82,7 +107,7 @@ fn told(name: &Named) -> String {
     let values: Vec<String> = name
         .parameters
         .iter()
-        .map(|parameter| format!("{} {:.4}+-{:.4}", parameter.name, parameter.value, parameter.std))
+        .map(|parameter| format!("{} {:.3e}+-{:.1e}", parameter.name, parameter.value, parameter.std))
         .collect();
     let others: Vec<&str> = name.confusable_with.iter().map(|other| other.id).collect();
     format!("{} ({}) {others:?}", name.id, values.join(", "))
@@ -125,7 +150,7 @@ fn effect(entry: &str, found: &[Answer]) {
                 *strangers.entry(name.id).or_default() += 1;
             }
         }
-        if wrong {
+        if wrong || std::env::var_os("BLIND_TELL").is_some() {
             tell(answer);
         }
     }
@@ -144,9 +169,13 @@ fn size_errors(answer: &Answer, name: &Named) -> Vec<f64> {
         return vec![100.0 * (value / truth - 1.0).abs()];
     }
     let truth = |parameter: &str| {
-        case.truth.iter().find(|(id, other, _)| *id == name.id && *other == parameter).map(|(.., value)| *value)
+        case.truth
+            .iter()
+            .find(|(id, other, _)| *id == name.id && *other == parameter)
+            .map(|(.., value)| *value)
     };
-    let turned = ["imu_misalignment", "frame_misalignment"].contains(&name.id);
+    // which way round is a convention
+    let turned = ["imu_misalignment", "frame_misalignment", "blade_flapping"].contains(&name.id);
     let known: Vec<(f64, f64)> = name
         .parameters
         .iter()
@@ -157,10 +186,15 @@ fn size_errors(answer: &Answer, name: &Named) -> Vec<f64> {
         .collect();
     // what is left of a rotor: the loss counts
     if name.id == "weak_rotor" {
-        let right = name.parameters.iter().all(|p| p.name != "rotor" || Some(rotor(case, p.value)) == case.weak);
+        let right =
+            name.parameters.iter().all(|p| p.name != "rotor" || Some(rotor(case, p.value)) == case.weak);
         return known
             .iter()
-            .map(|(truth, value)| if right { 100.0 * ((1.0 - value) / (1.0 - truth) - 1.0).abs() } else { 999.0 })
+            .map(
+                |(truth, value)| {
+                    if right { 100.0 * ((1.0 - value) / (1.0 - truth) - 1.0).abs() } else { 999.0 }
+                },
+            )
             .collect();
     }
     // of a vector the largest
@@ -204,7 +238,7 @@ fn derived(answer: &Answer, name: &Named) -> Option<(f64, f64)> {
             Some((below_ceiling(case.hidden.ceiling, height, radius) - 1.0, found - 1.0))
         }
         "translational_lift" => {
-            let Some(Inflow::Edgewise(share) | Inflow::Both(share)) = case.hidden.inflow else { return None };
+            let Some(Inflow::Edgewise(share)) = case.hidden.inflow else { return None };
             let square = |now: &Instant| now.velocity.xy().norm_squared();
             let mean = flown.iter().map(square).sum::<f64>() / flown.len() as f64;
             let hover = case.craft.hover_speed();
@@ -215,9 +249,9 @@ fn derived(answer: &Answer, name: &Named) -> Option<(f64, f64)> {
     }
 }
 
-/// Flights in which nothing is concealed.
-pub fn clean(seeds: &[u64]) {
-    let found = answers(seeds.iter().map(|&seed| Case::new(seed, &[])).collect());
+/// Flights in which nothing is concealed; `entries` may choose the room.
+pub fn clean(entries: &[&'static str], seeds: &[u64]) {
+    let found = answers(seeds.iter().map(|&seed| Case::new(seed, entries)).collect());
     let mut verdicts: BTreeMap<&str, usize> = BTreeMap::new();
     let mut names: BTreeMap<&str, usize> = BTreeMap::new();
     let mut false_names = 0_usize;
@@ -230,7 +264,7 @@ pub fn clean(seeds: &[u64]) {
         }
     }
     println!(
-        "nothing concealed: {} flights, {verdicts:?}, {false_names} given a name {names:?}: at most {:.1} % (95 %, Clopper-Pearson)",
+        "nothing concealed {entries:?}: {} flights, {verdicts:?}, {false_names} given a name {names:?}: at most {:.1} % (95 %, Clopper-Pearson)",
         found.len(),
         100.0 * upper(false_names, found.len())
     );
@@ -254,10 +288,8 @@ pub fn pairs(first: u64, count: u64) {
         let Answer { case, explanation, .. } = answer;
         let has = |id: &str| explanation.named.iter().any(|name| name.id == id);
         let all = case.expect.iter().all(|id| has(id));
-        let near = case
-            .expect
-            .iter()
-            .all(|id| has(id) || explanation.named.iter().any(|name| within(name, id)));
+        let near =
+            case.expect.iter().all(|id| has(id) || explanation.named.iter().any(|name| within(name, id)));
         let strangers = explanation
             .named
             .iter()
@@ -284,10 +316,8 @@ pub fn outside(entries: &[&'static str], seeds: &[u64]) {
         let mut said = 0;
         for Answer { case, explanation, .. } in &found {
             *verdicts.entry(explanation.verdict.name()).or_default() += 1;
-            said += usize::from(matches!(
-                explanation.verdict,
-                Verdict::Unexplained | Verdict::PartlyExplained
-            ));
+            said +=
+                usize::from(matches!(explanation.verdict, Verdict::Unexplained | Verdict::PartlyExplained));
             let strange = explanation.named.iter().filter(|name| !case.expect.contains(&name.id));
             strange.for_each(|name| *names.entry(name.id).or_default() += 1);
         }

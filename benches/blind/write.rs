@@ -10,11 +10,8 @@ use crate::maker::catalogue::Case;
 
 /// Writes `folder/<case>/{vehicle.toml,identify.tlog,holdout.tlog}` and `folder/answers.json`.
 pub fn write(folder: &Path, cases: &[Case]) {
-    let numbered: Vec<(String, &Case)> = cases
-        .iter()
-        .enumerate()
-        .map(|(place, case)| (format!("b{place:04}"), case))
-        .collect();
+    let numbered: Vec<(String, &Case)> =
+        cases.iter().enumerate().map(|(place, case)| (format!("b{place:04}"), case)).collect();
     let answers: BTreeMap<String, Value> = numbered
         .par_iter()
         .filter_map(|(name, case)| {

@@ -200,13 +200,7 @@ impl<'a> Drive<'a> {
     }
 
     /// What a force, N, world, does to the vehicle with its load and cable; the load's slopes.
-    fn acceleration(
-        &self,
-        time: f64,
-        state: &State,
-        force: Vector3<f64>,
-        slope: &mut State,
-    ) -> Vector3<f64> {
+    fn acceleration(&self, time: f64, state: &State, force: Vector3<f64>, slope: &mut State) -> Vector3<f64> {
         let mass = self.mass(time);
         let down = Vector3::new(0.0, 0.0, -GRAVITY);
         let (at, velocity) = (three(state, place::POSITION), three(state, place::VELOCITY));
@@ -221,8 +215,7 @@ impl<'a> Drive<'a> {
             let rate = apart.dot(&along);
             let turning = (apart.norm_squared() - rate * rate) / stretch;
             let drift = 40.0 * rate + 400.0 * (stretch - load.length);
-            let tension =
-                ((pull - free).dot(&along) + turning + drift) / (1.0 / load.mass + 1.0 / mass);
+            let tension = ((pull - free).dot(&along) + turning + drift) / (1.0 / load.mass + 1.0 / mass);
             put(slope, place::LOAD, &swing);
             put(slope, place::LOAD_VELOCITY, &(pull - tension / load.mass * along));
             return free + tension / mass * along;

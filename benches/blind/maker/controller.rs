@@ -40,7 +40,7 @@ pub struct Controller {
 const GAINS: [f64; 5] = [4.0, 3.4, 1.0, 55.0, 12.0];
 
 /// Yaw is turned more gently.
-const YAW: f64 = 0.35;
+const YAW: f64 = 0.25;
 
 impl Controller {
     pub fn new(craft: &Craft, doubt: Doubt) -> Self {

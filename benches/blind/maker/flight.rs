@@ -17,8 +17,6 @@ pub const TICK: f64 = 0.004;
 /// What is true at a tick.
 #[derive(Debug, Clone)]
 pub struct Instant {
-    /// s since the beginning
-    pub time: f64,
     /// m, world, of the centre of mass
     pub position: Vector3<f64>,
     /// m/s
@@ -39,6 +37,8 @@ pub struct Instant {
     pub volts: f64,
     /// A
     pub amperes: f64,
+    /// rad by which the load's cord leans
+    pub swing: f64,
     /// what was asked for
     pub wanted: Wanted,
 }
@@ -129,7 +129,6 @@ fn instant(drive: &Drive, time: f64, state: &State, path: &Path) -> Instant {
         (motion.volts, motion.amperes)
     };
     Instant {
-        time,
         position: three(state, place::POSITION),
         velocity: three(state, place::VELOCITY),
         rotation: turn,
@@ -140,6 +139,10 @@ fn instant(drive: &Drive, time: f64, state: &State, path: &Path) -> Instant {
         command: drive.command,
         volts,
         amperes,
+        swing: drive.hidden.load.map_or(0.0, |_| {
+            let cord = three(state, place::LOAD) - three(state, place::POSITION);
+            cord.xy().norm().atan2(-cord.z)
+        }),
         wanted: path.at(time),
     }
 }

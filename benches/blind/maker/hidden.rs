@@ -29,8 +29,6 @@ pub enum Inflow {
     Axial(f64),
     /// the same with flow along the disc alone
     Edgewise(f64),
-    /// the same, both
-    Both(f64),
     /// what a vortex ring induces beyond momentum theory (Leishman's polynomial)
     VortexRing(f64),
 }
@@ -132,6 +130,8 @@ pub struct Hidden {
     pub imu_at: Vector3<f64>,
     /// how the position reference sits in the world
     pub frame_turned: Rotation3<f64>,
+    /// whether that reference tells the attitude as well, as motion capture does
+    pub attitude_in_frame: bool,
     /// the pack
     pub battery: Battery,
     /// of no library
@@ -165,6 +165,7 @@ impl Default for Hidden {
             rates_turned: false,
             imu_at: Vector3::zeros(),
             frame_turned: Rotation3::identity(),
+            attitude_in_frame: false,
             battery: Battery {
                 open_circuit: (16.6, 13.6),
                 resistance: 0.0,

@@ -7,6 +7,7 @@
 
 pub mod body;
 pub mod catalogue;
+pub mod conceal;
 pub mod controller;
 pub mod dopri;
 pub mod flight;

@@ -19,6 +19,8 @@ pub struct Room {
     pub heights: (f64, f64),
     /// share of the heights' range that is used at least, whatever the speed
     pub lively_climb: bool,
+    /// up and down slowly and far
+    pub plunge: bool,
 }
 
 /// What is asked for at an instant.
@@ -65,6 +67,12 @@ impl Path {
         for axis in &mut waves {
             for (place, wave) in axis.iter_mut().enumerate() {
                 *wave = drawn(&mut dice, 1.0 / (1.0 + place as f64));
+            }
+        }
+        if room.plunge {
+            for (place, (cosine, sine)) in waves[2].iter_mut().enumerate() {
+                let less = (1.0 + place as f64).powi(2);
+                (*cosine, *sine) = (*cosine / less, *sine / less);
             }
         }
         let mut path = Self { period, duration: HOVER + periods * period, waves, height: 0.0 };

@@ -102,7 +102,6 @@ fn with_inflow(craft: &Craft, law: Inflow, speed: f64, (climb, along): (f64, f64
         Inflow::Linear(loss) => still - loss * speed * climb,
         Inflow::Axial(share) => induced(craft, share, speed, (climb, 0.0)),
         Inflow::Edgewise(share) => induced(craft, share, speed, (0.0, along)),
-        Inflow::Both(share) => induced(craft, share, speed, (climb, along)),
         Inflow::VortexRing(share) => {
             let hover = hover_flow(craft, speed);
             still * (1.0 - share * ring_excess(climb / hover))

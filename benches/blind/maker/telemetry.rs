@@ -143,7 +143,12 @@ fn heartbeat() -> MavMessage {
 type Told<'a> = (&'a Hidden, Conditions);
 
 fn attitude(time: f64, now: &Instant, (hidden, with): Told, dice: &mut impl Rng) -> MavMessage {
-    let shaken = now.rotation * Rotation3::new(noise(0.0017 * with.noise, dice)).matrix();
+    let seen = if hidden.attitude_in_frame {
+        hidden.frame_turned.inverse().matrix() * now.rotation
+    } else {
+        now.rotation
+    };
+    let shaken = seen * Rotation3::new(noise(0.0017 * with.noise, dice)).matrix();
     let q = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(shaken));
     let mut rates = now.rates + noise(0.007 * with.noise, dice);
     if hidden.rates_turned {

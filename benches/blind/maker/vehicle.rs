@@ -32,6 +32,8 @@ pub struct Craft {
     pub said_mass: f64,
     /// kg m^2, as the maker says, without products
     pub said_inertia: Vector3<f64>,
+    /// how much of the thrust is quadratic in the actuator, as the maker says, where he states thrusts, not speeds
+    pub said_curve: Option<f64>,
 }
 
 impl Craft {
@@ -81,6 +83,7 @@ impl Craft {
             speed_max,
             said_mass,
             said_inertia: said,
+            said_curve: None,
         }
     }
 
@@ -99,6 +102,26 @@ impl Craft {
         0.5 * (self.inertia[(0, 0)] + self.inertia[(1, 1)])
     }
 
+    /// What the maker says of the rotors: speeds, or thrusts that are right in hover.
+    fn propulsion(&self) -> String {
+        let Some(f) = self.said_curve else {
+            return format!(
+                "actuator = \"speed\"               # u in 0..1 commands the rotor speed u * speed_max\n\
+                 speed_max = {:.3}             # rad/s\n\
+                 thrust_coefficient = {:.6e}   # N/(rad/s)^2\n\
+                 torque_coefficient = {:.6e}   # N m/(rad/s)^2\n",
+                self.speed_max, self.thrust_coefficient, self.torque_coefficient,
+            );
+        };
+        let hover = self.hover_speed() / self.speed_max;
+        let most = 0.25 * self.mass * GRAVITY / ((1.0 - f) * hover + f * hover * hover);
+        format!(
+            "actuator = \"thrust\"              # thrust_max ((1 - thrust_expo) u + thrust_expo u^2)\n\
+             thrust_max = {most:.5}           # N\nthrust_expo = {f:.4}\ntorque_ratio = {:.6}         # N m per N\n",
+            self.torque_coefficient / self.thrust_coefficient,
+        )
+    }
+
     /// The maker's file.
     pub fn file(&self, name: &str) -> String {
         let said = self.said_inertia;
@@ -107,18 +130,12 @@ impl Craft {
              name = \"{name}\"\n\n\
              [body]\nmass = {:.4}                 # kg\n\
              inertia = {{ xx = {:.6e}, yy = {:.6e}, zz = {:.6e} }}   # kg m^2\n\n\
-             [propulsion]\nactuator = \"speed\"               # u in 0..1 commands the rotor speed u * speed_max\n\
-             speed_max = {:.3}             # rad/s\n\
-             thrust_coefficient = {:.6e}   # N/(rad/s)^2\n\
-             torque_coefficient = {:.6e}   # N m/(rad/s)^2\n\
-             rotor_radius = {:.5}           # m\n",
+             [propulsion]\n{}rotor_radius = {:.5}           # m\n",
             self.said_mass,
             said.x,
             said.y,
             said.z,
-            self.speed_max,
-            self.thrust_coefficient,
-            self.torque_coefficient,
+            self.propulsion(),
             self.radius,
         );
         for ((hub, spin), name) in self.hubs.iter().zip(self.spins).zip(self.names) {

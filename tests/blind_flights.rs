@@ -1,0 +1,181 @@
+//! The second maker of test flights: its own physics by hand, and three of its flights end to end.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
+
+#[allow(dead_code, reason = "the benchmark uses all of it")]
+#[path = "../benches/blind/maker/mod.rs"]
+mod maker;
+
+use maker::body::{Drive, State, place, put, straighten, three};
+use maker::catalogue::Case;
+use maker::flight::hovering;
+use maker::hidden::{Hidden, Load};
+use maker::path::{Path, Room};
+use maker::vehicle::Craft;
+use maker::{GRAVITY, dopri};
+use mavid::config::parse_vehicle;
+use mavid::diagnose::{ExplainSettings, Explanation, Verdict, explain};
+use mavid::log::{LoadOptions, load};
+use mavid::signals::{ConditionSettings, ThrustPreference, condition};
+use nalgebra::Vector3;
+
+fn craft() -> Craft {
+    Craft::random(5)
+}
+
+/// Hovering 1 m or so above the ground.
+fn begin(craft: &Craft, hidden: &Hidden) -> State {
+    let room =
+        Room { speed: 1.0, acceleration: 2.0, heights: (1.0, 2.0), lively_climb: false, plunge: false };
+    hovering(craft, hidden, &Path::random(1, room, None))
+}
+
+/// The state `seconds` later under constant actuator values.
+fn later(drive: &Drive<'_>, mut state: State, seconds: f64) -> State {
+    let mut step = 0.001;
+    let pieces = (seconds / 0.01).round();
+    let mut time = 0.0;
+    while time < seconds - 1e-9 {
+        let end = time + seconds / pieces;
+        dopri::advance(|t, s| drive.motion(t, s).slope, &mut state, (time, end), &mut step);
+        straighten(&mut state);
+        time = end;
+    }
+    state
+}
+
+fn close(found: f64, wanted: f64, within: f64) {
+    assert!((found - wanted).abs() <= within, "{found}, expected {wanted} +- {within}");
+}
+
+#[test]
+fn the_integrator_follows_an_oscillation() {
+    let mut state = [1.0, 0.0];
+    let mut step = 0.01;
+    dopri::advance(|_, s| [s[1], -9.0 * s[0]], &mut state, (0.0, 20.0), &mut step);
+    close(state[0], 60.0_f64.cos(), 2e-4);
+    close(state[1], -3.0 * 60.0_f64.sin(), 6e-4);
+}
+
+#[test]
+fn a_body_without_thrust_keeps_its_energy_and_its_angular_momentum() {
+    let (craft, hidden) = (craft(), Hidden::default());
+    let drive = Drive::new(&craft, &hidden);
+    let mut state = begin(&craft, &hidden);
+    state[place::ROTORS..place::ROTORS + 4].fill(0.0);
+    put(&mut state, place::VELOCITY, &Vector3::new(1.0, -0.5, 3.0));
+    put(&mut state, place::RATES, &Vector3::new(2.0, -1.0, 3.0));
+    let worth = |state: &State| {
+        let (velocity, rates) = (three(state, place::VELOCITY), three(state, place::RATES));
+        let turn = maker::body::rotation(state);
+        let spin = turn * craft.inertia * rates;
+        let energy = craft.mass * (0.5 * velocity.norm_squared() + GRAVITY * state[2])
+            + 0.5 * rates.dot(&(craft.inertia * rates));
+        (energy, spin, turn)
+    };
+    let (energy, spin, _) = worth(&state);
+    let end = later(&drive, state, 2.0);
+    let (energy_then, spin_then, turn) = worth(&end);
+    close(energy_then, energy, 1e-5 * energy);
+    assert!((spin_then - spin).norm() < 1e-5 * spin.norm(), "{spin_then} {spin}");
+    assert!((turn.transpose() * turn - nalgebra::Matrix3::identity()).norm() < 1e-12);
+    close(end[2], state[2] + 6.0 - 0.5 * GRAVITY * 4.0, 1e-5);
+}
+
+#[test]
+fn hover_needs_the_weight_and_a_centre_off_the_middle_tips() {
+    let craft = craft();
+    let mut hidden = Hidden::default();
+    let hover = craft.hover_speed() / craft.speed_max;
+    let state = begin(&craft, &hidden);
+    let mut drive = Drive::new(&craft, &hidden);
+    drive.command = [hover; 4];
+    assert!(drive.motion(0.0, &state).acceleration.norm() < 1e-9);
+    assert!(drive.motion(0.0, &state).angular.norm() < 1e-9);
+    hidden.centre = Vector3::new(0.01, -0.02, 0.0);
+    let mut drive = Drive::new(&craft, &hidden);
+    drive.command = [hover; 4];
+    // torque -c x T e_z
+    let torque = craft.inertia * drive.motion(0.0, &state).angular;
+    let weight = craft.mass * GRAVITY;
+    assert!((torque - Vector3::new(0.02 * weight, 0.01 * weight, 0.0)).norm() < 1e-9 * weight, "{torque}");
+}
+
+#[test]
+fn a_load_swings_at_its_frequency_and_momentum_is_kept() {
+    let craft = craft();
+    let load = Load { mass: 0.2 * craft.mass, length: 0.7, drag: 0.0 };
+    let hidden = Hidden { load: Some(load), ..Hidden::default() };
+    let mut drive = Drive::new(&craft, &hidden);
+    // thrust carries both
+    let speed = craft.hover_speed() * 1.2_f64.sqrt();
+    drive.command = [speed / craft.speed_max; 4];
+    let mut state = begin(&craft, &hidden);
+    state[place::ROTORS..place::ROTORS + 4].fill(speed);
+    let lean = 0.02_f64;
+    let at = three(&state, place::POSITION);
+    let hung = at + load.length * Vector3::new(lean.sin(), 0.0, -lean.cos());
+    put(&mut state, place::LOAD, &hung);
+    // g/l (1 + load / vehicle)
+    let period = std::f64::consts::TAU / (GRAVITY / load.length * 1.2).sqrt();
+    let half = later(&drive, state, 0.5 * period);
+    let whole = later(&drive, half, 0.5 * period);
+    let angle = |state: &State| {
+        let cord = three(state, place::LOAD) - three(state, place::POSITION);
+        close(cord.norm(), load.length, 1e-6);
+        (cord.x / load.length).asin()
+    };
+    close(angle(&half), -lean, 2e-5);
+    close(angle(&whole), lean, 4e-5);
+    let momentum =
+        craft.mass * three(&whole, place::VELOCITY) + load.mass * three(&whole, place::LOAD_VELOCITY);
+    assert!(momentum.norm() < 1e-6, "{momentum}");
+}
+
+/// As `mavid prove` reads and explains a case.
+fn explained(case: &Case) -> Explanation {
+    let flown = case.fly(0).unwrap();
+    let name = format!("mavid_blind_test_{}_{}.tlog", std::process::id(), case.expect.join("_"));
+    let file = std::env::temp_dir().join(name);
+    std::fs::write(&file, case.log(&flown, 0)).unwrap();
+    let loaded = load(&file, &LoadOptions::default());
+    std::fs::remove_file(&file).unwrap();
+    let vehicle = parse_vehicle(&case.craft.file("blind"), "blind").unwrap().vehicle;
+    let how = ConditionSettings {
+        transient_s: Some(1.0),
+        thrust: ThrustPreference::Commands,
+        ..ConditionSettings::default()
+    };
+    let signals = condition(&loaded.unwrap().recording, &vehicle, &how).unwrap();
+    explain(&[signals], &vehicle, &ExplainSettings::default()).unwrap()
+}
+
+fn value(found: &Explanation, id: &str, parameter: &str) -> f64 {
+    let named = found.named.iter().find(|name| name.id == id).unwrap();
+    named.parameters.iter().find(|other| other.name == parameter).unwrap().value
+}
+
+#[test]
+fn nothing_is_found_where_nothing_is_concealed() {
+    let found = explained(&Case::new(3, &[]));
+    assert_eq!(found.verdict, Verdict::NothingMissing);
+    assert!(found.named.is_empty());
+}
+
+#[test]
+fn drag_of_each_rotor_at_its_hub_is_found() {
+    let case = Case::new(3, &["linear_drag"]);
+    let found = explained(&case);
+    assert_eq!(found.verdict, Verdict::Explained);
+    assert_eq!(found.named.len(), 1);
+    let size = case.truth[0].2;
+    close(value(&found, "linear_drag", "dx"), size, 0.05 * size);
+    close(value(&found, "linear_drag", "dy"), size, 0.05 * size);
+}
+
+#[test]
+fn an_exponential_ground_effect_is_named() {
+    let found = explained(&Case::new(6, &["ground_effect+exponential"]));
+    assert!(found.named.iter().any(|name| name.id == "ground_effect"), "{:?}", found.named);
+    assert_ne!(found.verdict, Verdict::NothingMissing);
+}
