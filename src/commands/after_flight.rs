@@ -65,6 +65,7 @@ fn identify(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Identi
         logs: vec![folder.join(fly::TLOG)],
         vehicle: vehicle.to_owned(),
         out: Some(folder.join("model.toml")),
+        report: Some(folder.join(REPORT)),
         chart: Some(folder.join("parameters.svg")),
         read: ReadArgs { csv_map: None, system },
         transient: None,

@@ -42,6 +42,13 @@ pub fn load(path: &Path, read: &ReadArgs) -> Result<Flight, CommandError> {
     Ok(Flight { recording, input: InputFile { path: path.display().to_string(), sha256, losses } })
 }
 
+/// A file that is no recording, for the provenance.
+pub fn file(path: &Path) -> Result<InputFile, CommandError> {
+    let sha256 = sha256_of(path)
+        .map_err(|error| CommandError::Input(format!("{}: {error}", path.display())))?;
+    Ok(InputFile { path: path.display().to_string(), sha256, losses: Vec::new() })
+}
+
 /// The same file twice is refused.
 pub fn refuse_twins(inputs: &[&InputFile]) -> Result<(), CommandError> {
     for (index, input) in inputs.iter().enumerate() {

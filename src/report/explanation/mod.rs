@@ -18,3 +18,5 @@ pub use page::explanation_page;
 pub use readers::for_readers;
 pub use show::{Predicted, ShownOn};
 pub use story::{Estimate, Given, Story};
+
+pub(super) use words::called;
