@@ -40,9 +40,7 @@ impl Identified {
         let wanted = wanted(args)?;
         let loaded = read_vehicle(&args.vehicle)?;
         let LoadedVehicle { vehicle, warnings, .. } = &loaded;
-        for warning in warnings {
-            output::message(&format!("warning: {}: {warning}", args.vehicle.display()));
-        }
+        output::warnings(&args.vehicle, warnings);
         let settings = settings(args)?;
         let recorded = recorded(args)?;
         let with = wanted.map(|wanted| with_effects(args, (&recorded, &loaded), &wanted)).transpose()?;

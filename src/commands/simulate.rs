@@ -36,9 +36,7 @@ struct Document {
 pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
     let loaded = read_vehicle(&args.vehicle)?;
-    for warning in &loaded.warnings {
-        output::message(&format!("warning: {warning}"));
-    }
+    output::warnings(&args.vehicle, &loaded.warnings);
     let vehicle = loaded.vehicle;
     let mut acting = effects(&loaded.model.effects, &vehicle)?;
     if let Some(path) = &args.effects {

@@ -110,9 +110,7 @@ fn told_apart(models: &mut [Named], paths: &[PathBuf]) {
 
 fn named(path: &Path) -> Result<Named, CommandError> {
     let loaded = read_vehicle(path)?;
-    for warning in &loaded.warnings {
-        output::message(&format!("warning: {}: {warning}", path.display()));
-    }
+    output::warnings(path, &loaded.warnings);
     let refuse = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
     let effects = effects(&loaded.model.effects, &loaded.vehicle).map_err(|error| refuse(&error))?;
     let effects = with_stated_lag(effects, &loaded.vehicle);

@@ -3,6 +3,7 @@
 mod answer;
 mod document;
 mod figures;
+mod fit;
 mod html;
 mod located;
 mod model;

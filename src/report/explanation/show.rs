@@ -80,6 +80,8 @@ impl Predicted {
             .into_iter()
             .zip(QUANTITIES)
             .filter_map(|(compared, (name, _))| Some((name, compared?.improvement_percent.value)))
+            // a model that left the flight has no error to speak of
+            .filter(|(_, percent)| percent.is_finite())
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
