@@ -26,6 +26,7 @@ pub struct ExplanationDocument {
     lack_of_fit: Option<LackValue>,
     residual: BTreeMap<&'static str, ResidualValue>,
     detection_limits: Vec<LimitValue>,
+    too_little_excitation: bool,
     data_quality: DataQuality,
     next_flight: Option<NextValue>,
     warnings: Vec<String>,
@@ -139,12 +140,15 @@ struct NextValue {
     seconds: Option<f64>,
     /// what it tells apart, in standard deviations
     pairs: Vec<NextPair>,
+    /// what no trajectory tells apart, and why
+    inseparable: Vec<String>,
 }
 
 #[derive(Debug, Clone, Serialize)]
 struct NextPair {
     named: &'static str,
-    other: &'static str,
+    /// null: how far it stands out of the noise
+    other: Option<&'static str>,
     now: f64,
     after: f64,
 }
@@ -175,6 +179,7 @@ impl ExplanationDocument {
             lack_of_fit: lack(story),
             residual: residual(story),
             detection_limits: limits(story),
+            too_little_excitation: story.explanation.too_little_excitation,
             data_quality: data_quality(story),
             next_flight: next(story),
             warnings: story.given.warnings.clone(),
@@ -280,10 +285,11 @@ fn limits(story: &Story) -> Vec<LimitValue> {
 
 fn next(story: &Story) -> Option<NextValue> {
     Some(match story.next.as_ref()? {
-        Err(why) => NextValue { reason: Some(why.clone()), seconds: None, pairs: Vec::new() },
+        Err(why) => NextValue { reason: Some(why.clone()), seconds: None, pairs: Vec::new(), inseparable: Vec::new() },
         Ok(next) => NextValue {
             reason: None,
             seconds: Some(next.seconds),
+            inseparable: next.inseparable.iter().map(ToString::to_string).collect(),
             pairs: next
                 .pairs
                 .iter()

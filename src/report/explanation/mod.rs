@@ -1,6 +1,7 @@
 //! What `explain` says: the sentence, a page for the terminal, JSON, the model file, the report.
 
 mod answer;
+mod brief;
 mod document;
 mod figures;
 mod fit;

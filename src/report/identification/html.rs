@@ -128,24 +128,19 @@ impl IdentificationStory<'_> {
         let models = [("vehicle file", nominal), ("identified", theta)];
         let panels =
             self.flights.first().map(|flight| recorded_and_predicted(flight, settings, &models));
-        for panel in panels.iter().flatten() {
-            page.figure(
-                &inline(panel),
-                "What the rotors gave, and what the measured motion takes with the inertia of the vehicle file and with the one identified; the first flight, behind the low-pass.",
-            );
-        }
-        if panels.is_none_or(|panels| panels.is_empty()) {
-            page.note("Not drawn: body rates or vertical motion are not recorded.");
-        }
+        page.note(if panels.as_ref().is_none_or(Vec::is_empty) {
+            "Not drawn: body rates or vertical motion are not recorded."
+        } else {
+            "What the rotors gave, and what the measured motion takes with mass and inertia of the vehicle file and with those of the rigid body identified alone; the first flight, behind the low-pass."
+        });
+        panels.iter().flatten().for_each(|panel| page.figure(&inline(panel), ""));
         page.heading("Estimates along the flight");
+        page.note("The paper's four estimators after each instant of the flight (its figures 4 and 5).");
         let drawn: Vec<_> =
             history_charts(self.identification).into_iter().filter(|panel| !panel.lines.is_empty()).collect();
         for index in [0, 1, 4, 6] {
             if let Some(panel) = drawn.get(index) {
-                page.figure(
-                    &inline(panel),
-                    "The paper's four estimators after each instant of the flight (its figures 4 and 5).",
-                );
+                page.figure(&inline(panel), "");
             }
         }
     }

@@ -47,9 +47,10 @@ pub fn validation_report(
         let playback = flight.tables.iter().filter(|table| table.window_s.is_some());
         let others = flight.tables.iter().filter(|table| table.window_s.is_none());
         playback.chain(others).for_each(|table| error_table(&mut page, table));
-        for panel in flight.charts {
-            page.figure(&inline(panel), "Flown again in closed loop from the recorded setpoints.");
+        if !flight.charts.is_empty() {
+            page.note("Recorded, and flown again in closed loop from the recorded setpoints:");
         }
+        flight.charts.iter().for_each(|panel| page.figure(&inline(panel), ""));
     }
     page.heading("Data quality");
     for flight in flights {
@@ -114,18 +115,18 @@ fn answer(names: &[&str], flights: &[ValidatedFlight<'_>]) -> String {
     };
     let changes = gain(best).into_iter().map(|(name, percent)| {
         let how = if percent < 0.0 { "larger" } else { "smaller" };
-        format!("{name} by {:.0} % {how}", percent.abs())
+        format!("{:.0} % {how} in {name}", percent.abs())
     });
     let verdict = if mean(best) < -0.5 {
-        format!("No model predicts better than {first}; nearest to it comes {}", names[best])
+        format!("No model predicts better than {first}; nearest comes {}, whose", names[best])
     } else if mean(best) < 0.5 {
-        format!("{} predicts as well as {first}", names[best])
+        format!("{} predicts as well as {first}: its", names[best])
     } else if names.len() > 2 {
-        format!("{} predicts best of {} models, better than {first}", names[best], names.len())
+        format!("{} predicts best of {} models: against {first} its", names[best], names.len())
     } else {
-        format!("{} predicts better than {first}", names[best])
+        format!("{} predicts better than {first}: its", names[best])
     };
-    format!("{verdict}: errors over 0.5 s, {}.", list(changes.collect()))
+    format!("{verdict} 0.5 s errors are {}.", list(changes.collect()))
 }
 
 /// Errors of every model in units of the first one's.
@@ -186,6 +187,7 @@ mod tests {
     use super::*;
     use crate::compare::Fit;
     use crate::report::playback_table;
+    use crate::signals::{ThrustSource, Usable};
 
     fn tables(second: f64) -> Vec<ErrorTable> {
         let fit = |scale: f64| Fit {
@@ -201,7 +203,14 @@ mod tests {
     fn said(second: f64) -> String {
         let input = InputFile { path: "l".into(), sha256: "0".into(), losses: Vec::new() };
         let tables = tables(second);
-        let quality = Quality::default();
+        let quality = Quality {
+            sources: Vec::new(),
+            thrust_source: ThrustSource::Command,
+            offsets: Vec::new(),
+            airborne_s: Vec::new(),
+            usable: Usable::default(),
+            notes: Vec::new(),
+        };
         let flight = ValidatedFlight { input: &input, tables: &tables, charts: &[], quality: &quality };
         answer(&["a", "b"], &[flight])
     }
@@ -210,9 +219,9 @@ mod tests {
     fn the_sentence_says_which_model_predicts_better_and_by_how_much() {
         assert_eq!(
             said(0.5),
-            "b predicts better than a: errors over 0.5 s, position by 50 % smaller, velocity by 50 % smaller and body rates by 50 % smaller."
+            "b predicts better than a: its 0.5 s errors are 50 % smaller in position, 50 % smaller in velocity and 50 % smaller in body rates."
         );
         assert!(said(1.0).starts_with("b predicts as well as a"));
-        assert!(said(2.0).starts_with("No model predicts better than a; nearest to it comes b"));
+        assert!(said(2.0).starts_with("No model predicts better than a; nearest comes b"));
     }
 }
