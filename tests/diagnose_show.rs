@@ -217,3 +217,22 @@ fn the_next_flight_keeps_its_promise_for_lag_and_delay() {
     let next = promise_is_kept(&|| vec![effect("motor_lag", &[0.03])], "motor_lag");
     assert_eq!(next.pairs[0].other, Some("transport_delay"));
 }
+
+/// In hover nothing that shows only in motion can be named, whatever is there.
+#[test]
+fn a_hover_has_too_little_excitation_for_a_name() {
+    let vehicles = pair();
+    let mut hover = trajectory(5);
+    for axis in &mut hover.axes {
+        axis.a.iter_mut().chain(&mut axis.b).for_each(|coefficient| *coefficient = 0.0);
+    }
+    let both = (&vehicles.truth, &vehicles.nominal);
+    for (seed, concealed) in [(1, Vec::new()), (2, vec![effect("linear_drag", &[0.25, 0.25, 0.0])])] {
+        let (_, flight) = flown(both, (concealed, None), hover.clone(), (seed, 44.0));
+        let found = explain(&[flight], &vehicles.nominal, &ExplainSettings::default()).unwrap();
+        assert!(found.too_little_excitation, "{:?}", found.limits);
+        assert_eq!(found.verdict, Verdict::NothingMissing, "{:?}", found.named);
+    }
+    let (lively, _) = explained(&vehicles, Vec::new());
+    assert!(!lively.too_little_excitation);
+}

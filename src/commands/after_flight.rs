@@ -47,6 +47,10 @@ impl Analysis {
     /// For people: parameters, then the explanation's answer and where its report lies.
     pub fn page(&self) -> String {
         let mut parts: Vec<String> = self.identified.iter().map(Identified::page).collect();
+        let parameters = self.folder.join(REPORT);
+        parts.extend(
+            self.identified.iter().map(|_| format!("report of the parameters: {}", parameters.display())),
+        );
         parts.extend(self.explained.iter().map(Explained::answer));
         parts.extend(self.report().map(|path| format!("report: {}", path.display())));
         parts.join("\n\n")

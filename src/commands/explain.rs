@@ -7,14 +7,14 @@ use mavid::config::{StoredTrajectory, read_vehicle, trajectory_to_toml};
 use mavid::diagnose::next::{NextFlight, NextSettings, design};
 use mavid::diagnose::show::{HeldOut, Split, split_last_periods};
 use mavid::diagnose::{Empirical, ExplainSettings, Named, Trace, explain};
-use mavid::log::{Recording, shared_share};
+use mavid::log::Recording;
 use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page};
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
 use super::effects::effects;
-use super::flights::{Flight, is_csv, load, refuse_twins};
+use super::flights::{Flight, is_csv, load, refuse_twins, shared};
 use super::{CommandError, Outcome, output};
 use crate::cli::ExplainArgs;
 
@@ -22,9 +22,6 @@ use crate::cli::ExplainArgs;
 const MODEL: &str = "model.toml";
 pub const REPORT: &str = "report.html";
 const DOCUMENT: &str = "explanation.json";
-
-/// Share of a hold-out's samples that may be in an explained flight: none are, but for chance.
-const MOST_SHARED: f64 = 0.02;
 
 /// An explanation with all that is told of it.
 #[derive(Debug)]
@@ -218,8 +215,7 @@ fn flown(logs: &[PathBuf], args: &ExplainArgs, vehicle: &Vehicle) -> Result<Vec<
 fn refuse_shared(flights: &[Flown], held: &[Flown]) -> Result<(), CommandError> {
     for hold_out in held {
         for flight in flights {
-            let share = shared_share(&hold_out.recording, &flight.recording);
-            if share > MOST_SHARED {
+            if let Some(share) = shared(&hold_out.recording, &flight.recording) {
                 return Err(CommandError::Input(format!(
                     "--holdout: expected a flight that is not explained, {:.0} % of {} are in {} as well",
                     100.0 * share,

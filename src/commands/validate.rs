@@ -19,8 +19,8 @@ use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::explain::REPORT;
 use super::effects::{effects, with_stated_lag};
+use super::explain::REPORT;
 use super::flights::{Flight, file, load, refuse_twins};
 use super::{CommandError, Outcome, output};
 use crate::cli::ValidateArgs;

@@ -311,8 +311,7 @@ fn fitted_strength(fitted: &Fitted, present: &Present, first: usize) -> Strength
     let away =
         amounts.iter().map(|&(_, slot)| present.values[slot] - present.nothing_at(slot)).collect::<Vec<_>>();
     let away = DVector::from_vec(away);
-    let covariance =
-        DMatrix::from_fn(count, count, |i, j| fitted.covariance[(amounts[i].0, amounts[j].0)]);
+    let covariance = DMatrix::from_fn(count, count, |i, j| fitted.covariance[(amounts[i].0, amounts[j].0)]);
     let wald = covariance.cholesky().map_or(0.0, |factor| away.dot(&factor.solve(&away)));
     Strength { z: normal_deviate(wald, count), gain: 0.0, energy: wald, count }
 }

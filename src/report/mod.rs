@@ -16,7 +16,8 @@ pub use explanation::{
     explanation_page, for_readers,
 };
 pub use identification::{
-    IdentificationDocument, IdentificationStory, InputFile, WithEffects, history_charts, identification_page, model_toml,
+    IdentificationDocument, IdentificationStory, InputFile, WithEffects, history_charts, identification_page,
+    model_toml,
 };
 pub use number::{significant, spoken, with_error};
 pub use validation::{

@@ -175,8 +175,8 @@ pub fn design(
         });
     }
     let foresight = Foresight::new(explanation, &traces, &questions, settings);
-    let (trajectory, distances) = search::best(&foresight, &limits, vehicle, settings)
-        .ok_or(NextError::NoRoom(questions[0].named))?;
+    let (trajectory, distances) =
+        search::best(&foresight, &limits, vehicle, settings).ok_or(NextError::NoRoom(questions[0].named))?;
     let mut pairs: Vec<Pair> = questions
         .iter()
         .zip(distances)
@@ -230,7 +230,8 @@ const SAME_SIGMA: f64 = 0.5;
 const SAME: &str = "in every flight inside the limits both do the same to the vehicle";
 /// What neither depends on how the vehicle moves.
 const NOT_BY_MOTION: [&str; 2] = ["mass_change", "battery_sag"];
-const BY_WEIGHING: &str = "weigh the vehicle before and after, swap the pack in between, and record the battery's voltage";
+const BY_WEIGHING: &str =
+    "weigh the vehicle before and after, swap the pack in between, and record the battery's voltage";
 const NOT_TRIED: &str = "what it would do in another flight is not known";
 
 /// The pairs of all confusable sets, and of those what no trajectory tells apart; where every name is certain, the

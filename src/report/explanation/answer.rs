@@ -107,16 +107,14 @@ impl Story {
             format!(" The hold-out is of another vehicle ({by}), so nothing is shown on it.")
         });
         if self.explanation.too_little_excitation {
-            let could = if seen.is_empty() { String::new() } else { format!("; it could show {}", list_or(&seen)) };
+            let could =
+                if seen.is_empty() { String::new() } else { format!("; it could show {}", list_or(&seen)) };
             return format!(
                 "Too little excitation: the vehicle hardly moves in this flight, so that drag, damping, ground effect and the like would stay unseen at any usual size{could}, and nothing of that is there. Fly a trajectory that moves all axes (mavid plan).{other}"
             );
         }
-        let would = if seen.is_empty() {
-            String::new()
-        } else {
-            format!("; it would have shown {}", list_or(&seen))
-        };
+        let would =
+            if seen.is_empty() { String::new() } else { format!("; it would have shown {}", list_or(&seen)) };
         format!(
             "Nothing is missing that this flight could show: the rigid body with its rotors follows it down to the noise{would}.{other}"
         )

@@ -57,14 +57,16 @@ fn size(named: &Named) -> Option<String> {
         "motor_lag" => said("time_constant", 1e3, "ms"),
         "transport_delay" => said("delay", 1e3, "ms"),
         "thrust_curve" => said("curvature", 100.0, "% about hover"),
-        "battery_sag" => {
-            Some(format!("the voltage to the power of {}", said("exponent", 1.0, "")?))
-        }
+        "battery_sag" => Some(format!("the voltage to the power of {}", said("exponent", 1.0, "")?)),
         "ground_effect" => said("rho", 1.0, "times Cheeseman and Bennett's"),
         "gust" => said("sigma", 1.0, "m/s rms"),
         _ => {
             let first = named.parameters.first()?;
-            Some(format!("{} {}", with_error(first.value, first.std), spoken(first.unit)).trim_end().to_owned())
+            Some(
+                format!("{} {}", with_error(first.value, first.std), spoken(first.unit))
+                    .trim_end()
+                    .to_owned(),
+            )
         }
     }
 }

@@ -285,7 +285,9 @@ fn limits(story: &Story) -> Vec<LimitValue> {
 
 fn next(story: &Story) -> Option<NextValue> {
     Some(match story.next.as_ref()? {
-        Err(why) => NextValue { reason: Some(why.clone()), seconds: None, pairs: Vec::new(), inseparable: Vec::new() },
+        Err(why) => {
+            NextValue { reason: Some(why.clone()), seconds: None, pairs: Vec::new(), inseparable: Vec::new() }
+        }
         Ok(next) => NextValue {
             reason: None,
             seconds: Some(next.seconds),

@@ -140,7 +140,9 @@ fn window(of: &OpenLoop) -> WindowValue {
     WindowValue {
         window_s: of.window_s,
         windows: of.windows,
-        errors: errors.filter_map(|(of, (key, (_, unit)))| Some((key, compared(of.as_ref()?, unit)))).collect(),
+        errors: errors
+            .filter_map(|(of, (key, (_, unit)))| Some((key, compared(of.as_ref()?, unit))))
+            .collect(),
     }
 }
 
@@ -149,8 +151,7 @@ fn shown(of: &Shown) -> ShownValue {
     let (closed_loop, no_closed_loop) = match &of.closed_loop {
         Ok(flown) => {
             let signals = flown.signals.iter().zip(SIGNALS);
-            let each =
-                signals.filter_map(|(of, (name, unit))| Some((name, compared(of.as_ref()?, unit))));
+            let each = signals.filter_map(|(of, (name, unit))| Some((name, compared(of.as_ref()?, unit))));
             (each.collect(), None)
         }
         Err(why) => (BTreeMap::new(), Some(why.clone())),

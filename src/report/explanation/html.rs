@@ -21,6 +21,9 @@ impl Story {
             format!("{flights} flight{} explained", if flights == 1 { "" } else { "s" }),
             self.shown_on.heading(),
         ];
+        if self.explanation.too_little_excitation {
+            tags.push("too little excitation".to_owned());
+        }
         tags.extend(self.other_vehicle().map(|_| "hold-out of another vehicle".to_owned()));
         page.tags(&tags);
         self.given.warnings.iter().for_each(|warning| page.warning(warning));

@@ -104,8 +104,7 @@ impl IdentificationStory<'_> {
     }
 
     fn parameters(&self) -> &[Parameter; THETA] {
-        self.with
-            .map_or(&self.identification.best.result.parameters, |with| &with.together.body.parameters)
+        self.with.map_or(&self.identification.best.result.parameters, |with| &with.together.body.parameters)
     }
 
     fn warned(&self) -> bool {
@@ -126,8 +125,7 @@ impl IdentificationStory<'_> {
         };
         let settings = (self.identification.cutoff_hz, self.vehicle.gravity_m_s2, factor);
         let models = [("vehicle file", nominal), ("identified", theta)];
-        let panels =
-            self.flights.first().map(|flight| recorded_and_predicted(flight, settings, &models));
+        let panels = self.flights.first().map(|flight| recorded_and_predicted(flight, settings, &models));
         page.note(if panels.as_ref().is_none_or(Vec::is_empty) {
             "Not drawn: body rates or vertical motion are not recorded."
         } else {
@@ -184,11 +182,7 @@ impl IdentificationStory<'_> {
                 let (value, why) = said(&parameter.finding);
                 let mut cells = vec![text(parameter.name), number(value)];
                 cells.extend(without.map(|without| number(said(&without[index].finding).0)));
-                cells.extend([
-                    number(significant(nominal[index], 4)),
-                    text(parameter.unit),
-                    text(why),
-                ]);
+                cells.extend([number(significant(nominal[index], 4)), text(parameter.unit), text(why)]);
                 cells
             })
             .collect();
@@ -270,18 +264,13 @@ impl IdentificationStory<'_> {
         let files: Vec<_> = self.inputs.iter().map(|input| ("identified from", input)).collect();
         let mut settings = vec![
             ("low-pass of LS, GD, FMLS, FMGD, Hz".to_owned(), significant(of.cutoff_hz, 3)),
-            (
-                "lambda of the filters (37), rad/s".to_owned(),
-                significant(FilterPair::PAPER_LAMBDA_RAD_S, 3),
-            ),
-            (
-                "condition number, columns scaled".to_owned(),
-                significant(of.scaled_condition_number, 3),
-            ),
+            ("lambda of the filters (37), rad/s".to_owned(), significant(FilterPair::PAPER_LAMBDA_RAD_S, 3)),
+            ("condition number, columns scaled".to_owned(), significant(of.scaled_condition_number, 3)),
         ];
-        settings.extend(of.condition_number.map(|condition| {
-            ("condition number as flown".to_owned(), significant(condition, 3))
-        }));
+        settings.extend(
+            of.condition_number
+                .map(|condition| ("condition number as flown".to_owned(), significant(condition, 3))),
+        );
         page.provenance(&files, &settings);
     }
 }
@@ -309,9 +298,7 @@ fn correlation_table(page: &mut Page, names: &[String], rows: &[Vec<Option<f64>>
         .zip(rows)
         .map(|(name, row)| {
             let mut cells = vec![text(name.as_str())];
-            cells.extend(
-                row.iter().map(|r| number(r.map_or_else(|| "-".to_owned(), |r| format!("{r:.2}")))),
-            );
+            cells.extend(row.iter().map(|r| number(r.map_or_else(|| "-".to_owned(), |r| format!("{r:.2}")))));
             cells
         })
         .collect();

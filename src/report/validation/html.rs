@@ -81,7 +81,9 @@ fn half_second(flights: &[ValidatedFlight<'_>], models: usize) -> Vec<(String, S
         .rows
         .iter()
         .enumerate()
-        .map(|(row, of)| (of.name.clone(), of.unit.clone(), (0..models).map(|model| mean(row, model)).collect()))
+        .map(|(row, of)| {
+            (of.name.clone(), of.unit.clone(), (0..models).map(|model| mean(row, model)).collect())
+        })
         .collect()
 }
 
@@ -108,9 +110,9 @@ fn answer(names: &[&str], flights: &[ValidatedFlight<'_>]) -> String {
     };
     let best = (1..names.len()).filter(|model| known(*model)).max_by(|a, b| mean(*a).total_cmp(&mean(*b)));
     let Some(best) = best else {
-        let errors = rows.iter().filter_map(|(name, unit, rms)| {
-            Some(format!("{name} to {} {unit}", significant(rms[0]?, 2)))
-        });
+        let errors = rows
+            .iter()
+            .filter_map(|(name, unit, rms)| Some(format!("{name} to {} {unit}", significant(rms[0]?, 2))));
         return format!("Over 0.5 s {first} predicts {}, rms.", list(errors.collect()));
     };
     let changes = gain(best).into_iter().map(|(name, percent)| {

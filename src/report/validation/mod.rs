@@ -6,8 +6,8 @@ use serde::Serialize;
 use std::fmt::Write;
 
 use super::chart::{Line, Panel};
-pub use html::{ValidatedFlight, validation_report};
 use crate::compare::{Fit, SIGNALS, TenSignals, improvement_percent};
+pub use html::{ValidatedFlight, validation_report};
 
 /// RMS errors, one column a model; the first column is what the others are compared with.
 #[derive(Debug, Clone, PartialEq, Serialize)]
