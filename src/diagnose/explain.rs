@@ -180,7 +180,7 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
     named.extend(latency_name(traces, vehicle, &found));
     named.extend(aperiodic.gust.as_ref().and_then(gust_name));
     let a_field = field.as_ref().is_some_and(|field| field.certain);
-    let limits = limits(&found.last);
+    let limits = limits(&found.last, &found.after.base.vehicle);
     let too_little_excitation = too_little_excitation(&found.after, &limits);
     // what is large only of a torque that hardly anything took is noise
     let (axes, aperiodic) =

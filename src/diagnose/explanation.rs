@@ -89,6 +89,8 @@ pub struct DetectionLimit {
     pub parameter: &'static str,
     /// in `unit`
     pub limit: f64,
+    /// size on ordinary vehicles, in `unit`, of what shows only where the vehicle moves
+    pub usual: Option<f64>,
     /// SI
     pub unit: &'static str,
 }

@@ -18,7 +18,7 @@ const CERTAIN: f64 = 4.0;
 pub(super) const COM_NUISANCE_M: f64 = 0.000_15;
 
 /// The smallest coefficient that this flight would have shown, for every candidate that was not named.
-pub(super) fn limits(last: &[Tested]) -> Vec<DetectionLimit> {
+pub(super) fn limits(last: &[Tested], vehicle: &Vehicle) -> Vec<DetectionLimit> {
     let mut out: Vec<DetectionLimit> = Vec::new();
     // a ceiling's a1 has no smallest size: it divides
     let has_size =
@@ -37,8 +37,9 @@ pub(super) fn limits(last: &[Tested]) -> Vec<DetectionLimit> {
                 match same {
                     Some(same) => same.limit = same.limit.max(limit),
                     None => {
+                        let usual = usual_size(id, parameter.name, vehicle);
                         let (parameter, unit) = (parameter.name, parameter.unit);
-                        out.push(DetectionLimit { id, parameter, limit, unit });
+                        out.push(DetectionLimit { id, parameter, limit, usual, unit });
                     }
                 }
             }
@@ -92,8 +93,6 @@ pub(super) fn too_little_excitation(after: &Fitted, limits: &[DetectionLimit]) -
         let mut parameters = present.free.iter().filter_map(|&slot| present.parameter(slot));
         parameters.any(|parameter| usual_size(present.effect.id(), parameter.name, vehicle).is_some())
     };
-    let shown = |limit: &DetectionLimit| {
-        usual_size(limit.id, limit.parameter, vehicle).is_some_and(|usual| limit.limit < usual)
-    };
+    let shown = |limit: &DetectionLimit| limit.usual.is_some_and(|usual| limit.limit < usual);
     !after.base.present.iter().any(moves) && !limits.iter().any(shown)
 }

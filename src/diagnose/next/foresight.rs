@@ -1,6 +1,6 @@
 //! What a flight that was not flown would show.
 
-use super::NextSettings;
+use super::{NOT_BY_MOTION, NextSettings};
 use crate::diagnose::base::Base;
 use crate::diagnose::candidates::Candidate;
 use crate::diagnose::confusable::Signal;
@@ -78,7 +78,8 @@ pub(super) fn question(
 
 /// The named effect that stands out least.
 pub(super) fn least_known(explanation: &Explanation) -> Option<Question> {
-    let each = explanation.named.iter().filter_map(|named| size(explanation, named.id));
+    let of_motion = explanation.named.iter().filter(|named| !NOT_BY_MOTION.contains(&named.id));
+    let each = of_motion.filter_map(|named| size(explanation, named.id));
     each.min_by(|a, b| a.now.total_cmp(&b.now))
 }
 

@@ -111,7 +111,14 @@ impl NextFlight {
             format!("now {:.1} sigma, after {:.0} s of this {:.1} sigma", pair.now, self.seconds, pair.after)
         };
         let pairs = self.pairs.iter().map(|pair| match pair.other {
-            Some(other) => format!("{} from {other}: {}", pair.named, after(pair)),
+            Some(other) => {
+                let better = if foresight::is_latency(pair.named) && pair.after < ENOUGH_SIGMA {
+                    BY_SPEEDS
+                } else {
+                    ""
+                };
+                format!("{} from {other}: {}{better}", pair.named, after(pair))
+            }
             None => format!("nothing stands for {}, which is known to: {}", pair.named, after(pair)),
         });
         pairs.chain(self.inseparable.iter().map(ToString::to_string)).collect::<Vec<_>>().join("; ")
@@ -122,7 +129,9 @@ impl NextFlight {
 #[derive(Debug, thiserror::Error)]
 pub enum NextError {
     /// nothing to tell apart
-    #[error("nothing was named, and so there is nothing to tell apart")]
+    #[error(
+        "there is nothing to tell apart: nothing was named that could be taken for another effect, or that motion would show better"
+    )]
     NothingToTell,
     /// only by other means
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
@@ -227,6 +236,9 @@ fn traces(flights: &[Signals], vehicle: &Vehicle, settings: &NextSettings) -> Re
 
 /// Below this many standard deviations in every flight that was tried, two effects do the same.
 const SAME_SIGMA: f64 = 0.5;
+/// Below this many standard deviations two effects are not told apart.
+const ENOUGH_SIGMA: f64 = 5.0;
+const BY_SPEEDS: &str = " (rotor speed telemetry, or doublets of 5 Hz and more, tell them apart)";
 const SAME: &str = "in every flight inside the limits both do the same to the vehicle";
 /// What neither depends on how the vehicle moves.
 const NOT_BY_MOTION: [&str; 2] = ["mass_change", "battery_sag"];

@@ -9,6 +9,8 @@ use crate::diagnose::{Along, DetectionLimit, Named, Verdict};
 use crate::report::number::{significant, spoken};
 use std::fmt::Write;
 
+/// Effects in the motion that everybody knows.
+const IN_MOTION: [&str; 3] = ["linear_drag", "angular_damping", "ground_effect"];
 /// Most effects of a sentence that come with their numbers.
 const SIZED: usize = 4;
 /// An error that rises by more is said, percent.
@@ -99,7 +101,7 @@ impl Story {
         let seen: Vec<String> = ["linear_drag", "com_offset", "weak_rotor", "ground_effect"]
             .iter()
             .filter_map(|id| self.limit(id))
-            .filter(|limit| !self.explanation.too_little_excitation || is_still(limit.id))
+            .filter(|limit| limit.usual.is_none_or(|usual| limit.limit < usual))
             .map(|limit| seen_from(&limit))
             .take(3)
             .collect();
@@ -195,11 +197,6 @@ fn spoken_state(variable: &str) -> String {
         }
         other => format!("the {}", other.replace('_', " ")),
     }
-}
-
-/// What shows in hover as well.
-fn is_still(id: &str) -> bool {
-    ["com_offset", "weak_rotor"].contains(&id)
 }
 
 fn seen_from(limit: &DetectionLimit) -> String {

@@ -114,6 +114,8 @@ struct LimitValue {
     id: &'static str,
     parameter: &'static str,
     limit: f64,
+    /// on ordinary vehicles, of what shows only where the vehicle moves
+    usual: Option<f64>,
     unit: &'static str,
 }
 
@@ -280,7 +282,15 @@ fn residual(story: &Story) -> BTreeMap<&'static str, ResidualValue> {
 
 fn limits(story: &Story) -> Vec<LimitValue> {
     let limits = story.explanation.limits.iter();
-    limits.map(|l| LimitValue { id: l.id, parameter: l.parameter, limit: l.limit, unit: l.unit }).collect()
+    limits
+        .map(|l| LimitValue {
+            id: l.id,
+            parameter: l.parameter,
+            limit: l.limit,
+            usual: l.usual,
+            unit: l.unit,
+        })
+        .collect()
 }
 
 fn next(story: &Story) -> Option<NextValue> {
