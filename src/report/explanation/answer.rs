@@ -117,6 +117,18 @@ impl Story {
         }
         let would =
             if seen.is_empty() { String::new() } else { format!("; it would have shown {}", list_or(&seen)) };
+        let unseen: Vec<String> = IN_MOTION
+            .iter()
+            .filter(|id| {
+                let limit = self.limit(id);
+                limit.is_some_and(|limit| limit.usual.is_some_and(|usual| limit.limit > usual))
+            })
+            .map(|id| called(id).to_owned())
+            .collect();
+        let would = match unseen.as_slice() {
+            [] => would,
+            unseen => format!("{would}, but not {} of usual size", list_or(unseen)),
+        };
         format!(
             "Nothing is missing that this flight could show: the rigid body with its rotors follows it down to the noise{would}.{other}"
         )
