@@ -281,3 +281,17 @@ fn a_dropped_rotor_speed_is_missing_not_zero() {
     assert!(known.clone().all(|value| (100.0..2600.0).contains(value)));
     assert!(known.count() > 4 * 5900);
 }
+
+#[test]
+fn what_is_no_text_is_said_and_not_printed() {
+    let mapping = default_csv_mapping().unwrap();
+    for (bytes, words) in [
+        (&b""[..], "expected text with a header of column names in its first line, got an empty file"),
+        (&b"\n1,2\n"[..], "got an empty line"),
+        (&b"\x7fELF\x02\x01\0\0,\x1b[31m\n"[..], "got binary data"),
+    ] {
+        let error = read_csv_from(bytes, "flight.csv", &mapping).unwrap_err().to_string();
+        assert!(error.starts_with("flight.csv: ") && error.contains(words), "{error}");
+        assert!(!error.chars().any(char::is_control), "{error:?}");
+    }
+}

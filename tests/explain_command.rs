@@ -60,6 +60,21 @@ fn a_complete_rigid_body_has_nothing_missing_and_says_what_it_would_have_seen() 
         assert!(document["localisation"].get(key).is_some(), "{key}");
     }
     assert!(document["fit"]["identify"]["before"]["velocity_m_s"].as_f64().unwrap() > 0.0);
+    // all that the report's tables show
+    for on in ["identify", "holdout"] {
+        let windows = document["fit"][on]["open_loop"].as_array().unwrap();
+        let lengths: Vec<f64> = windows.iter().map(|of| of["window_s"].as_f64().unwrap()).collect();
+        assert_eq!(lengths, [0.1, 0.5, 1.0]);
+        let error = &windows[1]["errors"]["velocity"];
+        assert_eq!(error["before"], document["fit"][on]["before"]["velocity_m_s"]);
+        assert!(error["floor"].as_f64().unwrap() > 0.0 && error["unit"] == "m/s", "{error}");
+    }
+    let holdout = &document["fit"]["holdout"];
+    let force = &holdout["weak_residual"]["force_z"];
+    assert!(force["after"].as_f64().unwrap() > 0.0 && force["unit"] == "N", "{force}");
+    assert!(holdout["no_closed_loop"].as_str().unwrap().contains("flown again"));
+    assert!(holdout["own_parameters"]["mass"]["own"].as_f64().unwrap() > 1.9);
+    assert_eq!(document["too_little_excitation"], false);
     // the model goes where a vehicle goes
     let model = out.join("model.toml");
     let checked = mavid(&["vehicle", model.to_str().unwrap(), "--json"]);
@@ -94,8 +109,15 @@ fn bad_input_is_refused_with_what_was_expected_and_what_came() {
     let (log, vehicle) = (fixture("p01_identify_0_25s.tlog"), fixture("p01_vehicle.toml"));
     let idle = temporary("explain-idle.csv");
     std::fs::write(&idle, motion_without_actuators()).unwrap();
+    let part = temporary("explain-part.tlog");
+    let whole = std::fs::read(&log).unwrap();
+    std::fs::write(&part, &whole[..2 * whole.len() / 3]).unwrap();
     for (arguments, words) in [
         (vec![log.as_str(), "--holdout", &log], "same recording"),
+        (
+            vec![log.as_str(), "--holdout", part.to_str().unwrap()],
+            "expected a flight that is not explained, 100 % of",
+        ),
         (vec![log.as_str(), "--transient", "-1"], "--transient: expected seconds from 0 on, got -1"),
         (vec![log.as_str(), "--csv-map", "map.toml"], "expected a .csv among the logs"),
         (vec![log.as_str(), "--out", &log], "expected a folder"),
@@ -192,4 +214,68 @@ fn a_hold_out_of_another_vehicle_is_found_out_and_said() {
             .starts_with("the hold-out is not of the vehicle that was identified: mass 0.9")
     });
     assert!(said, "{warnings:?}");
+    let answer = document["answer"].as_str().unwrap();
+    assert!(
+        answer.contains("the hold-out is of another vehicle (mass 0.9") && !answer.contains("falls"),
+        "{answer}"
+    );
+    assert!(document["fit"]["holdout"]["improvement_percent"].is_null());
+    assert!(document["fit"]["holdout"]["other_vehicle"].is_string());
+}
+
+/// It cannot be played back without an attitude, and is found out by its residuals all the same.
+#[test]
+fn a_hold_out_of_another_vehicle_without_attitude_is_found_out() {
+    let Some(folder) = case("p02-linear-drag") else { return };
+    let other = folder.join("../../recordings/crazyflie_1khz/log15.csv");
+    let (log, vehicle) = (folder.join("identify.tlog"), folder.join("vehicle.toml"));
+    let output = mavid(&[
+        "explain",
+        log.to_str().unwrap(),
+        "--vehicle",
+        vehicle.to_str().unwrap(),
+        "--holdout",
+        other.to_str().unwrap(),
+        "--json",
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let answer = document["answer"].as_str().unwrap();
+    assert!(answer.contains("the hold-out is of another vehicle"), "{answer}");
+}
+
+#[test]
+fn identify_and_validate_write_reports_of_one_file() {
+    let folder = temporary("reports");
+    std::fs::create_dir_all(&folder).unwrap();
+    let (log, vehicle) = (fixture("p01_identify_0_25s.tlog"), fixture("p01_vehicle.toml"));
+    let model = folder.join("model.toml");
+    let model = model.to_str().unwrap();
+    let identified = mavid(&["identify", &log, "--vehicle", &vehicle, "--out", model]);
+    assert_eq!(identified.status.code(), Some(0), "{}", stderr(&identified));
+    let report = folder.join("model.html");
+    whole_report(&report);
+    let text = std::fs::read_to_string(&report).unwrap();
+    assert!(text.contains("The flight is good for all of mass and inertia: mass 2.06"), "{}", &text[..2000]);
+    for part in ["Data quality", "Provenance", "SHA-256", "<svg", "Correlation"] {
+        assert!(text.contains(part), "{part}");
+    }
+    let elsewhere = folder.join("elsewhere.html");
+    let place = elsewhere.to_str().unwrap();
+    let with = ["--with", "linear_drag", "--report", place];
+    let arguments = [&["identify", log.as_str(), "--vehicle", vehicle.as_str()][..], &with[..]].concat();
+    let identified = mavid(&arguments);
+    assert_eq!(identified.status.code(), Some(0), "{}", stderr(&identified));
+    whole_report(&elsewhere);
+    let out = folder.join("validated");
+    let (nominal, place) = (vehicle.as_str(), out.to_str().unwrap());
+    let validated = mavid(&["validate", &log, "--model", nominal, "--model", model, "--out", place]);
+    assert_eq!(validated.status.code(), Some(0), "{}", stderr(&validated));
+    whole_report(&out.join("report.html"));
+    let text = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(
+        text.contains("model predicts better than p01_vehicle: its 0.5 s errors are"),
+        "{}",
+        &text[..2500]
+    );
 }

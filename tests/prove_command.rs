@@ -99,4 +99,22 @@ fn bad_input_is_refused() {
     let no_answers = mavid(&["prove", &place, "--answers", "nowhere.json"]);
     assert_eq!(no_answers.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&no_answers.stderr).contains("nowhere.json"));
+    let file = folder.join("plain");
+    std::fs::write(&file, "x").unwrap();
+    let into_file = mavid(&["prove", &place, "--out", &file.display().to_string()]);
+    assert_eq!(into_file.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&into_file.stderr).contains("--out: expected a folder"));
+    // answers to other cases, and answers that no effect has
+    let out = folder.join("out").display().to_string();
+    for (text, words) in [
+        (r#"{"elsewhere": {"expect": []}}"#, "expected answers by the names of the cases"),
+        (r#"{"prove-bad": {"expect": ["drag"]}}"#, "`expect` names `drag`"),
+    ] {
+        let answers = folder.join("answers.json");
+        std::fs::write(&answers, text).unwrap();
+        let said = mavid(&["prove", &place, "--answers", &answers.display().to_string(), "--out", &out]);
+        assert_eq!(said.status.code(), Some(2));
+        assert!(String::from_utf8_lossy(&said.stderr).contains(words), "{said:?}");
+        assert!(said.stdout.is_empty());
+    }
 }

@@ -130,9 +130,12 @@ pub struct IdentifyArgs {
     /// vehicle.toml, or a model
     #[arg(long)]
     pub vehicle: PathBuf,
-    /// write the identified vehicle here
+    /// write the identified vehicle here, and a report beside it under the same name with .html
     #[arg(long, value_name = "MODEL.TOML")]
     pub out: Option<PathBuf>,
+    /// write the report here
+    #[arg(long, value_name = "FILE.HTML")]
+    pub report: Option<PathBuf>,
     /// write the parameters along time here as a chart
     #[arg(long, value_name = "FILE.SVG")]
     pub chart: Option<PathBuf>,
@@ -224,7 +227,7 @@ pub struct ValidateArgs {
     /// a vehicle or model file; the first is what the others are compared with
     #[arg(long = "model", required = true, value_name = "FILE")]
     pub models: Vec<PathBuf>,
-    /// write charts of each flight flown again into this folder
+    /// write report.html, and charts of each flight flown again, into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// how the recordings are read

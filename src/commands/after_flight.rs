@@ -47,6 +47,10 @@ impl Analysis {
     /// For people: parameters, then the explanation's answer and where its report lies.
     pub fn page(&self) -> String {
         let mut parts: Vec<String> = self.identified.iter().map(Identified::page).collect();
+        let parameters = self.folder.join(REPORT);
+        parts.extend(
+            self.identified.iter().map(|_| format!("report of the parameters: {}", parameters.display())),
+        );
         parts.extend(self.explained.iter().map(Explained::answer));
         parts.extend(self.report().map(|path| format!("report: {}", path.display())));
         parts.join("\n\n")
@@ -65,6 +69,7 @@ fn identify(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Identi
         logs: vec![folder.join(fly::TLOG)],
         vehicle: vehicle.to_owned(),
         out: Some(folder.join("model.toml")),
+        report: Some(folder.join(REPORT)),
         chart: Some(folder.join("parameters.svg")),
         read: ReadArgs { csv_map: None, system },
         transient: None,

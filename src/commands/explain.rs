@@ -14,7 +14,7 @@ use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
 use super::effects::effects;
-use super::flights::{Flight, is_csv, load, refuse_twins};
+use super::flights::{Flight, is_csv, load, refuse_twins, shared};
 use super::{CommandError, Outcome, output};
 use crate::cli::ExplainArgs;
 
@@ -36,7 +36,9 @@ impl Explained {
         check(args)?;
         let loaded = read_vehicle(&args.vehicle)?;
         let vehicle = loaded.vehicle;
-        let mut warnings = loaded.warnings;
+        let of_file = loaded.warnings.iter();
+        let mut warnings: Vec<String> =
+            of_file.map(|warning| format!("{}: {warning}", args.vehicle.display())).collect();
         let refuse = |error: &dyn std::fmt::Display| {
             CommandError::Input(format!("{}: {error}", args.vehicle.display()))
         };
@@ -50,8 +52,16 @@ impl Explained {
             ));
         }
         let mut flights = flown(&args.logs, args, &vehicle)?;
-        let held = flown(&args.holdout, args, &vehicle)?;
+        let held = flown(&args.holdout, args, &vehicle).map_err(|error| match error {
+            CommandError::Input(why) => CommandError::Input(format!(
+                "--holdout: by {} this is no flight of {}: {why}",
+                args.vehicle.display(),
+                vehicle.name
+            )),
+            other @ CommandError::Failure(_) => other,
+        })?;
         refuse_twins(&flights.iter().chain(&held).map(|flight| &flight.input).collect::<Vec<_>>())?;
+        refuse_shared(&flights, &held)?;
         let (shown_on, back) = if held.is_empty() {
             hold_back(&mut flights)
         } else {
@@ -199,6 +209,23 @@ fn flown(logs: &[PathBuf], args: &ExplainArgs, vehicle: &Vehicle) -> Result<Vec<
     };
     let done: Vec<Result<Flown, CommandError>> = logs.par_iter().map(one).collect();
     done.into_iter().collect()
+}
+
+/// A flight that was used, or a part of it, shows nothing as a hold-out.
+fn refuse_shared(flights: &[Flown], held: &[Flown]) -> Result<(), CommandError> {
+    for hold_out in held {
+        for flight in flights {
+            if let Some(share) = shared(&hold_out.recording, &flight.recording) {
+                return Err(CommandError::Input(format!(
+                    "--holdout: expected a flight that is not explained, {:.0} % of {} are in {} as well",
+                    100.0 * share,
+                    hold_out.input.path,
+                    flight.input.path
+                )));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The end of the last flight, which is then not explained.

@@ -21,9 +21,7 @@ pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
     let loaded = read_vehicle(&args.model)?;
     let refuse =
         |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", args.model.display()));
-    for warning in &loaded.warnings {
-        output::message(&format!("warning: {warning}"));
-    }
+    output::warnings(&args.model, &loaded.warnings);
     let active = effects(&loaded.model.effects, &loaded.vehicle).map_err(|error| refuse(&error))?;
     let format = match args.to {
         ExportFormat::Px4Sih => Format::Px4Sih,

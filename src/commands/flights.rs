@@ -1,7 +1,7 @@
 //! Loads recordings, whatever their format.
 
 use mavid::config::{default_csv_mapping, load_csv_mapping};
-use mavid::log::{LoadOptions, Recording, SystemId, csv};
+use mavid::log::{LoadOptions, Recording, SystemId, csv, shared_share};
 use mavid::report::InputFile;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -40,6 +40,21 @@ pub fn load(path: &Path, read: &ReadArgs) -> Result<Flight, CommandError> {
     };
     let sha256 = sha256_of(path).map_err(|error| named(&error))?;
     Ok(Flight { recording, input: InputFile { path: path.display().to_string(), sha256, losses } })
+}
+
+/// A file that is no recording, for the provenance.
+pub fn file(path: &Path) -> Result<InputFile, CommandError> {
+    let sha256 =
+        sha256_of(path).map_err(|error| CommandError::Input(format!("{}: {error}", path.display())))?;
+    Ok(InputFile { path: path.display().to_string(), sha256, losses: Vec::new() })
+}
+
+/// Share of a hold-out's samples that may be in an explained flight: none are, but for chance.
+const MOST_SHARED: f64 = 0.02;
+
+/// The share (0..1) of a recording that the other holds as well, where it is more than chance.
+pub fn shared(of: &Recording, other: &Recording) -> Option<f64> {
+    Some(shared_share(of, other)).filter(|share| *share > MOST_SHARED)
 }
 
 /// The same file twice is refused.

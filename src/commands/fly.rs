@@ -110,9 +110,7 @@ pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
     let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
     let address = args.connect.parse().map_err(|error| input(&error))?;
     let loaded = read_vehicle(&args.vehicle)?;
-    for warning in &loaded.warnings {
-        output::message(&format!("warning: {}: {warning}", args.vehicle.display()));
-    }
+    output::warnings(&args.vehicle, &loaded.warnings);
     let trajectory = read_trajectory(&args.trajectory)?;
     let sortie = sortie(args, &trajectory, &loaded.vehicle)?;
     let signing =

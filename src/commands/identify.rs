@@ -7,7 +7,8 @@ use mavid::diagnose::ExplainSettings;
 use mavid::diagnose::together::{Wanted, together};
 use mavid::estimate::{Identification, IdentifySettings, PAPER_SIGMA, ThrustScale, apply_anchor, identify};
 use mavid::report::{
-    IdentificationDocument, InputFile, WithEffects, history_charts, identification_page, model_toml, svg,
+    IdentificationDocument, IdentificationStory, InputFile, WithEffects, history_charts, identification_page,
+    model_toml, svg,
 };
 use mavid::signals::{ConditionSettings, Quality, Signals, ThrustPreference, condition};
 use mavid::vehicle::Vehicle;
@@ -33,13 +34,13 @@ impl Identified {
     /// Loads, conditions and identifies.
     pub fn from(args: &IdentifyArgs) -> Result<Self, CommandError> {
         let inputs: Vec<&PathBuf> = args.logs.iter().chain([&args.vehicle]).collect();
-        output::refuse_overwriting(&inputs, &args.out.iter().chain(&args.chart).collect::<Vec<_>>())?;
+        let report = report(args);
+        let outputs: Vec<&PathBuf> = args.out.iter().chain(&args.chart).chain(&report).collect();
+        output::refuse_overwriting(&inputs, &outputs)?;
         let wanted = wanted(args)?;
         let loaded = read_vehicle(&args.vehicle)?;
         let LoadedVehicle { vehicle, warnings, .. } = &loaded;
-        for warning in warnings {
-            output::message(&format!("warning: {}: {warning}", args.vehicle.display()));
-        }
+        output::warnings(&args.vehicle, warnings);
         let settings = settings(args)?;
         let recorded = recorded(args)?;
         let with = wanted.map(|wanted| with_effects(args, (&recorded, &loaded), &wanted)).transpose()?;
@@ -82,7 +83,19 @@ impl Identified {
         page.trim_end().to_owned()
     }
 
-    /// Writes model and chart where the arguments say so.
+    fn report_html(&self) -> String {
+        let story = IdentificationStory {
+            identification: &self.identification,
+            vehicle: &self.vehicle,
+            flights: &self.flights,
+            inputs: &self.inputs,
+            scale: self.scale.as_ref(),
+            with: self.with.as_ref(),
+        };
+        story.report_html()
+    }
+
+    /// Writes model, report and chart where the arguments say so.
     pub fn write(&self, args: &IdentifyArgs) -> Result<(), CommandError> {
         if let Some(path) = &args.out {
             let text = match &self.with {
@@ -90,6 +103,9 @@ impl Identified {
                 None => model_toml(&self.identification, &self.vehicle, &self.inputs, self.scale.as_ref())?,
             };
             output::file(path, &text)?;
+        }
+        if let Some(path) = report(args) {
+            output::file(&path, &self.report_html())?;
         }
         if let Some(path) = &args.chart {
             output::file(path, &svg(&history_charts(&self.identification)))?;
@@ -118,6 +134,11 @@ pub fn run(json: bool, args: &IdentifyArgs) -> Result<Outcome, CommandError> {
     }
     identified.write(args)?;
     Ok(identified.outcome())
+}
+
+/// Where the report goes: as asked for, or beside the model.
+fn report(args: &IdentifyArgs) -> Option<PathBuf> {
+    args.report.clone().or_else(|| args.out.as_ref().map(|model| model.with_extension("html")))
 }
 
 fn settings(args: &IdentifyArgs) -> Result<IdentifySettings, CommandError> {

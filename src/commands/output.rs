@@ -24,6 +24,13 @@ pub fn message(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
+/// What is hardly meant in a file.
+pub fn warnings(of: &Path, warnings: &[String]) {
+    for warning in warnings {
+        message(&format!("warning: {}: {warning}", of.display()));
+    }
+}
+
 /// A file of the user's choice.
 pub fn file(path: &Path, text: &str) -> Result<(), CommandError> {
     std::fs::write(path, text)

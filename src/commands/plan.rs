@@ -70,7 +70,9 @@ pub fn run(json: bool, args: &PlanArgs) -> Result<Outcome, CommandError> {
 
 /// Plans or checks, and writes the trajectory where one is asked for.
 pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
-    let vehicle = read_vehicle(&args.vehicle)?.vehicle;
+    let loaded = read_vehicle(&args.vehicle)?;
+    output::warnings(&args.vehicle, &loaded.warnings);
+    let vehicle = loaded.vehicle;
     let limits = args.limits.as_deref().map_or(Ok(vehicle.limits), read_limits)?;
     let mut request = request_of(args)?;
     let bounds = bounds_of(&limits, &vehicle);

@@ -43,9 +43,7 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
         return Err(CommandError::Input(format!("--out: expected the name of a .tlog, got {name}")));
     }
     let loaded = read_vehicle(&args.vehicle)?;
-    for warning in &loaded.warnings {
-        output::message(&format!("warning: {warning}"));
-    }
+    output::warnings(&args.vehicle, &loaded.warnings);
     let vehicle = loaded.vehicle;
     let mut acting = effects(&loaded.model.effects, &vehicle)?;
     if let Some(path) = &args.effects {

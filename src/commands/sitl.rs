@@ -110,8 +110,8 @@ fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
         }
     };
     let LoadedVehicle { vehicle, warnings, model } = loaded(args.vehicle.as_deref())?;
-    for warning in &warnings {
-        output::message(&format!("warning: {warning}"));
+    if let Some(path) = &args.vehicle {
+        output::warnings(path, &warnings);
     }
     let mut acting = effects(&model.effects, &vehicle)?;
     if let Some(path) = &args.effects {

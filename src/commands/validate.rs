@@ -10,16 +10,18 @@ use mavid::estimate::theta_of;
 use mavid::physics::Model;
 use mavid::regression::{ZeroPhase, output_prediction_rms, paper_models};
 use mavid::report::{
-    ErrorTable, InputFile, closed_loop_charts, closed_loop_table, playback_table, prediction_table, svg,
+    ErrorTable, InputFile, Panel, ValidatedFlight, closed_loop_charts, closed_loop_table, playback_table,
+    prediction_table, significant, svg, validation_report,
 };
-use mavid::signals::{Butterworth, ConditionSettings, Signals, ThrustSource, condition};
+use mavid::signals::{Butterworth, ConditionSettings, Quality, Signals, ThrustSource, condition};
 use mavid::simulate::pid::{PidFlightSettings, PidSettings};
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::effects::{effects, with_stated_lag};
-use super::flights::{Flight, load, refuse_twins};
+use super::explain::REPORT;
+use super::flights::{Flight, file, load, refuse_twins};
 use super::{CommandError, Outcome, output};
 use crate::cli::ValidateArgs;
 
@@ -31,6 +33,7 @@ const CUTOFF_HZ: f64 = 5.0;
 /// A model by its file's name.
 struct Named {
     name: String,
+    input: InputFile,
     vehicle: Vehicle,
     model: Model,
 }
@@ -51,7 +54,10 @@ struct FlightTables {
     span_s: (f64, f64),
     tables: Vec<ErrorTable>,
     #[serde(skip)]
-    charts: String,
+    charts: Vec<Panel>,
+    /// by the first model's thrust law
+    #[serde(skip)]
+    quality: Quality,
 }
 
 /// Runs the verb.
@@ -71,6 +77,7 @@ pub fn run(json: bool, args: &ValidateArgs) -> Result<Outcome, CommandError> {
     refuse_twins(&flights.iter().map(|flight| &flight.input).collect::<Vec<_>>())?;
     if let Some(folder) = &args.out {
         write_charts(folder, &flights)?;
+        write_report(folder, &models, &flights, args.transient)?;
     }
     let document =
         Document { schema: 1, models: models.iter().map(|model| model.name.clone()).collect(), flights };
@@ -103,16 +110,14 @@ fn told_apart(models: &mut [Named], paths: &[PathBuf]) {
 
 fn named(path: &Path) -> Result<Named, CommandError> {
     let loaded = read_vehicle(path)?;
-    for warning in &loaded.warnings {
-        output::message(&format!("warning: {}: {warning}", path.display()));
-    }
+    output::warnings(path, &loaded.warnings);
     let refuse = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
     let effects = effects(&loaded.model.effects, &loaded.vehicle).map_err(|error| refuse(&error))?;
     let effects = with_stated_lag(effects, &loaded.vehicle);
     let model = Model::new(&loaded.vehicle, effects).map_err(|error| refuse(&error))?;
     let name =
         path.file_stem().map_or_else(|| loaded.vehicle.name.clone(), |stem| stem.display().to_string());
-    Ok(Named { name, vehicle: loaded.vehicle, model })
+    Ok(Named { name, input: file(path)?, vehicle: loaded.vehicle, model })
 }
 
 fn flight_tables(flight: Flight, models: &[Named], transient_s: f64) -> Result<FlightTables, CommandError> {
@@ -148,7 +153,7 @@ fn flight_tables(flight: Flight, models: &[Named], transient_s: f64) -> Result<F
                 (model.name.clone(), fit.map_err(|error| error.to_string()))
             })
             .collect();
-        tables.push(playback_table(format!("Open-loop playback over windows of {window_s} s"), &fits));
+        tables.push(playback_table(window_s, &fits));
     }
     let is_empty = |table: &ErrorTable| table.rows.iter().all(|row| row.rms.iter().all(Option::is_none));
     if tables.iter().all(is_empty) {
@@ -160,7 +165,7 @@ fn flight_tables(flight: Flight, models: &[Named], transient_s: f64) -> Result<F
             reasons.join("; ")
         )));
     }
-    Ok(FlightTables { input: flight.input, span_s, tables, charts })
+    Ok(FlightTables { input: flight.input, span_s, tables, charts, quality: first.quality.clone() })
 }
 
 /// Table 4 and Figures 6 to 9.
@@ -169,7 +174,7 @@ fn closed_loop(
     recorded: &Signals,
     models: &[Named],
     span_s: (f64, f64),
-) -> (ErrorTable, String) {
+) -> (ErrorTable, Vec<Panel>) {
     let by_pid = recorded.quality.thrust_source == ThrustSource::Wrench;
     let nominal = &models[0].vehicle;
     let fly = |model: &Named| {
@@ -192,7 +197,7 @@ fn closed_loop(
         Ok(recorded) => {
             let mut lines = vec![("recorded".to_owned(), &recorded)];
             lines.extend(flown.iter().filter_map(|(name, s)| s.as_ref().ok().map(|s| (name.clone(), s))));
-            let charts = svg(&closed_loop_charts(&lines));
+            let charts = closed_loop_charts(&lines);
             let tracking = recorded_tracking_m(&flight.recording, &recorded, span_s);
             let notes = closed_loop_notes(by_pid, &models[0].name, tracking.ok().flatten());
             (ErrorTable { notes, ..closed_loop_table(title, &recorded, &flown, span_s) }, charts)
@@ -200,7 +205,7 @@ fn closed_loop(
         Err(error) => {
             let missing: Vec<_> =
                 models.iter().map(|model| (model.name.clone(), Err(error.to_string()))).collect();
-            (closed_loop_table(title, &TenSignals::default(), &missing, span_s), svg(&[]))
+            (closed_loop_table(title, &TenSignals::default(), &missing, span_s), Vec::new())
         }
     }
 }
@@ -255,7 +260,31 @@ fn write_charts(folder: &Path, flights: &[FlightTables]) -> Result<(), CommandEr
         let stem = Path::new(&flight.input.path).file_stem().unwrap_or_default().display().to_string();
         // flights of different folders may have one name
         let path = folder.join(format!("{}-{stem}.svg", index + 1));
-        std::fs::write(&path, &flight.charts).map_err(|error| failed(&path, error))?;
+        std::fs::write(&path, svg(&flight.charts)).map_err(|error| failed(&path, error))?;
     }
     Ok(())
+}
+
+fn write_report(
+    folder: &Path,
+    models: &[Named],
+    flights: &[FlightTables],
+    transient_s: f64,
+) -> Result<(), CommandError> {
+    let models: Vec<(String, InputFile)> =
+        models.iter().map(|model| (model.name.clone(), model.input.clone())).collect();
+    let flights: Vec<ValidatedFlight> = flights
+        .iter()
+        .map(|flight| ValidatedFlight {
+            input: &flight.input,
+            tables: &flight.tables,
+            charts: &flight.charts,
+            quality: &flight.quality,
+        })
+        .collect();
+    let settings = [
+        ("left out at the beginning, s".to_owned(), significant(transient_s, 3)),
+        ("low-pass under the regression models, Hz".to_owned(), significant(CUTOFF_HZ, 3)),
+    ];
+    output::file(&folder.join(REPORT), &validation_report(&models, &flights, &settings))
 }

@@ -51,9 +51,7 @@ struct RotorSummary {
 /// Runs the verb.
 pub fn run(json: bool, args: &VehicleArgs) -> Result<Outcome, CommandError> {
     let summary = summarize(read_vehicle(&args.file)?);
-    for warning in &summary.warnings {
-        output::message(&format!("warning: {warning}"));
-    }
+    output::warnings(&args.file, &summary.warnings);
     if json {
         output::json(&summary)?
     } else {

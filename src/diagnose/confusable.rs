@@ -33,7 +33,7 @@ pub fn confusable_with(
             continue;
         };
         let (id, distance) = (other.candidate.id, left / inflation);
-        if distance < APART && left < UNLIKE * signal.sum.norm() {
+        if distance < APART && left < UNLIKE * signal.norm() {
             let known = out.iter_mut().find(|confusable| confusable.id == id);
             match known {
                 Some(known) => {
@@ -46,9 +46,9 @@ pub fn confusable_with(
     for rival in rivals {
         let id = rival.candidate.id;
         let left = signal.beyond(flights, &fitted.rows, &fitted.base, &rival.candidate);
-        let alike = left.is_some_and(|left| left < UNLIKE * signal.sum.norm());
-        if alike && out.iter().all(|confusable| confusable.id != id) {
-            out.push(Confusable { id, distinguishability: None });
+        let alike = left.filter(|left| *left < UNLIKE * signal.norm());
+        if let Some(left) = alike.filter(|_| out.iter().all(|confusable| confusable.id != id)) {
+            out.push(Confusable { id, distinguishability: Some(left / inflation) });
         }
     }
     out
@@ -77,11 +77,18 @@ impl Signal {
         let weighted = sigma.map_or_else(|| Weighted::new(&rows), |sigma| Weighted::at(&rows, sigma));
         let (_, partialled) = weighted.partialled(&columns)?;
         let mut sum = DVector::zeros(partialled.nrows());
-        for (index, &slot) in effect.free.iter().enumerate() {
+        // what the effect is like changes with how much of it there is, and adds nothing to it
+        let amounts = effect.free.iter().enumerate().filter(|(_, slot)| effect.is_amount(**slot));
+        for (index, &slot) in amounts {
             // from where the effect does nothing
             sum += partialled.column(index) * (effect.values[slot] - effect.nothing_at(slot));
         }
         Some(Self { id: effect.effect.id(), weighted, sum })
+    }
+
+    /// How far the effect stands out, in standard deviations of rows that are independent.
+    pub(super) fn norm(&self) -> f64 {
+        self.sum.norm()
     }
 
     /// Norm of what a candidate could not do in its stead, in standard deviations of rows that are
@@ -93,14 +100,23 @@ impl Signal {
         base: &Base,
         candidate: &Candidate,
     ) -> Option<f64> {
-        if candidate.id == self.id || candidate.through.is_some() {
+        if candidate.id == self.id {
             return None;
         }
         let mut columns = Vec::new();
-        for part in &candidate.parts {
-            if let Ok(found) = rows.columns_of(flights, base, part) {
-                columns.extend(found);
-            }
+        for (index, part) in candidate.parts.iter().enumerate() {
+            let found = match &candidate.through {
+                // the last part acts through this one, as far as it is there
+                Some(unit) if index + 1 == candidate.parts.len() => {
+                    let mut with_unit = base.clone();
+                    with_unit.present.push(unit.clone());
+                    rows.columns_through(flights, &with_unit, part)
+                }
+                // and what is named already is not its own rival
+                Some(_) if part.effect.id() == self.id => continue,
+                _ => rows.columns_of(flights, base, part),
+            };
+            columns.extend(found.into_iter().flatten());
         }
         let (_, basis) = self.weighted.partialled(&columns)?;
         Some(left_over(&self.sum, &basis))

@@ -1,13 +1,13 @@
 //! The whole method: search, lack of fit, verdict.
 
 use super::base::{Base, Present};
-use super::candidates::Candidate;
 use super::confusable::confusable_with;
 use super::deviate::normal_deviate;
-use super::explanation::{Confusable, DetectionLimit, Explanation, Named, NamedParameter, Strength, Verdict};
+use super::explanation::{Confusable, Explanation, Named, NamedParameter, Strength, Verdict};
 use super::gates::{Gates, WEAKEST_CEILING, ordinary_size};
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
 use super::latency::{LatencyFinding, REFUSED, held_s};
+use super::limits::{COM_NUISANCE_M, is_beyond_showing, limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
 use super::rows::{AXES, CHANNELS};
 use super::search::{Fitted, Newton, Search, Step, Tested, fit, search};
@@ -16,7 +16,8 @@ use crate::physics::PhysicsError;
 use crate::physics::effects::by_id;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
 /// How a recording is explained.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,8 +64,6 @@ const LACK_FORCE_G: f64 = 0.002;
 const LACK_TORQUE: f64 = 0.1;
 /// A lag or delay is named beyond sampling and a fast motor, s.
 pub(super) const FAST_MOTOR_S: f64 = 0.004;
-/// A centre of mass is not known better, m.
-const COM_NUISANCE_M: f64 = 0.000_15;
 /// No line that holds anything weighs less, kg/m.
 const LEAST_LINE_KG_M: f64 = 0.005;
 /// Rotors of one vehicle differ by as much.
@@ -94,11 +93,16 @@ pub fn explain(
     Ok(judge(&traces, vehicle, found, beyond))
 }
 
-/// What gets no name is not in the model either.
+/// What gets no name is not in the model either: what is ordinary, and what the flight could not have shown.
 fn leave_out_ordinary(traces: &[Trace], found: &mut Search) -> Result<(), PhysicsError> {
     let mut base = found.after.base.clone();
     let all = found.after.base.clone();
-    base.present.retain(|present| !is_ordinary(present, &all));
+    let mut first = found.after.rows.nuisances.len();
+    base.present.retain(|present| {
+        let beyond = is_beyond_showing(&found.after, present, first);
+        first += present.free.len();
+        !(beyond || is_ordinary(present, &all))
+    });
     if base.present.len() < all.present.len() {
         found.after = fit(traces, base, Newton::Held)?;
     }
@@ -153,11 +157,11 @@ fn lacks(traces: &[Trace], fitted: &Fitted) -> Option<LackOfFit> {
     worst.map(|worst| LackOfFit { excess_energy: excess, ..worst })
 }
 
-/// Whether what is left at the harmonics is certain and large enough to matter.
-fn is_lacking(lack: &LackOfFit, fitted: &Fitted) -> bool {
+/// Whether what is left at the harmonics of these axes is certain and large enough to matter.
+fn is_lacking(lack: &LackOfFit, fitted: &Fitted, mut axes: Range<usize>) -> bool {
     let body = &fitted.base.vehicle;
     let weight_n = body.body.mass_kg * body.gravity_m_s2;
-    (0..AXES).any(|channel| {
+    axes.any(|channel| {
         let size = lack.excess_rms[channel] * fitted.weighted.sigma[channel];
         let least = if channel < 3 {
             LACK_FORCE_G * weight_n
@@ -175,8 +179,14 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
     named.extend(latency_name(traces, vehicle, &found));
     named.extend(aperiodic.gust.as_ref().and_then(gust_name));
     let a_field = field.as_ref().is_some_and(|field| field.certain);
-    let lacking =
-        lack.as_ref().is_some_and(|lack| is_lacking(lack, &found.after)) || a_field || aperiodic.is_lacking();
+    let limits = limits(&found.last, &found.after.base.vehicle);
+    let too_little_excitation = too_little_excitation(&found.after, &limits);
+    // what is large only of a torque that hardly anything took is noise
+    let (axes, aperiodic) =
+        if too_little_excitation { (0..3, aperiodic.of_forces()) } else { (0..AXES, aperiodic) };
+    let lacking = lack.as_ref().is_some_and(|lack| is_lacking(lack, &found.after, axes))
+        || a_field
+        || aperiodic.is_lacking();
     let excess = lack.as_ref().map_or(0.0, |lack| lack.excess_energy);
     let explained = explained_energy(&found);
     // a field of the room that alone explains more leaves the names nothing
@@ -193,7 +203,8 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
         verdict,
         named,
         closest,
-        limits: limits(&found.last),
+        limits,
+        too_little_excitation,
         lack_of_fit: lack,
         located_before,
         located_after,
@@ -293,14 +304,20 @@ fn is_ordinary(present: &Present, base: &Base) -> bool {
     }
 }
 
-/// Of an effect that came in with another: how far its parameters are from nothing.
+/// Of an effect that came in with another: how far its amounts are from nothing.
 fn fitted_strength(fitted: &Fitted, present: &Present, first: usize) -> Strength {
-    let count = present.free.len();
-    let away = DVector::from_iterator(
-        count,
-        present.free.iter().map(|&slot| present.values[slot] - present.nothing_at(slot)),
-    );
-    let covariance = fitted.covariance.view((first, first), (count, count)).into_owned();
+    let amounts: Vec<(usize, usize)> = present
+        .free
+        .iter()
+        .enumerate()
+        .filter(|(_, slot)| present.is_amount(**slot))
+        .map(|(index, &slot)| (first + index, slot))
+        .collect();
+    let count = amounts.len();
+    let away =
+        amounts.iter().map(|&(_, slot)| present.values[slot] - present.nothing_at(slot)).collect::<Vec<_>>();
+    let away = DVector::from_vec(away);
+    let covariance = DMatrix::from_fn(count, count, |i, j| fitted.covariance[(amounts[i].0, amounts[j].0)]);
     let wald = covariance.cholesky().map_or(0.0, |factor| away.dot(&factor.solve(&away)));
     Strength { z: normal_deviate(wald, count), gain: 0.0, energy: wald, count }
 }
@@ -360,38 +377,4 @@ fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<N
             vec![Confusable { id: other, distinguishability: Some((others - own).max(0.0)) }]
         },
     })
-}
-
-/// The smallest coefficient that this flight would have shown, for every candidate that was not named.
-fn limits(last: &[Tested]) -> Vec<DetectionLimit> {
-    let mut out: Vec<DetectionLimit> = Vec::new();
-    // a ceiling's a1 has no smallest size: it divides
-    let has_size =
-        |tested: &&Tested| tested.candidate.through.is_none() && tested.candidate.id != "ceiling_effect";
-    for tested in last.iter().filter(has_size) {
-        let Candidate { id, parts, .. } = &tested.candidate;
-        let mut index = 0;
-        for part in parts {
-            for &free in &part.free {
-                let Some(parameter) = part.parameter(free) else { continue };
-                // a mounting needs more than to be certain
-                let certain = 4.0 * tested.evidence.std(index);
-                let limit = certain.max(ordinary_size(id).unwrap_or(0.0));
-                index += 1;
-                let same = out.iter_mut().find(|l| l.id == *id && l.parameter == parameter.name);
-                match same {
-                    Some(same) => same.limit = same.limit.max(limit),
-                    None => {
-                        out.push(DetectionLimit {
-                            id,
-                            parameter: parameter.name,
-                            limit,
-                            unit: parameter.unit,
-                        });
-                    }
-                }
-            }
-        }
-    }
-    out
 }

@@ -89,6 +89,8 @@ pub struct DetectionLimit {
     pub parameter: &'static str,
     /// in `unit`
     pub limit: f64,
+    /// size on ordinary vehicles, in `unit`, of what shows only where the vehicle moves
+    pub usual: Option<f64>,
     /// SI
     pub unit: &'static str,
 }
@@ -104,6 +106,8 @@ pub struct Explanation {
     pub closest: Vec<Named>,
     /// for what was not named
     pub limits: Vec<DetectionLimit>,
+    /// nothing that shows only where the vehicle moves could have been seen at its usual size, nor was it found
+    pub too_little_excitation: bool,
     /// what repeats with the trajectory and is left over
     pub lack_of_fit: Option<LackOfFit>,
     /// where the rigid body's residual lives

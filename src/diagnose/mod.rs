@@ -14,6 +14,7 @@ mod gates;
 mod harmonics;
 mod hubs;
 mod latency;
+mod limits;
 pub mod locate;
 mod mounting;
 pub mod next;

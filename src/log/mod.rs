@@ -15,6 +15,7 @@ mod embedded;
 mod error;
 mod frame;
 mod load;
+mod overlap;
 mod recording;
 mod report;
 mod splitter;
@@ -32,6 +33,7 @@ pub use frame::{
     Version,
 };
 pub use load::{LoadOptions, Loaded, Place, TlogWalk, Walk, load, stream_tlog};
+pub use overlap::shared_share;
 pub use recording::{Autopilot, Quantity, Recording, Stream, StreamKey};
 pub use report::{MessageCounts, ReadReport, Resync, Sender, StreamRepair};
 pub use splitter::{SplitCounts, Splitter};

@@ -22,6 +22,8 @@ table{border-collapse:collapse;font-size:.9rem;font-variant-numeric:tabular-nums
 p.cap{color:var(--soft);font-size:.9rem;margin:1rem 0 0;break-after:avoid}\
 th,td{padding:.2rem .8rem .2rem 0;border-bottom:1px solid var(--line);text-align:left;vertical-align:top}\
 td.n,th.n{text-align:right}\
+td.n{white-space:nowrap}\
+@media(max-width:40rem){body{padding:1rem .8rem 3rem}.answer{font-size:1.15rem}figure{overflow-x:auto}svg{min-width:34rem}}\
 code{font-size:.85rem;overflow-wrap:anywhere}\
 @media print{body{max-width:none;font-size:11pt;color:#000;background:#fff}:root{--ink:#000;--soft:#444;--line:#bbb;--page:#fff;--card:#fff}figure,table,tr{break-inside:avoid}h2{break-after:avoid}}";
 
@@ -75,9 +77,13 @@ impl Page {
         let _ = writeln!(self.body, "<p class=\"warn\">{}</p>", escape(words));
     }
 
-    /// `svg` is an element as the charts make it.
+    /// `svg` is an element as the charts make it; without words below it where the caption is empty.
     pub(super) fn figure(&mut self, svg: &str, caption: &str) {
-        let _ = writeln!(self.body, "<figure>{svg}<figcaption>{}</figcaption></figure>", escape(caption));
+        let caption = match caption {
+            "" => String::new(),
+            words => format!("<figcaption>{}</figcaption>", escape(words)),
+        };
+        let _ = writeln!(self.body, "<figure>{svg}{caption}</figure>");
     }
 
     /// A heading that ends in `|` stands over numbers.

@@ -7,6 +7,7 @@ mod identification;
 mod model_parts;
 mod number;
 mod quality;
+mod recorded;
 mod validation;
 
 pub use chart::{Band, Bars, Line, Panel, Strip, Stroke, svg};
@@ -15,9 +16,11 @@ pub use explanation::{
     explanation_page, for_readers,
 };
 pub use identification::{
-    IdentificationDocument, InputFile, WithEffects, history_charts, identification_page, model_toml,
+    IdentificationDocument, IdentificationStory, InputFile, WithEffects, history_charts, identification_page,
+    model_toml,
 };
 pub use number::{significant, spoken, with_error};
 pub use validation::{
-    Column, ErrorRow, ErrorTable, closed_loop_charts, closed_loop_table, playback_table, prediction_table,
+    Column, ErrorRow, ErrorTable, ValidatedFlight, closed_loop_charts, closed_loop_table, playback_table,
+    prediction_table, validation_report,
 };

@@ -55,7 +55,11 @@ pub fn significant(value: f64, digits: i32) -> String {
     if !value.is_finite() {
         return "-".to_owned();
     }
-    let power = exponent(value.abs());
+    let mut power = exponent(value.abs());
+    // 0.0999 to two digits is 0.10
+    if rounded(value.abs() * 10.0_f64.powi(-power), digits - 1).starts_with("10") {
+        power += 1;
+    }
     if !(-4..6).contains(&power) {
         let scaled = value * 10.0_f64.powi(-power);
         return format!("{}e{power}", rounded(scaled, digits - 1));
@@ -123,5 +127,7 @@ mod tests {
         assert_eq!(significant(49.3, 2), "49");
         assert_eq!(significant(1.7e-6, 2), "1.7e-6");
         assert_eq!(significant(0.0, 2), "0");
+        assert_eq!(significant(0.099_99, 2), "0.10");
+        assert_eq!(significant(9.96, 2), "10");
     }
 }

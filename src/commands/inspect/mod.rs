@@ -31,8 +31,8 @@ struct Document<'a> {
 /// Runs the verb.
 pub fn run(json: bool, args: &InspectArgs) -> Result<Outcome, CommandError> {
     let loaded = args.vehicle.as_deref().map(read_vehicle).transpose()?;
-    for warning in loaded.iter().flat_map(|loaded| &loaded.warnings) {
-        output::message(&format!("warning: {warning}"));
+    if let (Some(path), Some(loaded)) = (&args.vehicle, &loaded) {
+        output::warnings(path, &loaded.warnings);
     }
     let vehicle = loaded.as_ref().map(|loaded| &loaded.vehicle);
     let inspection = inspect(args, vehicle)?;

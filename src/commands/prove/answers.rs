@@ -1,10 +1,14 @@
 //! The answers of a folder of cases, read only after every verdict is sealed.
 
+use mavid::physics::effects::{ALL, by_id};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::commands::CommandError;
+
+/// The answer where no effect accounts for what was concealed.
+pub const UNEXPLAINED: &str = "unexplained";
 
 /// What was concealed in one case.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -65,6 +69,14 @@ fn parsed(name: &str, value: &Value, notes: &mut Vec<String>) -> Result<Answer, 
         Some(Value::String(one)) => vec![one.clone()],
         _ => return Err(format!("{name}: `expect` is missing: a list of identifiers, [] for nothing")),
     };
+    let known = |id: &&String| *id == UNEXPLAINED || by_id(id).is_some();
+    if let Some(stranger) = expect.iter().find(|id| !known(id)) {
+        let all: Vec<&str> = ALL.iter().map(|effect| effect.id()).collect();
+        return Err(format!(
+            "{name}: `expect` names `{stranger}`; expected `{UNEXPLAINED}` or effects among {}",
+            all.join(", ")
+        ));
+    }
     for key in fields.keys().filter(|key| !["expect", "effects", "vehicle"].contains(&key.as_str())) {
         notes.push(format!("{name}: `{key}` of the answers is not used"));
     }
@@ -107,7 +119,7 @@ mod tests {
 
     #[test]
     fn sizes_come_in_three_forms() {
-        let text = r#"{"expect": ["a"], "effects": {"a": 1.5, "b": [1, 2], "c": {"time": 3, "axis": [0]}, "d": "x"}, "more": 1}"#;
+        let text = r#"{"expect": ["tether"], "effects": {"a": 1.5, "b": [1, 2], "c": {"time": 3, "axis": [0]}, "d": "x"}, "more": 1}"#;
         let mut notes = Vec::new();
         let answer = parsed("p", &serde_json::from_str(text).unwrap(), &mut notes).unwrap();
         assert_eq!(answer.sizes["a"], Size::One(1.5));
@@ -115,5 +127,7 @@ mod tests {
         assert_eq!(answer.sizes["c"], Size::Named(BTreeMap::from([("time".to_owned(), 3.0)])));
         assert_eq!(notes.len(), 2, "{notes:?}");
         assert!(parsed("p", &serde_json::json!({"effects": {}}), &mut notes).is_err());
+        let stranger = parsed("p", &serde_json::json!({"expect": ["drag"]}), &mut notes).unwrap_err();
+        assert!(stranger.contains("`drag`") && stranger.contains("linear_drag"), "{stranger}");
     }
 }

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::cli::ReadArgs;
 use crate::commands::CommandError;
-use crate::commands::flights::load;
+use crate::commands::flights::{load, shared};
 
 /// The vehicle file of a case.
 pub const VEHICLE: &str = "vehicle.toml";
@@ -108,7 +108,7 @@ fn explained(folder: &Path, sha256: &mut Vec<String>) -> Result<Found, CommandEr
     let (used, held) = logs(folder)?;
     let flights = used.iter().map(|log| flight(log, &vehicle, sha256)).collect::<Result<Vec<_>, _>>()?;
     let inputs = sha256.len();
-    let signals: Vec<Signals> = flights.into_iter().map(|(_, signals)| signals).collect();
+    let (recordings, signals): (Vec<Recording>, Vec<Signals>) = flights.into_iter().unzip();
     let settings = ExplainSettings::default();
     let refuse = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
     let explanation = explain(&signals, &vehicle, &settings).map_err(|error| refuse(&error))?;
@@ -117,6 +117,12 @@ fn explained(folder: &Path, sha256: &mut Vec<String>) -> Result<Found, CommandEr
     let held = held.iter().map(|log| flight(log, &vehicle, sha256)).collect::<Result<Vec<_>, _>>()?;
     if let Some(twin) = sha256[inputs..].iter().find(|hash| sha256[..inputs].contains(hash)) {
         return Err(refuse(&format!("the hold-out is the flight that it is to be predicted from ({twin})")));
+    }
+    for (hold_out, _) in &held {
+        if let Some(share) = recordings.iter().find_map(|recording| shared(hold_out, recording)) {
+            let percent = 100.0 * share;
+            return Err(refuse(&format!("{percent:.0} % of the hold-out are in a flight that is explained")));
+        }
     }
     if held.is_empty() {
         return Ok((explanation, empirical, None));

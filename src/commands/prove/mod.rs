@@ -33,6 +33,12 @@ struct Document {
 /// Runs the verb.
 pub fn run(json: bool, args: &ProveArgs) -> Result<Outcome, CommandError> {
     let folders = case_folders(&args.cases)?;
+    if args.out.exists() && !args.out.is_dir() {
+        return Err(CommandError::Input(format!(
+            "--out: expected a folder, {} is a file",
+            args.out.display()
+        )));
+    }
     if let Some(file) = args.answers.as_ref().filter(|file| !file.is_file()) {
         return Err(CommandError::Input(format!("--answers: {} is not a file", file.display())));
     }
@@ -60,6 +66,19 @@ pub fn run(json: bool, args: &ProveArgs) -> Result<Outcome, CommandError> {
         None => answers::Answers::default(),
     };
     document.notes = found.notes;
+    if let Some(file) = args.answers.as_ref()
+        && !verdicts.iter().any(|verdict| found.cases.contains_key(&verdict.case))
+    {
+        let cases: Vec<&str> = verdicts.iter().map(|verdict| verdict.case.as_str()).collect();
+        let named: Vec<&str> = found.cases.keys().map(String::as_str).collect();
+        return Err(CommandError::Input(format!(
+            "{}: expected answers by the names of the cases ({}), got {}; the verdicts are sealed in {}",
+            file.display(),
+            cases.join(", "),
+            if named.is_empty() { "none".to_owned() } else { named.join(", ") },
+            args.out.display()
+        )));
+    }
     for verdict in verdicts {
         match found.cases.get(&verdict.case) {
             Some(answer) => document.cases.push(score::scored(&verdict, answer)),

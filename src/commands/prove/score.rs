@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::answers::{Answer, Size};
+use super::answers::{Answer, Size, UNEXPLAINED};
 use super::case::{Effect, Verdict};
 
 /// One case scored.
@@ -58,8 +58,6 @@ pub struct Summary {
     pub errors: usize,
     pub slowest_s: f64,
 }
-
-const UNEXPLAINED: &str = "unexplained";
 
 /// Scores one verdict.
 pub fn scored(verdict: &Verdict, answer: &Answer) -> Scored {

@@ -89,6 +89,19 @@ pub struct Aperiodic {
 }
 
 impl Aperiodic {
+    /// Without what was found of torques.
+    #[must_use]
+    pub fn of_forces(&self) -> Self {
+        let is_force = |of: Quantity| !matches!(of, Quantity::Torque(_));
+        let is_force_channel = |channel: usize| !(3..AXES).contains(&channel);
+        Self {
+            trend: self.trend.filter(|trend| is_force(trend.of)),
+            redness: self.redness.iter().filter(|red| is_force(red.of)).copied().collect(),
+            gust: self.gust,
+            state: self.state.filter(|state| is_force_channel(state.channel)),
+        }
+    }
+
     /// Something certain is left that no gust accounts for.
     #[must_use]
     pub fn is_lacking(&self) -> bool {

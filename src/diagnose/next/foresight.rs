@@ -1,54 +1,132 @@
 //! What a flight that was not flown would show.
 
-use super::NextSettings;
+use super::{NOT_BY_MOTION, NextSettings};
 use crate::diagnose::base::Base;
 use crate::diagnose::candidates::Candidate;
 use crate::diagnose::confusable::Signal;
+use crate::diagnose::evidence::Weighted;
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::rows::{CHANNELS, Rows};
 use crate::diagnose::trace::Trace;
 use crate::log::Quantity;
-use crate::signals::{Grid, Quality, Signals, ThrustSource, Usable};
+use crate::signals::{ActuationLatency, Grid, Quality, Signals, ThrustSource, Usable};
 use crate::simulate::Allocation;
 use crate::trajectory::{FourierTrajectory, Reference};
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 
-/// An effect of the model and a candidate that could stand for it.
+/// What the next flight is to show.
 #[derive(Debug, Clone)]
 pub(super) struct Question {
     pub(super) named: &'static str,
-    /// among the base's effects
-    pub(super) place: usize,
-    pub(super) candidate: Candidate,
+    pub(super) kind: Kind,
     /// standard deviations in the flights so far
     pub(super) now: f64,
 }
 
-/// Every named effect against every candidate that any flight can tell from it; of several candidates of
-/// one effect (times of a change, lengths of a cord) the nearest.
-pub(super) fn questions(explanation: &Explanation, traces: &[Trace]) -> Vec<Question> {
-    let fitted = &explanation.search.after;
-    let inflation = fitted.weighted.long_run_deviation();
-    let mut out: Vec<Question> = Vec::new();
-    for (place, present) in fitted.base.present.iter().enumerate() {
-        let id = present.effect.id();
-        if !explanation.named.iter().any(|named| named.id == id) {
-            continue;
+/// How a flight answers it.
+#[derive(Debug, Clone)]
+pub(super) enum Kind {
+    /// the effect at this place of the base against a candidate that could stand for it
+    Against(usize, Candidate),
+    /// how far it stands out of the noise
+    Size(usize),
+    /// the latency against the same as another kind
+    Latency(&'static str, ActuationLatency),
+}
+
+impl Question {
+    /// What the named effect is told from; `None`: from nothing.
+    pub(super) fn other(&self) -> Option<&'static str> {
+        match &self.kind {
+            Kind::Against(_, candidate) => Some(candidate.id),
+            Kind::Size(_) => None,
+            Kind::Latency(other, _) => Some(other),
         }
+    }
+}
+
+/// The pair of a named effect and an identifier in its set; of several candidates of one effect (times of a change,
+/// lengths of a cord) the nearest. `None` where nothing of that identifier was tried.
+pub(super) fn question(
+    explanation: &Explanation,
+    traces: &[Trace],
+    (named, other): (&'static str, &'static str),
+) -> Option<Question> {
+    let search = &explanation.search;
+    let fitted = &search.after;
+    let inflation = fitted.weighted.long_run_deviation();
+    if is_latency(named) {
+        let turned = turned(fitted.base.latency, named);
+        let now = of_latency(traces, (&fitted.rows, &fitted.base), &fitted.weighted, turned)?;
+        return Some(Question { named, kind: Kind::Latency(other, turned), now: now / inflation });
+    }
+    let rivals = search.steps.iter().flat_map(|step| &step.rivals);
+    let mut best: Option<Question> = None;
+    for place in places(explanation, named) {
         let Some(signal) = Signal::new(&fitted.rows, &fitted.base, place, None) else { continue };
-        for tested in &explanation.search.last {
+        for tested in search.last.iter().chain(rivals.clone()).filter(|tested| tested.candidate.id == other) {
             let candidate = &tested.candidate;
-            let Some(left) = signal.beyond(traces, &fitted.rows, &fitted.base, candidate) else { continue };
-            let now = left / inflation;
-            let known = out.iter_mut().find(|q| q.place == place && q.candidate.id == candidate.id);
-            match known {
-                Some(known) if known.now <= now => {}
-                Some(known) => (known.now, known.candidate) = (now, candidate.clone()),
-                None => out.push(Question { named: id, place, candidate: candidate.clone(), now }),
+            let left = signal.beyond(traces, &fitted.rows, &fitted.base, candidate);
+            let now = left.unwrap_or_else(|| signal.norm()) / inflation;
+            if best.as_ref().is_none_or(|best| now < best.now) {
+                best = Some(Question { named, kind: Kind::Against(place, candidate.clone()), now });
             }
         }
     }
-    out
+    best
+}
+
+/// The named effect that stands out least.
+pub(super) fn least_known(explanation: &Explanation) -> Option<Question> {
+    let of_motion = explanation.named.iter().filter(|named| !NOT_BY_MOTION.contains(&named.id));
+    let each = of_motion.filter_map(|named| size(explanation, named.id));
+    each.min_by(|a, b| a.now.total_cmp(&b.now))
+}
+
+/// How far a named effect stands out; `None` for a latency.
+pub(super) fn size(explanation: &Explanation, named: &'static str) -> Option<Question> {
+    let fitted = &explanation.search.after;
+    let inflation = fitted.weighted.long_run_deviation();
+    let each = places(explanation, named).filter_map(|place| {
+        let now = Signal::new(&fitted.rows, &fitted.base, place, None)?.norm() / inflation;
+        Some(Question { named, kind: Kind::Size(place), now })
+    });
+    each.min_by(|a, b| a.now.total_cmp(&b.now))
+}
+
+/// Where the base has an effect.
+fn places(explanation: &Explanation, id: &str) -> impl Iterator<Item = usize> {
+    let present = explanation.search.after.base.present.iter().enumerate();
+    present.filter(move |(_, present)| present.effect.id() == id).map(|(place, _)| place)
+}
+
+pub(super) fn is_latency(id: &str) -> bool {
+    matches!(id, "motor_lag" | "transport_delay")
+}
+
+/// The same latency, all of it of the other kind.
+fn turned(latency: ActuationLatency, named: &str) -> ActuationLatency {
+    let ActuationLatency { delay_s, lag_s } = latency;
+    if named == "motor_lag" {
+        ActuationLatency { delay_s: delay_s + lag_s, lag_s: 0.0 }
+    } else {
+        ActuationLatency { delay_s: 0.0, lag_s: delay_s + lag_s }
+    }
+}
+
+/// Norm of what another latency does beyond all that nuisances (a shift in time among them) could do.
+fn of_latency(
+    traces: &[Trace],
+    (rows, base): (&Rows, &Base),
+    weighted: &Weighted,
+    latency: ActuationLatency,
+) -> Option<f64> {
+    let turned = Rows::new(traces, &Base { latency, ..base.clone() }).ok()?;
+    let mut difference = turned.residual;
+    for (difference, own) in difference.iter_mut().zip(&rows.residual) {
+        difference.iter_mut().zip(own).for_each(|(difference, own)| *difference -= own);
+    }
+    Some(weighted.partialled(&[difference]).map_or(0.0, |(_, left)| left.norm()))
 }
 
 /// Instants of the imagined flight, s: many a kernel, few a second.
@@ -99,13 +177,18 @@ impl<'a> Foresight<'a> {
         // one period stands for all: its noise is that of their mean
         let share = f64::from(self.settings.repeats).sqrt().recip();
         let sigma = self.sigma.map(|sigma| sigma * share);
-        self.questions
-            .iter()
-            .map(|question| {
-                let signal = Signal::new(&rows, base, question.place, Some(&sigma))?;
-                Some(signal.beyond(&traces, &rows, base, &question.candidate)? / self.inflation)
-            })
-            .collect()
+        let left = |question: &Question| match &question.kind {
+            Kind::Against(place, candidate) => {
+                let signal = Signal::new(&rows, base, *place, Some(&sigma))?;
+                // what does nothing stands for nothing
+                Some(signal.beyond(&traces, &rows, base, candidate).unwrap_or_else(|| signal.norm()))
+            }
+            Kind::Size(place) => Some(Signal::new(&rows, base, *place, Some(&sigma))?.norm()),
+            Kind::Latency(_, latency) => {
+                of_latency(&traces, (&rows, base), &Weighted::at(&rows, &sigma), *latency)
+            }
+        };
+        self.questions.iter().map(|question| Some(left(question)? / self.inflation)).collect()
     }
 
     /// One period as its log would be without noise: the reference is followed exactly, and the rotors do

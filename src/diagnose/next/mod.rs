@@ -54,17 +54,34 @@ impl Default for NextSettings {
     }
 }
 
-/// Two effects that can be taken for each other.
+/// Two effects that can be taken for each other, or one and nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
     /// the one that was named
     pub named: &'static str,
-    /// the other
-    pub other: &'static str,
+    /// the other; `None` where nothing could be taken for it: how far it stands out of the noise
+    pub other: Option<&'static str>,
     /// standard deviations by which the flights so far tell them apart
     pub now: f64,
     /// and the next flight alone, if what was named is there at its size
     pub after: f64,
+}
+
+/// Two effects that no trajectory tells apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Inseparable {
+    /// the one that was named
+    pub named: &'static str,
+    /// the other
+    pub other: &'static str,
+    /// and what does
+    pub why: &'static str,
+}
+
+impl std::fmt::Display for Inseparable {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(out, "no trajectory tells {} from {}: {}", self.named, self.other, self.why)
+    }
 }
 
 /// What to fly.
@@ -82,23 +99,29 @@ pub struct NextFlight {
     pub limits_are_flown: bool,
     /// the worst pair first
     pub pairs: Vec<Pair>,
+    /// what it cannot tell apart, nor any other
+    pub inseparable: Vec<Inseparable>,
 }
 
 impl NextFlight {
     /// For people: what it will bring.
     #[must_use]
     pub fn sentence(&self) -> String {
-        let pairs: Vec<String> = self
-            .pairs
-            .iter()
-            .map(|pair| {
-                format!(
-                    "{} from {}: now {:.1} sigma, after {:.0} s of this {:.1} sigma",
-                    pair.named, pair.other, pair.now, self.seconds, pair.after
-                )
-            })
-            .collect();
-        pairs.join("; ")
+        let after = |pair: &Pair| {
+            format!("now {:.1} sigma, after {:.0} s of this {:.1} sigma", pair.now, self.seconds, pair.after)
+        };
+        let pairs = self.pairs.iter().map(|pair| match pair.other {
+            Some(other) => {
+                let better = if foresight::is_latency(pair.named) && pair.after < ENOUGH_SIGMA {
+                    BY_SPEEDS
+                } else {
+                    ""
+                };
+                format!("{} from {other}: {}{better}", pair.named, after(pair))
+            }
+            None => format!("nothing stands for {}, which is known to: {}", pair.named, after(pair)),
+        });
+        pairs.chain(self.inseparable.iter().map(ToString::to_string)).collect::<Vec<_>>().join("; ")
     }
 }
 
@@ -106,31 +129,16 @@ impl NextFlight {
 #[derive(Debug, thiserror::Error)]
 pub enum NextError {
     /// nothing to tell apart
-    #[error("no effect was named that another could stand for: there is nothing to tell apart")]
+    #[error(
+        "there is nothing to tell apart: nothing was named that could be taken for another effect, or that motion would show better"
+    )]
     NothingToTell,
     /// only by other means
-    #[error(
-        "lag and delay of the rotors differ above the trajectory's frequencies: rotor speed telemetry, or doublets of 5 Hz and more, tell them apart"
-    )]
-    LatencyOnly,
-    /// bound to a moment or to the battery
-    #[error(
-        "no trajectory tells {named} from {other}: weigh the vehicle before and after, swap the pack in between, and record the battery's voltage"
-    )]
-    NotByMotion {
-        /// the one that was named
-        named: &'static str,
-        /// the other
-        other: &'static str,
-    },
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+    Inseparable(Vec<Inseparable>),
     /// limits without room
-    #[error("no trajectory inside the limits tells {named} from {other}")]
-    NoRoom {
-        /// the one that was named
-        named: &'static str,
-        /// the other
-        other: &'static str,
-    },
+    #[error("no flight inside the limits shows {0}")]
+    NoRoom(&'static str),
     /// streams are missing
     #[error(transparent)]
     Trace(#[from] TraceError),
@@ -150,24 +158,40 @@ pub fn design(
     vehicle: &Vehicle,
     settings: &NextSettings,
 ) -> Result<NextFlight, NextError> {
-    let traces: Vec<Trace> = flights
-        .iter()
-        .map(|signals| Trace::new(signals, vehicle, settings.half_width_s))
-        .collect::<Result<_, _>>()?;
-    let questions = questions(explanation, &traces)?;
+    let traces = traces(flights, vehicle, settings)?;
+    let (mut questions, mut inseparable) = questions(explanation, &traces);
     let limits_are_flown = vehicle.limits == Limits::default();
     let limits = if limits_are_flown { flown_limits(flights) } else { vehicle.limits };
+    if let Some(first) = questions.first().map(|question| question.named) {
+        let foresight = Foresight::new(explanation, &traces, &questions, settings);
+        let most = search::probed(&foresight, &limits, vehicle, settings);
+        if most.is_empty() {
+            return Err(NextError::NoRoom(first));
+        }
+        let told: Vec<bool> = most.iter().map(|most| *most > SAME_SIGMA).collect();
+        let same = questions.iter().zip(&told).filter(|(_, told)| !**told);
+        inseparable.extend(same.filter_map(|(question, _)| {
+            Some(Inseparable { named: question.named, other: question.other()?, why: SAME })
+        }));
+        let mut told = told.into_iter();
+        questions.retain(|_| told.next().unwrap_or(false));
+    }
+    if questions.is_empty() {
+        return Err(if inseparable.is_empty() {
+            NextError::NothingToTell
+        } else {
+            NextError::Inseparable(inseparable)
+        });
+    }
     let foresight = Foresight::new(explanation, &traces, &questions, settings);
-    let (trajectory, distances) = search::best(&foresight, &limits, vehicle, settings).ok_or_else(|| {
-        let Question { named, candidate, .. } = &questions[0];
-        NextError::NoRoom { named, other: candidate.id }
-    })?;
+    let (trajectory, distances) =
+        search::best(&foresight, &limits, vehicle, settings).ok_or(NextError::NoRoom(questions[0].named))?;
     let mut pairs: Vec<Pair> = questions
         .iter()
         .zip(distances)
         .map(|(question, after)| Pair {
             named: question.named,
-            other: question.candidate.id,
+            other: question.other(),
             now: question.now,
             after,
         })
@@ -180,37 +204,74 @@ pub fn design(
         limits,
         limits_are_flown,
         pairs,
+        inseparable,
     })
 }
 
-/// Effects that depend on when, not on how the vehicle moves.
-const NOT_BY_MOTION: [&str; 2] = ["mass_change", "battery_sag"];
+/// Standard deviations by which flights tell a named effect from another that could stand for it, or, with `None`,
+/// from nothing; `None` where the effect was not named or the other was not tried.
+///
+/// # Errors
+/// [`TraceError`] where the flights lack streams.
+pub fn told_apart(
+    (explanation, named): (&Explanation, &str),
+    other: Option<&'static str>,
+    (flights, vehicle): (&[Signals], &Vehicle),
+    settings: &NextSettings,
+) -> Result<Option<f64>, TraceError> {
+    let traces = traces(flights, vehicle, settings)?;
+    let Some(named) = explanation.named.iter().map(|named| named.id).find(|id| *id == named) else {
+        return Ok(None);
+    };
+    let question = match other {
+        Some(other) => foresight::question(explanation, &traces, (named, other)),
+        None => foresight::size(explanation, named),
+    };
+    Ok(question.map(|question| question.now))
+}
 
-/// The pairs of the confusable sets; where every name is certain, the pair that is nearest to each other.
-fn questions(explanation: &Explanation, traces: &[Trace]) -> Result<Vec<Question>, NextError> {
-    let all = foresight::questions(explanation, traces);
-    let in_set = |question: &Question| {
-        explanation
-            .named
-            .iter()
-            .filter(|named| named.id == question.named)
-            .any(|named| named.confusable_with.iter().any(|other| other.id == question.candidate.id))
-    };
-    let mut sets: Vec<Question> = all.iter().filter(|question| in_set(question)).cloned().collect();
-    let by_motion = |question: &Question| {
-        ![question.named, question.candidate.id].iter().any(|id| NOT_BY_MOTION.contains(id))
-    };
-    if let Some(Question { named, candidate, .. }) = sets.first().filter(|_| !sets.iter().any(by_motion)) {
-        return Err(NextError::NotByMotion { named, other: candidate.id });
+fn traces(flights: &[Signals], vehicle: &Vehicle, settings: &NextSettings) -> Result<Vec<Trace>, TraceError> {
+    flights.iter().map(|signals| Trace::new(signals, vehicle, settings.half_width_s)).collect()
+}
+
+/// Below this many standard deviations in every flight that was tried, two effects do the same.
+const SAME_SIGMA: f64 = 0.5;
+/// Below this many standard deviations two effects are not told apart.
+const ENOUGH_SIGMA: f64 = 5.0;
+const BY_SPEEDS: &str = " (rotor speed telemetry, or doublets of 5 Hz and more, tell them apart)";
+const SAME: &str = "in every flight inside the limits both do the same to the vehicle";
+/// What neither depends on how the vehicle moves.
+const NOT_BY_MOTION: [&str; 2] = ["mass_change", "battery_sag"];
+const BY_WEIGHING: &str =
+    "weigh the vehicle before and after, swap the pack in between, and record the battery's voltage";
+const NOT_TRIED: &str = "what it would do in another flight is not known";
+
+/// The pairs of all confusable sets, and of those what no trajectory tells apart; where every name is certain, the
+/// one that is known worst.
+fn questions(explanation: &Explanation, traces: &[Trace]) -> (Vec<Question>, Vec<Inseparable>) {
+    let (mut asked, mut inseparable): (Vec<Question>, Vec<Inseparable>) = (Vec::new(), Vec::new());
+    for named in &explanation.named {
+        for other in named.confusable_with.iter().map(|other| other.id) {
+            let known = |a: &str, b: &str| a == named.id && b == other;
+            if asked.iter().any(|q| q.other().is_some_and(|of| known(q.named, of)))
+                || inseparable.iter().any(|pair| known(pair.named, pair.other))
+            {
+                continue;
+            }
+            let pair = [named.id, other];
+            let still = pair.iter().all(|id| NOT_BY_MOTION.contains(id)) || pair.contains(&"mass_change");
+            let question = (!still).then(|| foresight::question(explanation, traces, (named.id, other)));
+            match question {
+                Some(Some(question)) => asked.push(question),
+                found => {
+                    let why = if found.is_none() { BY_WEIGHING } else { NOT_TRIED };
+                    inseparable.push(Inseparable { named: named.id, other, why });
+                }
+            }
+        }
     }
-    sets.retain(by_motion);
-    if sets.is_empty() {
-        let nearest = all.into_iter().filter(by_motion).min_by(|a, b| a.now.total_cmp(&b.now));
-        sets.extend(nearest);
+    if asked.is_empty() && inseparable.is_empty() {
+        asked.extend(foresight::least_known(explanation));
     }
-    if sets.is_empty() {
-        let latency = explanation.named.iter().any(|named| !named.confusable_with.is_empty());
-        return Err(if latency { NextError::LatencyOnly } else { NextError::NothingToTell });
-    }
-    Ok(sets)
+    (asked, inseparable)
 }

@@ -35,6 +35,33 @@ pub(super) fn best(
         .map(|(trajectory, _, distances)| (trajectory, distances))
 }
 
+/// Random flights that are looked at before one is searched.
+const PROBES: u64 = 6;
+
+/// The largest distance of every question over a few random flights that fill the room; none where no flight can
+/// be imagined.
+pub(super) fn probed(
+    foresight: &Foresight,
+    limits: &Limits,
+    vehicle: &Vehicle,
+    settings: &NextSettings,
+) -> Vec<f64> {
+    let room = Room::new(foresight, limits, vehicle, settings);
+    let each: Vec<Vec<f64>> = (0..PROBES)
+        .into_par_iter()
+        .filter_map(|probe| {
+            let seed = settings.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_sub(probe + 1);
+            let unknowns = room.drawn(&mut Pcg64Mcg::seed_from_u64(seed))?;
+            foresight.distances(&room.space.trajectory(&unknowns))
+        })
+        .collect();
+    let most = |mut most: Vec<f64>, one: Vec<f64>| {
+        most.iter_mut().zip(one).for_each(|(most, one)| *most = most.max(one));
+        most
+    };
+    each.into_iter().reduce(most).unwrap_or_default()
+}
+
 /// Series that start and end at rest in the middle of the room, and what holds them.
 struct Room {
     space: SeriesSpace,

@@ -78,8 +78,10 @@ pub struct Shown {
     pub flights: usize,
     /// blocks that the intervals come from
     pub blocks: usize,
-    /// open-loop prediction, one entry a length of window
+    /// open-loop prediction, one entry a length of window; none where `no_open_loop` says why
     pub open_loop: Vec<OpenLoop>,
+    /// why nothing could be played back
+    pub no_open_loop: Option<String>,
     /// mean over the four quantities at 0.5 s of `100 (1 - after/before)`
     pub improvement_percent: Option<Interval>,
     /// residual of the weak form, N and N m, in the order of [`super::CHANNEL_NAMES`]
@@ -99,6 +101,13 @@ impl Shown {
     #[must_use]
     pub fn half_second(&self) -> Option<&OpenLoop> {
         self.open_loop.iter().find(|of| (of.window_s - 0.5).abs() < 1e-9)
+    }
+
+    /// What shows most plainly that the held-out flights are of another vehicle; `None` where they are not.
+    #[must_use]
+    pub fn other_vehicle_by(&self) -> Option<&Agreement> {
+        self.other_vehicle.as_ref()?;
+        other_vehicle::first_different(&self.agreement)
     }
 }
 
@@ -172,7 +181,13 @@ pub fn on_holdout(
         return Err(ShowError::NoFlight);
     }
     let mut notes: Vec<String> = ready.iter().flat_map(|ready| ready.pair.notes.clone()).collect();
-    let (open_loop, improvement_percent, blocks) = open_loop::open_loop(&ready, empirical, settings)?;
+    // what cannot be played back still has its residuals
+    let (open_loop, improvement_percent, blocks, no_open_loop) =
+        match open_loop::open_loop(&ready, empirical, settings) {
+            Ok((open_loop, improvement, blocks)) => (open_loop, improvement, blocks, None),
+            Err(why @ ShowError::Compare { .. }) => (Vec::new(), None, 0, Some(why.to_string())),
+            Err(other) => return Err(other),
+        };
     let weak = weak::residuals(&ready, explanation, empirical, settings)?;
     let (agreement, other_vehicle) = other_vehicle::judged(&ready, explanation, &weak)?;
     let closed_loop = closed_loop::flown_again(&ready, empirical, vehicle, settings);
@@ -184,6 +199,7 @@ pub fn on_holdout(
         flights: ready.len(),
         blocks,
         open_loop,
+        no_open_loop,
         improvement_percent,
         weak: weak.compared,
         closed_loop,

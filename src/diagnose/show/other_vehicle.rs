@@ -35,6 +35,16 @@ impl Agreement {
     fn share(&self) -> f64 {
         (self.held_out - self.identified) / self.identified
     }
+
+    /// Certainly, and by more than a vehicle of one kind differs from flight to flight.
+    fn differs(&self) -> bool {
+        let share = match self.name.as_str() {
+            "mass" => MASS_SHARE,
+            "ixx" | "iyy" | "izz" => INERTIA_SHARE,
+            _ => return false,
+        };
+        self.sigmas().abs() > SIGMAS && self.share().abs() > share
+    }
 }
 
 /// Certain: beyond this many standard errors.
@@ -71,15 +81,7 @@ pub(super) fn judged(
             (ratio > RESIDUAL_RATIO).then_some((channel, ratio))
         })
         .collect();
-    let differs = |agreement: &&Agreement| {
-        let share = match agreement.name.as_str() {
-            "mass" => MASS_SHARE,
-            "ixx" | "iyy" | "izz" => INERTIA_SHARE,
-            _ => return false,
-        };
-        agreement.sigmas().abs() > SIGMAS && agreement.share().abs() > share
-    };
-    let different: Vec<&Agreement> = all.iter().filter(differs).collect();
+    let different: Vec<&Agreement> = all.iter().filter(|agreement| agreement.differs()).collect();
     let worst = jumps.iter().max_by(|a, b| a.1.total_cmp(&b.1));
     let reason = worst.filter(|_| !different.is_empty()).map(|(channel, ratio)| {
         let parameters: Vec<String> = different.iter().map(|agreement| described(agreement)).collect();
@@ -91,6 +93,11 @@ pub(super) fn judged(
         )
     });
     Ok((all, reason))
+}
+
+/// The first parameter that differs, mass before inertia.
+pub(super) fn first_different(agreement: &[Agreement]) -> Option<&Agreement> {
+    agreement.iter().find(|agreement| agreement.differs())
 }
 
 fn described(agreement: &Agreement) -> String {

@@ -32,7 +32,7 @@ pub enum CsvError {
         source: ::csv::Error,
     },
     /// a column that the mapping names is not in the header
-    #[error("{origin}: expected column(s) {}, but the header has {}", missing.join(", "), present.join(", "))]
+    #[error("{origin}: expected column(s) {}, but the header has {}", missing.join(", "), listed(present))]
     MissingColumns {
         /// file name, or what the bytes are
         origin: String,
@@ -40,6 +40,14 @@ pub enum CsvError {
         missing: Vec<String>,
         /// what the header has
         present: Vec<String>,
+    },
+    /// no text at all
+    #[error("{origin}: expected text with a header of column names in its first line, got {what}")]
+    NoText {
+        /// file name, or what the bytes are
+        origin: String,
+        /// what came
+        what: &'static str,
     },
     /// a column name stands twice in the header
     #[error("{origin}: column \"{column}\" stands twice in the header")]
@@ -70,6 +78,11 @@ pub enum CsvError {
         /// the first row's fault
         first: Option<RowRejection>,
     },
+}
+
+/// The header's columns.
+fn listed(present: &[String]) -> String {
+    if present.iter().all(String::is_empty) { "none".to_owned() } else { present.join(", ") }
 }
 
 fn first_reason(first: &Option<RowRejection>) -> String {

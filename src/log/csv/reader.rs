@@ -42,6 +42,9 @@ pub fn read_csv_from(
     if head.starts_with(b"\xef\xbb\xbf") {
         head.drain(..3);
     }
+    if let Some(what) = no_text(&head) {
+        return Err(CsvError::NoText { origin: origin.to_owned(), what });
+    }
     let delimiter = mapping.delimiter.unwrap_or_else(|| guess_delimiter(&head));
     let mut table =
         ReaderBuilder::new().delimiter(delimiter).flexible(true).from_reader(Cursor::new(head).chain(reader));
@@ -52,6 +55,18 @@ pub fn read_csv_from(
         reading.row(&record);
     }
     reading.finish()
+}
+
+/// What the first line is if it is no header at all.
+fn no_text(head: &[u8]) -> Option<&'static str> {
+    let is_binary = |byte: &u8| byte.is_ascii_control() && !byte.is_ascii_whitespace();
+    if head.is_empty() {
+        Some("an empty file")
+    } else if head.iter().any(is_binary) {
+        Some("binary data")
+    } else {
+        head.trim_ascii().is_empty().then_some("an empty line")
+    }
 }
 
 /// Comma, semicolon or tab, whichever the header has most of; comma where it has none.

@@ -1,12 +1,22 @@
 //! The answer in one sentence.
 
+use super::brief::brief;
 use super::located::Located;
 use super::show::Predicted;
 use super::story::Story;
 use super::words::{called, clause};
-use crate::diagnose::{Along, DetectionLimit, Verdict};
+use crate::diagnose::{Along, DetectionLimit, Named, Verdict};
 use crate::report::number::{significant, spoken};
 use std::fmt::Write;
+
+/// Effects in the motion that everybody knows.
+const IN_MOTION: [&str; 3] = ["linear_drag", "angular_damping", "ground_effect"];
+/// Most effects of a sentence that come with their numbers.
+const SIZED: usize = 4;
+/// An error that rises by more is said, percent.
+const WORSE_PERCENT: f64 = 2.0;
+/// A state that explains less of the misfit is not said, percent.
+const LEAST_STATE_PERCENT: f64 = 10.0;
 
 impl Story {
     /// The answer in one sentence.
@@ -14,73 +24,113 @@ impl Story {
     pub fn answer(&self) -> String {
         match self.verdict() {
             Verdict::NothingMissing => self.nothing(),
-            Verdict::Explained => format!("{}{}.", self.clauses(), self.gain()),
+            Verdict::Explained => format!("{}{}.{}", self.left_out(), self.gain(), self.not_told_apart()),
             Verdict::PartlyExplained => format!(
-                "{}{}; but something else is there that no known effect accounts for, {}.",
-                self.clauses(),
+                "{}{}. Something else is there that no known effect accounts for: {}.{}",
+                self.left_out(),
                 self.gain(),
-                whereabouts(&Located::left(&self.explanation))
+                whereabouts(&Located::left(&self.explanation)),
+                self.not_told_apart()
             ),
             Verdict::Unexplained => self.unexplained(),
         }
     }
 
-    fn clauses(&self) -> String {
+    /// One effect in full; of several each with its number, beyond a few only the first.
+    fn left_out(&self) -> String {
         let vehicle = self.vehicle();
-        let all: Vec<String> = self
+        if let [one] = self.effects.as_slice() {
+            return clause(one, vehicle);
+        }
+        let sized = if self.effects.len() <= SIZED { SIZED } else { SIZED - 1 };
+        let (large, small) = self.effects.split_at(sized.min(self.effects.len()));
+        let words = |effects: &[Named], with_size| -> Vec<String> {
+            effects.iter().map(|effect| brief(effect, vehicle, with_size)).collect()
+        };
+        let large = words(large, true);
+        match words(small, false).as_slice() {
+            [] => format!("Left out were {}", list(&large)),
+            small => format!("Left out were {}; and to a lesser degree {}", list(&large), list(small)),
+        }
+    }
+
+    /// What may stand for a name, in a sentence of its own.
+    fn not_told_apart(&self) -> String {
+        let pairs: Vec<String> = self
             .effects
             .iter()
-            .enumerate()
-            .map(|(index, effect)| {
-                let text = clause(effect, vehicle);
-                if index == 0 || text.starts_with("Rotor ") { text } else { lowered(&text) }
+            .filter(|effect| !effect.confusable_with.is_empty())
+            .map(|effect| {
+                let others: Vec<&str> = effect.confusable_with.iter().map(|other| called(other.id)).collect();
+                format!("{} from {}", called(effect.id), others.join(" or "))
             })
             .collect();
-        let mut text = all.join("; ");
-        for effect in &self.effects {
-            let names: Vec<&str> = effect.confusable_with.iter().map(|other| called(other.id)).collect();
-            if !names.is_empty() {
-                let _ = write!(
-                    text,
-                    " (this flight cannot tell {} from {})",
-                    called(effect.id),
-                    names.join(" or ")
-                );
-            }
+        if pairs.is_empty() {
+            return String::new();
         }
-        text
+        format!(" This flight cannot tell {}.", pairs.join(", nor "))
     }
 
     /// What the model gains, on what was not used for it.
     fn gain(&self) -> String {
+        if let Some(by) = self.other_vehicle() {
+            return format!("; the hold-out is of another vehicle ({by}), so nothing is shown on it");
+        }
         let (Some(pair), with) = (self.holdout.as_ref(), if self.effects.len() > 1 { "them" } else { "it" })
         else {
             return String::new();
         };
-        pair.most().map_or_else(String::new, |(name, percent)| {
-            let shown = self.shown_on.words();
-            if percent >= 0.5 {
-                format!("; with {with} the 0.5 s {name} error on {shown} falls by {percent:.0} %")
-            } else {
-                format!("; with {with} the 0.5 s errors on {shown} do not fall")
+        let shown = self.shown_on.words();
+        let Some((name, percent)) = pair.most() else {
+            return format!("; on {shown} nothing could be predicted");
+        };
+        let worse = match pair.least() {
+            Some((name, percent)) if percent < -WORSE_PERCENT => {
+                format!(", that of {name} rises by {:.0} %", -percent)
             }
-        })
+            _ => String::new(),
+        };
+        if percent >= 0.5 {
+            format!("; with {with} the 0.5 s {name} error on {shown} falls by {percent:.0} %{worse}")
+        } else {
+            format!("; with {with} the 0.5 s errors on {shown} do not fall{worse}")
+        }
     }
 
     fn nothing(&self) -> String {
         let seen: Vec<String> = ["linear_drag", "com_offset", "weak_rotor", "ground_effect"]
             .iter()
             .filter_map(|id| self.limit(id))
+            .filter(|limit| limit.usual.is_none_or(|usual| limit.limit < usual))
             .map(|limit| seen_from(&limit))
             .take(3)
             .collect();
-        let would = match seen.as_slice() {
-            [] => String::new(),
-            [one] => format!("; {one} would have been named"),
-            [most @ .., last] => format!("; {} or {last} would have been named", most.join(", ")),
+        let other = self.other_vehicle().map_or_else(String::new, |by| {
+            format!(" The hold-out is of another vehicle ({by}), so nothing is shown on it.")
+        });
+        if self.explanation.too_little_excitation {
+            let could =
+                if seen.is_empty() { String::new() } else { format!("; it could show {}", list_or(&seen)) };
+            return format!(
+                "Too little excitation: the vehicle hardly moves in this flight, so that drag, damping, ground effect and the like would stay unseen at any usual size{could}, and nothing of that is there. Fly a trajectory that moves all axes (mavid plan).{other}"
+            );
+        }
+        let would =
+            if seen.is_empty() { String::new() } else { format!("; it would have shown {}", list_or(&seen)) };
+        let unseen: Vec<String> = IN_MOTION
+            .iter()
+            .filter(|id| {
+                let limit = self.limit(id);
+                limit.is_some_and(|limit| limit.usual.is_some_and(|usual| limit.limit > usual))
+            })
+            .map(|id| called(id).to_owned())
+            .collect();
+        let would = match unseen.as_slice() {
+            [] => would,
+            unseen => format!("{would}, but not {} of usual size", list_or(unseen)),
         };
         format!(
-            "Nothing is missing that this flight could show: the rigid body with its rotors follows it down to the noise{would}."
+            "Nothing is missing that this flight could show: the rigid body with its rotors follows it down to the noise{would}.{other}"
         )
     }
 
@@ -107,7 +157,7 @@ impl Story {
             )
         });
         format!(
-            "Something is there that no known effect accounts for, {}{closest}{term}.",
+            "Something is there that no known effect accounts for: {}{closest}{term}.",
             whereabouts(&self.located)
         )
     }
@@ -124,7 +174,7 @@ fn whereabouts(located: &Located) -> String {
     let mut parts = Vec::new();
     if let Some(field) = &located.field {
         parts.push(format!(
-            "{} N along world {} where {} is about {:.1} m in the room, {} m wide",
+            "a force of {} N along world {} near {} = {:.1} m in the room, {} m wide",
             significant(field.force_n, 2),
             field.force_along,
             field.changes_along,
@@ -134,26 +184,55 @@ fn whereabouts(located: &Located) -> String {
     } else if let Some(axis) = located.axes.first() {
         let what =
             axis.axis.replace("force_", "a force along body ").replace("torque_", "a torque about body ");
-        parts.push(format!("mainly as {what} ({:.0} % of it)", axis.share_percent));
-        if let Some(state) = located.state.first() {
-            parts.push(format!("following {} ({:.0} %)", state.variable, state.share_percent));
+        let mut words = format!("mainly {what} ({:.0} % of it)", axis.share_percent);
+        // a state that explains little of it leads nowhere
+        let state = located.state.first().filter(|state| state.share_percent > LEAST_STATE_PERCENT);
+        if let Some(state) = state {
+            let _ = write!(words, " that follows {}", spoken_state(&state.variable));
         }
+        parts.push(words);
     }
     if let Some([low, high]) = located.band_hz {
-        parts.push(format!("at {} to {} Hz", significant(low, 2), significant(high, 2)));
+        parts.push(format!("between {} and {} Hz", significant(low, 2), significant(high, 2)));
     }
-    if parts.is_empty() { "nowhere in particular".to_owned() } else { parts.join(", ") }
+    if parts.is_empty() { "at no axis, time or state in particular".to_owned() } else { parts.join(", ") }
+}
+
+/// A state's variable as it is said.
+fn spoken_state(variable: &str) -> String {
+    match variable {
+        "rate_x" => "the roll rate".to_owned(),
+        "rate_y" => "the pitch rate".to_owned(),
+        "rate_z" => "the yaw rate".to_owned(),
+        "airspeed_x" | "airspeed_y" | "airspeed_z" => {
+            format!("the airspeed along body {}", variable.trim_start_matches("airspeed_"))
+        }
+        other => format!("the {}", other.replace('_', " ")),
+    }
 }
 
 fn seen_from(limit: &DetectionLimit) -> String {
     match limit.id {
-        "com_offset" => {
-            format!("a centre of mass off by {} mm", significant(1e3 * limit.limit, 2))
-        }
-        "weak_rotor" => format!("a rotor weaker by {} %", significant(100.0 * limit.limit, 2)),
+        "com_offset" => format!("a centre of mass {} mm off", significant(1e3 * limit.limit, 2)),
+        "weak_rotor" => format!("a rotor {} % weak", significant(100.0 * limit.limit, 2)),
         id => format!("{} of {} {}", called(id), significant(limit.limit, 2), spoken(limit.unit))
             .trim_end()
             .to_owned(),
+    }
+}
+
+fn list(parts: &[String]) -> String {
+    joined(parts, "and")
+}
+
+fn list_or(parts: &[String]) -> String {
+    joined(parts, "or")
+}
+
+fn joined(parts: &[String], word: &str) -> String {
+    match parts {
+        [most @ .., last] if !most.is_empty() => format!("{} {word} {last}", most.join(", ")),
+        all => all.concat(),
     }
 }
 
@@ -164,9 +243,4 @@ fn spoken_along(along: Along) -> String {
         Along::Position(axis) => format!("world {}", AXES[axis.min(2)]),
         Along::Velocity(axis) => format!("the velocity along body {}", AXES[axis.min(2)]),
     }
-}
-
-fn lowered(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }

@@ -1,9 +1,9 @@
 //! The JSON document of `explain`.
 
+use super::fit::{FitValues, fit_values};
 use super::located::Located;
-use super::show::{Predicted, ShownOn};
+use super::show::ShownOn;
 use super::story::{Story, body_values, rigid_body};
-use crate::diagnose::show::Compared;
 use crate::diagnose::{AXES, Along, CHANNEL_NAMES, Named};
 use crate::report::InputFile;
 use serde::Serialize;
@@ -26,6 +26,7 @@ pub struct ExplanationDocument {
     lack_of_fit: Option<LackValue>,
     residual: BTreeMap<&'static str, ResidualValue>,
     detection_limits: Vec<LimitValue>,
+    too_little_excitation: bool,
     data_quality: DataQuality,
     next_flight: Option<NextValue>,
     warnings: Vec<String>,
@@ -58,28 +59,6 @@ struct EvidenceValue {
     p_value: f64,
 }
 
-#[derive(Debug, Clone, Serialize)]
-struct FitValues {
-    identify: PairValue,
-    holdout: PairValue,
-    shown_on: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    held_back_from_s: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<String>,
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct PairValue {
-    before: Option<FitValue>,
-    after: Option<FitValue>,
-    /// what white noise of the sensors alone would leave
-    floor: Option<FitValue>,
-    windows: Option<usize>,
-    improvement_percent: Option<f64>,
-    improvement_range_percent: Option<(f64, f64)>,
-}
-
 /// A term without a mechanism: straight lines between the knots, zero outside.
 #[derive(Debug, Clone, Serialize)]
 struct EmpiricalValue {
@@ -89,14 +68,6 @@ struct EmpiricalValue {
     force_n: Vec<[f64; 3]>,
     frame: &'static str,
     gain_percent: f64,
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct FitValue {
-    position_m: Option<f64>,
-    velocity_m_s: Option<f64>,
-    attitude_rad: Option<f64>,
-    rates_rad_s: Option<f64>,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -143,6 +114,8 @@ struct LimitValue {
     id: &'static str,
     parameter: &'static str,
     limit: f64,
+    /// on ordinary vehicles, of what shows only where the vehicle moves
+    usual: Option<f64>,
     unit: &'static str,
 }
 
@@ -169,12 +142,15 @@ struct NextValue {
     seconds: Option<f64>,
     /// what it tells apart, in standard deviations
     pairs: Vec<NextPair>,
+    /// what no trajectory tells apart, and why
+    inseparable: Vec<String>,
 }
 
 #[derive(Debug, Clone, Serialize)]
 struct NextPair {
     named: &'static str,
-    other: &'static str,
+    /// null: how far it stands out of the noise
+    other: Option<&'static str>,
     now: f64,
     after: f64,
 }
@@ -205,6 +181,7 @@ impl ExplanationDocument {
             lack_of_fit: lack(story),
             residual: residual(story),
             detection_limits: limits(story),
+            too_little_excitation: story.explanation.too_little_excitation,
             data_quality: data_quality(story),
             next_flight: next(story),
             warnings: story.given.warnings.clone(),
@@ -237,44 +214,6 @@ fn effect_values(story: &Story, effects: &[Named]) -> Vec<EffectValue> {
                 .collect(),
         })
         .collect()
-}
-
-fn fit_values(story: &Story) -> FitValues {
-    let (held_back_from_s, reason) = match &story.shown_on {
-        ShownOn::Flights(_) => (None, None),
-        ShownOn::HeldBack { from_s, .. } => (Some(*from_s), None),
-        ShownOn::Nothing { reason } => (None, Some(reason.clone())),
-    };
-    FitValues {
-        identify: predicted(story.identify.as_ref()),
-        holdout: predicted(story.holdout.as_ref()),
-        shown_on: match story.shown_on {
-            ShownOn::Flights(_) => "holdout",
-            ShownOn::HeldBack { .. } => "held_back",
-            ShownOn::Nothing { .. } => "nothing",
-        },
-        held_back_from_s,
-        reason,
-    }
-}
-
-fn predicted(predicted: Option<&Predicted>) -> PairValue {
-    let half = predicted.map(Predicted::half_second);
-    let windows = predicted
-        .and_then(|of| of.open_loop.iter().find(|of| (of.window_s - 0.5).abs() < 1e-9).map(|of| of.windows));
-    let fit = |pick: &dyn Fn(&Compared) -> Option<f64>| {
-        let [position_m, velocity_m_s, attitude_rad, rates_rad_s] =
-            half?.map(|of| of.as_ref().and_then(pick));
-        Some(FitValue { position_m, velocity_m_s, attitude_rad, rates_rad_s })
-    };
-    PairValue {
-        before: fit(&|of| Some(of.before.value)),
-        after: fit(&|of| Some(of.after.value)),
-        floor: fit(&|of| of.floor),
-        windows,
-        improvement_percent: predicted.and_then(Predicted::improvement),
-        improvement_range_percent: predicted.and_then(|of| of.improvement_percent?.range),
-    }
 }
 
 fn empirical(story: &Story) -> Option<EmpiricalValue> {
@@ -343,15 +282,26 @@ fn residual(story: &Story) -> BTreeMap<&'static str, ResidualValue> {
 
 fn limits(story: &Story) -> Vec<LimitValue> {
     let limits = story.explanation.limits.iter();
-    limits.map(|l| LimitValue { id: l.id, parameter: l.parameter, limit: l.limit, unit: l.unit }).collect()
+    limits
+        .map(|l| LimitValue {
+            id: l.id,
+            parameter: l.parameter,
+            limit: l.limit,
+            usual: l.usual,
+            unit: l.unit,
+        })
+        .collect()
 }
 
 fn next(story: &Story) -> Option<NextValue> {
     Some(match story.next.as_ref()? {
-        Err(why) => NextValue { reason: Some(why.clone()), seconds: None, pairs: Vec::new() },
+        Err(why) => {
+            NextValue { reason: Some(why.clone()), seconds: None, pairs: Vec::new(), inseparable: Vec::new() }
+        }
         Ok(next) => NextValue {
             reason: None,
             seconds: Some(next.seconds),
+            inseparable: next.inseparable.iter().map(ToString::to_string).collect(),
             pairs: next
                 .pairs
                 .iter()

@@ -15,11 +15,17 @@ impl Story {
     #[must_use]
     pub fn report_html(&self, traces: &[Trace]) -> String {
         let mut page = Page::new(&format!("mavid explain: {}", self.given.vehicle.name), &self.answer());
-        page.tags(&[
+        let flights = self.given.inputs.len();
+        let mut tags = vec![
             self.verdict().name().replace('_', " "),
-            format!("{} flight(s) explained", self.given.inputs.len()),
+            format!("{flights} flight{} explained", if flights == 1 { "" } else { "s" }),
             self.shown_on.heading(),
-        ]);
+        ];
+        if self.explanation.too_little_excitation {
+            tags.push("too little excitation".to_owned());
+        }
+        tags.extend(self.other_vehicle().map(|_| "hold-out of another vehicle".to_owned()));
+        page.tags(&tags);
         self.given.warnings.iter().for_each(|warning| page.warning(warning));
         self.figures(&mut page, traces);
         self.found_section(&mut page);
@@ -130,6 +136,9 @@ impl Story {
             page.warning(&format!("Not shown on anything that was not used: {reason}."));
         }
         if let Some(shown) = &self.shown {
+            if let Some(why) = &shown.no_open_loop {
+                page.note(&format!("Nothing could be predicted in open loop: {why}."));
+            }
             weak_table(page, shown);
             closed_loop_table(page, shown);
             agreement_table(page, shown);

@@ -1,8 +1,10 @@
 //! What `explain` says: the sentence, a page for the terminal, JSON, the model file, the report.
 
 mod answer;
+mod brief;
 mod document;
 mod figures;
+mod fit;
 mod html;
 mod located;
 mod model;
@@ -18,3 +20,5 @@ pub use page::explanation_page;
 pub use readers::for_readers;
 pub use show::{Predicted, ShownOn};
 pub use story::{Estimate, Given, Story};
+
+pub(super) use words::called;

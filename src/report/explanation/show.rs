@@ -80,7 +80,20 @@ impl Predicted {
             .into_iter()
             .zip(QUANTITIES)
             .filter_map(|(compared, (name, _))| Some((name, compared?.improvement_percent.value)))
+            // a model that left the flight has no error to speak of
+            .filter(|(_, percent)| percent.is_finite())
             .max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The quantity whose error falls least, or rises, and by how much, percent.
+    #[must_use]
+    pub fn least(&self) -> Option<(&'static str, f64)> {
+        self.half_second()
+            .into_iter()
+            .zip(QUANTITIES)
+            .filter_map(|(compared, (name, _))| Some((name, compared?.improvement_percent.value)))
+            .filter(|(_, percent)| percent.is_finite())
+            .min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Mean improvement over the quantities, percent.

@@ -8,6 +8,7 @@ use crate::diagnose::show::Shown;
 use crate::diagnose::{CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, Named, Nuisance, Verdict};
 use crate::physics::ActiveEffect;
 use crate::report::InputFile;
+use crate::report::number::significant;
 use crate::signals::Quality;
 use crate::vehicle::{RigidBody, Vehicle};
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -105,6 +106,19 @@ impl Story {
     pub fn fitted(&self) -> &Fitted {
         let search = &self.explanation.search;
         if self.verdict() == Verdict::Unexplained { &search.before } else { &search.after }
+    }
+
+    /// What shows that the hold-out is of another vehicle; `None` where it is not.
+    #[must_use]
+    pub fn other_vehicle(&self) -> Option<String> {
+        let by = self.shown.as_ref()?.other_vehicle_by()?;
+        Some(format!(
+            "{} {} {unit} there, {} {unit} here",
+            by.name,
+            significant(by.held_out, 3),
+            significant(by.identified, 3),
+            unit = by.unit
+        ))
     }
 
     /// The vehicle as identified.

@@ -48,11 +48,7 @@ pub fn clause(named: &Named, vehicle: &Vehicle) -> String {
         "steady_wind" => wind(&values),
         "mass_change" => mass_change(&values, mass_kg),
         "weak_rotor" => weak_rotor(&values, vehicle),
-        "com_offset" => format!(
-            "The centre of mass is off by {} mm forward and {} mm to the left of where the vehicle file has it: thrust turns the vehicle about it",
-            values.said("x", 1e3),
-            values.said("y", 1e3)
-        ),
+        "com_offset" => com_offset(&values),
         "thrust_tilt" => format!(
             "The thrust axis leans by {} deg about body x and {} deg about body y: thrust pushes sideways, fixed in the body",
             values.said("x", 1.0_f64.to_degrees()),
@@ -144,6 +140,24 @@ fn axes(values: &Values<'_>, names: &[&str], unit: &str) -> String {
     format!("{} {unit} of the body", list(each.collect()))
 }
 
+/// Sides, not signs; what was not estimated is not said.
+fn com_offset(values: &Values<'_>) -> String {
+    let side = |name: &str, plus: &str, minus: &str| {
+        let p = values.get(name).filter(|p| p.std > 0.0)?;
+        let side = if p.value < 0.0 { minus } else { plus };
+        Some(format!("{} mm {side}", with_error(1e3 * p.value.abs(), 1e3 * p.std)))
+    };
+    let sides: Vec<String> =
+        [side("x", "forward", "aft"), side("y", "to the left", "to the right"), side("z", "above", "below")]
+            .into_iter()
+            .flatten()
+            .collect();
+    format!(
+        "The centre of mass is {} of where the vehicle file has it: thrust turns the vehicle about it",
+        sides.join(" and ")
+    )
+}
+
 fn ground(values: &Values<'_>, vehicle: &Vehicle) -> String {
     let radius = vehicle.propulsion.rotor_radius_m;
     let (rho, ca, cb) = (values.value("rho"), values.value("ca"), values.value("cb"));
@@ -165,6 +179,22 @@ fn ground(values: &Values<'_>, vehicle: &Vehicle) -> String {
 const POINTS: [&str; 8] =
     ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
 
+/// Degrees from north, clockwise, from where a wind towards north and west (m/s) comes.
+fn from_deg(north: f64, west: f64) -> f64 {
+    west.atan2(-north).to_degrees().rem_euclid(360.0)
+}
+
+/// The point of the compass from where a wind towards north and west (m/s) comes.
+pub(super) fn point_of(north: f64, west: f64) -> &'static str {
+    let from_deg = from_deg(north, west);
+    POINTS
+        .iter()
+        .cycle()
+        .zip([0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0, 360.0])
+        .min_by(|a, b| (a.1 - from_deg).abs().total_cmp(&(b.1 - from_deg).abs()))
+        .map_or("north", |(name, _)| name)
+}
+
 fn wind(values: &Values<'_>) -> String {
     let (north, east) = (values.value("north"), -values.value("west"));
     let speed = north.hypot(east);
@@ -174,13 +204,8 @@ fn wind(values: &Values<'_>) -> String {
     } else {
         std("north").max(std("west"))
     };
-    let from_deg = (-east).atan2(-north).to_degrees().rem_euclid(360.0);
-    let point = POINTS
-        .iter()
-        .cycle()
-        .zip([0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0, 360.0])
-        .min_by(|a, b| (a.1 - from_deg).abs().total_cmp(&(b.1 - from_deg).abs()))
-        .map_or("north", |(name, _)| name);
+    let from_deg = from_deg(north, -east);
+    let point = point_of(north, -east);
     format!(
         "A steady wind was left out: {} m/s from {point} ({from_deg:.0} deg), {} m/s towards north and {} m/s towards west",
         with_error(speed, speed_std),
@@ -199,14 +224,16 @@ fn mass_change(values: &Values<'_>, mass_kg: f64) -> String {
     )
 }
 
-fn weak_rotor(values: &Values<'_>, vehicle: &Vehicle) -> String {
-    let number = values.value("rotor");
-    let name = vehicle
-        .rotors
-        .iter()
-        .enumerate()
+/// `rotor front_left`, by its number.
+pub(super) fn rotor_name(vehicle: &Vehicle, number: f64) -> String {
+    let mut rotors = vehicle.rotors.iter().enumerate();
+    rotors
         .find(|(index, _)| (*index as f64 - number).abs() < 0.5)
-        .map_or_else(|| format!("rotor {number:.0}"), |(_, rotor)| format!("rotor {}", rotor.name));
+        .map_or_else(|| format!("rotor {number:.0}"), |(_, rotor)| format!("rotor {}", rotor.name))
+}
+
+fn weak_rotor(values: &Values<'_>, vehicle: &Vehicle) -> String {
+    let name = rotor_name(vehicle, values.value("rotor"));
     let factor = values.value("factor");
     let std = values.get("factor").map_or(0.0, |p| p.std);
     let (what, change) = if factor < 1.0 { ("weak", 1.0 - factor) } else { ("strong", factor - 1.0) };

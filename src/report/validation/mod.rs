@@ -1,16 +1,22 @@
 //! The paper's two validations and open-loop playback as tables and charts.
 
+mod html;
+
 use serde::Serialize;
 use std::fmt::Write;
 
 use super::chart::{Line, Panel};
 use crate::compare::{Fit, SIGNALS, TenSignals, improvement_percent};
+pub use html::{ValidatedFlight, validation_report};
 
 /// RMS errors, one column a model; the first column is what the others are compared with.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ErrorTable {
     /// what was compared
     pub title: String,
+    /// s, length of the windows of a playback
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window_s: Option<f64>,
     /// names of the models
     pub models: Vec<String>,
     /// one a signal or component
@@ -57,6 +63,7 @@ impl ErrorTable {
         };
         Self {
             title: title.into(),
+            window_s: None,
             models: columns.iter().map(|(name, _)| name.clone()).collect(),
             rows: rows.iter().enumerate().map(row).collect(),
             missing: columns.iter().filter_map(why).collect(),
@@ -116,7 +123,7 @@ pub fn closed_loop_table(
 }
 
 /// Components of (43).
-const COMPONENTS: [(&str, &str); 4] =
+pub(super) const COMPONENTS: [(&str, &str); 4] =
     [("1: F_z", "N"), ("2: tau_phi", "N m"), ("3: tau_theta", "N m"), ("4: tau_psi", "N m")];
 
 /// Tables 5 to 12: errors of the regression model's output, one column a set of parameters.
@@ -132,16 +139,17 @@ pub fn prediction_table(
     ErrorTable::new(title, &COMPONENTS, &columns)
 }
 
-/// Open-loop playback, one column a model.
+/// Open-loop playback over windows of `window_s`, one column a model.
 #[must_use]
-pub fn playback_table(title: impl Into<String>, fits: &[(String, Result<Fit, String>)]) -> ErrorTable {
+pub fn playback_table(window_s: f64, fits: &[(String, Result<Fit, String>)]) -> ErrorTable {
     const ROWS: [(&str, &str); 4] =
         [("position", "m"), ("velocity", "m/s"), ("attitude", "rad"), ("body rates", "rad/s")];
     let columns: Vec<_> = fits
         .iter()
         .map(|(name, fit)| (name.clone(), fit.clone().map(|fit| fit.quantities().to_vec())))
         .collect();
-    ErrorTable::new(title, &ROWS, &columns)
+    let title = format!("Open-loop playback over windows of {window_s} s");
+    ErrorTable { window_s: Some(window_s), ..ErrorTable::new(title, &ROWS, &columns) }
 }
 
 /// Figures 6 to 9: the path over ground, then each of the ten signals along time, recorded and simulated.
