@@ -2,7 +2,11 @@
 //! a log as a ground station writes it. Nothing here knows the library's physics.
 //!
 //! `cargo bench --bench blind -- [--cases N per effect] [--clean N] [--pairs N] [--outside N] [--seed S] [--only EFFECT]
-//! [--write DIR]`: `--write` puts the flights down as cases with their answers, which `mavid prove` scores.
+//! [--write DIR]`: `--write` puts the flights down as cases with their answers, which `mavid prove` scores. Every wrong
+//! answer is told with its seed and what was true; with `BLIND_TELL` in the environment the right ones are as well.
+//!
+//! Vehicle, conditions and noise are the seed's, whatever is concealed: what one seed's noise makes look like an
+//! effect may be named beside several entries, and is one event.
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, reason = "a benchmark prints")]
 
 mod maker;

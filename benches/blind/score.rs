@@ -181,7 +181,8 @@ fn size_errors(answer: &Answer, name: &Named) -> Vec<f64> {
         .iter()
         .filter_map(|parameter| {
             let value = if turned { parameter.value.abs() } else { parameter.value };
-            Some((truth(parameter.name)?, value))
+            let truth = truth(parameter.name)?;
+            Some((if turned { truth.abs() } else { truth }, value))
         })
         .collect();
     // what is left of a rotor: the loss counts

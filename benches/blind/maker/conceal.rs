@@ -182,13 +182,13 @@ impl Case {
                 let (x, y) = angles(&mut |low, high| dice.random_range(low..high));
                 self.hidden.imu_turned = Rotation3::new(Vector3::new(x, y, 0.5 * (x + y)));
                 self.hidden.rates_turned = entry == id;
-                self.note(id, &[("x", x.abs()), ("y", y.abs())]);
+                self.note(id, &[("x", x), ("y", y)]);
             }
             "frame_misalignment" => {
                 let (x, y) = angles(&mut |low, high| dice.random_range(low..high));
                 self.hidden.frame_turned = Rotation3::new(Vector3::new(x, y, 0.5 * (x - y)));
                 self.hidden.attitude_in_frame = entry != id;
-                self.note(id, &[("x", x.abs()), ("y", y.abs())]);
+                self.note(id, &[("x", x), ("y", y)]);
             }
             "imu_offset" => {
                 let mut one = || sign(&mut || dice.random_bool(0.5)) * dice.random_range(0.15..0.35) * arm;
