@@ -10,7 +10,7 @@ use super::trace::Trace;
 use nalgebra::{DMatrix, DVector};
 
 /// Effects closer than this many standard deviations are not told apart.
-const APART: f64 = 5.0;
+pub(super) const APART: f64 = 5.0;
 /// What leaves more than this share of an effect's norm does not resemble it, however weak the effect is
 /// (a cosine below one half).
 const UNLIKE: f64 = 0.866;

@@ -1,7 +1,7 @@
 //! The whole method: search, lack of fit, verdict.
 
 use super::base::{Base, Present};
-use super::confusable::confusable_with;
+use super::confusable::{APART, confusable_with};
 use super::deviate::normal_deviate;
 use super::explanation::{Confusable, Explanation, Named, NamedParameter, Strength, Verdict};
 use super::gates::{Gates, WEAKEST_CEILING, ordinary_size};
@@ -66,6 +66,9 @@ const LACK_TORQUE: f64 = 0.1;
 pub(super) const FAST_MOTOR_S: f64 = 0.004;
 /// No line that holds anything weighs less, kg/m.
 const LEAST_LINE_KG_M: f64 = 0.005;
+/// A lag is told from a delay beyond this: rotors that spin up and down in different times are neither, and look more
+/// like a delay.
+const TOLD_APART: f64 = 15.0;
 /// Rotors of one vehicle differ by as much.
 const SCATTER: f64 = 0.08;
 /// Rivals that explain nearly as much as what was taken.
@@ -364,7 +367,7 @@ fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<N
         (parts.delay_s - held_s(traces) - motor_s, std_s.hypot(unsure_s))
     };
     let (own, others) = if is_lag { (against_lag, against_delay) } else { (against_delay, against_lag) };
-    let told_apart = others > REFUSED && own < 0.5 * REFUSED;
+    let told_apart = others > TOLD_APART && own < 0.5 * REFUSED;
     let z = (total_s - ordinary_s) / std_s;
     Some(Named {
         id,
@@ -374,7 +377,10 @@ fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<N
         confusable_with: if told_apart {
             Vec::new()
         } else {
-            vec![Confusable { id: other, distinguishability: Some((others - own).max(0.0)) }]
+            vec![Confusable {
+                id: other,
+                distinguishability: Some((others - own).max(0.0)).filter(|d| *d < APART),
+            }]
         },
     })
 }

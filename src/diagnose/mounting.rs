@@ -3,6 +3,7 @@
 //! What stands in a nuisance's place is tried only when nothing else passes: almost any force that does not
 //! change looks a little like a lean.
 
+use super::base::Base;
 use super::candidates::{Candidate, present};
 use super::evidence::Weighted;
 use super::rows::Nuisance;
@@ -21,18 +22,33 @@ const ORDINARY_RAD: f64 = 0.0087;
 /// No inertial unit sits at the centre of mass to better than this, m.
 const ORDINARY_M: f64 = 0.005;
 
-/// Identifier, the parameters that are estimated, how many there are, and the size below which it has no name.
-const MOUNTINGS: [(&str, &[usize], usize, f64); 4] = [
-    (THRUST_TILT, &[0, 1], 2, ORDINARY_RAD),
+/// Identifier, the parameters that are estimated, the values at which it does nothing, the size below which it has no
+/// name, and when it is tried.
+const MOUNTINGS: [(&str, &[usize], &[f64], f64, Turn); 5] = [
+    (THRUST_TILT, &[0, 1], &[0.0; 2], ORDINARY_RAD, Turn::Last),
     // turned about the vertical nothing changes
-    (FRAME_MISALIGNMENT, &[0, 1], 3, ORDINARY_RAD),
-    ("imu_misalignment", &[0, 1, 2], 3, ORDINARY_RAD),
-    ("imu_offset", &[0, 1, 2], 3, ORDINARY_M),
+    (FRAME_MISALIGNMENT, &[0, 1], &[0.0; 3], ORDINARY_RAD, Turn::Last),
+    // only the position is askew, not the attitude
+    (FRAME_MISALIGNMENT, &[0, 1, 2], &[0.0; 4], ORDINARY_RAD, Turn::First),
+    ("imu_misalignment", &[0, 1, 2], &[0.0; 3], ORDINARY_RAD, Turn::First),
+    ("imu_offset", &[0, 1, 2], &[0.0; 3], ORDINARY_M, Turn::First),
 ];
+
+/// Where an attitude that is turned with its frame comes in place of the nuisance for its level.
+const WITH_ATTITUDE: usize = 3;
+
+/// The base has an effect for an attitude that is not level.
+pub(super) fn turns_attitude(base: &Base) -> bool {
+    base.estimates(FRAME_MISALIGNMENT)
+        && base.present.iter().any(|present| {
+            present.effect.id() == FRAME_MISALIGNMENT
+                && present.values.get(WITH_ATTITUDE).is_none_or(|share| *share > 0.0)
+        })
+}
 
 /// The size (norm of the parameters) below which a mounting is like any other; `None` for other effects.
 pub(super) fn ordinary_size(id: &str) -> Option<f64> {
-    MOUNTINGS.iter().find(|(mounting, ..)| *mounting == id).map(|(.., size)| *size)
+    MOUNTINGS.iter().find(|(mounting, ..)| *mounting == id).map(|(.., size, _)| *size)
 }
 
 /// Whether a nuisance column stands for small sizes of the effect.
@@ -58,10 +74,10 @@ pub(super) fn mountings(flights: &[Trace], fitted: &Fitted, turn: Turn) -> Vec<T
     let twice = flights.iter().all(Trace::reads_force_twice);
     MOUNTINGS
         .par_iter()
-        .filter(|(id, ..)| (turn == Turn::Last) == [THRUST_TILT, FRAME_MISALIGNMENT].contains(id))
+        .filter(|(.., of)| *of == turn)
         .filter(|(id, ..)| twice || *id == THRUST_TILT)
-        .filter_map(|&(id, free, count, _)| {
-            let part = present(id, &[0.0; 3][..count], free)?;
+        .filter_map(|&(id, free, nothing, ..)| {
+            let part = present(id, nothing, free)?;
             let candidate = Candidate { id, parts: vec![part], through: None };
             if is_present(&fitted.base, &candidate) {
                 return None;

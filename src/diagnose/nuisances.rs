@@ -2,7 +2,7 @@
 
 use super::along::Turning;
 use super::base::Base;
-use super::mounting::{FRAME_MISALIGNMENT, THRUST_TILT};
+use super::mounting::{THRUST_TILT, turns_attitude};
 use super::rows::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
 use super::trace::Trace;
 use crate::physics::Wrench;
@@ -83,7 +83,7 @@ pub(super) fn nuisances(
         let values = channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);
         out.push(column(Nuisance::Jitter, Some(JITTER_STD), values));
     }
-    out.extend(sensor_nuisances(trace, mass_kg, base.estimates(FRAME_MISALIGNMENT)));
+    out.extend(sensor_nuisances(trace, mass_kg, turns_attitude(base)));
     out
 }
 

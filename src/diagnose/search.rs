@@ -324,7 +324,8 @@ fn released(mut present: Present) -> Present {
     if present.effect.id() == "ground_effect" && present.free == [1] {
         present.free.push(2);
     }
-    if present.values.len() > finer && present.effect.id() != "motor_lag" {
+    let shaped = !["motor_lag", "frame_misalignment"].contains(&present.effect.id());
+    if present.values.len() > finer && shaped {
         present.free.push(finer);
     }
     present

@@ -6,7 +6,8 @@ use crate::physics::{Effect, Hook, Measurement, Parameter, State};
 
 /// The reference's axes are turned against the world's by the rotation vector `(x, y, z)`, `p_world = R_e p`
 /// and `q_world = q_e q`: position, velocity and attitude are shown in its axes, the inertial unit is not
-/// affected.
+/// affected. In the finer form only the share `with_attitude` of the rotation vector turns the attitude: none where
+/// the vehicle estimates its attitude by itself and takes only its position from outside.
 #[derive(Debug, Clone, Copy)]
 pub struct FrameMisalignment;
 
@@ -15,6 +16,8 @@ const PARAMETERS: &[Parameter] = &[
     Parameter { name: "y", unit: "rad", min: -0.2, max: 0.2 },
     Parameter { name: "z", unit: "rad", min: -0.2, max: 0.2 },
 ];
+
+const FINER: &[Parameter] = &[Parameter { name: "with_attitude", unit: "-", min: 0.0, max: 1.0 }];
 
 impl Effect for FrameMisalignment {
     fn id(&self) -> &'static str {
@@ -29,6 +32,10 @@ impl Effect for FrameMisalignment {
         PARAMETERS
     }
 
+    fn finer_parameters(&self) -> &'static [Parameter] {
+        FINER
+    }
+
     fn hooks(&self) -> &'static [Hook] {
         &[Hook::Sensors]
     }
@@ -40,9 +47,12 @@ impl Effect for FrameMisalignment {
         parameters: &[f64],
         seen: &mut Measurement,
     ) {
-        let turn = UnitQuaternion::from_scaled_axis(Vector3::from_column_slice(parameters)).inverse();
+        let (axes, share) = parameters.split_at(PARAMETERS.len().min(parameters.len()));
+        let angles = -Vector3::from_column_slice(axes);
+        let turn = UnitQuaternion::from_scaled_axis(angles);
         seen.state.position_m = turn * seen.state.position_m;
         seen.state.velocity_m_s = turn * seen.state.velocity_m_s;
-        seen.state.attitude = turn * seen.state.attitude;
+        let of_attitude = share.first().copied().unwrap_or(1.0);
+        seen.state.attitude = UnitQuaternion::from_scaled_axis(angles * of_attitude) * seen.state.attitude;
     }
 }
