@@ -152,6 +152,52 @@ pub fn skew(w: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -w.z, w.y, w.z, 0.0, -w.x, -w.y, w.x, 0.0)
 }
 
+/// A place on Earth as MAVLink says it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Geodetic {
+    /// degrees north
+    pub latitude_deg: f64,
+    /// degrees east
+    pub longitude_deg: f64,
+}
+
+/// WGS 84: semi-major axis, m, and first eccentricity squared.
+const SEMI_MAJOR_M: f64 = 6_378_137.0;
+const ECCENTRICITY_SQUARED: f64 = 6.694_379_990_14e-3;
+
+impl Geodetic {
+    /// Metres north and west of `origin`, by the radii of curvature there: good to centimetres over a
+    /// kilometre.
+    #[must_use]
+    pub fn north_west_m(&self, origin: &Self) -> [f64; 2] {
+        let (along_m, across_m) = origin.radii_m();
+        // the short way round at the date line
+        let east_deg = (self.longitude_deg - origin.longitude_deg + 540.0).rem_euclid(360.0) - 180.0;
+        let north = (self.latitude_deg - origin.latitude_deg).to_radians() * along_m;
+        [north, -east_deg.to_radians() * across_m]
+    }
+
+    /// The place that is this many metres north and west of `self`: the inverse of
+    /// [`north_west_m`](Self::north_west_m).
+    #[must_use]
+    pub fn moved(&self, [north_m, west_m]: [f64; 2]) -> Self {
+        let (along_m, across_m) = self.radii_m();
+        let east_deg = (-west_m / across_m).to_degrees();
+        Self {
+            latitude_deg: self.latitude_deg + (north_m / along_m).to_degrees(),
+            longitude_deg: (self.longitude_deg + east_deg + 540.0).rem_euclid(360.0) - 180.0,
+        }
+    }
+
+    /// Metres in a radian of latitude, and of longitude.
+    fn radii_m(&self) -> (f64, f64) {
+        let (sin, cos) = self.latitude_deg.to_radians().sin_cos();
+        let flat = 1.0 - ECCENTRICITY_SQUARED * sin * sin;
+        let across_m = SEMI_MAJOR_M / flat.sqrt();
+        (across_m * (1.0 - ECCENTRICITY_SQUARED) / flat, across_m * cos)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -204,5 +250,18 @@ mod tests {
     fn hover_specific_force_points_up() {
         let body = body_from_frd([0.0, 0.0, -9.81]);
         assert_eq!(body.0.z, 9.81);
+    }
+
+    #[test]
+    fn a_minute_of_latitude_is_a_nautical_mile() {
+        let origin = Geodetic { latitude_deg: 45.0, longitude_deg: 179.999 };
+        let place = Geodetic { latitude_deg: 45.0 + 1.0 / 60.0, longitude_deg: -179.999 };
+        let [north, west] = place.north_west_m(&origin);
+        assert!((north - 1852.2).abs() < 0.5, "{north}");
+        // 0.002 degrees across the date line, to the east
+        assert!((west + 157.7).abs() < 0.5, "{west}");
+        let back = origin.moved([north, west]);
+        assert!((back.latitude_deg - place.latitude_deg).abs() < 1e-9, "{back:?}");
+        assert!((back.longitude_deg - place.longitude_deg).abs() < 1e-9, "{back:?}");
     }
 }

@@ -23,6 +23,7 @@ pub mod config;
 pub mod diagnose;
 pub mod estimate;
 pub mod export;
+pub mod fence;
 pub mod fly;
 pub mod frames;
 pub mod inspect;

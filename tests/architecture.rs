@@ -11,6 +11,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("frames", &["units"]),
     ("vehicle", &["units", "frames"]),
     ("trajectory", &["units", "frames"]),
+    ("fence", &["frames"]),
     ("physics", &["vehicle"]),
     ("log", &["units", "frames"]),
     // frames over sockets and serial ports, and their recording
@@ -31,8 +32,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     // config: a model file is a vehicle file
     ("report", &["diagnose", "config"]),
     ("export", &["diagnose"]),
-    ("sitl", &["physics", "simulate", "log", "link"]),
-    ("fly", &["plan", "log", "vehicle", "trajectory", "link"]),
+    ("sitl", &["physics", "simulate", "log", "link", "fence"]),
+    ("fly", &["plan", "log", "vehicle", "trajectory", "link", "fence"]),
 ];
 
 /// The binary's own modules: they may use anything, and nothing of the library may use them.

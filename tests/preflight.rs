@@ -3,14 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
 use mavid::config::load_vehicle;
+use mavid::fence::{FenceItem, Zone};
 use mavid::fly::finding::{Finding, Level, worst};
 use mavid::fly::parameters::{Download, DownloadSettings, Parameters, wanted};
-use mavid::fly::preflight::{
-    BatteryState, Fence, FenceItem, Geodetic, Readiness, Situation, Zone, preflight,
-};
+use mavid::fly::preflight::{BatteryState, Fence, Readiness, Situation, preflight};
 use mavid::fly::requests::{
     Answer, Capacity, LinkKind, Need, RequestSettings, Requests, request_set, slow_request_set,
 };
+use mavid::frames::Geodetic;
 use mavid::log::{Autopilot, ComponentId, Decoder, Frame, Record, SystemId, Vehicle};
 use mavid::trajectory::{FlightPath, FourierAxis, FourierTrajectory, Segment, Transition, at_rest};
 use mavid::vehicle::Limits;

@@ -4,10 +4,12 @@
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
 use mavid::config::load_vehicle;
+use mavid::fence::FenceItem;
 use mavid::fly::finding::{Level, worst};
 use mavid::fly::parameters::{Download, DownloadSettings, Parameters, failsafe_declaration, wanted};
-use mavid::fly::preflight::{Fence, FenceDownload, FenceItem, FenceOutcome, Geodetic};
+use mavid::fly::preflight::{Fence, FenceDownload, FenceOutcome};
 use mavid::fly::requests::{Capacity, LinkKind, Need, RatesReport, RequestSettings, Requests, request_set};
+use mavid::frames::Geodetic;
 use mavid::log::{Autopilot, ComponentId, Decoder, Event, Frame, Record, SystemId, Vehicle};
 use mavid::sitl::{self, ArduPilotRelease, AutopilotKind, LinkId, LinkRole, Settings};
 use mavlink::dialects::ardupilotmega::MavMessage;
@@ -32,7 +34,7 @@ impl Peer {
         Self::with_fence(kind, loss, latency_ms, Vec::new())
     }
 
-    fn with_fence(kind: AutopilotKind, loss: f64, latency_ms: u64, fence: Vec<sitl::FenceItem>) -> Self {
+    fn with_fence(kind: AutopilotKind, loss: f64, latency_ms: u64, fence: Vec<FenceItem>) -> Self {
         let description =
             load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml")).unwrap();
         let settings = Settings {
@@ -208,11 +210,13 @@ fn fence_of(peer: &mut Peer, kind: AutopilotKind) -> (FenceOutcome, Vec<FenceIte
 #[test]
 fn the_stored_fence_is_read_over_any_link() {
     let origin = Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594 };
-    let corner = |north_deg: f64, east_deg: f64| sitl::FenceItem {
+    let corner = |north_deg: f64, east_deg: f64| FenceItem {
         command: 5001,
-        param1: 4.0,
-        latitude_deg: origin.latitude_deg + north_deg,
-        longitude_deg: origin.longitude_deg + east_deg,
+        parameter: 4.0,
+        place: Geodetic {
+            latitude_deg: origin.latitude_deg + north_deg,
+            longitude_deg: origin.longitude_deg + east_deg,
+        },
     };
     let stored = vec![corner(-1e-4, -1e-4), corner(1e-4, -1e-4), corner(1e-4, 1e-4), corner(-1e-4, 1e-4)];
     for kind in KINDS {

@@ -63,6 +63,9 @@ pub struct SitlArgs {
     /// a parameter of the autopilot instead of its default; may be given several times
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
     pub param: Vec<(String, f64)>,
+    /// signs, and believes only what is signed: a file with 32 bytes, 64 hexadecimal digits, or a passphrase
+    #[arg(long, value_name = "FILE")]
+    pub signing_key_file: Option<PathBuf>,
     /// s that each frame takes on its way out
     #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true)]
     pub latency: f64,

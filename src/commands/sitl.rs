@@ -1,10 +1,10 @@
 //! `mavid sitl`: the embedded simulated vehicle on its own, for any ground station.
 
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use mavid::config::{LoadedVehicle, parse_vehicle, read_vehicle};
-use mavid::link::{Address, LinkOptions, LinkReader};
+use mavid::link::{Address, LinkOptions, LinkReader, SigningKey};
 use mavid::log::{ComponentId, SystemId};
 use mavid::sitl::{
     ArduPilotRelease, AutopilotKind, LinkRole, Pace, SensorSettings, Settings, Vehicle, serve,
@@ -117,6 +117,8 @@ fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
     if let Some(path) = &args.effects {
         acting.extend(effects_file(path, &vehicle)?);
     }
+    let key = args.signing_key_file.as_deref().map(SigningKey::read).transpose();
+    let signing_key = key.map_err(|error| CommandError::Input(error.to_string()))?;
     let base = Settings::new(vehicle, kind);
     let sensors = SensorSettings { noise_scale: args.noise, ..base.sensors };
     Ok(Settings {
@@ -129,9 +131,17 @@ fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
         latency: seconds_from("latency", args.latency)?,
         loss: args.loss,
         warm_up: args.warm_up.map(|seconds| seconds_from("warm-up", seconds)).transpose()?,
+        signing_key,
+        boot_unix_us: unix_us(),
         parameters: args.param.clone(),
         ..base
     })
+}
+
+/// Of the host.
+fn unix_us() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_micros()).unwrap_or(u64::MAX)
 }
 
 fn loaded(path: Option<&Path>) -> Result<LoadedVehicle, CommandError> {

@@ -182,9 +182,9 @@ impl Telemetry {
                 self.note_state(now, state, place, news);
             }
             436 => {
-                if let Some(Seen { value, .. }) = self.state {
+                if let Some(Seen { value, at }) = self.state {
                     let state = FlightState { custom_mode: payload.u32(0), ..value };
-                    self.note_state(now, state, place, news);
+                    self.note_state(at, state, place, news);
                 }
             }
             1 => {
@@ -206,14 +206,14 @@ impl Telemetry {
         }
     }
 
-    /// A state that was sent before the one that is known says nothing.
-    fn note_state(&mut self, now: Duration, state: FlightState, place: i64, news: &mut Vec<Novelty>) {
+    /// A state that was sent before the one that is known says nothing. `at`: of the last that said whether it is armed.
+    fn note_state(&mut self, at: Duration, state: FlightState, place: i64, news: &mut Vec<Novelty>) {
         if place < self.state_place {
             return;
         }
         self.state_place = place;
         let from = self.state.map(|seen| seen.value);
-        self.state = Some(Seen { at: now, value: state });
+        self.state = Some(Seen { at, value: state });
         if from != Some(state) {
             news.push(Novelty::State { from, to: state });
         }

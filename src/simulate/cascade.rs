@@ -120,6 +120,9 @@ pub struct AutopilotCascade {
     wanted: Wanted,
 }
 
+/// Cosine of the lean beyond which no more thrust makes up for it (-).
+const LEANING_MIN: f64 = 0.5;
+
 impl AutopilotCascade {
     /// A cascade that believes `vehicle`; commands stay within `command_min` to 1.
     ///
@@ -172,12 +175,36 @@ impl AutopilotCascade {
         thrust_n: f64,
         (estimate, period_s): (&State, f64),
     ) -> [f64; MAX_ROTORS] {
+        self.velocity.reset();
+        self.turned(attitude, rates_rad_s, thrust_n, (estimate, period_s))
+    }
+
+    /// The same with the thrust that keeps to the setpoint's height and climb, however the vehicle leans (up to 60
+    /// degrees); what the setpoint asks for horizontally does not count.
+    pub fn turn_at_height(
+        &mut self,
+        attitude: Option<UnitQuaternion<f64>>,
+        rates_rad_s: &Vector3<f64>,
+        setpoint: &Setpoint,
+        (estimate, period_s): (&State, f64),
+    ) -> [f64; MAX_ROTORS] {
+        let up_m_s2 = self.acceleration(setpoint, estimate, period_s).z;
+        let leaning = (estimate.attitude * Vector3::z()).z.max(LEANING_MIN);
+        self.turned(attitude, rates_rad_s, self.body.mass_kg * up_m_s2 / leaning, (estimate, period_s))
+    }
+
+    fn turned(
+        &mut self,
+        attitude: Option<UnitQuaternion<f64>>,
+        rates_rad_s: &Vector3<f64>,
+        thrust_n: f64,
+        (estimate, period_s): (&State, f64),
+    ) -> [f64; MAX_ROTORS] {
         let most = self.gains.rates_max_rad_s;
         let rates_rad_s = match &attitude {
             Some(attitude) => self.rates_wanted(attitude, estimate, rates_rad_s.z),
             None => rates_rad_s.zip_map(&most, |rate, most| rate.clamp(-most, most)),
         };
-        self.velocity.reset();
         self.wanted = Wanted { attitude: attitude.unwrap_or(estimate.attitude), rates_rad_s, thrust_n };
         self.rate_commands(estimate, period_s)
     }

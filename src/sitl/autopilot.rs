@@ -6,7 +6,9 @@ use std::time::Duration;
 use nalgebra::Vector3;
 
 use super::battery::Battery;
+use super::demand::{AttitudeDemand, Lift};
 use super::estimator::Estimator;
+use super::fence::Fence;
 use super::guidance::{Guidance, Leg, Task};
 use super::safety::Safety;
 use super::tuning::Tuning;
@@ -30,6 +32,7 @@ pub(super) enum Severity {
     Critical = 2,
     Error = 3,
     Warning = 4,
+    Notice = 5,
     Info = 6,
 }
 
@@ -57,6 +60,7 @@ pub(super) struct Autopilot {
     pub(super) estimator: Estimator,
     pub(super) battery: Battery,
     pub(super) safety: Safety,
+    pub(super) fence: Fence,
     pub(super) guidance: Guidance,
     pub(super) cascade: AutopilotCascade,
     pub(super) weight_n: f64,
@@ -73,6 +77,8 @@ pub(super) struct Autopilot {
     pub(super) mode: Mode,
     /// what was asked for
     pub(super) intended: Mode,
+    /// PX4's after disarming: the last one asked for in which it arms
+    pub(super) resting: Mode,
     pub(super) home_m: Option<Vector3<f64>>,
     /// what the cascade was last asked for
     pub(super) setpoint: Setpoint,
@@ -93,6 +99,7 @@ impl Autopilot {
             estimator,
             battery: Battery::new(settings),
             safety: Safety::new(settings.transmitter),
+            fence: Fence::of(settings),
             guidance: Guidance::new(&state, gains),
             cascade: AutopilotCascade::new(vehicle, gains, COMMAND_MIN)?,
             weight_n: vehicle.body.mass_kg * vehicle.gravity_m_s2,
@@ -104,6 +111,7 @@ impl Autopilot {
             standing_since: None,
             mode,
             intended: mode,
+            resting: mode,
             home_m: None,
             setpoint: Setpoint {
                 position_m: state.position_m,
@@ -165,18 +173,21 @@ impl Autopilot {
             self.estimator.align_at(state.position_m.z - home_m.z);
         }
         self.setpoint = self.guidance.setpoint(&state, &home_m, (&self.tuning, now), period_s);
-        let outputs = match self.guidance.task {
-            Task::Turn(demand) => {
-                let thrust_n = demand.thrust * self.thrust_max_n;
-                self.cascade.turn(demand.attitude, &demand.rates_rad_s, thrust_n, (&state, period_s))
+        let outputs = match self.guidance.turn_wanted(&self.tuning, now) {
+            Some(AttitudeDemand { attitude, rates_rad_s, lift: Lift::Thrust(thrust) }) => {
+                let thrust_n = thrust * self.thrust_max_n;
+                self.cascade.turn(attitude, &rates_rad_s, thrust_n, (&state, period_s))
             }
-            _ => self.cascade.commands(&self.setpoint, &state, period_s),
+            Some(AttitudeDemand { attitude, rates_rad_s, lift: Lift::Climb(_) }) => {
+                self.cascade.turn_at_height(attitude, &rates_rad_s, &self.setpoint, (&state, period_s))
+            }
+            None => self.cascade.commands(&self.setpoint, &state, period_s),
         };
         self.watch_ground(now);
         if self.guidance.has_taken_off(&state) {
             self.guidance.begin(Task::Hold, &state);
             if self.mode == Mode::Takeoff {
-                (self.mode, self.intended) = (Mode::Hold, Mode::Hold);
+                (self.mode, self.intended, self.resting) = (Mode::Hold, Mode::Hold, Mode::Hold);
             }
         }
         outputs
@@ -226,8 +237,8 @@ impl Autopilot {
         self.landed_since.get_or_insert(Duration::ZERO);
         let text = if self.kind.is_px4() { why } else { "Disarming motors" };
         self.say(Severity::Info, text);
-        if self.kind.is_px4() && matches!(self.intended, Mode::Land | Mode::Return | Mode::Takeoff) {
-            (self.mode, self.intended) = (Mode::Hold, Mode::Hold);
+        if self.kind.is_px4() {
+            (self.mode, self.intended) = (self.resting, self.resting);
         }
         self.safety.disarmed();
     }
@@ -298,6 +309,9 @@ impl Autopilot {
         }
         if self.mode != mode || self.intended != mode {
             self.intended = mode;
+            if !mode.refuses_arming() {
+                self.resting = mode;
+            }
             self.safety.mode_chosen();
             self.enter(mode);
         }

@@ -1,4 +1,4 @@
-//! SET_POSITION_TARGET_LOCAL_NED as each autopilot reads it, SET_ATTITUDE_TARGET as PX4 does.
+//! SET_POSITION_TARGET_LOCAL_NED and SET_ATTITUDE_TARGET as each autopilot reads them.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -31,30 +31,95 @@ pub(super) struct AttitudeDemand {
     pub(super) attitude: Option<UnitQuaternion<f64>>,
     /// body, rad/s; with an attitude only the last, about the vertical
     pub(super) rates_rad_s: Vector3<f64>,
+    pub(super) lift: Lift,
+}
+
+/// What carries the vehicle meanwhile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Lift {
     /// share of full thrust, 0 to 1
-    pub(super) thrust: f64,
+    Thrust(f64),
+    /// up, m/s
+    Climb(f64),
+}
+
+/// How ArduPilot reads the thrust of SET_ATTITUDE_TARGET.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum ThrustField {
+    /// as a thrust
+    Thrust,
+    /// half stays at its height, one climbs and zero descends at these speeds, m/s
+    Climb {
+        /// upwards
+        climb_m_s: f64,
+        /// downwards, positive
+        descent_m_s: f64,
+    },
 }
 
 impl AttitudeDemand {
-    /// `None` where it asks for nothing that can be flown: neither an attitude nor all three rates, no thrust,
-    /// or what is no number.
-    pub(super) fn read(payload: Payload) -> Option<Self> {
+    /// As PX4 reads it; `None` where it asks for nothing that can be flown: neither an attitude nor all three
+    /// rates, no thrust, or what is no number.
+    pub(super) fn px4(payload: Payload) -> Option<Self> {
         let mask = payload.u8(38);
         let thrust = payload.f32(32);
         let [x, y, z] = body_from_frd(payload.f32s(20)).0.into();
         if mask & THRUST != 0 || !thrust.is_finite() {
             return None;
         }
-        let thrust = thrust.clamp(0.0, 1.0);
+        let lift = Lift::Thrust(thrust.clamp(0.0, 1.0));
         if mask & ATTITUDE == 0 {
             let Attitude(attitude) = attitude_from_frd_ned(payload.f32s(4))?;
             let yaw_rate = if mask & TURN_YAW == 0 && z.is_finite() { z } else { 0.0 };
             let rates_rad_s = Vector3::new(0.0, 0.0, yaw_rate);
-            return Some(Self { attitude: Some(attitude), rates_rad_s, thrust });
+            return Some(Self { attitude: Some(attitude), rates_rad_s, lift });
         }
         let rates_rad_s = Vector3::new(x, y, z);
         let all = mask & TURN == 0 && rates_rad_s.iter().all(|rate| rate.is_finite());
-        all.then_some(Self { attitude: None, rates_rad_s, thrust })
+        all.then_some(Self { attitude: None, rates_rad_s, lift })
+    }
+
+    /// As ArduPilot reads it; `None` where it stops the vehicle: no thrust, a quaternion that is none, or rates
+    /// about some axes only.
+    pub(super) fn ardupilot(payload: Payload, field: ThrustField) -> Option<Self> {
+        let mask = payload.u8(38);
+        let thrust = payload.f32(32);
+        let rates = match mask & TURN {
+            0 => body_from_frd(payload.f32s(20)).0,
+            TURN => Vector3::zeros(),
+            _ => return None,
+        };
+        let is_number = thrust.is_finite() && rates.iter().all(|rate| rate.is_finite());
+        if mask & THRUST != 0 || !is_number {
+            return None;
+        }
+        let share = thrust.clamp(0.0, 1.0);
+        let lift = match field {
+            ThrustField::Thrust => Lift::Thrust(share),
+            ThrustField::Climb { climb_m_s, .. } if share >= 0.5 => {
+                Lift::Climb((2.0 * share - 1.0) * climb_m_s)
+            }
+            ThrustField::Climb { descent_m_s, .. } => Lift::Climb((2.0 * share - 1.0) * descent_m_s),
+        };
+        if mask & ATTITUDE != 0 {
+            return Some(Self { attitude: None, rates_rad_s: rates, lift });
+        }
+        let quaternion: [f64; 4] = payload.f32s(4);
+        let square: f64 = quaternion.iter().map(|part| part * part).sum();
+        if (square - 1.0).abs() > UNIT_WITHIN {
+            return None;
+        }
+        let Attitude(attitude) = attitude_from_frd_ned(quaternion)?;
+        Some(Self { attitude: Some(attitude), rates_rad_s: Vector3::new(0.0, 0.0, rates.z), lift })
+    }
+
+    /// Level, at its height, towards a heading: what ArduPilot flies when nothing comes any more.
+    pub(super) fn level(yaw_rad: f64) -> Self {
+        Self {
+            attitude: Some(UnitQuaternion::from_euler_angles(0.0, 0.0, yaw_rad)),
+            rates_rad_s: Vector3::zeros(),
+            lift: Lift::Climb(0.0),
+        }
     }
 }
 
@@ -88,6 +153,8 @@ const TURN: u8 = 0b111;
 const TURN_YAW: u8 = 1 << 2;
 const THRUST: u8 = 1 << 6;
 const ATTITUDE: u8 = 1 << 7;
+/// A quaternion whose square is further from one is none for ArduPilot.
+const UNIT_WITHIN: f64 = 1e-3;
 
 /// The message's fields as they come.
 struct Fields {

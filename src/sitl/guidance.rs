@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use nalgebra::Vector3;
 
-use super::demand::{AttitudeDemand, Demand};
+use super::demand::{AttitudeDemand, Demand, Lift};
 use super::shaper::{Shaper, ShaperLimits, Wish};
 use super::tuning::Tuning;
 use crate::physics::State;
@@ -23,8 +23,8 @@ pub(super) enum Task {
     Return(Leg),
     /// PX4: the setpoint goes straight to the controller
     Direct(Demand),
-    /// PX4: so does the attitude, or the rates, with the thrust
-    Turn(AttitudeDemand),
+    /// an attitude or rates, with what carries the vehicle; when it came
+    Turn(AttitudeDemand, Duration),
     /// ArduPilot: the setpoint is shaped first; when it came
     Shaped(Demand, Duration),
 }
@@ -68,8 +68,10 @@ impl Guidance {
 
     /// Begins a task from where the vehicle is and as it moves.
     pub(super) fn begin(&mut self, task: Task, state: &State) {
-        let shaped = |task: &Task| !matches!(task, Task::Direct(_) | Task::Turn(_));
-        if !(shaped(&self.task) && shaped(&task)) {
+        let shaped = |task: &Task| !matches!(task, Task::Direct(_) | Task::Turn(..));
+        let turns = |task: &Task| matches!(task, Task::Turn(..));
+        let goes_on = shaped(&self.task) && shaped(&task) || turns(&self.task) && turns(&task);
+        if !goes_on {
             self.restart(state);
         }
         self.task = task;
@@ -93,7 +95,8 @@ impl Guidance {
     pub(super) fn wants_up(&self, state: &State, hover: f64) -> bool {
         match &self.task {
             Task::Takeoff(height_m) => *height_m > state.position_m.z,
-            Task::Turn(demand) => demand.thrust > hover,
+            Task::Turn(AttitudeDemand { lift: Lift::Thrust(thrust), .. }, _) => *thrust > hover,
+            Task::Turn(AttitudeDemand { lift: Lift::Climb(climb_m_s), .. }, _) => *climb_m_s > 0.0,
             Task::Direct(demand) => {
                 demand.position_m.z - state.position_m.z > 0.2
                     || demand.velocity_m_s.z > 0.1
@@ -107,9 +110,12 @@ impl Guidance {
 
     /// The task wants to go down, at the latest here.
     pub(super) fn wants_down(&self, setpoint: &Setpoint, state: &State) -> bool {
-        matches!(self.task, Task::Land | Task::Turn(_))
-            || setpoint.velocity_m_s.z < -0.1
-            || setpoint.position_m.z - state.position_m.z < -0.3
+        let lets_down = match &self.task {
+            Task::Land => true,
+            Task::Turn(demand, _) => matches!(demand.lift, Lift::Thrust(_)),
+            _ => false,
+        };
+        lets_down || setpoint.velocity_m_s.z < -0.1 || setpoint.position_m.z - state.position_m.z < -0.3
     }
 
     /// A takeoff has reached its height.
@@ -128,8 +134,8 @@ impl Guidance {
         if let Task::Direct(demand) = self.task {
             return self.direct(&demand, state, &tuning.limits, period_s);
         }
-        if let Task::Turn(_) = self.task {
-            return self.drifting(state);
+        if let Some(demand) = self.turn_wanted(tuning, now) {
+            return self.drifting(&demand, state, (&tuning.limits, period_s));
         }
         self.next_leg(state, home_m);
         let (wish, limits) = self.wish(state, home_m, (tuning, now));
@@ -144,12 +150,38 @@ impl Guidance {
         }
     }
 
-    /// No place is asked for: the vehicle is where it should be.
-    fn drifting(&mut self, state: &State) -> Setpoint {
+    /// The attitude or rates that are asked for. ArduPilot gets level when no more come (PX4 leaves OFFBOARD then).
+    pub(super) fn turn_wanted(&self, tuning: &Tuning, now: Duration) -> Option<AttitudeDemand> {
+        let Task::Turn(demand, came) = self.task else { return None };
+        let stale = now.saturating_sub(came) > tuning.setpoint_timeout;
+        Some(if stale { AttitudeDemand::level(self.yaw_rad) } else { demand })
+    }
+
+    /// No place is asked for: the vehicle is where it should be, at its height where a climb is asked for.
+    fn drifting(
+        &mut self,
+        demand: &AttitudeDemand,
+        state: &State,
+        (limits, period_s): (&ShaperLimits, f64),
+    ) -> Setpoint {
+        let before = self.shaper;
         self.restart(state);
+        self.yaw_rad = demand.attitude.unwrap_or(state.attitude).euler_angles().2;
+        if let Lift::Climb(climb_m_s) = demand.lift {
+            self.shaper.position_m.z = before.position_m.z;
+            self.shaper.velocity_m_s.z = before.velocity_m_s.z;
+            self.shaper.acceleration_m_s2.z = before.acceleration_m_s2.z;
+            let wish = Wish {
+                position_m: Vector3::repeat(f64::NAN),
+                velocity_m_s: Vector3::new(state.velocity_m_s.x, state.velocity_m_s.y, climb_m_s),
+                acceleration_m_s2: Vector3::zeros(),
+            };
+            self.shaper.step(&wish, limits, period_s);
+        }
+        let upright = |level: &Vector3<f64>, height: f64| Vector3::new(level.x, level.y, height);
         Setpoint {
-            position_m: state.position_m,
-            velocity_m_s: state.velocity_m_s,
+            position_m: upright(&state.position_m, self.shaper.position_m.z),
+            velocity_m_s: upright(&state.velocity_m_s, self.shaper.velocity_m_s.z),
             acceleration_m_s2: Vector3::zeros(),
             yaw_rad: self.yaw_rad,
             yaw_rate_rad_s: 0.0,
@@ -179,7 +211,7 @@ impl Guidance {
         let mut wish =
             Wish { position_m: Vector3::repeat(f64::NAN), velocity_m_s: zero, acceleration_m_s2: zero };
         match self.task {
-            Task::Hold | Task::Direct(_) | Task::Turn(_) => {}
+            Task::Hold | Task::Direct(_) | Task::Turn(..) => {}
             Task::Takeoff(height_m) => {
                 limits.climb_m_s = tuning.takeoff_speed_m_s;
                 wish.position_m.z = height_m;

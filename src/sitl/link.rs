@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::message::Message;
 use super::streams::Streams;
 use super::{AutopilotKind, Outgoing};
+use crate::link::Signing;
 use crate::log::{CrcSeeds, Splitter};
 
 /// Which connection of a vehicle.
@@ -62,11 +63,19 @@ impl Link {
         &mut self,
         message: &Message,
         arrives: Duration,
-        (seeds, sender): (&CrcSeeds, (u8, u8)),
+        (seeds, (system, component)): (&CrcSeeds, (u8, u8)),
+        signing: Option<(&Signing, u64)>,
     ) {
-        let frame = message.frame(seeds, self.sequence, sender);
+        let own = signing.map(|(signing, time)| (signing.for_link(self.number()), time));
+        let own = own.as_ref().map(|(signing, time)| (signing, *time));
+        let frame = message.frame(seeds, (self.sequence, system, component), own);
         self.sequence = self.sequence.wrapping_add(1);
         self.waiting.push_back((arrives, frame));
+    }
+
+    /// Of its signatures.
+    fn number(&self) -> u8 {
+        u8::try_from(self.id.0).unwrap_or(u8::MAX)
     }
 
     /// A frame that is lost on its way: only its sequence number is used.

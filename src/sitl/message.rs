@@ -1,5 +1,6 @@
 //! A message on its way to the wire: payload in wire order, then the frame around it.
 
+use crate::link::{Signing, TAIL_BYTES};
 use crate::log::{CrcSeeds, MARKER_V2, checksum};
 use crate::units::narrow;
 
@@ -79,18 +80,28 @@ impl Message {
         self
     }
 
-    /// The MAVLink 2 frame.
-    pub(super) fn frame(&self, seeds: &CrcSeeds, sequence: u8, (system, component): (u8, u8)) -> Vec<u8> {
+    /// The MAVLink 2 frame; signed where there is a key, at its time.
+    pub(super) fn frame(
+        &self,
+        seeds: &CrcSeeds,
+        (sequence, system, component): (u8, u8, u8),
+        signing: Option<(&Signing, u64)>,
+    ) -> Vec<u8> {
         let used = self.payload.iter().rposition(|byte| *byte != 0).unwrap_or(0) + 1;
         let payload = &self.payload[..used.min(self.payload.len())];
         let [i0, i1, i2, _] = self.id.to_le_bytes();
         // no message has more than 255 bytes
         let length = u8::try_from(payload.len()).unwrap_or(u8::MAX);
-        let mut frame = vec![MARKER_V2, length, 0, 0, sequence, system, component, i0, i1, i2];
+        let flags = u8::from(signing.is_some());
+        let mut frame = vec![MARKER_V2, length, flags, 0, sequence, system, component, i0, i1, i2];
         frame.extend_from_slice(payload);
         let seed = self.seed.or_else(|| seeds.get(self.id)).unwrap_or(0);
         let sum = checksum(&frame[1..], seed);
         frame.extend_from_slice(&sum.to_le_bytes());
+        if let Some((signing, time)) = signing {
+            frame.extend_from_slice(&[0; TAIL_BYTES]);
+            signing.sign_at(&mut frame, time);
+        }
         frame
     }
 }

@@ -5,23 +5,13 @@ use std::time::Duration;
 
 use super::Vehicle;
 use super::autopilot::Severity;
+use super::fence::Fence;
 use super::message::Message;
 use super::requests::id;
+use crate::fence::{CIRCLE_INSIDE, CIRCLE_OUTSIDE, FenceItem, POLYGON_INSIDE, POLYGON_OUTSIDE};
+use crate::frames::Geodetic;
 use crate::log::Payload;
 use crate::units::whole;
-
-/// One item of a stored fence.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FenceItem {
-    /// MAV_CMD: 5001 corner of a polygon to stay in, 5002 to stay out of, 5003 and 5004 the same of circles
-    pub command: u16,
-    /// corners of the polygon, or radius of the circle, m
-    pub param1: f64,
-    /// degrees north
-    pub latitude_deg: f64,
-    /// degrees east
-    pub longitude_deg: f64,
-}
 
 /// MAV_MISSION_TYPE_FENCE
 const FENCE: u8 = 1;
@@ -31,9 +21,9 @@ const ALL: u8 = 255;
 const ON_EARTH: [u8; 4] = [0, 3, 5, 6];
 /// MAV_FRAME_GLOBAL
 const GLOBAL: u8 = 0;
-/// MAV_CMD_NAV_FENCE_*: corners of a polygon to stay in or out of, circles to stay in or out of.
-const CORNERS: [u16; 2] = [5001, 5002];
-const CIRCLES: [u16; 2] = [5003, 5004];
+/// Items of a polygon, and those that are a figure on their own.
+const CORNERS: [u16; 2] = [POLYGON_INSIDE, POLYGON_OUTSIDE];
+const CIRCLES: [u16; 2] = [CIRCLE_INSIDE, CIRCLE_OUTSIDE];
 /// Most items of a fence.
 const CAPACITY: u16 = 64;
 /// An item that does not come is asked for again, and an upload without news is given up.
@@ -77,9 +67,9 @@ fn request(sequence: usize, (system, component): (u8, u8)) -> Message {
 
 fn item(item: &FenceItem, sequence: u16, (system, component): (u8, u8)) -> Message {
     Message::new(id::MISSION_ITEM_INT)
-        .f32s(&[item.param1, 0.0, 0.0, 0.0])
-        .i32(whole(item.latitude_deg * 1e7))
-        .i32(whole(item.longitude_deg * 1e7))
+        .f32s(&[item.parameter, 0.0, 0.0, 0.0])
+        .i32(whole(item.place.latitude_deg * 1e7))
+        .i32(whole(item.place.longitude_deg * 1e7))
         .f32(0.0)
         .u16(sequence)
         .u16(item.command)
@@ -99,9 +89,11 @@ fn acknowledged(result: MissionResult, (system, component): (u8, u8), mission_ty
 fn read(payload: Payload) -> Result<FenceItem, MissionResult> {
     let item = FenceItem {
         command: payload.u16(30),
-        param1: payload.f32(0),
-        latitude_deg: f64::from(payload.i32(16)) * 1e-7,
-        longitude_deg: f64::from(payload.i32(20)) * 1e-7,
+        parameter: payload.f32(0),
+        place: Geodetic {
+            latitude_deg: f64::from(payload.i32(16)) * 1e-7,
+            longitude_deg: f64::from(payload.i32(20)) * 1e-7,
+        },
     };
     if !ON_EARTH.contains(&payload.u8(34)) {
         return Err(MissionResult::UnsupportedFrame);
@@ -109,8 +101,8 @@ fn read(payload: Payload) -> Result<FenceItem, MissionResult> {
     if !CORNERS.contains(&item.command) && !CIRCLES.contains(&item.command) {
         return Err(MissionResult::Unsupported);
     }
-    let on_earth = item.latitude_deg.abs() <= 90.0 && item.longitude_deg.abs() <= 180.0;
-    if !(on_earth && item.param1.is_finite() && item.param1 > 0.0) {
+    let on_earth = item.place.latitude_deg.abs() <= 90.0 && item.place.longitude_deg.abs() <= 180.0;
+    if !(on_earth && item.parameter.is_finite() && item.parameter > 0.0) {
         return Err(MissionResult::Invalid);
     }
     Ok(item)
@@ -120,13 +112,14 @@ fn read(payload: Payload) -> Result<FenceItem, MissionResult> {
 fn is_whole(items: &[FenceItem]) -> bool {
     let mut rest = items;
     while let Some(first) = rest.first() {
-        let size = if CORNERS.contains(&first.command) { whole(first.param1) } else { 1 };
+        let size = if CORNERS.contains(&first.command) { whole(first.parameter) } else { 1 };
         let Some((figure, others)) = usize::try_from(size).ok().and_then(|size| rest.split_at_checked(size))
         else {
             return false;
         };
-        let alike =
-            figure.iter().all(|corner| (corner.command, corner.param1) == (first.command, first.param1));
+        let alike = figure
+            .iter()
+            .all(|corner| (corner.command, corner.parameter) == (first.command, first.parameter));
         let enough = CIRCLES.contains(&first.command) || figure.len() >= 3;
         if !(alike && enough) {
             return false;
@@ -165,7 +158,7 @@ impl Vehicle {
             },
             id::MISSION_CLEAR_ALL => {
                 if matches!(kind, FENCE | ALL) {
-                    self.settings.fence.clear();
+                    self.store_fence(Vec::new());
                 }
                 // there is never a mission nor a rally point
                 acknowledged(MissionResult::Accepted, sender, kind)
@@ -193,7 +186,7 @@ impl Vehicle {
             _ if busy => acknowledged(MissionResult::Denied, sender, FENCE),
             _ if count > usize::from(CAPACITY) => acknowledged(MissionResult::NoSpace, sender, FENCE),
             0 => {
-                self.settings.fence.clear();
+                self.store_fence(Vec::new());
                 acknowledged(MissionResult::Accepted, sender, FENCE)
             }
             _ => {
@@ -226,7 +219,8 @@ impl Vehicle {
                     return;
                 }
                 if is_whole(&upload.items) {
-                    self.settings.fence.clone_from(&upload.items);
+                    let items = std::mem::take(&mut upload.items);
+                    self.store_fence(items);
                     MissionResult::Accepted
                 } else {
                     MissionResult::Invalid
@@ -235,6 +229,12 @@ impl Vehicle {
         };
         self.upload = None;
         self.send(link, &acknowledged(result, sender, FENCE));
+    }
+
+    /// Keeps a fence from now on.
+    fn store_fence(&mut self, items: Vec<FenceItem>) {
+        self.settings.fence = items;
+        self.autopilot.fence = Fence::of(&self.settings);
     }
 
     /// Asks again for what did not come.

@@ -19,6 +19,7 @@ mod craft;
 mod demand;
 mod estimator;
 mod fault;
+mod fence;
 mod guidance;
 mod link;
 mod message;
@@ -38,7 +39,6 @@ mod vehicle;
 
 pub use fault::Fault;
 pub use link::{LinkId, LinkRole};
-pub use mission::FenceItem;
 pub use modes::{ArduPilotRelease, AutopilotKind, Mode};
 pub use serve::{LOCKSTEP, Pace, serve};
 pub use settings::{Origin, SensorSettings, Settings};

@@ -153,7 +153,7 @@ impl Mode {
         matches!(self, Self::Stabilize | Self::Altitude | Self::Position)
     }
 
-    /// ArduPilot does not arm in it.
+    /// The autopilot does not arm in it; PX4 does not stay in it when it disarms.
     pub(super) fn refuses_arming(self) -> bool {
         matches!(self, Self::Return | Self::Land | Self::Brake)
     }

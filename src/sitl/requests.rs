@@ -30,6 +30,7 @@ pub(super) mod id {
     pub(in crate::sitl) const SET_ATTITUDE_TARGET: u32 = 82;
     pub(in crate::sitl) const SET_POSITION_TARGET_LOCAL_NED: u32 = 84;
     pub(in crate::sitl) const TIMESYNC: u32 = 111;
+    pub(in crate::sitl) const SETUP_SIGNING: u32 = 256;
 }
 
 /// MAV_TYPE_GCS
@@ -71,6 +72,9 @@ impl Vehicle {
             }
             id::REQUEST_DATA_STREAM if !self.settings.autopilot.is_px4() => {
                 self.request_data_stream(link, payload);
+            }
+            id::SETUP_SIGNING if self.is_for_us((payload.u8(8), payload.u8(9))) => {
+                self.set_up_signing(payload)
             }
             id::TIMESYNC if payload.u64(0) == 0 => {
                 let asked = i64::from_le_bytes(payload.u64(8).to_le_bytes());

@@ -5,6 +5,7 @@ use std::time::Duration;
 use super::Mode;
 use super::autopilot::{Autopilot, Severity};
 use super::battery::Charge;
+use super::fence::Breach;
 use super::guidance::Task;
 use super::tuning::Action;
 
@@ -19,6 +20,13 @@ pub(super) struct Safety {
     ground_lost: bool,
     position_lost: bool,
     charge: Charge,
+    breach: Breach,
+    /// PX4: another failsafe than that of setpoints flies, until a mode is chosen
+    overrides: bool,
+    /// PX4: the mode that a failsafe goes on to when it has held
+    later: Option<(Duration, Mode)>,
+    /// PX4: the fence's action has begun and no mode was chosen since
+    fence_acts: bool,
 }
 
 impl Safety {
@@ -31,6 +39,10 @@ impl Safety {
             ground_lost: false,
             position_lost: false,
             charge: Charge::Ok,
+            breach: Breach::default(),
+            overrides: false,
+            later: None,
+            fence_acts: false,
         }
     }
 
@@ -49,10 +61,13 @@ impl Safety {
     /// A mode was chosen: what was lost in the one before no longer matters.
     pub(super) fn mode_chosen(&mut self) {
         self.setpoints_lost = false;
+        self.overrides = false;
+        self.later = None;
+        self.fence_acts = false;
     }
 
     pub(super) fn disarmed(&mut self) {
-        self.setpoints_lost = false;
+        self.mode_chosen();
         self.position_lost = false;
     }
 
@@ -62,7 +77,7 @@ impl Safety {
 
     /// Some failsafe is active.
     pub(super) fn is_active(&self) -> bool {
-        self.setpoints_lost || self.position_lost || self.charge == Charge::Critical
+        self.setpoints_lost || self.position_lost || self.overrides || self.charge == Charge::Critical
     }
 }
 
@@ -98,6 +113,9 @@ impl Autopilot {
             if self.safety.charge != Charge::Ok {
                 reasons.push("Arm: Battery 1 failsafe".to_owned());
             }
+            if self.safety.breach.is_any() {
+                reasons.push(format!("Arm: Vehicle breaching {}", self.safety.breach.ardupilot_name()));
+            }
             return reasons;
         }
         if no_position {
@@ -109,6 +127,7 @@ impl Autopilot {
         if self.safety.charge != Charge::Ok {
             reasons.push("Preflight Fail: low battery".to_owned());
         }
+        reasons.extend(self.safety.breach.px4_names().map(str::to_owned));
         if self.tuning.ground_loss != Action::Warn
             && (self.safety.ground_seen.is_none() || self.safety.ground_lost)
         {
@@ -122,8 +141,13 @@ impl Autopilot {
 
     /// Everything that is lost, and what is done about it.
     pub(super) fn check_safety(&mut self, now: Duration) {
-        self.check_battery();
+        self.check_battery(now);
         self.check_ground(now);
+        self.check_fence(now);
+        if let Some((_, mode)) = self.safety.later.take_if(|(when, _)| *when <= now) {
+            self.say(Severity::Critical, "Failsafe activated");
+            self.enter(mode);
+        }
         if self.is_armed() && !self.is_landed() {
             self.check_position(now);
         }
@@ -138,9 +162,16 @@ impl Autopilot {
         let was = std::mem::replace(&mut self.safety.setpoints_lost, lost);
         if lost && !was {
             self.say(Severity::Critical, "No offboard signal");
-            self.say(Severity::Critical, "Failsafe activated");
-            self.act(self.tuning.setpoint_loss);
-        } else if was && !lost && self.intended == Mode::Guided && !self.safety.position_lost {
+            if !self.safety.overrides {
+                self.say(Severity::Critical, "Failsafe activated");
+                self.act(self.tuning.setpoint_loss);
+            }
+        } else if was
+            && !lost
+            && self.intended == Mode::Guided
+            && !self.safety.position_lost
+            && !self.safety.overrides
+        {
             self.enter(Mode::Guided);
         }
     }
@@ -173,11 +204,11 @@ impl Autopilot {
             self.say(Severity::Warning, "GCS Failsafe");
         }
         if self.is_armed() {
-            self.act(self.tuning.ground_loss);
+            self.fail_over(self.tuning.ground_loss, now);
         }
     }
 
-    fn check_battery(&mut self) {
+    fn check_battery(&mut self, now: Duration) {
         let charge = self.battery.charge(&self.tuning.battery_thresholds);
         if charge <= self.safety.charge {
             return;
@@ -196,16 +227,78 @@ impl Autopilot {
         };
         self.say(Severity::Warning, text);
         if self.is_armed() {
-            self.act(action);
+            self.fail_over(action, now);
         }
+    }
+
+    /// A border that is crossed anew. What is outside before it flies is for the checks before arming.
+    fn check_fence(&mut self, now: Duration) {
+        let breach = self.breach_now(now);
+        let before = std::mem::replace(&mut self.safety.breach, breach);
+        let new = breach.since(before);
+        let Some(action) = self.tuning.fence.map(|rules| rules.action) else { return };
+        if !self.is_armed() {
+            return;
+        }
+        if !self.kind.is_px4() && before.is_any() && !breach.is_any() && !self.is_landed() {
+            self.say(Severity::Notice, "Fence breach cleared");
+        }
+        if !new.is_any() {
+            return;
+        }
+        if self.kind.is_px4() {
+            new.px4_names().for_each(|name| self.say(Severity::Critical, name));
+            // the action lasts until a mode is chosen, however often the border is crossed meanwhile
+            if !std::mem::replace(&mut self.safety.fence_acts, action != Action::Warn) {
+                self.fail_over(action, now);
+            }
+            return;
+        }
+        self.say(Severity::Notice, format!("{} breached", new.ardupilot_name()));
+        match action {
+            Action::Warn => {}
+            Action::Enter(mode) if mode == self.mode => {}
+            _ if self.is_landed() => self.switch_off("Disarming motors"),
+            action => self.act(action),
+        }
+    }
+
+    /// Where the vehicle is beyond its fence; without a position, what it was.
+    fn breach_now(&self, now: Duration) -> Breach {
+        match (&self.tuning.fence, &self.home_m) {
+            (None, _) => Breach::default(),
+            (Some(rules), Some(home_m)) if self.estimator.is_good(now) => {
+                self.fence.breach(rules, &self.estimator.state.position_m, home_m)
+            }
+            _ => self.safety.breach,
+        }
+    }
+
+    /// A failsafe that stays until somebody chooses a mode. PX4 holds for a while before it returns or lands, so
+    /// that somebody can.
+    fn fail_over(&mut self, action: Action, now: Duration) {
+        let (true, Action::Enter(mode)) = (self.kind.is_px4(), action) else { return self.act(action) };
+        let delay = self.tuning.failsafe_delay;
+        self.safety.overrides = true;
+        if mode == Mode::Hold || delay.is_zero() {
+            self.say(Severity::Critical, "Failsafe activated");
+            self.safety.later = None;
+            return self.enter(mode);
+        }
+        self.say(
+            Severity::Critical,
+            format!("Failsafe activated: entering Hold for {} seconds", delay.as_secs()),
+        );
+        self.safety.later = Some((now + delay, mode));
+        self.enter(Mode::Hold);
     }
 
     fn act(&mut self, action: Action) {
         match action {
             Action::Warn => {}
             Action::Enter(mode) => {
-                // a failsafe of setpoints leaves what was asked for; every other one replaces it
-                if !self.safety.setpoints_lost {
+                // PX4 keeps what was asked for
+                if !self.kind.is_px4() {
                     self.intended = mode;
                 }
                 self.enter(mode);

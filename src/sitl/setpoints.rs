@@ -11,17 +11,22 @@ use super::guidance::Task;
 use crate::log::Payload;
 
 impl Autopilot {
-    /// SET_ATTITUDE_TARGET as PX4 reads it. ArduPilot's, with a climb rate in place of a thrust, is not there.
+    /// SET_ATTITUDE_TARGET.
     pub(super) fn take_attitude(&mut self, payload: Payload, now: Duration) {
-        if !self.kind.is_px4() {
+        let state = self.estimator.state;
+        if self.kind.is_px4() {
+            let Some(demand) = AttitudeDemand::px4(payload) else { return };
+            self.safety.setpoint_came(now);
+            if self.mode == Mode::Guided {
+                self.guidance.begin(Task::Turn(demand, now), &state);
+            }
             return;
         }
-        let Some(demand) = AttitudeDemand::read(payload) else { return };
-        self.safety.setpoint_came(now);
-        if self.mode == Mode::Guided {
-            let state = self.estimator.state;
-            self.guidance.begin(Task::Turn(demand), &state);
+        if self.mode != Mode::Guided || !self.is_armed() {
+            return;
         }
+        let task = AttitudeDemand::ardupilot(payload, self.tuning.thrust_field);
+        self.guidance.begin(task.map_or(Task::Hold, |demand| Task::Turn(demand, now)), &state);
     }
 
     /// SET_POSITION_TARGET_LOCAL_NED.
@@ -56,11 +61,11 @@ impl Autopilot {
         }
     }
 
+    /// A destination is; a velocity has none.
     fn is_fenced_out(&self, position_m: &Vector3<f64>) -> bool {
         let home_m = self.home_m.unwrap_or_else(Vector3::zeros);
-        let from_home = position_m - home_m;
-        self.tuning
-            .fence
-            .is_some_and(|(radius_m, height_m)| from_home.xy().norm() > radius_m || from_home.z > height_m)
+        let rules = self.tuning.fence;
+        position_m.x.is_finite()
+            && rules.is_some_and(|rules| self.fence.breach(&rules, position_m, &home_m).is_any())
     }
 }

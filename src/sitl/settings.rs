@@ -2,7 +2,10 @@
 
 use std::time::Duration;
 
-use super::{AutopilotKind, FenceItem, SitlError};
+use super::{AutopilotKind, SitlError};
+use crate::fence::FenceItem;
+use crate::frames::Geodetic;
+use crate::link::SigningKey;
 use crate::physics::ActiveEffect;
 use crate::simulate::{FlightSettings, NoiseLevels, StreamSkew};
 use crate::vehicle::Vehicle as Description;
@@ -16,6 +19,12 @@ pub struct Origin {
     pub longitude_deg: f64,
     /// above mean sea level
     pub altitude_m: f64,
+}
+
+impl Origin {
+    pub(super) fn place(&self) -> Geodetic {
+        Geodetic { latitude_deg: self.latitude_deg, longitude_deg: self.longitude_deg }
+    }
 }
 
 /// How well the vehicle knows its own motion, and what of it the telemetry shows.
@@ -84,6 +93,8 @@ pub struct Settings {
     pub battery_drop_v_s: f64,
     /// what a ground station has stored as fence
     pub fence: Vec<FenceItem>,
+    /// signs what it sends, and believes only what is signed with it (ArduPilot believes everything on its first link)
+    pub signing_key: Option<SigningKey>,
     /// values instead of the autopilot's defaults
     pub parameters: Vec<(String, f64)>,
     /// host's time at boot, microseconds since 1970 UTC
@@ -116,6 +127,7 @@ impl Settings {
             battery_v: base.battery_v,
             battery_drop_v_s: base.battery_drop_v_s,
             fence: Vec::new(),
+            signing_key: None,
             parameters: Vec::new(),
             boot_unix_us: 1_700_000_000_000_000,
         }

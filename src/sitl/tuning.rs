@@ -5,6 +5,8 @@ use std::time::Duration;
 use super::AutopilotKind;
 use super::Mode;
 use super::battery::Thresholds;
+use super::demand::ThrustField;
+use super::fence::FenceRules;
 use super::parameters::Parameters;
 use super::shaper::ShaperLimits;
 
@@ -51,8 +53,12 @@ pub(super) struct Tuning {
     /// turns towards where it flies unless told a yaw
     pub(super) yaw_follows_path: bool,
     pub(super) arming_checks: bool,
-    /// ArduPilot drops destinations beyond: radius and height over home, m
-    pub(super) fence: Option<(f64, f64)>,
+    /// how ArduPilot reads SET_ATTITUDE_TARGET
+    pub(super) thrust_field: ThrustField,
+    /// what the parameters say of it; none where it is off
+    pub(super) fence: Option<FenceRules>,
+    /// PX4 holds for so long before a failsafe returns or lands
+    pub(super) failsafe_delay: Duration,
 }
 
 fn seconds(value: f64) -> Duration {
@@ -68,6 +74,8 @@ fn choice(parameters: &Parameters, name: &str) -> i32 {
     crate::units::whole(parameters.value(name))
 }
 
+/// Of GUID_OPTIONS.
+const THRUST_AS_THRUST: i32 = 1 << 3;
 /// Least value of a bound, so that a zero does not stop the reference for ever.
 const LEAST: f64 = 0.1;
 
@@ -132,8 +140,41 @@ fn px4(p: &Parameters) -> Tuning {
         disarm_idle: positive(p.value("COM_DISARM_PRFLT")),
         yaw_follows_path: false,
         arming_checks: true,
-        fence: None,
+        thrust_field: ThrustField::Thrust,
+        fence: px4_fence(p),
+        failsafe_delay: seconds(p.value("COM_FAIL_ACT_T")),
     }
+}
+
+/// GF_*; a distance of zero is none.
+fn px4_fence(p: &Parameters) -> Option<FenceRules> {
+    let action = match choice(p, "GF_ACTION") {
+        0 => return None,
+        2 => Action::Enter(Mode::Hold),
+        3 => Action::Enter(Mode::Return),
+        4 => Action::Terminate,
+        5 => Action::Enter(Mode::Land),
+        _ => Action::Warn,
+    };
+    let distance_m = |name| Some(p.value(name)).filter(|distance_m| *distance_m > 0.0);
+    let (radius_m, height_max_m) = (distance_m("GF_MAX_HOR_DIST"), distance_m("GF_MAX_VER_DIST"));
+    Some(FenceRules { radius_m, height_max_m, areas: true, action })
+}
+
+/// FENCE_*: of its kinds the greatest height (bit 0), the circle (1) and the areas (2). There is no smart return
+/// here; where there is none on ArduPilot it returns as it can.
+fn ardupilot_fence(p: &Parameters) -> Option<FenceRules> {
+    let action = match choice(p, "FENCE_ACTION") {
+        0 => Action::Warn,
+        2 | 5 => Action::Enter(Mode::Land),
+        4 => Action::Enter(Mode::Brake),
+        _ => Action::Enter(Mode::Return),
+    };
+    let kinds = choice(p, "FENCE_TYPE");
+    let distance_m = |bit: i32, name| (kinds & bit != 0).then(|| p.value(name));
+    let (height_max_m, radius_m) = (distance_m(1, "FENCE_ALT_MAX"), distance_m(2, "FENCE_RADIUS"));
+    let rules = FenceRules { radius_m, height_max_m, areas: kinds & 4 != 0, action };
+    (choice(p, "FENCE_ENABLE") != 0).then_some(rules)
 }
 
 /// FS_GCS_ENABLE.
@@ -195,6 +236,15 @@ fn ardupilot(p: &Parameters) -> Tuning {
         disarm_idle: positive(p.value("DISARM_DELAY")),
         yaw_follows_path: choice(p, "WP_YAW_BEHAVIOR") != 0,
         arming_checks: !(skipped || unchecked),
-        fence: (choice(p, "FENCE_ENABLE") != 0).then(|| (p.value("FENCE_RADIUS"), p.value("FENCE_ALT_MAX"))),
+        thrust_field: if choice(p, "GUID_OPTIONS") & THRUST_AS_THRUST != 0 {
+            ThrustField::Thrust
+        } else {
+            ThrustField::Climb {
+                climb_m_s: limit("WPNAV_SPEED_UP", "WP_SPD_UP"),
+                descent_m_s: limit("WPNAV_SPEED_DN", "WP_SPD_DN"),
+            }
+        },
+        fence: ardupilot_fence(p),
+        failsafe_delay: Duration::ZERO,
     }
 }

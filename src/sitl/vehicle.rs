@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use nalgebra::Vector3;
 
-use super::autopilot::{Autopilot, Text};
+use super::autopilot::{Autopilot, Severity, Text};
 use super::craft::Craft;
 use super::link::Link;
 use super::message::Message;
@@ -14,7 +14,8 @@ use super::streams::HEARTBEAT;
 use super::telemetry::{Snapshot, Telemetry};
 use super::tuning::Tuning;
 use super::{Fault, LinkId, LinkRole, Mode, Settings, SitlError};
-use crate::log::{Check, CrcSeeds, Frame};
+use crate::link::{Signing, SigningKey, time_of};
+use crate::log::{Check, CrcSeeds, Frame, Payload};
 use crate::physics::MAX_ROTORS;
 
 /// MAV_COMP_ID_AUTOPILOT1
@@ -57,6 +58,8 @@ pub struct Vehicle {
     /// mode flown and mode asked for, as the links were told last
     told_mode: Option<(Mode, Mode)>,
     texts: u16,
+    /// signs what goes out, and what comes in is to be signed
+    signing: Option<Signing>,
     /// a fence that comes in
     pub(super) upload: Option<Upload>,
 }
@@ -89,6 +92,10 @@ impl Vehicle {
             told_mode: None,
             texts: 0,
             upload: None,
+            signing: settings
+                .signing_key
+                .clone()
+                .map(|key| Signing::with_key_at(key, time_of(settings.boot_unix_us))),
             settings,
         })
     }
@@ -118,12 +125,43 @@ impl Vehicle {
         let now = self.now();
         for frame in &frames {
             match Frame::at_start(frame) {
-                Some(frame) if frame.header().system.0 != u32::from(self.settings.system) => {
+                Some(frame)
+                    if frame.header().system.0 != u32::from(self.settings.system)
+                        && self.believes(link, &frame) =>
+                {
                     self.handle(link.0, &frame, now);
                 }
                 _ => {}
             }
         }
+    }
+
+    /// With a key, what is signed with it. On its first link, where a cable is, ArduPilot believes everything.
+    fn believes(&self, link: LinkId, frame: &Frame) -> bool {
+        let Some(signing) = &self.signing else { return true };
+        let trusted = !self.settings.autopilot.is_px4() && link.0 == 0;
+        signing.verify_at(frame, self.signing_time()).is_ok() || trusted
+    }
+
+    fn signing_time(&self) -> u64 {
+        let passed = u64::try_from(self.clock.as_micros()).unwrap_or(u64::MAX);
+        time_of(self.settings.boot_unix_us.saturating_add(passed))
+    }
+
+    /// SETUP_SIGNING: ArduPilot takes the key from it, and none where it is zero; this PX4 has no signing to set up.
+    pub(super) fn set_up_signing(&mut self, payload: Payload) {
+        if self.settings.autopilot.is_px4() {
+            return;
+        }
+        if self.autopilot.is_armed() {
+            self.autopilot.say(Severity::Warning, "ERROR: Won't setup signing when armed");
+            return;
+        }
+        let key: [u8; 32] = std::array::from_fn(|byte| payload.u8(10 + byte));
+        let begins = payload.u64(0);
+        let is_key = begins != 0 || key.iter().any(|byte| *byte != 0);
+        let time = begins.max(self.signing_time());
+        self.signing = is_key.then(|| Signing::with_key_at(SigningKey::from_bytes(key), time));
     }
 
     /// Goes on until a time since the vehicle was made; returns what has arrived at the other ends by then,
@@ -172,7 +210,7 @@ impl Vehicle {
             Fault::Reboot => self.reboot(),
             Fault::ForeignHeartbeat { system, component } => {
                 let message = Message::new(HEARTBEAT).u32(0).u8(6).u8(8).u8(0).u8(4).u8(3);
-                let frame = message.frame(&self.seeds, 0, (system, component));
+                let frame = message.frame(&self.seeds, (0, system, component), None);
                 self.pass_on(&frame, None);
             }
             Fault::Push { force_n, torque_nm, duration } => {
@@ -244,13 +282,15 @@ impl Vehicle {
 
     pub(super) fn send(&mut self, link: usize, message: &Message) {
         let lost = self.settings.loss > 0.0 && self.telemetry.chance() < self.settings.loss;
+        let time = self.signing_time();
         let Some(link) = self.links.get_mut(link) else { return };
         if lost {
             link.lose();
             return;
         }
         let arrives = self.clock + self.settings.latency;
-        link.send(message, arrives, (&self.seeds, (self.settings.system, COMPONENT)));
+        let signing = self.signing.as_ref().map(|signing| (signing, time));
+        link.send(message, arrives, (&self.seeds, (self.settings.system, COMPONENT)), signing);
     }
 
     pub(super) fn broadcast(&mut self, message: &Message) {

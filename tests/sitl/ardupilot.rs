@@ -3,7 +3,7 @@
 use mavid::sitl::{Fault, LinkRole, Mode, Settings};
 use mavlink::dialects::ardupilotmega::MavFrame;
 
-use crate::ground::{Ground, Target, settings};
+use crate::ground::{Ground, Target, attitude_target, settings};
 use crate::{ACCEPTED, COPTER, COPTER_4_6, DENIED, FAILED, assert_at};
 
 fn with(parameters: &[(&str, f64)]) -> Settings {
@@ -398,4 +398,85 @@ fn it_forwards_another_ground_station() {
     let forwarded = ground.received.iter().any(|(_, id, bytes)| *id == 0 && *bytes == beat);
     assert!(forwarded, "byte for byte");
     assert_eq!(ground.mode(), Some(Mode::Stabilize), "and it is not the vehicle's");
+}
+
+#[test]
+fn an_attitude_is_flown_with_a_climb_rate_or_where_it_is_told_so_with_a_thrust() {
+    let lean = 6_f32.to_radians();
+    let level = |thrust| attitude_target(0b111, 0.0, [0.0; 3], thrust);
+    let mut ground = guided(settings(COPTER));
+    ground.set_interval(32, 20.0);
+    // nose down by 6 degrees, half a thrust: north, at its height
+    ground.stream(2.0, &attitude_target(0b111, -lean, [0.0; 3], 0.5));
+    let [north_m, east_m, down_m] = ground.position();
+    // g tan(6 degrees) t^2 / 2
+    assert!((north_m - 2.06).abs() < 0.5 && east_m.abs() < 0.3, "{north_m} {east_m}");
+    assert!((down_m + 3.0).abs() < 0.2, "{down_m}");
+    // 0.7: 0.4 of WP_SPD_UP (2.5 m/s); 0.3: 0.4 of WP_SPD_DN (1.5 m/s)
+    let mut ground = guided(settings(COPTER));
+    ground.set_interval(32, 20.0);
+    let sinks_m_s = |ground: &Ground| ground.last(32).unwrap().f32(24);
+    ground.stream(3.0, &level(0.7));
+    assert!((sinks_m_s(&ground) + 1.0).abs() < 0.15, "{}", sinks_m_s(&ground));
+    ground.stream(3.0, &level(0.3));
+    assert!((sinks_m_s(&ground) - 0.6).abs() < 0.15, "{}", sinks_m_s(&ground));
+    // no more come: level and at its height from GUID_TIMEOUT on
+    ground.stream(0.5, &attitude_target(0b111, -lean, [0.0; 3], 0.7));
+    ground.wait(6.0);
+    let last = ground.last(32).unwrap();
+    assert!(last.f32(24).abs() < 0.1, "{}", last.f32(24));
+    assert_eq!(ground.mode(), Some(Mode::Guided));
+    // a yaw rate without the others, no thrust, no quaternion: it stops where it is
+    for useless in
+        [attitude_target(0b011, -lean, [0.0; 3], 0.7), attitude_target(0b100_0111, -lean, [0.0; 3], 0.7)]
+    {
+        let mut ground = guided(settings(COPTER));
+        ground.set_interval(32, 20.0);
+        ground.stream(2.0, &useless);
+        assert_at(&ground, [0.0, 0.0, -3.0], 0.2);
+    }
+    // thrust as thrust
+    let mut ground = guided(with(&[("GUID_OPTIONS", 8.0)]));
+    ground.set_interval(32, 20.0);
+    ground.request_parameter("MOT_THST_HOVER");
+    let hover = mavid::units::narrow(ground.parameter("MOT_THST_HOVER").unwrap().f32(0));
+    ground.stream(1.0, &level(0.8 * hover));
+    let sunk_m = ground.position()[2] + 3.0;
+    // g / 5 t^2 / 2
+    assert!((0.5..1.6).contains(&sunk_m), "{sunk_m}");
+}
+
+#[test]
+fn an_attitude_lifts_off_where_a_position_does_not() {
+    let mut ground = Ground::of(COPTER);
+    ground.wait(3.0);
+    ground.set_interval(32, 20.0);
+    assert_eq!(ground.set_mode(Mode::Guided), ACCEPTED);
+    assert_eq!(ground.arm(), ACCEPTED);
+    ground.stream(2.0, &Target::at([0.0, 0.0, -3.0]).message());
+    assert_at(&ground, [0.0, 0.0, 0.0], 0.1);
+    ground.stream(3.0, &attitude_target(0b111, 0.0, [0.0; 3], 0.7));
+    assert!(ground.position()[2] < -1.5, "{:?}", ground.position());
+}
+
+#[test]
+fn a_breach_of_the_fence_does_what_its_action_says() {
+    let away = Target::moving([2.0, 0.0, 0.0]).message();
+    let up = Target::moving([0.0, 0.0, -1.0]).message();
+    for (border, action, way, mode, said) in [
+        ("FENCE_RADIUS", 1.0, &away, Mode::Return, "Circle fence breached"),
+        ("FENCE_RADIUS", 2.0, &away, Mode::Land, "Circle fence breached"),
+        ("FENCE_RADIUS", 4.0, &away, Mode::Brake, "Circle fence breached"),
+        ("FENCE_RADIUS", 0.0, &away, Mode::Guided, "Circle fence breached"),
+        ("FENCE_ALT_MAX", 1.0, &up, Mode::Return, "Max Alt fence breached"),
+    ] {
+        let mut ground = guided(with(&[("FENCE_ENABLE", 1.0), (border, 6.0), ("FENCE_ACTION", action)]));
+        ground.stream(6.5, way);
+        assert_eq!(ground.mode(), Some(mode), "{border} {action}: {:?}", ground.texts());
+        assert!(ground.has_text(said), "{:?}", ground.texts());
+    }
+    // of the kinds that are off nothing is kept
+    let mut ground = guided(with(&[("FENCE_ENABLE", 1.0), ("FENCE_RADIUS", 6.0), ("FENCE_TYPE", 1.0)]));
+    ground.stream(6.5, &away);
+    assert_eq!(ground.mode(), Some(Mode::Guided));
 }

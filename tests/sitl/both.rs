@@ -2,8 +2,13 @@
 
 use std::time::Duration;
 
+use mavid::fence::FenceItem;
+use mavid::frames::Geodetic;
+use mavid::link::SigningKey;
 use mavid::physics::ActiveEffect;
-use mavid::sitl::{Fault, FenceItem, LinkRole, Mode, Settings, SitlError, Vehicle};
+use mavid::sitl::{Fault, LinkRole, Mode, Settings, SitlError, Vehicle};
+use mavlink::dialects::ardupilotmega::{COMMAND_LONG_DATA, MavCmd, MavMessage, SETUP_SIGNING_DATA};
+use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 
 use crate::ground::{Ground, Target, heartbeat, settings};
 use crate::{ACCEPTED, COPTER, DENIED, FAILED, PX4, TEMPORARILY_REJECTED, UNSUPPORTED, assert_at};
@@ -219,7 +224,11 @@ fn fence_item(sequence: u16, command: u16, param1: f32, latitude: i32) -> Vec<u8
 
 #[test]
 fn a_stored_fence_can_be_read_and_cleared_and_there_is_no_mission() {
-    let corner = |latitude_deg| FenceItem { command: 5001, param1: 3.0, latitude_deg, longitude_deg: 8.5 };
+    let corner = |latitude_deg| FenceItem {
+        command: 5001,
+        parameter: 3.0,
+        place: Geodetic { latitude_deg, longitude_deg: 8.5 },
+    };
     let fence = vec![corner(47.1), corner(47.2), corner(47.3)];
     let mut ground = Ground::new(Settings { fence, ..settings(PX4) });
     ground.wait(0.1);
@@ -433,4 +442,140 @@ fn any_bytes_may_come_in() {
     ground.forget();
     ground.wait(2.0);
     assert!(ground.count(0) >= 1);
+}
+
+#[test]
+fn stored_areas_are_kept_and_nobody_arms_outside_them() {
+    let origin = settings(PX4).origin;
+    let origin = Geodetic { latitude_deg: origin.latitude_deg, longitude_deg: origin.longitude_deg };
+    let corner =
+        |north_m, west_m| FenceItem { command: 5001, parameter: 4.0, place: origin.moved([north_m, west_m]) };
+    let fence = vec![corner(-6.0, -6.0), corner(6.0, -6.0), corner(6.0, 6.0), corner(-6.0, 6.0)];
+    for (kind, parameter, mode) in [(PX4, "GF_ACTION", Mode::Hold), (COPTER, "FENCE_ENABLE", Mode::Return)] {
+        let value = if kind == PX4 { 2.0 } else { 1.0 };
+        let parameters = vec![(parameter.to_owned(), value)];
+        let inside = Settings { fence: fence.clone(), parameters, ..settings(kind) };
+        let mut ground = Ground::new(inside.clone());
+        ground.take_off(3.0);
+        let east = Target::moving([0.0, 2.0, 0.0]).message();
+        ground.stream(1.0, &east);
+        assert_eq!(ground.set_mode(Mode::Guided), ACCEPTED);
+        ground.stream(1.5, &east);
+        assert_eq!(ground.mode(), Some(Mode::Guided));
+        ground.stream(4.0, &east);
+        assert_eq!(ground.mode(), Some(mode), "{kind:?}: {:?}", ground.texts());
+
+        let mut ground = Ground::new(Settings { start_m: [20.0, 0.0], ..inside });
+        ground.wait(3.0);
+        if kind == COPTER {
+            assert_eq!(ground.set_mode(Mode::Guided), ACCEPTED);
+        }
+        assert_ne!(ground.arm(), ACCEPTED);
+        let said = if kind == PX4 { "Geofence violation" } else { "Vehicle breaching Polygon fence" };
+        assert!(ground.has_text(said), "{:?}", ground.texts());
+    }
+}
+
+#[test]
+fn the_origin_is_told_to_whoever_asks_once_it_is_known() {
+    for kind in [PX4, COPTER] {
+        let mut ground = Ground::of(kind);
+        ground.wait(1.0);
+        ground.command(512, [49.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(ground.count(49), 0, "{kind:?}: there is none yet");
+        ground.wait(2.0);
+        ground.forget();
+        assert_eq!(ground.command(512, [49.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), ACCEPTED);
+        let origin = ground.last(49).unwrap();
+        assert_eq!((origin.i32(0), origin.i32(4), origin.i32(8)), (473_977_420, 85_455_940, 488_000));
+    }
+}
+
+/// 10 microseconds since 2015 at the boot of a vehicle as its settings have it.
+const BOOT: u64 = 27_992_960_000_000;
+
+/// REQUEST_MESSAGE of AUTOPILOT_VERSION, signed at so many seconds after the boot.
+fn signed(key: u8, seconds: u64) -> Vec<u8> {
+    let mut raw = MAVLinkV2MessageRaw::new();
+    let message = MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+        target_system: 1,
+        target_component: 1,
+        command: MavCmd::MAV_CMD_REQUEST_MESSAGE,
+        param1: 148.0,
+        ..COMMAND_LONG_DATA::default()
+    });
+    let header = MavHeader { system_id: 255, component_id: 190, sequence: 0 };
+    raw.serialize_message_for_signing(header, &message);
+    let time = BOOT + 100_000 * seconds;
+    raw.signature_timestamp_bytes_mut().copy_from_slice(&time.to_le_bytes()[..6]);
+    let mut signature = [0; 6];
+    raw.calculate_signature(&[key; 32], &mut signature);
+    let mut bytes = raw.raw_bytes().to_vec();
+    let tail = bytes.len() - signature.len();
+    bytes[tail..].copy_from_slice(&signature);
+    bytes
+}
+
+/// Whether it answers.
+fn answers(ground: &mut Ground, bytes: &[u8]) -> bool {
+    let before = ground.count(77);
+    ground.vehicle.receive(ground.link, bytes, ground.now);
+    ground.wait(0.1);
+    ground.count(77) > before
+}
+
+fn are_signed(ground: &Ground) -> bool {
+    ground.received.iter().all(|(_, _, bytes)| bytes[2] & 1 == 1)
+}
+
+#[test]
+fn with_a_key_only_what_is_signed_with_it_is_believed() {
+    for kind in [PX4, COPTER] {
+        let key = SigningKey::from_bytes([7; 32]);
+        let mut ground = Ground::new(Settings { signing_key: Some(key), ..settings(kind) });
+        // ArduPilot believes everything on its first link
+        assert_eq!(ground.command(512, [148.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]) == ACCEPTED, kind == COPTER);
+        ground.link = ground.vehicle.open_link(LinkRole::GroundStation);
+        ground.forget();
+        ground.wait(1.5);
+        assert_ne!(ground.command(512, [148.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), ACCEPTED, "not signed");
+        assert!(answers(&mut ground, &signed(7, 2)));
+        assert!(!answers(&mut ground, &signed(7, 2)), "played back");
+        assert!(!answers(&mut ground, &signed(8, 3)), "another key");
+        assert!(answers(&mut ground, &signed(7, 4)));
+        assert!(ground.count(0) > 0 && are_signed(&ground));
+    }
+}
+
+#[test]
+fn a_ground_station_sets_up_signing_on_ardupilot_and_ends_it_but_not_in_flight() {
+    let set_up = |key: u8, begins: u64| {
+        MavMessage::SETUP_SIGNING(SETUP_SIGNING_DATA {
+            target_system: 1,
+            target_component: 1,
+            initial_timestamp: begins,
+            secret_key: [key; 32],
+        })
+    };
+    let mut ground = Ground::of(COPTER);
+    ground.send(&set_up(7, BOOT));
+    ground.forget();
+    ground.wait(1.5);
+    assert!(ground.count(0) > 0 && are_signed(&ground));
+    ground.link = ground.vehicle.open_link(LinkRole::GroundStation);
+    assert!(!answers(&mut ground, &signed(8, 2)) && answers(&mut ground, &signed(7, 2)));
+    ground.link = mavid::sitl::LinkId(0);
+    ground.send(&set_up(0, 0));
+    ground.forget();
+    ground.wait(1.5);
+    assert!(ground.count(0) > 0 && !are_signed(&ground));
+    ground.take_off(2.0);
+    ground.send(&set_up(7, BOOT));
+    ground.wait(1.5);
+    assert!(ground.has_text("Won't setup signing when armed") && !are_signed(&ground));
+    // PX4 1.16 has none to set up
+    let mut ground = Ground::of(PX4);
+    ground.send(&set_up(7, BOOT));
+    ground.wait(1.5);
+    assert!(!are_signed(&ground));
 }

@@ -1,11 +1,9 @@
 //! PX4: OFFBOARD, its failsafes, arming, parameters.
 
 use mavid::sitl::{Fault, Mode, Settings};
-use mavlink::dialects::ardupilotmega::{
-    AttitudeTargetTypemask, MavFrame, MavMessage, SET_ATTITUDE_TARGET_DATA,
-};
+use mavlink::dialects::ardupilotmega::MavFrame;
 
-use crate::ground::{Ground, Target, settings};
+use crate::ground::{Ground, Target, attitude_target, settings};
 use crate::{ACCEPTED, DENIED, FAILED, PX4, TEMPORARILY_REJECTED, assert_at};
 
 /// In OFFBOARD at 3 m over the start.
@@ -39,8 +37,8 @@ fn flies_offboard_to_a_position_and_lands_and_disarms() {
     assert!(!ground.is_armed(), "{:?} {:?}", ground.position(), ground.texts());
     assert_at(&ground, [2.0, -1.5, 0.0], 0.2);
     assert!(ground.has_text("Landing detected") && ground.has_text("Disarmed by landing"));
-    // a landing is over: the mode is not Land any more
-    assert_eq!(ground.mode(), Some(Mode::Hold));
+    // a landing is over: the mode is the one before
+    assert_eq!(ground.mode(), Some(Mode::Guided));
 }
 
 #[test]
@@ -168,8 +166,11 @@ fn a_ground_station_is_needed_for_arming_where_its_loss_has_an_action() {
     ground.wait(2.0);
     assert_eq!(ground.mode(), Some(Mode::Hold));
     ground.wait(3.0);
-    assert_eq!(ground.mode(), Some(Mode::Return));
     assert!(ground.has_text("Connection to ground control station lost"));
+    assert!(ground.has_text("Failsafe activated: entering Hold for 5 seconds"));
+    assert_eq!(ground.mode(), Some(Mode::Hold));
+    ground.wait(5.0);
+    assert_eq!(ground.mode(), Some(Mode::Return));
 }
 
 #[test]
@@ -248,22 +249,6 @@ fn body_velocities_turn_with_the_heading() {
     ground.stream(4.0, &ahead.message());
     let [north, moved_east, _] = ground.position();
     assert!(moved_east > 1.0 && north.abs() < 0.4, "{north} {moved_east}");
-}
-
-/// SET_ATTITUDE_TARGET.
-fn attitude_target(type_mask: u8, pitch_rad: f32, rates: [f32; 3], thrust: f32) -> MavMessage {
-    let (sin, cos) = (0.5 * pitch_rad).sin_cos();
-    MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
-        target_system: 1,
-        target_component: 1,
-        type_mask: AttitudeTargetTypemask::from_bits_truncate(type_mask),
-        q: [cos, 0.0, sin, 0.0],
-        body_roll_rate: rates[0],
-        body_pitch_rate: rates[1],
-        body_yaw_rate: rates[2],
-        thrust,
-        ..SET_ATTITUDE_TARGET_DATA::default()
-    })
 }
 
 #[test]
@@ -367,7 +352,10 @@ fn a_battery_that_gets_low_is_told_and_a_critical_one_acts_where_it_is_told_to()
         ground.fault(Fault::Battery(0.05));
         ground.stream(1.5, &hover);
         assert_eq!(ground.last(147).unwrap().u8(40), 3, "critical");
-        assert_eq!(ground.mode(), Some(mode));
+        let first = if mode == Mode::Guided { Mode::Guided } else { Mode::Hold };
+        assert_eq!(ground.mode(), Some(first), "it holds for COM_FAIL_ACT_T first");
+        ground.stream(5.0, &hover);
+        assert_eq!(ground.mode(), Some(mode), "setpoints do not take it back");
     }
 }
 
@@ -468,4 +456,51 @@ fn a_ground_station_and_a_companion_get_different_streams() {
         assert!((got - rate_hz).abs() < 0.6, "{id}: {got}");
     }
     assert!(ground.count(8) > 0 && ground.count(411) > 0, "ids that older dialects do not know");
+}
+
+#[test]
+fn a_breach_of_the_fence_holds_at_once_and_returns_or_lands_after_a_delay() {
+    let away = Target::moving([2.0, 0.0, 0.0]).message();
+    let up = Target::moving([0.0, 0.0, -1.0]).message();
+    for (border, action, way, first, then) in [
+        ("GF_MAX_HOR_DIST", 2.0, &away, Mode::Hold, Mode::Hold),
+        ("GF_MAX_HOR_DIST", 3.0, &away, Mode::Hold, Mode::Return),
+        ("GF_MAX_VER_DIST", 5.0, &up, Mode::Hold, Mode::Land),
+        ("GF_MAX_HOR_DIST", 1.0, &away, Mode::Guided, Mode::Guided),
+        ("GF_MAX_HOR_DIST", 0.0, &away, Mode::Guided, Mode::Guided),
+    ] {
+        let mut ground = offboard(with(&[(border, 6.0), ("GF_ACTION", action), ("RTL_RETURN_ALT", 4.0)]));
+        ground.set_interval(436, 2.0);
+        ground.stream(6.5, way);
+        assert_eq!(ground.mode(), Some(first), "{border} {action}");
+        // the real one's clock: a breach at 3.5 s, five seconds of Hold
+        ground.stream(4.0, way);
+        assert_eq!(ground.mode(), Some(then), "{border} {action}: {:?}", ground.texts());
+        assert_eq!(ground.has_text("Geofence violation: exceeding maximum"), action != 0.0);
+        assert_eq!(ground.has_text("Failsafe activated"), first == Mode::Hold);
+        let intended = ground.last(436).unwrap().u32(4);
+        assert_eq!(Mode::from_custom_mode(PX4, intended), Some(Mode::Guided), "what was asked for stays");
+        if first == Mode::Hold {
+            assert!(ground.heartbeat().2 == 5, "critical");
+            assert_eq!(ground.set_mode(Mode::Hold), ACCEPTED);
+            ground.wait(7.0);
+            assert_eq!(ground.mode(), Some(Mode::Hold), "whoever chooses a mode has it");
+        }
+    }
+}
+
+#[test]
+fn it_rests_in_the_mode_that_was_chosen_last_and_arms_in_it() {
+    let mut ground = offboard(settings(PX4));
+    assert_eq!(ground.set_mode(Mode::Land), ACCEPTED);
+    ground.wait(14.0);
+    assert!(!ground.is_armed(), "{:?}", ground.position());
+    assert_eq!(ground.mode(), Some(Mode::Guided), "landing is no mode to arm in");
+    assert_eq!(ground.arm(), TEMPORARILY_REJECTED, "without setpoints");
+    let mut ground = Ground::of(PX4);
+    ground.take_off(2.0);
+    assert_eq!(ground.set_mode(Mode::Land), ACCEPTED);
+    ground.wait(12.0);
+    assert!(!ground.is_armed());
+    assert_eq!(ground.mode(), Some(Mode::Hold), "as a takeoff ends");
 }

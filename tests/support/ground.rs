@@ -288,6 +288,22 @@ pub fn heartbeat() -> MavMessage {
     })
 }
 
+/// SET_ATTITUDE_TARGET: a pitch (nose up), body rates forward-right-down, a thrust.
+pub fn attitude_target(type_mask: u8, pitch_rad: f32, rates: [f32; 3], thrust: f32) -> MavMessage {
+    let (sin, cos) = (0.5 * pitch_rad).sin_cos();
+    MavMessage::SET_ATTITUDE_TARGET(dialect::SET_ATTITUDE_TARGET_DATA {
+        target_system: 1,
+        target_component: 1,
+        type_mask: dialect::AttitudeTargetTypemask::from_bits_truncate(type_mask),
+        q: [cos, 0.0, sin, 0.0],
+        body_roll_rate: rates[0],
+        body_pitch_rate: rates[1],
+        body_yaw_rate: rates[2],
+        thrust,
+        ..dialect::SET_ATTITUDE_TARGET_DATA::default()
+    })
+}
+
 /// What a setpoint says, NED; `mask` ignores by its bits.
 #[derive(Clone, Copy)]
 pub struct Target {

@@ -66,16 +66,22 @@ pub(super) fn declaration(parameters: &Parameters) -> Vec<Sentence> {
         transmitter(&topic("transmitter lost")),
         sticks(&topic("pilot's sticks")),
         topic("battery low").choose("If the battery runs low", "COM_LOW_BAT_ACT", BATTERY_LOW),
-        fence.choose(
-            &format!(
-                "If it leaves {} from home or {} above it",
-                fence.number("GF_MAX_HOR_DIST", "m"),
-                fence.number("GF_MAX_VER_DIST", "m")
-            ),
-            "GF_ACTION",
-            FENCE,
-        ),
+        fence.choose(&leaves_fence(&fence), "GF_ACTION", FENCE),
     ]
+}
+
+/// A distance of zero is no border.
+fn leaves_fence(topic: &Topic<'_>) -> String {
+    let border = |name: &str, of_home: &str| {
+        let is_off = topic.parameters.get(name) == Some(0.0);
+        (!is_off).then(|| format!("{} {of_home}", topic.number(name, "m")))
+    };
+    let borders = [border("GF_MAX_HOR_DIST", "from home"), border("GF_MAX_VER_DIST", "above home")];
+    let borders: Vec<String> = borders.into_iter().flatten().collect();
+    match borders.as_slice() {
+        [] => "If it leaves a stored fence (GF_MAX_HOR_DIST and GF_MAX_VER_DIST are 0, no border)".to_owned(),
+        borders => format!("If it leaves {}, or a stored fence", borders.join(" or ")),
+    }
 }
 
 fn transmitter(topic: &Topic<'_>) -> Sentence {

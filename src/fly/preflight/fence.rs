@@ -1,35 +1,19 @@
 //! The trajectory against the vehicle's own fence.
 
 use super::extremes::{place_and_velocity, samples};
-use super::geometry::{Geodetic, Zone};
 use super::{Situation, Stopping};
+use crate::fence::{Areas, FenceItem, Zone};
 use crate::fly::finding::Finding;
 use crate::fly::parameters::{Parameters, has_bit};
+use crate::frames::Geodetic;
 use crate::log::Autopilot;
 use nalgebra::Vector3;
-
-/// MAV_CMD_NAV_FENCE_*
-const POLYGON_INSIDE: u16 = 5001;
-const POLYGON_OUTSIDE: u16 = 5002;
-const CIRCLE_INSIDE: u16 = 5003;
-const CIRCLE_OUTSIDE: u16 = 5004;
 
 /// Bits of FENCE_TYPE.
 const HEIGHT_MAX: u32 = 0;
 const RADIUS: u32 = 1;
 const AREAS: u32 = 2;
 const HEIGHT_MIN: u32 = 3;
-
-/// One item of a mission of type fence.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FenceItem {
-    /// MAV_CMD_NAV_FENCE_*
-    pub command: u16,
-    /// corners of its polygon, or radius in m
-    pub parameter: f64,
-    /// a corner, or the centre
-    pub place: Geodetic,
-}
 
 /// A vehicle's fence in its local frame.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -118,35 +102,10 @@ impl Fence {
     }
 
     fn place(&mut self, items: &[FenceItem], origin: &Geodetic) {
-        let mut rest = items;
-        while let Some((first, after)) = rest.split_first() {
-            let inside = matches!(first.command, POLYGON_INSIDE | CIRCLE_INSIDE);
-            match first.command {
-                CIRCLE_INSIDE | CIRCLE_OUTSIDE => {
-                    let center_m = first.place.north_west_m(origin);
-                    self.zones.push(Zone::Circle { inside, center_m, radius_m: first.parameter });
-                    rest = after;
-                }
-                POLYGON_INSIDE | POLYGON_OUTSIDE => {
-                    let own = |item: &&FenceItem| {
-                        item.command == first.command && (item.parameter - first.parameter).abs() < 0.5
-                    };
-                    let mut count = 0;
-                    while (count as f64) < first.parameter && rest.get(count).as_ref().is_some_and(own) {
-                        count += 1;
-                    }
-                    if (count as f64) < first.parameter || count < 3 {
-                        self.unknown.push(format!("a polygon has {count} of {} corners", first.parameter));
-                    } else {
-                        let corners_m = rest[..count].iter().map(|item| item.place.north_west_m(origin));
-                        self.zones.push(Zone::Polygon { inside, corners_m: corners_m.collect() });
-                    }
-                    rest = &rest[count.max(1)..];
-                }
-                // the place to return to is no border
-                _ => rest = after,
-            }
-        }
+        let Areas { zones, broken } = Areas::of(items, origin);
+        self.zones = zones;
+        let incomplete = |(came, of)| format!("a polygon has {came} of {of} corners");
+        self.unknown.extend(broken.into_iter().map(incomplete));
     }
 
     /// No border at all.

@@ -1,8 +1,8 @@
 //! Reads the vehicle's fence: the mission protocol with mission type fence.
 
-use super::fence::FenceItem;
-use super::geometry::Geodetic;
+use crate::fence::FenceItem;
 use crate::fly::address::{is_from, target_of};
+use crate::frames::Geodetic;
 use crate::log::{Frame, Payload, Vehicle};
 use mavlink::dialects::ardupilotmega::{
     MISSION_ACK_DATA, MISSION_REQUEST_INT_DATA, MISSION_REQUEST_LIST_DATA, MavMessage, MavMissionResult,

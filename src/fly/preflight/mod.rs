@@ -6,15 +6,13 @@ mod energy;
 mod extremes;
 mod fence;
 mod fence_download;
-mod geometry;
 mod readiness;
 mod room;
 
 pub use energy::{BatteryState, SPARE_FACTOR};
 pub use extremes::{Extremes, Stopping};
-pub use fence::{Fence, FenceItem};
+pub use fence::Fence;
 pub use fence_download::{FenceDownload, FenceOutcome};
-pub use geometry::{Geodetic, Zone};
 pub use readiness::{ESTIMATE_GOOD_FOR, Readiness};
 
 use super::finding::{Finding, Level};

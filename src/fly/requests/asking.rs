@@ -182,6 +182,11 @@ impl Requests {
         self.phase == Phase::Done
     }
 
+    /// Counts what arrives once more, from now on.
+    pub fn measure_again(&mut self, now: Duration) {
+        self.phase = Phase::Settling { until: now + self.settings.settle };
+    }
+
     /// Messages answered and asked for.
     #[must_use]
     pub fn progress(&self) -> (usize, usize) {

@@ -114,8 +114,15 @@ impl RatesReport {
     /// Everything that identification needs arrives.
     #[must_use]
     pub fn suffices_to_identify(&self) -> bool {
-        let needed = [Need::BodyRates, Need::Attitude, Need::Position, Need::Actuators];
-        self.needs.iter().filter(|report| needed.contains(&report.need)).all(NeedReport::is_served)
+        [Need::BodyRates, Need::Attitude, Need::Position, Need::Actuators]
+            .iter()
+            .all(|need| self.serves(*need))
+    }
+
+    /// What this need asks for arrives at the least rate or faster.
+    #[must_use]
+    pub fn serves(&self, need: Need) -> bool {
+        self.needs.iter().any(|report| report.need == need && report.is_served())
     }
 
     /// What the operator should know: a refusal where flying needs what does not come, a warning where
@@ -127,7 +134,7 @@ impl RatesReport {
         let slow = slow.filter(|s| !s.request.on_change && !s.is_as_asked(self.autopilot)).map(|s| {
             Finding::warning(
                 "message rate",
-                format!("{} at {:.0} Hz", s.request.name, s.request.rate_hz),
+                format!("{} at {} Hz", s.request.name, s.request.rate_hz),
                 format!("{:.1} Hz", s.arrived_hz),
                 "the link or the autopilot holds it back: another ground station, a slow link, or a data rate limit",
             )

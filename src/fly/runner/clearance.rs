@@ -8,11 +8,13 @@ use crate::fly::finding::{Finding, Level};
 use crate::fly::flight::Flight;
 use crate::fly::parameters::{Download, DownloadSettings, Parameters, wanted};
 use crate::fly::preflight::{
-    BatteryState, Fence, FenceDownload, FenceOutcome, Geodetic, Readiness, Situation, preflight,
+    BatteryState, Fence, FenceDownload, FenceOutcome, Readiness, Situation, preflight,
 };
-use crate::fly::requests::{Capacity, LinkKind, RequestSettings, Requests, request_set, slow_request_set};
-use crate::frames::world_from_ned;
-use crate::log::{self, Frame, Payload};
+use crate::fly::requests::{
+    Capacity, LinkKind, Need, RequestSettings, Requests, request_set, slow_request_set,
+};
+use crate::frames::{Geodetic, world_from_ned};
+use crate::log::{self, Decoder, Frame, Payload, Record};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
@@ -25,6 +27,8 @@ const HOME_POSITION: u32 = 242;
 /// What came of it.
 #[derive(Debug)]
 pub(super) struct Cleared {
+    /// that of the frames so far
+    pub(super) decoder: Option<Decoder>,
     pub(super) parameters: Parameters,
     pub(super) findings: Vec<Finding>,
     pub(super) lines: Vec<String>,
@@ -58,28 +62,54 @@ enum Stage {
 pub(super) struct Clearance {
     vehicle: log::Vehicle,
     link: LinkKind,
+    /// from the first frame on
+    decoder: Option<Decoder>,
     stage: Stage,
     fence: FenceDownload,
     /// where the local frame lies, as GPS_GLOBAL_ORIGIN says
     origin: Option<Geodetic>,
     /// home, as HOME_POSITION says: m, world, local
     home_m: Option<Vector3<f64>>,
+    /// since when nothing but its position is waited for
+    waits: Option<Duration>,
+    counted_again: bool,
 }
 
 impl Clearance {
     pub(super) fn new(vehicle: log::Vehicle, rotors: usize, link: LinkKind) -> Self {
         let download = Download::new(vehicle, wanted(vehicle.autopilot, rotors), DownloadSettings::default());
         let (stage, fence) = (Stage::Parameters(Box::new(download)), FenceDownload::new(vehicle));
-        Self { vehicle, link, stage, fence, origin: None, home_m: None }
-    }
-
-    pub(super) fn take_event(&mut self, event: &log::Event<'_>) {
-        if let Stage::Parameters(download) = &mut self.stage {
-            download.take(event);
+        Self {
+            vehicle,
+            link,
+            decoder: None,
+            stage,
+            fence,
+            origin: None,
+            home_m: None,
+            waits: None,
+            counted_again: false,
         }
     }
 
-    pub(super) fn take_frame(&mut self, frame: &Frame<'_>) {
+    /// Takes a frame of any system.
+    pub(super) fn take(&mut self, record: &Record<'_>) {
+        if matches!(self.stage, Stage::Over) {
+            return;
+        }
+        let Self { vehicle, decoder, stage, .. } = self;
+        let decoder = decoder.get_or_insert_with(|| Decoder::new(*vehicle, None, record.stamp_us));
+        decoder.decode(record, &mut |event| {
+            if let Stage::Parameters(download) = stage {
+                download.take(&event);
+            }
+        });
+        if record.known {
+            self.take_frame(&record.frame);
+        }
+    }
+
+    fn take_frame(&mut self, frame: &Frame<'_>) {
         let header = frame.header();
         if header.system == self.vehicle.system && header.message_id == GPS_GLOBAL_ORIGIN {
             self.origin = Some(geodetic(frame.payload()));
@@ -118,9 +148,26 @@ impl Clearance {
         message
     }
 
+    /// All else is done, and the vehicle tells no position yet.
+    pub(super) fn waits_for_position(&self) -> bool {
+        self.waits.is_some() && !self.counted_again && !matches!(self.stage, Stage::Over)
+    }
+
     /// What came of it, once, when it is over.
     pub(super) fn finished(&mut self, flight: &Flight, vehicle: &Vehicle, now: Duration) -> Option<Cleared> {
-        if !matches!(&self.stage, Stage::Rates(_, requests) if requests.is_done()) {
+        let Stage::Rates(_, requests) = &mut self.stage else { return None };
+        if !requests.is_done() {
+            return None;
+        }
+        // ArduPilot has no position to tell for some 40 s after its boot
+        let since = *self.waits.get_or_insert(now);
+        if flight.status(now).position_m.is_some() {
+            let known = self.home_m.is_some() && requests.report().serves(Need::Position);
+            if !known && !std::mem::replace(&mut self.counted_again, true) {
+                requests.measure_again(now);
+                return None;
+            }
+        } else if now.saturating_sub(since) < flight.sortie().settings.ready_timeout {
             return None;
         }
         let Stage::Rates(parameters, requests) = std::mem::replace(&mut self.stage, Stage::Over) else {
@@ -135,7 +182,7 @@ impl Clearance {
         }
         findings.extend(report.findings());
         let lines = report.streams.iter().map(|stream| stream.line()).collect();
-        Some(Cleared { parameters: *parameters, findings, lines })
+        Some(Cleared { decoder: self.decoder.take(), parameters: *parameters, findings, lines })
     }
 
     fn findings(

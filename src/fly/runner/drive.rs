@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use super::PARAMETERS;
 use super::clearance::{Clearance, Cleared};
+use super::estimating::Estimating;
 use super::journal::Journal;
 use super::stream::SharedGuide;
 use crate::fly::finding;
@@ -17,13 +18,12 @@ use crate::fly::parameters::Parameters;
 use crate::fly::requests::LinkKind;
 use crate::fly::safety::Lead;
 use crate::fly::view::{Battery, KeyCommand, LinkView, Phase, ViewModel};
-use crate::link::{LinkEvent, LinkWriter, ReceivedFrame};
-use crate::log::{Decoder, Frame, Record};
+use crate::link::{LinkEvent, LinkStats, LinkWriter, ReceivedFrame};
+use crate::log::{Check, Frame, Record};
 use crate::vehicle::Vehicle;
 
-/// Between two pictures of the state, and between two live estimates.
+/// Between two pictures of the state.
 const SHOW: Duration = Duration::from_millis(200);
-const ESTIMATE: Duration = Duration::from_secs(1);
 
 /// Where the flight's records go and what flies.
 #[derive(Debug)]
@@ -43,13 +43,15 @@ pub(super) struct Drive {
     clock: Instant,
     place: Place,
     clearance: Option<Clearance>,
-    decoder: Option<Decoder>,
-    live: Option<LiveIdentification>,
+    estimating: Estimating,
     notes: Vec<Note>,
     model: ViewModel,
     shown: Duration,
-    estimated: Duration,
     frames: (u64, u64),
+    /// it was told that frames come which are not believed
+    told_distrust: bool,
+    /// and that its position is waited for
+    told_waiting: bool,
     refused: u64,
     outcome: Option<Outcome>,
 }
@@ -60,7 +62,7 @@ impl Drive {
         guide: SharedGuide,
         writer: LinkWriter,
         clock: Instant,
-        place: Place,
+        (place, estimating): (Place, Estimating),
     ) -> Self {
         let mut model = ViewModel { title: place.vehicle.name.clone(), ..ViewModel::default() };
         model.tracking.limit_m = Some(flight.sortie().settings.tracking_max_m);
@@ -73,13 +75,13 @@ impl Drive {
             clock,
             place,
             clearance: None,
-            decoder: None,
-            live: None,
+            estimating,
             notes,
             model,
             shown: Duration::ZERO,
-            estimated: Duration::ZERO,
             frames: (0, 0),
+            told_distrust: false,
+            told_waiting: false,
             refused: 0,
             outcome: None,
         }
@@ -110,30 +112,16 @@ impl Drive {
         self.clear(now);
     }
 
-    pub(super) fn frame(&mut self, received: &ReceivedFrame) {
-        let Some(frame) = Frame::at_start(received.bytes()) else { return };
-        self.handle(Event::Frame(frame));
-        if self.decoder.is_none() {
-            self.decoder = self.flight.vehicle().map(|who| Decoder::new(who, None, received.stamp.utc_us));
+    pub(super) fn frame(&mut self, received: ReceivedFrame) {
+        if let Some(frame) = Frame::at_start(received.bytes()) {
+            self.handle(Event::Frame(frame));
+            let known = frame.check(self.flight.seeds()) == Check::Right;
+            let record = Record { stamp_us: received.stamp.utc_us, offset: 0, known, frame };
+            if let Some(clearance) = &mut self.clearance {
+                clearance.take(&record);
+            }
         }
-        let known = frame.check(self.flight.seeds()) == crate::log::Check::Right;
-        let record = Record { stamp_us: received.stamp.utc_us, offset: 0, known, frame };
-        if let Some(clearance) = &mut self.clearance
-            && known
-        {
-            clearance.take_frame(&frame);
-        }
-        let (clearance, live) = (&mut self.clearance, &mut self.live);
-        if let Some(decoder) = &mut self.decoder {
-            decoder.decode(&record, &mut |event| {
-                if let Some(clearance) = clearance {
-                    clearance.take_event(&event);
-                }
-                if let Some(live) = live {
-                    live.take(&event);
-                }
-            });
-        }
+        self.estimating.frame(received);
     }
 
     pub(super) fn link_event(&mut self, event: &LinkEvent) {
@@ -175,12 +163,18 @@ impl Drive {
         while let Some(message) = clearance.poll(now) {
             self.refused += u64::from(self.writer.send_message(&message).is_err());
         }
-        if let Some(cleared) = clearance.finished(&self.flight, &self.place.vehicle, now) {
-            self.cleared(now, &cleared);
+        let cleared = clearance.finished(&self.flight, &self.place.vehicle, now);
+        let waits = clearance.waits_for_position();
+        if waits && !std::mem::replace(&mut self.told_waiting, waits) {
+            let text = "waiting for the vehicle's position estimate; all else is checked";
+            self.notes.push(Note::new(now, Level::Information, "check", text));
+        }
+        if let Some(cleared) = cleared {
+            self.cleared(now, cleared);
         }
     }
 
-    fn cleared(&mut self, now: Duration, cleared: &Cleared) {
+    fn cleared(&mut self, now: Duration, cleared: Cleared) {
         for line in &cleared.lines {
             self.notes.push(Note::new(now, Level::Information, "rate", line.clone()));
         }
@@ -192,9 +186,13 @@ impl Drive {
             self.notes.push(Note::new(now, level, "check", finding.to_string()));
         }
         self.keep_parameters(now, &cleared.parameters);
-        self.live =
-            Some(LiveIdentification::new(&self.place.vehicle, &cleared.parameters, &LiveSettings::default()));
-        self.handle(Event::Cleared(cleared.verdict()));
+        let verdict = cleared.verdict();
+        let vehicle = &self.place.vehicle;
+        let live = LiveIdentification::new(vehicle, &cleared.parameters, &LiveSettings::default());
+        if let Some(decoder) = cleared.decoder {
+            self.estimating.begin(decoder, live);
+        }
+        self.handle(Event::Cleared(verdict));
     }
 
     fn keep_parameters(&mut self, now: Duration, parameters: &Parameters) {
@@ -231,10 +229,25 @@ impl Drive {
         let _ = show.send(self.model.clone());
     }
 
+    /// A vehicle that signs with another key, or not at all, looks like none.
+    fn tell_distrust(&mut self, now: Duration, stats: &LinkStats) {
+        let LinkStats { unsigned, badly_signed, replayed, .. } = stats;
+        if self.told_distrust || unsigned + badly_signed + replayed == 0 {
+            return;
+        }
+        self.told_distrust = true;
+        let text = format!(
+            "frames come that are not believed: {unsigned} without a signature, {badly_signed} with another key's, \
+             {replayed} heard before or too old; is the key of --signing-key-file on the vehicle?"
+        );
+        self.notes.push(Note::new(now, Level::Warning, "signing", text));
+    }
+
     fn picture(&mut self, now: Duration) {
         let status = self.flight.status(now);
         let follows = self.flight.guide().lead != Lead::Silent;
         let stats = self.writer.stats();
+        self.tell_distrust(now, &stats);
         let passed_s = now.saturating_sub(self.shown).as_secs_f64().max(1e-3);
         let hz = |total: u64, before: u64| total.saturating_sub(before) as f64 / passed_s;
         let model = &mut self.model;
@@ -263,14 +276,9 @@ impl Drive {
         if follows && status.airborne {
             model.track(status.tracking_m);
         }
-        if let Some(live) = &mut self.live {
-            live.set_active(status.progress_s.is_some());
-            if now.saturating_sub(self.estimated) >= ESTIMATE {
-                self.estimated = now;
-                if let Some(estimate) = live.estimate() {
-                    model.estimate(&estimate);
-                }
-            }
+        self.estimating.set_active(status.progress_s.is_some());
+        if let Some(estimate) = self.estimating.latest() {
+            model.estimate(&estimate);
         }
     }
 }

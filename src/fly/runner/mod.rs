@@ -6,9 +6,12 @@
 //!                    v
 //!            thread of setpoints ------> link
 //! ```
+//!
+//! The live identification hears what the flight hears, on a thread of its own.
 
 mod clearance;
 mod drive;
+mod estimating;
 mod journal;
 mod priority;
 mod stream;
@@ -37,6 +40,7 @@ use crate::link::{
 };
 use crate::vehicle::Vehicle;
 use drive::Drive;
+use estimating::Estimating;
 use journal::Journal;
 use stream::{SharedGuide, Stream};
 
@@ -150,7 +154,9 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
     let flight = Flight::new(ride.sortie);
     let (link, address) = (kind_of(&ride.address), ride.address.to_string());
     let place = drive::Place { dir: ride.dir, vehicle: ride.vehicle, link, address };
-    let mut drive = Drive::new(flight, guide.clone(), writer.clone(), clock, place);
+    // here, and not in a task: those of the link have a rank that it is not to have
+    let estimating = Estimating::start().map_err(make("a thread"))?;
+    let mut drive = Drive::new(flight, guide.clone(), writer.clone(), clock, (place, estimating));
     if !stream.is_real_time {
         drive.warn("setpoints", NO_PRIORITY);
     }
@@ -201,7 +207,7 @@ async fn conduct(
     loop {
         tokio::select! {
             received = reader.receive(), if hears => match received {
-                Ok(Received::Frame(frame)) => drive.frame(&frame),
+                Ok(Received::Frame(frame)) => drive.frame(frame),
                 Ok(Received::Event(event)) => drive.link_event(&event),
                 Err(_) => hears = false,
             },

@@ -30,7 +30,7 @@ const AHEAD: u64 = 10 * 100_000;
 /// Streams told apart; further ones are refused.
 const STREAMS: usize = 1024;
 /// Link id, time, signature.
-const TAIL_BYTES: usize = 13;
+pub(crate) const TAIL_BYTES: usize = 13;
 const SIGNATURE_BYTES: usize = 6;
 /// A radio's own report, which no radio signs.
 const RADIO_STATUS: u32 = 109;
@@ -126,6 +126,12 @@ impl Signing {
         Self::new(key, Times { own: now(), ..Times::default() }, None)
     }
 
+    /// The same, begun at a time of the caller's clock: for whoever has no other ([`time_of`]).
+    #[must_use]
+    pub(crate) fn with_key_at(key: SigningKey, time: u64) -> Self {
+        Self::new(key, Times { own: time, ..Times::default() }, None)
+    }
+
     fn new(key: SigningKey, times: Times, file: Option<TimesFile>) -> Self {
         let state = State { kept: times.own, times, file };
         Self { shared: Arc::new(Shared { key, state: Mutex::new(state) }), link_id: 0 }
@@ -142,7 +148,8 @@ impl Signing {
         self.sign_at(frame, now());
     }
 
-    fn sign_at(&self, frame: &mut [u8], now: u64) {
+    /// The same at a time of the caller's clock.
+    pub(crate) fn sign_at(&self, frame: &mut [u8], now: u64) {
         let Some(at) = frame.len().checked_sub(TAIL_BYTES) else { return };
         let time = self.state().next(now);
         frame[at] = self.link_id;
@@ -159,7 +166,8 @@ impl Signing {
         self.verify_at(frame, now())
     }
 
-    fn verify_at(&self, frame: &Frame<'_>, now: u64) -> Result<(), Distrust> {
+    /// The same at a time of the caller's clock.
+    pub(crate) fn verify_at(&self, frame: &Frame<'_>, now: u64) -> Result<(), Distrust> {
         let header = frame.header();
         if !header.is_signed() {
             return if header.message_id == RADIO_STATUS { Ok(()) } else { Err(Distrust::Unsigned) };
@@ -229,7 +237,12 @@ fn equal_in_constant_time(a: &[u8], b: &[u8]) -> bool {
 
 /// The signing time of the wall clock.
 fn now() -> u64 {
-    utc_us().saturating_sub(EPOCH_US) / 10
+    time_of(utc_us())
+}
+
+/// The signing time of microseconds since 1970 UTC.
+pub(crate) fn time_of(utc_us: u64) -> u64 {
+    utc_us.saturating_sub(EPOCH_US) / 10
 }
 
 impl SigningKey {

@@ -12,16 +12,12 @@ use crate::units::whole;
 /// MAV_FRAME.
 const LOCAL_NED: u8 = 1;
 const BODY_FRD: u8 = 12;
-/// Radius of a sphere with Earth's surface, m.
-const EARTH_RADIUS_M: f64 = 6_371_009.0;
 
 /// Degrees north and east (times 1e7) and height above sea (mm) of a place in the local frame.
 fn on_earth(origin: &Origin, position_m: &Vector3<f64>) -> [i32; 3] {
-    let [north_m, east_m, down_m] = ned(*position_m);
-    let latitude_deg = origin.latitude_deg + (north_m / EARTH_RADIUS_M).to_degrees();
-    let parallel_m = EARTH_RADIUS_M * origin.latitude_deg.to_radians().cos();
-    let longitude_deg = origin.longitude_deg + (east_m / parallel_m).to_degrees();
-    [whole(latitude_deg * 1e7), whole(longitude_deg * 1e7), whole((origin.altitude_m - down_m) * 1e3)]
+    let place = origin.place().moved([position_m.x, position_m.y]);
+    let height_m = origin.altitude_m + position_m.z;
+    [whole(place.latitude_deg * 1e7), whole(place.longitude_deg * 1e7), whole(height_m * 1e3)]
 }
 
 /// Heading clockwise from north, degrees in 0..360.

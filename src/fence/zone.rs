@@ -1,33 +1,4 @@
-//! Areas in the plane, and from latitude and longitude to metres.
-
-/// A place on Earth as MAVLink says it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Geodetic {
-    /// degrees north
-    pub latitude_deg: f64,
-    /// degrees east
-    pub longitude_deg: f64,
-}
-
-/// WGS 84: semi-major axis, m, and first eccentricity squared.
-const SEMI_MAJOR_M: f64 = 6_378_137.0;
-const ECCENTRICITY_SQUARED: f64 = 6.694_379_990_14e-3;
-
-impl Geodetic {
-    /// Metres north and west of `origin`, by the radii of curvature there: good to centimetres over a
-    /// kilometre.
-    #[must_use]
-    pub fn north_west_m(&self, origin: &Self) -> [f64; 2] {
-        let (sin, cos) = origin.latitude_deg.to_radians().sin_cos();
-        let flat = 1.0 - ECCENTRICITY_SQUARED * sin * sin;
-        let across_m = SEMI_MAJOR_M / flat.sqrt();
-        let along_m = across_m * (1.0 - ECCENTRICITY_SQUARED) / flat;
-        // the short way round at the date line
-        let east_deg = (self.longitude_deg - origin.longitude_deg + 540.0).rem_euclid(360.0) - 180.0;
-        let north = (self.latitude_deg - origin.latitude_deg).to_radians() * along_m;
-        [north, -east_deg.to_radians() * across_m * cos]
-    }
-}
+//! Areas in the plane.
 
 /// An area that must be kept in or out of; metres north and west.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,15 +84,5 @@ mod tests {
         assert!((out.spare_m([3.0, 3.0]) - 1.0).abs() < 1e-12);
         let circle = Zone::Circle { inside: false, center_m: [0.0, 0.0], radius_m: 5.0 };
         assert!((circle.spare_m([3.0, 4.0])).abs() < 1e-12 && circle.spare_m([1.0, 0.0]) < -3.9);
-    }
-
-    #[test]
-    fn a_minute_of_latitude_is_a_nautical_mile() {
-        let origin = Geodetic { latitude_deg: 45.0, longitude_deg: 179.999 };
-        let place = Geodetic { latitude_deg: 45.0 + 1.0 / 60.0, longitude_deg: -179.999 };
-        let [north, west] = place.north_west_m(&origin);
-        assert!((north - 1852.2).abs() < 0.5, "{north}");
-        // 0.002 degrees across the date line, to the east
-        assert!((west + 157.7).abs() < 0.5, "{west}");
     }
 }

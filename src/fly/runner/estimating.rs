@@ -1,0 +1,96 @@
+//! The live identification, on a thread of its own and of ordinary rank: what it costs, or a fault in it, never
+//! holds the flight up.
+
+use std::io;
+use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::fly::live::{LiveEstimate, LiveIdentification};
+use crate::link::ReceivedFrame;
+use crate::log::{Check, CrcSeeds, Decoder, Frame, Record};
+
+/// Between two estimates.
+const ESTIMATE: Duration = Duration::from_secs(1);
+/// Frames that may wait: some seconds of telemetry. One that finds no room is left out, and leaves a gap.
+const WAITING: usize = 4096;
+
+/// What the thread is told.
+#[derive(Debug)]
+enum Told {
+    /// what it is to do from now on
+    Begin(Box<(Decoder, LiveIdentification)>),
+    /// a frame of the vehicle
+    Frame(ReceivedFrame),
+    /// whether the trajectory is being flown
+    Active(bool),
+}
+
+/// The live identification of one flight.
+#[derive(Debug)]
+pub(super) struct Estimating {
+    to: SyncSender<Told>,
+    from: Receiver<LiveEstimate>,
+    began: bool,
+}
+
+impl Estimating {
+    /// Starts its thread, which has the rank of the calling one: to be called where that is an ordinary one.
+    pub(super) fn start() -> io::Result<Self> {
+        let (to, told) = sync_channel(WAITING);
+        let (say, from) = channel();
+        // it ends with the flight, which does not wait for it
+        thread::Builder::new().name("live".into()).spawn(move || estimate(&told, &say))?;
+        Ok(Self { to, from, began: false })
+    }
+
+    /// Frames from now on are decoded by `decoder`, and identified.
+    pub(super) fn begin(&mut self, decoder: Decoder, live: LiveIdentification) {
+        self.began = self.to.try_send(Told::Begin(Box::new((decoder, live)))).is_ok();
+    }
+
+    pub(super) fn frame(&self, frame: ReceivedFrame) {
+        if self.began {
+            // a thread that cannot keep up, or is no more, says less
+            let _ = self.to.try_send(Told::Frame(frame));
+        }
+    }
+
+    /// Whether the trajectory is being flown: what else the vehicle does is not identified.
+    pub(super) fn set_active(&self, active: bool) {
+        if self.began {
+            let _ = self.to.try_send(Told::Active(active));
+        }
+    }
+
+    /// The latest estimate, once.
+    pub(super) fn latest(&self) -> Option<LiveEstimate> {
+        self.from.try_iter().last()
+    }
+}
+
+fn estimate(told: &Receiver<Told>, say: &Sender<LiveEstimate>) {
+    let seeds = CrcSeeds::new();
+    let mut at_work: Option<Box<(Decoder, LiveIdentification)>> = None;
+    let mut said = Instant::now();
+    for told in told {
+        match (told, at_work.as_deref_mut()) {
+            (Told::Begin(work), _) => at_work = Some(work),
+            (Told::Active(active), Some((_, live))) => live.set_active(active),
+            (Told::Frame(received), Some((decoder, live))) => {
+                let Some(frame) = Frame::at_start(received.bytes()) else { continue };
+                let known = frame.check(&seeds) == Check::Right;
+                let record = Record { stamp_us: received.stamp.utc_us, offset: 0, known, frame };
+                decoder.decode(&record, &mut |event| live.take(&event));
+                if said.elapsed() < ESTIMATE {
+                    continue;
+                }
+                said = Instant::now();
+                if live.estimate().is_some_and(|estimate| say.send(estimate).is_err()) {
+                    return;
+                }
+            }
+            (Told::Active(_) | Told::Frame(_), None) => {}
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! The whole of `mavid fly` over a socket, as far as its checks: the fence is measured from home, wherever that is,
+//! and a key opens the vehicle that has it.
+
+#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+
+#[path = "support/flying.rs"]
+mod flying;
+
+use std::path::Path;
+use std::sync::mpsc;
+use std::time::{Duration, UNIX_EPOCH};
+
+use mavid::fly::view::{KeyCommand, ViewModel};
+use mavid::fly::{self, Console, Origin, Outcome, Ride};
+use mavid::link::{Link, LinkOptions, Signing, SigningKey};
+use mavid::log::{ComponentId, SystemId};
+use mavid::sitl::{ArduPilotRelease, AutopilotKind, LinkRole, Pace, Settings, Vehicle, serve};
+use mavid::vehicle::Limits;
+use tokio::sync::mpsc::unbounded_channel;
+
+/// Flies until the checks are over; ends by word of the operator where they let it go on. The vehicle stands 40 m
+/// from the origin of its local frame.
+async fn checked(name: &str, parameters: &[(&str, f64)], keys: [Option<u8>; 2]) -> Outcome {
+    checked_as(name, flying::vehicle_settings(AutopilotKind::Px4), parameters, keys).await
+}
+
+async fn checked_as(
+    name: &str,
+    base: Settings,
+    parameters: &[(&str, f64)],
+    keys: [Option<u8>; 2],
+) -> Outcome {
+    let own = parameters.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+    let [signing_key, own_key] = keys.map(|key| key.map(|byte| SigningKey::from_bytes([byte; 32])));
+    let settings = Settings {
+        start_m: [24.0, -32.0],
+        parameters: own,
+        signing_key,
+        boot_unix_us: u64::try_from(UNIX_EPOCH.elapsed().unwrap().as_micros()).unwrap(),
+        ..base
+    };
+    let mut sortie = flying::sortie(&settings);
+    let connect_timeout = Duration::from_secs(10);
+    let base = sortie.settings;
+    sortie.settings = fly::Settings { await_clearance: true, origin: Origin::Here, connect_timeout, ..base };
+    sortie.limits = Limits::default();
+    let flown = settings.vehicle.clone();
+
+    let options = LinkOptions {
+        system: SystemId(1),
+        component: ComponentId(1),
+        patient: true,
+        ..LinkOptions::default()
+    };
+    let ends = Link::open(&"udpin:127.0.0.1:0".parse().unwrap(), options).await.unwrap();
+    let address = ends.0.local_address().unwrap();
+    let vehicle = Vehicle::new(settings).unwrap();
+    let links = vec![(LinkRole::Onboard, ends)];
+    let vehicle = tokio::spawn(serve(vehicle, links, (Pace::Times(1.0), None), std::future::pending()));
+
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fly_checks").join(name);
+    let _ = std::fs::remove_dir_all(&dir);
+    std::fs::create_dir_all(&dir).unwrap();
+    let address = format!("udpout:{address}").parse().unwrap();
+    let ride = Ride { sortie, vehicle: flown, address, signing: own_key.map(Signing::with_key), dir };
+    let outcome = ends_after_checks(ride).await;
+    vehicle.abort();
+    outcome
+}
+
+async fn ends_after_checks(ride: Ride) -> Outcome {
+    let (show, pictures) = mpsc::channel::<ViewModel>();
+    let (press, keys) = unbounded_channel();
+    // a thread that ends with the flight's last picture
+    std::thread::spawn(move || {
+        for picture in pictures {
+            if !["connect", "check", "over"].contains(&picture.state.as_str()) {
+                let _ = press.send(KeyCommand::Quit);
+            }
+        }
+    });
+    let flight = fly::run(ride, Console { show, keys });
+    tokio::time::timeout(Duration::from_secs(60), flight).await.unwrap().unwrap().outcome
+}
+
+fn why(outcome: &Outcome) -> String {
+    outcome.cause.as_ref().unwrap().to_string()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_fence_about_home_lets_a_flight_inside_it_go_on_and_refuses_one_that_leaves_it() {
+    let (inside, outside, low) = tokio::join!(
+        checked("inside", &[("GF_MAX_HOR_DIST", 10.0), ("GF_MAX_VER_DIST", 10.0)], [None, None]),
+        checked("outside", &[("GF_MAX_HOR_DIST", 0.3)], [None, None]),
+        checked("low", &[("GF_MAX_VER_DIST", 1.0)], [None, None]),
+    );
+    assert!(why(&inside).contains("the operator"), "{}", why(&inside));
+    assert!(why(&outside).contains("the fence's radius about home"), "{}", why(&outside));
+    assert!(why(&low).contains("the fence's greatest height"), "{}", why(&low));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_vehicle_that_signs_is_flown_with_its_key_alone() {
+    let (right, wrong, unsigned) = tokio::join!(
+        checked("right", &[], [Some(7), Some(7)]),
+        checked("wrong", &[], [Some(7), Some(8)]),
+        checked("unsigned", &[], [None, Some(7)]),
+    );
+    assert!(why(&right).contains("the operator"), "{}", why(&right));
+    assert!(why(&wrong).contains("no vehicle"), "{}", why(&wrong));
+    assert!(why(&unsigned).contains("no vehicle"), "{}", why(&unsigned));
+    for (name, said) in [("wrong", "with another key's"), ("unsigned", "without a signature")] {
+        let events =
+            Path::new(env!("CARGO_TARGET_TMPDIR")).join("fly_checks").join(name).join("events.jsonl");
+        let events = std::fs::read_to_string(events).unwrap();
+        assert!(events.contains("frames come that are not believed") && events.contains(said), "{events}");
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_vehicle_that_has_just_booted_is_waited_for() {
+    // all else is checked after some 8 s, and its fence needs its home
+    let kind = AutopilotKind::ArduPilot(ArduPilotRelease::V4_7);
+    let booted = Settings { warm_up: Some(Duration::from_secs(14)), ..flying::vehicle_settings(kind) };
+    let fence = [("FENCE_ENABLE", 1.0), ("FENCE_RADIUS", 10.0), ("FENCE_ALT_MAX", 10.0)];
+    let outcome = checked_as("booted", booted, &fence, [None, None]).await;
+    assert!(why(&outcome).contains("the operator"), "{}", why(&outcome));
+}
