@@ -210,8 +210,14 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         }
         match passed.first().cloned() {
             Some(taken) if steps.len() < gates.steps => {
-                let taken = sharpened(flights, &after, taken);
-                let fitted = with_taken(flights, &after, &taken)?;
+                let sharper = sharpened(flights, &after, taken.clone());
+                let mut fitted = with_taken(flights, &after, &sharper)?;
+                let mut taken = sharper;
+                if at_bound(&fitted, &taken) {
+                    // what is sharpest by its slope can lie too far off for the effect itself
+                    taken = passed[0].clone();
+                    fitted = with_taken(flights, &after, &taken)?;
+                }
                 if wanders(flights, &fitted, &taken) || at_bound(&fitted, &taken) {
                     refused.push(taken.candidate.id);
                     continue;
