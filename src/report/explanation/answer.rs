@@ -207,6 +207,7 @@ fn spoken_state(variable: &str) -> String {
         "airspeed_x" | "airspeed_y" | "airspeed_z" => {
             format!("the airspeed along body {}", variable.trim_start_matches("airspeed_"))
         }
+        rotor if rotor.starts_with("rotor_") => format!("the thrust of {}", rotor.replace('_', " ")),
         other => format!("the {}", other.replace('_', " ")),
     }
 }

@@ -16,7 +16,8 @@ pub(super) fn brief(named: &Named, vehicle: &Vehicle, with_size: bool) -> String
         id => called(id).to_owned(),
     };
     match size(named).filter(|_| with_size) {
-        Some(size) => format!("{name} ({size})"),
+        // no parentheses within parentheses
+        Some(size) => format!("{name} ({})", size.replace("(m/s)^2", "m^2/s^2")),
         None => name,
     }
 }
@@ -29,11 +30,17 @@ fn value(named: &Named, name: &str) -> f64 {
     get(named, name).map_or(0.0, |parameter| parameter.value)
 }
 
+/// With its error where that needs no parentheses.
+fn plain(value: f64, std: f64) -> String {
+    let text = with_error(value, std);
+    if text.starts_with('(') { significant(value, 3) } else { text }
+}
+
 /// The number by which the effect is known, with its unit.
 fn size(named: &Named) -> Option<String> {
     let said = |name: &str, factor: f64, unit: &str| {
         let p = get(named, name)?;
-        Some(format!("{} {unit}", with_error(factor * p.value, factor.abs() * p.std)).trim_end().to_owned())
+        Some(format!("{} {unit}", plain(factor * p.value, factor.abs() * p.std)).trim_end().to_owned())
     };
     match named.id {
         "linear_drag" | "quadratic_drag" | "angular_damping" => Some(range(named)),
@@ -47,7 +54,7 @@ fn size(named: &Named) -> Option<String> {
         "weak_rotor" => {
             let p = get(named, "factor")?;
             let change = 100.0 * (1.0 - p.value).abs();
-            Some(format!("{} %", with_error(change, 100.0 * p.std)))
+            Some(format!("{} %", plain(change, 100.0 * p.std)))
         }
         "com_offset" => Some(format!("{} mm", significant(1e3 * norm(named), 3))),
         "imu_offset" => Some(format!("{} mm", significant(1e3 * norm(named), 2))),
@@ -62,11 +69,7 @@ fn size(named: &Named) -> Option<String> {
         "gust" => said("sigma", 1.0, "m/s rms"),
         _ => {
             let first = named.parameters.first()?;
-            Some(
-                format!("{} {}", with_error(first.value, first.std), spoken(first.unit))
-                    .trim_end()
-                    .to_owned(),
-            )
+            Some(format!("{} {}", plain(first.value, first.std), spoken(first.unit)).trim_end().to_owned())
         }
     }
 }
@@ -83,7 +86,7 @@ fn range(named: &Named) -> String {
     let weight: f64 = same.iter().map(|p| p.std.powi(-2)).sum();
     let mean = same.iter().map(|p| p.value * p.std.powi(-2)).sum::<f64>() / weight;
     if weight.is_finite() && same.iter().all(|p| (p.value - mean).abs() < 2.0 * p.std) {
-        return format!("{} {unit}", with_error(mean, weight.powf(-0.5)));
+        return format!("{} {unit}", plain(mean, weight.powf(-0.5)));
     }
     let least = same.iter().map(|p| p.value).fold(f64::INFINITY, f64::min);
     let most = same.iter().map(|p| p.value).fold(f64::NEG_INFINITY, f64::max);

@@ -197,6 +197,7 @@ mod tests {
             velocity_m_s: Some(0.2 * scale),
             attitude_rad: None,
             rates_rad_s: Some(0.3 * scale),
+            windows: 10,
         };
         let fits = [("a".to_owned(), Ok(fit(1.0))), ("b".to_owned(), Ok(fit(second)))];
         vec![playback_table(0.5, &fits)]
