@@ -1,5 +1,7 @@
 //! Force and torque of a model along a flight that was flown: recorded states, known rotor thrusts.
 
+use super::base::Base;
+use super::spin_up::SpinUp;
 use super::trace::Trace;
 use crate::physics::{Airframe, Input, MAX_ROTORS, Model, Wrench};
 use crate::signals::{ActuationLatency, central_difference, delayed_wrench};
@@ -117,4 +119,37 @@ pub(super) fn felt(
         }
     }
     out
+}
+
+/// Passes over the motion's rotor thrusts, which depend on the effects that depend on them.
+const MOTION_PASSES: usize = 2;
+
+/// The rotors by the measured motion, and what they do.
+pub(super) fn moved_by(
+    trace: &Trace,
+    (base, model): (&Base, &Model),
+    commanded: &Turning,
+) -> (Turning, Vec<Wrench>) {
+    let airframe = &model.airframe;
+    let spin_up = SpinUp::of(base, airframe);
+    let (mass_kg, inertia) = (base.vehicle.body.mass_kg, base.vehicle.body.inertia_kg_m2);
+    let (mut motion, mut by_motion, mut beyond) = (commanded.clone(), Vec::new(), None);
+    for _ in 0..MOTION_PASSES {
+        let thrusts = trace.by_motion(&base.vehicle, (mass_kg, &inertia), commanded, beyond.as_deref());
+        motion = Turning::new(thrusts, airframe, trace.grid.step_s);
+        by_motion = wrench_along(model, trace, &motion);
+        if base.present.is_empty() {
+            break;
+        }
+        let of_effects = by_motion.iter().zip(&motion.thrust_n).map(|(all, thrusts)| {
+            let rest = *all - airframe.thrust_wrench(thrusts);
+            Vector4::new(rest.force_n.z, rest.torque_nm.x, rest.torque_nm.y, rest.torque_nm.z)
+        });
+        let mut of_effects: Vec<Vector4<f64>> = of_effects.collect();
+        if let Some(spin_up) = &spin_up {
+            spin_up.share(trace, (airframe, &motion), &inertia, &mut of_effects);
+        }
+        beyond = Some(of_effects);
+    }
+    (motion, by_motion)
 }

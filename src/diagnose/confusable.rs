@@ -8,6 +8,7 @@ use super::rows::{CHANNELS, Rows};
 use super::search::{Fitted, Tested};
 use super::trace::Trace;
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 /// Effects closer than this many standard deviations are not told apart.
 pub(super) const APART: f64 = 5.0;
@@ -28,10 +29,10 @@ pub fn confusable_with(
     let mut out: Vec<Confusable> = Vec::new();
     let Some(signal) = Signal::new(&fitted.rows, &fitted.base, place, None) else { return out };
     let inflation = fitted.weighted.long_run_deviation();
-    for other in others {
-        let Some(left) = signal.beyond(flights, &fitted.rows, &fitted.base, &other.candidate) else {
-            continue;
-        };
+    let beyond = |candidate: &Candidate| signal.beyond(flights, &fitted.rows, &fitted.base, candidate);
+    let left: Vec<Option<f64>> = others.par_iter().map(|other| beyond(&other.candidate)).collect();
+    for (other, left) in others.iter().zip(left) {
+        let Some(left) = left else { continue };
         let (id, distance) = (other.candidate.id, left / inflation);
         if distance < APART && left < UNLIKE * signal.norm() {
             let known = out.iter_mut().find(|confusable| confusable.id == id);
@@ -45,8 +46,7 @@ pub fn confusable_with(
     }
     for rival in rivals {
         let id = rival.candidate.id;
-        let left = signal.beyond(flights, &fitted.rows, &fitted.base, &rival.candidate);
-        let alike = left.filter(|left| *left < UNLIKE * signal.norm());
+        let alike = beyond(&rival.candidate).filter(|left| *left < UNLIKE * signal.norm());
         if let Some(left) = alike.filter(|_| out.iter().all(|confusable| confusable.id != id)) {
             out.push(Confusable { id, distinguishability: Some(left / inflation) });
         }

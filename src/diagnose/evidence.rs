@@ -7,6 +7,7 @@
 use super::deviate::normal_deviate;
 use super::rows::{CHANNELS, Channels, Rows};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::ops::Range;
 
@@ -284,11 +285,11 @@ impl Weighted {
 
     /// `sum_c sum_|l|<=L gamma_c(l) sum_t x_c(t) x_c(t+l)'`.
     fn meat_of_residual(&self, columns: &DMatrix<f64>, gammas: &[Vec<f64>]) -> DMatrix<f64> {
-        let mut smeared = DMatrix::<f64>::zeros(columns.nrows(), columns.ncols());
-        for (channel, gamma) in gammas.iter().enumerate() {
-            let lags = gamma.len() - 1;
-            let offset = channel * self.rows;
-            for (mut out, column) in smeared.column_iter_mut().zip(columns.column_iter()) {
+        let smear = |index: usize| {
+            let (column, mut out) = (columns.column(index), DVector::zeros(columns.nrows()));
+            for (channel, gamma) in gammas.iter().enumerate() {
+                let lags = gamma.len() - 1;
+                let offset = channel * self.rows;
                 for run in &self.runs {
                     for t in run.clone() {
                         let first = t.saturating_sub(lags).max(run.start);
@@ -299,8 +300,10 @@ impl Weighted {
                     }
                 }
             }
-        }
-        let meat = columns.tr_mul(&smeared);
+            columns.tr_mul(&out)
+        };
+        let parts: Vec<DVector<f64>> = (0..columns.ncols()).into_par_iter().map(smear).collect();
+        let meat = DMatrix::from_columns(&parts);
         0.5 * (&meat + meat.transpose())
     }
 

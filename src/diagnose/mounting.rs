@@ -22,16 +22,35 @@ const ORDINARY_RAD: f64 = 0.0087;
 /// No inertial unit sits at the centre of mass to better than this, m.
 const ORDINARY_M: f64 = 0.005;
 
-/// Identifier, the parameters that are estimated, the values at which it does nothing, the size below which it has no
-/// name, and when it is tried.
-const MOUNTINGS: [(&str, &[usize], &[f64], f64, Turn); 5] = [
-    (THRUST_TILT, &[0, 1], &[0.0; 2], ORDINARY_RAD, Turn::Last),
+/// How something sits.
+struct Mounting {
+    id: &'static str,
+    /// slots that are estimated
+    free: &'static [usize],
+    /// values at which it does nothing
+    nothing: &'static [f64],
+    /// size (norm of the amounts) below which it has no name
+    ordinary: f64,
+    turn: Turn,
+}
+
+const fn mounting(
+    id: &'static str,
+    (free, nothing): (&'static [usize], &'static [f64]),
+    ordinary: f64,
+    turn: Turn,
+) -> Mounting {
+    Mounting { id, free, nothing, ordinary, turn }
+}
+
+const MOUNTINGS: [Mounting; 5] = [
+    mounting(THRUST_TILT, (&[0, 1], &[0.0; 2]), ORDINARY_RAD, Turn::Last),
     // turned about the vertical nothing changes
-    (FRAME_MISALIGNMENT, &[0, 1], &[0.0; 3], ORDINARY_RAD, Turn::Last),
+    mounting(FRAME_MISALIGNMENT, (&[0, 1], &[0.0; 3]), ORDINARY_RAD, Turn::Last),
     // only the position is askew, not the attitude
-    (FRAME_MISALIGNMENT, &[0, 1, 2], &[0.0; 4], ORDINARY_RAD, Turn::First),
-    ("imu_misalignment", &[0, 1, 2], &[0.0; 3], ORDINARY_RAD, Turn::First),
-    ("imu_offset", &[0, 1, 2], &[0.0; 3], ORDINARY_M, Turn::First),
+    mounting(FRAME_MISALIGNMENT, (&[0, 1, 2], &[0.0; 4]), ORDINARY_RAD, Turn::First),
+    mounting("imu_misalignment", (&[0, 1, 2], &[0.0; 3]), ORDINARY_RAD, Turn::First),
+    mounting("imu_offset", (&[0, 1, 2], &[0.0; 3]), ORDINARY_M, Turn::First),
 ];
 
 /// Where an attitude that is turned with its frame comes in place of the nuisance for its level.
@@ -48,7 +67,7 @@ pub(super) fn turns_attitude(base: &Base) -> bool {
 
 /// The size (norm of the parameters) below which a mounting is like any other; `None` for other effects.
 pub(super) fn ordinary_size(id: &str) -> Option<f64> {
-    MOUNTINGS.iter().find(|(mounting, ..)| *mounting == id).map(|(.., size, _)| *size)
+    MOUNTINGS.iter().find(|mounting| mounting.id == id).map(|mounting| mounting.ordinary)
 }
 
 /// Whether a nuisance column stands for small sizes of the effect.
@@ -74,9 +93,9 @@ pub(super) fn mountings(flights: &[Trace], fitted: &Fitted, turn: Turn) -> Vec<T
     let twice = flights.iter().all(Trace::reads_force_twice);
     MOUNTINGS
         .par_iter()
-        .filter(|(.., of)| *of == turn)
-        .filter(|(id, ..)| twice || *id == THRUST_TILT)
-        .filter_map(|&(id, free, nothing, ..)| {
+        .filter(|mounting| mounting.turn == turn)
+        .filter(|mounting| twice || mounting.id == THRUST_TILT)
+        .filter_map(|&Mounting { id, free, nothing, .. }| {
             let part = present(id, nothing, free)?;
             let candidate = Candidate { id, parts: vec![part], through: None };
             if is_present(&fitted.base, &candidate) {

@@ -5,11 +5,10 @@
 //! by the kinematics: what acts on the vehicle shows in both, a fault of a sensor in one of them. A parameter's column is built from the signals that are not
 //! on the left of its row: rotor thrusts by the commands for forces, by the measured motion for torques.
 
-use super::along::{Thrusts, Turning, wrench_along};
+use super::along::{Thrusts, Turning, moved_by, wrench_along};
 use super::base::{Base, Present, step_of};
 use super::nuisances::{momentum_rows, nuisances};
-use super::sensors::{is_of_sensors, true_motion};
-use super::spin_up::SpinUp;
+use super::sensors::{is_of_sensors, true_motion, true_readings};
 use super::trace::Trace;
 use crate::physics::{Model, PhysicsError, Wrench};
 use nalgebra::{Vector3, Vector4};
@@ -101,9 +100,6 @@ struct Along {
     by_commands: Vec<Wrench>,
     by_motion: Vec<Wrench>,
 }
-
-/// Passes over the motion's rotor thrusts, which depend on the effects that depend on them.
-const MOTION_PASSES: usize = 2;
 
 impl Rows {
     /// Linearises `flights` about `base`.
@@ -255,7 +251,7 @@ impl Rows {
     fn shown(&self, recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
         let model = base.model(&[])?;
         let mut out = Channels::default();
-        for (trace, along) in true_motion(recorded, base).iter().zip(&self.flights) {
+        for (trace, along) in true_readings(recorded, base).iter().zip(&self.flights) {
             let rotors = (&along.felt[..], &along.commanded, &along.motion);
             let part = residual(trace, base, &model, rotors, (&along.by_commands, &along.by_motion));
             append(&mut out, &part);
@@ -267,11 +263,13 @@ impl Rows {
     fn difference(&self, flights: &[Trace], up: &Model, down: Option<&Model>, step: f64) -> Channels {
         let mut out = Channels::default();
         for (trace, along) in flights.iter().zip(&self.flights) {
-            let force = wrench_along(up, trace, &along.commanded);
-            let torque = wrench_along(up, trace, &along.motion);
-            let below = down.map(|down| {
-                (wrench_along(down, trace, &along.commanded), wrench_along(down, trace, &along.motion))
-            });
+            let of = |model: &Model| {
+                rayon::join(
+                    || wrench_along(model, trace, &along.commanded),
+                    || wrench_along(model, trace, &along.motion),
+                )
+            };
+            let ((force, torque), below) = (of(up), down.map(of));
             let (force_0, torque_0) =
                 below.as_ref().map_or((&along.by_commands, &along.by_motion), |(f, t)| (f, t));
             let per = |a: Vector3<f64>, b: Vector3<f64>| (a - b) / step;
@@ -324,31 +322,13 @@ pub(super) fn nothing(trace: &Trace) -> [Vec<f64>; 3] {
 
 /// Residual and nuisances of one flight.
 fn one_flight(trace: &Trace, base: &Base, model: &Model) -> (Along, Channels, Vec<NuisanceColumn>) {
-    let airframe = &model.airframe;
-    let spin_up = SpinUp::of(base, airframe);
-    let (mass_kg, inertia) = (base.vehicle.body.mass_kg, base.vehicle.body.inertia_kg_m2);
-    let (felt, commanded) = trace.by_commands(airframe, base.latency);
-    let by_commands = wrench_along(model, trace, &commanded);
-    let (mut motion, mut by_motion, mut beyond) = (commanded.clone(), Vec::new(), None);
-    for _ in 0..MOTION_PASSES {
-        let thrusts = trace.by_motion(&base.vehicle, (mass_kg, &inertia), &commanded, beyond.as_deref());
-        motion = Turning::new(thrusts, airframe, trace.grid.step_s);
-        by_motion = wrench_along(model, trace, &motion);
-        if base.present.is_empty() {
-            break;
-        }
-        let of_effects = by_motion.iter().zip(&motion.thrust_n).map(|(all, thrusts)| {
-            let rest = *all - airframe.thrust_wrench(thrusts);
-            Vector4::new(rest.force_n.z, rest.torque_nm.x, rest.torque_nm.y, rest.torque_nm.z)
-        });
-        let mut of_effects: Vec<Vector4<f64>> = of_effects.collect();
-        if let Some(spin_up) = &spin_up {
-            spin_up.share(trace, (airframe, &motion), &inertia, &mut of_effects);
-        }
-        beyond = Some(of_effects);
-    }
-    let residual = residual(trace, base, model, (&felt, &commanded, &motion), (&by_commands, &by_motion));
-    let nuisances = nuisances(trace, base, &commanded, &by_commands);
+    let (felt, commanded) = trace.by_commands(&model.airframe, base.latency);
+    let (by_commands, (motion, by_motion)) =
+        rayon::join(|| wrench_along(model, trace, &commanded), || moved_by(trace, (base, model), &commanded));
+    let (residual, nuisances) = rayon::join(
+        || residual(trace, base, model, (&felt, &commanded, &motion), (&by_commands, &by_motion)),
+        || nuisances(trace, base, &commanded, &by_commands),
+    );
     (Along { felt, commanded, motion, by_commands, by_motion }, residual, nuisances)
 }
 

@@ -22,15 +22,37 @@ pub(super) fn is_of_sensors(effect: &dyn Effect) -> bool {
 
 /// The flights' true motion, given the base's effects on the sensors.
 pub(super) fn true_motion<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [Trace]> {
-    let faults: Vec<&Present> = base.present.iter().filter(|present| is_of_sensors(present.effect)).collect();
+    let faults = faults(base);
     if faults.is_empty() {
         return Cow::Borrowed(flights);
     }
-    Cow::Owned(flights.iter().map(|trace| undone(trace, &faults)).collect())
+    let moved = |trace: &Trace| {
+        let (states, force) = undone(trace, &faults);
+        // the low-pass that was possible before is possible now
+        trace.with_motion(states, force).unwrap_or_else(|_| trace.clone())
+    };
+    Cow::Owned(flights.iter().map(moved).collect())
 }
 
-/// One flight's.
-fn undone(trace: &Trace, faults: &[&Present]) -> Trace {
+/// The same where only the readings of force and momentum are asked for.
+pub(super) fn true_readings<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [Trace]> {
+    let faults = faults(base);
+    if faults.is_empty() {
+        return Cow::Borrowed(flights);
+    }
+    let moved = |trace: &Trace| {
+        let (states, force) = undone(trace, &faults);
+        trace.reading(states, force)
+    };
+    Cow::Owned(flights.iter().map(moved).collect())
+}
+
+fn faults(base: &Base) -> Vec<&Present> {
+    base.present.iter().filter(|present| is_of_sensors(present.effect)).collect()
+}
+
+/// One flight's states and, where it was recorded, specific force (m/s^2, body).
+fn undone(trace: &Trace, faults: &[&Present]) -> (Vec<State>, Option<Vec<Vector3<f64>>>) {
     let shown_force = trace.specific_force_m_s2();
     let mut states = trace.states.clone();
     let mut force: Vec<Vector3<f64>> =
@@ -67,8 +89,7 @@ fn undone(trace: &Trace, faults: &[&Present]) -> Trace {
             break;
         }
     }
-    // the low-pass that was possible before is possible now
-    trace.with_motion(states, shown_force.map(|_| force)).unwrap_or_else(|_| trace.clone())
+    (states, shown_force.map(|_| force))
 }
 
 /// Unfiltered, rad/s^2: the weak form smooths what is made of it.

@@ -5,6 +5,7 @@ use super::candidates::Candidate;
 use super::search::{Fitted, Tested};
 use super::trace::Trace;
 use super::trial::columns_of;
+use rayon::prelude::*;
 
 /// The slot that lies on a grid, its first step and where refining ends.
 #[derive(Debug, Clone, Copy)]
@@ -57,12 +58,13 @@ pub(super) fn sharpened(flights: &[Trace], fitted: &Fitted, tested: Tested) -> T
     let (mut step, least) = match scale {
         Scale::Even { step, least, .. } | Scale::Relative { step, least, .. } => (step, least),
     };
-    let around = (-NEIGHBOURS..=NEIGHBOURS).filter_map(|k| at(&tested, f64::from(k) * step));
-    let mut best = around.fold(tested.clone(), |best, next| better(best, Some(next)));
+    let around: Vec<Option<Tested>> =
+        (-NEIGHBOURS..=NEIGHBOURS).into_par_iter().map(|k| at(&tested, f64::from(k) * step)).collect();
+    let mut best = around.into_iter().fold(tested.clone(), better);
     while step > least {
         step *= 0.5;
-        let sides = [at(&best, step), at(&best, -step)];
-        best = sides.into_iter().fold(best, better);
+        let sides = rayon::join(|| at(&best, step), || at(&best, -step));
+        best = [sides.0, sides.1].into_iter().fold(best, better);
     }
     best
 }

@@ -178,9 +178,14 @@ impl Trace {
         states: Vec<State>,
         specific_force_m_s2: Option<Vec<Vector3<f64>>>,
     ) -> Result<Self, TraceError> {
-        let mut trace = Self { states, specific_force_m_s2, ..self.clone() };
+        let mut trace = self.reading(states, specific_force_m_s2);
         trace.smooth()?;
         Ok(trace)
+    }
+
+    /// The same where only the readings of force and momentum are asked for: what is smoothed stays as it was.
+    pub(super) fn reading(&self, states: Vec<State>, specific_force_m_s2: Option<Vec<Vector3<f64>>>) -> Self {
+        Self { states, specific_force_m_s2, ..self.clone() }
     }
 
     /// What the accelerometer showed, m/s^2, body; `None` where it is not recorded.
