@@ -136,7 +136,7 @@ fn what_is_no_log_is_status_two_with_a_message() {
     for (argument, expected) in [
         (name(&empty), "empty"),
         (name(&text), "begins with"),
-        (name(&table), "time_s"),
+        (name(&table), "empty file"),
         (folder.to_owned(), "folder"),
         ("absent.tlog".to_owned(), "absent.tlog"),
         ("flight.bag".to_owned(), "*.tlog or *.csv"),

@@ -30,15 +30,21 @@ impl Present {
         self.parameter(slot).map_or(value, |parameter| value.clamp(parameter.min, parameter.max))
     }
 
-    /// Standard errors by which a parameter is away from where its effect vanishes.
+    /// How far a parameter is from where its effect vanishes, in its unit: what its column has to be multiplied by to
+    /// give the effect.
+    #[must_use]
+    pub fn from_nothing(&self, slot: usize) -> f64 {
+        match self.effect.id() {
+            // it divides: nothing lies at infinity, and the distance to it is in the inverse
+            "ceiling_effect" if slot == 0 => -self.values[slot],
+            _ => self.values[slot] - self.nothing_at(slot),
+        }
+    }
+
+    /// The same in standard errors of `std`.
     #[must_use]
     pub fn away_from_nothing(&self, slot: usize, std: f64) -> f64 {
-        let away = match self.effect.id() {
-            // it divides: nothing lies at infinity, and the distance to it is in the inverse
-            "ceiling_effect" => self.values[slot],
-            _ => self.values[slot] - self.nothing_at(slot),
-        };
-        away / std.max(f64::MIN_POSITIVE)
+        self.from_nothing(slot) / std.max(f64::MIN_POSITIVE)
     }
 
     /// Whether a parameter says how much of the effect there is; the others say what it is like.

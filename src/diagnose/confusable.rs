@@ -44,6 +44,7 @@ pub fn confusable_with(
             }
         }
     }
+    // a rival that explained as much stays one, with its distance, even where the fit tells them apart
     for rival in rivals {
         let id = rival.candidate.id;
         let alike = beyond(&rival.candidate).filter(|left| *left < UNLIKE * signal.norm());
@@ -80,8 +81,7 @@ impl Signal {
         // what the effect is like changes with how much of it there is, and adds nothing to it
         let amounts = effect.free.iter().enumerate().filter(|(_, slot)| effect.is_amount(**slot));
         for (index, &slot) in amounts {
-            // from where the effect does nothing
-            sum += partialled.column(index) * (effect.values[slot] - effect.nothing_at(slot));
+            sum += partialled.column(index) * effect.from_nothing(slot);
         }
         Some(Self { id: effect.effect.id(), weighted, sum })
     }

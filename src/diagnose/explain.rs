@@ -262,7 +262,7 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
             } else {
                 0.0
             };
-            if free || present.values[slot] != 0.0 && !is_of_other_form(present, slot) {
+            if free || says_its_form(present, slot) {
                 let value = present.values[slot];
                 parameters.push(NamedParameter { name: parameter.name, value, std, unit: parameter.unit });
             }
@@ -281,9 +281,15 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
     out
 }
 
-/// The ground's decay says nothing where its form has none.
-fn is_of_other_form(present: &Present, slot: usize) -> bool {
-    present.effect.id() == "ground_effect" && slot == 2 && present.values[1] == 0.0
+/// Whether a parameter that is held belongs to what is said.
+fn says_its_form(present: &Present, slot: usize) -> bool {
+    match present.effect.id() {
+        // its decay says nothing where its form has none
+        "ground_effect" if slot == 2 => present.values[1] != 0.0,
+        // whether the attitude is turned as well
+        "frame_misalignment" => slot == 3 || present.values[slot] != 0.0,
+        _ => present.values[slot] != 0.0,
+    }
 }
 
 /// What every vehicle has a little of, or what is too small to be what the effect is called: it stays in the
@@ -317,8 +323,7 @@ fn fitted_strength(fitted: &Fitted, present: &Present, first: usize) -> Strength
         .map(|(index, &slot)| (first + index, slot))
         .collect();
     let count = amounts.len();
-    let away =
-        amounts.iter().map(|&(_, slot)| present.values[slot] - present.nothing_at(slot)).collect::<Vec<_>>();
+    let away = amounts.iter().map(|&(_, slot)| present.from_nothing(slot)).collect::<Vec<_>>();
     let away = DVector::from_vec(away);
     let covariance = DMatrix::from_fn(count, count, |i, j| fitted.covariance[(amounts[i].0, amounts[j].0)]);
     let wald = covariance.cholesky().map_or(0.0, |factor| away.dot(&factor.solve(&away)));
@@ -348,6 +353,8 @@ fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<N
     if total_s - ordinary_s < 4.0 * std_s {
         return None;
     }
+    let unsure_s = traces.iter().map(|trace| trace.inertial_unsure_s).fold(0.0, f64::max);
+    let std_s = std_s.hypot(unsure_s);
     let is_lag = parts.lag_s > parts.delay_s;
     let (id, other, name) = if is_lag {
         ("motor_lag", "transport_delay", "time_constant")
@@ -368,7 +375,7 @@ fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<N
     };
     let (own, others) = if is_lag { (against_lag, against_delay) } else { (against_delay, against_lag) };
     let told_apart = others > TOLD_APART && own < 0.5 * REFUSED;
-    let z = (total_s - ordinary_s) / std_s;
+    let z = (total_s - ordinary_s) / found.latency.std_s;
     Some(Named {
         id,
         sentence: by_id(id)?.sentence(),

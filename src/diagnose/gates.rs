@@ -39,7 +39,7 @@ pub(super) fn ordinary_size(id: &str) -> Option<f64> {
     if id == "thrust_curve" { Some(ORDINARY_BEND) } else { mounting::ordinary_size(id) }
 }
 
-/// A ceiling whose a1 is larger lifts by less than a twentieth where it almost touches: that is none.
+/// A ceiling whose a1 is larger lifts by little more than a twentieth a rotor's radius below it: that is none.
 pub(super) const WEAKEST_CEILING: f64 = 20.0;
 
 /// Significant, spread over the flight, possible, and large enough to matter.

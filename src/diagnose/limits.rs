@@ -14,6 +14,8 @@ use crate::vehicle::Vehicle;
 
 /// Standard errors at which an effect stands out.
 const CERTAIN: f64 = 4.0;
+/// and at which it does whatever its usual size.
+const PLAIN: f64 = 8.0;
 /// A centre of mass is not known better, m.
 pub(super) const COM_NUISANCE_M: f64 = 0.000_15;
 
@@ -65,6 +67,8 @@ fn usual_size(id: &str, parameter: &str, vehicle: &Vehicle) -> Option<f64> {
         ("angular_damping", "by") => 0.8 * inertia[(1, 1)],
         ("angular_damping", "bz") => 0.8 * inertia[(2, 2)],
         ("ground_effect", "rho") => 4.0,
+        // the same two radii up with a decay of one a radius
+        ("ground_effect", "ca") => 0.5,
         ("thrust_curve", "curvature") => 0.15,
         ("slung_load", "mass") => 0.08 * mass_kg,
         _ => return None,
@@ -80,6 +84,14 @@ pub(super) fn is_beyond_showing(fitted: &Fitted, present: &Present, first: usize
         let std = fitted.covariance[(first + index, first + index)].max(0.0).sqrt();
         Some((std, usual))
     });
+    let amounts = present.free.iter().enumerate().filter(|(_, slot)| present.is_amount(**slot));
+    let plain = amounts.into_iter().any(|(index, &slot)| {
+        let std = fitted.covariance[(first + index, first + index)].max(0.0).sqrt();
+        present.away_from_nothing(slot, std).abs() > PLAIN
+    });
+    if plain {
+        return false;
+    }
     let mut any = false;
     let all = sizes.into_iter().all(|(std, usual)| {
         any = true;
@@ -96,6 +108,9 @@ pub(super) fn too_little_excitation(after: &Fitted, limits: &[DetectionLimit]) -
         let mut parameters = present.free.iter().filter_map(|&slot| present.parameter(slot));
         parameters.any(|parameter| usual_size(present.effect.id(), parameter.name, vehicle).is_some())
     };
-    let shown = |limit: &DetectionLimit| limit.usual.is_some_and(|usual| limit.limit < usual);
+    // a load is swung by the measured motion, in hover by its noise: that shows nothing
+    let shown = |limit: &DetectionLimit| {
+        limit.id != "slung_load" && limit.usual.is_some_and(|usual| limit.limit < usual)
+    };
     !after.base.present.iter().any(moves) && !limits.iter().any(shown)
 }

@@ -39,9 +39,9 @@ pub struct Trace {
     pub gyro_noise_rad_s: f64,
     /// s between commands (or measured speeds) as logged
     pub command_period_s: f64,
-    /// s, by which the inertial unit's readings are later than the attitude: its filters' delay
+    /// s, by which the inertial unit's readings are later than attitude and velocity both: its filters' delay
     pub inertial_late_s: f64,
-    /// s, by which attitude and velocity disagree about that
+    /// s, by which attitude and velocity disagree about that, or by which the attitude alone is earlier
     pub inertial_unsure_s: f64,
     /// m/s^2, body, accelerometer
     specific_force_m_s2: Option<Vec<Vector3<f64>>>,

@@ -7,7 +7,7 @@
 use super::held::{Held, Settled, estimates};
 use crate::diagnose::evidence::weighted;
 use crate::diagnose::rows::residuals;
-use crate::diagnose::search::Fitted;
+use crate::diagnose::search::{Fitted, Newton, fit};
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::signals::white_level_of;
@@ -30,16 +30,29 @@ pub(super) fn allow_for_noise(
 ) -> Result<(), PhysicsError> {
     scatter(flights, fitted)?;
     let before = fitted.base.present.len() - settled.len();
+    let mut hidden = Vec::new();
     for (index, of) in settled.iter_mut().enumerate().filter(|(_, of)| of.chosen.form.effect.id() == LOAD) {
         let all = estimates(fitted, before + index);
         let seen = all.iter().any(|(slot, value, std, _)| *slot == 0 && *value > FOLLOWED * std);
         if !seen {
+            hidden.push(before + index);
             let why = "either there is no load, or its swing hardly dies down and the noise of the motion that swings it \
                        hides where it goes";
             let slots = 0..of.chosen.form.values.len();
             of.held = slots.map(|slot| (slot, Held::NotDetermined(why.to_owned()))).collect();
         }
     }
+    if hidden.is_empty() {
+        return Ok(());
+    }
+    // what is not determined is not in the model: its mass is the vehicle's again
+    let mut base = fitted.base.clone();
+    for load in hidden {
+        base.vehicle.body.mass_kg += base.present[load].values[0];
+        base.present[load].values[0] = 0.0;
+        base.present[load].free.clear();
+    }
+    *fitted = fit(flights, base, Newton::Held)?;
     Ok(())
 }
 

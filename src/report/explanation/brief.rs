@@ -65,7 +65,13 @@ fn size(named: &Named) -> Option<String> {
         "transport_delay" => said("delay", 1e3, "ms"),
         "thrust_curve" => said("curvature", 100.0, "% about hover"),
         "battery_sag" => Some(format!("the voltage to the power of {}", said("exponent", 1.0, "")?)),
-        "ground_effect" => said("rho", 1.0, "times Cheeseman and Bennett's"),
+        "ground_effect" => match get(named, "ca") {
+            Some(ca) if ca.value > 0.0 => {
+                let at_two = ca.value * (-2.0 * value(named, "cb")).exp();
+                Some(format!("{} % of the thrust two rotor radii up", significant(100.0 * at_two, 2)))
+            }
+            _ => said("rho", 1.0, "times Cheeseman and Bennett's"),
+        },
         "gust" => said("sigma", 1.0, "m/s rms"),
         _ => {
             let first = named.parameters.first()?;
@@ -75,7 +81,8 @@ fn size(named: &Named) -> Option<String> {
 }
 
 fn norm(named: &Named) -> f64 {
-    named.parameters.iter().map(|p| p.value * p.value).sum::<f64>().sqrt()
+    let angles = named.parameters.iter().filter(|p| p.unit != "-");
+    angles.map(|p| p.value * p.value).sum::<f64>().sqrt()
 }
 
 /// One number where the axes agree within two standard errors, else the least and the greatest.
