@@ -20,14 +20,22 @@ pub struct Gates {
     pub steps: usize,
 }
 
+impl Gates {
+    /// Normal deviate asked of an effect.
+    #[must_use]
+    pub fn deviate(&self, id: &str) -> f64 {
+        if GRIDDED.contains(&id) { self.z + GRID_Z } else { self.z }
+    }
+}
+
 impl Default for Gates {
     fn default() -> Self {
         Self { z: 4.0, p_cluster: 0.02, gain: 0.004, matters: (4e-4, 0.04), steps: 6 }
     }
 }
 
-/// Effects that are tried at many heights or lengths, the largest of which counts.
-const GRIDDED: [&str; 2] = ["ceiling_effect", "slung_load"];
+/// Effects that are tried at many heights, lengths or times, the largest of which counts.
+const GRIDDED: [&str; 3] = ["ceiling_effect", "slung_load", "mass_change"];
 /// What that adds to the normal deviate asked for.
 const GRID_Z: f64 = 1.0;
 
@@ -52,8 +60,7 @@ pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates
             || force(SECOND + axis)
             || evidence.rms[3 + axis] > gates.matters.1 * fitted.rows.torque_rms[axis]
     });
-    let z = if GRIDDED.contains(&tested.candidate.id) { gates.z + GRID_Z } else { gates.z };
-    evidence.z.abs() > z
+    evidence.z.abs() > gates.deviate(tested.candidate.id)
         && evidence.p_cluster < gates.p_cluster / candidates
         && evidence.gain >= gates.gain
         && matters

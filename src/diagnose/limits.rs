@@ -8,7 +8,7 @@
 use super::base::Present;
 use super::candidates::Candidate;
 use super::explanation::DetectionLimit;
-use super::gates::ordinary_size;
+use super::gates::{Gates, ordinary_size};
 use super::search::{Fitted, Tested};
 use crate::vehicle::Vehicle;
 
@@ -36,7 +36,8 @@ pub(super) fn limits(last: &[Tested], vehicle: &Vehicle) -> Vec<DetectionLimit> 
         for part in parts {
             for &free in &part.free {
                 let Some(parameter) = part.parameter(free) else { continue };
-                let limit = (CERTAIN * tested.evidence.std(index)).max(least);
+                let certain = Gates::default().deviate(id);
+                let limit = (certain * tested.evidence.std(index)).max(least);
                 index += 1;
                 let same = out.iter_mut().find(|l| l.id == *id && l.parameter == parameter.name);
                 match same {
