@@ -24,7 +24,7 @@ impl Gates {
     /// Normal deviate asked of an effect.
     #[must_use]
     pub fn deviate(&self, id: &str) -> f64 {
-        if GRIDDED.contains(&id) { self.z + GRID_Z } else { self.z }
+        if LIKELIER.contains(&id) { self.z + MORE_Z } else { self.z }
     }
 }
 
@@ -34,10 +34,11 @@ impl Default for Gates {
     }
 }
 
-/// Effects that are tried at many heights, lengths or times, the largest of which counts.
-const GRIDDED: [&str; 3] = ["ceiling_effect", "slung_load", "mass_change"];
+/// Effects that are tried at many heights, lengths or times, the largest of which counts; and the thrust curve, which
+/// bends the commands' own noise, too.
+const LIKELIER: [&str; 4] = ["ceiling_effect", "slung_load", "mass_change", "thrust_curve"];
 /// What that adds to the normal deviate asked for.
-const GRID_Z: f64 = 1.0;
+const MORE_Z: f64 = 1.0;
 
 /// No thrust curve is known to better than this (-).
 const ORDINARY_BEND: f64 = 0.02;
