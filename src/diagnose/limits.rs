@@ -32,13 +32,11 @@ pub(super) fn limits(last: &[Tested], vehicle: &Vehicle) -> Vec<DetectionLimit> 
         let Candidate { id, parts, .. } = &tested.candidate;
         // certainty alone is not enough for a name
         let least = if *id == "com_offset" { COM_NUISANCE_M } else { ordinary_size(id).unwrap_or(0.0) };
-        let mut index = 0;
         for part in parts {
             for &free in &part.free {
                 let Some(parameter) = part.parameter(free) else { continue };
                 let certain = Gates::default().deviate(id);
-                let limit = (certain * tested.evidence.std(index)).max(least);
-                index += 1;
+                let limit = (certain * least_std(part, free, last)).max(least);
                 let same = out.iter_mut().find(|l| l.id == *id && l.parameter == parameter.name);
                 match same {
                     Some(same) => same.limit = same.limit.max(limit),
@@ -52,6 +50,18 @@ pub(super) fn limits(last: &[Tested], vehicle: &Vehicle) -> Vec<DetectionLimit> 
         }
     }
     out
+}
+
+/// The smallest standard error that a parameter has among the candidates of the same form, which differ in the axes
+/// that are estimated: what one of them shows is named.
+fn least_std(part: &Present, slot: usize, all: &[Tested]) -> f64 {
+    let std = |tested: &Tested| {
+        let [of] = tested.candidate.parts.as_slice() else { return None };
+        let same = of.effect.id() == part.effect.id() && of.values == part.values;
+        let index = of.free.iter().position(|free| *free == slot).filter(|_| same)?;
+        Some(tested.evidence.std(index))
+    };
+    all.iter().filter_map(std).fold(f64::INFINITY, f64::min)
 }
 
 /// Size of an effect's parameter on ordinary vehicles, in its unit, of those that show only where the vehicle
