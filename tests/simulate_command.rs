@@ -143,3 +143,18 @@ fn a_log_overwrites_nothing_that_is_read_and_is_a_tlog() {
     assert_eq!(std::fs::read_to_string(&vehicle).unwrap(), before);
     assert!(!folder.join("flight.csv").exists());
 }
+
+/// A plan may go to the rotors' bounds: the vehicle then keeps upright and near it.
+#[test]
+fn a_vehicle_flies_its_own_plan() {
+    let folder = folder("own_plan");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let (plan, log, vehicle) = (path("plan.toml"), path("log.tlog"), config("x500.toml"));
+    let planned = mavid(&["plan", &vehicle, "--takeoff", "0,0,1.5", "--out", &plan]);
+    assert!(planned.status.success(), "{}", String::from_utf8_lossy(&planned.stderr));
+    let flown = mavid(&["simulate", &vehicle, "--trajectory", &plan, "--out", &log, "--json"]);
+    assert!(flown.status.success(), "{}", String::from_utf8_lossy(&flown.stderr));
+    let document: Value = serde_json::from_slice(&flown.stdout).unwrap();
+    let off_m = document["tracking_error_max_m"].as_f64().unwrap();
+    assert!(off_m < 1.0, "{off_m} m off");
+}

@@ -33,6 +33,9 @@ struct Document {
     saturated: f64,
 }
 
+/// A vehicle farther off than this did not fly the trajectory, m.
+const FOLLOWED_M: f64 = 1.0;
+
 /// Runs the verb.
 pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
@@ -81,6 +84,13 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
         tracking_error_max_m: flight.tracking_error_max_m,
         saturated: flight.saturated,
     };
+    if flight.tracking_error_max_m > FOLLOWED_M {
+        output::message(&format!(
+            "warning: the vehicle could not follow {}: up to {:.1} m off it; a longer --period of mavid plan asks less of the rotors",
+            args.trajectory.display(),
+            flight.tracking_error_max_m
+        ));
+    }
     if json {
         output::json(&document)?;
     } else {
