@@ -183,6 +183,10 @@ fn fly(
     if has("battery_sag") {
         settings.battery_drop_v_s = 0.03;
     }
+    if has("rotor_inertia") {
+        // the yaw loop of slower rotors swings by their inertia
+        settings.motor_time_constant_s = 0.02;
+    }
     let mut nominal = pair.nominal;
     // what is not asked for is stated
     nominal.propulsion.time_constant_s = Some(settings.motor_time_constant_s);

@@ -4,7 +4,7 @@ use super::base::Base;
 use super::spin_up::SpinUp;
 use super::trace::Trace;
 use crate::physics::{Airframe, Input, MAX_ROTORS, Model, Wrench};
-use crate::signals::{ActuationLatency, central_difference, delayed_wrench};
+use crate::signals::{ActuationLatency, central_difference, delayed_speeds};
 use nalgebra::{Vector3, Vector4};
 
 /// One thrust a rotor, N; those beyond the rotor count are zero.
@@ -92,7 +92,8 @@ pub fn wrench_along(model: &Model, trace: &Trace, turning: &Turning) -> Vec<Wren
     out
 }
 
-/// Thrusts behind an actuation latency. The lag acts on the rotors' speed, as a motor's does.
+/// Thrusts behind an actuation latency. The lag acts on the rotors' speed, as a motor's does, and slows down as much
+/// slower than it speeds up as the vehicle's description states.
 pub(super) fn felt(
     commanded_n: &[Thrusts],
     airframe: &Airframe,
@@ -103,6 +104,7 @@ pub(super) fn felt(
     if latency == ActuationLatency::default() {
         return commanded_n.to_vec();
     }
+    let lags_s = airframe.propulsion.rising_and_falling_s(latency.lag_s);
     let mut out = vec![[0.0; MAX_ROTORS]; commanded_n.len()];
     for first in [0, HALF] {
         if first >= airframe.rotor_count() {
@@ -112,7 +114,7 @@ pub(super) fn felt(
             .iter()
             .map(|thrusts| Vector4::from_fn(|i, _| airframe.relative_speed_of_thrust(thrusts[first + i])))
             .collect();
-        for (out, speed) in out.iter_mut().zip(delayed_wrench(&speeds, step_s, latency)) {
+        for (out, speed) in out.iter_mut().zip(delayed_speeds(&speeds, step_s, latency, lags_s)) {
             for i in 0..HALF {
                 out[first + i] = airframe.thrust_n(speed[i]);
             }

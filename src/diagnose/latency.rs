@@ -57,11 +57,13 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
         let both = against_lag > REFUSED && against_delay > REFUSED && (0.0..total_s).contains(&delay_s);
         // fed back, the gyroscopes' noise moves commands and motion together, and the second order with them
         let fed_back = flights.iter().any(|trace| trace.gyro_noise_rad_s > NOISY_RAD_S);
+        // of two kinds that both serve, the one that the description states
+        let states_lag = fitted.base.vehicle.propulsion.time_constant_down_s.is_some();
         latency = if fed_back {
             lag_of(flights, total_s)
         } else if both {
             ActuationLatency { delay_s, lag_s: total_s - delay_s }
-        } else if against_lag < against_delay {
+        } else if against_lag < against_delay || (states_lag && against_lag < REFUSED) {
             lag_of(flights, total_s)
         } else {
             ActuationLatency { delay_s: total_s, lag_s: 0.0 }

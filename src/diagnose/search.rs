@@ -9,7 +9,7 @@ use super::hubs::one_place;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::locate::mass_step_std_kg;
 use super::mounting::{Turn, mountings};
-use super::rows::{AXES, CHANNELS, Nuisance, Rows};
+use super::rows::{AXES, CHANNELS, Nuisance, NuisanceColumn, Rows};
 use super::settle::{SETTLED_S, settle};
 use super::sharpen::{between_grid, sharpened};
 use super::trace::Trace;
@@ -51,6 +51,16 @@ impl Fitted {
         } else {
             f64::INFINITY
         }
+    }
+
+    /// Minus the logarithm of how likely the nuisances' coefficients are by what is known of them beforehand, up to a
+    /// constant.
+    #[must_use]
+    pub fn against_priors(&self) -> f64 {
+        let of = |(column, value): (&NuisanceColumn, &f64)| {
+            column.prior_std.map_or(0.0, |std| 0.5 * (value / std).powi(2))
+        };
+        self.rows.nuisances.iter().zip(self.coefficients.iter()).map(of).sum()
     }
 }
 

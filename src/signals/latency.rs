@@ -30,6 +30,50 @@ pub fn delayed_wrench(wrench: &[Vector4<f64>], step_s: f64, latency: ActuationLa
     lagged(&shifted, latency.lag_s, step_s)
 }
 
+/// Rotor speeds behind an actuation latency whose lag is `rising_s` for speeds that rise and `falling_s` for those that
+/// fall. Where falling takes longer, what jitters about a value is faster than it on average. One entry every `step_s`.
+#[must_use]
+pub fn delayed_speeds(
+    speeds: &[Vector4<f64>],
+    step_s: f64,
+    latency: ActuationLatency,
+    (rising_s, falling_s): (f64, f64),
+) -> Vec<Vector4<f64>> {
+    if latency.lag_s <= 0.0 || rising_s == falling_s {
+        return delayed_wrench(speeds, step_s, latency);
+    }
+    let laws = [rising_s, falling_s].map(|lag_s| Lag::new(lag_s, step_s));
+    let shifted = shifted(speeds, latency.delay_s / step_s);
+    let mut state = shifted.first().copied().unwrap_or_default();
+    let mut before = state;
+    let follow = |now: &Vector4<f64>| {
+        for ((state, before), now) in state.iter_mut().zip(before.iter()).zip(now.iter()) {
+            let law = &laws[usize::from(0.5 * (before + now) < *state)];
+            *state = law.follow(*state, *before, *now);
+        }
+        before = *now;
+        state
+    };
+    shifted.iter().map(follow).collect()
+}
+
+/// First-order lag with first-order-hold input: exact for straight lines.
+struct Lag {
+    pole: f64,
+    ramp: f64,
+}
+
+impl Lag {
+    fn new(lag_s: f64, step_s: f64) -> Self {
+        let pole = (-step_s / lag_s).exp();
+        Self { pole, ramp: 1.0 - lag_s / step_s * (1.0 - pole) }
+    }
+
+    fn follow(&self, state: f64, before: f64, now: f64) -> f64 {
+        self.pole * state + (1.0 - self.pole) * before + self.ramp * (now - before)
+    }
+}
+
 fn shifted(series: &[Vector4<f64>], steps: f64) -> Vec<Vector4<f64>> {
     if steps == 0.0 || series.is_empty() {
         return series.to_vec();
@@ -54,20 +98,16 @@ fn shifted(series: &[Vector4<f64>], steps: f64) -> Vec<Vector4<f64>> {
         .collect()
 }
 
-/// First-order lag with first-order-hold input: exact for straight lines.
 fn lagged(series: &[Vector4<f64>], lag_s: f64, step_s: f64) -> Vec<Vector4<f64>> {
-    let pole = (-step_s / lag_s).exp();
-    let ramp = 1.0 - lag_s / step_s * (1.0 - pole);
+    let lag = Lag::new(lag_s, step_s);
     let mut state = series.first().copied().unwrap_or_default();
     let mut before = state;
-    series
-        .iter()
-        .map(|now| {
-            state = pole * state + (1.0 - pole) * before + ramp * (now - before);
-            before = *now;
-            state
-        })
-        .collect()
+    let follow = |now: &Vector4<f64>| {
+        state = Vector4::from_fn(|i, _| lag.follow(state[i], before[i], now[i]));
+        before = *now;
+        state
+    };
+    series.iter().map(follow).collect()
 }
 
 #[cfg(test)]
@@ -90,5 +130,21 @@ mod tests {
     fn a_lag_follows_a_ramp_by_its_time_constant() {
         let out = lagged(&ramp(), 0.05, 0.01);
         assert!((out[399][0] - (3.99 - 0.05)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn rotors_that_slow_down_slowly_turn_faster_than_a_jittering_command() {
+        let latency = ActuationLatency { delay_s: 0.0, lag_s: 0.03 };
+        let both = |series: &[Vector4<f64>], falling| delayed_speeds(series, 0.01, latency, falling);
+        let (alike, slower) = ((0.03, 0.03), (0.02, 0.04));
+        // a ramp up is followed at the time constant of rising, one down at that of falling: 0.02 and 0.04 s
+        let up = both(&ramp(), slower);
+        assert!((up[399][0] - (3.99 - 0.02)).abs() < 1e-12);
+        let down: Vec<_> = ramp().iter().map(|value| -value).collect();
+        assert!((both(&down, slower)[399][0] + (3.99 - 0.04)).abs() < 1e-12);
+        let jitter: Vec<_> =
+            (0..400).map(|i| Vector4::repeat(if i / 3 % 2 == 0 { 1.1 } else { 0.9 })).collect();
+        let mean = |series: &[Vector4<f64>]| series[100..].iter().map(|value| value[0]).sum::<f64>() / 300.0;
+        assert!(mean(&both(&jitter, slower)) > 1.01 && (mean(&both(&jitter, alike)) - 1.0).abs() < 1e-3);
     }
 }

@@ -58,6 +58,22 @@ pub struct Propulsion {
 }
 
 impl Propulsion {
+    /// How many times as long slowing down takes as speeding up; 1 where nothing else is stated.
+    #[must_use]
+    pub fn falling_over_rising(&self) -> f64 {
+        match (self.time_constant_s, self.time_constant_down_s) {
+            (Some(up_s), Some(down_s)) if up_s > 0.0 && down_s > 0.0 => down_s / up_s,
+            _ => 1.0,
+        }
+    }
+
+    /// Time constants (s) of rising and falling speed whose mean is `lag_s`.
+    #[must_use]
+    pub fn rising_and_falling_s(&self, lag_s: f64) -> (f64, f64) {
+        let up_s = 2.0 * lag_s / (1.0 + self.falling_over_rising());
+        (up_s, 2.0 * lag_s - up_s)
+    }
+
     /// Recorded actuator value to the normalised command u.
     #[must_use]
     pub fn normalized(&self, value: f64) -> f64 {

@@ -78,21 +78,28 @@ fn likeliest(
     picked: &[Option<Present>],
     (place, forms): (usize, &[Present]),
 ) -> Result<Likeliest, PhysicsError> {
-    let fits: Vec<(f64, f64, usize)> = forms
+    // misfit, slow noise, what the nuisances ask of what is known of them beforehand, rows
+    let fits: Vec<(f64, f64, f64, usize)> = forms
         .par_iter()
         .map(|form| {
             let mut base = with_others(base, picked, place);
             base.present.push(form.clone());
             let fitted = fit(flights, base, Newton::Held)?;
-            Ok((fitted.misfit(), fitted.weighted.long_run_deviation(), fitted.rows.len()))
+            Ok((
+                fitted.misfit(),
+                fitted.weighted.long_run_deviation(),
+                fitted.against_priors(),
+                fitted.rows.len(),
+            ))
         })
         .collect::<Result<_, PhysicsError>>()?;
-    let deviation = fits.iter().map(|(_, deviation, _)| *deviation).fold(f64::INFINITY, f64::min);
-    let price = |form: &Present, rows: usize| {
-        0.5 * form.free.len() as f64 * (rows.max(2) as f64).ln() * deviation.powi(2)
-    };
-    let misfits: Vec<f64> =
-        fits.iter().zip(forms).map(|((misfit, _, rows), form)| misfit + price(form, *rows)).collect();
+    let deviation = fits.iter().map(|(_, deviation, ..)| *deviation).fold(f64::INFINITY, f64::min);
+    let price = |form: &Present, rows: usize| 0.5 * form.free.len() as f64 * (rows.max(2) as f64).ln();
+    let misfits: Vec<f64> = fits
+        .iter()
+        .zip(forms)
+        .map(|((misfit, _, against, rows), form)| misfit + (price(form, *rows) + against) * deviation.powi(2))
+        .collect();
     let best = misfits.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(index, _)| index);
     Ok(Likeliest { form: forms[best].clone(), misfits, deviation })
 }

@@ -94,7 +94,7 @@ impl EffectFound {
     /// It stands out of the noise as far as a name needs it to.
     #[must_use]
     pub fn is_significant(&self) -> bool {
-        self.z > Gates::default().z
+        self.z > Gates::default().deviate(self.effect.id())
     }
 
     /// For a simulation; `None` where the flight determines nothing of it.
@@ -204,7 +204,9 @@ fn set(present: &Present, slot: usize, value: f64, (vehicle, has_inflow): (&Vehi
             given("acts only as its sum with the distance; the height given here holds it")
         }
         ("linear_drag", 2) if has_inflow => given("is the inflow's kz"),
+        ("tether", 3..) => given("as it was set"),
         ("tether", _) => unknown("the line was not taut in this flight, or pulled too little to show"),
+        ("frame_misalignment", 3..) => given("position and velocity are turned alone: the likelier of both"),
         ("frame_misalignment", _) => unknown(
             "position, velocity and attitude turn alike: no equation of the vehicle's own motion sees a heading",
         ),

@@ -133,6 +133,8 @@ fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
         let Some(parameter) = present.parameter(slot) else { continue };
         let range = parameter.max - parameter.min;
         let amount = present.is_amount(slot);
+        // a finer form was taken because it is the likelier one: what it adds stays in, whatever its error
+        let finer = slot >= present.effect.parameters().len();
         let reason = if !amount && !seen {
             "the effect itself does not stand out of the noise".to_owned()
         } else {
@@ -141,7 +143,7 @@ fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
                 Some(own) if own < OWN => {
                     "in this flight it does what mass, inertia or another parameter does".to_owned()
                 }
-                _ if std > SAYS_NOTHING * range => format!(
+                _ if !finer && std > SAYS_NOTHING * range => format!(
                     "its standard error, {std:.2e} {}, is no smaller than what is plausible at all ({} to {})",
                     parameter.unit, parameter.min, parameter.max
                 ),

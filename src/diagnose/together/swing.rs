@@ -6,7 +6,8 @@
 
 use super::held::{Held, Settled, estimates};
 use crate::diagnose::evidence::weighted;
-use crate::diagnose::rows::residuals;
+use crate::diagnose::gates::Gates;
+use crate::diagnose::rows::{Channels, Nuisance, residuals};
 use crate::diagnose::search::{Fitted, Newton, fit};
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
@@ -18,8 +19,10 @@ use rayon::prelude::*;
 
 /// Noisier motions.
 const REPLICATES: u64 = 12;
-/// A load whose mass is fewer standard errors from nothing swings as no measured motion tells.
-const FOLLOWED: f64 = 4.0;
+/// A swing that runs out of step with the motion's shows as a load that changes along the flight: by this share, and so
+/// many standard errors.
+const CHANGED_SHARE: f64 = 0.25;
+const CHANGED: f64 = 3.0;
 const LOAD: &str = "slung_load";
 
 /// Adds it, where a load is estimated. A swing that the noise hides says nothing of its load.
@@ -33,11 +36,19 @@ pub(super) fn allow_for_noise(
     let mut hidden = Vec::new();
     for (index, of) in settled.iter_mut().enumerate().filter(|(_, of)| of.chosen.form.effect.id() == LOAD) {
         let all = estimates(fitted, before + index);
-        let seen = all.iter().any(|(slot, value, std, _)| *slot == 0 && *value > FOLLOWED * std);
-        if !seen {
+        // the number of cords that were tried allowed for
+        let tried = 2.0 * (of.chosen.tried.max(1) as f64).ln();
+        let needed = (Gates::default().deviate(LOAD).powi(2) + tried).sqrt();
+        let seen = all.iter().any(|(slot, value, std, _)| *slot == 0 && *value > needed * std);
+        let changes = seen && runs_out_of_step(fitted, before + index);
+        if !seen || changes {
             hidden.push(before + index);
-            let why = "either there is no load, or its swing hardly dies down and the noise of the motion that swings it \
-                       hides where it goes";
+            let why = if changes {
+                "the likeliest swing runs out of step with the motion along the flight: another cord, or something else"
+            } else {
+                "either there is no load, or its swing hardly dies down and the noise of the motion that swings it hides \
+                 where it goes"
+            };
             let slots = 0..of.chosen.form.values.len();
             of.held = slots.map(|slot| (slot, Held::NotDetermined(why.to_owned()))).collect();
         }
@@ -54,6 +65,32 @@ pub(super) fn allow_for_noise(
     }
     *fitted = fit(flights, base, Newton::Held)?;
     Ok(())
+}
+
+/// Whether the load at `place` of the base seems to change along the flight, its weight aside.
+fn runs_out_of_step(fitted: &Fitted, place: usize) -> bool {
+    let before: usize = fitted.base.present[..place].iter().map(|present| present.free.len()).sum();
+    let load = fitted.rows.effects.get(before);
+    let mass = fitted.rows.nuisances.iter().find(|column| column.nuisance == Nuisance::Mass);
+    let (Some(load), Some(mass)) = (load, mass) else { return false };
+    let last = fitted.rows.len().saturating_sub(1).max(1) as f64;
+    let along = |column: &Channels, law: fn(f64) -> f64| -> Channels {
+        let by = |(row, value): (usize, &f64)| value * law(2.0 * row as f64 / last - 1.0);
+        column.each_ref().map(|series| series.iter().enumerate().map(by).collect())
+    };
+    let square = |tau: f64| tau.powi(2) - 1.0 / 3.0;
+    let columns = [
+        along(&mass.values, |tau| tau),
+        along(&mass.values, square),
+        along(load, |tau| tau),
+        along(load, square),
+    ];
+    let Some(evidence) = fitted.weighted.test(&columns) else { return false };
+    let load_kg = fitted.base.present[place].values[0];
+    (2..columns.len()).any(|index| {
+        let change_kg = evidence.theta[index].abs();
+        change_kg > CHANGED_SHARE * load_kg && change_kg > CHANGED * evidence.std(index)
+    })
 }
 
 fn scatter(flights: &[Trace], fitted: &mut Fitted) -> Result<(), PhysicsError> {

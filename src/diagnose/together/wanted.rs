@@ -22,6 +22,8 @@ const CORDS_M: (f64, f64) = (0.2, 4.0);
 /// What the air takes of its swing, 1/s, with the ratio of the cords that are tried: neighbours stay in step while the
 /// swing lasts, or are a tenth of a period apart after a minute.
 const SWINGS: [(f64, f64); 3] = [(0.0, 1.015), (0.1, 1.03), (0.5, 1.1)];
+/// A line that is carried shows only once it weighs something, kg/m.
+const LINE_KG_M: f64 = 0.01;
 /// Lengths of a tether that are tried, of the farthest distance flown.
 const TAUT_AT: [f64; 6] = [0.4, 0.55, 0.7, 0.8, 0.9, 0.96];
 
@@ -177,14 +179,16 @@ impl Wanted {
             }
             "tether" => {
                 let far_m = farthest_m(flights);
-                let slack = one(&[0.0, 0.0, 500.0], &[0]);
+                let slack = [one(&[0.0, 0.0, 500.0], &[0]), one(&[LINE_KG_M, 0.0, 500.0, 0.5], &[0, 3])];
                 let taut = TAUT_AT.iter().map(|share| share * far_m).filter(|length_m| *length_m > 0.5);
-                std::iter::once(slack)
-                    .chain(taut.map(|length_m| one(&[0.0, 0.0, length_m], &[0, 1, 2])))
-                    .collect()
+                slack.into_iter().chain(taut.map(|length_m| one(&[0.0, 0.0, length_m], &[0, 1, 2]))).collect()
             }
-            // its heading is for no equation of the vehicle's own motion to see; up comes when the rest is known
-            "frame_misalignment" | "steady_wind" => vec![one(&[0.0; 3], &[0, 1])],
+            "thrust_curve" => vec![one(&[0.0], &[0]), one(&[0.0; 2], &[0, 1])],
+            // turned with the attitude, its heading is for no equation of the vehicle's own motion to see; or only
+            // the position is askew
+            "frame_misalignment" => vec![one(&[0.0; 3], &[0, 1]), one(&[0.0; 4], &[0, 1, 2])],
+            // up comes when the rest is known
+            "steady_wind" => vec![one(&[0.0; 3], &[0, 1])],
             _ => {
                 let count = by_id(id).map_or(0, |effect| effect.parameters().len());
                 vec![one(&vec![0.0; count], &(0..count).collect::<Vec<_>>())]
