@@ -37,6 +37,19 @@ pub fn file(path: &Path, text: &str) -> Result<(), CommandError> {
         .map_err(|error| CommandError::Input(format!("cannot write {}: {error}", path.display())))
 }
 
+/// Removes a file of an earlier run that this one has nothing to put in the place of, and says so.
+pub fn outdated(path: &Path) -> Result<(), CommandError> {
+    match std::fs::remove_file(path) {
+        Ok(()) => message(&format!("removed {}, of an earlier run", path.display())),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+        Err(error) => {
+            let told = format!("cannot remove {}, of an earlier run: {error}", path.display());
+            return Err(CommandError::Input(told));
+        }
+    }
+    Ok(())
+}
+
 /// A reader that has seen enough (`mavid ... | head`) is not a failure.
 fn line(mut out: impl Write, text: &str) -> Result<(), CommandError> {
     match writeln!(out, "{text}").and_then(|()| out.flush()) {

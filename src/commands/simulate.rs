@@ -48,7 +48,7 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     let loaded = read_vehicle(&args.vehicle)?;
     output::warnings(&args.vehicle, &loaded.warnings);
     let vehicle = loaded.vehicle;
-    let mut acting = effects(&loaded.model.effects, &vehicle)?;
+    let mut acting = effects(&loaded.model.effects, &args.vehicle.display().to_string(), &vehicle)?;
     if let Some(path) = &args.effects {
         acting.extend(effects_file(path, &vehicle)?);
     }
