@@ -10,21 +10,18 @@ const CUT: char = '\u{2026}';
 /// One head a model, at most [`WIDTH`] letters, no two alike where the names are not: long names lose their
 /// middle, and where that makes two alike, what they have in common at their beginning; else they are numbered.
 pub(super) fn column_heads(names: &[String]) -> Vec<String> {
-    let ways: [&dyn Fn(usize, &str) -> String; 2] = [&|_, name| without_middle(name, WIDTH), &|_, name| {
-        without_middle(&distinct_part(name, names), WIDTH)
-    }];
-    let numbered = |index: usize, name: &str| {
-        let number = format!("{}:", index + 1);
-        let left = WIDTH.saturating_sub(number.chars().count());
-        format!("{number}{}", without_middle(name, left))
+    let count = |of: &[String]| of.iter().collect::<BTreeSet<_>>().len();
+    let plain: Vec<String> = names.iter().map(|name| without_middle(name, WIDTH)).collect();
+    let distinct = names.iter().map(|name| without_middle(&distinct_part(name, names), WIDTH)).collect();
+    let numbered = || {
+        let head = |(number, name): (usize, &String)| {
+            let number = format!("{number}:");
+            let left = WIDTH.saturating_sub(number.chars().count());
+            format!("{number}{}", without_middle(name, left))
+        };
+        (1..).zip(names).map(head).collect()
     };
-    let all = |way: &dyn Fn(usize, &str) -> String| -> Vec<String> {
-        names.iter().enumerate().map(|(index, name)| way(index, name)).collect()
-    };
-    let told_apart = |heads: &Vec<String>| {
-        heads.iter().collect::<BTreeSet<_>>().len() == names.iter().collect::<BTreeSet<_>>().len()
-    };
-    ways.into_iter().map(all).find(told_apart).unwrap_or_else(|| all(&numbered))
+    [plain, distinct].into_iter().find(|heads| count(heads) == count(names)).unwrap_or_else(numbered)
 }
 
 /// Heads that are not the whole name, each with its name.
