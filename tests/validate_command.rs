@@ -39,7 +39,8 @@ fn flight(rows: u32, commands: impl Fn(u32, f64) -> String) -> String {
         let t = f64::from(row) * 0.01;
         let u = 0.77 + 0.05 * (3.0 * t).sin();
         let (sin, cos) = (t.sin(), t.cos());
-        let _ = writeln!(text, "{t},{sin},0.0,{cos},0.1,0.1,9.81,{}", commands(row, u));
+        let up = 9.81 + 0.1 * sin;
+        let _ = writeln!(text, "{t},{sin},0.0,{cos},0.1,0.1,{up},{}", commands(row, u));
     }
     text
 }
