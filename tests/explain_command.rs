@@ -114,6 +114,10 @@ fn bad_input_is_refused_with_what_was_expected_and_what_came() {
     let (log, vehicle) = (fixture("p01_identify_0_25s.tlog"), fixture("p01_vehicle.toml"));
     let idle = temporary("explain-idle.csv");
     std::fs::write(&idle, motion_without_actuators()).unwrap();
+    let folder = temporary("explain-read");
+    std::fs::create_dir_all(&folder).unwrap();
+    let read = folder.join("model.toml");
+    std::fs::write(&read, "read").unwrap();
     let part = temporary("explain-part.tlog");
     let whole = std::fs::read(&log).unwrap();
     std::fs::write(&part, &whole[..2 * whole.len() / 3]).unwrap();
@@ -126,6 +130,10 @@ fn bad_input_is_refused_with_what_was_expected_and_what_came() {
         (vec![log.as_str(), "--transient", "-1"], "--transient: expected seconds from 0 on, got -1"),
         (vec![log.as_str(), "--csv-map", "map.toml"], "expected a .csv among the logs"),
         (vec![log.as_str(), "--out", &log], "expected a folder"),
+        (
+            vec![log.as_str(), "--holdout", read.to_str().unwrap(), "--out", folder.to_str().unwrap()],
+            "model.toml is read",
+        ),
         (vec!["no-such.tlog"], "no-such.tlog"),
         (vec![idle.to_str().unwrap()], "no actuator outputs for 4 rotors"),
     ] {

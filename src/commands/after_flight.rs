@@ -38,11 +38,11 @@ impl Analysis {
         vehicle: &Path,
         system: Option<u32>,
     ) -> Result<Option<Self>, CommandError> {
-        for name in [MODEL, REPORT, CHART, PAGE, DOCUMENT] {
-            output::outdated(&folder.join(name))?;
-        }
-        for name in explain::WRITTEN {
-            output::outdated(&folder.join(EXPLAINED).join(name))?;
+        let parameters = [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(|name| folder.join(name));
+        let explanation = explain::WRITTEN.map(|name| folder.join(EXPLAINED).join(name));
+        // a model that was flown by is what this flight's own are compared with
+        for path in parameters.iter().chain(&explanation).filter(|path| !output::is_same(path, vehicle)) {
+            output::outdated(path)?;
         }
         Ok(landed.then(|| Self::made(folder, vehicle, system)))
     }

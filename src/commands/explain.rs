@@ -161,7 +161,9 @@ fn check(args: &ExplainArgs) -> Result<(), CommandError> {
         return Err(CommandError::Input(format!("--out: expected a folder, {} is a file", path.display())));
     }
     let inputs: Vec<&PathBuf> = args.logs.iter().chain(&args.holdout).chain([&args.vehicle]).collect();
-    output::refuse_overwriting(&inputs, &args.next.iter().collect::<Vec<_>>())?;
+    let written: Vec<PathBuf> =
+        args.out.iter().flat_map(|folder| WRITTEN.map(|name| folder.join(name))).collect();
+    output::refuse_overwriting(&inputs, &args.next.iter().chain(&written).collect::<Vec<_>>())?;
     // a target that cannot be written is told before the work
     if let Some(folder) = &args.out {
         output::folder(folder)?;

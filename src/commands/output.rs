@@ -66,17 +66,22 @@ pub fn folder(path: &Path) -> Result<(), CommandError> {
         .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", path.display())))
 }
 
+/// Both name one file, however they are written.
+pub fn is_same(one: &Path, other: &Path) -> bool {
+    let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+    real(one) == real(other)
+}
+
 /// Results do not overwrite what they come from, nor each other.
 pub fn refuse_overwriting(inputs: &[&PathBuf], outputs: &[&PathBuf]) -> Result<(), CommandError> {
-    let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
     for (index, output) in outputs.iter().enumerate() {
-        if inputs.iter().any(|input| real(input) == real(output)) {
+        if inputs.iter().any(|input| is_same(input, output)) {
             return Err(CommandError::Input(format!(
                 "expected results in a file of their own, {} is read",
                 output.display()
             )));
         }
-        if outputs[..index].iter().any(|other| real(other) == real(output)) {
+        if outputs[..index].iter().any(|other| is_same(other, output)) {
             return Err(CommandError::Input(format!(
                 "expected one file a result, {} is given for two",
                 output.display()
