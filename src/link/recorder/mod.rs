@@ -154,7 +154,7 @@ impl Recorder {
     }
 
     /// Waits until everything recorded so far is on the disk, and says what became of it. Frames that a link which is
-    /// still open hands over later are not counted: whoever ends here leaves them unwritten.
+    /// still open hands over later are not counted: they may reach the file or not.
     ///
     /// # Errors
     /// The recorder's thread is gone.
