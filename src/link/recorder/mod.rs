@@ -153,36 +153,32 @@ impl Recorder {
         let _ = self.orders.send(Order::Flush(None));
     }
 
-    /// Waits until everything recorded so far is on the disk, and says what became of it. Frames that a link which is
-    /// still open hands over later are not counted: they may reach the file or not.
+    /// Waits until everything recorded so far is on the disk, and says what became of it.
     ///
     /// # Errors
     /// The recorder's thread is gone.
     pub async fn finish(&self) -> Result<RecorderStatus, RecordError> {
         let (done, answer) = oneshot::channel();
         self.orders.send(Order::Flush(Some(done))).map_err(|_| RecordError::Ended)?;
-        answer.await.map_err(|_| RecordError::Ended)
+        answer.await.map_err(|_| RecordError::Ended)?;
+        Ok(self.status())
     }
 
     /// What became of the frames so far.
     #[must_use]
     pub fn status(&self) -> RecorderStatus {
-        self.state.status()
+        let count = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
+        RecorderStatus {
+            frames: count(&self.state.frames),
+            bytes: count(&self.state.bytes),
+            dropped: count(&self.state.dropped),
+            redacted: count(&self.state.redacted),
+            failure: self.state.failure.lock().unwrap_or_else(PoisonError::into_inner).clone(),
+        }
     }
 }
 
 impl State {
-    fn status(&self) -> RecorderStatus {
-        let count = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
-        RecorderStatus {
-            frames: count(&self.frames),
-            bytes: count(&self.bytes),
-            dropped: count(&self.dropped),
-            redacted: count(&self.redacted),
-            failure: self.failure.lock().unwrap_or_else(PoisonError::into_inner).clone(),
-        }
-    }
-
     fn note_failure(&self, error: Option<&io::Error>) {
         self.failing.store(error.is_some(), Ordering::Relaxed);
         let text = error.map(ToString::to_string);

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::oneshot;
 
+use super::State;
 use super::watch::ModeWatch;
-use super::{RecorderStatus, State};
 use crate::log::{Frame, STAMP_BYTES, TlogWriter};
 
 /// A kill costs no more than what came within this.
@@ -35,7 +35,7 @@ impl Store for File {
 #[derive(Debug)]
 pub(super) enum Order {
     Frame { stamp_us: u64, bytes: Box<[u8]> },
-    Flush(Option<oneshot::Sender<RecorderStatus>>),
+    Flush(Option<oneshot::Sender<()>>),
 }
 
 /// Flushing it also syncs. Its buffer hands on whole records only.
@@ -89,7 +89,7 @@ pub(super) fn work(store: impl Store, orders: &Receiver<Order>, state: &State) {
         }
         if let Some(done) = waiting {
             // whoever asked may have given up
-            let _ = done.send(state.status());
+            let _ = done.send(());
         }
     }
 }
