@@ -4,6 +4,8 @@
 //! `cargo bench --bench beyond -- [--flights N] [--seed S] [--noise SCALE] [--each] [KIND...]`
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, reason = "a benchmark prints")]
 
+mod support;
+
 use mavid::diagnose::{ExplainSettings, Explanation, explain};
 use mavid::physics::effects::by_id;
 use mavid::physics::{ActiveEffect, Wrench};
@@ -11,8 +13,9 @@ use mavid::signals::{ConditionSettings, condition};
 use mavid::simulate::{
     Disturbance, FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight,
 };
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
+use support::Arguments;
 
 const KINDS: [&str; 13] = [
     "clean",
@@ -31,20 +34,12 @@ const KINDS: [&str; 13] = [
 ];
 
 fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
-    let value = |name: &str, default: f64| {
-        let found = arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
-        found.map_or(default, |text| text.parse().expect("a number"))
-    };
-    let (flights, first, noise) = (value("--flights", 12.0), value("--seed", 5000.0), value("--noise", 1.0));
-    let each = arguments.iter().any(|a| a == "--each");
-    let chosen: Vec<&str> =
-        KINDS.iter().copied().filter(|kind| arguments.iter().any(|a| a == kind)).collect();
+    let arguments = Arguments::of_process();
+    let (flights, first): (u64, u64) = (arguments.number("--flights", 12), arguments.number("--seed", 5000));
+    let (noise, each) = (arguments.number("--noise", 1.0), arguments.has("--each"));
+    let chosen: Vec<&str> = KINDS.iter().copied().filter(|kind| arguments.has(kind)).collect();
     let kinds = if chosen.is_empty() { KINDS.to_vec() } else { chosen };
-    let mut seeds = Vec::new();
-    while (seeds.len() as f64) < flights {
-        seeds.push(format!("{}", first + seeds.len() as f64).parse::<u64>().expect("whole seed"));
-    }
+    let seeds: Vec<u64> = (first..first + flights).collect();
     for kind in kinds {
         let outcomes: Vec<(u64, Explanation, Option<f64>)> = seeds
             .par_iter()
@@ -67,69 +62,12 @@ fn fly(kind: &str, seed: u64, noise: f64) -> Option<(Explanation, Option<f64>)> 
     };
     let trajectory = draw.draw(seed.wrapping_mul(104_729)).ok()?;
     let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
-    let mass_kg = pair.truth.body.mass_kg;
-    let weight_n = mass_kg * 9.81;
-    let effect = |id: &str, values: &[f64]| ActiveEffect::new(by_id(id).unwrap(), values).unwrap();
-    let mut truth = Truth::clean(pair.truth.clone());
     let share = (seed * 37 % 100) as f64 / 100.0;
-    let mut center = None;
-    let drag = 0.3;
-    match kind {
-        "drag" => truth.effects.push(effect("linear_drag", &[0.2 * mass_kg, 0.2 * mass_kg, 0.0])),
-        "wind" => {
-            truth.effects.push(effect("steady_wind", &[2.0, -1.5 + share, 0.0]));
-            truth.effects.push(effect("linear_drag", &[0.2 * mass_kg, 0.2 * mass_kg, 0.0]));
-        }
-        "ground" => truth.effects.push(effect("ground_effect", &[3.0, 0.0, 1.0, 1.0])),
-        "inflow" => truth.effects.push(effect("inflow", &[0.2 * mass_kg])),
-        "sag" => truth.effects.push(effect("battery_sag", &[1.0, 16.4])),
-        "mass" => truth.effects.push(effect("mass_change", &[15.0 + 20.0 * share, -0.08 * mass_kg])),
-        "gust" | "gust_slow" => {
-            let time_s = if kind == "gust" { 1.0 } else { 4.0 };
-            truth.effects.push(effect("gust", &[0.3, time_s, seed as f64]));
-            truth.effects.push(effect("linear_drag", &[drag, drag, 0.0]));
-        }
-        "field" | "field_x" => {
-            let (place, width) = (-0.4 + 0.8 * share, 0.2);
-            center = Some(place);
-            let force = if kind == "field" { Vector3::z() } else { Vector3::y() } * (-0.06 * weight_n);
-            truth.disturbance = Some(Disturbance::new(move |_, state| {
-                let here = force * (-0.5 * ((state.position_m.x - place) / width).powi(2)).exp();
-                Wrench {
-                    force_n: state.attitude.inverse_transform_vector(&here),
-                    torque_nm: Vector3::zeros(),
-                }
-            }));
-        }
-        "trend" => {
-            truth.disturbance = Some(Disturbance::new(move |time_s, _| Wrench {
-                force_n: Vector3::z() * (-0.03 * weight_n * time_s / 60.0),
-                torque_nm: Vector3::zeros(),
-            }));
-        }
-        "red" => {
-            // a random push in the world that no drag carries
-            let values = [1.0, 1.5, seed as f64];
-            let wind = by_id("gust").unwrap();
-            let push_n = 0.01 * weight_n;
-            truth.disturbance = Some(Disturbance::new(move |time_s, state| {
-                let input = mavid::physics::Input {
-                    time_s,
-                    speed_command: [0.0; mavid::physics::MAX_ROTORS],
-                    speed_rate_1_s: [0.0; mavid::physics::MAX_ROTORS],
-                    wind_m_s: Vector3::zeros(),
-                    battery_voltage_v: None,
-                };
-                let own = mavid::physics::Own { parameters: &values, states: &[], rates: &mut [] };
-                let here = wind.wind_m_s(&input, &own) * push_n;
-                Wrench {
-                    force_n: state.attitude.inverse_transform_vector(&here),
-                    torque_nm: Vector3::zeros(),
-                }
-            }));
-        }
-        _ => {}
-    }
+    let place_m = -0.4 + 0.8 * share;
+    let weight_n = pair.truth.body.mass_kg * 9.81;
+    let mut truth = Truth::clean(pair.truth.clone());
+    truth.effects = effects(kind, seed, (pair.truth.body.mass_kg, share));
+    truth.disturbance = disturbance(kind, seed, (weight_n, place_m));
     let mut settings = FlightSettings { seed, ..FlightSettings::default() };
     settings.telemetry.noise_scale = noise;
     let mut flight = simulate_flight(truth, &pair.nominal, &reference, &settings).ok()?;
@@ -139,7 +77,65 @@ fn fly(kind: &str, seed: u64, noise: f64) -> Option<(Explanation, Option<f64>)> 
     }
     let conditioning = ConditionSettings { transient_s: Some(1.0), ..ConditionSettings::default() };
     let signals = condition(&flight.recording, &pair.nominal, &conditioning).ok()?;
-    Some((explain(&[signals], &pair.nominal, &ExplainSettings::default()).ok()?, center))
+    let center_m = kind.starts_with("field").then_some(place_m);
+    Some((explain(&[signals], &pair.nominal, &ExplainSettings::default()).ok()?, center_m))
+}
+
+/// What of the library is concealed; `share` (0..1) is the seed's.
+fn effects(kind: &str, seed: u64, (mass_kg, share): (f64, f64)) -> Vec<ActiveEffect> {
+    let effect = |id: &str, values: &[f64]| ActiveEffect::new(by_id(id).unwrap(), values).unwrap();
+    let drag = |d: f64| effect("linear_drag", &[d, d, 0.0]);
+    match kind {
+        "drag" => vec![drag(0.2 * mass_kg)],
+        "wind" => vec![effect("steady_wind", &[2.0, -1.5 + share, 0.0]), drag(0.2 * mass_kg)],
+        "ground" => vec![effect("ground_effect", &[3.0, 0.0, 1.0, 1.0])],
+        "inflow" => vec![effect("inflow", &[0.2 * mass_kg])],
+        "sag" => vec![effect("battery_sag", &[1.0, 16.4])],
+        "mass" => vec![effect("mass_change", &[15.0 + 20.0 * share, -0.08 * mass_kg])],
+        "gust" => vec![effect("gust", &[0.3, 1.0, seed as f64]), drag(0.3)],
+        "gust_slow" => vec![effect("gust", &[0.3, 4.0, seed as f64]), drag(0.3)],
+        _ => Vec::new(),
+    }
+}
+
+/// What no effect of the library is; a field's middle is at `place_m` on world x.
+fn disturbance(kind: &str, seed: u64, (weight_n, place_m): (f64, f64)) -> Option<Disturbance> {
+    let along = |attitude: &UnitQuaternion<f64>, world_n: Vector3<f64>| Wrench {
+        force_n: attitude.inverse_transform_vector(&world_n),
+        torque_nm: Vector3::zeros(),
+    };
+    match kind {
+        "field" | "field_x" => {
+            let width_m = 0.2;
+            let force = if kind == "field" { Vector3::z() } else { Vector3::y() } * (-0.06 * weight_n);
+            Some(Disturbance::new(move |_, state| {
+                let off = (state.position_m.x - place_m) / width_m;
+                along(&state.attitude, force * (-0.5 * off.powi(2)).exp())
+            }))
+        }
+        "trend" => Some(Disturbance::new(move |time_s, _| Wrench {
+            force_n: Vector3::z() * (-0.03 * weight_n * time_s / 60.0),
+            torque_nm: Vector3::zeros(),
+        })),
+        "red" => {
+            // a random push in the world that no drag carries
+            let values = [1.0, 1.5, seed as f64];
+            let wind = by_id("gust").unwrap();
+            let push_n = 0.01 * weight_n;
+            Some(Disturbance::new(move |time_s, state| {
+                let input = mavid::physics::Input {
+                    time_s,
+                    speed_command: [0.0; mavid::physics::MAX_ROTORS],
+                    speed_rate_1_s: [0.0; mavid::physics::MAX_ROTORS],
+                    wind_m_s: Vector3::zeros(),
+                    battery_voltage_v: None,
+                };
+                let own = mavid::physics::Own { parameters: &values, states: &[], rates: &mut [] };
+                along(&state.attitude, wind.wind_m_s(&input, &own) * push_n)
+            }))
+        }
+        _ => None,
+    }
 }
 
 fn line(seed: u64, found: &Explanation, center: Option<f64>) {

@@ -3,27 +3,22 @@
 //! `cargo bench --bench coverage -- [--flights N] [--seed S] [--speeds] [--noise SCALE]`
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, reason = "a benchmark prints")]
 
+mod support;
+
 use mavid::estimate::{IdentifySettings, Method, NAMES, THETA, identify, scale_of, theta_of};
 use mavid::signals::{ConditionSettings, condition};
 use mavid::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight};
 use rayon::prelude::*;
+use support::Arguments;
 
 /// One flight: error, standard error, and size per parameter, for each method.
 type Row = Vec<(Method, [(f64, f64, f64); THETA])>;
 
 fn main() {
-    let arguments: Vec<String> = std::env::args().collect();
-    let value = |name: &str, default: f64| {
-        let found = arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
-        found.map_or(default, |text| text.parse().expect("a number"))
-    };
-    let flights = value("--flights", 200.0);
-    let (first, noise) = (value("--seed", 1000.0), value("--noise", 1.0));
-    let speeds = arguments.iter().any(|a| a == "--speeds");
-    let mut seeds = Vec::new();
-    while (seeds.len() as f64) < flights {
-        seeds.push(format!("{}", first + seeds.len() as f64).parse::<u64>().expect("whole seed"));
-    }
+    let arguments = Arguments::of_process();
+    let (flights, first): (u64, u64) = (arguments.number("--flights", 200), arguments.number("--seed", 1000));
+    let (noise, speeds) = (arguments.number("--noise", 1.0), arguments.has("--speeds"));
+    let seeds: Vec<u64> = (first..first + flights).collect();
     let outcomes: Vec<Option<(Row, Method)>> =
         seeds.par_iter().map(|&seed| fly(seed, speeds, noise)).collect();
     let failed = outcomes.iter().filter(|o| o.is_none()).count();

@@ -6,6 +6,8 @@
 //! 0.2 degrees, which is no finding.
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, reason = "a benchmark prints")]
 
+mod support;
+
 use mavid::diagnose::{ExplainSettings, Explanation, Verdict, explain};
 use mavid::physics::ActiveEffect;
 use mavid::signals::{ConditionSettings, ThrustPreference, condition};
@@ -13,6 +15,7 @@ use mavid::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, random
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use support::Arguments;
 
 /// Name, value, and what it grows with, of each parameter.
 type Sizes = &'static [(&'static str, f64, Scale)];
@@ -74,21 +77,16 @@ enum Scale {
 }
 
 fn main() {
-    let arguments: Vec<String> = std::env::args().collect();
-    let text = |name: &str| {
-        let found = arguments.iter().position(|a| a == name);
-        found.and_then(|i| arguments.get(i + 1)).cloned()
-    };
-    let number =
-        |name: &str, default: u64| text(name).map_or(default, |t| t.parse().expect("a whole number"));
-    let (clean, each, first) = (number("--clean", 60), number("--each", 6), number("--seed", 1));
-    let flag = |name: &str| arguments.iter().any(|argument| argument == name);
-    let conditions = Conditions { fed_back: flag("--fed-back"), askew: flag("--askew"), plain: false };
-    report_clean(first, clean, conditions);
-    report_limits(first, number("--limits", 24));
-    report_pairs(first, number("--pairs", 0));
+    let arguments = Arguments::of_process();
+    let (first, each) = (arguments.number("--seed", 1), arguments.number("--each", 6));
+    let conditions =
+        Conditions { fed_back: arguments.has("--fed-back"), askew: arguments.has("--askew"), plain: false };
+    report_clean(first, arguments.number("--clean", 60), conditions);
+    report_limits(first, arguments.number("--limits", 24));
+    report_pairs(first, arguments.number("--pairs", 0));
+    let only = arguments.text("--only");
     println!("\neffect               flights  named  set  others  verdicts; median relative size error %");
-    for (id, values) in SIZES.iter().filter(|(id, _)| text("--only").is_none_or(|only| only == *id)) {
+    for (id, values) in SIZES.iter().filter(|(id, _)| only.as_ref().is_none_or(|only| only == id)) {
         report_effect(id, values, first, each);
     }
 }
@@ -278,35 +276,7 @@ fn report_effect(id: &'static str, values: Sizes, first: u64, count: u64) {
             );
         }
         if std::env::var("SHOW").is_ok_and(|want| want == seed.to_string()) {
-            for step in &explanation.search.steps {
-                println!(
-                    "    took {} {:?} e {:.0}",
-                    step.taken.candidate.id, step.taken.evidence.theta, step.taken.evidence.energy
-                );
-            }
-            let mut last: Vec<_> = explanation.search.last.iter().collect();
-            last.sort_by(|a, b| b.evidence.energy.total_cmp(&a.evidence.energy));
-            for tested in last.iter().take(14) {
-                let e = &tested.evidence;
-                println!(
-                    "    {:18} {:?} theta {:?} std {:.3e} z {:.1} pc {:.1e} gain {:.4} e {:.1} rms {:?}",
-                    tested.candidate.id,
-                    tested.candidate.parts[0].values,
-                    e.theta,
-                    e.std(0),
-                    e.z,
-                    e.p_cluster,
-                    e.gain,
-                    e.energy,
-                    e.rms
-                );
-            }
-            println!(
-                "    sigma {:?} torque {:?} {:?}",
-                explanation.search.after.weighted.sigma,
-                explanation.search.after.rows.torque_rms,
-                explanation.search.after.base.present
-            );
+            show_search(explanation);
         }
         for name in explanation.named.iter().filter(|name| name.id != id && !in_set(name) && !companion(name))
         {
@@ -319,6 +289,39 @@ fn report_effect(id: &'static str, values: Sizes, first: u64, count: u64) {
     println!(
         "{id:20} {:7} {named:6} {within:4} {others:7}  {verdicts:?} {median:.1} % {strangers:?}",
         found.len()
+    );
+}
+
+/// What the search took, and what was left.
+fn show_search(explanation: &Explanation) {
+    for step in &explanation.search.steps {
+        println!(
+            "    took {} {:?} e {:.0}",
+            step.taken.candidate.id, step.taken.evidence.theta, step.taken.evidence.energy
+        );
+    }
+    let mut last: Vec<_> = explanation.search.last.iter().collect();
+    last.sort_by(|a, b| b.evidence.energy.total_cmp(&a.evidence.energy));
+    for tested in last.iter().take(14) {
+        let e = &tested.evidence;
+        println!(
+            "    {:18} {:?} theta {:?} std {:.3e} z {:.1} pc {:.1e} gain {:.4} e {:.1} rms {:?}",
+            tested.candidate.id,
+            tested.candidate.parts[0].values,
+            e.theta,
+            e.std(0),
+            e.z,
+            e.p_cluster,
+            e.gain,
+            e.energy,
+            e.rms
+        );
+    }
+    println!(
+        "    sigma {:?} torque {:?} {:?}",
+        explanation.search.after.weighted.sigma,
+        explanation.search.after.rows.torque_rms,
+        explanation.search.after.base.present
     );
 }
 

@@ -9,9 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use mavid::log::{Frame, LoadOptions, SystemId, TlogReader, TlogWriter, load, stream_tlog};
-use mavlink::dialects::ardupilotmega as dialect;
-use mavlink::{MAVLinkV2MessageRaw, MavHeader};
+use mavid::log::{LoadOptions, MessageWriter, SystemId, TlogReader, load, stream_tlog};
+use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage as M};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -117,28 +116,43 @@ fn pymavlink(log: &Path) -> Result<Vec<(String, f64)>, Box<dyn Error>> {
 /// A log of the messages of an identification flight, 125 Hz steps.
 fn generated_log() -> Result<PathBuf, Box<dyn Error>> {
     let path = std::env::temp_dir().join("mavid-reading.tlog");
-    let mut log = TlogWriter::new(std::io::BufWriter::new(std::fs::File::create(&path)?));
+    let mut log = MessageWriter::new(std::io::BufWriter::new(std::fs::File::create(&path)?));
     let mut random = Pcg64Mcg::seed_from_u64(7);
-    let mut sequence = 0_u8;
     for step in 0..STEPS {
         for message in messages_of_step(step, &mut random) {
-            let header = MavHeader { system_id: 1, component_id: 1, sequence };
-            sequence = sequence.wrapping_add(1);
-            let mut raw = MAVLinkV2MessageRaw::new();
-            raw.serialize_message(header, &message);
-            let frame = Frame::at_start(raw.raw_bytes()).ok_or("a serialised message is a frame")?;
-            log.write(1_700_000_000_000_000 + u64::from(step) * 8000, frame)?;
+            log.write(1_700_000_000_000_000 + u64::from(step) * 8000, &message)?;
         }
     }
-    log.flush()?;
+    log.finish()?;
     Ok(path)
 }
 
-fn messages_of_step(step: u32, random: &mut Pcg64Mcg) -> Vec<dialect::MavMessage> {
-    use dialect::MavMessage as M;
-    let mut value = || random.random::<f32>() - 0.5;
-    let (time_boot_ms, time_usec) = (41_000 + step * 8, u64::from(41_000 + step * 8) * 1000);
-    let mut messages = vec![
+/// Between -0.5 and 0.5.
+fn draw(random: &mut Pcg64Mcg) -> f32 {
+    random.random::<f32>() - 0.5
+}
+
+/// ms and us of the vehicle's clock.
+fn stamps(step: u32) -> (u32, u64) {
+    (41_000 + step * 8, u64::from(41_000 + step * 8) * 1000)
+}
+
+fn messages_of_step(step: u32, random: &mut Pcg64Mcg) -> Vec<M> {
+    let mut messages = Vec::from(motion(step, random));
+    messages.extend(outputs(step, random));
+    if step.is_multiple_of(2) {
+        messages.extend(targets(step, random));
+    }
+    if step.is_multiple_of(125) {
+        messages.extend(status());
+    }
+    messages
+}
+
+fn motion(step: u32, random: &mut Pcg64Mcg) -> [M; 4] {
+    let mut value = || draw(random);
+    let (time_boot_ms, time_usec) = stamps(step);
+    [
         M::ATTITUDE_QUATERNION(dialect::ATTITUDE_QUATERNION_DATA {
             time_boot_ms,
             q1: 1.0,
@@ -184,6 +198,12 @@ fn messages_of_step(step: u32, random: &mut Pcg64Mcg) -> Vec<dialect::MavMessage
             vy: value(),
             vz: value(),
         }),
+    ]
+}
+
+fn outputs(step: u32, random: &mut Pcg64Mcg) -> [M; 2] {
+    let (time_boot_ms, time_usec) = stamps(step);
+    [
         M::SERVO_OUTPUT_RAW(dialect::SERVO_OUTPUT_RAW_DATA {
             time_usec: time_boot_ms * 1000,
             servo1_raw: 1500,
@@ -195,11 +215,16 @@ fn messages_of_step(step: u32, random: &mut Pcg64Mcg) -> Vec<dialect::MavMessage
         M::ACTUATOR_OUTPUT_STATUS(dialect::ACTUATOR_OUTPUT_STATUS_DATA {
             time_usec,
             active: 4,
-            actuator: std::array::from_fn(|channel| if channel < 4 { 0.5 + 0.1 * value() } else { 0.0 }),
+            actuator: std::array::from_fn(|channel| if channel < 4 { 0.5 + 0.1 * draw(random) } else { 0.0 }),
         }),
-    ];
-    if step.is_multiple_of(2) {
-        messages.push(M::POSITION_TARGET_LOCAL_NED(dialect::POSITION_TARGET_LOCAL_NED_DATA {
+    ]
+}
+
+fn targets(step: u32, random: &mut Pcg64Mcg) -> [M; 3] {
+    let mut value = || draw(random);
+    let (time_boot_ms, time_usec) = stamps(step);
+    [
+        M::POSITION_TARGET_LOCAL_NED(dialect::POSITION_TARGET_LOCAL_NED_DATA {
             time_boot_ms,
             x: value(),
             y: value(),
@@ -211,35 +236,39 @@ fn messages_of_step(step: u32, random: &mut Pcg64Mcg) -> Vec<dialect::MavMessage
             type_mask: dialect::PositionTargetTypemask::empty(),
             coordinate_frame: dialect::MavFrame::MAV_FRAME_LOCAL_NED,
             ..Default::default()
-        }));
-        messages.push(M::ATTITUDE_TARGET(dialect::ATTITUDE_TARGET_DATA {
+        }),
+        M::ATTITUDE_TARGET(dialect::ATTITUDE_TARGET_DATA {
             time_boot_ms,
             q: [1.0, 0.05 * value(), 0.05 * value(), 0.05 * value()],
             thrust: 0.4,
             type_mask: dialect::AttitudeTargetTypemask::empty(),
             ..Default::default()
-        }));
-        messages.push(M::ESC_STATUS(dialect::ESC_STATUS_DATA {
+        }),
+        M::ESC_STATUS(dialect::ESC_STATUS_DATA {
             time_usec,
             rpm: [7000, 7100, 6900, 7050],
             voltage: [16.4; 4],
             ..Default::default()
-        }));
-    }
-    if step.is_multiple_of(125) {
-        messages.push(M::HEARTBEAT(dialect::HEARTBEAT_DATA {
+        }),
+    ]
+}
+
+fn status() -> [M; 2] {
+    let mut voltages = [u16::MAX; 10];
+    voltages[..4].fill(4100);
+    [
+        M::HEARTBEAT(dialect::HEARTBEAT_DATA {
             custom_mode: 6 << 16,
             mavtype: dialect::MavType::MAV_TYPE_QUADROTOR,
             autopilot: dialect::MavAutopilot::MAV_AUTOPILOT_PX4,
             base_mode: dialect::MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
             system_status: dialect::MavState::MAV_STATE_ACTIVE,
             mavlink_version: 3,
-        }));
-        messages.push(M::BATTERY_STATUS(dialect::BATTERY_STATUS_DATA {
-            voltages: [4100, 4100, 4100, 4100, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX],
+        }),
+        M::BATTERY_STATUS(dialect::BATTERY_STATUS_DATA {
+            voltages,
             current_battery: 1200,
             ..Default::default()
-        }));
-    }
-    messages
+        }),
+    ]
 }

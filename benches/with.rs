@@ -5,6 +5,8 @@
 //! `--fed-back`: the controller flies on the very noise that is logged.`
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, reason = "a benchmark prints")]
 
+mod support;
+
 use mavid::diagnose::ExplainSettings;
 use mavid::diagnose::together::{Found, Together, TogetherError, Wanted, together};
 use mavid::physics::ActiveEffect;
@@ -12,6 +14,7 @@ use mavid::signals::{ConditionSettings, ThrustPreference, condition};
 use mavid::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight};
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
+use support::Arguments;
 
 /// What a size grows with: nothing, the mass, or the mean of Ixx and Iyy.
 #[derive(Clone, Copy)]
@@ -64,23 +67,16 @@ const SETS: &[&[Sizes]] = &[
 ];
 
 fn main() {
-    let arguments: Vec<String> = std::env::args().collect();
-    let text = |name: &str| {
-        let found = arguments.iter().position(|a| a == name);
-        found.and_then(|i| arguments.get(i + 1)).cloned()
-    };
-    let number =
-        |name: &str, default: u64| text(name).map_or(default, |t| t.parse().expect("a whole number"));
-    let (each, first) = (number("--each", 4), number("--seed", 1));
-    let noise = text("--noise").map_or(1.0, |t| t.parse().expect("a factor"));
-    let flag = |name: &str| arguments.iter().any(|a| a == name);
-    let how = How { noise, fed_back: flag("--fed-back"), show: flag("--show") };
+    let arguments = Arguments::of_process();
+    let (each, first) = (arguments.number("--each", 4), arguments.number("--seed", 1));
+    let (only, noise) = (arguments.text("--only"), arguments.number("--noise", 1.0));
+    let how = How { noise, fed_back: arguments.has("--fed-back"), show: arguments.has("--show") };
     println!(
         "set                            flights  parameters  within 20 %  within 3 std  rms in std  z least; worst"
     );
     for set in SETS {
         let ids: Vec<&str> = set.iter().map(|(id, _)| *id).collect();
-        if text("--only").is_none_or(|only| ids.join(",") == only) {
+        if only.as_ref().is_none_or(|only| ids.join(",") == *only) {
             report(set, &ids.join(","), (first, each), how);
         }
     }
@@ -97,64 +93,71 @@ struct How {
 fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), how: How) {
     let found: Vec<(u64, Result<Together, TogetherError>, Vec<ActiveEffect>)> =
         (first..first + each).into_par_iter().filter_map(|seed| fly(seed, how, set)).collect();
-    let (mut count, mut near, mut covered, mut squares) = (0_u32, 0, 0, 0.0);
-    let (mut least, mut worst) = (f64::INFINITY, 0.0_f64);
+    let mut tally = Tally { least: f64::INFINITY, ..Tally::default() };
     for (seed, together, truth) in &found {
-        let together = match together {
-            Ok(together) => together,
-            Err(error) => {
-                println!("{name}: seed {seed}: {error}");
-                continue;
-            }
-        };
-        for (effect, truth) in together.effects.iter().zip(truth) {
-            least = least.min(effect.z);
-            let sized = effect.parameters.iter().zip(truth.parameters());
-            for (slot, (parameter, &truth)) in sized.enumerate() {
-                if how.show {
-                    println!(
-                        "  seed {seed} {}.{} truth {truth:.5} {:?}",
-                        effect.effect.id(),
-                        parameter.name,
-                        parameter.found
-                    );
-                }
-                let nothing = if effect.effect.id() == "weak_rotor" && slot == 1 { 1.0 } else { 0.0 };
-                let amount = truth - nothing;
-                match &parameter.found {
-                    Found::Determined { value, std } if amount != 0.0 => {
-                        count += 1;
-                        let off = value - truth;
-                        near += usize::from(off.abs() < 0.2 * amount.abs());
-                        covered += usize::from(off.abs() < 3.0 * std);
-                        squares += (off / std).powi(2);
-                        worst = worst.max((off / amount).abs());
-                    }
-                    Found::NotDetermined { reason, .. } if amount != 0.0 => {
-                        println!(
-                            "  seed {seed} {}.{} not determined: {reason}",
-                            effect.effect.id(),
-                            parameter.name
-                        );
-                    }
-                    Found::AtBound { value, wanted, std } if amount != 0.0 => {
-                        println!(
-                            "  seed {seed} {}.{} at {value}: {wanted} +- {std}",
-                            effect.effect.id(),
-                            parameter.name
-                        );
-                    }
-                    _ => {}
-                }
-            }
+        match together {
+            Ok(together) => tally.add(*seed, together, truth, how.show),
+            Err(error) => println!("{name}: seed {seed}: {error}"),
         }
     }
     println!(
-        "{name:30} {:7} {count:11} {near:12} {covered:13} {:11.2}  {least:6.1}; {:.1} %",
+        "{name:30} {:7} {:11} {:12} {:13} {:11.2}  {:6.1}; {:.1} %",
         found.len(),
-        (squares / f64::from(count).max(1.0)).sqrt(),
-        100.0 * worst
+        tally.count,
+        tally.near,
+        tally.covered,
+        (tally.squares / f64::from(tally.count).max(1.0)).sqrt(),
+        tally.least,
+        100.0 * tally.worst
     );
+}
+
+/// Sizes against the truth, over flights.
+#[derive(Default)]
+struct Tally {
+    count: u32,
+    near: usize,
+    covered: usize,
+    squares: f64,
+    least: f64,
+    worst: f64,
+}
+
+impl Tally {
+    fn add(&mut self, seed: u64, together: &Together, truth: &[ActiveEffect], show: bool) {
+        for (effect, truth) in together.effects.iter().zip(truth) {
+            self.least = self.least.min(effect.z);
+            let id = effect.effect.id();
+            for (slot, (parameter, &truth)) in effect.parameters.iter().zip(truth.parameters()).enumerate() {
+                let what = format!("  seed {seed} {id}.{}", parameter.name);
+                if show {
+                    println!("{what} truth {truth:.5} {:?}", parameter.found);
+                }
+                let nothing = if id == "weak_rotor" && slot == 1 { 1.0 } else { 0.0 };
+                self.weigh(&what, &parameter.found, (truth, truth - nothing));
+            }
+        }
+    }
+
+    /// `amount`: how far the truth is from no effect; where it is not at all, its size says nothing.
+    fn weigh(&mut self, what: &str, found: &Found, (truth, amount): (f64, f64)) {
+        if amount == 0.0 {
+            return;
+        }
+        match found {
+            Found::Determined { value, std } => {
+                self.count += 1;
+                let off = value - truth;
+                self.near += usize::from(off.abs() < 0.2 * amount.abs());
+                self.covered += usize::from(off.abs() < 3.0 * std);
+                self.squares += (off / std).powi(2);
+                self.worst = self.worst.max((off / amount).abs());
+            }
+            Found::NotDetermined { reason, .. } => println!("{what} not determined: {reason}"),
+            Found::AtBound { value, wanted, std } => println!("{what} at {value}: {wanted} +- {std}"),
+            _ => {}
+        }
+    }
 }
 
 fn fly(

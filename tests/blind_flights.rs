@@ -1,6 +1,6 @@
 //! The second maker of test flights: its own physics by hand, and three of its flights end to end.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test ends where it fails")]
 
 #[allow(dead_code, reason = "the benchmark uses all of it")]
 #[path = "../benches/blind/maker/mod.rs"]

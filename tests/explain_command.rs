@@ -44,8 +44,13 @@ fn case(name: &str) -> Option<PathBuf> {
 fn a_complete_rigid_body_has_nothing_missing_and_says_what_it_would_have_seen() {
     let out = temporary("explain-p01");
     let (log, vehicle) = (fixture("p01_identify_0_25s.tlog"), fixture("p01_vehicle.toml"));
-    let output = mavid(&["explain", &log, "--vehicle", &vehicle, "--out", out.to_str().unwrap(), "--json"]);
+    // no flight is designed where nothing is to be told apart: one of an earlier run must not pass for it
+    let next = temporary("explain-p01-next.toml");
+    std::fs::write(&next, "of an earlier run").unwrap();
+    let to = ["--out", out.to_str().unwrap(), "--next", next.to_str().unwrap(), "--json"];
+    let output = mavid(&[&["explain", log.as_str(), "--vehicle", &vehicle][..], &to].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("--next: nothing written: ") && !next.exists(), "{}", stderr(&output));
     let document: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(document["schema"], 1);
     assert_eq!(document["verdict"], "nothing_missing");
@@ -109,6 +114,10 @@ fn bad_input_is_refused_with_what_was_expected_and_what_came() {
     let (log, vehicle) = (fixture("p01_identify_0_25s.tlog"), fixture("p01_vehicle.toml"));
     let idle = temporary("explain-idle.csv");
     std::fs::write(&idle, motion_without_actuators()).unwrap();
+    let folder = temporary("explain-read");
+    std::fs::create_dir_all(&folder).unwrap();
+    let read = folder.join("model.toml");
+    std::fs::write(&read, "read").unwrap();
     let part = temporary("explain-part.tlog");
     let whole = std::fs::read(&log).unwrap();
     std::fs::write(&part, &whole[..2 * whole.len() / 3]).unwrap();
@@ -121,6 +130,10 @@ fn bad_input_is_refused_with_what_was_expected_and_what_came() {
         (vec![log.as_str(), "--transient", "-1"], "--transient: expected seconds from 0 on, got -1"),
         (vec![log.as_str(), "--csv-map", "map.toml"], "expected a .csv among the logs"),
         (vec![log.as_str(), "--out", &log], "expected a folder"),
+        (
+            vec![log.as_str(), "--holdout", read.to_str().unwrap(), "--out", folder.to_str().unwrap()],
+            "model.toml is read",
+        ),
         (vec!["no-such.tlog"], "no-such.tlog"),
         (vec![idle.to_str().unwrap()], "no actuator outputs for 4 rotors"),
     ] {
@@ -144,25 +157,22 @@ fn motion_without_actuators() -> String {
     text
 }
 
+/// The document of an explanation that is done.
+fn explained(log: &Path, vehicle: &Path, holdout: &Path, further: &[&str]) -> Value {
+    let [log, vehicle, holdout] = [log, vehicle, holdout].map(|path| path.to_str().unwrap());
+    let common = ["explain", log, "--vehicle", vehicle, "--holdout", holdout, "--json"];
+    let output = mavid(&[&common[..], further].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
 #[test]
 fn drag_is_named_shown_on_the_hold_out_and_carried_into_every_command() {
     let Some(folder) = case("p02-linear-drag") else { return };
-    let file = |name: &str| folder.join(name).display().to_string();
     let out = temporary("explain-p02");
-    let (log, holdout, vehicle) = (file("identify.tlog"), file("holdout.tlog"), file("vehicle.toml"));
-    let output = mavid(&[
-        "explain",
-        &log,
-        "--vehicle",
-        &vehicle,
-        "--holdout",
-        &holdout,
-        "--out",
-        out.to_str().unwrap(),
-        "--json",
-    ]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let [log, holdout, vehicle] =
+        ["identify.tlog", "holdout.tlog", "vehicle.toml"].map(|name| folder.join(name));
+    let document = explained(&log, &vehicle, &holdout, &["--out", out.to_str().unwrap()]);
     assert_eq!(document["verdict"], "explained");
     assert_eq!(document["effects"][0]["id"], "linear_drag");
     let answer = document["answer"].as_str().unwrap();
@@ -178,7 +188,8 @@ fn drag_is_named_shown_on_the_hold_out_and_carried_into_every_command() {
     let model = out.join("model.toml");
     let model = model.to_str().unwrap();
     // its own model explains the flight: nothing more is missing
-    let again = mavid(&["validate", &holdout, "--model", &vehicle, "--model", model, "--json"]);
+    let [holdout, vehicle] = [&holdout, &vehicle].map(|path| path.to_str().unwrap());
+    let again = mavid(&["validate", holdout, "--model", vehicle, "--model", model, "--json"]);
     assert_eq!(again.status.code(), Some(0), "{}", stderr(&again));
     for to in ["px4-sih", "ardupilot-sitl", "sdf", "mjcf", "rotorpy"] {
         let exported = mavid(&["export", model, "--to", to, "--json"]);
@@ -193,19 +204,8 @@ fn a_hold_out_of_another_vehicle_is_found_out_and_said() {
     let (Some(folder), Some(other)) = (case("p02-linear-drag"), case("p04-motor-lag")) else { return };
     let out = temporary("explain-other");
     let (log, vehicle) = (folder.join("identify.tlog"), folder.join("vehicle.toml"));
-    let output = mavid(&[
-        "explain",
-        log.to_str().unwrap(),
-        "--vehicle",
-        vehicle.to_str().unwrap(),
-        "--holdout",
-        other.join("holdout.tlog").to_str().unwrap(),
-        "--out",
-        out.to_str().unwrap(),
-        "--json",
-    ]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let out = ["--out", out.to_str().unwrap()];
+    let document = explained(&log, &vehicle, &other.join("holdout.tlog"), &out);
     let warnings = document["warnings"].as_array().unwrap();
     let said = warnings.iter().any(|warning| {
         warning
@@ -229,17 +229,7 @@ fn a_hold_out_of_another_vehicle_without_attitude_is_found_out() {
     let Some(folder) = case("p02-linear-drag") else { return };
     let other = folder.join("../../recordings/crazyflie_1khz/log15.csv");
     let (log, vehicle) = (folder.join("identify.tlog"), folder.join("vehicle.toml"));
-    let output = mavid(&[
-        "explain",
-        log.to_str().unwrap(),
-        "--vehicle",
-        vehicle.to_str().unwrap(),
-        "--holdout",
-        other.to_str().unwrap(),
-        "--json",
-    ]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let document = explained(&log, &vehicle, &other, &[]);
     let answer = document["answer"].as_str().unwrap();
     assert!(answer.contains("the hold-out is of another vehicle"), "{answer}");
 }

@@ -60,6 +60,10 @@ fn a_recording_that_is_there_already_is_kept() {
 #[test]
 fn without_a_vehicle_it_ends_when_it_is_told_to() {
     let out = folder("fly_nobody");
+    // results of an earlier flight would pass for those of this one
+    std::fs::create_dir_all(out.join("explained")).unwrap();
+    let earlier = ["report.html", "explained/report.html", "mine.html"].map(|name| out.join(name));
+    earlier.iter().for_each(|path| std::fs::write(path, "earlier").unwrap());
     let child = Command::new(env!("CARGO_BIN_EXE_mavid"))
         .args(["fly", "--connect", "udpin:127.0.0.1:0", "--plain"])
         .args(["--trajectory", &config("trajectories/table2.toml"), "--vehicle", &config("qball2.toml")])
@@ -77,4 +81,5 @@ fn without_a_vehicle_it_ends_when_it_is_told_to() {
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(stderr(&output).contains("SIGTERM"), "{}", stderr(&output));
     assert!(std::fs::read_to_string(out.join("events.jsonl")).unwrap().contains("SIGTERM"));
+    assert_eq!(earlier.map(|path| path.exists()), [false, false, true]);
 }

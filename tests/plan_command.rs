@@ -73,6 +73,13 @@ fn wrong_input_is_named() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
         assert!(output.stdout.is_empty() && message.contains(word), "{arguments:?}: {message}");
     }
+    let vehicle = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
+    let output = plan("qball2.toml", &["--limits", vehicle.to_str().unwrap(), "--starts", "1"]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    let expected =
+        "x500.toml: expected a file in TOML with a [limits] table and nothing else, came a vehicle file (";
+    assert!(message.contains(expected), "{message}");
     let limits = temporary("conflict.toml");
     std::fs::write(&limits, "[limits]\nthrust_max_n = 10.0\n").unwrap();
     let output = plan("qball2.toml", &["--limits", limits.to_str().unwrap(), "--starts", "1"]);

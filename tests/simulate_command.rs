@@ -110,6 +110,12 @@ fn bad_effects_are_refused_with_what_was_expected() {
         ("[[effect]]\nid = \"inflow\"\nkz = \"much\"\n", "expected a number"),
         ("[[effect]]\nid = \"inflow\"\n", "kz"),
         ("[[wrong]]\n", "wrong"),
+        ("", "expected a file in TOML with [[effect]] tables and nothing else: "),
+        (
+            include_str!("../configs/x500.toml"),
+            "effects.toml: expected a file in TOML with [[effect]] tables and nothing else, came a vehicle file (",
+        ),
+        ("\u{0}", "expected a file in TOML with [[effect]] tables and nothing else: "),
     ] {
         let effects = place("effects.toml");
         std::fs::write(&effects, text).unwrap();
@@ -120,6 +126,13 @@ fn bad_effects_are_refused_with_what_was_expected() {
         assert_eq!(output.status.code(), Some(2), "{text}: {said}");
         assert!(said.contains(expected), "{text}: {said}");
     }
+    let (vehicle, binary) = (config("x500.toml"), place("effects.bin"));
+    std::fs::write(&binary, [0xfd, 0x80, 0xff]).unwrap();
+    let output =
+        mavid(&["simulate", &vehicle, "--trajectory", &trajectory, "--effects", &binary, "--out", &log]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("tables and nothing else, came a file that is no text"), "{said}");
 }
 
 #[test]

@@ -11,12 +11,15 @@
 
 mod maker;
 mod score;
+#[path = "../support/mod.rs"]
+mod support;
 mod write;
 
 use std::path::PathBuf;
 
 use maker::catalogue::{CONTROLS, Case, EFFECTS, OUTSIDE, PAIRS};
 use score::{clean, effects, outside, pairs};
+use support::Arguments;
 
 /// What is asked for.
 struct Request {
@@ -71,29 +74,16 @@ fn main() {
 
 /// Reads the arguments.
 fn request() -> Request {
-    let arguments: Vec<String> = std::env::args().collect();
-    let value = |name: &str| {
-        let place = arguments.iter().position(|argument| argument == name)?;
-        Some(arguments.get(place + 1).unwrap_or_else(|| panic_text(name)).clone())
-    };
-    let number = |name: &str, otherwise: u64| {
-        value(name).map_or(otherwise, |text| text.parse().unwrap_or_else(|_| panic_text(name)))
-    };
-    let only = value("--only");
+    let arguments = Arguments::of_process();
+    let only = arguments.text("--only");
     let all = only.is_none();
     Request {
-        cases: number("--cases", 6),
-        clean: number("--clean", if all { 20 } else { 0 }),
-        pairs: number("--pairs", if all { 10 } else { 0 }),
-        outside: number("--outside", 6),
-        seed: number("--seed", 1),
+        cases: arguments.number("--cases", 6),
+        clean: arguments.number("--clean", if all { 20 } else { 0 }),
+        pairs: arguments.number("--pairs", if all { 10 } else { 0 }),
+        outside: arguments.number("--outside", 6),
+        seed: arguments.number("--seed", 1),
         only,
-        write: value("--write").map(PathBuf::from),
+        write: arguments.text("--write").map(PathBuf::from),
     }
-}
-
-/// Ends with what an argument lacks.
-fn panic_text<T>(name: &str) -> T {
-    println!("{name}: expected a value after it");
-    std::process::exit(2);
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use mavid::fly;
 
-use super::explain::{Explained, REPORT};
+use super::explain::{self, Explained, REPORT};
 use super::identify::Identified;
 use super::{CommandError, Outcome, output};
 use crate::cli::{ExplainArgs, IdentifyArgs, ReadArgs};
@@ -13,6 +13,12 @@ use crate::cli::{ExplainArgs, IdentifyArgs, ReadArgs};
 const EXPLAINED: &str = "explained";
 /// s of flight that `explain` leaves out at the beginning, as by itself.
 const TRANSIENT_S: f64 = 1.0;
+
+/// Names of what is written of the parameters.
+const MODEL: &str = "model.toml";
+const CHART: &str = "parameters.svg";
+const PAGE: &str = "identification.txt";
+const DOCUMENT: &str = "identification.json";
 
 /// What a flight says; a part that it cannot say holds why.
 #[derive(Debug)]
@@ -25,10 +31,25 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// Of the flight in this folder.
-    pub fn of(folder: &Path, vehicle: &Path, system: Option<u32>) -> Self {
-        let identified = identify(folder, vehicle, system).map_err(|error| error.to_string());
-        let explained = explain(folder, vehicle, system).map_err(|error| error.to_string());
+    /// Of the flight in this folder; none of one that did not land. Results of an earlier flight go: beside this
+    /// one's recording they would pass for its own.
+    pub fn of(
+        (folder, landed): (&Path, bool),
+        vehicle: &Path,
+        system: Option<u32>,
+    ) -> Result<Option<Self>, CommandError> {
+        let parameters = [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(|name| folder.join(name));
+        let explanation = explain::WRITTEN.map(|name| folder.join(EXPLAINED).join(name));
+        // a model that was flown by is what this flight's own are compared with
+        for path in parameters.iter().chain(&explanation).filter(|path| !output::is_same(path, vehicle)) {
+            output::outdated(path)?;
+        }
+        Ok(landed.then(|| Self::made(folder, vehicle, system)))
+    }
+
+    fn made(folder: &Path, vehicle: &Path, system: Option<u32>) -> Self {
+        let identified = parameters(folder, vehicle, system).map_err(|error| error.to_string());
+        let explained = explanation(folder, vehicle, system).map_err(|error| error.to_string());
         for (what, failure) in
             [("identified", identified.as_ref().err()), ("explained", explained.as_ref().err())]
         {
@@ -64,13 +85,13 @@ impl Analysis {
     }
 }
 
-fn identify(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Identified, CommandError> {
+fn parameters(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Identified, CommandError> {
     let args = IdentifyArgs {
         logs: vec![folder.join(fly::TLOG)],
         vehicle: vehicle.to_owned(),
-        out: Some(folder.join("model.toml")),
+        out: Some(folder.join(MODEL)),
         report: Some(folder.join(REPORT)),
-        chart: Some(folder.join("parameters.svg")),
+        chart: Some(folder.join(CHART)),
         read: ReadArgs { csv_map: None, system },
         transient: None,
         cutoff: None,
@@ -81,14 +102,14 @@ fn identify(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Identi
     };
     let identified = Identified::from(&args)?;
     identified.write(&args)?;
-    output::file(&folder.join("identification.txt"), &format!("{}\n", identified.page()))?;
+    output::file(&folder.join(PAGE), &format!("{}\n", identified.page()))?;
     let json = serde_json::to_string_pretty(&identified.document())
         .map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))?;
-    output::file(&folder.join("identification.json"), &json)?;
+    output::file(&folder.join(DOCUMENT), &json)?;
     Ok(identified)
 }
 
-fn explain(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Explained, CommandError> {
+fn explanation(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Explained, CommandError> {
     let out = folder.join(EXPLAINED);
     let args = ExplainArgs {
         logs: vec![folder.join(fly::TLOG)],

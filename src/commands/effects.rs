@@ -2,15 +2,23 @@
 
 use std::path::Path;
 
+use mavid::config::{parse_effect_tables, read_effect_tables};
 use mavid::physics::effects::MotorLag;
 use mavid::physics::{ActiveEffect, Effect};
 use mavid::vehicle::Vehicle;
-use serde::Deserialize;
 
 use super::CommandError;
 
-/// The effects of a model file. A rotor may be given by its name.
-pub fn effects(tables: &[toml::Table], vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
+/// The effects of a model file, which `origin` names in errors. A rotor may be given by its name.
+pub fn effects(
+    tables: &[toml::Table],
+    origin: &str,
+    vehicle: &Vehicle,
+) -> Result<Vec<ActiveEffect>, CommandError> {
+    all_of(tables, vehicle).map_err(|error| CommandError::Input(format!("{origin}: {error}")))
+}
+
+fn all_of(tables: &[toml::Table], vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
     let all = tables.iter().map(|table| effect(table, vehicle)).collect::<Result<Vec<_>, _>>()?;
     for (index, active) in all.iter().enumerate() {
         let id = active.effect().id();
@@ -38,24 +46,12 @@ pub fn with_stated_lag(mut effects: Vec<ActiveEffect>, vehicle: &Vehicle) -> Vec
 
 /// The effects of a file that holds nothing but `[[effect]]` tables.
 pub fn effects_file(path: &Path, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
-    let origin = path.display().to_string();
-    let text =
-        std::fs::read_to_string(path).map_err(|error| CommandError::Input(format!("{origin}: {error}")))?;
-    effects_text(&text, &origin, vehicle)
+    effects(&read_effect_tables(path)?, &path.display().to_string(), vehicle)
 }
 
 /// The same from text; `origin` names it in errors.
 pub fn effects_text(text: &str, origin: &str, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
-    let named = |error: &dyn std::fmt::Display| CommandError::Input(format!("{origin}: {error}"));
-    let file: EffectsFile = toml::from_str(text).map_err(|error| named(&error))?;
-    effects(&file.effect, vehicle).map_err(|error| named(&error))
-}
-
-/// `--effects FILE`.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct EffectsFile {
-    effect: Vec<toml::Table>,
+    effects(&parse_effect_tables(text, origin)?, origin, vehicle)
 }
 
 fn effect(table: &toml::Table, vehicle: &Vehicle) -> Result<ActiveEffect, CommandError> {

@@ -9,7 +9,7 @@ use mavid::diagnose::show::{HeldOut, Split, split_last_periods};
 use mavid::diagnose::{Empirical, ExplainSettings, Named, Trace, explain};
 use mavid::log::Recording;
 use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page};
-use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
+use mavid::signals::{ConditionSettings, Signals, ThrustPreference};
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
@@ -22,6 +22,8 @@ use crate::cli::ExplainArgs;
 const MODEL: &str = "model.toml";
 pub const REPORT: &str = "report.html";
 const DOCUMENT: &str = "explanation.json";
+/// All of them.
+pub const WRITTEN: [&str; 3] = [MODEL, REPORT, DOCUMENT];
 
 /// An explanation with all that is told of it.
 #[derive(Debug)]
@@ -39,10 +41,7 @@ impl Explained {
         let of_file = loaded.warnings.iter();
         let mut warnings: Vec<String> =
             of_file.map(|warning| format!("{}: {warning}", args.vehicle.display())).collect();
-        let refuse = |error: &dyn std::fmt::Display| {
-            CommandError::Input(format!("{}: {error}", args.vehicle.display()))
-        };
-        let known = effects(&loaded.model.effects, &vehicle).map_err(|error| refuse(&error))?;
+        let known = effects(&loaded.model.effects, &args.vehicle.display().to_string(), &vehicle)?;
         if !known.is_empty() {
             let names: Vec<&str> = known.iter().map(|active| active.effect().id()).collect();
             warnings.push(format!(
@@ -53,11 +52,9 @@ impl Explained {
         }
         let mut flights = flown(&args.logs, args, &vehicle)?;
         let held = flown(&args.holdout, args, &vehicle).map_err(|error| match error {
-            CommandError::Input(why) => CommandError::Input(format!(
-                "--holdout: by {} this is no flight of {}: {why}",
-                args.vehicle.display(),
-                vehicle.name
-            )),
+            CommandError::Input(why) => {
+                CommandError::Input(format!("--holdout: expected a flight of {}: {why}", vehicle.name))
+            }
             other @ CommandError::Failure(_) => other,
         })?;
         refuse_twins(&flights.iter().chain(&held).map(|flight| &flight.input).collect::<Vec<_>>())?;
@@ -164,7 +161,9 @@ fn check(args: &ExplainArgs) -> Result<(), CommandError> {
         return Err(CommandError::Input(format!("--out: expected a folder, {} is a file", path.display())));
     }
     let inputs: Vec<&PathBuf> = args.logs.iter().chain(&args.holdout).chain([&args.vehicle]).collect();
-    output::refuse_overwriting(&inputs, &args.next.iter().collect::<Vec<_>>())?;
+    let written: Vec<PathBuf> =
+        args.out.iter().flat_map(|folder| WRITTEN.map(|name| folder.join(name))).collect();
+    output::refuse_overwriting(&inputs, &args.next.iter().chain(&written).collect::<Vec<_>>())?;
     // a target that cannot be written is told before the work
     if let Some(folder) = &args.out {
         output::folder(folder)?;
@@ -202,9 +201,9 @@ fn flown(logs: &[PathBuf], args: &ExplainArgs, vehicle: &Vehicle) -> Result<Vec<
         ..ConditionSettings::default()
     };
     let one = |path: &PathBuf| {
-        let Flight { recording, input } = load(path, &args.read)?;
-        let signals = condition(&recording, vehicle, &settings)
-            .map_err(|error| CommandError::Input(format!("{}: {error}", path.display())))?;
+        let flight = load(path, &args.read)?;
+        let signals = flight.conditioned((vehicle, &args.vehicle), &settings)?;
+        let Flight { recording, input } = flight;
         Ok(Flown { recording, signals, input })
     };
     let done: Vec<Result<Flown, CommandError>> = logs.par_iter().map(one).collect();
@@ -277,6 +276,7 @@ fn next_flight(
         Ok(next) => next,
         Err(why) => {
             output::message(&format!("--next: nothing written: {why}"));
+            output::outdated(path)?;
             return Ok(Err(why.to_string()));
         }
     };

@@ -22,7 +22,7 @@ pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
     let refuse =
         |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", args.model.display()));
     output::warnings(&args.model, &loaded.warnings);
-    let active = effects(&loaded.model.effects, &loaded.vehicle).map_err(|error| refuse(&error))?;
+    let active = effects(&loaded.model.effects, &args.model.display().to_string(), &loaded.vehicle)?;
     let format = match args.to {
         ExportFormat::Px4Sih => Format::Px4Sih,
         ExportFormat::ArdupilotSitl => Format::ArdupilotSitl,

@@ -3,6 +3,8 @@
 use mavid::config::{default_csv_mapping, load_csv_mapping};
 use mavid::log::{LoadOptions, Recording, SystemId, csv, shared_share};
 use mavid::report::InputFile;
+use mavid::signals::{ConditionSettings, Signals, condition};
+use mavid::vehicle::Vehicle;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 use std::path::Path;
@@ -17,6 +19,26 @@ pub struct Flight {
     pub recording: Recording,
     /// name, hash, losses
     pub input: InputFile,
+}
+
+impl Flight {
+    /// Conditioned for a vehicle of this file. A refusal names the log, the vehicle's file, and what was lost of
+    /// the log in reading.
+    pub fn conditioned(
+        &self,
+        (vehicle, file): (&Vehicle, &Path),
+        settings: &ConditionSettings,
+    ) -> Result<Signals, CommandError> {
+        condition(&self.recording, vehicle, settings).map_err(|error| {
+            let InputFile { path, losses, .. } = &self.input;
+            let lost = if losses.is_empty() {
+                String::new()
+            } else {
+                format!("; not read of the log: {}", losses.join("; "))
+            };
+            CommandError::Input(format!("{path} with {}: {error}{lost}", file.display()))
+        })
+    }
 }
 
 /// Read by a mapping of its columns.

@@ -78,7 +78,7 @@ pub fn run(json: bool, args: &FlyArgs) -> Result<Outcome, CommandError> {
         fly_it(ride, move |pictures, pressed| if drawn { draw(pictures, pressed) } else { tell(pictures) })?;
     say(&record);
     let landed = record.outcome.ending == Ending::Landed;
-    let analysis = landed.then(|| Analysis::of(&args.out, &args.vehicle, args.system_id));
+    let analysis = Analysis::of((&args.out, landed), &args.vehicle, args.system_id)?;
     if json {
         output::json(&Document::new(&record, &args.out, analysis.as_ref()))?;
     } else if let Some(analysis) = &analysis {

@@ -1,6 +1,6 @@
 //! `mavid identify LOG... --vehicle V`: parameters from recorded flights.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use mavid::config::{LoadedVehicle, read_vehicle};
 use mavid::diagnose::ExplainSettings;
@@ -10,7 +10,7 @@ use mavid::report::{
     IdentificationDocument, IdentificationStory, InputFile, WithEffects, history_charts, identification_page,
     model_toml, svg,
 };
-use mavid::signals::{ConditionSettings, Quality, Signals, ThrustPreference, condition};
+use mavid::signals::{ConditionSettings, Quality, Signals, ThrustPreference};
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
@@ -44,7 +44,7 @@ impl Identified {
         let settings = settings(args)?;
         let recorded = recorded(args)?;
         let with = wanted.map(|wanted| with_effects(args, (&recorded, &loaded), &wanted)).transpose()?;
-        let flights = conditioned(&recorded, vehicle, &usual(args))?;
+        let flights = conditioned(&recorded, (vehicle, &args.vehicle), &usual(args))?;
         let mut identification =
             identify(&flights, vehicle, &settings).map_err(|error| CommandError::Input(error.to_string()))?;
         let scale = apply_anchor(&mut identification, vehicle);
@@ -197,14 +197,11 @@ fn usual(args: &IdentifyArgs) -> ConditionSettings {
 /// Conditions every flight, side by side.
 fn conditioned(
     flights: &[Flight],
-    vehicle: &Vehicle,
+    vehicle: (&Vehicle, &Path),
     settings: &ConditionSettings,
 ) -> Result<Vec<Signals>, CommandError> {
-    let one = |flight: &Flight| {
-        condition(&flight.recording, vehicle, settings)
-            .map_err(|error| CommandError::Input(format!("{}: {error}", flight.input.path)))
-    };
-    let done: Vec<Result<Signals, CommandError>> = flights.par_iter().map(one).collect();
+    let done: Vec<Result<Signals, CommandError>> =
+        flights.par_iter().map(|flight| flight.conditioned(vehicle, settings)).collect();
     done.into_iter().collect()
 }
 
@@ -218,9 +215,7 @@ fn with_effects(
     wanted: &Wanted,
 ) -> Result<WithEffects, CommandError> {
     let vehicle = &loaded.vehicle;
-    let of_file =
-        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", args.vehicle.display()));
-    let known = effects(&loaded.model.effects, vehicle).map_err(|error| of_file(&error))?;
+    let known = effects(&loaded.model.effects, &args.vehicle.display().to_string(), vehicle)?;
     wanted.check_wind(&known).map_err(|error| CommandError::Input(format!("--with: {error}")))?;
     let by_commands = args.commands || wanted.need_commands();
     let settings = ConditionSettings {
@@ -229,7 +224,7 @@ fn with_effects(
         askew: wanted.has("imu_misalignment"),
         ..ConditionSettings::default()
     };
-    let flights = conditioned(recorded, vehicle, &settings)?;
+    let flights = conditioned(recorded, (vehicle, &args.vehicle), &settings)?;
     let half_width_s = ExplainSettings::default().half_width_s;
     let together = together(&flights, (vehicle, &known), wanted, half_width_s).map_err(|error| {
         let logs: Vec<&str> = recorded.iter().map(|flight| flight.input.path.as_str()).collect();

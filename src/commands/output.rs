@@ -37,6 +37,19 @@ pub fn file(path: &Path, text: &str) -> Result<(), CommandError> {
         .map_err(|error| CommandError::Input(format!("cannot write {}: {error}", path.display())))
 }
 
+/// Removes a file of an earlier run that this one has nothing to put in the place of, and says so.
+pub fn outdated(path: &Path) -> Result<(), CommandError> {
+    match std::fs::remove_file(path) {
+        Ok(()) => message(&format!("removed {}, of an earlier run", path.display())),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+        Err(error) => {
+            let told = format!("cannot remove {}, of an earlier run: {error}", path.display());
+            return Err(CommandError::Input(told));
+        }
+    }
+    Ok(())
+}
+
 /// A reader that has seen enough (`mavid ... | head`) is not a failure.
 fn line(mut out: impl Write, text: &str) -> Result<(), CommandError> {
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
@@ -53,17 +66,22 @@ pub fn folder(path: &Path) -> Result<(), CommandError> {
         .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", path.display())))
 }
 
+/// Both name one file, however they are written.
+pub fn is_same(one: &Path, other: &Path) -> bool {
+    let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+    real(one) == real(other)
+}
+
 /// Results do not overwrite what they come from, nor each other.
 pub fn refuse_overwriting(inputs: &[&PathBuf], outputs: &[&PathBuf]) -> Result<(), CommandError> {
-    let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
     for (index, output) in outputs.iter().enumerate() {
-        if inputs.iter().any(|input| real(input) == real(output)) {
+        if inputs.iter().any(|input| is_same(input, output)) {
             return Err(CommandError::Input(format!(
                 "expected results in a file of their own, {} is read",
                 output.display()
             )));
         }
-        if outputs[..index].iter().any(|other| real(other) == real(output)) {
+        if outputs[..index].iter().any(|other| is_same(other, output)) {
             return Err(CommandError::Input(format!(
                 "expected one file a result, {} is given for two",
                 output.display()

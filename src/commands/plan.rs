@@ -272,10 +272,12 @@ fn page(summary: &Summary) -> String {
         let _ = writeln!(page, "  {name:<30} {spare:.6}");
     }
     if let Some(around) = &summary.transitions {
-        let [x, y, z, _] = around.takeoff;
+        // no minus zero
+        let shown = |place: [f64; 4]| place.map(|value| if value.abs() < 0.005 { 0.0 } else { value });
+        let [x, y, z, _] = shown(around.takeoff);
         let (to_start_s, to_landing_s) = (around.to_start_s, around.to_landing_s);
         let _ = writeln!(page, "from hover at ({x:.2}, {y:.2}, {z:.2}) m to the start in {to_start_s:.2} s");
-        let [x, y, z, _] = around.landing;
+        let [x, y, z, _] = shown(around.landing);
         let _ = writeln!(page, "from the end to hover at ({x:.2}, {y:.2}, {z:.2}) m in {to_landing_s:.2} s");
     }
     match &summary.first_violation {

@@ -2,10 +2,12 @@
 
 use std::fs::File;
 use std::io::BufWriter;
+use std::path::Path;
 
 use mavid::config::{read_trajectory, read_vehicle};
-use mavid::log::write_recording;
+use mavid::log::{Recording, write_recording};
 use mavid::simulate::{FlightSettings, Reference, TelemetrySettings, Truth, simulate_flight};
+use mavid::vehicle::Vehicle;
 use serde::Serialize;
 
 use super::effects::{effects, effects_file, with_stated_lag};
@@ -48,7 +50,7 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     let loaded = read_vehicle(&args.vehicle)?;
     output::warnings(&args.vehicle, &loaded.warnings);
     let vehicle = loaded.vehicle;
-    let mut acting = effects(&loaded.model.effects, &vehicle)?;
+    let mut acting = effects(&loaded.model.effects, &args.vehicle.display().to_string(), &vehicle)?;
     if let Some(path) = &args.effects {
         acting.extend(effects_file(path, &vehicle)?);
     }
@@ -59,22 +61,12 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     let trajectory = read_trajectory(&args.trajectory)?;
     let duration_s = HOVER_S + f64::from(trajectory.repeats) * trajectory.series.period_s;
     let reference = Reference { trajectory: trajectory.series, hover_s: HOVER_S, ramp_s: RAMP_S };
-    let base = FlightSettings::default();
-    let settings = FlightSettings {
-        seed: args.seed,
-        duration_s,
-        // where it is stated and not zero it is among the effects
-        motor_time_constant_s: vehicle.propulsion.time_constant_s.unwrap_or(base.motor_time_constant_s),
-        telemetry: TelemetrySettings { noise_scale: args.noise, ..base.telemetry },
-        ..base
-    };
+    let settings = settings(args, &vehicle, duration_s);
     let ids = acting.iter().map(|active| active.effect().id()).collect();
     let acting = with_stated_lag(acting, &vehicle);
     let truth = Truth { vehicle, effects: acting, disturbance: None };
     let flight = simulate_flight(truth, &nominal, &reference, &settings).map_err(|error| input(&error))?;
-    let failed = |error| CommandError::Failure(format!("cannot write {}: {error}", args.out.display()));
-    let file = BufWriter::new(File::create(&args.out).map_err(failed)?);
-    let frames = write_recording(&flight.recording, file, START_US).map_err(failed)?;
+    let frames = write(&args.out, &flight.recording)?;
     let document = Document {
         schema: 1,
         log: args.out.display().to_string(),
@@ -102,4 +94,23 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
         ))?;
     }
     Ok(Outcome::Done)
+}
+
+fn settings(args: &SimulateArgs, vehicle: &Vehicle, duration_s: f64) -> FlightSettings {
+    let base = FlightSettings::default();
+    FlightSettings {
+        seed: args.seed,
+        duration_s,
+        // where it is stated and not zero it is among the effects
+        motor_time_constant_s: vehicle.propulsion.time_constant_s.unwrap_or(base.motor_time_constant_s),
+        telemetry: TelemetrySettings { noise_scale: args.noise, ..base.telemetry },
+        ..base
+    }
+}
+
+/// Returns the number of frames.
+fn write(path: &Path, recording: &Recording) -> Result<u64, CommandError> {
+    let failed = |error| CommandError::Failure(format!("cannot write {}: {error}", path.display()));
+    let file = BufWriter::new(File::create(path).map_err(failed)?);
+    write_recording(recording, file, START_US).map_err(failed)
 }

@@ -113,7 +113,8 @@ fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
     if let Some(path) = &args.vehicle {
         output::warnings(path, &warnings);
     }
-    let mut acting = effects(&model.effects, &vehicle)?;
+    let origin = args.vehicle.as_ref().map_or_else(String::new, |path| path.display().to_string());
+    let mut acting = effects(&model.effects, &origin, &vehicle)?;
     if let Some(path) = &args.effects {
         acting.extend(effects_file(path, &vehicle)?);
     }

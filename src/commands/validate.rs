@@ -11,9 +11,9 @@ use mavid::physics::Model;
 use mavid::regression::{ZeroPhase, output_prediction_rms, paper_models};
 use mavid::report::{
     ErrorTable, InputFile, Panel, ValidatedFlight, closed_loop_charts, closed_loop_table, playback_table,
-    prediction_table, significant, svg, validation_report,
+    prediction_table, shortened_names, significant, svg, validation_report,
 };
-use mavid::signals::{Butterworth, ConditionSettings, Quality, Signals, ThrustSource, condition};
+use mavid::signals::{Butterworth, ConditionSettings, Quality, Signals, ThrustSource};
 use mavid::simulate::pid::{PidFlightSettings, PidSettings};
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
@@ -84,11 +84,14 @@ pub fn run(json: bool, args: &ValidateArgs) -> Result<Outcome, CommandError> {
     if json {
         output::json(&document)?;
     } else {
+        let heads = shortened_names(&document.models).into_iter();
+        let heads = heads.map(|(head, name)| format!("{head} is {name}\n")).collect::<String>();
         let pages = document.flights.iter().map(|flight| {
             let tables: Vec<String> = flight.tables.iter().map(ErrorTable::page).collect();
             format!("{}\n\n{}", flight.input.path, tables.join("\n"))
         });
-        output::text(pages.collect::<Vec<_>>().join("\n").trim_end())?;
+        let space = if heads.is_empty() { "" } else { "\n" };
+        output::text(format!("{heads}{space}{}", pages.collect::<Vec<_>>().join("\n")).trim_end())?;
     }
     let mut outcome = Outcome::Done;
     for flight in document.flights.iter().filter(|flight| !flight.input.losses.is_empty()) {
@@ -112,7 +115,7 @@ fn named(path: &Path) -> Result<Named, CommandError> {
     let loaded = read_vehicle(path)?;
     output::warnings(path, &loaded.warnings);
     let refuse = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
-    let effects = effects(&loaded.model.effects, &loaded.vehicle).map_err(|error| refuse(&error))?;
+    let effects = effects(&loaded.model.effects, &path.display().to_string(), &loaded.vehicle)?;
     let effects = with_stated_lag(effects, &loaded.vehicle);
     let model = Model::new(&loaded.vehicle, effects).map_err(|error| refuse(&error))?;
     let name =
@@ -125,9 +128,8 @@ fn flight_tables(flight: Flight, models: &[Named], transient_s: f64) -> Result<F
     // each model's own thrust law turns commands into thrusts
     let signals: Vec<Signals> = models
         .iter()
-        .map(|model| condition(&flight.recording, &model.vehicle, &settings))
-        .collect::<Result<_, _>>()
-        .map_err(|error| CommandError::Input(format!("{}: {error}", flight.input.path)))?;
+        .map(|model| flight.conditioned((&model.vehicle, Path::new(&model.input.path)), &settings))
+        .collect::<Result<_, _>>()?;
     let Some(first) = signals.first() else {
         return Err(CommandError::Input("expected at least one --model".to_owned()));
     };
@@ -155,20 +157,24 @@ fn flight_tables(flight: Flight, models: &[Named], transient_s: f64) -> Result<F
             .collect();
         tables.push(playback_table(window_s, &fits));
     }
-    let is_empty = |table: &ErrorTable| table.rows.iter().all(|row| row.rms.iter().all(Option::is_none));
-    if tables.iter().all(is_empty) {
-        let mut reasons: Vec<String> = tables.into_iter().flat_map(|table| table.missing).collect();
-        reasons.dedup();
-        return Err(CommandError::Input(format!(
-            "{}: nothing to compare: {}",
-            flight.input.path,
-            reasons.join("; ")
-        )));
+    if tables.iter().all(|table| table.shown().is_empty()) {
+        return Err(nothing_to_compare(&flight.input.path, &tables));
     }
     Ok(FlightTables { input: flight.input, span_s, tables, charts, quality: first.quality.clone() })
 }
 
-/// Table 4 and Figures 6 to 9.
+/// Each reason once.
+fn nothing_to_compare(log: &str, tables: &[ErrorTable]) -> CommandError {
+    let mut reasons: Vec<&str> = Vec::new();
+    for why in tables.iter().flat_map(ErrorTable::remarks) {
+        if !reasons.contains(&why) {
+            reasons.push(why);
+        }
+    }
+    CommandError::Input(format!("{log}: nothing to compare with: {}", reasons.join("; ")))
+}
+
+/// Table 4 and Figures 6 to 9; no figures where no model flew.
 fn closed_loop(
     flight: &Flight,
     recorded: &Signals,
@@ -197,10 +203,13 @@ fn closed_loop(
         Ok(recorded) => {
             let mut lines = vec![("recorded".to_owned(), &recorded)];
             lines.extend(flown.iter().filter_map(|(name, s)| s.as_ref().ok().map(|s| (name.clone(), s))));
-            let charts = closed_loop_charts(&lines);
+            let table = closed_loop_table(title, &recorded, &flown, span_s);
+            if table.shown().is_empty() {
+                return (table, Vec::new());
+            }
             let tracking = recorded_tracking_m(&flight.recording, &recorded, span_s);
             let notes = closed_loop_notes(by_pid, &models[0].name, tracking.ok().flatten());
-            (ErrorTable { notes, ..closed_loop_table(title, &recorded, &flown, span_s) }, charts)
+            (ErrorTable { notes, ..table }, closed_loop_charts(&lines))
         }
         Err(error) => {
             let missing: Vec<_> =
@@ -234,15 +243,23 @@ fn predictions(models: &[Named], signals: &[Signals], span_s: (f64, f64)) -> [Er
     let mut columns = [Vec::new(), Vec::new()];
     for (model, signals) in models.iter().zip(signals) {
         let theta = theta_of(&model.vehicle.body);
-        let both = Butterworth::new(CUTOFF_HZ, 1.0 / signals.grid.step_s).and_then(|filter| {
-            paper_models(signals, model.vehicle.gravity_m_s2, &ZeroPhase::Butterworth(filter))
-        });
-        let rms = both.map(|(standard, filtered)| {
+        let built = Butterworth::new(CUTOFF_HZ, 1.0 / signals.grid.step_s)
+            .ok_or_else(|| {
+                let rate_hz = 1.0 / signals.grid.step_s;
+                format!("the recording's {rate_hz:.0} Hz are too few for a low-pass at {CUTOFF_HZ} Hz")
+            })
+            .and_then(|filter| {
+                let filter = ZeroPhase::Butterworth(filter);
+                paper_models(signals, model.vehicle.gravity_m_s2, &filter).ok_or_else(|| lacking(signals))
+            });
+        let rms = built.map(|(standard, filtered)| {
             [&standard, &filtered].map(|regression| output_prediction_rms(regression, &theta, span_s))
         });
         for (index, column) in columns.iter_mut().enumerate() {
-            let found = rms.and_then(|both| both[index]).ok_or_else(|| {
-                "the recording lacks body rates, vertical motion, or usable samples".to_owned()
+            let found = rms.clone().and_then(|both| {
+                both[index].ok_or_else(|| {
+                    format!("no usable stretch between {:.1} and {:.1} s is long enough", span_s.0, span_s.1)
+                })
             });
             column.push((model.name.clone(), found));
         }
@@ -251,18 +268,51 @@ fn predictions(models: &[Named], signals: &[Signals], span_s: (f64, f64)) -> [Er
     [prediction_table(title("standard"), &columns[0]), prediction_table(title("filtered"), &columns[1])]
 }
 
-fn write_charts(folder: &Path, flights: &[FlightTables]) -> Result<(), CommandError> {
-    let failed = |path: &Path, error: std::io::Error| {
-        CommandError::Failure(format!("cannot write {}: {error}", path.display()))
+/// What the regression models need of a recording and this one does not hold.
+fn lacking(signals: &Signals) -> String {
+    let what = if signals.rate.is_none() {
+        "body rates"
+    } else {
+        "vertical motion (an accelerometer, or attitude with velocity or position)"
     };
-    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
+    format!("the recording holds no {what}: the regression models need it")
+}
+
+/// The last line of a figure, by which one of an earlier run is known.
+const FIGURE: &str = "<!-- a figure of mavid validate -->\n";
+
+/// One file a flight. What an earlier run put there and this one did not is removed, so that nothing old passes for
+/// new; files of others stay.
+fn write_charts(folder: &Path, flights: &[FlightTables]) -> Result<(), CommandError> {
+    let mut written = Vec::new();
     for (index, flight) in flights.iter().enumerate() {
         let stem = Path::new(&flight.input.path).file_stem().unwrap_or_default().display().to_string();
         // flights of different folders may have one name
         let path = folder.join(format!("{}-{stem}.svg", index + 1));
-        std::fs::write(&path, svg(&flight.charts)).map_err(|error| failed(&path, error))?;
+        if flight.charts.is_empty() {
+            output::outdated(&path)?;
+        } else {
+            output::file(&path, &format!("{}{FIGURE}", svg(&flight.charts)))?;
+            written.push(path);
+        }
+    }
+    let unread =
+        |error| CommandError::Input(format!("--out: cannot look into {}: {error}", folder.display()));
+    for entry in std::fs::read_dir(folder).map_err(unread)? {
+        let path = entry.map_err(unread)?.path();
+        if !written.contains(&path) && is_figure(&path) {
+            output::outdated(&path)?;
+        }
     }
     Ok(())
+}
+
+/// Named and ended as a figure of this verb.
+fn is_figure(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let numbered = name.split_once('-').is_some_and(|(number, _)| number.parse::<usize>().is_ok());
+    let ended = || std::fs::read(path).is_ok_and(|bytes| bytes.ends_with(FIGURE.as_bytes()));
+    numbered && name.ends_with(".svg") && ended()
 }
 
 fn write_report(

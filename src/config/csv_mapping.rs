@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::check::Check;
+use super::kind::Kind;
 use super::{ConfigError, parse_toml, read_text};
 use crate::log::Quantity;
 use crate::log::csv::{AttitudeForm, AxisFrame, CsvMapping, CsvQuantity, CsvTime, CsvUnit, column_count};
@@ -116,7 +117,7 @@ pub fn default_csv_mapping() -> Result<CsvMapping, ConfigError> {
 /// # Errors
 /// [`ConfigError`] where the file cannot be read, has an unknown or missing key, or says what cannot be.
 pub fn load_csv_mapping(path: &Path) -> Result<CsvMapping, ConfigError> {
-    parse_csv_mapping(&read_text(path)?, &path.display().to_string())
+    parse_csv_mapping(&read_text(path, Kind::CsvMapping)?, &path.display().to_string())
 }
 
 /// As [`load_csv_mapping`], from text; `origin` is named in errors.
@@ -124,7 +125,7 @@ pub fn load_csv_mapping(path: &Path) -> Result<CsvMapping, ConfigError> {
 /// # Errors
 /// As [`load_csv_mapping`].
 pub fn parse_csv_mapping(text: &str, origin: &str) -> Result<CsvMapping, ConfigError> {
-    let file: MappingFile = parse_toml(text, origin)?;
+    let file: MappingFile = parse_toml(text, origin, Kind::CsvMapping)?;
     let check = Check { origin };
     let mut quantities: Vec<CsvQuantity> = Vec::with_capacity(file.quantities.len());
     for (index, table) in file.quantities.into_iter().enumerate() {

@@ -1,6 +1,7 @@
 //! `trajectory.toml`: the coefficients of (18), what they were planned for, and what they are worth.
 
 use super::check::Check;
+use super::kind::Kind;
 use super::vehicle::limits;
 use super::vehicle_file::LimitsTable;
 use super::vehicle_writer::limits_table;
@@ -141,7 +142,7 @@ struct LimitsFile {
 /// # Errors
 /// If the file cannot be read, is not TOML, has unknown keys, or the coefficients do not fit together.
 pub fn read_trajectory(path: &Path) -> Result<StoredTrajectory, ConfigError> {
-    parse_trajectory(&read_text(path)?, &path.display().to_string())
+    parse_trajectory(&read_text(path, Kind::Trajectory)?, &path.display().to_string())
 }
 
 /// As [`read_trajectory`], from text; `origin` names it in errors.
@@ -149,7 +150,7 @@ pub fn read_trajectory(path: &Path) -> Result<StoredTrajectory, ConfigError> {
 /// # Errors
 /// If the text is not TOML, has unknown keys, or the coefficients do not fit together.
 pub fn parse_trajectory(text: &str, origin: &str) -> Result<StoredTrajectory, ConfigError> {
-    let file: TrajectoryFile = parse_toml(text, origin)?;
+    let file: TrajectoryFile = parse_toml(text, origin, Kind::Trajectory)?;
     let check = Check { origin };
     let count = file.harmonics;
     let axis = |name: &str, table: AxisTable| -> Result<FourierAxis, ConfigError> {
@@ -222,7 +223,7 @@ const HEADER: &str = "# q(t) = sum over l of a_l/(w l) sin(w l t) - b_l/(w l) co
 /// # Errors
 /// If the file cannot be read, is not TOML, has unknown keys, or a limit is out of range.
 pub fn read_limits(path: &Path) -> Result<Limits, ConfigError> {
-    parse_limits(&read_text(path)?, &path.display().to_string())
+    parse_limits(&read_text(path, Kind::Limits)?, &path.display().to_string())
 }
 
 /// As [`read_limits`], from text; `origin` names it in errors.
@@ -230,7 +231,7 @@ pub fn read_limits(path: &Path) -> Result<Limits, ConfigError> {
 /// # Errors
 /// If the text is not TOML, has unknown keys, or a limit is out of range.
 pub fn parse_limits(text: &str, origin: &str) -> Result<Limits, ConfigError> {
-    let file: LimitsFile = parse_toml(text, origin)?;
+    let file: LimitsFile = parse_toml(text, origin, Kind::Limits)?;
     limits(&Check { origin }, &file.limits)
 }
 

@@ -6,6 +6,7 @@ use std::path::Path;
 use nalgebra::{Matrix3, Vector3};
 
 use super::check::Check;
+use super::kind::Kind;
 use super::vehicle_file::{
     ActuatorKind, AnchorKey, BodyTable, InertiaTable, LimitsTable, PropulsionTable, RotorTable, SpinKey,
     VehicleFile,
@@ -51,7 +52,7 @@ pub fn load_vehicle(path: &Path) -> Result<Vehicle, ConfigError> {
 /// # Errors
 /// As [`load_vehicle`].
 pub fn read_vehicle(path: &Path) -> Result<LoadedVehicle, ConfigError> {
-    parse_vehicle(&read_text(path)?, &path.display().to_string())
+    parse_vehicle(&read_text(path, Kind::Vehicle)?, &path.display().to_string())
 }
 
 /// As [`read_vehicle`], from text; `origin` is named in errors.
@@ -59,7 +60,7 @@ pub fn read_vehicle(path: &Path) -> Result<LoadedVehicle, ConfigError> {
 /// # Errors
 /// As [`load_vehicle`].
 pub fn parse_vehicle(text: &str, origin: &str) -> Result<LoadedVehicle, ConfigError> {
-    let file: VehicleFile = parse_toml(text, origin)?;
+    let file: VehicleFile = parse_toml(text, origin, Kind::Vehicle)?;
     let check = Check { origin };
     let gravity_m_s2 =
         check.optional_positive("body.gravity", file.body.gravity)?.unwrap_or(units::GRAVITY_M_S2);

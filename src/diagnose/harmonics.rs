@@ -152,18 +152,14 @@ fn onto(index: &[usize], signal: &[f64], count: usize) -> Vec<f64> {
 pub fn lack_of_fit(time_s: &[f64], residual: [&[f64]; CHANNELS], period_s: f64) -> Option<LackOfFit> {
     let (first, last) = (*time_s.first()?, *time_s.last()?);
     let step_s = median_step(time_s)?;
-    let mut periods = 0usize;
-    while (periods + 1) as f64 * period_s <= last - first + step_s {
-        periods += 1;
-    }
+    let periods = whole_periods(last - first + step_s, period_s);
     if periods < LEAST_PERIODS {
         return None;
     }
     // the last whole periods: the beginning may hold the way to the start
     let from_s = last + step_s - periods as f64 * period_s;
     let used: Vec<usize> = (0..time_s.len()).filter(|&row| time_s[row] >= from_s - 1e-9).collect();
-    let neighbours: &[i32] = if periods > LEAST_PERIODS { &[-2, -1, 1, 2] } else { &[-1, 1] };
-    let law = FisherSnedecor::new(2.0, 2.0 * neighbours.len() as f64).ok()?;
+    let rest = Periodogram { time_s, used: &used, from_s };
     let mut out = LackOfFit {
         period_s,
         periods,
@@ -173,42 +169,68 @@ pub fn lack_of_fit(time_s: &[f64], residual: [&[f64]; CHANNELS], period_s: f64) 
         excess_energy: 0.0,
     };
     let count = used.len() as f64;
-    for (channel, series) in residual.iter().enumerate() {
-        let mean = used.iter().map(|&row| series[row]).sum::<f64>() / count;
-        let power = |frequency_hz: f64| {
-            let (mut re, mut im) = (0.0, 0.0);
-            for &row in &used {
-                let (s, c) = (TAU * frequency_hz * (time_s[row] - from_s)).sin_cos();
-                re += (series[row] - mean) * c;
-                im += (series[row] - mean) * s;
-            }
-            re * re + im * im
-        };
-        let (mut statistic, mut harmonics, mut excess) = (0.0, 0u32, 0.0);
-        let mut harmonic = 1.0;
-        while harmonic / period_s <= HIGHEST_HZ {
-            let frequency_hz = harmonic / period_s;
-            let spacing_hz = 1.0 / (periods as f64 * period_s);
-            let noise = neighbours
-                .iter()
-                .map(|shift| power(frequency_hz + f64::from(*shift) * spacing_hz))
-                .sum::<f64>()
-                / neighbours.len() as f64;
-            let at = power(frequency_hz);
-            let ratio = if noise > 0.0 { at / noise } else { 0.0 };
-            statistic -= 2.0 * law.sf(ratio).max(1e-300).ln();
-            harmonics += 1;
-            let beyond = 2.0 * (at - noise) / count;
-            excess += beyond;
-            out.lines[channel].push(Line { frequency_hz, ratio, excess: beyond });
-            harmonic += 1.0;
-        }
-        out.p_value[channel] =
-            ChiSquared::new(2.0 * f64::from(harmonics)).map_or(1.0, |law| law.sf(statistic));
-        out.excess_rms[channel] = (excess.max(0.0) / count).sqrt();
+    for (channel, series) in residual.into_iter().enumerate() {
+        let (p_value, lines) = rest.harmonics(series, (period_s, periods))?;
+        let excess = lines.iter().map(|line| line.excess).sum::<f64>().max(0.0);
+        out.p_value[channel] = p_value;
+        out.lines[channel] = lines;
+        out.excess_rms[channel] = (excess / count).sqrt();
         if channel < AXES {
-            out.excess_energy += excess.max(0.0);
+            out.excess_energy += excess;
         }
     }
     Some(out)
+}
+
+/// How often a period fits into a span (both s).
+fn whole_periods(span_s: f64, period_s: f64) -> usize {
+    let mut periods = 0;
+    while (periods + 1) as f64 * period_s <= span_s {
+        periods += 1;
+    }
+    periods
+}
+
+/// Rows of a residual from which the power at single frequencies is taken.
+struct Periodogram<'a> {
+    time_s: &'a [f64],
+    used: &'a [usize],
+    from_s: f64,
+}
+
+impl Periodogram<'_> {
+    /// Of a series without its mean, at a frequency.
+    fn power(&self, series: &[f64], mean: f64, frequency_hz: f64) -> f64 {
+        let (mut re, mut im) = (0.0, 0.0);
+        for &row in self.used {
+            let (s, c) = (TAU * frequency_hz * (self.time_s[row] - self.from_s)).sin_cos();
+            re += (series[row] - mean) * c;
+            im += (series[row] - mean) * s;
+        }
+        re * re + im * im
+    }
+
+    /// Each harmonic against its neighbours, which fall between harmonics, and Fisher's sum of all as a probability.
+    fn harmonics(&self, series: &[f64], (period_s, periods): (f64, usize)) -> Option<(f64, Vec<Line>)> {
+        let neighbours: &[i32] = if periods > LEAST_PERIODS { &[-2, -1, 1, 2] } else { &[-1, 1] };
+        let law = FisherSnedecor::new(2.0, 2.0 * neighbours.len() as f64).ok()?;
+        let count = self.used.len() as f64;
+        let mean = self.used.iter().map(|&row| series[row]).sum::<f64>() / count;
+        let spacing_hz = 1.0 / (periods as f64 * period_s);
+        let (mut statistic, mut lines, mut harmonic) = (0.0, Vec::new(), 1.0);
+        while harmonic / period_s <= HIGHEST_HZ {
+            let frequency_hz = harmonic / period_s;
+            let beside = neighbours
+                .iter()
+                .map(|shift| self.power(series, mean, frequency_hz + f64::from(*shift) * spacing_hz));
+            let noise = beside.sum::<f64>() / neighbours.len() as f64;
+            let at = self.power(series, mean, frequency_hz);
+            let ratio = if noise > 0.0 { at / noise } else { 0.0 };
+            statistic -= 2.0 * law.sf(ratio).max(1e-300).ln();
+            lines.push(Line { frequency_hz, ratio, excess: 2.0 * (at - noise) / count });
+            harmonic += 1.0;
+        }
+        let p_value = ChiSquared::new(2.0 * lines.len() as f64).map_or(1.0, |law| law.sf(statistic));
+        Some((p_value, lines))
+    }
 }

@@ -8,6 +8,7 @@
 use super::{ExportError, Exported, Source, frd};
 use crate::units::AIR_DENSITY_KG_M3;
 use crate::vehicle::{Actuator, ThrustLaw};
+use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 use std::f64::consts::PI;
 
@@ -24,19 +25,7 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
         .ok_or(ExportError::Missing { format: FORMAT, what: "rotor_radius (for its drag and thrust)" })?;
     let weight_n = source.vehicle.body.mass_kg * source.vehicle.gravity_m_s2;
     let disc_m2 = PI * radius_m * radius_m * count as f64;
-    let drag = ["dx", "dy", "dz"].map(|axis| source.take("linear_drag", axis));
-    let across = 0.5 * (drag[0] + drag[1]);
-    let momentum = across / (AIR_DENSITY_KG_M3 * disc_m2 * weight_n).sqrt();
-    let along = drag[2] + source.take("inflow", "kz");
-    if (along - across).abs().max((drag[0] - drag[1]).abs()) > 0.05 * across {
-        source.note(format!(
-            "the simulator's momentum drag is the same along all axes: the mean across the rotor axis is taken; the model has {:.4}, {:.4}, {along:.4} N/(m/s)",
-            drag[0], drag[1]
-        ));
-    }
-    let quadratic = ["cx", "cy", "cz"].map(|axis| source.take("quadratic_drag", axis));
-    let bluff = 0.5 * (quadratic[0] + quadratic[1]);
-    let angle = reference_angle(across, bluff, weight_n);
+    let (momentum, angle) = drag(&mut source, disc_m2, weight_n);
     let damping = ["bx", "by", "bz"].map(|axis| source.take("angular_damping", axis));
     let mut file = Map::new();
     file.insert("mass".into(), json!(source.vehicle.body.mass_kg));
@@ -57,24 +46,8 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
         file.insert("spin_min".into(), json!(0.0));
         file.insert("spin_max".into(), json!(1.0));
     }
-    let j = &source.vehicle.body.inertia_kg_m2;
-    file.insert("moment_inertia".into(), json!([j[(0, 0)], j[(1, 1)], j[(2, 2)]]));
-    if [j[(0, 1)], j[(0, 2)], j[(1, 2)]].iter().any(|product| *product != 0.0) {
-        source.note(format!(
-            "the simulator has no products of inertia: ixy {:.3e}, ixz {:.3e}, iyz {:.3e} kg m^2",
-            j[(0, 1)],
-            j[(0, 2)],
-            j[(1, 2)]
-        ));
-    }
-    file.insert("num_motors".into(), json!(count));
-    for (number, (arm, rotor)) in (1..).zip(arms.iter().zip(&source.vehicle.rotors)) {
-        file.insert(format!("motor{number}_position"), json!(frd(arm)));
-        file.insert(format!("motor{number}_vector"), json!([0.0, 0.0, -1.0]));
-        // about z down: opposite to about z up
-        let yaw = -rotor.spin.yaw_sign() * propulsion.torque_per_thrust_m;
-        file.insert(format!("motor{number}_yaw"), json!(yaw));
-    }
+    file.insert("moment_inertia".into(), json!(moments_kg_m2(&mut source)));
+    motors(&mut file, &source, &arms);
     source.note("motors are in the model's own order; the simulator's frame must have as many, and its servo functions the same order");
     source.note(
         "refVoltage, refCurrent and the battery keep ArduPilot's defaults: nothing of them was identified",
@@ -88,6 +61,49 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
         // comments are the simulator's own: it blanks from # to the end of the line, after the first brace
         format!("{}{}\n", body.replacen('{', &format!("{{\n{head}"), 1), "")
     }))
+}
+
+/// Coefficient of the momentum drag (-), and tilt (rad) of level flight at the reference speed.
+fn drag(source: &mut Source<'_>, disc_m2: f64, weight_n: f64) -> (f64, f64) {
+    let drag = ["dx", "dy", "dz"].map(|axis| source.take("linear_drag", axis));
+    let across = 0.5 * (drag[0] + drag[1]);
+    let momentum = across / (AIR_DENSITY_KG_M3 * disc_m2 * weight_n).sqrt();
+    let along = drag[2] + source.take("inflow", "kz");
+    if (along - across).abs().max((drag[0] - drag[1]).abs()) > 0.05 * across {
+        source.note(format!(
+            "the simulator's momentum drag is the same along all axes: the mean across the rotor axis is taken; the model has {:.4}, {:.4}, {along:.4} N/(m/s)",
+            drag[0], drag[1]
+        ));
+    }
+    let quadratic = ["cx", "cy", "cz"].map(|axis| source.take("quadratic_drag", axis));
+    let bluff = 0.5 * (quadratic[0] + quadratic[1]);
+    (momentum, reference_angle(across, bluff, weight_n))
+}
+
+/// Moments of inertia, kg m^2.
+fn moments_kg_m2(source: &mut Source<'_>) -> [f64; 3] {
+    let j = source.vehicle.body.inertia_kg_m2;
+    if [j[(0, 1)], j[(0, 2)], j[(1, 2)]].iter().any(|product| *product != 0.0) {
+        source.note(format!(
+            "the simulator has no products of inertia: ixy {:.3e}, ixz {:.3e}, iyz {:.3e} kg m^2",
+            j[(0, 1)],
+            j[(0, 2)],
+            j[(1, 2)]
+        ));
+    }
+    [j[(0, 0)], j[(1, 1)], j[(2, 2)]]
+}
+
+/// Place (`arms`: m, body, from the centre of mass), axis and reaction of each motor.
+fn motors(file: &mut Map<String, Value>, source: &Source<'_>, arms: &[Vector3<f64>]) {
+    file.insert("num_motors".into(), json!(arms.len()));
+    for (number, (arm, rotor)) in (1..).zip(arms.iter().zip(&source.vehicle.rotors)) {
+        file.insert(format!("motor{number}_position"), json!(frd(arm)));
+        file.insert(format!("motor{number}_vector"), json!([0.0, 0.0, -1.0]));
+        // about z down: opposite to about z up
+        let yaw = -rotor.spin.yaw_sign() * source.vehicle.propulsion.torque_per_thrust_m;
+        file.insert(format!("motor{number}_yaw"), json!(yaw));
+    }
 }
 
 /// Tilt (rad) of level flight at the reference speed: where the weight's share balances the drag along the

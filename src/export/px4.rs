@@ -5,6 +5,7 @@
 //! `Mz = Q_MAX (u0 + u1 - u2 - u3)`, drag `-KDV v`, damping `-KDW w`.
 
 use super::{ExportError, Exported, Source, frd, line_comments};
+use nalgebra::Vector3;
 use std::fmt::Write;
 
 const FORMAT: &str = "px4-sih";
@@ -22,52 +23,17 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     if arms.iter().any(|arm| (arm.x.abs() - forward_m).abs() > 1e-3 || (arm.y.abs() - left_m).abs() > 1e-3) {
         source.note("the simulator's rotors are symmetric about the centre of mass: arms are means, an offset of the centre of mass is left out");
     }
-    let thrust_max_n = source.thrust_max_n();
-    let hover = source.airframe.hover_thrust_n;
-    let command = source.vehicle.propulsion.command_from_thrust(hover);
-    // its thrust is linear in the command: the chord through hover
-    let linear_max_n = hover / command;
-    if (linear_max_n / thrust_max_n - 1.0).abs() > 1e-6 {
-        source.note(format!(
-            "the simulator's thrust is linear in the command: SIH_T_MAX is chosen so that hover needs the same command ({command:.3}); at full command the model gives {thrust_max_n:.3} N, the simulator {linear_max_n:.3} N"
-        ));
-    }
-    let torque_max_nm = linear_max_n * source.vehicle.propulsion.torque_per_thrust_m;
-    let drag = ["dx", "dy", "dz"].map(|axis| source.take("linear_drag", axis));
-    let inflow = source.take("inflow", "kz");
-    let across = 0.5 * (drag[0] + drag[1]);
-    let along = drag[2] + inflow;
-    if across.max(along) > 0.0 && (drag[0] - drag[1]).abs().max((along - across).abs()) > 0.05 * across {
-        source.note(format!(
-            "the simulator's drag is the same along all axes: SIH_KDV is the mean across the rotor axis; the model has {:.4}, {:.4}, {along:.4} N/(m/s)",
-            drag[0], drag[1]
-        ));
-    }
-    let damping = ["bx", "by", "bz"].map(|axis| source.take("angular_damping", axis));
-    let mean_damping = damping.iter().sum::<f64>() / 3.0;
-    if damping.iter().any(|b| (b - mean_damping).abs() > 0.05 * mean_damping) {
-        source.note(format!(
-            "the simulator's damping is the same about all axes: SIH_KDW is the mean of {damping:?} N m/(rad/s)"
-        ));
-    }
+    let thrust_max_n = linear_thrust_max_n(&mut source);
+    let torque_max_nm = thrust_max_n * source.vehicle.propulsion.torque_per_thrust_m;
+    let drag = drag(&mut source);
+    let damping = damping(&mut source);
     let lag_s = source.time_constant_s();
     if lag_s.is_none() {
         source.note(format!(
             "no lag of the rotors is known: SIH_T_TAU keeps PX4's default of {TAU_DEFAULT_S} s"
         ));
     }
-    let order: Vec<String> = arms
-        .iter()
-        .zip(&source.vehicle.rotors)
-        .map(|(arm, rotor)| {
-            let [x, y, _] = frd(arm);
-            format!("{} at x {x:.4}, y {y:.4}, {:?}", rotor.name, rotor.spin)
-        })
-        .collect();
-    let order = format!(
-        "the simulator's motors 1 to 4: front right ccw, rear left ccw, front left cw, rear right cw; the model's, forward-right: {}",
-        order.join("; ")
-    );
+    let order = motors(&source, &arms);
     let body = &source.vehicle.body;
     let j = &body.inertia_kg_m2;
     // about x forward, y right, z down: products with y or z change their sign once, yz twice
@@ -79,12 +45,12 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
         ("SIH_IXY", 0.0 - j[(0, 1)]),
         ("SIH_IXZ", 0.0 - j[(0, 2)]),
         ("SIH_IYZ", j[(1, 2)]),
-        ("SIH_T_MAX", linear_max_n),
+        ("SIH_T_MAX", thrust_max_n),
         ("SIH_Q_MAX", torque_max_nm),
         ("SIH_L_ROLL", left_m),
         ("SIH_L_PITCH", forward_m),
-        ("SIH_KDV", across),
-        ("SIH_KDW", mean_damping),
+        ("SIH_KDV", drag),
+        ("SIH_KDW", damping),
         ("SIH_T_TAU", lag_s.unwrap_or(TAU_DEFAULT_S)),
     ];
     let name = source.vehicle.name.clone();
@@ -96,4 +62,61 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
         }
         text
     }))
+}
+
+/// One rotor's thrust at full command, N: the simulator's is linear in the command, along the chord through hover.
+fn linear_thrust_max_n(source: &mut Source<'_>) -> f64 {
+    let thrust_max_n = source.thrust_max_n();
+    let hover = source.airframe.hover_thrust_n;
+    let command = source.vehicle.propulsion.command_from_thrust(hover);
+    let linear_max_n = hover / command;
+    if (linear_max_n / thrust_max_n - 1.0).abs() > 1e-6 {
+        source.note(format!(
+            "the simulator's thrust is linear in the command: SIH_T_MAX is chosen so that hover needs the same command ({command:.3}); at full command the model gives {thrust_max_n:.3} N, the simulator {linear_max_n:.3} N"
+        ));
+    }
+    linear_max_n
+}
+
+/// N/(m/s), the same along all axes.
+fn drag(source: &mut Source<'_>) -> f64 {
+    let drag = ["dx", "dy", "dz"].map(|axis| source.take("linear_drag", axis));
+    let inflow = source.take("inflow", "kz");
+    let across = 0.5 * (drag[0] + drag[1]);
+    let along = drag[2] + inflow;
+    if across.max(along) > 0.0 && (drag[0] - drag[1]).abs().max((along - across).abs()) > 0.05 * across {
+        source.note(format!(
+            "the simulator's drag is the same along all axes: SIH_KDV is the mean across the rotor axis; the model has {:.4}, {:.4}, {along:.4} N/(m/s)",
+            drag[0], drag[1]
+        ));
+    }
+    across
+}
+
+/// N m/(rad/s), the same about all axes.
+fn damping(source: &mut Source<'_>) -> f64 {
+    let damping = ["bx", "by", "bz"].map(|axis| source.take("angular_damping", axis));
+    let mean = damping.iter().sum::<f64>() / 3.0;
+    if damping.iter().any(|b| (b - mean).abs() > 0.05 * mean) {
+        source.note(format!(
+            "the simulator's damping is the same about all axes: SIH_KDW is the mean of {damping:?} N m/(rad/s)"
+        ));
+    }
+    mean
+}
+
+/// Which motor of the simulator is where, beside the model's rotors (`arms`: m, body, from the centre of mass).
+fn motors(source: &Source<'_>, arms: &[Vector3<f64>]) -> String {
+    let order: Vec<String> = arms
+        .iter()
+        .zip(&source.vehicle.rotors)
+        .map(|(arm, rotor)| {
+            let [x, y, _] = frd(arm);
+            format!("{} at x {x:.4}, y {y:.4}, {:?}", rotor.name, rotor.spin)
+        })
+        .collect();
+    format!(
+        "the simulator's motors 1 to 4: front right ccw, rear left ccw, front left cw, rear right cw; the model's, forward-right: {}",
+        order.join("; ")
+    )
 }

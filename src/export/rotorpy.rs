@@ -5,6 +5,7 @@
 //! are ours; the sign of a rotor is that of its reaction torque.
 
 use super::{ExportError, Exported, Source, line_comments};
+use nalgebra::Vector3;
 use std::fmt::Write;
 
 const FORMAT: &str = "rotorpy";
@@ -64,22 +65,26 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
         source.vehicle.rotors.iter().map(|rotor| format!("{}", rotor.spin.yaw_sign())).collect();
     let name = source.vehicle.name.replace(['\n', '\r'], " ");
     Ok(source.finish(|notes| {
-        let mut text = format!(
-            "# {name}: RotorPy parameters, SI\n{}import numpy as np\n\nquad_params = {{\n",
-            line_comments("#", notes)
-        );
-        for (key, value) in values {
-            let _ = writeln!(text, "    '{key}': {value:?},");
-        }
-        let _ = writeln!(text, "    'num_rotors': {},\n    'rotor_pos': {{", arms.len());
-        for (number, arm) in (1..).zip(&arms) {
-            let _ = writeln!(text, "        'r{number}': np.array([{:?}, {:?}, {:?}]),", arm.x, arm.y, arm.z);
-        }
-        let _ = writeln!(
-            text,
-            "    }},\n    'rotor_directions': np.array([{}]),\n    'rI': np.array([0.0, 0.0, 0.0]),\n}}",
-            directions.join(", ")
-        );
-        text
+        let head =
+            format!("# {name}: RotorPy parameters, SI\n{}import numpy as np\n\n", line_comments("#", notes));
+        head + &dictionary(&values, &arms, &directions)
     }))
+}
+
+/// The assignment of the dictionary; hubs (m, body) from the centre of mass.
+fn dictionary(values: &[(&str, f64)], arms: &[Vector3<f64>], directions: &[String]) -> String {
+    let mut text = "quad_params = {\n".to_owned();
+    for (key, value) in values {
+        let _ = writeln!(text, "    '{key}': {value:?},");
+    }
+    let _ = writeln!(text, "    'num_rotors': {},\n    'rotor_pos': {{", arms.len());
+    for (number, arm) in (1..).zip(arms) {
+        let _ = writeln!(text, "        'r{number}': np.array([{:?}, {:?}, {:?}]),", arm.x, arm.y, arm.z);
+    }
+    let _ = writeln!(
+        text,
+        "    }},\n    'rotor_directions': np.array([{}]),\n    'rI': np.array([0.0, 0.0, 0.0]),\n}}",
+        directions.join(", ")
+    );
+    text
 }

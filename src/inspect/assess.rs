@@ -53,6 +53,11 @@ pub(super) struct Assessment {
     pub refusal: Option<SignalsError>,
 }
 
+/// Refusals of one window that say nothing of the others, nor of the vehicle file.
+fn is_of_the_window(refusal: &SignalsError) -> bool {
+    matches!(refusal, SignalsError::NothingUsable { .. } | SignalsError::TooFewSamples { .. })
+}
+
 impl<'a> Assessor<'a> {
     /// Nothing seen yet.
     pub(super) fn new(vehicle: Option<&'a Vehicle>) -> Self {
@@ -80,7 +85,7 @@ impl<'a> Assessor<'a> {
             }
             refused => {
                 if let Some((Err(refusal), _)) = refused
-                    && (self.refusal.is_none() || !matches!(refusal, SignalsError::NothingUsable { .. }))
+                    && (self.refusal.is_none() || !is_of_the_window(&refusal))
                 {
                     self.refusal = Some(refusal);
                 }

@@ -38,4 +38,4 @@ pub use recording::{Autopilot, Quantity, Recording, Stream, StreamKey};
 pub use report::{MessageCounts, ReadReport, Resync, Sender, StreamRepair};
 pub use splitter::{SplitCounts, Splitter};
 pub use stats::{StreamStats, StreamTally};
-pub use tlog::{ByteOrder, Record, STAMP_BYTES, TlogReader, TlogWriter, write_recording};
+pub use tlog::{ByteOrder, MessageWriter, Record, STAMP_BYTES, TlogReader, TlogWriter, write_recording};

@@ -22,5 +22,5 @@ pub use identification::{
 pub use number::{significant, spoken, with_error};
 pub use validation::{
     Column, ErrorRow, ErrorTable, ValidatedFlight, closed_loop_charts, closed_loop_table, playback_table,
-    prediction_table, validation_report,
+    prediction_table, shortened_names, validation_report,
 };

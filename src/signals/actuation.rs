@@ -1,7 +1,7 @@
 //! What drives the body: rotors, or force and torque as the log holds them.
 
 use super::actuators::{RotorThrusts, ThrustSource, thrusts_from_commands, thrusts_from_speeds};
-use super::select::{best, flowing_rate_hz};
+use super::select::{best, flowing_rate_hz, too_short};
 use super::{Grid, SignalsError, linear_onto};
 use crate::log::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
@@ -73,7 +73,15 @@ impl Actuation {
         if let Some((key, stream)) = best(recording, Quantity::Wrench, |s| s.width == 4) {
             return Ok(Self::Wrench(key.source, stream.clone()));
         }
-        rotor_thrusts(recording, vehicle, preference).map(Self::Rotors)
+        rotor_thrusts(recording, vehicle, preference).map(Self::Rotors).map_err(|error| match error {
+            SignalsError::NoActuators { .. } => too_short(recording, Quantity::Wrench, |s| s.width == 4)
+                .or_else(|| {
+                    let rotors = vehicle.rotors.len();
+                    too_short(recording, Quantity::RotorSpeed, |s| s.width >= rotors)
+                })
+                .unwrap_or(error),
+            other => other,
+        })
     }
 
     pub(super) fn stream(&self) -> &Stream {

@@ -6,7 +6,7 @@
 
 use super::SignalsError;
 use super::grid::LARGEST_VALUE;
-use super::select::best;
+use super::select::{LEAST_SAMPLES, best, is_live, too_short};
 use crate::log::{Autopilot, Quantity, Recording, Stream, StreamKey};
 use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
 
@@ -42,14 +42,17 @@ pub struct RotorThrusts {
 /// Rotor thrusts from the commands.
 ///
 /// # Errors
-/// [`SignalsError::NoActuators`] where no stream has a channel for every rotor in the vehicle's unit.
+/// [`SignalsError::NoActuators`] where no stream has a channel for every rotor in the vehicle's unit and moves,
+/// [`SignalsError::TooFewSamples`] where one has, but hardly a sample with a value for every rotor.
 pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result<RotorThrusts, SignalsError> {
     let (propulsion, mut notes) = propulsion_from_log(recording, &vehicle.propulsion);
     let channels = motor_channels(recording, vehicle.rotors.len(), &mut notes);
     let needed = channels.iter().max().map_or(0, |last| last + 1);
     let fits = |stream: &Stream| stream.width >= needed && in_unit(stream, &channels, propulsion.actuator);
-    let (key, raw) =
-        best(recording, Quantity::ActuatorCommand, fits).ok_or_else(|| no_actuators(recording, vehicle))?;
+    let (key, raw) = best(recording, Quantity::ActuatorCommand, fits).ok_or_else(|| {
+        too_short(recording, Quantity::ActuatorCommand, fits)
+            .unwrap_or_else(|| no_actuators(recording, vehicle))
+    })?;
     let mut command = Stream { time_s: raw.time_s.clone(), width: channels.len(), values: Vec::new() };
     command.values.reserve(raw.len() * channels.len());
     command.time_s.clear();
@@ -60,6 +63,11 @@ pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result
             command.values.extend(channels.iter().map(|&channel| propulsion.normalized(sample[channel])));
         }
     }
+    if command.len() < LEAST_SAMPLES {
+        let (quantity, message) = (key.quantity, key.source);
+        let (count, needed) = (command.len(), LEAST_SAMPLES);
+        return Err(SignalsError::TooFewSamples { quantity, message, count, needed });
+    }
     let values = command.values.iter().map(|&u| propulsion.thrust_from_command_n(u)).collect();
     let stream = Stream { time_s: command.time_s.clone(), width: channels.len(), values };
     let jitter = Some(jitter_thrust(&command, propulsion.thrust_curvature_n()));
@@ -67,7 +75,8 @@ pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result
     Ok(RotorThrusts { stream, command, jitter, source, message: key.source, notes })
 }
 
-/// Rotor thrusts from measured speeds; `None` where none are recorded or no coefficient is known.
+/// Rotor thrusts from measured speeds; `None` where none, or hardly a sample with all rotors, are recorded or no
+/// coefficient is known.
 #[must_use]
 pub fn thrusts_from_speeds(recording: &Recording, vehicle: &Vehicle) -> Option<RotorThrusts> {
     let coefficient = vehicle.propulsion.thrust_coefficient?;
@@ -82,6 +91,9 @@ pub fn thrusts_from_speeds(recording: &Recording, vehicle: &Vehicle) -> Option<R
             stream.time_s.push(raw.time_s[index]);
             stream.values.extend(speeds.iter().map(|speed| coefficient * speed * speed));
         }
+    }
+    if stream.len() < LEAST_SAMPLES {
+        return None;
     }
     let (source, message) = (ThrustSource::MeasuredSpeed, key.source);
     Some(RotorThrusts { stream, command: None, jitter: None, source, message, notes: Vec::new() })
@@ -115,7 +127,8 @@ fn no_actuators(recording: &Recording, vehicle: &Vehicle) -> SignalsError {
         .filter(|(key, _)| key.quantity == Quantity::ActuatorCommand)
         .map(|(key, stream)| {
             let largest = stream.values.iter().copied().filter(|v| v.is_finite()).fold(f64::NAN, f64::max);
-            format!("{} ({} channels, largest value {largest:.3})", key.source, stream.width)
+            let still = if is_live(stream) { "" } else { ", which does not move" };
+            format!("{} ({} channels, largest value {largest:.3}{still})", key.source, stream.width)
         })
         .collect();
     SignalsError::NoActuators {

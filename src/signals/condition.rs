@@ -6,7 +6,7 @@ use super::align::{
     AlignFrame, InertialOnGrid, StreamOffset, attitude_offset, attitudes_onto, position_offset, vectors_onto,
     velocity_offset,
 };
-use super::select::{best, median_period_s};
+use super::select::{best, median_period_s, too_short};
 use super::usable::{Evidence, Usable, airborne_spans, usable};
 use super::{Grid, SignalsError, WeakKernel};
 use crate::log::{Quantity, Recording, Stream};
@@ -143,8 +143,8 @@ impl<'a> Chosen<'a> {
 /// Conditions one flight.
 ///
 /// # Errors
-/// [`SignalsError`] where the log has no actuators in the vehicle's unit, no streams of motion, or no
-/// stretch of flight long enough for the weak form.
+/// [`SignalsError`] where the log has no actuators in the vehicle's unit, no streams of motion, hardly a sample of
+/// them, or no stretch of flight long enough for the weak form.
 pub fn condition(
     recording: &Recording,
     vehicle: &Vehicle,
@@ -152,7 +152,7 @@ pub fn condition(
 ) -> Result<Signals, SignalsError> {
     let chosen = Chosen::from(recording);
     let actuation = Actuation::from(recording, vehicle, settings.thrust)?;
-    let step_s = step(&chosen, actuation.stream(), settings)?;
+    let step_s = step(recording, &chosen, actuation.stream(), settings)?;
     let grid = common_grid(&chosen, actuation.stream(), step_s)?;
     let kernel = WeakKernel::new(settings.weak_half_width_s, step_s);
     let airborne_s = airborne_spans(recording, &actuation, vehicle);
@@ -231,12 +231,17 @@ pub fn stride(step_s: f64) -> usize {
 /// Motion or actuators recorded more slowly than this show nothing of a multirotor's rotation, s.
 const SLOWEST_S: f64 = 0.1;
 
-fn step(chosen: &Chosen<'_>, actuation: &Stream, settings: &ConditionSettings) -> Result<f64, SignalsError> {
+fn step(
+    recording: &Recording,
+    chosen: &Chosen<'_>,
+    actuation: &Stream,
+    settings: &ConditionSettings,
+) -> Result<f64, SignalsError> {
     if let Some(step_s) = settings.step_s {
         return Ok(step_s);
     }
     let inertial = chosen.rate.or(chosen.attitude).or(chosen.world_acceleration);
-    let (_, stream) = inertial.ok_or(SignalsError::NoMotion)?;
+    let (_, stream) = inertial.ok_or_else(|| no_motion(recording))?;
     let period = median_period_s(stream).min(median_period_s(actuation));
     if !period.is_finite() {
         return Err(SignalsError::NoMotion);
@@ -245,6 +250,14 @@ fn step(chosen: &Chosen<'_>, actuation: &Stream, settings: &ConditionSettings) -
         return Err(SignalsError::TooSlow { rate_hz: 1.0 / period, needed_hz: 1.0 / SLOWEST_S });
     }
     Ok(period.clamp(0.002, 0.02))
+}
+
+/// What is said where no stream of motion can be used.
+fn no_motion(recording: &Recording) -> SignalsError {
+    [(Quantity::AngularRate, 3), (Quantity::Attitude, 4), (Quantity::WorldAcceleration, 3)]
+        .into_iter()
+        .find_map(|(quantity, width)| too_short(recording, quantity, |stream| stream.width == width))
+        .unwrap_or(SignalsError::NoMotion)
 }
 
 /// The span that all chosen streams share.

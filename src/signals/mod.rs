@@ -32,6 +32,8 @@ pub use spectrum::{hann_windowed, highest_harmonic_hz, power_at};
 pub use usable::{Evidence, Usable, in_air, usable};
 pub use weak::{MAX_ORDER, WeakKernel};
 
+use crate::log::Quantity;
+
 /// Why a recording cannot be conditioned.
 #[derive(Debug, thiserror::Error)]
 pub enum SignalsError {
@@ -47,6 +49,22 @@ pub enum SignalsError {
         unit: &'static str,
         /// what the recording has
         found: String,
+    },
+    /// a stream that is needed is there, but hardly a sample of it
+    #[error(
+        "{message} holds {count} usable sample{} of {}: at least {needed} are needed",
+        if *count == 1 { "" } else { "s" },
+        quantity.name()
+    )]
+    TooFewSamples {
+        /// which
+        quantity: Quantity,
+        /// message or column group that it comes from
+        message: &'static str,
+        /// samples that hold a number for every channel that is used
+        count: usize,
+        /// how many it takes
+        needed: usize,
     },
     /// nothing that moves
     #[error(

@@ -1,5 +1,6 @@
 //! Which of several streams of one quantity is used.
 
+use super::SignalsError;
 use super::noise::median;
 use crate::log::{Quantity, Recording, Stream, StreamKey};
 
@@ -72,6 +73,26 @@ pub fn is_live(stream: &Stream) -> bool {
     })
 }
 
+/// A stream of fewer samples says nothing.
+pub(super) const LEAST_SAMPLES: usize = 10;
+
+/// The refusal of a recording whose longest stream of a quantity that satisfies `fits` is too short to be used;
+/// `None` where one is long enough, or none fits.
+pub(super) fn too_short(
+    recording: &Recording,
+    quantity: Quantity,
+    fits: impl Fn(&Stream) -> bool,
+) -> Option<SignalsError> {
+    let fitting = recording.streams.iter().filter(|(key, stream)| key.quantity == quantity && fits(stream));
+    let (key, longest) = fitting.max_by_key(|(_, stream)| stream.len())?;
+    (longest.len() < LEAST_SAMPLES).then(|| SignalsError::TooFewSamples {
+        quantity,
+        message: key.source,
+        count: longest.len(),
+        needed: LEAST_SAMPLES,
+    })
+}
+
 /// The best live stream of a quantity that satisfies `fits`: among those within a factor of 1.6 of
 /// the fastest, the first of its quantity's order of preference.
 #[must_use]
@@ -84,7 +105,7 @@ pub fn best(
         .streams
         .iter()
         .filter(|(key, stream)| {
-            key.quantity == quantity && stream.len() >= 10 && is_live(stream) && fits(stream)
+            key.quantity == quantity && stream.len() >= LEAST_SAMPLES && is_live(stream) && fits(stream)
         })
         .collect();
     let rated: Vec<(&str, f64)> =

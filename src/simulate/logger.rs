@@ -196,86 +196,91 @@ fn write(schedule: &mut Schedule, measured: &Measured, seen: &State, with: &mut 
     }
 }
 
+/// A message before it is scheduled.
+struct Plan {
+    message: Message,
+    source: &'static str,
+    /// key of the settings and its value, Hz
+    rate: (&'static str, f64),
+    skew_s: f64,
+    resolution_s: f64,
+    /// quantities and their widths
+    streams: Vec<(Quantity, usize)>,
+}
+
+impl Plan {
+    fn schedule(self, duration_s: f64) -> Result<Schedule, SimulateError> {
+        let (name, rate_hz) = self.rate;
+        let period_s = 1.0 / positive(name, rate_hz)?;
+        not_negative("skew", self.skew_s)?;
+        // a hint, so it is bounded
+        let samples = whole_steps(name, duration_s, period_s)?.min(1 << 20) + 1;
+        let empty = |(quantity, width): (Quantity, usize)| {
+            let time_s = Vec::with_capacity(samples);
+            (quantity, Stream { time_s, width, values: Vec::with_capacity(samples * width) })
+        };
+        Ok(Schedule {
+            message: self.message,
+            source: self.source,
+            period_s,
+            sent: 0,
+            skew_s: self.skew_s,
+            stamp_resolution_s: self.resolution_s,
+            streams: self.streams.into_iter().map(empty).collect(),
+        })
+    }
+}
+
 fn schedules(
     settings: &TelemetrySettings,
     rotors: usize,
     duration_s: f64,
 ) -> Result<Vec<Schedule>, SimulateError> {
+    plans(settings, rotors).into_iter().map(|plan| plan.schedule(duration_s)).collect()
+}
+
+/// What is sent, message by message.
+fn plans(settings: &TelemetrySettings, rotors: usize) -> Vec<Plan> {
     use Quantity as Q;
     let (rates, skew) = (&settings.rates, &settings.skew);
     let (ms, us) = (MILLISECOND_S, MICROSECOND_S);
-    let mut all = Vec::with_capacity(8);
-    let mut add = |message, source, (name, rate_hz), (skew_s, resolution_s), streams: &[(Q, usize)]| {
-        let rate_hz = positive(name, rate_hz)?;
-        not_negative("skew", skew_s)?;
-        let period_s = 1.0 / rate_hz;
-        // a hint, so it is bounded
-        let samples = whole_steps(name, duration_s, period_s)?.min(1 << 20) + 1;
-        let streams = streams
-            .iter()
-            .map(|(quantity, width)| {
-                let time_s = Vec::with_capacity(samples);
-                (*quantity, Stream { time_s, width: *width, values: Vec::with_capacity(samples * width) })
-            })
-            .collect();
-        all.push(Schedule {
-            message,
-            source,
-            period_s,
-            sent: 0,
-            skew_s,
-            stamp_resolution_s: resolution_s,
-            streams,
-        });
-        Ok::<(), SimulateError>(())
+    let plan = |message, source, rate, (skew_s, resolution_s), streams: &[(Q, usize)]| Plan {
+        message,
+        source,
+        rate,
+        skew_s,
+        resolution_s,
+        streams: streams.to_vec(),
     };
+    let rate = ("attitude_hz", rates.attitude_hz);
     let attitude = [(Q::Attitude, 4), (Q::AngularRate, 3)];
-    let setpoints = [
+    let attitude = plan(Message::Attitude, "ATTITUDE_QUATERNION", rate, (skew.attitude_s, ms), &attitude);
+    let rate = ("imu_hz", rates.imu_hz);
+    let imu = [(Q::SpecificForce, 3), (Q::AngularRate, 3)];
+    let imu = plan(Message::Imu, "HIGHRES_IMU", rate, (skew.imu_s, us), &imu);
+    let rate = ("actuator_hz", rates.actuator_hz);
+    let actuators = [(Q::ActuatorCommand, rotors)];
+    let actuators =
+        plan(Message::Actuators, "ACTUATOR_OUTPUT_STATUS", rate, (skew.actuator_s, us), &actuators);
+    let rate = ("position_hz", rates.position_hz);
+    let position = [(Q::Position, 3), (Q::Velocity, 3)];
+    let position = plan(Message::Position, "LOCAL_POSITION_NED", rate, (skew.position_s, ms), &position);
+    let speeds = rates.rotor_speed_hz.map(|rate_hz| {
+        let (rate, streams) = (("rotor_speed_hz", rate_hz), [(Q::RotorSpeed, rotors)]);
+        plan(Message::RotorSpeed, "ESC_STATUS", rate, (skew.rotor_speed_s, us), &streams)
+    });
+    let rate = ("setpoint_hz", rates.setpoint_hz);
+    let setpoint = [
         (Q::PositionSetpoint, 3),
         (Q::VelocitySetpoint, 3),
         (Q::AccelerationSetpoint, 3),
         (Q::YawSetpoint, 1),
     ];
-    add(
-        Message::Attitude,
-        "ATTITUDE_QUATERNION",
-        ("attitude_hz", rates.attitude_hz),
-        (skew.attitude_s, ms),
-        &attitude,
-    )?;
-    let imu = [(Q::SpecificForce, 3), (Q::AngularRate, 3)];
-    add(Message::Imu, "HIGHRES_IMU", ("imu_hz", rates.imu_hz), (skew.imu_s, us), &imu)?;
-    let actuators = [(Q::ActuatorCommand, rotors)];
-    let actuator_rate = ("actuator_hz", rates.actuator_hz);
-    add(Message::Actuators, "ACTUATOR_OUTPUT_STATUS", actuator_rate, (skew.actuator_s, us), &actuators)?;
-    let position = [(Q::Position, 3), (Q::Velocity, 3)];
-    let position_rate = ("position_hz", rates.position_hz);
-    add(Message::Position, "LOCAL_POSITION_NED", position_rate, (skew.position_s, ms), &position)?;
-    if let Some(rate_hz) = rates.rotor_speed_hz {
-        let speed = [(Q::RotorSpeed, rotors)];
-        add(
-            Message::RotorSpeed,
-            "ESC_STATUS",
-            ("rotor_speed_hz", rate_hz),
-            (skew.rotor_speed_s, us),
-            &speed,
-        )?;
-    }
-    let setpoint_rate = ("setpoint_hz", rates.setpoint_hz);
-    add(Message::Setpoint, "POSITION_TARGET_LOCAL_NED", setpoint_rate, (0.0, ms), &setpoints)?;
-    add(
-        Message::Battery,
-        "BATTERY_STATUS",
-        ("battery_hz", rates.battery_hz),
-        (0.0, ms),
-        &[(Q::BatteryVoltage, 1)],
-    )?;
-    add(
-        Message::Landed,
-        "EXTENDED_SYS_STATE",
-        ("landed_hz", rates.landed_hz),
-        (0.0, ms),
-        &[(Q::LandedState, 1)],
-    )?;
-    Ok(all)
+    let setpoint = plan(Message::Setpoint, "POSITION_TARGET_LOCAL_NED", rate, (0.0, ms), &setpoint);
+    let rate = ("battery_hz", rates.battery_hz);
+    let battery = plan(Message::Battery, "BATTERY_STATUS", rate, (0.0, ms), &[(Q::BatteryVoltage, 1)]);
+    let rate = ("landed_hz", rates.landed_hz);
+    let landed = plan(Message::Landed, "EXTENDED_SYS_STATE", rate, (0.0, ms), &[(Q::LandedState, 1)]);
+    let before = [attitude, imu, actuators, position].into_iter();
+    before.chain(speeds).chain([setpoint, battery, landed]).collect()
 }

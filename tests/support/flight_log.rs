@@ -2,12 +2,10 @@
 
 use std::error::Error;
 use std::f64::consts::{FRAC_PI_2, TAU};
-use std::io::Write;
 use std::path::Path;
 
-use mavid::log::{Frame, TlogWriter};
+use mavid::log::MessageWriter;
 use mavlink::dialects::ardupilotmega as dialect;
-use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 
 /// s of the sample period: 125 Hz, position at half of it.
 pub const STEP_S: f64 = 0.008;
@@ -21,23 +19,15 @@ const THRUST_SLOPE_N: f64 = 4.0 * 2.0 * 8.54858 * 0.77;
 
 /// Writes a log of at least so many bytes; gives its length in seconds.
 pub fn write_flight_log(path: &Path, bytes: u64) -> Result<f64, Box<dyn Error>> {
-    let mut log = TlogWriter::new(std::io::BufWriter::new(std::fs::File::create(path)?));
-    let mut sequence = 0_u8;
+    let mut log = MessageWriter::new(std::io::BufWriter::new(std::fs::File::create(path)?));
     let (mut written, mut step) = (0_u64, 0_u32);
     while written < bytes {
         for message in messages_of_step(step) {
-            let header = MavHeader { system_id: 1, component_id: 1, sequence };
-            sequence = sequence.wrapping_add(1);
-            let mut raw = MAVLinkV2MessageRaw::new();
-            raw.serialize_message(header, &message);
-            let frame = Frame::at_start(raw.raw_bytes()).ok_or("a serialised message is a frame")?;
-            log.write(1_700_000_000_000_000 + u64::from(step) * 8000, frame)?;
-            written += 8 + frame.bytes().len() as u64;
+            written += log.write(1_700_000_000_000_000 + u64::from(step) * 8000, &message)? as u64;
         }
         step += 1;
     }
-    log.flush()?;
-    log.into_inner().flush()?;
+    log.finish()?;
     Ok(f64::from(step) * STEP_S)
 }
 

@@ -1,8 +1,9 @@
-//! A flight as a telemetry log: big-endian microseconds of the host and a MAVLink 2 frame, again and again.
+//! A flight as a telemetry log. What is measured and how it is turned to the messages' axes is this maker's own; only
+//! the frames and stamps are the library's.
 
+use mavid::log::MessageWriter;
 use mavid::units::{narrow, whole};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
-use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
@@ -64,19 +65,15 @@ pub fn log(flown: &[Instant], hidden: &Hidden, (seed, with): (u64, Conditions)) 
         }
     }
     frames.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut bytes = Vec::with_capacity(frames.len() * 70);
-    let mut sequence = 0_u8;
+    let mut log = MessageWriter::new(Vec::with_capacity(frames.len() * 70));
     for (time, message) in frames {
-        sequence = sequence.wrapping_add(1);
         if dice.random_bool(LOST) {
-            continue;
+            log.lose();
+        } else {
+            log.write(micros(HOST_US * 1e-6 + time - boot), &message).expect("memory takes all");
         }
-        bytes.extend_from_slice(&micros(HOST_US * 1e-6 + time - boot).to_be_bytes());
-        let mut raw = MAVLinkV2MessageRaw::new();
-        raw.serialize_message(MavHeader { system_id: 1, component_id: 1, sequence }, &message);
-        bytes.extend_from_slice(raw.raw_bytes());
     }
-    bytes
+    log.finish().expect("memory takes all")
 }
 
 /// What is sent at a tick.

@@ -40,6 +40,9 @@ struct Document {
 /// Runs the verb.
 pub fn run(json: bool, args: &DemoArgs) -> Result<Outcome, CommandError> {
     let since = Instant::now();
+    let vehicle = parse_vehicle(DEFAULT_VEHICLE, "the vehicle within the program")?.vehicle;
+    // a file that cannot be used is told before the work
+    concealed(args.effects.as_deref(), &vehicle)?;
     let folder = folder(args)?;
     let progress = Progress::new(!args.plain && std::io::stderr().is_terminal());
     let done = story(args, &folder, &progress);
@@ -47,7 +50,6 @@ pub fn run(json: bool, args: &DemoArgs) -> Result<Outcome, CommandError> {
     let (record, analysis) = done?;
     fly::say(&record);
     // the verdict is written: only now is it read again what had been concealed
-    let vehicle = parse_vehicle(DEFAULT_VEHICLE, "the vehicle within the program")?.vehicle;
     let acting = concealed(args.effects.as_deref(), &vehicle)?;
     let explained = analysis.as_ref().and_then(|analysis| analysis.explained.as_ref().ok());
     let rows = compare(&acting, explained.map_or(&[], Explained::named));
@@ -93,7 +95,7 @@ fn story(
     let record = record?;
     let landed = record.outcome.ending == Ending::Landed;
     progress.stage("identifying and explaining", progress::LANDED);
-    let analysis = landed.then(|| Analysis::of(folder, &vehicle, None));
+    let analysis = Analysis::of((folder, landed), &vehicle, None)?;
     Ok((record, analysis))
 }
 

@@ -32,7 +32,22 @@ struct Document {
 
 /// Runs the verb.
 pub fn run(json: bool, args: &ProveArgs) -> Result<Outcome, CommandError> {
-    let folders = case_folders(&args.cases)?;
+    check(args)?;
+    let verdicts = verdicts(&case_folders(&args.cases)?);
+    let sealed_sha256 = seal(&args.out, &verdicts)?;
+    output::message(&format!("{} verdicts sealed, SHA-256 {sealed_sha256}", verdicts.len()));
+    let document = scored(args, verdicts, sealed_sha256)?;
+    if json {
+        output::json(&document)?;
+    } else {
+        output::text(page::page(&document).trim_end())?;
+    }
+    let failed = document.cases.iter().any(|case| case.error.is_some())
+        || document.unscored.iter().any(|verdict| verdict.error.is_some());
+    Ok(if failed { Outcome::DoneWithLoss } else { Outcome::Done })
+}
+
+fn check(args: &ProveArgs) -> Result<(), CommandError> {
     if args.out.exists() && !args.out.is_dir() {
         return Err(CommandError::Input(format!(
             "--out: expected a folder, {} is a file",
@@ -42,34 +57,31 @@ pub fn run(json: bool, args: &ProveArgs) -> Result<Outcome, CommandError> {
     if let Some(file) = args.answers.as_ref().filter(|file| !file.is_file()) {
         return Err(CommandError::Input(format!("--answers: {} is not a file", file.display())));
     }
+    Ok(())
+}
+
+/// One after another: each uses all cores, and its time is reported.
+fn verdicts(folders: &[PathBuf]) -> Vec<Verdict> {
     let mut verdicts = Vec::with_capacity(folders.len());
-    // one after another: each uses all cores, and its time is reported
-    for folder in &folders {
+    for folder in folders {
         let verdict = case::verdict(folder);
         let failed = verdict.error.as_ref().map_or_else(String::new, |error| format!(": {error}"));
         output::message(&format!("{}: {}{failed}", verdict.case, verdict.verdict));
         verdicts.push(verdict);
     }
-    let sealed_sha256 = seal(&args.out, &verdicts)?;
-    output::message(&format!("{} verdicts sealed, SHA-256 {sealed_sha256}", verdicts.len()));
-    let mut document = Document {
-        schema: 1,
-        sealed_sha256,
-        verdicts: args.out.clone(),
-        summary: None,
-        cases: Vec::new(),
-        unscored: Vec::new(),
-        notes: Vec::new(),
-    };
+    verdicts
+}
+
+/// Reads the answers, if any, only now that the verdicts are sealed.
+fn scored(args: &ProveArgs, verdicts: Vec<Verdict>, sealed_sha256: String) -> Result<Document, CommandError> {
     let found = match &args.answers {
         Some(file) => answers::read(file)?,
         None => answers::Answers::default(),
     };
-    document.notes = found.notes;
-    if let Some(file) = args.answers.as_ref()
-        && !verdicts.iter().any(|verdict| found.cases.contains_key(&verdict.case))
-    {
-        let cases: Vec<&str> = verdicts.iter().map(|verdict| verdict.case.as_str()).collect();
+    let (answered, unscored): (Vec<Verdict>, Vec<Verdict>) =
+        verdicts.into_iter().partition(|verdict| found.cases.contains_key(&verdict.case));
+    if let Some(file) = args.answers.as_ref().filter(|_| answered.is_empty()) {
+        let cases: Vec<&str> = unscored.iter().map(|verdict| verdict.case.as_str()).collect();
         let named: Vec<&str> = found.cases.keys().map(String::as_str).collect();
         return Err(CommandError::Input(format!(
             "{}: expected answers by the names of the cases ({}), got {}; the verdicts are sealed in {}",
@@ -79,27 +91,21 @@ pub fn run(json: bool, args: &ProveArgs) -> Result<Outcome, CommandError> {
             args.out.display()
         )));
     }
-    for verdict in verdicts {
-        match found.cases.get(&verdict.case) {
-            Some(answer) => document.cases.push(score::scored(&verdict, answer)),
-            None => document.unscored.push(verdict),
-        }
-    }
-    let explained: Vec<&str> = document.cases.iter().map(|case| case.case.as_str()).collect();
-    let without: Vec<String> =
-        found.cases.keys().filter(|case| !explained.contains(&case.as_str())).cloned().collect();
-    document.notes.extend(without.iter().map(|case| format!("{case}: has an answer, but no folder")));
-    if !document.cases.is_empty() {
-        document.summary = Some(score::summary(&document.cases));
-    }
-    if json {
-        output::json(&document)?;
-    } else {
-        output::text(page::page(&document).trim_end())?;
-    }
-    let failed = document.cases.iter().any(|case| case.error.is_some())
-        || document.unscored.iter().any(|verdict| verdict.error.is_some());
-    Ok(if failed { Outcome::DoneWithLoss } else { Outcome::Done })
+    let cases: Vec<Scored> =
+        answered.iter().map(|verdict| score::scored(verdict, &found.cases[&verdict.case])).collect();
+    let mut notes = found.notes;
+    let has_folder = |name: &str| cases.iter().any(|case| case.case == name);
+    let without = found.cases.keys().filter(|name| !has_folder(name));
+    notes.extend(without.map(|name| format!("{name}: has an answer, but no folder")));
+    Ok(Document {
+        schema: 1,
+        sealed_sha256,
+        verdicts: args.out.clone(),
+        summary: (!cases.is_empty()).then(|| score::summary(&cases)),
+        cases,
+        unscored,
+        notes,
+    })
 }
 
 /// Folders with a vehicle file, by name; or the folder itself.

@@ -4,14 +4,12 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
-use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::TlogWriter;
+use super::MessageWriter;
 use crate::frames::{
     Attitude, Body, World, frd_from_body, frd_ned_from_attitude, ned_from_world, yaw_from_ned,
 };
-use crate::log::frame::Frame;
 use crate::log::recording::{Quantity, Recording, Stream};
 use crate::units::{narrow, rad_s_from_rpm, whole};
 
@@ -52,19 +50,12 @@ pub fn write_recording(recording: &Recording, to: impl Write, start_us: u64) -> 
         beat_s += HEARTBEAT_S;
     }
     messages.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut log = TlogWriter::new(to);
-    let (mut sequence, mut frames) = (0_u8, 0);
-    for (time_s, message) in messages {
-        let mut raw = MAVLinkV2MessageRaw::new();
-        raw.serialize_message(MavHeader { system_id: 1, component_id: 1, sequence }, &message);
-        sequence = sequence.wrapping_add(1);
-        let whole = |_| io::Error::new(io::ErrorKind::InvalidData, "a serialised message is no frame");
-        let frame = Frame::at_start(raw.raw_bytes()).ok_or(()).map_err(whole)?;
-        log.write(start_us + micros(time_s), frame)?;
-        frames += 1;
+    let mut log = MessageWriter::new(to);
+    for (time_s, message) in &messages {
+        log.write(start_us + micros(*time_s), message)?;
     }
-    log.flush()?;
-    Ok(frames)
+    log.finish()?;
+    Ok(messages.len() as u64)
 }
 
 fn lead(source: &str) -> Option<Quantity> {
@@ -113,38 +104,8 @@ impl Sample<'_> {
         let values = stream.sample(self.index);
         let (time_usec, time_boot_ms) = (micros(time_s), millis(time_s));
         match stream_kind(self.source) {
-            Kind::Attitude => {
-                let q = Quaternion::new(values[0], values[1], values[2], values[3]);
-                let attitude = Attitude(UnitQuaternion::from_quaternion(q));
-                let [q1, q2, q3, q4] = frd_ned_from_attitude(attitude).map(narrow);
-                let [rollspeed, pitchspeed, yawspeed] = self.frd(Quantity::AngularRate);
-                MavMessage::ATTITUDE_QUATERNION(dialect::ATTITUDE_QUATERNION_DATA {
-                    time_boot_ms,
-                    q1,
-                    q2,
-                    q3,
-                    q4,
-                    rollspeed,
-                    pitchspeed,
-                    yawspeed,
-                    ..Default::default()
-                })
-            }
-            Kind::Inertial => {
-                let [xacc, yacc, zacc] = self.frd(Quantity::SpecificForce);
-                let [xgyro, ygyro, zgyro] = self.frd(Quantity::AngularRate);
-                MavMessage::HIGHRES_IMU(dialect::HIGHRES_IMU_DATA {
-                    time_usec,
-                    xacc,
-                    yacc,
-                    zacc,
-                    xgyro,
-                    ygyro,
-                    zgyro,
-                    fields_updated: dialect::HighresImuUpdatedFlags::from_bits_truncate(INERTIAL_FIELDS),
-                    ..Default::default()
-                })
-            }
+            Kind::Attitude => self.attitude(time_boot_ms, values),
+            Kind::Inertial => self.inertial(time_usec),
             Kind::Actuators => {
                 let mut message = dialect::ACTUATOR_OUTPUT_STATUS_DATA { time_usec, ..Default::default() };
                 for (slot, value) in message.actuator.iter_mut().zip(values) {
@@ -155,15 +116,8 @@ impl Sample<'_> {
             }
             Kind::Position => {
                 let ([x, y, z], [vx, vy, vz]) = (self.ned(Quantity::Position), self.ned(Quantity::Velocity));
-                MavMessage::LOCAL_POSITION_NED(dialect::LOCAL_POSITION_NED_DATA {
-                    time_boot_ms,
-                    x,
-                    y,
-                    z,
-                    vx,
-                    vy,
-                    vz,
-                })
+                let place = dialect::LOCAL_POSITION_NED_DATA { time_boot_ms, x, y, z, vx, vy, vz };
+                MavMessage::LOCAL_POSITION_NED(place)
             }
             Kind::RotorSpeed => {
                 let mut message = dialect::ESC_STATUS_DATA { time_usec, ..Default::default() };
@@ -172,28 +126,7 @@ impl Sample<'_> {
                 }
                 MavMessage::ESC_STATUS(message)
             }
-            Kind::Setpoint => {
-                let [x, y, z] = self.ned(Quantity::PositionSetpoint);
-                let [vx, vy, vz] = self.ned(Quantity::VelocitySetpoint);
-                let [afx, afy, afz] = self.ned(Quantity::AccelerationSetpoint);
-                let yaw = self.yaw_setpoint();
-                MavMessage::POSITION_TARGET_LOCAL_NED(dialect::POSITION_TARGET_LOCAL_NED_DATA {
-                    time_boot_ms,
-                    x,
-                    y,
-                    z,
-                    vx,
-                    vy,
-                    vz,
-                    afx,
-                    afy,
-                    afz,
-                    yaw,
-                    coordinate_frame: dialect::MavFrame::MAV_FRAME_LOCAL_NED,
-                    type_mask: dialect::PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE,
-                    ..Default::default()
-                })
-            }
+            Kind::Setpoint => self.setpoint(time_boot_ms),
             Kind::Battery => {
                 let mut message =
                     dialect::BATTERY_STATUS_DATA { voltages: [u16::MAX; 10], ..Default::default() };
@@ -205,6 +138,63 @@ impl Sample<'_> {
                 ..Default::default()
             }),
         }
+    }
+
+    /// `values`: quaternion w x y z, body to world.
+    fn attitude(&self, time_boot_ms: u32, values: &[f64]) -> MavMessage {
+        let q = Quaternion::new(values[0], values[1], values[2], values[3]);
+        let attitude = Attitude(UnitQuaternion::from_quaternion(q));
+        let [q1, q2, q3, q4] = frd_ned_from_attitude(attitude).map(narrow);
+        let [rollspeed, pitchspeed, yawspeed] = self.frd(Quantity::AngularRate);
+        MavMessage::ATTITUDE_QUATERNION(dialect::ATTITUDE_QUATERNION_DATA {
+            time_boot_ms,
+            q1,
+            q2,
+            q3,
+            q4,
+            rollspeed,
+            pitchspeed,
+            yawspeed,
+            ..Default::default()
+        })
+    }
+
+    fn inertial(&self, time_usec: u64) -> MavMessage {
+        let [xacc, yacc, zacc] = self.frd(Quantity::SpecificForce);
+        let [xgyro, ygyro, zgyro] = self.frd(Quantity::AngularRate);
+        MavMessage::HIGHRES_IMU(dialect::HIGHRES_IMU_DATA {
+            time_usec,
+            xacc,
+            yacc,
+            zacc,
+            xgyro,
+            ygyro,
+            zgyro,
+            fields_updated: dialect::HighresImuUpdatedFlags::from_bits_truncate(INERTIAL_FIELDS),
+            ..Default::default()
+        })
+    }
+
+    fn setpoint(&self, time_boot_ms: u32) -> MavMessage {
+        let [x, y, z] = self.ned(Quantity::PositionSetpoint);
+        let [vx, vy, vz] = self.ned(Quantity::VelocitySetpoint);
+        let [afx, afy, afz] = self.ned(Quantity::AccelerationSetpoint);
+        MavMessage::POSITION_TARGET_LOCAL_NED(dialect::POSITION_TARGET_LOCAL_NED_DATA {
+            time_boot_ms,
+            x,
+            y,
+            z,
+            vx,
+            vy,
+            vz,
+            afx,
+            afy,
+            afz,
+            yaw: self.yaw_setpoint(),
+            coordinate_frame: dialect::MavFrame::MAV_FRAME_LOCAL_NED,
+            type_mask: dialect::PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE,
+            ..Default::default()
+        })
     }
 
     fn yaw_setpoint(&self) -> f32 {

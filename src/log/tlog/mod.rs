@@ -2,10 +2,12 @@
 //! 1970 UTC, big-endian. No header, no index, no footer.
 
 mod encode;
+mod messages;
 mod reader;
 mod writer;
 
 pub use encode::write_recording;
+pub use messages::MessageWriter;
 pub use reader::{Record, TlogReader};
 pub use writer::TlogWriter;
 

@@ -54,16 +54,6 @@ pub fn clause(named: &Named, vehicle: &Vehicle) -> String {
             values.said("x", 1.0_f64.to_degrees()),
             values.said("y", 1.0_f64.to_degrees())
         ),
-        "motor_lag" => format!(
-            "The motors' lag was left out: the rotors follow their commands with a time constant of {} ms",
-            values.said("time_constant", 1e3)
-        ),
-        "transport_delay" => {
-            format!(
-                "A delay was left out: commands act {} ms after they were sent",
-                values.said("delay", 1e3)
-            )
-        }
         "thrust_curve" => format!(
             "The thrust curve is bent: about hover thrust changes with the command {} % {} than the vehicle file says",
             values.said("curvature", 100.0 * values.value("curvature").signum()),
@@ -74,37 +64,63 @@ pub fn clause(named: &Named, vehicle: &Vehicle) -> String {
             values.said("exponent", 1.0),
             significant(values.value("full_voltage"), 4)
         ),
-        "rotor_inertia" => format!(
-            "The rotors' own inertia was left out: {} kg m^2 each; spinning them up yaws the vehicle, turning it tilts them",
-            values.said("jr", 1.0)
-        ),
-        "blade_flapping" => format!(
-            "The rotors' hub moment was left out: {} N m per m/s of airspeed across the rotor axis",
-            values.said("k", 1.0)
-        ),
-        "inflow" => format!(
-            "Thrust falls with climb: by {} N per m/s of airspeed along the rotor axis",
-            values.said("kz", 1.0)
-        ),
-        "translational_lift" => format!(
-            "Translational lift was left out: {} N per (m/s)^2 of airspeed across the rotor axis",
-            values.said("kh", 1.0)
-        ),
         "slung_load" => format!(
             "A load swings below: {} kg on a cord of {} m",
             values.said("mass", 1.0),
             values.said("length", 1.0)
         ),
-        "tether" => format!(
-            "A line leads down to the ground: {} g more for each metre of height",
-            values.said("line_mass", 1e3)
-        ),
-        "vortex_ring" => format!(
-            "It sank into its own wake: the loss of thrust is {} times that of Leishman's vortex ring",
-            values.said("loss", 1.0)
-        ),
-        _ => in_general(named),
+        _ => of_one_number(&values).unwrap_or_else(|| in_general(named)),
     }
+}
+
+/// Effects that are told by one number: identifier, parameter, factor to the unit that is said, and the words before
+/// and after it.
+const OF_ONE_NUMBER: [(&str, &str, f64, &str, &str); 8] = [
+    (
+        "motor_lag",
+        "time_constant",
+        1e3,
+        "The motors' lag was left out: the rotors follow their commands with a time constant of",
+        "ms",
+    ),
+    ("transport_delay", "delay", 1e3, "A delay was left out: commands act", "ms after they were sent"),
+    (
+        "rotor_inertia",
+        "jr",
+        1.0,
+        "The rotors' own inertia was left out:",
+        "kg m^2 each; spinning them up yaws the vehicle, turning it tilts them",
+    ),
+    (
+        "blade_flapping",
+        "k",
+        1.0,
+        "The rotors' hub moment was left out:",
+        "N m per m/s of airspeed across the rotor axis",
+    ),
+    ("inflow", "kz", 1.0, "Thrust falls with climb: by", "N per m/s of airspeed along the rotor axis"),
+    (
+        "translational_lift",
+        "kh",
+        1.0,
+        "Translational lift was left out:",
+        "N per (m/s)^2 of airspeed across the rotor axis",
+    ),
+    ("tether", "line_mass", 1e3, "A line leads down to the ground:", "g more for each metre of height"),
+    (
+        "vortex_ring",
+        "loss",
+        1.0,
+        "It sank into its own wake: the loss of thrust is",
+        "times that of Leishman's vortex ring",
+    ),
+];
+
+/// In the words of [`OF_ONE_NUMBER`].
+fn of_one_number(values: &Values<'_>) -> Option<String> {
+    let (_, parameter, factor, before, after) =
+        OF_ONE_NUMBER.iter().find(|(id, ..)| *id == values.named.id)?;
+    Some(format!("{before} {} {after}", values.said(parameter, *factor)))
 }
 
 /// The effect's own sentence with its values.

@@ -153,6 +153,11 @@ fn bars(names: &[&str], flights: &[ValidatedFlight<'_>]) -> Option<Bars> {
 }
 
 fn error_table(page: &mut Page, table: &ErrorTable) {
+    let shown = table.shown();
+    if shown.is_empty() {
+        page.note(&format!("{}: none. {}", table.title, table.remarks().join("; ")));
+        return;
+    }
     let mut heads = vec!["rms error".to_owned()];
     for (index, model) in table.models.iter().enumerate() {
         heads.push(format!("{model}|"));
@@ -164,8 +169,7 @@ fn error_table(page: &mut Page, table: &ErrorTable) {
     let value = |value: Option<f64>, digits: i32| {
         number(value.map_or_else(|| "-".to_owned(), |value| significant(value, digits)))
     };
-    let rows: Vec<Vec<Cell>> = table
-        .rows
+    let rows: Vec<Vec<Cell>> = shown
         .iter()
         .map(|row| {
             let mut cells = vec![text(row.name.as_str())];
@@ -181,7 +185,7 @@ fn error_table(page: &mut Page, table: &ErrorTable) {
         .collect();
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     page.table(&table.title, &heads, &rows);
-    table.missing.iter().chain(&table.notes).for_each(|line| page.note(line));
+    table.remarks().into_iter().for_each(|line| page.note(line));
 }
 
 #[cfg(test)]

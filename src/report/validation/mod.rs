@@ -1,5 +1,6 @@
 //! The paper's two validations and open-loop playback as tables and charts.
 
+mod heads;
 mod html;
 
 use serde::Serialize;
@@ -7,6 +8,7 @@ use std::fmt::Write;
 
 use super::chart::{Line, Panel};
 use crate::compare::{Fit, SIGNALS, TenSignals, improvement_percent};
+pub use heads::shortened_names;
 pub use html::{ValidatedFlight, validation_report};
 
 /// RMS errors, one column a model; the first column is what the others are compared with.
@@ -58,46 +60,67 @@ impl ErrorTable {
                 .map(|column| Some(improvement_percent(rms(index, 0)?, rms(index, column)?)))
                 .collect(),
         };
-        let why = |(name, errors): &(String, Result<_, String>)| {
-            errors.as_ref().err().map(|why| format!("{name}: {why}"))
-        };
+        // models that lack the same are told together
+        let mut missing: Vec<(Vec<&str>, &str)> = Vec::new();
+        for (name, errors) in columns {
+            let Err(why) = errors else { continue };
+            match missing.iter_mut().find(|(_, other)| *other == why) {
+                Some((names, _)) => names.push(name),
+                None => missing.push((vec![name.as_str()], why.as_str())),
+            }
+        }
         Self {
             title: title.into(),
             window_s: None,
             models: columns.iter().map(|(name, _)| name.clone()).collect(),
             rows: rows.iter().enumerate().map(row).collect(),
-            missing: columns.iter().filter_map(why).collect(),
+            missing: missing.iter().map(|(names, why)| format!("{}: {why}", names.join(", "))).collect(),
             notes: Vec::new(),
         }
     }
 
-    /// The table for people, in the form of Tables 4 to 12.
+    /// Rows that hold an error of any model.
+    #[must_use]
+    pub fn shown(&self) -> Vec<&ErrorRow> {
+        self.rows.iter().filter(|row| row.rms.iter().any(Option::is_some)).collect()
+    }
+
+    /// What is said below the rows: which models are missing and why, and, where there are rows, the notes.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<&str> {
+        let notes: &[String] = if self.shown().is_empty() { &[] } else { &self.notes };
+        self.missing.iter().chain(notes).map(String::as_str).collect()
+    }
+
+    /// The table for people, in the form of Tables 4 to 12; where there is nothing to show, why.
     #[must_use]
     pub fn page(&self) -> String {
+        let rows = self.shown();
+        if rows.is_empty() {
+            return format!("{}: none\n  {}\n", self.title, self.remarks().join("\n  "));
+        }
         let mut page = format!("{}\n  {:<22}", self.title, "RMS error");
-        for (index, model) in self.models.iter().enumerate() {
-            // names of one family differ at their ends
-            let short: String = model.chars().skip(model.chars().count().saturating_sub(14)).collect();
-            let _ = write!(page, "{short:>15}");
+        for (index, model) in heads::column_heads(&self.models).iter().enumerate() {
+            let _ = write!(page, "{model:>15}");
             if index > 0 {
-                let _ = write!(page, "{:>9}", "P_imp %");
+                let _ = write!(page, "{:>10}", "P_imp %");
             }
         }
         page.push('\n');
         let number = |value: Option<f64>, digits: usize| {
             value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
         };
-        for row in &self.rows {
+        for row in rows {
             let _ = write!(page, "  {:<22}", format!("{} ({})", row.name, row.unit));
             for (index, (rms, gain)) in row.rms.iter().zip(&row.improvement_percent).enumerate() {
                 let _ = write!(page, "{:>15}", number(*rms, 5));
                 if index > 0 {
-                    let _ = write!(page, "{:>9}", number(*gain, 2));
+                    let _ = write!(page, "{:>10}", number(*gain, 2));
                 }
             }
             page.push('\n');
         }
-        for line in self.missing.iter().chain(&self.notes) {
+        for line in self.remarks() {
             let _ = writeln!(page, "  {line}");
         }
         page
@@ -149,7 +172,14 @@ pub fn playback_table(window_s: f64, fits: &[(String, Result<Fit, String>)]) -> 
         .map(|(name, fit)| (name.clone(), fit.clone().map(|fit| fit.quantities().to_vec())))
         .collect();
     let title = format!("Open-loop playback over windows of {window_s} s");
-    ErrorTable { window_s: Some(window_s), ..ErrorTable::new(title, &ROWS, &columns) }
+    let mut table = ErrorTable { window_s: Some(window_s), ..ErrorTable::new(title, &ROWS, &columns) };
+    let shown = table.shown();
+    let absent: Vec<&str> =
+        ROWS.iter().map(|(name, _)| *name).filter(|name| shown.iter().all(|row| row.name != *name)).collect();
+    if !absent.is_empty() {
+        table.notes.push(format!("not recorded (position needs velocity as well): {}", absent.join(", ")));
+    }
+    table
 }
 
 /// Figures 6 to 9: the path over ground, then each of the ten signals along time, recorded and simulated.
@@ -198,5 +228,25 @@ mod tests {
         assert_eq!(table.missing, ["GD: diverged"]);
         let page = table.page();
         assert!(page.contains("4.83") && page.contains("x (m)") && page.contains("GD: diverged"), "{page}");
+    }
+
+    #[test]
+    fn what_no_model_has_is_left_out_and_said_in_one_line() {
+        let fit = Fit { attitude_rad: Some(0.1), rates_rad_s: Some(0.2), windows: 3, ..Fit::default() };
+        let page = playback_table(0.5, &[("a".to_owned(), Ok(fit))]).page();
+        assert!(!page.contains("velocity (m/s)") && page.contains("attitude (rad)"), "{page}");
+        assert!(
+            page.contains("not recorded (position needs velocity as well): position, velocity\n"),
+            "{page}"
+        );
+        let none = || Err("no setpoints".to_owned());
+        let mut table = closed_loop_table(
+            "Again",
+            &TenSignals::default(),
+            &[("a".to_owned(), none()), ("b".to_owned(), none())],
+            (0.0, 1.0),
+        );
+        table.notes.push("controller: a PID".to_owned());
+        assert_eq!(table.page(), "Again: none\n  a, b: no setpoints\n");
     }
 }
