@@ -250,6 +250,7 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
             }
         }
     }
+    let after = with_heights(flights, after)?;
     let found = finding_of(&after);
     let latency = LatencyFinding {
         against_lag: latency.against_lag,
@@ -276,6 +277,24 @@ fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitte
         base.vehicle.body.mass_kg = lift_load(load, base.vehicle.body.mass_kg);
     }
     fit(flights, base, Newton::Held)
+}
+
+/// The ceilings of a fit with their height estimated, too: from one between those that were tried on, unless it runs away.
+/// While effects are weighed against each other it stays where it was tried, or the height would take the others' part.
+fn with_heights(flights: &[Trace], fitted: Fitted) -> Result<Fitted, PhysicsError> {
+    let is_ceiling = |present: &Present| present.effect.id() == "ceiling_effect";
+    if !fitted.base.present.iter().any(is_ceiling) {
+        return Ok(fitted);
+    }
+    let mut base = fitted.base.clone();
+    base.present.iter_mut().filter(|of| is_ceiling(of)).for_each(|of| of.free = vec![0, 2]);
+    let placed = fit(flights, base, Newton::Held)?;
+    let bounded = placed.base.present.iter().filter(|of| is_ceiling(of)).any(|of| {
+        of.free.iter().any(|&slot| {
+            of.parameter(slot).is_some_and(|p| of.values[slot] <= p.min || of.values[slot] >= p.max)
+        })
+    });
+    Ok(if placed.misfit() < fitted.misfit() && !bounded { placed } else { fitted })
 }
 
 /// How often the search may go on after that.

@@ -54,7 +54,8 @@ impl Case {
                 self.note(id, &values);
             }
             "ceiling_effect" => {
-                let top = self.room.heights.1 + self.craft.radius;
+                // nearer, its suction draws the vehicle through it
+                let top = self.room.heights.1 + dice.random_range(1.8..2.5) * self.craft.radius;
                 self.hidden.ceiling = Some(if entry.ends_with("exponential") {
                     Ceiling::Exponential(top, dice.random_range(0.3..0.8))
                 } else {
