@@ -177,12 +177,8 @@ pub(super) fn apart(came: f64, expected: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::log::Autopilot;
+    use crate::simulate::random_vehicle;
     use crate::vehicle::{Actuator, PwmRange};
-
-    fn x500() -> Vehicle {
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
-        crate::config::load_vehicle(&file).expect("shipped")
-    }
 
     fn hovering(vehicle: &Vehicle, parameters: &Parameters, quantity: Quantity, value: f64) -> Weighed {
         let mut lift = Lift::new(vehicle, parameters);
@@ -202,7 +198,7 @@ mod tests {
 
     #[test]
     fn a_hovering_vehicle_is_weighed_by_speeds_fractions_and_pulses() {
-        let (vehicle, silent) = (x500(), Parameters::default());
+        let (vehicle, silent) = (random_vehicle(1).truth, Parameters::default());
         let hover_n = vehicle.body.mass_kg * vehicle.gravity_m_s2 / 4.0;
         let u = vehicle.propulsion.command_from_thrust(hover_n);
         let speed = (hover_n / vehicle.propulsion.thrust_coefficient.expect("known")).sqrt();
@@ -220,7 +216,7 @@ mod tests {
 
     #[test]
     fn another_unit_is_said_and_silence_is_no_other_vehicle() {
-        let mut vehicle = x500();
+        let mut vehicle = random_vehicle(1).truth;
         vehicle.propulsion.actuator = Actuator::Pwm(Some(PwmRange { min_us: 1000.0, max_us: 2000.0 }));
         let strange = hovering(&vehicle, &Parameters::default(), Quantity::ActuatorCommand, 0.7);
         assert!(matches!(&strange, Weighed::Notable(text) if text.contains("in another")), "{strange:?}");

@@ -98,8 +98,8 @@ mod tests {
         // seldom for a minute on the ground, then as asked for
         let mut late = stream(1.0, 60.0);
         late.time_s.extend(stream(100.0, 20.0).time_s.iter().map(|time_s| 60.5 + time_s));
-        assert_eq!(check(&[needed("body rates", &late)], &[(60.5, 80.0)]), Ok(()));
+        assert!(check(&[needed("body rates", &late)], &[(60.5, 80.0)]).is_ok());
         assert!(check(&[needed("body rates", &late)], &[(5.0, 50.0)]).is_err());
-        assert_eq!(check(&[outputs], &[]), Ok(()));
+        assert!(check(&[outputs], &[]).is_ok());
     }
 }

@@ -256,20 +256,17 @@ impl AutopilotCascade {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simulate::random_vehicle;
 
     #[test]
     fn a_drift_takes_nothing_of_the_climb() {
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
-        let vehicle = crate::config::load_vehicle(&file).expect("shipped");
+        let vehicle = random_vehicle(1).truth;
         let gains = AutopilotGains::default();
         let thrust_n = |drift_m_s: f64, away_m: f64| {
             let mut cascade = AutopilotCascade::new(&vehicle, gains, 0.0).expect("flies");
             let across = Vector3::x();
-            let estimate = State {
-                velocity_m_s: across * drift_m_s,
-                attitude: UnitQuaternion::identity(),
-                ..State::default()
-            };
+            let estimate =
+                State { velocity_m_s: across * drift_m_s, ..State::at_rest(Vector3::zeros(), 0.0) };
             let setpoint = Setpoint {
                 position_m: across * away_m + Vector3::z(),
                 velocity_m_s: Vector3::z() * 2.0,
