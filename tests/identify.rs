@@ -121,9 +121,9 @@ fn a_weighed_mass_moves_the_scale_to_the_thrust() {
 fn a_log_without_actuators_says_what_to_request() {
     let vehicle = load_vehicle(&fixture("p01_vehicle.toml")).unwrap();
     let mut recording = read(&fixture("p01_identify_0_25s.tlog"));
-    recording.streams.retain(|key, _| {
-        !matches!(key.quantity, mavid::log::Quantity::ActuatorCommand | mavid::log::Quantity::RotorSpeed)
-    });
+    recording
+        .streams
+        .retain(|key, _| !matches!(key.quantity, Quantity::ActuatorCommand | Quantity::RotorSpeed));
     let error = condition(&recording, &vehicle, &ConditionSettings::default()).unwrap_err();
     assert!(matches!(error, SignalsError::NoActuators { .. }));
     assert!(error.to_string().contains("SERVO_OUTPUT_RAW"), "{error}");
@@ -133,7 +133,7 @@ fn a_log_without_actuators_says_what_to_request() {
 fn without_body_rates_inertia_is_not_a_number() {
     let vehicle = load_vehicle(&fixture("p01_vehicle.toml")).unwrap();
     let mut recording = read(&fixture("p01_identify_0_25s.tlog"));
-    recording.streams.retain(|key, _| key.quantity != mavid::log::Quantity::AngularRate);
+    recording.streams.retain(|key, _| key.quantity != Quantity::AngularRate);
     let found = identified(&recording, &vehicle, ThrustPreference::Measured);
     for parameter in &found.best.result.parameters[1..] {
         assert!(matches!(&parameter.finding, Finding::NotDetermined { reason } if reason.contains("rates")));
@@ -256,7 +256,7 @@ fn a_flight_over_a_thin_link_is_refused_with_its_rates_and_one_that_suffices_is_
         other => panic!("{other:?}"),
     };
     let all = refused(&thinned(&whole, 9.5, |_| true));
-    for said in ["body rates (HIGHRES_IMU) at 9.", "(ESC_STATUS) at 9.", "33 Hz at least", "on-board log"] {
+    for said in ["body rates (HIGHRES_IMU) at 9.", "(ESC_STATUS) at 9.", "38 Hz at least", "on-board log"] {
         assert!(all.contains(said), "{said}: {all}");
     }
     let driven = |quantity| matches!(quantity, Quantity::RotorSpeed | Quantity::ActuatorCommand);

@@ -315,7 +315,7 @@ fn a_radio_gets_the_set_to_fly_by_and_a_vehicle_that_sends_nothing_is_refused() 
     let said = report.identification();
     assert_eq!((said.level, said.subject), (Level::Refusal, "identification"));
     assert!(
-        said.expected.contains("body rates at 20 Hz") && said.expected.contains("actuator outputs at 33 Hz"),
+        said.expected.contains("body rates at 38 Hz") && said.expected.contains("actuator outputs at 38 Hz"),
         "{said}"
     );
     assert!(said.came.contains("ATTITUDE_QUATERNION at 10.0 Hz"), "{said}");
