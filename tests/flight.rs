@@ -8,8 +8,9 @@ mod flying;
 use std::time::Duration;
 
 use flying::{Flying, vehicle_settings};
-use mavid::fly::{Cause, Ending, Event, Key, Origin};
-use mavid::log::SystemId;
+use mavid::fly::parameters::Parameters;
+use mavid::fly::{Cause, Check, Ending, Event, Key, Lift, Origin, Outcome};
+use mavid::log::{Autopilot, SystemId};
 use mavid::sitl::{ArduPilotRelease, AutopilotKind, Fault, Mode};
 
 const PX4: AutopilotKind = AutopilotKind::Px4;
@@ -85,7 +86,11 @@ fn a_vehicle_that_is_not_the_embedded_one_is_not_armed_without_the_order() {
 fn only_a_vehicle_that_is_named_is_flown() {
     let mut flying = Flying::new(vehicle_settings(PX4), |sortie| sortie.system = Some(SystemId(9)));
     assert_eq!(flying.finish().ending, Ending::NotFlown);
-    assert!(flying.cause().to_string().contains("system 9, heard system 1"), "{}", flying.cause());
+    assert!(
+        flying.cause().to_string().contains("system 9 within 10 s, heard system 1"),
+        "{}",
+        flying.cause()
+    );
     assert!(flying.commands.is_empty());
 }
 
@@ -359,5 +364,53 @@ fn over_a_bad_link_the_flight_ends_and_no_setpoint_is_stale() {
             assert!(flying.setpoints.iter().all(|(at, setpoint)| *at == setpoint.time));
             assert!(flying.setpoints.windows(2).all(|pair| pair[0].0 < pair[1].0));
         }
+    }
+}
+
+/// Flown with a file whose mass is `factor` times the vehicle's.
+fn flown_by_a_file(factor: f64, accepted: Vec<Check>) -> (Flying, Outcome) {
+    let settings = vehicle_settings(PX4);
+    let mut file = settings.vehicle.clone();
+    file.body.mass_kg *= factor;
+    let mut flying = Flying::new(settings, |sortie| {
+        sortie.settings.await_clearance = true;
+        sortie.settings.accepted = accepted;
+    });
+    // what turns pulses into commands, as it answers when asked
+    let pulses = (1..=4).flat_map(|output| {
+        [("FUNC", 100.0 + f64::from(output)), ("MIN", 1000.0), ("MAX", 2000.0)]
+            .map(|(name, value)| (format!("PWM_MAIN_{name}{output}"), value))
+    });
+    let parameters =
+        Parameters { autopilot: Autopilot::Px4, values: pulses.collect(), ..Parameters::default() };
+    flying.until(30.0, "the checks", |flying| flying.flight.wants_clearance());
+    flying.event(Event::Cleared(Ok(Box::new(Lift::new(&file, &parameters)))));
+    let outcome = flying.finish();
+    (flying, outcome)
+}
+
+#[test]
+fn what_hovers_is_weighed_before_the_trajectory() {
+    let said = |flying: &Flying| flying.notes.iter().find(|note| note.kind == "hover thrust").cloned();
+    for (factor, level) in [(1.0, "Information"), (0.75, "Information"), (1.6, "Warning"), (0.65, "Warning")]
+    {
+        let (flying, outcome) = flown_by_a_file(factor, Vec::new());
+        assert!(outcome.is_whole(), "{factor}: {}", flying.story());
+        let note = said(&flying).unwrap();
+        assert_eq!(format!("{:?}", note.level), level, "{factor}: {}", note.text);
+    }
+    for factor in [0.3, 3.0] {
+        let (flying, outcome) = flown_by_a_file(factor, Vec::new());
+        assert_eq!(outcome.ending, Ending::Landed, "{}", flying.story());
+        let cause = flying.cause();
+        assert!(matches!(cause, Cause::OtherVehicle(_)), "{}", flying.story());
+        let weight = format!("weight, {:.4} N", factor * 2.0643 * 9.81);
+        assert!(
+            cause.to_string().contains(&weight) && cause.to_string().contains("SERVO_OUTPUT_RAW"),
+            "{cause}"
+        );
+        assert!(!flying.story().contains("phase: trajectory"), "{}", flying.story());
+        let (flying, outcome) = flown_by_a_file(factor, vec![Check::HoverThrust]);
+        assert!(outcome.is_whole() && said(&flying).is_some(), "{}", flying.story());
     }
 }

@@ -10,8 +10,9 @@ use std::path::Path;
 use std::sync::mpsc;
 use std::time::{Duration, UNIX_EPOCH};
 
+use mavid::config::load_vehicle;
 use mavid::fly::view::{KeyCommand, ViewModel};
-use mavid::fly::{self, Console, Origin, Outcome, Ride};
+use mavid::fly::{self, Check, Console, Origin, Outcome, Ride};
 use mavid::link::{Link, LinkOptions, Signing, SigningKey};
 use mavid::log::{ComponentId, SystemId};
 use mavid::sitl::{ArduPilotRelease, AutopilotKind, LinkRole, Pace, Settings, Vehicle, serve};
@@ -39,13 +40,23 @@ async fn checked_as(
         boot_unix_us: u64::try_from(UNIX_EPOCH.elapsed().unwrap().as_micros()).unwrap(),
         ..base
     };
+    let flown = settings.vehicle.clone();
+    checked_by(name, settings, flown, (own_key, Vec::new())).await
+}
+
+/// The same by a vehicle file, with refusals that are overruled.
+async fn checked_by(
+    name: &str,
+    settings: Settings,
+    file: mavid::vehicle::Vehicle,
+    (own_key, accepted): (Option<SigningKey>, Vec<Check>),
+) -> Outcome {
     let mut sortie = flying::sortie(&settings);
     let connect_timeout = Duration::from_secs(10);
     let base = sortie.settings;
-    sortie.settings = fly::Settings { await_clearance: true, origin: Origin::Here, connect_timeout, ..base };
+    sortie.settings =
+        fly::Settings { await_clearance: true, origin: Origin::Here, connect_timeout, accepted, ..base };
     sortie.limits = Limits::default();
-    let flown = settings.vehicle.clone();
-
     let options = LinkOptions {
         system: SystemId(1),
         component: ComponentId(1),
@@ -62,7 +73,7 @@ async fn checked_as(
     let _ = std::fs::remove_dir_all(&dir);
     std::fs::create_dir_all(&dir).unwrap();
     let address = format!("udpout:{address}").parse().unwrap();
-    let ride = Ride { sortie, vehicle: flown, address, signing: own_key.map(Signing::with_key), dir };
+    let ride = Ride { sortie, vehicle: file, address, signing: own_key.map(Signing::with_key), dir };
     let outcome = ends_after_checks(ride).await;
     vehicle.abort();
     outcome
@@ -125,4 +136,33 @@ async fn a_vehicle_that_has_just_booted_is_waited_for() {
     let fence = [("FENCE_ENABLE", 1.0), ("FENCE_RADIUS", 10.0), ("FENCE_ALT_MAX", 10.0)];
     let outcome = checked_as("booted", booted, &fence, [None, None]).await;
     assert!(why(&outcome).contains("the operator"), "{}", why(&outcome));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_file_of_another_vehicle_is_refused_before_it_is_armed() {
+    let shipped =
+        |name: &str| load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(name)).unwrap();
+    let x500 = || flying::vehicle_settings(AutopilotKind::Px4);
+    let mut light = shipped("x500.toml");
+    light.body.mass_kg *= 0.2;
+    let hovers_on = |share: f64| Settings { parameters: vec![("MOT_THST_HOVER".into(), share)], ..copter() };
+    let (small, overruled, light, own, heavy) = tokio::join!(
+        checked_by("small", x500(), shipped("crazyflie.toml"), (None, Vec::new())),
+        checked_by("overruled", x500(), shipped("crazyflie.toml"), (None, vec![Check::Rotors])),
+        checked_by("light", x500(), light, (None, Vec::new())),
+        checked_by("own", copter(), shipped("x500.toml"), (None, Vec::new())),
+        checked_by("heavy", hovers_on(0.13), shipped("x500.toml"), (None, Vec::new())),
+    );
+    let small = why(&small);
+    assert!(small.contains("rotors: expected 0.046 m from the middle") && small.contains("0.24"), "{small}");
+    assert!(why(&overruled).contains("the operator"), "{}", why(&overruled));
+    let light = why(&light);
+    assert!(light.contains("hover thrust: expected the vehicle file's weight, 4.050 N"), "{light}");
+    assert!(light.contains("MPC_THR_HOVER"), "{light}");
+    assert!(why(&own).contains("the operator"), "{}", why(&own));
+    assert!(why(&heavy).contains("MOT_THST_HOVER = 0.130"), "{}", why(&heavy));
+}
+
+fn copter() -> Settings {
+    flying::vehicle_settings(AutopilotKind::ArduPilot(ArduPilotRelease::V4_7))
 }

@@ -9,7 +9,7 @@ use mavid::estimate::{
     Finding, Identification, IdentifySettings, LatencyKind, Method, Theta, apply_anchor, identified_vehicle,
     identify, inertia_of, is_physical, scale_of, theta_of,
 };
-use mavid::log::{LoadOptions, Recording, csv, load};
+use mavid::log::{LoadOptions, Quantity, Recording, csv, load};
 use mavid::physics::RigidBodyModel;
 use mavid::signals::{ConditionSettings, SignalsError, ThrustPreference, condition};
 use mavid::simulate::pid::{PidFlightSettings, simulate_pid_flight};
@@ -121,9 +121,9 @@ fn a_weighed_mass_moves_the_scale_to_the_thrust() {
 fn a_log_without_actuators_says_what_to_request() {
     let vehicle = load_vehicle(&fixture("p01_vehicle.toml")).unwrap();
     let mut recording = read(&fixture("p01_identify_0_25s.tlog"));
-    recording.streams.retain(|key, _| {
-        !matches!(key.quantity, mavid::log::Quantity::ActuatorCommand | mavid::log::Quantity::RotorSpeed)
-    });
+    recording
+        .streams
+        .retain(|key, _| !matches!(key.quantity, Quantity::ActuatorCommand | Quantity::RotorSpeed));
     let error = condition(&recording, &vehicle, &ConditionSettings::default()).unwrap_err();
     assert!(matches!(error, SignalsError::NoActuators { .. }));
     assert!(error.to_string().contains("SERVO_OUTPUT_RAW"), "{error}");
@@ -133,7 +133,7 @@ fn a_log_without_actuators_says_what_to_request() {
 fn without_body_rates_inertia_is_not_a_number() {
     let vehicle = load_vehicle(&fixture("p01_vehicle.toml")).unwrap();
     let mut recording = read(&fixture("p01_identify_0_25s.tlog"));
-    recording.streams.retain(|key, _| key.quantity != mavid::log::Quantity::AngularRate);
+    recording.streams.retain(|key, _| key.quantity != Quantity::AngularRate);
     let found = identified(&recording, &vehicle, ThrustPreference::Measured);
     for parameter in &found.best.result.parameters[1..] {
         assert!(matches!(&parameter.finding, Finding::NotDetermined { reason } if reason.contains("rates")));
@@ -226,5 +226,53 @@ fn the_autopilots_masses_from_pulse_widths() {
             }
             (found, weak) => unreachable!("{log}: {found:?} for {weak:?}"),
         }
+    }
+}
+
+/// Every stream of the recording at no more samples a second than this.
+fn thinned(recording: &Recording, rate_hz: f64, only: impl Fn(Quantity) -> bool) -> Recording {
+    let mut out = recording.clone();
+    for (_, stream) in out.streams.iter_mut().filter(|(key, _)| only(key.quantity)) {
+        let mut slot = f64::NEG_INFINITY;
+        let kept: Vec<usize> = (0..stream.len())
+            .filter(|index| {
+                let own = (stream.time_s[*index] * rate_hz).floor();
+                own > std::mem::replace(&mut slot, own)
+            })
+            .collect();
+        stream.values = kept.iter().flat_map(|index| stream.sample(*index).to_vec()).collect();
+        stream.time_s = kept.iter().map(|index| stream.time_s[*index]).collect();
+    }
+    out
+}
+
+#[test]
+fn a_flight_over_a_thin_link_is_refused_with_its_rates_and_one_that_suffices_is_not() {
+    let (whole, vehicle) =
+        (read(&fixture("p01_identify_0_25s.tlog")), load_vehicle(&fixture("p01_vehicle.toml")).unwrap());
+    let conditioned = |recording: &Recording| condition(recording, &vehicle, &ConditionSettings::default());
+    let refused = |recording: &Recording| match conditioned(recording) {
+        Err(error @ SignalsError::TooSlow { .. }) => error.to_string(),
+        other => panic!("{other:?}"),
+    };
+    let all = refused(&thinned(&whole, 9.5, |_| true));
+    for said in ["body rates (HIGHRES_IMU) at 9.", "(ESC_STATUS) at 9.", "38 Hz at least", "on-board log"] {
+        assert!(all.contains(said), "{said}: {all}");
+    }
+    let driven = |quantity| matches!(quantity, Quantity::RotorSpeed | Quantity::ActuatorCommand);
+    let actuators = refused(&thinned(&whole, 20.0, driven));
+    assert!(actuators.contains("rotor speeds (ESC_STATUS) at 20.0 Hz"), "{actuators}");
+    assert!(!actuators.contains("body rates"), "{actuators}");
+    let turning = |quantity| matches!(quantity, Quantity::AngularRate | Quantity::Attitude);
+    let rates = refused(&thinned(&whole, 12.0, turning));
+    assert!(rates.contains("body rates") && !rates.contains("ESC_STATUS"), "{rates}");
+    // above the least rates the numbers stay within their standard errors
+    let full = identified(&whole, &vehicle, ThrustPreference::Measured);
+    let some = identified(&thinned(&whole, 42.0, |_| true), &vehicle, ThrustPreference::Measured);
+    let (full, some) = (full.best.result.estimated, some.best.result.estimated);
+    for index in [0, 1, 4, 6] {
+        let std = (full.covariance[(index, index)] + some.covariance[(index, index)]).sqrt();
+        let off = (some.theta[index] - full.theta[index]).abs() / std;
+        assert!(off < 3.0, "parameter {index} is {off:.1} standard errors off");
     }
 }

@@ -203,6 +203,36 @@ async fn of_setpoints_only_the_latest_waits() {
     drop(first_out);
 }
 
+/// What is sent past the queue keeps its place among what goes through it.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn over_udp_the_latest_is_sent_at_once_and_in_order() {
+    let port = free_port("127.0.0.1");
+    let address = |kind: &str| format!("{kind}:127.0.0.1:{port}").parse::<Address>().unwrap();
+    let (mut sitl, sitl_out) = Link::open(&address("udpin"), vehicle()).await.unwrap();
+    let (mut ground, ground_out) = Link::open(&address("udpout"), LinkOptions::default()).await.unwrap();
+    // both know each other
+    ground_out.send_message(&ground_heartbeat()).unwrap();
+    frame(&mut sitl).await;
+    sitl_out.send_message(&heartbeat()).unwrap();
+    frame(&mut ground).await;
+    for (out, reader) in [(&ground_out, &mut sitl), (&sitl_out, &mut ground)] {
+        for turn in 0..50 {
+            out.send_latest(&heartbeat()).unwrap();
+            if turn % 3 == 0 {
+                out.send_message(&ground_heartbeat()).unwrap();
+            }
+        }
+        out.flush().await.unwrap();
+        let sent = out.stats().sent_frames;
+        assert_eq!(sent + out.stats().replaced, 1 + 50 + 17);
+        for sequence in 1..sent {
+            let frame = frame(reader).await;
+            assert_eq!(u64::from(frame.header.sequence), sequence);
+        }
+        assert_eq!(reader.stats().lost(), 0);
+    }
+}
+
 /// Frames of MAVLink 1 and of unknown messages come through, a frame inside a payload does not.
 #[tokio::test]
 async fn every_whole_frame_comes_through_and_none_from_within_a_payload() {

@@ -301,6 +301,7 @@ fn px4_refuses_with_another_result_and_esc_status_stays_silent() {
     };
     let requests = requested(Autopilot::Px4, &mut streamer, Wire::new(0.0, 5), LinkKind::Wide);
     assert!(requests.report().suffices_to_identify());
+    assert_eq!(requests.report().identification().level, Level::Ok);
 }
 
 #[test]
@@ -311,6 +312,14 @@ fn a_radio_gets_the_set_to_fly_by_and_a_vehicle_that_sends_nothing_is_refused() 
     assert!(report.arrived_bytes_s < 2880.0, "{} B/s", report.arrived_bytes_s);
     assert!(!report.suffices_to_identify());
     assert_eq!(worst(&report.findings()), Level::Warning);
+    let said = report.identification();
+    assert_eq!((said.level, said.subject), (Level::Refusal, "identification"));
+    assert!(
+        said.expected.contains("body rates at 38 Hz") && said.expected.contains("actuator outputs at 38 Hz"),
+        "{said}"
+    );
+    assert!(said.came.contains("ATTITUDE_QUATERNION at 10.0 Hz"), "{said}");
+    assert!(said.came.contains("nothing for actuator outputs"), "{said}");
 
     let dead = requested(Autopilot::Px4, &mut ardupilot_without_highres(), Wire::new(1.0, 0), LinkKind::Wide);
     assert_eq!(worst(&dead.report().findings()), Level::Refusal);

@@ -3,6 +3,24 @@
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
+/// The forms of an address.
+macro_rules! address_forms {
+    () => {
+        "udpin:HOST:PORT (waits for the other end), udpout:HOST:PORT, tcpin:HOST:PORT (waits), tcpout:HOST:PORT, \
+         serial:PATH:BAUD (8 data bits, no parity), serial:PATH:BAUD:rtscts (with hardware flow control), or pty:PATH (makes \
+         a pseudo-terminal that the other end opens as its serial port PATH)"
+    };
+}
+
+/// Help of an address.
+pub(super) const ADDRESS: &str = address_forms!();
+/// Help of several.
+const LISTEN: &str = concat!(
+    "a link: ",
+    address_forms!(),
+    "; may be given several times [default: those of the autopilot's own simulator]"
+);
+
 /// Arguments of `mavid demo`.
 #[derive(Debug, Args)]
 pub struct DemoArgs {
@@ -26,9 +44,7 @@ pub struct SitlArgs {
     /// effects to conceal from whoever connects: [[effect]] tables with `id` and the parameters by name
     #[arg(long, value_name = "FILE")]
     pub effects: Option<PathBuf>,
-    /// a link: udpin:HOST:PORT, udpout:HOST:PORT, tcpin:HOST:PORT, tcpout:HOST:PORT or pty:PATH; may be given
-    /// several times [default: those of the autopilot's own simulator]
-    #[arg(long, value_name = "ADDRESS")]
+    #[arg(long, value_name = "ADDRESS", help = LISTEN)]
     pub listen: Vec<String>,
     /// whose behaviour
     #[arg(long, value_enum, default_value = "px4")]
@@ -100,8 +116,7 @@ pub enum ArduPilotVersion {
 /// Arguments of `mavid record`.
 #[derive(Debug, Args)]
 pub struct RecordArgs {
-    /// udpin:HOST:PORT, udpout:HOST:PORT, tcpout:HOST:PORT, tcpin:HOST:PORT or serial:PATH:BAUD[:rtscts]
-    #[arg(long, value_name = "ADDRESS")]
+    #[arg(long, value_name = "ADDRESS", help = ADDRESS)]
     pub connect: String,
     /// telemetry log to write
     #[arg(long, value_name = "FILE.tlog")]
@@ -126,8 +141,7 @@ pub struct RecordArgs {
 pub struct ReplayArgs {
     /// telemetry log to play
     pub log: PathBuf,
-    /// where to: an address as for `mavid record`
-    #[arg(long, value_name = "ADDRESS", default_value = "udpout:127.0.0.1:14550")]
+    #[arg(long, value_name = "ADDRESS", default_value = "udpout:127.0.0.1:14550", help = ADDRESS)]
     pub to: String,
     /// how many times faster than it was; 0 is as fast as possible
     #[arg(long, value_name = "N", default_value_t = 1.0, allow_negative_numbers = true)]

@@ -165,8 +165,7 @@ pub struct IdentifyArgs {
 /// Arguments of `mavid fly`.
 #[derive(Debug, Args)]
 pub struct FlyArgs {
-    /// udpin:HOST:PORT, udpout:HOST:PORT, tcpin:HOST:PORT, tcpout:HOST:PORT or serial:PATH:BAUD
-    #[arg(long, value_name = "ADDRESS")]
+    #[arg(long, value_name = "ADDRESS", help = live::ADDRESS)]
     pub connect: String,
     /// trajectory.toml
     #[arg(long, value_name = "FILE")]
@@ -201,12 +200,26 @@ pub struct FlyArgs {
     /// tilt at which the flight is aborted, degrees [default: 20 more than planned]
     #[arg(long, value_name = "DEG")]
     pub tilt_max: Option<f64>,
+    /// a check whose refusal is taken for a warning; may be given several times
+    #[arg(long, value_enum, value_name = "CHECK")]
+    pub accept: Vec<CheckName>,
     /// key that signs what is sent
     #[arg(long, value_name = "FILE")]
     pub signing_key_file: Option<PathBuf>,
     /// lines instead of the terminal view
     #[arg(long)]
     pub plain: bool,
+}
+
+/// Checks that may be overruled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CheckName {
+    /// that what arrives suffices to identify the vehicle; it is flown and recorded, and not identified
+    Identification,
+    /// that the vehicle file's thrust carries its weight by what the vehicle hovers on
+    HoverThrust,
+    /// that the vehicle file's rotors are as many and as far out as the autopilot's
+    Rotors,
 }
 
 /// Where a trajectory's horizontal origin lies.

@@ -18,8 +18,10 @@ mod course;
 pub mod finding;
 mod flight;
 mod health;
+mod lift;
 pub mod live;
 mod modes;
+mod news;
 mod order;
 mod outcome;
 pub mod parameters;
@@ -39,6 +41,7 @@ pub use commander::{Answer, AnswerResult, Manner};
 pub use course::{Around, Course, PathClock, PathTime, Track, transfer};
 pub use flight::{Action, Event, Flight, Key, Status};
 pub use health::{BatteryLevel, EstimatorReport, SystemReport};
+pub use lift::{Lift, Weighed};
 pub use modes::{Mode, Stack};
 pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
 pub use runner::{
@@ -46,5 +49,5 @@ pub use runner::{
 };
 pub use safety::{Guide, Lead, Streamed, Streamer};
 pub use setpoint::{Place, Setpoint};
-pub use sortie::{Origin, Settings, Sortie};
+pub use sortie::{Check, Origin, Settings, Sortie};
 pub use target::{Order, Target, heartbeat};

@@ -8,6 +8,8 @@ use crate::log::{self, Frame, Record, SystemId};
 
 /// After the first vehicle, others are waited for this long: each sends a HEARTBEAT a second.
 const SETTLE: Duration = Duration::from_millis(2500);
+/// One that was named is waited for this long after another was heard.
+const NAMED_WITHIN: Duration = Duration::from_secs(10);
 /// MAV_TYPE of multirotors: quadrotor, coaxial, hexa-, octo-, tri-, dodeca-, decarotor.
 const MULTIROTORS: [u8; 7] = [2, 3, 13, 14, 15, 29, 35];
 const ARMED: u8 = 128;
@@ -59,6 +61,11 @@ impl Roster {
         if let Some(system) = system {
             return match self.listed.iter().find(|listed| listed.vehicle.system == system) {
                 Some(listed) => admit(listed),
+                None if self.others_for(now) > NAMED_WITHIN => Choice::Refuse(format!(
+                    "expected a HEARTBEAT of system {system} within {} s, heard {}",
+                    NAMED_WITHIN.as_secs(),
+                    self.heard()
+                )),
                 None => Choice::Wait,
             };
         }
@@ -77,6 +84,18 @@ impl Roster {
                 ))
             }
         }
+    }
+
+    /// For how long any vehicle has been heard.
+    fn others_for(&self, now: Duration) -> Duration {
+        self.first.map_or(Duration::ZERO, |first| now.saturating_sub(first))
+    }
+
+    /// Others are heard, and that of this system id is not: who, in words, once it is time to say so.
+    #[must_use]
+    pub fn without(&self, now: Duration, system: SystemId) -> Option<String> {
+        let named = self.listed.iter().any(|listed| listed.vehicle.system == system);
+        (!named && self.others_for(now) >= SETTLE).then(|| self.heard())
     }
 
     /// Who was heard, in words.
@@ -160,6 +179,20 @@ mod tests {
             matches!(choice(&frames, Some(2)), Choice::Vehicle(_, target, _) if target.system == SystemId(2))
         );
         assert_eq!(choice(&frames, Some(3)), Choice::Wait);
+    }
+
+    #[test]
+    fn one_that_nobody_is_is_not_waited_for_for_ever() {
+        let mut roster = Roster::default();
+        let frame = heartbeat(1, 2, 3, 0);
+        roster.hear(Duration::from_secs(5), Frame::at_start(&frame).unwrap());
+        let named = |seconds| roster.choose(Duration::from_secs(seconds), Some(SystemId(9)));
+        assert_eq!(named(14), Choice::Wait);
+        let Choice::Refuse(why) = named(16) else { panic!() };
+        assert!(why.contains("system 9 within 10 s, heard system 1"), "{why}");
+        assert_eq!(roster.without(Duration::from_secs(6), SystemId(9)), None);
+        assert_eq!(roster.without(Duration::from_secs(8), SystemId(9)).as_deref(), Some("system 1"));
+        assert_eq!(roster.without(Duration::from_secs(8), SystemId(1)), None);
     }
 
     #[test]

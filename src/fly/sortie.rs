@@ -3,6 +3,8 @@
 use std::time::Duration;
 
 use super::course::Course;
+use super::preflight::{HOVER, ROTORS};
+use super::requests::IDENTIFICATION;
 use crate::log::{ComponentId, SystemId};
 use crate::vehicle::Limits;
 
@@ -34,6 +36,29 @@ pub enum Origin {
     Here,
 }
 
+/// A check whose refusal the operator may overrule.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Check {
+    /// that what arrives suffices to identify the vehicle
+    Identification,
+    /// that the file's thrust carries its weight by the command on which the vehicle hovers
+    HoverThrust,
+    /// that the file's rotors are those of the autopilot
+    Rotors,
+}
+
+impl Check {
+    /// As the findings' subject.
+    #[must_use]
+    pub fn subject(self) -> &'static str {
+        match self {
+            Self::Identification => IDENTIFICATION,
+            Self::HoverThrust => HOVER,
+            Self::Rotors => ROTORS,
+        }
+    }
+}
+
 /// How a flight is conducted. The times and distances are those of `fly`'s safety rules.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
@@ -61,6 +86,8 @@ pub struct Settings {
     pub watch_max: Duration,
     /// somebody else checks parameters and message rates and says so by [`Event::Cleared`](super::Event)
     pub await_clearance: bool,
+    /// a refusal by one of these is a warning
+    pub accepted: Vec<Check>,
 }
 
 impl Default for Settings {
@@ -78,6 +105,7 @@ impl Default for Settings {
             hold_then_land: Duration::from_secs(10),
             watch_max: Duration::from_secs(120),
             await_clearance: false,
+            accepted: Vec::new(),
         }
     }
 }

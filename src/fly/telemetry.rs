@@ -6,7 +6,9 @@ use std::time::Duration;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::health::{BatteryLevel, EstimatorReport, SystemReport, battery_status, level_of_percent};
+use super::lift::Outputs;
 use super::modes::Stack;
+use super::news::Novelty;
 use super::order::SendingOrder;
 use super::reset::{Pose, Step};
 use crate::frames::Attitude;
@@ -64,28 +66,6 @@ const POSITION_GAP: Duration = Duration::from_secs(1);
 /// The estimator's reports pass through tests that fail for an instant; faults this long count.
 const STATUS_VALID: Duration = Duration::from_secs(3);
 
-/// What a frame brought that somebody must hear of at once.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Novelty {
-    /// mode, arming or system status changed
-    State {
-        /// before; `None` for the first
-        from: Option<FlightState>,
-        /// now
-        to: FlightState,
-    },
-    /// the vehicle said something: MAV_SEVERITY and text
-    Text(u8, String),
-    /// its clock started anew
-    Reboot,
-    /// its estimate jumped
-    EstimatorReset(String),
-    /// its estimate was reset by so little that it can be flown through
-    EstimatorStep(String),
-    /// it says that it flies to this place, m, world (POSITION_TARGET_LOCAL_NED)
-    Target(Vector3<f64>),
-}
-
 /// What is known of the vehicle.
 #[derive(Debug)]
 pub struct Telemetry {
@@ -119,6 +99,8 @@ pub struct Telemetry {
     pub battery: Option<Seen<(BatteryLevel, Option<i8>)>>,
     /// V
     pub battery_v: Option<f64>,
+    /// of the last frame
+    outputs: Vec<Outputs>,
     texts: VecDeque<(Duration, u8, String)>,
     order: SendingOrder,
     /// last ODOMETRY
@@ -149,6 +131,7 @@ impl Telemetry {
             system: None,
             battery: None,
             battery_v: None,
+            outputs: Vec::new(),
             texts: VecDeque::new(),
             order: SendingOrder::default(),
             pose: None,
@@ -234,6 +217,8 @@ impl Telemetry {
         let record = Record { stamp_us: micros(now), offset: 0, known: true, frame };
         let (mut position, mut velocity, mut rates, mut reset) = (None, None, None, false);
         let (attitude, landed, volts) = (&mut self.attitude, &mut self.landed, &mut self.battery_v);
+        let outputs = &mut self.outputs;
+        outputs.clear();
         self.decoder.decode(&record, &mut |event| match event {
             log::Event::Sample { stream, time_s, values } => match (stream.quantity, values) {
                 (Quantity::Position, &[x, y, z]) => position = Some((time_s, Vector3::new(x, y, z))),
@@ -245,6 +230,9 @@ impl Telemetry {
                 (Quantity::AngularRate, &[x, y, z]) => rates = Some(Vector3::new(x, y, z)),
                 (Quantity::LandedState, &[state]) => {
                     *landed = Some(Seen { at: now, value: (state - ON_GROUND).abs() < 0.5 });
+                }
+                (quantity @ (Quantity::ActuatorCommand | Quantity::RotorSpeed), values) => {
+                    outputs.push(Outputs { quantity, source: stream.key().source, values: values.to_vec() });
                 }
                 (Quantity::BatteryVoltage, &[value]) => *volts = Some(value),
                 (Quantity::PositionSetpoint, &[x, y, z]) if (x + y + z).is_finite() => {
@@ -322,6 +310,12 @@ impl Telemetry {
         let gap = self.motion.is_none_or(|last| now.saturating_sub(last.at) > POSITION_GAP);
         self.position_since = self.position_since.filter(|_| !gap).or(Some(now));
         self.motion = Some(Seen { at: now, value: motion });
+    }
+
+    /// What the last frame said of the motors.
+    #[must_use]
+    pub fn outputs(&self) -> &[Outputs] {
+        &self.outputs
     }
 
     /// Who it is.

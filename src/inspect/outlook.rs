@@ -4,10 +4,9 @@ use super::assess::Assessment;
 use super::inspection::Outlook;
 use crate::estimate::{Estimated, Finding, NAMES, THETA, UNITS, finding, rescaled, scale_of, theta_of};
 use crate::log::{Quantity, StreamKey, StreamStats};
+use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 use crate::vehicle::{Anchor, Vehicle};
 
-/// Fewer samples a second blur the torque of a roll or pitch motion.
-pub(super) const SLOWEST_HZ: f64 = 40.0;
 /// Angular acceleration below this rms teaches no inertia, rad/s^2.
 pub(super) const LEAST_ANGULAR_ACCELERATION: f64 = 0.1;
 /// Less flight than this is none, s.
@@ -69,7 +68,11 @@ impl Evidence<'_> {
             return Some("no flight".into());
         }
         if let Some(refusal) = &self.assessment.refusal {
-            return Some(refusal.to_string());
+            return Some(match refusal {
+                // which of them, and how fast, is in the advice
+                SignalsError::TooSlow { .. } => "streams are sampled too slowly".to_owned(),
+                other => other.to_string(),
+            });
         }
         (self.assessment.flight.usable_s < LEAST_USABLE_S).then(|| "no stretch of flight can be used".into())
     }
@@ -86,9 +89,12 @@ impl Evidence<'_> {
             });
         }
         let Some(rate_hz) = self.rate_hz(Quantity::AngularRate) else { return Some("no body rates".into()) };
-        let slowest = [("body rates", Some(rate_hz)), ("actuators", self.actuator_hz())];
-        for (what, hz) in slowest {
-            if let Some(hz) = hz.filter(|hz| *hz < SLOWEST_HZ) {
+        let slowest = [
+            ("body rates", Some(rate_hz), LEAST_BODY_RATE_HZ),
+            ("actuators", self.actuator_hz(), LEAST_ACTUATOR_HZ),
+        ];
+        for (what, hz, least_hz) in slowest {
+            if let Some(hz) = hz.filter(|hz| *hz < least_hz) {
                 return Some(format!("{what} at {hz:.0} Hz: too slow"));
             }
         }

@@ -1,9 +1,9 @@
 //! What a log is good for, in words, and what to do next.
 
 use super::inspection::{Outlook, VehicleSummary};
-use super::outlook::{AXIS_NAMES, Evidence, LEAST_ANGULAR_ACCELERATION, SLOWEST_HZ};
+use super::outlook::{AXIS_NAMES, Evidence, LEAST_ANGULAR_ACCELERATION};
 use crate::log::Quantity;
-use crate::signals::SignalsError;
+use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 
 /// Flight that a good identification wants, s.
 const AMPLE_S: f64 = 20.0;
@@ -38,6 +38,9 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
         let next = match evidence.actuator_hz() {
             None => {
                 format!("Request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS at {WANTED_HZ} Hz and fly again.")
+            }
+            Some(_) if matches!(evidence.assessment.refusal, Some(SignalsError::TooSlow { .. })) => {
+                "See the advice.".to_owned()
             }
             Some(_) => "Fly a trajectory of `mavid plan` with it recording.".to_owned(),
         };
@@ -119,7 +122,7 @@ fn missing(evidence: &Evidence<'_>) -> Vec<String> {
         None => advice.push(format!(
             "No actuator outputs: nothing can be identified. Request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS at {WANTED_HZ} Hz."
         )),
-        Some(hz) if hz < SLOWEST_HZ => {
+        Some(hz) if hz < LEAST_ACTUATOR_HZ => {
             advice.push(format!("Actuators at {hz:.0} Hz: too slow, request {WANTED_HZ} Hz."));
         }
         Some(_) => {}
@@ -129,7 +132,7 @@ fn missing(evidence: &Evidence<'_>) -> Vec<String> {
             "No body rates: inertia cannot be identified. Request ATTITUDE_QUATERNION or HIGHRES_IMU (PX4), ATTITUDE or RAW_IMU (ArduPilot)."
                 .into(),
         ),
-        Some(hz) if hz < SLOWEST_HZ => {
+        Some(hz) if hz < LEAST_BODY_RATE_HZ => {
             advice.push(format!("Body rates at {hz:.0} Hz: too slow, request {WANTED_HZ} Hz."));
         }
         Some(_) => {}

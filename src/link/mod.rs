@@ -16,6 +16,7 @@ mod error;
 mod incoming;
 mod open;
 mod outgoing;
+mod pen;
 mod reader;
 mod recorder;
 mod replay;

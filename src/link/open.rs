@@ -90,14 +90,14 @@ impl Link {
 }
 
 fn start(name: String, transport: Transport, options: &LinkOptions) -> Ends {
-    let shared = Arc::new(Shared::new(name, transport.local()));
+    let shared = Arc::new(Shared::new(name, transport.local(), options));
     shared.open.store(transport.is_connected(), Ordering::Release);
     let (to_reader, from_task) = mpsc::unbounded_channel();
     let (to_task, queue) = mpsc::channel(QUEUE);
     let (alive, gone) = watch::channel(());
     let alive = Arc::new(alive);
     let incoming = Incoming::new(to_reader, shared.clone(), options);
-    let outgoing = Outgoing::new(queue, shared.clone(), options);
+    let outgoing = Outgoing::new(queue, shared.clone());
     tokio::spawn(drive(transport, incoming, outgoing, gone, shared.clone()));
     (LinkReader::new(from_task, shared.clone(), Some(alive.clone())), LinkWriter::new(to_task, shared, alive))
 }

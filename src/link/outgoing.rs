@@ -1,18 +1,16 @@
 //! From messages and frames to the bytes that are sent next.
 
 use std::collections::VecDeque;
+use std::net::SocketAddr;
 use std::sync::Arc;
 
 use mavlink::dialects::ardupilotmega::MavMessage;
-use mavlink::{MAVLinkV2MessageRaw, MavHeader};
+use tokio::net::UdpSocket;
 use tokio::sync::{mpsc, oneshot};
 
-use super::clock::{HostClock, HostStamp};
-use super::open::LinkOptions;
-use super::recorder::Recorder;
+use super::clock::HostStamp;
+use super::pen::Direct;
 use super::shared::Shared;
-use super::signing::Signing;
-use crate::log::{ComponentId, Frame, SystemId};
 
 /// Something for the ordered queue.
 #[derive(Debug)]
@@ -30,51 +28,34 @@ pub(super) enum Item {
 pub(super) struct Outgoing {
     queue: mpsc::Receiver<Item>,
     shared: Arc<Shared>,
-    system: SystemId,
-    component: ComponentId,
-    clock: HostClock,
-    signing: Option<Signing>,
-    recorder: Option<Recorder>,
-    sequence: u8,
     /// the last frame came from the slot: the queue has its turn
     queue_first: bool,
-    /// a frame was given out and not yet told as sent or failed
-    in_flight: bool,
     /// the other end was lost and is not back
     lost: bool,
     barriers: VecDeque<oneshot::Sender<()>>,
 }
 
 impl Outgoing {
-    pub fn new(queue: mpsc::Receiver<Item>, shared: Arc<Shared>, options: &LinkOptions) -> Self {
-        Self {
-            queue,
-            shared,
-            system: options.system,
-            component: options.component,
-            clock: options.clock,
-            signing: options.signing.clone(),
-            recorder: options.recorder.clone(),
-            sequence: 0,
-            queue_first: false,
-            in_flight: false,
-            lost: false,
-            barriers: VecDeque::new(),
-        }
+    pub fn new(queue: mpsc::Receiver<Item>, shared: Arc<Shared>) -> Self {
+        Self { queue, shared, queue_first: false, lost: false, barriers: VecDeque::new() }
     }
 
     /// The next frame to send; the one before is sent when this is called. Cancel-safe: nothing is taken
     /// before it returns.
     pub async fn next(&mut self) -> Box<[u8]> {
-        let bytes = loop {
-            match self.pick().await {
-                Item::Frame(bytes) => break bytes,
-                Item::Message(message) => break self.serialise(&message),
-                Item::Barrier(done) => self.barriers.push_back(done),
+        loop {
+            let item = self.pick().await;
+            let mut pen = self.shared.pen();
+            pen.in_flight = true;
+            match item {
+                Item::Frame(bytes) => return bytes,
+                Item::Message(message) => return pen.write(&message),
+                Item::Barrier(done) => {
+                    pen.in_flight = false;
+                    self.barriers.push_back(done);
+                }
             }
-        };
-        self.in_flight = true;
-        bytes
+        }
     }
 
     /// The slot and the queue take turns, so that neither starves the other.
@@ -114,33 +95,17 @@ impl Outgoing {
         }
     }
 
-    fn serialise(&mut self, message: &MavMessage) -> Box<[u8]> {
-        let header =
-            MavHeader { system_id: self.system.0, component_id: self.component.0, sequence: self.sequence };
-        self.sequence = self.sequence.wrapping_add(1);
-        let mut raw = MAVLinkV2MessageRaw::new();
-        let Some(signing) = &self.signing else {
-            raw.serialize_message(header, message);
-            return raw.raw_bytes().into();
-        };
-        raw.serialize_message_for_signing(header, message);
-        let mut bytes: Box<[u8]> = raw.raw_bytes().into();
-        signing.sign(&mut bytes);
-        bytes
-    }
-
     /// The present moment: to be taken when a frame is handed to the system.
     pub fn now(&self) -> HostStamp {
-        self.clock.now()
+        self.shared.pen().now()
     }
 
     /// A frame went out.
     pub fn sent(&mut self, frame: &[u8], stamp: HostStamp) {
-        self.in_flight = false;
-        if let (Some(recorder), Some(frame)) = (&self.recorder, Frame::at_start(frame)) {
-            // a failing recording is told by what comes in
-            let _ = recorder.record(stamp, &frame);
-        }
+        let mut pen = self.shared.pen();
+        pen.in_flight = false;
+        pen.record(stamp, frame);
+        drop(pen);
         let mut stats = self.shared.stats();
         stats.sent_frames += 1;
         stats.sent_bytes += frame.len() as u64;
@@ -148,8 +113,13 @@ impl Outgoing {
 
     /// A frame did not go out.
     pub fn failed(&mut self) {
-        self.in_flight = false;
+        self.shared.pen().in_flight = false;
         self.shared.stats().unsent += 1;
+    }
+
+    /// Latest messages may go to this socket past the task, until the other end is lost.
+    pub fn open_direct(&mut self, socket: &Arc<UdpSocket>, to: Option<SocketAddr>) {
+        self.shared.pen().direct = Some(Direct::new(socket.clone(), to));
     }
 
     /// Somebody is at the other end. What was given before a loss, but came behind it, is forgotten too.
@@ -164,7 +134,10 @@ impl Outgoing {
     pub fn discard(&mut self) {
         self.lost = true;
         let mut unsent = u64::from(self.shared.latest().take().is_some());
-        unsent += u64::from(std::mem::take(&mut self.in_flight));
+        let mut pen = self.shared.pen();
+        pen.direct = None;
+        unsent += u64::from(std::mem::take(&mut pen.in_flight));
+        drop(pen);
         while let Ok(item) = self.queue.try_recv() {
             match item {
                 Item::Barrier(done) => self.barriers.push_back(done),

@@ -13,6 +13,7 @@ use tokio::time::{Instant, sleep, sleep_until};
 use super::clock::HostStamp;
 use super::error::LinkError;
 use super::incoming::WAITING;
+use super::open::LinkOptions;
 use super::reader::{LinkEvent, LinkReader, Received, ReceivedFrame};
 use super::shared::Shared;
 use super::writer::LinkWriter;
@@ -145,7 +146,7 @@ impl Replay {
     /// stamp has the present moment and the log's time. At the end the reader says that the link has ended.
     #[must_use]
     pub fn start(self) -> LinkReader {
-        let shared = Arc::new(Shared::new(self.path.display().to_string(), None));
+        let shared = Arc::new(Shared::new(self.path.display().to_string(), None, &LinkOptions::default()));
         let (to_reader, from_task) = mpsc::unbounded_channel();
         let reader = LinkReader::new(from_task, shared.clone(), None);
         tokio::spawn(async move {

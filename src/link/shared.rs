@@ -7,10 +7,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use tokio::sync::{Notify, watch};
 
+use super::open::LinkOptions;
+use super::pen::Pen;
 use super::stats::LinkStats;
 
 /// What the halves of a link and its task share.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Shared {
     /// the address, for messages
     pub name: String,
@@ -25,17 +27,33 @@ pub(super) struct Shared {
     /// all writers are gone and all that they gave is sent
     pub drained: Notify,
     latest: Mutex<Option<Box<MavMessage>>>,
+    pen: Mutex<Pen>,
     stats: Mutex<LinkStats>,
 }
 
 impl Shared {
-    pub fn new(name: String, local: Option<SocketAddr>) -> Self {
-        Self { name, local, ..Self::default() }
+    pub fn new(name: String, local: Option<SocketAddr>, options: &LinkOptions) -> Self {
+        Self {
+            name,
+            local,
+            open: AtomicBool::default(),
+            waiting: AtomicUsize::default(),
+            filled: Notify::default(),
+            drained: Notify::default(),
+            latest: Mutex::default(),
+            pen: Mutex::new(Pen::new(options)),
+            stats: Mutex::default(),
+        }
     }
 
     /// No code holding these locks panics; a poisoned one would still hold whole values.
     pub fn stats(&self) -> MutexGuard<'_, LinkStats> {
         self.stats.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Taken after [`Self::latest`] where both are.
+    pub fn pen(&self) -> MutexGuard<'_, Pen> {
+        self.pen.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     pub fn latest(&self) -> MutexGuard<'_, Option<Box<MavMessage>>> {

@@ -55,16 +55,36 @@ impl LinkWriter {
     }
 
     /// Puts a message of which only the latest matters, as a setpoint is, into a slot of its own: one that
-    /// waits there already is replaced. The slot and the queue take turns.
+    /// waits there already is replaced. The slot and the queue take turns. Over UDP, where nothing waits, the
+    /// calling thread itself sends it.
     ///
     /// # Errors
     /// Nobody is at the other end, or the link has ended.
     pub fn send_latest(&self, message: &MavMessage) -> Result<(), LinkError> {
         self.check()?;
+        if self.send_now(message) {
+            return Ok(());
+        }
         let replaced = self.shared.latest().replace(Box::new(message.clone())).is_some();
         self.shared.stats().replaced += u64::from(replaced);
         self.shared.filled.notify_one();
         Ok(())
+    }
+
+    /// Past the task, where nothing waits before it and the transport can: whether it went out.
+    fn send_now(&self, message: &MavMessage) -> bool {
+        let idle = self.queue.capacity() == self.queue.max_capacity();
+        let slot = self.shared.latest();
+        if !idle || slot.is_some() {
+            return false;
+        }
+        let sent = self.shared.pen().send_now(message);
+        drop(slot);
+        let Some(bytes) = sent else { return false };
+        let mut stats = self.shared.stats();
+        stats.sent_frames += 1;
+        stats.sent_bytes += bytes as u64;
+        true
     }
 
     /// Empties the slot: a setpoint that was not sent yet will not be.

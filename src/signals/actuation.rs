@@ -1,7 +1,8 @@
 //! What drives the body: rotors, or force and torque as the log holds them.
 
 use super::actuators::{RotorThrusts, ThrustSource, thrusts_from_commands, thrusts_from_speeds};
-use super::select::{best, flowing_rate_hz, too_short};
+use super::select::{best, too_short};
+use super::sufficient::flowing_rate_hz;
 use super::{Grid, SignalsError, linear_onto};
 use crate::log::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;

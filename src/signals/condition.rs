@@ -7,8 +7,9 @@ use super::align::{
     velocity_offset,
 };
 use super::select::{best, median_period_s, too_short};
+use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
 use super::usable::{Evidence, Usable, airborne_spans, usable};
-use super::{Grid, SignalsError, WeakKernel};
+use super::{Grid, SignalsError, WeakKernel, sufficient};
 use crate::log::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
@@ -156,6 +157,7 @@ pub fn condition(
     let grid = common_grid(&chosen, actuation.stream(), step_s)?;
     let kernel = WeakKernel::new(settings.weak_half_width_s, step_s);
     let airborne_s = airborne_spans(recording, &actuation, vehicle);
+    let slow = sufficient::check(&needed(&chosen, &actuation), &airborne_s)?;
     let streams: Vec<&Stream> =
         chosen.list().iter().filter_map(|(_, s)| s.map(|(_, s)| s)).chain([actuation.stream()]).collect();
     // the vehicle's clock started anew, or its estimator jumped
@@ -213,7 +215,7 @@ pub fn condition(
             offsets: motion.offsets,
             airborne_s,
             usable: used,
-            notes: actuation.notes(recording, vehicle),
+            notes: slow.into_iter().chain(actuation.notes(recording, vehicle)).collect(),
         },
     })
 }
@@ -227,9 +229,6 @@ pub fn stride(step_s: f64) -> usize {
     }
     stride
 }
-
-/// Motion or actuators recorded more slowly than this show nothing of a multirotor's rotation, s.
-const SLOWEST_S: f64 = 0.1;
 
 fn step(
     recording: &Recording,
@@ -246,9 +245,6 @@ fn step(
     if !period.is_finite() {
         return Err(SignalsError::NoMotion);
     }
-    if period > SLOWEST_S {
-        return Err(SignalsError::TooSlow { rate_hz: 1.0 / period, needed_hz: 1.0 / SLOWEST_S });
-    }
     Ok(period.clamp(0.002, 0.02))
 }
 
@@ -258,6 +254,20 @@ fn no_motion(recording: &Recording) -> SignalsError {
         .into_iter()
         .find_map(|(quantity, width)| too_short(recording, quantity, |stream| stream.width == width))
         .unwrap_or(SignalsError::NoMotion)
+}
+
+/// The streams without which nothing can be said of how a body turns, and of what turns it.
+fn needed<'a>(chosen: &Chosen<'a>, actuation: &'a Actuation) -> Vec<Needed<'a>> {
+    let body = [("body rates", chosen.rate), ("attitude", chosen.attitude)];
+    let body = body.into_iter().find_map(|(what, stream)| Some((what, stream?)));
+    let body = body.map(|(what, (message, stream))| (what, message, stream, LEAST_BODY_RATE_HZ));
+    let what = match actuation.source() {
+        ThrustSource::MeasuredSpeed => "rotor speeds",
+        ThrustSource::Command => "actuator outputs",
+        ThrustSource::Wrench => "force and torque",
+    };
+    let driven = (what, actuation.message(), actuation.stream(), LEAST_ACTUATOR_HZ);
+    body.into_iter().chain([driven]).collect()
 }
 
 /// The span that all chosen streams share.

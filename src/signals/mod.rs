@@ -13,6 +13,7 @@ mod latency;
 mod noise;
 mod select;
 mod spectrum;
+mod sufficient;
 mod usable;
 mod weak;
 
@@ -29,6 +30,7 @@ pub use latency::{ActuationLatency, delayed_speeds, delayed_wrench};
 pub use noise::{median, white_level, white_level_of};
 pub use select::{best, best_rank, is_live, mean_rate_hz, median_period_s};
 pub use spectrum::{hann_windowed, highest_harmonic_hz, power_at};
+pub use sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ};
 pub use usable::{Evidence, Usable, in_air, usable};
 pub use weak::{MAX_ORDER, WeakKernel};
 
@@ -73,14 +75,13 @@ pub enum SignalsError {
     NoMotion,
     /// sampled too slowly
     #[error(
-        "motion and actuators are sampled at {rate_hz:.2} Hz: at least {needed_hz:.0} Hz is needed, 100 Hz is good. \
-         If the log is faster than that, its time column is not in the unit that the mapping says"
+        "sampled too slowly to identify from: {slow}. 100 Hz of each is good: request it on a link that carries it, \
+         or take the on-board log. If the log is faster than that, its time column is not in the unit that the mapping \
+         says"
     )]
     TooSlow {
-        /// Hz
-        rate_hz: f64,
-        /// Hz
-        needed_hz: f64,
+        /// each slow stream, its rate, and the rate that was expected
+        slow: String,
     },
     /// streams do not share a span
     #[error("motion and actuator streams overlap for {overlap_s:.2} s only; at least 1 s is needed")]

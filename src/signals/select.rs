@@ -47,19 +47,6 @@ pub fn median_period_s(stream: &Stream) -> f64 {
     median(&mut periods)
 }
 
-/// Intervals longer than so many median ones are gaps, or of a time before the rate was asked for.
-const FLOWS: f64 = 5.0;
-
-/// Mean rate while the stream flows, Hz: without its gaps and without what came at a slower rate before;
-/// 0 for fewer than two samples.
-#[must_use]
-pub fn flowing_rate_hz(stream: &Stream) -> f64 {
-    let longest_s = FLOWS * median_period_s(stream);
-    let flowing = stream.time_s.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap_s| *gap_s <= longest_s);
-    let (count, total_s) = flowing.fold((0.0, 0.0), |(count, sum_s), gap_s| (count + 1.0, sum_s + gap_s));
-    if total_s > 0.0 { count / total_s } else { 0.0 }
-}
-
 /// Something in the stream moves: a frozen stream says nothing.
 #[must_use]
 pub fn is_live(stream: &Stream) -> bool {
@@ -141,14 +128,6 @@ mod tests {
             recording.streams.insert(key, stream);
         }
         recording
-    }
-
-    #[test]
-    fn a_stream_that_began_slowly_is_as_fast_as_it_became() {
-        let mut late = stream(0.01, true);
-        late.time_s.splice(0..0, [-4.0, -3.0, -2.0, -1.0]);
-        assert!((flowing_rate_hz(&late) - 100.0).abs() < 1e-9 && mean_rate_hz(&late) < 25.0);
-        assert_eq!(flowing_rate_hz(&Stream { time_s: vec![1.0], width: 1, values: vec![0.0] }), 0.0);
     }
 
     #[test]

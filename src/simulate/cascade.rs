@@ -188,7 +188,16 @@ impl AutopilotCascade {
         setpoint: &Setpoint,
         (estimate, period_s): (&State, f64),
     ) -> [f64; MAX_ROTORS] {
-        let up_m_s2 = self.acceleration(setpoint, estimate, period_s).z;
+        // above where it is, and as it drifts: no horizontal error takes its share of the greatest speed
+        let level = |across: &Vector3<f64>, up: &Vector3<f64>| Vector3::new(across.x, across.y, up.z);
+        let setpoint = Setpoint {
+            position_m: level(&estimate.position_m, &setpoint.position_m),
+            velocity_m_s: level(&Vector3::zeros(), &setpoint.velocity_m_s),
+            acceleration_m_s2: level(&Vector3::zeros(), &setpoint.acceleration_m_s2),
+            ..*setpoint
+        };
+        let up_m_s2 = self.acceleration(&setpoint, estimate, period_s).z;
+        self.velocity.integral = level(&Vector3::zeros(), &self.velocity.integral);
         let leaning = (estimate.attitude * Vector3::z()).z.max(LEANING_MIN);
         self.turned(attitude, rates_rad_s, self.body.mass_kg * up_m_s2 / leaning, (estimate, period_s))
     }
@@ -241,5 +250,43 @@ impl AutopilotCascade {
         let ahead = estimate.attitude.inverse_transform_vector(&(Vector3::z() * yaw_rate_rad_s));
         let (rates, most) = (self.gains.attitude.component_mul(&error) + ahead, &self.gains.rates_max_rad_s);
         rates.zip_map(most, |rate, most| rate.clamp(-most, most))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::random_vehicle;
+
+    #[test]
+    fn a_drift_takes_nothing_of_the_climb() {
+        let vehicle = random_vehicle(1).truth;
+        let gains = AutopilotGains::default();
+        let thrust_n = |drift_m_s: f64, away_m: f64| {
+            let mut cascade = AutopilotCascade::new(&vehicle, gains, 0.0).expect("flies");
+            let across = Vector3::x();
+            let estimate =
+                State { velocity_m_s: across * drift_m_s, ..State::at_rest(Vector3::zeros(), 0.0) };
+            let setpoint = Setpoint {
+                position_m: across * away_m + Vector3::z(),
+                velocity_m_s: Vector3::z() * 2.0,
+                acceleration_m_s2: Vector3::zeros(),
+                yaw_rad: 0.0,
+                yaw_rate_rad_s: 0.0,
+            };
+            for _ in 0..100 {
+                cascade.turn_at_height(None, &Vector3::zeros(), &setpoint, (&estimate, 0.004));
+            }
+            cascade.wanted().thrust_n
+        };
+        let still_n = thrust_n(0.0, 0.0);
+        assert!(still_n > 1.5 * vehicle.body.mass_kg * vehicle.gravity_m_s2, "{still_n}");
+        for (drift_m_s, away_m) in [(15.0, 0.0), (0.0, 200.0), (-15.0, 200.0)] {
+            let drifting_n = thrust_n(drift_m_s, away_m);
+            assert!(
+                (drifting_n - still_n).abs() < 1e-9,
+                "{drift_m_s} {away_m}: {drifting_n}, still {still_n}"
+            );
+        }
     }
 }

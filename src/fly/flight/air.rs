@@ -9,11 +9,13 @@ use super::{Flight, Phase};
 use crate::fly::commander::Manner;
 use crate::fly::course::{PathClock, Track, transfer};
 use crate::fly::health::BatteryLevel;
+use crate::fly::lift::Weighed;
 use crate::fly::modes::{Mode, Stack};
 use crate::fly::outcome::{Cause, Level};
+use crate::fly::preflight::HOVER;
 use crate::fly::safety::{Lead, Sustained};
 use crate::fly::setpoint::{Place, wrapped};
-use crate::fly::sortie::Origin;
+use crate::fly::sortie::{Check, Origin};
 use crate::fly::target::Order;
 use crate::units::narrow;
 
@@ -118,12 +120,33 @@ impl Flight {
 
     pub(super) fn gate(&mut self, now: Duration) {
         let missing = self.gate_misses(now);
+        if !missing.is_empty()
+            && let Some(lift) = &mut self.lift
+        {
+            lift.clear();
+        }
         let Phase::Gate(open) = &mut self.phase else { return };
         if open.update(now, missing.is_empty()) >= GATE_HOLDS {
-            self.begin_course(now);
+            match self.weigh(now) {
+                None => self.begin_course(now),
+                Some(cause) => self.end(now, cause),
+            }
         } else if now.saturating_sub(self.entered) > self.sortie.settings.reach_timeout {
             self.end(now, Cause::NotReached(format!("the start gate stays shut: {}", missing.join("; "))));
         }
+    }
+
+    /// Once it hovers: whether what lifts it is the vehicle file's weight.
+    fn weigh(&mut self, now: Duration) -> Option<Cause> {
+        let weighed = self.lift.as_ref()?.weighed();
+        let accepted = self.sortie.settings.accepted.contains(&Check::HoverThrust);
+        let (level, text) = match weighed {
+            Weighed::Gross(text) if !accepted => return Some(Cause::OtherVehicle(text)),
+            Weighed::Gross(text) | Weighed::Notable(text) => (Level::Warning, text),
+            Weighed::Alike(text) => (Level::Information, text),
+        };
+        self.note(now, level, HOVER, text);
+        None
     }
 
     fn gate_misses(&self, now: Duration) -> Vec<String> {

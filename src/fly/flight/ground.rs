@@ -100,7 +100,21 @@ impl Flight {
                 let heard = self.roster.heard();
                 self.end(now, Cause::Refused(format!("expected a HEARTBEAT of {wanted}, heard {heard}")));
             }
-            Choice::Wait => {}
+            Choice::Wait => self.tell_others(now),
+        }
+    }
+
+    /// The vehicle that was named is not heard, and others are: said once.
+    fn tell_others(&mut self, now: Duration) {
+        let Some(system) = self.sortie.system.filter(|_| !self.told_others) else { return };
+        if let Some(others) = self.roster.without(now, system) {
+            self.told_others = true;
+            self.note(
+                now,
+                Level::Warning,
+                "vehicle",
+                format!("system {system} is waited for; heard: {others}"),
+            );
         }
     }
 

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use super::{Flight, Phase};
+use crate::fly::news::Novelty;
 use crate::fly::outcome::{Cause, Level};
-use crate::fly::telemetry::Novelty;
 use crate::log::{Check, Frame};
 
 impl Flight {
@@ -22,6 +22,11 @@ impl Flight {
             return;
         }
         let news = contact.telemetry.take(now, frame);
+        if let (Phase::Gate(_), Some(lift)) = (&self.phase, &mut self.lift) {
+            for outputs in contact.telemetry.outputs() {
+                lift.add(outputs);
+            }
+        }
         match header.message_id {
             // COMMAND_ACK; its addressee is an extension that may be zero
             77 => {

@@ -16,6 +16,7 @@ use mavlink::dialects::ardupilotmega::MavMessage;
 
 use super::commander::Commander;
 use super::health::BatteryLevel;
+use super::lift::Lift;
 use super::modes::{Mode, Stack};
 use super::outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
 use super::roster::Roster;
@@ -42,8 +43,8 @@ pub enum Event<'a> {
     Tick,
     /// the operator
     Key(Key),
-    /// parameters, message rates and limits are checked: whether the flight may go on
-    Cleared(Result<(), String>),
+    /// parameters, message rates and limits are checked: whether the flight may go on, and how its outputs lift it
+    Cleared(Result<Box<Lift>, String>),
     /// the program is told to end, by what
     Stop(String),
     /// the stream of setpoints was late by this much and has ended
@@ -151,6 +152,8 @@ pub struct Flight {
     sortie: Sortie,
     seeds: CrcSeeds,
     roster: Roster,
+    /// that others were heard than the one that was named
+    told_others: bool,
     contact: Option<Contact>,
     commander: Commander,
     phase: Phase,
@@ -165,6 +168,8 @@ pub struct Flight {
     actions: VecDeque<Action>,
     heartbeat_due: Duration,
     clearance: Option<Result<(), String>>,
+    /// by which the vehicle is weighed once it hovers
+    lift: Option<Box<Lift>>,
     cause: Option<Cause>,
     flown: Flown,
     losses: Vec<String>,
@@ -183,6 +188,7 @@ impl Flight {
             sortie,
             seeds: CrcSeeds::new(),
             roster: Roster::default(),
+            told_others: false,
             contact: None,
             commander: Commander::default(),
             phase: Phase::Connect,
@@ -194,6 +200,7 @@ impl Flight {
             actions: VecDeque::new(),
             heartbeat_due: Duration::ZERO,
             clearance: None,
+            lift: None,
             cause: None,
             flown,
             losses: Vec::new(),
@@ -209,7 +216,11 @@ impl Flight {
             Event::Frame(frame) => self.hear(now, frame),
             Event::Tick => {}
             Event::Key(key) => self.key(now, key),
-            Event::Cleared(verdict) => self.clearance = Some(verdict),
+            Event::Cleared(verdict) => {
+                self.clearance = Some(verdict.map(|lift| {
+                    self.lift = Some(lift);
+                }));
+            }
             Event::Stop(by) => self.stop(now, &by),
             Event::Stalled(gap) => {
                 self.end(now, Cause::Stalled(format!("{} ms late", gap.as_millis())));

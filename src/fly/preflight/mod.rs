@@ -6,6 +6,7 @@ mod energy;
 mod extremes;
 mod fence;
 mod fence_download;
+mod hover;
 mod readiness;
 mod room;
 
@@ -13,6 +14,7 @@ pub use energy::{BatteryState, SPARE_FACTOR};
 pub use extremes::{Extremes, Stopping};
 pub use fence::Fence;
 pub use fence_download::{FenceDownload, FenceOutcome};
+pub(crate) use hover::{HOVER, ROTORS};
 pub use readiness::{ESTIMATE_GOOD_FOR, Readiness};
 
 use super::finding::{Finding, Level};
@@ -55,6 +57,7 @@ pub fn preflight(situation: &Situation<'_>) -> Vec<Finding> {
     let mut findings = room::findings(situation, &stopping);
     findings.extend(fence::findings(situation, &stopping));
     findings.extend(autopilot::findings(situation.parameters, &extremes));
+    findings.extend(hover::findings(situation));
     findings.push(energy::finding(situation.battery, situation.path.duration_s()));
     findings.extend(readiness::findings(situation.readiness, situation.parameters.autopilot));
     findings.extend(failsafes(situation));

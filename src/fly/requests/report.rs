@@ -4,6 +4,7 @@ use super::capacity::bytes_s;
 use super::{Answer, Capacity, Need, StreamRequest, granted_hz};
 use crate::fly::finding::Finding;
 use crate::log::Autopilot;
+use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ};
 
 /// A stream at less than this share of what the autopilot should give is slower than asked for.
 const SHORT_SHARE: f64 = 0.8;
@@ -72,11 +73,11 @@ pub struct RatesReport {
     autopilot: Autopilot,
 }
 
-/// Least and good rates (Hz) of a need, and whether flying needs it. Below 40 Hz the torque of a roll or
-/// pitch motion blurs: `inspect` then calls its inertia not determined.
+/// Least and good rates (Hz) of a need, and whether flying needs it.
 fn thresholds(need: Need) -> (f64, f64, bool) {
     match need {
-        Need::BodyRates | Need::Actuators => (40.0, 90.0, false),
+        Need::BodyRates => (LEAST_BODY_RATE_HZ, 90.0, false),
+        Need::Actuators => (LEAST_ACTUATOR_HZ, 90.0, false),
         Need::Attitude => (5.0, 45.0, true),
         Need::Position => (5.0, 25.0, true),
         Need::Acceleration => (20.0, 90.0, false),
@@ -86,6 +87,11 @@ fn thresholds(need: Need) -> (f64, f64, bool) {
         Need::Estimator => (0.5, 0.9, false),
     }
 }
+
+/// Where the check speaks of what identification needs.
+pub(crate) const IDENTIFICATION: &str = "identification";
+/// Without these no identification.
+const TO_IDENTIFY: [Need; 4] = [Need::BodyRates, Need::Attitude, Need::Position, Need::Actuators];
 
 impl RatesReport {
     pub(super) fn new(
@@ -114,9 +120,31 @@ impl RatesReport {
     /// Everything that identification needs arrives.
     #[must_use]
     pub fn suffices_to_identify(&self) -> bool {
-        [Need::BodyRates, Need::Attitude, Need::Position, Need::Actuators]
+        TO_IDENTIFY.iter().all(|need| self.serves(*need))
+    }
+
+    /// Whether the flight will teach anything: a refusal where what identification needs does not arrive, which says what
+    /// is short of it.
+    #[must_use]
+    pub fn identification(&self) -> Finding {
+        let short: Vec<&NeedReport> = self
+            .needs
             .iter()
-            .all(|need| self.serves(*need))
+            .filter(|report| TO_IDENTIFY.contains(&report.need) && !report.is_served())
+            .collect();
+        let list = |line: fn(&NeedReport) -> String| {
+            short.iter().map(|need| line(need)).collect::<Vec<_>>().join(", ")
+        };
+        if short.is_empty() {
+            return Finding::ok(IDENTIFICATION, "streams to identify the vehicle from", "all of them");
+        }
+        Finding::refusal(
+            IDENTIFICATION,
+            list(|need| format!("{} at {} Hz at least", need.need.name(), need.least_hz)),
+            list(NeedReport::came),
+            "this flight would teach nothing: connect by a faster link or raise the autopilot's rates; or fly with \
+             --accept identification, and identify from the on-board log",
+        )
     }
 
     /// What this need asks for arrives at the least rate or faster.
@@ -161,12 +189,17 @@ impl NeedReport {
         self.best.is_some_and(|best| best.arrived_hz >= self.least_hz)
     }
 
-    fn finding(&self) -> Finding {
-        let Self { need, best, least_hz, good_hz, to_fly } = self;
-        let came = best.map_or_else(
-            || "nothing".to_owned(),
+    /// The best of what arrives for it, in words.
+    fn came(&self) -> String {
+        self.best.map_or_else(
+            || format!("nothing for {}", self.need.name()),
             |best| format!("{} at {:.1} Hz", best.request.name, best.arrived_hz),
-        );
+        )
+    }
+
+    fn finding(&self) -> Finding {
+        let Self { need, least_hz, good_hz, to_fly, .. } = self;
+        let came = self.came();
         let expected = format!("{} at {good_hz} Hz, {least_hz} Hz at least", need.name());
         if !self.is_served() && *to_fly {
             let remedy =

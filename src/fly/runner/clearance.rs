@@ -181,6 +181,15 @@ impl Clearance {
             }
         }
         findings.extend(report.findings());
+        findings.push(report.identification());
+        let accepted = &flight.sortie().settings.accepted;
+        for finding in &mut findings {
+            if finding.level == Level::Refusal
+                && accepted.iter().any(|check| check.subject() == finding.subject)
+            {
+                finding.level = Level::Warning;
+            }
+        }
         let lines = report.streams.iter().map(|stream| stream.line()).collect();
         Some(Cleared { decoder: self.decoder.take(), parameters: *parameters, findings, lines })
     }

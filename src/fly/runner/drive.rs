@@ -11,6 +11,7 @@ use super::journal::Journal;
 use super::stream::SharedGuide;
 use crate::fly::finding;
 use crate::fly::flight::{Action, Event, Flight, Key};
+use crate::fly::lift::Lift;
 use crate::fly::live::{LiveIdentification, LiveSettings};
 use crate::fly::modes::Mode;
 use crate::fly::outcome::{Level, Note, Outcome};
@@ -186,8 +187,9 @@ impl Drive {
             self.notes.push(Note::new(now, level, "check", finding.to_string()));
         }
         self.keep_parameters(now, &cleared.parameters);
-        let verdict = cleared.verdict();
         let vehicle = &self.place.vehicle;
+        let lift = Lift::new(vehicle, &cleared.parameters);
+        let verdict = cleared.verdict().map(|()| Box::new(lift));
         let live = LiveIdentification::new(vehicle, &cleared.parameters, &LiveSettings::default());
         if let Some(decoder) = cleared.decoder {
             self.estimating.begin(decoder, live);

@@ -54,7 +54,7 @@ const LAST_WORD_PAUSE: Duration = Duration::from_millis(100);
 
 /// What is said where setpoints get no thread of their own rank.
 const NO_PRIORITY: &str = "the system permits no real-time threads (on Linux: CAP_SYS_NICE, or RLIMIT_RTPRIO of at \
-     least 1): while every core is busy, some setpoints go out late";
+     least 1): while every core is busy, a setpoint may go out late, over serial and TCP more than over UDP";
 
 /// Names of the files of a flight in its folder.
 pub const TLOG: &str = "flight.tlog";

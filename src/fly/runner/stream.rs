@@ -1,15 +1,15 @@
-//! The thread that sends setpoints at their times.
+//! The threads that send setpoints at their times.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError, mpsc};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use tokio::sync::mpsc::UnboundedSender;
 
-use super::priority::raise_priority;
+use super::priority::{cores_to_wait_on, raise_priority, stay_on};
 use crate::fly::safety::{Guide, Lead, Streamed, Streamer};
 use crate::link::{LinkStats, LinkWriter};
 
@@ -63,14 +63,16 @@ impl StreamFigures {
 /// The stream while it runs.
 #[derive(Debug)]
 pub(super) struct Stream {
-    thread: JoinHandle<StreamFigures>,
-    over: Arc<AtomicBool>,
+    threads: Vec<JoinHandle<()>>,
+    sender: Arc<Sender>,
     /// it has a real-time thread
     pub(super) is_real_time: bool,
 }
 
 impl Stream {
-    /// Starts it; a stall is told to `stalled`.
+    /// Starts it; a stall is told to `stalled`. One real-time thread suffices; where the system permits none, several
+    /// ordinary ones, bound to different cores, wait for each setpoint's time, and the first that the system wakes
+    /// sends it.
     pub(super) fn start(
         period: Duration,
         clock: Instant,
@@ -78,64 +80,115 @@ impl Stream {
         writer: LinkWriter,
         stalled: UnboundedSender<Duration>,
     ) -> io::Result<Self> {
-        let over = Arc::new(AtomicBool::new(false));
-        let ended = over.clone();
+        let turn = Mutex::new(Turn {
+            streamer: Streamer::new(period),
+            figures: StreamFigures::default(),
+            streams: false,
+        });
+        let sender = Arc::new(Sender { turn, over: AtomicBool::new(false), clock, guide, writer, stalled });
         let (raised, is_raised) = mpsc::channel();
-        let work = move || {
-            // whoever starts it waits for this word
-            let _ = raised.send(raise_priority());
-            send_setpoints(Streamer::new(period), clock, &guide, &writer, (&stalled, &ended))
+        let work = {
+            let sender = sender.clone();
+            move || {
+                // whoever starts it waits for this word
+                let _ = raised.send(raise_priority());
+                sender.work();
+            }
         };
-        let thread = thread::Builder::new().name("setpoints".into()).spawn(work)?;
-        Ok(Self { thread, over, is_real_time: is_raised.recv().unwrap_or(false) })
+        let mut stream = Self { threads: Vec::new(), sender, is_real_time: false };
+        stream.threads.push(thread::Builder::new().name("setpoints".into()).spawn(work)?);
+        stream.is_real_time = is_raised.recv().unwrap_or(false);
+        if !stream.is_real_time {
+            for core in cores_to_wait_on() {
+                let sender = stream.sender.clone();
+                let work = move || {
+                    // one that may run anywhere waits as well
+                    let _ = stay_on(core);
+                    sender.work();
+                };
+                stream.threads.push(thread::Builder::new().name("setpoints".into()).spawn(work)?);
+            }
+        }
+        Ok(stream)
     }
 
     /// Ends it.
     pub(super) fn finish(self) -> StreamFigures {
-        self.over.store(true, Ordering::Release);
-        self.thread.join().unwrap_or_default()
+        self.sender.over.store(true, Ordering::Release);
+        for thread in self.threads {
+            // one that panicked has counted what it sent
+            let _ = thread.join();
+        }
+        self.sender.turn().figures
     }
 }
 
-fn send_setpoints(
-    mut streamer: Streamer,
+/// What the threads of a stream share.
+#[derive(Debug)]
+struct Sender {
+    turn: Mutex<Turn>,
+    over: AtomicBool,
     clock: Instant,
-    guide: &SharedGuide,
-    writer: &LinkWriter,
-    (stalled, over): (&UnboundedSender<Duration>, &AtomicBool),
-) -> StreamFigures {
-    let mut figures = StreamFigures::default();
-    let mut streams = false;
-    while !over.load(Ordering::Acquire) {
-        let due = streamer.due();
-        thread::sleep(due.saturating_sub(clock.elapsed()));
-        let guide = guide.get();
-        let now = clock.elapsed();
-        match streamer.poll(now, &guide) {
+    guide: SharedGuide,
+    writer: LinkWriter,
+    stalled: UnboundedSender<Duration>,
+}
+
+/// Whose turn it is to make the next setpoint has this.
+#[derive(Debug)]
+struct Turn {
+    streamer: Streamer,
+    figures: StreamFigures,
+    streams: bool,
+}
+
+impl Sender {
+    fn turn(&self) -> MutexGuard<'_, Turn> {
+        self.turn.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for each setpoint's time and sends it, unless another thread did.
+    fn work(&self) {
+        let mut due = self.turn().streamer.due();
+        while !self.over.load(Ordering::Acquire) {
+            thread::sleep(due.saturating_sub(self.clock.elapsed()));
+            let mut turn = self.turn();
+            if turn.streamer.due() == due {
+                turn.send(self, due);
+            }
+            due = turn.streamer.due();
+        }
+    }
+}
+
+impl Turn {
+    fn send(&mut self, sender: &Sender, due: Duration) {
+        let guide = sender.guide.get();
+        let now = sender.clock.elapsed();
+        match self.streamer.poll(now, &guide) {
             Some(Streamed::Setpoint(_, message)) => {
                 // the first of a stream starts the grid
-                figures.late += u64::from(streams && now.saturating_sub(due) > LATE);
-                streams = true;
-                match writer.send_latest(&message) {
-                    Ok(()) => figures.sent += 1,
-                    Err(_) => figures.refused += 1,
+                self.figures.late += u64::from(self.streams && now.saturating_sub(due) > LATE);
+                self.streams = true;
+                match sender.writer.send_latest(&message) {
+                    Ok(()) => self.figures.sent += 1,
+                    Err(_) => self.figures.refused += 1,
                 }
             }
             Some(Streamed::Stalled { gap, setpoint, command }) => {
-                writer.clear_latest();
+                sender.writer.clear_latest();
                 for message in setpoint.iter().chain([&command]) {
-                    figures.refused += u64::from(writer.send_message(message).is_err());
+                    self.figures.refused += u64::from(sender.writer.send_message(message).is_err());
                 }
                 // a flight that has ended hears nothing
-                let _ = stalled.send(gap);
+                let _ = sender.stalled.send(gap);
             }
             None => {
-                streams = false;
+                self.streams = false;
                 if guide.lead == Lead::Silent {
-                    writer.clear_latest();
+                    sender.writer.clear_latest();
                 }
             }
         }
     }
-    figures
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+use std::sync::Arc;
 use std::time::Duration;
 
 use socket2::{Domain, Protocol, Socket, Type};
@@ -28,7 +29,7 @@ const STRANGERS: usize = 16;
 #[derive(Debug)]
 pub(in crate::link) struct UdpIn {
     local: SocketAddr,
-    first: Option<UdpSocket>,
+    first: Option<Arc<UdpSocket>>,
     peer_timeout: Duration,
     strangers: BTreeSet<SocketAddr>,
 }
@@ -68,7 +69,7 @@ impl UdpIn {
     /// Until the socket itself fails.
     async fn session(
         &mut self,
-        socket: &UdpSocket,
+        socket: &Arc<UdpSocket>,
         incoming: &mut Incoming,
         outgoing: &mut Outgoing,
     ) -> String {
@@ -81,7 +82,9 @@ impl UdpIn {
                 received = socket.recv_from(&mut buffer) => match received {
                     Ok((bytes, from)) => {
                         failures.reset();
-                        self.received(&buffer[..bytes], from, &mut peer, incoming, outgoing);
+                        if self.received(&buffer[..bytes], from, &mut peer, incoming, outgoing) {
+                            outgoing.open_direct(socket, Some(from));
+                        }
                         None
                     }
                     Err(error) => Some(error),
@@ -106,6 +109,7 @@ impl UdpIn {
         }
     }
 
+    /// Takes a datagram; whether its sender has just become the peer.
     fn received(
         &mut self,
         bytes: &[u8],
@@ -113,7 +117,7 @@ impl UdpIn {
         peer: &mut Option<Peer>,
         incoming: &mut Incoming,
         outgoing: &mut Outgoing,
-    ) {
+    ) -> bool {
         let stamp = incoming.now();
         match peer {
             Some(peer) if peer.address == from => {
@@ -131,9 +135,11 @@ impl UdpIn {
                     outgoing.connected();
                     incoming.connected(from.to_string());
                     *peer = Some(Peer { address: from, heard: stamp.at });
+                    return true;
                 }
             }
         }
+        false
     }
 }
 
@@ -141,7 +147,7 @@ impl UdpIn {
 #[derive(Debug)]
 pub(in crate::link) struct UdpOut {
     remote: SocketAddr,
-    first: Option<UdpSocket>,
+    first: Option<Arc<UdpSocket>>,
 }
 
 impl UdpOut {
@@ -163,6 +169,7 @@ impl UdpOut {
             };
             if let Ok(socket) = socket {
                 outgoing.connected();
+                outgoing.open_direct(&socket, None);
                 incoming.open(true);
                 let why = self.session(&socket, &mut lost, incoming, outgoing).await;
                 if !lost {
@@ -179,7 +186,7 @@ impl UdpOut {
     /// Until the socket itself fails.
     async fn session(
         &mut self,
-        socket: &UdpSocket,
+        socket: &Arc<UdpSocket>,
         lost: &mut bool,
         incoming: &mut Incoming,
         outgoing: &mut Outgoing,
@@ -279,7 +286,7 @@ impl Failures {
     }
 }
 
-fn bind(local: SocketAddr) -> io::Result<UdpSocket> {
+fn bind(local: SocketAddr) -> io::Result<Arc<UdpSocket>> {
     let socket = Socket::new(Domain::for_address(local), Type::DGRAM, Some(Protocol::UDP))?;
     if local.is_ipv6() && local.ip().is_unspecified() {
         // `[::]` means everybody
@@ -289,10 +296,10 @@ fn bind(local: SocketAddr) -> io::Result<UdpSocket> {
     let _ = socket.set_recv_buffer_size(RECEIVE_BUFFER);
     socket.set_nonblocking(true)?;
     socket.bind(&local.into())?;
-    UdpSocket::from_std(socket.into())
+    UdpSocket::from_std(socket.into()).map(Arc::new)
 }
 
-async fn connect(remote: SocketAddr) -> io::Result<UdpSocket> {
+async fn connect(remote: SocketAddr) -> io::Result<Arc<UdpSocket>> {
     let any: IpAddr =
         if remote.is_ipv6() { Ipv6Addr::UNSPECIFIED.into() } else { Ipv4Addr::UNSPECIFIED.into() };
     let socket = bind((any, 0).into())?;

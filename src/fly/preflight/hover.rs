@@ -1,0 +1,102 @@
+//! Whether the vehicle file can be this vehicle's: what the autopilot hovers on, and where it has its rotors.
+
+use super::Situation;
+use crate::fly::finding::Finding;
+use crate::fly::lift::apart;
+use crate::fly::parameters::Parameters;
+use crate::log::{Autopilot, Recording};
+use crate::signals::propulsion_from_log;
+use crate::vehicle::{Actuator, Propulsion, ThrustLaw, Vehicle};
+
+/// Where the check speaks of thrust.
+pub(crate) const HOVER: &str = "hover thrust";
+/// Where it speaks of the rotors' number and places.
+pub(crate) const ROTORS: &str = "rotors";
+
+/// An autopilot that never hovered keeps its default for the hover thrust, which fits many vehicles badly.
+const HOVER_NOTABLE: f64 = 1.6;
+const HOVER_GROSS: f64 = 3.0;
+/// Arms are often given by the class of the frame.
+const ARM_NOTABLE: f64 = 1.6;
+const ARM_GROSS: f64 = 4.0;
+/// Where PX4's rotors are further out than this, m, their places may be ratios: 1 and -1, or -0.5 and 0.433.
+const RATIOS_FROM: f64 = 0.5;
+
+pub(super) fn findings(situation: &Situation<'_>) -> Vec<Finding> {
+    let Situation { vehicle, parameters, .. } = *situation;
+    hover(vehicle, parameters).into_iter().chain(rotors(vehicle, parameters)).collect()
+}
+
+/// Beyond `gross` a refusal, beyond `notable` a warning.
+fn judged(
+    subject: &'static str,
+    (expected, came, remedy): (String, String, &'static str),
+    (apart, notable, gross): (f64, f64, f64),
+) -> Finding {
+    if apart > gross {
+        Finding::refusal(subject, expected, came, remedy)
+    } else if apart > notable {
+        Finding::warning(subject, expected, came, remedy)
+    } else {
+        Finding::ok(subject, expected, came)
+    }
+}
+
+/// What all rotors of the file give at the command by which the autopilot expects to hover, against the weight.
+fn hover(vehicle: &Vehicle, parameters: &Parameters) -> Option<Finding> {
+    let (name, expo) = match parameters.autopilot {
+        Autopilot::Px4 => ("MPC_THR_HOVER", parameters.get("THR_MDL_FAC").unwrap_or(0.0)),
+        Autopilot::ArduPilot => ("MOT_THST_HOVER", parameters.get("MOT_THST_EXPO")?),
+        Autopilot::Other | Autopilot::Unknown => return None,
+    };
+    let share = parameters.get(name).filter(|share| *share > 0.0)?;
+    // the autopilot's own curve, from its share of the full thrust to the command
+    let curve = Propulsion {
+        actuator: Actuator::Thrust,
+        law: ThrustLaw::Curve { thrust_max_n: 1.0, expo },
+        ..vehicle.propulsion
+    };
+    let recording = Recording {
+        parameters: parameters.values.clone(),
+        autopilot: parameters.autopilot,
+        ..Recording::default()
+    };
+    let (propulsion, _) = propulsion_from_log(&recording, &vehicle.propulsion);
+    let rotors = vehicle.rotors.len() as f64;
+    let lifted_n = rotors * propulsion.thrust_from_command_n(curve.command_from_thrust(share));
+    let weight_n = vehicle.body.mass_kg * vehicle.gravity_m_s2;
+    let words = (
+        format!("the vehicle file's weight, {weight_n:.3} N"),
+        format!("{lifted_n:.3} N by the file's thrust at {name} = {share:.3}"),
+        "see that the vehicle file is this vehicle's and its thrust right, or set the parameter to what it hovers on \
+         (--accept hover-thrust flies all the same)",
+    );
+    Some(judged(HOVER, words, (apart(lifted_n, weight_n), HOVER_NOTABLE, HOVER_GROSS)))
+}
+
+/// Number of rotors and their distance from the middle, as PX4 has them.
+fn rotors(vehicle: &Vehicle, parameters: &Parameters) -> Option<Finding> {
+    let remedy = "see that the vehicle file is this vehicle's (--accept rotors flies all the same)";
+    let wanted = vehicle.rotors.len();
+    let count = parameters.get("CA_ROTOR_COUNT").filter(|count| *count > 0.0)?;
+    if (count - wanted as f64).abs() > 0.5 {
+        let expected = format!("{wanted}, as the vehicle file has");
+        return Some(Finding::refusal(ROTORS, expected, format!("CA_ROTOR_COUNT = {count:.0}"), remedy));
+    }
+    let entry = |rotor: usize, end: &str| parameters.get(&format!("CA_ROTOR{rotor}_{end}"));
+    let places: Option<Vec<[f64; 2]>> =
+        (0..wanted).map(|rotor| Some([entry(rotor, "PX")?, entry(rotor, "PY")?])).collect();
+    let places = places?;
+    if places.iter().flatten().any(|coordinate| coordinate.abs() >= RATIOS_FROM) {
+        return None;
+    }
+    let mean = |sum_m: f64| sum_m / wanted as f64;
+    let came_m = mean(places.iter().map(|[x, y]| x.hypot(*y)).sum());
+    let expected_m = mean(vehicle.rotors.iter().map(|rotor| rotor.position_m.xy().norm()).sum());
+    let words = (
+        format!("{expected_m:.3} m from the middle, as the vehicle file has"),
+        format!("{came_m:.3} m (CA_ROTOR0_PX, CA_ROTOR0_PY and on)"),
+        remedy,
+    );
+    Some(judged(ROTORS, words, (apart(came_m, expected_m), ARM_NOTABLE, ARM_GROSS)))
+}
