@@ -117,6 +117,28 @@ async fn every_frame_is_recorded_to_the_byte_but_no_key_and_no_noise() {
     std::fs::remove_file(&path).unwrap();
 }
 
+/// What comes after the end is in neither the file nor the figures.
+#[tokio::test]
+async fn an_ended_recording_holds_what_it_says() {
+    let path = file("ended");
+    let recorder = Recorder::create(&path, true).unwrap();
+    let ((mut reader, _writer), (_other, sender)) = pair(&recorder, None).await;
+    for sequence in 0..3 {
+        sender.send(&v2(header(1, sequence), &heartbeat())).unwrap();
+        assert!(matches!(receive(&mut reader).await, Received::Frame(_)));
+    }
+    let status = recorder.end().await.unwrap();
+    for sequence in 3..9 {
+        sender.send(&v2(header(1, sequence), &heartbeat())).unwrap();
+        assert!(matches!(receive(&mut reader).await, Received::Frame(_)), "no word of a failing disk");
+    }
+    assert_eq!((status.frames, recorder.status().frames, recorder.status().dropped), (3, 3, 0));
+    let (records, report) = read(&std::fs::read(&path).unwrap());
+    assert_eq!((records.len(), report.bytes), (3, status.bytes));
+    assert!(matches!(recorder.end().await, Err(RecordError::Ended)));
+    std::fs::remove_file(&path).unwrap();
+}
+
 #[tokio::test]
 async fn a_slow_disk_costs_frames_but_never_time() {
     let (bytes, (ticket, tickets)) = (Arc::new(Mutex::new(Vec::new())), mpsc::channel());

@@ -214,8 +214,6 @@ pub struct FlyArgs {
 /// Checks that may be overruled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum CheckName {
-    /// that what arrives suffices to identify the vehicle; it is flown and recorded, and not identified
-    Identification,
     /// that the vehicle file's thrust carries its weight by what the vehicle hovers on
     HoverThrust,
     /// that the vehicle file's rotors are as many and as far out as the autopilot's

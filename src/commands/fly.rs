@@ -78,8 +78,7 @@ pub fn run(json: bool, args: &FlyArgs) -> Result<Outcome, CommandError> {
         fly_it(ride, move |pictures, pressed| if drawn { draw(pictures, pressed) } else { tell(pictures) })?;
     say(&record);
     let landed = record.outcome.ending == Ending::Landed;
-    let identifies = !args.accept.contains(&CheckName::Identification);
-    let analysis = Analysis::of((&args.out, landed && identifies), &args.vehicle, args.system_id)?;
+    let analysis = Analysis::of((&args.out, landed), &args.vehicle, args.system_id)?;
     if json {
         output::json(&Document::new(&record, &args.out, analysis.as_ref()))?;
     } else if let Some(analysis) = &analysis {
@@ -179,7 +178,6 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
 
 fn check(name: CheckName) -> fly::Check {
     match name {
-        CheckName::Identification => fly::Check::Identification,
         CheckName::HoverThrust => fly::Check::HoverThrust,
         CheckName::Rotors => fly::Check::Rotors,
     }

@@ -104,7 +104,7 @@ async fn record(json: bool, args: &RecordArgs, signing: Option<Signing>) -> Resu
     let stats = capture.reader.stats();
     capture.bar.finish_and_clear();
     // whether or not the link held, what came is brought onto the disk
-    let status = capture.recorder.finish().await.map_err(|error| CommandError::Failure(error.to_string()))?;
+    let status = capture.recorder.end().await.map_err(|error| CommandError::Failure(error.to_string()))?;
     ended?;
     let document = document(args, start.elapsed().as_secs_f64(), &status, &stats);
     if json {

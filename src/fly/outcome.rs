@@ -41,8 +41,6 @@ pub enum Cause {
     Reboot,
     /// setpoints could not be made in time
     Stalled(String),
-    /// what lifts it is not the vehicle file's weight
-    OtherVehicle(String),
     /// it does not do what it is told
     Unresponsive(String),
 }
@@ -64,11 +62,7 @@ impl Cause {
     pub fn response(&self) -> Response {
         match self {
             Self::Override(_) | Self::Failsafe(_) | Self::LinkLost(_) | Self::Reboot => Response::HandsOff,
-            Self::Estimator(_)
-            | Self::Battery(_)
-            | Self::NotReached(_)
-            | Self::Refused(_)
-            | Self::OtherVehicle(_) => Response::Land,
+            Self::Estimator(_) | Self::Battery(_) | Self::NotReached(_) | Self::Refused(_) => Response::Land,
             _ => Response::Hold,
         }
     }
@@ -92,7 +86,6 @@ impl fmt::Display for Cause {
             Self::SecondMaster(what) => write!(f, "a second ground station commands: {what}"),
             Self::Reboot => f.write_str("the autopilot started anew"),
             Self::Stalled(what) => write!(f, "setpoints not in time: {what}"),
-            Self::OtherVehicle(what) => write!(f, "not the vehicle of the file: {what}"),
             Self::Unresponsive(what) => write!(f, "the vehicle does not answer: {what}"),
         }
     }

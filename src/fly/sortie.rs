@@ -4,7 +4,6 @@ use std::time::Duration;
 
 use super::course::Course;
 use super::preflight::{HOVER, ROTORS};
-use super::requests::IDENTIFICATION;
 use crate::log::{ComponentId, SystemId};
 use crate::vehicle::Limits;
 
@@ -39,8 +38,6 @@ pub enum Origin {
 /// A check whose refusal the operator may overrule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Check {
-    /// that what arrives suffices to identify the vehicle
-    Identification,
     /// that the file's thrust carries its weight by the command on which the vehicle hovers
     HoverThrust,
     /// that the file's rotors are those of the autopilot
@@ -52,7 +49,6 @@ impl Check {
     #[must_use]
     pub fn subject(self) -> &'static str {
         match self {
-            Self::Identification => IDENTIFICATION,
             Self::HoverThrust => HOVER,
             Self::Rotors => ROTORS,
         }

@@ -15,7 +15,7 @@ use crate::fly::outcome::{Cause, Level};
 use crate::fly::preflight::HOVER;
 use crate::fly::safety::{Lead, Sustained};
 use crate::fly::setpoint::{Place, wrapped};
-use crate::fly::sortie::{Check, Origin};
+use crate::fly::sortie::Origin;
 use crate::fly::target::Order;
 use crate::units::narrow;
 
@@ -127,26 +127,21 @@ impl Flight {
         }
         let Phase::Gate(open) = &mut self.phase else { return };
         if open.update(now, missing.is_empty()) >= GATE_HOLDS {
-            match self.weigh(now) {
-                None => self.begin_course(now),
-                Some(cause) => self.end(now, cause),
-            }
+            self.weigh(now);
+            self.begin_course(now);
         } else if now.saturating_sub(self.entered) > self.sortie.settings.reach_timeout {
             self.end(now, Cause::NotReached(format!("the start gate stays shut: {}", missing.join("; "))));
         }
     }
 
-    /// Once it hovers: whether what lifts it is the vehicle file's weight.
-    fn weigh(&mut self, now: Duration) -> Option<Cause> {
-        let weighed = self.lift.as_ref()?.weighed();
-        let accepted = self.sortie.settings.accepted.contains(&Check::HoverThrust);
-        let (level, text) = match weighed {
-            Weighed::Gross(text) if !accepted => return Some(Cause::OtherVehicle(text)),
-            Weighed::Gross(text) | Weighed::Notable(text) => (Level::Warning, text),
-            Weighed::Alike(text) => (Level::Information, text),
+    /// Once it hovers: says whether what lifts it is the vehicle file's weight.
+    fn weigh(&mut self, now: Duration) {
+        let (level, text) = match self.lift.as_ref().map(|lift| lift.weighed()) {
+            Some(Weighed::Notable(text)) => (Level::Warning, text),
+            Some(Weighed::Alike(text)) => (Level::Information, text),
+            None => return,
         };
         self.note(now, level, HOVER, text);
-        None
     }
 
     fn gate_misses(&self, now: Duration) -> Vec<String> {

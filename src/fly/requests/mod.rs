@@ -11,6 +11,5 @@ mod streams;
 
 pub use asking::{Answer, RequestSettings, Requests};
 pub use capacity::{Capacity, LinkKind, granted_hz};
-pub(crate) use report::IDENTIFICATION;
 pub use report::{NeedReport, RatesReport, StreamReport};
 pub use streams::{Need, StreamRequest, request_set, slow_request_set};

@@ -89,7 +89,7 @@ fn thresholds(need: Need) -> (f64, f64, bool) {
 }
 
 /// Where the check speaks of what identification needs.
-pub(crate) const IDENTIFICATION: &str = "identification";
+const IDENTIFICATION: &str = "identification";
 /// Without these no identification.
 const TO_IDENTIFY: [Need; 4] = [Need::BodyRates, Need::Attitude, Need::Position, Need::Actuators];
 
@@ -123,7 +123,7 @@ impl RatesReport {
         TO_IDENTIFY.iter().all(|need| self.serves(*need))
     }
 
-    /// Whether the flight will teach anything: a refusal where what identification needs does not arrive, which says what
+    /// Whether the flight will teach anything: a warning where what identification needs does not arrive, which says what
     /// is short of it.
     #[must_use]
     pub fn identification(&self) -> Finding {
@@ -138,12 +138,12 @@ impl RatesReport {
         if short.is_empty() {
             return Finding::ok(IDENTIFICATION, "streams to identify the vehicle from", "all of them");
         }
-        Finding::refusal(
+        Finding::warning(
             IDENTIFICATION,
             list(|need| format!("{} at {} Hz at least", need.need.name(), need.least_hz)),
             list(NeedReport::came),
-            "this flight would teach nothing: connect by a faster link or raise the autopilot's rates; or fly with \
-             --accept identification, and identify from the on-board log",
+            "this recording will teach little or nothing: connect by a faster link or raise the autopilot's rates, or \
+             identify from the on-board log",
         )
     }
 

@@ -173,7 +173,7 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
     // the link may be gone by now
     let _ = tokio::time::timeout(FLUSH, writer.flush()).await;
     let link = writer.stats();
-    let recorder = recorder.finish().await?;
+    let recorder = recorder.end().await?;
     let stream = stream.on_link(&link);
     Ok(Record { outcome, stream, recorder, link, events_failure })
 }

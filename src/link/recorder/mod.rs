@@ -85,6 +85,8 @@ struct State {
     dropped: AtomicU64,
     redacted: AtomicU64,
     failing: AtomicBool,
+    /// ended: what comes now is not of the recording
+    over: AtomicBool,
     /// frames were dropped, and the disk has not caught up yet
     behind: AtomicBool,
     failure: Mutex<Option<String>>,
@@ -127,6 +129,9 @@ impl Recorder {
 
     /// Records a frame; never waits. Whether the recording is whole: a frame may have been dropped.
     pub(super) fn record(&self, stamp: HostStamp, frame: &Frame<'_>) -> bool {
+        if self.is_over() {
+            return true;
+        }
         if frame.header().message_id == SETUP_SIGNING {
             self.state.redacted.fetch_add(1, Ordering::Relaxed);
             return true;
@@ -136,6 +141,9 @@ impl Recorder {
         let order = Order::Frame { stamp_us: stamp.utc_us, bytes: frame.bytes().into() };
         if waiting > self.waiting_max || self.orders.send(order).is_err() {
             self.state.waiting_bytes.fetch_sub(bytes, Ordering::Relaxed);
+            if self.is_over() {
+                return true;
+            }
             self.state.dropped.fetch_add(1, Ordering::Relaxed);
             self.state.behind.store(true, Ordering::Relaxed);
             return false;
@@ -162,6 +170,22 @@ impl Recorder {
         self.orders.send(Order::Flush(Some(done))).map_err(|_| RecordError::Ended)?;
         answer.await.map_err(|_| RecordError::Ended)?;
         Ok(self.status())
+    }
+
+    /// Ends the recording: brings it onto the disk and says what became of it. What comes later is neither written nor
+    /// counted.
+    ///
+    /// # Errors
+    /// It has ended already.
+    pub async fn end(&self) -> Result<RecorderStatus, RecordError> {
+        let (done, answer) = oneshot::channel();
+        self.orders.send(Order::End(done)).map_err(|_| RecordError::Ended)?;
+        answer.await.map_err(|_| RecordError::Ended)?;
+        Ok(self.status())
+    }
+
+    fn is_over(&self) -> bool {
+        self.state.over.load(Ordering::Acquire)
     }
 
     /// What became of the frames so far.

@@ -34,8 +34,13 @@ impl Store for File {
 /// Something for the thread to do.
 #[derive(Debug)]
 pub(super) enum Order {
-    Frame { stamp_us: u64, bytes: Box<[u8]> },
+    Frame {
+        stamp_us: u64,
+        bytes: Box<[u8]>,
+    },
     Flush(Option<oneshot::Sender<()>>),
+    /// the last one
+    End(oneshot::Sender<()>),
 }
 
 /// Flushing it also syncs. Its buffer hands on whole records only.
@@ -56,7 +61,7 @@ impl<S: Store> Write for Synced<S> {
     }
 }
 
-/// Writes until all recorders are gone. After a failure it goes on trying: a full disk may be made room on.
+/// Writes until all recorders are gone, or the recording is ended. After a failure it goes on trying: a full disk may be made room on.
 pub(super) fn work(store: impl Store, orders: &Receiver<Order>, state: &State) {
     let mut log = TlogWriter::new(Synced(BufWriter::with_capacity(BUFFER, store)));
     let mut watch = ModeWatch::default();
@@ -76,6 +81,13 @@ pub(super) fn work(store: impl Store, orders: &Receiver<Order>, state: &State) {
             Ok(Order::Flush(done)) => {
                 flush = true;
                 waiting = done;
+            }
+            Ok(Order::End(done)) => {
+                state.over.store(true, Ordering::Release);
+                state.note_failure(log.flush().err().as_ref());
+                // whoever asked may have given up
+                let _ = done.send(());
+                return;
             }
             Err(RecvTimeoutError::Timeout) => flush = true,
             Err(RecvTimeoutError::Disconnected) => {
