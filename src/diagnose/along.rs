@@ -92,8 +92,7 @@ pub fn wrench_along(model: &Model, trace: &Trace, turning: &Turning) -> Vec<Wren
     out
 }
 
-/// Thrusts behind an actuation latency. The lag acts on the rotors' speed, as a motor's does, and slows down as much
-/// slower than it speeds up as the vehicle's description states.
+/// Thrusts behind an actuation latency. The lag acts on the rotors' speed, as a motor's does.
 pub(super) fn felt(
     commanded_n: &[Thrusts],
     airframe: &Airframe,
@@ -104,7 +103,6 @@ pub(super) fn felt(
     if latency == ActuationLatency::default() {
         return commanded_n.to_vec();
     }
-    let lags_s = airframe.propulsion.rising_and_falling_s(latency.lag_s);
     let mut out = vec![[0.0; MAX_ROTORS]; commanded_n.len()];
     for first in [0, HALF] {
         if first >= airframe.rotor_count() {
@@ -114,7 +112,7 @@ pub(super) fn felt(
             .iter()
             .map(|thrusts| Vector4::from_fn(|i, _| airframe.relative_speed_of_thrust(thrusts[first + i])))
             .collect();
-        for (out, speed) in out.iter_mut().zip(delayed_speeds(&speeds, step_s, latency, lags_s)) {
+        for (out, speed) in out.iter_mut().zip(delayed_speeds(&speeds, step_s, latency)) {
             for i in 0..HALF {
                 out[first + i] = airframe.thrust_n(speed[i]);
             }

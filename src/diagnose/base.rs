@@ -150,13 +150,13 @@ impl Base {
     /// make, is none.
     #[must_use]
     pub fn latency_effects(&self) -> Vec<Present> {
-        let ActuationLatency { delay_s, lag_s } = self.latency;
+        let ActuationLatency { delay_s, lag_s, uneven } = self.latency;
         let of = |id: &str, values: Vec<f64>| {
             let effect = by_id(id).filter(|_| values[0] > 0.0)?;
             Some(Present { effect, values, free: Vec::new() })
         };
-        let (rising_s, falling_s) = self.vehicle.propulsion.rising_and_falling_s(lag_s);
-        let lags_s = if rising_s == falling_s { vec![lag_s] } else { vec![rising_s, falling_s] };
+        let (rising_s, falling_s) = self.latency.rising_and_falling_s();
+        let lags_s = if uneven == 0.0 { vec![lag_s] } else { vec![rising_s, falling_s] };
         [of("motor_lag", lags_s), of("transport_delay", vec![delay_s])].into_iter().flatten().collect()
     }
 }

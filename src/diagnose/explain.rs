@@ -1,12 +1,12 @@
 //! The whole method: search, lack of fit, verdict.
 
 use super::base::{Base, Present};
-use super::confusable::{APART, confusable_with};
+use super::confusable::confusable_with;
 use super::deviate::normal_deviate;
 use super::explanation::{Confusable, Explanation, Named, NamedParameter, Strength, Verdict};
 use super::gates::{Gates, WEAKEST_CEILING, ordinary_size};
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
-use super::latency::{LatencyFinding, REFUSED, held_s};
+use super::latency::latency_name;
 use super::limits::{COM_NUISANCE_M, is_beyond_showing, limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
 use super::rows::{AXES, CHANNELS};
@@ -66,9 +66,6 @@ const LACK_TORQUE: f64 = 0.1;
 pub(super) const FAST_MOTOR_S: f64 = 0.004;
 /// No line that holds anything weighs less, kg/m.
 const LEAST_LINE_KG_M: f64 = 0.005;
-/// A lag is told from a delay beyond this: rotors that spin up and down in different times are neither, and look more
-/// like a delay.
-const TOLD_APART: f64 = 15.0;
 /// Rotors of one vehicle differ by as much.
 const SCATTER: f64 = 0.08;
 /// Rivals that explain nearly as much as what was taken.
@@ -340,54 +337,4 @@ fn confusable(traces: &[Trace], found: &Search, place: usize, step: &Step) -> Ve
     let close = |rival: &&Tested| rival.evidence.energy > RIVAL * step.taken.evidence.energy;
     let rivals: Vec<&Tested> = step.rivals.iter().filter(close).collect();
     confusable_with(traces, &found.after, place, (&found.last, &rivals))
-}
-
-/// A lag or delay beyond what sampling and a fast motor make.
-fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<Named> {
-    let LatencyFinding { total_s, std_s, parts, against_lag, against_delay } = found.latency;
-    let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
-    let motor_s = vehicle.propulsion.time_constant_s.unwrap_or(0.0);
-    let of_sensors_s = |trace: &Trace| trace.inertial_late_s + trace.inertial_unsure_s;
-    let late_s = traces.iter().map(of_sensors_s).fold(0.0, f64::max);
-    let ordinary_s = motor_s + FAST_MOTOR_S + 0.5 * period_s + late_s;
-    if total_s - ordinary_s < 4.0 * std_s {
-        return None;
-    }
-    let unsure_s = traces.iter().map(|trace| trace.inertial_unsure_s).fold(0.0, f64::max);
-    let std_s = std_s.hypot(unsure_s);
-    let is_lag = parts.lag_s > parts.delay_s;
-    let (id, other, name) = if is_lag {
-        ("motor_lag", "transport_delay", "time_constant")
-    } else {
-        ("transport_delay", "motor_lag", "delay")
-    };
-    let (value, std) = if is_lag {
-        (parts.lag_s, std_s)
-    } else if parts.lag_s > 0.0 {
-        (parts.delay_s - held_s(traces), std_s)
-    } else {
-        // the motor, which also lags, and the command's hold are in the total
-        let (motor_s, unsure_s) = match vehicle.propulsion.time_constant_s {
-            Some(known_s) => (known_s, 0.0),
-            None => (FAST_MOTOR_S, 0.5 * FAST_MOTOR_S),
-        };
-        (parts.delay_s - held_s(traces) - motor_s, std_s.hypot(unsure_s))
-    };
-    let (own, others) = if is_lag { (against_lag, against_delay) } else { (against_delay, against_lag) };
-    let told_apart = others > TOLD_APART && own < 0.5 * REFUSED;
-    let z = (total_s - ordinary_s) / found.latency.std_s;
-    Some(Named {
-        id,
-        sentence: by_id(id)?.sentence(),
-        parameters: vec![NamedParameter { name, value, std, unit: "s" }],
-        strength: Strength { z, gain: 0.0, energy: z * z, count: 1 },
-        confusable_with: if told_apart {
-            Vec::new()
-        } else {
-            vec![Confusable {
-                id: other,
-                distinguishability: Some((others - own).max(0.0)).filter(|d| *d < APART),
-            }]
-        },
-    })
 }

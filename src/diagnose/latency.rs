@@ -6,12 +6,17 @@
 
 use super::base::{Base, Present};
 use super::candidates::present;
+use super::confusable::APART;
 use super::evidence::Weighted;
-use super::rows::{Channels, Nuisance, Rows, SECOND, append, channels, nothing};
-use super::search::{Fitted, Newton, fit};
+use super::explain::FAST_MOTOR_S;
+use super::explanation::{Confusable, Named, NamedParameter, Strength};
+use super::rows::{Channels, Nuisance, Rows, SECOND, append, channels, nothing, per_step, residuals};
+use super::search::{Fitted, Newton, Search, fit};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
+use crate::physics::effects::by_id;
 use crate::signals::{ActuationLatency, delayed_wrench};
+use crate::vehicle::Vehicle;
 use nalgebra::Vector4;
 
 /// What the latency consists of.
@@ -27,6 +32,8 @@ pub struct LatencyFinding {
     pub against_lag: f64,
     /// by which a pure delay misses it
     pub against_delay: f64,
+    /// standard error of [`ActuationLatency::uneven`] where the flight tells rising from falling speed
+    pub uneven_std: Option<f64>,
 }
 
 /// Latencies below this need no kind: sampling and a fast motor together are as long, s.
@@ -37,7 +44,7 @@ const HELD: f64 = 0.25;
 /// Gyroscopes noisier than this let no kind be told.
 const NOISY_RAD_S: f64 = 0.03;
 /// A kind is refused beyond this many standard deviations.
-pub(super) const REFUSED: f64 = 6.0;
+const REFUSED: f64 = 6.0;
 
 /// Fits the rigid body alone, with the latency that is left when what could be taken for one (damping and
 /// drag move with the derivative of force and torque, too) is allowed for.
@@ -58,21 +65,23 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
         // fed back, the gyroscopes' noise moves commands and motion together, and the second order with them
         let fed_back = flights.iter().any(|trace| trace.gyro_noise_rad_s > NOISY_RAD_S);
         // of two kinds that both serve, the one that the description states
+        let uneven = stated_uneven(&fitted.base.vehicle);
         let states_lag = fitted.base.vehicle.propulsion.time_constant_down_s.is_some();
         latency = if fed_back {
-            lag_of(flights, total_s)
+            lag_of(flights, total_s, uneven)
         } else if both {
-            ActuationLatency { delay_s, lag_s: total_s - delay_s }
+            ActuationLatency { delay_s, lag_s: total_s - delay_s, uneven }
         } else if against_lag < against_delay || (states_lag && against_lag < REFUSED) {
-            lag_of(flights, total_s)
+            lag_of(flights, total_s, uneven)
         } else {
-            ActuationLatency { delay_s: total_s, lag_s: 0.0 }
+            ActuationLatency { delay_s: total_s, ..ActuationLatency::default() }
         };
         let mut base = fitted.base;
         base.latency = latency;
-        let fitted = fit(flights, base, Newton::Free)?;
+        let mut fitted = fit(flights, base, Newton::Free)?;
+        let told = if states_lag { None } else { uneven_lag(flights, &mut fitted)? };
         latency = fitted.base.latency;
-        finding = finding_of(&fitted);
+        finding = LatencyFinding { uneven_std: told, ..finding_of(&fitted) };
         if !fed_back {
             finding = LatencyFinding { against_lag, against_delay, ..finding };
         }
@@ -82,9 +91,9 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
 }
 
 /// A lag behind what delays the recording itself.
-fn lag_of(flights: &[Trace], total_s: f64) -> ActuationLatency {
+fn lag_of(flights: &[Trace], total_s: f64, uneven: f64) -> ActuationLatency {
     let delay_s = held_s(flights).min(0.5 * total_s);
-    ActuationLatency { delay_s, lag_s: total_s - delay_s }
+    ActuationLatency { delay_s, lag_s: total_s - delay_s, uneven }
 }
 
 /// What is no vehicle's: commands that hold, and the delay of the inertial unit's filters, s.
@@ -118,7 +127,65 @@ pub fn finding_of(fitted: &Fitted) -> LatencyFinding {
         parts: fitted.base.latency,
         against_lag: 0.0,
         against_delay: 0.0,
+        uneven_std: None,
     }
+}
+
+/// What a vehicle's description says of [`ActuationLatency::uneven`].
+pub(super) fn stated_uneven(vehicle: &Vehicle) -> f64 {
+    vehicle.propulsion.falling_over_rising().ln()
+}
+
+/// A lag is told from a delay beyond this: rotors that spin up and down in different times are neither, and look more
+/// like a delay.
+const TOLD_APART: f64 = 15.0;
+/// Standard errors from even at which rising and falling speed are told apart.
+const UNEVEN: f64 = 6.0;
+/// Slowing down takes between a third and four times as long as speeding up.
+const UNEVEN_LEAST: f64 = -1.1;
+const UNEVEN_MOST: f64 = 1.4;
+/// Passes over it, and its step.
+const UNEVEN_PASSES: usize = 4;
+const UNEVEN_STEP: f64 = 0.2;
+
+/// Tells rising from falling speed in a lag where the flight does, beyond what a bent thrust curve would do, and fits with
+/// it; its standard error.
+fn uneven_lag(flights: &[Trace], fitted: &mut Fitted) -> Result<Option<f64>, PhysicsError> {
+    if fitted.base.latency.lag_s <= fitted.base.latency.delay_s {
+        return Ok(None);
+    }
+    let even = fitted.clone();
+    let mut told = None;
+    for _ in 0..UNEVEN_PASSES {
+        let mut further = fitted.base.clone();
+        further.latency.uneven += UNEVEN_STEP;
+        let column = per_step(residuals(flights, &further)?, &fitted.rows.residual, UNEVEN_STEP);
+        let Some(curve) = present("thrust_curve", &[0.0; 2], &[0, 1]) else { break };
+        let mut columns = fitted.rows.columns_of(flights, &fitted.base, &curve)?;
+        columns.push(column);
+        let last = columns.len() - 1;
+        let Some(evidence) = fitted.weighted.test(&columns) else { break };
+        let (by, std) = (evidence.theta[last], evidence.std(last));
+        let uneven = (fitted.base.latency.uneven + by).clamp(UNEVEN_LEAST, UNEVEN_MOST);
+        if uneven.abs() < UNEVEN * std {
+            told = None;
+            break;
+        }
+        let moved = (uneven - fitted.base.latency.uneven).abs();
+        let mut base = fitted.base.clone();
+        base.latency.uneven = uneven;
+        *fitted = fit(flights, base, Newton::Free)?;
+        told = Some(std);
+        if moved < 0.3 * std {
+            break;
+        }
+    }
+    let at_bound = [UNEVEN_LEAST, UNEVEN_MOST].contains(&fitted.base.latency.uneven);
+    if told.is_none() || at_bound || fitted.misfit() >= even.misfit() {
+        *fitted = even;
+        return Ok(None);
+    }
+    Ok(told)
 }
 
 /// Standard deviations against a lag and against a delay, and the delay if it is some of both.
@@ -126,7 +193,7 @@ fn second_order(flights: &[Trace], fitted: &Fitted) -> Result<Option<(f64, f64, 
     let mut base = fitted.base.clone();
     // beyond the delay that every recording has
     let held_s = held_s(flights);
-    base.latency = ActuationLatency { delay_s: held_s, lag_s: 0.0 };
+    base.latency = ActuationLatency { delay_s: held_s, ..ActuationLatency::default() };
     let mut rows = Rows::new(flights, &base)?;
     let Some(place) = rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Latency) else {
         return Ok(None);
@@ -150,7 +217,7 @@ fn second_order(flights: &[Trace], fitted: &Fitted) -> Result<Option<(f64, f64, 
 /// What more of the base's lag and less of its delay does, per s: `-K(M')` behind the lag in the torque rows, by the
 /// measured motion, and `-K(T')` behind it in the force rows, by the smoothed commands.
 pub(super) fn lag_column(flights: &[Trace], fitted: &Fitted) -> Channels {
-    let behind = ActuationLatency { delay_s: 0.0, lag_s: fitted.base.latency.lag_s };
+    let behind = ActuationLatency { delay_s: 0.0, ..fitted.base.latency };
     let mut out = Channels::default();
     for (index, trace) in flights.iter().enumerate() {
         let mut force = nothing(trace);
@@ -183,4 +250,73 @@ fn turning(trace: &Trace, base: &Base, order: usize, behind: ActuationLatency) -
     let torque: Vec<Vector4<f64>> = torque.iter().map(|t| Vector4::new(t.x, t.y, t.z, 0.0)).collect();
     let late = delayed_wrench(&torque, trace.grid.step_s, behind);
     [0, 1, 2].map(|axis| trace.weak(order, &late.iter().map(|t| -t[axis]).collect::<Vec<f64>>()))
+}
+
+/// A lag by its time constants of rising and falling speed, where they are told apart; else what was found, as a whole.
+fn parameters_of(
+    parts: ActuationLatency,
+    (name, value, std): (&'static str, f64, f64),
+    uneven_std: Option<f64>,
+) -> Vec<NamedParameter> {
+    let Some(uneven_std) = uneven_std else {
+        return vec![NamedParameter { name, value, std, unit: "s" }];
+    };
+    let (rising_s, falling_s) = parts.rising_and_falling_s();
+    // both of the mean's standard error and of the logarithm's of their ratio
+    let by_uneven_s = rising_s * falling_s / (2.0 * parts.lag_s) * uneven_std;
+    let of = |name, value: f64| {
+        let std = (value / parts.lag_s * std).hypot(by_uneven_s);
+        NamedParameter { name, value, std, unit: "s" }
+    };
+    vec![of(name, rising_s), of("time_constant_down", falling_s)]
+}
+
+/// A lag or delay beyond what sampling and a fast motor make.
+pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<Named> {
+    let LatencyFinding { total_s, std_s, parts, against_lag, against_delay, uneven_std } = found.latency;
+    let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
+    let motor_s = vehicle.propulsion.time_constant_s.unwrap_or(0.0);
+    let of_sensors_s = |trace: &Trace| trace.inertial_late_s + trace.inertial_unsure_s;
+    let late_s = traces.iter().map(of_sensors_s).fold(0.0, f64::max);
+    let ordinary_s = motor_s + FAST_MOTOR_S + 0.5 * period_s + late_s;
+    if total_s - ordinary_s < 4.0 * std_s {
+        return None;
+    }
+    let unsure_s = traces.iter().map(|trace| trace.inertial_unsure_s).fold(0.0, f64::max);
+    let std_s = std_s.hypot(unsure_s);
+    let is_lag = parts.lag_s > parts.delay_s;
+    let (id, other, name) = if is_lag {
+        ("motor_lag", "transport_delay", "time_constant")
+    } else {
+        ("transport_delay", "motor_lag", "delay")
+    };
+    let (value, std) = if is_lag {
+        (parts.lag_s, std_s)
+    } else if parts.lag_s > 0.0 {
+        (parts.delay_s - held_s(traces), std_s)
+    } else {
+        // the motor, which also lags, and the command's hold are in the total
+        let (motor_s, unsure_s) = match vehicle.propulsion.time_constant_s {
+            Some(known_s) => (known_s, 0.0),
+            None => (FAST_MOTOR_S, 0.5 * FAST_MOTOR_S),
+        };
+        (parts.delay_s - held_s(traces) - motor_s, std_s.hypot(unsure_s))
+    };
+    let (own, others) = if is_lag { (against_lag, against_delay) } else { (against_delay, against_lag) };
+    let told_apart = others > TOLD_APART && own < 0.5 * REFUSED;
+    let z = (total_s - ordinary_s) / found.latency.std_s;
+    Some(Named {
+        id,
+        sentence: by_id(id)?.sentence(),
+        parameters: parameters_of(parts, (name, value, std), uneven_std.filter(|_| is_lag)),
+        strength: Strength { z, gain: 0.0, energy: z * z, count: 1 },
+        confusable_with: if told_apart {
+            Vec::new()
+        } else {
+            vec![Confusable {
+                id: other,
+                distinguishability: Some((others - own).max(0.0)).filter(|d| *d < APART),
+            }]
+        },
+    })
 }

@@ -294,7 +294,7 @@ pub(super) fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, Phy
 }
 
 /// By how much the residual falls.
-fn per_step(mut up: Channels, down: &Channels, step: f64) -> Channels {
+pub(super) fn per_step(mut up: Channels, down: &Channels, step: f64) -> Channels {
     for (up, down) in up.iter_mut().zip(down) {
         up.iter_mut().zip(down).for_each(|(up, down)| *up = (down - *up) / step);
     }

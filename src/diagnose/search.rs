@@ -255,6 +255,7 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
     let latency = LatencyFinding {
         against_lag: latency.against_lag,
         against_delay: latency.against_delay,
+        uneven_std: latency.uneven_std,
         // what could be taken for a latency makes it uncertain, whether it is in the model or not
         std_s: found.std_s.max(latency.std_s),
         ..found

@@ -49,7 +49,7 @@ impl SpinUp {
                 Vector4::new(turning[index].z - (effects[3] - spinning_nm), 0.0, 0.0, 0.0)
             })
             .collect();
-        let behind = ActuationLatency { delay_s: 0.0, lag_s: self.lag_s };
+        let behind = ActuationLatency { lag_s: self.lag_s, ..ActuationLatency::default() };
         let of_drag = delayed_wrench(&beside, trace.grid.step_s, behind);
         for (index, effects) in effects.iter_mut().enumerate() {
             // the rest of what the motion took beside the other effects

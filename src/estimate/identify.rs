@@ -265,13 +265,14 @@ impl WeakFlights {
         if !(found.total_s.abs() > 4.0 * found.std_s && found.total_s.abs() < 0.3) {
             return (Some(found), ActuationLatency::default());
         }
+        let none = ActuationLatency::default();
         let compensation = match found.kind {
-            LatencyKind::Lag => ActuationLatency { delay_s: 0.0, lag_s: found.total_s },
+            LatencyKind::Lag => ActuationLatency { lag_s: found.total_s, ..none },
             LatencyKind::Both { delay_s } => {
-                ActuationLatency { delay_s, lag_s: (found.total_s - delay_s).max(0.0) }
+                ActuationLatency { delay_s, lag_s: (found.total_s - delay_s).max(0.0), ..none }
             }
             LatencyKind::Delay | LatencyKind::Undetermined => {
-                ActuationLatency { delay_s: found.total_s, lag_s: 0.0 }
+                ActuationLatency { delay_s: found.total_s, ..none }
             }
         };
         for signals in &mut self.signals {

@@ -7,8 +7,10 @@ use nalgebra::Vector4;
 pub struct ActuationLatency {
     /// s; may be negative where the actuator stream's stamps are late
     pub delay_s: f64,
-    /// s, time constant
+    /// s, time constant; of rotors the mean of that at rising and that at falling speed
     pub lag_s: f64,
+    /// logarithm of how many times as long slowing down takes as speeding up: 0 where both take as long
+    pub uneven: f64,
 }
 
 impl ActuationLatency {
@@ -17,10 +19,18 @@ impl ActuationLatency {
     pub fn total_s(&self) -> f64 {
         self.delay_s + self.lag_s
     }
+
+    /// Time constants of rising and of falling speed, s.
+    #[must_use]
+    pub fn rising_and_falling_s(&self) -> (f64, f64) {
+        let rising_s = 2.0 * self.lag_s / (1.0 + self.uneven.exp());
+        (rising_s, 2.0 * self.lag_s - rising_s)
+    }
 }
 
 /// The wrench that the body felt, from the commanded one: shifted by the delay (straight lines between
-/// instants), then through the lag with its exact response to straight lines. One entry every `step_s`.
+/// instants), then through the lag, as long up as down, with its exact response to straight lines. One entry every
+/// `step_s`.
 #[must_use]
 pub fn delayed_wrench(wrench: &[Vector4<f64>], step_s: f64, latency: ActuationLatency) -> Vec<Vector4<f64>> {
     let shifted = shifted(wrench, latency.delay_s / step_s);
@@ -30,18 +40,14 @@ pub fn delayed_wrench(wrench: &[Vector4<f64>], step_s: f64, latency: ActuationLa
     lagged(&shifted, latency.lag_s, step_s)
 }
 
-/// Rotor speeds behind an actuation latency whose lag is `rising_s` for speeds that rise and `falling_s` for those that
-/// fall. Where falling takes longer, what jitters about a value is faster than it on average. One entry every `step_s`.
+/// Rotor speeds behind an actuation latency. Where falling takes longer than rising, what jitters about a value is faster
+/// than it on average. One entry every `step_s`.
 #[must_use]
-pub fn delayed_speeds(
-    speeds: &[Vector4<f64>],
-    step_s: f64,
-    latency: ActuationLatency,
-    (rising_s, falling_s): (f64, f64),
-) -> Vec<Vector4<f64>> {
-    if latency.lag_s <= 0.0 || rising_s == falling_s {
+pub fn delayed_speeds(speeds: &[Vector4<f64>], step_s: f64, latency: ActuationLatency) -> Vec<Vector4<f64>> {
+    if latency.lag_s <= 0.0 || latency.uneven == 0.0 {
         return delayed_wrench(speeds, step_s, latency);
     }
+    let (rising_s, falling_s) = latency.rising_and_falling_s();
     let laws = [rising_s, falling_s].map(|lag_s| Lag::new(lag_s, step_s));
     let shifted = shifted(speeds, latency.delay_s / step_s);
     let mut state = shifted.first().copied().unwrap_or_default();
@@ -134,9 +140,9 @@ mod tests {
 
     #[test]
     fn rotors_that_slow_down_slowly_turn_faster_than_a_jittering_command() {
-        let latency = ActuationLatency { delay_s: 0.0, lag_s: 0.03 };
-        let both = |series: &[Vector4<f64>], falling| delayed_speeds(series, 0.01, latency, falling);
-        let (alike, slower) = ((0.03, 0.03), (0.02, 0.04));
+        let alike = ActuationLatency { lag_s: 0.03, ..ActuationLatency::default() };
+        let slower = ActuationLatency { uneven: 2f64.ln(), ..alike };
+        let both = |series: &[Vector4<f64>], latency| delayed_speeds(series, 0.01, latency);
         // a ramp up is followed at the time constant of rising, one down at that of falling: 0.02 and 0.04 s
         let up = both(&ramp(), slower);
         assert!((up[399][0] - (3.99 - 0.02)).abs() < 1e-12);

@@ -67,13 +67,6 @@ impl Propulsion {
         }
     }
 
-    /// Time constants (s) of rising and falling speed whose mean is `lag_s`.
-    #[must_use]
-    pub fn rising_and_falling_s(&self, lag_s: f64) -> (f64, f64) {
-        let up_s = 2.0 * lag_s / (1.0 + self.falling_over_rising());
-        (up_s, 2.0 * lag_s - up_s)
-    }
-
     /// Recorded actuator value to the normalised command u.
     #[must_use]
     pub fn normalized(&self, value: f64) -> f64 {

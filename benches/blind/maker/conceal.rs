@@ -68,7 +68,11 @@ impl Case {
                 let up = dice.random_range(0.02..0.07);
                 let down = if entry.ends_with("asymmetric") { 1.6 * up } else { up };
                 self.hidden.lag = (up, down);
-                self.note(id, &[("time_constant", 0.5 * (up + down))]);
+                if down > up {
+                    self.note(id, &[("time_constant", up), ("time_constant_down", down)]);
+                } else {
+                    self.note(id, &[("time_constant", up)]);
+                }
             }
             "transport_delay" => {
                 self.hidden.delay = dice.random_range(0.012..0.035);

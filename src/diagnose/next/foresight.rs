@@ -106,11 +106,11 @@ pub(super) fn is_latency(id: &str) -> bool {
 
 /// The same latency, all of it of the other kind.
 fn turned(latency: ActuationLatency, named: &str) -> ActuationLatency {
-    let ActuationLatency { delay_s, lag_s } = latency;
+    let (total_s, none) = (latency.total_s(), ActuationLatency::default());
     if named == "motor_lag" {
-        ActuationLatency { delay_s: delay_s + lag_s, lag_s: 0.0 }
+        ActuationLatency { delay_s: total_s, ..none }
     } else {
-        ActuationLatency { delay_s: 0.0, lag_s: delay_s + lag_s }
+        ActuationLatency { lag_s: total_s, ..none }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::wanted::Wanted;
 use crate::diagnose::base::Base;
-use crate::diagnose::latency::{LatencyFinding, held_s, lag_column};
+use crate::diagnose::latency::{LatencyFinding, held_s, lag_column, stated_uneven};
 use crate::diagnose::search::{Fitted, Newton, fit};
 use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, PhysicsError};
@@ -32,21 +32,22 @@ pub(super) fn held_as(
         known.and_then(|of| of.parameters().first().copied())
     };
     let held_s = held_s(flights);
+    let uneven = stated_uneven(vehicle);
     let beyond_s = first.total_s - held_s;
     match (wanted.has("motor_lag"), wanted.has("transport_delay")) {
         (false, false) => (found, Newton::Free),
         (true, false) => {
             let delay_s = of_file("transport_delay").unwrap_or(0.0);
             let lag_s = (beyond_s - delay_s).max(10.0 * LEAST_LAG_S);
-            (ActuationLatency { delay_s: delay_s + held_s, lag_s }, Newton::Free)
+            (ActuationLatency { delay_s: delay_s + held_s, lag_s, uneven }, Newton::Free)
         }
         (false, true) => {
             let lag_s = of_file("motor_lag").or(vehicle.propulsion.time_constant_s).unwrap_or(0.0);
-            (ActuationLatency { delay_s: first.total_s - lag_s, lag_s }, Newton::Delay)
+            (ActuationLatency { delay_s: first.total_s - lag_s, lag_s, uneven }, Newton::Delay)
         }
         (true, true) => {
             let lag_s = (0.5 * beyond_s).max(10.0 * LEAST_LAG_S);
-            (ActuationLatency { delay_s: first.total_s - lag_s, lag_s }, Newton::Delay)
+            (ActuationLatency { delay_s: first.total_s - lag_s, lag_s, uneven }, Newton::Delay)
         }
     }
 }
@@ -68,7 +69,8 @@ pub(super) fn split(
         let before_s = after.base.latency.lag_s;
         let most_s = (after.base.latency.total_s() - held_s(flights)).max(LEAST_LAG_S);
         let lag_s = (before_s + evidence.theta[0]).clamp(LEAST_LAG_S, most_s);
-        let latency = ActuationLatency { lag_s, delay_s: after.base.latency.total_s() - lag_s };
+        let latency =
+            ActuationLatency { lag_s, delay_s: after.base.latency.total_s() - lag_s, ..after.base.latency };
         after = fit(flights, Base { latency, ..after.base }, Newton::Delay)?;
         if (lag_s - before_s).abs() < CONVERGED * lag_std_s {
             break;

@@ -234,6 +234,7 @@ fn put_together(
     let latency = LatencyFinding {
         against_lag: first.against_lag,
         against_delay: first.against_delay,
+        uneven_std: first.uneven_std,
         ..finding_of(&after)
     };
     let by_mass = scale.is_some().then(|| vehicle.body.mass_kg / after.base.vehicle.body.mass_kg);

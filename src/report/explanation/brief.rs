@@ -61,7 +61,10 @@ fn size(named: &Named) -> Option<String> {
         "thrust_tilt" | "imu_misalignment" | "frame_misalignment" => {
             Some(format!("{} deg", significant(norm(named).to_degrees(), 2)))
         }
-        "motor_lag" => said("time_constant", 1e3, "ms"),
+        "motor_lag" => match (said("time_constant", 1e3, "ms"), said("time_constant_down", 1e3, "ms")) {
+            (Some(up), Some(down)) => Some(format!("{up} up, {down} down")),
+            (up, _) => up,
+        },
         "transport_delay" => said("delay", 1e3, "ms"),
         "thrust_curve" => said("curvature", 100.0, "% about hover"),
         "battery_sag" => Some(format!("the voltage to the power of {}", said("exponent", 1.0, "")?)),

@@ -64,6 +64,11 @@ pub fn clause(named: &Named, vehicle: &Vehicle) -> String {
             values.said("exponent", 1.0),
             significant(values.value("full_voltage"), 4)
         ),
+        "motor_lag" if values.get("time_constant_down").is_some() => format!(
+            "The motors' lag was left out: the rotors follow their commands with a time constant of {} ms up and {} ms down",
+            values.said("time_constant", 1e3),
+            values.said("time_constant_down", 1e3)
+        ),
         "slung_load" => format!(
             "A load swings below: {} kg on a cord of {} m",
             values.said("mass", 1.0),
