@@ -20,6 +20,11 @@ pub fn effects(
 
 fn all_of(tables: &[toml::Table], vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
     let all = tables.iter().map(|table| effect(table, vehicle)).collect::<Result<Vec<_>, _>>()?;
+    each_once(&all)?;
+    Ok(all)
+}
+
+fn each_once(all: &[ActiveEffect]) -> Result<(), CommandError> {
     for (index, active) in all.iter().enumerate() {
         let id = active.effect().id();
         // each rotor may be weak in its own way
@@ -32,6 +37,24 @@ fn all_of(tables: &[toml::Table], vehicle: &Vehicle) -> Result<Vec<ActiveEffect>
                 "[[effect]]: expected each effect once, {id} comes twice"
             )));
         }
+    }
+    Ok(())
+}
+
+/// The effects of a model file with those of a further file, if there is one; each may be in one of them alone.
+pub fn with_further(
+    tables: &[toml::Table],
+    origin: &Path,
+    further: Option<&Path>,
+    vehicle: &Vehicle,
+) -> Result<Vec<ActiveEffect>, CommandError> {
+    let origin = origin.display().to_string();
+    let mut all = effects(tables, &origin, vehicle)?;
+    if let Some(path) = further {
+        all.extend(effects_file(path, vehicle)?);
+        each_once(&all).map_err(|error| {
+            CommandError::Input(format!("{origin} and {} together: {error}", path.display()))
+        })?;
     }
     Ok(all)
 }

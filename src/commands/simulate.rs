@@ -10,7 +10,7 @@ use mavid::simulate::{FlightSettings, Reference, TelemetrySettings, Truth, simul
 use mavid::vehicle::Vehicle;
 use serde::Serialize;
 
-use super::effects::{effects, effects_file, with_stated_lag};
+use super::effects::{with_further, with_stated_lag};
 use super::flights::is_csv;
 use super::{CommandError, Outcome, output};
 use crate::cli::SimulateArgs;
@@ -50,10 +50,7 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     let loaded = read_vehicle(&args.vehicle)?;
     output::warnings(&args.vehicle, &loaded.warnings);
     let vehicle = loaded.vehicle;
-    let mut acting = effects(&loaded.model.effects, &args.vehicle.display().to_string(), &vehicle)?;
-    if let Some(path) = &args.effects {
-        acting.extend(effects_file(path, &vehicle)?);
-    }
+    let mut acting = with_further(&loaded.model.effects, &args.vehicle, args.effects.as_deref(), &vehicle)?;
     let nominal = match &args.nominal {
         Some(path) => read_vehicle(path)?.vehicle,
         None => vehicle.clone(),

@@ -11,7 +11,7 @@ use mavid::sitl::{
 };
 use serde::Serialize;
 
-use super::effects::{effects, effects_file};
+use super::effects::with_further;
 use super::{CommandError, Outcome, network, output};
 use crate::cli::{ArduPilotVersion, AutopilotName, SitlArgs};
 
@@ -113,11 +113,8 @@ fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
     if let Some(path) = &args.vehicle {
         output::warnings(path, &warnings);
     }
-    let origin = args.vehicle.as_ref().map_or_else(String::new, |path| path.display().to_string());
-    let mut acting = effects(&model.effects, &origin, &vehicle)?;
-    if let Some(path) = &args.effects {
-        acting.extend(effects_file(path, &vehicle)?);
-    }
+    let origin = args.vehicle.as_deref().unwrap_or_else(|| Path::new("the embedded vehicle"));
+    let acting = with_further(&model.effects, origin, args.effects.as_deref(), &vehicle)?;
     let key = args.signing_key_file.as_deref().map(SigningKey::read).transpose();
     let signing_key = key.map_err(|error| CommandError::Input(error.to_string()))?;
     let base = Settings::new(vehicle, kind);

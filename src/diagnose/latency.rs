@@ -275,7 +275,7 @@ fn parameters_of(
 pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<Named> {
     let LatencyFinding { total_s, std_s, parts, against_lag, against_delay, uneven_std } = found.latency;
     let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
-    let motor_s = vehicle.propulsion.time_constant_s.unwrap_or(0.0);
+    let motor_s = vehicle.propulsion.mean_time_constant_s().unwrap_or(0.0);
     let of_sensors_s = |trace: &Trace| trace.inertial_late_s + trace.inertial_unsure_s;
     let late_s = traces.iter().map(of_sensors_s).fold(0.0, f64::max);
     let ordinary_s = motor_s + FAST_MOTOR_S + 0.5 * period_s + late_s;
@@ -296,7 +296,7 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
         (parts.delay_s - held_s(traces), std_s)
     } else {
         // the motor, which also lags, and the command's hold are in the total
-        let (motor_s, unsure_s) = match vehicle.propulsion.time_constant_s {
+        let (motor_s, unsure_s) = match vehicle.propulsion.mean_time_constant_s() {
             Some(known_s) => (known_s, 0.0),
             None => (FAST_MOTOR_S, 0.5 * FAST_MOTOR_S),
         };

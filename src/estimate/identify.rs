@@ -1,16 +1,15 @@
 //! All methods on one or several flights of a vehicle, and which of them to believe.
 
+use super::compensate::{compensation, take_out};
 use super::plausible::{disagreeing, implausible};
 use super::recommend::{Recommendation, recommend};
 use super::result::{Estimated, MethodResult};
 use super::rotor_check::{WeakRotor, weak_rotor, with_weak_rotor};
 use super::theta::{Theta, ThetaCovariance, theta_of};
-use super::weak::{Latency, LatencyKind, WeakEstimate, WeakMethod, latency, solve_weak};
+use super::weak::{Latency, WeakEstimate, WeakMethod, latency, solve_weak};
 use super::{GradientStep, History, gradient_descent, least_squares};
 use crate::regression::{SampledModel, WeakMotion, WeakRows, ZeroPhase, paper_models, weak_rows};
-use crate::signals::{
-    ActuationLatency, Butterworth, Signals, WeakKernel, WindowedFir, delayed_wrench, highest_harmonic_hz,
-};
+use crate::signals::{ActuationLatency, Butterworth, Signals, WeakKernel, WindowedFir, highest_harmonic_hz};
 use crate::vehicle::Vehicle;
 
 /// A method's name as in files and JSON.
@@ -136,7 +135,7 @@ fn identify_evenly(
     let nominal = theta_of(&vehicle.body);
     let mut notes = Vec::new();
     let mut weak = WeakFlights::from(flights, vehicle, settings);
-    let (found, compensated) = weak.compensate(&nominal);
+    let (found, compensated) = weak.compensate(&nominal, vehicle);
     let plain = solve_weak(&weak.rows, &nominal, WeakMethod::LeastSquares).ok_or(EstimateError::NoRows)?;
     let robust = solve_weak(&weak.rows, &nominal, WeakMethod::Robust);
     let by_instruments = weak
@@ -260,27 +259,14 @@ impl WeakFlights {
 
     /// Estimates the latency on the untouched commands and takes it out of them, so that every method
     /// sees the wrench that the body felt.
-    fn compensate(&mut self, nominal: &Theta) -> (Option<Latency>, ActuationLatency) {
+    fn compensate(&mut self, nominal: &Theta, vehicle: &Vehicle) -> (Option<Latency>, ActuationLatency) {
         let Some(found) = latency(&self.rows, nominal) else { return (None, ActuationLatency::default()) };
         if !(found.total_s.abs() > 4.0 * found.std_s && found.total_s.abs() < 0.3) {
             return (Some(found), ActuationLatency::default());
         }
-        let none = ActuationLatency::default();
-        let compensation = match found.kind {
-            LatencyKind::Lag => ActuationLatency { lag_s: found.total_s, ..none },
-            LatencyKind::Both { delay_s } => {
-                ActuationLatency { delay_s, lag_s: (found.total_s - delay_s).max(0.0), ..none }
-            }
-            LatencyKind::Delay | LatencyKind::Undetermined => {
-                ActuationLatency { delay_s: found.total_s, ..none }
-            }
-        };
+        let compensation = compensation(&found, vehicle);
         for signals in &mut self.signals {
-            let step_s = signals.grid.step_s;
-            signals.wrench = delayed_wrench(&signals.wrench, step_s, compensation);
-            if let Some(jitter) = &mut signals.jitter_wrench {
-                *jitter = delayed_wrench(jitter, step_s, compensation);
-            }
+            take_out(signals, vehicle, compensation);
         }
         self.refresh();
         (Some(found), compensation)

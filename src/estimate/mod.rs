@@ -1,6 +1,7 @@
 //! From regression models to parameters with standard errors.
 
 mod anchor;
+mod compensate;
 mod identify;
 mod information;
 mod live;

@@ -67,7 +67,7 @@ impl Outgoing {
                     return item;
                 }
             }
-            if let Some(message) = self.shared.latest().take() {
+            if let Some(message) = self.from_slot() {
                 self.queue_first = true;
                 return Item::Message(message);
             }
@@ -86,6 +86,14 @@ impl Outgoing {
                 () = self.shared.filled.notified() => {}
             }
         }
+    }
+
+    /// In flight before the slot is open to others, so that nobody sends a younger one before it.
+    fn from_slot(&self) -> Option<Box<MavMessage>> {
+        let mut slot = self.shared.latest();
+        let message = slot.take()?;
+        self.shared.pen().in_flight = true;
+        Some(message)
     }
 
     /// Slot and queue are empty and the last frame is sent.

@@ -59,12 +59,12 @@ impl Allocation {
         turning_n *= ((most_n - least_n) / (highest_n - lowest_n).max(f64::MIN_POSITIVE)).min(1.0);
         let (lowest_n, highest_n) = spread(&turning_n);
         // rotors share the thrust alike but for what the vehicle's arms ask of them
-        let lift_n = self.thrusts_n(&Vector4::new(wanted[0], 0.0, 0.0, 0.0));
-        let (least_lift_n, most_lift_n) = spread(&lift_n);
-        let mean_n = f64::midpoint(least_lift_n, most_lift_n);
-        let kept_n = mean_n.clamp(least_n - lowest_n, (most_n - highest_n).max(least_n - lowest_n));
-        let share = if mean_n.abs() > 0.0 { kept_n / mean_n } else { 0.0 };
-        let upright_n = turning_n + lift_n * share;
+        let unit_n = self.thrusts_n(&Vector4::new(1.0, 0.0, 0.0, 0.0));
+        let (least_lift_n, most_lift_n) = spread(&unit_n);
+        let mean_n = f64::midpoint(least_lift_n, most_lift_n).max(f64::MIN_POSITIVE);
+        let (least_kept_n, most_kept_n) = (least_n - lowest_n, most_n - highest_n);
+        let kept_n = (wanted[0] * mean_n).min(most_kept_n).max(least_kept_n);
+        let upright_n = turning_n + unit_n * (kept_n / mean_n);
         let yawing_n = self.thrusts_n(&Vector4::new(0.0, 0.0, 0.0, wanted[3]));
         let room = |(upright_n, yaw_n): (&f64, &f64)| {
             let to_bound_n = if *yaw_n > 0.0 { most_n - upright_n } else { least_n - upright_n };
@@ -75,8 +75,7 @@ impl Allocation {
     }
 
     /// Normalised commands u for `[Fz tau]` (N, N m). Where the rotors cannot give all of it, roll and pitch come first,
-    /// then the thrust, and yaw gets what is left, as in the autopilots' mixers: a vehicle that cannot lift as asked
-    /// stays upright.
+    /// then the thrust, and yaw gets what is left: a vehicle that cannot lift as asked stays upright.
     pub fn commands(&self, wanted: &Vector4<f64>) -> [f64; MAX_ROTORS] {
         let thrusts_n = self.possible_n(wanted);
         let mut commands = [0.0; MAX_ROTORS];

@@ -58,6 +58,13 @@ pub struct Propulsion {
 }
 
 impl Propulsion {
+    /// Mean of the stated time constants of rising and falling speed, s; `None` where none is stated.
+    #[must_use]
+    pub fn mean_time_constant_s(&self) -> Option<f64> {
+        let rising_s = self.time_constant_s?;
+        Some(f64::midpoint(rising_s, self.time_constant_down_s.unwrap_or(rising_s)))
+    }
+
     /// How many times as long slowing down takes as speeding up; 1 where nothing else is stated.
     #[must_use]
     pub fn falling_over_rising(&self) -> f64 {

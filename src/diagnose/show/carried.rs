@@ -26,7 +26,7 @@ pub(super) fn pair(explanation: &Explanation, vehicle: &Vehicle, command_period_
     if named("motor_lag") || named("transport_delay") {
         before.latency = ActuationLatency {
             delay_s: 0.5 * command_period_s,
-            lag_s: vehicle.propulsion.time_constant_s.unwrap_or(0.0),
+            lag_s: vehicle.propulsion.mean_time_constant_s().unwrap_or(0.0),
             uneven: stated_uneven(vehicle),
         };
     }

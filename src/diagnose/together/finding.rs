@@ -61,6 +61,17 @@ impl Found {
             Self::NotDetermined { held, .. } => *held,
         }
     }
+
+    /// The same of a share of the parameter.
+    fn times(&self, share: f64) -> Self {
+        match self.clone() {
+            Self::Determined { value, std } => Self::Determined { value: share * value, std: share * std },
+            Self::AtBound { value, wanted, std } => {
+                Self::AtBound { value: share * value, wanted: share * wanted, std: share * std }
+            }
+            other => other,
+        }
+    }
 }
 
 /// A parameter of an effect.
@@ -136,7 +147,7 @@ pub(super) fn effects(
 
 /// A lag that the vehicle's description states, s.
 fn stated_s(vehicle: &Vehicle) -> f64 {
-    vehicle.propulsion.time_constant_s.unwrap_or(0.0)
+    vehicle.propulsion.mean_time_constant_s().unwrap_or(0.0)
 }
 
 /// An effect that has columns of its own, at `place` of the base.
@@ -184,7 +195,16 @@ fn of_columns(
     let at_bound =
         |(slot, held): &&(usize, Held)| matches!(held, Held::AtBound { .. }) && present.is_amount(*slot);
     let (bounded, tried) = (settled.held.iter().filter(at_bound).count(), settled.chosen.tried);
-    EffectFound { effect: present.effect, parameters, z: deviate(fitted, &amounts, (bounded, tried)), tried }
+    // held where the effect is strongest, not where it is nothing
+    let strongest = settled.held.iter().filter_map(|(slot, held)| match held {
+        Held::AtBound { std, .. } if present.is_amount(*slot) => {
+            Some(present.away_from_nothing(*slot, *std).abs())
+        }
+        _ => None,
+    });
+    let strongest = allowed_for(strongest.fold(0.0, f64::max), tried);
+    let z = deviate(fitted, &amounts, (bounded, tried)).max(strongest);
+    EffectFound { effect: present.effect, parameters, z, tried }
 }
 
 /// Why a parameter that was neither estimated nor held is what it is.
@@ -235,14 +255,17 @@ fn of_latency(
     } else {
         Found::AtBound { value: least, wanted: value, std }
     };
-    let parameters = effect
-        .parameters()
-        .iter()
-        .map(|of| ParameterFound {
+    let uneven = is_lag && latency.parts.uneven != 0.0;
+    let (rising_s, falling_s) = latency.parts.rising_and_falling_s();
+    let shares = [rising_s / latency.parts.lag_s, falling_s / latency.parts.lag_s];
+    let all = effect.parameters().iter().chain(effect.finer_parameters().iter().filter(|_| uneven));
+    let parameters = all
+        .enumerate()
+        .map(|(slot, of)| ParameterFound {
             name: of.name,
             unit: of.unit,
             plausible: (of.min, of.max),
-            found: found.clone(),
+            found: if uneven { found.times(shares[slot]) } else { found.clone() },
         })
         .collect();
     EffectFound { effect, parameters, z: ((value - ordinary_s) / std).max(0.0), tried: 1 }
@@ -281,5 +304,10 @@ fn deviate(fitted: &Fitted, amounts: &[(usize, f64)], (bounded, tried): (usize, 
     let covariance = DMatrix::from_fn(size, size, |i, j| fitted.covariance[(amounts[i].0, amounts[j].0)]);
     let wald = covariance.cholesky().map_or(0.0, |factor| away.dot(&factor.solve(&away)));
     let z = if size == 0 { 0.0 } else { normal_deviate(wald, size + bounded) };
+    allowed_for(z, tried)
+}
+
+/// A normal deviate, the number of forms that were tried allowed for.
+fn allowed_for(z: f64, tried: usize) -> f64 {
     (z * z - 2.0 * (tried.max(1) as f64).ln()).max(0.0).sqrt()
 }

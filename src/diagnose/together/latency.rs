@@ -29,7 +29,8 @@ pub(super) fn held_as(
 ) -> (ActuationLatency, Newton) {
     let of_file = |id: &str| {
         let known = known.iter().find(|of| of.effect().id() == id);
-        known.and_then(|of| of.parameters().first().copied())
+        // a lag's two time constants by their mean
+        known.map(|of| of.parameters().iter().sum::<f64>() / of.parameters().len().max(1) as f64)
     };
     let held_s = held_s(flights);
     let uneven = stated_uneven(vehicle);
@@ -42,7 +43,7 @@ pub(super) fn held_as(
             (ActuationLatency { delay_s: delay_s + held_s, lag_s, uneven }, Newton::Free)
         }
         (false, true) => {
-            let lag_s = of_file("motor_lag").or(vehicle.propulsion.time_constant_s).unwrap_or(0.0);
+            let lag_s = of_file("motor_lag").or(vehicle.propulsion.mean_time_constant_s()).unwrap_or(0.0);
             (ActuationLatency { delay_s: first.total_s - lag_s, lag_s, uneven }, Newton::Delay)
         }
         (true, true) => {

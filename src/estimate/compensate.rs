@@ -1,0 +1,54 @@
+//! Takes a latency that was found out of what was commanded.
+
+use super::weak::{Latency, LatencyKind};
+use crate::signals::{ActuationLatency, Signals, delayed_thrusts_n, delayed_wrench};
+use crate::vehicle::Vehicle;
+use nalgebra::{DVector, Vector4};
+
+/// How a latency is shared out. A lag is as uneven as the vehicle's description states it, and of two kinds that cannot be
+/// told apart it is the one that is stated so.
+pub(super) fn compensation(found: &Latency, vehicle: &Vehicle) -> ActuationLatency {
+    let none = ActuationLatency::default();
+    let uneven = vehicle.propulsion.falling_over_rising().ln();
+    match found.kind {
+        LatencyKind::Lag => ActuationLatency { lag_s: found.total_s, uneven, ..none },
+        LatencyKind::Undetermined if uneven != 0.0 && found.total_s > 0.0 => {
+            ActuationLatency { lag_s: found.total_s, uneven, ..none }
+        }
+        LatencyKind::Both { delay_s } => {
+            ActuationLatency { delay_s, lag_s: (found.total_s - delay_s).max(0.0), uneven }
+        }
+        LatencyKind::Delay | LatencyKind::Undetermined => ActuationLatency { delay_s: found.total_s, ..none },
+    }
+}
+
+/// Puts what was commanded behind the latency: the wrench is then what the body felt.
+pub(super) fn take_out(signals: &mut Signals, vehicle: &Vehicle, latency: ActuationLatency) {
+    let step_s = signals.grid.step_s;
+    if let Some(jitter) = &mut signals.jitter_wrench {
+        *jitter = delayed_wrench(jitter, step_s, latency);
+    }
+    signals.wrench = uneven_wrench(signals, vehicle, latency)
+        .unwrap_or_else(|| delayed_wrench(&signals.wrench, step_s, latency));
+}
+
+/// Of rotors that slow down more slowly than they speed up, less half of the jitter's, which is behind the latency already
+/// (N, N m); `None` where they do not, or where the log holds no rotors.
+fn uneven_wrench(
+    signals: &Signals,
+    vehicle: &Vehicle,
+    latency: ActuationLatency,
+) -> Option<Vec<Vector4<f64>>> {
+    let rotors = vehicle.rotors.len();
+    if latency.uneven == 0.0 || latency.lag_s <= 0.0 || signals.rotor_thrust_n.is_empty() {
+        return None;
+    }
+    let mixer = vehicle.mixer();
+    let thrusts_n = delayed_thrusts_n(&signals.rotor_thrust_n, rotors, signals.grid.step_s, latency);
+    let wrench = thrusts_n.chunks_exact(rotors).enumerate().map(|(index, thrusts_n)| {
+        let all = &mixer.matrix * DVector::from_column_slice(thrusts_n);
+        let half = signals.jitter_wrench.as_ref().map_or_else(Vector4::zeros, |jitter| 0.5 * jitter[index]);
+        Vector4::new(all[0], all[1], all[2], all[3]) - half
+    });
+    Some(wrench.collect())
+}
