@@ -199,11 +199,7 @@ fn fly(
     let wanted = Wanted::of(&names).expect("known effects");
     let conditions = ConditionSettings {
         transient_s: Some(1.0),
-        thrust: if wanted.need_commands() {
-            ThrustPreference::Commands
-        } else {
-            ThrustPreference::BestSampled
-        },
+        thrust: if wanted.need_commands() { ThrustPreference::Commands } else { ThrustPreference::Measured },
         askew: wanted.has("imu_misalignment"),
         ..ConditionSettings::default()
     };

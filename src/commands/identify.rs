@@ -220,7 +220,7 @@ fn with_effects(
     let by_commands = args.commands || wanted.need_commands();
     let settings = ConditionSettings {
         transient_s: Some(args.transient.unwrap_or(TRANSIENT_S)),
-        thrust: if by_commands { ThrustPreference::Commands } else { ThrustPreference::BestSampled },
+        thrust: if by_commands { ThrustPreference::Commands } else { ThrustPreference::Measured },
         askew: wanted.has("imu_misalignment"),
         ..ConditionSettings::default()
     };

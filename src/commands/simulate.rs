@@ -50,7 +50,7 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     let loaded = read_vehicle(&args.vehicle)?;
     output::warnings(&args.vehicle, &loaded.warnings);
     let vehicle = loaded.vehicle;
-    let mut acting = with_further(&loaded.model.effects, &args.vehicle, args.effects.as_deref(), &vehicle)?;
+    let acting = with_further(&loaded.model.effects, &args.vehicle, args.effects.as_deref(), &vehicle)?;
     let nominal = match &args.nominal {
         Some(path) => read_vehicle(path)?.vehicle,
         None => vehicle.clone(),

@@ -67,7 +67,7 @@ impl Outgoing {
                     return item;
                 }
             }
-            if let Some(message) = self.from_slot() {
+            if let Some(message) = self.taken_from_slot() {
                 self.queue_first = true;
                 return Item::Message(message);
             }
@@ -89,7 +89,7 @@ impl Outgoing {
     }
 
     /// In flight before the slot is open to others, so that nobody sends a younger one before it.
-    fn from_slot(&self) -> Option<Box<MavMessage>> {
+    fn taken_from_slot(&self) -> Option<Box<MavMessage>> {
         let mut slot = self.shared.latest();
         let message = slot.take()?;
         self.shared.pen().in_flight = true;

@@ -7,7 +7,7 @@
 
 use super::{Grid, WeakKernel, cubic_onto};
 use crate::log::Stream;
-use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, DVector, Quaternion, UnitQuaternion, Vector3};
 
 /// An offset of one stream against the inertial unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,11 +92,11 @@ pub fn attitude_offset(
 }
 
 /// Takes what the columns make out of a residual.
-fn partial_out(residual: &mut [f64], columns: &[Vec<f64>; 3]) {
+fn partial_out(residual: &mut [f64], columns: &[Vec<f64>]) {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let normal = Matrix3::from_fn(|i, j| dot(&columns[i], &columns[j]));
+    let normal = DMatrix::from_fn(columns.len(), columns.len(), |i, j| dot(&columns[i], &columns[j]));
     let Some(factor) = normal.cholesky() else { return };
-    let theta = factor.solve(&Vector3::from_fn(|i, _| dot(&columns[i], residual)));
+    let theta = factor.solve(&DVector::from_fn(columns.len(), |i, _| dot(&columns[i], residual)));
     for (column, theta) in columns.iter().zip(theta.iter()) {
         residual.iter_mut().zip(column).for_each(|(residual, column)| *residual -= theta * column);
     }
@@ -122,17 +122,25 @@ pub fn velocity_offset(
         let mut residual = Vec::with_capacity(3 * frame.centers.len());
         frame.difference(&body, &rate_of_change, &mut residual);
         frame.remove_means(&mut residual);
+        let column = |turned: Vec<Vector3<f64>>| {
+            let mut column = Vec::with_capacity(residual.len());
+            frame.difference(&vec![Vector3::zeros(); turned.len()], &turned, &mut column);
+            frame.remove_means(&mut column);
+            column
+        };
+        // what calls itself level may not be: gravity then pushes along the horizon, and that is no delay
+        let mut columns: Vec<Vec<f64>> = [Vector3::x(), Vector3::y()]
+            .map(|angle| {
+                let across = angle.cross(&Vector3::z()) * inertial.gravity_m_s2;
+                column(inertial.attitude.iter().map(|q| q.inverse_transform_vector(&across)).collect())
+            })
+            .into();
         if frame.askew {
-            let columns = [Vector3::x(), Vector3::y(), Vector3::z()].map(|angle| {
-                let turned: Vec<Vector3<f64>> =
-                    inertial.specific_force.iter().map(|force| angle.cross(force)).collect();
-                let mut column = Vec::with_capacity(residual.len());
-                frame.difference(&vec![Vector3::zeros(); turned.len()], &turned, &mut column);
-                frame.remove_means(&mut column);
-                column
-            });
-            partial_out(&mut residual, &columns);
+            columns.extend([Vector3::x(), Vector3::y(), Vector3::z()].map(|angle| {
+                column(inertial.specific_force.iter().map(|force| angle.cross(force)).collect())
+            }));
         }
+        partial_out(&mut residual, &columns);
         Some(residual)
     })
 }

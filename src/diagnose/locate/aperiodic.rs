@@ -127,6 +127,8 @@ const CONTRADICTION_STATISTIC: f64 = 10.0;
 pub(super) const CONTRADICTED: f64 = 2.0;
 /// Least rms of a red force, of the weight.
 const RED_G: f64 = 0.002;
+/// Torque that forgets faster than this many of the rotors' lag is what commands did between two samples, behind the lag.
+const OF_JITTER: f64 = 2.0;
 /// Least torque of any kind, of the torque's rms.
 const LEAST_TORQUE: f64 = 0.1;
 /// Correlation times that are tried, s: from the kernel's width to half a minute.
@@ -314,7 +316,10 @@ fn redness(view: &View, fitted: &Fitted, of: Quantity, series: &[f64]) -> Option
     let relative = rms / scale(fitted, of).max(f64::MIN_POSITIVE);
     let least = if matches!(of, Quantity::Torque(_)) { LEAST_TORQUE } else { RED_G };
     let of_velocity_n = force_of_velocity_error_n(view, fitted, (of, correlation_s));
-    let certain = statistic > RED_STATISTIC && relative > least && rms > CONTRADICTED * of_velocity_n;
+    let of_jitter =
+        matches!(of, Quantity::Torque(_)) && correlation_s < OF_JITTER * fitted.base.latency.lag_s;
+    let certain =
+        statistic > RED_STATISTIC && relative > least && rms > CONTRADICTED * of_velocity_n && !of_jitter;
     Some(Redness { of, statistic, rms, correlation_s, relative, of_velocity_n, certain })
 }
 
