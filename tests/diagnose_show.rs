@@ -102,7 +102,7 @@ fn drag_pays_on_a_flight_that_was_not_used_and_the_vehicle_is_the_same() {
     heavier.body.inertia_kg_m2 *= 1.5;
     let stranger = flown((&heavier, &vehicles.nominal), (Vec::new(), None), trajectory(6), (3, 34.0));
     let shown = self::shown(&found, &vehicles.nominal, &stranger);
-    let reason = shown.other_vehicle.unwrap();
+    let reason = shown.other_vehicle.unwrap().reason;
     assert!(reason.contains("mass"), "{reason}");
 }
 

@@ -79,7 +79,7 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
         let mut base = fitted.base;
         base.latency = latency;
         let mut fitted = fit(flights, base, Newton::Free)?;
-        let told = if states_lag { None } else { uneven_lag(flights, &mut fitted)? };
+        let told = uneven_lag(flights, &mut fitted, uneven)?;
         latency = fitted.base.latency;
         finding = LatencyFinding { uneven_std: told, ..finding_of(&fitted) };
         if !fed_back {
@@ -148,9 +148,9 @@ const UNEVEN_MOST: f64 = 1.4;
 const UNEVEN_PASSES: usize = 4;
 const UNEVEN_STEP: f64 = 0.2;
 
-/// Tells rising from falling speed in a lag where the flight does, beyond what a bent thrust curve would do, and fits with
-/// it; its standard error.
-fn uneven_lag(flights: &[Trace], fitted: &mut Fitted) -> Result<Option<f64>, PhysicsError> {
+/// Tells rising from falling speed in a lag where the flight does otherwise than is stated, beyond what a bent thrust curve
+/// would do, and fits with it; its standard error.
+fn uneven_lag(flights: &[Trace], fitted: &mut Fitted, stated: f64) -> Result<Option<f64>, PhysicsError> {
     if fitted.base.latency.lag_s <= fitted.base.latency.delay_s {
         return Ok(None);
     }
@@ -167,7 +167,7 @@ fn uneven_lag(flights: &[Trace], fitted: &mut Fitted) -> Result<Option<f64>, Phy
         let Some(evidence) = fitted.weighted.test(&columns) else { break };
         let (by, std) = (evidence.theta[last], evidence.std(last));
         let uneven = (fitted.base.latency.uneven + by).clamp(UNEVEN_LEAST, UNEVEN_MOST);
-        if uneven.abs() < UNEVEN * std {
+        if (uneven - stated).abs() < UNEVEN * std {
             told = None;
             break;
         }

@@ -202,7 +202,7 @@ fn gain(shown: &Shown) -> Gain {
         improvement_range: shown.improvement_percent.and_then(|improvement| improvement.range),
         half_second: quantities
             .map(|quantity| quantity.map(|of| [Some(of.before.value), Some(of.after.value), of.floor])),
-        other_vehicle: shown.other_vehicle.clone(),
+        other_vehicle: shown.other_vehicle.as_ref().map(|other| other.reason.clone()),
         notes: shown.notes.clone(),
     }
 }

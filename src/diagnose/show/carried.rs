@@ -47,7 +47,8 @@ pub(super) fn carried_over(
 ) -> Result<Pair, PhysicsError> {
     let mut pair = pair(explanation, vehicle, trace.command_period_s);
     let of = |base: &Base, id: &str| base.present.iter().position(|present| present.effect.id() == id);
-    if let Some(place) = of(&pair.after, "mass_change") {
+    // in another part of the same flight the moment is known
+    if let Some(place) = of(&pair.after, "mass_change").filter(|_| !settings.same_flight) {
         let kept_kg = pair.after.present[place].values[1];
         let time_s = change_time(&pair.after, place, trace)?;
         pair.after.present[place].values[0] = time_s.unwrap_or(NEVER_S);

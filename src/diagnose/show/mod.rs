@@ -17,7 +17,7 @@ pub use bootstrap::{Compared, Interval};
 pub use closed_loop::ClosedLoop;
 pub use floor::{command_noise, state_noise};
 pub use open_loop::{OpenLoop, WINDOWS_S};
-pub use other_vehicle::Agreement;
+pub use other_vehicle::{Agreement, Difference, OtherVehicle};
 pub use split::{Split, split_last_periods};
 
 use super::base::Base;
@@ -91,7 +91,7 @@ pub struct Shown {
     /// the held-out flights' own values against those of the model
     pub agreement: Vec<Agreement>,
     /// why the held-out flights cannot be of the identified vehicle
-    pub other_vehicle: Option<String>,
+    pub other_vehicle: Option<OtherVehicle>,
     /// what was not simply kept, and what is not known
     pub notes: Vec<String>,
 }
@@ -101,13 +101,6 @@ impl Shown {
     #[must_use]
     pub fn half_second(&self) -> Option<&OpenLoop> {
         self.open_loop.iter().find(|of| (of.window_s - 0.5).abs() < 1e-9)
-    }
-
-    /// What shows most plainly that the held-out flights are of another vehicle; `None` where they are not.
-    #[must_use]
-    pub fn other_vehicle_by(&self) -> Option<&Agreement> {
-        self.other_vehicle.as_ref()?;
-        other_vehicle::first_different(&self.agreement)
     }
 }
 
@@ -189,7 +182,7 @@ pub fn on_holdout(
             Err(other) => return Err(other),
         };
     let weak = weak::residuals(&ready, explanation, empirical, settings)?;
-    let (agreement, other_vehicle) = other_vehicle::judged(&ready, explanation, &weak)?;
+    let (agreement, other_vehicle) = other_vehicle::judged(&ready, explanation, &weak, settings.same_flight)?;
     let closed_loop = closed_loop::flown_again(&ready, empirical, vehicle, settings);
     notes.push(
         "the floor is what white noise of the sensors and of the logged commands would leave of a model that is right; noise that an autopilot's estimator has smoothed is not in it"

@@ -2,8 +2,9 @@
 
 use super::Ready;
 use super::weak::Weak;
+use crate::diagnose::base::Present;
 use crate::diagnose::explanation::Explanation;
-use crate::diagnose::rows::{CHANNEL_NAMES, Nuisance};
+use crate::diagnose::rows::{CHANNEL_NAMES, CHANNELS, Nuisance};
 use crate::diagnose::search::Fitted;
 use crate::estimate::{NAMES, UNITS};
 use crate::physics::PhysicsError;
@@ -41,6 +42,7 @@ impl Agreement {
         let share = match self.name.as_str() {
             "mass" => MASS_SHARE,
             "ixx" | "iyy" | "izz" => INERTIA_SHARE,
+            name if OF_THE_VEHICLE.iter().any(|amount| name.starts_with(amount)) => AMOUNT_SHARE,
             _ => return false,
         };
         self.sigmas().abs() > SIGMAS && self.share().abs() > share
@@ -51,7 +53,19 @@ impl Agreement {
 const SIGMAS: f64 = 8.0;
 /// And relevant: beyond this share of the mass, of a principal inertia.
 const MASS_SHARE: f64 = 0.08;
-const INERTIA_SHARE: f64 = 0.35;
+const INERTIA_SHARE: f64 = 0.22;
+/// What it has of an effect that is its own, not the day's.
+const OF_THE_VEHICLE: [&str; 6] = [
+    "linear_drag.d",
+    "angular_damping.b",
+    "com_offset.",
+    "weak_rotor.factor",
+    "rotor_inertia.",
+    "thrust_curve.curvature",
+];
+const AMOUNT_SHARE: f64 = 0.6;
+/// What even a fit of its own leaves is so many times what is left of the flights that were identified.
+const LEFT_RATIO: f64 = 4.0;
 /// And it shows: a channel's residual is this much larger than the held-out flight's own fit leaves.
 const RESIDUAL_RATIO: f64 = 1.3;
 
@@ -60,7 +74,8 @@ pub(super) fn judged(
     ready: &[Ready],
     explanation: &Explanation,
     weak: &Weak,
-) -> Result<(Vec<Agreement>, Option<String>), PhysicsError> {
+    same_flight: bool,
+) -> Result<(Vec<Agreement>, Option<OtherVehicle>), PhysicsError> {
     let identified = &explanation.search.after;
     let mut all: Vec<Agreement> = Vec::new();
     for (index, own) in weak.own.iter().enumerate() {
@@ -83,21 +98,62 @@ pub(super) fn judged(
         .collect();
     let different: Vec<&Agreement> = all.iter().filter(|agreement| agreement.differs()).collect();
     let worst = jumps.iter().max_by(|a, b| a.1.total_cmp(&b.1));
-    let reason = worst.filter(|_| !different.is_empty()).map(|(channel, ratio)| {
+    let whose = if same_flight {
+        "something changed in the part of the flight that was held back"
+    } else if ready.len() == 1 {
+        "the hold-out is not of the vehicle that was identified"
+    } else {
+        "the hold-outs are not of the vehicle that was identified"
+    };
+    let by_parameters = worst.filter(|_| !different.is_empty()).map(|(channel, ratio)| {
         let parameters: Vec<String> = different.iter().map(|agreement| described(agreement)).collect();
-        format!(
-            "{} not of the vehicle that was identified: {}; the residual of {} is {ratio:.1} times what its own fit leaves",
-            if ready.len() == 1 { "the hold-out is" } else { "the hold-outs are" },
-            parameters.join(", "),
-            CHANNEL_NAMES[*channel]
-        )
+        let parameters = parameters.join(", ");
+        let channel = CHANNEL_NAMES[*channel];
+        let reason = format!(
+            "{whose}: {parameters}; the residual of {channel} is {ratio:.1} times what its own fit leaves"
+        );
+        OtherVehicle { by: Difference::Parameter(different[0].clone()), reason }
     });
-    Ok((all, reason))
+    Ok((all, by_parameters.or_else(|| by_what_is_left(identified, weak, whose))))
 }
 
-/// The first parameter that differs, mass before inertia.
-pub(super) fn first_different(agreement: &[Agreement]) -> Option<&Agreement> {
-    agreement.iter().find(|agreement| agreement.differs())
+/// Why the held-out flights are not of the vehicle that was identified.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OtherVehicle {
+    /// what shows it most plainly
+    pub by: Difference,
+    /// in full
+    pub reason: String,
+}
+
+/// What shows that flights are of different vehicles.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Difference {
+    /// a parameter
+    Parameter(Agreement),
+    /// what a fit of its own leaves of a channel
+    Residual {
+        /// as in [`CHANNEL_NAMES`]
+        channel: &'static str,
+        /// over what is left of the flights that were identified
+        ratio: f64,
+    },
+}
+
+/// Something that no parameter of the model follows: far more is left of these flights than of those that were identified.
+fn by_what_is_left(identified: &Fitted, weak: &Weak, whose: &str) -> Option<OtherVehicle> {
+    let ratios = (0..CHANNELS).filter_map(|channel| {
+        let ratio = weak.own_rms[channel] / identified.weighted.sigma[channel];
+        (ratio.is_finite() && ratio > LEFT_RATIO).then_some((channel, ratio))
+    });
+    let (channel, ratio) = ratios.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let channel = CHANNEL_NAMES[channel];
+    let reason = format!(
+        "{whose}, or it holds something that the others do not: even a fit of its own leaves {ratio:.1} times as much of \
+         {channel} there as here"
+    );
+    let by = Difference::Residual { channel, ratio };
+    Some(OtherVehicle { by, reason })
 }
 
 fn described(agreement: &Agreement) -> String {
@@ -121,6 +177,8 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
     let mut out = Vec::new();
     for (index, column) in own.rows.nuisances.iter().enumerate() {
         let (name, unit, value) = match column.nuisance {
+            // before a change that these rows do not hold
+            Nuisance::Mass if own.base.present.iter().any(|of| is_before(of, own)) => continue,
             Nuisance::Mass => (NAMES[0], UNITS[0], body.mass_kg),
             Nuisance::Inertia(entry) => {
                 let (row, column) = PLACES[entry];
@@ -157,6 +215,12 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
         }
     }
     out
+}
+
+/// A change of mass that was over when the rows began.
+fn is_before(present: &Present, own: &Fitted) -> bool {
+    present.effect.id() == "mass_change"
+        && own.rows.time_s.first().is_some_and(|first_s| present.values[0] <= *first_s)
 }
 
 /// Two flights' values weighted by their variances.

@@ -2,7 +2,7 @@
 
 use super::brief::brief;
 use super::located::Located;
-use super::show::Predicted;
+use super::show::{Predicted, ShownOn};
 use super::story::Story;
 use super::words::{called, clause};
 use crate::diagnose::{Along, DetectionLimit, Named, Verdict};
@@ -74,7 +74,7 @@ impl Story {
     /// What the model gains, on what was not used for it.
     fn gain(&self) -> String {
         if let Some(by) = self.other_vehicle() {
-            return format!("; the hold-out is of another vehicle ({by}), so nothing is shown on it");
+            return format!("; {} ({by}), so nothing is shown on it", self.whose());
         }
         let (Some(pair), with) = (self.holdout.as_ref(), if self.effects.len() > 1 { "them" } else { "it" })
         else {
@@ -97,6 +97,14 @@ impl Story {
         }
     }
 
+    fn whose(&self) -> &'static str {
+        if matches!(self.shown_on, ShownOn::HeldBack { .. }) {
+            "something changed in the part of the flight that was held back"
+        } else {
+            "the hold-out is of another vehicle"
+        }
+    }
+
     fn nothing(&self) -> String {
         let seen: Vec<String> = ["linear_drag", "com_offset", "weak_rotor", "ground_effect"]
             .iter()
@@ -106,7 +114,7 @@ impl Story {
             .take(3)
             .collect();
         let other = self.other_vehicle().map_or_else(String::new, |by| {
-            format!(" The hold-out is of another vehicle ({by}), so nothing is shown on it.")
+            format!(" But {} ({by}), so nothing is shown on it.", self.whose())
         });
         if self.explanation.too_little_excitation {
             let could =

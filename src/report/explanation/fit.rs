@@ -180,7 +180,7 @@ fn shown(of: &Shown) -> ShownValue {
                 (of.name.clone(), value)
             })
             .collect(),
-        other_vehicle: of.other_vehicle.clone(),
+        other_vehicle: of.other_vehicle.as_ref().map(|other| other.reason.clone()),
         notes: of.notes.clone(),
     }
 }

@@ -145,7 +145,7 @@ impl Story {
         let same_flight = matches!(shown_on, ShownOn::HeldBack { .. });
         let settings = ShowSettings { same_flight, ..ShowSettings::default() };
         let shown = on_holdout((&self.explanation, empirical), flights, &self.given.vehicle, &settings)?;
-        self.given.warnings.extend(shown.other_vehicle.clone());
+        self.given.warnings.extend(shown.other_vehicle.as_ref().map(|other| other.reason.clone()));
         self.holdout = Some(Predicted::from(&shown));
         self.shown = Some(shown);
         self.shown_on = shown_on;

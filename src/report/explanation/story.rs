@@ -4,7 +4,7 @@ use super::located::Located;
 use super::readers::for_readers;
 use super::show::{Predicted, ShownOn};
 use crate::diagnose::next::NextFlight;
-use crate::diagnose::show::Shown;
+use crate::diagnose::show::{Difference, Shown};
 use crate::diagnose::{CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, Named, Nuisance, Verdict};
 use crate::physics::ActiveEffect;
 use crate::report::InputFile;
@@ -111,14 +111,18 @@ impl Story {
     /// What shows that the hold-out is of another vehicle; `None` where it is not.
     #[must_use]
     pub fn other_vehicle(&self) -> Option<String> {
-        let by = self.shown.as_ref()?.other_vehicle_by()?;
-        Some(format!(
-            "{} {} {unit} there, {} {unit} here",
-            by.name,
-            significant(by.held_out, 3),
-            significant(by.identified, 3),
-            unit = by.unit
-        ))
+        Some(match &self.shown.as_ref()?.other_vehicle.as_ref()?.by {
+            Difference::Parameter(by) => format!(
+                "{} {} {unit} there, {} {unit} here",
+                by.name,
+                significant(by.held_out, 3),
+                significant(by.identified, 3),
+                unit = by.unit
+            ),
+            Difference::Residual { channel, ratio } => {
+                format!("even a fit of its own leaves {ratio:.1} times as much of {channel} there as here")
+            }
+        })
     }
 
     /// The vehicle as identified.

@@ -25,6 +25,13 @@ impl Values<'_> {
     }
 }
 
+/// Mean of the drag along body x and y, of those that were found.
+fn mean_drag(values: &Values<'_>) -> f64 {
+    let found: Vec<f64> =
+        ["dx", "dy"].iter().map(|name| values.value(name)).filter(|value| *value != 0.0).collect();
+    found.iter().sum::<f64>() / found.len().max(1) as f64
+}
+
 /// What was left out, as a clause that begins with a capital and ends without a full stop.
 #[must_use]
 pub fn clause(named: &Named, vehicle: &Vehicle) -> String {
@@ -34,7 +41,7 @@ pub fn clause(named: &Named, vehicle: &Vehicle) -> String {
         "linear_drag" => format!(
             "Drag was left out: {} ({} 1/s), throughout the flight, growing with airspeed",
             axes(&values, &["dx", "dy", "dz"], "N per m/s"),
-            significant(0.5 * (values.value("dx") + values.value("dy")) / mass_kg, 2)
+            significant(mean_drag(&values) / mass_kg, 2)
         ),
         "quadratic_drag" => format!(
             "Drag that grows with the square of the airspeed was left out: {}",
