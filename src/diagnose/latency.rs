@@ -74,11 +74,14 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
         } else if against_lag < against_delay || (states_lag && against_lag < REFUSED) {
             lag_of(flights, total_s, uneven)
         } else {
-            ActuationLatency { delay_s: total_s, ..ActuationLatency::default() }
+            // behind the lag that is stated
+            let lag_s = stated_lag_s(&fitted.base.vehicle).min(total_s);
+            ActuationLatency { delay_s: total_s - lag_s, lag_s, uneven }
         };
+        let newton = if is_delay(latency, &fitted.base.vehicle) { Newton::Delay } else { Newton::Free };
         let mut base = fitted.base;
         base.latency = latency;
-        let mut fitted = fit(flights, base, Newton::Free)?;
+        let mut fitted = fit(flights, base, newton)?;
         let told = uneven_lag(flights, &mut fitted, uneven)?;
         latency = fitted.base.latency;
         finding = LatencyFinding { uneven_std: told, ..finding_of(&fitted) };
@@ -139,6 +142,16 @@ pub(super) fn stated_uneven(vehicle: &Vehicle) -> f64 {
 /// A lag is told from a delay beyond this: rotors that spin up and down in different times are neither, and look more
 /// like a delay.
 const TOLD_APART: f64 = 15.0;
+/// Mean of the stated time constants, s; 0 where none is stated.
+fn stated_lag_s(vehicle: &Vehicle) -> f64 {
+    vehicle.propulsion.mean_time_constant_s().unwrap_or(0.0)
+}
+
+/// The latency has no more lag than is stated: what is beyond that is a delay.
+fn is_delay(latency: ActuationLatency, vehicle: &Vehicle) -> bool {
+    latency.lag_s <= stated_lag_s(vehicle)
+}
+
 /// Standard errors from even at which rising and falling speed are told apart.
 const UNEVEN: f64 = 6.0;
 /// Slowing down takes between a third and four times as long as speeding up.
@@ -151,7 +164,8 @@ const UNEVEN_STEP: f64 = 0.2;
 /// Tells rising from falling speed in a lag where the flight does otherwise than is stated, beyond what a bent thrust curve
 /// would do, and fits with it; its standard error.
 fn uneven_lag(flights: &[Trace], fitted: &mut Fitted, stated: f64) -> Result<Option<f64>, PhysicsError> {
-    if fitted.base.latency.lag_s <= fitted.base.latency.delay_s {
+    let latency = fitted.base.latency;
+    if latency.lag_s <= latency.delay_s || is_delay(latency, &fitted.base.vehicle) {
         return Ok(None);
     }
     let even = fitted.clone();
@@ -275,7 +289,7 @@ fn parameters_of(
 pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<Named> {
     let LatencyFinding { total_s, std_s, parts, against_lag, against_delay, uneven_std } = found.latency;
     let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
-    let motor_s = vehicle.propulsion.mean_time_constant_s().unwrap_or(0.0);
+    let motor_s = stated_lag_s(vehicle);
     let of_sensors_s = |trace: &Trace| trace.inertial_late_s + trace.inertial_unsure_s;
     let late_s = traces.iter().map(of_sensors_s).fold(0.0, f64::max);
     let ordinary_s = motor_s + FAST_MOTOR_S + 0.5 * period_s + late_s;
@@ -284,7 +298,7 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     }
     let unsure_s = traces.iter().map(|trace| trace.inertial_unsure_s).fold(0.0, f64::max);
     let std_s = std_s.hypot(unsure_s);
-    let is_lag = parts.lag_s > parts.delay_s;
+    let is_lag = parts.lag_s > parts.delay_s && !is_delay(parts, vehicle);
     let (id, other, name) = if is_lag {
         ("motor_lag", "transport_delay", "time_constant")
     } else {
