@@ -109,6 +109,11 @@ fn bad_effects_are_refused_with_what_was_expected() {
         ("[[effect]]\nid = \"inflow\"\nkz = -3.0\n", "0 to 5"),
         ("[[effect]]\nid = \"inflow\"\nkz = \"much\"\n", "expected a number"),
         ("[[effect]]\nid = \"inflow\"\n", "kz"),
+        (
+            "[[effect]]\nid = \"weak_rotor\"\nrotor = 7\nfactor = 0.9\n",
+            "a rotor: 0 to 3, or its name (front_right",
+        ),
+        ("[[effect]]\nid = \"weak_rotor\"\nrotor = \"none\"\nfactor = 0.9\n", "a rotor: 0 to 3, or its name"),
         ("[[wrong]]\n", "wrong"),
         ("", "expected a file in TOML with [[effect]] tables and nothing else: "),
         (

@@ -77,6 +77,12 @@ pub fn effects_text(text: &str, origin: &str, vehicle: &Vehicle) -> Result<Vec<A
     effects(&parse_effect_tables(text, origin)?, origin, vehicle)
 }
 
+/// What a rotor may be called.
+fn rotors(vehicle: &Vehicle) -> String {
+    let names: Vec<&str> = vehicle.rotors.iter().map(|rotor| rotor.name.as_str()).collect();
+    format!("a rotor: 0 to {}, or its name ({})", names.len().saturating_sub(1), names.join(", "))
+}
+
 fn effect(table: &toml::Table, vehicle: &Vehicle) -> Result<ActiveEffect, CommandError> {
     let refuse = |text: String| CommandError::Input(text);
     let id = table
@@ -94,8 +100,12 @@ fn effect(table: &toml::Table, vehicle: &Vehicle) -> Result<ActiveEffect, Comman
             }
             _ => None,
         };
-        let number =
-            number.ok_or_else(|| refuse(format!("effect {id}, `{name}`: expected a number, got {value}")))?;
+        let expected = if name == "rotor" { rotors(vehicle) } else { "a number".to_owned() };
+        let refused = || refuse(format!("effect {id}, `{name}`: expected {expected}, got {value}"));
+        let number = number.ok_or_else(refused)?;
+        if name == "rotor" && !(0..vehicle.rotors.len()).any(|index| index as f64 == number) {
+            return Err(refused());
+        }
         values.push((name.as_str(), number));
     }
     ActiveEffect::named(id, &values).map_err(|error| refuse(error.to_string()))

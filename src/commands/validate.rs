@@ -264,7 +264,9 @@ fn predictions(models: &[Named], signals: &[Signals], span_s: (f64, f64)) -> [Er
             column.push((model.name.clone(), found));
         }
     }
-    let title = |which| format!("Output prediction error (43) of the {which} regression model");
+    let title = |which| {
+        format!("Output prediction error (43) of the {which} regression model, by mass and inertia alone")
+    };
     [prediction_table(title("standard"), &columns[0]), prediction_table(title("filtered"), &columns[1])]
 }
 
