@@ -129,7 +129,7 @@ impl Lift {
         of(&self.said).or_else(|| of(&self.stated))
     }
 
-    /// Thrust against weight, of all that was heard since the last [`Self::clear`]: measured speeds before commands.
+    /// Thrust against weight, of all that was heard since it was last cleared: measured speeds before commands.
     #[must_use]
     pub fn weighed(&self) -> Weighed {
         let speaks = |heard: &&Heard| heard.count >= LEAST_SAMPLES && heard.sum_n.is_finite();
