@@ -230,7 +230,9 @@ impl Periodogram<'_> {
             lines.push(Line { frequency_hz, ratio, excess: 2.0 * (at - noise) / count });
             harmonic += 1.0;
         }
-        let p_value = ChiSquared::new(2.0 * lines.len() as f64).map_or(1.0, |law| law.sf(statistic));
+        // with no degree of freedom there is nothing to be improbable
+        let freedom = 2.0 * lines.len().max(1) as f64;
+        let p_value = ChiSquared::new(freedom).map_or(1.0, |law| law.sf(statistic));
         Some((p_value, lines))
     }
 }

@@ -5,11 +5,18 @@ use crate::signals::{ActuationLatency, Signals, delayed_thrusts_n, delayed_wrenc
 use crate::vehicle::Vehicle;
 use nalgebra::{DVector, Vector4};
 
-/// How a latency is shared out. A lag is as uneven as the vehicle's description states it, and of two kinds that cannot be
-/// told apart it is the one that is stated so.
+/// A latency agrees with the stated lag within so many standard errors,
+const AGREES: f64 = 4.0;
+/// and what the log's sampling adds, s.
+const SAMPLED_S: f64 = 0.005;
+
+/// How a latency is shared out. A lag that agrees with the one that the vehicle's description states is as uneven as that,
+/// and of two kinds that cannot be told apart the one that is stated so.
 pub(super) fn compensation(found: &Latency, vehicle: &Vehicle) -> ActuationLatency {
     let none = ActuationLatency::default();
-    let uneven = vehicle.propulsion.falling_over_rising().ln();
+    let stated_s = vehicle.propulsion.mean_time_constant_s().unwrap_or(0.0);
+    let as_stated = (found.total_s - stated_s).abs() < AGREES * found.std_s + SAMPLED_S;
+    let uneven = if as_stated { vehicle.propulsion.falling_over_rising().ln() } else { 0.0 };
     match found.kind {
         LatencyKind::Lag => ActuationLatency { lag_s: found.total_s, uneven, ..none },
         LatencyKind::Undetermined if uneven != 0.0 && found.total_s > 0.0 => {

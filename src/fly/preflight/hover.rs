@@ -14,7 +14,7 @@ pub(crate) const HOVER: &str = "hover thrust";
 pub(crate) const ROTORS: &str = "rotors";
 
 /// An autopilot that never hovered keeps its default for the hover thrust, which fits many vehicles badly.
-const HOVER_NOTABLE: f64 = 1.6;
+const HOVER_NOTABLE: f64 = 1.8;
 const HOVER_GROSS: f64 = 3.0;
 /// Arms are often given by the class of the frame.
 const ARM_NOTABLE: f64 = 1.6;

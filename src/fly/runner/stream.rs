@@ -106,7 +106,11 @@ impl Stream {
                     let _ = stay_on(core);
                     sender.work();
                 };
-                stream.threads.push(thread::Builder::new().name("setpoints".into()).spawn(work)?);
+                match thread::Builder::new().name("setpoints".into()).spawn(work) {
+                    Ok(thread) => stream.threads.push(thread),
+                    // one waits already
+                    Err(_) => break,
+                }
             }
         }
         Ok(stream)
