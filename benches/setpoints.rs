@@ -4,7 +4,7 @@
 //! `cargo bench --bench setpoints`. It fails unless 99 % come within 3 ms of their time and none is missing.
 //! A setpoint's time is the instant of the 10 ms grid for which it was made; times are counted from the
 //! most punctual one. The tap has to be woken too, under the same load: what it sees is an upper bound. Without the
-//! permission to raise threads (CAP_SYS_NICE, or RLIMIT_RTPRIO of at least 1) the system's own slices decide:
+//! permission to raise threads (CAP_SYS_NICE, or RLIMIT_RTPRIO of at least 1) several wait for each instant:
 //! for root, `setpriv --bounding-set=-sys_nice` before the benchmark shows what a user without it gets.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a benchmark prints and ends where it fails")]
