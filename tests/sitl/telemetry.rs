@@ -98,7 +98,8 @@ fn servo_outputs_are_pulses_by_the_parameters_and_hover_carries_the_weight() {
         let mean = share.iter().sum::<f64>() / share.len() as f64;
         // the vehicle's file: 2.0643 kg on four rotors of 8.54858e-6 (1000 rad/s)^2
         let hover = 2.0643 * 9.81 / (4.0 * 8.548_58);
-        assert!((mean / hover - 1.0).abs() < 0.01, "{mean} {hover}");
+        // its rotors slow down in twice the time in which they speed up: a command that jitters carries a percent more
+        assert!((0.98..1.005).contains(&(mean / hover)), "{mean} {hover}");
     }
 }
 
