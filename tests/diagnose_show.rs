@@ -92,6 +92,10 @@ fn drag_pays_on_a_flight_that_was_not_used_and_the_vehicle_is_the_same() {
     assert!(force.after.value < 1.3 * force.floor.unwrap(), "{force:?}");
     let closed = shown.closed_loop.as_ref().unwrap();
     assert!(closed.signals[0].unwrap().after.value < closed.signals[0].unwrap().before.value);
+    // no model takes the recording's own noise out
+    assert!(
+        closed.signals.iter().flatten().all(|of| of.floor.is_some_and(|floor| of.after.value > 0.9 * floor))
+    );
     assert_eq!(shown.other_vehicle, None);
     let drag = shown.agreement.iter().find(|of| of.name == "linear_drag.dx").unwrap();
     assert!(drag.sigmas().abs() < 5.0 && (drag.held_out / 0.25 - 1.0).abs() < 0.1, "{drag:?}");

@@ -4,13 +4,14 @@ use super::{Blocks, Compared, Ready, ShowSettings, flown};
 use crate::compare::{SIGNALS, TenSignals, autopilot_flight};
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
+use crate::signals::white_level_of;
 use crate::vehicle::Vehicle;
 
 /// Errors of the ten signals against the recording. The autopilot's controller is not known: the
 /// simulator's own flies both models, so their difference counts, not their size.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClosedLoop {
-    /// in the order of [`SIGNALS`]
+    /// in the order of [`SIGNALS`]; the floor is the recording's own white noise
     pub signals: Vec<Option<Compared>>,
 }
 
@@ -25,6 +26,7 @@ pub(super) fn flown_again(
         return Err("an empirical term is not flown in closed loop".to_owned());
     }
     let mut blocks = Blocks::new(SIGNALS.len(), settings.block_s);
+    let mut floors = [0.0; SIGNALS.len()];
     for (index, ready) in ready.iter().enumerate() {
         let named = |error: &dyn std::fmt::Display| format!("{}: {error}", ready.flight.name);
         let recording = ready
@@ -32,6 +34,8 @@ pub(super) fn flown_again(
             .recording
             .ok_or_else(|| named(&"part of a flight that was used is not flown again"))?;
         let recorded = TenSignals::of_signals(ready.flight.signals).map_err(|error| named(&error))?;
+        let levels = noise_levels(&recorded);
+        floors.iter_mut().zip(levels).for_each(|(floor, level)| *floor += level * level);
         let fly = |base: &Base| -> Result<Vec<(f64, [f64; 10])>, String> {
             let model = flown(base).map_err(|error| named(&error))?;
             let again = autopilot_flight(recording, &model, nominal).map_err(|error| named(&error))?;
@@ -45,7 +49,22 @@ pub(super) fn flown_again(
     if blocks.len() == 0 {
         return Err("recording and simulation share no instant".to_owned());
     }
-    Ok(ClosedLoop { signals: blocks.compared(settings.draws, settings.seed).0 })
+    let mut signals = blocks.compared(settings.draws, settings.seed).0;
+    let flights = ready.len() as f64;
+    for (compared, floor) in signals.iter_mut().zip(floors) {
+        if let Some(compared) = compared {
+            compared.floor = Some((floor / flights).sqrt()).filter(|floor| floor.is_finite());
+        }
+    }
+    Ok(ClosedLoop { signals })
+}
+
+/// Standard deviation of each signal's white noise, which no model takes out of the recording.
+fn noise_levels(recorded: &TenSignals) -> [f64; SIGNALS.len()] {
+    std::array::from_fn(|signal| {
+        let series: Vec<f64> = recorded.values.iter().map(|values| values[signal]).collect();
+        white_level_of(&series)
+    })
 }
 
 /// From the first to the last usable instant.
