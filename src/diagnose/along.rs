@@ -4,7 +4,7 @@ use super::base::Base;
 use super::spin_up::SpinUp;
 use super::trace::Trace;
 use crate::physics::{Airframe, Input, MAX_ROTORS, Model, Wrench};
-use crate::signals::{ActuationLatency, central_difference, delayed_speeds};
+use crate::signals::{ActuationLatency, central_difference, delayed_thrusts_n};
 use nalgebra::{Vector3, Vector4};
 
 /// One thrust a rotor, N; those beyond the rotor count are zero.
@@ -99,26 +99,18 @@ pub(super) fn felt(
     step_s: f64,
     latency: ActuationLatency,
 ) -> Vec<Thrusts> {
-    const HALF: usize = MAX_ROTORS / 2;
     if latency == ActuationLatency::default() {
         return commanded_n.to_vec();
     }
-    let mut out = vec![[0.0; MAX_ROTORS]; commanded_n.len()];
-    for first in [0, HALF] {
-        if first >= airframe.rotor_count() {
-            break;
-        }
-        let speeds: Vec<Vector4<f64>> = commanded_n
-            .iter()
-            .map(|thrusts| Vector4::from_fn(|i, _| airframe.relative_speed_of_thrust(thrusts[first + i])))
-            .collect();
-        for (out, speed) in out.iter_mut().zip(delayed_speeds(&speeds, step_s, latency)) {
-            for i in 0..HALF {
-                out[first + i] = airframe.thrust_n(speed[i]);
-            }
-        }
-    }
-    out
+    let rotors = airframe.rotor_count();
+    let flat: Vec<f64> = commanded_n.iter().flat_map(|thrusts| &thrusts[..rotors]).copied().collect();
+    let delayed = delayed_thrusts_n(&flat, rotors, step_s, latency);
+    let of_all = |thrusts: &[f64]| {
+        let mut all = [0.0; MAX_ROTORS];
+        all[..rotors].copy_from_slice(thrusts);
+        all
+    };
+    delayed.chunks_exact(rotors).map(of_all).collect()
 }
 
 /// Passes over the motion's rotor thrusts, which depend on the effects that depend on them.

@@ -143,7 +143,7 @@ pub(super) fn stated_uneven(vehicle: &Vehicle) -> f64 {
 /// like a delay.
 const TOLD_APART: f64 = 15.0;
 /// Mean of the stated time constants, s; 0 where none is stated.
-fn stated_lag_s(vehicle: &Vehicle) -> f64 {
+pub(super) fn stated_lag_s(vehicle: &Vehicle) -> f64 {
     vehicle.propulsion.mean_time_constant_s().unwrap_or(0.0)
 }
 

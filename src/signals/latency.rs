@@ -42,8 +42,7 @@ pub fn delayed_wrench(wrench: &[Vector4<f64>], step_s: f64, latency: ActuationLa
 
 /// Rotor speeds behind an actuation latency. Where falling takes longer than rising, what jitters about a value is faster
 /// than it on average. One entry every `step_s`.
-#[must_use]
-pub fn delayed_speeds(speeds: &[Vector4<f64>], step_s: f64, latency: ActuationLatency) -> Vec<Vector4<f64>> {
+fn delayed_speeds(speeds: &[Vector4<f64>], step_s: f64, latency: ActuationLatency) -> Vec<Vector4<f64>> {
     if latency.lag_s <= 0.0 || latency.uneven == 0.0 {
         return delayed_wrench(speeds, step_s, latency);
     }

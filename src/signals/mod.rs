@@ -26,7 +26,7 @@ pub use align::StreamOffset;
 pub use condition::{ConditionSettings, Quality, Reference, Signals, condition, stride};
 pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
-pub use latency::{ActuationLatency, delayed_speeds, delayed_thrusts_n, delayed_wrench};
+pub use latency::{ActuationLatency, delayed_thrusts_n, delayed_wrench};
 pub use noise::{median, white_level, white_level_of};
 pub use select::{best, best_rank, is_live, mean_rate_hz, median_period_s};
 pub use spectrum::{hann_windowed, highest_harmonic_hz, power_at};

@@ -3,7 +3,7 @@
 use super::{HeldOut, ShowSettings};
 use crate::diagnose::base::Base;
 use crate::diagnose::explanation::{Explanation, Verdict};
-use crate::diagnose::latency::stated_uneven;
+use crate::diagnose::latency::{stated_lag_s, stated_uneven};
 use crate::diagnose::rows::Rows;
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
@@ -26,7 +26,7 @@ pub(super) fn pair(explanation: &Explanation, vehicle: &Vehicle, command_period_
     if named("motor_lag") || named("transport_delay") {
         before.latency = ActuationLatency {
             delay_s: 0.5 * command_period_s,
-            lag_s: vehicle.propulsion.mean_time_constant_s().unwrap_or(0.0),
+            lag_s: stated_lag_s(vehicle),
             uneven: stated_uneven(vehicle),
         };
     }

@@ -8,7 +8,7 @@ use crate::diagnose::base::Present;
 use crate::diagnose::deviate::normal_deviate;
 use crate::diagnose::explain::FAST_MOTOR_S;
 use crate::diagnose::gates::Gates;
-use crate::diagnose::latency::{LatencyFinding, held_s};
+use crate::diagnose::latency::{LatencyFinding, held_s, stated_lag_s};
 use crate::diagnose::search::Fitted;
 use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, Effect};
@@ -139,15 +139,10 @@ pub(super) fn effects(
                     &settled[place],
                     (vehicle, wanted.has("inflow"), by_mass),
                 ),
-                None => of_latency(effect, flights, (latency, split), stated_s(vehicle)),
+                None => of_latency(effect, flights, (latency, split), stated_lag_s(vehicle)),
             }
         })
         .collect()
-}
-
-/// A lag that the vehicle's description states, s.
-fn stated_s(vehicle: &Vehicle) -> f64 {
-    vehicle.propulsion.mean_time_constant_s().unwrap_or(0.0)
 }
 
 /// An effect that has columns of its own, at `place` of the base.

@@ -2,7 +2,7 @@
 
 use super::wanted::Wanted;
 use crate::diagnose::base::Base;
-use crate::diagnose::latency::{LatencyFinding, held_s, lag_column, stated_uneven};
+use crate::diagnose::latency::{LatencyFinding, held_s, lag_column, stated_lag_s, stated_uneven};
 use crate::diagnose::search::{Fitted, Newton, fit};
 use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, PhysicsError};
@@ -43,7 +43,7 @@ pub(super) fn held_as(
             (ActuationLatency { delay_s: delay_s + held_s, lag_s, uneven }, Newton::Free)
         }
         (false, true) => {
-            let lag_s = of_file("motor_lag").or(vehicle.propulsion.mean_time_constant_s()).unwrap_or(0.0);
+            let lag_s = of_file("motor_lag").unwrap_or_else(|| stated_lag_s(vehicle));
             (ActuationLatency { delay_s: first.total_s - lag_s, lag_s, uneven }, Newton::Delay)
         }
         (true, true) => {
