@@ -302,6 +302,7 @@ fn show_search(explanation: &Explanation) {
     }
     let mut last: Vec<_> = explanation.search.last.iter().collect();
     last.sort_by(|a, b| b.evidence.energy.total_cmp(&a.evidence.energy));
+    println!("    {} candidates", last.len());
     for tested in last.iter().take(14) {
         let e = &tested.evidence;
         println!(

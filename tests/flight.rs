@@ -9,9 +9,12 @@ use std::time::Duration;
 
 use flying::{Flying, vehicle_settings};
 use mavid::fly::parameters::Parameters;
-use mavid::fly::{Cause, Ending, Event, Key, Lift, Origin, Outcome};
-use mavid::log::{Autopilot, SystemId};
-use mavid::sitl::{ArduPilotRelease, AutopilotKind, Fault, Mode};
+use mavid::fly::{Cause, Ending, Event, Key, Lift, Origin, Outcome, Place, Setpoint, Target};
+use mavid::log::{Autopilot, ComponentId, SystemId};
+use mavid::sitl::{ArduPilotRelease, AutopilotKind, Fault, LinkRole, Mode};
+use mavlink::dialects::ardupilotmega::{MavMessage, PositionTargetTypemask};
+use mavlink::{MAVLinkV2MessageRaw, MavHeader};
+use nalgebra::Vector3;
 
 const PX4: AutopilotKind = AutopilotKind::Px4;
 const COPTER: AutopilotKind = AutopilotKind::ArduPilot(ArduPilotRelease::V4_7);
@@ -276,6 +279,49 @@ fn a_second_ground_station_with_our_ids_ends_the_flight() {
         flying.fly_into_the_trajectory(2.0);
         flying.vehicle.fault(Fault::ForeignHeartbeat { system: 254, component: 190 });
         assert!(flying.finish().is_whole(), "another one that only listens is none");
+    }
+}
+
+/// Setpoints of another station, each 20 to 40 ms for so long, on a link of its own: its target beside the course, or a
+/// velocity alone.
+fn beside(kind: AutopilotKind, north_m: Option<f64>, lasts: Duration) -> Flying {
+    let mut flying = Flying::of(kind);
+    flying.fly_into_the_trajectory(2.0);
+    let link = flying.vehicle.open_link(LinkRole::GroundStation);
+    let target = Target::new(SystemId(1), ComponentId(1)).unwrap();
+    let until = flying.now + lasts;
+    let place = Place { position_m: Vector3::new(north_m.unwrap_or(0.0), 0.5, 1.5), yaw_rad: 0.0 };
+    for steps in [2, 3, 4].into_iter().cycle() {
+        if flying.now >= until || flying.outcome.is_some() {
+            break;
+        }
+        for _ in 0..steps {
+            flying.step(true);
+        }
+        let mut raw = MAVLinkV2MessageRaw::new();
+        let header = MavHeader { system_id: 254, component_id: 190, sequence: 0 };
+        let mut message = Setpoint::hold(flying.now, &place).message(target);
+        if let MavMessage::SET_POSITION_TARGET_LOCAL_NED(data) = &mut message {
+            // position alone, or velocity alone
+            data.type_mask =
+                PositionTargetTypemask::from_bits_retain(if north_m.is_some() { 0xdf8 } else { 0xdc7 });
+        }
+        raw.serialize_message(header, &message);
+        flying.vehicle.receive(link, raw.raw_bytes(), flying.now);
+    }
+    flying.finish();
+    flying
+}
+
+#[test]
+fn setpoints_of_another_between_ours_end_the_flight() {
+    for kind in BOTH {
+        for place in [Some(0.9), Some(-1.5), None] {
+            let flying = beside(kind, place, Duration::from_secs(2));
+            let outcome = flying.outcome.as_ref().unwrap();
+            let seen = matches!(outcome.cause, Some(Cause::SecondMaster(_)));
+            assert!(seen && outcome.ending == Ending::Landed, "{kind:?} {place:?} {}", flying.story());
+        }
     }
 }
 

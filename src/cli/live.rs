@@ -49,9 +49,9 @@ pub struct SitlArgs {
     /// whose behaviour
     #[arg(long, value_enum, default_value = "px4")]
     pub autopilot: AutopilotName,
-    /// whose names and units of parameters ArduPilot has
-    #[arg(long, value_enum, default_value = "4.7")]
-    pub ardupilot_version: ArduPilotVersion,
+    /// whose names and units of parameters ArduPilot has [default: 4.7]
+    #[arg(long, value_enum)]
+    pub ardupilot_version: Option<ArduPilotVersion>,
     /// times real time
     #[arg(long, value_name = "N", default_value_t = 1.0, allow_negative_numbers = true)]
     pub speed: f64,

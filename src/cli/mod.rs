@@ -200,6 +200,9 @@ pub struct FlyArgs {
     /// tilt at which the flight is aborted, degrees [default: 20 more than planned]
     #[arg(long, value_name = "DEG")]
     pub tilt_max: Option<f64>,
+    /// s that the vehicle hovers on a full battery: the flight is then refused where the charge does not last for it
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub hover_time: Option<f64>,
     /// a check whose refusal is taken for a warning; may be given several times
     #[arg(long, value_enum, value_name = "CHECK")]
     pub accept: Vec<CheckName>,

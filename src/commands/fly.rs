@@ -1,6 +1,6 @@
 //! `mavid fly --connect ADDRESS --trajectory T --vehicle V --out DIR`: flies, records, identifies.
 
-use std::io::IsTerminal;
+use std::io::{BufRead, IsTerminal, Read};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread;
@@ -28,6 +28,11 @@ use crate::cli::{CheckName, FlyArgs, OriginName};
 
 /// A ground station's component id.
 const STATION: ComponentId = ComponentId(190);
+/// The keys of a flight told in lines.
+const KEYS: &str =
+    "h, l, r and return: hold, land, return home; :kill and return: motors off; Ctrl-C: hold and end";
+/// Bytes of them that are read: no one types more.
+const KEYS_MAX: u64 = 1 << 16;
 /// How long the view waits for a key or a new picture.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -74,8 +79,13 @@ impl Document {
 pub fn run(json: bool, args: &FlyArgs) -> Result<Outcome, CommandError> {
     let ride = ride(args)?;
     let drawn = !args.plain && std::io::stderr().is_terminal() && std::io::stdin().is_terminal();
-    let record =
-        fly_it(ride, move |pictures, pressed| if drawn { draw(pictures, pressed) } else { tell(pictures) })?;
+    // lines of a script that did not ask for it are the script's
+    let typed = args.plain || std::io::stdin().is_terminal();
+    let record = fly_it(ride, move |pictures, pressed| match (drawn, typed) {
+        (true, _) => draw(pictures, pressed),
+        (false, true) => tell(pictures, Some(pressed)),
+        (false, false) => tell(pictures, None),
+    })?;
     say(&record);
     let landed = record.outcome.ending == Ending::Landed;
     let analysis = Analysis::of((&args.out, landed), &args.vehicle, args.system_id)?;
@@ -138,7 +148,12 @@ fn copy(from: &Path, to: &Path) -> Result<(), CommandError> {
 }
 
 fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> Result<Sortie, CommandError> {
-    for (name, value) in [("--tracking-max", Some(args.tracking_max)), ("--tilt-max", args.tilt_max)] {
+    let positive = [
+        ("--tracking-max", Some(args.tracking_max)),
+        ("--tilt-max", args.tilt_max),
+        ("--hover-time", args.hover_time),
+    ];
+    for (name, value) in positive {
         if let Some(value) = value.filter(|value| !value.is_finite() || *value <= 0.0) {
             return Err(CommandError::Input(format!("{name}: expected a positive number, got {value}")));
         }
@@ -169,6 +184,7 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
             },
             tracking_max_m: args.tracking_max,
             tilt_max_rad: args.tilt_max.map(rad_from_deg),
+            hover_time_s: args.hover_time,
             await_clearance: true,
             accepted: args.accept.iter().map(|name| check(*name)).collect(),
             ..fly::Settings::default()
@@ -210,8 +226,16 @@ pub fn fly_it(
     record.map_err(|error| failed(&error))
 }
 
-/// Lines.
-fn tell(pictures: &Receiver<ViewModel>) {
+/// Lines; and lines of standard input as keys, where they may be.
+fn tell(pictures: &Receiver<ViewModel>, pressed: Option<&UnboundedSender<KeyCommand>>) {
+    if let Some(pressed) = pressed.cloned() {
+        // it ends with the process: nothing else can be done about a read that waits
+        let reading = thread::Builder::new().name("keys".into()).spawn(move || read_keys(&pressed));
+        output::message(match reading {
+            Ok(_) => KEYS,
+            Err(_) => "warning: standard input cannot be read: Ctrl-C alone ends the flight",
+        });
+    }
     let mut log = PlainLog::default();
     for model in pictures {
         for line in log.lines(&model) {
@@ -220,9 +244,20 @@ fn tell(pictures: &Receiver<ViewModel>) {
     }
 }
 
+/// Each line a command, until there are no more or the flight is over.
+fn read_keys(pressed: &UnboundedSender<KeyCommand>) {
+    for line in std::io::stdin().lock().take(KEYS_MAX).lines().map_while(Result::ok) {
+        match KeyCommand::of_line(&line) {
+            Some(command) if pressed.send(command).is_err() => return,
+            Some(_) => {}
+            None => output::message(&format!("{KEYS}; got `{}`", line.escape_debug())),
+        }
+    }
+}
+
 /// The terminal view; lines where the terminal cannot be drawn on.
 fn draw(pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<KeyCommand>) {
-    let Ok(mut screen) = Screen::open(std::io::stderr) else { return tell(pictures) };
+    let Ok(mut screen) = Screen::open(std::io::stderr) else { return tell(pictures, Some(pressed)) };
     let mut keys = Keys::default();
     loop {
         while event::poll(Duration::ZERO).unwrap_or(false) {
@@ -237,7 +272,7 @@ fn draw(pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<KeyCommand>) {
             Ok(mut model) => {
                 model.typed = keys.typed().map(str::to_owned);
                 if screen.draw(&model).is_err() {
-                    return tell(pictures);
+                    return tell(pictures, Some(pressed));
                 }
             }
             Err(RecvTimeoutError::Timeout) => {}

@@ -174,14 +174,8 @@ impl Capture {
     }
 
     fn event(&self, event: &LinkEvent) {
-        let text = match event {
-            LinkEvent::Connected { peer } => format!("connected: {peer}"),
-            LinkEvent::Lost { why } => format!("lost: {why}"),
-            LinkEvent::Restored { peer } => format!("connected again: {peer}"),
-            LinkEvent::Stranger { peer } => format!("warning: {peer} sends here too; it is not recorded"),
-            LinkEvent::RecordingFails => "warning: the disk does not take the recording".into(),
-            LinkEvent::RecordingGoesOn => "the recording goes on".into(),
-        };
+        let warns = matches!(event, LinkEvent::Stranger { .. } | LinkEvent::RecordingFails);
+        let text = if warns { format!("warning: {event}") } else { event.to_string() };
         self.bar.suspend(|| output::message(&text));
     }
 

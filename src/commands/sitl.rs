@@ -7,7 +7,7 @@ use mavid::config::{LoadedVehicle, parse_vehicle, read_vehicle};
 use mavid::link::{Address, LinkOptions, LinkReader, SigningKey};
 use mavid::log::{ComponentId, SystemId};
 use mavid::sitl::{
-    ArduPilotRelease, AutopilotKind, LinkRole, Pace, SensorSettings, Settings, Vehicle, serve,
+    ArduPilotRelease, AutopilotKind, LinkRole, Pace, SensorSettings, Served, Settings, Vehicle, serve,
 };
 use serde::Serialize;
 
@@ -17,6 +17,8 @@ use crate::cli::{ArduPilotVersion, AutopilotName, SitlArgs};
 
 /// The vehicle that flies where none is given.
 pub const DEFAULT_VEHICLE: &str = include_str!("../../configs/x500.toml");
+/// So far behind the pace a ground station takes the vehicle for one whose link is bad.
+const BEHIND: Duration = Duration::from_millis(500);
 /// The port on which PX4 takes its peer for a companion computer.
 const ONBOARD_PORT: u16 = 14540;
 
@@ -81,7 +83,14 @@ async fn fly(
             std::future::pending::<()>().await;
         }
     };
-    let flown = serve(vehicle, links, time, stop).await;
+    let Served { flown, behind } = serve(vehicle, links, time, stop).await;
+    if behind > BEHIND {
+        let behind_s = behind.as_secs_f64();
+        output::message(&format!(
+            "warning: this machine was up to {behind_s:.1} s of the vehicle's time behind the pace: expected a free core, or \
+             a lower --speed, or --lockstep"
+        ));
+    }
     output::message(&format!("stopped after {:.1} s of the vehicle's time", flown.as_secs_f64()));
     Ok(())
 }
@@ -101,11 +110,15 @@ fn page(document: &Document) -> String {
 
 fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
     let kind = match (args.autopilot, args.ardupilot_version) {
-        (AutopilotName::Px4, _) => AutopilotKind::Px4,
-        (AutopilotName::Ardupilot, ArduPilotVersion::V4_6) => {
+        (AutopilotName::Px4, None) => AutopilotKind::Px4,
+        (AutopilotName::Px4, Some(_)) => {
+            let what = "--ardupilot-version: expected --autopilot ardupilot beside it, got PX4";
+            return Err(CommandError::Input(what.to_owned()));
+        }
+        (AutopilotName::Ardupilot, Some(ArduPilotVersion::V4_6)) => {
             AutopilotKind::ArduPilot(ArduPilotRelease::V4_6)
         }
-        (AutopilotName::Ardupilot, ArduPilotVersion::V4_7) => {
+        (AutopilotName::Ardupilot, Some(ArduPilotVersion::V4_7) | None) => {
             AutopilotKind::ArduPilot(ArduPilotRelease::V4_7)
         }
     };

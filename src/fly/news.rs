@@ -21,6 +21,6 @@ pub enum Novelty {
     EstimatorReset(String),
     /// its estimate was reset by so little that it can be flown through
     EstimatorStep(String),
-    /// it says that it flies to this place, m, world (POSITION_TARGET_LOCAL_NED)
-    Target(Vector3<f64>),
+    /// it says that it flies to this place, m, world, or to none (POSITION_TARGET_LOCAL_NED)
+    Target(Option<Vector3<f64>>),
 }

@@ -70,6 +70,8 @@ pub struct Settings {
     pub room_margin_m: f64,
     /// from upright, rad; without it 20 degrees more than planned
     pub tilt_max_rad: Option<f64>,
+    /// s of hover that a full battery gives, where it is known
+    pub hover_time_s: Option<f64>,
     /// until a vehicle is heard
     pub connect_timeout: Duration,
     /// until the vehicle is ready to arm
@@ -95,6 +97,7 @@ impl Default for Settings {
             tracking_max_m: 1.0,
             room_margin_m: 1.0,
             tilt_max_rad: None,
+            hover_time_s: None,
             connect_timeout: Duration::from_secs(30),
             ready_timeout: Duration::from_secs(120),
             reach_timeout: Duration::from_secs(30),

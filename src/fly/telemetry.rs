@@ -49,6 +49,7 @@ pub struct FlightState {
 const STATE_CRITICAL: u8 = 5;
 const STATE_EMERGENCY: u8 = 6;
 const STATE_TERMINATION: u8 = 8;
+const POSITION_TARGET: u32 = 85;
 const ODOMETRY: u32 = 331;
 /// MAV_LANDED_STATE.
 const ON_GROUND: f64 = 1.0;
@@ -216,6 +217,7 @@ impl Telemetry {
     fn samples(&mut self, (now, silence): (Duration, Duration), frame: Frame<'_>, news: &mut Vec<Novelty>) {
         let record = Record { stamp_us: micros(now), offset: 0, known: true, frame };
         let (mut position, mut velocity, mut rates, mut reset) = (None, None, None, false);
+        let mut target_m = None;
         let (attitude, landed, volts) = (&mut self.attitude, &mut self.landed, &mut self.battery_v);
         let outputs = &mut self.outputs;
         outputs.clear();
@@ -236,7 +238,7 @@ impl Telemetry {
                 }
                 (Quantity::BatteryVoltage, &[value]) => *volts = Some(value),
                 (Quantity::PositionSetpoint, &[x, y, z]) if (x + y + z).is_finite() => {
-                    news.push(Novelty::Target(Vector3::new(x, y, z)));
+                    target_m = Some(Vector3::new(x, y, z));
                 }
                 _ => {}
             },
@@ -249,6 +251,9 @@ impl Telemetry {
             log::Event::EstimatorReset { .. } => reset = true,
             log::Event::Parameter { .. } => {}
         });
+        if frame.header().message_id == POSITION_TARGET {
+            news.push(Novelty::Target(target_m));
+        }
         let oriented = self.attitude.filter(|seen| seen.at == now).map(|seen| seen.value);
         let pose = position.zip(velocity).zip(oriented.zip(rates));
         let pose = pose.map(|(((time_s, position_m), velocity_m_s), (attitude, rates_rad_s))| Pose {

@@ -23,6 +23,8 @@ pub(super) struct Incoming {
     splitter: Splitter,
     sink: Sink,
     was_connected: bool,
+    /// what was last said while nobody was at the other end
+    waits_for: Option<String>,
 }
 
 /// Where frames go.
@@ -50,7 +52,7 @@ impl Incoming {
             recorder: options.recorder.clone(),
             recording_fails: false,
         };
-        Self { splitter: Splitter::new(), sink, was_connected: false }
+        Self { splitter: Splitter::new(), sink, was_connected: false, waits_for: None }
     }
 
     /// The present moment: to be taken as soon as bytes are there.
@@ -105,6 +107,14 @@ impl Incoming {
             if self.was_connected { LinkEvent::Restored { peer } } else { LinkEvent::Connected { peer } };
         self.was_connected = true;
         self.sink.deliver(Received::Event(event));
+    }
+
+    /// Nobody is at the other end yet: said once for each reason, and not after a loss, which is said already.
+    pub fn waiting(&mut self, why: String) {
+        if !self.was_connected && self.waits_for.as_ref() != Some(&why) {
+            self.waits_for = Some(why.clone());
+            self.sink.deliver(Received::Event(LinkEvent::Waiting { why }));
+        }
     }
 
     /// Nobody is at the other end any more. Half a frame from before does not go on with what comes after.

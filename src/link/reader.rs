@@ -1,5 +1,6 @@
 //! The half of a link that hears.
 
+use std::fmt;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -81,6 +82,11 @@ impl ReceivedFrame {
 /// A change of the link itself.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LinkEvent {
+    /// nobody is at the other end yet; the link tries again by itself
+    Waiting {
+        /// what the last try came to
+        why: String,
+    },
     /// somebody is at the other end, for the first time
     Connected {
         /// who
@@ -105,6 +111,20 @@ pub enum LinkEvent {
     RecordingFails,
     /// the recording goes on
     RecordingGoesOn,
+}
+
+impl fmt::Display for LinkEvent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Waiting { why } => write!(f, "nobody at the other end yet ({why}): it is tried again"),
+            Self::Connected { peer } => write!(f, "connected to {peer}"),
+            Self::Lost { why } => write!(f, "lost: {why}"),
+            Self::Restored { peer } => write!(f, "connected again to {peer}"),
+            Self::Stranger { peer } => write!(f, "{peer} sends here too; it is neither heard nor recorded"),
+            Self::RecordingFails => f.write_str("the disk does not take the recording"),
+            Self::RecordingGoesOn => f.write_str("the recording goes on"),
+        }
+    }
 }
 
 /// The half of a link that hears. It cannot send: a link without a [`LinkWriter`](super::LinkWriter), as a

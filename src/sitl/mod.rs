@@ -40,7 +40,7 @@ mod vehicle;
 pub use fault::Fault;
 pub use link::{LinkId, LinkRole};
 pub use modes::{ArduPilotRelease, AutopilotKind, Mode};
-pub use serve::{LOCKSTEP, Pace, serve};
+pub use serve::{LOCKSTEP, Pace, Served, serve};
 pub use settings::{Origin, SensorSettings, Settings};
 pub use vehicle::{Outgoing, Vehicle};
 

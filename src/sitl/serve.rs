@@ -21,6 +21,15 @@ pub enum Pace {
     Lockstep,
 }
 
+/// How it went.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Served {
+    /// of the vehicle's own time
+    pub flown: Duration,
+    /// greatest distance between the vehicle's time and the pace, of the vehicle's time; none in lock-step
+    pub behind: Duration,
+}
+
 /// By how much time goes on in lock-step.
 pub const LOCKSTEP: Duration = Duration::from_millis(20);
 
@@ -32,14 +41,14 @@ const QUEUE: usize = 4096;
 /// Bytes that came in.
 type Heard = (LinkId, Box<[u8]>);
 
-/// Runs `vehicle` on these links until `stop` is ready, or for `limit` of its own time; returns how much of it
-/// has passed. A link that ends is left out; the others go on.
+/// Runs `vehicle` on these links until `stop` is ready, or for `limit` of its own time. A link that ends is left out; the others go on.
 pub async fn serve(
     mut vehicle: Vehicle,
     links: Vec<(LinkRole, Ends)>,
     (pace, limit): (Pace, Option<Duration>),
     stop: impl Future<Output = ()>,
-) -> Duration {
+) -> Served {
+    let mut behind = Duration::ZERO;
     let (to_us, mut heard) = mpsc::channel(QUEUE);
     let mut writers = Vec::with_capacity(links.len());
     let mut listeners = JoinSet::new();
@@ -51,7 +60,9 @@ pub async fn serve(
     let limit = limit.unwrap_or(Duration::MAX);
     let run = async {
         match pace {
-            Pace::Times(factor) => at_pace(&mut vehicle, &writers, &mut heard, (factor, limit)).await,
+            Pace::Times(factor) => {
+                at_pace(&mut vehicle, (&writers, &mut heard), (factor, limit), &mut behind).await
+            }
             Pace::Lockstep => in_lockstep(&mut vehicle, &writers, &mut heard, limit).await,
         }
     };
@@ -63,7 +74,7 @@ pub async fn serve(
         // a link that has ended has nothing left to send
         let _ = tokio::time::timeout(Duration::from_millis(200), writer.flush()).await;
     }
-    vehicle.next_loop()
+    Served { flown: vehicle.next_loop(), behind }
 }
 
 async fn listen(id: LinkId, mut reader: LinkReader, to: mpsc::Sender<Heard>) {
@@ -87,9 +98,9 @@ fn speak(writers: &[LinkWriter], out: Vec<Outgoing>) {
 
 async fn at_pace(
     vehicle: &mut Vehicle,
-    writers: &[LinkWriter],
-    heard: &mut mpsc::Receiver<Heard>,
+    (writers, heard): (&[LinkWriter], &mut mpsc::Receiver<Heard>),
     (factor, limit): (f64, Duration),
+    behind: &mut Duration,
 ) {
     let start = Instant::now();
     loop {
@@ -98,6 +109,7 @@ async fn at_pace(
         if now >= limit {
             return;
         }
+        *behind = (*behind).max(start.elapsed().mul_f64(factor).saturating_sub(now));
         let wait = vehicle.next_loop().saturating_sub(now).div_f64(factor).max(NAP);
         tokio::select! {
             Some((link, bytes)) = heard.recv() => {

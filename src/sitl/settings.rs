@@ -152,7 +152,7 @@ impl Settings {
         };
         let at_least_zero = [
             ("motor_time_constant_s", self.motor_time_constant_s),
-            ("noise_scale", self.sensors.noise_scale),
+            ("noise", self.sensors.noise_scale),
             ("battery_drop_v_s", self.battery_drop_v_s),
         ];
         for (name, value) in at_least_zero {

@@ -186,7 +186,7 @@ impl Flying {
         }
         for outgoing in self.vehicle.advance(self.now) {
             let id = Frame::at_start(&outgoing.bytes).unwrap().header().message_id;
-            if !self.swallowed.contains(&id) {
+            if outgoing.link == self.link && !self.swallowed.contains(&id) {
                 self.down.give(outgoing.time, outgoing.bytes);
             }
         }

@@ -148,6 +148,7 @@ fn fly_args(port: u16, vehicle: &Path, trajectory: &Path, folder: &Path) -> FlyA
         origin: OriginName::Local,
         tracking_max: 1.0,
         tilt_max: None,
+        hover_time: None,
         accept: Vec::new(),
         signing_key_file: None,
         plain: true,

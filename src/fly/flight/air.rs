@@ -217,7 +217,7 @@ impl Flight {
         }
         if let Some(setpoint) = self.guide.setpoint(now) {
             self.watch.tracking.told(now, setpoint.position_m);
-            self.watch.masters.told(now, setpoint.position_m);
+            self.watch.masters.told(now, setpoint);
         }
     }
 

@@ -7,6 +7,9 @@ use crate::fly::news::Novelty;
 use crate::fly::outcome::{Cause, Level};
 use crate::log::{Check, Frame};
 
+/// For a vehicle to fly our setpoints after its takeoff, and to say so.
+const TAKEN_OVER: Duration = Duration::from_millis(1500);
+
 impl Flight {
     pub(super) fn hear(&mut self, now: Duration, frame: Frame<'_>) {
         if frame.check(&self.seeds) != Check::Right {
@@ -74,9 +77,13 @@ impl Flight {
                 self.note(now, Level::Warning, "estimator", what);
             }
             Novelty::Target(place_m) => {
-                if matches!(self.phase, Phase::Course)
-                    && let Some(cause) = self.watch.masters.check(now, &place_m)
-                {
+                let following = match self.phase {
+                    // at first it may still say where its takeoff led
+                    Phase::Transfer => now.saturating_sub(self.entered) >= TAKEN_OVER,
+                    Phase::Gate(_) | Phase::Course => true,
+                    _ => false,
+                };
+                if following && let Some(cause) = self.watch.masters.check(now, place_m, stack) {
                     self.end(now, cause);
                 }
             }

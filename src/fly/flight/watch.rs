@@ -209,6 +209,12 @@ impl Flight {
         self.guide.lead = Lead::Silent;
         self.commander.clear();
         self.enter(now, Phase::Watch);
+        let lasts_s = self.sortie.settings.watch_max.as_secs();
+        let text = format!(
+            "nothing is sent but heartbeats; the vehicle is listened to until it is disarmed, for {lasts_s} s at most \
+             (Ctrl-C ends it now)"
+        );
+        self.note(now, Level::Information, "watch", text);
     }
 
     /// Others fly the vehicle, or nobody hears it.

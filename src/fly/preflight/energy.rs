@@ -38,7 +38,7 @@ pub(super) fn finding(battery: &BatteryState, path_s: f64) -> Finding {
             "battery",
             expected,
             format!("{remaining}, {missing}"),
-            "see that it is charged, and give the hover time of a full battery",
+            "see that it is charged, and give the hover time of a full battery (--hover-time)",
         );
     };
     let lasts_s = 1e-2 * percent * endurance_s;

@@ -210,7 +210,7 @@ impl Clearance {
         let battery = BatteryState {
             remaining_percent: status.battery_percent.map(f64::from),
             is_low: status.battery_is_low,
-            endurance_s: None,
+            endurance_s: sortie.settings.hover_time_s,
         };
         let readiness = Readiness {
             may_arm: status.may_arm,

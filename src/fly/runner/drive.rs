@@ -127,15 +127,13 @@ impl Drive {
 
     pub(super) fn link_event(&mut self, event: &LinkEvent) {
         let now = self.clock.elapsed();
-        let (up, level, text) = match event {
-            LinkEvent::Connected { peer } => (Some(true), Level::Information, format!("connected to {peer}")),
-            LinkEvent::Restored { peer } => {
-                (Some(true), Level::Warning, format!("connected again to {peer}"))
-            }
-            LinkEvent::Lost { why } => (Some(false), Level::Warning, format!("lost: {why}")),
-            other => (None, Level::Warning, format!("{other:?}")),
+        let (up, level) = match event {
+            LinkEvent::Connected { .. } => (Some(true), Level::Information),
+            LinkEvent::Restored { .. } => (Some(true), Level::Warning),
+            LinkEvent::Lost { .. } => (Some(false), Level::Warning),
+            _ => (None, Level::Warning),
         };
-        self.notes.push(Note::new(now, level, "link", text));
+        self.notes.push(Note::new(now, level, "link", event.to_string()));
         if let Some(up) = up {
             self.handle(Event::Link(up));
         }

@@ -5,16 +5,24 @@ use std::time::Duration;
 
 use nalgebra::Vector3;
 
-use super::Sustained;
+use crate::fly::modes::Stack;
 use crate::fly::outcome::Cause;
+use crate::fly::setpoint::Setpoint;
 use crate::fly::target::Target;
 use crate::log::{ComponentId, Frame, SystemId};
 
-/// A reported target this far from all of ours is not ours.
-const FOREIGN_M: f64 = 1.0;
-/// Reports come later than what they report.
+/// A reported target this far from all of ours is not ours. PX4 reports ours to the last bit, ArduPilot what it has
+/// made of it since, some centimetres on.
+const FOREIGN_M: f64 = 0.25;
+/// Reports come later than what they report, and after a silence later by as much.
 const DELAY: Duration = Duration::from_secs(1);
-const PATIENCE: Duration = Duration::from_millis(500);
+/// Nothing of ours from before this is flown still.
+const OLDEST: Duration = Duration::from_secs(6);
+/// ArduPilot moves a target on by its velocity and acceleration until the next comes; this is sought in such steps.
+const COASTS_S: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
+/// So many foreign reports within this time: another's setpoints between ours are flown for an instant each.
+const REPORTS: usize = 4;
+const WINDOW: Duration = Duration::from_secs(3);
 
 const HEARTBEAT: u32 = 0;
 /// SET_ATTITUDE_TARGET, SET_POSITION_TARGET_LOCAL_NED, SET_POSITION_TARGET_GLOBAL_INT with the offset of
@@ -25,15 +33,25 @@ const SETPOINTS: [(u32, usize); 3] = [(82, 36), (84, 50), (86, 50)];
 #[derive(Debug)]
 pub struct Masters {
     own: (SystemId, ComponentId),
-    told: VecDeque<(Duration, Vector3<f64>)>,
-    foreign: Sustained,
+    told: VecDeque<(Duration, Setpoint)>,
+    reported: Option<Duration>,
+    /// when, and the distance of the nearest of ours, m
+    foreign: VecDeque<(Duration, f64)>,
+    /// a silence and when it ended
+    silence: Option<(Duration, Duration)>,
 }
 
 impl Masters {
     /// For a ground station of these ids.
     #[must_use]
     pub fn new(system: SystemId, component: ComponentId) -> Self {
-        Self { own: (system, component), told: VecDeque::new(), foreign: Sustained::default() }
+        Self {
+            own: (system, component),
+            told: VecDeque::new(),
+            reported: None,
+            foreign: VecDeque::new(),
+            silence: None,
+        }
     }
 
     /// Takes a frame that is not the vehicle's own: a heartbeat with our ids, or setpoints for our vehicle.
@@ -55,20 +73,53 @@ impl Masters {
         })
     }
 
-    /// What the vehicle is told at `now`, m, world.
-    pub fn told(&mut self, now: Duration, position_m: Vector3<f64>) {
-        self.told.push_back((now, position_m));
-        while self.told.front().is_some_and(|(at, _)| now.saturating_sub(*at) > DELAY) {
+    /// What the vehicle is told at `now`.
+    pub fn told(&mut self, now: Duration, setpoint: Setpoint) {
+        self.told.push_back((now, setpoint));
+        while self.told.front().is_some_and(|(at, _)| now.saturating_sub(*at) > OLDEST) {
             self.told.pop_front();
         }
     }
 
-    /// Takes the target that the vehicle says it flies to, m, world.
-    pub fn check(&mut self, now: Duration, target_m: &Vector3<f64>) -> Option<Cause> {
-        let nearest_m = self.told.iter().map(|(_, told)| (told - target_m).norm()).min_by(f64::total_cmp)?;
-        (self.foreign.update(now, nearest_m > FOREIGN_M) > PATIENCE)
-            .then(|| Cause::SecondMaster(format!("the vehicle flies to a target {nearest_m:.2} m from ours")))
+    /// Takes the target that the vehicle says it flies to, m, world; `None` for one that is no place.
+    pub fn check(&mut self, now: Duration, target_m: Option<Vector3<f64>>, stack: Stack) -> Option<Cause> {
+        let silent = now.saturating_sub(self.reported.replace(now).unwrap_or(now));
+        let before = self.silence.filter(|(_, ended)| now.saturating_sub(*ended) <= WINDOW);
+        if before.is_none_or(|(lasted, _)| silent >= lasted) {
+            self.silence = Some((silent, now));
+        }
+        let late = DELAY + self.silence.map_or(Duration::ZERO, |(lasted, _)| lasted);
+        let ours = self.told.iter().filter(|(at, _)| now.saturating_sub(*at) <= late);
+        let away_m = match target_m {
+            Some(target_m) => {
+                ours.map(|(_, setpoint)| away_m(setpoint, &target_m, stack)).min_by(f64::total_cmp)?
+            }
+            // ours always are one
+            None => f64::INFINITY,
+        };
+        if away_m > FOREIGN_M {
+            self.foreign.push_back((now, away_m));
+        }
+        while self.foreign.front().is_some_and(|(at, _)| now.saturating_sub(*at) > WINDOW) {
+            self.foreign.pop_front();
+        }
+        (self.foreign.len() >= REPORTS).then(|| {
+            let nearest_m = self.foreign.iter().map(|(_, away_m)| *away_m).fold(f64::INFINITY, f64::min);
+            Cause::SecondMaster(if nearest_m.is_finite() {
+                format!("the vehicle flies to targets {nearest_m:.2} m and more from ours, again and again")
+            } else {
+                "the vehicle flies to targets that are no places, again and again; ours are".to_owned()
+            })
+        })
     }
+}
+
+/// From a target to the setpoint, or to where ArduPilot takes it without the next, m.
+fn away_m(setpoint: &Setpoint, target_m: &Vector3<f64>, stack: Stack) -> f64 {
+    let coasts_s = if stack == Stack::ArduPilot { &COASTS_S[..] } else { &COASTS_S[..1] };
+    let gone_m = |s: f64| setpoint.velocity_m_s * s + setpoint.acceleration_m_s2 * (0.5 * s * s);
+    let away_m = |s: &f64| (setpoint.position_m + gone_m(*s) - target_m).norm();
+    coasts_s.iter().map(away_m).fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]
@@ -107,16 +158,75 @@ mod tests {
         }
     }
 
+    fn ours(t: u64) -> Setpoint {
+        let velocity_m_s = Vector3::new(3.0, 0.0, 0.0);
+        let place = Place { position_m: Vector3::new(3e-3 * t as f64, 0.0, 1.0), yaw_rad: 0.0 };
+        Setpoint { velocity_m_s, ..Setpoint::hold(ms(t), &place) }
+    }
+
+    /// Our setpoints each 20 ms, and each 50 ms a report of the target that `reported` has at a time.
+    fn heard_of(
+        stack: Stack,
+        (from, to): (u64, u64),
+        reported: impl Fn(u64) -> Option<Vector3<f64>>,
+    ) -> Option<u64> {
+        let mut masters = Masters::new(SystemId(255), ComponentId(190));
+        (from..to).step_by(10).find(|&t| {
+            if t % 20 == 0 {
+                masters.told(ms(t), ours(t));
+            }
+            t % 50 == 0 && masters.check(ms(t), reported(t), stack).is_some()
+        })
+    }
+
     #[test]
     fn a_target_that_is_late_is_ours_and_one_elsewhere_is_not() {
-        let mut masters = Masters::new(SystemId(255), ComponentId(190));
-        let place = |t: u64| Vector3::new(3e-3 * t as f64, 0.0, 1.0);
-        for t in (1000..3000).step_by(20) {
-            masters.told(ms(t), place(t));
-            assert!(masters.check(ms(t), &place(t - 400)).is_none());
+        let elsewhere = |t: u64| ours(t).position_m + Vector3::new(0.0, 0.4, 0.0);
+        for stack in [Stack::Px4, Stack::ArduPilot] {
+            let late = |t: u64| Some(ours(t.max(1800) - 800).position_m);
+            assert_eq!(heard_of(stack, (1000, 9000), late), None);
+            assert_eq!(heard_of(stack, (1000, 9000), |t| Some(elsewhere(t))), Some(1150));
+            assert_eq!(heard_of(stack, (1000, 9000), |_| None), Some(1150), "a velocity alone");
         }
-        let elsewhere = place(3000) + Vector3::new(0.0, 2.0, 0.0);
-        assert!(masters.check(ms(3000), &elsewhere).is_none());
-        assert!(masters.check(ms(3600), &elsewhere).is_some());
+    }
+
+    #[test]
+    fn bursts_of_another_between_ours_are_seen_and_single_ones_are_not() {
+        let at = |t: u64| (t / 50) % 3 == 0;
+        let beside = |t: u64, foreign: bool| {
+            Some(ours(t).position_m + Vector3::new(0.0, if foreign { 0.9 } else { 0.0 }, 0.0))
+        };
+        // one and a half seconds in which each third report shows the other's
+        let burst = heard_of(Stack::Px4, (1000, 9000), |t| beside(t, (4000..5500).contains(&t) && at(t)));
+        assert!(burst.is_some_and(|t| t < 5000), "{burst:?}");
+        assert_eq!(heard_of(Stack::Px4, (1000, 20_000), |t| beside(t, t % 1500 == 0)), None);
+    }
+
+    #[test]
+    fn ardupilot_moves_a_target_on_while_nothing_new_comes_and_px4_does_not() {
+        // ours are lost for half a second of each second, and the vehicle goes on along the velocity
+        let started = |t: u64| t - t % 1000;
+        let coasting = |t: u64| {
+            let from = ours(started(t));
+            Some(from.position_m + from.velocity_m_s * (1e-3 * (t % 1000) as f64) + Vector3::y() * 0.1)
+        };
+        assert_eq!(heard_of(Stack::ArduPilot, (1000, 9000), coasting), None);
+        let ahead = |t: u64| Some(ours(t + 400).position_m);
+        assert_eq!(heard_of(Stack::Px4, (1000, 9000), ahead), Some(1150));
+    }
+
+    #[test]
+    fn what_a_silence_held_back_is_ours() {
+        let mut masters = Masters::new(SystemId(255), ComponentId(190));
+        for t in (1000..6000).step_by(20) {
+            masters.told(ms(t), ours(t));
+            if t < 2000 {
+                assert!(masters.check(ms(t), Some(ours(t).position_m), Stack::Px4).is_none());
+            }
+        }
+        // four seconds of reports at once
+        for t in (2000..6000).step_by(50) {
+            assert!(masters.check(ms(6000), Some(ours(t).position_m), Stack::Px4).is_none());
+        }
     }
 }

@@ -22,6 +22,20 @@ pub enum KeyCommand {
     Quit,
 }
 
+impl KeyCommand {
+    /// What a typed line asks for, where there are no single keys: `h`, `l`, `r` or their words, `:kill`.
+    #[must_use]
+    pub fn of_line(line: &str) -> Option<Self> {
+        match line.trim().to_ascii_lowercase().as_str() {
+            "h" | "hold" => Some(Self::Hold),
+            "l" | "land" => Some(Self::Land),
+            "r" | "return" => Some(Self::Return),
+            word if word.strip_prefix(WORD_KEY) == Some(KILL_WORD) => Some(Self::Kill),
+            _ => None,
+        }
+    }
+}
+
 /// The keyboard's state.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Keys {
@@ -75,6 +89,14 @@ mod tests {
     fn one_key_holds_lands_and_returns() {
         let said = press(&mut Keys::default(), "hlrx");
         assert_eq!(said, [KeyCommand::Hold, KeyCommand::Land, KeyCommand::Return]);
+    }
+
+    #[test]
+    fn a_line_says_what_a_key_would() {
+        let said = ["h", " Land\r\n", "return", ":kill"].map(KeyCommand::of_line);
+        let wanted = [KeyCommand::Hold, KeyCommand::Land, KeyCommand::Return, KeyCommand::Kill];
+        assert_eq!(said, wanted.map(Some));
+        assert_eq!(["", "kill", ": kill", "hl", "quit"].map(KeyCommand::of_line), [None; 5]);
     }
 
     #[test]

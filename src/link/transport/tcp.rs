@@ -79,9 +79,12 @@ impl TcpOut {
                 Some(first) => Ok(first),
                 None => connect(&self.host, self.port).await,
             };
-            if let Ok((stream, peer)) = connection {
-                backoff.reset();
-                carry(stream, peer, incoming, outgoing).await;
+            match connection {
+                Ok((stream, peer)) => {
+                    backoff.reset();
+                    carry(stream, peer, incoming, outgoing).await;
+                }
+                Err(error) => incoming.waiting(error.to_string()),
             }
             backoff.wait().await;
         }

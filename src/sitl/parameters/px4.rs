@@ -50,6 +50,7 @@ const DEFAULTS: &[Row] = &[
     ("MC_ROLLRATE_I", R, 0.2),
     ("MC_ROLLRATE_P", R, 0.15),
     ("MC_ROLL_P", R, 6.5),
+    ("MC_YAWRATE_MAX", R, 200.0),
     ("MC_YAWRATE_P", R, 0.2),
     ("MC_YAW_P", R, 2.8),
     ("MIS_TAKEOFF_ALT", R, 2.5),
