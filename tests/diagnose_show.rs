@@ -4,9 +4,11 @@
 
 use mavid::diagnose::next::{NextError, NextFlight, NextSettings, design, told_apart};
 use mavid::diagnose::refit::{RefitSettings, refit};
-use mavid::diagnose::show::{HeldOut, ShowError, ShowSettings, Shown, on_holdout, split_last_periods};
+use mavid::diagnose::show::{
+    HeldOut, ShowError, ShowSettings, Shown, differing, on_holdout, split_last_periods,
+};
 use mavid::diagnose::{Along, Empirical, ExplainSettings, Explanation, Verdict, explain};
-use mavid::log::Recording;
+use mavid::log::{Quantity, Recording};
 use mavid::physics::effects::by_id;
 use mavid::physics::{ActiveEffect, Wrench};
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
@@ -108,6 +110,70 @@ fn drag_pays_on_a_flight_that_was_not_used_and_the_vehicle_is_the_same() {
     let shown = self::shown(&found, &vehicles.nominal, &stranger);
     let reason = shown.other_vehicle.unwrap().reason;
     assert!(reason.contains("mass"), "{reason}");
+}
+
+#[test]
+fn flights_of_two_vehicles_are_told_from_two_of_one() {
+    let vehicles = pair();
+    let mut heavier = vehicles.truth.clone();
+    heavier.body.mass_kg *= 1.2;
+    heavier.body.inertia_kg_m2 *= 1.5;
+    let of = |truth: &Vehicle, seed| {
+        flown((truth, &vehicles.nominal), (Vec::new(), None), trajectory(seed), (seed, 34.0))
+    };
+    let (first, second, other) = (of(&vehicles.truth, 5), of(&vehicles.truth, 6), of(&heavier, 7));
+    let said = |flights: [&(Recording, Signals); 2]| {
+        let signals: Vec<Signals> = flights.iter().map(|flight| flight.1.clone()).collect();
+        let found = explain(&signals, &vehicles.nominal, &ExplainSettings::default()).unwrap();
+        let named = ["one", "two"].into_iter().zip(flights);
+        let held: Vec<HeldOut> =
+            named.map(|(name, flight)| HeldOut { name, signals: &flight.1, recording: None }).collect();
+        differing(&found, &held, &vehicles.nominal, &ShowSettings::default()).unwrap()
+    };
+    assert_eq!(said([&first, &second]), None);
+    let why = said([&first, &other]).unwrap();
+    assert!(why.starts_with("two is not of the vehicle of one") && why.contains("mass"), "{why}");
+}
+
+/// What is said of a flight whose streams, or vehicle file, were changed.
+fn doubts(recording: &Recording, vehicle: &Vehicle) -> Vec<String> {
+    let settings = ConditionSettings { thrust: ThrustPreference::Commands, ..ConditionSettings::default() };
+    let notes = condition(recording, vehicle, &settings).unwrap().quality.notes;
+    notes.into_iter().filter(|note| note.starts_with("warning: the bod")).collect()
+}
+
+#[test]
+fn degrees_for_radians_reversed_axes_and_rotors_in_another_order_are_told() {
+    let vehicles = pair();
+    let flight = flown((&vehicles.truth, &vehicles.nominal), (Vec::new(), None), trajectory(5), (1, 34.0));
+    assert_eq!(doubts(&flight.0, &vehicles.nominal), [""; 0]);
+    let rates = |by: [f64; 3]| {
+        let mut recording = flight.0.clone();
+        for (key, stream) in &mut recording.streams {
+            if key.quantity == Quantity::AngularRate {
+                let scaled =
+                    stream.values.chunks_exact(3).flat_map(|v| [by[0] * v[0], by[1] * v[1], by[2] * v[2]]);
+                stream.values = scaled.collect();
+            }
+        }
+        doubts(&recording, &vehicles.nominal)
+    };
+    let degrees = rates([180.0 / std::f64::consts::PI; 3]);
+    assert!(
+        degrees.len() == 3 && degrees.iter().all(|doubt| doubt.contains("times the rate")),
+        "{degrees:?}"
+    );
+    let reversed = rates([1.0, -1.0, 1.0]);
+    assert!(
+        reversed.len() == 1 && reversed[0].contains("rate about y has the sign opposite"),
+        "{reversed:?}"
+    );
+    for turn in 1..vehicles.nominal.rotors.len() {
+        let mut turned = vehicles.nominal.clone();
+        turned.rotors.rotate_left(turn);
+        let said = doubts(&flight.0, &turned);
+        assert!(said.len() == 1 && said[0].contains("in the vehicle file's order"), "{turn} {said:?}");
+    }
 }
 
 #[test]

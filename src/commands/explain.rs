@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use mavid::config::{StoredTrajectory, read_vehicle, trajectory_to_toml};
 use mavid::diagnose::next::{NextFlight, NextSettings, design};
-use mavid::diagnose::show::{HeldOut, Split, split_last_periods};
+use mavid::diagnose::show::{HeldOut, ShowSettings, Split, differing, split_last_periods};
 use mavid::diagnose::{Empirical, ExplainSettings, Named, Trace, explain};
 use mavid::log::Recording;
 use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page};
@@ -17,6 +17,12 @@ use super::effects::effects;
 use super::flights::{Flight, is_csv, load, refuse_twins, shared};
 use super::{CommandError, Outcome, output};
 use crate::cli::ExplainArgs;
+
+/// How a note begins that is more than a remark.
+const DOUBT: &str = "warning: ";
+/// What a recording without velocity cannot tell.
+const NO_VELOCITY: &str = "no velocity (LOCAL_POSITION_NED or similar) is recorded: drag, wind and other effects of the air \
+                           cannot be tried, and what is named may stand for what they do to the rotation";
 
 /// Names of what [`Explained::write`] writes.
 const MODEL: &str = "model.toml";
@@ -71,6 +77,13 @@ impl Explained {
             CommandError::Input(format!("{}: {error}", logs.join(", ")))
         })?;
         warnings.extend(flights.iter().chain(&held).filter_map(|flight| losses(&flight.input)));
+        for flight in flights.iter().chain(&held) {
+            let doubts = flight.signals.quality.notes.iter().filter_map(|note| note.strip_prefix(DOUBT));
+            warnings.extend(doubts.map(|doubt| format!("{}: {doubt}", flight.input.path)));
+        }
+        for flight in flights.iter().filter(|flight| flight.signals.velocity.is_none()) {
+            warnings.push(format!("{}: {NO_VELOCITY}", flight.input.path));
+        }
         let given = Given {
             vehicle,
             inputs: flights.iter().map(|flight| flight.input.clone()).collect(),
@@ -253,6 +266,15 @@ fn show(story: &mut Story, flights: &[Flown], (held, back): (&[Flown], Option<&S
     let used: Vec<HeldOut> = flights.iter().map(Flown::held_out).collect();
     if let Err(error) = story.show_identification(&used, empirical.as_ref()) {
         story.given.warnings.push(format!("open-loop prediction: {error}"));
+    }
+    if let [_, _, ..] = used.as_slice() {
+        let settings = ShowSettings::default();
+        match differing(&story.explanation, &used, &story.given.vehicle, &settings) {
+            Ok(why) => story.given.warnings.extend(why),
+            Err(error) => {
+                story.given.warnings.push(format!("whether the flights are of one vehicle: {error}"))
+            }
+        }
     }
     let mut shown: Vec<HeldOut> = held.iter().map(Flown::held_out).collect();
     shown.extend(back.map(|signals| HeldOut { name: "the part held back", signals, recording: None }));

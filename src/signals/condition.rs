@@ -9,7 +9,7 @@ use super::align::{
 use super::select::{best, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
 use super::usable::{Evidence, Usable, airborne_spans, usable};
-use super::{Grid, SignalsError, WeakKernel, sufficient};
+use super::{Grid, SignalsError, WeakKernel, plausible, sufficient};
 use crate::log::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
@@ -195,7 +195,7 @@ pub fn condition(
         actuation.message(),
         super::select::mean_rate_hz(actuation.stream()),
     ));
-    Ok(Signals {
+    let mut signals = Signals {
         grid,
         usable: mask,
         attitude: motion.attitude,
@@ -217,7 +217,10 @@ pub fn condition(
             usable: used,
             notes: slow.into_iter().chain(actuation.notes(recording, vehicle)).collect(),
         },
-    })
+    };
+    let doubts = plausible::check(&signals, vehicle);
+    signals.quality.notes.extend(doubts);
+    Ok(signals)
 }
 
 /// Samples between the weak form's centres: 0.05 s.

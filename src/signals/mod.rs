@@ -11,6 +11,7 @@ mod filter;
 mod grid;
 mod latency;
 mod noise;
+mod plausible;
 mod select;
 mod spectrum;
 mod sufficient;

@@ -17,7 +17,7 @@ pub use bootstrap::{Compared, Interval};
 pub use closed_loop::ClosedLoop;
 pub use floor::{command_noise, state_noise};
 pub use open_loop::{OpenLoop, WINDOWS_S};
-pub use other_vehicle::{Agreement, Difference, OtherVehicle};
+pub use other_vehicle::{Agreement, Difference, OtherVehicle, differing};
 pub use split::{Split, split_last_periods};
 
 use super::base::Base;

@@ -1,13 +1,14 @@
 //! Whether the held-out flights can be of the vehicle that was identified.
 
-use super::Ready;
 use super::weak::Weak;
+use super::{HeldOut, Ready, ShowError, ShowSettings, trace_of};
 use crate::diagnose::base::Present;
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::rows::{CHANNEL_NAMES, CHANNELS, Nuisance};
-use crate::diagnose::search::Fitted;
+use crate::diagnose::search::{Fitted, evaluate};
 use crate::estimate::{NAMES, UNITS};
 use crate::physics::PhysicsError;
+use crate::vehicle::Vehicle;
 
 /// A parameter's value on the held-out flights against that of the model.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,6 +116,44 @@ pub(super) fn judged(
         OtherVehicle { by: Difference::Parameter(different[0].clone()), reason }
     });
     Ok((all, by_parameters.or_else(|| by_what_is_left(identified, weak, whose))))
+}
+
+/// Why flights that were explained together are not of one vehicle: each one's own linear step about the model that all
+/// share, against the first's. `None` where they may be.
+///
+/// # Errors
+/// [`ShowError`] where a flight lacks streams or is too short.
+pub fn differing(
+    explanation: &Explanation,
+    flights: &[HeldOut],
+    vehicle: &Vehicle,
+    settings: &ShowSettings,
+) -> Result<Option<String>, ShowError> {
+    let shared = &explanation.search.after;
+    let mut first: Option<Vec<Agreement>> = None;
+    for flight in flights {
+        let trace = trace_of(flight, vehicle, settings)?;
+        let own = agreements(&evaluate(std::slice::from_ref(&trace), shared.base.clone())?, shared);
+        let Some(first) = &first else {
+            first = Some(own);
+            continue;
+        };
+        let pairs = own.into_iter().zip(first).map(|(own, first)| Agreement {
+            identified: first.held_out,
+            identified_std: first.held_out_std,
+            ..own
+        });
+        let different: Vec<String> = pairs.filter(Agreement::differs).map(|pair| described(&pair)).collect();
+        if !different.is_empty() {
+            return Ok(Some(format!(
+                "{} is not of the vehicle of {}, so what is explained is of neither: {}",
+                flight.name,
+                flights[0].name,
+                different.join(", ")
+            )));
+        }
+    }
+    Ok(None)
 }
 
 /// Why the held-out flights are not of the vehicle that was identified.

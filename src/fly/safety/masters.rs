@@ -20,8 +20,9 @@ const DELAY: Duration = Duration::from_secs(1);
 const OLDEST: Duration = Duration::from_secs(6);
 /// ArduPilot moves a target on by its velocity and acceleration until the next comes; this is sought in such steps.
 const COASTS_S: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
-/// So many foreign reports within this time: another's setpoints between ours are flown for an instant each.
-const REPORTS: usize = 4;
+/// So many foreign reports within this time: another's setpoints between ours are flown for an instant each, and of 30
+/// reports of a PX4 that heard 20 a second of them between 50 of ours, 3 showed them. Undisturbed, no report did.
+const REPORTS: usize = 2;
 const WINDOW: Duration = Duration::from_secs(3);
 
 const HEARTBEAT: u32 = 0;
@@ -185,8 +186,8 @@ mod tests {
         for stack in [Stack::Px4, Stack::ArduPilot] {
             let late = |t: u64| Some(ours(t.max(1800) - 800).position_m);
             assert_eq!(heard_of(stack, (1000, 9000), late), None);
-            assert_eq!(heard_of(stack, (1000, 9000), |t| Some(elsewhere(t))), Some(1150));
-            assert_eq!(heard_of(stack, (1000, 9000), |_| None), Some(1150), "a velocity alone");
+            assert_eq!(heard_of(stack, (1000, 9000), |t| Some(elsewhere(t))), Some(1050));
+            assert_eq!(heard_of(stack, (1000, 9000), |_| None), Some(1050), "a velocity alone");
         }
     }
 
@@ -199,7 +200,7 @@ mod tests {
         // one and a half seconds in which each third report shows the other's
         let burst = heard_of(Stack::Px4, (1000, 9000), |t| beside(t, (4000..5500).contains(&t) && at(t)));
         assert!(burst.is_some_and(|t| t < 5000), "{burst:?}");
-        assert_eq!(heard_of(Stack::Px4, (1000, 20_000), |t| beside(t, t % 1500 == 0)), None);
+        assert_eq!(heard_of(Stack::Px4, (1000, 20_000), |t| beside(t, t % 4000 == 0)), None);
     }
 
     #[test]
@@ -212,7 +213,7 @@ mod tests {
         };
         assert_eq!(heard_of(Stack::ArduPilot, (1000, 9000), coasting), None);
         let ahead = |t: u64| Some(ours(t + 400).position_m);
-        assert_eq!(heard_of(Stack::Px4, (1000, 9000), ahead), Some(1150));
+        assert_eq!(heard_of(Stack::Px4, (1000, 9000), ahead), Some(1050));
     }
 
     #[test]

@@ -203,7 +203,7 @@ fn whereabouts(located: &Located) -> String {
     if let Some([low, high]) = located.band_hz {
         parts.push(format!("between {} and {} Hz", significant(low, 2), significant(high, 2)));
     }
-    if parts.is_empty() { "at no axis, time or state in particular".to_owned() } else { parts.join(", ") }
+    if parts.is_empty() { "spread over axes, times and states alike".to_owned() } else { parts.join(", ") }
 }
 
 /// A state's variable as it is said.
