@@ -161,7 +161,7 @@ impl Weighted {
         let gammas = self.gammas(&self.left);
         let by_residual = &bread * (self.meat_of_residual(&self.nuisances, &gammas) + &prior) * &bread;
         let by_score = &bread * (self.meat_of_scores(&self.nuisances, &self.left, &gammas) + &prior) * &bread;
-        let covariance = DMatrix::from_fn(size, size, |i, j| {
+        let mut covariance = DMatrix::from_fn(size, size, |i, j| {
             let more = |k: usize| (by_score[(k, k)] / by_residual[(k, k)]).max(1.0).sqrt();
             if by_residual[(i, i)] > 0.0 && by_residual[(j, j)] > 0.0 {
                 by_residual[(i, j)] * more(i) * more(j)
@@ -169,6 +169,14 @@ impl Weighted {
                 by_score[(i, j)]
             }
         });
+        for (index, column) in rows.nuisances.iter().enumerate() {
+            let Some(considered) = &column.considered else { continue };
+            // what one unit of its error brings into the others (consider covariance)
+            let mut brings = normal.solve(&self.nuisances.tr_mul(&weighted(considered, &self.sigma)));
+            brings[index] = 0.0;
+            let variance = covariance[(index, index)];
+            covariance += &brings * brings.transpose() * variance;
+        }
         (theta, covariance)
     }
 

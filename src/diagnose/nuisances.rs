@@ -5,7 +5,8 @@ use super::base::Base;
 use super::mounting::{THRUST_TILT, turns_attitude};
 use super::rows::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
 use super::trace::Trace;
-use crate::physics::Wrench;
+use crate::physics::effects::RotorInertia;
+use crate::physics::{Effect, Wrench};
 use crate::regression::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor};
 use crate::signals::central_difference;
 use nalgebra::Vector3;
@@ -47,7 +48,12 @@ pub(super) fn nuisances(
     let none = || vec![0.0; trace.rows()];
     let force = |values: [Vec<f64>; 3]| channels(trace, values, nothing(trace));
     let torque = |values: [Vec<f64>; 3]| channels(trace, nothing(trace), values);
-    let column = |nuisance, prior_std, values: Channels| NuisanceColumn { nuisance, values, prior_std };
+    let column = |nuisance, prior_std, values: Channels| NuisanceColumn {
+        nuisance,
+        values,
+        prior_std,
+        considered: None,
+    };
     let mass_kg = base.vehicle.body.mass_kg;
     let mut out = Vec::new();
     // more mass than assumed: more force than assumed was there, in proportion to it
@@ -62,12 +68,18 @@ pub(super) fn nuisances(
     let late: Vec<f64> = central_difference(&thrust, trace.grid.step_s).iter().map(|d| -d).collect();
     let late = trace.weak(0, &late);
     let turning = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
-    let late_torque = [0, 1, 2].map(|axis| {
+    let [late_x, late_y, late_z] = [0, 1, 2].map(|axis| {
         let column: Vec<f64> = turning.iter().map(|t| -t[axis]).collect();
         trace.weak(0, &central_difference(&column, trace.grid.step_s))
     });
+    // in yaw the rotors' inertia leads by as much as a latency lags: where the one is estimated, roll and pitch tell the
+    // other, and its error goes into the inertia's
+    let of_yaw = torque([none(), none(), late_z.clone()]);
+    let spins_up = base.estimates(RotorInertia.id());
+    let late_torque = [late_x, late_y, if spins_up { none() } else { late_z }];
     let both = channels(trace, [none(), none(), late.clone()], late_torque);
-    out.push(column(Nuisance::Latency, None, both));
+    let considered = spins_up.then_some(of_yaw);
+    out.push(NuisanceColumn { considered, ..column(Nuisance::Latency, None, both) });
     let late = force([none(), none(), late]);
     out.push(column(Nuisance::ForceLatency, Some(FORCE_LATENCY_STD_S), late));
     let thrust = trace.weak(0, &thrust);
@@ -96,7 +108,12 @@ fn sensor_nuisances(trace: &Trace, mass_kg: f64, leans: bool) -> Vec<NuisanceCol
         for axis in 0..3 {
             let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
             values[axis].fill(mass_kg);
-            out.push(NuisanceColumn { nuisance: Nuisance::AccelerometerBias(axis), values, prior_std });
+            out.push(NuisanceColumn {
+                nuisance: Nuisance::AccelerometerBias(axis),
+                values,
+                prior_std,
+                considered: None,
+            });
         }
     }
     if trace.known.attitude && trace.known.velocity && !leans {
@@ -111,7 +128,7 @@ fn sensor_nuisances(trace: &Trace, mass_kg: f64, leans: bool) -> Vec<NuisanceCol
                 values[first + slot] = column;
             }
             let nuisance = Nuisance::Level(axis);
-            out.push(NuisanceColumn { nuisance, values, prior_std: Some(LEVEL_STD_RAD) });
+            out.push(NuisanceColumn { nuisance, values, prior_std: Some(LEVEL_STD_RAD), considered: None });
         }
     }
     out

@@ -70,6 +70,8 @@ pub struct NuisanceColumn {
     pub values: Channels,
     /// standard deviation of the coefficient about zero, its unit; `None`: nothing is known
     pub prior_std: Option<f64>,
+    /// per unit, in rows that shall not estimate it: its error is one of theirs
+    pub considered: Option<Channels>,
 }
 
 /// All flights in weak form, linearised about a base.
@@ -134,7 +136,12 @@ impl Rows {
             if rows.nuisances.is_empty() {
                 rows.nuisances = nuisances;
             } else {
-                rows.nuisances.iter_mut().zip(&nuisances).for_each(|(a, b)| append(&mut a.values, &b.values));
+                for (all, of) in rows.nuisances.iter_mut().zip(&nuisances) {
+                    append(&mut all.values, &of.values);
+                    if let (Some(all), Some(of)) = (&mut all.considered, &of.considered) {
+                        append(all, of);
+                    }
+                }
             }
             rows.flights.push(along);
         }

@@ -14,7 +14,8 @@ use super::settle::{SETTLED_S, settle};
 use super::sharpen::{between_grid, sharpened};
 use super::trace::Trace;
 use super::trial::test_all;
-use crate::physics::PhysicsError;
+use crate::physics::effects::RotorInertia;
+use crate::physics::{Effect, PhysicsError};
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
 
@@ -286,7 +287,9 @@ fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitte
     if let Some(load) = base.present.last_mut().filter(|present| present.effect.id() == "slung_load") {
         base.vehicle.body.mass_kg = lift_load(load, base.vehicle.body.mass_kg);
     }
-    fit(flights, base, Newton::Held)
+    // a latency that the rotors' inertia had shortened is found again beside it
+    let spins_up = taken.candidate.id == RotorInertia.id();
+    fit(flights, base, if spins_up { Newton::Free } else { Newton::Held })
 }
 
 /// The ceilings of a fit with their height estimated, too: from one between those that were tried on, unless it runs away.

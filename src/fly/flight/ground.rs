@@ -33,7 +33,7 @@ const VERSION_CHANCES: u32 = 4;
 /// SYS_STATUS, EXTENDED_SYS_STATE, BATTERY_STATUS, CURRENT_MODE, POSITION_TARGET_LOCAL_NED, and the
 /// estimator's own report.
 const STREAMS: [(f32, f32); 7] =
-    [(32.0, 30.0), (31.0, 50.0), (1.0, 2.0), (245.0, 5.0), (147.0, 1.0), (436.0, 10.0), (85.0, 20.0)];
+    [(32.0, 30.0), (31.0, 50.0), (1.0, 2.0), (245.0, 5.0), (147.0, 1.0), (436.0, 10.0), (85.0, 27.0)];
 const PX4_STREAMS: [(f32, f32); 2] = [(230.0, 2.0), (331.0, 30.0)];
 /// ArduPilot has no CURRENT_MODE: its HEARTBEAT tells of a pilot who takes over.
 const ARDUPILOT_STREAMS: [(f32, f32); 2] = [(193.0, 2.0), (0.0, 5.0)];

@@ -115,8 +115,11 @@ const ACTUATOR_OUTPUT_STATUS: StreamRequest =
 const ESC_STATUS: StreamRequest = stream(291, "ESC_STATUS", 100.0, 69.0, &[Need::Actuators]);
 const ESC_TELEMETRY: StreamRequest = stream(11030, "ESC_TELEMETRY_1_TO_4", 100.0, 56.0, &[Need::Actuators]);
 const ATTITUDE_TARGET: StreamRequest = stream(83, "ATTITUDE_TARGET", 50.0, 49.0, &[Need::Setpoints]);
+/// Each 37 ms: at a period that goes into another station's 20, 50 or 100 ms, every report may fall on our setpoint, and
+/// none on another's between ours. (Of 30 setpoints of another to an ArduPilot, 50 ms apart, 30 reports 50 ms
+/// apart showed none.)
 const POSITION_TARGET: StreamRequest =
-    stream(85, "POSITION_TARGET_LOCAL_NED", 20.0, 63.0, &[Need::Setpoints]);
+    stream(85, "POSITION_TARGET_LOCAL_NED", 27.0, 63.0, &[Need::Setpoints]);
 const BATTERY_STATUS: StreamRequest = stream(147, "BATTERY_STATUS", 2.0, 53.0, &[Need::Battery]);
 const SYS_STATUS: StreamRequest = stream(1, "SYS_STATUS", 2.0, 43.0, &[Need::Battery, Need::State]);
 const EXTENDED_SYS_STATE: StreamRequest = stream(245, "EXTENDED_SYS_STATE", 5.0, 14.0, &[Need::State]);
