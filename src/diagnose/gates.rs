@@ -26,6 +26,16 @@ impl Gates {
     pub fn deviate(&self, id: &str) -> f64 {
         if LIKELIER.contains(&id) { self.z + MORE_Z } else { self.z }
     }
+
+    /// An effect's share of the family-wise chance, among so many candidates: a twentieth of it for what every vehicle
+    /// has, the rest for the others alike.
+    fn share(&self, id: &str, candidates: f64) -> f64 {
+        if id == EVERYWHERE {
+            EVERYWHERE_SHARE * self.p_cluster
+        } else {
+            (1.0 - EVERYWHERE_SHARE) * self.p_cluster / candidates
+        }
+    }
 }
 
 impl Default for Gates {
@@ -37,6 +47,9 @@ impl Default for Gates {
 /// Effects that are tried at many heights, lengths or times, the largest of which counts; and the thrust curve, which
 /// bends the commands' own noise, too.
 const LIKELIER: [&str; 4] = ["ceiling_effect", "slung_load", "mass_change", "thrust_curve"];
+/// Every rotor has it; and no force of the room, which position and velocity tell of, looks like it.
+const EVERYWHERE: &str = "rotor_inertia";
+const EVERYWHERE_SHARE: f64 = 0.05;
 /// What that adds to the normal deviate asked for.
 const MORE_Z: f64 = 1.0;
 
@@ -62,7 +75,7 @@ pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates
             || evidence.rms[3 + axis] > gates.matters.1 * fitted.rows.torque_rms[axis]
     });
     evidence.z.abs() > gates.deviate(tested.candidate.id)
-        && evidence.p_cluster < gates.p_cluster / candidates
+        && evidence.p_cluster < gates.share(tested.candidate.id, candidates)
         && evidence.gain >= gates.gain
         && matters
         && ordinary_size(tested.candidate.id).is_none_or(|ordinary| evidence.size() > ordinary)

@@ -206,7 +206,7 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         last = test_all(flights, &after, &candidates);
         last.extend(between_grid(flights, &after, &last));
         last.extend(mountings(flights, &after, Turn::First));
-        let count = hypotheses(&last);
+        let count = last.len() as f64;
         let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);
         let ranked = |tested: &[Tested]| {
             let open = tested.iter().filter(|tested| !refused.contains(&tested.candidate.id));
@@ -262,15 +262,6 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         ..found
     };
     Ok(Search { before, after, latency, steps, last })
-}
-
-/// How many things are asked: the forms, lengths and heights of one effect are nearly one column and count once, each
-/// rotor for itself.
-fn hypotheses(tested: &[Tested]) -> f64 {
-    let mut ids: Vec<&str> = tested.iter().map(|tested| tested.candidate.id).collect();
-    ids.sort_unstable();
-    ids.dedup_by(|a, b| a == b && *a != "weak_rotor");
-    ids.len() as f64
 }
 
 /// What explains most for its columns first, each at `price`, sigma squared.

@@ -36,7 +36,10 @@ pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<String> {
 
 /// First and last instants of the windows that can be used, one after the other.
 fn windows(signals: &Signals) -> Vec<(usize, usize)> {
-    let length = (WINDOW_S / signals.grid.step_s).round().max(2.0) as usize;
+    let mut length = 2;
+    while (length as f64 + 0.5) * signals.grid.step_s < WINDOW_S {
+        length += 1;
+    }
     (0..signals.usable.len().saturating_sub(length))
         .step_by((length / 2).max(1))
         .map(|first| (first, first + length))

@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn bursts_of_another_between_ours_are_seen_and_single_ones_are_not() {
-        let at = |t: u64| (t / 50) % 3 == 0;
+        let at = |t: u64| (t / 50).is_multiple_of(3);
         let beside = |t: u64, foreign: bool| {
             Some(ours(t).position_m + Vector3::new(0.0, if foreign { 0.9 } else { 0.0 }, 0.0))
         };
