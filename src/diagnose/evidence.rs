@@ -4,11 +4,11 @@
 //! channel, or the autocovariance of the scores (Newey-West), whichever is larger. Physics that nothing
 //! explains enlarges it, so the evidence turns cautious where the model is wrong.
 
+use super::cluster::chance_by_stretches;
 use super::deviate::normal_deviate;
 use super::rows::{CHANNELS, Channels, Rows};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::ops::Range;
 
 /// Rows over which the kernels of neighbouring rows overlap.
@@ -17,8 +17,6 @@ const OVERLAP: usize = 8;
 const MOST_LAGS: usize = 120;
 /// Bartlett window of the scores, rows (1 s), at least.
 const SCORE_LAGS: usize = 20;
-/// Blocks of the cluster test.
-const BLOCKS: usize = 12;
 
 /// Rows weighted by each channel's residual, and the nuisances' projection.
 #[derive(Debug, Clone)]
@@ -220,7 +218,7 @@ impl Weighted {
         let wald = covariance.clone().cholesky().map_or(0.0, |c| theta.dot(&c.solve(&theta)));
         Some(Evidence {
             z: normal_deviate(wald, size),
-            p_cluster: self.cluster(&inverse, &partialled, &after, &theta),
+            p_cluster: chance_by_stretches(&self.scores(&partialled, &after), &inverse, &theta),
             gain: energy / self.energy.max(f64::MIN_POSITIVE),
             energy,
             rms: self.rms(&(&partialled * &theta)),
@@ -356,29 +354,6 @@ impl Weighted {
             }
         }
         meat
-    }
-
-    /// F test with the scores of twelve stretches of the flight as replicates.
-    fn cluster(
-        &self,
-        inverse: &DMatrix<f64>,
-        columns: &DMatrix<f64>,
-        residual: &DVector<f64>,
-        theta: &DVector<f64>,
-    ) -> f64 {
-        let scores = self.scores(columns, residual);
-        let size = columns.ncols();
-        let mut meat = DMatrix::<f64>::zeros(size, size);
-        for block in 0..BLOCKS {
-            let (from, to) = (self.rows * block / BLOCKS, self.rows * (block + 1) / BLOCKS);
-            let sum = scores.columns(from, to - from).column_sum();
-            meat += &sum * sum.transpose();
-        }
-        let blocks = BLOCKS as f64;
-        let covariance = inverse * meat * inverse * (blocks / (blocks - 1.0));
-        let Some(factor) = covariance.cholesky() else { return 1.0 };
-        let f = theta.dot(&factor.solve(theta)) / size as f64 * (blocks - size as f64) / (blocks - 1.0);
-        FisherSnedecor::new(size as f64, blocks - size as f64).map_or(1.0, |law| law.sf(f))
     }
 }
 

@@ -3,6 +3,7 @@
 mod along;
 mod base;
 mod candidates;
+mod cluster;
 mod confusable;
 mod deviate;
 mod empirical;
