@@ -142,7 +142,8 @@ impl Empirical {
     }
 
     /// Weak form of the force along a flight, body x y z, N.
-    pub(super) fn weak_force(&self, trace: &Trace) -> [Vec<f64>; 3] {
+    #[must_use]
+    pub fn weak_force(&self, trace: &Trace) -> [Vec<f64>; 3] {
         let forces: Vec<Vector3<f64>> = trace.states.iter().map(|state| self.force_n(state)).collect();
         trace.weak_vector(0, &forces)
     }

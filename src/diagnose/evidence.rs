@@ -122,6 +122,13 @@ impl Weighted {
         this
     }
 
+    /// What is left of a channel (N, N m) when the nuisances have taken their part.
+    #[must_use]
+    pub fn left_of(&self, channel: usize) -> Vec<f64> {
+        let part = self.left.rows(channel * self.rows, self.rows);
+        part.iter().map(|value| value * self.sigma[channel]).collect()
+    }
+
     /// Standard deviations of what is left.
     fn residual_sigma(&self) -> [f64; CHANNELS] {
         std::array::from_fn(|channel| {

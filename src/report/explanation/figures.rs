@@ -37,6 +37,35 @@ impl Story {
         self.located.worst_axis().unwrap_or(0)
     }
 
+    /// The words for the model after.
+    fn model_after(&self) -> &'static str {
+        if self.empirical.is_some() { "with the empirical force" } else { FOUND }
+    }
+
+    /// What is left of an axis over all flights, before; an empirical force is fitted to what the sensors' own part is out
+    /// of.
+    fn left_before(&self, axis: usize) -> Vec<f64> {
+        let before = &self.explanation.search.before;
+        if self.empirical.is_some() {
+            before.weighted.left_of(axis)
+        } else {
+            before.rows.residual[axis].clone()
+        }
+    }
+
+    /// The same after: of the model found, less the empirical force where there is one.
+    fn left_after(&self, traces: &[Trace], axis: usize) -> Vec<f64> {
+        let after = &self.explanation.search.after;
+        let Some(term) = &self.empirical else { return after.rows.residual[axis].clone() };
+        let mut left = after.weighted.left_of(axis);
+        for (trace, rows) in traces.iter().zip(ranges(traces)) {
+            if let Some(force) = term.weak_force(trace).get(axis) {
+                left[rows].iter_mut().zip(force).for_each(|(left, force)| *left -= force);
+            }
+        }
+        left
+    }
+
     /// What the body did along the worst axis, and what the models make of the recorded commands: one panel
     /// a flight.
     pub(super) fn recorded_and_simulated(&self, traces: &[Trace]) -> Vec<Panel> {
@@ -49,15 +78,15 @@ impl Story {
             let body = &fitted.base.vehicle.body;
             if axis < 3 { body.mass_kg } else { body.inertia_kg_m2[(axis - 3, axis - 3)] }
         };
+        let left = (self.left_before(axis), self.left_after(traces, axis));
         traces
             .iter()
             .zip(ranges(traces))
             .enumerate()
             .filter_map(|(flight, (trace, rows))| {
                 let recorded = recorded(trace, axis)?;
-                let simulated = |fitted: &Fitted| -> Vec<f64> {
-                    let residual = &fitted.rows.residual[axis][rows.clone()];
-                    recorded.iter().zip(residual).map(|(r, e)| r - e / scale(fitted)).collect()
+                let simulated = |fitted: &Fitted, left: &[f64]| -> Vec<f64> {
+                    recorded.iter().zip(left).map(|(r, e)| r - e / scale(fitted)).collect()
                 };
                 let time_s = &before.rows.time_s[rows.clone()];
                 let line = |label: &str, y: Vec<f64>, colour| line(label, time_s, &y, colour);
@@ -75,8 +104,8 @@ impl Story {
                     x_label: "time (s)".to_owned(),
                     y_label: unit.to_owned(),
                     lines: vec![
-                        line("rigid body", simulated(before), BEFORE),
-                        line(FOUND, simulated(after), AFTER),
+                        line("rigid body", simulated(before, &left.0[rows.clone()]), BEFORE),
+                        line(self.model_after(), simulated(after, &left.1[rows.clone()]), AFTER),
                         line("recorded", recorded.clone(), 0),
                     ],
                     spans,
@@ -93,14 +122,16 @@ impl Story {
         let rows = ranges(traces).first()?.clone();
         let search = &self.explanation.search;
         let time_s = &search.before.rows.time_s[rows.clone()];
-        let of = |label: &str, fitted: &Fitted, colour| {
-            line(label, time_s, &fitted.rows.residual[axis][rows.clone()], colour)
-        };
+        let before = &self.left_before(axis)[rows.clone()];
+        let after = &self.left_after(traces, axis)[rows];
         Some(Panel {
             title: format!("what is left of {}, recorded less simulated", axis_name(axis)),
             x_label: "time (s)".to_owned(),
             y_label: if axis < 3 { "N" } else { "N m" }.to_owned(),
-            lines: vec![of("rigid body", &search.before, BEFORE), of(FOUND, &search.after, AFTER)],
+            lines: vec![
+                line("rigid body", time_s, before, BEFORE),
+                line(self.model_after(), time_s, after, AFTER),
+            ],
             ..Panel::default()
         })
     }
@@ -133,7 +164,8 @@ impl Story {
             bands: vec![band(most, BEFORE)],
             ..Panel::default()
         };
-        if let Some(after) = after {
+        // the empirical force is a curve through these bins
+        if let Some(after) = after.filter(|_| self.empirical.is_none()) {
             panel.lines.push(line(FOUND, after, AFTER));
             panel.bands.push(band(after, AFTER));
         }
@@ -141,18 +173,28 @@ impl Story {
     }
 
     /// Residual of each axis before and after, over what is left in the end.
-    pub(super) fn axes_chart(&self) -> Bars {
+    pub(super) fn axes_chart(&self, traces: &[Trace]) -> Bars {
         let search = &self.explanation.search;
-        let ratio = |fitted: &Fitted| -> Vec<f64> {
-            (0..AXES).map(|axis| fitted.weighted.sigma[axis] / search.after.weighted.sigma[axis]).collect()
+        // what the empirical force leaves of what the model left
+        let rms = |left: &[f64]| left.iter().map(|left| left * left).sum::<f64>().sqrt();
+        let share = |axis: usize| {
+            if self.empirical.is_none() {
+                return 1.0;
+            }
+            let share = rms(&self.left_after(traces, axis)) / rms(&search.after.weighted.left_of(axis));
+            if share.is_finite() { share } else { 1.0 }
+        };
+        let after = |axis: usize| search.after.weighted.sigma[axis] * share(axis);
+        let ratio = |sigma: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            (0..AXES).map(|axis| sigma(axis) / after(axis)).collect()
         };
         Bars {
             title: "residual of each axis, in units of what is left after".to_owned(),
             unit: String::new(),
             names: (0..AXES).map(axis_name).collect(),
             series: vec![
-                ("rigid body".to_owned(), BEFORE, ratio(&search.before)),
-                (FOUND.to_owned(), AFTER, ratio(&search.after)),
+                ("rigid body".to_owned(), BEFORE, ratio(&|axis| search.before.weighted.sigma[axis])),
+                (self.model_after().to_owned(), AFTER, ratio(&after)),
             ],
         }
     }
@@ -168,13 +210,14 @@ impl Story {
             .take_while(|center| *center < last)
             .collect();
         let mut lines = Vec::new();
-        for (label, fitted) in [("before", &search.before), ("after", &search.after)] {
-            for axis in 0..AXES {
-                let residual = &fitted.rows.residual[axis][rows.clone()];
+        let before: [Vec<f64>; AXES] = std::array::from_fn(|axis| self.left_before(axis));
+        let after: [Vec<f64>; AXES] = std::array::from_fn(|axis| self.left_after(traces, axis));
+        for (label, left) in [("before", before), ("after", after)] {
+            for (axis, residual) in left.iter().enumerate() {
                 let noise = search.after.weighted.sigma[axis].max(f64::MIN_POSITIVE);
                 let cells = centers.iter().map(|center| {
                     let inside =
-                        time_s.iter().zip(residual).filter(|(t, _)| (*t - center).abs() < 0.5 * CELL_S);
+                        time_s.iter().zip(&residual[rows.clone()]).filter(|(t, _)| (*t - center).abs() < 0.5 * CELL_S);
                     let (sum, count) =
                         inside.fold((0.0, 0.0), |(sum, count), (_, r)| (sum + r * r, count + 1.0));
                     if count > 0.0 { ((sum / count).sqrt() / noise - 1.0).max(0.0) } else { f64::NAN }

@@ -57,7 +57,7 @@ impl Story {
                 "Mean residual in bins of the state, with bands that hold 95 of 100 resamplings of the flight's periods.",
             );
         }
-        page.figure(&self.axes_chart().inline(), "Root mean square of each axis.");
+        page.figure(&self.axes_chart(traces).inline(), "Root mean square of each axis.");
         if let Some(strip) = self.heat(traces) {
             page.figure(&strip.inline(), "Dark: five times what is left after, and more.");
         }
