@@ -2,8 +2,10 @@
 //!
 //! It names nothing. It holds inside what was flown and is zero outside.
 
+use super::evidence::weighted;
 use super::explain::ExplainSettings;
 use super::explanation::{Explanation, Verdict};
+use super::rows::{Channels, Nuisance, SECOND, append, channels, nothing};
 use super::search::Fitted;
 use super::trace::{Trace, TraceError};
 use crate::physics::{State, Wrench};
@@ -75,6 +77,8 @@ pub struct Empirical {
     pub knots: Vec<f64>,
     /// N at each knot, straight lines between them: world x y z along position, body x y z along velocity
     pub force_n: Vec<Vector3<f64>>,
+    /// kg that the rigid body's mass was off by while it took the term's part
+    pub mass_change_kg: f64,
     /// share of the force residual's energy that it predicts in stretches that it was not fitted to (0..1)
     pub gain: f64,
 }
@@ -143,9 +147,23 @@ impl Empirical {
 
     /// Weak form of the force along a flight, body x y z, N.
     #[must_use]
-    pub fn weak_force(&self, trace: &Trace) -> [Vec<f64>; 3] {
+    pub(super) fn weak_force(&self, trace: &Trace) -> [Vec<f64>; 3] {
         let forces: Vec<Vector3<f64>> = trace.states.iter().map(|state| self.force_n(state)).collect();
         trace.weak_vector(0, &forces)
+    }
+
+    /// What it leaves (N, N m) of a channel of the flights that it was fitted to, nuisances taken out of both.
+    #[must_use]
+    pub fn left_of(&self, fitted: &Fitted, traces: &[Trace], channel: usize) -> Vec<f64> {
+        let mut own = Channels::default();
+        for trace in traces {
+            append(&mut own, &channels(trace, self.weak_force(trace), nothing(trace)));
+        }
+        let sigma = &fitted.weighted.sigma;
+        let share = fitted.weighted.project(&weighted(&own, sigma));
+        let left = &fitted.weighted.left - share;
+        let rows = fitted.rows.len();
+        left.rows(channel * rows, rows).iter().map(|value| value * sigma[channel]).collect()
     }
 
     fn place(&self, value: f64) -> Option<(usize, f64)> {
@@ -185,21 +203,24 @@ struct Fold {
 
 fn fitted_term(traces: &[Trace], fitted: &Fitted, along: Along, count: usize) -> Option<Empirical> {
     let knots = knots_of(traces, along, count)?;
-    let columns = columns(traces, along, &knots);
-    let rows = fitted.rows.len();
-    let size = columns.len();
-    let weighted = DMatrix::from_fn(3 * rows, size, |row, column| {
-        let (channel, row) = (row / rows, row % rows);
-        columns[column][channel][row] / fitted.weighted.sigma[channel]
-    });
-    let left = fitted.weighted.left.rows(0, 3 * rows);
+    let plain: Vec<DVector<f64>> = columns(traces, along, &knots)
+        .iter()
+        .map(|column| weighted(column, &fitted.weighted.sigma))
+        .collect();
+    let (rows, size) = (fitted.rows.len(), plain.len());
+    // together with the nuisances, which took a part of the force while it was not there
+    let together = DMatrix::from_columns(
+        &plain.iter().map(|column| fitted.weighted.project(column)).collect::<Vec<_>>(),
+    );
+    let left = &fitted.weighted.left;
+    let readings = (0..3).chain(SECOND..SECOND + 3);
     let folds: Vec<Fold> = (0..FOLDS)
         .map(|fold| {
             let (from, to) = (rows * fold / FOLDS, rows * (fold + 1) / FOLDS);
             let mut sums =
                 Fold { normal: DMatrix::zeros(size, size), moment: DVector::zeros(size), energy: 0.0 };
-            for channel in 0..3 {
-                let part = weighted.rows(channel * rows + from, to - from);
+            for channel in readings.clone() {
+                let part = together.rows(channel * rows + from, to - from);
                 let y = left.rows(channel * rows + from, to - from);
                 sums.normal += part.tr_mul(&part);
                 sums.moment += part.tr_mul(&y);
@@ -226,12 +247,16 @@ fn fitted_term(traces: &[Trace], fitted: &Fitted, along: Along, count: usize) ->
     }
     let theta = solve(None)?;
     let force_n = theta.as_slice().chunks_exact(3).map(Vector3::from_column_slice).collect();
-    Some(Empirical { along, knots, force_n, gain: 1.0 - after / before.max(f64::MIN_POSITIVE) })
+    let mass = fitted.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Mass);
+    let taken = fitted.weighted.part_in(&(DMatrix::from_columns(&plain) * theta));
+    let mass_change_kg = mass.map_or(0.0, |mass| -taken[mass]);
+    let gain = 1.0 - after / before.max(f64::MIN_POSITIVE);
+    Some(Empirical { along, knots, force_n, mass_change_kg, gain })
 }
 
 /// Weak-form force rows of a newton at each knot and axis.
-fn columns(traces: &[Trace], along: Along, knots: &[f64]) -> Vec<[Vec<f64>; 3]> {
-    let mut out: Vec<[Vec<f64>; 3]> = vec![Default::default(); 3 * knots.len()];
+fn columns(traces: &[Trace], along: Along, knots: &[f64]) -> Vec<Channels> {
+    let mut out: Vec<Channels> = vec![Channels::default(); 3 * knots.len()];
     for trace in traces {
         let places: Vec<Option<(usize, f64)>> =
             trace.states.iter().map(|state| place(knots, along.of(state))).collect();
@@ -247,9 +272,8 @@ fn columns(traces: &[Trace], along: Along, knots: &[f64]) -> Vec<[Vec<f64>; 3]> 
                         _ => Vector3::zeros(),
                     })
                     .collect();
-                for (out, column) in out[3 * knot + axis].iter_mut().zip(trace.weak_vector(0, &force)) {
-                    out.extend(column);
-                }
+                let force = trace.weak_vector(0, &force);
+                append(&mut out[3 * knot + axis], &channels(trace, force, nothing(trace)));
             }
         }
     }

@@ -177,7 +177,7 @@ impl Weighted {
         for (index, column) in rows.nuisances.iter().enumerate() {
             let Some(considered) = &column.considered else { continue };
             // what one unit of its error brings into the others (consider covariance)
-            let mut brings = normal.solve(&self.nuisances.tr_mul(&weighted(considered, &self.sigma)));
+            let mut brings = self.part_in(&weighted(considered, &self.sigma));
             brings[index] = 0.0;
             let variance = covariance[(index, index)];
             covariance += &brings * brings.transpose() * variance;
@@ -185,8 +185,14 @@ impl Weighted {
         (theta, covariance)
     }
 
+    /// The coefficients that the nuisances and the base's effects take of a weighted column.
+    pub(super) fn part_in(&self, column: &DVector<f64>) -> DVector<f64> {
+        let part = self.nuisances.tr_mul(column);
+        self.normal.as_ref().map_or_else(|| DVector::zeros(part.len()), |normal| normal.solve(&part))
+    }
+
     /// A column without the part that the nuisances explain.
-    fn project(&self, column: &DVector<f64>) -> DVector<f64> {
+    pub(super) fn project(&self, column: &DVector<f64>) -> DVector<f64> {
         match &self.normal {
             Some(normal) => column - &self.nuisances * normal.solve(&self.nuisances.tr_mul(column)),
             None => column.clone(),

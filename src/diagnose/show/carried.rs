@@ -2,6 +2,7 @@
 
 use super::{HeldOut, ShowSettings};
 use crate::diagnose::base::Base;
+use crate::diagnose::empirical::Empirical;
 use crate::diagnose::explanation::{Explanation, Verdict};
 use crate::diagnose::latency::{stated_lag_s, stated_uneven};
 use crate::diagnose::rows::Rows;
@@ -20,7 +21,11 @@ pub(super) struct Pair {
 
 /// Rigid body alone, and the model with its effects. A latency that has a name is an effect: the rigid
 /// body alone has the known motor and the log's own sampling instead.
-pub(super) fn pair(explanation: &Explanation, vehicle: &Vehicle, command_period_s: f64) -> Pair {
+pub(super) fn pair(
+    (explanation, empirical): (&Explanation, Option<&Empirical>),
+    vehicle: &Vehicle,
+    command_period_s: f64,
+) -> Pair {
     let named = |id: &str| explanation.named.iter().any(|named| named.id == id);
     let mut before = explanation.search.before.base.clone();
     if named("motor_lag") || named("transport_delay") {
@@ -35,17 +40,20 @@ pub(super) fn pair(explanation: &Explanation, vehicle: &Vehicle, command_period_
         // nothing was named, so nothing named may help
         after = before.clone();
     }
+    if let Some(term) = empirical {
+        after.vehicle.body.mass_kg += term.mass_change_kg;
+    }
     Pair { before, after, notes: Vec::new() }
 }
 
 /// The pair for a flight that was not used: what belongs to the day or the moment is found again or said.
 pub(super) fn carried_over(
-    explanation: &Explanation,
+    explained: (&Explanation, Option<&Empirical>),
     (flight, trace): (&HeldOut, &Trace),
     vehicle: &Vehicle,
     settings: &ShowSettings,
 ) -> Result<Pair, PhysicsError> {
-    let mut pair = pair(explanation, vehicle, trace.command_period_s);
+    let mut pair = pair(explained, vehicle, trace.command_period_s);
     let of = |base: &Base, id: &str| base.present.iter().position(|present| present.effect.id() == id);
     // in another part of the same flight the moment is known
     if let Some(place) = of(&pair.after, "mass_change").filter(|_| !settings.same_flight) {

@@ -167,7 +167,7 @@ pub fn on_holdout(
     let mut ready = Vec::with_capacity(flights.len());
     for flight in flights {
         let trace = trace_of(flight, vehicle, settings)?;
-        let pair = carried_over(explanation, (flight, &trace), vehicle, settings)?;
+        let pair = carried_over((explanation, empirical), (flight, &trace), vehicle, settings)?;
         ready.push(Ready { flight, trace, pair });
     }
     if ready.is_empty() {
@@ -215,7 +215,7 @@ pub fn on_identification(
     let mut ready = Vec::with_capacity(flights.len());
     for flight in flights {
         let trace = trace_of(flight, vehicle, settings)?;
-        let pair = pair(explanation, vehicle, trace.command_period_s);
+        let pair = pair((explanation, empirical), vehicle, trace.command_period_s);
         ready.push(Ready { flight, trace, pair });
     }
     let (open_loop, improvement, _) = open_loop::open_loop(&ready, empirical, settings)?;

@@ -2,7 +2,7 @@
 
 use super::story::Story;
 use crate::diagnose::locate::Follow;
-use crate::diagnose::{AXES, CHANNEL_NAMES, Fitted, LackOfFit, Trace, lack_of_fit};
+use crate::diagnose::{AXES, CHANNEL_NAMES, Fitted, LackOfFit, Trace, Verdict, lack_of_fit};
 use crate::report::chart::{Band, Bars, Line, Panel, Strip, Stroke};
 use std::ops::Range;
 
@@ -55,15 +55,15 @@ impl Story {
 
     /// The same after: of the model found, less the empirical force where there is one.
     fn left_after(&self, traces: &[Trace], axis: usize) -> Vec<f64> {
-        let after = &self.explanation.search.after;
-        let Some(term) = &self.empirical else { return after.rows.residual[axis].clone() };
-        let mut left = after.weighted.left_of(axis);
-        for (trace, rows) in traces.iter().zip(ranges(traces)) {
-            if let Some(force) = term.weak_force(trace).get(axis) {
-                left[rows].iter_mut().zip(force).for_each(|(left, force)| *left -= force);
+        let search = &self.explanation.search;
+        match &self.empirical {
+            None => search.after.rows.residual[axis].clone(),
+            // of what it was fitted to: without a name that is the rigid body
+            Some(term) if self.verdict() == Verdict::Unexplained => {
+                term.left_of(&search.before, traces, axis)
             }
+            Some(term) => term.left_of(&search.after, traces, axis),
         }
-        left
     }
 
     /// What the body did along the worst axis, and what the models make of the recorded commands: one panel
@@ -216,8 +216,10 @@ impl Story {
             for (axis, residual) in left.iter().enumerate() {
                 let noise = search.after.weighted.sigma[axis].max(f64::MIN_POSITIVE);
                 let cells = centers.iter().map(|center| {
-                    let inside =
-                        time_s.iter().zip(&residual[rows.clone()]).filter(|(t, _)| (*t - center).abs() < 0.5 * CELL_S);
+                    let inside = time_s
+                        .iter()
+                        .zip(&residual[rows.clone()])
+                        .filter(|(t, _)| (*t - center).abs() < 0.5 * CELL_S);
                     let (sum, count) =
                         inside.fold((0.0, 0.0), |(sum, count), (_, r)| (sum + r * r, count + 1.0));
                     if count > 0.0 { ((sum / count).sqrt() / noise - 1.0).max(0.0) } else { f64::NAN }
