@@ -31,8 +31,8 @@ const STATION: ComponentId = ComponentId(190);
 /// The keys of a flight told in lines.
 const KEYS: &str =
     "h, l, r and return: hold, land, return home; :kill and return: motors off; Ctrl-C: hold and end";
-/// Bytes of them that are read: no one types more.
-const KEYS_MAX: u64 = 1 << 16;
+/// Bytes of a line of them: no one types more.
+const LINE_MAX: u64 = 256;
 /// How long the view waits for a key or a new picture.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -246,11 +246,25 @@ fn tell(pictures: &Receiver<ViewModel>, pressed: Option<&UnboundedSender<KeyComm
 
 /// Each line a command, until there are no more or the flight is over.
 fn read_keys(pressed: &UnboundedSender<KeyCommand>) {
-    for line in std::io::stdin().lock().take(KEYS_MAX).lines().map_while(Result::ok) {
+    let mut input = std::io::stdin().lock();
+    let mut line = Vec::new();
+    loop {
+        line.clear();
+        match input.by_ref().take(LINE_MAX).read_until(b'\n', &mut line) {
+            Ok(0) => return,
+            Ok(_) => {}
+            Err(error) => {
+                output::message(&format!(
+                    "warning: keys are no longer read ({error}): Ctrl-C alone ends the flight"
+                ));
+                return;
+            }
+        }
+        let line = String::from_utf8_lossy(&line);
         match KeyCommand::of_line(&line) {
             Some(command) if pressed.send(command).is_err() => return,
             Some(_) => {}
-            None => output::message(&format!("{KEYS}; got `{}`", line.escape_debug())),
+            None => output::message(&format!("{KEYS}; got `{}`", line.trim_end().escape_debug())),
         }
     }
 }
@@ -272,6 +286,8 @@ fn draw(pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<KeyCommand>) {
             Ok(mut model) => {
                 model.typed = keys.typed().map(str::to_owned);
                 if screen.draw(&model).is_err() {
+                    // lines and Ctrl-C need the terminal as it was
+                    drop(screen);
                     return tell(pictures, Some(pressed));
                 }
             }

@@ -148,7 +148,7 @@ pub(super) fn stated_lag_s(vehicle: &Vehicle) -> f64 {
 }
 
 /// The latency has no more lag than is stated: what is beyond that is a delay.
-fn is_delay(latency: ActuationLatency, vehicle: &Vehicle) -> bool {
+pub(super) fn is_delay(latency: ActuationLatency, vehicle: &Vehicle) -> bool {
     latency.lag_s <= stated_lag_s(vehicle)
 }
 

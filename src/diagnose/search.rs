@@ -6,7 +6,7 @@ use super::evidence::{Evidence, Weighted};
 use super::forms::other_form;
 use super::gates::{Gates, passes};
 use super::hubs::one_place;
-use super::latency::{LatencyFinding, finding_of, fit_latency};
+use super::latency::{LatencyFinding, finding_of, fit_latency, is_delay};
 use super::locate::mass_step_std_kg;
 use super::mounting::{Turn, mountings};
 use super::rows::{AXES, CHANNELS, Nuisance, NuisanceColumn, Rows};
@@ -279,8 +279,12 @@ fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitte
         base.vehicle.body.mass_kg = lift_load(load, base.vehicle.body.mass_kg);
     }
     // a latency that the rotors' inertia had shortened is found again beside it
-    let spins_up = taken.candidate.id == RotorInertia.id();
-    fit(flights, base, if spins_up { Newton::Free } else { Newton::Held })
+    let newton = match taken.candidate.id == RotorInertia.id() {
+        true if is_delay(base.latency, &base.vehicle) => Newton::Delay,
+        true => Newton::Free,
+        false => Newton::Held,
+    };
+    fit(flights, base, newton)
 }
 
 /// The ceilings of a fit with their height estimated, too: from one between those that were tried on, unless it runs away.

@@ -6,7 +6,7 @@
 
 use super::Signals;
 use crate::vehicle::Vehicle;
-use nalgebra::Vector3;
+use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Over which turns and torques are compared, s.
 const WINDOW_S: f64 = 0.1;
@@ -16,6 +16,9 @@ const ALIKE: f64 = 0.6;
 const APART: f64 = 0.3;
 /// A ratio of rates further from one than this, up or down, is none of noise.
 const RATIO: f64 = 2.0;
+/// Share of a torque's energy that must be its own, and of the change's amplitude that counts at least.
+const SEEN: f64 = 0.05;
+const LEFT: f64 = 0.3;
 /// Turning slower than this says nothing, rad/s rms.
 const TURNING_RAD_S: f64 = 0.02;
 /// Fewer windows say nothing.
@@ -69,7 +72,8 @@ fn rates(signals: &Signals, spans: &[(usize, usize)]) -> Vec<String> {
         if rms(&turned) < TURNING_RAD_S || alike.abs() < ALIKE {
             continue;
         }
-        let ratio = rms(&said) / rms(&turned);
+        // a gyroscope's bias is no scale
+        let ratio = rms(&centred(&said)) / rms(&centred(&turned));
         if !(1.0 / RATIO..=RATIO).contains(&ratio) {
             out.push(format!(
                 "warning: the body rate about {name} is {ratio:.3} times the rate at which the attitude turns: expected both in \
@@ -85,33 +89,62 @@ fn rates(signals: &Signals, spans: &[(usize, usize)]) -> Vec<String> {
     out
 }
 
-/// Torque of the rotors against the change of the body rates.
+/// Torque of the rotors about each axis against the change of the body rates, beside what the air makes of velocity and
+/// rates: on a circle a hub moment stands where another axis' torque would.
 fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Option<String> {
-    let rate = signals.rate.as_ref()?;
+    let (rate, velocity, attitude) =
+        (signals.rate.as_ref()?, signals.velocity.as_ref()?, signals.attitude.as_ref()?);
     let inverse = vehicle.body.inertia_kg_m2.try_inverse()?;
-    let changed: Vec<Vector3<f64>> = spans.iter().map(|&(first, last)| rate[last] - rate[first]).collect();
-    let driven: Vec<Vector3<f64>> = spans
-        .iter()
-        .map(|&(first, last)| {
-            let wrenches = signals.wrench[first..=last].iter();
-            inverse * wrenches.map(|wrench| wrench.fixed_rows::<3>(1).into_owned()).sum::<Vector3<f64>>()
-        })
-        .collect();
+    let mut columns: Vec<Vec<f64>> = vec![Vec::with_capacity(spans.len()); 9];
+    let mut changed: Vec<Vector3<f64>> = Vec::with_capacity(spans.len());
+    for &(first, last) in spans {
+        let wrenches = signals.wrench[first..=last].iter();
+        let torque = wrenches.map(|wrench| wrench.fixed_rows::<3>(1).into_owned()).sum::<Vector3<f64>>();
+        let middle = (first + last) / 2;
+        let through_air = attitude[middle].inverse_transform_vector(&velocity[middle]);
+        let parts = [inverse * torque * signals.grid.step_s, through_air, mean(&rate[first..=last])];
+        let values = parts.iter().flat_map(Vector3::iter);
+        columns.iter_mut().zip(values).for_each(|(column, value)| column.push(*value));
+        changed.push(rate[last] - rate[first]);
+    }
+    let columns: Vec<DVector<f64>> =
+        columns.iter().map(|column| DVector::from_vec(centred(column))).collect();
     (0..AXES.len()).find_map(|axis| {
-        let changed = column(&changed, axis);
-        let alike: Vec<f64> =
-            (0..AXES.len()).map(|other| likeness(&changed, &column(&driven, other))).collect();
+        let changed = DVector::from_vec(centred(&column(&changed, axis)));
+        let alike = alone(&columns, &changed)?;
         let best = (0..AXES.len()).max_by(|&a, &b| alike[a].abs().total_cmp(&alike[b].abs()))?;
         let wrong = alike[best].abs() > ALIKE && alike[best].abs() > alike[axis] + APART;
         wrong.then(|| {
             let sign = if alike[best] < 0.0 { "-" } else { "" };
             format!(
-                "warning: the body turns about {} as the rotors' torque about {sign}{} would have it (correlation {:.2}; {:.2} \
-                 with that about {}): expected the rotors in the vehicle file's order, at its places and turning its way",
+                "warning: the body turns about {} as the rotors' torque about {sign}{} would have it (partial correlation {:.2}; \
+                 {:.2} with that about {}): expected the rotors in the vehicle file's order, at its places and turning its way",
                 AXES[axis], AXES[best], alike[best].abs(), alike[axis], AXES[axis]
             )
         })
     })
+}
+
+/// Correlation of `values` with each of the first three columns when all the other columns are taken out of both; 0 for a
+/// column that the others hold all but entirely. `None` where there is nothing to solve.
+fn alone(columns: &[DVector<f64>], values: &DVector<f64>) -> Option<[f64; 3]> {
+    let mut out = [0.0; 3];
+    for (index, alike) in out.iter_mut().enumerate() {
+        let others: Vec<DVector<f64>> = columns
+            .iter()
+            .enumerate()
+            .filter(|(other, column)| *other != index && column.norm() > 0.0)
+            .map(|(_, column)| column.normalize())
+            .collect();
+        let others = DMatrix::from_columns(&others).svd(true, false).u?;
+        let out_of = |of: &DVector<f64>| of - &others * others.tr_mul(of);
+        let (own, left) = (out_of(&columns[index]), out_of(values));
+        let seen = own.norm_squared() > SEEN * columns[index].norm_squared();
+        // what the others leave of the change itself is little where they account for it
+        let scale = own.norm() * left.norm().max(LEFT * values.norm());
+        *alike = if seen && scale > 0.0 { own.dot(&left) / scale } else { 0.0 };
+    }
+    Some(out)
 }
 
 fn column(values: &[Vector3<f64>], axis: usize) -> Vec<f64> {
@@ -122,12 +155,13 @@ fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
+fn centred(values: &[f64]) -> Vec<f64> {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    values.iter().map(|value| value - mean).collect()
+}
+
 /// Correlation; 0 where one of them does not move.
 fn likeness(a: &[f64], b: &[f64]) -> f64 {
-    let centred = |values: &[f64]| -> Vec<f64> {
-        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-        values.iter().map(|value| value - mean).collect()
-    };
     let (a, b) = (centred(a), centred(b));
     let product: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
     let scale = rms(&a) * rms(&b) * a.len() as f64;

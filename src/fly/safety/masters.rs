@@ -17,9 +17,15 @@ const FOREIGN_M: f64 = 0.25;
 /// Reports come later than what they report, and after a silence later by as much.
 const DELAY: Duration = Duration::from_secs(1);
 /// Nothing of ours from before this is flown still.
-const OLDEST: Duration = Duration::from_secs(6);
-/// ArduPilot moves a target on by its velocity and acceleration until the next comes; this is sought in such steps.
-const COASTS_S: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
+const OLDEST: Duration = Duration::from_secs(9);
+/// While ours do not arrive PX4 holds the last for COM_OF_LOSS_T, and ArduPilot moves it on by its velocity and
+/// acceleration for GUID_TIMEOUT: by their defaults.
+const PX4_HOLDS: Duration = Duration::from_secs(1);
+const ARDUPILOT_COASTS: Duration = Duration::from_secs(3);
+/// Steps in which what it has moved on by is sought.
+const STEPS: u32 = 10;
+/// How long a queue may drain that a silence has filled.
+const DRAINS: Duration = Duration::from_secs(20);
 /// So many foreign reports within this time: another's setpoints between ours are flown for an instant each, and of 30
 /// reports of a PX4 that heard 20 a second of them between 50 of ours, 3 showed them. Undisturbed, no report did.
 const REPORTS: usize = 2;
@@ -85,15 +91,21 @@ impl Masters {
     /// Takes the target that the vehicle says it flies to, m, world; `None` for one that is no place.
     pub fn check(&mut self, now: Duration, target_m: Option<Vector3<f64>>, stack: Stack) -> Option<Cause> {
         let silent = now.saturating_sub(self.reported.replace(now).unwrap_or(now));
-        let before = self.silence.filter(|(_, ended)| now.saturating_sub(*ended) <= WINDOW);
+        let before = self.silence.filter(|(_, ended)| now.saturating_sub(*ended) <= DRAINS);
         if before.is_none_or(|(lasted, _)| silent >= lasted) {
             self.silence = Some((silent, now));
         }
         let late = DELAY + self.silence.map_or(Duration::ZERO, |(lasted, _)| lasted);
-        let ours = self.told.iter().filter(|(at, _)| now.saturating_sub(*at) <= late);
+        let alone = if stack == Stack::ArduPilot { ARDUPILOT_COASTS } else { PX4_HOLDS };
+        let age = |at: Duration| now.saturating_sub(at);
+        let ours = self.told.iter().filter(|(at, _)| age(*at) <= late + alone);
         let away_m = match target_m {
             Some(target_m) => {
-                ours.map(|(_, setpoint)| away_m(setpoint, &target_m, stack)).min_by(f64::total_cmp)?
+                let moved = |at: Duration| match stack {
+                    Stack::ArduPilot => (age(at).saturating_sub(late), age(at).min(alone)),
+                    Stack::Px4 => (Duration::ZERO, Duration::ZERO),
+                };
+                ours.map(|(at, setpoint)| away_m(setpoint, &target_m, moved(*at))).min_by(f64::total_cmp)?
             }
             // ours always are one
             None => f64::INFINITY,
@@ -115,12 +127,17 @@ impl Masters {
     }
 }
 
-/// From a target to the setpoint, or to where ArduPilot takes it without the next, m.
-fn away_m(setpoint: &Setpoint, target_m: &Vector3<f64>, stack: Stack) -> f64 {
-    let coasts_s = if stack == Stack::ArduPilot { &COASTS_S[..] } else { &COASTS_S[..1] };
-    let gone_m = |s: f64| setpoint.velocity_m_s * s + setpoint.acceleration_m_s2 * (0.5 * s * s);
-    let away_m = |s: &f64| (setpoint.position_m + gone_m(*s) - target_m).norm();
-    coasts_s.iter().map(away_m).fold(f64::INFINITY, f64::min)
+/// From a target to where the setpoint is after it was moved on for some time of a span, m.
+fn away_m(setpoint: &Setpoint, target_m: &Vector3<f64>, (least, most): (Duration, Duration)) -> f64 {
+    let (least_s, span_s) = (least.as_secs_f64(), most.saturating_sub(least).as_secs_f64());
+    let steps = if span_s > 0.0 { STEPS } else { 0 };
+    (0..=steps)
+        .map(|step| {
+            let s = least_s + span_s * f64::from(step) / f64::from(STEPS);
+            let gone_m = setpoint.velocity_m_s * s + setpoint.acceleration_m_s2 * (0.5 * s * s);
+            (setpoint.position_m + gone_m - target_m).norm()
+        })
+        .fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]
