@@ -168,7 +168,7 @@ fn a_kill_stops_the_motors() {
     flying.fly_into_the_trajectory(2.0);
     flying.event(Event::Key(Key::Kill));
     let outcome = flying.finish();
-    assert_eq!(outcome.cause, Some(Cause::Operator));
+    assert_eq!((outcome.cause, outcome.ending), (Some(Cause::Killed), Ending::Fell));
     let (_, _, parameters) = flying.commands.iter().rfind(|(_, number, _)| *number == ARM).unwrap();
     assert_eq!(parameters[..2], [0.0, 21_196.0]);
 }

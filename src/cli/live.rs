@@ -62,7 +62,7 @@ pub struct SitlArgs {
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
     /// factor on the sensors' noise
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     pub noise: f64,
     /// MAVLink system id
     #[arg(long, value_name = "ID", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..))]

@@ -195,10 +195,10 @@ pub struct FlyArgs {
     #[arg(long, value_enum, default_value = "local")]
     pub origin: OriginName,
     /// distance to the reference at which the flight is aborted, m
-    #[arg(long, value_name = "M", default_value_t = 1.0)]
+    #[arg(long, value_name = "M", default_value_t = 1.0, allow_negative_numbers = true)]
     pub tracking_max: f64,
     /// tilt at which the flight is aborted, degrees [default: 20 more than planned]
-    #[arg(long, value_name = "DEG")]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub tilt_max: Option<f64>,
     /// s that the vehicle hovers on a full battery: the flight is then refused where the charge does not last for it
     #[arg(long, value_name = "S", allow_negative_numbers = true)]

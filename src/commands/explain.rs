@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use mavid::config::{StoredTrajectory, read_vehicle, trajectory_to_toml};
 use mavid::diagnose::next::{NextFlight, NextSettings, design};
 use mavid::diagnose::show::{HeldOut, ShowSettings, Split, differing, split_last_periods};
-use mavid::diagnose::{Empirical, ExplainSettings, Named, Trace, explain};
+use mavid::diagnose::{Empirical, ExplainSettings, Named, Trace, Verdict, explain};
 use mavid::log::Recording;
 use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page};
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference};
@@ -20,8 +20,12 @@ use crate::cli::ExplainArgs;
 
 /// How a note begins that is more than a remark.
 const DOUBT: &str = "warning: ";
+/// A file is wrong by less than this in mass.
+const MASS_FACTOR: f64 = 1.6;
+/// What happens once in a flight.
+const MASS_CHANGE: &str = "mass_change";
 /// What a recording without velocity cannot tell.
-const NO_VELOCITY: &str = "no velocity (LOCAL_POSITION_NED or similar) is recorded: drag, wind and other effects of the air \
+const NO_VELOCITY: &str = "no velocity (LOCAL_POSITION_NED or similar), or no attitude, is recorded: drag, wind and other effects of the air \
                            cannot be tried, and what is named may stand for what they do to the rotation";
 
 /// Names of what [`Explained::write`] writes.
@@ -65,39 +69,44 @@ impl Explained {
         })?;
         refuse_twins(&flights.iter().chain(&held).map(|flight| &flight.input).collect::<Vec<_>>())?;
         refuse_shared(&flights, &held)?;
+        let whole = flights.last().map(|flight| flight.signals.clone());
         let (shown_on, back) = if held.is_empty() {
             hold_back(&mut flights)
         } else {
             (ShownOn::Flights(held.iter().map(|flight| flight.input.clone()).collect()), None)
         };
-        let settings = ExplainSettings::default();
-        let signals: Vec<Signals> = flights.iter().map(|flight| flight.signals.clone()).collect();
-        let explanation = explain(&signals, &vehicle, &settings).map_err(|error| {
-            let logs: Vec<String> = args.logs.iter().map(|log| log.display().to_string()).collect();
-            CommandError::Input(format!("{}: {error}", logs.join(", ")))
-        })?;
         warnings.extend(flights.iter().chain(&held).filter_map(|flight| losses(&flight.input)));
         for flight in flights.iter().chain(&held) {
             let doubts = flight.signals.quality.notes.iter().filter_map(|note| note.strip_prefix(DOUBT));
             warnings.extend(doubts.map(|doubt| format!("{}: {doubt}", flight.input.path)));
         }
-        for flight in flights.iter().filter(|flight| flight.signals.velocity.is_none()) {
+        for flight in flights
+            .iter()
+            .filter(|flight| flight.signals.velocity.is_none() || flight.signals.attitude.is_none())
+        {
             warnings.push(format!("{}: {NO_VELOCITY}", flight.input.path));
         }
-        let given = Given {
-            vehicle,
-            inputs: flights.iter().map(|flight| flight.input.clone()).collect(),
-            quality: flights.iter().map(|flight| flight.signals.quality.clone()).collect(),
-            settings,
-            transient_s: args.transient,
-            warnings,
-        };
+        let mut story = told(args, (&vehicle, &warnings), &flights, (&held, back.as_ref(), shown_on))?;
+        // what changed in the part held back, or shortly before it, is nowhere in the part explained
+        if let (Some(whole), Some(last), true) = (whole, flights.last_mut(), changes_late(&story))
+            && held.is_empty()
+        {
+            let part = std::mem::replace(&mut last.signals, whole);
+            let reason = "something changes in what would be held back, so the whole flight is explained; give another with --holdout";
+            let shown_on = ShownOn::Nothing { reason: reason.to_owned() };
+            let all = told(args, (&vehicle, &warnings), &flights, (&[], None, shown_on))?;
+            let changes = |story: &Story| story.effects.iter().any(|named| named.id == MASS_CHANGE);
+            if changes(&all) && !changes(&story) {
+                story = all;
+            } else if let Some(last) = flights.last_mut() {
+                last.signals = part;
+            }
+        }
+        let signals: Vec<Signals> = flights.iter().map(|flight| flight.signals.clone()).collect();
         let traces: Vec<Trace> = signals
             .iter()
-            .filter_map(|signals| Trace::new(signals, &given.vehicle, settings.half_width_s).ok())
+            .filter_map(|signals| Trace::new(signals, &vehicle, story.given.settings.half_width_s).ok())
             .collect();
-        let mut story = Story::new(given, explanation);
-        show(&mut story, &flights, (&held, back.as_ref()), shown_on);
         if let Some(path) = &args.next {
             story.next = Some(next_flight(&story, &signals, path)?);
         }
@@ -204,6 +213,47 @@ impl Flown {
     fn held_out(&self) -> HeldOut<'_> {
         HeldOut { name: &self.input.path, signals: &self.signals, recording: Some(&self.recording) }
     }
+}
+
+/// The part held back is another's, or what is left of the part explained drifts with time.
+fn changes_late(story: &Story) -> bool {
+    let drifts =
+        story.located.state.iter().any(|state| ["time", "voltage"].contains(&state.variable.as_str()));
+    story.other_vehicle().is_some() || (story.verdict() == Verdict::Unexplained && drifts)
+}
+
+/// Explains the flights and shows the better model; what is to be said of the data before comes first.
+fn told(
+    args: &ExplainArgs,
+    (vehicle, warnings): (&Vehicle, &[String]),
+    flights: &[Flown],
+    (held, back, shown_on): (&[Flown], Option<&Signals>, ShownOn),
+) -> Result<Story, CommandError> {
+    let settings = ExplainSettings::default();
+    let signals: Vec<Signals> = flights.iter().map(|flight| flight.signals.clone()).collect();
+    let explanation = explain(&signals, vehicle, &settings).map_err(|error| {
+        let logs: Vec<String> = args.logs.iter().map(|log| log.display().to_string()).collect();
+        CommandError::Input(format!("{}: {error}", logs.join(", ")))
+    })?;
+    let mut warnings = warnings.to_vec();
+    let factor = explanation.search.after.base.vehicle.body.mass_kg / vehicle.body.mass_kg;
+    if !(1.0 / MASS_FACTOR..=MASS_FACTOR).contains(&factor) {
+        warnings.push(format!(
+            "the mass that flies is {factor:.2} times what the vehicle file states: another vehicle's file, or a thrust coefficient \
+             that is off by as much?"
+        ));
+    }
+    let given = Given {
+        vehicle: vehicle.clone(),
+        inputs: flights.iter().map(|flight| flight.input.clone()).collect(),
+        quality: flights.iter().map(|flight| flight.signals.quality.clone()).collect(),
+        settings,
+        transient_s: args.transient,
+        warnings,
+    };
+    let mut story = Story::new(given, explanation);
+    show(&mut story, flights, (held, back), shown_on);
+    Ok(story)
 }
 
 /// Loads and conditions every flight, side by side.

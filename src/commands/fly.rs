@@ -87,7 +87,7 @@ pub fn run(json: bool, args: &FlyArgs) -> Result<Outcome, CommandError> {
         (false, false) => tell(pictures, None),
     })?;
     say(&record);
-    let landed = record.outcome.ending == Ending::Landed;
+    let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
     let analysis = Analysis::of((&args.out, landed), &args.vehicle, args.system_id)?;
     if json {
         output::json(&Document::new(&record, &args.out, analysis.as_ref()))?;
@@ -303,6 +303,7 @@ pub fn say(record: &Record) {
     let how = match ending {
         Ending::NotFlown => "not flown".to_owned(),
         Ending::Landed => "landed".to_owned(),
+        Ending::Fell => "fallen".to_owned(),
         Ending::InTheAir(mode) => format!("left in the air, mode {mode}"),
     };
     let why = cause.as_ref().map_or_else(String::new, |cause| format!(": {cause}"));

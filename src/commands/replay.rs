@@ -30,6 +30,8 @@ struct Document {
     discarded: u64,
     /// the user ended it before the log did
     interrupted: bool,
+    /// what of the log itself is gone
+    losses: Vec<String>,
 }
 
 /// Runs the verb.
@@ -69,7 +71,11 @@ async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome,
         unsent: counts.unsent,
         discarded: counts.discarded,
         interrupted,
+        losses: replay.losses().to_vec(),
     };
+    for loss in &document.losses {
+        output::message(&format!("warning: {}: {loss}", document.log));
+    }
     if json {
         output::json(&document)?;
     } else {
@@ -85,7 +91,7 @@ async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome,
             if interrupted { "; interrupted" } else { "" }
         ))?;
     }
-    Ok(if document.unsent > 0 { Outcome::DoneWithLoss } else { Outcome::Done })
+    Ok(if document.unsent > 0 || !document.losses.is_empty() { Outcome::DoneWithLoss } else { Outcome::Done })
 }
 
 fn bar(frames: u64) -> ProgressBar {

@@ -1,12 +1,14 @@
 //! Takes a latency that was found out of what was commanded.
 
 use super::weak::{Latency, LatencyKind};
-use crate::signals::{ActuationLatency, Signals, delayed_thrusts_n, delayed_wrench};
+use crate::signals::{ActuationLatency, Signals, ThrustSource, delayed_thrusts_n, delayed_wrench};
 use crate::vehicle::Vehicle;
 use nalgebra::{DVector, Vector4};
 
 /// A latency agrees with the stated lag within so many standard errors,
 const AGREES: f64 = 4.0;
+/// and one that the flight does not tell from none, within so many,
+const LEANS: f64 = 2.0;
 /// and what the log's sampling adds, s.
 const SAMPLED_S: f64 = 0.005;
 
@@ -26,6 +28,19 @@ pub(super) fn compensation(found: &Latency, vehicle: &Vehicle) -> ActuationLaten
             ActuationLatency { delay_s, lag_s: (found.total_s - delay_s).max(0.0), uneven }
         }
         LatencyKind::Delay | LatencyKind::Undetermined => ActuationLatency { delay_s: found.total_s, ..none },
+    }
+}
+
+/// The lag that the vehicle's description states, where the flight is by commands and speaks neither for a latency nor
+/// against that one; none otherwise.
+pub(super) fn as_stated(found: &Latency, vehicle: &Vehicle, flights: &[Signals]) -> ActuationLatency {
+    let none = ActuationLatency::default();
+    let by_commands = flights.iter().all(|signals| signals.quality.thrust_source == ThrustSource::Command);
+    match vehicle.propulsion.mean_time_constant_s() {
+        Some(lag_s) if by_commands && (found.total_s - lag_s).abs() < LEANS * found.std_s + SAMPLED_S => {
+            ActuationLatency { lag_s, uneven: vehicle.propulsion.falling_over_rising().ln(), ..none }
+        }
+        _ => none,
     }
 }
 

@@ -1,6 +1,6 @@
 //! All methods on one or several flights of a vehicle, and which of them to believe.
 
-use super::compensate::{compensation, take_out};
+use super::compensate::{as_stated, compensation, take_out};
 use super::plausible::{disagreeing, implausible};
 use super::recommend::{Recommendation, recommend};
 use super::result::{Estimated, MethodResult};
@@ -261,10 +261,12 @@ impl WeakFlights {
     /// sees the wrench that the body felt.
     fn compensate(&mut self, nominal: &Theta, vehicle: &Vehicle) -> (Option<Latency>, ActuationLatency) {
         let Some(found) = latency(&self.rows, nominal) else { return (None, ActuationLatency::default()) };
-        if !(found.total_s.abs() > 4.0 * found.std_s && found.total_s.abs() < 0.3) {
-            return (Some(found), ActuationLatency::default());
+        let told = found.total_s.abs() > 4.0 * found.std_s && found.total_s.abs() < 0.3;
+        let compensation =
+            if told { compensation(&found, vehicle) } else { as_stated(&found, vehicle, &self.signals) };
+        if compensation.total_s() == 0.0 {
+            return (Some(found), compensation);
         }
-        let compensation = compensation(&found, vehicle);
         for signals in &mut self.signals {
             take_out(signals, vehicle, compensation);
         }

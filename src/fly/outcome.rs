@@ -11,6 +11,8 @@ use serde::Serialize;
 pub enum Cause {
     /// the operator's key
     Operator,
+    /// the operator stopped the motors
+    Killed,
     /// the program was told to end: Ctrl-C, SIGTERM, SIGHUP, a panic
     Signal(String),
     /// something before takeoff was not as it must be, or was refused
@@ -72,6 +74,7 @@ impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Operator => f.write_str("aborted by the operator"),
+            Self::Killed => f.write_str("motors stopped by the operator"),
             Self::Signal(name) => write!(f, "ended by {name}"),
             Self::Refused(why) | Self::NotReached(why) => f.write_str(why),
             Self::Override(what) => write!(f, "taken over: {what}"),
@@ -99,6 +102,8 @@ pub enum Ending {
     NotFlown,
     /// on the ground, motors off
     Landed,
+    /// motors stopped in the air: it fell
+    Fell,
     /// in the air, in this mode, or not known
     InTheAir(String),
 }

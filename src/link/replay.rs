@@ -104,6 +104,7 @@ pub struct Replay {
     frames: u64,
     duration: Duration,
     speed: f64,
+    losses: Vec<String>,
 }
 
 impl Replay {
@@ -115,8 +116,14 @@ impl Replay {
         if !speed.is_finite() || speed < 0.0 {
             return Err(ReplayError::Speed { got: speed });
         }
-        let mut replay =
-            Self { path: path.into(), vehicles: BTreeSet::new(), frames: 0, duration: Duration::ZERO, speed };
+        let mut replay = Self {
+            path: path.into(),
+            vehicles: BTreeSet::new(),
+            frames: 0,
+            duration: Duration::ZERO,
+            speed,
+            losses: Vec::new(),
+        };
         let mut reader = replay.reader()?;
         let mut pauses = Pauses::default();
         while let Some(record) = reader.next_record().map_err(|source| replay.error(source))? {
@@ -127,6 +134,7 @@ impl Replay {
             replay.frames += 1;
             replay.duration += pauses.next(record.stamp_us);
         }
+        replay.losses = reader.report().losses();
         Ok(replay)
     }
 
@@ -134,6 +142,12 @@ impl Replay {
     #[must_use]
     pub fn frames(&self) -> u64 {
         self.frames
+    }
+
+    /// What of the log itself is gone, in words.
+    #[must_use]
+    pub fn losses(&self) -> &[String] {
+        &self.losses
     }
 
     /// From the first frame to the last, at the log's own pace.

@@ -16,6 +16,8 @@ const ALIKE: f64 = 0.6;
 const APART: f64 = 0.3;
 /// A ratio of rates further from one than this, up or down, is none of noise.
 const RATIO: f64 = 2.0;
+/// In the mean the rotors carry the weight, within this factor.
+const CARRIED: f64 = 1.5;
 /// Share of a torque's energy that must be its own, and of the change's amplitude that counts at least.
 const SEEN: f64 = 0.05;
 const LEFT: f64 = 0.3;
@@ -32,7 +34,8 @@ pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<String> {
     if spans.len() < LEAST {
         return Vec::new();
     }
-    let units = rates(signals, &spans);
+    let mut units = rates(signals, &spans);
+    units.extend(forces(signals, vehicle.gravity_m_s2, &spans));
     // torque beside rates that are none says nothing
     if units.is_empty() { torques(signals, vehicle, &spans).into_iter().collect() } else { units }
 }
@@ -89,13 +92,47 @@ fn rates(signals: &Signals, spans: &[(usize, usize)]) -> Vec<String> {
     out
 }
 
+/// The accelerometer against gravity, and the change of velocity against the accelerometer.
+fn forces(signals: &Signals, gravity_m_s2: f64, spans: &[(usize, usize)]) -> Vec<String> {
+    let (Some(attitude), Some(specific_force)) = (&signals.attitude, &signals.specific_force) else {
+        return Vec::new();
+    };
+    let force = |index: usize| attitude[index] * specific_force[index];
+    let felt: Vec<Vector3<f64>> = spans
+        .iter()
+        .map(|&(first, last)| (first..=last).map(force).sum::<Vector3<f64>>() / (1 + last - first) as f64)
+        .collect();
+    let up = mean(&felt).z / gravity_m_s2;
+    // sums of what flies are near the weight
+    if !(1.0 / CARRIED..=CARRIED).contains(&up) {
+        return vec![format!(
+            "warning: the accelerometer shows {up:.2} times gravity upwards in the mean of the flight: expected about one, in m/s^2, \
+             about forward, left, up, with an attitude that turns these into north, west, up"
+        )];
+    }
+    let Some(velocity) = &signals.velocity else { return Vec::new() };
+    let changed: Vec<Vector3<f64>> =
+        spans.iter().map(|&(first, last)| velocity[last] - velocity[first]).collect();
+    ["north", "west", "up"]
+        .iter()
+        .enumerate()
+        .filter(|(axis, _)| likeness(&column(&changed, *axis), &column(&felt, *axis)) < -ALIKE)
+        .map(|(_, name)| {
+            format!(
+                "warning: the velocity {name} changes against what the accelerometer feels: expected both in north, west, up once \
+                 the attitude has turned the accelerometer's"
+            )
+        })
+        .collect()
+}
+
 /// Torque of the rotors about each axis against the change of the body rates, beside what the air makes of velocity and
 /// rates: on a circle a hub moment stands where another axis' torque would.
 fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Option<String> {
     let (rate, velocity, attitude) =
         (signals.rate.as_ref()?, signals.velocity.as_ref()?, signals.attitude.as_ref()?);
     let inverse = vehicle.body.inertia_kg_m2.try_inverse()?;
-    let mut columns: Vec<Vec<f64>> = vec![Vec::with_capacity(spans.len()); 9];
+    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); 9];
     let mut changed: Vec<Vector3<f64>> = Vec::with_capacity(spans.len());
     for &(first, last) in spans {
         let wrenches = signals.wrench[first..=last].iter();

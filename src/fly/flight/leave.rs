@@ -214,7 +214,8 @@ impl Flight {
     pub(super) fn key(&mut self, now: Duration, key: Key) {
         if key == Key::Kill {
             self.note(now, Level::Error, "abort", "motors off by the operator");
-            self.cause.get_or_insert(Cause::Operator);
+            let flying = self.phase.is_airborne() && !self.is_on_ground();
+            self.cause = Some(if flying { Cause::Killed } else { Cause::Operator });
             self.guide.lead = Lead::Silent;
             self.commander.clear();
             self.commander.give(now, Order::kill(), Manner::URGENT);

@@ -35,6 +35,10 @@ pub struct Status {
     pub battery_v: Option<f64>,
     /// x, y, z, m, world, local
     pub position_m: Option<[f64; 3]>,
+    /// the same, m/s
+    pub velocity_m_s: Option<[f64; 3]>,
+    /// roll, pitch, yaw of the body (forward, left, up) in the world, rad
+    pub euler_rad: Option<[f64; 3]>,
     /// why the estimate cannot be flown by
     pub estimator_faults: Vec<String>,
     /// how long the estimate has been good; `None` where nothing was said of it
@@ -67,6 +71,11 @@ impl Flight {
             battery_percent: telemetry.and_then(|telemetry| telemetry.battery?.value.1),
             battery_v: telemetry.and_then(|telemetry| telemetry.battery_v),
             position_m: motion.map(|motion| motion.value.position_m.into()),
+            velocity_m_s: motion.map(|motion| motion.value.velocity_m_s.into()),
+            euler_rad: telemetry.and_then(|telemetry| telemetry.attitude).map(|attitude| {
+                let (roll, pitch, yaw) = attitude.value.0.euler_angles();
+                [roll, pitch, yaw]
+            }),
             estimator_faults: telemetry.map(|telemetry| telemetry.estimator_faults(now)).unwrap_or_default(),
             estimate_good_for: telemetry
                 .and_then(|telemetry| Some(now.saturating_sub(telemetry.estimator_good_since?))),

@@ -222,7 +222,11 @@ impl Flight {
         let Some(contact) = &self.contact else { return };
         let heard = now.saturating_sub(contact.telemetry.heard) < PAUSE_AFTER;
         if heard && !self.is_armed() {
-            let ending = if self.stand.is_some() { Ending::Landed } else { Ending::NotFlown };
+            let ending = match self.cause {
+                Some(Cause::Killed) => Ending::Fell,
+                _ if self.stand.is_some() => Ending::Landed,
+                _ => Ending::NotFlown,
+            };
             self.finish(now, ending);
             return;
         }

@@ -18,9 +18,10 @@ use crate::fly::outcome::{Level, Note, Outcome};
 use crate::fly::parameters::Parameters;
 use crate::fly::requests::LinkKind;
 use crate::fly::safety::Lead;
-use crate::fly::view::{Battery, KeyCommand, LinkView, Phase, ViewModel};
+use crate::fly::view::{Attitude, Battery, KeyCommand, LinkView, Phase, ViewModel};
 use crate::link::{LinkEvent, LinkStats, LinkWriter, ReceivedFrame};
 use crate::log::{Check, Frame, Record};
+use crate::units::deg_from_rad;
 use crate::vehicle::Vehicle;
 
 /// Between two pictures of the state.
@@ -268,6 +269,11 @@ impl Drive {
         model.mode = status.mode.unwrap_or_default();
         model.armed = status.armed;
         model.progress_s = status.progress_s;
+        let motion = status.position_m.zip(status.velocity_m_s);
+        model.attitude = status.euler_rad.zip(motion).map(|(euler_rad, (position_m, velocity_m_s))| {
+            let [roll_deg, pitch_deg, yaw_deg] = euler_rad.map(deg_from_rad);
+            Attitude { roll_deg, pitch_deg, yaw_deg, position_m, velocity_m_s }
+        });
         model.battery = Battery {
             percent: status.battery_percent.map(f64::from),
             voltage_v: status.battery_v,

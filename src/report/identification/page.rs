@@ -116,6 +116,8 @@ fn quality_lines(identification: &Identification, quality: &[&Quality]) -> Strin
         };
         let taken = if identification.compensated.total_s() == 0.0 {
             "less than four standard errors, left in"
+        } else if latency.total_s.abs() <= 4.0 * latency.std_s {
+            "less than four standard errors: the vehicle file's lag, which it agrees with, is taken out"
         } else {
             "taken out"
         };
