@@ -9,7 +9,9 @@ use super::theta::{Theta, ThetaCovariance, theta_of};
 use super::weak::{Latency, WeakEstimate, WeakMethod, latency, solve_weak};
 use super::{GradientStep, History, gradient_descent, least_squares};
 use crate::regression::{SampledModel, WeakMotion, WeakRows, ZeroPhase, paper_models, weak_rows};
-use crate::signals::{ActuationLatency, Butterworth, Signals, WeakKernel, WindowedFir, highest_harmonic_hz};
+use crate::signals::{
+    ActuationLatency, Butterworth, Signals, ThrustSource, WeakKernel, WindowedFir, highest_harmonic_hz,
+};
 use crate::vehicle::Vehicle;
 
 /// A method's name as in files and JSON.
@@ -168,6 +170,9 @@ fn identify_evenly(
     let best = recommend(&plain, robust.as_ref(), by_instruments.as_ref(), &nominal);
     notes.extend(implausible(&best.result, &nominal));
     notes.extend(disagreeing(&weak.rows, &nominal));
+    if flights.iter().any(|signals| signals.quality.thrust_source == ThrustSource::Command) {
+        notes.push(BY_COMMANDS.to_owned());
+    }
     Ok(Identification {
         best,
         methods,
@@ -188,6 +193,10 @@ fn identify_evenly(
         notes,
     })
 }
+
+/// What the standard errors do not hold where thrust is from commands.
+const BY_COMMANDS: &str = "thrust from commands: what they do between two samples is not in the standard errors, which leaves mass and \
+                           moments uncertain by some tenths of a percent more; measured rotor speeds (ESC_STATUS) do not have this";
 
 /// Why nothing could be identified.
 #[derive(Debug, thiserror::Error)]
