@@ -20,6 +20,8 @@ use crate::cli::ExplainArgs;
 
 /// How a note begins that is more than a remark.
 const DOUBT: &str = "warning: ";
+/// Share of the flight that may be saturated without a word.
+const SATURATED: f64 = 0.3;
 /// A file is wrong by less than this in mass.
 const MASS_FACTOR: f64 = 1.6;
 /// What happens once in a flight.
@@ -79,6 +81,14 @@ impl Explained {
         for flight in flights.iter().chain(&held) {
             let doubts = flight.signals.quality.notes.iter().filter_map(|note| note.strip_prefix(DOUBT));
             warnings.extend(doubts.map(|doubt| format!("{}: {doubt}", flight.input.path)));
+            let used = &flight.signals.quality.usable;
+            if !used.saturation_kept && used.saturated_s > SATURATED * (used.usable_s + used.saturated_s) {
+                warnings.push(format!(
+                    "{}: rotors were at a bound of their commands for {:.0} s, which are left out, and {:.0} s are used: what was left out may \
+                     show in other places than its own; fly a gentler trajectory (mavid plan --limits)",
+                    flight.input.path, used.saturated_s, used.usable_s
+                ));
+            }
         }
         for flight in flights
             .iter()
