@@ -2,7 +2,7 @@
 
 use super::actuators::{RotorThrusts, ThrustSource, thrusts_from_commands, thrusts_from_speeds};
 use super::select::{best, too_short};
-use super::sufficient::flowing_rate_hz;
+use super::sufficient::{REFUSED_HZ, flowing_rate_hz};
 use super::{Grid, SignalsError, linear_onto};
 use crate::log::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
@@ -22,7 +22,7 @@ fn channels_that_move(commands: &Stream) -> usize {
 /// Commands or measured rotor speeds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ThrustPreference {
-    /// measured speeds where they are recorded
+    /// measured speeds where they are recorded, and not too slowly to be used while commands are
     #[default]
     Measured,
     /// commands only
@@ -43,7 +43,15 @@ fn rotor_thrusts(
     let speeds = || thrusts_from_speeds(recording, vehicle);
     let commands = || thrusts_from_commands(recording, vehicle);
     match preference {
-        ThrustPreference::Measured => speeds().map_or_else(commands, Ok),
+        ThrustPreference::Measured => match speeds() {
+            // a link that hardly carries them may carry the commands
+            Some(speeds) if flowing_rate_hz(&speeds.stream) < REFUSED_HZ => {
+                let faster = commands().ok().filter(|of| flowing_rate_hz(&of.stream) >= REFUSED_HZ);
+                Ok(faster.unwrap_or(speeds))
+            }
+            Some(speeds) => Ok(speeds),
+            None => commands(),
+        },
         ThrustPreference::Commands => commands(),
         ThrustPreference::BestSampled => match (speeds(), commands()) {
             (Some(speeds), Ok(commands))

@@ -19,7 +19,7 @@ pub const LEAST_ACTUATOR_HZ: f64 = 38.0;
 pub const LEAST_BODY_RATE_HZ: f64 = 38.0;
 
 /// Below this nothing is identified at all, Hz: what comes out is wrong by many of its standard errors.
-const REFUSED_HZ: f64 = 20.0;
+pub(super) const REFUSED_HZ: f64 = 20.0;
 
 /// Intervals longer than so many median ones are gaps, or of a time before the rate was asked for.
 const FLOWS: f64 = 5.0;
