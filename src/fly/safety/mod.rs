@@ -1,11 +1,13 @@
 //! What ends a flight, each rule on its own: values in, a [`Cause`](super::Cause) out.
 
 mod envelope;
+mod knowledge;
 mod masters;
 mod stream;
 mod tracking;
 
 pub use envelope::Envelope;
+pub use knowledge::ModeKnowledge;
 pub use masters::Masters;
 pub use stream::{Guide, Lead, Streamed, Streamer};
 pub use tracking::Tracking;
