@@ -56,7 +56,7 @@ fn several_vehicles_are_named_and_one_is_chosen() {
     let log = Scratch::new("two.tlog", &two_vehicles());
     let refused = load(&log.0, &LoadOptions::default()).unwrap_err();
     assert!(
-        matches!(&refused, LogError::SeveralVehicles { systems } if *systems == [SystemId(1), SystemId(2)])
+        matches!(&refused, LogError::SeveralVehicles { systems, .. } if *systems == [SystemId(1), SystemId(2)])
     );
     assert!(refused.to_string().contains("1, 2"), "{refused}");
     for system in [1, 2] {

@@ -88,7 +88,8 @@ pub fn run(json: bool, args: &FlyArgs) -> Result<Outcome, CommandError> {
     })?;
     say(&record);
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
-    let analysis = Analysis::of((&args.out, landed), &args.vehicle, args.system_id)?;
+    let system = record.system.map(|system| system.0);
+    let analysis = Analysis::of((&args.out, landed), &args.vehicle, system)?;
     if json {
         output::json(&Document::new(&record, &args.out, analysis.as_ref()))?;
     } else if let Some(analysis) = &analysis {

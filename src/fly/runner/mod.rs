@@ -38,6 +38,7 @@ use crate::link::{
     Address, Link, LinkError, LinkOptions, LinkReader, LinkStats, Received, RecordError, Recorder,
     RecorderStatus, Signing,
 };
+use crate::log::SystemId;
 use crate::vehicle::Vehicle;
 use drive::Drive;
 use estimating::Estimating;
@@ -93,6 +94,8 @@ pub struct Record {
     pub outcome: Outcome,
     /// how the setpoints went out
     pub stream: StreamFigures,
+    /// whose flight it is; `None` where no vehicle was found
+    pub system: Option<SystemId>,
     /// the recording
     pub recorder: RecorderStatus,
     /// the link
@@ -175,7 +178,8 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
     let link = writer.stats();
     let recorder = recorder.end().await?;
     let stream = stream.on_link(&link);
-    Ok(Record { outcome, stream, recorder, link, events_failure })
+    let system = guide.get().target.map(|(target, _)| target.system);
+    Ok(Record { outcome, stream, system, recorder, link, events_failure })
 }
 
 fn kind_of(address: &Address) -> LinkKind {
