@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use std::fmt::Write;
 use std::path::Path;
 
-use super::CommandError;
+use super::{CommandError, output};
 use crate::cli::ReadArgs;
 
 /// A recording and the file that it came from.
@@ -58,6 +58,9 @@ pub fn load(path: &Path, read: &ReadArgs) -> Result<Flight, CommandError> {
     } else {
         let options = LoadOptions { system: read.system.map(SystemId) };
         let loaded = mavid::log::load(path, &options).map_err(|error| named(&error))?;
+        for oddity in loaded.report.oddities() {
+            output::message(&format!("warning: {}: {oddity}", path.display()));
+        }
         (loaded.recording, loaded.report.losses())
     };
     let sha256 = sha256_of(path).map_err(|error| named(&error))?;
