@@ -32,7 +32,7 @@ pub use error::LinkError;
 pub use open::{Ends, Link, LinkOptions};
 pub use reader::{LinkEvent, LinkReader, Received, ReceivedFrame};
 pub use recorder::{RecordError, Recorder, RecorderStatus, Store};
-pub use replay::{Replay, ReplayCounts, ReplayError};
+pub use replay::{HeldBack, Replay, ReplayCounts, ReplayError};
 pub use signing::{Signing, SigningError, SigningKey};
 pub(crate) use signing::{TAIL_BYTES, time_of};
 pub use stats::LinkStats;
