@@ -83,6 +83,7 @@ struct SenderLine {
 pub fn run(json: bool, args: &RecordArgs) -> Result<Outcome, CommandError> {
     let signing = args.signing_key_file.as_deref().map(Signing::open).transpose();
     let signing = signing.map_err(|error| CommandError::Input(error.to_string()))?;
+    output::signing_warnings(signing.as_ref());
     network::block_on(record(json, args, signing))
 }
 
@@ -174,7 +175,14 @@ impl Capture {
     }
 
     fn event(&self, event: &LinkEvent) {
-        let warns = matches!(event, LinkEvent::Stranger { .. } | LinkEvent::RecordingFails);
+        let warns = matches!(
+            event,
+            LinkEvent::Stranger { .. }
+                | LinkEvent::RecordingFails
+                | LinkEvent::Distrusted { .. }
+                | LinkEvent::Unchecked { .. }
+                | LinkEvent::ClockBehind { .. }
+        );
         let text = if warns { format!("warning: {event}") } else { event.to_string() };
         self.bar.suspend(|| output::message(&text));
     }
