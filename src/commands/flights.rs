@@ -66,7 +66,8 @@ pub fn load(path: &Path, read: &ReadArgs, most: &Hold) -> Result<Vec<Flight>, Co
     } else {
         let options = LoadOptions { system: read.system.map(SystemId) };
         let loaded = load_flights(path, &options, most).map_err(|error| named(&error))?;
-        let notes = whose(&loaded).into_iter().collect();
+        let mut notes: Vec<String> = whose(&loaded).into_iter().collect();
+        notes.extend(loaded.report.oddities().into_iter().map(|oddity| oddity.to_string()));
         (loaded.flights, loaded.report.losses(), notes)
     };
     losses.extend(left_out(&flights));

@@ -128,6 +128,7 @@ pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
     let sortie = sortie(args, &trajectory, &loaded.vehicle)?;
     let signing =
         args.signing_key_file.as_deref().map(Signing::open).transpose().map_err(|error| input(&error))?;
+    output::signing_warnings(signing.as_ref());
     let tlog = args.out.join(fly::TLOG);
     if tlog.exists() {
         let name = tlog.display();

@@ -52,4 +52,4 @@ pub use runner::{
 pub use safety::{Guide, Lead, Streamed, Streamer};
 pub use setpoint::{Place, Setpoint};
 pub use sortie::{Check, Origin, Settings, Sortie};
-pub use target::{Order, Target, heartbeat};
+pub use target::{MessageId, Order, OutOfRange, ParameterName, Period, TakeoffHeight, Target, heartbeat};

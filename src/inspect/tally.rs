@@ -189,7 +189,7 @@ impl Pass {
                 without_heartbeat: heartbeats == 0,
             },
             autopilot: speaker.autopilot,
-            reading: Reading::Tlog(reading),
+            reading: Reading::Tlog(Box::new(reading)),
             losses: report.losses(),
             streams,
             numbers_held_max: self.numbers_held_max,

@@ -19,7 +19,7 @@ use crate::fly::parameters::Parameters;
 use crate::fly::requests::LinkKind;
 use crate::fly::safety::Lead;
 use crate::fly::view::{Attitude, Battery, KeyCommand, LinkView, Phase, ViewModel};
-use crate::link::{LinkEvent, LinkStats, LinkWriter, ReceivedFrame};
+use crate::link::{LinkEvent, LinkWriter, ReceivedFrame};
 use crate::log::{Check, Frame, Record};
 use crate::units::deg_from_rad;
 use crate::vehicle::Vehicle;
@@ -50,9 +50,7 @@ pub(super) struct Drive {
     model: ViewModel,
     shown: Duration,
     frames: (u64, u64),
-    /// it was told that frames come which are not believed
-    told_distrust: bool,
-    /// and that its position is waited for
+    /// it was told that its position is waited for
     told_waiting: bool,
     refused: u64,
     outcome: Option<Outcome>,
@@ -82,7 +80,6 @@ impl Drive {
             model,
             shown: Duration::ZERO,
             frames: (0, 0),
-            told_distrust: false,
             told_waiting: false,
             refused: 0,
             outcome: None,
@@ -132,6 +129,7 @@ impl Drive {
             LinkEvent::Connected { .. } => (Some(true), Level::Information),
             LinkEvent::Restored { .. } => (Some(true), Level::Warning),
             LinkEvent::Lost { .. } => (Some(false), Level::Warning),
+            LinkEvent::Trusted { .. } => (None, Level::Information),
             _ => (None, Level::Warning),
         };
         self.notes.push(Note::new(now, level, "link", event.to_string()));
@@ -230,25 +228,10 @@ impl Drive {
         let _ = show.send(self.model.clone());
     }
 
-    /// A vehicle that signs with another key, or not at all, looks like none.
-    fn tell_distrust(&mut self, now: Duration, stats: &LinkStats) {
-        let LinkStats { unsigned, badly_signed, replayed, .. } = stats;
-        if self.told_distrust || unsigned + badly_signed + replayed == 0 {
-            return;
-        }
-        self.told_distrust = true;
-        let text = format!(
-            "frames come that are not believed: {unsigned} without a signature, {badly_signed} with another key's, \
-             {replayed} heard before or too old; is the key of --signing-key-file on the vehicle?"
-        );
-        self.notes.push(Note::new(now, Level::Warning, "signing", text));
-    }
-
     fn picture(&mut self, now: Duration) {
         let status = self.flight.status(now);
         let follows = self.flight.guide().lead != Lead::Silent;
         let stats = self.writer.stats();
-        self.tell_distrust(now, &stats);
         let passed_s = now.saturating_sub(self.shown).as_secs_f64().max(1e-3);
         let hz = |total: u64, before: u64| total.saturating_sub(before) as f64 / passed_s;
         let model = &mut self.model;

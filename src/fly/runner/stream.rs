@@ -49,7 +49,7 @@ pub struct StreamFigures {
     pub late: u64,
     /// not sent, for the next was there already or the stream had ended
     pub overtaken: u64,
-    /// refused by the link
+    /// refused by the link, or in no message's range
     pub refused: u64,
 }
 
@@ -180,6 +180,11 @@ impl Turn {
                     Ok(()) => self.figures.sent += 1,
                     Err(_) => self.figures.refused += 1,
                 }
+            }
+            Some(Streamed::Unfit(_)) => {
+                // the flight finds the same, tells it and ends
+                self.figures.refused += 1;
+                sender.writer.clear_latest();
             }
             Some(Streamed::Stalled(gap)) => {
                 sender.writer.clear_latest();

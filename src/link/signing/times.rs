@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::thread::JoinHandle;
 
-use super::{AHEAD, ComponentId, SigningError, SystemId};
+use super::{AHEAD, ComponentId, SigningError, SystemId, owner};
 
 const TITLE: &str = "mavid signing times 1";
 
@@ -83,11 +83,11 @@ impl Drop for TimesFile {
     }
 }
 
-/// The file is whole at every moment: either the old or the new.
+/// The file is whole at every moment, either the old or the new, and for its owner alone.
 fn replace(path: &Path, text: &str) -> io::Result<()> {
     let mut name = path.as_os_str().to_owned();
     name.push(".new");
-    fs::write(&name, text)?;
+    owner::write(Path::new(&name), text)?;
     fs::rename(&name, path)
 }
 
