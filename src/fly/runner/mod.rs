@@ -16,10 +16,12 @@ mod journal;
 mod parking;
 mod priority;
 mod stream;
+mod supervisor;
 
 pub use parking::{Parking, Part};
 pub use priority::raise_priority;
 pub use stream::StreamFigures;
+pub use supervisor::Supervisor;
 
 use std::io;
 use std::path::{Path, PathBuf};
