@@ -11,6 +11,7 @@
 //! old command goes out to a vehicle that comes back.
 
 mod address;
+mod carried;
 mod clock;
 mod error;
 mod incoming;
@@ -27,6 +28,7 @@ mod transport;
 mod writer;
 
 pub use address::{Address, AddressError};
+pub use carried::Carrier;
 pub use clock::{HostClock, HostStamp};
 pub use error::LinkError;
 pub use open::{Ends, Link, LinkOptions};

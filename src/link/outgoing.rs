@@ -127,7 +127,7 @@ impl Outgoing {
 
     /// Latest messages may go to this socket past the task, until the other end is lost.
     pub fn open_direct(&mut self, socket: &Arc<UdpSocket>, to: Option<SocketAddr>) {
-        self.shared.pen().direct = Some(Direct::new(socket.clone(), to));
+        self.shared.pen().direct = Some(Direct::Socket(socket.clone(), to));
     }
 
     /// Somebody is at the other end. What was given before a loss, but came behind it, is forgotten too.
