@@ -100,6 +100,13 @@ impl Drive {
         self.act(now);
     }
 
+    /// Time went on; whether the link has something that was not taken.
+    pub(super) fn tick(&mut self, wait: bool) {
+        let now = self.clock.elapsed();
+        self.supervisor.tick(now, wait);
+        self.act(now);
+    }
+
     pub(super) fn frame(&mut self, received: ReceivedFrame) {
         if let Some(frame) = Frame::at_start(received.bytes()) {
             let now = self.clock.elapsed();

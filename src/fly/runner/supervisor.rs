@@ -25,6 +25,8 @@ pub struct Supervisor {
     actions: VecDeque<Action>,
     /// it was told that the vehicle's position is waited for
     told_waiting: bool,
+    /// something of the link was taken since the last tick
+    took: bool,
 }
 
 impl Supervisor {
@@ -39,6 +41,7 @@ impl Supervisor {
             cleared: None,
             actions: VecDeque::new(),
             told_waiting: false,
+            took: true,
         }
     }
 
@@ -56,10 +59,19 @@ impl Supervisor {
 
     /// Takes a frame that the link delivered, with the host's stamp of its arrival.
     pub fn frame(&mut self, now: Duration, record: &Record<'_>) {
+        self.took = true;
         self.handle(now, Event::Frame(record.frame));
         let known = record.frame.check(self.flight.seeds()) == Check::Right;
         if let Some(clearance) = &mut self.clearance {
             clearance.take(&Record { known, ..*record });
+        }
+    }
+
+    /// Time went on; `wait` says whether the link has something that was not taken. Where it has, and nothing was taken
+    /// since the last tick, the way from the link stands still: a supervisor that does not see renews nothing.
+    pub fn tick(&mut self, now: Duration, wait: bool) {
+        if std::mem::replace(&mut self.took, false) || !wait {
+            self.handle(now, Event::Tick);
         }
     }
 
@@ -74,6 +86,7 @@ impl Supervisor {
 
     /// Takes what the link says of itself.
     pub fn link_event(&mut self, now: Duration, event: &LinkEvent) {
+        self.took = true;
         let (up, level) = match event {
             LinkEvent::Connected { .. } => (Some(true), Level::Information),
             LinkEvent::Restored { .. } => (Some(true), Level::Warning),
