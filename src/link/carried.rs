@@ -129,6 +129,21 @@ mod tests {
         }
     }
 
+    #[tokio::test(start_paused = true)]
+    async fn what_waited_for_a_task_that_stood_still_is_not_sent() {
+        let clock = HostClock::start();
+        let (mut carrier, (_reader, writer)) = Link::carried(&LinkOptions::default(), false);
+        let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA::default());
+        for (waited_ms, sent) in [(90, 2), (110, 0)] {
+            writer.send_message(&heartbeat).unwrap();
+            writer.send_latest(&heartbeat).unwrap();
+            tokio::time::advance(std::time::Duration::from_millis(waited_ms)).await;
+            let frames = std::iter::from_fn(|| carrier.next(clock.now())).count();
+            assert_eq!(frames, sent, "after {waited_ms} ms");
+        }
+        assert_eq!(writer.stats().unsent, 2);
+    }
+
     #[test]
     fn what_waited_when_the_other_end_was_lost_is_not_sent() {
         let stamp = HostClock::start().now();

@@ -14,6 +14,7 @@ mod address;
 mod carried;
 mod clock;
 mod error;
+mod given;
 mod incoming;
 mod open;
 mod outgoing;
