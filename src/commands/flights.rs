@@ -67,7 +67,7 @@ pub fn load(path: &Path, read: &ReadArgs, most: &Hold) -> Result<Vec<Flight>, Co
         let options = LoadOptions { system: read.system.map(SystemId) };
         let loaded = load_flights(path, &options, most).map_err(|error| named(&error))?;
         let mut notes: Vec<String> = whose(&loaded).into_iter().collect();
-        notes.extend(loaded.report.oddities().into_iter().map(|oddity| oddity.to_string()));
+        notes.extend(loaded.report.oddities());
         (loaded.flights, loaded.report.losses(), notes)
     };
     losses.extend(left_out(&flights));

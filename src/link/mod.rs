@@ -11,8 +11,10 @@
 //! old command goes out to a vehicle that comes back.
 
 mod address;
+mod carried;
 mod clock;
 mod error;
+mod given;
 mod incoming;
 mod open;
 mod outgoing;
@@ -27,6 +29,7 @@ mod transport;
 mod writer;
 
 pub use address::{Address, AddressError};
+pub use carried::Carrier;
 pub use clock::{HostClock, HostStamp};
 pub use error::LinkError;
 pub use open::{Ends, Link, LinkOptions};

@@ -20,7 +20,7 @@ use super::writer::LinkWriter;
 use crate::log::{ComponentId, SystemId};
 
 /// Frames that may wait to be sent.
-const QUEUE: usize = 4096;
+pub(super) const QUEUE: usize = 4096;
 /// How long a link that both halves have left goes on sending what they gave.
 const LINGER: Duration = Duration::from_secs(1);
 

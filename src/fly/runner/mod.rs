@@ -16,10 +16,12 @@ mod journal;
 mod parking;
 mod priority;
 mod stream;
+mod supervisor;
 
 pub use parking::{Parking, Part};
 pub use priority::raise_priority;
-pub use stream::StreamFigures;
+pub use stream::{Due, StreamFigures, send_due};
+pub use supervisor::Supervisor;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -207,27 +209,21 @@ async fn conduct(
     let mut ticks = tokio::time::interval(TICK);
     ticks.set_missed_tick_behavior(MissedTickBehavior::Skip);
     let mut ends = Ends::new()?;
-    let (mut hears, mut keyed, mut took) = (true, true, true);
+    let (mut hears, mut keyed) = (true, true);
     loop {
         if parking.is_parked(Part::Supervisor) {
             std::future::pending::<()>().await;
         }
         tokio::select! {
-            received = reader.receive(), if hears && !parking.is_parked(Part::Telemetry) => {
-                took = true;
-                match received {
-                    Ok(Received::Frame(frame)) => drive.frame(frame),
-                    Ok(Received::Event(event)) => drive.link_event(&event),
-                    Err(_) => {
-                        hears = false;
-                        drive.handle(Event::LinkEnded);
-                    }
+            received = reader.receive(), if hears && !parking.is_parked(Part::Telemetry) => match received {
+                Ok(Received::Frame(frame)) => drive.frame(frame),
+                Ok(Received::Event(event)) => drive.link_event(&event),
+                Err(_) => {
+                    hears = false;
+                    drive.handle(Event::LinkEnded);
                 }
-            }
-            // frames that wait and are not taken: a supervisor that does not see renews nothing
-            _ = ticks.tick() => if std::mem::replace(&mut took, false) || !reader.is_behind() {
-                drive.handle(Event::Tick);
             },
+            _ = ticks.tick() => drive.tick(reader.is_behind()),
             key = console.keys.recv(), if keyed => match key {
                 Some(key) => drive.key(key),
                 None => keyed = false,
