@@ -33,7 +33,7 @@ pub use open::{Ends, Link, LinkOptions};
 pub use reader::{LinkEvent, LinkReader, Received, ReceivedFrame};
 pub use recorder::{RecordError, Recorder, RecorderStatus, Store};
 pub use replay::{Replay, ReplayCounts, ReplayError};
-pub use signing::{Signing, SigningError, SigningKey};
+pub use signing::{Distrust, Signing, SigningError, SigningKey};
 pub(crate) use signing::{TAIL_BYTES, time_of};
 pub use stats::LinkStats;
 pub use writer::LinkWriter;
