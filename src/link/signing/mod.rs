@@ -179,7 +179,7 @@ impl Signing {
 
     /// The same, begun at a time of the caller's clock: for whoever has no other ([`time_of`]).
     #[must_use]
-    pub(crate) fn with_key_at(key: SigningKey, time: u64) -> Self {
+    pub fn with_key_at(key: SigningKey, time: u64) -> Self {
         Self::new(key, Times { own: time, ..Times::default() }, None, Vec::new())
     }
 
@@ -200,7 +200,7 @@ impl Signing {
     }
 
     /// The same at a time of the caller's clock.
-    pub(crate) fn sign_at(&self, frame: &mut [u8], now: u64) {
+    pub fn sign_at(&self, frame: &mut [u8], now: u64) {
         let Some(at) = frame.len().checked_sub(TAIL_BYTES) else { return };
         let time = self.state().next(now);
         frame[at] = self.link_id;
@@ -218,7 +218,7 @@ impl Signing {
     }
 
     /// The same at a time of the caller's clock.
-    pub(crate) fn verify_at(&self, frame: &Frame<'_>, now: u64) -> Result<(), Distrust> {
+    pub fn verify_at(&self, frame: &Frame<'_>, now: u64) -> Result<(), Distrust> {
         let header = frame.header();
         if !header.is_signed() {
             return match header.version {
