@@ -122,7 +122,7 @@ fn folder() -> PathBuf {
 
 /// Files of a key and of times are read or refused with words; read, time goes on behind what the file says.
 fn files(mut script: Bytes<'_>) {
-    let has_times = script.u8() % 4 != 0;
+    let has_times = !script.u8().is_multiple_of(4);
     let key = script.piece();
     let times = script.rest();
     let folder = folder();

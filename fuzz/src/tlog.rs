@@ -133,7 +133,7 @@ fn scripted(script: &mut Bytes<'_>, sequence: u8) -> Vec<u8> {
     let from = From { sender: VEHICLE, sequence };
     let payload = script.piece();
     match u8::try_from(id) {
-        Ok(id) if script.u8() % 4 == 0 => v1(id, from, payload),
+        Ok(id) if script.u8().is_multiple_of(4) => v1(id, from, payload),
         _ => v2(id, from, payload),
     }
 }
@@ -153,7 +153,7 @@ fn whole_records(mut script: Bytes<'_>, seeded: bool) {
             5 => 7 * YEAR_US,
             _ => 4000,
         };
-        stamp_us = if script.u8() % 16 == 0 {
+        stamp_us = if script.u8().is_multiple_of(16) {
             stamp_us.saturating_sub(off_us).max(START_US - 10 * YEAR_US)
         } else {
             (stamp_us + off_us).min(START_US + 60 * YEAR_US)

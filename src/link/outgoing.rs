@@ -4,7 +4,6 @@ use std::collections::VecDeque;
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-use mavlink::dialects::ardupilotmega::MavMessage;
 use tokio::net::UdpSocket;
 use tokio::sync::{mpsc, oneshot};
 

@@ -133,7 +133,7 @@ impl World {
                 2 => self.vehicle.booted = self.now,
                 _ => self.vehicle.battery_percent = script.u8() % 101,
             },
-            13 if script.u8() % 4 == 0 => self.event(Event::Stop("a signal".to_owned())),
+            13 if script.u8().is_multiple_of(4) => self.event(Event::Stop("a signal".to_owned())),
             14 => {
                 self.vehicle.mode =
                     [modes.hold, modes.land, modes.home, modes.external][usize::from(script.u8() % 4)]
@@ -262,7 +262,8 @@ impl World {
         match self.streamer.poll(self.now, self.flight.guide()) {
             Some(Streamed::Setpoint(setpoint, message)) => self.send_setpoint(&setpoint, &message),
             Some(Streamed::Stalled(gap)) => self.stalled = Some(gap),
-            None => {}
+            // nothing is sent; the flight finds the same and ends
+            Some(Streamed::Unfit(_)) | None => {}
         }
     }
 

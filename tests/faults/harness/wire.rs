@@ -122,7 +122,7 @@ fn command(px4: bool, payload: Payload<'_>) -> Left {
         }
         22 if !px4 && p[6] > 0.0 && p[6] < 100.0 => Left::Takeoff(p[6]),
         // SET_MESSAGE_INTERVAL, REQUEST_MESSAGE, GET_MESSAGE_INTERVAL
-        511 | 512 | 510 if p[0] >= 0.0 && p[0] < 65_536.0 => Left::Other(number),
+        510..=512 if p[0] >= 0.0 && p[0] < 65_536.0 => Left::Other(number),
         _ => wrong(),
     }
 }
