@@ -82,7 +82,7 @@ async fn checked_by(
 }
 
 async fn ends_after_checks(ride: Ride) -> Outcome {
-    let (show, pictures) = mpsc::channel::<ViewModel>();
+    let (show, pictures) = mpsc::sync_channel::<ViewModel>(4);
     let (press, keys) = unbounded_channel();
     // a thread that ends with the flight's last picture
     std::thread::spawn(move || {

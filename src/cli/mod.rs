@@ -163,7 +163,7 @@ pub struct IdentifyArgs {
 }
 
 /// Arguments of `mavid fly`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct FlyArgs {
     #[arg(long, value_name = "ADDRESS", help = live::ADDRESS)]
     pub connect: String,

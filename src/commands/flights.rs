@@ -4,6 +4,7 @@ use mavid::config::{default_csv_mapping, load_csv_mapping};
 use mavid::log::{LoadOptions, Recording, SystemId, csv, shared_share};
 use mavid::report::InputFile;
 use mavid::signals::{ConditionSettings, Signals, condition};
+use mavid::text;
 use mavid::vehicle::Vehicle;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -36,7 +37,7 @@ impl Flight {
             } else {
                 format!("; not read of the log: {}", losses.join("; "))
             };
-            CommandError::Input(format!("{path} with {}: {error}{lost}", file.display()))
+            CommandError::Input(format!("{path} with {}: {error}{lost}", text::path(&file)))
         })
     }
 }
@@ -48,7 +49,8 @@ pub fn is_csv(path: &Path) -> bool {
 
 /// Reads one recording.
 pub fn load(path: &Path, read: &ReadArgs) -> Result<Flight, CommandError> {
-    let named = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
+    let named =
+        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&path)));
     let (recording, losses) = if is_csv(path) {
         let mapping =
             read.csv_map.as_ref().map_or_else(default_csv_mapping, |file| load_csv_mapping(file))?;
@@ -61,14 +63,14 @@ pub fn load(path: &Path, read: &ReadArgs) -> Result<Flight, CommandError> {
         (loaded.recording, loaded.report.losses())
     };
     let sha256 = sha256_of(path).map_err(|error| named(&error))?;
-    Ok(Flight { recording, input: InputFile { path: path.display().to_string(), sha256, losses } })
+    Ok(Flight { recording, input: InputFile { path: text::path(&path), sha256, losses } })
 }
 
 /// A file that is no recording, for the provenance.
 pub fn file(path: &Path) -> Result<InputFile, CommandError> {
     let sha256 =
-        sha256_of(path).map_err(|error| CommandError::Input(format!("{}: {error}", path.display())))?;
-    Ok(InputFile { path: path.display().to_string(), sha256, losses: Vec::new() })
+        sha256_of(path).map_err(|error| CommandError::Input(format!("{}: {error}", text::path(&path))))?;
+    Ok(InputFile { path: text::path(&path), sha256, losses: Vec::new() })
 }
 
 /// Share of a hold-out's samples that may be in an explained flight: none are, but for chance.

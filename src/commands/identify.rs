@@ -11,6 +11,7 @@ use mavid::report::{
     model_toml, svg,
 };
 use mavid::signals::{ConditionSettings, Quality, Signals, ThrustPreference};
+use mavid::text;
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
@@ -215,7 +216,7 @@ fn with_effects(
     wanted: &Wanted,
 ) -> Result<WithEffects, CommandError> {
     let vehicle = &loaded.vehicle;
-    let known = effects(&loaded.model.effects, &args.vehicle.display().to_string(), vehicle)?;
+    let known = effects(&loaded.model.effects, &text::path(&args.vehicle), vehicle)?;
     wanted.check_wind(&known).map_err(|error| CommandError::Input(format!("--with: {error}")))?;
     let by_commands = args.commands || wanted.need_commands();
     let settings = ConditionSettings {

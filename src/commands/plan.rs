@@ -12,6 +12,7 @@ use mavid::plan::{
     Assessment, Criterion, Dynamics, FlightPlan, Margin, PARAMETERS, Plan, PlanError, PlanRequest,
     StartPlace, assess, bounds_of, flight_path, plan, search_of,
 };
+use mavid::text;
 use mavid::trajectory::{CirclePath, FlightPath, FourierTrajectory, Segment};
 use mavid::vehicle::{Limits, Vehicle};
 use serde::Serialize;
@@ -51,7 +52,9 @@ struct Transitions {
 impl From<PlanError> for CommandError {
     fn from(error: PlanError) -> Self {
         match error {
-            PlanError::Request { .. } | PlanError::Conflict(_) => Self::Input(error.to_string()),
+            PlanError::Request { .. } | PlanError::Size(_) | PlanError::Conflict(_) => {
+                Self::Input(error.to_string())
+            }
             PlanError::OutsideLimits { .. } | PlanError::NotDetermined => Self::Failure(error.to_string()),
         }
     }
@@ -83,6 +86,7 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
         (stored.series, worth, None)
     } else if let Some(circle) = &args.circle {
         let series = circle_of(circle, &limits)?;
+        series.check_size(request.repeats).map_err(PlanError::from)?;
         let worth = assess(&series, &vehicle, &bounds, &request);
         (series, worth, None)
     } else {
@@ -99,7 +103,7 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
     }
     if let Some(path) = &args.out {
         store(path, series, (&limits, &request), &summary)?;
-        output::message(&format!("wrote {}", path.display()));
+        output::message(&format!("wrote {}", text::path(&path)));
     }
     Ok(summary)
 }
@@ -193,7 +197,7 @@ fn store(
         }),
     };
     std::fs::write(path, trajectory_to_toml(&stored)?)
-        .map_err(|error| CommandError::Failure(format!("cannot write {}: {error}", path.display())))
+        .map_err(|error| CommandError::Failure(format!("cannot write {}: {error}", text::path(&path))))
 }
 
 fn request_of(args: &PlanArgs) -> Result<PlanRequest, CommandError> {

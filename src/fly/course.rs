@@ -10,6 +10,7 @@ use crate::plan::{self, TransitionError, bounds_of};
 use crate::trajectory::{
     FlightPath, FourierTrajectory, Segment, Transition, at_rest, end_state, flat_motion,
 };
+use crate::units::whole;
 use crate::vehicle::{Limits, Vehicle};
 
 /// Hover before and after the trajectory, s.
@@ -90,14 +91,11 @@ impl Course {
     /// `repeats + 1` after it.
     #[must_use]
     pub fn period_at(&self, along_s: f64) -> u32 {
+        if along_s >= self.series_from_s + f64::from(self.repeats) * self.period_s {
+            return self.repeats + 1;
+        }
         let flown = ((along_s - self.series_from_s) / self.period_s).floor() + 1.0;
-        (0..=self.repeats).rev().find(|count| f64::from(*count) <= flown).map_or(0, |count| {
-            if along_s >= self.series_from_s + f64::from(self.repeats) * self.period_s {
-                self.repeats + 1
-            } else {
-                count
-            }
-        })
+        u32::try_from(whole(flown.max(0.0))).map_or(0, |count| count.min(self.repeats))
     }
 
     /// The same course with its series ending with the period that is flown `along_s` from the start; `None`

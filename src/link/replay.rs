@@ -18,6 +18,7 @@ use super::reader::{LinkEvent, LinkReader, Received, ReceivedFrame};
 use super::shared::Shared;
 use super::writer::LinkWriter;
 use crate::log::{Frame, LogError, SystemId, TlogReader};
+use crate::text;
 
 const HEARTBEAT: u32 = 0;
 /// HEARTBEAT.autopilot of what is no vehicle.
@@ -62,7 +63,7 @@ const COMMANDS: &[u32] = &[
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
     /// it cannot be read
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {source}", text::path(&path))]
     Log {
         /// which file
         path: PathBuf,
@@ -160,7 +161,7 @@ impl Replay {
     /// stamp has the present moment and the log's time. At the end the reader says that the link has ended.
     #[must_use]
     pub fn start(self) -> LinkReader {
-        let shared = Arc::new(Shared::new(self.path.display().to_string(), None, &LinkOptions::default()));
+        let shared = Arc::new(Shared::new(text::path(&self.path), None, &LinkOptions::default()));
         let (to_reader, from_task) = mpsc::unbounded_channel();
         let reader = LinkReader::new(from_task, shared.clone(), None);
         tokio::spawn(async move {

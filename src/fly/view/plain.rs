@@ -19,11 +19,16 @@ pub struct PlainLog {
 impl PlainLog {
     /// The lines that are due, by the model's own time.
     pub fn lines(&mut self, model: &ViewModel) -> Vec<String> {
-        let new = model.event_count.saturating_sub(self.events);
-        let new = usize::try_from(new).unwrap_or(usize::MAX).min(model.events.len());
+        let all = model.event_count.saturating_sub(self.events);
+        let new = usize::try_from(all).unwrap_or(usize::MAX).min(model.events.len());
         self.events = model.event_count;
         let first = model.events.len() - new;
-        let mut lines: Vec<String> = model.events.iter().skip(first).map(event_line).collect();
+        let forgotten = all.saturating_sub(u64::try_from(new).unwrap_or(u64::MAX));
+        let mut lines: Vec<String> = Vec::new();
+        if forgotten > 0 {
+            lines.push(format!("[{:7.1} s] {forgotten} events came too fast to be shown", model.elapsed_s));
+        }
+        lines.extend(model.events.iter().skip(first).map(event_line));
         if is_due(&mut self.state_s, model.elapsed_s, STATE_S) {
             lines.push(state_line(model));
         }
@@ -109,7 +114,11 @@ mod tests {
             model.event(Level::Ok, format!("event {number}"));
         }
         // those that the list has forgotten cannot be said any more, and none is said twice
-        assert_eq!(log.lines(&model).len(), 200);
+        let lines = log.lines(&model);
+        assert_eq!(
+            (lines.len(), lines[0].as_str()),
+            (201, "[    0.5 s] 300 events came too fast to be shown")
+        );
         model.elapsed_s = 1.5;
         assert_eq!(log.lines(&model), ["[    1.5 s] connecting"]);
     }
