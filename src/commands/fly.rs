@@ -98,7 +98,8 @@ fn fly(json: bool, args: &FlyArgs, work: &Work) -> Result<Outcome, CommandError>
     })?;
     say(&record);
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
-    let analysis = Analysis::of((&args.out, landed), &args.vehicle, args.system_id)?;
+    let system = record.system.map(|system| system.0);
+    let analysis = Analysis::of((&args.out, landed), &args.vehicle, system)?;
     if json {
         output::json(&Document::new(&record, &args.out, analysis.as_ref()))?;
     } else if let Some(analysis) = &analysis {
@@ -137,6 +138,7 @@ pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
     let sortie = sortie(args, &trajectory, &loaded.vehicle)?;
     let signing =
         args.signing_key_file.as_deref().map(Signing::open).transpose().map_err(|error| input(&error))?;
+    output::signing_warnings(signing.as_ref());
     leftover::make_way(&args.out, SystemId(args.station_id))?;
     copy(&args.trajectory, &args.out.join("trajectory.toml"))?;
     copy(&args.vehicle, &args.out.join("vehicle.toml"))?;

@@ -7,7 +7,7 @@ mod stream;
 mod tracking;
 
 pub use envelope::Envelope;
-pub use knowledge::ModeKnowledge;
+pub use knowledge::{Doubted, ModeKnowledge};
 pub use masters::Masters;
 pub use stream::{Guide, Lead, Streamed, Streamer};
 pub use tracking::Tracking;
