@@ -26,7 +26,7 @@ pub use builder::RecordingBuilder;
 pub use clock::{Anchor, Stamp};
 pub use crc::{CrcSeeds, checksum};
 pub use decode::{DecodeReport, Decoder, Event, Source, StreamId, Vehicle};
-pub use embedded::EMBEDDED_UID2;
+pub use embedded::{EMBEDDED_UID2, Nonce};
 pub use error::LogError;
 pub use frame::{
     Check, ComponentId, Frame, Header, MARKER_V1, MARKER_V2, MAX_FRAME_BYTES, Payload, Start, SystemId,
