@@ -460,6 +460,168 @@ fn over_a_bad_link_the_flight_ends_and_no_setpoint_is_stale() {
     }
 }
 
+/// What commands a vehicle, of all that was sent after a time; questions are free.
+fn orders_since(flying: &Flying, since: Duration) -> Vec<(Duration, u32)> {
+    let questions = [511, 512];
+    let after = flying.commands.iter().filter(|(at, number, _)| *at > since && !questions.contains(number));
+    after.map(|(at, number, _)| (*at, *number)).collect()
+}
+
+/// The flight is not looked after for so long.
+fn stall(flying: &mut Flying, ms: u32) {
+    for _ in 0..ms / 10 {
+        flying.step(false);
+    }
+}
+
+fn watched_briefly(kind: AutopilotKind) -> Flying {
+    Flying::new(vehicle_settings(kind), |sortie| sortie.settings.watch_max = Duration::from_secs(8))
+}
+
+#[test]
+fn a_pilot_who_takes_over_during_a_stall_keeps_the_vehicle() {
+    for kind in BOTH {
+        for (before_ms, after_ms) in [(50, 150), (20, 380), (300, 350), (100, 2900)] {
+            let mut flying = watched_briefly(kind);
+            flying.fly_into_the_trajectory(3.0);
+            stall(&mut flying, before_ms);
+            flying.vehicle.fault(Fault::PilotTakesOver(Mode::Position));
+            let since = flying.now;
+            stall(&mut flying, after_ms);
+            let awake = flying.now;
+            let outcome = flying.finish();
+            assert_eq!(orders_since(&flying, since), [], "{kind:?} {after_ms}: {}", flying.story());
+            assert_eq!(flying.setpoints_since(awake), 0, "{kind:?} {after_ms}: {}", flying.story());
+            assert!(matches!(outcome.ending, Ending::InTheAir(_)), "{outcome:?}");
+            assert!(matches!(outcome.cause, Some(Cause::Stalled(_) | Cause::Override(_))), "{outcome:?}");
+        }
+    }
+}
+
+#[test]
+fn a_pilot_who_takes_over_during_a_silence_keeps_the_vehicle() {
+    for kind in BOTH {
+        for (silent_ms, after_ms) in [(1200, 300), (2200, 1000), (2600, 200), (4000, 3500), (7000, 600)] {
+            let mut flying = watched_briefly(kind);
+            flying.fly_into_the_trajectory(3.0);
+            flying.vehicle.fault(Fault::LinkSilence(Duration::from_millis(silent_ms)));
+            let heard = flying.now + Duration::from_millis(silent_ms);
+            flying.wait(1e-3 * f64::from(after_ms));
+            flying.vehicle.fault(Fault::PilotTakesOver(Mode::Altitude));
+            let since = flying.now;
+            flying.finish();
+            assert_eq!(orders_since(&flying, since), [], "{kind:?} {silent_ms}: {}", flying.story());
+            let late = heard + Duration::from_millis(200);
+            assert_eq!(flying.setpoints_since(late), 0, "{kind:?} {silent_ms}: {}", flying.story());
+            assert_eq!(flying.phase(), "over");
+        }
+    }
+}
+
+#[test]
+fn hands_off_is_final() {
+    for kind in BOTH {
+        let mut flying = Flying::of(kind);
+        flying.fly_into_the_trajectory(3.0);
+        flying.vehicle.fault(Fault::PilotTakesOver(Mode::Position));
+        flying.until(1.5, "hands off", |flying| flying.phase() == "hands off");
+        let since = flying.now;
+        // another companion computer flies it in our mode, then it is landed
+        flying.vehicle.fault(Fault::PilotTakesOver(Mode::Guided));
+        flying.wait(4.0);
+        flying.event(Event::Key(Key::Abort));
+        flying.event(Event::Key(Key::Kill));
+        flying.vehicle.fault(Fault::PilotTakesOver(Mode::Land));
+        let outcome = flying.finish();
+        assert_eq!(outcome.ending, Ending::Landed, "{}", flying.story());
+        let sent = flying.commands.iter().filter(|(at, ..)| *at > since).count();
+        assert_eq!((sent, flying.setpoints_since(since)), (0, 0), "{}", flying.story());
+    }
+}
+
+#[test]
+fn one_forged_heartbeat_that_says_disarmed_ends_nothing() {
+    for (kind, mode) in [(PX4, 6 << 16), (COPTER, 4)] {
+        let mut flying = Flying::of(kind);
+        flying.fly_into_the_trajectory(3.0);
+        let mut raw = MAVLinkV2MessageRaw::new();
+        let mut data = mavlink::dialects::ardupilotmega::HEARTBEAT_DATA {
+            custom_mode: mode,
+            mavtype: mavlink::dialects::ardupilotmega::MavType::MAV_TYPE_QUADROTOR,
+            autopilot: mavlink::dialects::ardupilotmega::MavAutopilot::MAV_AUTOPILOT_PX4,
+            ..Default::default()
+        };
+        data.system_status = mavlink::dialects::ardupilotmega::MavState::MAV_STATE_ACTIVE;
+        let sequence = flying.heard_sequence.wrapping_add(1);
+        let header = MavHeader { system_id: 1, component_id: 1, sequence };
+        raw.serialize_message(header, &MavMessage::HEARTBEAT(data));
+        flying.event(Event::Frame(mavid::log::Frame::at_start(raw.raw_bytes()).unwrap()));
+        assert_eq!(flying.phase(), "trajectory", "{}", flying.story());
+        let outcome = flying.finish();
+        assert!(outcome.is_whole(), "{outcome:?} {}", flying.story());
+        let told = flying.notes.iter().filter(|note| note.text.contains("says that it is disarmed")).count();
+        assert_eq!(told, 1, "{}", flying.story());
+    }
+}
+
+#[test]
+fn a_pilots_loiter_after_an_abort_is_not_followed_by_a_landing() {
+    let mut flying = watched_briefly(COPTER);
+    flying.fly_into_the_trajectory(3.0);
+    flying.event(Event::Key(Key::To(mavid::fly::Mode::Hold)));
+    flying.wait(2.0);
+    assert_eq!(flying.phase(), "hold");
+    flying.vehicle.fault(Fault::PilotTakesOver(Mode::Hold));
+    let since = flying.now;
+    flying.finish();
+    assert_eq!(orders_since(&flying, since), [], "{}", flying.story());
+    assert!(flying.story().contains("LOITER"), "{}", flying.story());
+}
+
+#[test]
+fn the_vehicles_own_failsafe_is_not_taken_for_a_second_station() {
+    let mut flying = Flying::of(PX4);
+    flying.fly_into_the_trajectory(3.0);
+    flying.up.loss = 1.0;
+    let since = flying.now + Duration::from_secs(1);
+    let outcome = flying.finish();
+    assert!(matches!(outcome.cause, Some(Cause::Override(_))), "{}", flying.story());
+    assert_eq!(orders_since(&flying, since), [], "{}", flying.story());
+}
+
+#[test]
+fn a_host_that_stalls_in_the_takeoff_says_so() {
+    for kind in BOTH {
+        let mut flying = Flying::of(kind);
+        flying.until(60.0, "take off", |flying| flying.phase() == "take off");
+        flying.wait(0.5);
+        stall(&mut flying, 1000);
+        let outcome = flying.finish();
+        assert!(matches!(outcome.cause, Some(Cause::Stalled(_))), "{kind:?}: {}", flying.story());
+        assert!(flying.cause().to_string().contains("stood still"), "{}", flying.cause());
+        assert_eq!(outcome.ending, Ending::Landed);
+    }
+}
+
+#[test]
+fn a_gate_that_stays_shut_says_what_to_change() {
+    let mut flying = Flying::new(vehicle_settings(PX4), |sortie| sortie.settings.gate_m = Some(1e-6));
+    flying.finish();
+    let cause = flying.cause().to_string();
+    assert!(cause.contains("0.00 m are allowed") && cause.contains("--gate-distance"), "{cause}");
+}
+
+/// The whole of the supervision ends: nothing is sent, and the vehicle's own failsafe acts.
+#[test]
+fn a_supervisor_that_never_wakes_leaves_the_vehicle_to_its_failsafe() {
+    let mut flying = Flying::of(PX4);
+    flying.fly_into_the_trajectory(3.0);
+    let since = flying.now;
+    stall(&mut flying, 8000);
+    assert_eq!(orders_since(&flying, since), []);
+    assert_eq!(flying.setpoints_since(since + Duration::from_millis(100)), 0);
+}
+
 /// Flown with a file whose mass is `factor` times the vehicle's.
 fn flown_by_a_file(factor: f64) -> (Flying, Outcome) {
     let settings = vehicle_settings(PX4);

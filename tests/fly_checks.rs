@@ -74,7 +74,9 @@ async fn checked_by(
     let _ = std::fs::remove_dir_all(&dir);
     std::fs::create_dir_all(&dir).unwrap();
     let address = format!("udpout:{address}").parse().unwrap();
-    let ride = Ride { sortie, vehicle: file, address, signing: own_key.map(Signing::with_key), dir };
+    let parking = fly::Parking::default();
+    let signing = own_key.map(Signing::with_key);
+    let ride = Ride { sortie, vehicle: file, address, signing, dir, parking };
     let outcome = ends_after_checks(ride).await;
     vehicle.abort();
     outcome

@@ -206,6 +206,12 @@ pub struct FlyArgs {
     /// s that the vehicle hovers on a full battery: the flight is then refused where the charge does not last for it
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub hover_time: Option<f64>,
+    /// how near to its start the vehicle must hover before the trajectory begins, m [default: 0.3, or what it can do]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub gate_distance: Option<f64>,
+    /// how slow it must be there, m/s [default: 0.2, or what it can do]
+    #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
+    pub gate_speed: Option<f64>,
     /// a check whose refusal is taken for a warning; may be given several times
     #[arg(long, value_enum, value_name = "CHECK")]
     pub accept: Vec<CheckName>,

@@ -138,7 +138,8 @@ pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
     })?;
     copy(&args.trajectory, &args.out.join("trajectory.toml"))?;
     copy(&args.vehicle, &args.out.join("vehicle.toml"))?;
-    Ok(Ride { sortie, vehicle: loaded.vehicle, address, signing, dir: args.out.clone() })
+    let parking = fly::Parking::default();
+    Ok(Ride { sortie, vehicle: loaded.vehicle, address, signing, dir: args.out.clone(), parking })
 }
 
 fn copy(from: &Path, to: &Path) -> Result<(), CommandError> {
@@ -153,6 +154,8 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
         ("--tracking-max", Some(args.tracking_max)),
         ("--tilt-max", args.tilt_max),
         ("--hover-time", args.hover_time),
+        ("--gate-distance", args.gate_distance),
+        ("--gate-speed", args.gate_speed),
     ];
     for (name, value) in positive {
         if let Some(value) = value.filter(|value| !value.is_finite() || *value <= 0.0) {
@@ -189,6 +192,8 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
             tracking_max_m: args.tracking_max,
             tilt_max_rad: args.tilt_max.map(rad_from_deg),
             hover_time_s: args.hover_time,
+            gate_m: args.gate_distance,
+            gate_m_s: args.gate_speed,
             await_clearance: true,
             await_word: args.arm && !args.yes && is_attended(),
             accepted: args.accept.iter().map(|name| check(*name)).collect(),

@@ -103,20 +103,43 @@ struct Pending {
     since: Duration,
     next: Duration,
     sent: u8,
+    /// reports of the mode that had come when it was given or last sent
+    reports: u64,
     rejection: Option<(u8, i32)>,
 }
 
+/// What the vehicle's mode permits to be sent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Permission {
+    /// reports of the mode that count so far
+    pub reports: u64,
+    /// the last of them says that the vehicle is ours to command
+    pub ours: bool,
+}
+
 /// All commands that wait for their answer; one of a kind.
+///
+/// What only asks goes out when it is due. What commands (a mode, arming, disarming, takeoff) goes out, and goes out
+/// again, only on a report of the mode that came after it was given or last sent, and that says that the vehicle is ours.
 #[derive(Debug, Default)]
 pub struct Commander {
     pending: Vec<Pending>,
 }
 
 impl Commander {
-    /// A command to be sent with the next [`Commander::poll`]. It replaces one of its kind that waits.
-    pub fn give(&mut self, now: Duration, order: Order, manner: Manner) {
+    /// A command to be sent by [`Commander::poll`] once it is permitted. It replaces one of its kind that waits.
+    /// `reports`: the reports of the mode that count so far.
+    pub fn give(&mut self, now: Duration, order: Order, manner: Manner, reports: u64) {
         self.pending.retain(|waiting| waiting.order.command != order.command);
-        self.pending.push(Pending { order, manner, since: now, next: now, sent: 0, rejection: None });
+        self.pending.push(Pending {
+            order,
+            manner,
+            since: now,
+            next: now,
+            sent: 0,
+            reports,
+            rejection: None,
+        });
     }
 
     /// Whether a command of this kind waits for its answer.
@@ -131,13 +154,27 @@ impl Commander {
         self.pending.iter().any(|waiting| waiting.order.command == order.command)
     }
 
+    /// Whether a command is due and waits for a report of the mode.
+    #[must_use]
+    pub fn waits_for_report(&self, now: Duration, permission: Permission) -> bool {
+        self.pending.iter().any(|waiting| {
+            let new = permission.ours && permission.reports > waiting.reports;
+            now >= waiting.next && !waiting.order.is_question() && !new
+        })
+    }
+
     /// Forgets all of them.
     pub fn clear(&mut self) {
         self.pending.clear();
     }
 
     /// What is to be sent now, and what is given up.
-    pub fn poll(&mut self, now: Duration, target: Target) -> (Vec<MavMessage>, Vec<Answer>) {
+    pub fn poll(
+        &mut self,
+        now: Duration,
+        target: Target,
+        permission: Permission,
+    ) -> (Vec<MavMessage>, Vec<Answer>) {
         let (mut messages, mut answers) = (Vec::new(), Vec::new());
         self.pending.retain_mut(|waiting| {
             if now.saturating_sub(waiting.since) >= waiting.manner.patience && waiting.sent > 0 {
@@ -147,7 +184,12 @@ impl Commander {
                 answers.push(Answer { order: waiting.order, result });
                 return false;
             }
-            if now >= waiting.next {
+            let permitted =
+                waiting.order.is_question() || permission.ours && permission.reports > waiting.reports;
+            if now >= waiting.next && permitted {
+                waiting.reports = permission.reports;
+                // its patience begins when it could be sent
+                waiting.since = if waiting.sent == 0 { now } else { waiting.since };
                 messages.push(target.command(&waiting.order, waiting.sent));
                 waiting.sent = waiting.sent.saturating_add(1);
                 waiting.next = now + waiting.manner.repeat;
@@ -202,6 +244,11 @@ mod tests {
         Duration::from_millis(value)
     }
 
+    /// So many reports of the mode have come, and it is ours.
+    fn ours(reports: u64) -> Permission {
+        Permission { reports, ours: true }
+    }
+
     fn ack(command: u16, result: u8) -> [u8; 3] {
         let [low, high] = command.to_le_bytes();
         [low, high, result]
@@ -210,10 +257,10 @@ mod tests {
     #[test]
     fn an_unanswered_command_is_sent_again_and_given_up() {
         let mut commander = Commander::default();
-        commander.give(ms(0), Order::arm(true), Manner::URGENT);
+        commander.give(ms(0), Order::arm(true), Manner::URGENT, 0);
         let mut sent = Vec::new();
         for step in 0..60 {
-            let (messages, answers) = commander.poll(ms(10 * step), target());
+            let (messages, answers) = commander.poll(ms(10 * step), target(), ours(step + 1));
             sent.extend(messages.iter().map(|_| 10 * step));
             if let [answer] = answers.as_slice() {
                 assert_eq!(answer.result, AnswerResult::Unanswered);
@@ -227,11 +274,11 @@ mod tests {
     #[test]
     fn a_temporary_rejection_is_asked_again_until_patience_ends() {
         let mut commander = Commander::default();
-        commander.give(ms(0), Order::arm(true), Manner::PATIENT);
-        assert_eq!(commander.poll(ms(0), target()).0.len(), 1);
+        commander.give(ms(0), Order::arm(true), Manner::PATIENT, 0);
+        assert_eq!(commander.poll(ms(0), target(), ours(1)).0.len(), 1);
         assert!(commander.hear(ms(20), Payload(&ack(400, 1))).is_none());
-        assert!(commander.poll(ms(600), target()).0.is_empty(), "it waits a second");
-        assert_eq!(commander.poll(ms(1020), target()).0.len(), 1);
+        assert!(commander.poll(ms(600), target(), ours(2)).0.is_empty(), "it waits a second");
+        assert_eq!(commander.poll(ms(1020), target(), ours(3)).0.len(), 1);
         assert!(commander.hear(ms(1050), Payload(&ack(176, 0))).is_none(), "of another command");
         let answer = commander.hear(ms(1060), Payload(&ack(400, 0))).unwrap();
         assert_eq!(answer.result, AnswerResult::Accepted);
@@ -241,9 +288,33 @@ mod tests {
     #[test]
     fn a_refusal_says_why() {
         let mut commander = Commander::default();
-        commander.give(ms(0), Order::arm(true), Manner::PATIENT);
-        commander.poll(ms(0), target());
+        commander.give(ms(0), Order::arm(true), Manner::PATIENT, 0);
+        commander.poll(ms(0), target(), ours(1));
         let answer = commander.hear(ms(5), Payload(&[0x90, 1, 2, 0, 9, 0, 0, 0])).unwrap();
         assert_eq!(answer.result.text(), "denied (result 2, detail 9)");
+    }
+
+    #[test]
+    fn a_command_waits_for_a_report_of_the_mode_and_a_question_does_not() {
+        let mut commander = Commander::default();
+        commander.give(ms(0), Order::arm(true), Manner::PATIENT, 7);
+        commander.give(ms(0), Order::request_message(148), Manner::PATIENT, 7);
+        assert_eq!(commander.poll(ms(0), target(), ours(7)).0.len(), 1, "the question");
+        assert!(commander.poll(ms(10), target(), Permission { reports: 9, ours: false }).0.is_empty());
+        assert_eq!(commander.poll(ms(20), target(), ours(8)).0.len(), 1);
+        // not again on the same report, however long it takes
+        let again = commander.poll(ms(900), target(), ours(8)).0;
+        assert!(again.iter().all(|message| !format!("{message:?}").contains("ARM_DISARM")), "{again:?}");
+        assert_eq!(commander.poll(ms(1000), target(), ours(9)).0.len(), 1);
+    }
+
+    #[test]
+    fn patience_begins_when_it_could_be_sent() {
+        let mut commander = Commander::default();
+        commander.give(ms(0), Order::arm(false), Manner::URGENT, 0);
+        assert_eq!(commander.poll(ms(900), target(), ours(0)), (Vec::new(), Vec::new()));
+        assert_eq!(commander.poll(ms(1000), target(), ours(1)).0.len(), 1);
+        assert!(commander.poll(ms(1300), target(), ours(1)).1.is_empty());
+        assert_eq!(commander.poll(ms(1350), target(), ours(1)).1.len(), 1, "unanswered");
     }
 }

@@ -13,6 +13,7 @@
 //! ```
 
 mod address;
+mod arming;
 mod commander;
 mod course;
 pub mod finding;
@@ -38,7 +39,7 @@ mod target;
 mod telemetry;
 pub mod view;
 
-pub use commander::{Answer, AnswerResult, Manner};
+pub use commander::{Answer, AnswerResult, Manner, Permission};
 pub use course::{Around, Course, PathClock, PathTime, Track, approach, reference_at, transfer};
 pub use flight::{Action, Event, Flight, Key, Status};
 pub use health::{BatteryLevel, EstimatorReport, SystemReport};
@@ -47,7 +48,8 @@ pub use lift::{Lift, Weighed};
 pub use modes::{Mode, Stack};
 pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
 pub use runner::{
-    Console, EVENTS, PARAMETERS, Record, Ride, RunError, StreamFigures, TLOG, raise_priority, run,
+    Console, EVENTS, PARAMETERS, Parking, Part, Record, Ride, RunError, StreamFigures, TLOG, raise_priority,
+    run,
 };
 pub use safety::{Feeding, Guide, Lead, SetpointBounds, Streamed, Streamer};
 pub use setpoint::{Place, Setpoint};

@@ -76,9 +76,6 @@ const COPTER_NAMES: [(u32, &str); 25] = [
     (27, "AUTO_RTL"),
 ];
 
-/// ArduCopter LOITER: also a hold, of a vehicle without BRAKE.
-const COPTER_LOITER: u32 = 5;
-
 impl Stack {
     /// The stack of an autopilot; `None` for one whose rules are not known here.
     #[must_use]
@@ -114,19 +111,26 @@ impl Stack {
         }
     }
 
+    /// `custom_mode` of a HEARTBEAT or CURRENT_MODE in this mode.
+    #[must_use]
+    pub fn number_of(self, mode: Mode) -> u32 {
+        match (self, mode) {
+            (Self::Px4, Mode::External) => px4(6, 0),
+            (Self::Px4, Mode::Hold) => px4(4, 3),
+            (Self::Px4, Mode::Land) => px4(4, 6),
+            (Self::Px4, Mode::Return) => px4(4, 5),
+            (Self::ArduPilot, Mode::External) => 4,
+            // LOITER holds too, and is never asked for: it is a pilot's
+            (Self::ArduPilot, Mode::Hold) => 17,
+            (Self::ArduPilot, Mode::Land) => 9,
+            (Self::ArduPilot, Mode::Return) => 6,
+        }
+    }
+
     /// Whether `custom_mode` of a HEARTBEAT or CURRENT_MODE is this mode.
     #[must_use]
     pub fn is_in(self, mode: Mode, custom_mode: u32) -> bool {
-        match (self, mode) {
-            (Self::Px4, Mode::External) => custom_mode == px4(6, 0),
-            (Self::Px4, Mode::Hold) => custom_mode == px4(4, 3),
-            (Self::Px4, Mode::Land) => custom_mode == px4(4, 6),
-            (Self::Px4, Mode::Return) => custom_mode == px4(4, 5),
-            (Self::ArduPilot, Mode::External) => custom_mode == 4,
-            (Self::ArduPilot, Mode::Hold) => custom_mode == 17 || custom_mode == COPTER_LOITER,
-            (Self::ArduPilot, Mode::Land) => custom_mode == 9,
-            (Self::ArduPilot, Mode::Return) => custom_mode == 6,
-        }
+        custom_mode == self.number_of(mode)
     }
 
     /// The autopilot's own name of a mode, or its number.
@@ -174,6 +178,11 @@ mod tests {
                 assert_eq!(others.iter().filter(|other| stack.is_in(**other, custom)).count(), 1);
             }
         }
+    }
+
+    #[test]
+    fn a_pilots_loiter_is_not_our_hold() {
+        assert!(!Stack::ArduPilot.is_in(Mode::Hold, 5));
     }
 
     #[test]

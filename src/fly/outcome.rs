@@ -41,7 +41,7 @@ pub enum Cause {
     SecondMaster(String),
     /// its clock started anew
     Reboot,
-    /// setpoints could not be made in time
+    /// this program or its computer stood still
     Stalled(String),
     /// it does not do what it is told
     Unresponsive(String),
@@ -50,8 +50,10 @@ pub enum Cause {
 /// What is done at once for a cause.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Response {
-    /// nothing is sent any more but heartbeats: somebody else flies, or nobody hears
+    /// nothing is sent any more but heartbeats: somebody else flies
     HandsOff,
+    /// nothing is sent until the vehicle is heard again, and then only where it is still in our mode
+    Wait,
     /// the vehicle's own hold mode, and to the ground after a while
     Hold,
     /// to the ground now
@@ -63,7 +65,8 @@ impl Cause {
     #[must_use]
     pub fn response(&self) -> Response {
         match self {
-            Self::Override(_) | Self::Failsafe(_) | Self::LinkLost(_) | Self::Reboot => Response::HandsOff,
+            Self::Override(_) | Self::Failsafe(_) | Self::Reboot => Response::HandsOff,
+            Self::LinkLost(_) => Response::Wait,
             Self::Estimator(_) | Self::Battery(_) | Self::NotReached(_) | Self::Refused(_) => Response::Land,
             _ => Response::Hold,
         }
@@ -88,7 +91,7 @@ impl fmt::Display for Cause {
             Self::Battery(what) => write!(f, "battery: {what}"),
             Self::SecondMaster(what) => write!(f, "a second ground station commands: {what}"),
             Self::Reboot => f.write_str("the autopilot started anew"),
-            Self::Stalled(what) => write!(f, "setpoints not in time: {what}"),
+            Self::Stalled(what) => write!(f, "the host stalled: {what}"),
             Self::Unresponsive(what) => write!(f, "the vehicle does not answer: {what}"),
         }
     }

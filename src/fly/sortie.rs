@@ -82,8 +82,15 @@ pub struct Settings {
     pub reach_timeout: Duration,
     /// in a hold that nobody ends, before it lands
     pub hold_then_land: Duration,
-    /// how long a vehicle that others fly is watched
+    /// how near to the start the vehicle must be before the trajectory begins, m; without it 0.3 m, or what the vehicle can
+    /// do in hover
+    pub gate_m: Option<f64>,
+    /// how slow, m/s; without it 0.2 m/s, or what the vehicle can do in hover
+    pub gate_m_s: Option<f64>,
+    /// how long a vehicle that others fly is watched while it is heard and armed
     pub watch_max: Duration,
+    /// a vehicle that is not heard for so long is gone
+    pub gone_after: Duration,
     /// somebody else checks parameters and message rates and says so by [`Event::Cleared`](super::Event)
     pub await_clearance: bool,
     /// the operator's word is waited for before the vehicle is armed ([`Key::Arm`](super::Key))
@@ -106,7 +113,10 @@ impl Default for Settings {
             ready_timeout: Duration::from_secs(120),
             reach_timeout: Duration::from_secs(30),
             hold_then_land: Duration::from_secs(10),
-            watch_max: Duration::from_secs(120),
+            gate_m: None,
+            gate_m_s: None,
+            watch_max: Duration::from_secs(3600),
+            gone_after: Duration::from_secs(120),
             await_clearance: false,
             await_word: false,
             accepted: Vec::new(),

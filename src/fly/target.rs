@@ -107,6 +107,12 @@ impl Order {
         Self { command: MavCmd::MAV_CMD_REQUEST_MESSAGE, parameters: [id, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0] }
     }
 
+    /// It only asks: it changes no mode, arms, disarms and moves nothing.
+    #[must_use]
+    pub fn is_question(&self) -> bool {
+        matches!(self.command, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL | MavCmd::MAV_CMD_REQUEST_MESSAGE)
+    }
+
     /// Its name for messages, without `MAV_CMD_`.
     #[must_use]
     pub fn name(&self) -> String {

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
+use super::arming::Arming;
 use super::health::{BatteryLevel, EstimatorReport, SystemReport, battery_status, level_of_percent};
 use super::lift::Outputs;
 use super::modes::Stack;
@@ -64,6 +65,8 @@ const JUMP_M: f64 = 0.7;
 const JUMP_GAP_S: f64 = 0.5;
 /// Positions further apart are not one stream.
 const POSITION_GAP: Duration = Duration::from_secs(1);
+/// EXTENDED_SYS_STATE comes five times a second; one in five may be lost.
+const LANDED_VALID: Duration = Duration::from_secs(2);
 /// The estimator's reports pass through tests that fail for an instant; faults this long count.
 const STATUS_VALID: Duration = Duration::from_secs(3);
 
@@ -108,6 +111,9 @@ pub struct Telemetry {
     pose: Option<Pose>,
     /// place of the frame from which `state` is
     state_place: i64,
+    /// reports of the mode so far, without those that others had overtaken
+    mode_reports: u64,
+    arming: Arming,
     velocity_m_s: Option<Vector3<f64>>,
 }
 
@@ -137,6 +143,8 @@ impl Telemetry {
             order: SendingOrder::default(),
             pose: None,
             state_place: i64::MIN,
+            mode_reports: 0,
+            arming: Arming::default(),
             velocity_m_s: None,
         }
     }
@@ -163,7 +171,10 @@ impl Telemetry {
                 self.heartbeat = now;
                 let (custom_mode, armed) = (payload.u32(0), payload.u8(6) & ARMED != 0);
                 let state = FlightState { custom_mode, armed, system_status: payload.u8(7) };
-                self.note_state(now, state, place, news);
+                if self.note_state(now, state, place, news) {
+                    let on_ground = self.is_landed_at(now);
+                    self.arming.report(now, armed, on_ground);
+                }
             }
             436 => {
                 if let Some(Seen { value, at }) = self.state {
@@ -190,17 +201,20 @@ impl Telemetry {
         }
     }
 
-    /// A state that was sent before the one that is known says nothing. `at`: of the last that said whether it is armed.
-    fn note_state(&mut self, at: Duration, state: FlightState, place: i64, news: &mut Vec<Novelty>) {
+    /// A state that was sent before the one that is known says nothing: whether this one was not. `at`: of the last that
+    /// said whether it is armed.
+    fn note_state(&mut self, at: Duration, state: FlightState, place: i64, news: &mut Vec<Novelty>) -> bool {
         if place < self.state_place {
-            return;
+            return false;
         }
         self.state_place = place;
+        self.mode_reports += 1;
         let from = self.state.map(|seen| seen.value);
         self.state = Some(Seen { at, value: state });
         if from != Some(state) {
             news.push(Novelty::State { from, to: state });
         }
+        true
     }
 
     fn note_estimator(&mut self, now: Duration, report: EstimatorReport) {
@@ -341,16 +355,33 @@ impl Telemetry {
         self.velocity_m_s
     }
 
-    /// Motors may turn; `false` where nothing is known.
+    /// Motors may turn; `false` where nothing is known. One HEARTBEAT that says "disarmed" in the air is not believed.
     #[must_use]
     pub fn is_armed(&self) -> bool {
-        self.state.is_some_and(|state| state.value.armed)
+        self.arming.is_armed()
+    }
+
+    /// A HEARTBEAT says that the motors are off, nothing else agrees, and it is not believed yet.
+    #[must_use]
+    pub fn is_arming_contradicted(&self) -> bool {
+        self.arming.is_contradicted()
+    }
+
+    /// Reports of the mode that were taken: HEARTBEAT and CURRENT_MODE, without those that later ones had overtaken.
+    #[must_use]
+    pub fn mode_reports(&self) -> u64 {
+        self.mode_reports
     }
 
     /// It says that it stands on the ground.
     #[must_use]
     pub fn is_landed(&self) -> bool {
         self.landed.is_some_and(|landed| landed.value)
+    }
+
+    /// It says so, and said it lately.
+    fn is_landed_at(&self, now: Duration) -> bool {
+        self.landed.is_some_and(|landed| landed.value && now.saturating_sub(landed.at) < LANDED_VALID)
     }
 
     /// The autopilot has taken measures of its own.

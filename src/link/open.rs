@@ -1,7 +1,7 @@
 //! Opens links.
 
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use tokio::sync::{mpsc, watch};
@@ -24,6 +24,9 @@ const QUEUE: usize = 4096;
 /// How long a link that both halves have left goes on sending what they gave.
 const LINGER: Duration = Duration::from_secs(1);
 
+/// So often the link's task says that it runs.
+const RUNS: Duration = Duration::from_millis(10);
+
 /// How a link is to be.
 #[derive(Debug, Clone)]
 pub struct LinkOptions {
@@ -42,6 +45,8 @@ pub struct LinkOptions {
     pub signing: Option<Signing>,
     /// records every frame received and sent
     pub recorder: Option<Recorder>,
+    /// for tests: the link's task stands still while this is set
+    pub parked: Option<Arc<AtomicBool>>,
 }
 
 impl Default for LinkOptions {
@@ -54,6 +59,7 @@ impl Default for LinkOptions {
             patient: false,
             signing: None,
             recorder: None,
+            parked: None,
         }
     }
 }
@@ -98,16 +104,17 @@ fn start(name: String, transport: Transport, options: &LinkOptions) -> Ends {
     let alive = Arc::new(alive);
     let incoming = Incoming::new(to_reader, shared.clone(), options);
     let outgoing = Outgoing::new(queue, shared.clone());
-    tokio::spawn(drive(transport, incoming, outgoing, gone, shared.clone()));
+    let parked = options.parked.clone();
+    tokio::spawn(drive(transport, (incoming, outgoing), gone, shared.clone(), parked));
     (LinkReader::new(from_task, shared.clone(), Some(alive.clone())), LinkWriter::new(to_task, shared, alive))
 }
 
 async fn drive(
     mut transport: Transport,
-    mut incoming: Incoming,
-    mut outgoing: Outgoing,
+    (mut incoming, mut outgoing): (Incoming, Outgoing),
     mut gone: watch::Receiver<()>,
     shared: Arc<Shared>,
+    parked: Option<Arc<AtomicBool>>,
 ) {
     let left = async {
         // nothing is ever sent on it: it only ends
@@ -117,5 +124,17 @@ async fn drive(
     tokio::select! {
         () = transport.serve(&mut incoming, &mut outgoing) => {}
         () = left => {}
+        () = run(&shared, parked) => {}
+    }
+}
+
+/// Says every now and then that the task runs, and in a test holds it up.
+async fn run(shared: &Shared, parked: Option<Arc<AtomicBool>>) {
+    loop {
+        while parked.as_ref().is_some_and(|parked| parked.load(Ordering::Acquire)) {
+            std::thread::sleep(RUNS);
+        }
+        shared.runs();
+        tokio::time::sleep(RUNS).await;
     }
 }

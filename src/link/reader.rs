@@ -171,6 +171,12 @@ impl LinkReader {
         }
     }
 
+    /// Whether frames or events wait to be taken.
+    #[must_use]
+    pub fn is_behind(&self) -> bool {
+        self.shared.waiting.load(Ordering::Relaxed) > 0
+    }
+
     /// Where a `udpin` or `tcpin` link listens: the port that the system chose where the address said 0.
     #[must_use]
     pub fn local_address(&self) -> Option<SocketAddr> {

@@ -1,8 +1,9 @@
 //! What the halves of a link and its task share.
 
 use std::net::SocketAddr;
-use std::sync::atomic::{AtomicBool, AtomicUsize};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use mavlink::dialects::ardupilotmega::MavMessage;
 use tokio::sync::{Notify, watch};
@@ -26,6 +27,9 @@ pub(super) struct Shared {
     pub filled: Notify,
     /// all writers are gone and all that they gave is sent
     pub drained: Notify,
+    /// when this was made, and how many ms later the link's task last ran
+    made: Instant,
+    ran_ms: AtomicU64,
     latest: Mutex<Option<Box<MavMessage>>>,
     pen: Mutex<Pen>,
     stats: Mutex<LinkStats>,
@@ -40,10 +44,23 @@ impl Shared {
             waiting: AtomicUsize::default(),
             filled: Notify::default(),
             drained: Notify::default(),
+            made: Instant::now(),
+            ran_ms: AtomicU64::default(),
             latest: Mutex::default(),
             pen: Mutex::new(Pen::new(options)),
             stats: Mutex::default(),
         }
+    }
+
+    /// The link's task runs.
+    pub fn runs(&self) {
+        let ms = u64::try_from(self.made.elapsed().as_millis()).unwrap_or(u64::MAX);
+        self.ran_ms.store(ms, Ordering::Release);
+    }
+
+    /// When the link's task last ran.
+    pub fn ran(&self) -> Instant {
+        self.made + Duration::from_millis(self.ran_ms.load(Ordering::Acquire))
     }
 
     /// No code holding these locks panics; a poisoned one would still hold whole values.

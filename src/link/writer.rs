@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use mavlink::dialects::ardupilotmega::MavMessage;
 use tokio::sync::{mpsc, oneshot};
@@ -117,6 +117,12 @@ impl LinkWriter {
     #[must_use]
     pub fn stats(&self) -> LinkStats {
         self.shared.stats().clone()
+    }
+
+    /// When the link's task last ran: some 10 ms ago at most, unless it stands still or has ended.
+    #[must_use]
+    pub fn ran(&self) -> Instant {
+        self.shared.ran()
     }
 
     /// Whether there is somebody to send to. UDP cannot know whether anybody is there.

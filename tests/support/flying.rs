@@ -87,6 +87,8 @@ pub struct Flying {
     streamer: Streamer,
     link: LinkId,
     sequence: u8,
+    /// of the vehicle's last frame
+    pub heard_sequence: u8,
 }
 
 /// A lively trajectory of a few seconds.
@@ -152,6 +154,7 @@ impl Flying {
             stalled: None,
             link,
             sequence: 0,
+            heard_sequence: 0,
         }
     }
 
@@ -214,7 +217,9 @@ impl Flying {
                 self.event(Event::Stalled(gap));
             }
             for bytes in self.down.take(self.now) {
-                self.event(Event::Frame(Frame::at_start(&bytes).unwrap()));
+                let frame = Frame::at_start(&bytes).unwrap();
+                self.heard_sequence = frame.header().sequence;
+                self.event(Event::Frame(frame));
             }
             self.event(Event::Tick);
         }
@@ -227,13 +232,7 @@ impl Flying {
                 self.setpoints.push((self.now, setpoint));
                 self.send(&message);
             }
-            Some(Streamed::Stalled { gap, setpoint, command }) => {
-                self.stalled = Some(gap);
-                if let Some(setpoint) = setpoint {
-                    self.send(&setpoint);
-                }
-                self.send(&command);
-            }
+            Some(Streamed::Stalled(gap)) => self.stalled = Some(gap),
             None => {}
         }
     }

@@ -151,6 +151,8 @@ fn fly_args(port: u16, vehicle: &Path, trajectory: &Path, folder: &Path) -> FlyA
         tracking_max: 1.0,
         tilt_max: None,
         hover_time: None,
+        gate_distance: None,
+        gate_speed: None,
         accept: Vec::new(),
         signing_key_file: None,
         plain: true,

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use nalgebra::Vector3;
 
+use super::gate::Gate;
 use super::{Flight, Phase};
 use crate::fly::commander::Manner;
 use crate::fly::course::{CLIMB_M_S, PathClock, TRANSFER_M_S, TURN_RAD_S, Track, transfer};
@@ -13,8 +14,8 @@ use crate::fly::lift::Weighed;
 use crate::fly::modes::{Mode, Stack};
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::preflight::HOVER;
-use crate::fly::safety::{Lead, SetpointBounds, Sustained};
-use crate::fly::setpoint::{Place, wrapped};
+use crate::fly::safety::{Lead, SetpointBounds};
+use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
 use crate::fly::target::Order;
 use crate::units::narrow;
@@ -24,11 +25,6 @@ const LEAD_MAX_M: f64 = 0.6;
 /// A climb is over so near to its height, at so little speed.
 const CLIMBED_M: f64 = 0.3;
 const CLIMBED_M_S: f64 = 0.3;
-/// The start gate.
-const GATE_M: f64 = 0.3;
-const GATE_M_S: f64 = 0.2;
-const GATE_YAW_RAD: f64 = 0.15;
-const GATE_HOLDS: Duration = Duration::from_secs(1);
 
 impl Flight {
     /// The plan's zero in the vehicle's local frame.
@@ -46,7 +42,7 @@ impl Flight {
         Place { position_m: Vector3::new(x, y, z) + self.offset_m(stand_m), yaw_rad }
     }
 
-    fn start(&self) -> Option<Place> {
+    pub(super) fn start(&self) -> Option<Place> {
         self.stand.map(|stand| self.start_from(&stand.position_m))
     }
 
@@ -68,7 +64,7 @@ impl Flight {
             }
             Stack::ArduPilot => {
                 let height_m = top.position_m.z - stand.position_m.z;
-                self.commander.give(now, Order::takeoff(narrow(height_m)), Manner::PATIENT);
+                self.give(now, Order::takeoff(narrow(height_m)), Manner::PATIENT);
             }
         }
         self.enter(now, Phase::Climb);
@@ -110,28 +106,13 @@ impl Flight {
         let Some(start) = self.start() else { return };
         if matches!(&self.guide.lead, Lead::Along(track) if track.is_over(now)) {
             self.guide.lead = Lead::Hold(start);
-            self.enter(now, Phase::Gate(Sustained::default()));
-        }
-    }
-
-    pub(super) fn gate(&mut self, now: Duration) {
-        let missing = self.gate_misses(now);
-        if !missing.is_empty()
-            && let Some(lift) = &mut self.lift
-        {
-            lift.clear();
-        }
-        let Phase::Gate(open) = &mut self.phase else { return };
-        if open.update(now, missing.is_empty()) >= GATE_HOLDS {
-            self.weigh(now);
-            self.begin_course(now);
-        } else if now.saturating_sub(self.entered) > self.sortie.settings.reach_timeout {
-            self.end(now, Cause::NotReached(format!("the start gate stays shut: {}", missing.join("; "))));
+            self.gate = Gate::default();
+            self.enter(now, Phase::Gate);
         }
     }
 
     /// Once it hovers: says whether what lifts it is the vehicle file's weight.
-    fn weigh(&mut self, now: Duration) {
+    pub(super) fn weigh(&mut self, now: Duration) {
         let (level, text) = match self.lift.as_ref().map(|lift| lift.weighed()) {
             Some(Weighed::Notable(text)) => (Level::Warning, text),
             Some(Weighed::Alike(text)) => (Level::Information, text),
@@ -140,38 +121,7 @@ impl Flight {
         self.note(now, level, HOVER, text);
     }
 
-    fn gate_misses(&self, now: Duration) -> Vec<String> {
-        let (Some(start), Some(here), Some((_, velocity_m_s))) =
-            (self.start(), self.place_now(), self.motion_now())
-        else {
-            return vec!["its position is not known".to_owned()];
-        };
-        let mut missing = Vec::new();
-        let off_m = (here.position_m - start.position_m).norm();
-        if off_m > GATE_M {
-            missing.push(format!("{off_m:.2} m off the start, {GATE_M} m are allowed"));
-        }
-        let speed_m_s = velocity_m_s.norm();
-        if speed_m_s > GATE_M_S {
-            missing.push(format!("{speed_m_s:.2} m/s, {GATE_M_S} m/s are allowed"));
-        }
-        let turned_rad = wrapped(here.yaw_rad - start.yaw_rad).abs();
-        if turned_rad > GATE_YAW_RAD {
-            missing.push(format!("heading {turned_rad:.2} rad off, {GATE_YAW_RAD} rad are allowed"));
-        }
-        if let Some(contact) = &self.contact {
-            missing.extend(contact.telemetry.estimator_faults(now));
-        }
-        if self.battery_level() > BatteryLevel::Good {
-            missing.push("the battery is low".to_owned());
-        }
-        if self.watch.is_paused() {
-            missing.push("nothing is heard of the vehicle".to_owned());
-        }
-        missing
-    }
-
-    fn begin_course(&mut self, now: Duration) {
+    pub(super) fn begin_course(&mut self, now: Duration) {
         let Some(stand) = self.stand else { return };
         let path = self.sortie.course.path().clone();
         let offset_m = self.offset_m(&stand.position_m);
@@ -209,7 +159,7 @@ impl Flight {
     pub(super) fn follow(&mut self, now: Duration) {
         let paused = self.watch.is_paused();
         if let (Phase::Transfer | Phase::Course, Lead::Along(track)) = (&self.phase, &mut self.guide.lead) {
-            track.clock.set_running(!paused, now);
+            track.clock.set_running(!paused && !self.known.is_in_doubt(), now);
         }
         self.guide.bounds = self.bounds();
         if let Some(reference) = self.guide.setpoint(now) {
@@ -225,7 +175,7 @@ impl Flight {
         let stand = self.stand.or_else(|| self.place_now())?;
         let room = SetpointBounds::room(&self.sortie.limits, &self.offset_m(&stand.position_m));
         Some(match self.phase {
-            Phase::Transfer | Phase::Gate(_) | Phase::Course => room,
+            Phase::Transfer | Phase::Gate | Phase::Course => room,
             _ => room.with(&stand.position_m),
         })
     }

@@ -136,11 +136,11 @@ impl Flight {
         let version = Order::request_message(AUTOPILOT_VERSION);
         if !self.commander.waits_for_kind(&question) && !self.commander.waits_for_kind(&version) {
             match checking.wanted.pop() {
-                Some(order) => self.commander.give(now, order, QUESTION),
+                Some(order) => self.commander.give(now, order, QUESTION, 0),
                 // the answer's acknowledgement came and the answer itself was lost
                 None if checking.own.is_none() && checking.version_chances > 0 => {
                     checking.version_chances -= 1;
-                    self.commander.give(now, version, QUESTION);
+                    self.commander.give(now, version, QUESTION, 0);
                 }
                 None => checking.all_asked = true,
             }
@@ -279,8 +279,8 @@ impl Flight {
 
     fn begin_engage(&mut self, now: Duration) {
         let Some((_, stack)) = self.target() else { return };
-        self.commander.give(now, Order::set_mode(stack, Mode::External), Manner::PATIENT);
-        self.enter(now, Phase::Engage);
+        self.give(now, Order::set_mode(stack, Mode::External), Manner::PATIENT);
+        self.enter(now, Phase::Engage(self.custom_mode()));
     }
 
     pub(super) fn engage(&mut self, now: Duration) {
@@ -288,9 +288,18 @@ impl Flight {
         if self.guide.lead != Lead::Silent {
             self.hold_here();
         }
+        let Phase::Engage(found) = self.phase else { return };
+        let shown = self.custom_mode();
         if self.is_in(Mode::External) {
             self.engaged = now;
             self.enter(now, Phase::Ready);
+        } else if shown != found {
+            let (found, shown) = (found.map(|mode| stack.mode_name(mode)), self.mode_name());
+            let found = found.unwrap_or_else(|| "an unknown mode".to_owned());
+            self.end(
+                now,
+                Cause::Override(format!("{found} was left for {shown} before our mode was entered")),
+            );
         } else if now.saturating_sub(self.entered) > 2 * Manner::PATIENT.patience {
             let mode = stack.name_of(Mode::External);
             self.end(now, Cause::Refused(format!("{mode} was accepted and is not entered")));
@@ -315,7 +324,7 @@ impl Flight {
             failed_is_temporary: self.target().is_some_and(|(_, stack)| stack == Stack::ArduPilot),
             ..Manner::PATIENT
         };
-        self.commander.give(now, Order::arm(true), manner);
+        self.give(now, Order::arm(true), manner);
         self.enter(now, Phase::Arm);
     }
 
@@ -348,7 +357,7 @@ impl Flight {
         let text = format!("{name}: {}", reasons.join("; "));
         self.note(now, Level::Warning, "command", text.clone());
         let decides = match self.phase {
-            Phase::Engage => answer.order.command == MavCmd::MAV_CMD_DO_SET_MODE,
+            Phase::Engage(_) => answer.order.command == MavCmd::MAV_CMD_DO_SET_MODE,
             Phase::Arm => answer.order.command == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
             Phase::Climb => answer.order.command == MavCmd::MAV_CMD_NAV_TAKEOFF,
             _ => false,
@@ -356,6 +365,11 @@ impl Flight {
         if decides {
             self.end(now, Cause::Refused(text));
         }
+    }
+
+    /// The mode that the vehicle said last.
+    pub(super) fn custom_mode(&self) -> Option<u32> {
+        Some(self.contact.as_ref()?.telemetry.state?.value.custom_mode)
     }
 
     /// The vehicle says that it is in this mode.

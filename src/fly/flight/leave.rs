@@ -30,6 +30,8 @@ const BRAKING_M_S2: f64 = 3.0;
 #[derive(Debug)]
 pub(super) struct Leaving {
     wish: Mode,
+    /// the mode that it was in, by our doing, when that was wished for
+    from: Option<u32>,
     wished: Duration,
     /// when it was last asked for
     asked: Duration,
@@ -45,9 +47,10 @@ pub(super) struct Leaving {
 }
 
 impl Leaving {
-    fn to(wish: Mode, now: Duration) -> Self {
+    fn to(wish: Mode, from: Option<u32>, now: Duration) -> Self {
         Self {
             wish,
+            from,
             wished: now,
             asked: now,
             reached: None,
@@ -56,6 +59,15 @@ impl Leaving {
             stop_by: None,
             landed: Sustained::default(),
         }
+    }
+
+    pub(super) fn wish(&self) -> Mode {
+        self.wish
+    }
+
+    /// It was in this mode when it was told to leave it.
+    pub(super) fn comes_from(&self, custom_mode: u32) -> bool {
+        self.from == Some(custom_mode)
     }
 
     pub(super) fn name(&self) -> &'static str {
@@ -70,15 +82,17 @@ impl Leaving {
 impl Flight {
     /// To the vehicle's hold mode.
     pub(super) fn begin_hold(&mut self, now: Duration) {
-        self.leave_to(now, Leaving::to(Mode::Hold, now));
+        self.leave_to(now, Mode::Hold);
     }
 
     /// To the ground.
     pub(super) fn begin_landing(&mut self, now: Duration) {
-        self.leave_to(now, Leaving::to(Mode::Land, now));
+        self.leave_to(now, Mode::Land);
     }
 
-    fn leave_to(&mut self, now: Duration, leaving: Leaving) {
+    fn leave_to(&mut self, now: Duration, wish: Mode) {
+        // a mode that is not ours is not left: whoever chose it flies
+        let from = self.contact.as_ref().map(|contact| contact.telemetry.stack().number_of(Mode::External));
         // setpoints go on until the mode is seen, but say: stop here
         if self.guide.lead != Lead::Silent {
             let planned = self.cause.is_none();
@@ -87,8 +101,8 @@ impl Flight {
                 self.guide.lead = Lead::Hold(place);
             }
         }
-        self.ask(now, leaving.wish);
-        self.enter(now, Phase::Leave(leaving));
+        self.enter(now, Phase::Leave(Leaving::to(wish, from, now)));
+        self.ask(now, wish);
     }
 
     /// Where the vehicle comes to rest if it brakes now.
@@ -104,7 +118,7 @@ impl Flight {
             leaving.asked = now;
         }
         if let Some((_, stack)) = self.target() {
-            self.commander.give(now, Order::set_mode(stack, wish), Manner::URGENT);
+            self.give(now, Order::set_mode(stack, wish), Manner::URGENT);
         }
     }
 
@@ -144,11 +158,17 @@ impl Flight {
                 return;
             }
         }
+        if self.known.is_in_doubt() {
+            return;
+        }
         self.wait_for_the_ground(now, wish, wished);
     }
 
     /// The mode is not seen yet: ask again, then for the next one.
     fn insist(&mut self, now: Duration, wish: Mode, wished: Duration) {
+        if self.left_by_others(now) {
+            return;
+        }
         let waited = now.saturating_sub(wished);
         let next = match wish {
             Mode::External | Mode::Hold if waited > HOLD_BY => Some(Mode::Land),
@@ -177,8 +197,24 @@ impl Flight {
         }
     }
 
+    /// Neither in the mode that it was to leave nor in the one that was asked for: somebody else's will.
+    fn left_by_others(&mut self, now: Duration) -> bool {
+        let Some(shown) = self.custom_mode() else { return false };
+        let Phase::Leave(leaving) = &self.phase else { return false };
+        if leaving.comes_from(shown) {
+            return false;
+        }
+        let (phase, mode) = (self.phase.name(), self.mode_name());
+        self.end(now, Cause::Override(format!("{mode} was entered before {phase}")));
+        true
+    }
+
     fn wish(&mut self, now: Duration, wish: Mode) {
+        let shown = self.custom_mode();
+        let by_us = self.is_to_command();
         if let Phase::Leave(leaving) = &mut self.phase {
+            // what somebody else chose meanwhile stays his
+            leaving.from = if by_us { shown } else { leaving.from };
             (leaving.wish, leaving.wished, leaving.reached) = (wish, now, None);
             let name = leaving.name();
             self.note(now, Level::Information, "phase", name);
@@ -198,7 +234,7 @@ impl Flight {
                 self.wish(now, Mode::Land);
             }
         } else if landed_for > DISARM_AFTER && !self.commander.waits_for(&disarm) {
-            self.commander.give(now, disarm, Manner::PATIENT);
+            self.give(now, disarm, Manner::PATIENT);
         } else if now.saturating_sub(wished) > GROUND_BY {
             self.cause.get_or_insert(Cause::NotReached("the ground is not reached".to_owned()));
             let mode = self.mode_name();
@@ -212,13 +248,22 @@ impl Flight {
 
     /// The operator's keys.
     pub(super) fn key(&mut self, now: Duration, key: Key) {
+        if matches!(self.phase, Phase::Watch) {
+            let text =
+                "hands off is final: the vehicle is its pilot's; use the remote control, or start anew";
+            self.note(now, Level::Warning, "watch", text);
+            return;
+        }
         if key == Key::Kill {
             self.note(now, Level::Error, "abort", "motors off by the operator");
             let flying = self.phase.is_airborne() && !self.is_on_ground();
             self.cause = Some(if flying { Cause::Killed } else { Cause::Operator });
             self.guide.lead = Lead::Silent;
             self.commander.clear();
-            self.commander.give(now, Order::kill(), Manner::URGENT);
+            let ours =
+                self.is_to_command() || matches!(self.phase, Phase::Lost) && self.is_in(Mode::External);
+            self.killed_in = self.custom_mode().filter(|_| ours);
+            self.give(now, Order::kill(), Manner::PATIENT);
             if self.contact.is_some() {
                 self.enter(now, Phase::Watch);
             } else {
@@ -239,8 +284,7 @@ impl Flight {
                 self.cause.get_or_insert(Cause::Operator);
                 self.wish(now, next);
             }
-            // the operator's own order is no blind re-entry
-            None if matches!(self.phase, Phase::Watch) => self.begin_hold(now),
+            None if matches!(self.phase, Phase::Lost) => self.begin_hold(now),
             None => self.end(now, Cause::Operator),
         }
         if let Phase::Leave(leaving) = &mut self.phase {
@@ -255,7 +299,7 @@ impl Flight {
 
     /// The program is told to end: the vehicle is left holding, or to what it does already.
     pub(super) fn stop(&mut self, now: Duration, by: &str) {
-        if matches!(self.phase, Phase::Watch) {
+        if matches!(self.phase, Phase::Watch | Phase::Lost) {
             let mode = self.mode_name();
             self.finish(now, Ending::InTheAir(mode));
             return;

@@ -9,6 +9,10 @@ use crate::log::{Check, Frame};
 
 /// For a vehicle to fly our setpoints after its takeoff, and to say so.
 const TAKEN_OVER: Duration = Duration::from_millis(1500);
+/// After a silence of this length the vehicle's mode is asked for: frames come a hundred times a second else.
+const SILENCE: Duration = Duration::from_millis(500);
+/// MAV_CMD_REQUEST_MESSAGE
+const REQUEST_MESSAGE: u16 = 512;
 
 impl Flight {
     pub(super) fn hear(&mut self, now: Duration, frame: Frame<'_>) {
@@ -24,8 +28,15 @@ impl Flight {
             }
             return;
         }
+        if now.saturating_sub(contact.telemetry.heard) > SILENCE {
+            self.known.doubt(now);
+        }
+        let reports = contact.telemetry.mode_reports();
         let news = contact.telemetry.take(now, frame);
-        if let (Phase::Gate(_), Some(lift)) = (&self.phase, &mut self.lift) {
+        if contact.telemetry.mode_reports() > reports {
+            self.known.report(now);
+        }
+        if let (Phase::Gate, Some(lift)) = (&self.phase, &mut self.lift) {
             for outputs in contact.telemetry.outputs() {
                 lift.add(outputs);
             }
@@ -35,6 +46,9 @@ impl Flight {
             77 => {
                 let payload = frame.payload();
                 let ours = payload.u8(8) == 0 || u32::from(payload.u8(8)) == self.sortie.settings.station.0.0;
+                if ours && payload.u16(0) == REQUEST_MESSAGE {
+                    self.known.answered();
+                }
                 if ours && let Some(answer) = self.commander.hear(now, payload) {
                     self.answered(now, &answer);
                 }
@@ -46,6 +60,13 @@ impl Flight {
             self.learn(now, novelty);
         }
         self.check_motion(now);
+    }
+
+    /// It has been heard without a break for long enough to fly what it is told.
+    fn is_settled(&self, now: Duration) -> bool {
+        self.contact
+            .as_ref()
+            .is_some_and(|contact| now.saturating_sub(contact.telemetry.resumed) >= TAKEN_OVER)
     }
 
     fn learn(&mut self, now: Duration, novelty: Novelty) {
@@ -77,14 +98,18 @@ impl Flight {
                 self.note(now, Level::Warning, "estimator", what);
             }
             Novelty::Target(place_m) => {
-                let following = match self.phase {
-                    // at first it may still say where its takeoff led
-                    Phase::Transfer => now.saturating_sub(self.entered) >= TAKEN_OVER,
-                    Phase::Gate(_) | Phase::Course => true,
-                    _ => false,
-                };
+                // after a silence it may still tell where its failsafe led
+                let settled = self.is_settled(now) && !self.known.is_in_doubt();
+                let following = settled
+                    && match self.phase {
+                        // at first it may still say where its takeoff led
+                        Phase::Transfer => now.saturating_sub(self.entered) >= TAKEN_OVER,
+                        Phase::Gate | Phase::Course => true,
+                        _ => false,
+                    };
                 if following && let Some(cause) = self.watch.masters.check(now, place_m, stack) {
-                    self.end(now, cause);
+                    let reports = self.known.reports();
+                    self.suspected.get_or_insert((cause, reports));
                 }
             }
         }

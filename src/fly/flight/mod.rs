@@ -1,6 +1,7 @@
 //! The flight as a state machine: messages and a clock in, messages out. It does no I/O.
 
 mod air;
+mod gate;
 mod ground;
 mod leave;
 mod listen;
@@ -14,25 +15,32 @@ use std::time::Duration;
 
 use mavlink::dialects::ardupilotmega::MavMessage;
 
-use super::commander::Commander;
+use super::commander::{Commander, Manner, Permission};
 use super::health::BatteryLevel;
 use super::lift::Lift;
 use super::modes::{Mode, Stack};
 use super::outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
 use super::roster::Roster;
-use super::safety::{Feeding, Guide, Lead};
+use super::safety::{Feeding, Guide, Lead, ModeKnowledge};
 use super::setpoint::Place;
 use super::sortie::Sortie;
-use super::target::{Target, heartbeat};
+use super::target::{Order, Target, heartbeat};
 use super::telemetry::Telemetry;
 use crate::log::{self, CrcSeeds, Frame};
 use crate::units::deg_from_rad;
+use gate::Gate;
 use ground::Checking;
 use leave::Leaving;
 use watch::Watch;
 
 /// Between our own heartbeats.
 const HEARTBEAT_PERIOD: Duration = Duration::from_secs(1);
+/// The message that tells the mode of any vehicle.
+const HEARTBEAT: u16 = 0;
+/// It is asked to go on every 10 ms. After it was not for this long, what it knows may be old.
+const STOOD_STILL: Duration = Duration::from_millis(100);
+/// After this long a flight is not gone on with, whether setpoints are streamed or not.
+const STALLED: Duration = Duration::from_millis(300);
 
 /// What the flight hears.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,10 +57,12 @@ pub enum Event<'a> {
     Feed(Feeding),
     /// the program is told to end, by what
     Stop(String),
-    /// the stream of setpoints was late by this much and has ended
+    /// the stream of setpoints stood still for so long, or this flight did, and it has ended
     Stalled(Duration),
     /// the link is lost (`false`) or there again
     Link(bool),
+    /// the link's own task has ended: nothing will be heard any more
+    LinkEnded,
 }
 
 /// What the operator wants.
@@ -88,8 +98,8 @@ enum Phase {
     Check(Checking),
     /// setpoints before OFFBOARD
     Prime,
-    /// our mode is asked for
-    Engage,
+    /// our mode is asked for, of a vehicle that was in this one
+    Engage(Option<u32>),
     /// in our mode, until the estimator is good
     Ready,
     /// arming is asked for
@@ -99,11 +109,13 @@ enum Phase {
     /// to where the course begins
     Transfer,
     /// until it stands still there
-    Gate(super::safety::Sustained),
+    Gate,
     /// along the trajectory
     Course,
     /// to hold, to the ground or home, in the vehicle's own mode
     Leave(Leaving),
+    /// nothing is heard: nothing is sent until something is
+    Lost,
     /// hands off
     Watch,
     /// over
@@ -116,14 +128,15 @@ impl Phase {
             Self::Connect => "connect",
             Self::Check(_) => "check",
             Self::Prime => "stream",
-            Self::Engage => "engage",
+            Self::Engage(_) => "engage",
             Self::Ready => "ready",
             Self::Arm => "arm",
             Self::Climb => "take off",
             Self::Transfer => "go to start",
-            Self::Gate(_) => "start gate",
+            Self::Gate => "start gate",
             Self::Course => "trajectory",
             Self::Leave(leaving) => leaving.name(),
+            Self::Lost => "link lost",
             Self::Watch => "hands off",
             Self::Done => "over",
         }
@@ -131,14 +144,20 @@ impl Phase {
 
     /// Our mode is engaged and setpoints are ours.
     fn is_ours(&self) -> bool {
-        matches!(self, Self::Ready | Self::Arm | Self::Climb | Self::Transfer | Self::Gate(_) | Self::Course)
+        matches!(self, Self::Ready | Self::Arm | Self::Climb | Self::Transfer | Self::Gate | Self::Course)
     }
 
     /// The vehicle may be off the ground by our doing.
     fn is_airborne(&self) -> bool {
         matches!(
             self,
-            Self::Climb | Self::Transfer | Self::Gate(_) | Self::Course | Self::Leave(_) | Self::Watch
+            Self::Climb
+                | Self::Transfer
+                | Self::Gate
+                | Self::Course
+                | Self::Leave(_)
+                | Self::Lost
+                | Self::Watch
         )
     }
 }
@@ -160,6 +179,12 @@ pub struct Flight {
     told_others: bool,
     contact: Option<Contact>,
     commander: Commander,
+    /// whether the vehicle's mode is known well enough to command it
+    known: ModeKnowledge,
+    /// what looks like another master, and the reports of the mode that had come by then
+    suspected: Option<(Cause, u64)>,
+    /// when it was last asked to go on
+    stepped: Option<Duration>,
     phase: Phase,
     /// when the phase was entered
     entered: Duration,
@@ -169,6 +194,7 @@ pub struct Flight {
     stand: Option<Place>,
     guide: Guide,
     watch: Watch,
+    gate: Gate,
     actions: VecDeque<Action>,
     heartbeat_due: Duration,
     clearance: Option<Result<(), String>>,
@@ -176,6 +202,8 @@ pub struct Flight {
     word_given: bool,
     /// by which the vehicle is weighed once it hovers
     lift: Option<Box<Lift>>,
+    /// the mode in which the operator stopped the motors
+    killed_in: Option<u32>,
     cause: Option<Cause>,
     flown: Flown,
     losses: Vec<String>,
@@ -197,17 +225,22 @@ impl Flight {
             told_others: false,
             contact: None,
             commander: Commander::default(),
+            known: ModeKnowledge::default(),
+            suspected: None,
+            stepped: None,
             phase: Phase::Connect,
             entered: Duration::ZERO,
             engaged: Duration::ZERO,
             stand: None,
             guide: Guide::silent(Duration::ZERO),
             watch,
+            gate: Gate::default(),
             actions: VecDeque::new(),
             heartbeat_due: Duration::ZERO,
             clearance: None,
             word_given: false,
             lift: None,
+            killed_in: None,
             cause: None,
             flown,
             losses: Vec::new(),
@@ -219,6 +252,7 @@ impl Flight {
         if matches!(self.phase, Phase::Done) {
             return;
         }
+        self.note_time(now);
         match event {
             Event::Frame(frame) => self.hear(now, frame),
             Event::Tick => {}
@@ -231,10 +265,10 @@ impl Flight {
             }
             Event::Feed(feeding) => self.guide.feeding = feeding,
             Event::Stop(by) => self.stop(now, &by),
-            Event::Stalled(gap) => {
-                self.end(now, Cause::Stalled(format!("{} ms late", gap.as_millis())));
-            }
+            Event::Stalled(gap) => self.stalled(now, gap),
+            Event::LinkEnded => self.end(now, Cause::LinkLost("the program's own link has ended".to_owned())),
             Event::Link(up) => {
+                self.known.doubt(now);
                 let (level, text) =
                     if up { (Level::Information, "link is up") } else { (Level::Warning, "link is down") };
                 self.note(now, level, "link", text);
@@ -298,20 +332,28 @@ impl Flight {
             Phase::Connect => self.connect(now),
             Phase::Check(_) => self.check(now),
             Phase::Prime => self.prime(now),
-            Phase::Engage => self.engage(now),
+            Phase::Engage(_) => self.engage(now),
             Phase::Ready => self.ready(now),
             Phase::Arm => self.arm(now),
             Phase::Climb => self.climb(now),
             Phase::Transfer => self.transfer(now),
-            Phase::Gate(_) => self.gate(now),
+            Phase::Gate => self.gate(now),
             Phase::Course => self.fly_course(now),
             Phase::Leave(_) => self.leave(now),
+            Phase::Lost => self.wait_for_word(now),
             Phase::Watch => self.watch_others(now),
             Phase::Done => return,
         }
         self.follow(now);
+        self.guide.held_back = self.known.is_in_doubt();
         if let Some((target, _)) = self.target() {
-            let (messages, answers) = self.commander.poll(now, target);
+            let permission = self.permission();
+            let waits = self.commander.waits_for_report(now, permission);
+            if self.known.asks(now, waits) {
+                let question = Order::request_message(HEARTBEAT);
+                self.actions.push_back(Action::Send(target.command(&question, 0)));
+            }
+            let (messages, answers) = self.commander.poll(now, target, permission);
             self.actions.extend(messages.into_iter().map(Action::Send));
             for answer in answers {
                 self.answered(now, &answer);
@@ -321,6 +363,58 @@ impl Flight {
             self.heartbeat_due = (self.heartbeat_due + HEARTBEAT_PERIOD).max(now);
             self.actions.push_back(Action::Send(heartbeat()));
         }
+    }
+
+    /// Whether time went on without this flight. What it knew before may not hold any more, and what lies in the socket is
+    /// not read yet.
+    fn note_time(&mut self, now: Duration) {
+        let gap = self.stepped.replace(now).map_or(Duration::ZERO, |last| now.saturating_sub(last));
+        if gap <= STOOD_STILL || self.contact.is_none() {
+            return;
+        }
+        self.watch.awake = now;
+        self.known.doubt(now);
+        if gap >= STALLED {
+            if self.phase.is_ours() && self.phase.is_airborne() {
+                self.stalled(now, gap);
+            } else {
+                self.note(now, Level::Warning, "host", stall(gap));
+            }
+        }
+    }
+
+    fn stalled(&mut self, now: Duration, gap: Duration) {
+        self.watch.awake = now;
+        self.known.doubt(now);
+        self.end(now, Cause::Stalled(stall(gap)));
+    }
+
+    /// Whether the vehicle may be commanded now, as far as its mode is known.
+    fn permission(&self) -> Permission {
+        Permission { reports: self.known.reports(), ours: !self.known.is_in_doubt() && self.is_to_command() }
+    }
+
+    /// The vehicle's mode is one that it is in by our doing, or for a start one that it was found in.
+    fn is_to_command(&self) -> bool {
+        let Some(state) = self.contact.as_ref().and_then(|contact| contact.telemetry.state) else {
+            return false;
+        };
+        match &self.phase {
+            Phase::Engage(found) => *found == Some(state.value.custom_mode) && !state.value.armed,
+            Phase::Leave(leaving) => {
+                self.is_in(leaving.wish()) || leaving.comes_from(state.value.custom_mode)
+            }
+            // of a vehicle that is left to others only the motors are stopped, by the operator's typed word
+            Phase::Watch => {
+                matches!(self.cause, Some(Cause::Killed)) && self.killed_in == Some(state.value.custom_mode)
+            }
+            phase => phase.is_ours() && self.is_in(Mode::External),
+        }
+    }
+
+    /// A command, to be sent as soon as the vehicle's mode permits it.
+    fn give(&mut self, now: Duration, order: Order, manner: Manner) {
+        self.commander.give(now, order, manner, self.known.reports());
     }
 
     fn enter(&mut self, now: Duration, phase: Phase) {
@@ -340,7 +434,11 @@ impl Flight {
         }
         let response = cause.response();
         let leaving = matches!(self.phase, Phase::Leave(_));
-        if leaving && response != Response::HandsOff {
+        if leaving && !matches!(response, Response::HandsOff | Response::Wait) {
+            return;
+        }
+        if matches!((&self.phase, response), (Phase::Lost, Response::Hold | Response::Land | Response::Wait))
+        {
             return;
         }
         self.note(now, Level::Error, "abort", cause.to_string());
@@ -351,6 +449,7 @@ impl Flight {
         }
         match response {
             Response::HandsOff => self.hands_off(now),
+            Response::Wait => self.lose(now),
             Response::Hold => self.begin_hold(now),
             Response::Land => self.begin_landing(now),
         }
@@ -378,4 +477,12 @@ impl Flight {
     fn battery_level(&self) -> BatteryLevel {
         self.contact.as_ref().map_or(BatteryLevel::Good, |contact| contact.telemetry.battery_level())
     }
+}
+
+/// In words.
+fn stall(gap: Duration) -> String {
+    format!(
+        "this program or its computer stood still for {} ms (load, sleep, a stopped process); the vehicle's mode is asked for",
+        gap.as_millis()
+    )
 }

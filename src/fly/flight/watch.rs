@@ -42,6 +42,10 @@ pub(super) struct Watch {
     failsafe: Sustained,
     unhealthy: Sustained,
     paused_since: Option<Duration>,
+    /// when this program last woke from a standstill: silence counts from then
+    pub(super) awake: Duration,
+    /// that the vehicle calls itself disarmed and is not believed was told
+    told_contradiction: bool,
 }
 
 impl Watch {
@@ -60,6 +64,8 @@ impl Watch {
             failsafe: Sustained::default(),
             unhealthy: Sustained::default(),
             paused_since: None,
+            awake: Duration::ZERO,
+            told_contradiction: false,
         }
     }
 
@@ -75,8 +81,10 @@ impl Flight {
         if self.contact.is_none() || matches!(self.phase, Phase::Done) {
             return;
         }
+        self.tell_contradiction(now);
         if self.phase.is_ours() {
-            let cause = self.check_mode(now).or_else(|| self.check_vehicle(now));
+            let cause =
+                self.check_mode(now).or_else(|| self.check_suspicion()).or_else(|| self.check_vehicle(now));
             if let Some(cause) = cause {
                 self.end(now, cause);
                 return;
@@ -106,6 +114,23 @@ impl Flight {
             return Some(Cause::Override("it was disarmed".to_owned()));
         }
         None
+    }
+
+    /// What looks like another master may be the vehicle's own failsafe or its pilot, of which a report of the mode tells a
+    /// moment later: only one who is seen while the mode stays ours is another master.
+    fn check_suspicion(&mut self) -> Option<Cause> {
+        let confirmed = |(_, reports): &mut (Cause, u64)| self.known.reports() > *reports;
+        self.suspected.take_if(confirmed).map(|(cause, _)| cause)
+    }
+
+    /// A single "disarmed" in the air is not believed, and is told.
+    fn tell_contradiction(&mut self, now: Duration) {
+        let contradicted =
+            self.contact.as_ref().is_some_and(|contact| contact.telemetry.is_arming_contradicted());
+        if contradicted && !std::mem::replace(&mut self.watch.told_contradiction, contradicted) {
+            let text = "a HEARTBEAT says that it is disarmed and nothing else agrees: not believed unless it is said again";
+            self.note(now, Level::Warning, "vehicle", text);
+        }
     }
 
     fn check_vehicle(&mut self, now: Duration) -> Option<Cause> {
@@ -172,9 +197,11 @@ impl Flight {
 
     fn check_link(&mut self, now: Duration) {
         let Some(contact) = &self.contact else { return };
-        let silent = now.saturating_sub(contact.telemetry.heard);
+        let awake = self.watch.awake;
+        let silent = now.saturating_sub(contact.telemetry.heard.max(awake));
         // what comes first after a silence is seldom a HEARTBEAT
-        let no_mode = now.saturating_sub(contact.telemetry.heartbeat.max(contact.telemetry.resumed));
+        let no_mode =
+            now.saturating_sub(contact.telemetry.heartbeat.max(contact.telemetry.resumed).max(awake));
         if silent > GIVE_UP_AFTER || no_mode > HEARTBEAT_MAX {
             let what = if silent > GIVE_UP_AFTER { "anything" } else { "a HEARTBEAT" };
             let age_s = silent.max(no_mode.min(HEARTBEAT_MAX)).as_secs_f64();
@@ -204,42 +231,75 @@ impl Flight {
         }
     }
 
-    /// Lets go: nothing is sent any more but heartbeats, and no mode is asked for again.
+    /// Nothing is heard of the vehicle: nothing is sent until it is, and then only where it is still in our mode.
+    pub(super) fn lose(&mut self, now: Duration) {
+        self.guide.lead = Lead::Silent;
+        self.commander.clear();
+        self.enter(now, Phase::Lost);
+        let text = "setpoints have ended; its own failsafe acts. If it is heard again in our mode, it is told to hold";
+        self.note(now, Level::Warning, "link", text);
+    }
+
+    /// The link is lost, or was until now.
+    pub(super) fn wait_for_word(&mut self, now: Duration) {
+        let Some(contact) = &self.contact else { return };
+        let heard = now.saturating_sub(contact.telemetry.heard) < PAUSE_AFTER;
+        if !heard {
+            self.give_up_listening(now);
+        } else if !self.is_armed() {
+            self.finish_watching(now);
+        } else if self.known.is_in_doubt() {
+            // the mode from before the silence is not known to be its mode still: it is asked
+        } else if self.is_in(Mode::External) {
+            self.note(now, Level::Warning, "link", "heard again, still in our mode: it is told to hold");
+            self.begin_hold(now);
+        } else {
+            let mode = self.mode_name();
+            self.note(now, Level::Warning, "link", format!("heard again, in {mode}"));
+            self.hands_off(now);
+        }
+    }
+
+    /// Lets go for good: nothing is sent any more but heartbeats, and no mode is asked for again, whatever the vehicle
+    /// shows later.
     pub(super) fn hands_off(&mut self, now: Duration) {
         self.guide.lead = Lead::Silent;
         self.commander.clear();
         self.enter(now, Phase::Watch);
-        let lasts_s = self.sortie.settings.watch_max.as_secs();
-        let text = format!(
-            "nothing is sent but heartbeats; the vehicle is listened to until it is disarmed, for {lasts_s} s at most \
-             (Ctrl-C ends it now)"
-        );
+        let text = "nothing is sent but heartbeats; the vehicle is recorded until it is disarmed (Ctrl-C ends it now)";
         self.note(now, Level::Information, "watch", text);
     }
 
-    /// Others fly the vehicle, or nobody hears it.
+    /// Others fly the vehicle.
     pub(super) fn watch_others(&mut self, now: Duration) {
         let Some(contact) = &self.contact else { return };
         let heard = now.saturating_sub(contact.telemetry.heard) < PAUSE_AFTER;
         if heard && !self.is_armed() {
-            let ending = match self.cause {
-                Some(Cause::Killed) => Ending::Fell,
-                _ if self.stand.is_some() => Ending::Landed,
-                _ => Ending::NotFlown,
-            };
-            self.finish(now, ending);
-            return;
-        }
-        // the mode from before the silence is not known to be its mode still
-        let telemetry = &contact.telemetry;
-        let said = telemetry.state.is_some_and(|state| state.at >= telemetry.resumed);
-        let ours = heard && said && self.is_in(Mode::External);
-        if ours && matches!(self.cause, Some(Cause::LinkLost(_))) {
-            self.note(now, Level::Warning, "link", "heard again, still in our mode: it is told to hold");
-            self.begin_hold(now);
+            self.finish_watching(now);
         } else if now.saturating_sub(self.entered) > self.sortie.settings.watch_max {
             let mode = if heard { self.mode_name() } else { "not heard".to_owned() };
             self.finish(now, Ending::InTheAir(mode));
+        } else {
+            self.give_up_listening(now);
+        }
+    }
+
+    /// The motors are off.
+    fn finish_watching(&mut self, now: Duration) {
+        let ending = match self.cause {
+            Some(Cause::Killed) => Ending::Fell,
+            _ if self.stand.is_some() => Ending::Landed,
+            _ => Ending::NotFlown,
+        };
+        self.finish(now, ending);
+    }
+
+    /// Ends where nothing was heard for too long.
+    fn give_up_listening(&mut self, now: Duration) {
+        let Some(contact) = &self.contact else { return };
+        let silent = now.saturating_sub(contact.telemetry.heard.max(self.watch.awake));
+        if silent > self.sortie.settings.gone_after {
+            self.finish(now, Ending::InTheAir("not heard".to_owned()));
         }
     }
 

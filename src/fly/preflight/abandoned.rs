@@ -281,27 +281,26 @@ fn said(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> Finding {
 
 fn refused(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> Finding {
     let expected = format!("{EXPECTED} ({})", timeout(situation, law));
-    let off = if tried.excess_m() > 0.0 {
-        in_words(tried)
-    } else {
-        format!(
-            "setpoints that are safe to be the last cost {:.2} m off the reference, {:.2} m are allowed",
-            tried.tracking_m, situation.tracking_max_m
-        )
-    };
-    let came = format!("{off}, however they are sent");
+    let costs = format!(
+        "setpoints that come nearest to it cost {:.2} m off the reference, of which {:.2} m end the flight",
+        tried.tracking_m, situation.tracking_max_m
+    );
+    let came = format!("{}, however they are sent; {costs}", in_words(tried));
     Finding::refusal(SUBJECT, expected, came, remedy(situation, law, tried))
 }
 
 /// A slower or smaller plan first, then a value.
 fn remedy(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> String {
-    let plan = match tried.worst.filter(|worst| worst.excess_m > 0.0) {
+    let misses = tried.tracking_m > TRACKING_SHARE * situation.tracking_max_m;
+    let plan = match tried.worst.filter(|worst| worst.excess_m > 0.0 && !misses) {
         Some(worst) => format!(
             "plan slower near {}, or {:.1} m further from it",
             worst.border,
             (10.0 * worst.excess_m).ceil() / 10.0
         ),
-        None => "plan a slower trajectory, or raise the limits that the checks name".to_owned(),
+        None => {
+            "plan a slower trajectory, or raise the limits of the autopilot that the checks name".to_owned()
+        }
     };
     match safe_timeout_s(situation, law) {
         Some(seconds) => format!("{plan}; or set {} to {seconds:.1} or less", timeout_name(law)),

@@ -13,9 +13,11 @@ mod clearance;
 mod drive;
 mod estimating;
 mod journal;
+mod parking;
 mod priority;
 mod stream;
 
+pub use parking::{Parking, Part};
 pub use priority::raise_priority;
 pub use stream::StreamFigures;
 
@@ -28,15 +30,13 @@ use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 use tokio::time::MissedTickBehavior;
 
 use super::flight::{Event, Flight};
-use super::modes::Mode;
 use super::outcome::Outcome;
 use super::requests::LinkKind;
 use super::sortie::Sortie;
-use super::target::Order;
 use super::view::{KeyCommand, ViewModel};
 use crate::link::{
-    Address, Link, LinkError, LinkOptions, LinkReader, LinkStats, LinkWriter, Received, RecordError,
-    Recorder, RecorderStatus, Signing,
+    Address, Link, LinkError, LinkOptions, LinkReader, LinkStats, Received, RecordError, Recorder,
+    RecorderStatus, Signing,
 };
 use crate::vehicle::Vehicle;
 use drive::Drive;
@@ -48,9 +48,6 @@ use stream::{SharedGuide, Stream};
 const TICK: Duration = Duration::from_millis(10);
 /// How long the last words of a flight may take to leave.
 const FLUSH: Duration = Duration::from_secs(1);
-/// A flight that broke asks so often for the hold mode, with a pause after each.
-const LAST_WORDS: u32 = 3;
-const LAST_WORD_PAUSE: Duration = Duration::from_millis(100);
 
 /// What is said where setpoints get no thread of their own rank.
 const NO_PRIORITY: &str = "the system permits no real-time threads (on Linux: CAP_SYS_NICE, or RLIMIT_RTPRIO of at \
@@ -76,6 +73,8 @@ pub struct Ride {
     pub signing: Option<Signing>,
     /// an existing folder
     pub dir: PathBuf,
+    /// for tests: what stands still
+    pub parking: Parking,
 }
 
 /// Who watches the flight.
@@ -119,8 +118,10 @@ pub enum RunError {
         /// what the system said
         source: io::Error,
     },
-    /// the program itself failed; the vehicle was told to hold
-    #[error("the flight broke off by a fault of this program; the vehicle was told to hold: {0}")]
+    /// the program itself failed; nothing is sent any more
+    #[error(
+        "the flight broke off by a fault of this program; no setpoint is sent any more, and the vehicle's own failsafe acts: {0}"
+    )]
     Broken(String),
 }
 
@@ -142,6 +143,7 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
         patient: true,
         signing: ride.signing,
         recorder: Some(recorder.clone()),
+        parked: Some(ride.parking.flag(Part::Link).clone()),
         ..LinkOptions::default()
     };
     let (reader, writer) = Link::open(&ride.address, options).await?;
@@ -160,14 +162,12 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
     if !stream.is_real_time {
         drive.warn("setpoints", NO_PRIORITY);
     }
-    // a task of its own: were it to panic, there is still somebody to tell the vehicle
-    let task = tokio::spawn(conduct(drive, reader, console, journal, stalls));
+    // a task of its own: were it to panic, the guide is not renewed and no setpoint goes out. No mode is ordered by
+    // whoever does not know it: the vehicle's own failsafe acts
+    let task = tokio::spawn(conduct(drive, (reader, ride.parking), console, journal, stalls));
     let (outcome, events_failure) = match task.await {
         Ok(done) => done?,
-        Err(broken) => {
-            last_words(&writer, &guide).await;
-            return Err(RunError::Broken(broken.to_string()));
-        }
+        Err(broken) => return Err(RunError::Broken(broken.to_string())),
     };
     let stream = stream.finish();
     // the link may be gone by now
@@ -195,7 +195,7 @@ type Done = (Outcome, Option<String>);
 
 async fn conduct(
     mut drive: Drive,
-    mut reader: LinkReader,
+    (mut reader, parking): (LinkReader, Parking),
     mut console: Console,
     journal: Journal,
     mut stalls: UnboundedReceiver<Duration>,
@@ -203,15 +203,27 @@ async fn conduct(
     let mut ticks = tokio::time::interval(TICK);
     ticks.set_missed_tick_behavior(MissedTickBehavior::Skip);
     let mut ends = Ends::new()?;
-    let (mut hears, mut keyed) = (true, true);
+    let (mut hears, mut keyed, mut took) = (true, true, true);
     loop {
+        if parking.is_parked(Part::Supervisor) {
+            std::future::pending::<()>().await;
+        }
         tokio::select! {
-            received = reader.receive(), if hears => match received {
-                Ok(Received::Frame(frame)) => drive.frame(frame),
-                Ok(Received::Event(event)) => drive.link_event(&event),
-                Err(_) => hears = false,
+            received = reader.receive(), if hears && !parking.is_parked(Part::Telemetry) => {
+                took = true;
+                match received {
+                    Ok(Received::Frame(frame)) => drive.frame(frame),
+                    Ok(Received::Event(event)) => drive.link_event(&event),
+                    Err(_) => {
+                        hears = false;
+                        drive.handle(Event::LinkEnded);
+                    }
+                }
+            }
+            // frames that wait and are not taken: a supervisor that does not see renews nothing
+            _ = ticks.tick() => if std::mem::replace(&mut took, false) || !reader.is_behind() {
+                drive.handle(Event::Tick);
             },
-            _ = ticks.tick() => drive.handle(Event::Tick),
             key = console.keys.recv(), if keyed => match key {
                 Some(key) => drive.key(key),
                 None => keyed = false,
@@ -225,22 +237,6 @@ async fn conduct(
             return Ok((outcome, failure));
         }
     }
-}
-
-/// The program broke: the vehicle is told to hold, by nobody but this.
-async fn last_words(writer: &LinkWriter, guide: &SharedGuide) {
-    let Some((target, stack)) = guide.get().target else { return };
-    if guide.get().lead == super::safety::Lead::Silent {
-        return;
-    }
-    for confirmation in 0..LAST_WORDS {
-        let message =
-            target.command(&Order::set_mode(stack, Mode::Hold), u8::try_from(confirmation).unwrap_or(0));
-        // nothing is left to do where the link refuses it
-        let _ = writer.send_message(&message);
-        tokio::time::sleep(LAST_WORD_PAUSE).await;
-    }
-    let _ = tokio::time::timeout(FLUSH, writer.flush()).await;
 }
 
 /// The ways in which a program is told to end.

@@ -32,9 +32,9 @@ impl SharedGuide {
 
     pub(super) fn set(&self, guide: &Guide) {
         let mut shared = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let same = Guide { issued: shared.issued, ..guide.clone() } == *shared;
+        let same = Guide { issued: shared.issued, held_back: shared.held_back, ..guide.clone() } == *shared;
         if same {
-            shared.issued = guide.issued;
+            (shared.issued, shared.held_back) = (guide.issued, guide.held_back);
         } else {
             shared.clone_from(guide);
         }
@@ -168,8 +168,10 @@ impl Sender {
 
 impl Turn {
     fn send(&mut self, sender: &Sender, due: Duration) {
-        let guide = sender.guide.get();
+        let mut guide = sender.guide.get();
         let now = sender.clock.elapsed();
+        // a link whose task stands still brings no word of the vehicle: nobody knows what it does
+        guide.issued = guide.issued.min(sender.writer.ran().saturating_duration_since(sender.clock));
         match self.streamer.poll(now, &guide) {
             Some(Streamed::Setpoint(_, message)) => {
                 // the first of a stream starts the grid
@@ -180,17 +182,14 @@ impl Turn {
                     Err(_) => self.figures.refused += 1,
                 }
             }
-            Some(Streamed::Stalled { gap, setpoint, command }) => {
+            Some(Streamed::Stalled(gap)) => {
                 sender.writer.clear_latest();
-                for message in setpoint.iter().chain([&command]) {
-                    self.figures.refused += u64::from(sender.writer.send_message(message).is_err());
-                }
                 // a flight that has ended hears nothing
                 let _ = sender.stalled.send(gap);
             }
             None => {
                 self.streams = false;
-                if guide.lead == Lead::Silent {
+                if guide.lead == Lead::Silent || guide.held_back {
                     sender.writer.clear_latest();
                 }
             }

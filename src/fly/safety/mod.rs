@@ -3,6 +3,7 @@
 mod bounds;
 mod envelope;
 mod feeding;
+mod knowledge;
 mod masters;
 mod stream;
 mod tracking;
@@ -10,6 +11,7 @@ mod tracking;
 pub use bounds::SetpointBounds;
 pub use envelope::Envelope;
 pub use feeding::Feeding;
+pub use knowledge::ModeKnowledge;
 pub use masters::Masters;
 pub use stream::{Guide, Lead, Streamed, Streamer};
 pub use tracking::Tracking;

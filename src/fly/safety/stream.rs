@@ -1,22 +1,22 @@
 //! The stream of setpoints, and the watch over its freshness.
 //!
 //! A setpoint is made when it is sent, for that instant; none is ever sent twice, and what was missed is
-//! not made up. Whoever supervises the flight renews the [`Guide`] many times a second. Where he does not,
-//! or where this stream itself was held up, the vehicle is told to hold and then left to its own failsafe.
+//! not made up. The supervisor of the flight renews the [`Guide`] many times a second. Where it does not, or where this
+//! stream itself was held up, nothing is sent any more: a command by whoever knows no mode could take the vehicle from its
+//! pilot. The supervisor is told, and orders what is to be ordered once it knows the mode; until then, and if it never
+//! wakes, the autopilot's own failsafe acts.
 
 use std::time::Duration;
 
 use super::{Feeding, SetpointBounds};
 use crate::fly::course::Track;
-use crate::fly::modes::{Mode, Stack};
+use crate::fly::modes::Stack;
 use crate::fly::setpoint::{Place, Setpoint};
-use crate::fly::target::{Order, Target};
+use crate::fly::target::Target;
 use mavlink::dialects::ardupilotmega::MavMessage;
 
-/// A supervisor or a stream that stalled for longer holds the vehicle.
-const HOLD_AFTER: Duration = Duration::from_millis(100);
-/// One that stalled for longer is silent: the autopilot's own failsafe is to act.
-const SILENT_AFTER: Duration = Duration::from_millis(300);
+/// After a supervisor or a stream stood still for longer, no setpoint goes out.
+pub(in crate::fly) const SILENT_AFTER: Duration = Duration::from_millis(100);
 
 /// What the setpoints follow.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +36,8 @@ pub struct Guide {
     pub lead: Lead,
     /// when it was renewed
     pub issued: Duration,
+    /// the mode is not known: nothing is sent until it is
+    pub held_back: bool,
     /// whom the setpoints are for, and by which rules; `None` while no vehicle is chosen
     pub target: Option<(Target, Stack)>,
     /// how setpoints are made from the reference
@@ -48,13 +50,21 @@ impl Guide {
     /// Nothing to stream.
     #[must_use]
     pub fn silent(issued: Duration) -> Self {
-        Self { lead: Lead::Silent, issued, target: None, feeding: Feeding::whole(), bounds: None }
+        Self {
+            lead: Lead::Silent,
+            issued,
+            held_back: false,
+            target: None,
+            feeding: Feeding::whole(),
+            bounds: None,
+        }
     }
 
     /// The reference of an instant; `None` where nothing is to be sent.
     #[must_use]
     pub fn setpoint(&self, time: Duration) -> Option<Setpoint> {
         match &self.lead {
+            _ if self.held_back => None,
             Lead::Silent => None,
             Lead::Hold(place) => Some(Setpoint::hold(time, place)),
             Lead::Along(track) => track.setpoint(time),
@@ -69,20 +79,13 @@ impl Guide {
     }
 }
 
-/// What is to be sent now.
+/// What comes of an instant of the stream.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Streamed {
     /// a setpoint, and its message
-    Setpoint(Setpoint, MavMessage),
-    /// a stall: the place to hold, and the command to hold there
-    Stalled {
-        /// how long
-        gap: Duration,
-        /// the hold setpoint, unless the stall is too long for any
-        setpoint: Option<MavMessage>,
-        /// the hold mode
-        command: MavMessage,
-    },
+    Setpoint(Setpoint, Box<MavMessage>),
+    /// the supervisor or the stream stood still for so long: nothing is sent
+    Stalled(Duration),
 }
 
 /// Makes the setpoints at their times.
@@ -92,7 +95,6 @@ pub struct Streamer {
     next: Duration,
     /// last time it was asked while there was something to stream
     polled: Option<Duration>,
-    last: Option<Setpoint>,
     stalled: bool,
 }
 
@@ -100,7 +102,7 @@ impl Streamer {
     /// One setpoint each `period`.
     #[must_use]
     pub fn new(period: Duration) -> Self {
-        Self { period, next: Duration::ZERO, polled: None, last: None, stalled: false }
+        Self { period, next: Duration::ZERO, polled: None, stalled: false }
     }
 
     /// When it is to be asked next.
@@ -115,7 +117,7 @@ impl Streamer {
             return None;
         }
         self.advance(now);
-        let (Some(setpoint), Some((target, stack))) = (guide.sent(now), guide.target) else {
+        let (Some(setpoint), Some((target, _))) = (guide.sent(now), guide.target) else {
             *self = Self { next: self.next, ..Self::new(self.period) };
             return None;
         };
@@ -124,15 +126,11 @@ impl Streamer {
             return None;
         }
         let gap = own.max(now.saturating_sub(guide.issued));
-        if gap <= HOLD_AFTER {
-            self.last = Some(setpoint);
-            return Some(Streamed::Setpoint(setpoint, setpoint.message(target)));
+        if gap <= SILENT_AFTER {
+            return Some(Streamed::Setpoint(setpoint, Box::new(setpoint.message(target))));
         }
         self.stalled = true;
-        let place = self.last.unwrap_or(setpoint).place();
-        let hold = (gap <= SILENT_AFTER).then(|| Setpoint::hold(now, &place).message(target));
-        let command = target.command(&Order::set_mode(stack, Mode::Hold), 0);
-        Some(Streamed::Stalled { gap, setpoint: hold, command })
+        Some(Streamed::Stalled(gap))
     }
 
     /// To the next instant of the grid, the multiples of the period; those that were missed are gone.
@@ -180,17 +178,15 @@ mod tests {
     }
 
     #[test]
-    fn a_late_supervisor_holds_the_vehicle_and_the_stream_ends() {
+    fn a_late_supervisor_ends_the_stream_and_nothing_is_commanded() {
         let mut streamer = Streamer::new(ms(20));
         let mut seen = Vec::new();
         for t in 0..1000 {
             // renewed until 400 ms
             match streamer.poll(ms(t), &guide(ms(t.min(400)))) {
                 Some(Streamed::Setpoint(..)) => assert!(t <= 500, "at {t} ms"),
-                Some(Streamed::Stalled { setpoint, command, .. }) => {
-                    assert!(setpoint.is_some());
-                    let MavMessage::COMMAND_LONG(data) = command else { panic!() };
-                    assert_eq!((data.param2, data.param3), (4.0, 3.0), "PX4's hold");
+                Some(Streamed::Stalled(gap)) => {
+                    assert_eq!(gap, ms(120));
                     seen.push(t);
                 }
                 None => {}
@@ -203,13 +199,21 @@ mod tests {
     fn after_a_long_stall_no_setpoint_goes_out() {
         let mut streamer = Streamer::new(ms(20));
         assert!(streamer.poll(ms(0), &guide(ms(0))).is_some());
-        let Some(Streamed::Stalled { gap, setpoint, .. }) = streamer.poll(ms(450), &guide(ms(450))) else {
-            panic!("a stall")
-        };
-        assert_eq!((gap, setpoint), (ms(450), None));
+        assert_eq!(streamer.poll(ms(450), &guide(ms(450))), Some(Streamed::Stalled(ms(450))));
         assert!(streamer.poll(ms(470), &guide(ms(470))).is_none());
         assert!(streamer.poll(ms(490), &Guide::silent(ms(490))).is_none());
         assert!(streamer.poll(ms(510), &guide(ms(510))).is_some(), "a new stream");
+    }
+
+    #[test]
+    fn while_the_mode_is_not_known_nothing_goes_out() {
+        let mut streamer = Streamer::new(ms(20));
+        for t in 0..400 {
+            let doubted = Guide { held_back: (100..300).contains(&t), ..guide(ms(t)) };
+            let sent = streamer.poll(ms(t), &doubted);
+            assert!(!(doubted.held_back && sent.is_some()), "at {t} ms");
+            assert!(!matches!(sent, Some(Streamed::Stalled(_))), "a pause that is wanted is no stall");
+        }
     }
 
     proptest! {
@@ -227,7 +231,7 @@ mod tests {
                 if let Some(Streamed::Setpoint(setpoint, _)) = streamer.poll(now, &guide(issued)) {
                     prop_assert_eq!(setpoint.time, now);
                     prop_assert!(last.is_none_or(|last| last < now));
-                    prop_assert!(now - issued <= HOLD_AFTER);
+                    prop_assert!(now - issued <= SILENT_AFTER);
                     last = Some(now);
                 }
             }

@@ -1,0 +1,42 @@
+//! Parts of the program that a test lets stand still, to see that the vehicle is then left to its own failsafe.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A part of the program without which nobody may steer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// the state machine of the flight, which renews what is to be sent
+    Supervisor,
+    /// the way of frames from the link to the supervisor
+    Telemetry,
+    /// the task that reads and writes the link
+    Link,
+}
+
+/// What stands still; nothing by itself. Clones share it.
+#[derive(Debug, Clone, Default)]
+pub struct Parking {
+    supervisor: Arc<AtomicBool>,
+    telemetry: Arc<AtomicBool>,
+    link: Arc<AtomicBool>,
+}
+
+impl Parking {
+    /// Lets a part stand still from now on.
+    pub fn park(&self, part: Part) {
+        self.flag(part).store(true, Ordering::Release);
+    }
+
+    pub(super) fn is_parked(&self, part: Part) -> bool {
+        self.flag(part).load(Ordering::Acquire)
+    }
+
+    pub(super) fn flag(&self, part: Part) -> &Arc<AtomicBool> {
+        match part {
+            Part::Supervisor => &self.supervisor,
+            Part::Telemetry => &self.telemetry,
+            Part::Link => &self.link,
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Whether the vehicle's mode is known well enough to command it.
+//!
+//! A report of the mode that was read counts. After a stall of this program or a silence of the vehicle no report
+//! counts at first: what is read then may have been sent long ago. The vehicle is asked, and a report counts again
+//! once the vehicle has answered a question that was sent after the stall or the silence.
+
+use std::time::Duration;
+
+/// Between two questions.
+const ASK_AGAIN: Duration = Duration::from_millis(200);
+/// A vehicle that reports its mode and answers no question is believed after this time: whatever lay in a socket or a
+/// radio when the doubt began is read by then.
+const UNANSWERED: Duration = Duration::from_millis(1500);
+
+/// What makes the mode uncertain, and what was done about it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Doubt {
+    since: Duration,
+    /// a question went out since
+    asked: bool,
+    answered: bool,
+}
+
+/// How many reports of the mode count so far, and whether those that come now do.
+#[derive(Debug, Clone, Default)]
+pub struct ModeKnowledge {
+    reports: u64,
+    doubt: Option<Doubt>,
+    asked: Option<Duration>,
+}
+
+impl ModeKnowledge {
+    /// From now on the mode is not known: this program stood still, or the vehicle was silent.
+    pub fn doubt(&mut self, now: Duration) {
+        self.doubt = Some(Doubt { since: now, asked: false, answered: false });
+        self.asked = None;
+    }
+
+    /// The mode is not known.
+    #[must_use]
+    pub fn is_in_doubt(&self) -> bool {
+        self.doubt.is_some()
+    }
+
+    /// Whether the vehicle is to be asked for its mode now: because it is in doubt, or because a command waits for a report
+    /// and reports may come as seldom as once a second.
+    pub fn asks(&mut self, now: Duration, waits: bool) -> bool {
+        let wanted = waits || self.doubt.is_some();
+        let due = wanted && self.asked.is_none_or(|asked| now.saturating_sub(asked) >= ASK_AGAIN);
+        if due {
+            self.asked = Some(now);
+            if let Some(doubt) = &mut self.doubt {
+                doubt.asked = true;
+            }
+        }
+        due
+    }
+
+    /// The vehicle answered a question. An answer that comes before a question is none.
+    pub fn answered(&mut self) {
+        if let Some(doubt) = &mut self.doubt {
+            doubt.answered = doubt.asked;
+        }
+    }
+
+    /// A report of the mode was read.
+    pub fn report(&mut self, now: Duration) {
+        let counts = self.doubt.is_none_or(|doubt| {
+            doubt.answered || doubt.asked && now.saturating_sub(doubt.since) >= UNANSWERED
+        });
+        if counts {
+            self.doubt = None;
+            self.reports += 1;
+        }
+    }
+
+    /// Reports that count so far. A command may go out once this is greater than when its reason came.
+    #[must_use]
+    pub fn reports(&self) -> u64 {
+        self.reports
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ms(value: u64) -> Duration {
+        Duration::from_millis(value)
+    }
+
+    #[test]
+    fn each_report_counts_while_nothing_is_in_doubt() {
+        let mut known = ModeKnowledge::default();
+        known.report(ms(0));
+        known.report(ms(100));
+        assert_eq!(known.reports(), 2);
+        assert!(!known.asks(ms(100), false), "nothing is to be asked");
+        assert!(known.asks(ms(110), true), "a command waits");
+    }
+
+    #[test]
+    fn after_a_stall_only_a_report_behind_an_answer_counts() {
+        let mut known = ModeKnowledge::default();
+        known.doubt(ms(1000));
+        known.answered();
+        known.report(ms(1001));
+        assert_eq!(known.reports(), 0, "an answer to nothing, and a report from before");
+        assert!(known.asks(ms(1002), false) && !known.asks(ms(1100), true) && known.asks(ms(1202), false));
+        known.report(ms(1210));
+        assert!(known.is_in_doubt());
+        known.answered();
+        assert!(known.is_in_doubt(), "an answer alone says no mode");
+        known.report(ms(1250));
+        assert_eq!((known.reports(), known.is_in_doubt()), (1, false));
+    }
+
+    #[test]
+    fn a_vehicle_that_answers_no_question_is_believed_later() {
+        let mut known = ModeKnowledge::default();
+        known.doubt(ms(0));
+        for t in (0..1500).step_by(100) {
+            known.asks(ms(t), false);
+            known.report(ms(t));
+        }
+        assert_eq!(known.reports(), 0);
+        known.report(ms(1500));
+        assert_eq!(known.reports(), 1);
+    }
+
+    #[test]
+    fn a_second_stall_makes_the_first_answer_worthless() {
+        let mut known = ModeKnowledge::default();
+        known.doubt(ms(0));
+        assert!(known.asks(ms(0), false));
+        known.answered();
+        known.doubt(ms(50));
+        known.report(ms(60));
+        assert_eq!(known.reports(), 0);
+    }
+}
