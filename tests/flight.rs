@@ -547,6 +547,8 @@ fn one_forged_heartbeat_that_says_disarmed_ends_nothing() {
         let mut raw = MAVLinkV2MessageRaw::new();
         let mut data = mavlink::dialects::ardupilotmega::HEARTBEAT_DATA {
             custom_mode: mode,
+            // the default is "armed"
+            base_mode: mavlink::dialects::ardupilotmega::MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED,
             mavtype: mavlink::dialects::ardupilotmega::MavType::MAV_TYPE_QUADROTOR,
             autopilot: mavlink::dialects::ardupilotmega::MavAutopilot::MAV_AUTOPILOT_PX4,
             ..Default::default()
@@ -576,6 +578,23 @@ fn a_pilots_loiter_after_an_abort_is_not_followed_by_a_landing() {
     flying.finish();
     assert_eq!(orders_since(&flying, since), [], "{}", flying.story());
     assert!(flying.story().contains("LOITER"), "{}", flying.story());
+}
+
+/// A pilot who chooses, while the program stands still, the very mode that it would ask for.
+#[test]
+fn a_pilots_hold_during_a_stall_is_not_taken_for_ours() {
+    for (kind, mode) in [(PX4, Mode::Hold), (COPTER, Mode::Brake)] {
+        for ms in [200, 650, 2000] {
+            let mut flying = watched_briefly(kind);
+            flying.fly_into_the_trajectory(3.0);
+            stall(&mut flying, 50);
+            flying.vehicle.fault(Fault::PilotTakesOver(mode));
+            let since = flying.now;
+            stall(&mut flying, ms);
+            flying.finish();
+            assert_eq!(orders_since(&flying, since), [], "{kind:?} {ms}: {}", flying.story());
+        }
+    }
 }
 
 #[test]

@@ -82,6 +82,8 @@ async fn parked(part: Part, name: &str) -> (PathBuf, u64) {
     parking.park(part);
     tokio::time::sleep(Duration::from_secs(4)).await;
     flight.abort();
+    // a task that stands still cannot be ended
+    parking.release();
     vehicle.abort();
     recorder.end().await.unwrap();
     (log, at)

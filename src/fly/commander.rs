@@ -163,6 +163,12 @@ impl Commander {
         })
     }
 
+    /// Whether this command waits for its answer and was sent.
+    #[must_use]
+    pub fn has_sent(&self, order: &Order) -> bool {
+        self.pending.iter().any(|waiting| waiting.order == *order && waiting.sent > 0)
+    }
+
     /// Forgets all of them.
     pub fn clear(&mut self) {
         self.pending.clear();

@@ -33,6 +33,8 @@ pub(super) struct Leaving {
     /// the mode that it was in, by our doing, when that was wished for
     from: Option<u32>,
     wished: Duration,
+    /// the command for it left: a mode that shows before is somebody else's choice
+    ordered: bool,
     /// when it was last asked for
     asked: Duration,
     /// when the wished mode was first seen
@@ -52,6 +54,7 @@ impl Leaving {
             wish,
             from,
             wished: now,
+            ordered: false,
             asked: now,
             reached: None,
             left: Sustained::default(),
@@ -63,6 +66,15 @@ impl Leaving {
 
     pub(super) fn wish(&self) -> Mode {
         self.wish
+    }
+
+    /// The command for it left.
+    pub(super) fn ordered(&mut self) {
+        self.ordered = true;
+    }
+
+    pub(super) fn is_ordered(&self) -> bool {
+        self.ordered
     }
 
     /// It was in this mode when it was told to leave it.
@@ -126,7 +138,8 @@ impl Flight {
         let armed = self.is_armed();
         let Phase::Leave(leaving) = &self.phase else { return };
         let (wish, wished, stop_by) = (leaving.wish, leaving.wished, leaving.stop_by);
-        let (seen, on_ground) = (self.is_in(wish), self.is_on_ground());
+        let seen = leaving.is_ordered() && self.is_in(wish);
+        let on_ground = self.is_on_ground();
         if !armed {
             self.finish(now, if self.stand.is_some() { Ending::Landed } else { Ending::NotFlown });
             return;
@@ -197,7 +210,7 @@ impl Flight {
         }
     }
 
-    /// Neither in the mode that it was to leave nor in the one that was asked for: somebody else's will.
+    /// In another mode than the one that it was to leave, and not by our command: somebody else's will.
     fn left_by_others(&mut self, now: Duration) -> bool {
         let Some(shown) = self.custom_mode() else { return false };
         let Phase::Leave(leaving) = &self.phase else { return false };
@@ -215,7 +228,7 @@ impl Flight {
         if let Phase::Leave(leaving) = &mut self.phase {
             // what somebody else chose meanwhile stays his
             leaving.from = if by_us { shown } else { leaving.from };
-            (leaving.wish, leaving.wished, leaving.reached) = (wish, now, None);
+            (leaving.wish, leaving.wished, leaving.reached, leaving.ordered) = (wish, now, None, false);
             let name = leaving.name();
             self.note(now, Level::Information, "phase", name);
             self.ask(now, wish);

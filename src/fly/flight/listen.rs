@@ -5,6 +5,7 @@ use std::time::Duration;
 use super::{Flight, Phase};
 use crate::fly::news::Novelty;
 use crate::fly::outcome::{Cause, Level};
+use crate::fly::safety::Doubted;
 use crate::log::{Check, Frame};
 
 /// For a vehicle to fly our setpoints after its takeoff, and to say so.
@@ -29,7 +30,7 @@ impl Flight {
             return;
         }
         if now.saturating_sub(contact.telemetry.heard) > SILENCE {
-            self.known.doubt(now);
+            self.known.doubt(now, Doubted::BySilence);
         }
         let reports = contact.telemetry.mode_reports();
         let news = contact.telemetry.take(now, frame);

@@ -21,7 +21,7 @@ use super::lift::Lift;
 use super::modes::{Mode, Stack};
 use super::outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
 use super::roster::Roster;
-use super::safety::{Feeding, Guide, Lead, ModeKnowledge};
+use super::safety::{Doubted, Feeding, Guide, Lead, ModeKnowledge};
 use super::setpoint::Place;
 use super::sortie::Sortie;
 use super::target::{Order, Target, heartbeat};
@@ -268,7 +268,7 @@ impl Flight {
             Event::Stalled(gap) => self.stalled(now, gap),
             Event::LinkEnded => self.end(now, Cause::LinkLost("the program's own link has ended".to_owned())),
             Event::Link(up) => {
-                self.known.doubt(now);
+                self.known.doubt(now, Doubted::BySilence);
                 let (level, text) =
                     if up { (Level::Information, "link is up") } else { (Level::Warning, "link is down") };
                 self.note(now, level, "link", text);
@@ -345,7 +345,7 @@ impl Flight {
             Phase::Done => return,
         }
         self.follow(now);
-        self.guide.held_back = self.known.is_in_doubt();
+        self.hold_back(now);
         if let Some((target, _)) = self.target() {
             let permission = self.permission();
             let waits = self.commander.waits_for_report(now, permission);
@@ -354,6 +354,11 @@ impl Flight {
                 self.actions.push_back(Action::Send(target.command(&question, 0)));
             }
             let (messages, answers) = self.commander.poll(now, target, permission);
+            if let (Phase::Leave(leaving), Some((_, stack))) = (&mut self.phase, self.guide.target)
+                && self.commander.has_sent(&Order::set_mode(stack, leaving.wish()))
+            {
+                leaving.ordered();
+            }
             self.actions.extend(messages.into_iter().map(Action::Send));
             for answer in answers {
                 self.answered(now, &answer);
@@ -373,7 +378,7 @@ impl Flight {
             return;
         }
         self.watch.awake = now;
-        self.known.doubt(now);
+        self.known.doubt(now, Doubted::ByStall(gap));
         if gap >= STALLED {
             if self.phase.is_ours() && self.phase.is_airborne() {
                 self.stalled(now, gap);
@@ -383,9 +388,24 @@ impl Flight {
         }
     }
 
+    /// No setpoint goes out while a pilot may have taken over unheard. After a short hiccup the stream goes on: a vehicle that
+    /// its pilot flies does not follow it.
+    fn hold_back(&mut self, now: Duration) {
+        let held_back = self.known.is_in_doubt_for_long();
+        if held_back && !self.guide.held_back && self.guide.lead != Lead::Silent {
+            self.note(
+                now,
+                Level::Warning,
+                "stream",
+                "setpoints are held back until the vehicle says its mode",
+            );
+        }
+        self.guide.held_back = held_back;
+    }
+
     fn stalled(&mut self, now: Duration, gap: Duration) {
         self.watch.awake = now;
-        self.known.doubt(now);
+        self.known.doubt(now, Doubted::ByStall(gap));
         self.end(now, Cause::Stalled(stall(gap)));
     }
 
@@ -402,7 +422,8 @@ impl Flight {
         match &self.phase {
             Phase::Engage(found) => *found == Some(state.value.custom_mode) && !state.value.armed,
             Phase::Leave(leaving) => {
-                self.is_in(leaving.wish()) || leaving.comes_from(state.value.custom_mode)
+                leaving.is_ordered() && self.is_in(leaving.wish())
+                    || leaving.comes_from(state.value.custom_mode)
             }
             // of a vehicle that is left to others only the motors are stopped, by the operator's typed word
             Phase::Watch => {

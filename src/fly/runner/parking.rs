@@ -28,6 +28,13 @@ impl Parking {
         self.flag(part).store(true, Ordering::Release);
     }
 
+    /// Lets all parts go on.
+    pub fn release(&self) {
+        for part in [Part::Supervisor, Part::Telemetry, Part::Link] {
+            self.flag(part).store(false, Ordering::Release);
+        }
+    }
+
     pub(super) fn is_parked(&self, part: Part) -> bool {
         self.flag(part).load(Ordering::Acquire)
     }

@@ -8,14 +8,27 @@ use std::time::Duration;
 
 /// Between two questions.
 const ASK_AGAIN: Duration = Duration::from_millis(200);
-/// A vehicle that reports its mode and answers no question is believed after this time: whatever lay in a socket or a
-/// radio when the doubt began is read by then.
-const UNANSWERED: Duration = Duration::from_millis(1500);
+/// A vehicle that reports its mode and answers no question is believed after this time: whatever lay in a socket when this
+/// program woke, or in a radio when the vehicle was heard again, is read by then.
+const SOCKET_IS_READ: Duration = Duration::from_millis(500);
+const RADIO_IS_READ: Duration = Duration::from_millis(1500);
+/// After a shorter standstill commands wait for a report, and setpoints do not.
+const SHORT: Duration = Duration::from_millis(300);
+
+/// Why the mode is not known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Doubted {
+    /// this program stood still for so long
+    ByStall(Duration),
+    /// the vehicle was not heard
+    BySilence,
+}
 
 /// What makes the mode uncertain, and what was done about it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Doubt {
     since: Duration,
+    why: Doubted,
     /// a question went out since
     asked: bool,
     answered: bool,
@@ -31,8 +44,10 @@ pub struct ModeKnowledge {
 
 impl ModeKnowledge {
     /// From now on the mode is not known: this program stood still, or the vehicle was silent.
-    pub fn doubt(&mut self, now: Duration) {
-        self.doubt = Some(Doubt { since: now, asked: false, answered: false });
+    pub fn doubt(&mut self, now: Duration, why: Doubted) {
+        // a hiccup on top of something worse makes it no better
+        let worse = self.doubt.map(|doubt| doubt.why).filter(|before| is_long(*before));
+        self.doubt = Some(Doubt { since: now, why: worse.unwrap_or(why), asked: false, answered: false });
         self.asked = None;
     }
 
@@ -40,6 +55,12 @@ impl ModeKnowledge {
     #[must_use]
     pub fn is_in_doubt(&self) -> bool {
         self.doubt.is_some()
+    }
+
+    /// The mode is not known, and was not for so long that setpoints are not to go out either.
+    #[must_use]
+    pub fn is_in_doubt_for_long(&self) -> bool {
+        self.doubt.is_some_and(|doubt| is_long(doubt.why))
     }
 
     /// Whether the vehicle is to be asked for its mode now: because it is in doubt, or because a command waits for a report
@@ -66,7 +87,8 @@ impl ModeKnowledge {
     /// A report of the mode was read.
     pub fn report(&mut self, now: Duration) {
         let counts = self.doubt.is_none_or(|doubt| {
-            doubt.answered || doubt.asked && now.saturating_sub(doubt.since) >= UNANSWERED
+            let read_by = if doubt.why == Doubted::BySilence { RADIO_IS_READ } else { SOCKET_IS_READ };
+            doubt.answered || doubt.asked && now.saturating_sub(doubt.since) >= read_by
         });
         if counts {
             self.doubt = None;
@@ -79,6 +101,10 @@ impl ModeKnowledge {
     pub fn reports(&self) -> u64 {
         self.reports
     }
+}
+
+fn is_long(why: Doubted) -> bool {
+    !matches!(why, Doubted::ByStall(gap) if gap < SHORT)
 }
 
 #[cfg(test)]
@@ -102,7 +128,7 @@ mod tests {
     #[test]
     fn after_a_stall_only_a_report_behind_an_answer_counts() {
         let mut known = ModeKnowledge::default();
-        known.doubt(ms(1000));
+        known.doubt(ms(1000), Doubted::ByStall(ms(400)));
         known.answered();
         known.report(ms(1001));
         assert_eq!(known.reports(), 0, "an answer to nothing, and a report from before");
@@ -118,7 +144,7 @@ mod tests {
     #[test]
     fn a_vehicle_that_answers_no_question_is_believed_later() {
         let mut known = ModeKnowledge::default();
-        known.doubt(ms(0));
+        known.doubt(ms(0), Doubted::BySilence);
         for t in (0..1500).step_by(100) {
             known.asks(ms(t), false);
             known.report(ms(t));
@@ -131,10 +157,11 @@ mod tests {
     #[test]
     fn a_second_stall_makes_the_first_answer_worthless() {
         let mut known = ModeKnowledge::default();
-        known.doubt(ms(0));
+        known.doubt(ms(0), Doubted::BySilence);
         assert!(known.asks(ms(0), false));
         known.answered();
-        known.doubt(ms(50));
+        known.doubt(ms(50), Doubted::ByStall(ms(120)));
+        assert!(known.is_in_doubt_for_long(), "a hiccup makes a silence no shorter");
         known.report(ms(60));
         assert_eq!(known.reports(), 0);
     }
