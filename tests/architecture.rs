@@ -221,6 +221,27 @@ fn only_the_commands_print() {
     assert!(wrong.is_empty(), "only {} may print:\n{}", PRINT.join(", "), wrong.join("\n"));
 }
 
+/// Messages that leave are made from types that cannot be out of range, and nowhere else.
+#[test]
+fn only_the_typed_orders_make_messages() {
+    let mut wrong = Vec::new();
+    for source in sources() {
+        // the embedded vehicle's own messages, those of logs that tests read, and names of the dialect in patterns
+        let makes =
+            ["fly/target/", "fly/setpoint.rs", "sitl/", "log/tlog/encode.rs", "link/signing/tests.rs"];
+        if !makes.iter().any(|path| source.path.starts_with(path))
+            && code(without_tests(&source.text)).contains("_DATA {")
+        {
+            wrong.push(source.path);
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "messages are made in fly/target and fly/setpoint.rs, not in:\n{}",
+        wrong.join("\n")
+    );
+}
+
 #[test]
 fn files_stay_short() {
     let long: Vec<String> = sources()

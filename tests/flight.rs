@@ -345,7 +345,7 @@ fn beside(kind: AutopilotKind, north_m: Option<f64>, lasts: Duration) -> Flying 
         }
         let mut raw = MAVLinkV2MessageRaw::new();
         let header = MavHeader { system_id: 254, component_id: 190, sequence: 0 };
-        let mut message = Setpoint::hold(flying.now, &place).message(target);
+        let mut message = Setpoint::hold(flying.now, &place).message(target).unwrap();
         if let MavMessage::SET_POSITION_TARGET_LOCAL_NED(data) = &mut message {
             // position alone, or velocity alone
             data.type_mask =

@@ -123,11 +123,11 @@ async fn a_vehicle_that_signs_is_flown_with_its_key_alone() {
     assert!(why(&right).contains("the operator"), "{}", why(&right));
     assert!(why(&wrong).contains("no vehicle"), "{}", why(&wrong));
     assert!(why(&unsigned).contains("no vehicle"), "{}", why(&unsigned));
-    for (name, said) in [("wrong", "with another key's"), ("unsigned", "without a signature")] {
+    for (name, said) in [("wrong", "signs with another key"), ("unsigned", "it does not sign")] {
         let events =
             Path::new(env!("CARGO_TARGET_TMPDIR")).join("fly_checks").join(name).join("events.jsonl");
         let events = std::fs::read_to_string(events).unwrap();
-        assert!(events.contains("frames come that are not believed") && events.contains(said), "{events}");
+        assert!(events.contains("is not believed") && events.contains(said), "{events}");
     }
 }
 

@@ -160,7 +160,7 @@ fn two_vehicles_and_none_with_a_heartbeat_are_inspected() {
     let path = written("inspect-two.tlog", &tlog(&frames));
     let first = inspected(&path, None);
     assert_eq!((first.vehicle.system, first.vehicle.others.as_slice()), (Some(1), [2].as_slice()));
-    assert!(first.advice.iter().any(|advice| advice.contains("--system")));
+    assert!(first.advice.iter().any(|advice| advice.contains("--system-id")));
     let options = LoadOptions { system: Some(SystemId(2)) };
     let second = inspect_tlog(&path, &options, None, &mut |_| ()).unwrap();
     assert_eq!(second.vehicle.system, Some(2));

@@ -116,6 +116,34 @@ async fn a_waiting_link_answers_only_the_first_that_sent_a_heartbeat() {
     assert_eq!(event(&mut reader).await, LinkEvent::Restored { peer: name });
 }
 
+/// A flight streams setpoints for 5 s into a silence: the downlink alone may be lost.
+#[tokio::test]
+async fn a_silent_peer_is_still_sent_to_for_more_than_five_seconds() {
+    let port = free_port("127.0.0.1");
+    let address = format!("udpin:127.0.0.1:{port}").parse().unwrap();
+    let (mut reader, writer) = Link::open(&address, LinkOptions::default()).await.unwrap();
+    let peer = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
+    peer.set_read_timeout(Some(LONG)).unwrap();
+    peer.send_to(&v2(header(1, 0), &heartbeat()), ("127.0.0.1", port)).unwrap();
+    assert!(matches!(event(&mut reader).await, LinkEvent::Connected { .. }));
+    tokio::time::pause();
+    let mut buffer = [0; 300];
+    for step in 0..60 {
+        // the queue and the slot, a setpoint's way
+        writer.send_message(&ground_heartbeat()).unwrap_or_else(|error| panic!("{step}: {error}"));
+        writer.flush().await.unwrap();
+        writer.send_latest(&ground_heartbeat()).unwrap();
+        writer.flush().await.unwrap();
+        for _ in 0..2 {
+            peer.recv(&mut buffer).unwrap();
+        }
+        tokio::time::sleep(Duration::from_millis(100)).await;
+    }
+    assert_eq!(reader.stats().losses, 0);
+    assert!(matches!(event(&mut reader).await, LinkEvent::Lost { .. }));
+    assert!(matches!(writer.send_message(&heartbeat()), Err(LinkError::NotConnected { .. })));
+}
+
 #[tokio::test]
 async fn a_refusing_udp_peer_is_told_once_and_restored_by_its_answer() {
     let port = free_port("127.0.0.1");

@@ -1,6 +1,6 @@
 //! Signed links, with each other and with pymavlink.
 
-#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
 
 #[path = "support/python.rs"]
 mod python;
@@ -8,7 +8,10 @@ mod support;
 
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use mavid::link::{Ends, Link, LinkOptions, LinkReader, Received, ReceivedFrame, Signing, SigningKey};
+use mavid::link::{
+    Distrust, Ends, Link, LinkError, LinkEvent, LinkOptions, LinkReader, Received, ReceivedFrame, Signing,
+    SigningKey,
+};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use serde_json::json;
 use support::{header, heartbeat, unknown, v1, v2};
@@ -26,6 +29,15 @@ async fn frame(reader: &mut LinkReader) -> ReceivedFrame {
         let received = timeout(Duration::from_secs(20), reader.receive()).await.unwrap().unwrap();
         if let Received::Frame(frame) = received {
             return frame;
+        }
+    }
+}
+
+async fn event(reader: &mut LinkReader) -> LinkEvent {
+    loop {
+        let received = timeout(Duration::from_secs(20), reader.receive()).await.unwrap().unwrap();
+        if let Received::Event(event) = received {
+            return event;
         }
     }
 }
@@ -65,10 +77,64 @@ async fn only_what_is_signed_with_the_key_is_delivered() {
 }
 
 #[tokio::test]
-async fn without_a_key_signed_frames_pass_unchecked() {
+async fn without_a_key_signed_frames_pass_unchecked_which_is_told() {
     let ((mut reader, _out), (_in, writer)) = pair(options(None), options(Some(KEY))).await;
     writer.send_message(&heartbeat()).unwrap();
+    assert!(matches!(event(&mut reader).await, LinkEvent::Unchecked { .. }));
     assert!(frame(&mut reader).await.header.is_signed());
+}
+
+/// Where the vehicle has no key, or another, nothing is sent to it: not even a heartbeat finds a way before the vehicle has
+/// shown that it has the key.
+#[tokio::test]
+async fn a_waiting_link_speaks_to_nobody_who_has_not_shown_that_he_has_the_key() {
+    let address = "udpin:127.0.0.1:0".parse().unwrap();
+    let (mut reader, writer) = Link::open(&address, options(Some(KEY))).await.unwrap();
+    let port = reader.local_address().unwrap().port();
+    let vehicle = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
+    let send = |bytes: &[u8]| vehicle.send_to(bytes, ("127.0.0.1", port)).unwrap();
+    send(&v2(header(1, 0), &heartbeat()));
+    let LinkEvent::Distrusted { why: Distrust::Unsigned, .. } = event(&mut reader).await else { panic!() };
+    send(&v1(header(1, 1), &heartbeat()));
+    let LinkEvent::Distrusted { why: Distrust::Downgraded, .. } = event(&mut reader).await else { panic!() };
+    send(&signed_with([8; 32]).await);
+    let LinkEvent::Distrusted { why: Distrust::Wrong, .. } = event(&mut reader).await else { panic!() };
+    assert!(matches!(writer.send_message(&heartbeat()), Err(LinkError::NotConnected { .. })));
+    send(&signed_with(KEY).await);
+    assert!(matches!(event(&mut reader).await, LinkEvent::Trusted { .. }));
+    assert!(matches!(event(&mut reader).await, LinkEvent::Connected { .. }));
+    let stats = reader.stats();
+    assert_eq!((stats.unsigned, stats.downgraded, stats.badly_signed, stats.sent_frames), (2, 1, 1, 0));
+}
+
+/// A HEARTBEAT signed now.
+async fn signed_with(key: [u8; 32]) -> Vec<u8> {
+    let ((mut raw, _out), (_in, writer)) = pair(options(None), options(Some(key))).await;
+    writer.send_message(&heartbeat()).unwrap();
+    frame(&mut raw).await.bytes().to_vec()
+}
+
+/// The times of a key are nobody else's business, whatever the umask and whatever was there before.
+#[cfg(unix)]
+#[test]
+fn the_times_of_a_key_are_for_their_owner_alone() {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt};
+    let folder = std::env::temp_dir().join(format!("mavid-times-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let (key, times) = (folder.join("key"), folder.join("key.times"));
+    std::fs::write(&key, "a passphrase\n").unwrap();
+    for mode in [0o600, 0o644] {
+        std::fs::set_permissions(&key, std::fs::Permissions::from_mode(mode)).unwrap();
+        let signing = Signing::open(&key).unwrap();
+        assert_eq!(std::fs::metadata(&times).unwrap().mode() & 0o777, 0o600);
+        let warned = signing.warnings().join("; ");
+        assert_eq!(warned.contains("read by others (mode 644, expected 600)"), mode == 0o644, "{warned}");
+        drop(signing);
+        assert_eq!(std::fs::metadata(&times).unwrap().mode() & 0o777, 0o600);
+        // as an earlier version left it
+        std::fs::set_permissions(&times, std::fs::Permissions::from_mode(0o666)).unwrap();
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[tokio::test]

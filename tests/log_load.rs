@@ -12,7 +12,8 @@ use std::process::Command;
 use mavid::log::{
     Autopilot, LoadOptions, LogError, Quantity, StreamKey, StreamTally, SystemId, load, stream_tlog,
 };
-use support::{attitude, ground_heartbeat, header, heartbeat, tlog, v2};
+use mavlink::dialects::ardupilotmega::{MavMessage, SYS_STATUS_DATA};
+use support::{START_US, attitude, ground_heartbeat, header, heartbeat, record, tlog, v2};
 
 const ATTITUDE: StreamKey = StreamKey { quantity: Quantity::Attitude, source: "ATTITUDE", instance: 0 };
 
@@ -56,7 +57,7 @@ fn several_vehicles_are_named_and_one_is_chosen() {
     let log = Scratch::new("two.tlog", &two_vehicles());
     let refused = load(&log.0, &LoadOptions::default()).unwrap_err();
     assert!(
-        matches!(&refused, LogError::SeveralVehicles { systems } if *systems == [SystemId(1), SystemId(2)])
+        matches!(&refused, LogError::SeveralVehicles { systems, .. } if *systems == [SystemId(1), SystemId(2)])
     );
     assert!(refused.to_string().contains("1, 2"), "{refused}");
     for system in [1, 2] {
@@ -146,7 +147,7 @@ fn pymavlink_reads_what_the_writer_wrote_to_the_byte() {
             2 => support::unknown(step, &[step; 17]),
             _ => v2(header(255, step), &ground_heartbeat()),
         };
-        let stamp_us = support::START_US + u64::from(step) * 3333;
+        let stamp_us = START_US + u64::from(step) * 3333;
         let written = writer.write(stamp_us, support::frame(&frame)).unwrap();
         let hexadecimal: String = frame.iter().map(|byte| format!("{byte:02x}")).collect();
         wanted.push_str(&format!("{written} {hexadecimal}\n"));
@@ -171,4 +172,48 @@ fn pymavlink_counts_the_same_messages_in_recorded_flights() {
         let ours: String = counts.iter().map(|(id, count)| format!("{id} {count}\n")).collect();
         assert_eq!(ours, theirs, "{}", path.display());
     }
+}
+
+/// The recording computer's clock is set by ten years, and back, while the vehicle flies: samples stand where the
+/// vehicle's clock says, those of messages without a stamp too, and the recording is no longer than the flight.
+#[test]
+fn a_host_clock_that_is_set_in_flight_moves_no_sample() {
+    const TEN_YEARS_US: u64 = 10 * 365 * 86_400 * 1_000_000;
+    let mut bytes = Vec::new();
+    let (mut sequence, mut powers) = (0_u8, 0);
+    let mut add = |host_us: u64, message: &MavMessage| {
+        bytes.extend(record(host_us, &v2(header(1, sequence), message)));
+        sequence = sequence.wrapping_add(1);
+    };
+    for step in 0..400_u32 {
+        let set_us = if (200..300).contains(&step) { TEN_YEARS_US } else { 0 };
+        let host_us = START_US + 100_000 * u64::from(step) + set_us;
+        // what has no stamp of its own comes first, before any stamp could tell of the leap
+        if step % 10 == 0 {
+            add(host_us, &heartbeat());
+            add(
+                host_us + 1000,
+                &MavMessage::SYS_STATUS(SYS_STATUS_DATA { voltage_battery: 15_000, ..Default::default() }),
+            );
+            powers += 1;
+        }
+        add(host_us + 50_000, &attitude(5000 + 100 * step));
+    }
+    let log = Scratch::new("set.tlog", &bytes);
+    let loaded = load(&log.0, &LoadOptions::default()).unwrap();
+    let attitudes = &loaded.recording.streams[&ATTITUDE];
+    assert_eq!(attitudes.len(), 400);
+    for (key, stream) in &loaded.recording.streams {
+        let (first, last) = (stream.time_s[0], stream.time_s[stream.len() - 1]);
+        assert!(first > -1.0 && last < 41.0, "{key:?}: {first} to {last} s");
+    }
+    let (key, power) = loaded.recording.streams.iter().find(|(key, _)| key.source == "SYS_STATUS").unwrap();
+    assert_eq!(power.len(), powers, "{key:?}");
+    for (index, time_s) in power.time_s.iter().enumerate() {
+        assert!((time_s - (index as f64 - 0.049)).abs() < 0.15, "{index}: {time_s}");
+    }
+    assert_eq!(loaded.report.decode.host_steps, 2);
+    let told = loaded.report.oddities().join("; ");
+    assert!(told.contains("clock was set 2 times while the vehicle's went on"), "{told}");
+    assert!(loaded.report.losses().is_empty());
 }

@@ -72,6 +72,24 @@ fn a_packet_inside_a_frame_with_a_wrong_checksum_is_not_delivered() {
     assert_eq!(counts.bad_crc, 1);
 }
 
+/// What looks like a frame of a known sender may end where a packet in the payload of a real one begins. Whether the
+/// real one is one is not known before it is whole.
+#[test]
+fn noise_costs_no_frame_that_comes_byte_by_byte() {
+    let fake = v2(header(1, 9), &heartbeat());
+    let carrier = by_hand(385, 0, 1, &[&[1, 1, 0, 0, 40], &fake[..], &[3; 40]].concat(), 147);
+    let to_the_fake = 10 + 5;
+    // the header of a HIGHRES_IMU that ends where the fake begins
+    let false_bytes = 12 + 40;
+    let mut noise = vec![0x11; false_bytes - to_the_fake];
+    noise[..10].copy_from_slice(&[0xFD, 40, 0, 0, 0, 1, 1, 105, 0, 0]);
+    let sent = [v2(header(1, 0), &heartbeat()), carrier, v2(header(1, 2), &attitude(5))];
+    let bytes = [&sent[0], &noise, &sent[1], &sent[2]].map(Vec::as_slice).concat();
+    for piece in [1, 7, bytes.len()] {
+        assert_eq!(split_in_pieces(&bytes, piece).0, sent, "in pieces of {piece}");
+    }
+}
+
 #[test]
 fn version_1_frames_are_read_without_asking() {
     let sent =

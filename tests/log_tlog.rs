@@ -109,6 +109,82 @@ fn a_truncated_tail_ends_the_log() {
     }
 }
 
+/// Whatever kind of record a power cut tears, at whatever byte: all before it is given.
+#[test]
+fn a_torn_last_record_costs_itself_alone() {
+    let last = [
+        v1(header(1, 9), &attitude(9)),
+        v2(header(1, 9), &heartbeat()),
+        signed(9, &attitude(9)),
+        unknown(9, &[7; 60]),
+    ];
+    for last in last {
+        let sent = attitudes(9);
+        let whole = tlog(&sent);
+        let torn = record(START_US + 100_000, &last);
+        for left in 1..torn.len() {
+            let (records, report) = read(&[&whole[..], &torn[..left]].concat());
+            assert_eq!(frames(&records), sent, "{left} of {} bytes", torn.len());
+            let lost = report.truncated_tail_bytes + report.skipped_bytes;
+            assert_eq!(lost, left as u64, "{left} of {} bytes", torn.len());
+            assert!(!report.losses().is_empty());
+        }
+    }
+}
+
+/// Ten years, in microseconds.
+const TEN_YEARS_US: u64 = 10 * 365 * 86_400 * 1_000_000;
+
+/// A computer without a clock of its own begins in 1970, or with the day when it was switched off, and is set when it
+/// finds the network; every frame is given, damage in the midst or not.
+#[test]
+fn a_clock_that_is_ten_years_off_or_set_on_the_way_costs_no_frame() {
+    let sent = attitudes(40);
+    let at = |index: usize, start_us: u64| record(start_us + 10_000 * index as u64, &sent[index]);
+    for (before_us, behind_us) in [
+        (START_US - TEN_YEARS_US, START_US),
+        (START_US, START_US + TEN_YEARS_US),
+        (START_US, START_US - TEN_YEARS_US),
+        (3_000_000, START_US),
+        (START_US, 3_000_000),
+        (5_000_000_000_000_000, 7_000_000),
+    ] {
+        let first: Vec<u8> = (0..20).flat_map(|index| at(index, before_us)).collect();
+        let second: Vec<u8> = (20..40).flat_map(|index| at(index, behind_us)).collect();
+        let (records, report) = read(&[first.clone(), second.clone()].concat());
+        assert_eq!(frames(&records), sent, "{before_us} then {behind_us}");
+        assert!(report.is_undamaged());
+        assert_eq!(report.leaping_stamps + report.backward_stamps, 1);
+        let odd = [before_us, behind_us].iter().filter(|us| !(1 << 50..1 << 52).contains(*us)).count();
+        assert_eq!(report.odd_stamps, 20 * odd as u64);
+        assert_eq!(
+            !report.oddities().is_empty(),
+            odd > 0 || behind_us < before_us,
+            "{:?}",
+            report.oddities()
+        );
+        // the same with noise where the clock was set
+        let noise: Vec<u8> = (0..200_u32).map(|index| (index * 37 % 251).to_le_bytes()[0]).collect();
+        let (records, report) = read(&[first, noise, second].concat());
+        assert_eq!(frames(&records), sent, "{before_us}, noise, {behind_us}");
+        assert_eq!(report.skipped_bytes, 200);
+    }
+}
+
+#[test]
+fn doubled_and_reordered_stamps_cost_no_frame_and_are_counted() {
+    let sent = attitudes(8);
+    let stamps = [0_u64, 100, 100, 100, 40, 5_000_000, 120, 5_000_000];
+    let bytes: Vec<u8> =
+        stamps.iter().zip(&sent).flat_map(|(stamp, frame)| record(START_US + stamp, frame)).collect();
+    let (records, report) = read(&bytes);
+    assert_eq!(frames(&records), sent);
+    assert_eq!(records.iter().map(|record| record.0 - START_US).collect::<Vec<_>>(), stamps);
+    assert_eq!((report.doubled_stamps, report.backward_stamps, report.backward_most_us), (2, 2, 4_999_880));
+    assert_eq!(report.oddities(), ["2 host stamps run backwards, by 5.000 s at most"]);
+    assert!(report.losses().is_empty(), "no frame is lost");
+}
+
 #[test]
 fn a_tail_of_zeros_ends_the_log() {
     let sent = attitudes(10);

@@ -151,16 +151,25 @@ fn asked_to_speak_it_sends_heartbeats_and_requests_messages() {
 }
 
 #[test]
-fn a_replay_plays_what_the_vehicle_sent_and_no_command() {
+fn a_replay_plays_telemetry_alone_and_tells_what_it_holds_back() {
     let (log, (station, address)) = (file("played"), socket());
     let command = MavMessage::COMMAND_LONG(Default::default());
-    let sent = [v2(header(1, 0), &heartbeat()), unknown(1, b"new"), v2(header(255, 0), &command)];
+    let sent = [
+        v2(header(1, 0), &heartbeat()),
+        v2(header(1, 1), &attitude(1)),
+        unknown(2, b"new"),
+        v2(header(1, 3), &command),
+        v2(header(255, 0), &command),
+    ];
     std::fs::write(&log, tlog(&sent)).unwrap();
     let name = log.to_str().unwrap();
     let output = run(&["replay", name, "--to", &address, "--speed", "0", "--json"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let document: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!((document["frames"].as_u64(), document["left_out"].as_u64()), (Some(2), Some(1)));
+    assert_eq!((document["frames"].as_u64(), document["left_out"].as_u64()), (Some(2), Some(3)));
+    for reason in ["not_of_an_autopilot", "unknown_messages", "not_telemetry"] {
+        assert_eq!(document[reason].as_u64(), Some(1), "{reason}");
+    }
     let mut buffer = [0; 300];
     for expected in &sent[..2] {
         let bytes = station.recv(&mut buffer).unwrap();

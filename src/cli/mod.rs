@@ -267,8 +267,8 @@ pub struct ReadArgs {
     /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
     #[arg(long, value_name = "FILE")]
     pub csv_map: Option<PathBuf>,
-    /// MAVLink system id of the vehicle, where a log holds several
-    #[arg(long, value_name = "ID")]
+    /// MAVLink system id of the vehicle; without it the only one of the log that flew
+    #[arg(long = "system-id", alias = "system", value_name = "ID")]
     pub system: Option<u32>,
 }
 

@@ -14,7 +14,7 @@ use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
 use super::effects::effects;
-use super::flights::{Flight, is_csv, load, refuse_twins, shared};
+use super::flights::{EXPLAINED, Flight, is_csv, load, ready, refuse_twins, shared};
 use super::{CommandError, Outcome, output};
 use crate::cli::ExplainArgs;
 
@@ -62,14 +62,17 @@ impl Explained {
                 names.join(", ")
             ));
         }
-        let mut flights = flown(&args.logs, args, &vehicle)?;
-        let held = flown(&args.holdout, args, &vehicle).map_err(|error| match error {
+        let of_holdout = |error| match error {
             CommandError::Input(why) => {
                 CommandError::Input(format!("--holdout: expected a flight of {}: {why}", vehicle.name))
             }
             other @ CommandError::Failure(_) => other,
-        })?;
-        refuse_twins(&flights.iter().chain(&held).map(|flight| &flight.input).collect::<Vec<_>>())?;
+        };
+        let (logs, held_logs) =
+            (recorded(&args.logs, args)?, recorded(&args.holdout, args).map_err(of_holdout)?);
+        refuse_twins(&logs.iter().chain(&held_logs).map(Vec::as_slice).collect::<Vec<_>>())?;
+        let mut flights = flown(logs, args, &vehicle)?;
+        let held = flown(held_logs, args, &vehicle).map_err(of_holdout)?;
         refuse_shared(&flights, &held)?;
         let whole = flights.last().map(|flight| flight.signals.clone());
         let (shown_on, back) = if held.is_empty() {
@@ -160,7 +163,11 @@ impl Explained {
         }
         let held: &[InputFile] =
             if let ShownOn::Flights(inputs) = &self.story.shown_on { inputs } else { &[] };
-        let lossless = self.story.given.inputs.iter().chain(held).all(|input| input.losses.is_empty());
+        let inputs = || self.story.given.inputs.iter().chain(held);
+        for input in inputs() {
+            input.notes.iter().for_each(|note| output::message(&format!("{}: {note}", input.path)));
+        }
+        let lossless = inputs().all(|input| input.losses.is_empty());
         if lossless { Outcome::Done } else { Outcome::DoneWithLoss }
     }
 }
@@ -266,21 +273,25 @@ fn told(
     Ok(story)
 }
 
-/// Loads and conditions every flight, side by side.
-fn flown(logs: &[PathBuf], args: &ExplainArgs, vehicle: &Vehicle) -> Result<Vec<Flown>, CommandError> {
+/// Loads the flights of every log, side by side.
+fn recorded(logs: &[PathBuf], args: &ExplainArgs) -> Result<Vec<Vec<Flight>>, CommandError> {
+    let done: Vec<Result<Vec<Flight>, CommandError>> =
+        logs.par_iter().map(|path| load(path, &args.read, &EXPLAINED)).collect();
+    done.into_iter().collect()
+}
+
+/// Conditions the flights of every log, side by side.
+fn flown(logs: Vec<Vec<Flight>>, args: &ExplainArgs, vehicle: &Vehicle) -> Result<Vec<Flown>, CommandError> {
     let settings = ConditionSettings {
         transient_s: Some(args.transient),
         thrust: ThrustPreference::BestSampled,
         ..ConditionSettings::default()
     };
-    let one = |path: &PathBuf| {
-        let flight = load(path, &args.read)?;
-        let signals = flight.conditioned((vehicle, &args.vehicle), &settings)?;
-        let Flight { recording, input } = flight;
-        Ok(Flown { recording, signals, input })
-    };
-    let done: Vec<Result<Flown, CommandError>> = logs.par_iter().map(one).collect();
-    done.into_iter().collect()
+    let one = |log| ready(log, |flight: &Flight| flight.conditioned((vehicle, &args.vehicle), &settings));
+    let done: Vec<Result<Vec<(Flight, Signals)>, CommandError>> = logs.into_par_iter().map(one).collect();
+    let flights = done.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let made = |(Flight { recording, input, .. }, signals)| Flown { recording, signals, input };
+    Ok(flights.into_iter().flatten().map(made).collect())
 }
 
 /// A flight that was used, or a part of it, shows nothing as a hold-out.

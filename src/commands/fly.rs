@@ -89,7 +89,8 @@ pub fn run(json: bool, args: &FlyArgs) -> Result<Outcome, CommandError> {
     })?;
     say(&record);
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
-    let analysis = Analysis::of((&args.out, landed), &args.vehicle, args.system_id)?;
+    let system = record.system.map(|system| system.0);
+    let analysis = Analysis::of((&args.out, landed), &args.vehicle, system)?;
     if json {
         output::json(&Document::new(&record, &args.out, analysis.as_ref()))?;
     } else if let Some(analysis) = &analysis {
@@ -128,6 +129,7 @@ pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
     let sortie = sortie(args, &trajectory, &loaded.vehicle)?;
     let signing =
         args.signing_key_file.as_deref().map(Signing::open).transpose().map_err(|error| input(&error))?;
+    output::signing_warnings(signing.as_ref());
     let tlog = args.out.join(fly::TLOG);
     if tlog.exists() {
         let name = tlog.display();

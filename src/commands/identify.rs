@@ -15,7 +15,7 @@ use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
 use super::effects::effects;
-use super::flights::{Flight, is_csv, load, refuse_twins};
+use super::flights::{Flight, IDENTIFIED, is_csv, load, ready, refuse_twins, say};
 use super::{CommandError, Outcome, output};
 use crate::cli::IdentifyArgs;
 
@@ -44,11 +44,10 @@ impl Identified {
         let settings = settings(args)?;
         let recorded = recorded(args)?;
         let with = wanted.map(|wanted| with_effects(args, (&recorded, &loaded), &wanted)).transpose()?;
-        let flights = conditioned(&recorded, (vehicle, &args.vehicle), &usual(args))?;
+        let (inputs, flights) = conditioned(recorded, (vehicle, &args.vehicle), &usual(args))?;
         let mut identification =
             identify(&flights, vehicle, &settings).map_err(|error| CommandError::Input(error.to_string()))?;
         let scale = apply_anchor(&mut identification, vehicle);
-        let inputs = recorded.into_iter().map(|flight| flight.input).collect();
         Ok(Self { vehicle: loaded.vehicle, flights, inputs, identification, scale, with })
     }
 
@@ -115,12 +114,7 @@ impl Identified {
 
     /// Says what the recordings lost.
     pub fn outcome(&self) -> Outcome {
-        let mut outcome = Outcome::Done;
-        for input in self.inputs.iter().filter(|input| !input.losses.is_empty()) {
-            output::message(&format!("{}: {}", input.path, input.losses.join("; ")));
-            outcome = Outcome::DoneWithLoss;
-        }
-        outcome
+        say(self.inputs.iter())
     }
 }
 
@@ -177,13 +171,13 @@ fn wanted(args: &IdentifyArgs) -> Result<Option<Wanted>, CommandError> {
     Wanted::of(&args.with).map(Some).map_err(|error| CommandError::Input(format!("--with: {error}")))
 }
 
-/// Loads every flight, side by side; the same file twice is refused.
-fn recorded(args: &IdentifyArgs) -> Result<Vec<Flight>, CommandError> {
-    let done: Vec<Result<Flight, CommandError>> =
-        args.logs.par_iter().map(|path| load(path, &args.read)).collect();
-    let flights = done.into_iter().collect::<Result<Vec<_>, _>>()?;
-    refuse_twins(&flights.iter().map(|flight| &flight.input).collect::<Vec<_>>())?;
-    Ok(flights)
+/// Loads the flights of every log, side by side; the same file twice is refused.
+fn recorded(args: &IdentifyArgs) -> Result<Vec<Vec<Flight>>, CommandError> {
+    let done: Vec<Result<Vec<Flight>, CommandError>> =
+        args.logs.par_iter().map(|path| load(path, &args.read, &IDENTIFIED)).collect();
+    let logs = done.into_iter().collect::<Result<Vec<_>, _>>()?;
+    refuse_twins(&logs.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
+    Ok(logs)
 }
 
 fn usual(args: &IdentifyArgs) -> ConditionSettings {
@@ -194,15 +188,19 @@ fn usual(args: &IdentifyArgs) -> ConditionSettings {
     }
 }
 
-/// Conditions every flight, side by side.
+/// Conditions the flights of every log, side by side, and lets go of the recordings.
 fn conditioned(
-    flights: &[Flight],
+    logs: Vec<Vec<Flight>>,
     vehicle: (&Vehicle, &Path),
     settings: &ConditionSettings,
-) -> Result<Vec<Signals>, CommandError> {
-    let done: Vec<Result<Signals, CommandError>> =
-        flights.par_iter().map(|flight| flight.conditioned(vehicle, settings)).collect();
-    done.into_iter().collect()
+) -> Result<(Vec<InputFile>, Vec<Signals>), CommandError> {
+    let one = |log| {
+        let flights = ready(log, |flight: &Flight| flight.conditioned(vehicle, settings))?;
+        Ok(flights.into_iter().map(|(flight, signals)| (flight.input, signals)).collect())
+    };
+    let done: Vec<Result<Vec<(InputFile, Signals)>, CommandError>> = logs.into_par_iter().map(one).collect();
+    let flights = done.into_iter().collect::<Result<Vec<_>, _>>()?;
+    Ok(flights.into_iter().flatten().unzip())
 }
 
 /// Left out at the beginning of a flight, s, as `explain` does.
@@ -211,7 +209,7 @@ const TRANSIENT_S: f64 = 1.0;
 /// The named effects together with the rigid body, on the rows on which `explain` would find them.
 fn with_effects(
     args: &IdentifyArgs,
-    (recorded, loaded): (&[Flight], &LoadedVehicle),
+    (recorded, loaded): (&[Vec<Flight>], &LoadedVehicle),
     wanted: &Wanted,
 ) -> Result<WithEffects, CommandError> {
     let vehicle = &loaded.vehicle;
@@ -224,10 +222,18 @@ fn with_effects(
         askew: wanted.has("imu_misalignment"),
         ..ConditionSettings::default()
     };
-    let flights = conditioned(recorded, (vehicle, &args.vehicle), &settings)?;
+    let mut flights = Vec::new();
+    for log in recorded {
+        let made = log.iter().map(|flight| flight.conditioned((vehicle, &args.vehicle), &settings));
+        let (usable, refused): (Vec<_>, Vec<_>) = made.partition(Result::is_ok);
+        if let (true, Some(Err(why))) = (usable.is_empty(), refused.into_iter().next()) {
+            return Err(why);
+        }
+        flights.extend(usable.into_iter().flatten());
+    }
     let half_width_s = ExplainSettings::default().half_width_s;
     let together = together(&flights, (vehicle, &known), wanted, half_width_s).map_err(|error| {
-        let logs: Vec<&str> = recorded.iter().map(|flight| flight.input.path.as_str()).collect();
+        let logs: Vec<String> = args.logs.iter().map(|log| log.display().to_string()).collect();
         CommandError::Input(format!("{}: {error}", logs.join(", ")))
     })?;
     let quality = flights.into_iter().map(|signals| signals.quality).collect();

@@ -3,7 +3,6 @@
 use std::future::Future;
 
 use mavid::link::{Address, AddressError, Ends, Link, LinkError, LinkOptions};
-use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 
 use super::CommandError;
 
@@ -27,17 +26,6 @@ pub async fn open(address: &Address, options: LinkOptions) -> Result<Ends, Comma
     Link::open(address, options).await.map_err(|error| match error {
         LinkError::Unavailable { .. } => CommandError::Input(error.to_string()),
         _ => CommandError::Failure(error.to_string()),
-    })
-}
-
-/// The heartbeat of a ground station.
-pub fn heartbeat() -> MavMessage {
-    MavMessage::HEARTBEAT(dialect::HEARTBEAT_DATA {
-        mavtype: dialect::MavType::MAV_TYPE_GCS,
-        autopilot: dialect::MavAutopilot::MAV_AUTOPILOT_INVALID,
-        system_status: dialect::MavState::MAV_STATE_ACTIVE,
-        mavlink_version: 3,
-        ..Default::default()
     })
 }
 

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use mavid::link::Signing;
 use serde::Serialize;
 
 use super::CommandError;
@@ -28,6 +29,13 @@ pub fn message(text: &str) {
 pub fn warnings(of: &Path, warnings: &[String]) {
     for warning in warnings {
         message(&format!("warning: {}: {warning}", of.display()));
+    }
+}
+
+/// What is odd about the files of a signing key.
+pub fn signing_warnings(signing: Option<&Signing>) {
+    for warning in signing.iter().flat_map(|signing| signing.warnings()) {
+        message(&format!("warning: {warning}"));
     }
 }
 

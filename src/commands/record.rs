@@ -6,12 +6,12 @@
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use mavid::fly::{self, Order, Period, Target};
 use mavid::link::{
     LinkEvent, LinkOptions, LinkReader, LinkStats, LinkWriter, Received, ReceivedFrame, RecordError,
     Recorder, RecorderStatus, Signing,
 };
 use mavid::log::{ComponentId, SystemId};
-use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 use serde::Serialize;
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
@@ -27,19 +27,19 @@ const YEAR: Duration = Duration::from_secs(365 * 86_400);
 /// How long the last frames may take to leave.
 const FLUSH: Duration = Duration::from_secs(1);
 /// Messages that identification uses and the rates asked for, Hz. A vehicle gives what it can.
-const MESSAGES: &[(u32, f32)] = &[
-    (31, 100.0),  // ATTITUDE_QUATERNION
-    (32, 50.0),   // LOCAL_POSITION_NED
-    (36, 100.0),  // SERVO_OUTPUT_RAW
-    (83, 50.0),   // ATTITUDE_TARGET
-    (85, 20.0),   // POSITION_TARGET_LOCAL_NED
-    (105, 100.0), // HIGHRES_IMU
-    (27, 100.0),  // RAW_IMU
-    (147, 2.0),   // BATTERY_STATUS
-    (245, 5.0),   // EXTENDED_SYS_STATE
-    (291, 10.0),  // ESC_STATUS
-    (331, 50.0),  // ODOMETRY
-    (375, 100.0), // ACTUATOR_OUTPUT_STATUS
+const MESSAGES: &[(u16, u16)] = &[
+    (31, 100),  // ATTITUDE_QUATERNION
+    (32, 50),   // LOCAL_POSITION_NED
+    (36, 100),  // SERVO_OUTPUT_RAW
+    (83, 50),   // ATTITUDE_TARGET
+    (85, 20),   // POSITION_TARGET_LOCAL_NED
+    (105, 100), // HIGHRES_IMU
+    (27, 100),  // RAW_IMU
+    (147, 2),   // BATTERY_STATUS
+    (245, 5),   // EXTENDED_SYS_STATE
+    (291, 10),  // ESC_STATUS
+    (331, 50),  // ODOMETRY
+    (375, 100), // ACTUATOR_OUTPUT_STATUS
 ];
 
 /// The JSON document.
@@ -83,6 +83,7 @@ struct SenderLine {
 pub fn run(json: bool, args: &RecordArgs) -> Result<Outcome, CommandError> {
     let signing = args.signing_key_file.as_deref().map(Signing::open).transpose();
     let signing = signing.map_err(|error| CommandError::Input(error.to_string()))?;
+    output::signing_warnings(signing.as_ref());
     network::block_on(record(json, args, signing))
 }
 
@@ -160,7 +161,7 @@ impl Capture {
     fn second(&self, start: Instant, heartbeat: bool) {
         if heartbeat {
             // while nobody is there, there is nobody to tell
-            let _ = self.writer.send_message(&network::heartbeat());
+            let _ = self.writer.send_message(&fly::heartbeat());
         }
         let status = self.recorder.status();
         let lost = self.reader.stats().lost();
@@ -174,7 +175,14 @@ impl Capture {
     }
 
     fn event(&self, event: &LinkEvent) {
-        let warns = matches!(event, LinkEvent::Stranger { .. } | LinkEvent::RecordingFails);
+        let warns = matches!(
+            event,
+            LinkEvent::Stranger { .. }
+                | LinkEvent::RecordingFails
+                | LinkEvent::Distrusted { .. }
+                | LinkEvent::Unchecked { .. }
+                | LinkEvent::ClockBehind { .. }
+        );
         let text = if warns { format!("warning: {event}") } else { event.to_string() };
         self.bar.suspend(|| output::message(&text));
     }
@@ -188,23 +196,14 @@ impl Capture {
             return;
         }
         self.asked.push(sender);
+        // an id that messages have no room for cannot be asked
+        let Some(vehicle) = Target::new(sender.0, sender.1) else { return };
         for (message, rate_hz) in MESSAGES {
+            let order = Order::interval(*message, Period::of_whole_rate(*rate_hz));
             // a link lost meanwhile: the vehicle keeps what it has
-            let _ = self.writer.send_message(&request(sender, *message, *rate_hz));
+            let _ = self.writer.send_message(&vehicle.command(&order, 0));
         }
     }
-}
-
-fn request((system, component): (SystemId, ComponentId), message: u32, rate_hz: f32) -> MavMessage {
-    MavMessage::COMMAND_LONG(dialect::COMMAND_LONG_DATA {
-        command: dialect::MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
-        // ids are far below 2^24, where 32-bit floats are exact
-        param1: f32::from(u16::try_from(message).unwrap_or(0)),
-        param2: 1e6 / rate_hz,
-        target_system: u8::try_from(system.0).unwrap_or(0),
-        target_component: component.0,
-        ..Default::default()
-    })
 }
 
 fn bar() -> ProgressBar {

@@ -1,11 +1,12 @@
 //! `mavid replay FILE.tlog [--to ADDRESS] [--speed N]`: plays a recorded flight back as live traffic.
 //!
-//! Only what vehicles sent goes out, without commands; what the other end sends is dropped.
+//! Only telemetry that autopilots sent goes out, so that a vehicle that hears it does nothing; what the other end sends
+//! is dropped.
 
 use std::io::IsTerminal;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use mavid::link::{LinkOptions, Replay, ReplayError};
+use mavid::link::{LinkOptions, Replay, ReplayCounts, ReplayError};
 use serde::Serialize;
 
 use super::{CommandError, Outcome, network, output};
@@ -22,8 +23,14 @@ struct Document {
     /// 0: as fast as possible
     speed: f64,
     frames: u64,
-    /// commands, and what others than vehicles sent
+    /// held back: all that is not telemetry of an autopilot
     left_out: u64,
+    /// of these, what no autopilot sent
+    not_of_an_autopilot: u64,
+    /// of these, what nobody here knows
+    unknown_messages: u64,
+    /// of these, what a vehicle may act upon
+    not_telemetry: u64,
     /// had nobody to go to
     unsent: u64,
     /// sent by the other end, dropped
@@ -53,13 +60,18 @@ async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome,
         output::message(&format!("waiting for somebody at {}", args.to));
     }
     let bar = bar(replay.frames());
+    let mut so_far = ReplayCounts::default();
+    let mut progress = |frame: u64, counts: &ReplayCounts| {
+        so_far = *counts;
+        bar.set_position(frame);
+    };
     let played = tokio::select! {
-        played = replay.play(&mut reader, &writer, |frame| bar.set_position(frame)) => Some(played),
+        played = replay.play(&mut reader, &writer, &mut progress) => Some(played),
         stopped = network::interrupted() => stopped.map(|()| None)?,
     };
     bar.finish_and_clear();
     let interrupted = played.is_none();
-    let counts = played.transpose().map_err(|error| failed(&error))?.unwrap_or_default();
+    let counts = played.transpose().map_err(|error| failed(&error))?.unwrap_or(so_far);
     let document = Document {
         schema: 1,
         log: args.log.display().to_string(),
@@ -67,7 +79,10 @@ async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome,
         duration_s: replay.duration().as_secs_f64(),
         speed: args.speed,
         frames: if interrupted { writer.stats().sent_frames } else { counts.frames },
-        left_out: counts.left_out,
+        left_out: counts.held_back.total(),
+        not_of_an_autopilot: counts.held_back.not_of_an_autopilot,
+        unknown_messages: counts.held_back.unknown,
+        not_telemetry: counts.held_back.not_telemetry,
         unsent: counts.unsent,
         discarded: counts.discarded,
         interrupted,
@@ -80,12 +95,15 @@ async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome,
         output::json(&document)?;
     } else {
         output::text(&format!(
-            "{} to {}: {} frames played, {} left out (commands, and what is of no vehicle), {} unsent; {} frames from \
-             the other end dropped{}",
+            "{} to {}: {} frames played, {} held back ({} that a vehicle may act upon, {} of unknown messages, {} that no \
+             autopilot sent), {} unsent; {} frames from the other end dropped{}",
             document.log,
             document.to,
             document.frames,
             document.left_out,
+            document.not_telemetry,
+            document.unknown_messages,
+            document.not_of_an_autopilot,
             document.unsent,
             document.discarded,
             if interrupted { "; interrupted" } else { "" }

@@ -21,7 +21,7 @@ use serde::Serialize;
 
 use super::effects::{effects, with_stated_lag};
 use super::explain::REPORT;
-use super::flights::{Flight, file, load, refuse_twins};
+use super::flights::{Flight, IDENTIFIED, file, load, ready, refuse_twins, say};
 use super::{CommandError, Outcome, output};
 use crate::cli::ValidateArgs;
 
@@ -72,9 +72,13 @@ pub fn run(json: bool, args: &ValidateArgs) -> Result<Outcome, CommandError> {
     }
     let mut models: Vec<Named> = args.models.iter().map(|path| named(path)).collect::<Result<_, _>>()?;
     told_apart(&mut models, &args.models);
-    let one = |path: &PathBuf| flight_tables(load(path, &args.read)?, &models, args.transient);
-    let flights: Vec<FlightTables> = args.logs.par_iter().map(one).collect::<Result<_, _>>()?;
-    refuse_twins(&flights.iter().map(|flight| &flight.input).collect::<Vec<_>>())?;
+    let logs: Vec<Vec<Flight>> =
+        args.logs.par_iter().map(|path| load(path, &args.read, &IDENTIFIED)).collect::<Result<_, _>>()?;
+    refuse_twins(&logs.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
+    let one = |log| ready(log, |flight| flight_tables(flight, &models, args.transient));
+    let done: Vec<Vec<(Flight, FlightTables)>> = logs.into_par_iter().map(one).collect::<Result<_, _>>()?;
+    let told = |(flight, tables): (Flight, FlightTables)| FlightTables { input: flight.input, ..tables };
+    let flights: Vec<FlightTables> = done.into_iter().flatten().map(told).collect();
     if let Some(folder) = &args.out {
         write_charts(folder, &flights)?;
         write_report(folder, &models, &flights, args.transient)?;
@@ -93,12 +97,7 @@ pub fn run(json: bool, args: &ValidateArgs) -> Result<Outcome, CommandError> {
         let space = if heads.is_empty() { "" } else { "\n" };
         output::text(format!("{heads}{space}{}", pages.collect::<Vec<_>>().join("\n")).trim_end())?;
     }
-    let mut outcome = Outcome::Done;
-    for flight in document.flights.iter().filter(|flight| !flight.input.losses.is_empty()) {
-        output::message(&format!("{}: {}", flight.input.path, flight.input.losses.join("; ")));
-        outcome = Outcome::DoneWithLoss;
-    }
-    Ok(outcome)
+    Ok(say(document.flights.iter().map(|flight| &flight.input)))
 }
 
 /// Models whose files have one name are called by their paths.
@@ -123,7 +122,7 @@ fn named(path: &Path) -> Result<Named, CommandError> {
     Ok(Named { name, input: file(path)?, vehicle: loaded.vehicle, model })
 }
 
-fn flight_tables(flight: Flight, models: &[Named], transient_s: f64) -> Result<FlightTables, CommandError> {
+fn flight_tables(flight: &Flight, models: &[Named], transient_s: f64) -> Result<FlightTables, CommandError> {
     let settings = ConditionSettings { transient_s: Some(transient_s), ..ConditionSettings::default() };
     // each model's own thrust law turns commands into thrusts
     let signals: Vec<Signals> = models
@@ -142,7 +141,7 @@ fn flight_tables(flight: Flight, models: &[Named], transient_s: f64) -> Result<F
             flight.input.path, span_s.1
         )));
     }
-    let (closed_loop, charts) = closed_loop(&flight, first, models, span_s);
+    let (closed_loop, charts) = closed_loop(flight, first, models, span_s);
     let mut tables = vec![closed_loop];
     tables.extend(predictions(models, &signals, span_s));
     for window_s in WINDOWS_S {
@@ -160,7 +159,7 @@ fn flight_tables(flight: Flight, models: &[Named], transient_s: f64) -> Result<F
     if tables.iter().all(|table| table.shown().is_empty()) {
         return Err(nothing_to_compare(&flight.input.path, &tables));
     }
-    Ok(FlightTables { input: flight.input, span_s, tables, charts, quality: first.quality.clone() })
+    Ok(FlightTables { input: flight.input.clone(), span_s, tables, charts, quality: first.quality.clone() })
 }
 
 /// Each reason once.

@@ -130,7 +130,7 @@ impl Commander {
     /// A command to be sent by [`Commander::poll`] once it is permitted. It replaces one of its kind that waits.
     /// `reports`: the reports of the mode that count so far.
     pub fn give(&mut self, now: Duration, order: Order, manner: Manner, reports: u64) {
-        self.pending.retain(|waiting| waiting.order.command != order.command);
+        self.pending.retain(|waiting| waiting.order.command() != order.command());
         self.pending.push(Pending {
             order,
             manner,
@@ -151,7 +151,7 @@ impl Commander {
     /// Whether a command of the same kind, whatever its parameters, waits for its answer.
     #[must_use]
     pub fn waits_for_kind(&self, order: &Order) -> bool {
-        self.pending.iter().any(|waiting| waiting.order.command == order.command)
+        self.pending.iter().any(|waiting| waiting.order.command() == order.command())
     }
 
     /// Whether a command is due and waits for a report of the mode.
@@ -212,7 +212,7 @@ impl Commander {
         let at = self
             .pending
             .iter()
-            .position(|waiting| u32::from(command) == waiting.order.command as u32 && waiting.sent > 0)?;
+            .position(|waiting| u32::from(command) == waiting.order.command() as u32 && waiting.sent > 0)?;
         let waiting = &mut self.pending[at];
         let temporary =
             result == TEMPORARILY_REJECTED || result == FAILED && waiting.manner.failed_is_temporary;

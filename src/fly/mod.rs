@@ -48,10 +48,10 @@ pub use lift::{Lift, Weighed};
 pub use modes::{Mode, Stack};
 pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
 pub use runner::{
-    Console, EVENTS, PARAMETERS, Parking, Part, Record, Ride, RunError, StreamFigures, TLOG, raise_priority,
-    run,
+    Console, Due, EVENTS, PARAMETERS, Parking, Part, Record, Ride, RunError, StreamFigures, Supervisor, TLOG,
+    raise_priority, run, send_due,
 };
 pub use safety::{Feeding, Guide, Lead, SetpointBounds, Streamed, Streamer};
 pub use setpoint::{Place, Setpoint};
 pub use sortie::{Check, Origin, Settings, Sortie};
-pub use target::{Order, Target, heartbeat};
+pub use target::{MessageId, Order, OutOfRange, ParameterName, Period, TakeoffHeight, Target, heartbeat};

@@ -98,16 +98,16 @@ impl Stack {
 
     /// Main and sub mode as `MAV_CMD_DO_SET_MODE` wants them in its second and third parameter.
     #[must_use]
-    pub fn mode_parameters(self, mode: Mode) -> (f32, f32) {
+    pub fn mode_parameters(self, mode: Mode) -> (u8, u8) {
         match (self, mode) {
-            (Self::Px4, Mode::External) => (6.0, 0.0),
-            (Self::Px4, Mode::Hold) => (4.0, 3.0),
-            (Self::Px4, Mode::Land) => (4.0, 6.0),
-            (Self::Px4, Mode::Return) => (4.0, 5.0),
-            (Self::ArduPilot, Mode::External) => (4.0, 0.0),
-            (Self::ArduPilot, Mode::Hold) => (17.0, 0.0),
-            (Self::ArduPilot, Mode::Land) => (9.0, 0.0),
-            (Self::ArduPilot, Mode::Return) => (6.0, 0.0),
+            (Self::Px4, Mode::External) => (6, 0),
+            (Self::Px4, Mode::Hold) => (4, 3),
+            (Self::Px4, Mode::Land) => (4, 6),
+            (Self::Px4, Mode::Return) => (4, 5),
+            (Self::ArduPilot, Mode::External) => (4, 0),
+            (Self::ArduPilot, Mode::Hold) => (17, 0),
+            (Self::ArduPilot, Mode::Land) => (9, 0),
+            (Self::ArduPilot, Mode::Return) => (6, 0),
         }
     }
 
@@ -169,9 +169,7 @@ mod tests {
         for stack in [Stack::Px4, Stack::ArduPilot] {
             for mode in [Mode::External, Mode::Hold, Mode::Land, Mode::Return] {
                 let (main, sub) = stack.mode_parameters(mode);
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small numbers")]
-                let (main, sub) = (main as u32, sub as u32);
-                let custom = if stack == Stack::Px4 { px4(main, sub) } else { main };
+                let custom = if stack == Stack::Px4 { px4(main.into(), sub.into()) } else { main.into() };
                 assert!(stack.is_in(mode, custom), "{stack:?} {mode:?}");
                 assert_eq!(stack.mode_name(custom), stack.name_of(mode));
                 let others = [Mode::External, Mode::Hold, Mode::Land, Mode::Return];

@@ -43,6 +43,8 @@ pub enum Cause {
     Reboot,
     /// this program or its computer stood still
     Stalled(String),
+    /// a setpoint that no message can carry
+    Unfit(String),
     /// it does not do what it is told
     Unresponsive(String),
 }
@@ -92,6 +94,7 @@ impl fmt::Display for Cause {
             Self::SecondMaster(what) => write!(f, "a second ground station commands: {what}"),
             Self::Reboot => f.write_str("the autopilot started anew"),
             Self::Stalled(what) => write!(f, "the host stalled: {what}"),
+            Self::Unfit(why) => write!(f, "no setpoint can be made: {why}"),
             Self::Unresponsive(what) => write!(f, "the vehicle does not answer: {what}"),
         }
     }

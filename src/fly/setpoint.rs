@@ -4,11 +4,21 @@ use mavlink::dialects::ardupilotmega::{
     MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use nalgebra::Vector3;
+use std::f32::consts::PI;
 use std::time::Duration;
 
-use super::target::Target;
+use super::target::{OutOfRange, Target, within};
 use crate::frames::{World, ned_from_world, yaw_from_ned};
-use crate::units::narrow;
+
+/// MAVLink's definition names no range. Further out a 32-bit float no longer holds a millimetre, and the local frame no
+/// longer is flat to a decimetre.
+const POSITION_MAX_M: f32 = 1e4;
+/// No multirotor is faster.
+const SPEED_MAX_M_S: f32 = 100.0;
+/// Nor brakes or climbs harder.
+const ACCELERATION_MAX_M_S2: f32 = 100.0;
+/// PX4 takes at most 1800 deg/s for a rate.
+const YAW_RATE_MAX_RAD_S: f32 = 32.0;
 
 /// Where the vehicle is to be at one instant, and how it is to move there. World NWU, in the frame of the
 /// vehicle's own local position.
@@ -50,12 +60,19 @@ impl Setpoint {
 
     /// `SET_POSITION_TARGET_LOCAL_NED` with nothing ignored (mask 0): PX4 and ArduPilot then use position,
     /// velocity, acceleration, yaw and yaw rate together. Converted to NED here.
-    #[must_use]
-    pub fn message(&self, target: Target) -> MavMessage {
-        let [x, y, z] = ned_from_world(World(self.position_m)).map(narrow);
-        let [vx, vy, vz] = ned_from_world(World(self.velocity_m_s)).map(narrow);
-        let [afx, afy, afz] = ned_from_world(World(self.acceleration_m_s2)).map(narrow);
-        MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
+    ///
+    /// # Errors
+    /// A value is no number, or further from zero than the greatest that a multirotor has a use for.
+    pub fn message(&self, target: Target) -> Result<MavMessage, OutOfRange> {
+        let [x, y, z] = ned(self.position_m, "a setpoint's position", "m", POSITION_MAX_M)?;
+        let [vx, vy, vz] = ned(self.velocity_m_s, "a setpoint's velocity", "m/s", SPEED_MAX_M_S)?;
+        let [afx, afy, afz] =
+            ned(self.acceleration_m_s2, "a setpoint's acceleration", "m/s^2", ACCELERATION_MAX_M_S2)?;
+        // the same mirror both ways
+        let yaw = within("a setpoint's yaw", "rad", wrapped(yaw_from_ned(self.yaw_rad)), -PI..=PI)?;
+        let turning = -YAW_RATE_MAX_RAD_S..=YAW_RATE_MAX_RAD_S;
+        let yaw_rate = within("a setpoint's yaw rate", "rad/s", yaw_from_ned(self.yaw_rate_rad_s), turning)?;
+        Ok(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
             // 32 bits of milliseconds last 49 days of one flight
             time_boot_ms: u32::try_from(self.time.as_millis()).unwrap_or(u32::MAX),
             x,
@@ -67,15 +84,20 @@ impl Setpoint {
             afx,
             afy,
             afz,
-            // the same mirror both ways
-            yaw: narrow(wrapped(yaw_from_ned(self.yaw_rad))),
-            yaw_rate: narrow(yaw_from_ned(self.yaw_rate_rad_s)),
+            yaw,
+            yaw_rate,
             type_mask: PositionTargetTypemask::empty(),
             target_system: target.system_byte(),
             target_component: target.component.0,
             coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        })
+        }))
     }
+}
+
+/// A vector in NED, each of whose components is no further from zero than `max`.
+fn ned(world: Vector3<f64>, what: &'static str, unit: &str, max: f32) -> Result<[f32; 3], OutOfRange> {
+    let [x, y, z] = ned_from_world(World(world)).map(|value| within(what, unit, value, -max..=max));
+    Ok([x?, y?, z?])
 }
 
 /// Where to stay, world NWU in the frame of the vehicle's local position.
@@ -110,7 +132,9 @@ mod tests {
             yaw_rate_rad_s: -0.25,
         };
         let target = Target::new(SystemId(7), ComponentId(1)).unwrap();
-        let MavMessage::SET_POSITION_TARGET_LOCAL_NED(data) = setpoint.message(target) else { panic!() };
+        let MavMessage::SET_POSITION_TARGET_LOCAL_NED(data) = setpoint.message(target).unwrap() else {
+            panic!()
+        };
         assert_eq!((data.x, data.y, data.z), (1.0, -2.0, -3.0));
         assert_eq!((data.vx, data.vy, data.vz), (0.1, -0.2, -0.3));
         assert_eq!((data.afx, data.afy, data.afz), (-1.0, -0.0, -2.0));

@@ -6,6 +6,8 @@ use crate::units::seconds_from_us;
 
 /// Arrivals are looked at together over this long, s.
 const BLOCK_S: f64 = 1.0;
+/// A lateness that changes by more, s: the host's clock was set. No link holds a message back for so long.
+const HOST_STEP_S: f64 = 10.0;
 /// Restarts that are kept; a log with more is broken.
 const KEPT_RESETS: usize = 1000;
 /// A drift known worse than this is not told, in a million.
@@ -101,6 +103,10 @@ impl ClockTally {
     /// The vehicle's clock started anew.
     pub(super) fn reset(&mut self, time_s: f64) {
         keep(&mut self.resets_s, time_s);
+        self.end_line();
+    }
+
+    fn end_line(&mut self) {
         self.close_block();
         if self.drift.xx > self.longest.xx {
             self.longest = self.drift;
@@ -113,6 +119,10 @@ impl ClockTally {
         // microseconds of a recording fit a double exactly
         let since_s = seconds_from_us(host_us as f64 - start_host_us as f64);
         let late_s = since_s - time_s;
+        if self.block.as_ref().is_some_and(|block| (late_s - block.least_s).abs() > HOST_STEP_S) {
+            // the host's clock was set: what lies before is no part of the same line
+            self.end_line();
+        }
         match &mut self.block {
             Some(block) if (time_s - block.start_s).abs() < BLOCK_S => {
                 block.count += 1;

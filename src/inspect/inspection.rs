@@ -82,7 +82,7 @@ pub struct ClockSummary {
 #[serde(tag = "format", rename_all = "snake_case")]
 pub enum Reading {
     /// telemetry log
-    Tlog(TlogReading),
+    Tlog(Box<TlogReading>),
     /// table
     Csv(CsvReading),
 }
@@ -106,6 +106,18 @@ pub struct TlogReading {
     pub shared_stamps: u64,
     /// host stamps before their predecessor
     pub backward_stamps: u64,
+    /// the furthest that one lies before its predecessor, s
+    pub backward_most_s: f64,
+    /// host stamps equal to their predecessor, of records with a stamp of their own
+    pub doubled_stamps: u64,
+    /// host stamps more than an hour after their predecessor
+    pub leaping_stamps: u64,
+    /// host stamps of no wall clock
+    pub odd_stamps: u64,
+    /// times that the recording computer's clock was set while the vehicle's went on
+    pub host_steps: u64,
+    /// what is odd about the host's stamps, in words; nothing is lost by it
+    pub oddities: Vec<String>,
     /// the stamps' bytes run the wrong way round
     pub little_endian_stamps: bool,
     /// frames dropped for a wrong checksum

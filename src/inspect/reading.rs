@@ -3,6 +3,7 @@
 use super::inspection::{CsvReading, SenderSummary, TlogReading};
 use crate::log::csv::CsvReport;
 use crate::log::{ByteOrder, ReadReport, Source};
+use crate::units::seconds_from_us;
 
 /// Damaged places told one by one.
 const TOLD_RESYNCS: usize = 20;
@@ -27,6 +28,12 @@ pub(super) fn tlog_reading(report: &ReadReport) -> TlogReading {
         unknown_ids: report.unknown_ids.clone(),
         shared_stamps: report.shared_stamps,
         backward_stamps: report.backward_stamps,
+        backward_most_s: seconds_from_us(report.backward_most_us as f64),
+        doubled_stamps: report.doubled_stamps,
+        leaping_stamps: report.leaping_stamps,
+        odd_stamps: report.odd_stamps,
+        host_steps: report.decode.host_steps,
+        oddities: report.oddities(),
         little_endian_stamps: report.byte_order == ByteOrder::Little,
         bad_crc: report.bad_crc,
         resync_count: report.resync_count,

@@ -16,6 +16,7 @@ use super::window::{WindowRecorder, windows_of};
 use crate::log::csv::CsvReport;
 use crate::log::{
     Autopilot, Event, LoadOptions, LogError, Place, Recording, StreamKey, StreamStats, TlogWalk, Walk,
+    who_flew,
 };
 use crate::vehicle::Vehicle;
 
@@ -67,8 +68,8 @@ impl Tally {
     }
 }
 
-/// What a telemetry log holds, in memory that does not grow with it. Without a HEARTBEAT the system with
-/// the smallest number is taken, of several vehicles the first, unless `options` choose one.
+/// What a telemetry log holds, in memory that does not grow with it. Without a HEARTBEAT the system with the smallest
+/// number is taken, of several vehicles the one that flew and where several did the first, unless `options` choose one.
 /// `progress` is told the bytes read so far.
 ///
 /// # Errors
@@ -88,7 +89,18 @@ pub fn inspect_tlog(
             refusal => return Err(refusal),
         }
     }
-    let first = Pass::run(path, &options, (vehicle, Parameters::default()), progress)?;
+    let mut first = Pass::run(path, &options, (vehicle, Parameters::default()), progress)?;
+    if options.system.is_none() && first.walk.vehicles.len() > 1 {
+        match who_flew(path) {
+            Ok(system) if system != first.walk.vehicle.system => {
+                options.system = Some(system);
+                first = Pass::run(path, &options, (vehicle, Parameters::default()), progress)?;
+            }
+            // the first is as good as any
+            Ok(_) | Err(LogError::SeveralVehicles { .. }) => {}
+            Err(error) => return Err(error),
+        }
+    }
     // commands become thrust by the autopilot's parameters: windows before they came are looked at again
     let pass = if first.parameters_late && vehicle.is_some() {
         Pass::run(path, &options, (vehicle, first.tally.parameters), progress)?
@@ -177,7 +189,7 @@ impl Pass {
                 without_heartbeat: heartbeats == 0,
             },
             autopilot: speaker.autopilot,
-            reading: Reading::Tlog(reading),
+            reading: Reading::Tlog(Box::new(reading)),
             losses: report.losses(),
             streams,
             numbers_held_max: self.numbers_held_max,
@@ -200,7 +212,7 @@ pub fn inspect_csv(recording: &Recording, report: &CsvReport, vehicle: Option<&V
     }
     recording.clock_resets_s.iter().for_each(|time_s| tally.clock.reset(*time_s));
     let mut assessor = Assessor::new(vehicle);
-    windows_of(recording).iter().for_each(|window| assessor.window(window));
+    windows_of(recording).for_each(|window| assessor.window(&window));
     let found = Found {
         vehicle: VehicleSummary {
             autopilot: autopilot_name(recording.autopilot),

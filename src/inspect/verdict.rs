@@ -189,7 +189,7 @@ fn remarks(evidence: &Evidence<'_>, vehicle: &VehicleSummary) -> Vec<String> {
     if !vehicle.others.is_empty() {
         let others: Vec<String> = vehicle.others.iter().map(ToString::to_string).collect();
         advice.push(format!(
-            "Several vehicles: this is system {}; choose with --system (also there: {}).",
+            "Several vehicles: this is system {}; --system-id chooses another (also there: {}).",
             vehicle.system.unwrap_or(0),
             others.join(", ")
         ));

@@ -77,24 +77,31 @@ impl WindowRecorder {
     }
 }
 
-/// A recording that is in memory, in windows of equal length.
-pub(super) fn windows_of(recording: &Recording) -> Vec<Recording> {
+/// A recording that is in memory, in windows of equal length, without those in which nothing is recorded.
+pub(super) fn windows_of(recording: &Recording) -> impl Iterator<Item = Recording> {
     let streams = || recording.streams.values();
     let start_s = streams().filter_map(|s| s.time_s.first()).copied().fold(f64::INFINITY, f64::min);
     let end_s = streams().filter_map(|s| s.time_s.last()).copied().fold(f64::NEG_INFINITY, f64::max);
-    let mut count: u32 = 1;
-    while (end_s - start_s) / f64::from(count) > WINDOW_S {
-        count += 1;
-    }
-    if count == 1 {
-        return vec![recording.clone()];
-    }
-    let edge = |index: u32| match index {
-        0 => f64::NEG_INFINITY,
-        _ if index == count => f64::INFINITY,
-        _ => start_s + (end_s - start_s) * f64::from(index) / f64::from(count),
+    let count = ((end_s - start_s) / WINDOW_S).ceil().max(1.0);
+    let edge = move |index: f64| match index {
+        0.0 => f64::NEG_INFINITY,
+        _ if index >= count => f64::INFINITY,
+        _ => start_s + (end_s - start_s) * index / count,
     };
-    (0..count).map(|index| cut(recording, edge(index), edge(index + 1))).collect()
+    // from the window of one sample to that of the next: there are no more than samples
+    let next = move |from: f64| {
+        let first =
+            |stream: &Stream| stream.time_s.get(stream.time_s.partition_point(|t| *t < edge(from))).copied();
+        let first_s = recording.streams.values().filter_map(first).fold(f64::INFINITY, f64::min);
+        let inside = ((first_s - start_s) / (end_s - start_s) * count).floor();
+        let mut index = if inside.is_finite() { inside.min(count - 1.0).max(from) } else { from };
+        while index > from && edge(index) > first_s {
+            index -= 1.0;
+        }
+        (first_s.is_finite() && from < count).then_some(index)
+    };
+    std::iter::successors(next(0.0), move |index| next(index + 1.0))
+        .map(move |index| cut(recording, edge(index), edge(index + 1.0)))
 }
 
 fn cut(recording: &Recording, from_s: f64, to_s: f64) -> Recording {

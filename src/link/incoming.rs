@@ -10,7 +10,7 @@ use super::open::LinkOptions;
 use super::reader::{LinkEvent, Received, ReceivedFrame};
 use super::recorder::Recorder;
 use super::shared::Shared;
-use super::signing::Signing;
+use super::signing::{Signing, Told};
 use crate::log::{Frame, Splitter};
 
 /// Frames that may wait for the reader; further ones are counted, not delivered.
@@ -34,6 +34,7 @@ struct Sink {
     shared: Arc<Shared>,
     clock: HostClock,
     signing: Option<Signing>,
+    told: Told,
     recorder: Option<Recorder>,
     recording_fails: bool,
 }
@@ -49,6 +50,7 @@ impl Incoming {
             shared,
             clock: options.clock,
             signing: options.signing.clone(),
+            told: Told::default(),
             recorder: options.recorder.clone(),
             recording_fails: false,
         };
@@ -143,7 +145,11 @@ impl Sink {
     fn accept(&mut self, frame: &Frame<'_>, stamp: HostStamp) -> bool {
         self.record(frame, stamp);
         self.shared.stats().tally(frame);
-        if let Some(Err(distrust)) = self.signing.as_ref().map(|signing| signing.verify(frame)) {
+        let verdict = self.signing.as_ref().map_or(Ok(()), |signing| signing.verify(frame));
+        for event in self.told.events(frame, self.signing.as_ref(), verdict) {
+            self.deliver(Received::Event(event));
+        }
+        if let Err(distrust) = verdict {
             self.shared.stats().count(distrust);
             return false;
         }

@@ -11,8 +11,10 @@
 //! old command goes out to a vehicle that comes back.
 
 mod address;
+mod carried;
 mod clock;
 mod error;
+mod given;
 mod incoming;
 mod open;
 mod outgoing;
@@ -27,13 +29,14 @@ mod transport;
 mod writer;
 
 pub use address::{Address, AddressError};
+pub use carried::Carrier;
 pub use clock::{HostClock, HostStamp};
 pub use error::LinkError;
 pub use open::{Ends, Link, LinkOptions};
 pub use reader::{LinkEvent, LinkReader, Received, ReceivedFrame};
 pub use recorder::{RecordError, Recorder, RecorderStatus, Store};
-pub use replay::{Replay, ReplayCounts, ReplayError};
-pub use signing::{Signing, SigningError, SigningKey};
+pub use replay::{HeldBack, Replay, ReplayCounts, ReplayError};
+pub use signing::{Distrust, Signing, SigningError, SigningKey};
 pub(crate) use signing::{TAIL_BYTES, time_of};
 pub use stats::LinkStats;
 pub use writer::LinkWriter;

@@ -20,7 +20,7 @@ use super::writer::LinkWriter;
 use crate::log::{ComponentId, SystemId};
 
 /// Frames that may wait to be sent.
-const QUEUE: usize = 4096;
+pub(super) const QUEUE: usize = 4096;
 /// How long a link that both halves have left goes on sending what they gave.
 const LINGER: Duration = Duration::from_secs(1);
 
@@ -36,7 +36,9 @@ pub struct LinkOptions {
     pub component: ComponentId,
     /// where the stamps come from: share one clock among the links of a process
     pub clock: HostClock,
-    /// a `udpin` link forgets its peer after this silence and answers the next that sends a heartbeat
+    /// a `udpin` link forgets its peer after this silence and answers the next that sends a heartbeat; until then it goes
+    /// on sending to it. Longer than the 5 s for which a flight streams setpoints into a silence: where the downlink
+    /// alone is lost, the vehicle still hears them
     pub peer_timeout: Duration,
     /// a `tcpout` link that is refused is open all the same, and goes on trying: whichever end is started first,
     /// the other is waited for
@@ -55,7 +57,7 @@ impl Default for LinkOptions {
             system: SystemId(255),
             component: ComponentId(190),
             clock: HostClock::start(),
-            peer_timeout: Duration::from_secs(3),
+            peer_timeout: Duration::from_secs(8),
             patient: false,
             signing: None,
             recorder: None,

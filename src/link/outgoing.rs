@@ -4,11 +4,11 @@ use std::collections::VecDeque;
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-use mavlink::dialects::ardupilotmega::MavMessage;
 use tokio::net::UdpSocket;
 use tokio::sync::{mpsc, oneshot};
 
 use super::clock::HostStamp;
+use super::given::Given;
 use super::pen::Direct;
 use super::shared::Shared;
 
@@ -18,7 +18,7 @@ pub(super) enum Item {
     /// to be sent as it is
     Frame(Box<[u8]>),
     /// to be given its sequence number when it is sent
-    Message(Box<MavMessage>),
+    Message(Given),
     /// to be answered when all before is sent
     Barrier(oneshot::Sender<()>),
 }
@@ -49,7 +49,12 @@ impl Outgoing {
             pen.in_flight = true;
             match item {
                 Item::Frame(bytes) => return bytes,
-                Item::Message(message) => return pen.write(&message),
+                Item::Message(given) if given.is_old() => {
+                    pen.in_flight = false;
+                    drop(pen);
+                    self.shared.stats().unsent += 1;
+                }
+                Item::Message(given) => return pen.write(&given.message),
                 Item::Barrier(done) => {
                     pen.in_flight = false;
                     self.barriers.push_back(done);
@@ -67,9 +72,9 @@ impl Outgoing {
                     return item;
                 }
             }
-            if let Some(message) = self.taken_from_slot() {
+            if let Some(given) = self.taken_from_slot() {
                 self.queue_first = true;
-                return Item::Message(message);
+                return Item::Message(given);
             }
             if let Ok(item) = self.queue.try_recv() {
                 return item;
@@ -89,11 +94,11 @@ impl Outgoing {
     }
 
     /// In flight before the slot is open to others, so that nobody sends a younger one before it.
-    fn taken_from_slot(&self) -> Option<Box<MavMessage>> {
+    fn taken_from_slot(&self) -> Option<Given> {
         let mut slot = self.shared.latest();
-        let message = slot.take()?;
+        let given = slot.take()?;
         self.shared.pen().in_flight = true;
-        Some(message)
+        Some(given)
     }
 
     /// Slot and queue are empty and the last frame is sent.
@@ -127,7 +132,7 @@ impl Outgoing {
 
     /// Latest messages may go to this socket past the task, until the other end is lost.
     pub fn open_direct(&mut self, socket: &Arc<UdpSocket>, to: Option<SocketAddr>) {
-        self.shared.pen().direct = Some(Direct::new(socket.clone(), to));
+        self.shared.pen().direct = Some(Direct::Socket(socket.clone(), to));
     }
 
     /// Somebody is at the other end. What was given before a loss, but came behind it, is forgotten too.

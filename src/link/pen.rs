@@ -10,6 +10,7 @@ use std::sync::Arc;
 use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use tokio::net::UdpSocket;
+use tokio::sync::mpsc;
 
 use super::clock::{HostClock, HostStamp};
 use super::open::LinkOptions;
@@ -17,23 +18,24 @@ use super::recorder::Recorder;
 use super::signing::Signing;
 use crate::log::{ComponentId, Frame, SystemId};
 
-/// A socket that takes datagrams from any thread.
+/// What takes datagrams from any thread.
 #[derive(Debug, Clone)]
-pub(super) struct Direct {
-    socket: Arc<UdpSocket>,
-    /// `None` where the socket has one peer alone
-    to: Option<SocketAddr>,
+pub(super) enum Direct {
+    /// a socket, and whom it sends to: `None` where it has one peer alone
+    Socket(Arc<UdpSocket>, Option<SocketAddr>),
+    /// who carries the bytes of a link without a transport
+    Carried(mpsc::UnboundedSender<Box<[u8]>>),
 }
 
 impl Direct {
-    pub fn new(socket: Arc<UdpSocket>, to: Option<SocketAddr>) -> Self {
-        Self { socket, to }
-    }
-
     fn try_send(&self, frame: &[u8]) -> io::Result<usize> {
-        match self.to {
-            Some(to) => self.socket.try_send_to(frame, to),
-            None => self.socket.try_send(frame),
+        match self {
+            Self::Socket(socket, Some(to)) => socket.try_send_to(frame, *to),
+            Self::Socket(socket, None) => socket.try_send(frame),
+            Self::Carried(to) => match to.send(frame.into()) {
+                Ok(()) => Ok(frame.len()),
+                Err(_) => Err(io::ErrorKind::NotConnected.into()),
+            },
         }
     }
 }

@@ -13,8 +13,9 @@ use tokio::sync::mpsc;
 use super::clock::HostStamp;
 use super::error::LinkError;
 use super::shared::{Alive, Shared};
+use super::signing::Distrust;
 use super::stats::LinkStats;
-use crate::log::{Frame, Header, Payload, Start, Version};
+use crate::log::{ComponentId, Frame, Header, Payload, Start, SystemId, Version};
 
 /// Something from a link.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,6 +108,34 @@ pub enum LinkEvent {
         /// who
         peer: String,
     },
+    /// the first frame of a sender that is signed with our key
+    Trusted {
+        /// its system
+        system: SystemId,
+        /// its component
+        component: ComponentId,
+    },
+    /// the first frame of a sender that is not believed, for this reason
+    Distrusted {
+        /// its system
+        system: SystemId,
+        /// its component
+        component: ComponentId,
+        /// why it is not believed
+        why: Distrust,
+    },
+    /// a sender signs, and there is no key to check it by
+    Unchecked {
+        /// its system
+        system: SystemId,
+        /// its component
+        component: ComponentId,
+    },
+    /// signing times of others are ahead of this computer's clock
+    ClockBehind {
+        /// s
+        seconds: u64,
+    },
     /// the recording misses frames, or its file cannot be written now
     RecordingFails,
     /// the recording goes on
@@ -121,6 +150,22 @@ impl fmt::Display for LinkEvent {
             Self::Lost { why } => write!(f, "lost: {why}"),
             Self::Restored { peer } => write!(f, "connected again to {peer}"),
             Self::Stranger { peer } => write!(f, "{peer} sends here too; it is neither heard nor recorded"),
+            Self::Trusted { system, component } => {
+                write!(f, "system {system} component {component} signs with the key given")
+            }
+            Self::Distrusted { system, component, why } => {
+                write!(f, "system {system} component {component} is not believed: {why}")
+            }
+            Self::Unchecked { system, component } => write!(
+                f,
+                "system {system} component {component} signs its messages, and no key was given: nothing proves that \
+                 they are its own, and it may not believe what it is sent; give its key by --signing-key-file"
+            ),
+            Self::ClockBehind { seconds } => write!(
+                f,
+                "what is heard is signed {seconds} s ahead of this computer's clock, expected at most 60 s: set this \
+                 computer's clock, or the vehicle's"
+            ),
             Self::RecordingFails => f.write_str("the disk does not take the recording"),
             Self::RecordingGoesOn => f.write_str("the recording goes on"),
         }

@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use mavlink::dialects::ardupilotmega::MavMessage;
 use tokio::sync::{Notify, watch};
 
+use super::given::Given;
 use super::open::LinkOptions;
 use super::pen::Pen;
 use super::stats::LinkStats;
@@ -30,7 +30,7 @@ pub(super) struct Shared {
     /// when this was made, and how many ms later the link's task last ran
     made: Instant,
     ran_ms: AtomicU64,
-    latest: Mutex<Option<Box<MavMessage>>>,
+    latest: Mutex<Option<Given>>,
     pen: Mutex<Pen>,
     stats: Mutex<LinkStats>,
 }
@@ -73,7 +73,7 @@ impl Shared {
         self.pen.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    pub fn latest(&self) -> MutexGuard<'_, Option<Box<MavMessage>>> {
+    pub fn latest(&self) -> MutexGuard<'_, Option<Given>> {
         self.latest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -27,8 +27,12 @@ pub struct LinkStats {
     pub badly_signed: u64,
     /// frames not believed: signed, but heard before or too old; not delivered
     pub replayed: u64,
+    /// of these, the first of a stream and signed more than a minute in the past
+    pub old: u64,
     /// frames not believed: not signed, where they should be; not delivered
     pub unsigned: u64,
+    /// of these, MAVLink 1, which cannot be signed
+    pub downgraded: u64,
     /// frames that nobody took in time: the reader's queue was full. They are in the recording
     pub undelivered: u64,
     /// datagrams from others than the peer, dropped
@@ -64,10 +68,12 @@ impl LinkStats {
 
     pub(super) fn count(&mut self, distrust: Distrust) {
         match distrust {
-            Distrust::Unsigned => self.unsigned += 1,
+            Distrust::Unsigned | Distrust::Downgraded => self.unsigned += 1,
             Distrust::Wrong => self.badly_signed += 1,
-            Distrust::Replayed => self.replayed += 1,
+            Distrust::Replayed | Distrust::Old { .. } => self.replayed += 1,
         }
+        self.downgraded += u64::from(distrust == Distrust::Downgraded);
+        self.old += u64::from(matches!(distrust, Distrust::Old { .. }));
     }
 
     /// Takes over what the splitter counted; bytes skipped since the last frame are one resync.

@@ -9,6 +9,7 @@ use tokio::sync::{mpsc, oneshot};
 use tokio::time::timeout;
 
 use super::error::LinkError;
+use super::given::Given;
 use super::outgoing::Item;
 use super::shared::{Alive, Shared};
 use super::stats::LinkStats;
@@ -46,12 +47,13 @@ impl LinkWriter {
         }
     }
 
-    /// Queues a message. It gets the link's system, component and next sequence number when it is sent.
+    /// Queues a message. It gets the link's system, component and next sequence number when it is sent. One that has waited
+    /// for 100 ms by then is not sent, and counted as [`LinkStats::unsent`].
     ///
     /// # Errors
     /// Nobody is at the other end, too much waits already, or the link has ended.
     pub fn send_message(&self, message: &MavMessage) -> Result<(), LinkError> {
-        self.queue(Item::Message(Box::new(message.clone())))
+        self.queue(Item::Message(Given::now(message)))
     }
 
     /// Puts a message of which only the latest matters, as a setpoint is, into a slot of its own: one that
@@ -65,7 +67,7 @@ impl LinkWriter {
         if self.send_now(message) {
             return Ok(());
         }
-        let replaced = self.shared.latest().replace(Box::new(message.clone())).is_some();
+        let replaced = self.shared.latest().replace(Given::now(message)).is_some();
         self.shared.stats().replaced += u64::from(replaced);
         self.shared.filled.notify_one();
         Ok(())

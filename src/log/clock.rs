@@ -5,7 +5,7 @@
 //! others are tied to it once. Messages without a stamp are placed by the host's stamp: with the difference
 //! between host and vehicle of the frame just before where both arrived in one burst, for these were sent
 //! together and share their latency, else with the median of the last differences. Both follow a vehicle
-//! whose clock runs slow or fast against the host's.
+//! whose clock runs slow or fast against the host's, and a host whose clock is set while the vehicle's goes on.
 
 /// Differences that the median is taken over; odd.
 const WINDOW: usize = 31;
@@ -13,6 +13,11 @@ const WINDOW: usize = 31;
 const BURST_US: u64 = 2000;
 /// A difference this far from the median is of a message that was old when it was sent.
 const OLD_US: u64 = 50_000;
+/// A difference that changes by more than this from one stamped message to the next: the host's clock was set. No link
+/// holds a message back for so long.
+const HOST_STEP_US: u64 = 10_000_000;
+/// Host's stamps further apart than this, either way, say nothing of the time that passed until the vehicle's do.
+const HOST_LEAP_US: u64 = 3_600_000_000;
 /// Stamps of different messages may run back against each other by this much.
 const BACKWARD_US: i64 = 2_000_000;
 /// A leap forward beyond this must be matched by the host's clock.
@@ -109,6 +114,11 @@ pub struct VehicleClock {
     start_host_us: i64,
     last_host_us: i64,
     last_time_us: i64,
+    /// host's stamp of the last message of any kind
+    heard_host_us: Option<i64>,
+    /// host's stamp of the first message after a leap that no stamped message has explained yet
+    adrift_host_us: Option<i64>,
+    host_steps: u64,
 }
 
 impl VehicleClock {
@@ -124,6 +134,9 @@ impl VehicleClock {
             start_host_us: anchor.map_or(start_host_us, |anchor| anchor.host_us),
             last_host_us: i64::MIN,
             last_time_us: 0,
+            heard_host_us: None,
+            adrift_host_us: None,
+            host_steps: 0,
         };
         match anchor {
             Some(Anchor { stamp: Stamp::BootMs(ms), host_us }) => {
@@ -148,6 +161,10 @@ impl VehicleClock {
 
     /// Places a message by its own stamp, or by the host's where it has none.
     pub fn place(&mut self, stamp: Stamp, host_us: i64) -> Placed {
+        let heard_us = self.heard_host_us.replace(host_us);
+        if self.differences > 0 && heard_us.is_some_and(|heard| heard.abs_diff(host_us) > HOST_LEAP_US) {
+            self.adrift_host_us = Some(host_us);
+        }
         match stamp {
             Stamp::Absent | Stamp::Us(0) => Placed::At(self.at_host(host_us)),
             Stamp::BootMs(ms) => {
@@ -165,9 +182,19 @@ impl VehicleClock {
         }
     }
 
+    /// How often the host's clock was set while the vehicle's went on.
+    #[must_use]
+    pub fn host_steps(&self) -> u64 {
+        self.host_steps
+    }
+
     /// Recording time of a host stamp, microseconds.
     #[must_use]
     pub fn at_host(&self, host_us: i64) -> i64 {
+        if let Some(leapt_us) = self.adrift_host_us {
+            // hours may have passed, or the clock was set: time goes on from where it was until a stamp tells
+            return self.last_time_us.saturating_add(host_us.saturating_sub(leapt_us).max(0));
+        }
         let known = self.differences.min(WINDOW);
         if known == 0 {
             return host_us.saturating_sub(self.start_host_us);
@@ -250,9 +277,18 @@ impl VehicleClock {
     }
 
     fn note(&mut self, time_us: i64, host_us: i64) {
+        let difference_us = host_us.saturating_sub(time_us);
+        if self.differences > 0 {
+            let newest = self.host_minus_time_us[(self.differences - 1) % WINDOW];
+            if newest.abs_diff(difference_us) > HOST_STEP_US {
+                self.host_steps += 1;
+                self.differences = 0;
+            }
+        }
+        self.adrift_host_us = None;
         self.last_time_us = self.last_time_us.max(time_us);
         self.last_host_us = host_us;
-        self.host_minus_time_us[self.differences % WINDOW] = host_us.saturating_sub(time_us);
+        self.host_minus_time_us[self.differences % WINDOW] = difference_us;
         self.differences += 1;
     }
 }

@@ -64,12 +64,12 @@ fn step(crc: u16, byte: u8) -> u16 {
 }
 
 /// Every id of the dialect lies below this.
-const DENSE_IDS: u32 = 1 << 16;
+const DENSE_IDS: usize = 1 << 16;
 
 /// Which message ids are known, and their seeds.
 ///
 /// The dialect's own `extra_crc` answers 0 for an id that it does not know, so that every unknown frame
-/// would fail its check; known ids are told here by the dialect having a message of that id.
+/// would fail its check; known ids are those that the dialect lists.
 #[derive(Debug, Clone)]
 pub struct CrcSeeds {
     dense: Box<[Option<u8>]>,
@@ -79,7 +79,13 @@ impl CrcSeeds {
     /// The seeds of the `ardupilotmega` dialect, which contains `common`.
     #[must_use]
     pub fn new() -> Self {
-        Self { dense: (0..DENSE_IDS).map(dialect_seed).collect() }
+        let mut dense = vec![None; DENSE_IDS].into_boxed_slice();
+        for id in MavMessage::all_ids() {
+            if let Some(seed) = usize::try_from(*id).ok().and_then(|index| dense.get_mut(index)) {
+                *seed = Some(MavMessage::extra_crc(*id));
+            }
+        }
+        Self { dense }
     }
 
     /// The seed of a message, `None` where the dialect does not know it.
@@ -88,7 +94,7 @@ impl CrcSeeds {
         let index = usize::try_from(message_id).ok()?;
         match self.dense.get(index) {
             Some(seed) => *seed,
-            None => dialect_seed(message_id),
+            None => MavMessage::all_ids().contains(&message_id).then(|| MavMessage::extra_crc(message_id)),
         }
     }
 }
@@ -97,10 +103,6 @@ impl Default for CrcSeeds {
     fn default() -> Self {
         Self::new()
     }
-}
-
-fn dialect_seed(message_id: u32) -> Option<u8> {
-    MavMessage::default_message_from_id(message_id).map(|_| MavMessage::extra_crc(message_id))
 }
 
 #[cfg(test)]
@@ -121,6 +123,15 @@ mod tests {
         assert_eq!(seeds.get(291), Some(10));
         assert_eq!(seeds.get(60_001), None);
         assert_eq!(seeds.get(0xFF_FFFF), None);
+    }
+
+    #[test]
+    fn known_ids_are_those_that_the_dialect_has_a_message_of() {
+        let seeds = CrcSeeds::new();
+        for id in (0..1 << 16).chain([0x01_0000, 0xFF_FFFF]) {
+            let seed = MavMessage::default_message_from_id(id).map(|_| MavMessage::extra_crc(id));
+            assert_eq!(seeds.get(id), seed, "{id}");
+        }
     }
 
     proptest! {

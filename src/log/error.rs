@@ -51,8 +51,14 @@ pub enum LogError {
         systems: Vec<SystemId>,
     },
     /// more than one vehicle and none chosen
-    #[error("expected one vehicle, got systems {}: name the one that is meant (--system)", list(systems))]
+    #[error(
+        "expected one vehicle that flew, got systems {}, which {}: name the one that is meant (--system-id)",
+        list(systems),
+        if *flew { "all flew" } else { "all send motion and none of which flew" }
+    )]
     SeveralVehicles {
+        /// they flew; otherwise nobody did
+        flew: bool,
         /// the vehicles
         systems: Vec<SystemId>,
     },

@@ -8,6 +8,8 @@ use super::builder::RecordingBuilder;
 use super::clock::Anchor;
 use super::decode::{Decoder, Event, Source, Vehicle};
 use super::error::LogError;
+use super::flights::{Cells, Flights, Hold, Plan, is_state};
+use super::flown::who_flew;
 use super::frame::{ComponentId, SystemId};
 use super::recording::{Autopilot, Recording};
 use super::report::ReadReport;
@@ -32,37 +34,134 @@ pub struct Loaded {
     pub report: ReadReport,
 }
 
-/// Reads a log into memory. The name's extension tells its format.
+/// Reads a log into memory, all of it. The name's extension tells its format. Of several vehicles, the one that flew is
+/// read, unless `options` choose one.
 ///
 /// # Errors
-/// The file cannot be read, is not what its name says, or holds no vehicle or several.
+/// The file cannot be read, is not what its name says, holds no vehicle, or several that flew.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LogError> {
+    is_tlog(path)?;
+    load_tlog(path, options)
+}
+
+fn is_tlog(path: &Path) -> Result<(), LogError> {
     match path.extension().and_then(|extension| extension.to_str()) {
-        Some(extension) if extension.eq_ignore_ascii_case("tlog") => load_tlog(path, options),
+        Some(extension) if extension.eq_ignore_ascii_case("tlog") => Ok(()),
         _ => Err(LogError::UnknownFormat { path: path.to_owned() }),
     }
 }
 
 fn load_tlog(path: &Path, options: &LoadOptions) -> Result<Loaded, LogError> {
+    let read = |options: &LoadOptions| {
+        let mut builder = RecordingBuilder::new();
+        let walk = TlogWalk::open(path, options)?.run(&mut |_, event| builder.add(event))?;
+        Ok::<_, LogError>((walk, builder))
+    };
+    let (mut walk, builder) = of_the_flown(path, options, read)?;
+    let (recording, repairs) = builder.finish(&walk.vehicle);
+    walk.report.streams = repairs;
+    Ok(Loaded { recording, report: walk.report })
+}
+
+/// Reads a log; where it holds several vehicles and none is chosen, the one that flew.
+pub(super) fn of_the_flown<T>(
+    path: &Path,
+    options: &LoadOptions,
+    read: impl Fn(&LoadOptions) -> Result<(Walk, T), LogError>,
+) -> Result<(Walk, T), LogError> {
+    let (walk, found) = read(options)?;
+    if options.system.is_some() || walk.vehicles.len() < 2 {
+        return Ok((walk, found));
+    }
+    let system = who_flew(path)?;
+    if system == walk.vehicle.system {
+        return Ok((walk, found));
+    }
+    drop(found);
+    read(&LoadOptions { system: Some(system) })
+}
+
+/// The flights of a log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadedFlights {
+    /// the flights
+    pub flights: Flights,
+    /// what was met while reading the log
+    pub report: ReadReport,
+    /// the vehicle that was read
+    pub vehicle: Vehicle,
+    /// others that sent a vehicle's HEARTBEAT
+    pub others: Vec<SystemId>,
+}
+
+/// Reads a log's flights into memory that does not grow with its length, at most `most`: see [`Flights::of`]. The name's extension tells
+/// its format. Of several vehicles, the one that flew is read, unless `options` choose one.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_flights(path: &Path, options: &LoadOptions, most: &Hold) -> Result<LoadedFlights, LogError> {
+    is_tlog(path)?;
+    let read = |options: &LoadOptions| {
+        let mut cells = Cells::default();
+        let mut builder = Some(RecordingBuilder::new());
+        let walk = TlogWalk::open(path, options)?.run(&mut |_, event| {
+            cells.add(&event);
+            // too much to be held: what is kept of it is read once more
+            if builder.as_ref().is_some_and(|builder| builder.numbers() > most.numbers) {
+                builder = None;
+            }
+            if let Some(builder) = &mut builder {
+                builder.add(event);
+            }
+        })?;
+        Ok::<_, LogError>((walk, (cells, builder)))
+    };
+    let (mut walk, (cells, builder)) = of_the_flown(path, options, read)?;
+    let (plan, options) = (cells.plan(most), LoadOptions { system: Some(walk.vehicle.system) });
+    let builder = match (builder, &plan) {
+        (Some(builder), _) => builder,
+        (None, Some(plan)) => within(path, &options, plan)?,
+        (None, None) => RecordingBuilder::new(),
+    };
+    let (recording, repairs) = builder.finish(&walk.vehicle);
+    walk.report.streams = repairs;
+    Ok(LoadedFlights {
+        flights: Flights::by_plan(recording, plan.as_ref()),
+        report: walk.report,
+        vehicle: walk.vehicle,
+        others: walk.vehicles.into_iter().filter(|system| *system != walk.vehicle.system).collect(),
+    })
+}
+
+/// What a log holds in the spans that are kept.
+fn within(path: &Path, options: &LoadOptions, plan: &Plan) -> Result<RecordingBuilder, LogError> {
     let mut builder = RecordingBuilder::new();
-    let (vehicle, mut report) = stream_tlog(path, options, &mut |event| builder.add(event))?;
-    let (recording, repairs) = builder.finish(&vehicle);
-    report.streams = repairs;
-    Ok(Loaded { recording, report })
+    let kept = |event: &Event<'_>| match event {
+        Event::Sample { stream, time_s, .. } => is_state(stream.quantity) || plan.keeps(*time_s),
+        Event::Text { time_s, .. } => plan.keeps(*time_s),
+        Event::Parameter { .. } | Event::ClockReset { .. } | Event::EstimatorReset { .. } => true,
+    };
+    TlogWalk::open(path, options)?.run(&mut |_, event| {
+        if kept(&event) {
+            builder.add(event);
+        }
+    })?;
+    Ok(builder)
 }
 
 /// Reads a telemetry log, giving each sample to `sink` as it comes; memory does not grow with the log.
 ///
 /// # Errors
-/// As [`load`].
+/// As [`load`], and where a vehicle flew that is not the first that sends a HEARTBEAT.
 pub fn stream_tlog(
     path: &Path,
     options: &LoadOptions,
     sink: &mut impl FnMut(Event<'_>),
 ) -> Result<(Vehicle, ReadReport), LogError> {
     let walk = TlogWalk::open(path, options)?.run(&mut |_, event| sink(event))?;
-    if options.system.is_none() && walk.vehicles.len() > 1 {
-        return Err(LogError::SeveralVehicles { systems: walk.vehicles.into_iter().collect() });
+    if options.system.is_none() && walk.vehicles.len() > 1 && who_flew(path)? != walk.vehicle.system {
+        let systems = walk.vehicles.into_iter().collect();
+        return Err(LogError::SeveralVehicles { flew: true, systems });
     }
     Ok((walk.vehicle, walk.report))
 }

@@ -13,6 +13,8 @@ pub mod csv;
 mod decode;
 mod embedded;
 mod error;
+mod flights;
+mod flown;
 mod frame;
 mod load;
 mod overlap;
@@ -28,11 +30,13 @@ pub use crc::{CrcSeeds, checksum};
 pub use decode::{DecodeReport, Decoder, Event, Source, StreamId, Vehicle};
 pub use embedded::{EMBEDDED_UID2, Nonce};
 pub use error::LogError;
+pub use flights::{Flights, Hold, LogFlight};
+pub use flown::who_flew;
 pub use frame::{
     Check, ComponentId, Frame, Header, MARKER_V1, MARKER_V2, MAX_FRAME_BYTES, Payload, Start, SystemId,
     Version,
 };
-pub use load::{LoadOptions, Loaded, Place, TlogWalk, Walk, load, stream_tlog};
+pub use load::{LoadOptions, Loaded, LoadedFlights, Place, TlogWalk, Walk, load, load_flights, stream_tlog};
 pub use overlap::shared_share;
 pub use recording::{Autopilot, Quantity, Recording, Stream, StreamKey};
 pub use report::{MessageCounts, ReadReport, Resync, Sender, StreamRepair};

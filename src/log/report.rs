@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use super::decode::DecodeReport;
 use super::frame::{ComponentId, Frame, Header, SystemId, Version};
 use super::recording::StreamKey;
-use super::tlog::{ByteOrder, Record};
+use super::tlog::{ByteOrder, Record, is_wall_clock};
+use crate::units::seconds_from_us;
 
 /// Damaged places kept with their offsets; further ones are only counted.
 const KEPT_RESYNCS: usize = 1000;
@@ -14,6 +15,10 @@ const LATE_FRAMES: u8 = 8;
 /// The same frame again within so many frames of its sender is a duplicate.
 const DUPLICATE_FRAMES: u32 = 128;
 const DENSE_IDS: usize = 512;
+/// Stamps of several threads run back against each other by less, which is not odd.
+const TOLD_BACKWARD_US: u64 = 1_000_000;
+/// Host stamps further apart than an hour leap.
+const LEAP_US: u64 = 3_600_000_000;
 
 /// Bytes that had to be skipped to find the next record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,6 +58,14 @@ pub struct ReadReport {
     pub truncated_tail_bytes: u64,
     /// host stamps before their predecessor
     pub backward_stamps: u64,
+    /// the furthest that a host stamp lies before its predecessor, microseconds
+    pub backward_most_us: u64,
+    /// host stamps equal to their predecessor, of records with a stamp of their own
+    pub doubled_stamps: u64,
+    /// host stamps more than an hour after their predecessor: a pause, the seam of two logs, or a clock that was set
+    pub leaping_stamps: u64,
+    /// host stamps of no wall clock: before 2010 or after 2100
+    pub odd_stamps: u64,
     /// first host stamp, microseconds since 1970 UTC
     pub first_stamp_us: Option<u64>,
     /// last host stamp, microseconds since 1970 UTC
@@ -214,6 +227,44 @@ impl ReadReport {
         losses
     }
 
+    /// What is odd about the host's stamps, in words; no frame is lost by it. Samples are placed by the vehicle's own
+    /// clock.
+    #[must_use]
+    pub fn oddities(&self) -> Vec<String> {
+        let mut oddities = Vec::new();
+        if self.backward_most_us > TOLD_BACKWARD_US {
+            oddities.push(format!(
+                "{} host stamps run backwards, by {:.3} s at most",
+                self.backward_stamps,
+                seconds_from_us(self.backward_most_us as f64)
+            ));
+        }
+        if self.odd_stamps > 0 {
+            oddities.push(format!(
+                "{} host stamps are of no wall clock (before 2010 or after 2100): the recording computer's clock was not \
+                 set",
+                self.odd_stamps
+            ));
+        }
+        if self.decode.host_steps > 0 {
+            oddities.push(format!(
+                "the recording computer's clock was set {} times while the vehicle's went on",
+                self.decode.host_steps
+            ));
+        }
+        oddities
+    }
+
+    fn tally_stamp(&mut self, stamp_us: u64, last_us: Option<u64>, shared_stamp: bool) {
+        self.odd_stamps += u64::from(!is_wall_clock(stamp_us));
+        let Some(last_us) = last_us else { return };
+        let back_us = last_us.saturating_sub(stamp_us);
+        self.backward_stamps += u64::from(back_us > 0);
+        self.backward_most_us = self.backward_most_us.max(back_us);
+        self.doubled_stamps += u64::from(stamp_us == last_us && !shared_stamp);
+        self.leaping_stamps += u64::from(stamp_us.saturating_sub(last_us) > LEAP_US);
+    }
+
     pub(super) fn tally(&mut self, record: &Record<'_>, last_stamp_us: Option<u64>, shared_stamp: bool) {
         let header = record.frame.header();
         self.frames += 1;
@@ -226,7 +277,7 @@ impl ReadReport {
         if !record.known {
             *self.unknown_ids.entry(header.message_id).or_default() += 1;
         }
-        self.backward_stamps += u64::from(last_stamp_us.is_some_and(|last| record.stamp_us < last));
+        self.tally_stamp(record.stamp_us, last_stamp_us, shared_stamp);
         self.first_stamp_us.get_or_insert(record.stamp_us);
         self.last_stamp_us = Some(record.stamp_us);
         self.sender(header.system, header.component).tally(&record.frame);

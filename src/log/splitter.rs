@@ -190,13 +190,13 @@ impl Splitter {
     }
 
     /// Where the run of checked frames that begins at `from` ends, at or behind `until` at the latest;
-    /// `None` where its last frame is not complete yet.
+    /// `None` where a frame that may belong to it is not complete yet.
     fn run_of_checked_frames(&self, from: usize, until: usize) -> Option<usize> {
         let mut at = from;
         while at < until {
             match self.shape(at) {
                 Shape::Frame(header, Check::Right) => at += header.frame_bytes(),
-                Shape::Incomplete if at > from && !self.ended => return None,
+                Shape::Incomplete if !self.ended => return None,
                 _ => break,
             }
         }

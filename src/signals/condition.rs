@@ -158,6 +158,9 @@ pub fn condition(
     let kernel = WeakKernel::new(settings.weak_half_width_s, step_s);
     let airborne_s = airborne_spans(recording, &actuation, vehicle);
     let slow = sufficient::check(&needed(&chosen, &actuation), &airborne_s)?;
+    if grid.count >= Grid::LONGEST {
+        return Err(SignalsError::TooLong { span_s: step_s * grid.count as f64 });
+    }
     let streams: Vec<&Stream> =
         chosen.list().iter().filter_map(|(_, s)| s.map(|(_, s)| s)).chain([actuation.stream()]).collect();
     // the vehicle's clock started anew, or its estimator jumped

@@ -14,14 +14,23 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Covers `start_s..=end_s` with the given step.
+    /// Instants that a flight has at most: an hour at 500 Hz and more. A grid of more is of a recording that was not divided
+    /// into its flights.
+    pub const LONGEST: usize = 1 << 21;
+
+    /// Covers `start_s..=end_s` with the given step; at most some [`Self::LONGEST`] instants of it.
     #[must_use]
     pub fn covering(start_s: f64, end_s: f64, step_s: f64) -> Self {
-        let mut count = 0;
-        while start_s + step_s * count as f64 <= end_s + 1e-9 {
-            count += 1;
+        let is_inside = |index: usize| start_s + step_s * index as f64 <= end_s + 1e-9;
+        let (mut inside, mut beyond) = (0, 1);
+        while beyond < Self::LONGEST && is_inside(beyond) {
+            (inside, beyond) = (beyond, 2 * beyond);
         }
-        Self { start_s, step_s, count }
+        while inside + 1 < beyond {
+            let middle = usize::midpoint(inside, beyond);
+            if is_inside(middle) { inside = middle } else { beyond = middle }
+        }
+        Self { start_s, step_s, count: if is_inside(0) { beyond } else { 0 } }
     }
 
     /// The instant of this index, s.
@@ -186,6 +195,17 @@ mod tests {
         let s = stream(0.1, 20, |t| 2.0 * t);
         let out = linear_onto(&s, 0.0, &Grid { start_s: 0.55, step_s: 0.1, count: 3 }).unwrap();
         assert!((out[1] - 1.3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_grid_covers_its_span_and_is_never_endless() {
+        let count = |end_s| Grid::covering(2.0, end_s, 0.1).count;
+        assert_eq!([count(1.9), count(2.0), count(2.05), count(2.1), count(3.0)], [0, 1, 1, 2, 11]);
+        for steps in 0..300 {
+            assert_eq!(count(2.0 + 0.1 * f64::from(steps)), usize::try_from(steps).unwrap() + 1);
+        }
+        assert!(count(1e12) <= 2 * Grid::LONGEST);
+        assert!(count(f64::INFINITY) <= 2 * Grid::LONGEST);
     }
 
     #[test]

@@ -90,6 +90,15 @@ pub enum SignalsError {
         /// s
         overlap_s: f64,
     },
+    /// more than one flight
+    #[error(
+        "motion and actuator streams go on for {span_s:.0} s or more: expected one flight, of at most {} samples; divide the log into its flights",
+        Grid::LONGEST
+    )]
+    TooLong {
+        /// s
+        span_s: f64,
+    },
     /// no stretch of flight is left
     #[error("nothing to identify from: {usable_s:.1} s usable, at least {needed_s:.1} s needed ({reason})")]
     NothingUsable {

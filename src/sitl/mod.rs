@@ -41,7 +41,7 @@ pub use link::{LinkId, LinkRole};
 pub use modes::{ArduPilotRelease, AutopilotKind, Mode};
 pub use serve::{LOCKSTEP, Pace, Served, serve};
 pub use settings::{Origin, SensorSettings, Settings};
-pub use vehicle::{Outgoing, Vehicle};
+pub use vehicle::{Beheld, Outgoing, Vehicle};
 
 use crate::physics::PhysicsError;
 use crate::simulate::SimulateError;

@@ -37,6 +37,17 @@ pub struct Outgoing {
     pub bytes: Vec<u8>,
 }
 
+/// What somebody who stands beside a vehicle sees of it, whatever its messages say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Beheld {
+    /// the number of the mode that it flies, as HEARTBEAT.custom_mode
+    pub custom_mode: u32,
+    /// its rotors may turn
+    pub armed: bool,
+    /// it stands on the ground
+    pub landed: bool,
+}
+
 /// A simulated vehicle.
 #[derive(Debug)]
 pub struct Vehicle {
@@ -188,6 +199,16 @@ impl Vehicle {
     #[must_use]
     pub fn next_loop(&self) -> Duration {
         self.next
+    }
+
+    /// The vehicle as it is now.
+    #[must_use]
+    pub fn beheld(&self) -> Beheld {
+        Beheld {
+            custom_mode: self.autopilot.mode.custom_mode(self.settings.autopilot).unwrap_or_default(),
+            armed: self.autopilot.is_armed(),
+            landed: self.autopilot.is_landed(),
+        }
     }
 
     /// Something goes wrong from now on.

@@ -1,7 +1,7 @@
 //! A flight and the embedded vehicle on one clock, with what may lie between them. No sockets, no real time.
 
 #![allow(dead_code, reason = "each test binary uses a part")]
-#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -233,6 +233,7 @@ impl Flying {
                 self.send(&message);
             }
             Some(Streamed::Stalled(gap)) => self.stalled = Some(gap),
+            Some(Streamed::Unfit(why)) => panic!("{why}"),
             None => {}
         }
     }

@@ -96,7 +96,7 @@ fn story(
     let record = record?;
     let landed = record.outcome.ending == Ending::Landed;
     progress.stage("identifying and explaining", progress::LANDED);
-    let analysis = Analysis::of((folder, landed), &vehicle, None)?;
+    let analysis = Analysis::of((folder, landed), &vehicle, record.system.map(|system| system.0))?;
     Ok((record, analysis))
 }
 

@@ -71,7 +71,7 @@ fn inspect(args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, 
 
 fn csv(path: &Path, args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, CommandError> {
     if args.read.system.is_some() {
-        return Err(CommandError::Input("--system is for *.tlog logs; this one is a *.csv".into()));
+        return Err(CommandError::Input("--system-id is for *.tlog logs; this one is a *.csv".into()));
     }
     let mapping = match &args.read.csv_map {
         Some(file) => load_csv_mapping(file)?,

@@ -225,6 +225,9 @@ fn tlog(page: &mut String, inspection: &Inspection, reading: &TlogReading) {
         ("duplicates", reading.duplicates),
         ("sharing a stamp", reading.shared_stamps),
         ("stamps backward", reading.backward_stamps),
+        ("stamps doubled", reading.doubled_stamps),
+        ("stamps leaping", reading.leaping_stamps),
+        ("stamps of no clock", reading.odd_stamps),
         ("wrong checksum", reading.bad_crc),
         ("resyncs", reading.resync_count),
         ("bytes skipped", reading.skipped_bytes),
@@ -235,6 +238,9 @@ fn tlog(page: &mut String, inspection: &Inspection, reading: &TlogReading) {
     for (name, count) in counts.into_iter().filter(|(_, count)| *count > 0) {
         let note = if name == "simulator's truth" { " messages and parameters, not read" } else { "" };
         row(page, name, format!("{count}{note}"));
+    }
+    for oddity in &reading.oddities {
+        row(page, "odd", oddity.as_str());
     }
     if reading.little_endian_stamps {
         row(page, "stamps", "little-endian");

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::cli::ReadArgs;
 use crate::commands::CommandError;
-use crate::commands::flights::{load, shared};
+use crate::commands::flights::{EXPLAINED, load, ready, shared};
 
 /// The vehicle file of a case.
 pub const VEHICLE: &str = "vehicle.toml";
@@ -106,15 +106,16 @@ type Found = (Explanation, Option<Empirical>, Option<Shown>);
 fn explained(folder: &Path, sha256: &mut Vec<String>) -> Result<Found, CommandError> {
     let vehicle = read_vehicle(&folder.join(VEHICLE))?.vehicle;
     let (used, held) = logs(folder)?;
-    let flights = used.iter().map(|log| flight(log, &vehicle, sha256)).collect::<Result<Vec<_>, _>>()?;
+    let flights = used.iter().map(|log| flights_of(log, &vehicle, sha256)).collect::<Result<Vec<_>, _>>()?;
     let inputs = sha256.len();
-    let (recordings, signals): (Vec<Recording>, Vec<Signals>) = flights.into_iter().unzip();
+    let (recordings, signals): (Vec<Recording>, Vec<Signals>) = flights.into_iter().flatten().unzip();
     let settings = ExplainSettings::default();
     let refuse = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
     let explanation = explain(&signals, &vehicle, &settings).map_err(|error| refuse(&error))?;
     let empirical =
         Empirical::fit(&explanation, &signals, &vehicle, &settings).map_err(|error| refuse(&error))?;
-    let held = held.iter().map(|log| flight(log, &vehicle, sha256)).collect::<Result<Vec<_>, _>>()?;
+    let held = held.iter().map(|log| flights_of(log, &vehicle, sha256)).collect::<Result<Vec<_>, _>>()?;
+    let held: Vec<(Recording, Signals)> = held.into_iter().flatten().collect();
     if let Some(twin) = sha256[inputs..].iter().find(|hash| sha256[..inputs].contains(hash)) {
         return Err(refuse(&format!("the hold-out is the flight that it is to be predicted from ({twin})")));
     }
@@ -164,21 +165,22 @@ fn starts(path: &Path, with: &str) -> bool {
     path.file_stem().and_then(|stem| stem.to_str()).is_some_and(|stem| stem.starts_with(with))
 }
 
-fn flight(
+fn flights_of(
     log: &Path,
     vehicle: &Vehicle,
     sha256: &mut Vec<String>,
-) -> Result<(Recording, Signals), CommandError> {
-    let loaded = load(log, &ReadArgs::default())?;
+) -> Result<Vec<(Recording, Signals)>, CommandError> {
     let settings = ConditionSettings {
         transient_s: Some(TRANSIENT_S),
         thrust: ThrustPreference::Commands,
         ..ConditionSettings::default()
     };
-    let signals = condition(&loaded.recording, vehicle, &settings)
-        .map_err(|error| CommandError::Input(format!("{}: {error}", log.display())))?;
-    sha256.push(loaded.input.sha256);
-    Ok((loaded.recording, signals))
+    let flights = ready(load(log, &ReadArgs::default(), &EXPLAINED)?, |flight| {
+        condition(&flight.recording, vehicle, &settings)
+            .map_err(|error| CommandError::Input(format!("{}: {error}", log.display())))
+    })?;
+    sha256.extend(flights.first().map(|(flight, _)| flight.input.sha256.clone()));
+    Ok(flights.into_iter().map(|(flight, signals)| (flight.recording, signals)).collect())
 }
 
 fn effect(named: &Named) -> Effect {

@@ -18,7 +18,6 @@ use crate::fly::safety::{Lead, SetpointBounds};
 use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
 use crate::fly::target::Order;
-use crate::units::narrow;
 
 /// While it spools up the vehicle is not outrun by the climb: no further ahead than this.
 const LEAD_MAX_M: f64 = 0.6;
@@ -64,7 +63,10 @@ impl Flight {
             }
             Stack::ArduPilot => {
                 let height_m = top.position_m.z - stand.position_m.z;
-                self.give(now, Order::takeoff(narrow(height_m)), Manner::PATIENT);
+                match Order::takeoff(height_m) {
+                    Ok(takeoff) => self.give(now, takeoff, Manner::PATIENT),
+                    Err(why) => return self.end(now, Cause::Refused(why.to_string())),
+                }
             }
         }
         self.enter(now, Phase::Climb);

@@ -11,7 +11,7 @@ use crate::fly::roster::Choice;
 use crate::fly::safety::Lead;
 use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
-use crate::fly::target::Order;
+use crate::fly::target::{Order, Period};
 use crate::fly::telemetry::Telemetry;
 use crate::log::Payload;
 use mavlink::dialects::ardupilotmega::MavCmd;
@@ -31,11 +31,10 @@ const VERSION_CHANCES: u32 = 4;
 /// Messages that the safety rules rest on, and how often, Hz: LOCAL_POSITION_NED, ATTITUDE_QUATERNION,
 /// SYS_STATUS, EXTENDED_SYS_STATE, BATTERY_STATUS, CURRENT_MODE, POSITION_TARGET_LOCAL_NED, and the
 /// estimator's own report.
-const STREAMS: [(f32, f32); 7] =
-    [(32.0, 30.0), (31.0, 50.0), (1.0, 2.0), (245.0, 5.0), (147.0, 1.0), (436.0, 10.0), (85.0, 27.0)];
-const PX4_STREAMS: [(f32, f32); 2] = [(230.0, 2.0), (331.0, 30.0)];
+const STREAMS: [(u16, u16); 7] = [(32, 30), (31, 50), (1, 2), (245, 5), (147, 1), (436, 10), (85, 27)];
+const PX4_STREAMS: [(u16, u16); 2] = [(230, 2), (331, 30)];
 /// ArduPilot has no CURRENT_MODE: its HEARTBEAT tells of a pilot who takes over.
-const ARDUPILOT_STREAMS: [(f32, f32); 2] = [(193.0, 2.0), (0.0, 5.0)];
+const ARDUPILOT_STREAMS: [(u16, u16); 2] = [(193, 2), (0, 5)];
 
 /// What is asked before the flight.
 #[derive(Debug)]
@@ -50,7 +49,7 @@ pub(super) struct Checking {
 
 impl Checking {
     fn new(stack: Stack) -> Self {
-        let own: &[(f32, f32)] = match stack {
+        let own: &[(u16, u16)] = match stack {
             Stack::Px4 => &PX4_STREAMS,
             Stack::ArduPilot => &ARDUPILOT_STREAMS,
         };
@@ -66,12 +65,8 @@ impl Checking {
     }
 }
 
-fn interval(id: f32, rate_hz: f32) -> Order {
-    let interval_us = (1e6 / rate_hz).round();
-    Order {
-        command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
-        parameters: [id, interval_us, 0.0, 0.0, 0.0, 0.0, 0.0],
-    }
+fn interval(id: u16, rate_hz: u16) -> Order {
+    Order::interval(id, Period::of_whole_rate(rate_hz))
 }
 
 /// Answers to questions come soon or not at all.
@@ -132,7 +127,7 @@ impl Flight {
 
     pub(super) fn check(&mut self, now: Duration) {
         let Phase::Check(checking) = &mut self.phase else { return };
-        let question = interval(0.0, 1.0);
+        let question = interval(0, 1);
         let version = Order::request_message(AUTOPILOT_VERSION);
         if !self.commander.waits_for_kind(&question) && !self.commander.waits_for_kind(&version) {
             match checking.wanted.pop() {
@@ -357,9 +352,9 @@ impl Flight {
         let text = format!("{name}: {}", reasons.join("; "));
         self.note(now, Level::Warning, "command", text.clone());
         let decides = match self.phase {
-            Phase::Engage(_) => answer.order.command == MavCmd::MAV_CMD_DO_SET_MODE,
-            Phase::Arm => answer.order.command == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
-            Phase::Climb => answer.order.command == MavCmd::MAV_CMD_NAV_TAKEOFF,
+            Phase::Engage(_) => answer.order.command() == MavCmd::MAV_CMD_DO_SET_MODE,
+            Phase::Arm => answer.order.command() == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
+            Phase::Climb => answer.order.command() == MavCmd::MAV_CMD_NAV_TAKEOFF,
             _ => false,
         };
         if decides {

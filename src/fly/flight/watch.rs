@@ -83,8 +83,11 @@ impl Flight {
         }
         self.tell_contradiction(now);
         if self.phase.is_ours() {
-            let cause =
-                self.check_mode(now).or_else(|| self.check_suspicion()).or_else(|| self.check_vehicle(now));
+            let cause = self
+                .check_mode(now)
+                .or_else(|| self.check_setpoint(now))
+                .or_else(|| self.check_suspicion())
+                .or_else(|| self.check_vehicle(now));
             if let Some(cause) = cause {
                 self.end(now, cause);
                 return;
@@ -131,6 +134,13 @@ impl Flight {
             let text = "a HEARTBEAT says that it is disarmed and nothing else agrees: not believed unless it is said again";
             self.note(now, Level::Warning, "vehicle", text);
         }
+    }
+
+    /// What is streamed can be sent.
+    fn check_setpoint(&self, now: Duration) -> Option<Cause> {
+        let (target, _) = self.target()?;
+        let why = self.guide.setpoint(now)?.message(target).err()?;
+        Some(Cause::Unfit(why.to_string()))
     }
 
     fn check_vehicle(&mut self, now: Duration) -> Option<Cause> {

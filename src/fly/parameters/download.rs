@@ -1,10 +1,10 @@
 //! Asks for parameters by name until each has answered or has had its chances.
 
 use super::{Parameters, Wanted};
-use crate::fly::address::{is_from, target_of};
+use crate::fly::address::is_from;
+use crate::fly::target::{ParameterName, Target};
 use crate::log::{Event, Frame, Vehicle};
-use mavlink::dialects::ardupilotmega::{MavMessage, PARAM_REQUEST_READ_DATA};
-use mavlink::types::CharArray;
+use mavlink::dialects::ardupilotmega::MavMessage;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -106,13 +106,9 @@ impl Download {
         }
         let (item, name) = self.next_request(now)?;
         self.last_sent = Some(now);
-        let (target_system, target_component) = target_of(&self.vehicle);
-        Some(MavMessage::PARAM_REQUEST_READ(PARAM_REQUEST_READ_DATA {
-            param_index: -1,
-            target_system,
-            target_component,
-            param_id: CharArray::from(self.items[item].names[name].text.as_str()),
-        }))
+        // what is no parameter's name, or a vehicle that no message can name, is not asked and stays unanswered
+        let name = ParameterName::new(&self.items[item].names[name].text).ok()?;
+        Some(Target::of(&self.vehicle)?.parameter_request(&name))
     }
 
     /// When the next request may become due; `None` when done.

@@ -1,20 +1,17 @@
 //! Reads the vehicle's fence: the mission protocol with mission type fence.
 
 use crate::fence::FenceItem;
-use crate::fly::address::{is_from, target_of};
+use crate::fly::address::is_from;
+use crate::fly::target::Target;
 use crate::frames::Geodetic;
 use crate::log::{Frame, Payload, Vehicle};
-use mavlink::dialects::ardupilotmega::{
-    MISSION_ACK_DATA, MISSION_REQUEST_INT_DATA, MISSION_REQUEST_LIST_DATA, MavMessage, MavMissionResult,
-    MavMissionType,
-};
+use mavlink::dialects::ardupilotmega::MavMessage;
 use std::time::Duration;
 
 const MISSION_COUNT_ID: u32 = 44;
 const MISSION_ACK_ID: u32 = 47;
 const MISSION_ITEM_INT_ID: u32 = 73;
 const TYPE_FENCE: u8 = 1;
-const FENCE: MavMissionType = MavMissionType::MAV_MISSION_TYPE_FENCE;
 
 /// Until a request counts as lost.
 const TIMEOUT: Duration = Duration::from_millis(1000);
@@ -67,9 +64,14 @@ impl FenceDownload {
 
     /// The next message that is due, if any.
     pub fn poll(&mut self, now: Duration) -> Option<MavMessage> {
+        let Some(target) = Target::of(&self.vehicle) else {
+            // an id that messages have no room for: nobody can be asked
+            self.end(FenceOutcome::Incomplete { came: 0, of: None });
+            return None;
+        };
         if self.phase == Phase::Thanking {
             self.end(FenceOutcome::Complete);
-            return Some(self.thanks());
+            return Some(target.fence_thanks());
         }
         if self.phase == Phase::Done || self.sent.is_some_and(|sent| now < sent + TIMEOUT) {
             return None;
@@ -84,7 +86,7 @@ impl FenceDownload {
         }
         self.tries += 1;
         self.sent = Some(now);
-        Some(self.request())
+        Some(self.request(target))
     }
 
     /// When [`Self::poll`] has something to do again; `None` when done.
@@ -144,32 +146,13 @@ impl FenceDownload {
         self.outcome = Some(outcome);
     }
 
-    fn request(&self) -> MavMessage {
-        let (target_system, target_component) = target_of(&self.vehicle);
+    fn request(&self, target: Target) -> MavMessage {
         match self.phase {
-            Phase::Reading(_) => MavMessage::MISSION_REQUEST_INT(MISSION_REQUEST_INT_DATA {
-                seq: u16::try_from(self.items.len()).unwrap_or(u16::MAX),
-                target_system,
-                target_component,
-                mission_type: FENCE,
-            }),
-            _ => MavMessage::MISSION_REQUEST_LIST(MISSION_REQUEST_LIST_DATA {
-                target_system,
-                target_component,
-                mission_type: FENCE,
-            }),
+            Phase::Reading(_) => {
+                target.fence_item_request(u16::try_from(self.items.len()).unwrap_or(u16::MAX))
+            }
+            _ => target.fence_request(),
         }
-    }
-
-    fn thanks(&self) -> MavMessage {
-        let (target_system, target_component) = target_of(&self.vehicle);
-        MavMessage::MISSION_ACK(MISSION_ACK_DATA {
-            target_system,
-            target_component,
-            mavtype: MavMissionResult::MAV_MISSION_ACCEPTED,
-            mission_type: FENCE,
-            ..Default::default()
-        })
     }
 }
 

@@ -2,9 +2,10 @@
 
 use super::report::{RatesReport, StreamReport};
 use super::{Capacity, StreamRequest};
-use crate::fly::address::{is_from, single, target_of};
+use crate::fly::address::is_from;
+use crate::fly::target::{MessageId, Order, OutOfRange, Period, Target};
 use crate::log::{Frame, Vehicle};
-use mavlink::dialects::ardupilotmega::{COMMAND_LONG_DATA, MavCmd, MavMessage};
+use mavlink::dialects::ardupilotmega::MavMessage;
 use std::time::Duration;
 
 const COMMAND_ACK_ID: u32 = 77;
@@ -55,6 +56,8 @@ pub enum Answer {
     Refused(u8),
     /// no answer to any try
     Silent,
+    /// its id or rate is in no message's range, or the vehicle's system id is: not asked
+    OutOfRange,
 }
 
 /// One message of the set.
@@ -139,10 +142,12 @@ impl Requests {
                         return None;
                     } else if self.streams[index].tries >= self.settings.tries {
                         self.streams[index].answer = Answer::Silent;
-                    } else {
+                    } else if let Some(message) = self.message(index) {
                         self.streams[index].tries += 1;
                         self.phase = Phase::Asking { index, sent: Some(now) };
-                        return Some(self.message(index));
+                        return Some(message);
+                    } else {
+                        self.streams[index].answer = Answer::OutOfRange;
                     }
                 }
                 Phase::Settling { until } if now >= until => {
@@ -262,7 +267,7 @@ impl Requests {
     /// Refused, or silent; before the first window nothing that was accepted is missing.
     fn is_missing(&self, stream: &Asked) -> bool {
         match stream.answer {
-            Answer::Refused(_) | Answer::Silent => true,
+            Answer::Refused(_) | Answer::Silent | Answer::OutOfRange => true,
             Answer::Accepted => self.window_s > 0.0 && stream.count == 0,
             Answer::NotAsked => false,
         }
@@ -273,18 +278,13 @@ impl Requests {
         (0..self.streams.len()).find(|index| self.is_wanted(*index))
     }
 
-    fn message(&self, index: usize) -> MavMessage {
+    fn message(&self, index: usize) -> Option<MavMessage> {
         let stream = &self.streams[index];
-        let (target_system, target_component) = target_of(&self.vehicle);
-        // parameters 3, 4 and 7 must be zero: PX4 takes anything else for another command
-        MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
-            command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
-            target_system,
-            target_component,
-            confirmation: 0,
-            param1: single(f64::from(stream.request.message_id)),
-            param2: single((1e6 / stream.rate_hz).round()),
-            ..Default::default()
-        })
+        let order = order(stream.request.message_id, stream.rate_hz).ok()?;
+        Some(Target::of(&self.vehicle)?.command(&order, 0))
     }
+}
+
+fn order(message_id: u32, rate_hz: f64) -> Result<Order, OutOfRange> {
+    Ok(Order::interval(MessageId::new(message_id)?, Period::of_rate(rate_hz)?))
 }

@@ -39,6 +39,7 @@ impl StreamReport {
             Answer::Accepted => "accepted".to_owned(),
             Answer::Refused(result) => format!("refused (MAV_RESULT {result})"),
             Answer::Silent => "no answer".to_owned(),
+            Answer::OutOfRange => "no message can ask for it".to_owned(),
         };
         format!("{name}: asked {rate_hz:.1} Hz, {said}, {:.1} Hz arrive", self.arrived_hz)
     }

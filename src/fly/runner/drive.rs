@@ -6,13 +6,13 @@ use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
 use super::PARAMETERS;
-use super::clearance::{Clearance, Cleared};
+use super::clearance::Cleared;
 use super::estimating::Estimating;
 use super::journal::Journal;
 use super::stream::SharedGuide;
+use super::supervisor::Supervisor;
 use crate::fly::finding;
 use crate::fly::flight::{Action, Event, Flight, Key};
-use crate::fly::lift::Lift;
 use crate::fly::live::{LiveIdentification, LiveSettings};
 use crate::fly::modes::Mode;
 use crate::fly::outcome::{Level, Note, Outcome};
@@ -20,8 +20,8 @@ use crate::fly::parameters::Parameters;
 use crate::fly::requests::LinkKind;
 use crate::fly::safety::Lead;
 use crate::fly::view::{Attitude, Battery, KeyCommand, LinkView, Phase, ViewModel};
-use crate::link::{LinkEvent, LinkStats, LinkWriter, ReceivedFrame};
-use crate::log::{Check, Frame, Record};
+use crate::link::{LinkEvent, LinkWriter, ReceivedFrame};
+use crate::log::{Frame, Record};
 use crate::units::deg_from_rad;
 use crate::vehicle::Vehicle;
 
@@ -40,21 +40,16 @@ pub(super) struct Place {
 /// A flight under way.
 #[derive(Debug)]
 pub(super) struct Drive {
-    flight: Flight,
+    supervisor: Supervisor,
     guide: SharedGuide,
     writer: LinkWriter,
     clock: Instant,
-    place: Place,
-    clearance: Option<Clearance>,
+    dir: PathBuf,
     estimating: Estimating,
     notes: Vec<Note>,
     model: ViewModel,
     shown: Duration,
     frames: (u64, u64),
-    /// it was told that frames come which are not believed
-    told_distrust: bool,
-    /// and that its position is waited for
-    told_waiting: bool,
     refused: u64,
     outcome: Option<Outcome>,
 }
@@ -71,20 +66,18 @@ impl Drive {
         model.tracking.limit_m = Some(flight.sortie().settings.tracking_max_m);
         let waits = format!("{}: waiting for a vehicle", place.address);
         let notes = vec![Note::new(clock.elapsed(), Level::Information, "link", waits)];
+        let Place { dir, vehicle, link, .. } = place;
         Self {
-            flight,
+            supervisor: Supervisor::new(flight, vehicle, link),
             guide,
             writer,
             clock,
-            place,
-            clearance: None,
+            dir,
             estimating,
             notes,
             model,
             shown: Duration::ZERO,
             frames: (0, 0),
-            told_distrust: false,
-            told_waiting: false,
             refused: 0,
             outcome: None,
         }
@@ -101,9 +94,32 @@ impl Drive {
 
     pub(super) fn handle(&mut self, event: Event<'_>) {
         let now = self.clock.elapsed();
-        self.flight.handle(now, event);
-        self.guide.set(self.flight.guide());
-        while let Some(action) = self.flight.next_action() {
+        self.supervisor.handle(now, event);
+        self.act(now);
+    }
+
+    /// Time went on; whether the link has something that was not taken.
+    pub(super) fn tick(&mut self, wait: bool) {
+        let now = self.clock.elapsed();
+        self.supervisor.tick(now, wait);
+        self.act(now);
+    }
+
+    pub(super) fn frame(&mut self, received: ReceivedFrame) {
+        if let Some(frame) = Frame::at_start(received.bytes()) {
+            let now = self.clock.elapsed();
+            // whether it is known is told by its checksum, later
+            let record = Record { stamp_us: received.stamp.utc_us, offset: 0, known: false, frame };
+            self.supervisor.frame(now, &record);
+            self.act(now);
+        }
+        self.estimating.frame(received);
+    }
+
+    /// Does what the supervisor wants done.
+    fn act(&mut self, now: Duration) {
+        self.guide.set(self.supervisor.flight().guide());
+        while let Some(action) = self.supervisor.next_action() {
             match action {
                 Action::Send(message) => {
                     self.refused += u64::from(self.writer.send_message(&message).is_err())
@@ -112,33 +128,15 @@ impl Drive {
                 Action::Finished(outcome) => self.outcome = Some(outcome),
             }
         }
-        self.clear(now);
-    }
-
-    pub(super) fn frame(&mut self, received: ReceivedFrame) {
-        if let Some(frame) = Frame::at_start(received.bytes()) {
-            self.handle(Event::Frame(frame));
-            let known = frame.check(self.flight.seeds()) == Check::Right;
-            let record = Record { stamp_us: received.stamp.utc_us, offset: 0, known, frame };
-            if let Some(clearance) = &mut self.clearance {
-                clearance.take(&record);
-            }
+        if let Some(cleared) = self.supervisor.take_cleared() {
+            self.cleared(now, cleared);
         }
-        self.estimating.frame(received);
     }
 
     pub(super) fn link_event(&mut self, event: &LinkEvent) {
         let now = self.clock.elapsed();
-        let (up, level) = match event {
-            LinkEvent::Connected { .. } => (Some(true), Level::Information),
-            LinkEvent::Restored { .. } => (Some(true), Level::Warning),
-            LinkEvent::Lost { .. } => (Some(false), Level::Warning),
-            _ => (None, Level::Warning),
-        };
-        self.notes.push(Note::new(now, level, "link", event.to_string()));
-        if let Some(up) = up {
-            self.handle(Event::Link(up));
-        }
+        self.supervisor.link_event(now, event);
+        self.act(now);
     }
 
     pub(super) fn key(&mut self, key: KeyCommand) {
@@ -153,55 +151,19 @@ impl Drive {
         self.handle(event);
     }
 
-    /// The checks before the flight, once it waits for them.
-    fn clear(&mut self, now: Duration) {
-        if !self.flight.wants_clearance() {
-            return;
-        }
-        let Some(who) = self.flight.vehicle() else { return };
-        let rotors = self.place.vehicle.rotors.len();
-        let link = self.place.link;
-        let clearance = self.clearance.get_or_insert_with(|| Clearance::new(who, rotors, link));
-        while let Some(message) = clearance.poll(now) {
-            self.refused += u64::from(self.writer.send_message(&message).is_err());
-        }
-        let cleared = clearance.finished(&self.flight, &self.place.vehicle, now);
-        let waits = clearance.waits_for_position();
-        if waits && !std::mem::replace(&mut self.told_waiting, waits) {
-            let text = "waiting for the vehicle's position estimate; all else is checked";
-            self.notes.push(Note::new(now, Level::Information, "check", text));
-        }
-        if let Some(cleared) = cleared {
-            self.cleared(now, cleared);
-        }
-    }
-
+    /// The checks are over: parameters are kept, and the identification under way begins.
     fn cleared(&mut self, now: Duration, cleared: Cleared) {
-        for line in &cleared.lines {
-            self.notes.push(Note::new(now, Level::Information, "rate", line.clone()));
-        }
-        for finding in &cleared.findings {
-            let level = match finding.level {
-                finding::Level::Ok | finding::Level::Awaited => Level::Information,
-                _ => Level::Warning,
-            };
-            self.notes.push(Note::new(now, level, "check", finding.to_string()));
-        }
         self.keep_parameters(now, &cleared.parameters);
-        let vehicle = &self.place.vehicle;
-        let lift = Lift::new(vehicle, &cleared.parameters);
-        let verdict = cleared.verdict().map(|()| Box::new(lift));
+        let vehicle = self.supervisor.vehicle();
         let live = LiveIdentification::new(vehicle, &cleared.parameters, &LiveSettings::default());
         if let Some(decoder) = cleared.decoder {
             self.estimating.begin(decoder, live);
         }
         self.model.page = Some(Arc::new(cleared.page));
-        self.handle(Event::Feed(cleared.feeding));
-        self.handle(Event::Cleared(verdict));
     }
 
     fn keep_parameters(&mut self, now: Duration, parameters: &Parameters) {
-        let path = self.place.dir.join(PARAMETERS);
+        let path = self.dir.join(PARAMETERS);
         let written = parameters
             .to_toml()
             .map_err(|error| error.to_string())
@@ -234,25 +196,11 @@ impl Drive {
         let _ = show.send(self.model.clone());
     }
 
-    /// A vehicle that signs with another key, or not at all, looks like none.
-    fn tell_distrust(&mut self, now: Duration, stats: &LinkStats) {
-        let LinkStats { unsigned, badly_signed, replayed, .. } = stats;
-        if self.told_distrust || unsigned + badly_signed + replayed == 0 {
-            return;
-        }
-        self.told_distrust = true;
-        let text = format!(
-            "frames come that are not believed: {unsigned} without a signature, {badly_signed} with another key's, \
-             {replayed} heard before or too old; is the key of --signing-key-file on the vehicle?"
-        );
-        self.notes.push(Note::new(now, Level::Warning, "signing", text));
-    }
-
     fn picture(&mut self, now: Duration) {
-        let status = self.flight.status(now);
-        let follows = self.flight.guide().lead != Lead::Silent;
+        let flight = self.supervisor.flight();
+        let status = flight.status(now);
+        let follows = flight.guide().lead != Lead::Silent;
         let stats = self.writer.stats();
-        self.tell_distrust(now, &stats);
         let passed_s = now.saturating_sub(self.shown).as_secs_f64().max(1e-3);
         let hz = |total: u64, before: u64| total.saturating_sub(before) as f64 / passed_s;
         let model = &mut self.model;

@@ -16,10 +16,12 @@ mod journal;
 mod parking;
 mod priority;
 mod stream;
+mod supervisor;
 
 pub use parking::{Parking, Part};
 pub use priority::raise_priority;
-pub use stream::StreamFigures;
+pub use stream::{Due, StreamFigures, send_due};
+pub use supervisor::Supervisor;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -38,6 +40,7 @@ use crate::link::{
     Address, Link, LinkError, LinkOptions, LinkReader, LinkStats, Received, RecordError, Recorder,
     RecorderStatus, Signing,
 };
+use crate::log::SystemId;
 use crate::vehicle::Vehicle;
 use drive::Drive;
 use estimating::Estimating;
@@ -93,6 +96,8 @@ pub struct Record {
     pub outcome: Outcome,
     /// how the setpoints went out
     pub stream: StreamFigures,
+    /// whose flight it is; `None` where no vehicle was found
+    pub system: Option<SystemId>,
     /// the recording
     pub recorder: RecorderStatus,
     /// the link
@@ -175,7 +180,8 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
     let link = writer.stats();
     let recorder = recorder.end().await?;
     let stream = stream.on_link(&link);
-    Ok(Record { outcome, stream, recorder, link, events_failure })
+    let system = guide.get().target.map(|(target, _)| target.system);
+    Ok(Record { outcome, stream, system, recorder, link, events_failure })
 }
 
 fn kind_of(address: &Address) -> LinkKind {
@@ -203,27 +209,21 @@ async fn conduct(
     let mut ticks = tokio::time::interval(TICK);
     ticks.set_missed_tick_behavior(MissedTickBehavior::Skip);
     let mut ends = Ends::new()?;
-    let (mut hears, mut keyed, mut took) = (true, true, true);
+    let (mut hears, mut keyed) = (true, true);
     loop {
         if parking.is_parked(Part::Supervisor) {
             std::future::pending::<()>().await;
         }
         tokio::select! {
-            received = reader.receive(), if hears && !parking.is_parked(Part::Telemetry) => {
-                took = true;
-                match received {
-                    Ok(Received::Frame(frame)) => drive.frame(frame),
-                    Ok(Received::Event(event)) => drive.link_event(&event),
-                    Err(_) => {
-                        hears = false;
-                        drive.handle(Event::LinkEnded);
-                    }
+            received = reader.receive(), if hears && !parking.is_parked(Part::Telemetry) => match received {
+                Ok(Received::Frame(frame)) => drive.frame(frame),
+                Ok(Received::Event(event)) => drive.link_event(&event),
+                Err(_) => {
+                    hears = false;
+                    drive.handle(Event::LinkEnded);
                 }
-            }
-            // frames that wait and are not taken: a supervisor that does not see renews nothing
-            _ = ticks.tick() => if std::mem::replace(&mut took, false) || !reader.is_behind() {
-                drive.handle(Event::Tick);
             },
+            _ = ticks.tick() => drive.tick(reader.is_behind()),
             key = console.keys.recv(), if keyed => match key {
                 Some(key) => drive.key(key),
                 None => keyed = false,

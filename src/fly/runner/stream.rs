@@ -50,7 +50,7 @@ pub struct StreamFigures {
     pub late: u64,
     /// not sent, for the next was there already or the stream had ended
     pub overtaken: u64,
-    /// refused by the link
+    /// refused by the link, or in no message's range
     pub refused: u64,
 }
 
@@ -168,31 +168,69 @@ impl Sender {
 
 impl Turn {
     fn send(&mut self, sender: &Sender, due: Duration) {
-        let mut guide = sender.guide.get();
+        let guide = sender.guide.get();
         let now = sender.clock.elapsed();
-        // a link whose task stands still brings no word of the vehicle: nobody knows what it does
-        guide.issued = guide.issued.min(sender.writer.ran().saturating_duration_since(sender.clock));
-        match self.streamer.poll(now, &guide) {
-            Some(Streamed::Setpoint(_, message)) => {
-                // the first of a stream starts the grid
-                self.figures.late += u64::from(self.streams && now.saturating_sub(due) > LATE);
-                self.streams = true;
-                match sender.writer.send_latest(&message) {
-                    Ok(()) => self.figures.sent += 1,
-                    Err(_) => self.figures.refused += 1,
-                }
-            }
-            Some(Streamed::Stalled(gap)) => {
-                sender.writer.clear_latest();
+        let ran = sender.writer.ran().saturating_duration_since(sender.clock);
+        let came = send_due(&mut self.streamer, (now, ran), guide, &sender.writer);
+        // the first of a stream starts the grid
+        let made = matches!(came, Due::Sent | Due::Refused);
+        self.figures.late += u64::from(made && self.streams && now.saturating_sub(due) > LATE);
+        match came {
+            Due::Sent => self.figures.sent += 1,
+            Due::Refused => self.figures.refused += 1,
+            Due::Stalled(gap) => {
                 // a flight that has ended hears nothing
                 let _ = sender.stalled.send(gap);
+                return;
             }
-            None => {
-                self.streams = false;
-                if guide.lead == Lead::Silent || guide.held_back {
-                    sender.writer.clear_latest();
-                }
+            Due::Nothing => {}
+        }
+        self.streams = made;
+    }
+}
+
+/// What came of a setpoint's time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Due {
+    /// it was given to the link
+    Sent,
+    /// the link did not take it
+    Refused,
+    /// somebody stood still for so long: nothing is sent
+    Stalled(Duration),
+    /// there was nothing to send
+    Nothing,
+}
+
+/// Makes the setpoint of `now` and gives it to the link, whose task `ran` last at that time. All times are those of the
+/// flight's clock.
+pub fn send_due(
+    streamer: &mut Streamer,
+    (now, ran): (Duration, Duration),
+    mut guide: Guide,
+    writer: &LinkWriter,
+) -> Due {
+    // a link whose task stands still brings no word of the vehicle: nobody knows what it does
+    guide.issued = guide.issued.min(ran);
+    match streamer.poll(now, &guide) {
+        Some(Streamed::Setpoint(_, message)) => match writer.send_latest(&message) {
+            Ok(()) => Due::Sent,
+            Err(_) => Due::Refused,
+        },
+        Some(Streamed::Unfit(_)) => {
+            // the flight finds the same, tells it and ends
+            writer.clear_latest();
+            Due::Refused
+        }
+        Some(Streamed::Stalled(gap)) => {
+            writer.clear_latest();
+            Due::Stalled(gap)
+        }
+        None => {
+            if guide.lead == Lead::Silent || guide.held_back {
+                writer.clear_latest();
             }
+            Due::Nothing
         }
     }
 }

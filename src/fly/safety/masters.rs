@@ -171,7 +171,7 @@ mod tests {
         let place = Place { position_m: Vector3::zeros(), yaw_rad: 0.0 };
         for (system, ours) in [(1, true), (2, false)] {
             let target = Target::new(SystemId(system), ComponentId(1)).unwrap();
-            let message = Setpoint::hold(ms(0), &place).message(target);
+            let message = Setpoint::hold(ms(0), &place).message(target).unwrap();
             assert_eq!(heard(&message, 254).is_some(), ours);
         }
     }

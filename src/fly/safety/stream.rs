@@ -12,7 +12,7 @@ use super::{Feeding, SetpointBounds};
 use crate::fly::course::Track;
 use crate::fly::modes::Stack;
 use crate::fly::setpoint::{Place, Setpoint};
-use crate::fly::target::Target;
+use crate::fly::target::{OutOfRange, Target};
 use mavlink::dialects::ardupilotmega::MavMessage;
 
 /// After a supervisor or a stream stood still for longer, no setpoint goes out.
@@ -86,6 +86,8 @@ pub enum Streamed {
     Setpoint(Setpoint, Box<MavMessage>),
     /// the supervisor or the stream stood still for so long: nothing is sent
     Stalled(Duration),
+    /// a setpoint that no message can carry: nothing is sent
+    Unfit(OutOfRange),
 }
 
 /// Makes the setpoints at their times.
@@ -127,7 +129,10 @@ impl Streamer {
         }
         let gap = own.max(now.saturating_sub(guide.issued));
         if gap <= SILENT_AFTER {
-            return Some(Streamed::Setpoint(setpoint, Box::new(setpoint.message(target))));
+            return Some(match setpoint.message(target) {
+                Ok(message) => Streamed::Setpoint(setpoint, Box::new(message)),
+                Err(why) => Streamed::Unfit(why),
+            });
         }
         self.stalled = true;
         Some(Streamed::Stalled(gap))
@@ -189,6 +194,7 @@ mod tests {
                     assert_eq!(gap, ms(120));
                     seen.push(t);
                 }
+                Some(Streamed::Unfit(why)) => panic!("{why}"),
                 None => {}
             }
         }
@@ -214,6 +220,21 @@ mod tests {
             assert!(!(doubted.held_back && sent.is_some()), "at {t} ms");
             assert!(!matches!(sent, Some(Streamed::Stalled(_))), "a pause that is wanted is no stall");
         }
+    }
+
+    #[test]
+    fn what_no_message_can_carry_is_told_and_not_sent() {
+        let mut streamer = Streamer::new(ms(20));
+        let mut lost = guide(ms(0));
+        lost.lead = Lead::Hold(Place { position_m: Vector3::new(f64::NAN, 0.0, 2.0), yaw_rad: 0.0 });
+        let Some(Streamed::Unfit(why)) = streamer.poll(ms(0), &lost) else {
+            panic!("a setpoint of no number")
+        };
+        assert_eq!(why.got, "NaN");
+        assert!(
+            matches!(streamer.poll(ms(20), &guide(ms(20))), Some(Streamed::Setpoint(..))),
+            "the next is sent"
+        );
     }
 
     proptest! {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use super::SigningError;
+use super::{SigningError, owner};
 
 const KEY_BYTES: usize = 32;
 
@@ -38,14 +38,23 @@ impl SigningKey {
     /// - any other UTF-8 text: a passphrase, without the line's end.
     ///
     /// # Errors
-    /// The file cannot be read or holds none of these.
+    /// The file cannot be read, holds none of these, or a key of zeros.
     pub fn read(path: &Path) -> Result<Self, SigningError> {
         let bytes = std::fs::read(path).map_err(|source| SigningError::File {
             what: "read",
             path: path.into(),
             source,
         })?;
-        Self::parse(&bytes).map_err(|got| SigningError::Key { path: path.into(), got })
+        let error = |got| SigningError::Key { path: path.into(), got };
+        let key = Self::parse(&bytes).map_err(error)?;
+        // by a key of zeros SETUP_SIGNING switches signing off: a vehicle with it believes everybody
+        if key.0 == [0; KEY_BYTES] { Err(error("zeros, which autopilots take for no key")) } else { Ok(key) }
+    }
+
+    /// A warning where others than its owner may read or write a key's file.
+    #[must_use]
+    pub fn exposure(path: &Path) -> Option<String> {
+        owner::exposure(path)
     }
 
     fn parse(bytes: &[u8]) -> Result<Self, &'static str> {
@@ -104,5 +113,16 @@ mod tests {
             assert!(SigningKey::parse(wrong).is_err(), "{wrong:?}");
         }
         assert_eq!(format!("{:?}", SigningKey(abc)), "SigningKey(..)");
+    }
+
+    #[test]
+    fn a_key_of_zeros_is_none() {
+        let path = std::env::temp_dir().join(format!("mavid-zeros-{}", std::process::id()));
+        for zeros in [vec![0; 32], vec![b'0'; 64]] {
+            std::fs::write(&path, zeros).unwrap();
+            let refused = SigningKey::read(&path).unwrap_err().to_string();
+            assert!(refused.contains("got zeros, which autopilots take for no key"), "{refused}");
+        }
+        std::fs::remove_file(path).unwrap();
     }
 }

@@ -9,24 +9,30 @@
 //! frame through, or locks us out.
 
 mod key;
+mod owner;
 mod times;
+mod told;
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use sha2::{Digest, Sha256};
 
 use super::clock::utc_us;
-use crate::log::{ComponentId, Frame, SystemId};
+use crate::log::{ComponentId, Frame, SystemId, Version};
 pub use key::SigningKey;
 use times::{StreamKey, Times, TimesFile};
+pub(super) use told::Told;
 
 /// 2015-01-01 UTC in microseconds since 1970.
 const EPOCH_US: u64 = 1_420_070_400_000_000;
+/// Signing times of a second.
+const SECOND: u64 = 100_000;
 /// A stream not heard before may be this much behind: a minute.
-const STALE: u64 = 60 * 100_000;
+const STALE: u64 = 60 * SECOND;
 /// Time is kept ahead by this much, so that it need not be written with each frame: 10 s.
-const AHEAD: u64 = 10 * 100_000;
+const AHEAD: u64 = 10 * SECOND;
 /// Streams told apart; further ones are refused.
 const STREAMS: usize = 1024;
 /// Link id, time, signature.
@@ -79,10 +85,43 @@ pub enum SigningError {
 pub enum Distrust {
     /// it carries no signature
     Unsigned,
+    /// it is MAVLink 1, which has no signatures
+    Downgraded,
     /// its signature was not made with our key
     Wrong,
-    /// its time was heard already, or is too far in the past
+    /// its time was heard already
     Replayed,
+    /// the first of its stream, and signed too far in the past
+    Old {
+        /// s behind our signing time
+        behind_s: u64,
+    },
+}
+
+impl fmt::Display for Distrust {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unsigned => f.write_str(
+                "it does not sign; set the key up on the vehicle (over USB), or leave out --signing-key-file",
+            ),
+            Self::Downgraded => f.write_str(
+                "it speaks MAVLink 1, which cannot be signed; set its port to MAVLink 2 (PX4: MAV_PROTO_VER, ArduPilot: \
+                 SERIALn_PROTOCOL)",
+            ),
+            Self::Wrong => f.write_str(
+                "it signs with another key; expected the vehicle's key in the file of --signing-key-file, or set this \
+                 one up on the vehicle",
+            ),
+            Self::Replayed => f.write_str(
+                "it sends what was heard before: somebody plays messages back, or the vehicle's signing time stands still",
+            ),
+            Self::Old { behind_s } => write!(
+                f,
+                "it signs {behind_s} s in the past, expected at most 60 s; set the clock of the vehicle (by GPS or \
+                 SYSTEM_TIME) or of this computer",
+            ),
+        }
+    }
 }
 
 /// Signs what a link sends and checks what it receives. Clones share key and times: links of one process
@@ -96,6 +135,8 @@ pub struct Signing {
 #[derive(Debug)]
 struct Shared {
     key: SigningKey,
+    /// what was odd about the files
+    warnings: Vec<String>,
     state: Mutex<State>,
 }
 
@@ -114,27 +155,37 @@ impl Signing {
     /// The key or the times cannot be read, or the times cannot be written.
     pub fn open(key_file: &Path) -> Result<Self, SigningError> {
         let key = SigningKey::read(key_file)?;
+        let mut warnings = Vec::from_iter(owner::exposure(key_file));
         let mut name = key_file.as_os_str().to_owned();
         name.push(".times");
-        let (times, file) = TimesFile::open(name.into(), now())?;
-        Ok(Self::new(key, times, Some(file)))
+        let now = now();
+        let (times, file) = TimesFile::open(name.into(), now)?;
+        warnings.extend(clock_warning(times.own.saturating_sub(now)));
+        Ok(Self::new(key, times, Some(file), warnings))
+    }
+
+    /// What was odd about the files when they were opened, in words: a key that others may read or write, a clock that
+    /// was set back.
+    #[must_use]
+    pub fn warnings(&self) -> &[String] {
+        &self.shared.warnings
     }
 
     /// Signing with a key alone; times are not kept over a restart.
     #[must_use]
     pub fn with_key(key: SigningKey) -> Self {
-        Self::new(key, Times { own: now(), ..Times::default() }, None)
+        Self::new(key, Times { own: now(), ..Times::default() }, None, Vec::new())
     }
 
     /// The same, begun at a time of the caller's clock: for whoever has no other ([`time_of`]).
     #[must_use]
-    pub(crate) fn with_key_at(key: SigningKey, time: u64) -> Self {
-        Self::new(key, Times { own: time, ..Times::default() }, None)
+    pub fn with_key_at(key: SigningKey, time: u64) -> Self {
+        Self::new(key, Times { own: time, ..Times::default() }, None, Vec::new())
     }
 
-    fn new(key: SigningKey, times: Times, file: Option<TimesFile>) -> Self {
+    fn new(key: SigningKey, times: Times, file: Option<TimesFile>, warnings: Vec<String>) -> Self {
         let state = State { kept: times.own, times, file };
-        Self { shared: Arc::new(Shared { key, state: Mutex::new(state) }), link_id: 0 }
+        Self { shared: Arc::new(Shared { key, warnings, state: Mutex::new(state) }), link_id: 0 }
     }
 
     /// The same key and times for another link.
@@ -149,7 +200,7 @@ impl Signing {
     }
 
     /// The same at a time of the caller's clock.
-    pub(crate) fn sign_at(&self, frame: &mut [u8], now: u64) {
+    pub fn sign_at(&self, frame: &mut [u8], now: u64) {
         let Some(at) = frame.len().checked_sub(TAIL_BYTES) else { return };
         let time = self.state().next(now);
         frame[at] = self.link_id;
@@ -167,10 +218,14 @@ impl Signing {
     }
 
     /// The same at a time of the caller's clock.
-    pub(crate) fn verify_at(&self, frame: &Frame<'_>, now: u64) -> Result<(), Distrust> {
+    pub fn verify_at(&self, frame: &Frame<'_>, now: u64) -> Result<(), Distrust> {
         let header = frame.header();
         if !header.is_signed() {
-            return if header.message_id == RADIO_STATUS { Ok(()) } else { Err(Distrust::Unsigned) };
+            return match header.version {
+                _ if header.message_id == RADIO_STATUS => Ok(()),
+                Version::V1 => Err(Distrust::Downgraded),
+                Version::V2 => Err(Distrust::Unsigned),
+            };
         }
         let bytes = frame.bytes();
         let (signed, signature) = bytes.split_at(bytes.len() - SIGNATURE_BYTES);
@@ -181,6 +236,11 @@ impl Signing {
         let time = tail[1..7].iter().rev().fold(0, |time, &byte| time << 8 | u64::from(byte));
         let stream = StreamKey { link: tail[0], system: header.system, component: header.component };
         self.state().hear(stream, time, now)
+    }
+
+    /// By how much our signing time is ahead of this computer's clock, s: others sign ahead of it.
+    pub(super) fn ahead_s(&self) -> u64 {
+        self.state().times.own.saturating_sub(now()) / SECOND
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
@@ -197,12 +257,13 @@ impl State {
 
     fn hear(&mut self, stream: StreamKey, time: u64, now: u64) -> Result<(), Distrust> {
         self.times.own = now.max(self.times.own);
-        let fresh = match self.times.streams.get(&stream) {
-            Some(last) => time > *last,
-            None => time + STALE >= self.times.own && self.times.streams.len() < STREAMS,
-        };
-        if !fresh {
-            return Err(Distrust::Replayed);
+        match self.times.streams.get(&stream) {
+            Some(last) if time <= *last => return Err(Distrust::Replayed),
+            None if time + STALE < self.times.own => {
+                return Err(Distrust::Old { behind_s: (self.times.own - time) / SECOND });
+            }
+            None if self.times.streams.len() >= STREAMS => return Err(Distrust::Replayed),
+            _ => {}
         }
         self.times.streams.insert(stream, time);
         self.times.own = time.max(self.times.own);
@@ -228,6 +289,17 @@ impl Drop for State {
             file.keep(std::mem::take(&mut self.times));
         }
     }
+}
+
+/// What to say where signing times are ahead of this computer's clock by so much.
+fn clock_warning(ahead: u64) -> Option<String> {
+    (ahead > STALE).then(|| {
+        format!(
+            "this computer's clock is {} s behind the last signing time: it was set back, or another's was ahead; \
+             messages are signed from that time on, and the clock is to be set",
+            ahead / SECOND
+        )
+    })
 }
 
 /// How long it takes does not tell how much is right.

@@ -2,6 +2,7 @@ use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 
 use super::*;
+use crate::link::reader::LinkEvent;
 
 const NOW: u64 = 40_000_000_000_000;
 
@@ -33,7 +34,7 @@ fn signed(by: &Signing, now: u64) -> Vec<u8> {
 
 fn at(key: u8, own: u64) -> Signing {
     let times = Times { own, ..Times::default() };
-    Signing::new(SigningKey::from_bytes([key; 32]), times, None)
+    Signing::new(SigningKey::from_bytes([key; 32]), times, None, Vec::new())
 }
 
 fn verify(by: &Signing, bytes: &[u8], now: u64) -> Result<(), Distrust> {
@@ -86,15 +87,86 @@ fn only_a_radios_report_needs_no_signature() {
 }
 
 #[test]
+fn what_is_not_believed_is_told_once_with_what_to_do() {
+    let (receiver, mut told) = (at(1, NOW), Told::default());
+    let mut said = |bytes: &[u8], receiver: &Signing| {
+        let verdict = verify(receiver, bytes, NOW);
+        let events = told.events(&Frame::at_start(bytes).unwrap(), Some(receiver), verdict);
+        events.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+    };
+    let old_version = {
+        let mut raw = mavlink::MAVLinkV1MessageRaw::new();
+        raw.serialize_message(header(), &heartbeat());
+        raw.raw_bytes().to_vec()
+    };
+    let good = signed(&at(1, NOW), NOW);
+    for (bytes, expected) in [
+        (unsigned(&heartbeat()), "it does not sign; set the key up on the vehicle"),
+        (old_version, "MAVLink 1, which cannot be signed; set its port to MAVLink 2"),
+        (signed(&at(2, NOW), NOW), "signs with another key; expected the vehicle's key"),
+        (
+            signed(&at(1, 0).for_link(3), NOW - 100 * STALE),
+            "signs 6000 s in the past, expected at most 60 s; set",
+        ),
+        (good.clone(), "signs with the key given"),
+        (good, "sends what was heard before"),
+    ] {
+        let first = said(&bytes, &receiver);
+        assert!(first.starts_with("system 1 component 1 ") && first.contains(expected), "{first}");
+        // the good one is heard before the second time, which is told by the next
+        if !expected.contains("given") {
+            assert_eq!(said(&bytes, &receiver), "", "{expected}");
+        }
+    }
+}
+
+#[test]
+fn a_clock_that_is_behind_what_is_heard_is_told() {
+    let (receiver, mut told) = (at(1, now()), Told::default());
+    let bytes = signed(&at(1, 0), now() + 100 * STALE);
+    let frame = Frame::at_start(&bytes).unwrap();
+    let verdict = receiver.verify(&frame);
+    assert_eq!(verdict, Ok(()));
+    let events = told.events(&frame, Some(&receiver), verdict);
+    let Some(LinkEvent::ClockBehind { seconds }) = events.last() else { panic!("{events:?}") };
+    assert!((5990..=6000).contains(seconds), "{seconds}");
+    assert!(clock_warning(100 * STALE).unwrap().contains("6000 s behind the last signing time"));
+    assert_eq!(clock_warning(AHEAD), None);
+}
+
+#[test]
+fn a_vehicle_that_signs_is_told_where_there_is_no_key() {
+    let mut told = Told::default();
+    let bytes = signed(&at(1, NOW), NOW);
+    let events = told.events(&Frame::at_start(&bytes).unwrap(), None, Ok(()));
+    let [event @ LinkEvent::Unchecked { .. }] = events.as_slice() else { panic!("{events:?}") };
+    assert!(event.to_string().contains("give its key by --signing-key-file"), "{event}");
+    assert!(told.events(&Frame::at_start(&bytes).unwrap(), None, Ok(())).is_empty(), "once");
+}
+
+#[test]
+fn noise_of_many_senders_does_not_flood_who_listens() {
+    let (receiver, mut told) = (at(1, NOW), Told::default());
+    let mut events = 0;
+    for system in 1..=255 {
+        let mut raw = MAVLinkV2MessageRaw::new();
+        raw.serialize_message(MavHeader { system_id: system, ..header() }, &heartbeat());
+        let frame = Frame::at_start(raw.raw_bytes()).unwrap();
+        events += told.events(&frame, Some(&receiver), Err(Distrust::Unsigned)).len();
+    }
+    assert_eq!(events, 32);
+}
+
+#[test]
 fn a_new_stream_may_be_a_minute_behind_and_no_more() {
     let frame = |time| signed(&at(1, time - 1), time);
     assert_eq!(verify(&at(1, NOW), &frame(NOW - STALE), NOW), Ok(()));
-    assert_eq!(verify(&at(1, NOW), &frame(NOW - STALE - 1), NOW), Err(Distrust::Replayed));
+    assert_eq!(verify(&at(1, NOW), &frame(NOW - STALE - 1), NOW), Err(Distrust::Old { behind_s: 60 }));
     // our time follows the latest heard: a minute before that is old, whatever our clock says
     let receiver = at(1, NOW);
     assert_eq!(verify(&receiver, &frame(NOW + 10 * STALE), NOW), Ok(()));
     let other = signed(&at(1, NOW).for_link(5), NOW + STALE);
-    assert_eq!(verify(&receiver, &other, NOW), Err(Distrust::Replayed));
+    assert_eq!(verify(&receiver, &other, NOW), Err(Distrust::Old { behind_s: 540 }));
 }
 
 #[test]

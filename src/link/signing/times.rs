@@ -8,9 +8,11 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::thread::JoinHandle;
 
-use super::{AHEAD, ComponentId, SigningError, SystemId};
+use super::{AHEAD, ComponentId, SigningError, SystemId, owner};
 
 const TITLE: &str = "mavid signing times 1";
+/// A signature has 48 bits for its time.
+const LATEST: u64 = (1 << 48) - 1;
 
 /// Who signs on which of its links.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -83,17 +85,17 @@ impl Drop for TimesFile {
     }
 }
 
-/// The file is whole at every moment: either the old or the new.
+/// The file is whole at every moment, either the old or the new, and for its owner alone.
 fn replace(path: &Path, text: &str) -> io::Result<()> {
     let mut name = path.as_os_str().to_owned();
     name.push(".new");
-    fs::write(&name, text)?;
+    owner::write(Path::new(&name), text)?;
     fs::rename(&name, path)
 }
 
 impl Times {
     fn text(&self) -> String {
-        let mut text = format!("{TITLE}\nown {}\n", self.own);
+        let mut text = format!("{TITLE}\nown {}\n", self.own.min(LATEST));
         for (key, time) in &self.streams {
             // writing to a string does not fail
             let _ = writeln!(text, "stream {} {} {} {time}", key.link, key.system, key.component);
@@ -110,7 +112,7 @@ impl Times {
         if lines.next() != Some(TITLE) {
             return Err(wrong(0, "`mavid signing times 1`"));
         }
-        let own = lines.next().and_then(|line| line.strip_prefix("own ")).and_then(|time| time.parse().ok());
+        let own = lines.next().and_then(|line| line.strip_prefix("own ")).and_then(time);
         let mut times = Self { own: own.ok_or_else(|| wrong(1, "`own TIME`"))?, streams: BTreeMap::new() };
         for (index, line) in lines.enumerate() {
             let (key, time) =
@@ -121,6 +123,11 @@ impl Times {
     }
 }
 
+/// A time that a signature can carry: a later one is damage, and would lock us out.
+fn time(text: &str) -> Option<u64> {
+    text.parse().ok().filter(|time| *time <= LATEST)
+}
+
 fn stream(line: &str) -> Option<(StreamKey, u64)> {
     let mut words = line.strip_prefix("stream ")?.split(' ');
     let key = StreamKey {
@@ -128,7 +135,7 @@ fn stream(line: &str) -> Option<(StreamKey, u64)> {
         system: SystemId(words.next()?.parse().ok()?),
         component: ComponentId(words.next()?.parse().ok()?),
     };
-    let time = words.next()?.parse().ok()?;
+    let time = time(words.next()?)?;
     words.next().is_none().then_some((key, time))
 }
 
@@ -146,6 +153,8 @@ mod tests {
             ("mavid signing times 1\nown x\n", 2),
             ("mavid signing times 1\nown 5\nstream 1 2 3\n", 3),
             ("mavid signing times 1\nown 5\nstream 1 2 300 4\n", 3),
+            ("mavid signing times 1\nown 18446744073709551615\n", 2),
+            ("mavid signing times 1\nown 5\nstream 1 2 3 281474976710656\n", 3),
         ] {
             let error = Times::parse(Path::new("k"), text).unwrap_err().to_string();
             assert!(error.contains(&format!("line {line} ")), "{error}");

@@ -107,6 +107,8 @@ pub struct DecodeReport {
     pub decoded: u64,
     /// messages whose stamp fits neither the clock nor a new one
     pub stale_stamps: u64,
+    /// times that the recording computer's clock was set while the vehicle's went on
+    pub host_steps: u64,
     /// messages of a simulator's truth and parameters SIM_*, SIH_*: never read
     pub withheld_truth: u64,
     /// messages in a frame or unit that cannot be used, by message
@@ -225,7 +227,9 @@ impl Decoder {
     ) {
         self.report.decoded += 1;
         let stamp = source.stamp(payload);
-        let time_us = match self.clock.place(stamp, host_us) {
+        let placed = self.clock.place(stamp, host_us);
+        self.report.host_steps = self.clock.host_steps();
+        let time_us = match placed {
             Placed::At(time_us) => time_us,
             Placed::Restarted(time_us) => {
                 self.last_reset_counter = None;

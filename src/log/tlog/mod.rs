@@ -42,6 +42,6 @@ impl ByteOrder {
 }
 
 /// A stamp that may be the host's wall clock.
-fn is_wall_clock(stamp_us: u64) -> bool {
+pub(super) fn is_wall_clock(stamp_us: u64) -> bool {
     (EARLIEST_US..LATEST_US).contains(&stamp_us)
 }

@@ -309,8 +309,9 @@ impl<R: Read> TlogReader<R> {
         }
     }
 
-    /// Behind damage a record must prove itself: a plausible stamp, a right checksum; or, where the
-    /// message is not known, a next record that fits.
+    /// Behind damage a record must prove itself: a right checksum, and a plausible stamp or, where the host's clock was
+    /// set meanwhile, a sender that spoke before or a next record; or, where the message is not known, a next record
+    /// that fits.
     fn restarts_at(&mut self, at: usize) -> bool {
         let stamped = at + STAMP_BYTES;
         if !self.marked(stamped) {
@@ -319,18 +320,25 @@ impl<R: Read> TlogReader<R> {
         if self.report.frames == 0 {
             self.order = self.tell_order(at);
         }
-        if !self.stamp(at).is_some_and(|stamp_us| self.plausible(stamp_us)) {
-            return false;
-        }
+        let Some(stamp_us) = self.stamp(at) else { return false };
         let Some(frame) = self.frame(stamped) else { return false };
+        let plausible = self.plausible(stamp_us);
+        let next = stamped + frame.bytes().len();
         match frame.check(&self.seeds) {
-            Check::Right => true,
+            Check::Right => {
+                plausible || self.report.knows(frame.header()) || self.is_checked_neighbour(next, stamp_us)
+            }
             Check::Wrong => false,
             Check::UnknownMessage => {
-                let next = stamped + frame.bytes().len();
-                next == self.filled && self.ended || self.checked_record_at(next)
+                plausible && (next == self.filled && self.ended || self.checked_record_at(next))
             }
         }
+    }
+
+    /// A record with a right checksum, and a stamp next to another's, whatever clock both are of.
+    fn is_checked_neighbour(&self, at: usize, stamp_us: u64) -> bool {
+        self.stamp(at).is_some_and(|next| next.abs_diff(stamp_us) < NEIGHBOUR_US)
+            && self.frame(at + STAMP_BYTES).is_some_and(|frame| frame.check(&self.seeds) == Check::Right)
     }
 
     fn checked_record_at(&self, at: usize) -> bool {

@@ -208,7 +208,7 @@ mod tests {
     }
 
     fn said(second: f64) -> String {
-        let input = InputFile { path: "l".into(), sha256: "0".into(), losses: Vec::new() };
+        let input = InputFile { path: "l".into(), sha256: "0".into(), losses: Vec::new(), notes: Vec::new() };
         let tables = tables(second);
         let quality = Quality {
             sources: Vec::new(),

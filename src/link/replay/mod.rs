@@ -1,5 +1,7 @@
 //! Plays a recorded flight back at the pace of its stamps.
 
+mod telemetry;
+
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -10,16 +12,20 @@ use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep, sleep_until};
 
-use super::clock::HostStamp;
-use super::error::LinkError;
-use super::incoming::WAITING;
-use super::open::LinkOptions;
-use super::reader::{LinkEvent, LinkReader, Received, ReceivedFrame};
-use super::shared::Shared;
-use super::writer::LinkWriter;
-use crate::log::{Frame, LogError, SystemId, TlogReader};
+use crate::link::clock::HostStamp;
+use crate::link::error::LinkError;
+use crate::link::incoming::WAITING;
+use crate::link::open::LinkOptions;
+use crate::link::reader::{LinkEvent, LinkReader, Received, ReceivedFrame};
+use crate::link::shared::Shared;
+use crate::link::writer::LinkWriter;
+use crate::log::{ComponentId, CrcSeeds, Frame, LogError, Payload, SystemId, TlogReader};
+use telemetry::is_telemetry;
 
 const HEARTBEAT: u32 = 0;
+/// HEARTBEAT.type of a ground station and of a companion computer.
+const STATIONS: [u8; 2] = [6, 18];
+const TYPE_AT: usize = 4;
 /// HEARTBEAT.autopilot of what is no vehicle.
 const NO_AUTOPILOT: u8 = 8;
 const AUTOPILOT_AT: usize = 5;
@@ -27,36 +33,6 @@ const AUTOPILOT_AT: usize = 5;
 const SEAM: Duration = Duration::from_secs(3600);
 /// How long to wait for a reader that is behind.
 const BEHIND: Duration = Duration::from_millis(1);
-
-/// Messages that make who hears them act: a replay leaves them out, whoever sent them.
-const COMMANDS: &[u32] = &[
-    5,   // CHANGE_OPERATOR_CONTROL
-    11,  // SET_MODE
-    23,  // PARAM_SET
-    39,  // MISSION_ITEM
-    41,  // MISSION_SET_CURRENT
-    44,  // MISSION_COUNT
-    45,  // MISSION_CLEAR_ALL
-    48,  // SET_GPS_GLOBAL_ORIGIN
-    66,  // REQUEST_DATA_STREAM
-    69,  // MANUAL_CONTROL
-    70,  // RC_CHANNELS_OVERRIDE
-    73,  // MISSION_ITEM_INT
-    75,  // COMMAND_INT
-    76,  // COMMAND_LONG
-    80,  // COMMAND_CANCEL
-    82,  // SET_ATTITUDE_TARGET
-    84,  // SET_POSITION_TARGET_LOCAL_NED
-    86,  // SET_POSITION_TARGET_GLOBAL_INT
-    110, // FILE_TRANSFER_PROTOCOL
-    121, // LOG_ERASE
-    126, // SERIAL_CONTROL
-    139, // SET_ACTUATOR_CONTROL_TARGET
-    232, // GPS_INPUT
-    243, // SET_HOME_POSITION
-    256, // SETUP_SIGNING
-    385, // TUNNEL
-];
 
 /// Why a log cannot be played back.
 #[derive(Debug, thiserror::Error)]
@@ -85,22 +61,42 @@ pub enum ReplayError {
 pub struct ReplayCounts {
     /// frames played
     pub frames: u64,
-    /// frames left out: commands, and what others than vehicles sent
-    pub left_out: u64,
+    /// frames held back
+    pub held_back: HeldBack,
     /// frames that had nobody to go to
     pub unsent: u64,
     /// frames that the other end sent; nobody acted on them
     pub discarded: u64,
 }
 
+/// Frames of a log that are not played, by the first reason that holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct HeldBack {
+    /// no autopilot sent them: ground stations, companions, cameras, radios
+    pub not_of_an_autopilot: u64,
+    /// nobody here knows what they say
+    pub unknown: u64,
+    /// known, and not on the list of telemetry: whoever hears them may act upon them
+    pub not_telemetry: u64,
+}
+
+impl HeldBack {
+    /// All of them.
+    #[must_use]
+    pub fn total(self) -> u64 {
+        self.not_of_an_autopilot + self.unknown + self.not_telemetry
+    }
+}
+
 /// A recorded flight, ready to be played back.
 ///
-/// Only what vehicles sent is played, without commands: a replay that reaches a real vehicle does nothing
-/// there. Stamps that step back, or over more than an hour, are played without waiting.
+/// Only telemetry that autopilots sent is played, by a list of messages: a replay that reaches a real vehicle does
+/// nothing there. All else is held back and counted. Stamps that step back, or over more than an hour, are played without waiting.
 #[derive(Debug, Clone)]
 pub struct Replay {
     path: PathBuf,
-    vehicles: BTreeSet<SystemId>,
+    autopilots: BTreeSet<(SystemId, ComponentId)>,
+    seeds: CrcSeeds,
     frames: u64,
     duration: Duration,
     speed: f64,
@@ -118,7 +114,8 @@ impl Replay {
         }
         let mut replay = Self {
             path: path.into(),
-            vehicles: BTreeSet::new(),
+            autopilots: BTreeSet::new(),
+            seeds: CrcSeeds::new(),
             frames: 0,
             duration: Duration::ZERO,
             speed,
@@ -128,8 +125,8 @@ impl Replay {
         let mut pauses = Pauses::default();
         while let Some(record) = reader.next_record().map_err(|source| replay.error(source))? {
             let (header, payload) = (record.frame.header(), record.frame.payload());
-            if header.message_id == HEARTBEAT && payload.u8(AUTOPILOT_AT) != NO_AUTOPILOT {
-                replay.vehicles.insert(header.system);
+            if header.message_id == HEARTBEAT && is_of_autopilot(payload) {
+                replay.autopilots.insert((header.system, header.component));
             }
             replay.frames += 1;
             replay.duration += pauses.next(record.stamp_us);
@@ -188,7 +185,7 @@ impl Replay {
     }
 
     /// Plays into an open link until the log's end. What the other end sends is counted and dropped.
-    /// `progress` is told of each frame's number.
+    /// `progress` is told of each frame's number and of what was played so far.
     ///
     /// # Errors
     /// The log cannot be read any more, or the link has ended.
@@ -196,7 +193,7 @@ impl Replay {
         &self,
         reader: &mut LinkReader,
         writer: &LinkWriter,
-        mut progress: impl FnMut(u64),
+        mut progress: impl FnMut(u64, &ReplayCounts),
     ) -> Result<ReplayCounts, ReplayError> {
         let mut counts = ReplayCounts::default();
         while !writer.is_connected() {
@@ -221,10 +218,11 @@ impl Replay {
                 Err(LinkError::NotConnected { .. }) => counts.unsent += 1,
                 Err(error) => return Err(error.into()),
             }
-            progress(player.number);
+            counts.held_back = player.held_back;
+            progress(player.number, &counts);
         }
         writer.flush().await?;
-        counts.left_out = player.left_out;
+        counts.held_back = player.held_back;
         Ok(counts)
     }
 
@@ -245,14 +243,30 @@ impl Replay {
             pauses: Pauses::default(),
             due: Instant::now(),
             number: 0,
-            left_out: 0,
+            held_back: HeldBack::default(),
         })
     }
 
-    fn plays(&self, frame: &Frame<'_>) -> bool {
+    /// Whether a frame is played; counts it where it is not.
+    fn plays(&self, frame: &Frame<'_>, held_back: &mut HeldBack) -> bool {
         let header = frame.header();
-        self.vehicles.contains(&header.system) && !COMMANDS.contains(&header.message_id)
+        let reason = if !self.autopilots.contains(&(header.system, header.component)) {
+            &mut held_back.not_of_an_autopilot
+        } else if self.seeds.get(header.message_id).is_none() {
+            &mut held_back.unknown
+        } else if !is_telemetry(header.message_id) {
+            &mut held_back.not_telemetry
+        } else {
+            return true;
+        };
+        *reason += 1;
+        false
     }
+}
+
+/// Of what flies, by its HEARTBEAT: one of a ground station would keep a vehicle from missing its own.
+fn is_of_autopilot(heartbeat: Payload<'_>) -> bool {
+    heartbeat.u8(AUTOPILOT_AT) != NO_AUTOPILOT && !STATIONS.contains(&heartbeat.u8(TYPE_AT))
 }
 
 /// Waits where too much waits already.
@@ -277,7 +291,7 @@ struct Player<'a> {
     pauses: Pauses,
     due: Instant,
     number: u64,
-    left_out: u64,
+    held_back: HeldBack,
 }
 
 impl Player<'_> {
@@ -291,10 +305,9 @@ impl Player<'_> {
             if self.replay.speed > 0.0 {
                 self.due += pause.div_f64(self.replay.speed);
             }
-            if self.replay.plays(&record.frame) {
+            if self.replay.plays(&record.frame, &mut self.held_back) {
                 return Some((self.due, record.stamp_us, record.frame.bytes().to_vec()));
             }
-            self.left_out += 1;
         }
     }
 }

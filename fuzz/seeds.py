@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""Writes the inputs from which the fuzzers begin, into work/TARGET: pieces of the project's own fixtures and
+configuration files, and short scripts. The same files in every run; what the fuzzers made of them is in corpus/."""
+import random
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+LOGS = sorted((ROOT / "fixtures").glob("*.tlog"))
+
+
+def records(log, most):
+    """The first records of a log: stamp and frame."""
+    data, at, found = log.read_bytes(), 0, []
+    while at + 10 < len(data) and len(found) < most:
+        length = data[at + 9]
+        size = length + (12 if data[at + 8] == 0xFD else 8) + (13 if data[at + 8] == 0xFD and data[at + 10] & 1 else 0)
+        found.append((data[at:at + 8], data[at + 8:at + 8 + size]))
+        at += 8 + size
+    return found
+
+
+def splitter():
+    for log in LOGS:
+        frames = b"".join(frame for _, frame in records(log, 25))
+        yield bytes([0, 7]) + frames
+        yield bytes([2, 255, 40]) + frames[:40]
+    # mavlink#2555, alone and before a whole frame
+    short = bytes([0xFD, 0, 0, 0, 0, 1, 1, 0x83, 0, 0, 0])
+    yield bytes([0, 3]) + short
+    yield bytes([0, 3]) + short + frames
+
+
+def tlog():
+    for log in LOGS:
+        some = records(log, 30)
+        yield bytes([0, 5]) + b"".join(stamp + frame for stamp, frame in some)
+        yield bytes([0, 5]) + b"".join(stamp[::-1] + frame for stamp, frame in some)
+        yield bytes([0, 5]) + b"".join([some[0][0]] + [frame for _, frame in some])
+
+
+def csv():
+    yield b"\x00\x00time_s,velocity_x_m_s,velocity_y_m_s,velocity_z_m_s\n0,1,2,3\n0.1,1,,3\n\n0.2,nan,2,3\n"
+    yield b"\x01\x000,1,2,3,0.5,0.5\n0.01,1,2,3,0.5,0.5\n0.01,1,2,3,0.5\n-5,1,2,3,0.5,0.5\n1e9,1,2,3,0.5,0.5\n"
+    yield b"\x02\x010;1;0;0;0;1;2;3\n100;0.7;0.7;0;0;1;2;3\n200;\"0\";0;0;0;1;2;3\n"
+    yield b"\x03\x000\t0.1\t0.2\t12.1\t1\tx\n1\t0.1\t0.2\t12.0\t1\ty\n"
+
+
+def toml():
+    kinds = {0: ["configs/*.toml", "fixtures/*.toml"], 1: ["configs/trajectories/*.toml"], 2: ["configs/demo/concealed.toml"],
+             3: ["configs/csv/*.toml"], 4: ["configs/demo/limits.toml"]}
+    for kind, patterns in kinds.items():
+        for pattern in patterns:
+            for path in sorted(ROOT.glob(pattern)):
+                lines = path.read_text().splitlines()
+                # comments teach a fuzzer nothing
+                yield bytes([kind]) + "\n".join(line for line in lines if line and not line.startswith("#")).encode()
+    yield b'\x05autopilot = "px4"\nunanswered = ["A"]\nabsent = []\n[values]\nTHR_MDL_FAC = 0.3\nPWM_MAIN_MIN1 = 1000.0\n'
+    model = (ROOT / "fixtures/p04_vehicle.toml").read_text()
+    yield b"\x06" + (model + '\n[[effect]]\nid = "motor_lag"\ntime_constant_s = 0.05\n').encode()
+
+
+def scripts(seed, first, count, most):
+    """Short scripts of random bytes, behind each of the first bytes."""
+    draw = random.Random(seed)
+    for head in first:
+        for _ in range(count):
+            yield bytes([head]) + draw.randbytes(draw.randrange(1, most))
+
+
+def signing():
+    yield from scripts(1, [1, 2], 6, 200)
+    yield b"\x00\x01\x20" + bytes(range(32)) + b"mavid signing times 1\nown 400000\nstream 1 1 1 400000\n"
+    yield b"\x00\x01\x06secret" + b"mavid signing times 1\nown 18446744073709551615\n"
+
+
+def flight():
+    yield from scripts(2, range(16), 2, 60)
+
+
+def identify():
+    yield from scripts(3, [0, 1, 2], 8, 40)
+
+
+def explain():
+    yield b""
+    yield from scripts(4, [0, 1, 4, 5, 6], 2, 20)
+
+
+for make in [splitter, tlog, csv, toml, signing, flight, identify, explain]:
+    folder = HERE / "work" / make.__name__
+    folder.mkdir(parents=True, exist_ok=True)
+    for index, data in enumerate(make()):
+        (folder / f"seed-{index:02}").write_bytes(data)

@@ -1,0 +1,64 @@
+//! Tables of samples.
+
+use mavid::config::default_csv_mapping;
+use mavid::log::Quantity;
+use mavid::log::csv::{CsvError, CsvMapping, read_csv_from};
+
+use super::bytes::Bytes;
+use super::tlog::is_sound;
+
+/// Headers that the built-in mapping takes; the last byte of the first line is the input's.
+const HEADERS: [&str; 4] = [
+    "",
+    "time_s,rate_x_rad_s,rate_y_rad_s,rate_z_rad_s,motor_1_command,motor_2_command\n",
+    "time_s;attitude_w;attitude_x;attitude_y;attitude_z;position_x_m;position_y_m;position_z_m\n",
+    "time_s\troll_rad\tyaw_rad\tbattery_v\tarmed\tother\n",
+];
+/// The unit that the seeded bug forgets: a time of this is taken for no number.
+const FORGOTTEN_S: f64 = 12.5;
+
+/// Any table, its header perhaps given, its times perhaps in another unit.
+pub fn run(data: &[u8], seeded: bool) {
+    let mut script = Bytes::new(data);
+    let header = script.one_of(&HEADERS);
+    let scaled = script.u8();
+    let mut mapping = default_csv_mapping().expect("the built-in mapping");
+    if scaled & 1 == 1 {
+        mapping.time.scale = 1e-3;
+    }
+    if scaled & 2 == 2 {
+        mapping.delimiter = Some(b';');
+    }
+    let text = [header.as_bytes(), script.rest()].concat();
+    check(&text, &mapping, seeded);
+}
+
+fn check(text: &[u8], mapping: &CsvMapping, seeded: bool) {
+    let (recording, report) = match read_csv_from(text, "table", mapping) {
+        Ok(read) => read,
+        Err(CsvError::Read { .. }) => panic!("an error of reading that bytes in memory cannot have"),
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            return;
+        }
+    };
+    is_sound(&recording);
+    assert!(report.rows_rejected < report.rows, "{report:?}");
+    assert!(report.rejections.len() <= report.rows_rejected);
+    assert!(report.start_time_s.is_finite(), "{report:?}");
+    let most = report.rows - report.rows_rejected;
+    for (key, stream) in &recording.streams {
+        assert!(stream.len() <= most, "{key:?}: {} samples of {most} rows", stream.len());
+        let numbers = stream.values.iter().all(|value| !value.is_infinite());
+        assert!(numbers, "{key:?}: an infinite number");
+        if matches!(key.quantity, Quantity::Attitude | Quantity::AttitudeSetpoint) {
+            let unit = |q: &[f64]| (q.iter().map(|value| value * value).sum::<f64>() - 1.0).abs() < 1e-6;
+            assert!(stream.values.chunks(4).all(unit), "{key:?}: no rotation");
+        }
+        let forgets = key.quantity == Quantity::Attitude && stream.time_s.contains(&FORGOTTEN_S);
+        assert!(!(seeded && forgets), "the seeded bug");
+    }
+    // what was read once is read the same again
+    let again = read_csv_from(text, "table", mapping).expect("read before");
+    assert_eq!(again.1, report);
+}

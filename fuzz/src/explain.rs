@@ -1,0 +1,44 @@
+//! `explain` on damaged recordings: from the file to the page.
+
+use mavid::diagnose::{ExplainSettings, explain};
+use mavid::report::{ExplanationDocument, Given, Story, explanation_page};
+use mavid::signals::{ConditionSettings, ThrustPreference, condition};
+
+use super::bytes::Bytes;
+use super::damage::damaged;
+use super::recorded::{FLIGHTS, File, is_readable};
+
+/// What can happen to one recording.
+const MOST: usize = 8;
+const TRANSIENT_S: f64 = 1.0;
+
+/// What happens to the log of the flight that can be explained.
+pub fn run(data: &[u8], seeded: bool) {
+    let flight = &FLIGHTS[0];
+    let log = damaged(&flight.records, &mut Bytes::new(data), MOST);
+    let Some(loaded) = File::new(&log).load() else { return };
+    let conditioned = ConditionSettings {
+        transient_s: Some(TRANSIENT_S),
+        thrust: ThrustPreference::BestSampled,
+        ..ConditionSettings::default()
+    };
+    let Ok(signals) = condition(&loaded.recording, &flight.vehicle, &conditioned) else { return };
+    let settings = ExplainSettings::default();
+    let flights = [signals];
+    let Ok(explanation) = explain(&flights, &flight.vehicle, &settings) else { return };
+    let again = loaded.report.streams.values().any(|repair| repair.duplicates > 50);
+    assert!(!(seeded && again), "the seeded bug");
+    let given = Given {
+        vehicle: flight.vehicle.clone(),
+        inputs: Vec::new(),
+        quality: flights.iter().map(|signals| signals.quality.clone()).collect(),
+        settings,
+        transient_s: TRANSIENT_S,
+        warnings: Vec::new(),
+    };
+    let story = Story::new(given, explanation);
+    is_readable(&explanation_page(&story));
+    is_readable(&story.answer());
+    let _ = ExplanationDocument::new(&story);
+    let _ = story.model_toml();
+}

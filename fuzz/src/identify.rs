@@ -1,0 +1,40 @@
+//! `identify` on damaged recordings: from the file to the page, the document and the model.
+
+use mavid::config::parse_vehicle;
+use mavid::estimate::{IdentifySettings, apply_anchor, identify};
+use mavid::report::{IdentificationDocument, identification_page, model_toml};
+use mavid::signals::{ConditionSettings, condition};
+
+use super::bytes::Bytes;
+use super::damage::damaged;
+use super::recorded::{FLIGHTS, File, is_readable};
+use super::tlog::is_sound;
+
+/// What can happen to one recording.
+const MOST: usize = 12;
+
+/// A flight, then what happens to its log.
+pub fn run(data: &[u8], seeded: bool) {
+    let mut script = Bytes::new(data);
+    let flight = &FLIGHTS[usize::from(script.u8()) % FLIGHTS.len()];
+    let log = damaged(&flight.records, &mut script, MOST);
+    let Some(loaded) = File::new(&log).load() else { return };
+    is_sound(&loaded.recording);
+    let Ok(signals) = condition(&loaded.recording, &flight.vehicle, &ConditionSettings::default()) else {
+        return;
+    };
+    let reset = !loaded.recording.clock_resets_s.is_empty();
+    assert!(!(seeded && reset && loaded.report.bad_crc > 0), "the seeded bug");
+    let flights = [signals];
+    let Ok(mut identification) = identify(&flights, &flight.vehicle, &IdentifySettings::default()) else {
+        return;
+    };
+    let scale = apply_anchor(&mut identification, &flight.vehicle);
+    let quality = [&flights[0].quality];
+    is_readable(&identification_page(&identification, &flight.vehicle, &quality, scale.as_ref()));
+    let _ = IdentificationDocument::new(&identification, &flight.vehicle, &quality, &[], scale.as_ref());
+    // a model that is written can be read
+    if let Ok(text) = model_toml(&identification, &flight.vehicle, &[], scale.as_ref()) {
+        parse_vehicle(&text, "model").unwrap_or_else(|error| panic!("{error} in\n{text}"));
+    }
+}

@@ -1,0 +1,158 @@
+//! The flight and the checks before it: frames, events and a clock in, messages and notes out. It does no I/O, so
+//! that a simulated link drives it as a real one does.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use super::clearance::{Clearance, Cleared};
+use crate::fly::finding;
+use crate::fly::flight::{Action, Event, Flight};
+use crate::fly::lift::Lift;
+use crate::fly::outcome::{Level, Note};
+use crate::fly::requests::LinkKind;
+use crate::link::LinkEvent;
+use crate::log::{Check, Record};
+use crate::vehicle::Vehicle;
+
+/// A flight with the checks that clear it. Times are those of the flight's clock.
+#[derive(Debug)]
+pub struct Supervisor {
+    flight: Flight,
+    vehicle: Vehicle,
+    link: LinkKind,
+    clearance: Option<Clearance>,
+    cleared: Option<Cleared>,
+    actions: VecDeque<Action>,
+    /// it was told that the vehicle's position is waited for
+    told_waiting: bool,
+    /// something of the link was taken since the last tick
+    took: bool,
+}
+
+impl Supervisor {
+    /// Of a flight of `vehicle` over a link of this kind.
+    #[must_use]
+    pub fn new(flight: Flight, vehicle: Vehicle, link: LinkKind) -> Self {
+        Self {
+            flight,
+            vehicle,
+            link,
+            clearance: None,
+            cleared: None,
+            actions: VecDeque::new(),
+            told_waiting: false,
+            took: true,
+        }
+    }
+
+    /// The flight as it is.
+    #[must_use]
+    pub fn flight(&self) -> &Flight {
+        &self.flight
+    }
+
+    /// What flies, as its file says.
+    #[must_use]
+    pub fn vehicle(&self) -> &Vehicle {
+        &self.vehicle
+    }
+
+    /// Takes a frame that the link delivered, with the host's stamp of its arrival.
+    pub fn frame(&mut self, now: Duration, record: &Record<'_>) {
+        self.took = true;
+        self.handle(now, Event::Frame(record.frame));
+        let known = record.frame.check(self.flight.seeds()) == Check::Right;
+        if let Some(clearance) = &mut self.clearance {
+            clearance.take(&Record { known, ..*record });
+        }
+    }
+
+    /// Time went on; `wait` says whether the link has something that was not taken. Where it has, and nothing was taken
+    /// since the last tick, the way from the link stands still: a supervisor that does not see renews nothing.
+    pub fn tick(&mut self, now: Duration, wait: bool) {
+        if std::mem::replace(&mut self.took, false) || !wait {
+            self.handle(now, Event::Tick);
+        }
+    }
+
+    /// Takes what else happened.
+    pub fn handle(&mut self, now: Duration, event: Event<'_>) {
+        self.flight.handle(now, event);
+        while let Some(action) = self.flight.next_action() {
+            self.actions.push_back(action);
+        }
+        self.clear(now);
+    }
+
+    /// Takes what the link says of itself.
+    pub fn link_event(&mut self, now: Duration, event: &LinkEvent) {
+        self.took = true;
+        let (up, level) = match event {
+            LinkEvent::Connected { .. } => (Some(true), Level::Information),
+            LinkEvent::Restored { .. } => (Some(true), Level::Warning),
+            LinkEvent::Lost { .. } => (Some(false), Level::Warning),
+            LinkEvent::Trusted { .. } => (None, Level::Information),
+            _ => (None, Level::Warning),
+        };
+        self.note(now, level, "link", event.to_string());
+        if let Some(up) = up {
+            self.handle(now, Event::Link(up));
+        }
+    }
+
+    /// What is to be done next, in order; ask until `None`.
+    pub fn next_action(&mut self) -> Option<Action> {
+        self.actions.pop_front()
+    }
+
+    /// What the checks came to, once, when they are over.
+    pub(super) fn take_cleared(&mut self) -> Option<Cleared> {
+        self.cleared.take()
+    }
+
+    /// The checks before the flight, once it waits for them.
+    fn clear(&mut self, now: Duration) {
+        if !self.flight.wants_clearance() {
+            return;
+        }
+        let Some(who) = self.flight.vehicle() else { return };
+        let rotors = self.vehicle.rotors.len();
+        let link = self.link;
+        let clearance = self.clearance.get_or_insert_with(|| Clearance::new(who, rotors, link));
+        while let Some(message) = clearance.poll(now) {
+            self.actions.push_back(Action::Send(message));
+        }
+        let cleared = clearance.finished(&self.flight, &self.vehicle, now);
+        let waits = clearance.waits_for_position();
+        if waits && !std::mem::replace(&mut self.told_waiting, waits) {
+            let text = "waiting for the vehicle's position estimate; all else is checked";
+            self.note(now, Level::Information, "check", text);
+        }
+        if let Some(cleared) = cleared {
+            self.finish_checks(now, cleared);
+        }
+    }
+
+    fn finish_checks(&mut self, now: Duration, cleared: Cleared) {
+        for line in &cleared.lines {
+            self.note(now, Level::Information, "rate", line.clone());
+        }
+        for finding in &cleared.findings {
+            let level = match finding.level {
+                finding::Level::Ok | finding::Level::Awaited => Level::Information,
+                _ => Level::Warning,
+            };
+            self.note(now, level, "check", finding.to_string());
+        }
+        let lift = Lift::new(&self.vehicle, &cleared.parameters);
+        let verdict = cleared.verdict().map(|()| Box::new(lift));
+        let feeding = cleared.feeding;
+        self.cleared = Some(cleared);
+        self.handle(now, Event::Feed(feeding));
+        self.handle(now, Event::Cleared(verdict));
+    }
+
+    fn note(&mut self, now: Duration, level: Level, kind: &'static str, text: impl Into<String>) {
+        self.actions.push_back(Action::Note(Note::new(now, level, kind, text)));
+    }
+}

@@ -1,0 +1,86 @@
+//! Files that are for their owner alone.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// A warning where others than its owner may read or write a file; `None` where the system tells no such thing.
+#[cfg(unix)]
+pub(super) fn exposure(path: &Path) -> Option<String> {
+    use std::os::unix::fs::MetadataExt;
+    const OTHERS: u32 = 0o077;
+    // one that is gone meanwhile was read before
+    let mode = std::fs::metadata(path).ok()?.mode() & 0o777;
+    let open = [(0o044, "read"), (0o022, "written")];
+    let done: Vec<&str> =
+        open.into_iter().filter(|(bits, _)| mode & bits != 0).map(|(_, done)| done).collect();
+    (mode & OTHERS != 0).then(|| {
+        let done = if done.is_empty() { "run".to_owned() } else { done.join(" and ") };
+        let name = path.display();
+        format!("the signing key in {name} can be {done} by others (mode {mode:o}, expected 600): chmod 600 {name}")
+    })
+}
+
+/// A warning where others than its owner may read or write a file; `None` where the system tells no such thing.
+#[cfg(not(unix))]
+pub(super) fn exposure(_path: &Path) -> Option<String> {
+    None
+}
+
+/// A new file with this text, for its owner alone whatever the process's umask; what was there before is replaced.
+pub(super) fn write(path: &Path, text: &str) -> io::Result<()> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    create(path)?.write_all(text.as_bytes())
+}
+
+#[cfg(unix)]
+fn create(path: &Path) -> io::Result<File> {
+    use std::fs::Permissions;
+    use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
+    const OWNER: u32 = 0o600;
+    // never open to others, not even between two calls; a umask can only take from it, which is given back
+    let file = OpenOptions::new().write(true).create_new(true).mode(OWNER).open(path)?;
+    file.set_permissions(Permissions::from_mode(OWNER))?;
+    Ok(file)
+}
+
+#[cfg(not(unix))]
+fn create(path: &Path) -> io::Result<File> {
+    OpenOptions::new().write(true).create_new(true).open(path)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::fs;
+    use std::os::unix::fs::{MetadataExt, PermissionsExt};
+
+    #[test]
+    fn what_others_may_read_or_write_is_warned_of() {
+        let path = std::env::temp_dir().join(format!("mavid-owner-{}", std::process::id()));
+        write(&path, "a key").unwrap();
+        for (mode, said) in [
+            (0o600, None),
+            (0o400, None),
+            (0o640, Some("read by others (mode 640")),
+            (0o604, Some("read by others")),
+            (0o620, Some("written by others (mode 620")),
+            (0o602, Some("written by others")),
+            (0o666, Some("read and written by others")),
+        ] {
+            fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
+            let warning = exposure(&path);
+            assert_eq!(warning.is_some(), said.is_some(), "{mode:o}: {warning:?}");
+            assert!(warning.unwrap_or_default().contains(said.unwrap_or_default()), "{mode:o}");
+        }
+        // a file that others could read is replaced by one that they cannot
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o666)).unwrap();
+        write(&path, "another").unwrap();
+        assert_eq!(fs::metadata(&path).unwrap().mode() & 0o777, 0o600);
+        assert_eq!(fs::read_to_string(&path).unwrap(), "another");
+        fs::remove_file(path).unwrap();
+    }
+}

@@ -1,0 +1,379 @@
+//! What must hold on every flight, whatever goes wrong. Each law reads a trace and says how it was broken.
+
+use std::time::Duration;
+
+use mavid::fly::{Cause, Ending};
+
+use super::trace::{Entry, Part, Report, Seen, Trace};
+use super::wire::{Left, SetpointSeen};
+
+/// News of the mode counts so long after it came to the socket: two looks at the clock.
+const TOLD: Duration = Duration::from_millis(25);
+/// A setpoint that was made in the same instant may still be on its way out.
+const SETPOINT_TOLD: Duration = Duration::from_millis(130);
+/// The mode is known while a report of it is no older.
+const KNOWN: Duration = Duration::from_millis(1500);
+/// A report that came to the socket so long before the reason of a command may be read after it: a standstill of less than
+/// 100 ms is none.
+const SHORT: Duration = Duration::from_millis(110);
+/// A setpoint leaves so long after it was made at most.
+const SETPOINT_AGE: Duration = Duration::from_millis(100);
+/// Setpoints end after so long a silence of the vehicle.
+const SILENCE: Duration = Duration::from_millis(5100);
+/// Setpoints end so long after a part of the program stands still: 100 ms, and a period of 20 ms with two looks at the clock.
+const STANDSTILL: Duration = Duration::from_millis(145);
+/// Beyond the room, m.
+const ROOM_M: f64 = 0.1;
+
+/// The laws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Law {
+    /// nothing that steers or commands after another mode than ours was reported
+    Takeover,
+    /// nothing is commanded but on a report of our mode that came after its reason
+    Stale,
+    /// no setpoint is old
+    Age,
+    /// no setpoint outside the room, or below the floor once it was above
+    Room,
+    /// setpoints end at 5 s of silence
+    Silence,
+    /// setpoints end where a part of the program stands still, and nothing is commanded
+    Standstill,
+    /// what leaves decodes, with values in range
+    Range,
+    /// the vehicle is on the ground, or in a mode that is safe without us, and the program says so
+    End,
+    /// every vehicle frame that was read is in the recording
+    Log,
+    /// the program ends
+    Time,
+    /// the program does not panic
+    Panic,
+}
+
+/// A law that was broken: when and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Broken {
+    pub law: Law,
+    pub at: Duration,
+    pub how: String,
+}
+
+/// What the laws have to know beside the trace.
+#[derive(Debug, Clone, Copy)]
+pub struct Given {
+    pub px4: bool,
+    /// |x|, |y|, least and greatest z, m
+    pub room_m: [f64; 4],
+    /// the plan's frame is where the vehicle stood, not the local one
+    pub here: bool,
+}
+
+impl Given {
+    fn external(&self) -> u32 {
+        if self.px4 { 6 << 16 } else { 4 }
+    }
+
+    /// Modes in which a vehicle that nobody steers is safe: hold, land, return, brake, a pilot's.
+    fn is_safe(&self, mode: u32) -> bool {
+        let px4 = [4 << 16 | 3 << 24, 4 << 16 | 5 << 24, 4 << 16 | 6 << 24, 3 << 16, 2 << 16, 7 << 16];
+        if self.px4 { px4.contains(&mode) } else { [5, 6, 9, 17, 2, 16, 0].contains(&mode) }
+    }
+}
+
+fn broken(law: Law, at: Duration, how: impl Into<String>) -> Option<Broken> {
+    Some(Broken { law, at, how: how.into() })
+}
+
+/// All laws that a trace can tell of; the first breach of each.
+pub fn check(trace: &Trace, given: &Given) -> Vec<Broken> {
+    [
+        takeover(trace, given),
+        stale(trace, given),
+        age(trace),
+        room(trace, given),
+        silence(trace),
+        standstill(trace),
+        range(trace),
+        end(trace, given),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// Which modes the vehicle may be in by our doing: ours, then those that were asked for, in their order.
+#[derive(Debug, Clone)]
+struct Ours {
+    wishes: Vec<u32>,
+    /// of the latest that was seen; `None` before ours was
+    at: Option<usize>,
+    external: u32,
+}
+
+impl Ours {
+    fn new(given: &Given) -> Self {
+        Self { wishes: vec![given.external()], at: None, external: given.external() }
+    }
+
+    fn asked(&mut self, mode: u32) {
+        if mode != self.external && self.wishes.last() != Some(&mode) {
+            self.wishes.push(mode);
+        }
+    }
+
+    /// Whether the mode is one of ours, or ours was not entered yet.
+    fn admits(&mut self, mode: u32) -> bool {
+        let from = self.at.unwrap_or(0);
+        let found = self.wishes[from..].iter().position(|wish| *wish == mode).map(|at| from + at);
+        match (self.at, found) {
+            (None, Some(0)) | (Some(_), Some(_)) => {
+                self.at = found;
+                true
+            }
+            (None, _) => true,
+            (Some(_), None) => false,
+        }
+    }
+}
+
+/// When the vehicle itself was first in a mode that is not of our doing, and which.
+fn taken(trace: &Trace, given: &Given) -> Option<(Duration, u32)> {
+    let mut ours = Ours::new(given);
+    let mut armed = false;
+    for Entry { at, seen } in &trace.entries {
+        match seen {
+            Seen::Left(Left::Mode(mode)) => ours.asked(*mode),
+            Seen::Vehicle(state) => {
+                // one that has landed chooses what it rests in
+                if armed && !state.armed {
+                    return None;
+                }
+                armed = state.armed;
+                if !ours.admits(state.custom_mode) {
+                    return Some((*at, state.custom_mode));
+                }
+            }
+            _ => {}
+        }
+    }
+    None
+}
+
+/// When the program was told so: the first genuine report of it at its socket.
+fn told(trace: &Trace, given: &Given) -> Option<(Duration, Duration, u32)> {
+    let (taken, mode) = taken(trace, given)?;
+    trace.entries.iter().find_map(|Entry { at, seen }| match seen {
+        Seen::Reached(Report { mode: reported, said: Some(said), .. })
+            if *reported == mode && *said >= taken =>
+        {
+            Some((*at, taken, mode))
+        }
+        _ => None,
+    })
+}
+
+fn takeover(trace: &Trace, given: &Given) -> Option<Broken> {
+    let (told, taken, mode) = told(trace, given)?;
+    trace.entries.iter().find_map(|Entry { at, seen }| {
+        let Seen::Left(left) = seen else { return None };
+        let late = if left.commands() { TOLD } else { SETPOINT_TOLD };
+        let steers = left.commands() || matches!(left, Left::Setpoint(_));
+        if !steers || *at <= told + late || by_the_operator(trace, *at) {
+            return None;
+        }
+        let (taken_s, told_s) = (taken.as_secs_f64(), told.as_secs_f64());
+        broken(
+            Law::Takeover,
+            *at,
+            format!("{left:?}; mode {mode:#x} since {taken_s:.3}, told of it at {told_s:.3}"),
+        )
+    })
+}
+
+/// The operator's own keys are his.
+fn by_the_operator(trace: &Trace, at: Duration) -> bool {
+    trace
+        .entries
+        .iter()
+        .any(|entry| entry.at <= at && matches!(&entry.seen, Seen::Fault(what) if what.starts_with("Key")))
+}
+
+fn stale(trace: &Trace, given: &Given) -> Option<Broken> {
+    let mut ours = Ours::new(given);
+    // the reason of what is commanded next, the last command, and the last report of our mode: when it came to the socket
+    let (mut reason, mut last, mut report) = (None::<Duration>, None::<Left>, None::<Duration>);
+    for Entry { at, seen } in &trace.entries {
+        match seen {
+            Seen::Note(note) if note.kind == "abort" || note.kind == "phase" => {
+                let calls =
+                    note.kind == "abort" || ["hold", "land", "return", "arm"].contains(&note.text.as_str());
+                if calls {
+                    reason.get_or_insert(*at);
+                } else {
+                    reason = None;
+                }
+            }
+            Seen::Heard(heard, came) => {
+                report = ours.admits(heard.mode).then_some(*came);
+            }
+            Seen::Left(left) if left.commands() => {
+                let engages = matches!(left, Left::Mode(mode) if *mode == given.external());
+                if let Left::Mode(mode) = left {
+                    ours.asked(*mode);
+                }
+                if engages || by_the_operator(trace, *at) {
+                    continue;
+                }
+                let known = report.is_some_and(|came| *at - came <= KNOWN);
+                let after = last.as_ref() == Some(left)
+                    || matches!(left, Left::Takeoff(_))
+                    || reason.is_none_or(|reason| report.is_some_and(|came| came + SHORT > reason));
+                if !known || !after {
+                    let report =
+                        report.map_or("none".to_owned(), |came| format!("{:.3}", came.as_secs_f64()));
+                    let why = reason.map_or(0.0, |reason| reason.as_secs_f64());
+                    return broken(
+                        Law::Stale,
+                        *at,
+                        format!("{left:?} for a reason of {why:.3}, with a report of our mode of {report}"),
+                    );
+                }
+                last = Some(left.clone());
+                reason = None;
+            }
+            _ => {}
+        }
+    }
+    None
+}
+
+fn setpoints(trace: &Trace) -> impl Iterator<Item = (Duration, &SetpointSeen)> {
+    trace.entries.iter().filter_map(|entry| match &entry.seen {
+        Seen::Left(Left::Setpoint(setpoint)) => Some((entry.at, setpoint)),
+        _ => None,
+    })
+}
+
+fn age(trace: &Trace) -> Option<Broken> {
+    setpoints(trace).find(|(at, setpoint)| at.saturating_sub(setpoint.made) > SETPOINT_AGE).and_then(
+        |(at, setpoint)| {
+            broken(Law::Age, at, format!("a setpoint made at {:.3}", setpoint.made.as_secs_f64()))
+        },
+    )
+}
+
+fn room(trace: &Trace, given: &Given) -> Option<Broken> {
+    let [x_m, y_m, low_m, high_m] = given.room_m;
+    let (_, first) = setpoints(trace).next()?;
+    // both lots of ground are flat and at zero
+    let origin = if given.here { [first.position_m[0], first.position_m[1]] } else { [0.0, 0.0] };
+    let mut above = false;
+    setpoints(trace).find_map(|(at, setpoint)| {
+        let [x, y, z] = setpoint.position_m;
+        above |= z >= low_m;
+        let floor_m = if above { low_m } else { -0.3 };
+        let outside = [(x - origin[0]).abs() - x_m, (y - origin[1]).abs() - y_m, z - high_m, floor_m - z];
+        let worst_m = outside.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        (worst_m > ROOM_M).then(|| Broken {
+            law: Law::Room,
+            at,
+            how: format!("a setpoint {worst_m:.2} m outside: {x:.2} {y:.2} {z:.2}"),
+        })
+    })
+}
+
+fn silence(trace: &Trace) -> Option<Broken> {
+    let mut heard = Duration::ZERO;
+    trace.entries.iter().find_map(|Entry { at, seen }| match seen {
+        Seen::Came => {
+            heard = *at;
+            None
+        }
+        Seen::Left(Left::Setpoint(_)) if *at - heard > SILENCE => broken(
+            Law::Silence,
+            *at,
+            format!("a setpoint {:.2} s after a frame", (*at - heard).as_secs_f64()),
+        ),
+        _ => None,
+    })
+}
+
+fn standstill(trace: &Trace) -> Option<Broken> {
+    let mut stands: Vec<(Part, Duration, Duration)> = Vec::new();
+    trace.entries.iter().find_map(|Entry { at, seen }| match seen {
+        Seen::Parked(part, until) => {
+            // one that stands already goes on standing
+            let from =
+                stands.iter().filter(|(other, _, to)| other == part && to >= at).map(|(_, from, _)| *from);
+            let from = from.min().unwrap_or(*at);
+            stands.push((*part, from, *until));
+            None
+        }
+        Seen::Left(left) if left.commands() || matches!(left, Left::Setpoint(_)) => {
+            // where no setpoints are made, who knows the mode may still command
+            let stood = stands.iter().find(|(part, from, until)| {
+                *at > *from + STANDSTILL && at < until && !(*part == Part::Setpoints && left.commands())
+            });
+            stood.and_then(|(part, from, _)| {
+                let how = format!("{left:?} while {part:?} stands still since {:.3}", from.as_secs_f64());
+                broken(Law::Standstill, *at, how)
+            })
+        }
+        _ => None,
+    })
+}
+
+fn range(trace: &Trace) -> Option<Broken> {
+    trace.entries.iter().find_map(|entry| match &entry.seen {
+        Seen::Left(Left::Wrong(how)) => broken(Law::Range, entry.at, how.clone()),
+        _ => None,
+    })
+}
+
+/// What was heard, from whomever, said that the vehicle is in another mode than ours.
+fn was_told_off(trace: &Trace, given: &Given) -> bool {
+    let mut ours = Ours::new(given);
+    trace.entries.iter().any(|entry| match &entry.seen {
+        Seen::Left(Left::Mode(mode)) => {
+            ours.asked(*mode);
+            false
+        }
+        Seen::Heard(report, _) => !ours.admits(report.mode),
+        _ => false,
+    })
+}
+
+fn end(trace: &Trace, given: &Given) -> Option<Broken> {
+    let over = trace.entries.iter().rev().find_map(|entry| match &entry.seen {
+        Seen::Over(outcome) => Some((entry.at, outcome)),
+        _ => None,
+    });
+    let state = trace.entries.iter().rev().find_map(|entry| match &entry.seen {
+        Seen::Vehicle(state) => Some(*state),
+        _ => None,
+    })?;
+    let Some((at, outcome)) = over else {
+        return broken(Law::Time, trace.entries.last()?.at, "the program does not end");
+    };
+    let then =
+        trace.entries.iter().rev().filter(|entry| entry.at <= at).find_map(|entry| match &entry.seen {
+            Seen::Vehicle(state) => Some(*state),
+            _ => None,
+        })?;
+    let down = matches!(outcome.ending, Ending::Landed | Ending::NotFlown);
+    if down && then.armed && !then.landed {
+        return broken(Law::End, at, format!("{:?}, and it is in the air", outcome.ending));
+    }
+    let left = state.armed && !state.landed && !given.is_safe(state.custom_mode);
+    let killed = matches!(outcome.cause, Some(Cause::Killed));
+    if left && !killed && !was_told_off(trace, given) {
+        return broken(
+            Law::End,
+            at,
+            format!("left in the air in mode {:#x}: {:?}", state.custom_mode, outcome.cause),
+        );
+    }
+    None
+}

@@ -1,0 +1,143 @@
+//! What happened on a flight, as somebody sees it who watches the wire, the vehicle and the program's parts.
+
+use std::fmt;
+use std::time::Duration;
+
+use mavid::fly::{Note, Outcome};
+use mavid::log::{Check, CrcSeeds, Frame};
+use mavid::sitl::Beheld;
+
+use super::wire::Left;
+
+const HEARTBEAT: u32 = 0;
+const CURRENT_MODE: u32 = 436;
+const ARMED: u8 = 128;
+
+/// A word of the vehicle's mode, by HEARTBEAT or CURRENT_MODE.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Report {
+    pub mode: u32,
+    /// where it says
+    pub armed: Option<bool>,
+    /// when the vehicle said it; `None` where somebody else did
+    pub said: Option<Duration>,
+}
+
+impl Report {
+    /// Of a sound frame with the ids of the vehicle's autopilot.
+    pub fn of(seeds: &CrcSeeds, bytes: &[u8], said: Option<Duration>) -> Option<Self> {
+        let frame = Frame::at_start(bytes).filter(|frame| frame.check(seeds) == Check::Right)?;
+        let (header, payload) = (frame.header(), frame.payload());
+        if (header.system.0, header.component.0) != (1, 1) {
+            return None;
+        }
+        match header.message_id {
+            HEARTBEAT => Some(Self { mode: payload.u32(0), armed: Some(payload.u8(6) & ARMED != 0), said }),
+            CURRENT_MODE => Some(Self { mode: payload.u32(0), armed: None, said }),
+            _ => None,
+        }
+    }
+}
+
+/// A part of the program that can stand still while the others go on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Part {
+    /// the task that reads and writes the link
+    Link,
+    /// the way of frames from the link to the supervisor
+    Telemetry,
+    Supervisor,
+    Setpoints,
+}
+
+/// Something that was seen.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Seen {
+    /// the vehicle is like this from now on
+    Vehicle(Beheld),
+    /// a sound frame of the vehicle came to the program's socket
+    Came,
+    /// the same, of its mode, from whomever
+    Reached(Report),
+    /// the supervisor was given it; when it had come to the socket
+    Heard(Report, Duration),
+    /// a message left the program
+    Left(Left),
+    /// what the program said
+    Note(Note),
+    /// what was done to them
+    Fault(String),
+    /// a part stands still until then
+    Parked(Part, Duration),
+    /// the program has ended
+    Over(Outcome),
+}
+
+/// Something, and when.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    pub at: Duration,
+    pub seen: Seen,
+}
+
+/// All of a flight, in order.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Trace {
+    pub entries: Vec<Entry>,
+}
+
+impl Trace {
+    pub fn add(&mut self, at: Duration, seen: Seen) {
+        self.entries.push(Entry { at, seen });
+    }
+
+    /// What a person wants to see around an instant: no setpoints in a row, no frames without news.
+    pub fn excerpt(&self, from: Duration, to: Duration) -> String {
+        let mut lines: Vec<String> = Vec::new();
+        let mut last: Option<Seen> = None;
+        for Entry { at, seen } in &self.entries {
+            let news = match (seen, &last) {
+                (Seen::Came | Seen::Reached(_), _) | (Seen::Left(Left::Other(_)), _) => continue,
+                (Seen::Left(Left::Setpoint(_)), Some(Seen::Left(Left::Setpoint(_)))) => false,
+                (Seen::Heard(now, _), Some(Seen::Heard(before, _))) => now.mode != before.mode,
+                _ => true,
+            };
+            if news && (from..=to).contains(at) {
+                lines.push(format!("  {:8.3} {seen}", at.as_secs_f64()));
+            }
+            last = Some(seen.clone());
+        }
+        lines.join("\n")
+    }
+}
+
+impl fmt::Display for Seen {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Vehicle(state) => write!(
+                f,
+                "vehicle: mode {:#x}, {}, {}",
+                state.custom_mode,
+                if state.armed { "armed" } else { "disarmed" },
+                if state.landed { "on the ground" } else { "in the air" }
+            ),
+            Self::Came => f.write_str("a frame came"),
+            Self::Reached(report) => write!(f, "reached: mode {:#x}", report.mode),
+            Self::Heard(report, reached) => {
+                let by = if report.said.is_some() { "" } else { " (not the vehicle's)" };
+                write!(
+                    f,
+                    "heard: mode {:#x} {:?}{by}, reached {:.3}",
+                    report.mode,
+                    report.armed,
+                    reached.as_secs_f64()
+                )
+            }
+            Self::Left(left) => write!(f, "LEFT {left:?}"),
+            Self::Note(note) => write!(f, "says {}: {}", note.kind, note.text),
+            Self::Fault(what) => write!(f, "FAULT {what}"),
+            Self::Parked(part, until) => write!(f, "{part:?} stands still until {:.3}", until.as_secs_f64()),
+            Self::Over(outcome) => write!(f, "over: {:?}, {:?}", outcome.cause, outcome.ending),
+        }
+    }
+}
