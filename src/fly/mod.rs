@@ -34,6 +34,7 @@ mod runner;
 mod safety;
 mod setpoint;
 mod sortie;
+mod state;
 mod target;
 mod telemetry;
 pub mod view;
