@@ -13,10 +13,11 @@ use mavid::fly::{
 };
 use mavid::link::Signing;
 use mavid::log::{ComponentId, SystemId};
+use mavid::plan::{Roomed, with_room};
 use mavid::report::{ExplanationDocument, IdentificationDocument};
 use mavid::units::rad_from_deg;
 use mavid::vehicle::{Limits, Vehicle};
-use ratatui::crossterm::event;
+use ratatui::crossterm::{event, terminal};
 use serde::Serialize;
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 
@@ -170,7 +171,9 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
         to_landing_s: stored.to_landing_s,
     });
     // those that it was planned for, where it says so
-    let limits = if trajectory.limits == Limits::default() { vehicle.limits } else { trajectory.limits };
+    let stated = if trajectory.limits == Limits::default() { vehicle.limits } else { trajectory.limits };
+    let Roomed { limits, notes } = with_room(&stated, vehicle);
+    output::warnings(&args.trajectory, &notes);
     let repeats = args.repeats.unwrap_or(trajectory.repeats);
     let course = Course::new(&trajectory.series, repeats, around.as_ref(), &limits, vehicle)
         .map_err(|error| CommandError::Input(format!("{}: {error}", args.trajectory.display())))?;
@@ -180,6 +183,7 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
         gravity_m_s2: vehicle.gravity_m_s2,
         system: args.system_id.map(SystemId),
         may_arm: args.arm,
+        own_vehicle: None,
         settings: fly::Settings {
             station: (SystemId(args.station_id), STATION),
             setpoint_period: Duration::from_secs(1) / args.setpoint_hz,
@@ -193,10 +197,16 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
             gate_m: args.gate_distance,
             gate_m_s: args.gate_speed,
             await_clearance: true,
+            await_word: args.arm && !args.yes && is_attended(),
             accepted: args.accept.iter().map(|name| check(*name)).collect(),
             ..fly::Settings::default()
         },
     })
+}
+
+/// Somebody sits at a terminal.
+fn is_attended() -> bool {
+    std::io::stdin().is_terminal() && std::io::stderr().is_terminal()
 }
 
 fn check(name: CheckName) -> fly::Check {
@@ -243,7 +253,8 @@ fn tell(pictures: &Receiver<ViewModel>, pressed: Option<&UnboundedSender<KeyComm
             Err(_) => "warning: standard input cannot be read: Ctrl-C alone ends the flight",
         });
     }
-    let mut log = PlainLog::default();
+    let columns = terminal::size().map_or(0, |(columns, _)| usize::from(columns));
+    let mut log = PlainLog::of_width(columns);
     for model in pictures {
         for line in log.lines(&model) {
             output::message(&line);
@@ -291,6 +302,7 @@ fn draw(pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<KeyCommand>) {
         }
         match pictures.recv_timeout(LOOK) {
             Ok(mut model) => {
+                keys.ask(model.awaits_word);
                 model.typed = keys.typed().map(str::to_owned);
                 if screen.draw(&model).is_err() {
                     // lines and Ctrl-C need the terminal as it was

@@ -9,8 +9,8 @@ use mavid::config::{
     StoredTrajectory, StoredTransitions, read_limits, read_trajectory, read_vehicle, trajectory_to_toml,
 };
 use mavid::plan::{
-    Assessment, Criterion, Dynamics, FlightPlan, Margin, PARAMETERS, Plan, PlanError, PlanRequest,
-    StartPlace, assess, bounds_of, flight_path, plan, search_of,
+    Assessment, Criterion, Dynamics, FlightPlan, Margin, PARAMETERS, Plan, PlanError, PlanRequest, Roomed,
+    StartPlace, assess, bounds_of, flight_path, floor_m, plan, search_of, with_room,
 };
 use mavid::trajectory::{CirclePath, FlightPath, FourierTrajectory, Segment};
 use mavid::vehicle::{Limits, Vehicle};
@@ -73,7 +73,10 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
     let loaded = read_vehicle(&args.vehicle)?;
     output::warnings(&args.vehicle, &loaded.warnings);
     let vehicle = loaded.vehicle;
-    let limits = args.limits.as_deref().map_or(Ok(vehicle.limits), read_limits)?;
+    let stated = args.limits.as_deref().map_or(Ok(vehicle.limits), read_limits)?;
+    let Roomed { limits, notes } = with_room(&stated, &vehicle);
+    let file = args.limits.as_deref().unwrap_or(&args.vehicle);
+    output::warnings(file, &notes);
     let mut request = request_of(args)?;
     let bounds = bounds_of(&limits, &vehicle);
     let (series, worth, criterion_value) = if let Some(file) = &args.check {
@@ -91,6 +94,9 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
     };
     let mut summary = summarize(&worth, request.criterion, criterion_value);
     let flight = around(&series, args, request.repeats)?;
+    if let Some(violation) = below_floor(&flight, &vehicle) {
+        summary.first_violation.get_or_insert(violation);
+    }
     match flight_path(&series, &flight, &bounds, &Dynamics::new(&vehicle)) {
         Ok(path) => summary.transitions = transitions_of(&path, &flight),
         Err(error) => {
@@ -156,6 +162,16 @@ fn place_of(option: &str, numbers: &[f64]) -> Result<[f64; 4], CommandError> {
         }
         other => Err(CommandError::Input(format!("{option}: expected X,Y,Z[,YAW], came {other:?}"))),
     }
+}
+
+/// A hover before or after the series in which the rotors come near the ground.
+fn below_floor(flight: &FlightPlan, vehicle: &Vehicle) -> Option<String> {
+    let floor_m = floor_m(vehicle);
+    let places = [("takeoff", flight.takeoff[2]), ("landing", flight.landing[2])];
+    places
+        .into_iter()
+        .find(|(_, height_m)| *height_m < floor_m)
+        .map(|(name, height_m)| format!("hover of {name} is at {height_m:.2} m, the floor at {floor_m:.2} m"))
 }
 
 /// Transitions before and after the series.

@@ -1,7 +1,7 @@
 //! Plans an excitation trajectory: from limits and a criterion to coefficients, margins and the
 //! standard errors that the flight will have.
 
-use super::bounds::{Bound, Dynamics, Quantity, bounds_of};
+use super::bounds::{Bound, Dynamics, Quantity, bounds_of, bounds_to_plan_in};
 use super::check::{CheckReport, SAMPLE_S, Violation, check};
 use super::criterion::{Criterion, condition_number, scaled_condition_number};
 use super::descent::Problem;
@@ -137,6 +137,8 @@ pub fn plan(
         let assessment = assess(&trajectory, vehicle, &problem.bounds, request);
         if assessment.check.first_violation.is_none() {
             let criterion_value = best.log_value.exp();
+            // what is left is told to the bounds themselves
+            let assessment = assess(&trajectory, vehicle, &bounds_of(limits, vehicle), request);
             return Ok(Plan { trajectory, criterion_value, assessment });
         }
         best = search.polish(&problem, best.unknowns, whole(samples));
@@ -205,7 +207,7 @@ fn problem_of(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Prob
         sampler: GramSampler::new(&space, samples, information, vehicle.gravity_m_s2),
         criterion: request.criterion,
         parameter_scale: parameter_scale(vehicle),
-        bounds: bounds_of(limits, vehicle),
+        bounds: bounds_to_plan_in(limits, vehicle),
         dynamics: Dynamics::new(vehicle),
         space,
     }

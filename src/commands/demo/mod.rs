@@ -87,7 +87,8 @@ fn story(
         "planned {}; a simulated X500 flown by PX4 listens on UDP port {port}, something about it is concealed",
         trajectory.display()
     ));
-    let ride = fly::ride(&fly_args(port, &vehicle, &trajectory, folder))?;
+    let mut ride = fly::ride(&fly_args(port, &vehicle, &trajectory, folder))?;
+    ride.sortie.own_vehicle = Some(embedded.nonce);
     progress.stage("connecting", progress::PLANNED);
     let watched = progress.clone();
     let record = fly::fly_it(ride, move |pictures, _| watched.follow(pictures));
@@ -141,6 +142,7 @@ fn fly_args(port: u16, vehicle: &Path, trajectory: &Path, folder: &Path) -> FlyA
         vehicle: vehicle.to_owned(),
         out: folder.to_owned(),
         arm: false,
+        yes: true,
         system_id: None,
         station_id: 255,
         repeats: None,

@@ -22,7 +22,7 @@ use super::lift::Lift;
 use super::modes::{Mode, Stack};
 use super::outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
 use super::roster::Roster;
-use super::safety::{Doubted, Guide, Lead, ModeKnowledge};
+use super::safety::{Doubted, Feeding, Guide, Lead, ModeKnowledge};
 use super::setpoint::Place;
 use super::sortie::Sortie;
 use super::target::{Target, heartbeat};
@@ -48,6 +48,8 @@ pub enum Event<'a> {
     Key(Key),
     /// parameters, message rates and limits are checked: whether the flight may go on, and how its outputs lift it
     Cleared(Result<Box<Lift>, String>),
+    /// how setpoints are made from the reference, by what the vehicle does when they end
+    Feed(Feeding),
     /// the program is told to end, by what
     Stop(String),
     /// the stream of setpoints stood still for so long, or this flight did, and it has ended
@@ -67,6 +69,8 @@ pub enum Key {
     To(Mode),
     /// motors off now, wherever the vehicle is; only after a typed word
     Kill,
+    /// the word for arming, where it is waited for
+    Arm,
 }
 
 /// What the flight wants done.
@@ -187,6 +191,8 @@ pub struct Flight {
     actions: VecDeque<Action>,
     heartbeat_due: Duration,
     clearance: Option<Result<(), String>>,
+    /// the word for arming, after the page before the flight
+    word_given: bool,
     /// by which the vehicle is weighed once it hovers
     lift: Option<Box<Lift>>,
     /// the mode in which the operator stopped the motors
@@ -225,6 +231,7 @@ impl Flight {
             actions: VecDeque::new(),
             heartbeat_due: Duration::ZERO,
             clearance: None,
+            word_given: false,
             lift: None,
             killed_in: None,
             cause: None,
@@ -242,12 +249,14 @@ impl Flight {
         match event {
             Event::Frame(frame) => self.hear(now, frame),
             Event::Tick => {}
+            Event::Key(Key::Arm) => self.word_given = true,
             Event::Key(key) => self.key(now, key),
             Event::Cleared(verdict) => {
                 self.clearance = Some(verdict.map(|lift| {
                     self.lift = Some(lift);
                 }));
             }
+            Event::Feed(feeding) => self.guide.feeding = feeding,
             Event::Stop(by) => self.stop(now, &by),
             Event::Stalled(gap) => self.stalled(now, gap),
             Event::LinkEnded => self.end(now, Cause::LinkLost("the program's own link has ended".to_owned())),

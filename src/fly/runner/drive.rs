@@ -1,6 +1,7 @@
 //! The flight with what belongs to it on the host: its clock, its view, the checks before it.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
@@ -144,6 +145,7 @@ impl Drive {
             KeyCommand::Land => Event::Key(Key::To(Mode::Land)),
             KeyCommand::Return => Event::Key(Key::To(Mode::Return)),
             KeyCommand::Kill => Event::Key(Key::Kill),
+            KeyCommand::Arm => Event::Key(Key::Arm),
             KeyCommand::Quit => Event::Stop("the operator".to_owned()),
         };
         self.handle(event);
@@ -157,6 +159,7 @@ impl Drive {
         if let Some(decoder) = cleared.decoder {
             self.estimating.begin(decoder, live);
         }
+        self.model.page = Some(Arc::new(cleared.page));
     }
 
     fn keep_parameters(&mut self, now: Duration, parameters: &Parameters) {
@@ -217,6 +220,7 @@ impl Drive {
         model.state = status.phase.to_owned();
         model.mode = status.mode.unwrap_or_default();
         model.armed = status.armed;
+        model.awaits_word = status.awaits_word;
         model.progress_s = status.progress_s;
         let motion = status.position_m.zip(status.velocity_m_s);
         model.attitude = status.euler_rad.zip(motion).map(|(euler_rad, (position_m, velocity_m_s))| {

@@ -1,5 +1,6 @@
 //! The flight as lines, for a log or a terminal that cannot draw.
 
+use super::keys::ARM_WORD;
 use super::model::{EventLine, ParameterRow, ViewModel};
 use crate::fly::finding::Level;
 
@@ -7,6 +8,8 @@ use crate::fly::finding::Level;
 const STATE_S: f64 = 1.0;
 /// Between two lines of parameters, s.
 const PARAMETERS_S: f64 = 5.0;
+/// Columns of a page where the terminal's are not known.
+const COLUMNS: usize = 120;
 
 /// Says each event once and the state now and then.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -14,9 +17,19 @@ pub struct PlainLog {
     events: u64,
     state_s: Option<f64>,
     parameters_s: Option<f64>,
+    /// of the terminal; 0: not known
+    columns: usize,
+    page_said: bool,
+    word_said: bool,
 }
 
 impl PlainLog {
+    /// For a terminal of this width.
+    #[must_use]
+    pub fn of_width(columns: usize) -> Self {
+        Self { columns, ..Self::default() }
+    }
+
     /// The lines that are due, by the model's own time.
     pub fn lines(&mut self, model: &ViewModel) -> Vec<String> {
         let new = model.event_count.saturating_sub(self.events);
@@ -24,6 +37,12 @@ impl PlainLog {
         self.events = model.event_count;
         let first = model.events.len() - new;
         let mut lines: Vec<String> = model.events.iter().skip(first).map(event_line).collect();
+        if let Some(page) = model.page.as_ref().filter(|_| !std::mem::replace(&mut self.page_said, true)) {
+            lines.extend(page.lines(if self.columns > 0 { self.columns } else { COLUMNS }));
+        }
+        if model.awaits_word && !std::mem::replace(&mut self.word_said, true) {
+            lines.push(format!("type {ARM_WORD} and return to arm and fly; Ctrl-C ends it"));
+        }
         if is_due(&mut self.state_s, model.elapsed_s, STATE_S) {
             lines.push(state_line(model));
         }
