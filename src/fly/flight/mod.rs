@@ -6,6 +6,7 @@ mod gate;
 mod ground;
 mod leave;
 mod listen;
+mod phase;
 mod status;
 mod watch;
 
@@ -30,8 +31,7 @@ use super::telemetry::Telemetry;
 use crate::log::{self, CrcSeeds, Frame};
 use crate::units::deg_from_rad;
 use gate::Gate;
-use ground::Checking;
-use leave::Leaving;
+use phase::Phase;
 use watch::Watch;
 
 /// Between our own heartbeats.
@@ -82,79 +82,6 @@ pub enum Action {
     Note(Note),
     /// the flight is over
     Finished(Outcome),
-}
-
-/// Where in the flight.
-#[derive(Debug)]
-enum Phase {
-    /// until the vehicle is found
-    Connect,
-    /// until it may fly
-    Check(Checking),
-    /// setpoints before OFFBOARD
-    Prime,
-    /// our mode is asked for, of a vehicle that was in this one
-    Engage(Option<u32>),
-    /// in our mode, until the estimator is good
-    Ready,
-    /// arming is asked for
-    Arm,
-    /// up from the ground
-    Climb,
-    /// to where the course begins
-    Transfer,
-    /// until it stands still there
-    Gate,
-    /// along the trajectory
-    Course,
-    /// to hold, to the ground or home, in the vehicle's own mode
-    Leave(Leaving),
-    /// nothing is heard: nothing is sent until something is
-    Lost,
-    /// hands off
-    Watch,
-    /// over
-    Done,
-}
-
-impl Phase {
-    fn name(&self) -> &'static str {
-        match self {
-            Self::Connect => "connect",
-            Self::Check(_) => "check",
-            Self::Prime => "stream",
-            Self::Engage(_) => "engage",
-            Self::Ready => "ready",
-            Self::Arm => "arm",
-            Self::Climb => "take off",
-            Self::Transfer => "go to start",
-            Self::Gate => "start gate",
-            Self::Course => "trajectory",
-            Self::Leave(leaving) => leaving.name(),
-            Self::Lost => "link lost",
-            Self::Watch => "hands off",
-            Self::Done => "over",
-        }
-    }
-
-    /// Our mode is engaged and setpoints are ours.
-    fn is_ours(&self) -> bool {
-        matches!(self, Self::Ready | Self::Arm | Self::Climb | Self::Transfer | Self::Gate | Self::Course)
-    }
-
-    /// The vehicle may be off the ground by our doing.
-    fn is_airborne(&self) -> bool {
-        matches!(
-            self,
-            Self::Climb
-                | Self::Transfer
-                | Self::Gate
-                | Self::Course
-                | Self::Leave(_)
-                | Self::Lost
-                | Self::Watch
-        )
-    }
 }
 
 /// The vehicle that was chosen.

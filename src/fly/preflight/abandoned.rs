@@ -100,7 +100,7 @@ pub(super) fn judge(situation: &Situation<'_>) -> (Feeding, Vec<Finding>) {
 const EXPECTED: &str = "rest inside room and fence and clear of the ground, whenever setpoints end";
 
 /// The way that follows the reference best among those that are safe; or, as an error, the least unsafe one.
-fn choose(situation: &Situation<'_>, law: &FollowLaw) -> Result<Tried, Tried> {
+fn choose(situation: &Situation<'_>, law: &FollowLaw) -> Result<Tried, Box<Tried>> {
     let room = SetpointBounds::room(situation.limits, &situation.origin_m);
     let shares = match law {
         FollowLaw::ArduPilot { .. } => ALL_OR_NOTHING,
@@ -121,7 +121,7 @@ fn choose(situation: &Situation<'_>, law: &FollowLaw) -> Result<Tried, Tried> {
     let least = tries.first().copied();
     let none =
         Tried { feeding: Feeding::whole(), worst: None, hard_m: f64::NEG_INFINITY, tracking_m: f64::NAN };
-    nearly.ok_or(least.unwrap_or(none))
+    nearly.ok_or_else(|| Box::new(least.unwrap_or(none)))
 }
 
 fn attempt(situation: &Situation<'_>, law: &FollowLaw, feeding: Feeding) -> Tried {

@@ -70,7 +70,7 @@ fn floor(situation: &Situation<'_>) -> Option<Finding> {
     let expected = format!(
         "at least {floor_m:.2} m above the ground, the rotors' reach and {HEIGHT_ERROR_M} m of error in height"
     );
-    (!(lowest_m >= floor_m - TOUCH)).then(|| {
+    (lowest_m.is_nan() || lowest_m < floor_m - TOUCH).then(|| {
         let came = format!("{lowest_m:.2} m at {time_s:.1} s");
         Finding::refusal("floor", expected, came, "plan higher")
     })
