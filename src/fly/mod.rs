@@ -35,6 +35,7 @@ mod runner;
 mod safety;
 mod setpoint;
 mod sortie;
+mod state;
 mod target;
 mod telemetry;
 pub mod view;
