@@ -159,6 +159,7 @@ fn after_a_connection_that_failed_the_same_command_begins_again() {
     let busy = format!("udpin:{}", taken.local_addr().unwrap());
     let silent = format!("udpout:{}", nobody.local_addr().unwrap());
     let tlog = out.join("flight.tlog");
+    let said = || std::fs::metadata(out.join("events.jsonl")).map_or(0, |events| events.len());
     for connect in ["serial:/nonexistent/tty:57600", &busy, "serial:/nonexistent/tty:57600"] {
         let output = fly(&out, connect).output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();
@@ -167,8 +168,10 @@ fn after_a_connection_that_failed_the_same_command_begins_again() {
     }
     for _ in 0..2 {
         // given up: there is nothing in the recording but what the station said to nobody
+        let before = said();
         let mut running = Owned(fly(&out, &silent).stderr(Stdio::null()).spawn().unwrap());
-        until("no heartbeat", || held(&tlog) > 0);
+        // the recording of the try before is there until this one begins
+        until("no heartbeat", || said() > before && held(&tlog) > 0);
         running.terminate();
         assert_eq!(running.ended("it does not end"), 1);
         assert!(held(&tlog) > 0);
@@ -192,7 +195,7 @@ fn a_flight_goes_on_though_its_terminal_takes_nothing() {
     let (reader, writer) = full_pipe();
     let mut running = Owned(
         Command::new(MAVID)
-            .args(["--json", "fly", "--plain", "--connect", &listens.replace("in:", "out:")])
+            .args(["--json", "fly", "--plain", "--arm", "--connect", &listens.replace("in:", "out:")])
             .args(["--vehicle", &config("x500.toml"), "--out"])
             .arg(&out)
             .arg("--trajectory")
