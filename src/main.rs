@@ -9,10 +9,10 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let cli = match cli::Cli::try_parse() {
         Ok(cli) => cli,
-        Err(usage) => return commands::usage(&usage),
+        Err(usage) => return commands::usage(usage),
     };
     match commands::run(&cli) {
         Ok(outcome) => outcome.into(),
-        Err(error) => error.report(),
+        Err(error) => error.report().into(),
     }
 }

@@ -8,12 +8,14 @@ use std::path::{Path, PathBuf};
 /// Each stage and those directly below it. A stage may use these and all that they may use.
 const LAYERS: &[(&str, &[&str])] = &[
     ("units", &[]),
+    // what others wrote, made harmless where it enters
+    ("text", &[]),
     ("frames", &["units"]),
     ("vehicle", &["units", "frames"]),
     ("trajectory", &["units", "frames"]),
     ("fence", &["frames"]),
     ("physics", &["vehicle"]),
-    ("log", &["units", "frames"]),
+    ("log", &["units", "frames", "text"]),
     // frames over sockets and serial ports, and their recording
     ("link", &["log"]),
     // vehicle: from actuator values to force
@@ -251,4 +253,21 @@ fn files_stay_short() {
         .map(|(path, lines)| format!("{path}: {lines} lines"))
         .collect();
     assert!(long.is_empty(), "more than {LINES_MAX} lines before the tests:\n{}", long.join("\n"));
+}
+
+/// Paths and documents hold what others wrote: `text` shows the ones and writes the others.
+#[test]
+fn foreign_text_goes_through_one_place() {
+    let mut wrong = Vec::new();
+    for source in sources().iter().filter(|source| source.module != "text") {
+        let code = code(without_tests(&source.text));
+        for needle in [".display()", "to_string_lossy()", "serde_json::to_string", "serde_json::to_writer"] {
+            let names_the_system = ["fly/runner/mod.rs", "link/transport/pty.rs", "link/transport/serial.rs"];
+            let hands_on = needle == "to_string_lossy()" && names_the_system.contains(&source.path.as_str());
+            if code.contains(needle) && !hands_on {
+                wrong.push(format!("{}: {needle}", source.path));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "only `text` may:\n{}", wrong.join("\n"));
 }

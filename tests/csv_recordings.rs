@@ -7,6 +7,7 @@ mod support;
 use mavid::config::{default_csv_mapping, load_csv_mapping, parse_csv_mapping};
 use mavid::log::csv::{CsvError, CsvReport, read_csv, read_csv_from};
 use mavid::log::{Quantity, Recording, Stream};
+use std::io::Read;
 use std::path::Path;
 
 fn read(text: &str) -> Result<(Recording, CsvReport), CsvError> {
@@ -280,6 +281,53 @@ fn a_dropped_rotor_speed_is_missing_not_zero() {
     let known = speed.values.iter().filter(|value| !value.is_nan());
     assert!(known.clone().all(|value| (100.0..2600.0).contains(value)));
     assert!(known.count() > 4 * 5900);
+}
+
+/// A flight of two rows before whatever follows.
+const TWO_ROWS: &str = "time_s,battery_V\n0,12\n1,12\n";
+
+#[test]
+fn a_row_without_an_end_costs_what_follows_and_no_memory() {
+    for (begin, byte) in [("", b'1'), ("", b','), ("\"", b'1'), ("\"", b'\n')] {
+        // it never ends
+        let bytes = TWO_ROWS.as_bytes().chain(begin.as_bytes()).chain(std::io::repeat(byte));
+        let reader = std::io::BufReader::new(bytes);
+        let (recording, report) = read_csv_from(reader, "long.csv", &default_csv_mapping().unwrap()).unwrap();
+        assert_eq!(stream(&recording, Quantity::BatteryVoltage).len(), 2);
+        assert_eq!((report.rows, report.rows_rejected, report.cut_at_line), (3, 1, Some(4)));
+        let told = report.losses().join("; ");
+        assert!(told.contains("line 4: expected a row of at most 1048576 bytes"), "{told}");
+        assert!(told.contains("nothing is read from line 4 on"), "{told}");
+    }
+}
+
+#[test]
+fn a_header_has_a_greatest_size() {
+    let long = std::io::BufReader::new(std::io::repeat(b','));
+    let error = read_csv_from(long, "long.csv", &default_csv_mapping().unwrap()).unwrap_err();
+    assert!(matches!(error, CsvError::LongHeader { max: 1_048_576, .. }), "{error}");
+    let many = read(&format!("time_s{}\n", ",".repeat(5000))).unwrap_err().to_string();
+    assert!(many.contains("expected at most 4096 columns, the header has 5001"), "{many}");
+    let names: Vec<String> = (0..3000).map(|number| format!("column_{number}")).collect();
+    let told = read(&format!("{}\n", names.join(","))).unwrap_err().to_string();
+    assert!(told.len() < 1000 && told.contains("and 2980 more"), "{told}");
+}
+
+#[test]
+fn column_names_and_cells_command_nothing() {
+    let evil = "x\u{1b}[31m\u{9b}2J\u{202e}";
+    for text in [
+        format!("{evil},battery_V\n"),
+        format!("time_s,battery_V\n{evil},1\n"),
+        format!("time_s,battery_V\n\"0\n{evil}\",1\n"),
+        format!("{evil},\u{9b}\n"),
+    ] {
+        let said = read(&text).unwrap_err().to_string();
+        assert!(!said.chars().any(mavid::text::is_command), "{said:?}");
+    }
+    // ASCII controls in the first line are no text at all; the others are
+    let (_, report) = read("time_s,battery_V,x\u{9b}2J\u{202e}\n0,1,2\n").unwrap();
+    assert_eq!(report.unused_columns, ["x\\u{9b}2J\\u{202e}"]);
 }
 
 #[test]

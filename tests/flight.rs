@@ -10,8 +10,8 @@ use std::time::Duration;
 use flying::{Flying, vehicle_settings};
 use mavid::fly::parameters::Parameters;
 use mavid::fly::{Cause, Ending, Event, Key, Lift, Origin, Outcome, Place, Setpoint, Target};
-use mavid::log::{Autopilot, ComponentId, SystemId};
-use mavid::sitl::{ArduPilotRelease, AutopilotKind, Fault, LinkRole, Mode};
+use mavid::log::{Autopilot, ComponentId, Nonce, SystemId};
+use mavid::sitl::{ArduPilotRelease, AutopilotKind, Fault, LinkRole, Mode, Settings as VehicleSettings};
 use mavlink::dialects::ardupilotmega::{MavMessage, PositionTargetTypemask};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::Vector3;
@@ -72,7 +72,24 @@ fn px4_is_given_setpoints_before_offboard_and_the_copter_takes_off_by_command() 
 }
 
 #[test]
-fn a_vehicle_that_is_not_the_embedded_one_is_not_armed_without_the_order() {
+fn only_the_vehicle_that_was_given_the_nonce_is_armed_without_the_order() {
+    // one that says of itself what the embedded vehicle says, and one that somebody else started
+    for nonce in [None, Some(Nonce::random())] {
+        let claims = VehicleSettings { nonce, ..vehicle_settings(PX4) };
+        let mut flying = Flying::new(claims, |sortie| sortie.own_vehicle = Some(Nonce::random()));
+        assert_eq!(flying.finish().ending, Ending::NotFlown);
+        assert!(flying.cause().to_string().contains("--arm"), "{}", flying.cause());
+        assert_eq!(flying.commands_since(ARM, Duration::ZERO), 0);
+        assert_eq!(flying.commands_since(SET_MODE, Duration::ZERO), 0);
+    }
+    // without a nonce of its own nothing on a link is known
+    let claims = VehicleSettings { nonce: None, ..vehicle_settings(PX4) };
+    let mut flying = Flying::new(claims, |_| {});
+    assert_eq!(flying.finish().ending, Ending::NotFlown);
+}
+
+#[test]
+fn a_vehicle_that_does_not_say_what_it_is_is_not_armed_without_the_order() {
     let mut flying = Flying::of(PX4);
     flying.swallowed = vec![AUTOPILOT_VERSION];
     let outcome = flying.finish();
@@ -83,6 +100,34 @@ fn a_vehicle_that_is_not_the_embedded_one_is_not_armed_without_the_order() {
     let mut flying = Flying::new(vehicle_settings(PX4), |sortie| sortie.may_arm = true);
     flying.swallowed = vec![AUTOPILOT_VERSION];
     assert!(flying.finish().is_whole(), "{}", flying.story());
+}
+
+#[test]
+fn the_word_for_arming_is_waited_for_as_long_as_it_takes() {
+    let mut flying = Flying::new(vehicle_settings(PX4), |sortie| sortie.settings.await_word = true);
+    flying.wait(200.0);
+    assert!(flying.flight.status(flying.now).awaits_word, "{}", flying.story());
+    assert_eq!((flying.phase(), flying.commands_since(ARM, Duration::ZERO)), ("check", 0));
+    flying.event(Event::Key(Key::Arm));
+    flying.fly_into_the_trajectory(1.0);
+}
+
+#[test]
+fn no_setpoint_leaves_the_room_whatever_the_trajectory_is() {
+    for kind in BOTH {
+        let mut flying = Flying::new(vehicle_settings(kind), |sortie| {
+            sortie.limits.x_max_m = Some(0.3);
+            sortie.limits.z_min_m = Some(1.5);
+        });
+        flying.finish();
+        assert!(flying.setpoints.len() > 500);
+        for (_, setpoint) in &flying.setpoints {
+            assert!(setpoint.position_m.x.abs() <= 0.3 + 1e-9, "{setpoint:?}");
+        }
+        let began = flying.notes.iter().find(|note| note.text == "trajectory").unwrap().time_s;
+        let course = flying.setpoints.iter().filter(|(at, _)| at.as_secs_f64() > began);
+        assert!(course.into_iter().all(|(_, setpoint)| setpoint.position_m.z >= 1.4));
+    }
 }
 
 #[test]
@@ -336,6 +381,8 @@ fn a_reboot_is_seen_and_nothing_is_sent_after_it() {
 #[test]
 fn a_short_silence_pauses_the_trajectory_and_a_long_one_ends_it() {
     let mut flying = Flying::of(COPTER);
+    // with velocity and acceleration it would be metres away by then
+    flying.places_ahead();
     flying.fly_into_the_trajectory(5.0);
     flying.vehicle.fault(Fault::LinkSilence(Duration::from_millis(2600)));
     let outcome = flying.finish();

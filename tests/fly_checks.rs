@@ -56,7 +56,8 @@ async fn checked_by(
     let base = sortie.settings;
     sortie.settings =
         fly::Settings { await_clearance: true, origin: Origin::Here, connect_timeout, accepted, ..base };
-    sortie.limits = Limits::default();
+    let room = Limits { x_max_m: Some(5.0), y_max_m: Some(5.0), ..Limits::default() };
+    sortie.limits = Limits { z_min_m: Some(0.7), z_max_m: Some(5.0), ..room };
     let options = LinkOptions {
         system: SystemId(1),
         component: ComponentId(1),
@@ -82,7 +83,7 @@ async fn checked_by(
 }
 
 async fn ends_after_checks(ride: Ride) -> Outcome {
-    let (show, pictures) = mpsc::channel::<ViewModel>();
+    let (show, pictures) = mpsc::sync_channel::<ViewModel>(4);
     let (press, keys) = unbounded_channel();
     // a thread that ends with the flight's last picture
     std::thread::spawn(move || {

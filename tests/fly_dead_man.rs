@@ -62,7 +62,7 @@ async fn parked(part: Part, name: &str) -> (PathBuf, u64) {
     let parking = Parking::default();
     let address = format!("udpout:{address}").parse().unwrap();
     let ride = Ride { sortie, vehicle: file, address, signing: None, dir, parking: parking.clone() };
-    let (show, pictures) = mpsc::channel::<ViewModel>();
+    let (show, pictures) = mpsc::sync_channel::<ViewModel>(4);
     let (_press, keys) = unbounded_channel();
     let (climbs, climbing) = tokio::sync::oneshot::channel();
     std::thread::spawn(move || {

@@ -32,7 +32,7 @@ fn a_vehicle_played_by_pymavlink_is_flown_to_the_ground_and_its_log_is_read_by_p
     let port = free_port();
     let connect = format!("udpin:127.0.0.1:{port}");
     let rate = RATE_HZ.to_string();
-    let further = ["--arm", "--setpoint-hz", &rate];
+    let further = ["--setpoint-hz", &rate];
     let (output, seen) = thread::scope(|scope| {
         let flight = scope.spawn(|| fly(&out, &connect, &trajectory, &further));
         let seen = python::ask(VEHICLE, &[&format!("udpout:127.0.0.1:{port}"), &rate], &json!(null)).unwrap();

@@ -90,8 +90,12 @@ async fn every_frame_is_recorded_to_the_byte_but_no_key_and_no_noise() {
     for bytes in &arrived {
         sender.send(bytes).unwrap();
     }
-    // only the radio's report is believed
-    let Received::Frame(radio) = receive(&mut reader).await else { panic!("no frame") };
+    // only the radio's report is believed; who else speaks is told
+    let radio = loop {
+        if let Received::Frame(radio) = receive(&mut reader).await {
+            break radio;
+        }
+    };
     assert_eq!(radio.bytes(), arrived[4]);
     writer.send_message(&key).unwrap();
     writer.send_message(&heartbeat()).unwrap();
@@ -211,4 +215,50 @@ async fn a_mode_change_is_on_the_disk_at_once() {
         tokio::time::sleep(Duration::from_millis(2)).await;
     }
     std::fs::remove_file(&path).unwrap();
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_disk_that_stands_still_is_given_up_and_what_it_did_not_take_is_lost() {
+    let (bytes, (ticket, tickets)) = (Arc::new(Mutex::new(Vec::new())), mpsc::channel());
+    let disk = Disk { bytes: bytes.clone(), tickets, full: Arc::default() };
+    let recorder = Recorder::to_store(disk, 1 << 20).unwrap();
+    let ((mut reader, _writer), (_other, sender)) = pair(&recorder, None).await;
+    for sequence in 0..5 {
+        sender.send(&v2(header(1, sequence), &heartbeat())).unwrap();
+        assert!(matches!(receive(&mut reader).await, Received::Frame(_)));
+    }
+    let status = recorder.end().await.unwrap();
+    assert_eq!((status.frames, status.dropped, status.is_whole()), (0, 5, false));
+    assert!(status.failure.unwrap().contains("took nothing for 3 s"));
+    drop(ticket);
+}
+
+/// Takes everything, and cannot say whether it is on the disk.
+struct Unsure;
+
+impl Write for Unsure {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Store for Unsure {
+    fn sync(&mut self) -> io::Result<()> {
+        Err(io::Error::other("no word from the disk"))
+    }
+}
+
+#[tokio::test]
+async fn frames_that_the_system_does_not_confirm_are_told() {
+    let recorder = Recorder::to_store(Unsure, 1 << 20).unwrap();
+    let ((mut reader, _writer), (_other, sender)) = pair(&recorder, None).await;
+    sender.send(&v2(header(1, 0), &heartbeat())).unwrap();
+    while !matches!(receive(&mut reader).await, Received::Frame(_)) {}
+    let status = recorder.end().await.unwrap();
+    assert_eq!((status.frames, status.dropped, status.doubtful), (1, 0, 1));
+    assert!(!status.is_whole() && status.failure.unwrap().contains("no word"));
 }

@@ -556,6 +556,48 @@ fn texts_are_put_together_from_their_chunks() {
 }
 
 #[test]
+fn texts_and_names_command_nothing_and_have_an_end() {
+    let mut rig = Rig::new(Autopilot::ArduPilot);
+    rig.hear(1.0, &text(0, 0, "a\u{1b}[2J\nmavid: b\r\u{9b}c\t"));
+    // a letter of three bytes lies in two chunks
+    let whole = format!("{}日本", "x".repeat(49));
+    let bytes = whole.as_bytes();
+    for (chunk_seq, part) in (0..).zip(bytes.chunks(50)) {
+        let mut padded = [0; 50];
+        padded[..part.len()].copy_from_slice(part);
+        let data = dialect::STATUSTEXT_DATA { text: padded.into(), id: 9, chunk_seq, ..Default::default() };
+        rig.hear(2.0, &M::STATUSTEXT(data));
+    }
+    // a sender whose chunks never end
+    for _ in 0..20 {
+        rig.hear(3.0, &text(5, 1, &"y".repeat(50)));
+    }
+    let said: Vec<&str> = rig
+        .said
+        .iter()
+        .filter_map(|said| match said {
+            Said::Text(_, text) => Some(text.as_str()),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(said[..2], ["a\\u{1b}[2J\\nmavid: b\\r\\u{9b}c", &whole]);
+    assert!(said.len() > 2 && said[2].len() < 1000, "{} bytes", said[2].len());
+    let parameter = M::PARAM_VALUE(dialect::PARAM_VALUE_DATA {
+        param_value: 1.0,
+        param_id: CharArray::from("MOT_\u{1b}\nX"),
+        param_type: dialect::MavParamType::MAV_PARAM_TYPE_REAL32,
+        ..Default::default()
+    });
+    let mut rig = Rig::new(Autopilot::ArduPilot);
+    rig.hear(1.0, &parameter);
+    assert!(
+        matches!(&rig.said[..], [Said::Parameter(name, _)] if name == "MOT_\\u{1b}\\nX"),
+        "{:?}",
+        rig.said
+    );
+}
+
+#[test]
 fn other_systems_and_components_are_not_listened_to() {
     let mut rig = Rig::new(Autopilot::Px4);
     rig.hear_frame(0.0, &v2(header(2, 0), &support::attitude(10_000)));

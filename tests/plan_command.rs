@@ -87,3 +87,39 @@ fn wrong_input_is_named() {
     assert_eq!(output.status.code(), Some(2), "{message}");
     assert!(message.contains("thrust_max_n = 10"), "{message}");
 }
+
+/// Without a room, and with one that reaches below the ground.
+#[test]
+fn a_plan_has_a_room_above_the_ground_and_says_where_it_is_not_the_stated_one() {
+    let described =
+        std::fs::read_to_string(format!("{}/configs/x500.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let body = described.split("[limits]").next().unwrap();
+    let rooms = [
+        ("none", "", "default room"),
+        (
+            "low",
+            "[limits]\nx_max_m = 2.0\ny_max_m = 2.0\nz_min_m = -5.0\nz_max_m = 4.0\nspeed_max_m_s = 1.5\n",
+            "came -5.00",
+        ),
+    ];
+    for (name, limits, said) in rooms {
+        let (vehicle, out) =
+            (temporary(&format!("{name}_room.toml")), temporary(&format!("{name}_plan.toml")));
+        std::fs::write(&vehicle, format!("{body}{limits}")).unwrap();
+        for way in [&["--starts", "1"][..], &["--circle", "1,6"][..]] {
+            let further = [way, &["--out", out.to_str().unwrap()][..]].concat();
+            let output = plan(vehicle.to_str().unwrap(), &further);
+            let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(output.status.success() && stderr.contains(said), "{name}: {stderr}");
+            let planned = mavid::config::read_trajectory(&out).unwrap();
+            for step in 0..500 {
+                let [_, _, z, _] =
+                    planned.series.derivatives(planned.series.period_s * f64::from(step) / 500.0);
+                assert!((0.6..10.0).contains(&z[0]), "{name}: {} m", z[0]);
+            }
+        }
+        let low = plan(vehicle.to_str().unwrap(), &["--starts", "1", "--landing", "0,0,0.2"]);
+        assert_eq!(low.status.code(), Some(3), "{name}");
+        assert!(String::from_utf8_lossy(&low.stdout).contains("hover of landing is at 0.20 m"), "{name}");
+    }
+}

@@ -6,7 +6,7 @@ use mavid::config::load_vehicle;
 use mavid::fence::{FenceItem, Zone};
 use mavid::fly::finding::{Finding, Level, worst};
 use mavid::fly::parameters::{Download, DownloadSettings, Parameters, wanted};
-use mavid::fly::preflight::{BatteryState, Fence, Readiness, Situation, preflight};
+use mavid::fly::preflight::{BatteryState, Fence, Judged, Readiness, Situation, judge};
 use mavid::fly::requests::{
     Answer, Capacity, LinkKind, Need, RequestSettings, Requests, request_set, slow_request_set,
 };
@@ -182,6 +182,8 @@ struct Streamer {
     silent: &'static [u32],
     result: dialect::MavResult,
     fastest_hz: f64,
+    /// µs, of the first output
+    pulse_us: u16,
     running: BTreeMap<u32, (Duration, Duration)>,
 }
 
@@ -213,6 +215,11 @@ impl Streamer {
             while *next <= now {
                 *next += *interval;
                 messages.extend(dialect::MavMessage::default_message_from_id(*id));
+            }
+        }
+        for message in &mut messages {
+            if let dialect::MavMessage::SERVO_OUTPUT_RAW(outputs) = message {
+                outputs.servo1_raw = self.pulse_us;
             }
         }
         messages
@@ -254,6 +261,7 @@ fn ardupilot_without_highres() -> Streamer {
         silent: &[],
         result: dialect::MavResult::MAV_RESULT_DENIED,
         fastest_hz: 320.0,
+        pulse_us: 1500,
         running: BTreeMap::new(),
     }
 }
@@ -277,6 +285,17 @@ fn what_is_refused_is_replaced_and_what_arrives_is_measured() {
 }
 
 #[test]
+fn actuator_messages_of_zeros_are_no_actuator_outputs() {
+    let mut streamer = Streamer { pulse_us: 0, ..ardupilot_without_highres() };
+    let requests = requested(Autopilot::ArduPilot, &mut streamer, Wire::new(0.0, 0), LinkKind::Wide);
+    let report = requests.report();
+    assert!(!report.suffices_to_identify());
+    let findings = report.findings();
+    let said = findings.iter().find(|finding| finding.expected.contains("actuator outputs")).unwrap();
+    assert!(said.level == Level::Warning && said.came.contains("nothing but zeros"), "{said}");
+}
+
+#[test]
 fn what_is_accepted_and_never_comes_is_noticed() {
     let mut streamer =
         Streamer { refused: &[], silent: &[HIGHRES_IMU, 36, 11030], ..ardupilot_without_highres() };
@@ -297,6 +316,7 @@ fn px4_refuses_with_another_result_and_esc_status_stays_silent() {
         silent: &[ESC_STATUS],
         result: dialect::MavResult::MAV_RESULT_FAILED,
         fastest_hz: 1000.0,
+        pulse_us: 1500,
         running: BTreeMap::new(),
     };
     let requests = requested(Autopilot::Px4, &mut streamer, Wire::new(0.0, 5), LinkKind::Wide);
@@ -358,6 +378,7 @@ struct Scene {
     battery: BatteryState,
     readiness: Readiness,
     home_m: Option<Vector3<f64>>,
+    stand_m: Vector3<f64>,
 }
 
 impl Scene {
@@ -388,17 +409,24 @@ impl Scene {
                 ..Readiness::default()
             },
             home_m: Some(Vector3::zeros()),
+            stand_m: Vector3::zeros(),
         }
     }
 
     fn findings(&self) -> Vec<Finding> {
+        self.judged().findings
+    }
+
+    fn judged(&self) -> Judged {
         let vehicle = load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml")).unwrap();
-        preflight(&Situation {
+        judge(&Situation {
             path: &self.path,
             origin_m: Vector3::zeros(),
+            stand_m: Some(self.stand_m),
             home_m: self.home_m,
             vehicle: &vehicle,
             limits: &self.limits,
+            tracking_max_m: 1.0,
             parameters: &self.parameters,
             fence: &self.fence,
             battery: &self.battery,
@@ -440,6 +468,9 @@ fn ardupilot(changes: &[(&str, f64)]) -> Parameters {
         ("PSC_NE_JERK", 20.0),
         ("PSC_D_JERK", 20.0),
         ("ATC_ANGLE_MAX", 30.0),
+        ("FLTMODE_CH", 5.0),
+        ("FLTMODE1", 5.0),
+        ("RC7_OPTION", 31.0),
     ];
     let mut parameters = Parameters { autopilot: Autopilot::ArduPilot, ..Parameters::default() };
     for (name, value) in values.iter().chain(changes) {
@@ -481,6 +512,108 @@ fn stopping_takes_room() {
     let said = scene.said("stopping distance");
     assert_eq!(said.level, Level::Warning);
     assert!(said.came.contains("x_max_m") && said.expected.contains("WP_ACC"), "{said}");
+}
+
+const DIES: &str = "if we die now";
+
+#[test]
+fn setpoints_are_sent_such_that_each_may_be_the_last() {
+    let mut scene = Scene::good();
+    (scene.limits.x_max_m, scene.limits.y_max_m) = (Some(1.2), Some(1.2));
+    let said = scene.said(DIES);
+    assert_eq!(said.level, Level::Ok, "{said}");
+    assert!(
+        said.came.contains("places ahead, without velocity") && said.expected.contains("3.0 s"),
+        "{said}"
+    );
+    // at 0.8 m/s in a wide room nothing has to be kept back
+    (scene.limits.x_max_m, scene.limits.y_max_m) = (Some(8.0), Some(8.0));
+    let said = scene.said(DIES);
+    assert!(said.came.contains("place, velocity and acceleration"), "{said}");
+    // a border of the fence counts as a wall does
+    scene.fence.radius_m = Some(1.6);
+    scene.fence.margin_m = 0.0;
+    let said = scene.said(DIES);
+    assert!(said.level == Level::Ok && said.came.contains("places ahead"), "{said}");
+}
+
+#[test]
+fn where_nothing_is_safe_to_send_it_refuses_and_says_what_would_be() {
+    let mut scene = Scene::good();
+    (scene.limits.x_max_m, scene.limits.y_max_m) = (Some(1.2), Some(1.2));
+    // so slow a law costs more of the trajectory than is allowed
+    scene.parameters = ardupilot(&[("WP_ACC", 0.2), ("PSC_NE_JERK", 0.2)]);
+    let said = scene.said(DIES);
+    assert_eq!(said.level, Level::Refusal, "{said}");
+    assert!(said.came.contains("however they are sent"), "{said}");
+    assert!(said.remedy.contains("slower"), "{said}");
+}
+
+#[test]
+fn what_px4_does_after_the_loss_is_held_against_the_room() {
+    let px4 = |action: f64| {
+        let values = [("COM_OF_LOSS_T", 1.0), ("COM_OBL_RC_ACT", action), ("RTL_RETURN_ALT", 60.0)];
+        Parameters {
+            autopilot: Autopilot::Px4,
+            values: values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+            ..Parameters::default()
+        }
+    };
+    let mut scene = Scene::good();
+    for (action, word) in [(3.0, "climbs to 60 m"), (2.0, "does not stop it")] {
+        scene.parameters = px4(action);
+        let said = scene.said(DIES);
+        assert!(said.level == Level::Warning && said.came.contains(word), "{said}");
+    }
+    scene.parameters = px4(4.0);
+    assert_eq!(scene.said(DIES).level, Level::Ok);
+}
+
+#[test]
+fn no_flight_without_a_room_nor_below_its_floor_nor_from_outside() {
+    let mut scene = Scene::good();
+    scene.limits = Limits::default();
+    let said = scene.said("room");
+    assert!(
+        said.level == Level::Refusal && said.came.contains("x_max_m, y_max_m, z_min_m, z_max_m"),
+        "{said}"
+    );
+    // whatever the limits say of it
+    let mut scene = Scene::good();
+    scene.limits.z_min_m = Some(-5.0);
+    for (segment, _) in &mut scene.path.segments {
+        if let Segment::Fourier(series) = segment {
+            series.axes[2].c = 0.5;
+        }
+    }
+    let said = scene.said("floor");
+    assert!(said.level == Level::Refusal && said.expected.contains("rotors' reach"), "{said}");
+    let mut scene = Scene::good();
+    scene.stand_m = Vector3::new(9.0, 0.0, 0.0);
+    assert_eq!(scene.said("room").level, Level::Refusal);
+    assert!(Scene::good().findings().iter().all(|finding| !["room", "floor"].contains(&finding.subject)));
+}
+
+#[test]
+fn the_page_before_the_flight_begins_with_warnings_and_ends_with_the_room() {
+    let mut scene = Scene::good();
+    scene.battery.endurance_s = None;
+    let lines = scene.judged().page.lines(72);
+    assert!(lines[0].starts_with("warning: "), "{}", lines[0]);
+    let text = scene.judged().page.lines(400).join("\n");
+    for part in [
+        "if we die now: ",
+        "m/s along the ground",
+        "degrees of tilt",
+        "from above",
+        "mode switch",
+        "kill switch",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    assert!(lines.iter().all(|line| line.chars().count() <= 72), "{text}");
+    let drawn = lines.iter().filter(|line| line.starts_with('|')).count();
+    assert!(drawn >= 20 && text.contains("...") && text.contains('o'), "{text}");
 }
 
 #[test]

@@ -22,7 +22,7 @@ const LISTEN: &str = concat!(
 );
 
 /// Arguments of `mavid demo`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct DemoArgs {
     /// new folder for everything [default: mavid-demo, or the first of mavid-demo-2, -3, ... that is free]
     #[arg(long, value_name = "DIR")]
@@ -36,7 +36,7 @@ pub struct DemoArgs {
 }
 
 /// Arguments of `mavid sitl`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct SitlArgs {
     /// vehicle.toml or model.toml: what flies; without it a Holybro X500
     #[arg(long, value_name = "FILE")]
@@ -114,7 +114,7 @@ pub enum ArduPilotVersion {
 }
 
 /// Arguments of `mavid record`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct RecordArgs {
     #[arg(long, value_name = "ADDRESS", help = ADDRESS)]
     pub connect: String,
@@ -137,7 +137,7 @@ pub struct RecordArgs {
 }
 
 /// Arguments of `mavid replay`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct ReplayArgs {
     /// telemetry log to play
     pub log: PathBuf,

@@ -163,7 +163,7 @@ pub struct IdentifyArgs {
 }
 
 /// Arguments of `mavid fly`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct FlyArgs {
     #[arg(long, value_name = "ADDRESS", help = live::ADDRESS)]
     pub connect: String,
@@ -176,9 +176,12 @@ pub struct FlyArgs {
     /// new folder for recording, events, parameters and results
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// arm a vehicle that is not the embedded simulated one
+    /// arm the vehicle; without it everything is checked and nothing is armed
     #[arg(long)]
     pub arm: bool,
+    /// do not ask for the word `arm` at a terminal before arming
+    #[arg(long)]
+    pub yes: bool,
     /// the vehicle's MAVLink system id; without it the only vehicle on the link
     #[arg(long, value_name = "ID", value_parser = clap::value_parser!(u32).range(1..=255))]
     pub system_id: Option<u32>,

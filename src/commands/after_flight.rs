@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use mavid::fly;
+use mavid::text;
 
 use super::explain::{self, Explained, REPORT};
 use super::identify::Identified;
@@ -70,10 +71,10 @@ impl Analysis {
         let mut parts: Vec<String> = self.identified.iter().map(Identified::page).collect();
         let parameters = self.folder.join(REPORT);
         parts.extend(
-            self.identified.iter().map(|_| format!("report of the parameters: {}", parameters.display())),
+            self.identified.iter().map(|_| format!("report of the parameters: {}", text::path(&parameters))),
         );
         parts.extend(self.explained.iter().map(Explained::answer));
-        parts.extend(self.report().map(|path| format!("report: {}", path.display())));
+        parts.extend(self.report().map(|path| format!("report: {}", text::path(&path))));
         parts.join("\n\n")
     }
 
@@ -103,8 +104,7 @@ fn parameters(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Iden
     let identified = Identified::from(&args)?;
     identified.write(&args)?;
     output::file(&folder.join(PAGE), &format!("{}\n", identified.page()))?;
-    let json = serde_json::to_string_pretty(&identified.document())
-        .map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))?;
+    let json = output::json_text(&identified.document())?;
     output::file(&folder.join(DOCUMENT), &json)?;
     Ok(identified)
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use mavid::config::{parse_effect_tables, read_effect_tables};
 use mavid::physics::effects::MotorLag;
 use mavid::physics::{ActiveEffect, Effect};
+use mavid::text;
 use mavid::vehicle::Vehicle;
 
 use super::CommandError;
@@ -48,12 +49,12 @@ pub fn with_further(
     further: Option<&Path>,
     vehicle: &Vehicle,
 ) -> Result<Vec<ActiveEffect>, CommandError> {
-    let origin = origin.display().to_string();
+    let origin = text::path(&origin);
     let mut all = effects(tables, &origin, vehicle)?;
     if let Some(path) = further {
         all.extend(effects_file(path, vehicle)?);
         each_once(&all).map_err(|error| {
-            CommandError::Input(format!("{origin} and {} together: {error}", path.display()))
+            CommandError::Input(format!("{origin} and {} together: {error}", text::path(&path)))
         })?;
     }
     Ok(all)
@@ -69,7 +70,7 @@ pub fn with_stated_lag(mut effects: Vec<ActiveEffect>, vehicle: &Vehicle) -> Vec
 
 /// The effects of a file that holds nothing but `[[effect]]` tables.
 pub fn effects_file(path: &Path, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
-    effects(&read_effect_tables(path)?, &path.display().to_string(), vehicle)
+    effects(&read_effect_tables(path)?, &text::path(path), vehicle)
 }
 
 /// The same from text; `origin` names it in errors.

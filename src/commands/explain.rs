@@ -10,6 +10,7 @@ use mavid::diagnose::{Empirical, ExplainSettings, Named, Trace, Verdict, explain
 use mavid::log::Recording;
 use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page};
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference};
+use mavid::text;
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
@@ -52,13 +53,13 @@ impl Explained {
         let vehicle = loaded.vehicle;
         let of_file = loaded.warnings.iter();
         let mut warnings: Vec<String> =
-            of_file.map(|warning| format!("{}: {warning}", args.vehicle.display())).collect();
-        let known = effects(&loaded.model.effects, &args.vehicle.display().to_string(), &vehicle)?;
+            of_file.map(|warning| format!("{}: {warning}", text::path(&args.vehicle))).collect();
+        let known = effects(&loaded.model.effects, &text::path(&args.vehicle), &vehicle)?;
         if !known.is_empty() {
             let names: Vec<&str> = known.iter().map(|active| active.effect().id()).collect();
             warnings.push(format!(
                 "{}: its effects ({}) are left out and looked for anew",
-                args.vehicle.display(),
+                text::path(&args.vehicle),
                 names.join(", ")
             ));
         }
@@ -66,7 +67,7 @@ impl Explained {
             CommandError::Input(why) => {
                 CommandError::Input(format!("--holdout: expected a flight of {}: {why}", vehicle.name))
             }
-            other @ CommandError::Failure(_) => other,
+            other => other,
         };
         let (logs, held_logs) =
             (recorded(&args.logs, args)?, recorded(&args.holdout, args).map_err(of_holdout)?);
@@ -151,9 +152,7 @@ impl Explained {
         output::folder(folder)?;
         output::file(&folder.join(MODEL), &self.story.model_toml()?)?;
         output::file(&folder.join(REPORT), &self.story.report_html(&self.traces))?;
-        let document = serde_json::to_string_pretty(&self.document())
-            .map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))?;
-        output::file(&folder.join(DOCUMENT), &document)
+        output::file(&folder.join(DOCUMENT), &output::json_text(&self.document())?)
     }
 
     /// Says what is to be known about the data.
@@ -197,7 +196,10 @@ fn check(args: &ExplainArgs) -> Result<(), CommandError> {
         return Err(CommandError::Input("--csv-map: expected a .csv among the logs, got none".into()));
     }
     if let Some(path) = args.out.as_ref().filter(|path| path.exists() && !path.is_dir()) {
-        return Err(CommandError::Input(format!("--out: expected a folder, {} is a file", path.display())));
+        return Err(CommandError::Input(format!(
+            "--out: expected a folder, {} is a file",
+            text::path(&path)
+        )));
     }
     let inputs: Vec<&PathBuf> = args.logs.iter().chain(&args.holdout).chain([&args.vehicle]).collect();
     let written: Vec<PathBuf> =
@@ -213,7 +215,7 @@ fn check(args: &ExplainArgs) -> Result<(), CommandError> {
     {
         return Err(CommandError::Input(format!(
             "--next: expected a file in a folder that exists, {} does not",
-            parent.display()
+            text::path(&parent)
         )));
     }
     Ok(())
@@ -249,7 +251,7 @@ fn told(
     let settings = ExplainSettings::default();
     let signals: Vec<Signals> = flights.iter().map(|flight| flight.signals.clone()).collect();
     let explanation = explain(&signals, vehicle, &settings).map_err(|error| {
-        let logs: Vec<String> = args.logs.iter().map(|log| log.display().to_string()).collect();
+        let logs: Vec<String> = args.logs.iter().map(|log| text::path(&log)).collect();
         CommandError::Input(format!("{}: {error}", logs.join(", ")))
     })?;
     let mut warnings = warnings.to_vec();

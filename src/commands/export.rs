@@ -2,6 +2,7 @@
 
 use mavid::config::read_vehicle;
 use mavid::export::{Exported, Format, export};
+use mavid::text;
 use serde::Serialize;
 
 use super::effects::effects;
@@ -20,9 +21,9 @@ struct Document {
 pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
     let loaded = read_vehicle(&args.model)?;
     let refuse =
-        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", args.model.display()));
+        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&args.model)));
     output::warnings(&args.model, &loaded.warnings);
-    let active = effects(&loaded.model.effects, &args.model.display().to_string(), &loaded.vehicle)?;
+    let active = effects(&loaded.model.effects, &text::path(&args.model), &loaded.vehicle)?;
     let format = match args.to {
         ExportFormat::Px4Sih => Format::Px4Sih,
         ExportFormat::ArdupilotSitl => Format::ArdupilotSitl,
@@ -37,7 +38,7 @@ pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
         output::file(path, &text)?;
     }
     if json {
-        let file = args.out.as_ref().map(|path| path.display().to_string());
+        let file = args.out.as_ref().map(|path| text::path(&path));
         output::json(&Document { schema: 1, file, text, left_out })?;
     } else if args.out.is_none() {
         output::text(text.trim_end())?;

@@ -7,6 +7,7 @@ use mavid::log::{
 };
 use mavid::report::InputFile;
 use mavid::signals::{ConditionSettings, Signals, condition};
+use mavid::text;
 use mavid::vehicle::Vehicle;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -44,7 +45,7 @@ impl Flight {
             } else {
                 format!("; not read of the log: {}", losses.join("; "))
             };
-            CommandError::Input(format!("{path} with {}: {error}{lost}", file.display()))
+            CommandError::Input(format!("{path} with {}: {error}{lost}", text::path(&file)))
         })
     }
 }
@@ -56,7 +57,8 @@ pub fn is_csv(path: &Path) -> bool {
 
 /// Reads the flights of one log, at least one and at most `most`.
 pub fn load(path: &Path, read: &ReadArgs, most: &Hold) -> Result<Vec<Flight>, CommandError> {
-    let named = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
+    let named =
+        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&path)));
     let (flights, mut losses, notes) = if is_csv(path) {
         let mapping =
             read.csv_map.as_ref().map_or_else(default_csv_mapping, |file| load_csv_mapping(file))?;
@@ -72,7 +74,7 @@ pub fn load(path: &Path, read: &ReadArgs, most: &Hold) -> Result<Vec<Flight>, Co
     };
     losses.extend(left_out(&flights));
     let sha256 = sha256_of(path).map_err(|error| named(&error))?;
-    let log = InputFile { path: path.display().to_string(), sha256, losses, notes };
+    let log = InputFile { path: text::path(&path), sha256, losses, notes };
     Ok(of_log(flights.flights, &log))
 }
 
@@ -156,8 +158,8 @@ pub fn say<'a>(inputs: impl Iterator<Item = &'a InputFile>) -> Outcome {
 /// A file that is no recording, for the provenance.
 pub fn file(path: &Path) -> Result<InputFile, CommandError> {
     let sha256 =
-        sha256_of(path).map_err(|error| CommandError::Input(format!("{}: {error}", path.display())))?;
-    Ok(InputFile { path: path.display().to_string(), sha256, losses: Vec::new(), notes: Vec::new() })
+        sha256_of(path).map_err(|error| CommandError::Input(format!("{}: {error}", text::path(&path))))?;
+    Ok(InputFile { path: text::path(&path), sha256, losses: Vec::new(), notes: Vec::new() })
 }
 
 /// Share of a hold-out's samples that may be in an explained flight: none are, but for chance.

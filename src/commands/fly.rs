@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, IsTerminal, Read};
 use std::path::Path;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
@@ -13,16 +13,20 @@ use mavid::fly::{
 };
 use mavid::link::Signing;
 use mavid::log::{ComponentId, SystemId};
+use mavid::plan::{Roomed, with_room};
 use mavid::report::{ExplanationDocument, IdentificationDocument};
+use mavid::text;
 use mavid::units::rad_from_deg;
 use mavid::vehicle::{Limits, Vehicle};
-use ratatui::crossterm::event;
+use ratatui::crossterm::{event, terminal};
 use serde::Serialize;
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 
 use super::after_flight::Analysis;
 use super::explain::Explained;
 use super::identify::Identified;
+use super::leftover;
+use super::live::{self, Work};
 use super::{CommandError, Outcome, output};
 use crate::cli::{CheckName, FlyArgs, OriginName};
 
@@ -33,6 +37,8 @@ const KEYS: &str =
     "h, l, r and return: hold, land, return home; :kill and return: motors off; Ctrl-C: hold and end";
 /// Bytes of a line of them: no one types more.
 const LINE_MAX: u64 = 256;
+/// Pictures that may wait for a slow terminal.
+const PICTURES: usize = 4;
 /// How long the view waits for a key or a new picture.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -61,7 +67,7 @@ impl Document {
         let explained = analysis.map(|analysis| &analysis.explained);
         Self {
             schema: 1,
-            directory: folder.display().to_string(),
+            directory: text::path(&folder),
             flight: record.outcome.clone(),
             setpoints: record.stream,
             recorded_frames: record.recorder.frames,
@@ -70,18 +76,23 @@ impl Document {
             identification_failure: identified.and_then(|done| done.as_ref().err()).cloned(),
             explanation: explained.and_then(|done| done.as_ref().ok()).map(Explained::document),
             explanation_failure: explained.and_then(|done| done.as_ref().err()).cloned(),
-            report: analysis.and_then(Analysis::report).map(|path| path.display().to_string()),
+            report: analysis.and_then(Analysis::report).map(|path| text::path(&path)),
         }
     }
 }
 
 /// Runs the verb.
 pub fn run(json: bool, args: &FlyArgs) -> Result<Outcome, CommandError> {
+    let args = args.clone();
+    live::run(move |work| fly(json, &args, work))
+}
+
+fn fly(json: bool, args: &FlyArgs, work: &Work) -> Result<Outcome, CommandError> {
     let ride = ride(args)?;
     let drawn = !args.plain && std::io::stderr().is_terminal() && std::io::stdin().is_terminal();
     // lines of a script that did not ask for it are the script's
     let typed = args.plain || std::io::stdin().is_terminal();
-    let record = fly_it(ride, move |pictures, pressed| match (drawn, typed) {
+    let record = fly_it(ride, work, move |pictures, pressed| match (drawn, typed) {
         (true, _) => draw(pictures, pressed),
         (false, true) => tell(pictures, Some(pressed)),
         (false, false) => tell(pictures, None),
@@ -107,7 +118,7 @@ pub fn outcome(record: &Record, analysis: Option<&Analysis>) -> Result<Outcome, 
     }
     let whole = outcome.is_whole()
         && outcome.losses.is_empty()
-        && record.recorder.dropped == 0
+        && record.recorder.is_whole()
         && record.events_failure.is_none();
     match analysis.map(Analysis::outcome) {
         Some(Err(failure)) if outcome.is_whole() => Err(failure),
@@ -129,14 +140,7 @@ pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
     let signing =
         args.signing_key_file.as_deref().map(Signing::open).transpose().map_err(|error| input(&error))?;
     output::signing_warnings(signing.as_ref());
-    let tlog = args.out.join(fly::TLOG);
-    if tlog.exists() {
-        let name = tlog.display();
-        return Err(CommandError::Input(format!("--out: {name} exists already; expected a new folder")));
-    }
-    std::fs::create_dir_all(&args.out).map_err(|error| {
-        CommandError::Input(format!("cannot make the folder {}: {error}", args.out.display()))
-    })?;
+    leftover::make_way(&args.out, SystemId(args.station_id))?;
     copy(&args.trajectory, &args.out.join("trajectory.toml"))?;
     copy(&args.vehicle, &args.out.join("vehicle.toml"))?;
     let parking = fly::Parking::default();
@@ -144,8 +148,12 @@ pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
 }
 
 fn copy(from: &Path, to: &Path) -> Result<(), CommandError> {
-    let failed =
-        |error| CommandError::Input(format!("cannot copy {} to {}: {error}", from.display(), to.display()));
+    let failed = |error| {
+        CommandError::Input(format!("cannot copy {} to {}: {error}", text::path(&from), text::path(&to)))
+    };
+    if output::is_same(from, to) {
+        return Ok(());
+    }
     let text = std::fs::read(from).map_err(failed)?;
     std::fs::write(to, text).map_err(failed)
 }
@@ -170,16 +178,23 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
         to_landing_s: stored.to_landing_s,
     });
     // those that it was planned for, where it says so
-    let limits = if trajectory.limits == Limits::default() { vehicle.limits } else { trajectory.limits };
+    let stated = if trajectory.limits == Limits::default() { vehicle.limits } else { trajectory.limits };
+    let Roomed { limits, notes } = with_room(&stated, vehicle);
+    output::warnings(&args.trajectory, &notes);
     let repeats = args.repeats.unwrap_or(trajectory.repeats);
+    trajectory
+        .series
+        .check_size(repeats)
+        .map_err(|error| CommandError::Input(format!("{}: {error}", text::path(&args.trajectory))))?;
     let course = Course::new(&trajectory.series, repeats, around.as_ref(), &limits, vehicle)
-        .map_err(|error| CommandError::Input(format!("{}: {error}", args.trajectory.display())))?;
+        .map_err(|error| CommandError::Input(format!("{}: {error}", text::path(&args.trajectory))))?;
     Ok(Sortie {
         course,
         limits,
         gravity_m_s2: vehicle.gravity_m_s2,
         system: args.system_id.map(SystemId),
         may_arm: args.arm,
+        own_vehicle: None,
         settings: fly::Settings {
             station: (SystemId(args.station_id), STATION),
             setpoint_period: Duration::from_secs(1) / args.setpoint_hz,
@@ -193,10 +208,16 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
             gate_m: args.gate_distance,
             gate_m_s: args.gate_speed,
             await_clearance: true,
+            await_word: args.arm && !args.yes && is_attended(),
             accepted: args.accept.iter().map(|name| check(*name)).collect(),
             ..fly::Settings::default()
         },
     })
+}
+
+/// Somebody sits at a terminal.
+fn is_attended() -> bool {
+    std::io::stdin().is_terminal() && std::io::stderr().is_terminal()
 }
 
 fn check(name: CheckName) -> fly::Check {
@@ -209,6 +230,7 @@ fn check(name: CheckName) -> fly::Check {
 /// The flight, watched by another thread: neither a slow terminal nor a key holds it up.
 pub fn fly_it(
     ride: Ride,
+    work: &Work,
     watch: impl FnOnce(&Receiver<ViewModel>, &UnboundedSender<KeyCommand>) + Send + 'static,
 ) -> Result<Record, CommandError> {
     let failed = |error: &dyn std::fmt::Display| CommandError::Failure(error.to_string());
@@ -221,13 +243,15 @@ pub fn fly_it(
         })
         .build()
         .map_err(|error| failed(&error))?;
-    let (show, pictures) = channel();
+    let (show, pictures) = sync_channel(PICTURES);
     let (pressed, keys) = unbounded_channel();
     let viewer = thread::Builder::new()
         .name("view".into())
         .spawn(move || watch(&pictures, &pressed))
         .map_err(|error| failed(&error))?;
+    work.flies();
     let record = runtime.block_on(fly::run(ride, Console { show, keys }));
+    work.ends_itself();
     // its pictures have ended with the flight
     let _ = viewer.join();
     record.map_err(|error| failed(&error))
@@ -243,7 +267,8 @@ fn tell(pictures: &Receiver<ViewModel>, pressed: Option<&UnboundedSender<KeyComm
             Err(_) => "warning: standard input cannot be read: Ctrl-C alone ends the flight",
         });
     }
-    let mut log = PlainLog::default();
+    let columns = terminal::size().map_or(0, |(columns, _)| usize::from(columns));
+    let mut log = PlainLog::of_width(columns);
     for model in pictures {
         for line in log.lines(&model) {
             output::message(&line);
@@ -291,6 +316,7 @@ fn draw(pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<KeyCommand>) {
         }
         match pictures.recv_timeout(LOOK) {
             Ok(mut model) => {
+                keys.ask(model.awaits_word);
                 model.typed = keys.typed().map(str::to_owned);
                 if screen.draw(&model).is_err() {
                     // lines and Ctrl-C need the terminal as it was
@@ -330,7 +356,19 @@ pub fn say(record: &Record) {
         record.recorder.frames,
         record.recorder.dropped
     ));
-    for loss in losses.iter().chain(&record.events_failure) {
+    for loss in losses {
         output::message(&format!("warning: {loss}"));
+    }
+    if let Some(failure) = &record.events_failure {
+        output::message(&format!("warning: {}: {failure}", fly::EVENTS));
+    }
+    if let Some(failure) = &record.recorder.failure {
+        output::message(&format!("warning: {}: cannot write: {failure}", fly::TLOG));
+    }
+    if record.recorder.doubtful > 0 {
+        let count = record.recorder.doubtful;
+        output::message(&format!(
+            "warning: the system could not confirm that {count} frames are on the disk"
+        ));
     }
 }

@@ -11,6 +11,7 @@ use mavid::report::{
     model_toml, svg,
 };
 use mavid::signals::{ConditionSettings, Quality, Signals, ThrustPreference};
+use mavid::text;
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
@@ -213,7 +214,7 @@ fn with_effects(
     wanted: &Wanted,
 ) -> Result<WithEffects, CommandError> {
     let vehicle = &loaded.vehicle;
-    let known = effects(&loaded.model.effects, &args.vehicle.display().to_string(), vehicle)?;
+    let known = effects(&loaded.model.effects, &text::path(&args.vehicle), vehicle)?;
     wanted.check_wind(&known).map_err(|error| CommandError::Input(format!("--with: {error}")))?;
     let by_commands = args.commands || wanted.need_commands();
     let settings = ConditionSettings {
@@ -233,7 +234,7 @@ fn with_effects(
     }
     let half_width_s = ExplainSettings::default().half_width_s;
     let together = together(&flights, (vehicle, &known), wanted, half_width_s).map_err(|error| {
-        let logs: Vec<String> = args.logs.iter().map(|log| log.display().to_string()).collect();
+        let logs: Vec<String> = args.logs.iter().map(|log| text::path(&log)).collect();
         CommandError::Input(format!("{}: {error}", logs.join(", ")))
     })?;
     let quality = flights.into_iter().map(|signals| signals.quality).collect();

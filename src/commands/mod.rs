@@ -11,6 +11,8 @@ mod flights;
 mod fly;
 mod identify;
 mod inspect;
+mod leftover;
+mod live;
 mod network;
 mod output;
 mod plan;
@@ -19,10 +21,14 @@ mod record;
 mod replay;
 mod simulate;
 mod sitl;
+mod teller;
 mod validate;
 mod vehicle;
 
 use std::process::ExitCode;
+
+use clap::Parser;
+use mavid::text;
 
 use crate::cli::{Cli, Verb};
 
@@ -53,6 +59,9 @@ pub enum CommandError {
     /// the program or the machine failed
     #[error("{0}")]
     Failure(String),
+    /// it failed and said so; the exit status
+    #[error("it failed, and said why")]
+    Told(u8),
 }
 
 impl From<mavid::config::ConfigError> for CommandError {
@@ -74,13 +83,15 @@ impl From<mavid::log::csv::CsvError> for CommandError {
 }
 
 impl CommandError {
-    /// Says it on standard error and gives the exit status.
-    pub fn report(&self) -> ExitCode {
+    /// Says it on standard error, unless that was done, and gives the exit status.
+    pub fn report(&self) -> u8 {
+        let status = match self {
+            Self::Input(_) => 2,
+            Self::Failure(_) => 1,
+            Self::Told(status) => return *status,
+        };
         output::message(&format!("mavid: {self}"));
-        match self {
-            Self::Input(_) => ExitCode::from(2),
-            Self::Failure(_) => ExitCode::FAILURE,
-        }
+        status
     }
 }
 
@@ -105,7 +116,10 @@ pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
 }
 
 /// Help and version on standard output with status 0, a mistake on standard error with status 2.
-pub fn usage(usage: &clap::Error) -> ExitCode {
+pub fn usage(usage: clap::Error) -> ExitCode {
+    // an argument may command the terminal as any other text: told is what is wrong with one that does not
+    let shown = std::env::args_os().map(|argument| text::path(&argument));
+    let usage = Cli::try_parse_from(shown).err().unwrap_or(usage);
     let printed = usage.print();
     match (usage.use_stderr(), printed) {
         (true, _) => ExitCode::from(2),

@@ -31,19 +31,49 @@ pub async fn open(address: &Address, options: LinkOptions) -> Result<Ends, Comma
 
 /// Until the user or the system asks the program to end.
 pub async fn interrupted() -> Result<(), CommandError> {
-    let failed =
-        |error: std::io::Error| CommandError::Failure(format!("cannot wait for an interrupt: {error}"));
+    Signals::new()?.next().await.map(|_| ())
+}
+
+/// The ways in which the program is asked to end. From the first of these on the system does not end it by itself.
+#[derive(Debug)]
+pub struct Signals {
     #[cfg(unix)]
-    {
-        use tokio::signal::unix::{SignalKind, signal};
-        let mut terminate = signal(SignalKind::terminate()).map_err(failed)?;
-        let mut hang_up = signal(SignalKind::hangup()).map_err(failed)?;
-        tokio::select! {
-            pressed = tokio::signal::ctrl_c() => pressed.map_err(failed),
-            _ = terminate.recv() => Ok(()),
-            _ = hang_up.recv() => Ok(()),
+    interrupt: tokio::signal::unix::Signal,
+    #[cfg(unix)]
+    terminate: tokio::signal::unix::Signal,
+    #[cfg(unix)]
+    hang_up: tokio::signal::unix::Signal,
+}
+
+impl Signals {
+    /// Listens from now on.
+    pub fn new() -> Result<Self, CommandError> {
+        #[cfg(unix)]
+        {
+            use tokio::signal::unix::{SignalKind, signal};
+            Ok(Self {
+                interrupt: signal(SignalKind::interrupt()).map_err(|error| no_signals(&error))?,
+                terminate: signal(SignalKind::terminate()).map_err(|error| no_signals(&error))?,
+                hang_up: signal(SignalKind::hangup()).map_err(|error| no_signals(&error))?,
+            })
         }
+        #[cfg(not(unix))]
+        Ok(Self {})
     }
-    #[cfg(not(unix))]
-    tokio::signal::ctrl_c().await.map_err(failed)
+
+    /// The name of the next.
+    pub async fn next(&mut self) -> Result<&'static str, CommandError> {
+        #[cfg(unix)]
+        tokio::select! {
+            _ = self.interrupt.recv() => Ok("Ctrl-C"),
+            _ = self.terminate.recv() => Ok("SIGTERM"),
+            _ = self.hang_up.recv() => Ok("SIGHUP"),
+        }
+        #[cfg(not(unix))]
+        tokio::signal::ctrl_c().await.map(|()| "Ctrl-C").map_err(|error| no_signals(&error))
+    }
+}
+
+fn no_signals(error: &std::io::Error) -> CommandError {
+    CommandError::Failure(format!("cannot wait for an interrupt: {error}"))
 }

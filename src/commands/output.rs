@@ -4,31 +4,36 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use mavid::link::Signing;
+use mavid::text;
 use serde::Serialize;
 
 use super::CommandError;
 
 /// A result for people; ends the line.
 pub fn text(text: &str) -> Result<(), CommandError> {
-    line(io::stdout().lock(), text)
+    line(io::stdout().lock(), &text::clean_lines(text))
 }
 
 /// A result as one JSON document.
 pub fn json(document: &impl Serialize) -> Result<(), CommandError> {
-    let text = serde_json::to_string_pretty(document)
-        .map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))?;
-    line(io::stdout().lock(), &text)
+    line(io::stdout().lock(), &json_text(document)?)
 }
 
-/// Progress, warnings and errors. Where standard error is closed there is nobody to tell.
+/// A document as the text of a file.
+pub fn json_text(document: &impl Serialize) -> Result<String, CommandError> {
+    text::json_pretty(document).map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))
+}
+
+/// Progress, warnings and errors, each on one line, whatever of foreign words is in it. Where standard error is closed
+/// there is nobody to tell.
 pub fn message(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let _ = writeln!(io::stderr().lock(), "{}", text::clean(text));
 }
 
 /// What is hardly meant in a file.
 pub fn warnings(of: &Path, warnings: &[String]) {
     for warning in warnings {
-        message(&format!("warning: {}: {warning}", of.display()));
+        message(&format!("warning: {}: {warning}", text::path(&of)));
     }
 }
 
@@ -42,16 +47,16 @@ pub fn signing_warnings(signing: Option<&Signing>) {
 /// A file of the user's choice.
 pub fn file(path: &Path, text: &str) -> Result<(), CommandError> {
     std::fs::write(path, text)
-        .map_err(|error| CommandError::Input(format!("cannot write {}: {error}", path.display())))
+        .map_err(|error| CommandError::Input(format!("cannot write {}: {error}", text::path(&path))))
 }
 
 /// Removes a file of an earlier run that this one has nothing to put in the place of, and says so.
 pub fn outdated(path: &Path) -> Result<(), CommandError> {
     match std::fs::remove_file(path) {
-        Ok(()) => message(&format!("removed {}, of an earlier run", path.display())),
+        Ok(()) => message(&format!("removed {}, of an earlier run", text::path(&path))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}
         Err(error) => {
-            let told = format!("cannot remove {}, of an earlier run: {error}", path.display());
+            let told = format!("cannot remove {}, of an earlier run: {error}", text::path(&path));
             return Err(CommandError::Input(told));
         }
     }
@@ -71,7 +76,7 @@ fn line(mut out: impl Write, text: &str) -> Result<(), CommandError> {
 /// Makes a folder for results.
 pub fn folder(path: &Path) -> Result<(), CommandError> {
     std::fs::create_dir_all(path)
-        .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", path.display())))
+        .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", text::path(&path))))
 }
 
 /// Both name one file, however they are written.
@@ -86,13 +91,13 @@ pub fn refuse_overwriting(inputs: &[&PathBuf], outputs: &[&PathBuf]) -> Result<(
         if inputs.iter().any(|input| is_same(input, output)) {
             return Err(CommandError::Input(format!(
                 "expected results in a file of their own, {} is read",
-                output.display()
+                text::path(&output)
             )));
         }
         if outputs[..index].iter().any(|other| is_same(other, output)) {
             return Err(CommandError::Input(format!(
                 "expected one file a result, {} is given for two",
-                output.display()
+                text::path(&output)
             )));
         }
     }

@@ -9,9 +9,10 @@ use mavid::config::{
     StoredTrajectory, StoredTransitions, read_limits, read_trajectory, read_vehicle, trajectory_to_toml,
 };
 use mavid::plan::{
-    Assessment, Criterion, Dynamics, FlightPlan, Margin, PARAMETERS, Plan, PlanError, PlanRequest,
-    StartPlace, assess, bounds_of, flight_path, plan, search_of,
+    Assessment, Criterion, Dynamics, FlightPlan, Margin, PARAMETERS, Plan, PlanError, PlanRequest, Roomed,
+    StartPlace, assess, bounds_of, flight_path, floor_m, plan, search_of, with_room,
 };
+use mavid::text;
 use mavid::trajectory::{CirclePath, FlightPath, FourierTrajectory, Segment};
 use mavid::vehicle::{Limits, Vehicle};
 use serde::Serialize;
@@ -51,7 +52,9 @@ struct Transitions {
 impl From<PlanError> for CommandError {
     fn from(error: PlanError) -> Self {
         match error {
-            PlanError::Request { .. } | PlanError::Conflict(_) => Self::Input(error.to_string()),
+            PlanError::Request { .. } | PlanError::Size(_) | PlanError::Conflict(_) => {
+                Self::Input(error.to_string())
+            }
             PlanError::OutsideLimits { .. } | PlanError::NotDetermined => Self::Failure(error.to_string()),
         }
     }
@@ -73,7 +76,10 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
     let loaded = read_vehicle(&args.vehicle)?;
     output::warnings(&args.vehicle, &loaded.warnings);
     let vehicle = loaded.vehicle;
-    let limits = args.limits.as_deref().map_or(Ok(vehicle.limits), read_limits)?;
+    let stated = args.limits.as_deref().map_or(Ok(vehicle.limits), read_limits)?;
+    let Roomed { limits, notes } = with_room(&stated, &vehicle);
+    let file = args.limits.as_deref().unwrap_or(&args.vehicle);
+    output::warnings(file, &notes);
     let mut request = request_of(args)?;
     let bounds = bounds_of(&limits, &vehicle);
     let (series, worth, criterion_value) = if let Some(file) = &args.check {
@@ -83,6 +89,7 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
         (stored.series, worth, None)
     } else if let Some(circle) = &args.circle {
         let series = circle_of(circle, &limits)?;
+        series.check_size(request.repeats).map_err(PlanError::from)?;
         let worth = assess(&series, &vehicle, &bounds, &request);
         (series, worth, None)
     } else {
@@ -91,6 +98,9 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
     };
     let mut summary = summarize(&worth, request.criterion, criterion_value);
     let flight = around(&series, args, request.repeats)?;
+    if let Some(violation) = below_floor(&flight, &vehicle) {
+        summary.first_violation.get_or_insert(violation);
+    }
     match flight_path(&series, &flight, &bounds, &Dynamics::new(&vehicle)) {
         Ok(path) => summary.transitions = transitions_of(&path, &flight),
         Err(error) => {
@@ -99,7 +109,7 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
     }
     if let Some(path) = &args.out {
         store(path, series, (&limits, &request), &summary)?;
-        output::message(&format!("wrote {}", path.display()));
+        output::message(&format!("wrote {}", text::path(&path)));
     }
     Ok(summary)
 }
@@ -158,6 +168,16 @@ fn place_of(option: &str, numbers: &[f64]) -> Result<[f64; 4], CommandError> {
     }
 }
 
+/// A hover before or after the series in which the rotors come near the ground.
+fn below_floor(flight: &FlightPlan, vehicle: &Vehicle) -> Option<String> {
+    let floor_m = floor_m(vehicle);
+    let places = [("takeoff", flight.takeoff[2]), ("landing", flight.landing[2])];
+    places
+        .into_iter()
+        .find(|(_, height_m)| *height_m < floor_m)
+        .map(|(name, height_m)| format!("hover of {name} is at {height_m:.2} m, the floor at {floor_m:.2} m"))
+}
+
 /// Transitions before and after the series.
 fn transitions_of(path: &FlightPath, flight: &FlightPlan) -> Option<Transitions> {
     let mut durations = path
@@ -193,7 +213,7 @@ fn store(
         }),
     };
     std::fs::write(path, trajectory_to_toml(&stored)?)
-        .map_err(|error| CommandError::Failure(format!("cannot write {}: {error}", path.display())))
+        .map_err(|error| CommandError::Failure(format!("cannot write {}: {error}", text::path(&path))))
 }
 
 fn request_of(args: &PlanArgs) -> Result<PlanRequest, CommandError> {

@@ -5,17 +5,18 @@
 
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
 use mavid::fly::{self, Order, Period, Target};
 use mavid::link::{
     LinkEvent, LinkOptions, LinkReader, LinkStats, LinkWriter, Received, ReceivedFrame, RecordError,
     Recorder, RecorderStatus, Signing,
 };
 use mavid::log::{ComponentId, SystemId};
+use mavid::text;
 use serde::Serialize;
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
-use super::{CommandError, Outcome, network, output};
+use super::teller::Teller;
+use super::{CommandError, Outcome, live, network, output};
 use crate::cli::RecordArgs;
 
 const HEARTBEAT: u32 = 0;
@@ -55,6 +56,8 @@ struct Document {
     sent_frames: u64,
     /// frames that the file misses
     dropped: u64,
+    /// frames in the file that the system could not confirm to be on the disk
+    doubtful: u64,
     /// frames with a signing key left out
     redacted: u64,
     unknown_messages: u64,
@@ -81,10 +84,15 @@ struct SenderLine {
 
 /// Runs the verb.
 pub fn run(json: bool, args: &RecordArgs) -> Result<Outcome, CommandError> {
-    let signing = args.signing_key_file.as_deref().map(Signing::open).transpose();
-    let signing = signing.map_err(|error| CommandError::Input(error.to_string()))?;
-    output::signing_warnings(signing.as_ref());
-    network::block_on(record(json, args, signing))
+    let args = args.clone();
+    live::run(move |work| {
+        // a signal ends the recording itself
+        work.ends_itself();
+        let signing = args.signing_key_file.as_deref().map(Signing::open).transpose();
+        let signing = signing.map_err(|error| CommandError::Input(error.to_string()))?;
+        output::signing_warnings(signing.as_ref());
+        network::block_on(record(json, &args, signing))
+    })
 }
 
 async fn record(json: bool, args: &RecordArgs, signing: Option<Signing>) -> Result<Outcome, CommandError> {
@@ -98,25 +106,23 @@ async fn record(json: bool, args: &RecordArgs, signing: Option<Signing>) -> Resu
     }
     let (reader, writer) = opened?;
     let start = Instant::now();
-    let mut capture = Capture { reader, writer, bar: bar(), asked: Vec::new(), recorder };
+    let mut capture = Capture { reader, writer, teller: Teller::start()?, asked: Vec::new(), recorder };
     let ended = capture.until(start, args).await;
     // what was asked for last is sent, recorded and counted, or the link is gone
     let _ = tokio::time::timeout(FLUSH, capture.writer.flush()).await;
     let stats = capture.reader.stats();
-    capture.bar.finish_and_clear();
     // whether or not the link held, what came is brought onto the disk
     let status = capture.recorder.end().await.map_err(|error| CommandError::Failure(error.to_string()))?;
-    ended?;
     let document = document(args, start.elapsed().as_secs_f64(), &status, &stats);
-    if json {
-        output::json(&document)?;
-    } else {
-        output::text(&text(&document))?;
-    }
+    let told = if json { output::json(&document) } else { output::text(&text(&document)) };
+    capture.teller.finish();
+    ended?;
+    told?;
     if let Some(failure) = &status.failure {
-        return Err(CommandError::Failure(format!("cannot write {}: {failure}", args.out.display())));
+        return Err(CommandError::Failure(format!("cannot write {}: {failure}", text::path(&args.out))));
     }
-    Ok(if status.dropped > 0 || stats.received_frames == 0 { Outcome::DoneWithLoss } else { Outcome::Done })
+    let whole = status.is_whole() && stats.received_frames > 0;
+    Ok(if whole { Outcome::Done } else { Outcome::DoneWithLoss })
 }
 
 fn refused(error: &RecordError) -> CommandError {
@@ -131,7 +137,7 @@ struct Capture {
     reader: LinkReader,
     writer: LinkWriter,
     recorder: Recorder,
-    bar: ProgressBar,
+    teller: Teller,
     /// vehicles that were asked for their messages
     asked: Vec<(SystemId, ComponentId)>,
 }
@@ -165,13 +171,12 @@ impl Capture {
         }
         let status = self.recorder.status();
         let lost = self.reader.stats().lost();
-        self.bar.set_message(format!(
+        self.teller.status(&format!(
             "{:.0} s, {} frames, {:.1} kB, {lost} lost on the link",
             start.elapsed().as_secs_f64(),
             status.frames,
             status.bytes as f64 / 1e3
         ));
-        self.bar.tick();
     }
 
     fn event(&self, event: &LinkEvent) {
@@ -184,7 +189,7 @@ impl Capture {
                 | LinkEvent::ClockBehind { .. }
         );
         let text = if warns { format!("warning: {event}") } else { event.to_string() };
-        self.bar.suspend(|| output::message(&text));
+        self.teller.message(&text);
     }
 
     /// Asks a vehicle, once, for what identification uses.
@@ -206,14 +211,6 @@ impl Capture {
     }
 }
 
-fn bar() -> ProgressBar {
-    let bar = ProgressBar::new_spinner();
-    match ProgressStyle::with_template("{spinner} {msg}") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
-}
-
 fn document(args: &RecordArgs, duration_s: f64, status: &RecorderStatus, stats: &LinkStats) -> Document {
     let senders = stats.senders.values().map(|sender| SenderLine {
         system: sender.system.0,
@@ -224,13 +221,14 @@ fn document(args: &RecordArgs, duration_s: f64, status: &RecorderStatus, stats: 
     });
     Document {
         schema: 1,
-        log: args.out.display().to_string(),
+        log: text::path(&args.out),
         duration_s,
         frames: status.frames,
         bytes: status.bytes,
         received_frames: stats.received_frames,
         sent_frames: stats.sent_frames,
         dropped: status.dropped,
+        doubtful: status.doubtful,
         redacted: status.redacted,
         unknown_messages: stats.unknown,
         bad_checksums: stats.bad_crc,
@@ -275,6 +273,10 @@ fn text(document: &Document) -> String {
     }
     if document.dropped > 0 {
         lines.push(format!("warning: {} frames are missing in the file", document.dropped));
+    }
+    if document.doubtful > 0 {
+        let count = document.doubtful;
+        lines.push(format!("warning: the system could not confirm that {count} frames are on the disk"));
     }
     if document.received_frames == 0 {
         lines.push("warning: nothing came".into());

@@ -7,9 +7,10 @@ use std::io::IsTerminal;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use mavid::link::{LinkOptions, Replay, ReplayCounts, ReplayError};
+use mavid::text;
 use serde::Serialize;
 
-use super::{CommandError, Outcome, network, output};
+use super::{CommandError, Outcome, live, network, output};
 use crate::cli::ReplayArgs;
 
 /// The JSON document.
@@ -43,8 +44,12 @@ struct Document {
 
 /// Runs the verb.
 pub fn run(json: bool, args: &ReplayArgs) -> Result<Outcome, CommandError> {
-    let replay = Replay::open(&args.log, args.speed).map_err(|error| failed(&error))?;
-    network::block_on(play(json, args, &replay))
+    let args = args.clone();
+    live::run(move |work| {
+        work.ends_itself();
+        let replay = Replay::open(&args.log, args.speed).map_err(|error| failed(&error))?;
+        network::block_on(play(json, &args, &replay))
+    })
 }
 
 fn failed(error: &ReplayError) -> CommandError {
@@ -74,7 +79,7 @@ async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome,
     let counts = played.transpose().map_err(|error| failed(&error))?.unwrap_or(so_far);
     let document = Document {
         schema: 1,
-        log: args.log.display().to_string(),
+        log: text::path(&args.log),
         to: args.to.clone(),
         duration_s: replay.duration().as_secs_f64(),
         speed: args.speed,

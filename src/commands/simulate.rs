@@ -7,6 +7,7 @@ use std::path::Path;
 use mavid::config::{read_trajectory, read_vehicle};
 use mavid::log::{Recording, write_recording};
 use mavid::simulate::{FlightSettings, Reference, TelemetrySettings, Truth, simulate_flight};
+use mavid::text;
 use mavid::vehicle::Vehicle;
 use serde::Serialize;
 
@@ -44,7 +45,7 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     let read = [&args.vehicle, &args.trajectory].into_iter().chain(&args.effects).chain(&args.nominal);
     output::refuse_overwriting(&read.collect::<Vec<_>>(), &[&args.out])?;
     if is_csv(&args.out) {
-        let name = args.out.display();
+        let name = text::path(&args.out);
         return Err(CommandError::Input(format!("--out: expected the name of a .tlog, got {name}")));
     }
     let loaded = read_vehicle(&args.vehicle)?;
@@ -66,7 +67,7 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     let frames = write(&args.out, &flight.recording)?;
     let document = Document {
         schema: 1,
-        log: args.out.display().to_string(),
+        log: text::path(&args.out),
         frames,
         duration_s,
         effects: ids,
@@ -76,7 +77,7 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     if flight.tracking_error_max_m > FOLLOWED_M {
         output::message(&format!(
             "warning: the vehicle could not follow {}: up to {:.1} m off it; a longer --period of mavid plan asks less of the rotors",
-            args.trajectory.display(),
+            text::path(&args.trajectory),
             flight.tracking_error_max_m
         ));
     }
@@ -107,7 +108,7 @@ fn settings(args: &SimulateArgs, vehicle: &Vehicle, duration_s: f64) -> FlightSe
 
 /// Returns the number of frames.
 fn write(path: &Path, recording: &Recording) -> Result<u64, CommandError> {
-    let failed = |error| CommandError::Failure(format!("cannot write {}: {error}", path.display()));
+    let failed = |error| CommandError::Failure(format!("cannot write {}: {error}", text::path(&path)));
     let file = BufWriter::new(File::create(path).map_err(failed)?);
     write_recording(recording, file, START_US).map_err(failed)
 }

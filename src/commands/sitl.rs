@@ -12,7 +12,7 @@ use mavid::sitl::{
 use serde::Serialize;
 
 use super::effects::with_further;
-use super::{CommandError, Outcome, network, output};
+use super::{CommandError, Outcome, live, network, output};
 use crate::cli::{ArduPilotVersion, AutopilotName, SitlArgs};
 
 /// The vehicle that flies where none is given.
@@ -36,6 +36,14 @@ struct Document {
 
 /// Runs the verb.
 pub fn run(json: bool, args: &SitlArgs) -> Result<Outcome, CommandError> {
+    let args = args.clone();
+    live::run(move |work| {
+        work.ends_itself();
+        simulate(json, &args)
+    })
+}
+
+fn simulate(json: bool, args: &SitlArgs) -> Result<Outcome, CommandError> {
     let settings = settings(args)?;
     let addresses = addresses(args, settings.autopilot)?;
     let pace = pace(args)?;

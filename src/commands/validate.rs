@@ -15,6 +15,7 @@ use mavid::report::{
 };
 use mavid::signals::{Butterworth, ConditionSettings, Quality, Signals, ThrustSource};
 use mavid::simulate::pid::{PidFlightSettings, PidSettings};
+use mavid::text;
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -105,7 +106,7 @@ fn told_apart(models: &mut [Named], paths: &[PathBuf]) {
     let names: Vec<String> = models.iter().map(|model| model.name.clone()).collect();
     for ((model, path), name) in models.iter_mut().zip(paths).zip(&names) {
         if names.iter().filter(|other| *other == name).count() > 1 {
-            model.name = path.display().to_string();
+            model.name = text::path(&path);
         }
     }
 }
@@ -113,12 +114,12 @@ fn told_apart(models: &mut [Named], paths: &[PathBuf]) {
 fn named(path: &Path) -> Result<Named, CommandError> {
     let loaded = read_vehicle(path)?;
     output::warnings(path, &loaded.warnings);
-    let refuse = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", path.display()));
-    let effects = effects(&loaded.model.effects, &path.display().to_string(), &loaded.vehicle)?;
+    let refuse =
+        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&path)));
+    let effects = effects(&loaded.model.effects, &text::path(&path), &loaded.vehicle)?;
     let effects = with_stated_lag(effects, &loaded.vehicle);
     let model = Model::new(&loaded.vehicle, effects).map_err(|error| refuse(&error))?;
-    let name =
-        path.file_stem().map_or_else(|| loaded.vehicle.name.clone(), |stem| stem.display().to_string());
+    let name = path.file_stem().map_or_else(|| loaded.vehicle.name.clone(), |stem| text::path(&stem));
     Ok(Named { name, input: file(path)?, vehicle: loaded.vehicle, model })
 }
 
@@ -287,7 +288,7 @@ const FIGURE: &str = "<!-- a figure of mavid validate -->\n";
 fn write_charts(folder: &Path, flights: &[FlightTables]) -> Result<(), CommandError> {
     let mut written = Vec::new();
     for (index, flight) in flights.iter().enumerate() {
-        let stem = Path::new(&flight.input.path).file_stem().unwrap_or_default().display().to_string();
+        let stem = text::path(Path::new(&flight.input.path).file_stem().unwrap_or_default());
         // flights of different folders may have one name
         let path = folder.join(format!("{}-{stem}.svg", index + 1));
         if flight.charts.is_empty() {
@@ -298,7 +299,7 @@ fn write_charts(folder: &Path, flights: &[FlightTables]) -> Result<(), CommandEr
         }
     }
     let unread =
-        |error| CommandError::Input(format!("--out: cannot look into {}: {error}", folder.display()));
+        |error| CommandError::Input(format!("--out: cannot look into {}: {error}", text::path(&folder)));
     for entry in std::fs::read_dir(folder).map_err(unread)? {
         let path = entry.map_err(unread)?.path();
         if !written.contains(&path) && is_figure(&path) {
@@ -310,7 +311,7 @@ fn write_charts(folder: &Path, flights: &[FlightTables]) -> Result<(), CommandEr
 
 /// Named and ended as a figure of this verb.
 fn is_figure(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = text::path(path.file_name().unwrap_or_default());
     let numbered = name.split_once('-').is_some_and(|(number, _)| number.parse::<usize>().is_ok());
     let ended = || std::fs::read(path).is_ok_and(|bytes| bytes.ends_with(FIGURE.as_bytes()));
     numbered && name.ends_with(".svg") && ended()

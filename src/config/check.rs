@@ -1,10 +1,14 @@
 //! Checks of single values, with the file and the key in every refusal.
 
 use super::ConfigError;
+use crate::text;
 
 /// Sizes (SI) beyond these are no vehicle's, and their products would overflow or vanish.
 const SMALLEST: f64 = 1e-18;
 const LARGEST: f64 = 1e12;
+
+/// Characters of a value that a refusal repeats.
+const CAME_CHARS: usize = 200;
 
 /// Names the file in every error.
 pub(super) struct Check<'a> {
@@ -24,7 +28,8 @@ impl Check<'_> {
             origin: self.origin.to_owned(),
             key: key.to_owned(),
             expected: expected.into(),
-            came: came.to_string(),
+            // what the file says may be anything
+            came: text::excerpt(&came.to_string(), CAME_CHARS),
         }
     }
 
@@ -61,6 +66,14 @@ impl Check<'_> {
     /// Finite and above zero where it is given.
     pub fn optional_positive(&self, key: &str, value: Option<f64>) -> Result<Option<f64>, ConfigError> {
         value.map(|value| self.positive(key, value)).transpose()
+    }
+
+    /// Seconds above zero, and no more than `max_s`.
+    pub fn duration(&self, key: &str, value: f64, max_s: f64) -> Result<f64, ConfigError> {
+        if value > 0.0 && value <= max_s {
+            return Ok(value);
+        }
+        Err(self.refuse(key, format!("above 0 and at most {max_s} s"), format!("{value:?} s")))
     }
 
     /// Present; `because` says what asks for it.

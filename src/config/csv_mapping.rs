@@ -9,6 +9,7 @@ use super::kind::Kind;
 use super::{ConfigError, parse_toml, read_text};
 use crate::log::Quantity;
 use crate::log::csv::{AttitudeForm, AxisFrame, CsvMapping, CsvQuantity, CsvTime, CsvUnit, column_count};
+use crate::text;
 
 /// The built-in mapping, also the documentation of its columns.
 const DEFAULT: &str = include_str!("../../configs/csv/default.toml");
@@ -117,7 +118,7 @@ pub fn default_csv_mapping() -> Result<CsvMapping, ConfigError> {
 /// # Errors
 /// [`ConfigError`] where the file cannot be read, has an unknown or missing key, or says what cannot be.
 pub fn load_csv_mapping(path: &Path) -> Result<CsvMapping, ConfigError> {
-    parse_csv_mapping(&read_text(path, Kind::CsvMapping)?, &path.display().to_string())
+    parse_csv_mapping(&read_text(path, Kind::CsvMapping)?, &text::path(path))
 }
 
 /// As [`load_csv_mapping`], from text; `origin` is named in errors.
@@ -145,7 +146,7 @@ pub fn parse_csv_mapping(text: &str, origin: &str) -> Result<CsvMapping, ConfigE
         time: CsvTime {
             unit: choose(&check, "time.unit", file.time.unit.as_deref(), TIME)?,
             scale: check.positive("time.scale", file.time.scale)?,
-            column: file.time.column,
+            column: text::clean(&file.time.column),
         },
         quantities,
     })
@@ -182,7 +183,8 @@ fn quantity(check: &Check<'_>, key: &str, table: QuantityTable) -> Result<CsvQua
         frame,
         unit: choose(check, &format!("{key}.unit"), table.unit.as_deref(), units)?,
         scale: check.finite(&format!("{key}.scale"), table.scale)?,
-        columns: table.columns,
+        // as the columns of a header are read
+        columns: table.columns.iter().map(|column| text::clean(column)).collect(),
         missing: table.missing,
         optional: table.optional,
     })

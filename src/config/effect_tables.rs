@@ -7,6 +7,7 @@ use toml::Table;
 
 use super::kind::Kind;
 use super::{ConfigError, parse_toml, read_text};
+use crate::text;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -19,7 +20,7 @@ struct EffectsFile {
 /// # Errors
 /// If the file cannot be read, is not TOML, or holds anything else, or none.
 pub fn read_effect_tables(path: &Path) -> Result<Vec<Table>, ConfigError> {
-    parse_effect_tables(&read_text(path, Kind::Effects)?, &path.display().to_string())
+    parse_effect_tables(&read_text(path, Kind::Effects)?, &text::path(path))
 }
 
 /// As [`read_effect_tables`], from text; `origin` names it in errors.

@@ -2,6 +2,8 @@
 
 use toml::Table;
 
+use crate::text;
+
 /// What a file is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -28,8 +30,7 @@ impl Kind {
     pub(super) fn other(self, text: &str) -> Option<String> {
         let table: Table = toml::from_str(text).ok()?;
         let (kind, what) = Self::of(&table)?;
-        let keys: Vec<&str> = table.keys().map(String::as_str).collect();
-        (kind != self).then(|| format!("{what} ({})", keys.join(", ")))
+        (kind != self).then(|| format!("{what} ({})", text::listed(table.keys())))
     }
 
     fn of(table: &Table) -> Option<(Self, &'static str)> {

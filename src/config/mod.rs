@@ -4,6 +4,7 @@ mod check;
 mod csv_mapping;
 mod effect_tables;
 mod kind;
+mod read;
 mod trajectory;
 mod vehicle;
 mod vehicle_file;
@@ -18,14 +19,16 @@ pub use trajectory::{
 pub use vehicle::{LoadedVehicle, ModelTables, load_vehicle, parse_vehicle, read_vehicle};
 pub use vehicle_writer::vehicle_to_toml;
 
-use kind::Kind;
-use std::path::{Path, PathBuf};
+use read::{parse_toml, read_text};
+use std::path::PathBuf;
+
+use crate::text;
 
 /// Why a configuration file was refused.
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
     /// the file could not be read
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {source}", text::path(path))]
     Read {
         /// which file
         path: PathBuf,
@@ -33,12 +36,22 @@ pub enum ConfigError {
         source: std::io::Error,
     },
     /// bytes that are no text
-    #[error("{}: expected {expected}, came a file that is no text", path.display())]
+    #[error("{}: expected {expected}, came a file that is no text", text::path(path))]
     NoText {
         /// which file
         path: PathBuf,
         /// what it was to be
         expected: &'static str,
+    },
+    /// more bytes than such a file may have
+    #[error("{}: expected {expected} of at most {max} bytes, came a larger file", text::path(path))]
+    TooLarge {
+        /// which file
+        path: PathBuf,
+        /// what it was to be
+        expected: &'static str,
+        /// the most that it may have
+        max: u64,
     },
     /// a file of another kind
     #[error("{origin}: expected {expected}, came {came}")]
@@ -51,14 +64,14 @@ pub enum ConfigError {
         came: String,
     },
     /// not TOML, a key that does not exist, a key that is missing, or a value of the wrong kind
-    #[error("{origin}: expected {expected}: {source}")]
+    #[error("{origin}: expected {expected}: {reason}")]
     Parse {
         /// file name, or what the text is
         origin: String,
         /// what it was to be
         expected: &'static str,
-        /// line, column and key
-        source: Box<toml::de::Error>,
+        /// line, column, what stands there and what is wrong with it
+        reason: String,
     },
     /// a value, or several together, that cannot be
     #[error("{origin}: `{key}`: expected {expected}, came {came}")]
@@ -75,29 +88,4 @@ pub enum ConfigError {
     /// a value that cannot be written as TOML
     #[error("cannot write as TOML: {0}")]
     Write(#[from] toml::ser::Error),
-}
-
-/// The text of a configuration file of this kind.
-fn read_text(path: &Path, kind: Kind) -> Result<String, ConfigError> {
-    std::fs::read_to_string(path).map_err(|source| match source.kind() {
-        std::io::ErrorKind::InvalidData => {
-            ConfigError::NoText { path: path.to_owned(), expected: kind.expected() }
-        }
-        _ => ConfigError::Read { path: path.to_owned(), source },
-    })
-}
-
-/// TOML text to the form `T` of a file of this kind, with `origin` named in the error.
-fn parse_toml<T: serde::de::DeserializeOwned>(
-    text: &str,
-    origin: &str,
-    kind: Kind,
-) -> Result<T, ConfigError> {
-    toml::from_str(text).map_err(|source| {
-        let (origin, expected) = (origin.to_owned(), kind.expected());
-        match kind.other(text) {
-            Some(came) => ConfigError::OtherKind { origin, expected, came },
-            None => ConfigError::Parse { origin, expected, source: Box::new(source) },
-        }
-    })
 }

@@ -6,11 +6,17 @@ use super::vehicle::limits;
 use super::vehicle_file::LimitsTable;
 use super::vehicle_writer::limits_table;
 use super::{ConfigError, parse_toml, read_text};
-use crate::trajectory::{FourierAxis, FourierTrajectory};
+use crate::text;
+use crate::trajectory::{FourierAxis, FourierTrajectory, check_size};
 use crate::vehicle::Limits;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
+
+/// Characters of the criterion's name.
+const NAME_CHARS: usize = 64;
+/// The longest transition that is read, s; the planner's own last at most 60 s.
+const TRANSITION_MAX_S: f64 = 600.0;
 
 /// A series with what is known of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,8 +73,8 @@ impl TransitionsTable {
         Ok(StoredTransitions {
             takeoff: self.takeoff_x_y_z_yaw,
             landing: self.landing_x_y_z_yaw,
-            to_start_s: check.positive("transitions.to_start_s", self.to_start_s)?,
-            to_landing_s: check.positive("transitions.to_landing_s", self.to_landing_s)?,
+            to_start_s: check.duration("transitions.to_start_s", self.to_start_s, TRANSITION_MAX_S)?,
+            to_landing_s: check.duration("transitions.to_landing_s", self.to_landing_s, TRANSITION_MAX_S)?,
         })
     }
 }
@@ -142,7 +148,7 @@ struct LimitsFile {
 /// # Errors
 /// If the file cannot be read, is not TOML, has unknown keys, or the coefficients do not fit together.
 pub fn read_trajectory(path: &Path) -> Result<StoredTrajectory, ConfigError> {
-    parse_trajectory(&read_text(path, Kind::Trajectory)?, &path.display().to_string())
+    parse_trajectory(&read_text(path, Kind::Trajectory)?, &text::path(path))
 }
 
 /// As [`read_trajectory`], from text; `origin` names it in errors.
@@ -165,15 +171,11 @@ pub fn parse_trajectory(text: &str, origin: &str) -> Result<StoredTrajectory, Co
         let c = check.finite(&format!("{name}.c"), table.c)?;
         Ok(FourierAxis { a: table.a, b: table.b, c })
     };
-    if count == 0 {
-        return Err(check.refuse("harmonics", "at least one", count));
-    }
-    if file.repeats == 0 {
-        return Err(check.refuse("repeats", "at least one", file.repeats));
-    }
+    check_size(file.period_s, count, file.repeats)
+        .map_err(|error| check.refuse(error.what, error.expected, error.got))?;
     Ok(StoredTrajectory {
         series: FourierTrajectory {
-            period_s: check.positive("period_s", file.period_s)?,
+            period_s: file.period_s,
             axes: [
                 axis("x_m", file.x_m)?,
                 axis("y_m", file.y_m)?,
@@ -183,7 +185,7 @@ pub fn parse_trajectory(text: &str, origin: &str) -> Result<StoredTrajectory, Co
         },
         repeats: file.repeats,
         limits: limits(&check, &file.limits)?,
-        criterion: file.criterion.map(|table| (table.name, table.value)),
+        criterion: file.criterion.map(|table| (text::excerpt(&table.name, NAME_CHARS), table.value)),
         margins: file.margins_on_2_ms_samples,
         standard_errors: file.relative_standard_errors,
         transitions: file.transitions.map(|table| table.checked(&check)).transpose()?,
@@ -223,7 +225,7 @@ const HEADER: &str = "# q(t) = sum over l of a_l/(w l) sin(w l t) - b_l/(w l) co
 /// # Errors
 /// If the file cannot be read, is not TOML, has unknown keys, or a limit is out of range.
 pub fn read_limits(path: &Path) -> Result<Limits, ConfigError> {
-    parse_limits(&read_text(path, Kind::Limits)?, &path.display().to_string())
+    parse_limits(&read_text(path, Kind::Limits)?, &text::path(path))
 }
 
 /// As [`read_limits`], from text; `origin` names it in errors.
@@ -240,6 +242,8 @@ mod tests {
     use super::*;
 
     const TABLE_2: &str = include_str!("../../configs/trajectories/table2.toml");
+    const TRANSITIONS: &str = "[transitions]\ntakeoff_x_y_z_yaw = [0, 0, 1, 0]\nlanding_x_y_z_yaw = [0, 0, 1, 0]\n\
+        to_start_s = 1e9\nto_landing_s = 1\n";
 
     #[test]
     fn what_is_written_is_read_back() {
@@ -266,6 +270,12 @@ mod tests {
             (TABLE_2.replace("period_s = 10.0", "period_s = -1.0"), "period_s"),
             (TABLE_2.replace("repeats = 5", "repeat = 5"), "repeat"),
             (TABLE_2.replace("repeats = 5", "repeats = 0"), "repeats"),
+            (TABLE_2.replace("repeats = 5", "repeats = 4000000000"), "at most 3600 s of flight"),
+            (TABLE_2.replace("period_s = 10.0", "period_s = 1e12"), "`period_s`: expected 0.1 to 1000 s"),
+            (
+                format!("{TABLE_2}{TRANSITIONS}"),
+                "`transitions.to_start_s`: expected above 0 and at most 600 s",
+            ),
         ];
         for (text, key) in cases {
             let message = parse_trajectory(&text, "t.toml").unwrap_err().to_string();

@@ -12,10 +12,16 @@ use super::vehicle_file::{
     VehicleFile,
 };
 use super::{ConfigError, parse_toml, read_text};
+use crate::text;
 use crate::units;
 use crate::vehicle::{
     Actuator, Anchor, Limits, Propulsion, PwmRange, RigidBody, Rotor, Spin, ThrustLaw, Vehicle,
 };
+
+/// Rotors of a vehicle: as many as MAVLink has outputs for (ACTUATOR_OUTPUT_STATUS).
+const ROTORS_MAX: usize = 32;
+/// Characters of a vehicle's or a rotor's name.
+const NAME_CHARS: usize = 200;
 
 /// A vehicle file as read: the vehicle, what is doubtful about it, and what an identification added.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,7 +58,7 @@ pub fn load_vehicle(path: &Path) -> Result<Vehicle, ConfigError> {
 /// # Errors
 /// As [`load_vehicle`].
 pub fn read_vehicle(path: &Path) -> Result<LoadedVehicle, ConfigError> {
-    parse_vehicle(&read_text(path, Kind::Vehicle)?, &path.display().to_string())
+    parse_vehicle(&read_text(path, Kind::Vehicle)?, &text::path(path))
 }
 
 /// As [`read_vehicle`], from text; `origin` is named in errors.
@@ -62,21 +68,22 @@ pub fn read_vehicle(path: &Path) -> Result<LoadedVehicle, ConfigError> {
 pub fn parse_vehicle(text: &str, origin: &str) -> Result<LoadedVehicle, ConfigError> {
     let file: VehicleFile = parse_toml(text, origin, Kind::Vehicle)?;
     let check = Check { origin };
+    let mut doubts = Vec::new();
     let gravity_m_s2 =
         check.optional_positive("body.gravity", file.body.gravity)?.unwrap_or(units::GRAVITY_M_S2);
     let vehicle = Vehicle {
         body: rigid_body(&check, &file.body)?,
         propulsion: propulsion(&check, &file.propulsion)?,
-        rotors: rotors(&check, file.rotors)?,
+        rotors: rotors(&check, file.rotors, &mut doubts)?,
         limits: limits(&check, &file.limits)?,
         anchor: match file.identify.anchor {
             AnchorKey::Thrust => Anchor::Thrust,
             AnchorKey::Mass => Anchor::Mass,
         },
-        name: file.name,
+        name: name(&check, "name", &file.name, &mut doubts)?,
         gravity_m_s2,
     };
-    let warnings = warnings(&vehicle);
+    let warnings = doubts.into_iter().chain(warnings(&vehicle)).collect();
     let model =
         ModelTables { identified: file.identified, provenance: file.provenance, effects: file.effects };
     Ok(LoadedVehicle { vehicle, warnings, model })
@@ -221,15 +228,36 @@ fn pwm(check: &Check<'_>, table: &PropulsionTable, keys: (&str, &str)) -> Result
     Ok(Actuator::Pwm(Some(PwmRange { min_us, max_us })))
 }
 
-fn rotors(check: &Check<'_>, tables: Vec<RotorTable>) -> Result<Vec<Rotor>, ConfigError> {
+/// A name as it is shown everywhere: what would command a terminal or break a line is escaped, and told.
+fn name(check: &Check<'_>, key: &str, given: &str, doubts: &mut Vec<String>) -> Result<String, ConfigError> {
+    if given.chars().count() > NAME_CHARS {
+        return Err(check.refuse(key, format!("at most {NAME_CHARS} characters"), given.chars().count()));
+    }
+    let name = text::clean(given);
+    if name != given {
+        doubts
+            .push(format!("{key}: expected characters that can be seen; the others are shown as in {name}"));
+    }
+    Ok(name)
+}
+
+fn rotors(
+    check: &Check<'_>,
+    tables: Vec<RotorTable>,
+    doubts: &mut Vec<String>,
+) -> Result<Vec<Rotor>, ConfigError> {
     if tables.is_empty() {
         return Err(check.refuse("rotor", "at least one [[rotor]] table", "none"));
+    }
+    if tables.len() > ROTORS_MAX {
+        return Err(check.refuse("rotor", format!("at most {ROTORS_MAX} [[rotor]] tables"), tables.len()));
     }
     let mut names = BTreeSet::new();
     let mut rotors = Vec::with_capacity(tables.len());
     for (index, table) in tables.into_iter().enumerate() {
-        if !names.insert(table.name.clone()) {
-            let came = format!("\"{}\" twice", table.name);
+        let name = name(check, &format!("rotor[{index}].name"), &table.name, doubts)?;
+        if !names.insert(name.clone()) {
+            let came = format!("\"{name}\" twice");
             return Err(check.refuse(&format!("rotor[{index}].name"), "a name of its own", came));
         }
         rotors.push(Rotor {
@@ -238,7 +266,7 @@ fn rotors(check: &Check<'_>, tables: Vec<RotorTable>) -> Result<Vec<Rotor>, Conf
                 SpinKey::Cw => Spin::Cw,
                 SpinKey::Ccw => Spin::Ccw,
             },
-            name: table.name,
+            name,
         });
     }
     Ok(rotors)
@@ -454,6 +482,26 @@ spin = "ccw"
                 assert!(message.contains(needle), "{needle:?} is not in {message:?}");
             }
         }
+    }
+
+    #[test]
+    fn names_command_nothing_and_have_an_end() {
+        let evil = BODY.replace("\"quad\"", "\"x\\u001b[31m\\nall is well\"");
+        let rotors = ROTORS.replacen("front_left", "front\\u009bleft", 1);
+        let loaded = parse(&[&evil, SPEED, &rotors]).unwrap();
+        assert_eq!(loaded.vehicle.name, "x\\u{1b}[31m\\nall is well");
+        assert_eq!(loaded.vehicle.rotors[0].name, "front\\u{9b}left");
+        assert!(loaded.warnings.len() == 2 && loaded.warnings[0].starts_with("rotor[0].name: expected"));
+        let long = BODY.replace("quad", &"q".repeat(1000));
+        assert!(
+            refusal(&[&long, SPEED, ROTORS]).contains("`name`: expected at most 200 characters, came 1000")
+        );
+        let many: String = (0..40)
+            .map(|n| format!("[[rotor]]\nname = \"{n}\"\nposition = [0.2, 0.2, 0.0]\nspin = \"cw\"\n"))
+            .collect();
+        assert!(
+            refusal(&[BODY, SPEED, &many]).contains("`rotor`: expected at most 32 [[rotor]] tables, came 40")
+        );
     }
 
     #[test]

@@ -5,7 +5,8 @@
 //! `mdrag_coef sqrt(rho disc_area m g) v`); bluff-body drag from `refSpd` at `refAngle`; rotation damped by
 //! `400 deg / refRotRate` of the rate; motor positions from the centre of mass, forward-right-down.
 
-use super::{ExportError, Exported, Source, frd};
+use super::{ExportError, Exported, Source, frd, line_comments};
+use crate::text::json_pretty;
 use crate::units::AIR_DENSITY_KG_M3;
 use crate::vehicle::{Actuator, ThrustLaw};
 use nalgebra::Vector3;
@@ -56,8 +57,8 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
         source.note("the simulator's rotors have no lag (slew_max limits their rate alone)");
     }
     Ok(source.finish(|notes| {
-        let head: String = notes.iter().map(|note| format!("# {note}\n")).collect();
-        let body = serde_json::to_string_pretty(&Value::Object(file)).unwrap_or_default();
+        let head = line_comments("#", notes);
+        let body = json_pretty(&Value::Object(file)).unwrap_or_default();
         // comments are the simulator's own: it blanks from # to the end of the line, after the first brace
         format!("{}{}\n", body.replacen('{', &format!("{{\n{head}"), 1), "")
     }))

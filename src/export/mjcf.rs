@@ -3,7 +3,8 @@
 //! A `general` actuator at each hub: control is the thrust in newtons, gear its force along body z and its
 //! reaction torque. `fullinertia` is xx yy zz xy xz yz about the centre of mass. Frames and units are ours.
 
-use super::{ExportError, Exported, Source, escape, xml_comments};
+use super::{ExportError, Exported, Source, xml_comments};
+use crate::text::markup;
 use std::fmt::Write;
 
 pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
@@ -54,7 +55,7 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
         "  <option gravity=\"0 0 {}\" wind=\"{} {} {}\"/>\n",
         -source.vehicle.gravity_m_s2, wind[0], wind[1], wind[2]
     );
-    let name = escape(&source.vehicle.name);
+    let name = markup(&source.vehicle.name);
     Ok(source.finish(|notes| {
         format!(
             "{}<mujoco model=\"{name}\">\n{option}  <worldbody>\n    <body name=\"vehicle\">\n      <freejoint/>\n{inertial}{sites}    </body>\n  </worldbody>\n  <actuator>\n{actuators}  </actuator>\n</mujoco>\n",

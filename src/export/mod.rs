@@ -11,6 +11,7 @@ mod rotorpy;
 mod sdf;
 
 use crate::physics::{ActiveEffect, Airframe, PhysicsError};
+use crate::text::{line_comment, markup_comment};
 use crate::vehicle::{ThrustLaw, Vehicle};
 use nalgebra::Vector3;
 
@@ -183,17 +184,12 @@ fn frd(v: &Vector3<f64>) -> [f64; 3] {
     [v.x, 0.0 - v.y, 0.0 - v.z]
 }
 
-/// For the text of XML.
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
-
-/// A comment in XML cannot hold two hyphens.
+/// Notes as comments of XML.
 fn xml_comments(notes: &[String]) -> String {
-    notes.iter().map(|note| format!("<!-- {} -->\n", note.replace("--", "- -"))).collect()
+    notes.iter().map(|note| format!("{}\n", markup_comment(note))).collect()
 }
 
 /// Notes as lines after `mark`.
 fn line_comments(mark: &str, notes: &[String]) -> String {
-    notes.iter().map(|note| format!("{mark} {note}\n")).collect()
+    notes.iter().map(|note| line_comment(mark, note)).collect()
 }

@@ -5,6 +5,7 @@
 //! `Mz = Q_MAX (u0 + u1 - u2 - u3)`, drag `-KDV v`, damping `-KDW w`.
 
 use super::{ExportError, Exported, Source, frd, line_comments};
+use crate::text::line_comment;
 use nalgebra::Vector3;
 use std::fmt::Write;
 
@@ -55,7 +56,8 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     ];
     let name = source.vehicle.name.clone();
     Ok(source.finish(|notes| {
-        let mut text = format!("# {name}: PX4 simulation in hardware (SIH), quadrotor X\n# {order}\n");
+        let mut text = line_comment("#", &format!("{name}: PX4 simulation in hardware (SIH), quadrotor X"));
+        text.push_str(&line_comment("#", &order));
         text.push_str(&line_comments("#", notes));
         for (parameter, value) in parameters {
             let _ = writeln!(text, "param set {parameter} {value:.6e}");

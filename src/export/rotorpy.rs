@@ -5,6 +5,7 @@
 //! are ours; the sign of a rotor is that of its reaction torque.
 
 use super::{ExportError, Exported, Source, line_comments};
+use crate::text::line_comment;
 use nalgebra::Vector3;
 use std::fmt::Write;
 
@@ -63,10 +64,9 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     }
     let directions: Vec<String> =
         source.vehicle.rotors.iter().map(|rotor| format!("{}", rotor.spin.yaw_sign())).collect();
-    let name = source.vehicle.name.replace(['\n', '\r'], " ");
+    let title = line_comment("#", &format!("{}: RotorPy parameters, SI", source.vehicle.name));
     Ok(source.finish(|notes| {
-        let head =
-            format!("# {name}: RotorPy parameters, SI\n{}import numpy as np\n\n", line_comments("#", notes));
+        let head = format!("{title}{}import numpy as np\n\n", line_comments("#", notes));
         head + &dictionary(&values, &arms, &directions)
     }))
 }

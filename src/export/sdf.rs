@@ -3,7 +3,8 @@
 //! Its motor: `T = motorConstant w^2`, reaction torque `momentConstant T`, drag `rotorDragCoefficient |w| v` across
 //! the rotor axis, first-order lag up and down. Frames and units are ours.
 
-use super::{ExportError, Exported, Source, escape, xml_comments};
+use super::{ExportError, Exported, Source, xml_comments};
+use crate::text::markup;
 use crate::vehicle::{Rotor, Spin};
 
 const FORMAT: &str = "sdf";
@@ -33,7 +34,7 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
         plugins.push_str(&motor.plugin(number, rotor, source.vehicle.propulsion.torque_per_thrust_m));
     }
     source.note(format!("the rotors' links weigh {ROTOR_KG} kg each, taken off the body; collision and visual shapes are for you to add"));
-    let name = escape(&source.vehicle.name);
+    let name = markup(&source.vehicle.name);
     Ok(source.finish(|notes| {
         format!(
             "<?xml version=\"1.0\"?>\n{}<sdf version=\"1.9\">\n  <model name=\"{name}\">\n{links}{plugins}  </model>\n</sdf>\n",

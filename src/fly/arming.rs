@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 /// A vehicle that says "disarmed" with nothing else to agree is believed after so long and so many reports.
-const PERSISTS: Duration = Duration::from_secs(1);
+const PERSISTS: Duration = Duration::from_millis(2500);
 const REPORTS: u32 = 3;
 
 /// Armed or not. One HEARTBEAT can be forged or damaged, and a vehicle that is wrongly taken for disarmed loses its
@@ -17,7 +17,7 @@ pub(super) struct Arming {
 }
 
 impl Arming {
-    /// Takes a HEARTBEAT's word. `on_ground`: the vehicle says that it stands on the ground.
+    /// Takes a HEARTBEAT's word. `on_ground`: the vehicle has said for a while that it stands on the ground.
     pub(super) fn report(&mut self, now: Duration, armed: bool, on_ground: bool) {
         if armed || !self.armed {
             (self.armed, self.contradicted) = (armed, None);
@@ -67,13 +67,13 @@ mod tests {
     }
 
     #[test]
-    fn three_in_a_row_over_a_second_are_believed_and_a_burst_is_not() {
+    fn three_in_a_row_over_seconds_are_believed_and_a_burst_is_not() {
         let mut arming = armed();
         for t in 1000..1010 {
             arming.report(ms(t), false, false);
         }
         assert!(arming.is_armed(), "ten within ten milliseconds");
-        arming.report(ms(2000), false, false);
+        arming.report(ms(3500), false, false);
         assert!(!arming.is_armed());
     }
 

@@ -10,8 +10,13 @@ use crate::plan::{self, TransitionError, bounds_of};
 use crate::trajectory::{
     FlightPath, FourierTrajectory, Segment, Transition, at_rest, end_state, flat_motion,
 };
+use crate::units::whole;
 use crate::vehicle::{Limits, Vehicle};
 
+/// Of the climb and of the way to the start.
+pub(super) const CLIMB_M_S: f64 = 0.8;
+pub(super) const TRANSFER_M_S: f64 = 1.0;
+pub(super) const TURN_RAD_S: f64 = 0.5;
 /// Hover before and after the trajectory, s.
 const HOVER_S: f64 = 2.0;
 /// The greatest speed of a transition of seventh degree from rest to rest over its mean speed.
@@ -90,14 +95,11 @@ impl Course {
     /// `repeats + 1` after it.
     #[must_use]
     pub fn period_at(&self, along_s: f64) -> u32 {
+        if along_s >= self.series_from_s + f64::from(self.repeats) * self.period_s {
+            return self.repeats + 1;
+        }
         let flown = ((along_s - self.series_from_s) / self.period_s).floor() + 1.0;
-        (0..=self.repeats).rev().find(|count| f64::from(*count) <= flown).map_or(0, |count| {
-            if along_s >= self.series_from_s + f64::from(self.repeats) * self.period_s {
-                self.repeats + 1
-            } else {
-                count
-            }
-        })
+        u32::try_from(whole(flown.max(0.0))).map_or(0, |count| count.min(self.repeats))
     }
 
     /// The same course with its series ending with the period that is flown `along_s` from the start; `None`
@@ -149,6 +151,26 @@ fn planned(series: &FourierTrajectory, repeats: u32, around: &Around) -> FlightP
             (Segment::Hold(around.landing), HOVER_S),
         ],
     }
+}
+
+/// Straight up from where a vehicle stands to the height of its start, and from there to the start.
+#[must_use]
+pub fn approach(stand: &Place, start: &Place) -> [FlightPath; 2] {
+    let top = Vector3::new(stand.position_m.x, stand.position_m.y, start.position_m.z);
+    let top = Place { position_m: top, ..*stand };
+    [transfer(stand, &top, CLIMB_M_S, TURN_RAD_S), transfer(&top, start, TRANSFER_M_S, TURN_RAD_S)]
+}
+
+/// The reference of a path at one instant of it, moved by an offset (m); `None` for a path without segments.
+#[must_use]
+pub fn reference_at(
+    path: &FlightPath,
+    along_s: f64,
+    offset_m: &Vector3<f64>,
+    time: Duration,
+) -> Option<Setpoint> {
+    let clock = PathTime { along_s, rate: 1.0, slope: 0.0 };
+    on_path(path, &clock, offset_m, time)
 }
 
 /// From one hover to another, no faster than `speed_m_s` and `yaw_rate_rad_s`, the shorter way round.
@@ -244,21 +266,7 @@ impl Track {
     /// The setpoint of one instant; beyond the end, the path's end. `None` for a path without segments.
     #[must_use]
     pub fn setpoint(&self, time: Duration) -> Option<Setpoint> {
-        let PathTime { along_s, rate, slope } = self.clock.at(time);
-        let axes = self.path.derivatives(along_s)?;
-        let beyond = along_s > self.path.duration_s();
-        let moves = if beyond { 0.0 } else { 1.0 };
-        let speed = |axis: &[f64; 5]| moves * axis[1] * rate;
-        let [x, y, z, yaw] = &axes;
-        let push = |axis: &[f64; 5]| moves * (axis[2] * rate * rate + axis[1] * slope);
-        Some(Setpoint {
-            time,
-            position_m: Vector3::new(x[0], y[0], z[0]) + self.offset_m,
-            velocity_m_s: Vector3::new(speed(x), speed(y), speed(z)),
-            acceleration_m_s2: Vector3::new(push(x), push(y), push(z)),
-            yaw_rad: yaw[0],
-            yaw_rate_rad_s: speed(yaw),
-        })
+        on_path(&self.path, &self.clock.at(time), &self.offset_m, time)
     }
 
     /// The path is flown to its end.
@@ -266,6 +274,24 @@ impl Track {
     pub fn is_over(&self, now: Duration) -> bool {
         self.clock.at(now).along_s >= self.path.duration_s()
     }
+}
+
+fn on_path(path: &FlightPath, clock: &PathTime, offset_m: &Vector3<f64>, time: Duration) -> Option<Setpoint> {
+    let PathTime { along_s, rate, slope } = *clock;
+    let axes = path.derivatives(along_s)?;
+    let beyond = along_s > path.duration_s();
+    let moves = if beyond { 0.0 } else { 1.0 };
+    let speed = |axis: &[f64; 5]| moves * axis[1] * rate;
+    let [x, y, z, yaw] = &axes;
+    let push = |axis: &[f64; 5]| moves * (axis[2] * rate * rate + axis[1] * slope);
+    Some(Setpoint {
+        time,
+        position_m: Vector3::new(x[0], y[0], z[0]) + offset_m,
+        velocity_m_s: Vector3::new(speed(x), speed(y), speed(z)),
+        acceleration_m_s2: Vector3::new(push(x), push(y), push(z)),
+        yaw_rad: yaw[0],
+        yaw_rate_rad_s: speed(yaw),
+    })
 }
 
 #[cfg(test)]

@@ -19,6 +19,7 @@ mod course;
 pub mod finding;
 mod flight;
 mod health;
+mod law;
 mod lift;
 pub mod live;
 mod modes;
@@ -34,14 +35,16 @@ mod runner;
 mod safety;
 mod setpoint;
 mod sortie;
+mod state;
 mod target;
 mod telemetry;
 pub mod view;
 
 pub use commander::{Answer, AnswerResult, Manner, Permission};
-pub use course::{Around, Course, PathClock, PathTime, Track, transfer};
+pub use course::{Around, Course, PathClock, PathTime, Track, approach, reference_at, transfer};
 pub use flight::{Action, Event, Flight, Key, Status};
 pub use health::{BatteryLevel, EstimatorReport, SystemReport};
+pub use law::{FollowLaw, Motion};
 pub use lift::{Lift, Weighed};
 pub use modes::{Mode, Stack};
 pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
@@ -49,7 +52,7 @@ pub use runner::{
     Console, Due, EVENTS, PARAMETERS, Parking, Part, Record, Ride, RunError, StreamFigures, Supervisor, TLOG,
     raise_priority, run, send_due,
 };
-pub use safety::{Guide, Lead, Streamed, Streamer};
+pub use safety::{Feeding, Guide, Lead, SetpointBounds, Streamed, Streamer};
 pub use setpoint::{Place, Setpoint};
 pub use sortie::{Check, Origin, Settings, Sortie};
 pub use target::{MessageId, Order, OutOfRange, ParameterName, Period, TakeoffHeight, Target, heartbeat};

@@ -67,7 +67,7 @@ impl Cause {
     #[must_use]
     pub fn response(&self) -> Response {
         match self {
-            Self::Override(_) | Self::Failsafe(_) | Self::Reboot => Response::HandsOff,
+            Self::Override(_) | Self::Failsafe(_) => Response::HandsOff,
             Self::LinkLost(_) => Response::Wait,
             Self::Estimator(_) | Self::Battery(_) | Self::NotReached(_) | Self::Refused(_) => Response::Land,
             _ => Response::Hold,

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::course::Course;
 use super::preflight::{HOVER, ROTORS};
-use crate::log::{ComponentId, SystemId};
+use crate::log::{ComponentId, Nonce, SystemId};
 use crate::vehicle::Limits;
 
 /// One flight, as ordered.
@@ -18,8 +18,10 @@ pub struct Sortie {
     pub gravity_m_s2: f64,
     /// the vehicle by its system id; without it the only one on the link
     pub system: Option<SystemId>,
-    /// the order to arm a vehicle that is not the embedded simulated one
+    /// the order to arm whatever answers on the link
     pub may_arm: bool,
+    /// what this program gave to the simulated vehicle that it started itself: that one is armed without the order
+    pub own_vehicle: Option<Nonce>,
     /// how
     pub settings: Settings,
 }
@@ -91,6 +93,8 @@ pub struct Settings {
     pub gone_after: Duration,
     /// somebody else checks parameters and message rates and says so by [`Event::Cleared`](super::Event)
     pub await_clearance: bool,
+    /// the operator's word is waited for before the vehicle is armed ([`Key::Arm`](super::Key))
+    pub await_word: bool,
     /// a refusal by one of these is a warning
     pub accepted: Vec<Check>,
 }
@@ -114,6 +118,7 @@ impl Default for Settings {
             watch_max: Duration::from_secs(3600),
             gone_after: Duration::from_secs(120),
             await_clearance: false,
+            await_word: false,
             accepted: Vec::new(),
         }
     }

@@ -12,48 +12,13 @@ use super::modes::Stack;
 use super::news::Novelty;
 use super::order::SendingOrder;
 use super::reset::{Pose, Step};
+pub use super::state::{FlightState, Motion, Seen};
 use crate::frames::Attitude;
 use crate::log::{self, Decoder, Frame, Payload, Quantity, Record};
 
-/// A value with when it arrived, on the flight's clock.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen<T> {
-    /// when
-    pub at: Duration,
-    /// what
-    pub value: T,
-}
-
-/// Place and motion of one instant, world NWU.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Motion {
-    /// s of the vehicle's clock
-    pub time_s: f64,
-    /// m
-    pub position_m: Vector3<f64>,
-    /// m/s
-    pub velocity_m_s: Vector3<f64>,
-}
-
-/// The vehicle's own flight state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FlightState {
-    /// HEARTBEAT.custom_mode
-    pub custom_mode: u32,
-    /// motors may turn
-    pub armed: bool,
-    /// MAV_STATE
-    pub system_status: u8,
-}
-
-/// MAV_STATE values at which the autopilot itself has taken measures.
-const STATE_CRITICAL: u8 = 5;
-const STATE_EMERGENCY: u8 = 6;
-const STATE_TERMINATION: u8 = 8;
 const POSITION_TARGET: u32 = 85;
 const ODOMETRY: u32 = 331;
-/// MAV_LANDED_STATE.
-const ON_GROUND: f64 = 1.0;
+const LANDED_STATE_ON_GROUND: f64 = 1.0;
 const ARMED: u8 = 128;
 /// An autopilot that started anew has been on for no longer than this beyond the silence before, s.
 const STARTED_S: f64 = 20.0;
@@ -65,8 +30,8 @@ const JUMP_M: f64 = 0.7;
 const JUMP_GAP_S: f64 = 0.5;
 /// Positions further apart are not one stream.
 const POSITION_GAP: Duration = Duration::from_secs(1);
-/// EXTENDED_SYS_STATE comes five times a second; one in five may be lost.
-const LANDED_VALID: Duration = Duration::from_secs(2);
+/// "On the ground" counts while it was said within the first of these, and after it was said for the second.
+const LANDED_VALID: (Duration, Duration) = (Duration::from_secs(2), Duration::from_secs(1));
 /// The estimator's reports pass through tests that fail for an instant; faults this long count.
 const STATUS_VALID: Duration = Duration::from_secs(3);
 
@@ -89,6 +54,8 @@ pub struct Telemetry {
     pub attitude: Option<Seen<Attitude>>,
     /// on the ground, as EXTENDED_SYS_STATE says
     pub landed: Option<Seen<bool>>,
+    /// since when it says so without a break
+    landed_since: Option<Duration>,
     /// what the estimator says
     pub estimator: Option<Seen<EstimatorReport>>,
     /// since when the estimator is good without a break
@@ -131,6 +98,7 @@ impl Telemetry {
             motion: None,
             attitude: None,
             landed: None,
+            landed_since: None,
             estimator: None,
             estimator_good_since: None,
             estimator_bad_since: None,
@@ -245,7 +213,7 @@ impl Telemetry {
                 }
                 (Quantity::AngularRate, &[x, y, z]) => rates = Some(Vector3::new(x, y, z)),
                 (Quantity::LandedState, &[state]) => {
-                    *landed = Some(Seen { at: now, value: (state - ON_GROUND).abs() < 0.5 });
+                    *landed = Some(Seen { at: now, value: (state - LANDED_STATE_ON_GROUND).abs() < 0.5 });
                 }
                 (quantity @ (Quantity::ActuatorCommand | Quantity::RotorSpeed), values) => {
                     outputs.push(Outputs { quantity, source: stream.key().source, values: values.to_vec() });
@@ -267,6 +235,9 @@ impl Telemetry {
         });
         if frame.header().message_id == POSITION_TARGET {
             news.push(Novelty::Target(target_m));
+        }
+        if let Some(Seen { at, value }) = self.landed {
+            self.landed_since = value.then(|| self.landed_since.unwrap_or(at));
         }
         let oriented = self.attitude.filter(|seen| seen.at == now).map(|seen| seen.value);
         let pose = position.zip(velocity).zip(oriented.zip(rates));
@@ -361,7 +332,7 @@ impl Telemetry {
         self.arming.is_armed()
     }
 
-    /// A HEARTBEAT says that the motors are off, nothing else agrees, and it is not believed yet.
+    /// A HEARTBEAT says "disarmed" and is not believed yet.
     #[must_use]
     pub fn is_arming_contradicted(&self) -> bool {
         self.arming.is_contradicted()
@@ -379,16 +350,16 @@ impl Telemetry {
         self.landed.is_some_and(|landed| landed.value)
     }
 
-    /// It says so, and said it lately.
+    /// It says so, said it lately, and has said nothing else for a while: single frames can be forged or old.
     fn is_landed_at(&self, now: Duration) -> bool {
-        self.landed.is_some_and(|landed| landed.value && now.saturating_sub(landed.at) < LANDED_VALID)
+        let fresh = self.landed.is_some_and(|landed| now.saturating_sub(landed.at) < LANDED_VALID.0);
+        fresh && self.landed_since.is_some_and(|since| now.saturating_sub(since) >= LANDED_VALID.1)
     }
 
     /// The autopilot has taken measures of its own.
     #[must_use]
     pub fn is_in_failsafe(&self) -> bool {
-        let bad = [STATE_CRITICAL, STATE_EMERGENCY, STATE_TERMINATION];
-        self.state.is_some_and(|state| bad.contains(&state.value.system_status))
+        self.state.is_some_and(|state| state.value.is_in_failsafe())
     }
 
     /// Warnings and errors that the vehicle said since `since`, the same only once.

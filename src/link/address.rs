@@ -1,5 +1,6 @@
 //! Where a link goes: `udpin:HOST:PORT` and its like.
 
+use crate::text;
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -140,9 +141,9 @@ impl fmt::Display for Address {
             Self::TcpOut { host, port } => ("tcpout", host, port),
             Self::Serial { path, baud, flow_control } => {
                 let flow = if *flow_control { ":rtscts" } else { "" };
-                return write!(f, "serial:{}:{baud}{flow}", path.display());
+                return write!(f, "serial:{}:{baud}{flow}", text::path(&path));
             }
-            Self::Pty { path } => return write!(f, "pty:{}", path.display()),
+            Self::Pty { path } => return write!(f, "pty:{}", text::path(&path)),
         };
         if host.contains(':') {
             write!(f, "{kind}:[{host}]:{port}")

@@ -1,5 +1,6 @@
 //! Why a log cannot be read.
 
+use crate::text;
 use std::path::PathBuf;
 
 use super::frame::SystemId;
@@ -8,7 +9,7 @@ use super::frame::SystemId;
 #[derive(Debug, thiserror::Error)]
 pub enum LogError {
     /// the file cannot be opened
-    #[error("cannot open {}: {source}", path.display())]
+    #[error("cannot open {}: {source}", text::path(&path))]
     Open {
         /// which file
         path: PathBuf,
@@ -39,7 +40,7 @@ pub enum LogError {
         raw_capture: bool,
     },
     /// the file's name does not say what it is
-    #[error("expected a log named *.tlog or *.csv, got {}", path.display())]
+    #[error("expected a log named *.tlog or *.csv, got {}", text::path(&path))]
     UnknownFormat {
         /// which file
         path: PathBuf,

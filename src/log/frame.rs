@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::crc::{CrcSeeds, checksum};
+use crate::text;
 
 /// Marker of a MAVLink 1 frame.
 pub const MARKER_V1: u8 = 0xFE;
@@ -217,7 +218,7 @@ impl<'a> Frame<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Payload<'a>(pub &'a [u8]);
 
-impl Payload<'_> {
+impl<'a> Payload<'a> {
     #[inline]
     fn field<const N: usize>(self, offset: usize) -> [u8; N] {
         if let Some(field) = self.0.get(offset..).and_then(<[u8]>::first_chunk::<N>) {
@@ -278,12 +279,18 @@ impl Payload<'_> {
         std::array::from_fn(|index| self.f32(offset + 4 * index))
     }
 
-    /// Text up to the first zero byte, at most `bytes` long; other than UTF-8 is replaced.
+    /// Text up to the first zero byte, at most `bytes` long; other than UTF-8 is replaced, and what would command a
+    /// terminal or break a line is escaped.
     #[must_use]
     pub fn text(self, offset: usize, bytes: usize) -> String {
+        text::clean(&String::from_utf8_lossy(self.text_bytes(offset, bytes)))
+    }
+
+    /// As [`Self::text`], as it came: for a text in several messages.
+    pub(super) fn text_bytes(self, offset: usize, bytes: usize) -> &'a [u8] {
         let field = self.0.get(offset..).unwrap_or_default();
         let field = &field[..bytes.min(field.len())];
         let end = field.iter().position(|&byte| byte == 0).unwrap_or(field.len());
-        String::from_utf8_lossy(&field[..end]).into_owned()
+        &field[..end]
     }
 }

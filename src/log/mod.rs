@@ -28,7 +28,7 @@ pub use builder::RecordingBuilder;
 pub use clock::{Anchor, Stamp};
 pub use crc::{CrcSeeds, checksum};
 pub use decode::{DecodeReport, Decoder, Event, Source, StreamId, Vehicle};
-pub use embedded::EMBEDDED_UID2;
+pub use embedded::{EMBEDDED_UID2, Nonce};
 pub use error::LogError;
 pub use flights::{Flights, Hold, LogFlight};
 pub use flown::who_flew;

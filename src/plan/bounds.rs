@@ -247,6 +247,26 @@ pub fn bounds_of(limits: &Limits, vehicle: &Vehicle) -> Vec<Bound> {
     bounds
 }
 
+/// Of the full thrust of a rotor and of what is left to each of its bounds in hover, the lesser is kept free by a plan:
+/// gusts, drag and the controller itself need it, and a rotor at its bound makes another flight than the planned one.
+const ROTOR_MARGIN: (f64, f64) = (0.1, 0.25);
+
+/// The bounds within which a flight is planned: those of [`bounds_of`], with a margin to the rotors' own.
+#[must_use]
+pub fn bounds_to_plan_in(limits: &Limits, vehicle: &Vehicle) -> Vec<Bound> {
+    let hover_n = vehicle.body.mass_kg * vehicle.gravity_m_s2 / vehicle.rotors.len() as f64;
+    let (of_full, of_rest) = ROTOR_MARGIN;
+    let mut bounds = bounds_of(limits, vehicle);
+    for bound in &mut bounds {
+        if let (Quantity::RotorThrust(_), Some(min), Some(max)) = (bound.quantity, bound.min, bound.max) {
+            let margin = |rest_n: f64| (of_full * (max - min)).min(of_rest * rest_n).max(0.0);
+            bound.min = Some(min + margin(hover_n - min));
+            bound.max = Some(max - margin(max - hover_n));
+        }
+    }
+    bounds
+}
+
 fn tighter(a: Option<f64>, b: Option<f64>, choose: fn(f64, f64) -> f64) -> Option<f64> {
     match (a, b) {
         (Some(a), Some(b)) => Some(choose(a, b)),

@@ -1,7 +1,7 @@
 //! Plans an excitation trajectory: from limits and a criterion to coefficients, margins and the
 //! standard errors that the flight will have.
 
-use super::bounds::{Bound, Dynamics, Quantity, bounds_of};
+use super::bounds::{Bound, Dynamics, Quantity, bounds_of, bounds_to_plan_in};
 use super::check::{CheckReport, SAMPLE_S, Violation, check};
 use super::criterion::{Criterion, condition_number, scaled_condition_number};
 use super::descent::Problem;
@@ -11,12 +11,15 @@ use super::information::GramSampler;
 use super::noise::{NoiseModel, parameter_scale};
 use super::optimise::Search;
 use super::space::{AxisStart, SeriesSpace};
-use crate::trajectory::FourierTrajectory;
+use crate::trajectory::{FourierTrajectory, SizeError, check_size};
 use crate::vehicle::{Limits, Vehicle};
 use nalgebra::Vector4;
 
 /// Samples a period for the information; [`GramSampler`] says why so few do.
 const INFORMATION_SAMPLES_PER_HARMONIC: u32 = 13;
+
+/// Random starts of a search: each is held in memory.
+const STARTS_MAX: u64 = 100_000;
 
 /// What is asked of the planner.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,6 +98,9 @@ pub enum PlanError {
         /// what came
         came: String,
     },
+    /// a flight beyond all measure
+    #[error(transparent)]
+    Size(#[from] SizeError),
     /// limits that cannot be kept
     #[error("limits in conflict: {0}")]
     Conflict(#[from] Conflict),
@@ -137,6 +143,8 @@ pub fn plan(
         let assessment = assess(&trajectory, vehicle, &problem.bounds, request);
         if assessment.check.first_violation.is_none() {
             let criterion_value = best.log_value.exp();
+            // what is left is told to the bounds themselves
+            let assessment = assess(&trajectory, vehicle, &bounds_of(limits, vehicle), request);
             return Ok(Plan { trajectory, criterion_value, assessment });
         }
         best = search.polish(&problem, best.unknowns, whole(samples));
@@ -205,7 +213,7 @@ fn problem_of(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Prob
         sampler: GramSampler::new(&space, samples, information, vehicle.gravity_m_s2),
         criterion: request.criterion,
         parameter_scale: parameter_scale(vehicle),
-        bounds: bounds_of(limits, vehicle),
+        bounds: bounds_to_plan_in(limits, vehicle),
         dynamics: Dynamics::new(vehicle),
         space,
     }
@@ -252,8 +260,9 @@ fn check_request(request: &PlanRequest) -> Result<(), PlanError> {
     if !(4..=20).contains(&request.harmonics) {
         return refuse("harmonics", "4 to 20", request.harmonics.to_string());
     }
-    if request.starts == 0 || request.repeats == 0 {
-        return refuse("starts and repeats", "at least one", "0".to_owned());
+    check_size(request.period_s, whole_harmonics(request), request.repeats)?;
+    if request.starts == 0 || request.starts > STARTS_MAX {
+        return refuse("starts", "1 to 100000", request.starts.to_string());
     }
     let place =
         [request.start.x_m, request.start.y_m, request.start.z_m.unwrap_or(0.0), request.start.yaw_rad];
@@ -261,6 +270,11 @@ fn check_request(request: &PlanRequest) -> Result<(), PlanError> {
         return refuse("start", "finite numbers", format!("{place:?}"));
     }
     Ok(())
+}
+
+/// As a count of values.
+fn whole_harmonics(request: &PlanRequest) -> usize {
+    usize::try_from(request.harmonics).unwrap_or(usize::MAX)
 }
 
 /// A count that is known to be small and positive, as an integer.

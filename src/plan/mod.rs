@@ -10,6 +10,7 @@
 //! quadratic, descent, optimise   one step, one start, many starts
 //! noise, expected   what the flight will determine, and how well
 //! excitation   from limits to a plan
+//! room         walls, ceiling and floor where none are stated
 //! ```
 
 mod bounds;
@@ -23,11 +24,12 @@ mod information;
 mod noise;
 mod optimise;
 mod quadratic;
+mod room;
 mod sensitivity;
 mod space;
 mod transition;
 
-pub use bounds::{Bound, Dynamics, Instant, Quantity, bounds_of, parameters_of};
+pub use bounds::{Bound, Dynamics, Instant, Quantity, bounds_of, bounds_to_plan_in, parameters_of};
 pub use check::{CheckReport, Margin, SAMPLE_S, Violation, check};
 pub use criterion::{Criterion, condition_number, scaled_condition_number};
 pub use excitation::{Assessment, Plan, PlanError, PlanRequest, assess, plan, search_of};
@@ -36,5 +38,6 @@ pub use feasible::{Conflict, StartPlace, feasible};
 pub use information::{GramSampler, Matrix7};
 pub use noise::{NoiseModel, PARAMETERS, RowSpacing, parameter_scale};
 pub use optimise::{Round, Search};
+pub use room::{HEIGHT_ERROR_M, Roomed, floor_m, with_room};
 pub use space::{AxisStart, SeriesSpace};
 pub use transition::{FlightPlan, TransitionError, flight_path};

@@ -1,7 +1,7 @@
 //! A report as one file of HTML: no scripts, nothing loaded from anywhere, light and dark, printable.
 
 use super::InputFile;
-use super::chart::escape;
+use crate::text::markup;
 use std::fmt::Write;
 
 const STYLE: &str = "\
@@ -52,36 +52,36 @@ pub(super) struct Page {
 
 impl Page {
     pub(super) fn new(title: &str, answer: &str) -> Self {
-        let body = format!("<h1>{}</h1>\n<p class=\"answer\">{}</p>\n", escape(title), escape(answer));
+        let body = format!("<h1>{}</h1>\n<p class=\"answer\">{}</p>\n", markup(title), markup(answer));
         Self { title: title.to_owned(), body }
     }
 
     pub(super) fn tags(&mut self, tags: &[String]) {
-        let tags: Vec<String> = tags.iter().map(|tag| format!("<span>{}</span>", escape(tag))).collect();
+        let tags: Vec<String> = tags.iter().map(|tag| format!("<span>{}</span>", markup(tag))).collect();
         let _ = writeln!(self.body, "<p class=\"tags\">{}</p>", tags.concat());
     }
 
     pub(super) fn heading(&mut self, words: &str) {
-        let _ = writeln!(self.body, "<h2>{}</h2>", escape(words));
+        let _ = writeln!(self.body, "<h2>{}</h2>", markup(words));
     }
 
     pub(super) fn note(&mut self, words: &str) {
-        let _ = writeln!(self.body, "<p class=\"note\">{}</p>", escape(words));
+        let _ = writeln!(self.body, "<p class=\"note\">{}</p>", markup(words));
     }
 
     pub(super) fn paragraph(&mut self, words: &str) {
-        let _ = writeln!(self.body, "<p>{}</p>", escape(words));
+        let _ = writeln!(self.body, "<p>{}</p>", markup(words));
     }
 
     pub(super) fn warning(&mut self, words: &str) {
-        let _ = writeln!(self.body, "<p class=\"warn\">{}</p>", escape(words));
+        let _ = writeln!(self.body, "<p class=\"warn\">{}</p>", markup(words));
     }
 
     /// `svg` is an element as the charts make it; without words below it where the caption is empty.
     pub(super) fn figure(&mut self, svg: &str, caption: &str) {
         let caption = match caption {
             "" => String::new(),
-            words => format!("<figcaption>{}</figcaption>", escape(words)),
+            words => format!("<figcaption>{}</figcaption>", markup(words)),
         };
         let _ = writeln!(self.body, "<figure>{svg}{caption}</figure>");
     }
@@ -94,8 +94,8 @@ impl Page {
         let heads: String = heads
             .iter()
             .map(|head| match head.strip_suffix('|') {
-                Some(head) => format!("<th class=\"n\">{}</th>", escape(head)),
-                None => format!("<th>{}</th>", escape(head)),
+                Some(head) => format!("<th class=\"n\">{}</th>", markup(head)),
+                None => format!("<th>{}</th>", markup(head)),
             })
             .collect();
         let rows: String = rows
@@ -104,8 +104,8 @@ impl Page {
                 let cells: String = row
                     .iter()
                     .map(|cell| match cell {
-                        Cell::Text(text) => format!("<td>{}</td>", escape(text)),
-                        Cell::Number(text) => format!("<td class=\"n\">{}</td>", escape(text)),
+                        Cell::Text(text) => format!("<td>{}</td>", markup(text)),
+                        Cell::Number(text) => format!("<td class=\"n\">{}</td>", markup(text)),
                     })
                     .collect();
                 format!("<tr>{cells}</tr>\n")
@@ -114,7 +114,7 @@ impl Page {
         let _ = writeln!(
             self.body,
             "<p class=\"cap\">{}</p><div class=\"wide\"><table><thead><tr>{heads}</tr></thead><tbody>\n{rows}</tbody></table></div>",
-            escape(caption)
+            markup(caption)
         );
     }
 
@@ -134,7 +134,7 @@ impl Page {
     pub(super) fn finish(self) -> String {
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
-            escape(&self.title),
+            markup(&self.title),
             self.body
         )
     }

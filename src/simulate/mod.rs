@@ -12,6 +12,7 @@ pub mod pid;
 mod plant;
 mod reference;
 mod sensors;
+mod shaper;
 mod vehicles;
 
 pub use allocation::Allocation;
@@ -22,6 +23,7 @@ pub use ground::{GroundContact, GroundSettings};
 pub use plant::{PLANT_STATES, Plant, PlantMemory, Push};
 pub use reference::{RandomTrajectory, Reference};
 pub use sensors::{NoiseLevels, StreamSkew, TelemetryRates, TelemetrySettings};
+pub use shaper::{GuidedTarget, Shaper, ShaperLaw, ShaperLimits, Wish, jerk_within};
 pub use vehicles::{VehiclePair, random_vehicle};
 
 use std::time::Duration;

@@ -8,16 +8,13 @@ use crate::frames::{
 };
 use crate::log::Payload;
 use crate::physics::State;
+use crate::simulate::GuidedTarget;
 
 /// What a setpoint asks for, world; what is not asked for is NaN or `None`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Demand {
-    /// m
-    pub(super) position_m: Vector3<f64>,
-    /// m/s
-    pub(super) velocity_m_s: Vector3<f64>,
-    /// m/s^2
-    pub(super) acceleration_m_s2: Vector3<f64>,
+    /// place and how to move there
+    pub(super) motion: GuidedTarget,
     /// about up
     pub(super) yaw_rad: Option<f64>,
     /// about up
@@ -197,7 +194,8 @@ impl Demand {
     /// pairs.
     pub(super) fn is_complete(&self) -> bool {
         let has = |axis: usize| {
-            [&self.position_m, &self.velocity_m_s, &self.acceleration_m_s2].map(|v| v[axis].is_finite())
+            [&self.motion.position_m, &self.motion.velocity_m_s, &self.motion.acceleration_m_s2]
+                .map(|v| v[axis].is_finite())
         };
         (0..3).all(|axis| has(axis).contains(&true)) && has(0) == has(1)
     }
@@ -238,7 +236,8 @@ fn px4(fields: &Fields, estimate: &State) -> Result<Demand, Refusal> {
         return Err(Refusal::Dropped);
     }
     let (yaw_rad, yaw_rate_rad_s) = (fields.yaw_rad, fields.yaw_rate_rad_s);
-    Ok(Demand { position_m, velocity_m_s, acceleration_m_s2, yaw_rad, yaw_rate_rad_s })
+    let motion = GuidedTarget { position_m, velocity_m_s, acceleration_m_s2 };
+    Ok(Demand { motion, yaw_rad, yaw_rate_rad_s })
 }
 
 /// ArduPilot: any bit of a group ignores the whole vector; what it cannot use stops the vehicle.
@@ -279,7 +278,8 @@ fn ardupilot(fields: &Fields, estimate: &State) -> Result<Demand, Refusal> {
     }
     let turned = if body { estimate.attitude.euler_angles().2 } else { 0.0 };
     let yaw_rad = fields.yaw_rad.map(|yaw| yaw + turned);
-    Ok(Demand { position_m, velocity_m_s, acceleration_m_s2, yaw_rad, yaw_rate_rad_s: fields.yaw_rate_rad_s })
+    let motion = GuidedTarget { position_m, velocity_m_s, acceleration_m_s2 };
+    Ok(Demand { motion, yaw_rad, yaw_rate_rad_s: fields.yaw_rate_rad_s })
 }
 
 /// A world position as MAVLink has it.

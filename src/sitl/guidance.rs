@@ -5,10 +5,9 @@ use std::time::Duration;
 use nalgebra::Vector3;
 
 use super::demand::{AttitudeDemand, Demand, Lift};
-use super::shaper::{Shaper, ShaperLimits, Wish};
 use super::tuning::Tuning;
 use crate::physics::State;
-use crate::simulate::{AutopilotGains, Setpoint};
+use crate::simulate::{AutopilotGains, GuidedTarget, Setpoint, Shaper, ShaperLimits, Wish};
 
 /// What the vehicle is about.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +86,7 @@ impl Guidance {
     pub(super) fn shift(&mut self, by_m: Vector3<f64>) {
         self.shaper.position_m += by_m;
         if let Task::Direct(demand) | Task::Shaped(demand, _) = &mut self.task {
-            demand.position_m += by_m;
+            demand.motion.position_m += by_m;
         }
     }
 
@@ -98,11 +97,11 @@ impl Guidance {
             Task::Turn(AttitudeDemand { lift: Lift::Thrust(thrust), .. }, _) => *thrust > hover,
             Task::Turn(AttitudeDemand { lift: Lift::Climb(climb_m_s), .. }, _) => *climb_m_s > 0.0,
             Task::Direct(demand) => {
-                demand.position_m.z - state.position_m.z > 0.2
-                    || demand.velocity_m_s.z > 0.1
-                    || (demand.position_m.z.is_nan()
-                        && demand.velocity_m_s.z.is_nan()
-                        && demand.acceleration_m_s2.z > 0.5)
+                demand.motion.position_m.z - state.position_m.z > 0.2
+                    || demand.motion.velocity_m_s.z > 0.1
+                    || (demand.motion.position_m.z.is_nan()
+                        && demand.motion.velocity_m_s.z.is_nan()
+                        && demand.motion.acceleration_m_s2.z > 0.5)
             }
             _ => false,
         }
@@ -138,8 +137,12 @@ impl Guidance {
             return self.drifting(&demand, state, (&tuning.limits, period_s));
         }
         self.next_leg(state, home_m);
-        let (wish, limits) = self.wish(state, home_m, (tuning, now));
+        self.time_out(tuning, now);
+        let (wish, limits) = self.wish(state, home_m, tuning);
         self.shaper.step(&wish, &limits, period_s);
+        if let Task::Shaped(demand, _) = &mut self.task {
+            demand.motion.step(period_s);
+        }
         let yaw_rate_rad_s = self.turn(tuning, now, period_s);
         Setpoint {
             position_m: self.shaper.position_m,
@@ -200,12 +203,16 @@ impl Guidance {
         }
     }
 
-    fn wish(
-        &self,
-        state: &State,
-        home_m: &Vector3<f64>,
-        (tuning, now): (&Tuning, Duration),
-    ) -> (Wish, ShaperLimits) {
+    /// ArduPilot: GUID_TIMEOUT after the last setpoint its velocity and acceleration are zero.
+    fn time_out(&mut self, tuning: &Tuning, now: Duration) {
+        if let Task::Shaped(demand, came) = &mut self.task
+            && now.saturating_sub(*came) > tuning.setpoint_timeout
+        {
+            demand.motion.time_out();
+        }
+    }
+
+    fn wish(&self, state: &State, home_m: &Vector3<f64>, tuning: &Tuning) -> (Wish, ShaperLimits) {
         let mut limits = tuning.limits;
         let zero = Vector3::zeros();
         let mut wish =
@@ -225,10 +232,7 @@ impl Guidance {
             Task::Return(Leg::Across(height_m)) => {
                 wish.position_m = Vector3::new(home_m.x, home_m.y, height_m);
             }
-            Task::Shaped(demand, came) => {
-                let stale = now.saturating_sub(came) > tuning.setpoint_timeout;
-                wish = shaped_wish(&demand, stale, &self.shaper);
-            }
+            Task::Shaped(demand, _) => wish = shaped_wish(&demand.motion, &self.shaper),
         }
         (wish, limits)
     }
@@ -265,8 +269,8 @@ impl Guidance {
     fn direct(&mut self, demand: &Demand, state: &State, limits: &ShaperLimits, period_s: f64) -> Setpoint {
         let mut velocity = Vector3::zeros();
         for axis in 0..3 {
-            let ahead = demand.velocity_m_s[axis];
-            let back = (demand.position_m[axis] - state.position_m[axis]) * self.gains.position[axis];
+            let ahead = demand.motion.velocity_m_s[axis];
+            let back = (demand.motion.position_m[axis] - state.position_m[axis]) * self.gains.position[axis];
             velocity[axis] = match (back.is_nan(), ahead.is_nan()) {
                 (false, false) => back + ahead,
                 (false, true) => back,
@@ -285,26 +289,24 @@ impl Guidance {
             // the position error is in the velocity already
             position_m: state.position_m,
             velocity_m_s: Vector3::new(level.x, level.y, climb),
-            acceleration_m_s2: demand.acceleration_m_s2.map(|a| if a.is_nan() { 0.0 } else { a }),
+            acceleration_m_s2: demand.motion.acceleration_m_s2.map(|a| if a.is_nan() { 0.0 } else { a }),
             yaw_rad: self.yaw_rad,
             yaw_rate_rad_s: demand.yaw_rate_rad_s.unwrap_or(0.0),
         }
     }
 }
 
-/// ArduPilot: with position the velocity and acceleration are fed forward; after GUID_TIMEOUT both are zero
-/// and the position is kept.
-fn shaped_wish(demand: &Demand, stale: bool, shaper: &Shaper) -> Wish {
-    let given = |vector: &Vector3<f64>| vector.x.is_finite() && !stale;
-    let has_position = demand.position_m.x.is_finite();
-    let velocity_m_s = if given(&demand.velocity_m_s) {
-        demand.velocity_m_s
-    } else if given(&demand.acceleration_m_s2) && !has_position {
+/// ArduPilot: with position the velocity and acceleration are fed forward.
+fn shaped_wish(target: &GuidedTarget, shaper: &Shaper) -> Wish {
+    let given = |vector: &Vector3<f64>| vector.x.is_finite();
+    let velocity_m_s = if given(&target.velocity_m_s) {
+        target.velocity_m_s
+    } else if given(&target.acceleration_m_s2) && !given(&target.position_m) {
         shaper.velocity_m_s
     } else {
         Vector3::zeros()
     };
     let acceleration_m_s2 =
-        if given(&demand.acceleration_m_s2) { demand.acceleration_m_s2 } else { Vector3::zeros() };
-    Wish { position_m: demand.position_m, velocity_m_s, acceleration_m_s2 }
+        if given(&target.acceleration_m_s2) { target.acceleration_m_s2 } else { Vector3::zeros() };
+    Wish { position_m: target.position_m, velocity_m_s, acceleration_m_s2 }
 }

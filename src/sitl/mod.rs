@@ -31,7 +31,6 @@ mod safety;
 mod serve;
 mod setpoints;
 mod settings;
-mod shaper;
 mod streams;
 mod telemetry;
 mod tuning;

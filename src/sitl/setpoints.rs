@@ -55,7 +55,7 @@ impl Autopilot {
         }
         match demand {
             // outside the fence: dropped, nobody is told
-            Ok(demand) if self.is_fenced_out(&demand.position_m) => {}
+            Ok(demand) if self.is_fenced_out(&demand.motion.position_m) => {}
             Ok(demand) => self.guidance.begin(Task::Shaped(demand, now), &state),
             Err(_) => self.guidance.begin(Task::Hold, &state),
         }

@@ -6,6 +6,7 @@ use super::{AutopilotKind, SitlError};
 use crate::fence::FenceItem;
 use crate::frames::Geodetic;
 use crate::link::SigningKey;
+use crate::log::Nonce;
 use crate::physics::ActiveEffect;
 use crate::simulate::{FlightSettings, NoiseLevels, StreamSkew};
 use crate::vehicle::Vehicle as Description;
@@ -95,6 +96,8 @@ pub struct Settings {
     pub fence: Vec<FenceItem>,
     /// signs what it sends, and believes only what is signed with it (ArduPilot believes everything on its first link)
     pub signing_key: Option<SigningKey>,
+    /// what the program that starts it knows it by
+    pub nonce: Option<Nonce>,
     /// values instead of the autopilot's defaults
     pub parameters: Vec<(String, f64)>,
     /// host's time at boot, microseconds since 1970 UTC
@@ -128,6 +131,7 @@ impl Settings {
             battery_drop_v_s: base.battery_drop_v_s,
             fence: Vec::new(),
             signing_key: None,
+            nonce: None,
             parameters: Vec::new(),
             boot_unix_us: 1_700_000_000_000_000,
         }

@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
-use super::AutopilotKind;
-use super::Mode;
 use super::battery::Thresholds;
 use super::demand::ThrustField;
 use super::fence::FenceRules;
 use super::parameters::Parameters;
-use super::shaper::ShaperLimits;
+use super::{ArduPilotRelease, AutopilotKind, Mode};
+use crate::simulate::{ShaperLaw, ShaperLimits, jerk_within};
+use crate::units::rad_from_deg;
 
 /// What a failsafe does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,7 +83,7 @@ impl Tuning {
     pub(super) fn of(kind: AutopilotKind, parameters: &Parameters) -> Self {
         match kind {
             AutopilotKind::Px4 => px4(parameters),
-            AutopilotKind::ArduPilot(_) => ardupilot(parameters),
+            AutopilotKind::ArduPilot(release) => ardupilot(release, parameters),
         }
     }
 }
@@ -119,6 +119,8 @@ fn px4(p: &Parameters) -> Tuning {
             acceleration_m_s2: at_least("MPC_ACC_HOR"),
             vertical_acceleration_m_s2: at_least("MPC_ACC_DOWN_MAX"),
             jerk_m_s3: at_least("MPC_JERK_AUTO"),
+            vertical_jerk_m_s3: at_least("MPC_JERK_AUTO"),
+            law: ShaperLaw::default(),
         },
         takeoff_speed_m_s: at_least("MPC_TKO_SPEED"),
         land_speed_m_s: at_least("MPC_LAND_SPEED"),
@@ -198,21 +200,43 @@ fn ardupilot_battery(choice: i32) -> Action {
     }
 }
 
-fn ardupilot(p: &Parameters) -> Tuning {
+/// What GUIDED allows its reference.
+fn ardupilot_limits(release: ArduPilotRelease, p: &Parameters) -> ShaperLimits {
+    let limit = |old: &str, new: &str| p.first(&[(new, 1.0), (old, 0.01)]).max(LEAST);
+    let jerk = |old: &str, new: &str| p.first(&[(new, 1.0), (old, 1.0)]).max(LEAST);
+    let turning = |axis: char| {
+        let degrees =
+            p.first(&[(&format!("ATC_ACC_{axis}_MAX"), 1.0), (&format!("ATC_ACCEL_{axis}_MAX"), 0.01)]);
+        rad_from_deg(degrees)
+    };
+    let acceleration_m_s2 = limit("WPNAV_ACCEL", "WP_ACC");
+    ShaperLimits {
+        speed_m_s: limit("WPNAV_SPEED", "WP_SPD"),
+        climb_m_s: limit("WPNAV_SPEED_UP", "WP_SPD_UP"),
+        descent_m_s: limit("WPNAV_SPEED_DN", "WP_SPD_DN"),
+        acceleration_m_s2,
+        vertical_acceleration_m_s2: limit("WPNAV_ACCEL_Z", "WP_ACC_Z"),
+        jerk_m_s3: jerk_within(
+            jerk("PSC_JERK_XY", "PSC_NE_JERK"),
+            acceleration_m_s2,
+            turning('R').min(turning('P')),
+        ),
+        vertical_jerk_m_s3: jerk("PSC_JERK_Z", "PSC_D_JERK"),
+        law: match release {
+            ArduPilotRelease::V4_6 => ShaperLaw::UpTo4_6,
+            ArduPilotRelease::V4_7 => ShaperLaw::From4_7,
+        },
+    }
+}
+
+fn ardupilot(release: ArduPilotRelease, p: &Parameters) -> Tuning {
     // metres from either release's name and unit
     let metres = |old: &str, new: &str| p.first(&[(new, 1.0), (old, 0.01)]);
     let limit = |old: &str, new: &str| metres(old, new).max(LEAST);
     let skipped = p.find("ARMING_SKIPCHK").is_some() && p.value("ARMING_SKIPCHK") < 0.0;
     let unchecked = p.find("ARMING_CHECK").is_some() && p.value("ARMING_CHECK") == 0.0;
     Tuning {
-        limits: ShaperLimits {
-            speed_m_s: limit("WPNAV_SPEED", "WP_SPD"),
-            climb_m_s: limit("WPNAV_SPEED_UP", "WP_SPD_UP"),
-            descent_m_s: limit("WPNAV_SPEED_DN", "WP_SPD_DN"),
-            acceleration_m_s2: limit("WPNAV_ACCEL", "WP_ACC"),
-            vertical_acceleration_m_s2: limit("WPNAV_ACCEL_Z", "WP_ACC_Z"),
-            jerk_m_s3: p.first(&[("PSC_NE_JERK", 1.0), ("PSC_JERK_XY", 1.0)]).max(LEAST),
-        },
+        limits: ardupilot_limits(release, p),
         takeoff_speed_m_s: limit("WPNAV_SPEED_UP", "WP_SPD_UP"),
         land_speed_m_s: limit("LAND_SPEED", "LAND_SPD_MS"),
         takeoff_height_m: 0.0,

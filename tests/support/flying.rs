@@ -8,15 +8,18 @@ use std::path::Path;
 use std::time::Duration;
 
 use mavid::config::read_vehicle;
+use mavid::fly::parameters::Parameters;
 use mavid::fly::{
-    Action, Around, Cause, Course, Event, Flight, Note, Outcome, Setpoint, Settings, Sortie, Streamed,
-    Streamer,
+    Action, Around, Cause, Course, Event, Feeding, Flight, FollowLaw, Note, Outcome, Setpoint,
+    SetpointBounds, Settings, Sortie, Streamed, Streamer,
 };
-use mavid::log::Frame;
+use mavid::log::{Autopilot, Frame, Nonce};
 use mavid::sitl::{AutopilotKind, LinkId, LinkRole, Settings as VehicleSettings, Vehicle};
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
+use mavid::vehicle::Limits;
 use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
+use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -107,11 +110,17 @@ pub const AROUND: Around = Around {
 pub fn vehicle_settings(kind: AutopilotKind) -> VehicleSettings {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
     let vehicle = read_vehicle(&file).unwrap().vehicle;
-    VehicleSettings { warm_up: Some(Duration::from_secs(2)), ..VehicleSettings::new(vehicle, kind) }
+    VehicleSettings {
+        warm_up: Some(Duration::from_secs(2)),
+        nonce: Some(Nonce::random()),
+        ..VehicleSettings::new(vehicle, kind)
+    }
 }
 
 pub fn sortie(vehicle: &VehicleSettings) -> Sortie {
-    let limits = vehicle.vehicle.limits;
+    let stated = vehicle.vehicle.limits;
+    // its file's floor is above the series' lowest place, and its walls are too near
+    let limits = Limits { x_max_m: Some(3.0), y_max_m: Some(3.0), z_min_m: Some(0.7), ..stated };
     let course = Course::new(&series(), 3, Some(&AROUND), &limits, &vehicle.vehicle).unwrap();
     Sortie {
         course,
@@ -119,6 +128,7 @@ pub fn sortie(vehicle: &VehicleSettings) -> Sortie {
         gravity_m_s2: vehicle.vehicle.gravity_m_s2,
         system: None,
         may_arm: false,
+        own_vehicle: vehicle.nonce,
         settings: Settings { ready_timeout: Duration::from_secs(30), ..Settings::default() },
     }
 }
@@ -146,6 +156,15 @@ impl Flying {
             sequence: 0,
             heard_sequence: 0,
         }
+    }
+
+    /// Setpoints are places ahead, as the checks before a flight choose them for an ArduPilot in a small room.
+    pub fn places_ahead(&mut self) {
+        let values = [("WP_ACC".to_owned(), 2.5)].into();
+        let parameters = Parameters { autopilot: Autopilot::ArduPilot, values, ..Parameters::default() };
+        let law = FollowLaw::of(&parameters).unwrap();
+        let room = SetpointBounds::room(&self.flight.sortie().limits, &Vector3::zeros());
+        self.event(Event::Feed(Feeding::ahead(law, 0.0, room)));
     }
 
     pub fn of(kind: AutopilotKind) -> Self {

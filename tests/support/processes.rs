@@ -63,7 +63,7 @@ pub fn vehicle(autopilot: &str, listen: &str) -> (Running, String) {
 /// Flies it, from the check to the explanation.
 pub fn fly(out: &Path, connect: &str, trajectory: &Path, further: &[&str]) -> Output {
     Command::new(MAVID)
-        .args(["--json", "fly", "--plain", "--connect", connect, "--vehicle", &config("x500.toml")])
+        .args(["--json", "fly", "--plain", "--arm", "--connect", connect, "--vehicle", &config("x500.toml")])
         .args(["--trajectory", &trajectory.display().to_string(), "--out", &out.display().to_string()])
         .args(further)
         .output()

@@ -55,7 +55,7 @@ static SORTIE: LazyLock<(Sortie, Lift)> = LazyLock::new(|| {
     };
     let lift = Lift::new(&vehicle, &Parameters::default());
     let (limits, gravity_m_s2) = (vehicle.limits, vehicle.gravity_m_s2);
-    (Sortie { course, limits, gravity_m_s2, system: None, may_arm: true, settings }, lift)
+    (Sortie { course, limits, gravity_m_s2, system: None, may_arm: true, own_vehicle: None, settings }, lift)
 });
 
 /// The whole of it.

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use mavid::config::parse_vehicle;
 use mavid::link::{Address, Link, LinkOptions};
-use mavid::log::{ComponentId, SystemId};
+use mavid::log::{ComponentId, Nonce, SystemId};
 use mavid::sitl::{AutopilotKind, LinkRole, Pace, Settings, Vehicle, serve};
 use tokio::sync::oneshot;
 
@@ -25,6 +25,8 @@ const LISTEN: &str = "udpin:127.0.0.1:0";
 pub struct Embedded {
     /// where it listens
     pub port: u16,
+    /// what it is known by: another vehicle on that port is not armed
+    pub nonce: Nonce,
     stop: oneshot::Sender<()>,
     thread: JoinHandle<()>,
 }
@@ -34,15 +36,16 @@ impl Embedded {
     pub fn start(effects: Option<PathBuf>) -> Result<Self, CommandError> {
         let (stop, stopped) = oneshot::channel();
         let (listening, port) = channel();
+        let nonce = Nonce::random();
         let work = move || {
-            if let Err(error) = run(effects, stopped, &listening) {
+            if let Err(error) = run((effects, nonce), stopped, &listening) {
                 // the starter waits for one of both
                 let _ = listening.send(Err(error));
             }
         };
         let thread = thread::Builder::new().name("vehicle".into()).spawn(work).map_err(|e| failed(&e))?;
         let port = port.recv().map_err(|error| failed(&error))??;
-        Ok(Self { port, stop, thread })
+        Ok(Self { port, nonce, stop, thread })
     }
 
     /// Ends it.
@@ -58,7 +61,7 @@ fn failed(error: &dyn std::fmt::Display) -> CommandError {
 }
 
 fn run(
-    effects: Option<PathBuf>,
+    (effects, nonce): (Option<PathBuf>, Nonce),
     stopped: oneshot::Receiver<()>,
     listening: &Sender<Result<u16, CommandError>>,
 ) -> Result<(), CommandError> {
@@ -67,6 +70,7 @@ fn run(
         effects: concealed(effects.as_deref(), &described)?,
         warm_up: Some(WARM_UP),
         esc_telemetry: true,
+        nonce: Some(nonce),
         ..Settings::new(described, AutopilotKind::Px4)
     };
     let system = SystemId(settings.system.into());

@@ -11,12 +11,15 @@ use std::time::Instant;
 
 use mavid::config::parse_vehicle;
 use mavid::fly::Ending;
+use mavid::log::SystemId;
+use mavid::text;
 use serde::Serialize;
 
 use super::after_flight::Analysis;
 use super::explain::Explained;
+use super::live::{self, Work};
 use super::sitl::DEFAULT_VEHICLE;
-use super::{CommandError, Outcome, fly, output, plan};
+use super::{CommandError, Outcome, fly, leftover, output, plan};
 use crate::cli::{CriterionName, DemoArgs, FlyArgs, OriginName, PlanArgs};
 use concealed::{Compared, compare, concealed, table};
 use embedded::Embedded;
@@ -24,6 +27,8 @@ use progress::Progress;
 
 /// The room, and how lively it is flown.
 const LIMITS: &str = include_str!("../../../configs/demo/limits.toml");
+/// The system id of the demo's station.
+const STATION: u32 = 255;
 /// The folder where none is given.
 const FOLDER: &str = "mavid-demo";
 
@@ -39,13 +44,18 @@ struct Document {
 
 /// Runs the verb.
 pub fn run(json: bool, args: &DemoArgs) -> Result<Outcome, CommandError> {
+    let args = args.clone();
+    live::run(move |work| show(json, &args, work))
+}
+
+fn show(json: bool, args: &DemoArgs, work: &Work) -> Result<Outcome, CommandError> {
     let since = Instant::now();
     let vehicle = parse_vehicle(DEFAULT_VEHICLE, "the vehicle within the program")?.vehicle;
     // a file that cannot be used is told before the work
     concealed(args.effects.as_deref(), &vehicle)?;
     let folder = folder(args)?;
     let progress = Progress::new(!args.plain && std::io::stderr().is_terminal());
-    let done = story(args, &folder, &progress);
+    let done = story(args, &folder, (&progress, work));
     progress.end();
     let (record, analysis) = done?;
     fly::say(&record);
@@ -62,7 +72,7 @@ pub fn run(json: bool, args: &DemoArgs) -> Result<Outcome, CommandError> {
         let parts = [
             explained.map(Explained::answer),
             Some(table(&rows, &vehicle)),
-            report.map(|path| format!("{took_s:.0} s; report: {}", path.display())),
+            report.map(|path| format!("{took_s:.0} s; report: {}", text::path(&path))),
         ];
         output::text(&parts.into_iter().flatten().collect::<Vec<_>>().join("\n\n"))?;
     }
@@ -73,7 +83,7 @@ pub fn run(json: bool, args: &DemoArgs) -> Result<Outcome, CommandError> {
 fn story(
     args: &DemoArgs,
     folder: &Path,
-    progress: &Progress,
+    (progress, work): (&Progress, &Work),
 ) -> Result<(mavid::fly::Record, Option<Analysis>), CommandError> {
     let vehicle = folder.join("vehicle.toml");
     let (limits, trajectory) = (folder.join("limits.toml"), folder.join("trajectory.toml"));
@@ -85,12 +95,13 @@ fn story(
     let port = embedded.port;
     progress.say(&format!(
         "planned {}; a simulated X500 flown by PX4 listens on UDP port {port}, something about it is concealed",
-        trajectory.display()
+        text::path(&trajectory)
     ));
-    let ride = fly::ride(&fly_args(port, &vehicle, &trajectory, folder))?;
+    let mut ride = fly::ride(&fly_args(port, &vehicle, &trajectory, folder))?;
+    ride.sortie.own_vehicle = Some(embedded.nonce);
     progress.stage("connecting", progress::PLANNED);
     let watched = progress.clone();
-    let record = fly::fly_it(ride, move |pictures, _| watched.follow(pictures));
+    let record = fly::fly_it(ride, work, move |pictures, _| watched.follow(pictures));
     embedded.stop();
     let record = record?;
     let landed = record.outcome.ending == Ending::Landed;
@@ -104,14 +115,7 @@ fn folder(args: &DemoArgs) -> Result<PathBuf, CommandError> {
     let numbered = (2_u32..).map(|number| PathBuf::from(format!("{FOLDER}-{number}")));
     let free = || std::iter::once(PathBuf::from(FOLDER)).chain(numbered).find(|path| !path.exists());
     let folder = args.out.clone().or_else(free).unwrap_or_else(|| PathBuf::from(FOLDER));
-    let tlog = folder.join(mavid::fly::TLOG);
-    if tlog.exists() {
-        let name = tlog.display();
-        return Err(CommandError::Input(format!("--out: {name} exists already; expected a new folder")));
-    }
-    std::fs::create_dir_all(&folder).map_err(|error| {
-        CommandError::Input(format!("cannot make the folder {}: {error}", folder.display()))
-    })?;
+    leftover::make_way(&folder, SystemId(STATION))?;
     Ok(folder)
 }
 
@@ -141,8 +145,9 @@ fn fly_args(port: u16, vehicle: &Path, trajectory: &Path, folder: &Path) -> FlyA
         vehicle: vehicle.to_owned(),
         out: folder.to_owned(),
         arm: false,
+        yes: true,
         system_id: None,
-        station_id: 255,
+        station_id: STATION,
         repeats: None,
         setpoint_hz: 50,
         origin: OriginName::Local,

@@ -13,6 +13,7 @@ use mavid::config::{default_csv_mapping, load_csv_mapping, read_vehicle};
 use mavid::inspect::{Inspection, inspect_csv, inspect_tlog};
 use mavid::log::csv::read_csv;
 use mavid::log::{LoadOptions, SystemId};
+use mavid::text;
 use mavid::vehicle::Vehicle;
 use serde::Serialize;
 
@@ -36,7 +37,7 @@ pub fn run(json: bool, args: &InspectArgs) -> Result<Outcome, CommandError> {
     }
     let vehicle = loaded.as_ref().map(|loaded| &loaded.vehicle);
     let inspection = inspect(args, vehicle)?;
-    let file = args.log.display().to_string();
+    let file = text::path(&args.log);
     if json {
         output::json(&Document { schema: 1, file, inspection: &inspection })?;
     } else {
@@ -48,7 +49,7 @@ pub fn run(json: bool, args: &InspectArgs) -> Result<Outcome, CommandError> {
 fn inspect(args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, CommandError> {
     let path = args.log.as_path();
     if path.is_dir() {
-        let text = format!("expected a log (*.tlog, *.csv), got the folder {}", path.display());
+        let text = format!("expected a log (*.tlog, *.csv), got the folder {}", text::path(&path));
         return Err(CommandError::Input(text));
     }
     let is = |wanted: &str| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
@@ -56,7 +57,7 @@ fn inspect(args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, 
         return csv(path, args, vehicle);
     }
     if !is("tlog") {
-        let text = format!("expected a log named *.tlog or *.csv, got {}", path.display());
+        let text = format!("expected a log named *.tlog or *.csv, got {}", text::path(&path));
         return Err(CommandError::Input(text));
     }
     if args.read.csv_map.is_some() {
@@ -83,6 +84,6 @@ fn csv(path: &Path, args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Ins
 
 /// The message with the file's name, where it has none.
 fn named(path: &Path, message: &str) -> String {
-    let name = path.display().to_string();
+    let name = text::path(&path);
     if message.contains(&name) { message.to_owned() } else { format!("{name}: {message}") }
 }

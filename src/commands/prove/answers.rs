@@ -1,6 +1,7 @@
 //! The answers of a folder of cases, read only after every verdict is sealed.
 
 use mavid::physics::effects::{ALL, by_id};
+use mavid::text;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -41,7 +42,7 @@ pub struct Answers {
 
 /// Reads the answers.
 pub fn read(path: &Path) -> Result<Answers, CommandError> {
-    let refuse = |text: String| CommandError::Input(format!("{}: {text}", path.display()));
+    let refuse = |text: String| CommandError::Input(format!("{}: {text}", text::path(&path)));
     let text = std::fs::read_to_string(path).map_err(|error| refuse(error.to_string()))?;
     let value: Value = serde_json::from_str(&text).map_err(|error| refuse(error.to_string()))?;
     let Value::Object(cases) = value else {

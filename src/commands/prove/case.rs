@@ -8,6 +8,7 @@ use mavid::diagnose::show::{HeldOut, ShowSettings, Shown, on_holdout};
 use mavid::diagnose::{Empirical, ExplainSettings, Explanation, Named, explain};
 use mavid::log::Recording;
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
+use mavid::text;
 use mavid::vehicle::Vehicle;
 use serde::Serialize;
 
@@ -71,7 +72,7 @@ pub struct Gain {
 
 /// Explains a case; whatever fails is part of the verdict.
 pub fn verdict(folder: &Path) -> Verdict {
-    let case = folder.file_name().map_or_else(String::new, |name| name.display().to_string());
+    let case = folder.file_name().map_or_else(String::new, |name| text::path(&name));
     let started = Instant::now();
     let mut sha256 = Vec::new();
     let found = explained(folder, &mut sha256);
@@ -140,7 +141,7 @@ fn explained(folder: &Path, sha256: &mut Vec<String>) -> Result<Found, CommandEr
 /// Those to explain from, and those named `holdout...`.
 fn logs(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), CommandError> {
     let refuse =
-        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", folder.display()));
+        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&folder)));
     let mut all = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(|error| refuse(&error))? {
         let path = entry.map_err(|error| refuse(&error))?.path();
@@ -177,7 +178,7 @@ fn flights_of(
     };
     let flights = ready(load(log, &ReadArgs::default(), &EXPLAINED)?, |flight| {
         condition(&flight.recording, vehicle, &settings)
-            .map_err(|error| CommandError::Input(format!("{}: {error}", log.display())))
+            .map_err(|error| CommandError::Input(format!("{}: {error}", text::path(&log))))
     })?;
     sha256.extend(flights.first().map(|(flight, _)| flight.input.sha256.clone()));
     Ok(flights.into_iter().map(|(flight, signals)| (flight.recording, signals)).collect())

@@ -5,6 +5,7 @@ mod case;
 mod page;
 mod score;
 
+use mavid::text;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -51,11 +52,11 @@ fn check(args: &ProveArgs) -> Result<(), CommandError> {
     if args.out.exists() && !args.out.is_dir() {
         return Err(CommandError::Input(format!(
             "--out: expected a folder, {} is a file",
-            args.out.display()
+            text::path(&args.out)
         )));
     }
     if let Some(file) = args.answers.as_ref().filter(|file| !file.is_file()) {
-        return Err(CommandError::Input(format!("--answers: {} is not a file", file.display())));
+        return Err(CommandError::Input(format!("--answers: {} is not a file", text::path(&file))));
     }
     Ok(())
 }
@@ -85,10 +86,10 @@ fn scored(args: &ProveArgs, verdicts: Vec<Verdict>, sealed_sha256: String) -> Re
         let named: Vec<&str> = found.cases.keys().map(String::as_str).collect();
         return Err(CommandError::Input(format!(
             "{}: expected answers by the names of the cases ({}), got {}; the verdicts are sealed in {}",
-            file.display(),
+            text::path(&file),
             cases.join(", "),
             if named.is_empty() { "none".to_owned() } else { named.join(", ") },
-            args.out.display()
+            text::path(&args.out)
         )));
     }
     let cases: Vec<Scored> =
@@ -110,7 +111,8 @@ fn scored(args: &ProveArgs, verdicts: Vec<Verdict>, sealed_sha256: String) -> Re
 
 /// Folders with a vehicle file, by name; or the folder itself.
 fn case_folders(cases: &Path) -> Result<Vec<PathBuf>, CommandError> {
-    let refuse = |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", cases.display()));
+    let refuse =
+        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&cases)));
     if cases.join(case::VEHICLE).is_file() {
         return Ok(vec![cases.to_owned()]);
     }
@@ -131,13 +133,12 @@ fn case_folders(cases: &Path) -> Result<Vec<PathBuf>, CommandError> {
 /// Writes every verdict and gives the hash of all of them.
 fn seal(folder: &Path, verdicts: &[Verdict]) -> Result<String, CommandError> {
     let failed = |path: &Path, error: std::io::Error| {
-        CommandError::Failure(format!("cannot write {}: {error}", path.display()))
+        CommandError::Failure(format!("cannot write {}: {error}", text::path(&path)))
     };
     std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
     let mut list = String::new();
     for verdict in verdicts {
-        let text = serde_json::to_string_pretty(verdict)
-            .map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))?;
+        let text = output::json_text(verdict)?;
         let path = folder.join(format!("{}.json", verdict.case));
         std::fs::write(&path, &text).map_err(|error| failed(&path, error))?;
         // as `sha256sum` prints it, so that `sha256sum -c` can check the files

@@ -1,5 +1,6 @@
 //! The table for people.
 
+use mavid::text;
 use std::fmt::Write;
 
 use super::Document;
@@ -58,8 +59,12 @@ pub fn page(document: &Document) -> String {
     for note in &document.notes {
         let _ = writeln!(page, "note: {note}");
     }
-    let _ =
-        writeln!(page, "verdicts in {}, sealed as {}", document.verdicts.display(), document.sealed_sha256);
+    let _ = writeln!(
+        page,
+        "verdicts in {}, sealed as {}",
+        text::path(&document.verdicts),
+        document.sealed_sha256
+    );
     page
 }
 

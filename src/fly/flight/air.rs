@@ -8,21 +8,17 @@ use nalgebra::Vector3;
 use super::gate::Gate;
 use super::{Flight, Phase};
 use crate::fly::commander::Manner;
-use crate::fly::course::{PathClock, Track, transfer};
+use crate::fly::course::{CLIMB_M_S, PathClock, TRANSFER_M_S, TURN_RAD_S, Track, transfer};
 use crate::fly::health::BatteryLevel;
 use crate::fly::lift::Weighed;
 use crate::fly::modes::{Mode, Stack};
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::preflight::HOVER;
-use crate::fly::safety::Lead;
+use crate::fly::safety::{Lead, SetpointBounds};
 use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
 use crate::fly::target::Order;
 
-/// Of the climb and of the way to the start.
-const CLIMB_M_S: f64 = 0.8;
-const TRANSFER_M_S: f64 = 1.0;
-const TURN_RAD_S: f64 = 0.5;
 /// While it spools up the vehicle is not outrun by the climb: no further ahead than this.
 const LEAD_MAX_M: f64 = 0.6;
 /// A climb is over so near to its height, at so little speed.
@@ -167,10 +163,23 @@ impl Flight {
         if let (Phase::Transfer | Phase::Course, Lead::Along(track)) = (&self.phase, &mut self.guide.lead) {
             track.clock.set_running(!paused && !self.known.is_in_doubt(), now);
         }
-        if let Some(setpoint) = self.guide.setpoint(now) {
-            self.watch.tracking.told(now, setpoint.position_m);
-            self.watch.masters.told(now, setpoint);
+        self.guide.bounds = self.bounds();
+        if let Some(reference) = self.guide.setpoint(now) {
+            self.watch.tracking.told(now, reference.position_m);
         }
+        if let Some(sent) = self.guide.sent(now) {
+            self.watch.masters.told(now, sent);
+        }
+    }
+
+    /// Where setpoints may be now: in the room, and on the way up and out of our mode down to the ground as well.
+    fn bounds(&self) -> Option<SetpointBounds> {
+        let stand = self.stand.or_else(|| self.place_now())?;
+        let room = SetpointBounds::room(&self.sortie.limits, &self.offset_m(&stand.position_m));
+        Some(match self.phase {
+            Phase::Transfer | Phase::Gate | Phase::Course => room,
+            _ => room.with(&stand.position_m),
+        })
     }
 
     /// Position and smoothed velocity, m and m/s, world, local.

@@ -13,7 +13,7 @@ use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
 use crate::fly::target::{Order, Period};
 use crate::fly::telemetry::Telemetry;
-use crate::log::{EMBEDDED_UID2, Payload};
+use crate::log::Payload;
 use mavlink::dialects::ardupilotmega::MavCmd;
 
 /// The estimate must have been good for this long.
@@ -25,7 +25,6 @@ const POSITION_FRESH: Duration = Duration::from_millis(500);
 /// A trajectory that starts further from the vehicle, m, is in the wrong place.
 const START_MAX_M: f64 = 5.0;
 const AUTOPILOT_VERSION: u16 = 148;
-const UID2_OFFSET: usize = 60;
 /// One in five datagrams lost: the version stays away once in three thousand flights.
 const VERSION_CHANCES: u32 = 4;
 
@@ -41,7 +40,8 @@ const ARDUPILOT_STREAMS: [(u16, u16); 2] = [(193, 2), (0, 5)];
 #[derive(Debug)]
 pub(super) struct Checking {
     wanted: Vec<Order>,
-    embedded: Option<bool>,
+    /// it is the one that this program started; `None` until it says what it is
+    own: Option<bool>,
     all_asked: bool,
     /// how often the version may be asked for again
     version_chances: u32,
@@ -57,7 +57,7 @@ impl Checking {
         let mut wanted: Vec<Order> =
             own.iter().chain(&STREAMS).map(|(id, rate_hz)| interval(*id, *rate_hz)).collect();
         wanted.push(Order::request_message(AUTOPILOT_VERSION));
-        Self { wanted, embedded: None, all_asked: false, version_chances: VERSION_CHANCES }
+        Self { wanted, own: None, all_asked: false, version_chances: VERSION_CHANCES }
     }
 
     pub(super) fn has_asked(&self) -> bool {
@@ -113,15 +113,15 @@ impl Flight {
         }
     }
 
-    /// AUTOPILOT_VERSION: the embedded vehicle says that it is one.
+    /// AUTOPILOT_VERSION: the vehicle that this program started itself has the nonce that it was given. Whatever
+    /// else it says of itself, anybody could.
     pub(super) fn version(&mut self, now: Duration, payload: Payload<'_>) {
-        let embedded =
-            EMBEDDED_UID2.iter().enumerate().all(|(at, byte)| payload.u8(UID2_OFFSET + at) == *byte);
+        let own = self.sortie.own_vehicle.is_some_and(|nonce| nonce.is_in(payload));
         if let Phase::Check(checking) = &mut self.phase
-            && checking.embedded.replace(embedded).is_none()
-            && embedded
+            && checking.own.replace(own) != Some(own)
+            && own
         {
-            self.note(now, Level::Information, "vehicle", "the embedded simulated vehicle");
+            self.note(now, Level::Information, "vehicle", "the simulated vehicle of this program");
         }
     }
 
@@ -133,7 +133,7 @@ impl Flight {
             match checking.wanted.pop() {
                 Some(order) => self.commander.give(now, order, QUESTION, 0),
                 // the answer's acknowledgement came and the answer itself was lost
-                None if checking.embedded.is_none() && checking.version_chances > 0 => {
+                None if checking.own.is_none() && checking.version_chances > 0 => {
                     checking.version_chances -= 1;
                     self.commander.give(now, version, QUESTION, 0);
                 }
@@ -143,7 +143,7 @@ impl Flight {
         if !checking.all_asked {
             return;
         }
-        let embedded = checking.embedded == Some(true);
+        let own = checking.own == Some(true);
         if let Some(Err(why)) = &self.clearance {
             let why = why.clone();
             self.end(now, Cause::Refused(why));
@@ -158,10 +158,15 @@ impl Flight {
             self.give_up_waiting(now, "the vehicle is not ready", &missing);
             return;
         }
-        if !embedded && !self.sortie.may_arm {
-            let why = "all checks passed; this is not the embedded simulated vehicle, so it is armed only \
-                       with --arm";
+        if !own && !self.sortie.may_arm {
+            let why = "all checks passed; expected the order to arm, got none: whatever answers on a link is armed \
+                       only with --arm";
             self.end(now, Cause::Refused(why.to_owned()));
+            return;
+        }
+        if self.awaits_word() {
+            // reading takes its time
+            self.entered = now;
             return;
         }
         match self.target() {
@@ -171,6 +176,13 @@ impl Flight {
             }
             _ => self.begin_engage(now),
         }
+    }
+
+    /// All is checked, and the operator's word is waited for, for as long as he reads.
+    pub(super) fn awaits_word(&self) -> bool {
+        let cleared = matches!(self.clearance, Some(Ok(()))) || !self.sortie.settings.await_clearance;
+        let checking = matches!(&self.phase, Phase::Check(checking) if checking.all_asked);
+        self.sortie.settings.await_word && !self.word_given && checking && cleared
     }
 
     /// What a vehicle on the ground lacks before our mode is engaged.

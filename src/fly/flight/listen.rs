@@ -12,8 +12,6 @@ use crate::log::{Check, Frame};
 const TAKEN_OVER: Duration = Duration::from_millis(1500);
 /// After a silence of this length the vehicle's mode is asked for: frames come a hundred times a second else.
 const SILENCE: Duration = Duration::from_millis(500);
-/// MAV_CMD_REQUEST_MESSAGE
-const REQUEST_MESSAGE: u16 = 512;
 
 impl Flight {
     pub(super) fn hear(&mut self, now: Duration, frame: Frame<'_>) {
@@ -47,13 +45,12 @@ impl Flight {
             77 => {
                 let payload = frame.payload();
                 let ours = payload.u8(8) == 0 || u32::from(payload.u8(8)) == self.sortie.settings.station.0.0;
-                if ours && payload.u16(0) == REQUEST_MESSAGE {
-                    self.known.answered();
-                }
                 if ours && let Some(answer) = self.commander.hear(now, payload) {
                     self.answered(now, &answer);
                 }
             }
+            // TIMESYNC: what asks has zero in front
+            111 if frame.payload().u64(0) != 0 => self.known.answered(frame.payload().u64(8).cast_signed()),
             148 => self.version(now, frame.payload()),
             _ => {}
         }
@@ -88,7 +85,11 @@ impl Flight {
                 };
                 self.note(now, level, "vehicle", text);
             }
-            Novelty::Reboot if self.phase.is_airborne() => self.end(now, Cause::Reboot),
+            // frames of long ago look like it too: the mode tells whether it is still ours to hold
+            Novelty::Reboot if self.phase.is_airborne() => {
+                self.known.doubt(now, Doubted::BySilence);
+                self.end(now, Cause::Reboot);
+            }
             Novelty::Reboot => {
                 self.end(now, Cause::Refused("the autopilot started anew; expected it to stay on".into()));
             }

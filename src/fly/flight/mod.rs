@@ -1,10 +1,12 @@
 //! The flight as a state machine: messages and a clock in, messages out. It does no I/O.
 
 mod air;
+mod command;
 mod gate;
 mod ground;
 mod leave;
 mod listen;
+mod phase;
 mod status;
 mod watch;
 
@@ -15,32 +17,25 @@ use std::time::Duration;
 
 use mavlink::dialects::ardupilotmega::MavMessage;
 
-use super::commander::{Commander, Manner, Permission};
+use super::commander::Commander;
 use super::health::BatteryLevel;
 use super::lift::Lift;
 use super::modes::{Mode, Stack};
 use super::outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
 use super::roster::Roster;
-use super::safety::{Doubted, Guide, Lead, ModeKnowledge};
+use super::safety::{Doubted, Feeding, Guide, Lead, ModeKnowledge};
 use super::setpoint::Place;
 use super::sortie::Sortie;
-use super::target::{Order, Target, heartbeat};
+use super::target::{Target, heartbeat};
 use super::telemetry::Telemetry;
 use crate::log::{self, CrcSeeds, Frame};
 use crate::units::deg_from_rad;
 use gate::Gate;
-use ground::Checking;
-use leave::Leaving;
+use phase::Phase;
 use watch::Watch;
 
 /// Between our own heartbeats.
 const HEARTBEAT_PERIOD: Duration = Duration::from_secs(1);
-/// The message that tells the mode of any vehicle.
-const HEARTBEAT: u16 = 0;
-/// It is asked to go on every 10 ms. After it was not for this long, what it knows may be old.
-const STOOD_STILL: Duration = Duration::from_millis(100);
-/// After this long a flight is not gone on with, whether setpoints are streamed or not.
-const STALLED: Duration = Duration::from_millis(300);
 
 /// What the flight hears.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,6 +48,8 @@ pub enum Event<'a> {
     Key(Key),
     /// parameters, message rates and limits are checked: whether the flight may go on, and how its outputs lift it
     Cleared(Result<Box<Lift>, String>),
+    /// how setpoints are made from the reference, by what the vehicle does when they end
+    Feed(Feeding),
     /// the program is told to end, by what
     Stop(String),
     /// the stream of setpoints stood still for so long, or this flight did, and it has ended
@@ -72,6 +69,8 @@ pub enum Key {
     To(Mode),
     /// motors off now, wherever the vehicle is; only after a typed word
     Kill,
+    /// the word for arming, where it is waited for
+    Arm,
 }
 
 /// What the flight wants done.
@@ -83,79 +82,6 @@ pub enum Action {
     Note(Note),
     /// the flight is over
     Finished(Outcome),
-}
-
-/// Where in the flight.
-#[derive(Debug)]
-enum Phase {
-    /// until the vehicle is found
-    Connect,
-    /// until it may fly
-    Check(Checking),
-    /// setpoints before OFFBOARD
-    Prime,
-    /// our mode is asked for, of a vehicle that was in this one
-    Engage(Option<u32>),
-    /// in our mode, until the estimator is good
-    Ready,
-    /// arming is asked for
-    Arm,
-    /// up from the ground
-    Climb,
-    /// to where the course begins
-    Transfer,
-    /// until it stands still there
-    Gate,
-    /// along the trajectory
-    Course,
-    /// to hold, to the ground or home, in the vehicle's own mode
-    Leave(Leaving),
-    /// nothing is heard: nothing is sent until something is
-    Lost,
-    /// hands off
-    Watch,
-    /// over
-    Done,
-}
-
-impl Phase {
-    fn name(&self) -> &'static str {
-        match self {
-            Self::Connect => "connect",
-            Self::Check(_) => "check",
-            Self::Prime => "stream",
-            Self::Engage(_) => "engage",
-            Self::Ready => "ready",
-            Self::Arm => "arm",
-            Self::Climb => "take off",
-            Self::Transfer => "go to start",
-            Self::Gate => "start gate",
-            Self::Course => "trajectory",
-            Self::Leave(leaving) => leaving.name(),
-            Self::Lost => "link lost",
-            Self::Watch => "hands off",
-            Self::Done => "over",
-        }
-    }
-
-    /// Our mode is engaged and setpoints are ours.
-    fn is_ours(&self) -> bool {
-        matches!(self, Self::Ready | Self::Arm | Self::Climb | Self::Transfer | Self::Gate | Self::Course)
-    }
-
-    /// The vehicle may be off the ground by our doing.
-    fn is_airborne(&self) -> bool {
-        matches!(
-            self,
-            Self::Climb
-                | Self::Transfer
-                | Self::Gate
-                | Self::Course
-                | Self::Leave(_)
-                | Self::Lost
-                | Self::Watch
-        )
-    }
 }
 
 /// The vehicle that was chosen.
@@ -171,7 +97,6 @@ pub struct Flight {
     sortie: Sortie,
     seeds: CrcSeeds,
     roster: Roster,
-    /// that others were heard than the one that was named
     told_others: bool,
     contact: Option<Contact>,
     commander: Commander,
@@ -182,9 +107,8 @@ pub struct Flight {
     /// when it was last asked to go on
     stepped: Option<Duration>,
     phase: Phase,
-    /// when the phase was entered
+    /// when the phase was entered, and when our mode was engaged
     entered: Duration,
-    /// when our mode was engaged
     engaged: Duration,
     /// where it stood when it was armed
     stand: Option<Place>,
@@ -194,6 +118,8 @@ pub struct Flight {
     actions: VecDeque<Action>,
     heartbeat_due: Duration,
     clearance: Option<Result<(), String>>,
+    /// the word for arming, after the page before the flight
+    word_given: bool,
     /// by which the vehicle is weighed once it hovers
     lift: Option<Box<Lift>>,
     /// the mode in which the operator stopped the motors
@@ -232,6 +158,7 @@ impl Flight {
             actions: VecDeque::new(),
             heartbeat_due: Duration::ZERO,
             clearance: None,
+            word_given: false,
             lift: None,
             killed_in: None,
             cause: None,
@@ -249,12 +176,14 @@ impl Flight {
         match event {
             Event::Frame(frame) => self.hear(now, frame),
             Event::Tick => {}
+            Event::Key(Key::Arm) => self.word_given = true,
             Event::Key(key) => self.key(now, key),
             Event::Cleared(verdict) => {
                 self.clearance = Some(verdict.map(|lift| {
                     self.lift = Some(lift);
                 }));
             }
+            Event::Feed(feeding) => self.guide.feeding = feeding,
             Event::Stop(by) => self.stop(now, &by),
             Event::Stalled(gap) => self.stalled(now, gap),
             Event::LinkEnded => self.end(now, Cause::LinkLost("the program's own link has ended".to_owned())),
@@ -337,96 +266,11 @@ impl Flight {
         }
         self.follow(now);
         self.hold_back(now);
-        if let Some((target, _)) = self.target() {
-            let permission = self.permission();
-            let waits = self.commander.waits_for_report(now, permission);
-            if self.known.asks(now, waits) {
-                let question = Order::request_message(HEARTBEAT);
-                self.actions.push_back(Action::Send(target.command(&question, 0)));
-            }
-            let (messages, answers) = self.commander.poll(now, target, permission);
-            if let (Phase::Leave(leaving), Some((_, stack))) = (&mut self.phase, self.guide.target)
-                && self.commander.has_sent(&Order::set_mode(stack, leaving.wish()))
-            {
-                leaving.ordered();
-            }
-            self.actions.extend(messages.into_iter().map(Action::Send));
-            for answer in answers {
-                self.answered(now, &answer);
-            }
-        }
+        self.command(now);
         if now >= self.heartbeat_due {
             self.heartbeat_due = (self.heartbeat_due + HEARTBEAT_PERIOD).max(now);
             self.actions.push_back(Action::Send(heartbeat()));
         }
-    }
-
-    /// Whether time went on without this flight. What it knew before may not hold any more, and what lies in the socket is
-    /// not read yet.
-    fn note_time(&mut self, now: Duration) {
-        let gap = self.stepped.replace(now).map_or(Duration::ZERO, |last| now.saturating_sub(last));
-        if gap <= STOOD_STILL || self.contact.is_none() {
-            return;
-        }
-        self.watch.awake = now;
-        self.known.doubt(now, Doubted::ByStall(gap));
-        if gap >= STALLED {
-            if self.phase.is_ours() && self.phase.is_airborne() {
-                self.stalled(now, gap);
-            } else {
-                self.note(now, Level::Warning, "host", stall(gap));
-            }
-        }
-    }
-
-    /// No setpoint goes out while a pilot may have taken over unheard. After a short hiccup the stream goes on: a vehicle that
-    /// its pilot flies does not follow it.
-    fn hold_back(&mut self, now: Duration) {
-        let held_back = self.known.is_in_doubt_for_long();
-        if held_back && !self.guide.held_back && self.guide.lead != Lead::Silent {
-            self.note(
-                now,
-                Level::Warning,
-                "stream",
-                "setpoints are held back until the vehicle says its mode",
-            );
-        }
-        self.guide.held_back = held_back;
-    }
-
-    fn stalled(&mut self, now: Duration, gap: Duration) {
-        self.watch.awake = now;
-        self.known.doubt(now, Doubted::ByStall(gap));
-        self.end(now, Cause::Stalled(stall(gap)));
-    }
-
-    /// Whether the vehicle may be commanded now, as far as its mode is known.
-    fn permission(&self) -> Permission {
-        Permission { reports: self.known.reports(), ours: !self.known.is_in_doubt() && self.is_to_command() }
-    }
-
-    /// The vehicle's mode is one that it is in by our doing, or for a start one that it was found in.
-    fn is_to_command(&self) -> bool {
-        let Some(state) = self.contact.as_ref().and_then(|contact| contact.telemetry.state) else {
-            return false;
-        };
-        match &self.phase {
-            Phase::Engage(found) => *found == Some(state.value.custom_mode) && !state.value.armed,
-            Phase::Leave(leaving) => {
-                leaving.is_ordered() && self.is_in(leaving.wish())
-                    || leaving.comes_from(state.value.custom_mode)
-            }
-            // of a vehicle that is left to others only the motors are stopped, by the operator's typed word
-            Phase::Watch => {
-                matches!(self.cause, Some(Cause::Killed)) && self.killed_in == Some(state.value.custom_mode)
-            }
-            phase => phase.is_ours() && self.is_in(Mode::External),
-        }
-    }
-
-    /// A command, to be sent as soon as the vehicle's mode permits it.
-    fn give(&mut self, now: Duration, order: Order, manner: Manner) {
-        self.commander.give(now, order, manner, self.known.reports());
     }
 
     fn enter(&mut self, now: Duration, phase: Phase) {
@@ -489,12 +333,4 @@ impl Flight {
     fn battery_level(&self) -> BatteryLevel {
         self.contact.as_ref().map_or(BatteryLevel::Good, |contact| contact.telemetry.battery_level())
     }
-}
-
-/// In words.
-fn stall(gap: Duration) -> String {
-    format!(
-        "this program or its computer stood still for {} ms (load, sleep, a stopped process); the vehicle's mode is asked for",
-        gap.as_millis()
-    )
 }

@@ -45,6 +45,8 @@ pub struct Status {
     pub estimate_good_for: Option<Duration>,
     /// the vehicle's own checks; `None` where it does not say
     pub may_arm: Option<bool>,
+    /// the operator's word for arming is waited for
+    pub awaits_word: bool,
     /// its parts that are on and not healthy
     pub unhealthy: Vec<&'static str>,
 }
@@ -80,6 +82,7 @@ impl Flight {
             estimate_good_for: telemetry
                 .and_then(|telemetry| Some(now.saturating_sub(telemetry.estimator_good_since?))),
             may_arm: system.and_then(|system| system.may_arm),
+            awaits_word: self.awaits_word(),
             unhealthy: system.map(|system| system.unhealthy.clone()).unwrap_or_default(),
         }
     }

@@ -6,11 +6,13 @@ mod failsafe;
 mod failsafe_ardupilot;
 mod failsafe_px4;
 mod names;
+mod takeover;
 
 pub use download::{Download, DownloadSettings, Progress};
 pub(super) use failsafe::has_bit;
 pub use failsafe::{Sentence, failsafe_declaration};
 pub use names::{Purpose, RENAMED, Renamed, Wanted, wanted};
+pub use takeover::takeover_declaration;
 
 use crate::log::Autopilot;
 use serde::{Deserialize, Serialize};

@@ -97,6 +97,14 @@ const PX4: &[(Purpose, &[&str])] = &[
             "GF_MAX_HOR_DIST",
             "GF_MAX_VER_DIST",
             "GF_SOURCE",
+            "RC_MAP_FLTMODE",
+            "RC_MAP_KILL_SW",
+            "COM_FLTMODE1",
+            "COM_FLTMODE2",
+            "COM_FLTMODE3",
+            "COM_FLTMODE4",
+            "COM_FLTMODE5",
+            "COM_FLTMODE6",
         ],
     ),
     (
@@ -109,6 +117,11 @@ const PX4: &[(Purpose, &[&str])] = &[
             "MPC_ACC_HOR",
             "MPC_ACC_UP_MAX",
             "MPC_ACC_DOWN_MAX",
+            "MPC_JERK_AUTO",
+            "MPC_XY_P",
+            "MPC_Z_P",
+            "MPC_XY_VEL_P_ACC",
+            "MPC_Z_VEL_P_ACC",
             "MC_YAWRATE_MAX",
         ],
     ),
@@ -166,6 +179,13 @@ const ARDUPILOT: &[(Purpose, &[&str])] = &[
             "FENCE_ALT_MIN",
             "FENCE_RADIUS",
             "FENCE_MARGIN",
+            "FLTMODE_CH",
+            "FLTMODE1",
+            "FLTMODE2",
+            "FLTMODE3",
+            "FLTMODE4",
+            "FLTMODE5",
+            "FLTMODE6",
         ],
     ),
     (
@@ -189,6 +209,8 @@ const ARDUPILOT: &[(Purpose, &[&str])] = &[
 
 /// Outputs of which the function is asked.
 const OUTPUTS: usize = 16;
+/// Channels of ArduPilot that may have a switch.
+const SWITCHES: std::ops::Range<u8> = 5..17;
 /// Outputs of a PX4 bank.
 const BANK: usize = 8;
 
@@ -203,8 +225,11 @@ pub fn wanted(autopilot: Autopilot, rotors: usize) -> Vec<Wanted> {
     let named = table.iter().flat_map(|(purpose, names)| {
         names.iter().map(|name| Wanted { names: all_names(name), purpose: *purpose })
     });
-    let thrust = |name: String| Wanted { names: vec![name], purpose: Purpose::Thrust };
-    named.chain(numbered.into_iter().map(thrust)).collect()
+    let numbered = numbered.into_iter().map(|name| Wanted { names: vec![name], purpose: Purpose::Thrust });
+    let switches = if autopilot == Autopilot::ArduPilot { SWITCHES } else { 0..0 };
+    let switches = switches
+        .map(|channel| Wanted { names: vec![format!("RC{channel}_OPTION")], purpose: Purpose::Failsafe });
+    named.chain(numbered).chain(switches).collect()
 }
 
 fn all_names(name: &str) -> Vec<String> {

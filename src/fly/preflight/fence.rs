@@ -116,7 +116,7 @@ impl Fence {
     }
 
     /// Distance to each border, m, positive where the vehicle may be; places in the local frame.
-    fn spares_m(&self, place: &Vector3<f64>, home: &Vector3<f64>) -> Vec<(f64, &'static str)> {
+    pub(super) fn spares_m(&self, place: &Vector3<f64>, home: &Vector3<f64>) -> Vec<(f64, &'static str)> {
         let from_home = place - home;
         let bounds = [
             (self.radius_m.map(|radius| radius - from_home.xy().norm()), "the fence's radius about home"),

@@ -3,7 +3,7 @@
 use super::extremes::{place_and_velocity, samples};
 use super::{Situation, Stopping};
 use crate::fly::finding::Finding;
-use crate::plan::{Dynamics, Margin, Quantity, bounds_of, check};
+use crate::plan::{Dynamics, HEIGHT_ERROR_M, Margin, Quantity, bounds_of, check, floor_m};
 use crate::vehicle::Limits;
 use nalgebra::Vector3;
 
@@ -16,6 +16,9 @@ pub(super) fn findings(situation: &Situation<'_>, stopping: &Stopping) -> Vec<Fi
     let path = |time_s| situation.path.derivatives(time_s).unwrap_or([[f64::NAN; 5]; 4]);
     let margins = check(path, situation.path.duration_s(), &bounds, &dynamics).margins;
     let mut findings: Vec<Finding> = margins.iter().filter(|margin| is_broken(margin)).map(refusal).collect();
+    findings.extend(walls(situation.limits));
+    findings.extend(floor(situation));
+    findings.extend(stand(situation));
     if findings.is_empty() {
         let spare = margins.iter().min_by(|a, b| relative(a).total_cmp(&relative(b)));
         findings.push(match spare {
@@ -40,6 +43,53 @@ pub(super) fn findings(situation: &Situation<'_>, stopping: &Stopping) -> Vec<Fi
     }
     findings.extend(braking(situation, stopping));
     findings
+}
+
+/// Walls, floor and ceiling that are not stated.
+fn walls(limits: &Limits) -> Option<Finding> {
+    let stated = [
+        ("x_max_m", limits.x_max_m),
+        ("y_max_m", limits.y_max_m),
+        ("z_min_m", limits.z_min_m),
+        ("z_max_m", limits.z_max_m),
+    ];
+    let missing: Vec<&str> =
+        stated.iter().filter(|(_, value)| value.is_none()).map(|(name, _)| *name).collect();
+    (!missing.is_empty()).then(|| {
+        let came = format!("none for {}", missing.join(", "));
+        let remedy = "give the room in the vehicle file's or the trajectory's [limits]";
+        Finding::refusal("room", "walls, floor and ceiling", came, remedy)
+    })
+}
+
+/// Whatever the limits say: no rotor comes near the ground along the path.
+fn floor(situation: &Situation<'_>) -> Option<Finding> {
+    let floor_m = floor_m(situation.vehicle);
+    let heights = samples(situation.path).map(|(time_s, [_, _, z, _])| (z[0], time_s));
+    let (lowest_m, time_s) = heights.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let expected = format!(
+        "at least {floor_m:.2} m above the ground, the rotors' reach and {HEIGHT_ERROR_M} m of error in height"
+    );
+    (lowest_m.is_nan() || lowest_m < floor_m - TOUCH).then(|| {
+        let came = format!("{lowest_m:.2} m at {time_s:.1} s");
+        Finding::refusal("floor", expected, came, "plan higher")
+    })
+}
+
+/// It takes off where it stands: inside the room.
+fn stand(situation: &Situation<'_>) -> Option<Finding> {
+    let inside = situation.stand_m? - situation.origin_m;
+    let limits = situation.limits;
+    let walls = [("x", inside.x, limits.x_max_m), ("y", inside.y, limits.y_max_m)];
+    let (name, value, max) = walls
+        .into_iter()
+        .find_map(|(name, value, max)| max.filter(|max| value.abs() > *max).map(|max| (name, value, max)))?;
+    Some(Finding::refusal(
+        "room",
+        format!("the vehicle inside it, |{name}| at most {max:.2} m"),
+        format!("{name} = {value:.2} m from the trajectory's zero"),
+        "put it there, or fly from where it stands (--origin here)",
+    ))
 }
 
 fn is_broken(margin: &Margin) -> bool {

@@ -69,6 +69,18 @@ struct Asked {
     tries: u32,
     halved: bool,
     count: u32,
+    /// frames that say more than zeros
+    telling: u32,
+}
+
+/// Where the values of the messages of actuators lie in their payloads; what lies beside them are stamps and indices.
+const VALUES: [(u32, std::ops::Range<usize>); 4] =
+    [(36, 4..20), (291, 8..56), (375, 12..140), (11_030, 0..44)];
+
+/// A message of actuators in which every value is zero: one without outputs or sensors behind it.
+fn is_blank(id: u32, frame: &Frame<'_>) -> bool {
+    let values = VALUES.into_iter().find(|(of, _)| *of == id).map(|(_, values)| values);
+    values.is_some_and(|mut values| values.all(|at| frame.payload().u8(at) == 0))
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,6 +122,7 @@ impl Requests {
                 tries: 0,
                 halved: false,
                 count: 0,
+                telling: 0,
             })
             .collect();
         let phase = Phase::Asking { index: 0, sent: None };
@@ -139,7 +152,7 @@ impl Requests {
                 }
                 Phase::Settling { until } if now >= until => {
                     self.bytes = 0.0;
-                    self.streams.iter_mut().for_each(|stream| stream.count = 0);
+                    self.streams.iter_mut().for_each(|stream| (stream.count, stream.telling) = (0, 0));
                     self.phase = Phase::Measuring { since: now, until: now + self.settings.window };
                 }
                 Phase::Measuring { since, until } if now >= until => {
@@ -175,6 +188,7 @@ impl Requests {
         let id = frame.header().message_id;
         if let Some(stream) = self.streams.iter_mut().find(|stream| stream.request.message_id == id) {
             stream.count += 1;
+            stream.telling += u32::from(!is_blank(id, frame));
         }
         if id == COMMAND_ACK_ID {
             self.acknowledged(frame);
@@ -207,6 +221,7 @@ impl Requests {
             request: StreamRequest { rate_hz: stream.rate_hz, ..stream.request },
             answer: stream.answer,
             arrived_hz: f64::from(stream.count) / window_s,
+            blank: stream.count > 0 && stream.telling == 0,
         });
         RatesReport::new(streams.collect(), self.vehicle.autopilot, self.capacity, self.bytes / window_s)
     }

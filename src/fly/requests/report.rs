@@ -18,6 +18,8 @@ pub struct StreamReport {
     pub answer: Answer,
     /// Hz over the window; NaN before there was one
     pub arrived_hz: f64,
+    /// it tells of actuators, and every value of it is zero
+    pub blank: bool,
 }
 
 impl StreamReport {
@@ -103,7 +105,9 @@ impl RatesReport {
     ) -> Self {
         let needs = Need::ALL.map(|need| {
             let serving = streams.iter().filter(|s| s.request.needs.contains(&need) && s.arrived_hz > 0.0);
-            let best = serving.copied().max_by(|a, b| a.arrived_hz.total_cmp(&b.arrived_hz));
+            // nothing but zeros is the best only where there is nothing else
+            let rank = |s: &StreamReport| if s.blank { 0.0 } else { s.arrived_hz };
+            let best = serving.copied().max_by(|a, b| rank(a).total_cmp(&rank(b)));
             let (least_hz, good_hz, to_fly) = thresholds(need);
             NeedReport { need, best, least_hz, good_hz, to_fly }
         });
@@ -187,14 +191,17 @@ impl NeedReport {
     /// Arrives at the least rate or faster.
     #[must_use]
     pub fn is_served(&self) -> bool {
-        self.best.is_some_and(|best| best.arrived_hz >= self.least_hz)
+        self.best.is_some_and(|best| !best.blank && best.arrived_hz >= self.least_hz)
     }
 
     /// The best of what arrives for it, in words.
     fn came(&self) -> String {
         self.best.map_or_else(
             || format!("nothing for {}", self.need.name()),
-            |best| format!("{} at {:.1} Hz", best.request.name, best.arrived_hz),
+            |best| {
+                let zeros = if best.blank { ", nothing but zeros" } else { "" };
+                format!("{} at {:.1} Hz{zeros}", best.request.name, best.arrived_hz)
+            },
         )
     }
 

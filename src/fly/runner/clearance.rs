@@ -8,11 +8,12 @@ use crate::fly::finding::{Finding, Level};
 use crate::fly::flight::Flight;
 use crate::fly::parameters::{Download, DownloadSettings, Parameters, wanted};
 use crate::fly::preflight::{
-    BatteryState, Fence, FenceDownload, FenceOutcome, Readiness, Situation, preflight,
+    BatteryState, Fence, FenceDownload, FenceOutcome, Judged, Page, Readiness, Situation, judge,
 };
 use crate::fly::requests::{
     Capacity, LinkKind, Need, RequestSettings, Requests, request_set, slow_request_set,
 };
+use crate::fly::safety::Feeding;
 use crate::frames::{Geodetic, world_from_ned};
 use crate::log::{self, Decoder, Frame, Payload, Record};
 use crate::vehicle::Vehicle;
@@ -31,6 +32,8 @@ pub(super) struct Cleared {
     pub(super) decoder: Option<Decoder>,
     pub(super) parameters: Parameters,
     pub(super) findings: Vec<Finding>,
+    pub(super) feeding: Feeding,
+    pub(super) page: Page,
     pub(super) lines: Vec<String>,
 }
 
@@ -174,7 +177,7 @@ impl Clearance {
             return None;
         };
         let report = requests.report();
-        let mut findings = self.findings(flight, vehicle, (&parameters, now));
+        let Judged { mut findings, feeding, mut page } = self.judge(flight, vehicle, (&parameters, now));
         for finding in &mut findings {
             if finding.level == Level::Refusal && AWAITED.contains(&finding.subject) {
                 finding.level = Level::Awaited;
@@ -190,16 +193,24 @@ impl Clearance {
                 finding.level = Level::Warning;
             }
         }
+        page.warn_of(&findings);
         let lines = report.streams.iter().map(|stream| stream.line()).collect();
-        Some(Cleared { decoder: self.decoder.take(), parameters: *parameters, findings, lines })
+        Some(Cleared {
+            decoder: self.decoder.take(),
+            parameters: *parameters,
+            findings,
+            feeding,
+            page,
+            lines,
+        })
     }
 
-    fn findings(
+    fn judge(
         &self,
         flight: &Flight,
         vehicle: &Vehicle,
         (parameters, now): (&Parameters, Duration),
-    ) -> Vec<Finding> {
+    ) -> Judged {
         let status = flight.status(now);
         let sortie = flight.sortie();
         let mut fence = Fence::new(parameters, self.fence.items(), self.origin.as_ref());
@@ -222,14 +233,15 @@ impl Clearance {
             armed: status.armed,
             ..Readiness::default()
         };
-        preflight(&Situation {
+        let stand_m = status.position_m.map(Vector3::from);
+        judge(&Situation {
             path: sortie.course.path(),
-            origin_m: status
-                .position_m
-                .map_or_else(Vector3::zeros, |[x, y, z]| flight.offset_m(&Vector3::new(x, y, z))),
+            origin_m: stand_m.map_or_else(Vector3::zeros, |stand_m| flight.offset_m(&stand_m)),
+            stand_m,
             home_m: self.home_m,
             vehicle,
             limits: &sortie.limits,
+            tracking_max_m: sortie.settings.tracking_max_m,
             parameters,
             fence: &fence,
             battery: &battery,

@@ -1,15 +1,16 @@
 //! The flight with what belongs to it on the host: its clock, its view, the checks before it.
 
 use std::path::PathBuf;
-use std::sync::mpsc::Sender;
+use std::sync::Arc;
+use std::sync::mpsc::{SyncSender, TrySendError};
 use std::time::{Duration, Instant};
 
-use super::PARAMETERS;
 use super::clearance::Cleared;
 use super::estimating::Estimating;
 use super::journal::Journal;
 use super::stream::SharedGuide;
 use super::supervisor::Supervisor;
+use super::{EVENTS, PARAMETERS};
 use crate::fly::finding;
 use crate::fly::flight::{Action, Event, Flight, Key};
 use crate::fly::live::{LiveIdentification, LiveSettings};
@@ -21,9 +22,12 @@ use crate::fly::safety::Lead;
 use crate::fly::view::{Attitude, Battery, KeyCommand, LinkView, Phase, ViewModel};
 use crate::link::{LinkEvent, LinkWriter, ReceivedFrame};
 use crate::log::{Frame, Record};
+use crate::text;
 use crate::units::deg_from_rad;
 use crate::vehicle::Vehicle;
 
+/// A terminal that takes no picture for so long is told.
+const BLIND: Duration = Duration::from_secs(2);
 /// Between two pictures of the state.
 const SHOW: Duration = Duration::from_millis(200);
 
@@ -50,6 +54,12 @@ pub(super) struct Drive {
     shown: Duration,
     frames: (u64, u64),
     refused: u64,
+    /// a file to be written
+    to_keep: Option<(PathBuf, String)>,
+    /// since when the terminal takes no pictures
+    unseen_since: Option<Duration>,
+    /// and it was told
+    told_blind: bool,
     outcome: Option<Outcome>,
 }
 
@@ -78,6 +88,9 @@ impl Drive {
             shown: Duration::ZERO,
             frames: (0, 0),
             refused: 0,
+            to_keep: None,
+            unseen_since: None,
+            told_blind: false,
             outcome: None,
         }
     }
@@ -144,6 +157,7 @@ impl Drive {
             KeyCommand::Land => Event::Key(Key::To(Mode::Land)),
             KeyCommand::Return => Event::Key(Key::To(Mode::Return)),
             KeyCommand::Kill => Event::Key(Key::Kill),
+            KeyCommand::Arm => Event::Key(Key::Arm),
             KeyCommand::Quit => Event::Stop("the operator".to_owned()),
         };
         self.handle(event);
@@ -157,24 +171,30 @@ impl Drive {
         if let Some(decoder) = cleared.decoder {
             self.estimating.begin(decoder, live);
         }
+        self.model.page = Some(Arc::new(cleared.page));
     }
 
     fn keep_parameters(&mut self, now: Duration, parameters: &Parameters) {
         let path = self.dir.join(PARAMETERS);
-        let written = parameters
-            .to_toml()
-            .map_err(|error| error.to_string())
-            .and_then(|text| std::fs::write(&path, text).map_err(|error| error.to_string()));
-        if let Err(error) = written {
-            let text = format!("cannot write {}: {error}", path.display());
-            self.notes.push(Note::new(now, Level::Error, "file", text));
+        match parameters.to_toml() {
+            Ok(text) => self.to_keep = Some((path, text)),
+            Err(error) => {
+                let text = format!("cannot write {}: {error}", text::path(&path));
+                self.notes.push(Note::new(now, Level::Error, "file", text));
+            }
         }
     }
 
-    /// Hands notes and pictures of the state on.
-    pub(super) fn report(&mut self, journal: &Journal, show: &Sender<ViewModel>) {
+    /// Hands notes and pictures of the state on; waits for nobody.
+    pub(super) fn report(&mut self, journal: &Journal, show: &SyncSender<ViewModel>) {
         let now = self.clock.elapsed();
         self.model.elapsed_s = now.as_secs_f64();
+        if let Some((path, text)) = self.to_keep.take() {
+            journal.keep(path, text);
+        }
+        if let Some(trouble) = journal.news() {
+            self.notes.push(Note::new(now, Level::Warning, "file", format!("{EVENTS}: {trouble}")));
+        }
         for note in std::mem::take(&mut self.notes) {
             journal.write(&note);
             let level = match note.level {
@@ -190,7 +210,26 @@ impl Drive {
         self.picture(now);
         self.shown = now;
         // nobody has to watch
-        let _ = show.send(self.model.clone());
+        let unseen = matches!(show.try_send(self.model.clone()), Err(TrySendError::Full(_)));
+        self.tell_view(now, unseen);
+    }
+
+    /// A terminal that takes nothing for a while is told in the log of events.
+    fn tell_view(&mut self, now: Duration, unseen: bool) {
+        if !unseen {
+            self.unseen_since = None;
+            if std::mem::take(&mut self.told_blind) {
+                self.warn("view", "the terminal takes pictures again");
+            }
+            return;
+        }
+        let since = *self.unseen_since.get_or_insert(now);
+        if now.saturating_sub(since) >= BLIND && !std::mem::replace(&mut self.told_blind, true) {
+            self.warn(
+                "view",
+                &format!("the terminal takes nothing: the flight goes on, its events are in {EVENTS}"),
+            );
+        }
     }
 
     fn picture(&mut self, now: Duration) {
@@ -217,6 +256,7 @@ impl Drive {
         model.state = status.phase.to_owned();
         model.mode = status.mode.unwrap_or_default();
         model.armed = status.armed;
+        model.awaits_word = status.awaits_word;
         model.progress_s = status.progress_s;
         let motion = status.position_m.zip(status.velocity_m_s);
         model.attitude = status.euler_rad.zip(motion).map(|(euler_rad, (position_m, velocity_m_s))| {

@@ -25,7 +25,7 @@ pub use supervisor::Supervisor;
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::Sender;
+use std::sync::mpsc::SyncSender;
 use std::time::{Duration, Instant};
 
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
@@ -83,8 +83,8 @@ pub struct Ride {
 /// Who watches the flight.
 #[derive(Debug)]
 pub struct Console {
-    /// gets the state a few times a second
-    pub show: Sender<ViewModel>,
+    /// gets the state a few times a second; a picture that finds no room is left out
+    pub show: SyncSender<ViewModel>,
     /// what the operator asks for
     pub keys: UnboundedReceiver<KeyCommand>,
 }
@@ -233,8 +233,7 @@ async fn conduct(
         }
         drive.report(&journal, &console.show);
         if let Some(outcome) = drive.outcome() {
-            let failure = journal.finish().err().map(|error| error.to_string());
-            return Ok((outcome, failure));
+            return Ok((outcome, journal.finish().await));
         }
     }
 }

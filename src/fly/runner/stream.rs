@@ -32,7 +32,8 @@ impl SharedGuide {
 
     pub(super) fn set(&self, guide: &Guide) {
         let mut shared = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if shared.lead == guide.lead && shared.target == guide.target {
+        let same = Guide { issued: shared.issued, held_back: shared.held_back, ..guide.clone() } == *shared;
+        if same {
             (shared.issued, shared.held_back) = (guide.issued, guide.held_back);
         } else {
             shared.clone_from(guide);

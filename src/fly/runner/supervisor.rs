@@ -146,7 +146,9 @@ impl Supervisor {
         }
         let lift = Lift::new(&self.vehicle, &cleared.parameters);
         let verdict = cleared.verdict().map(|()| Box::new(lift));
+        let feeding = cleared.feeding;
         self.cleared = Some(cleared);
+        self.handle(now, Event::Feed(feeding));
         self.handle(now, Event::Cleared(verdict));
     }
 

@@ -2,7 +2,8 @@
 //!
 //! A report of the mode that was read counts. After a stall of this program or a silence of the vehicle no report
 //! counts at first: what is read then may have been sent long ago. The vehicle is asked, and a report counts again
-//! once the vehicle has answered a question that was sent after the stall or the silence.
+//! once the vehicle has answered a question that was sent after the stall or the silence. The questions are numbered
+//! (TIMESYNC gives the number back), so that an older answer is not taken for the newer one's.
 
 use std::time::Duration;
 
@@ -29,8 +30,8 @@ pub enum Doubted {
 struct Doubt {
     since: Duration,
     why: Doubted,
-    /// a question went out since
-    asked: bool,
+    /// number of the first question that went out since
+    asked: Option<i64>,
     answered: bool,
 }
 
@@ -47,7 +48,7 @@ impl ModeKnowledge {
     pub fn doubt(&mut self, now: Duration, why: Doubted) {
         // a hiccup on top of something worse makes it no better
         let worse = self.doubt.map(|doubt| doubt.why).filter(|before| is_long(*before));
-        self.doubt = Some(Doubt { since: now, why: worse.unwrap_or(why), asked: false, answered: false });
+        self.doubt = Some(Doubt { since: now, why: worse.unwrap_or(why), asked: None, answered: false });
         self.asked = None;
     }
 
@@ -63,24 +64,25 @@ impl ModeKnowledge {
         self.doubt.is_some_and(|doubt| is_long(doubt.why))
     }
 
-    /// Whether the vehicle is to be asked for its mode now: because it is in doubt, or because a command waits for a report
-    /// and reports may come as seldom as once a second.
-    pub fn asks(&mut self, now: Duration, waits: bool) -> bool {
+    /// The number of the question by which the vehicle is to be asked now: because its mode is in doubt, or because a command
+    /// waits for a report and reports may come as seldom as once a second. Numbers grow.
+    pub fn asks(&mut self, now: Duration, waits: bool) -> Option<i64> {
         let wanted = waits || self.doubt.is_some();
-        let due = wanted && self.asked.is_none_or(|asked| now.saturating_sub(asked) >= ASK_AGAIN);
-        if due {
-            self.asked = Some(now);
-            if let Some(doubt) = &mut self.doubt {
-                doubt.asked = true;
-            }
+        if !wanted || self.asked.is_some_and(|asked| now.saturating_sub(asked) < ASK_AGAIN) {
+            return None;
         }
-        due
+        self.asked = Some(now);
+        let number = i64::try_from(now.as_nanos()).unwrap_or(i64::MAX).max(1);
+        if let Some(doubt) = &mut self.doubt {
+            doubt.asked.get_or_insert(number);
+        }
+        Some(number)
     }
 
-    /// The vehicle answered a question. An answer that comes before a question is none.
-    pub fn answered(&mut self) {
+    /// The vehicle answered the question of this number. Answers to questions from before the doubt count for nothing.
+    pub fn answered(&mut self, number: i64) {
         if let Some(doubt) = &mut self.doubt {
-            doubt.answered = doubt.asked;
+            doubt.answered |= doubt.asked.is_some_and(|first| number >= first);
         }
     }
 
@@ -88,7 +90,7 @@ impl ModeKnowledge {
     pub fn report(&mut self, now: Duration) {
         let counts = self.doubt.is_none_or(|doubt| {
             let read_by = if doubt.why == Doubted::BySilence { RADIO_IS_READ } else { SOCKET_IS_READ };
-            doubt.answered || doubt.asked && now.saturating_sub(doubt.since) >= read_by
+            doubt.answered || doubt.asked.is_some() && now.saturating_sub(doubt.since) >= read_by
         });
         if counts {
             self.doubt = None;
@@ -121,21 +123,23 @@ mod tests {
         known.report(ms(0));
         known.report(ms(100));
         assert_eq!(known.reports(), 2);
-        assert!(!known.asks(ms(100), false), "nothing is to be asked");
-        assert!(known.asks(ms(110), true), "a command waits");
+        assert_eq!(known.asks(ms(100), false), None, "nothing is to be asked");
+        assert!(known.asks(ms(110), true).is_some(), "a command waits");
     }
 
     #[test]
     fn after_a_stall_only_a_report_behind_an_answer_counts() {
         let mut known = ModeKnowledge::default();
         known.doubt(ms(1000), Doubted::ByStall(ms(400)));
-        known.answered();
-        known.report(ms(1001));
-        assert_eq!(known.reports(), 0, "an answer to nothing, and a report from before");
-        assert!(known.asks(ms(1002), false) && !known.asks(ms(1100), true) && known.asks(ms(1202), false));
+        let asked = known.asks(ms(1002), false).unwrap();
+        known.answered(asked - 1);
+        known.report(ms(1003));
+        assert_eq!(known.reports(), 0, "an answer to an older question, and a report from before");
+        assert_eq!(known.asks(ms(1100), true), None);
+        assert!(known.asks(ms(1202), false).is_some_and(|again| again > asked));
         known.report(ms(1210));
         assert!(known.is_in_doubt());
-        known.answered();
+        known.answered(asked);
         assert!(known.is_in_doubt(), "an answer alone says no mode");
         known.report(ms(1250));
         assert_eq!((known.reports(), known.is_in_doubt()), (1, false));
@@ -158,8 +162,8 @@ mod tests {
     fn a_second_stall_makes_the_first_answer_worthless() {
         let mut known = ModeKnowledge::default();
         known.doubt(ms(0), Doubted::BySilence);
-        assert!(known.asks(ms(0), false));
-        known.answered();
+        let asked = known.asks(ms(0), false).unwrap();
+        known.answered(asked);
         known.doubt(ms(50), Doubted::ByStall(ms(120)));
         assert!(known.is_in_doubt_for_long(), "a hiccup makes a silence no shorter");
         known.report(ms(60));

@@ -8,6 +8,7 @@
 
 use std::time::Duration;
 
+use super::{Feeding, SetpointBounds};
 use crate::fly::course::Track;
 use crate::fly::modes::Stack;
 use crate::fly::setpoint::{Place, Setpoint};
@@ -39,16 +40,27 @@ pub struct Guide {
     pub held_back: bool,
     /// whom the setpoints are for, and by which rules; `None` while no vehicle is chosen
     pub target: Option<(Target, Stack)>,
+    /// how setpoints are made from the reference
+    pub feeding: Feeding,
+    /// nothing is sent beyond; `None` while nothing is known of where the vehicle is
+    pub bounds: Option<SetpointBounds>,
 }
 
 impl Guide {
     /// Nothing to stream.
     #[must_use]
     pub fn silent(issued: Duration) -> Self {
-        Self { lead: Lead::Silent, issued, held_back: false, target: None }
+        Self {
+            lead: Lead::Silent,
+            issued,
+            held_back: false,
+            target: None,
+            feeding: Feeding::whole(),
+            bounds: None,
+        }
     }
 
-    /// The setpoint of an instant; `None` where nothing is to be sent.
+    /// The reference of an instant; `None` where nothing is to be sent.
     #[must_use]
     pub fn setpoint(&self, time: Duration) -> Option<Setpoint> {
         match &self.lead {
@@ -57,6 +69,13 @@ impl Guide {
             Lead::Hold(place) => Some(Setpoint::hold(time, place)),
             Lead::Along(track) => track.setpoint(time),
         }
+    }
+
+    /// What is sent for an instant: the reference as it is fed, within the bounds.
+    #[must_use]
+    pub fn sent(&self, time: Duration) -> Option<Setpoint> {
+        let fed = self.feeding.apply(&self.setpoint(time)?);
+        self.bounds.map_or(Some(fed), |bounds| bounds.keep(&fed))
     }
 }
 
@@ -100,7 +119,7 @@ impl Streamer {
             return None;
         }
         self.advance(now);
-        let (Some(setpoint), Some((target, _))) = (guide.setpoint(now), guide.target) else {
+        let (Some(setpoint), Some((target, _))) = (guide.sent(now), guide.target) else {
             *self = Self { next: self.next, ..Self::new(self.period) };
             return None;
         };
@@ -141,7 +160,7 @@ mod tests {
     fn guide(issued: Duration) -> Guide {
         let place = Place { position_m: Vector3::new(1.0, 0.0, 2.0), yaw_rad: 0.0 };
         let target = Target::new(SystemId(1), ComponentId(1)).unwrap();
-        Guide { lead: Lead::Hold(place), issued, held_back: false, target: Some((target, Stack::Px4)) }
+        Guide { lead: Lead::Hold(place), target: Some((target, Stack::Px4)), ..Guide::silent(issued) }
     }
 
     #[test]

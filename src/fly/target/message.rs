@@ -3,7 +3,7 @@
 use mavlink::dialects::ardupilotmega::{
     self as dialect, COMMAND_LONG_DATA, HEARTBEAT_DATA, MISSION_ACK_DATA, MISSION_REQUEST_INT_DATA,
     MISSION_REQUEST_LIST_DATA, MavAutopilot, MavMessage, MavMissionResult, MavMissionType, MavModeFlag,
-    MavState, MavType, PARAM_REQUEST_READ_DATA,
+    MavState, MavType, PARAM_REQUEST_READ_DATA, TIMESYNC_DATA,
 };
 use mavlink::types::CharArray;
 
@@ -77,6 +77,12 @@ impl Target {
             ..Default::default()
         })
     }
+}
+
+/// `TIMESYNC` that asks: the answer of any system carries the same `number` in `ts1`.
+#[must_use]
+pub fn timesync(number: i64) -> MavMessage {
+    MavMessage::TIMESYNC(TIMESYNC_DATA { ts1: number, ..Default::default() })
 }
 
 /// A ground station's HEARTBEAT.

@@ -9,7 +9,7 @@ mod order;
 mod range;
 mod vehicle;
 
-pub use message::heartbeat;
+pub use message::{heartbeat, timesync};
 pub use order::Order;
 pub use range::{MessageId, OutOfRange, ParameterName, Period, TakeoffHeight, within};
 pub use vehicle::Target;

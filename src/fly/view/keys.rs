@@ -4,6 +4,8 @@ use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
 /// What must be typed to stop the motors in the air.
 pub const KILL_WORD: &str = "kill";
+/// What must be typed to arm.
+pub const ARM_WORD: &str = "arm";
 /// Opens the field for the word: its letters would otherwise be commands.
 const WORD_KEY: char = ':';
 
@@ -18,18 +20,21 @@ pub enum KeyCommand {
     Return,
     /// stop the motors now, wherever the vehicle is
     Kill,
+    /// arm, and fly
+    Arm,
     /// hold, and end the program
     Quit,
 }
 
 impl KeyCommand {
-    /// What a typed line asks for, where there are no single keys: `h`, `l`, `r` or their words, `:kill`.
+    /// What a typed line asks for, where there are no single keys: `h`, `l`, `r` or their words, `arm`, `:kill`.
     #[must_use]
     pub fn of_line(line: &str) -> Option<Self> {
         match line.trim().to_ascii_lowercase().as_str() {
             "h" | "hold" => Some(Self::Hold),
             "l" | "land" => Some(Self::Land),
             "r" | "return" => Some(Self::Return),
+            ARM_WORD => Some(Self::Arm),
             word if word.strip_prefix(WORD_KEY) == Some(KILL_WORD) => Some(Self::Kill),
             _ => None,
         }
@@ -40,9 +45,18 @@ impl KeyCommand {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Keys {
     word: Option<String>,
+    /// the word for arming is waited for: letters are its letters
+    asks: bool,
 }
 
 impl Keys {
+    /// Whether the word for arming is waited for.
+    pub fn ask(&mut self, asks: bool) {
+        if asks != self.asks {
+            (self.asks, self.word) = (asks, None);
+        }
+    }
+
     /// Takes one key event.
     pub fn press(&mut self, event: KeyEvent) -> Option<KeyCommand> {
         if event.kind == KeyEventKind::Release {
@@ -53,6 +67,7 @@ impl Keys {
         }
         match (&mut self.word, event.code) {
             (_, KeyCode::Esc) => self.word = None,
+            (None, KeyCode::Char(letter)) if self.asks => self.word = Some(letter.to_string()),
             (None, KeyCode::Char(WORD_KEY)) => self.word = Some(String::new()),
             (None, KeyCode::Char('h' | 'H' | ' ')) => return Some(KeyCommand::Hold),
             (None, KeyCode::Char('l' | 'L')) => return Some(KeyCommand::Land),
@@ -62,7 +77,9 @@ impl Keys {
             }
             (Some(word), KeyCode::Char(letter)) if word.len() < 2 * KILL_WORD.len() => word.push(letter),
             (Some(_), KeyCode::Enter) => {
-                return self.word.take().filter(|word| word == KILL_WORD).map(|_| KeyCommand::Kill);
+                let (wanted, command) =
+                    if self.asks { (ARM_WORD, KeyCommand::Arm) } else { (KILL_WORD, KeyCommand::Kill) };
+                return self.word.take().filter(|word| word == wanted).map(|_| command);
             }
             _ => {}
         }
@@ -111,6 +128,18 @@ mod tests {
         assert_eq!(press(&mut keys, ":ki"), []);
         keys.press(KeyEvent::from(KeyCode::Esc));
         assert_eq!(press(&mut keys, "h"), [KeyCommand::Hold]);
+    }
+
+    #[test]
+    fn only_the_whole_word_arms_and_only_where_it_is_asked_for() {
+        let mut keys = Keys::default();
+        assert_eq!(press(&mut keys, "arm\n"), [KeyCommand::Return]);
+        keys.ask(true);
+        assert_eq!(press(&mut keys, "ar\nh\n:kill\n"), []);
+        assert_eq!(press(&mut keys, "arm\n"), [KeyCommand::Arm]);
+        keys.ask(false);
+        assert_eq!(press(&mut keys, "h"), [KeyCommand::Hold]);
+        assert_eq!(KeyCommand::of_line(" arm\n"), Some(KeyCommand::Arm));
     }
 
     #[test]

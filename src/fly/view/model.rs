@@ -3,7 +3,9 @@
 use crate::estimate::Finding;
 use crate::fly::finding::Level;
 use crate::fly::live::LiveEstimate;
+use crate::fly::preflight::Page;
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 /// Values that a trace keeps; older ones are forgotten.
 pub const HISTORY: usize = 120;
@@ -128,6 +130,10 @@ pub struct ViewModel {
     pub mode: String,
     /// motors may turn
     pub armed: bool,
+    /// what there is to read before the vehicle is armed
+    pub page: Option<Arc<Page>>,
+    /// the word for arming is waited for
+    pub awaits_word: bool,
     /// s since the connection
     pub elapsed_s: f64,
     /// s of the trajectory flown, and of all of it

@@ -1,5 +1,6 @@
 //! The flight as lines, for a log or a terminal that cannot draw.
 
+use super::keys::ARM_WORD;
 use super::model::{EventLine, ParameterRow, ViewModel};
 use crate::fly::finding::Level;
 
@@ -7,6 +8,8 @@ use crate::fly::finding::Level;
 const STATE_S: f64 = 1.0;
 /// Between two lines of parameters, s.
 const PARAMETERS_S: f64 = 5.0;
+/// Columns of a page where the terminal's are not known.
+const COLUMNS: usize = 120;
 
 /// Says each event once and the state now and then.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -14,16 +17,37 @@ pub struct PlainLog {
     events: u64,
     state_s: Option<f64>,
     parameters_s: Option<f64>,
+    /// of the terminal; 0: not known
+    columns: usize,
+    page_said: bool,
+    word_said: bool,
 }
 
 impl PlainLog {
+    /// For a terminal of this width.
+    #[must_use]
+    pub fn of_width(columns: usize) -> Self {
+        Self { columns, ..Self::default() }
+    }
+
     /// The lines that are due, by the model's own time.
     pub fn lines(&mut self, model: &ViewModel) -> Vec<String> {
-        let new = model.event_count.saturating_sub(self.events);
-        let new = usize::try_from(new).unwrap_or(usize::MAX).min(model.events.len());
+        let all = model.event_count.saturating_sub(self.events);
+        let new = usize::try_from(all).unwrap_or(usize::MAX).min(model.events.len());
         self.events = model.event_count;
         let first = model.events.len() - new;
-        let mut lines: Vec<String> = model.events.iter().skip(first).map(event_line).collect();
+        let forgotten = all.saturating_sub(u64::try_from(new).unwrap_or(u64::MAX));
+        let mut lines: Vec<String> = Vec::new();
+        if forgotten > 0 {
+            lines.push(format!("[{:7.1} s] {forgotten} events came too fast to be shown", model.elapsed_s));
+        }
+        lines.extend(model.events.iter().skip(first).map(event_line));
+        if let Some(page) = model.page.as_ref().filter(|_| !std::mem::replace(&mut self.page_said, true)) {
+            lines.extend(page.lines(if self.columns > 0 { self.columns } else { COLUMNS }));
+        }
+        if model.awaits_word && !std::mem::replace(&mut self.word_said, true) {
+            lines.push(format!("type {ARM_WORD} and return to arm and fly; Ctrl-C ends it"));
+        }
         if is_due(&mut self.state_s, model.elapsed_s, STATE_S) {
             lines.push(state_line(model));
         }
@@ -109,7 +133,11 @@ mod tests {
             model.event(Level::Ok, format!("event {number}"));
         }
         // those that the list has forgotten cannot be said any more, and none is said twice
-        assert_eq!(log.lines(&model).len(), 200);
+        let lines = log.lines(&model);
+        assert_eq!(
+            (lines.len(), lines[0].as_str()),
+            (201, "[    0.5 s] 300 events came too fast to be shown")
+        );
         model.elapsed_s = 1.5;
         assert_eq!(log.lines(&model), ["[    1.5 s] connecting"]);
     }

@@ -1,10 +1,11 @@
 //! Draws the model.
 
-use super::keys::KILL_WORD;
+use super::keys::{ARM_WORD, KILL_WORD};
 use super::model::{ParameterRow, Phase, ViewModel};
 use super::plain::with_error;
 use super::spark::spark;
 use crate::fly::finding::Level;
+use crate::fly::preflight::Page;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
@@ -20,6 +21,9 @@ const VALUE_COLUMNS: usize = 32;
 
 /// Draws the whole view.
 pub fn render(frame: &mut Frame<'_>, model: &ViewModel) {
+    if let (true, Some(page)) = (model.awaits_word, &model.page) {
+        return before_flight(frame, model, page);
+    }
     let rows = u16::try_from(model.parameters.len()).unwrap_or(u16::MAX).max(1);
     let [head, gauges, motion, parameters, events, foot] = Layout::vertical([
         Constraint::Length(1),
@@ -37,6 +41,16 @@ pub fn render(frame: &mut Frame<'_>, model: &ViewModel) {
     boxed(frame, &title, parameter_lines(model, parameters.width), parameters);
     event_list(frame, model, events);
     frame.render_widget(Paragraph::new(help(model)), foot);
+}
+
+/// The page before the flight, as much of it as fits, and the field for the word.
+fn before_flight(frame: &mut Frame<'_>, model: &ViewModel, page: &Page) {
+    let [above, foot] = Layout::vertical([Constraint::Min(3), Constraint::Length(1)]).areas(frame.area());
+    let lines = page.lines(usize::from(above.width)).into_iter().map(Line::raw);
+    frame.render_widget(Paragraph::new(lines.collect::<Vec<_>>()), above);
+    let typed = model.typed.as_deref().unwrap_or_default();
+    let asked = format!("type {ARM_WORD} and Enter to arm and fly, Ctrl-C to leave: {typed}_");
+    frame.render_widget(Paragraph::new(Line::styled(asked, Modifier::BOLD)), foot);
 }
 
 fn boxed(frame: &mut Frame<'_>, title: &str, lines: Vec<Line<'_>>, area: Rect) {

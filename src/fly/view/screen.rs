@@ -12,6 +12,12 @@ use ratatui::crossterm::terminal::{
 use std::io::{self, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::channel;
+use std::thread;
+use std::time::Duration;
+
+/// How long a panic waits for the terminal.
+const PATIENCE: Duration = Duration::from_millis(300);
 
 /// A terminal in use. Leaving it, or a panic anywhere, gives it back as it was.
 pub struct Screen<W: Write> {
@@ -31,7 +37,17 @@ impl<W: Write + 'static> Screen<W> {
         let in_panic = Arc::clone(&taken);
         let previous = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
-            give_back(&in_panic, open);
+            let taken = Arc::clone(&in_panic);
+            let (done, given_back) = channel();
+            let work = move || {
+                give_back(&taken, open);
+                // whoever panics may not have waited
+                let _ = done.send(());
+            };
+            // a terminal that takes nothing must not hold up whoever still has to tell the vehicle
+            if thread::Builder::new().name("screen".into()).spawn(work).is_ok() {
+                let _ = given_back.recv_timeout(PATIENCE);
+            }
             previous(panic);
         }));
         let terminal = execute!(open(), EnterAlternateScreen)

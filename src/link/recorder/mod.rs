@@ -5,6 +5,7 @@
 //! program loses no more than the last second. What the disk does not take in time waits in memory, up to a
 //! bound; beyond it frames are dropped, counted, and the link's reader is told.
 
+mod backlog;
 mod watch;
 mod worker;
 
@@ -13,17 +14,23 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
+use std::time::Duration;
 
 use tokio::sync::oneshot;
+use tokio::time::timeout;
 
 use super::clock::HostStamp;
 use crate::log::{Frame, STAMP_BYTES};
+use crate::text;
 
+use backlog::{Backlog, Taken};
 pub use worker::Store;
 use worker::{Order, work};
 
 /// Bytes that may wait for a slow disk: 20 minutes of a lively link.
 const WAITING_BYTES: usize = 64 << 20;
+/// A disk that takes nothing for so long has failed.
+const PATIENCE: Duration = Duration::from_secs(3);
 /// SETUP_SIGNING carries the signing key: it is left out.
 const SETUP_SIGNING: u32 = 256;
 
@@ -31,13 +38,13 @@ const SETUP_SIGNING: u32 = 256;
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
     /// the file is there already
-    #[error("{} exists already", path.display())]
+    #[error("{} exists already", text::path(path))]
     Exists {
         /// which file
         path: PathBuf,
     },
     /// the file cannot be made
-    #[error("cannot write {}: {source}", path.display())]
+    #[error("cannot write {}: {source}", text::path(path))]
     Create {
         /// which file
         path: PathBuf,
@@ -55,16 +62,27 @@ pub enum RecordError {
 /// What became of the frames.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RecorderStatus {
-    /// frames handed to the file
+    /// frames in the file: the system took all their bytes
     pub frames: u64,
-    /// bytes handed to the file, stamps included
+    /// their bytes, stamps included
     pub bytes: u64,
     /// frames lost: the disk failed, or was slow for too long
     pub dropped: u64,
+    /// frames in the file of which the system could not say that they are on the disk: what a power loss takes, and
+    /// on some file systems a full disk
+    pub doubtful: u64,
     /// SETUP_SIGNING frames left out, since they carry the signing key
     pub redacted: u64,
     /// what the system last said when writing failed; `None` while it works
     pub failure: Option<String>,
+}
+
+impl RecorderStatus {
+    /// Every frame is in the file, and it is on the disk.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.dropped == 0 && self.doubtful == 0 && self.failure.is_none()
+    }
 }
 
 /// The recording of one or more links. Clones write to the same file, which is complete when the last of
@@ -79,10 +97,14 @@ pub struct Recorder {
 /// What a recorder and its thread share.
 #[derive(Debug, Default)]
 struct State {
+    /// in the queue, or in the thread's hands
     waiting_bytes: AtomicUsize,
+    /// frames that came to be recorded
+    given: AtomicU64,
     frames: AtomicU64,
     bytes: AtomicU64,
     dropped: AtomicU64,
+    doubtful: AtomicU64,
     redacted: AtomicU64,
     failing: AtomicBool,
     /// ended: what comes now is not of the recording
@@ -109,6 +131,8 @@ impl Recorder {
             io::ErrorKind::AlreadyExists => RecordError::Exists { path: path.into() },
             _ => RecordError::Create { path: path.into(), source },
         })?;
+        // nobody takes it away while it is written; a file system without locks does without
+        let _ = file.try_lock();
         Self::to_store(file, WAITING_BYTES)
     }
 
@@ -136,12 +160,14 @@ impl Recorder {
             self.state.redacted.fetch_add(1, Ordering::Relaxed);
             return true;
         }
+        self.state.given.fetch_add(1, Ordering::Relaxed);
         let bytes = frame.bytes().len() + STAMP_BYTES;
         let waiting = self.state.waiting_bytes.fetch_add(bytes, Ordering::Relaxed) + bytes;
         let order = Order::Frame { stamp_us: stamp.utc_us, bytes: frame.bytes().into() };
         if waiting > self.waiting_max || self.orders.send(order).is_err() {
             self.state.waiting_bytes.fetch_sub(bytes, Ordering::Relaxed);
             if self.is_over() {
+                self.state.given.fetch_sub(1, Ordering::Relaxed);
                 return true;
             }
             self.state.dropped.fetch_add(1, Ordering::Relaxed);
@@ -173,15 +199,37 @@ impl Recorder {
     }
 
     /// Ends the recording: brings it onto the disk and says what became of it. What comes later is neither written nor
-    /// counted.
+    /// counted. A disk that takes nothing for 3 s is not waited for any longer: what it did not take counts as lost.
     ///
     /// # Errors
     /// It has ended already.
     pub async fn end(&self) -> Result<RecorderStatus, RecordError> {
-        let (done, answer) = oneshot::channel();
+        let (done, mut answer) = oneshot::channel();
         self.orders.send(Order::End(done)).map_err(|_| RecordError::Ended)?;
-        answer.await.map_err(|_| RecordError::Ended)?;
-        Ok(self.status())
+        loop {
+            let before = self.status().frames;
+            match timeout(PATIENCE, &mut answer).await {
+                Ok(answered) => {
+                    answered.map_err(|_| RecordError::Ended)?;
+                    return Ok(self.status());
+                }
+                Err(_) if self.status().frames > before => {}
+                Err(_) => return Ok(self.given_up()),
+            }
+        }
+    }
+
+    /// What became of the frames where the disk takes nothing more.
+    fn given_up(&self) -> RecorderStatus {
+        self.state.over.store(true, Ordering::Release);
+        let status = self.status();
+        let missing = self.state.given.load(Ordering::Relaxed).saturating_sub(status.frames + status.dropped);
+        let told = format!("the disk took nothing for {} s", PATIENCE.as_secs());
+        RecorderStatus {
+            dropped: status.dropped + missing,
+            failure: Some(status.failure.map_or(told.clone(), |failure| format!("{told}; {failure}"))),
+            ..status
+        }
     }
 
     fn is_over(&self) -> bool {
@@ -196,6 +244,7 @@ impl Recorder {
             frames: count(&self.state.frames),
             bytes: count(&self.state.bytes),
             dropped: count(&self.state.dropped),
+            doubtful: count(&self.state.doubtful),
             redacted: count(&self.state.redacted),
             failure: self.state.failure.lock().unwrap_or_else(PoisonError::into_inner).clone(),
         }
@@ -203,6 +252,15 @@ impl Recorder {
 }
 
 impl State {
+    /// Takes over what the store took.
+    fn count<S: Store>(&self, backlog: &mut Backlog<S>) {
+        let Taken { records, bytes } = backlog.take_taken();
+        self.frames.fetch_add(records, Ordering::Relaxed);
+        self.bytes.fetch_add(bytes, Ordering::Relaxed);
+        self.doubtful.store(backlog.doubtful(), Ordering::Relaxed);
+        self.waiting_bytes.fetch_sub(usize::try_from(bytes).unwrap_or(usize::MAX), Ordering::Relaxed);
+    }
+
     fn note_failure(&self, error: Option<&io::Error>) {
         self.failing.store(error.is_some(), Ordering::Relaxed);
         let text = error.map(ToString::to_string);

@@ -1,7 +1,7 @@
 //! The thread that writes a recording.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
@@ -9,12 +9,12 @@ use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
 
 use super::State;
+use super::backlog::Backlog;
 use super::watch::ModeWatch;
-use crate::log::{Frame, STAMP_BYTES, TlogWriter};
+use crate::log::{Frame, TlogWriter};
 
 /// A kill costs no more than what came within this.
 const FLUSH: Duration = Duration::from_secs(1);
-const BUFFER: usize = 1 << 16;
 
 /// What a recording is written to.
 pub trait Store: Write + Send {
@@ -27,7 +27,11 @@ pub trait Store: Write + Send {
 
 impl Store for File {
     fn sync(&mut self) -> io::Result<()> {
-        self.sync_data()
+        match self.sync_data() {
+            // a device or a pipe: nothing of it is kept back
+            Err(error) if error.kind() == io::ErrorKind::InvalidInput => Ok(()),
+            synced => synced,
+        }
     }
 }
 
@@ -43,27 +47,10 @@ pub(super) enum Order {
     End(oneshot::Sender<()>),
 }
 
-/// Flushing it also syncs. Its buffer hands on whole records only.
-struct Synced<S: Store>(BufWriter<S>);
-
-impl<S: Store> Write for Synced<S> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.write(bytes)
-    }
-
-    fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.0.write_all(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.0.flush()?;
-        self.0.get_mut().sync()
-    }
-}
-
-/// Writes until all recorders are gone, or the recording is ended. After a failure it goes on trying: a full disk may be made room on.
+/// Writes until all recorders are gone, or the recording is ended. After a failure it goes on trying: a full disk may
+/// be made room on.
 pub(super) fn work(store: impl Store, orders: &Receiver<Order>, state: &State) {
-    let mut log = TlogWriter::new(Synced(BufWriter::with_capacity(BUFFER, store)));
+    let mut log = TlogWriter::new(Backlog::new(store));
     let mut watch = ModeWatch::default();
     let mut due = Instant::now() + FLUSH;
     loop {
@@ -73,10 +60,15 @@ pub(super) fn work(store: impl Store, orders: &Receiver<Order>, state: &State) {
         match order {
             Ok(Order::Frame { stamp_us, bytes }) => {
                 if let Some(frame) = Frame::at_start(&bytes) {
-                    write(&mut log, stamp_us, frame, state);
                     flush |= watch.changed(&frame);
+                    // it only joins those that wait
+                    let _ = log.write(stamp_us, frame);
                 }
-                state.waiting_bytes.fetch_sub(bytes.len() + STAMP_BYTES, Ordering::Relaxed);
+                let drained = log.get_mut().drain_if_much();
+                if let Err(error) = &drained {
+                    state.note_failure(Some(error));
+                }
+                state.count(log.get_mut());
             }
             Ok(Order::Flush(done)) => {
                 flush = true;
@@ -84,19 +76,17 @@ pub(super) fn work(store: impl Store, orders: &Receiver<Order>, state: &State) {
             }
             Ok(Order::End(done)) => {
                 state.over.store(true, Ordering::Release);
-                state.note_failure(log.flush().err().as_ref());
+                finish(&mut log, state);
                 // whoever asked may have given up
                 let _ = done.send(());
                 return;
             }
             Err(RecvTimeoutError::Timeout) => flush = true,
-            Err(RecvTimeoutError::Disconnected) => {
-                state.note_failure(log.flush().err().as_ref());
-                return;
-            }
+            Err(RecvTimeoutError::Disconnected) => return finish(&mut log, state),
         }
         if flush {
             state.note_failure(log.flush().err().as_ref());
+            state.count(log.get_mut());
             due = Instant::now() + FLUSH;
         }
         if let Some(done) = waiting {
@@ -106,15 +96,9 @@ pub(super) fn work(store: impl Store, orders: &Receiver<Order>, state: &State) {
     }
 }
 
-fn write<S: Store>(log: &mut TlogWriter<Synced<S>>, stamp_us: u64, frame: Frame<'_>, state: &State) {
-    match log.write(stamp_us, frame) {
-        Ok(_) => {
-            state.frames.fetch_add(1, Ordering::Relaxed);
-            state.bytes.fetch_add((frame.bytes().len() + STAMP_BYTES) as u64, Ordering::Relaxed);
-        }
-        Err(error) => {
-            state.dropped.fetch_add(1, Ordering::Relaxed);
-            state.note_failure(Some(&error));
-        }
-    }
+/// The last try: what the store does not take now is lost.
+fn finish<S: Store>(log: &mut TlogWriter<Backlog<S>>, state: &State) {
+    state.note_failure(log.flush().err().as_ref());
+    state.count(log.get_mut());
+    state.dropped.fetch_add(log.get_mut().records(), Ordering::Relaxed);
 }

@@ -20,6 +20,7 @@ use crate::link::reader::{LinkEvent, LinkReader, Received, ReceivedFrame};
 use crate::link::shared::Shared;
 use crate::link::writer::LinkWriter;
 use crate::log::{ComponentId, CrcSeeds, Frame, LogError, Payload, SystemId, TlogReader};
+use crate::text;
 use telemetry::is_telemetry;
 
 const HEARTBEAT: u32 = 0;
@@ -38,7 +39,7 @@ const BEHIND: Duration = Duration::from_millis(1);
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
     /// it cannot be read
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {source}", text::path(&path))]
     Log {
         /// which file
         path: PathBuf,
@@ -157,7 +158,7 @@ impl Replay {
     /// stamp has the present moment and the log's time. At the end the reader says that the link has ended.
     #[must_use]
     pub fn start(self) -> LinkReader {
-        let shared = Arc::new(Shared::new(self.path.display().to_string(), None, &LinkOptions::default()));
+        let shared = Arc::new(Shared::new(text::path(&self.path), None, &LinkOptions::default()));
         let (to_reader, from_task) = mpsc::unbounded_channel();
         let reader = LinkReader::new(from_task, shared.clone(), None);
         tokio::spawn(async move {

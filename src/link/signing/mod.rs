@@ -21,6 +21,7 @@ use sha2::{Digest, Sha256};
 
 use super::clock::utc_us;
 use crate::log::{ComponentId, Frame, SystemId, Version};
+use crate::text;
 pub use key::SigningKey;
 use times::{StreamKey, Times, TimesFile};
 pub(super) use told::Told;
@@ -45,7 +46,7 @@ const RADIO_STATUS: u32 = 109;
 #[derive(Debug, thiserror::Error)]
 pub enum SigningError {
     /// a file cannot be read or written
-    #[error("cannot {what} {}: {source}", path.display())]
+    #[error("cannot {what} {}: {source}", text::path(&path))]
     File {
         /// read or write
         what: &'static str,
@@ -55,7 +56,7 @@ pub enum SigningError {
         source: std::io::Error,
     },
     /// the key file holds no key
-    #[error("expected a key (32 bytes, 64 hexadecimal digits, or a passphrase) in {}, got {got}", path.display())]
+    #[error("expected a key (32 bytes, 64 hexadecimal digits, or a passphrase) in {}, got {got}", text::path(&path))]
     Key {
         /// which file
         path: PathBuf,
@@ -66,7 +67,7 @@ pub enum SigningError {
     #[error(
         "expected {expected} in line {line} of {}, got `{got}`: without the times, old frames could be played \
          back; delete the file to accept that",
-        path.display()
+        text::path(&path)
     )]
     Times {
         /// which file

@@ -16,7 +16,7 @@ pub(super) fn exposure(path: &Path) -> Option<String> {
         open.into_iter().filter(|(bits, _)| mode & bits != 0).map(|(_, done)| done).collect();
     (mode & OTHERS != 0).then(|| {
         let done = if done.is_empty() { "run".to_owned() } else { done.join(" and ") };
-        let name = path.display();
+        let name = crate::text::path(path);
         format!("the signing key in {name} can be {done} by others (mode {mode:o}, expected 600): chmod 600 {name}")
     })
 }

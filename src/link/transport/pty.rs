@@ -1,5 +1,6 @@
 //! Links over a pseudo-terminal: the end that another program does not open as its serial port.
 
+use crate::text;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Write};
 use std::os::fd::AsFd;
@@ -53,7 +54,7 @@ impl Pty {
         loop {
             if let (true, Ok(port)) = (is_opened(&self.master), self.port()) {
                 outgoing.connected();
-                incoming.connected(self.terminal.display().to_string());
+                incoming.connected(text::path(&self.terminal));
                 let why = threads::session(port, incoming, outgoing).await;
                 incoming.lost(why);
                 outgoing.discard();

@@ -1,5 +1,6 @@
 //! Links over serial ports.
 
+use crate::text;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -42,7 +43,7 @@ impl Serial {
             if let Ok(port) = port {
                 backoff.reset();
                 outgoing.connected();
-                incoming.connected(self.path.display().to_string());
+                incoming.connected(text::path(&self.path));
                 let why = threads::session(port, incoming, outgoing).await;
                 incoming.lost(why);
                 outgoing.discard();

@@ -2,6 +2,7 @@
 //!
 //! Rows stream through; what is wrong with one is counted and told, and the rest is kept.
 
+mod bounded;
 mod convert;
 mod mapping;
 mod reader;
@@ -12,11 +13,16 @@ pub use reader::{read_csv, read_csv_from};
 
 use std::path::PathBuf;
 
+use crate::text;
+
+/// Characters of a column's name that an error repeats.
+const NAME_CHARS: usize = 64;
+
 /// Why a file gave no recording.
 #[derive(Debug, thiserror::Error)]
 pub enum CsvError {
     /// the file could not be read
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {source}", text::path(path))]
     Read {
         /// which file
         path: PathBuf,
@@ -32,7 +38,7 @@ pub enum CsvError {
         source: ::csv::Error,
     },
     /// a column that the mapping names is not in the header
-    #[error("{origin}: expected column(s) {}, but the header has {}", missing.join(", "), listed(present))]
+    #[error("{origin}: expected column(s) {}, but the header has {}", text::listed(missing.iter()), listed(present))]
     MissingColumns {
         /// file name, or what the bytes are
         origin: String,
@@ -49,8 +55,26 @@ pub enum CsvError {
         /// what came
         what: &'static str,
     },
+    /// the first line does not end
+    #[error("{origin}: expected a header of column names of at most {max} bytes, came a longer first line")]
+    LongHeader {
+        /// file name, or what the bytes are
+        origin: String,
+        /// the most that it may have
+        max: usize,
+    },
+    /// more columns than a table may have
+    #[error("{origin}: expected at most {max} columns, the header has {came}")]
+    ManyColumns {
+        /// file name, or what the bytes are
+        origin: String,
+        /// the most that it may have
+        max: usize,
+        /// what it has
+        came: usize,
+    },
     /// a column name stands twice in the header
-    #[error("{origin}: column \"{column}\" stands twice in the header")]
+    #[error("{origin}: column \"{}\" stands twice in the header", text::excerpt(column, NAME_CHARS))]
     RepeatedColumn {
         /// file name, or what the bytes are
         origin: String,
@@ -58,7 +82,7 @@ pub enum CsvError {
         column: String,
     },
     /// the mapping found no quantity besides time
-    #[error("{origin}: none of the mapped quantities is in the header, which has {}", present.join(", "))]
+    #[error("{origin}: none of the mapped quantities is in the header, which has {}", text::listed(present.iter()))]
     NothingMapped {
         /// file name, or what the bytes are
         origin: String,
@@ -82,7 +106,7 @@ pub enum CsvError {
 
 /// The header's columns.
 fn listed(present: &[String]) -> String {
-    if present.iter().all(String::is_empty) { "none".to_owned() } else { present.join(", ") }
+    if present.iter().all(String::is_empty) { "none".to_owned() } else { text::listed(present.iter()) }
 }
 
 fn first_reason(first: &Option<RowRejection>) -> String {
@@ -107,6 +131,8 @@ pub struct CsvReport {
     pub rows_rejected: usize,
     /// the first of them, at most [`CsvReport::REJECTIONS_KEPT`]
     pub rejections: Vec<RowRejection>,
+    /// the line in which a row begins that is longer than a row may be: nothing of the file is read from there on
+    pub cut_at_line: Option<u64>,
     /// rows whose time is before that of a row above; sorted into place
     pub rows_out_of_order: usize,
     /// rows with the same time as another; of each such group the first is kept
@@ -135,6 +161,9 @@ impl CsvReport {
                 .first()
                 .map_or_else(String::new, |row| format!(", the first in line {}: {}", row.line, row.reason));
             losses.push(format!("{} of {} rows rejected{first}", self.rows_rejected, self.rows));
+        }
+        if let Some(line) = self.cut_at_line {
+            losses.push(format!("nothing is read from line {line} on, whose row has no end"));
         }
         if self.rows_repeating_a_time > 0 {
             losses.push(format!("{} rows repeat a time and were left out", self.rows_repeating_a_time));

@@ -7,15 +7,17 @@ use std::path::Path;
 
 use ::csv::{ByteRecord, ReaderBuilder};
 
+use super::bounded::{BUFFER, Bounded, ROW_BYTES_MAX};
 use super::rows::{Clock, cells_si, number};
 use super::{CsvError, CsvMapping, CsvQuantity, CsvReport, RowRejection, convert};
 use crate::log::{Recording, Stream, StreamKey};
+use crate::text;
 
 /// The source named in the keys of streams that came from a table.
 const SOURCE: &str = "CSV";
 
-/// A header longer than this is not looked at for its delimiter.
-const HEADER_BYTES_MAX: u64 = 1 << 20;
+/// Columns of a table.
+const COLUMNS_MAX: usize = 4096;
 
 /// Reads a file with a header row.
 ///
@@ -23,7 +25,7 @@ const HEADER_BYTES_MAX: u64 = 1 << 20;
 /// [`CsvError`] where the file cannot be read, lacks a column that is not optional, or has no usable row.
 pub fn read_csv(path: &Path, mapping: &CsvMapping) -> Result<(Recording, CsvReport), CsvError> {
     let file = File::open(path).map_err(|source| CsvError::Read { path: path.to_owned(), source })?;
-    read_csv_from(BufReader::new(file), &path.display().to_string(), mapping)
+    read_csv_from(BufReader::new(file), &text::path(path), mapping)
 }
 
 /// As [`read_csv`], from any reader; `origin` is named in errors.
@@ -37,8 +39,11 @@ pub fn read_csv_from(
 ) -> Result<(Recording, CsvReport), CsvError> {
     let table_error = |source: ::csv::Error| CsvError::Table { origin: origin.to_owned(), source };
     let mut head = Vec::new();
-    let mut limited = reader.by_ref().take(HEADER_BYTES_MAX);
+    let mut limited = reader.by_ref().take(ROW_BYTES_MAX as u64);
     limited.read_until(b'\n', &mut head).map_err(|source| table_error(source.into()))?;
+    if head.len() == ROW_BYTES_MAX && !head.ends_with(b"\n") {
+        return Err(CsvError::LongHeader { origin: origin.to_owned(), max: ROW_BYTES_MAX });
+    }
     if head.starts_with(b"\xef\xbb\xbf") {
         head.drain(..3);
     }
@@ -46,15 +51,34 @@ pub fn read_csv_from(
         return Err(CsvError::NoText { origin: origin.to_owned(), what });
     }
     let delimiter = mapping.delimiter.unwrap_or_else(|| guess_delimiter(&head));
-    let mut table =
-        ReaderBuilder::new().delimiter(delimiter).flexible(true).from_reader(Cursor::new(head).chain(reader));
-    let header = table.byte_headers().map_err(table_error)?.clone();
+    let mut table = ReaderBuilder::new()
+        .delimiter(delimiter)
+        .flexible(true)
+        .buffer_capacity(BUFFER)
+        .from_reader(Bounded::new(Cursor::new(head).chain(reader)));
+    let long = |table: &::csv::Reader<Bounded<_>>| table.get_ref().is_exceeded();
+    let header = match table.byte_headers().cloned() {
+        Ok(header) => header,
+        Err(_) if long(&table) => {
+            return Err(CsvError::LongHeader { origin: origin.to_owned(), max: ROW_BYTES_MAX });
+        }
+        Err(source) => return Err(table_error(source)),
+    };
     let mut reading = Reading::new(&header, origin, mapping)?;
     let mut record = ByteRecord::new();
-    while table.read_byte_record(&mut record).map_err(table_error)? {
-        reading.row(&record);
+    loop {
+        table.get_mut().next_row();
+        let line = table.position().line();
+        match table.read_byte_record(&mut record) {
+            Ok(true) => reading.row(&record),
+            Ok(false) => return reading.finish(),
+            Err(_) if long(&table) => {
+                reading.cut(line);
+                return reading.finish();
+            }
+            Err(source) => return Err(table_error(source)),
+        }
     }
-    reading.finish()
 }
 
 /// What the first line is if it is no header at all.
@@ -102,8 +126,12 @@ struct Reading<'a> {
 
 impl<'a> Reading<'a> {
     fn new(header: &ByteRecord, origin: &'a str, mapping: &'a CsvMapping) -> Result<Self, CsvError> {
+        if header.len() > COLUMNS_MAX {
+            let (origin, came) = (origin.to_owned(), header.len());
+            return Err(CsvError::ManyColumns { origin, max: COLUMNS_MAX, came });
+        }
         let present: Vec<String> =
-            header.iter().map(|name| String::from_utf8_lossy(name.trim_ascii()).into_owned()).collect();
+            header.iter().map(|name| text::clean(&String::from_utf8_lossy(name.trim_ascii()))).collect();
         let mut seen = BTreeSet::new();
         for column in present.iter().filter(|column| !column.is_empty()) {
             if !seen.insert(column) {
@@ -148,14 +176,23 @@ impl<'a> Reading<'a> {
         self.report.rows += 1;
         match self.cells(record) {
             Ok((raw_time, cells)) => self.keep(raw_time, cells),
-            Err(reason) => {
-                self.report.rows_rejected += 1;
-                if self.report.rejections.len() < CsvReport::REJECTIONS_KEPT {
-                    let line = record.position().map_or(0, ::csv::Position::line);
-                    self.report.rejections.push(RowRejection { line, reason });
-                }
-            }
+            Err(reason) => self.reject(record.position().map_or(0, ::csv::Position::line), reason),
         }
+    }
+
+    fn reject(&mut self, line: u64, reason: String) {
+        self.report.rows_rejected += 1;
+        if self.report.rejections.len() < CsvReport::REJECTIONS_KEPT {
+            self.report.rejections.push(RowRejection { line, reason });
+        }
+    }
+
+    /// The row that begins in this line does not end: what stands behind it cannot be told from it.
+    fn cut(&mut self, line: u64) {
+        self.report.rows += 1;
+        self.report.cut_at_line = Some(line);
+        let expected = format!("expected a row of at most {ROW_BYTES_MAX} bytes, came a longer one");
+        self.reject(line, format!("{expected} (a quote that is not closed?)"));
     }
 
     /// The row's raw time and the cells of each quantity, or why the row is of no use.

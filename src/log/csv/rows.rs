@@ -3,6 +3,10 @@
 use ::csv::ByteRecord;
 
 use super::{CsvQuantity, CsvTime};
+use crate::text;
+
+/// Characters of a cell, or of its column's name, that a rejection repeats.
+const CELL_CHARS: usize = 40;
 
 /// A step back by more than this is taken for a clock that started anew, a smaller one for rows out of order.
 pub(super) const CLOCK_RESET_S: f64 = 1.0;
@@ -61,13 +65,13 @@ pub(super) fn number(record: &ByteRecord, index: usize, column: &str) -> Result<
     let text = String::from_utf8_lossy(cell);
     match text.parse::<f64>() {
         Ok(value) if !value.is_infinite() => Ok(value),
-        _ => Err(format!("column \"{column}\": expected a number, came \"{}\"", shortened(&text))),
+        // binary garbage need not be repeated whole
+        _ => Err(format!(
+            "column \"{}\": expected a number, came \"{}\"",
+            text::excerpt(column, CELL_CHARS),
+            text::excerpt(&text, CELL_CHARS)
+        )),
     }
-}
-
-/// Binary garbage need not be repeated whole.
-fn shortened(text: &str) -> String {
-    text.chars().take(24).collect()
 }
 
 /// The cells of one quantity in SI, NaN where missing.

@@ -46,6 +46,11 @@ impl<W: Write> TlogWriter<W> {
         self.to.flush()
     }
 
+    /// The writer beneath: what is written past this one is no record.
+    pub fn get_mut(&mut self) -> &mut W {
+        &mut self.to
+    }
+
     /// The writer beneath.
     pub fn into_inner(self) -> W {
         self.to

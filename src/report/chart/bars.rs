@@ -1,6 +1,7 @@
 //! Horizontal bars, several series a name.
 
-use super::{WIDTH, colour, escape, framed};
+use super::{WIDTH, colour, framed};
+use crate::text::markup;
 use std::fmt::Write;
 
 /// Bars from zero to the right.
@@ -34,7 +35,7 @@ impl Bars {
     fn draw(&self, out: &mut String, group: f64) {
         let all = self.series.iter().flat_map(|(.., values)| values).filter(|value| value.is_finite());
         let most = all.fold(f64::MIN_POSITIVE, |most, value| most.max(*value));
-        let _ = write!(out, r#"<text x="8" y="16" font-weight="bold">{}</text>"#, escape(&self.title));
+        let _ = write!(out, r#"<text x="8" y="16" font-weight="bold">{}</text>"#, markup(&self.title));
         for (place, name) in self.names.iter().enumerate() {
             let y = TOP + group * place as f64;
             let _ = write!(
@@ -42,7 +43,7 @@ impl Bars {
                 r#"<text x="{}" y="{:.1}" text-anchor="end">{}</text>"#,
                 LEFT - 8.0,
                 y + group / 2.0,
-                escape(name)
+                markup(name)
             );
             for (index, (_, hue, values)) in self.series.iter().enumerate() {
                 let Some(value) = values.get(place).filter(|value| value.is_finite()) else { continue };
@@ -56,7 +57,7 @@ impl Bars {
                     LEFT + wide + 4.0,
                     top + BAR - 3.0,
                     crate::report::number::significant(*value, 2),
-                    escape(&self.unit)
+                    markup(&self.unit)
                 );
             }
         }
@@ -70,7 +71,7 @@ impl Bars {
                 colour(*hue),
                 WIDTH - RIGHT + 64.0,
                 y,
-                escape(label)
+                markup(label)
             );
         }
     }

@@ -1,7 +1,8 @@
 //! A panel: axes, shading, bands, lines, legend.
 
 use super::axis::Axis;
-use super::{Band, HEIGHT, Line, Panel, Stroke, WIDTH, colour, escape};
+use super::{Band, HEIGHT, Line, Panel, Stroke, WIDTH, colour};
+use crate::text::markup;
 use std::fmt::Write;
 
 const LEFT: f64 = 74.0;
@@ -62,12 +63,12 @@ fn words(out: &mut String, panel: &Panel) {
     let _ = write!(
         out,
         r#"<text x="{LEFT}" y="16" font-weight="bold">{}</text><text x="{}" y="{}" text-anchor="middle">{}</text><text transform="translate(14 {}) rotate(-90)" text-anchor="middle">{}</text>"#,
-        escape(&panel.title),
+        markup(&panel.title),
         LEFT + Sheet::WIDE / 2.0,
         HEIGHT - 6.0,
-        escape(&panel.x_label),
+        markup(&panel.x_label),
         TOP + Sheet::HIGH / 2.0,
-        escape(&panel.y_label)
+        markup(&panel.y_label)
     );
 }
 
@@ -145,7 +146,7 @@ fn legend(out: &mut String, panel: &Panel) {
         let _ = write!(
             out,
             r#"<g transform="translate({x} {y})">{mark}<text x="20" y="4">{}</text></g>"#,
-            escape(&short)
+            markup(&short)
         );
         y += 16.0;
     };

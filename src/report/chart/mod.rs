@@ -8,6 +8,7 @@ mod strip;
 pub use bars::Bars;
 pub use strip::Strip;
 
+use crate::text::markup;
 use std::fmt::Write;
 
 /// How a line is drawn.
@@ -107,17 +108,11 @@ pub fn inline(panel: &Panel) -> String {
 fn framed(height: f64, title: &str, draw: &mut dyn FnMut(&mut String)) -> String {
     let mut out = format!(
         r#"<svg viewBox="0 0 {WIDTH} {height:.0}" role="img" fill="currentColor"><title>{}</title>"#,
-        escape(title)
+        markup(title)
     );
     draw(&mut out);
     out.push_str("</svg>\n");
     out
-}
-
-/// For the text of markup.
-#[must_use]
-pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! Rows of cells along time, darker where more is.
 
 use super::axis::Axis;
-use super::{WIDTH, escape, framed};
+use super::{WIDTH, framed};
+use crate::text::markup;
 use std::fmt::Write;
 
 /// Heat along an abscissa.
@@ -36,7 +37,7 @@ impl Strip {
         let axis = Axis::covering(self.x.iter().copied(), 0.0, false);
         let cell = (WIDTH - LEFT - RIGHT) / self.x.len().max(1) as f64;
         let bottom = TOP + ROW * self.rows.len() as f64;
-        let _ = write!(out, r#"<text x="8" y="16" font-weight="bold">{}</text>"#, escape(&self.title));
+        let _ = write!(out, r#"<text x="8" y="16" font-weight="bold">{}</text>"#, markup(&self.title));
         for (place, (name, values)) in self.rows.iter().enumerate() {
             let y = TOP + ROW * place as f64;
             let _ = write!(
@@ -44,7 +45,7 @@ impl Strip {
                 r#"<text x="{}" y="{:.1}" text-anchor="end">{}</text>"#,
                 LEFT - 8.0,
                 y + 12.0,
-                escape(name)
+                markup(name)
             );
             for (index, value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
                 let dark = (value / self.full).clamp(0.0, 1.0);
@@ -66,7 +67,7 @@ impl Strip {
             bottom - TOP,
             LEFT + (WIDTH - LEFT - RIGHT) / 2.0,
             bottom + 32.0,
-            escape(&self.x_label)
+            markup(&self.x_label)
         );
         for (value, text) in axis.ticks() {
             if let Some(share) = axis.share(value) {

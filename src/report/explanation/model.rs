@@ -4,6 +4,7 @@ use super::show::ShownOn;
 use super::story::Story;
 use crate::config::{ConfigError, vehicle_to_toml};
 use crate::report::model_parts::{correlations, effect_tables};
+use crate::text::toml_string;
 use std::fmt::Write;
 
 impl Story {
@@ -22,7 +23,7 @@ impl Story {
     fn identified(&self, text: &mut String) {
         let _ =
             writeln!(text, "\n[identified]\nmethod = \"explain\"\nverdict = \"{}\"", self.verdict().name());
-        let _ = writeln!(text, "answer = {:?}", self.answer());
+        let _ = writeln!(text, "answer = {}", toml_string(&self.answer()));
         let entry = |name: &str, value: f64, std: f64, unit: &str| {
             let std = if std.is_finite() { std } else { 0.0 };
             format!("{name} = {{ value = {value:e}, std = {std:e}, unit = \"{unit}\" }}")
@@ -49,7 +50,9 @@ impl Story {
         let files = |inputs: &[crate::report::InputFile]| {
             let lines: Vec<String> = inputs
                 .iter()
-                .map(|input| format!("  {{ path = {:?}, sha256 = \"{}\" }}", input.path, input.sha256))
+                .map(|input| {
+                    format!("  {{ path = {}, sha256 = \"{}\" }}", toml_string(&input.path), input.sha256)
+                })
                 .collect();
             format!("[\n{}\n]", lines.join(",\n"))
         };

@@ -4,6 +4,7 @@ use crate::estimate::{
     Finding, Identification, MethodResult, NAMES, THETA, ThrustScale, UNITS, identified_vehicle,
 };
 use crate::report::chart::{Line, Panel};
+use crate::text::toml_string;
 use crate::vehicle::Vehicle;
 use std::fmt::Write;
 
@@ -56,8 +57,9 @@ pub(super) fn identified_entries(body: &MethodResult, scale: Option<&ThrustScale
             ),
             Finding::NotDetermined { reason } => writeln!(
                 text,
-                "{} = {{ status = \"not_determined\", reason = {:?} }}",
-                parameter.name, reason
+                "{} = {{ status = \"not_determined\", reason = {} }}",
+                parameter.name,
+                toml_string(reason)
             ),
         };
     }
@@ -72,7 +74,7 @@ pub(super) fn identified_entries(body: &MethodResult, scale: Option<&ThrustScale
 pub(super) fn provenance(inputs: &[InputFile]) -> String {
     let files: Vec<String> = inputs
         .iter()
-        .map(|input| format!("  {{ path = {:?}, sha256 = \"{}\" }}", input.path, input.sha256))
+        .map(|input| format!("  {{ path = {}, sha256 = \"{}\" }}", toml_string(&input.path), input.sha256))
         .collect();
     let version = env!("CARGO_PKG_VERSION");
     format!("\n[provenance]\nprogram = \"mavid {version}\"\ninputs = [\n{}\n]\n", files.join(",\n"))

@@ -32,6 +32,13 @@ const COMMON: &[Row] = &[
     ("FENCE_RADIUS", R, 300.0),
     ("FENCE_TOTAL", B, 0.0),
     ("FENCE_TYPE", B, 7.0),
+    ("FLTMODE1", B, 0.0),
+    ("FLTMODE2", B, 0.0),
+    ("FLTMODE3", B, 0.0),
+    ("FLTMODE4", B, 0.0),
+    ("FLTMODE5", B, 0.0),
+    ("FLTMODE6", B, 0.0),
+    ("FLTMODE_CH", B, 5.0),
     ("FS_EKF_ACTION", B, 1.0),
     ("FS_EKF_THRESH", R, 0.8),
     ("FS_GCS_ENABLE", B, 0.0),
@@ -142,6 +149,8 @@ pub(super) fn defaults(
     for group in ["RAW_SENS", "EXT_STAT", "RC_CHAN", "POSITION", "EXTRA1", "EXTRA2", "EXTRA3", "PARAMS"] {
         list.push(parameter(format!("{streams}{group}"), H, 0.0));
     }
+    // no switch has a function
+    list.extend((5..=16).map(|channel| parameter(format!("RC{channel}_OPTION"), H, 0.0)));
     let span_us = (pulses.max_us - pulses.min_us) / (SPIN.1 - SPIN.0);
     let (class, kind) = frame(&vehicle.rotors);
     let own = [

@@ -16,6 +16,12 @@ const DEFAULTS: &[Row] = &[
     ("COM_DISARM_LAND", R, 2.0),
     ("COM_DISARM_PRFLT", R, 10.0),
     ("COM_DL_LOSS_T", I, 10.0),
+    ("COM_FLTMODE1", I, -1.0),
+    ("COM_FLTMODE2", I, -1.0),
+    ("COM_FLTMODE3", I, -1.0),
+    ("COM_FLTMODE4", I, -1.0),
+    ("COM_FLTMODE5", I, -1.0),
+    ("COM_FLTMODE6", I, -1.0),
     ("COM_FAIL_ACT_T", R, 5.0),
     ("COM_LOW_BAT_ACT", I, 0.0),
     ("COM_OBL_RC_ACT", I, 0.0),
@@ -92,6 +98,8 @@ const DEFAULTS: &[Row] = &[
     ("RTL_RETURN_ALT", R, 60.0),
     ("SDLOG_PROFILE", I, 1.0),
     ("SYS_AUTOSTART", I, 4001.0),
+    ("RC_MAP_FLTMODE", I, 0.0),
+    ("RC_MAP_KILL_SW", I, 0.0),
 ];
 
 /// Defaults for a vehicle.

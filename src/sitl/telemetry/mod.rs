@@ -15,6 +15,7 @@ use super::craft::Shown;
 use super::message::Message;
 use super::streams as ids;
 use super::{AutopilotKind, Origin, Settings};
+use crate::log::EMBEDDED_UID2;
 use crate::physics::{MAX_ROTORS, State};
 use crate::simulate::{NoiseLevels, StreamSkew};
 
@@ -41,6 +42,7 @@ pub(super) struct Telemetry {
     origin: Origin,
     rotor_count: usize,
     esc_telemetry: bool,
+    uid2: [u8; EMBEDDED_UID2.len()],
     pub(super) boot_unix_us: u64,
     pings: u32,
 }
@@ -63,6 +65,7 @@ impl Telemetry {
             origin: settings.origin,
             rotor_count: settings.vehicle.rotors.len(),
             esc_telemetry: settings.esc_telemetry,
+            uid2: settings.nonce.map_or(EMBEDDED_UID2, |nonce| nonce.uid2()),
             boot_unix_us: settings.boot_unix_us,
             pings: 0,
         }

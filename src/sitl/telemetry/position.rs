@@ -124,11 +124,14 @@ impl Telemetry {
     pub(super) fn position_target(&self, scene: &Scene) -> Message {
         let own = &scene.autopilot.setpoint;
         let (position, velocity, acceleration, yaw) = match scene.autopilot.guidance.task {
-            Task::Direct(demand) => {
-                (demand.position_m, demand.velocity_m_s, demand.acceleration_m_s2, demand.yaw_rad)
-            }
+            Task::Direct(demand) => (
+                demand.motion.position_m,
+                demand.motion.velocity_m_s,
+                demand.motion.acceleration_m_s2,
+                demand.yaw_rad,
+            ),
             Task::Shaped(demand, _) => {
-                (demand.position_m, demand.velocity_m_s, demand.acceleration_m_s2, None)
+                (demand.motion.position_m, demand.motion.velocity_m_s, demand.motion.acceleration_m_s2, None)
             }
             _ => (own.position_m, own.velocity_m_s, own.acceleration_m_s2, Some(own.yaw_rad)),
         };

@@ -4,7 +4,6 @@ use super::super::battery::Charge;
 use super::super::guidance::Task;
 use super::super::{ArduPilotRelease, AutopilotKind, Mode};
 use super::{Message, Scene, Telemetry, ids, nanoseconds, ushort};
-use crate::log::EMBEDDED_UID2;
 use crate::units::whole;
 
 /// MAV_MODE_FLAG.
@@ -151,7 +150,7 @@ impl Telemetry {
             .u16(0)
             .u16(0)
             .text(b"", 24)
-            .text(&EMBEDDED_UID2, EMBEDDED_UID2.len())
+            .text(&self.uid2, self.uid2.len())
     }
 
     pub(super) fn extended_sys_state(&self, scene: &Scene) -> Message {

@@ -183,7 +183,7 @@ impl Lot {
             ..Settings::default()
         };
         let gravity_m_s2 = vehicle.gravity_m_s2;
-        Sortie { course, limits, gravity_m_s2, system: None, may_arm: true, settings }
+        Sortie { course, limits, gravity_m_s2, system: None, may_arm: true, own_vehicle: None, settings }
     }
 }
 

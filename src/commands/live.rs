@@ -1,0 +1,141 @@
+//! Verbs that go on until they are told to end: whatever stands still, they end.
+//!
+//! Such a verb catches the signals that ask for its end, so nothing else ends it: not where a pipe that nobody reads
+//! holds up its last words, nor where it works out what was flown. Its work therefore runs on a thread of its own. Once
+//! nothing in it must be waited for any more, a signal gives it a few seconds, and then the program ends without it.
+
+use std::io::Write;
+use std::sync::Arc;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use tokio::sync::watch;
+
+use super::{CommandError, Outcome, network, output};
+
+/// From the signal, or from the end of what must be waited for, to that of the program.
+const GRACE: Duration = Duration::from_secs(5);
+/// How long the last word of a program may take.
+const LAST_WORD: Duration = Duration::from_millis(300);
+/// Between two looks at the clock.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// What a signal may do to a verb.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    /// nothing has begun that it would end by itself
+    Before,
+    /// a vehicle depends on it
+    Flying,
+    /// it ends by itself, soon
+    Ending,
+}
+
+/// What a running verb tells those that watch over it. Clones tell the same.
+#[derive(Debug, Clone)]
+pub struct Work(Arc<watch::Sender<Phase>>);
+
+impl Work {
+    /// A vehicle depends on it: it alone knows when it may end.
+    pub fn flies(&self) {
+        self.0.send_replace(Phase::Flying);
+    }
+
+    /// It hears of signals, or has ended what had to be; by an end soon after one nothing is lost but words and what can
+    /// be worked out again.
+    pub fn ends_itself(&self) {
+        self.0.send_replace(Phase::Ending);
+    }
+}
+
+/// Runs a verb on a thread of its own; it says itself how it failed.
+pub fn run(
+    verb: impl FnOnce(&Work) -> Result<Outcome, CommandError> + Send + 'static,
+) -> Result<Outcome, CommandError> {
+    panics_do_not_wait();
+    let (signals, signalled) = channel();
+    watch_signals(signals)?;
+    let (told, phase) = watch::channel(Phase::Before);
+    let work = Work(Arc::new(told));
+    let (done, outcome) = channel();
+    let thread = thread::Builder::new().name("verb".into()).spawn(move || {
+        let ended = verb(&work).map_err(|error| CommandError::Told(error.report()));
+        // whoever started it waits, or the program is over
+        let _ = done.send(ended);
+    });
+    thread.map_err(|error| CommandError::Failure(format!("cannot start a thread: {error}")))?;
+    let mut asked: Option<String> = None;
+    let mut since: Option<Instant> = None;
+    loop {
+        match outcome.recv_timeout(LOOK) {
+            Ok(ended) => return ended,
+            // it panicked, which was told
+            Err(RecvTimeoutError::Disconnected) => return Err(CommandError::Told(PANICKED)),
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        if let Ok(name) = signalled.try_recv() {
+            asked.get_or_insert(name);
+        }
+        let Some(name) = &asked else { continue };
+        let text = match *phase.borrow() {
+            Phase::Before => format!("mavid: ended by {name} before it began"),
+            Phase::Flying => continue,
+            Phase::Ending if since.get_or_insert_with(Instant::now).elapsed() < GRACE => continue,
+            Phase::Ending => format!(
+                "mavid: ended {} s after {name}, before all was told: standard output, standard error or a disk takes \
+                 nothing, or the flight was being analysed; what was recorded is in its file",
+                GRACE.as_secs()
+            ),
+        };
+        last_word(move || output::message(&text));
+        return Err(CommandError::Told(FAILED));
+    }
+}
+
+/// Exit status of a verb that failed, and of one that panicked.
+const FAILED: u8 = 1;
+const PANICKED: u8 = 101;
+
+/// Tells each signal's name, on a runtime of its own.
+fn watch_signals(signals: std::sync::mpsc::Sender<String>) -> Result<(), CommandError> {
+    let failed = |error: std::io::Error| {
+        CommandError::Failure(format!("cannot wait for signals to end the program: {error}"))
+    };
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(failed)?;
+    let mut ends = {
+        let _within = runtime.enter();
+        network::Signals::new()?
+    };
+    let work = move || {
+        while let Ok(name) = runtime.block_on(ends.next()) {
+            if signals.send(name.to_owned()).is_err() {
+                return;
+            }
+        }
+    };
+    thread::Builder::new().name("signals".into()).spawn(work).map(|_| ()).map_err(failed)
+}
+
+/// Does something that may never end, and waits a little for it.
+fn last_word(say: impl FnOnce() + Send + 'static) {
+    let (done, over) = channel();
+    let said = thread::Builder::new().name("last word".into()).spawn(move || {
+        say();
+        let _ = done.send(());
+    });
+    if said.is_ok() {
+        let _ = over.recv_timeout(LAST_WORD);
+    }
+}
+
+/// A panic is told, but a terminal that takes nothing does not keep the panicking thread from ending: others still have
+/// to tell the vehicle.
+fn panics_do_not_wait() {
+    std::panic::set_hook(Box::new(|panic| {
+        let text = format!("mavid: a fault of this program: {panic}");
+        last_word(move || {
+            let _ = writeln!(std::io::stderr().lock(), "{text}");
+        });
+    }));
+}

@@ -1,0 +1,119 @@
+//! What is sent to the vehicle, and whether it may be: commands wait for a report of its mode.
+
+use std::time::Duration;
+
+use super::{Action, Flight, Phase};
+use crate::fly::commander::{Manner, Permission};
+use crate::fly::modes::Mode;
+use crate::fly::outcome::{Cause, Level};
+use crate::fly::safety::{Doubted, Lead};
+use crate::fly::target::{Order, timesync};
+
+/// The message that tells the mode of any vehicle.
+const HEARTBEAT: u16 = 0;
+/// It is asked to go on every 10 ms. After it was not for this long, what it knows may be old.
+const STOOD_STILL: Duration = Duration::from_millis(100);
+/// After this long a flight is not gone on with, whether setpoints are streamed or not.
+const STALLED: Duration = Duration::from_millis(300);
+
+impl Flight {
+    /// Asks for the mode where it is wanted, and sends the commands that it permits.
+    pub(super) fn command(&mut self, now: Duration) {
+        if let Some((target, _)) = self.target() {
+            let permission = self.permission();
+            let waits = self.commander.waits_for_report(now, permission);
+            if let Some(number) = self.known.asks(now, waits) {
+                let question = Order::request_message(HEARTBEAT);
+                self.actions.push_back(Action::Send(timesync(number)));
+                self.actions.push_back(Action::Send(target.command(&question, 0)));
+            }
+            let (messages, answers) = self.commander.poll(now, target, permission);
+            if let (Phase::Leave(leaving), Some((_, stack))) = (&mut self.phase, self.guide.target)
+                && self.commander.has_sent(&Order::set_mode(stack, leaving.wish()))
+            {
+                leaving.ordered();
+            }
+            self.actions.extend(messages.into_iter().map(Action::Send));
+            for answer in answers {
+                self.answered(now, &answer);
+            }
+        }
+    }
+
+    /// Whether time went on without this flight. What it knew before may not hold any more, and what lies in the socket is
+    /// not read yet.
+    pub(super) fn note_time(&mut self, now: Duration) {
+        let gap = self.stepped.replace(now).map_or(Duration::ZERO, |last| now.saturating_sub(last));
+        if gap <= STOOD_STILL || self.contact.is_none() {
+            return;
+        }
+        self.watch.awake = now;
+        self.known.doubt(now, Doubted::ByStall(gap));
+        if gap >= STALLED {
+            if self.phase.is_ours() && self.phase.is_airborne() {
+                self.stalled(now, gap);
+            } else {
+                self.note(now, Level::Warning, "host", stall(gap));
+            }
+        }
+    }
+
+    /// No setpoint goes out while a pilot may have taken over unheard. After a short hiccup the stream goes on: a vehicle that
+    /// its pilot flies does not follow it.
+    pub(super) fn hold_back(&mut self, now: Duration) {
+        let left = self.phase.is_ours() && self.left_our_mode().is_some();
+        let held_back = left || self.known.is_in_doubt_for_long();
+        if held_back && !left && !self.guide.held_back && self.guide.lead != Lead::Silent {
+            self.note(
+                now,
+                Level::Warning,
+                "stream",
+                "setpoints are held back until the vehicle says its mode",
+            );
+        }
+        self.guide.held_back = held_back;
+    }
+
+    pub(super) fn stalled(&mut self, now: Duration, gap: Duration) {
+        self.watch.awake = now;
+        self.known.doubt(now, Doubted::ByStall(gap));
+        self.end(now, Cause::Stalled(stall(gap)));
+    }
+
+    /// Whether the vehicle may be commanded now, as far as its mode is known.
+    fn permission(&self) -> Permission {
+        Permission { reports: self.known.reports(), ours: !self.known.is_in_doubt() && self.is_to_command() }
+    }
+
+    /// The vehicle's mode is one that it is in by our doing, or for a start one that it was found in.
+    pub(super) fn is_to_command(&self) -> bool {
+        let Some(state) = self.contact.as_ref().and_then(|contact| contact.telemetry.state) else {
+            return false;
+        };
+        match &self.phase {
+            Phase::Engage(found) => *found == Some(state.value.custom_mode) && !state.value.armed,
+            Phase::Leave(leaving) => {
+                leaving.is_ordered() && self.is_in(leaving.wish())
+                    || leaving.comes_from(state.value.custom_mode)
+            }
+            // of a vehicle that is left to others only the motors are stopped, by the operator's typed word
+            Phase::Watch => {
+                matches!(self.cause, Some(Cause::Killed)) && self.killed_in == Some(state.value.custom_mode)
+            }
+            phase => phase.is_ours() && self.is_in(Mode::External),
+        }
+    }
+
+    /// A command, to be sent as soon as the vehicle's mode permits it.
+    pub(super) fn give(&mut self, now: Duration, order: Order, manner: Manner) {
+        self.commander.give(now, order, manner, self.known.reports());
+    }
+}
+
+/// In words.
+fn stall(gap: Duration) -> String {
+    format!(
+        "this program or its computer stood still for {} ms (load, sleep, a stopped process); the vehicle's mode is asked for",
+        gap.as_millis()
+    )
+}

@@ -1,0 +1,251 @@
+//! What an autopilot makes of setpoints, and of the last one once no more come.
+
+use nalgebra::Vector3;
+
+use super::parameters::Parameters;
+use crate::log::Autopilot;
+use crate::simulate::{GuidedTarget, Shaper, ShaperLaw, ShaperLimits, Wish, jerk_within};
+use crate::units::rad_from_deg;
+
+/// A motion: place, velocity, acceleration; world, SI.
+pub type Motion = Shaper;
+
+/// Defaults of both autopilots, where a parameter did not answer: GUID_TIMEOUT, and COM_OF_LOSS_T, s.
+const GUID_TIMEOUT_S: f64 = 3.0;
+const COM_OF_LOSS_T_S: f64 = 1.0;
+/// PX4 looks for the loss ten times a second, and changes the mode with its next control period.
+const NOTICES_S: f64 = 0.15;
+/// Time constant with which a vehicle leans over for an acceleration, s: what its attitude loop takes.
+const LEANS_S: f64 = 0.12;
+/// ArduPilot's least acceleration and jerk, so that a zero does not stop the model for ever.
+const LEAST: f64 = 0.1;
+
+/// How an autopilot follows setpoints.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FollowLaw {
+    /// ArduCopter in GUIDED: a reference of its own, shaped within its limits, follows the setpoint; the setpoint is moved
+    /// on by its velocity and acceleration for the time-out, then both are zero
+    ArduPilot {
+        /// of the reference
+        limits: ShaperLimits,
+        /// GUID_TIMEOUT, s
+        timeout_s: f64,
+    },
+    /// PX4 in OFFBOARD: the vehicle itself follows, `v = v_ff + P (p - p_now)`, `a = a_ff + K (v - v_now)`; the last
+    /// setpoint stays for the time-out, then a mode of its own brakes
+    Px4 {
+        /// MPC_XY_P, MPC_Z_P, 1/s
+        position_1_s: Vector3<f64>,
+        /// MPC_XY_VEL_P_ACC, MPC_Z_VEL_P_ACC, 1/s
+        velocity_1_s: Vector3<f64>,
+        /// COM_OF_LOSS_T, s
+        timeout_s: f64,
+        /// m/s^2 and m/s^3 of the mode that follows
+        braking: (f64, f64),
+    },
+}
+
+impl FollowLaw {
+    /// From the vehicle's parameters, by the autopilot's defaults where one did not answer; `None` for an autopilot that
+    /// is not known.
+    #[must_use]
+    pub fn of(parameters: &Parameters) -> Option<Self> {
+        match parameters.autopilot {
+            Autopilot::ArduPilot => Some(ardupilot(parameters)),
+            Autopilot::Px4 => Some(px4(parameters)),
+            Autopilot::Other | Autopilot::Unknown => None,
+        }
+    }
+
+    /// How long the last setpoint is flown, s.
+    #[must_use]
+    pub fn timeout_s(&self) -> f64 {
+        match self {
+            Self::ArduPilot { timeout_s, .. } | Self::Px4 { timeout_s, .. } => *timeout_s,
+        }
+    }
+
+    /// The same autopilot with another time-out.
+    #[must_use]
+    pub fn with_timeout_s(self, seconds: f64) -> Self {
+        match self {
+            Self::ArduPilot { limits, .. } => Self::ArduPilot { limits, timeout_s: seconds },
+            Self::Px4 { position_1_s, velocity_1_s, braking, .. } => {
+                Self::Px4 { position_1_s, velocity_1_s, braking, timeout_s: seconds }
+            }
+        }
+    }
+
+    /// The place at rest (m) that makes a vehicle in this motion go on with just its acceleration.
+    #[must_use]
+    pub fn place_ahead(&self, motion: &Motion) -> Vector3<f64> {
+        match self {
+            Self::ArduPilot { limits, .. } => motion.place_ahead(limits),
+            Self::Px4 { position_1_s, velocity_1_s, .. } => {
+                let wanted = motion.velocity_m_s + motion.acceleration_m_s2.component_div(velocity_1_s);
+                motion.position_m + wanted.component_div(position_1_s)
+            }
+        }
+    }
+
+    /// One period of flight after a setpoint.
+    pub fn step(&self, motion: &mut Motion, target: &GuidedTarget, period_s: f64) {
+        match self {
+            Self::ArduPilot { limits, .. } => {
+                let GuidedTarget { position_m, velocity_m_s, acceleration_m_s2 } = *target;
+                motion.step(&Wish { position_m, velocity_m_s, acceleration_m_s2 }, limits, period_s);
+            }
+            Self::Px4 { position_1_s, velocity_1_s, .. } => {
+                let wanted =
+                    target.velocity_m_s + (target.position_m - motion.position_m).component_mul(position_1_s);
+                let acceleration =
+                    target.acceleration_m_s2 + (wanted - motion.velocity_m_s).component_mul(velocity_1_s);
+                let share = 1.0 - (-period_s / LEANS_S).exp();
+                motion.acceleration_m_s2 += (acceleration - motion.acceleration_m_s2) * share;
+                motion.position_m +=
+                    motion.velocity_m_s * period_s + motion.acceleration_m_s2 * (0.5 * period_s * period_s);
+                motion.velocity_m_s += motion.acceleration_m_s2 * period_s;
+            }
+        }
+    }
+
+    /// Every place (m) through which a vehicle comes that hears no setpoint after this one, to where it rests.
+    pub fn abandoned(&self, motion: &Motion, target: &GuidedTarget, mut at: impl FnMut(&Vector3<f64>)) {
+        let (mut motion, mut target) = (*motion, *target);
+        let mut passed_s = 0.0;
+        match self {
+            Self::ArduPilot { timeout_s, .. } => {
+                while passed_s < timeout_s + SETTLES_S {
+                    if passed_s >= *timeout_s {
+                        target.time_out();
+                        if motion.velocity_m_s.norm() < RESTS_M_S
+                            && motion.acceleration_m_s2.norm() < RESTS_M_S
+                        {
+                            break;
+                        }
+                    }
+                    self.step(&mut motion, &target, STEP_S);
+                    target.step(STEP_S);
+                    at(&motion.position_m);
+                    passed_s += STEP_S;
+                }
+            }
+            Self::Px4 { timeout_s, braking: (acceleration, jerk), .. } => {
+                while passed_s < timeout_s + NOTICES_S {
+                    self.step(&mut motion, &target, STEP_S);
+                    at(&motion.position_m);
+                    passed_s += STEP_S;
+                }
+                let speed = motion.velocity_m_s.norm();
+                // with the greatest deceleration, or by a law that is linear in the speed where that takes longer
+                let brakes_s =
+                    (0.5 * speed / acceleration + 0.5 * acceleration / jerk).max(acceleration / jerk);
+                at(&(motion.position_m + motion.velocity_m_s * brakes_s));
+            }
+        }
+    }
+}
+
+/// Step of the model, the longest time to rest after a time-out, s, and the motion that counts as rest, m/s and m/s^2.
+pub const STEP_S: f64 = 0.02;
+const SETTLES_S: f64 = 8.0;
+const RESTS_M_S: f64 = 0.02;
+
+fn ardupilot(parameters: &Parameters) -> FollowLaw {
+    let positive = |name: &str, scale: f64, default: f64| {
+        let value = parameters.get(name).map(|value| scale * value).filter(|value| *value > 0.0);
+        value.unwrap_or(default).max(LEAST)
+    };
+    let turning = |name: &str| rad_from_deg(parameters.get(name).unwrap_or(110_000.0) * 0.01);
+    let acceleration_m_s2 = positive("WPNAV_ACCEL", 0.01, 2.5);
+    let is_new = parameters.name_of("WPNAV_ACCEL") != "WPNAV_ACCEL";
+    let limits = ShaperLimits {
+        speed_m_s: positive("WPNAV_SPEED", 0.01, 10.0),
+        climb_m_s: positive("WPNAV_SPEED_UP", 0.01, 2.5),
+        descent_m_s: positive("WPNAV_SPEED_DN", 0.01, 1.5),
+        acceleration_m_s2,
+        vertical_acceleration_m_s2: positive("WPNAV_ACCEL_Z", 0.01, 1.0),
+        jerk_m_s3: jerk_within(
+            positive("PSC_JERK_XY", 1.0, 5.0),
+            acceleration_m_s2,
+            turning("ATC_ACCEL_R_MAX").min(turning("ATC_ACCEL_P_MAX")),
+        ),
+        vertical_jerk_m_s3: positive("PSC_JERK_Z", 1.0, 5.0),
+        law: if is_new { ShaperLaw::From4_7 } else { ShaperLaw::UpTo4_6 },
+    };
+    let timeout_s = parameters.get("GUID_TIMEOUT").unwrap_or(GUID_TIMEOUT_S).clamp(0.1, 5.0);
+    FollowLaw::ArduPilot { limits, timeout_s }
+}
+
+fn px4(parameters: &Parameters) -> FollowLaw {
+    let positive =
+        |name: &str, default: f64| parameters.get(name).filter(|value| *value > 0.0).unwrap_or(default);
+    let axes = |level: f64, upright: f64| Vector3::new(level, level, upright);
+    FollowLaw::Px4 {
+        position_1_s: axes(positive("MPC_XY_P", 0.95), positive("MPC_Z_P", 1.0)),
+        velocity_1_s: axes(positive("MPC_XY_VEL_P_ACC", 1.8), positive("MPC_Z_VEL_P_ACC", 4.0)),
+        timeout_s: parameters.get("COM_OF_LOSS_T").unwrap_or(COM_OF_LOSS_T_S).max(0.0),
+        braking: (
+            positive("MPC_ACC_HOR", 3.0).min(positive("MPC_ACC_DOWN_MAX", 3.0)),
+            positive("MPC_JERK_AUTO", 4.0),
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn law(autopilot: Autopilot, values: &[(&str, f64)]) -> FollowLaw {
+        let values = values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+        FollowLaw::of(&Parameters { autopilot, values, ..Parameters::default() }).unwrap()
+    }
+
+    fn farthest_x_m(law: &FollowLaw, target: &GuidedTarget) -> f64 {
+        let motion = Motion {
+            acceleration_m_s2: target.acceleration_m_s2,
+            ..Motion::at(target.position_m, target.velocity_m_s)
+        };
+        let mut farthest_m = f64::NEG_INFINITY;
+        law.abandoned(&motion, target, |place| farthest_m = farthest_m.max(place.x));
+        farthest_m
+    }
+
+    #[test]
+    fn ardupilot_flies_on_for_its_time_out_and_px4_leans_on_its_last_place() {
+        let one = GuidedTarget {
+            position_m: Vector3::zeros(),
+            velocity_m_s: Vector3::x(),
+            acceleration_m_s2: Vector3::zeros(),
+        };
+        let copter = farthest_x_m(&law(Autopilot::ArduPilot, &[("WP_ACC", 2.5)]), &one);
+        assert!((2.9..3.6).contains(&copter), "three seconds at 1 m/s: {copter}");
+        let short = farthest_x_m(&law(Autopilot::ArduPilot, &[("WP_ACC", 2.5), ("GUID_TIMEOUT", 0.5)]), &one);
+        assert!((0.4..1.1).contains(&short), "{short}");
+        let px4 = farthest_x_m(&law(Autopilot::Px4, &[]), &one);
+        assert!((0.6..1.3).contains(&px4), "{px4}");
+        let still = GuidedTarget { velocity_m_s: Vector3::zeros(), ..one };
+        for autopilot in [Autopilot::ArduPilot, Autopilot::Px4] {
+            assert!(farthest_x_m(&law(autopilot, &[]), &still).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_place_ahead_keeps_the_motion_that_it_was_made_for() {
+        for autopilot in [Autopilot::ArduPilot, Autopilot::Px4] {
+            let law = law(autopilot, &[("WP_ACC", 10.0), ("PSC_NE_JERK", 40.0), ("WP_ACC_Z", 6.0)]);
+            let motion = Motion {
+                acceleration_m_s2: Vector3::new(-0.5, 0.3, 0.1),
+                ..Motion::at(Vector3::new(0.2, -1.0, 2.0), Vector3::new(0.4, 0.1, -0.2))
+            };
+            let target = GuidedTarget {
+                position_m: law.place_ahead(&motion),
+                velocity_m_s: Vector3::zeros(),
+                acceleration_m_s2: Vector3::zeros(),
+            };
+            let mut stepped = motion;
+            law.step(&mut stepped, &target, 1e-3);
+            assert!((stepped.acceleration_m_s2 - motion.acceleration_m_s2).norm() < 1e-6, "{stepped:?}");
+        }
+    }
+}

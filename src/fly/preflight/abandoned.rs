@@ -1,0 +1,335 @@
+//! If we die now: where the vehicle comes to rest when no setpoint follows the one of any instant, against ground, room
+//! and fence; and which setpoints keep it inside.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use nalgebra::Vector3;
+
+use super::Situation;
+use crate::fly::course::{approach, reference_at};
+use crate::fly::finding::Finding;
+use crate::fly::law::{FollowLaw, Motion, STEP_S};
+use crate::fly::safety::{Feeding, SetpointBounds};
+use crate::fly::setpoint::Place;
+use crate::log::Autopilot;
+use crate::plan::{HEIGHT_ERROR_M, floor_m};
+use crate::trajectory::FlightPath;
+
+/// Subject of the findings.
+const SUBJECT: &str = "if we die now";
+/// Steps of the model from one tried instant to the next: 0.1 s.
+const EVERY: usize = 5;
+/// How far a vehicle is from what the model makes of it, m. ArduPilot shapes its own reference and follows that; of PX4
+/// the vehicle itself is modelled, and the embedded one came to rest 0.4 m further on.
+const ARDUPILOT_OFF_M: f64 = 0.15;
+const PX4_OFF_M: f64 = 0.4;
+/// A wall of the room may be passed by so much, m: a plan may touch it, and no vehicle follows to the centimetre. Where
+/// nothing better is found, by so much and with a warning: a flight is ended only there.
+const WALL_M: f64 = 0.25;
+const WALL_AT_MOST_M: f64 = 1.0;
+/// Shares of velocity and acceleration that are tried, most first. ArduPilot flies on with whatever it was given for
+/// seconds: all or nothing.
+const SHARES: &[f64] = &[1.0, 0.75, 0.5, 0.35, 0.25, 0.15, 0.1, 0.0];
+const ALL_OR_NOTHING: &[f64] = &[1.0, 0.0];
+/// Share of the allowed distance to the reference that the setpoints themselves may cost.
+const TRACKING_SHARE: f64 = 0.9;
+/// Steps of the model in which the reference may have been where the vehicle is: half a second, as while it flies.
+const RECENT: usize = 25;
+
+/// One piece of the flight, in the local frame.
+struct Leg<'a> {
+    path: &'a FlightPath,
+    offset_m: Vector3<f64>,
+    /// it begins on the ground, which is no fault then
+    from_ground: bool,
+    name: &'static str,
+}
+
+/// The instant at which an end would be worst.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Worst {
+    /// beyond what is allowed of the border, m; negative within
+    excess_m: f64,
+    /// beyond the border itself, m
+    beyond_m: f64,
+    border: &'static str,
+    /// s from the beginning of the leg
+    time_s: f64,
+    leg: &'static str,
+}
+
+/// What one way of sending comes to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Tried {
+    feeding: Feeding,
+    worst: Option<Worst>,
+    /// beyond what ground and fence allow, m; negative within: of these nothing is given away
+    hard_m: f64,
+    /// the greatest distance of the model to the reference, m
+    tracking_m: f64,
+}
+
+impl Tried {
+    fn excess_m(&self) -> f64 {
+        self.worst.map_or(f64::NEG_INFINITY, |worst| worst.excess_m)
+    }
+
+    fn is_safe(&self, tracking_max_m: f64, wall_m: f64) -> bool {
+        self.excess_m() <= wall_m && self.hard_m <= 0.0 && self.tracking_m <= TRACKING_SHARE * tracking_max_m
+    }
+}
+
+/// Chooses how setpoints are sent, and says what an end at the worst instant would come to.
+pub(super) fn judge(situation: &Situation<'_>) -> (Feeding, Vec<Finding>) {
+    let Some(law) = FollowLaw::of(situation.parameters) else {
+        let remedy = "fly PX4 or ArduPilot, or where there is nothing to hit";
+        let came = "an autopilot whose behaviour is not known here";
+        return (Feeding::whole(), vec![Finding::warning(SUBJECT, EXPECTED, came, remedy)]);
+    };
+    let mut findings = Vec::new();
+    let chosen = choose(situation, &law);
+    findings.push(match &chosen {
+        Ok(tried) => said(situation, &law, tried),
+        Err(tried) => refused(situation, &law, tried),
+    });
+    findings.extend(aftermath(situation));
+    (chosen.map_or_else(|tried| tried.feeding, |tried| tried.feeding), findings)
+}
+
+const EXPECTED: &str = "rest inside room and fence and clear of the ground, whenever setpoints end";
+
+/// The way that follows the reference best among those that are safe; or, as an error, the least unsafe one.
+fn choose(situation: &Situation<'_>, law: &FollowLaw) -> Result<Tried, Box<Tried>> {
+    let room = SetpointBounds::room(situation.limits, &situation.origin_m);
+    let shares = match law {
+        FollowLaw::ArduPilot { .. } => ALL_OR_NOTHING,
+        FollowLaw::Px4 { .. } => SHARES,
+    };
+    let mut tries = Vec::with_capacity(shares.len());
+    for share in shares {
+        let feeding = if *share < 1.0 { Feeding::ahead(*law, *share, room) } else { Feeding::whole() };
+        let tried = attempt(situation, law, feeding);
+        if tried.is_safe(situation.tracking_max_m, 0.0) {
+            return Ok(tried);
+        }
+        tries.push(tried);
+    }
+    tries.sort_by(|a, b| a.excess_m().total_cmp(&b.excess_m()));
+    let nearly =
+        tries.iter().find(|tried| tried.is_safe(situation.tracking_max_m, WALL_AT_MOST_M - WALL_M)).copied();
+    let least = tries.first().copied();
+    let none =
+        Tried { feeding: Feeding::whole(), worst: None, hard_m: f64::NEG_INFINITY, tracking_m: f64::NAN };
+    nearly.ok_or_else(|| Box::new(least.unwrap_or(none)))
+}
+
+fn attempt(situation: &Situation<'_>, law: &FollowLaw, feeding: Feeding) -> Tried {
+    let way = situation.stand_m.zip(situation.path.derivatives(0.0)).map(|(stand_m, start)| {
+        let [x, y, z, yaw] = start.map(|axis| axis[0]);
+        let place = |position_m, yaw_rad| Place { position_m, yaw_rad };
+        approach(&place(stand_m, yaw), &place(Vector3::new(x, y, z) + situation.origin_m, yaw))
+    });
+    let course = Leg {
+        path: situation.path,
+        offset_m: situation.origin_m,
+        from_ground: false,
+        name: "of the trajectory",
+    };
+    let mut legs = vec![course];
+    if let Some([climb, transfer]) = &way {
+        let leg = |path, from_ground, name| Leg { path, offset_m: Vector3::zeros(), from_ground, name };
+        legs.push(leg(transfer, false, "of the way to the start"));
+        // ArduPilot takes off by itself, and stays above where it stood
+        if situation.parameters.autopilot == Autopilot::Px4 {
+            legs.push(leg(climb, true, "of the takeoff"));
+        }
+    }
+    let mut tried = Tried { feeding, worst: None, hard_m: f64::NEG_INFINITY, tracking_m: 0.0 };
+    for leg in &legs {
+        fly(situation, law, leg, &mut tried);
+    }
+    tried
+}
+
+/// Flies a leg by the model, and ends it at every instant.
+fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tried) {
+    let reference = |time_s: f64| reference_at(leg.path, time_s, &leg.offset_m, Duration::ZERO);
+    let Some(first) = reference(0.0) else { return };
+    let mut motion = Motion::at(first.position_m, first.velocity_m_s);
+    motion.acceleration_m_s2 = first.acceleration_m_s2;
+    let off_m = if matches!(law, FollowLaw::Px4 { .. }) { PX4_OFF_M } else { ARDUPILOT_OFF_M };
+    let (mut step, mut recent) = (0_usize, VecDeque::with_capacity(RECENT + 1));
+    loop {
+        let time_s = step as f64 * STEP_S;
+        if time_s > leg.path.duration_s() {
+            return;
+        }
+        let (Some(now), Some(next)) = (reference(time_s), reference(time_s + STEP_S)) else { return };
+        let target = tried.feeding.target(&now);
+        law.step(&mut motion, &target, STEP_S);
+        recent.push_back(next.position_m);
+        if recent.len() > RECENT {
+            recent.pop_front();
+        }
+        let distances = recent.iter().map(|place_m| (motion.position_m - place_m).norm());
+        tried.tracking_m = tried.tracking_m.max(distances.fold(f64::INFINITY, f64::min));
+        if step.is_multiple_of(EVERY) {
+            law.abandoned(&motion, &target, |place_m| {
+                for (beyond_m, allowed_m, border) in borders(situation, leg, place_m) {
+                    let excess_m = beyond_m + off_m - allowed_m;
+                    if allowed_m <= 0.0 {
+                        tried.hard_m = tried.hard_m.max(excess_m);
+                    }
+                    if tried.worst.is_none_or(|worst| excess_m > worst.excess_m) {
+                        let name = leg.name;
+                        tried.worst = Some(Worst { excess_m, beyond_m, border, time_s, leg: name });
+                    }
+                }
+            });
+        }
+        step += 1;
+    }
+}
+
+/// How far a place of the local frame lies beyond each border, what is allowed of it, m, and its name.
+fn borders(
+    situation: &Situation<'_>,
+    leg: &Leg<'_>,
+    place_m: &Vector3<f64>,
+) -> Vec<(f64, f64, &'static str)> {
+    let limits = situation.limits;
+    let inside = place_m - situation.origin_m;
+    let mut all = Vec::with_capacity(8);
+    let mut wall = |beyond_m: Option<f64>, name| {
+        if let Some(beyond_m) = beyond_m {
+            all.push((beyond_m, WALL_M, name));
+        }
+    };
+    wall(limits.x_max_m.map(|max| inside.x.abs() - max), "the wall x_max_m");
+    wall(limits.y_max_m.map(|max| inside.y.abs() - max), "the wall y_max_m");
+    wall(limits.z_max_m.map(|max| inside.z - max), "the ceiling z_max_m");
+    if !leg.from_ground {
+        wall(limits.z_min_m.map(|min| min - inside.z), "the floor z_min_m");
+        let clear_m = floor_m(situation.vehicle) - HEIGHT_ERROR_M;
+        all.push((clear_m - inside.z, 0.0, "the ground"));
+    }
+    if let Some(home_m) = situation.home_m {
+        let fence = situation.fence.spares_m(place_m, &home_m);
+        all.extend(fence.into_iter().map(|(spare_m, name)| (-spare_m, 0.0, name)));
+    }
+    all
+}
+
+/// `0.12 m short of the wall x_max_m at worst, should they end at 3.1 s of the trajectory`.
+fn in_words(tried: &Tried) -> String {
+    tried.worst.map_or_else(
+        || "nothing to hit".to_owned(),
+        |worst| {
+            let Worst { beyond_m, border, time_s, leg, .. } = worst;
+            let side = if beyond_m > 0.0 { "beyond" } else { "short of" };
+            format!(
+                "{:.2} m {side} {border} at worst, should they end at {time_s:.1} s {leg}",
+                beyond_m.abs()
+            )
+        },
+    )
+}
+
+/// How setpoints are sent.
+fn manner(feeding: &Feeding) -> String {
+    let share = feeding.share();
+    if share >= 1.0 {
+        "setpoints carry place, velocity and acceleration".to_owned()
+    } else if share > 0.0 {
+        format!(
+            "setpoints carry {:.0} % of velocity and acceleration, and places ahead for the rest",
+            100.0 * share
+        )
+    } else {
+        "setpoints are places ahead, without velocity and acceleration".to_owned()
+    }
+}
+
+fn timeout(situation: &Situation<'_>, law: &FollowLaw) -> String {
+    let name = timeout_name(law);
+    let seconds = law.timeout_s();
+    let assumed = if situation.parameters.get(name).is_some() { "" } else { ", assumed: it did not answer" };
+    format!("{name} = {seconds:.1} s{assumed}")
+}
+
+fn timeout_name(law: &FollowLaw) -> &'static str {
+    match law {
+        FollowLaw::ArduPilot { .. } => "GUID_TIMEOUT",
+        FollowLaw::Px4 { .. } => "COM_OF_LOSS_T",
+    }
+}
+
+fn said(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> Finding {
+    let expected = format!("{EXPECTED} ({})", timeout(situation, law));
+    let came = format!(
+        "{}; {}, which costs {:.2} m off the reference at most",
+        in_words(tried),
+        manner(&tried.feeding),
+        tried.tracking_m
+    );
+    if tried.excess_m() > 0.0 {
+        return Finding::warning(SUBJECT, expected, came, remedy(situation, law, tried));
+    }
+    Finding::ok(SUBJECT, expected, came)
+}
+
+fn refused(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> Finding {
+    let expected = format!("{EXPECTED} ({})", timeout(situation, law));
+    let costs = format!(
+        "setpoints that come nearest to it cost {:.2} m off the reference, of which {:.2} m end the flight",
+        tried.tracking_m, situation.tracking_max_m
+    );
+    let came = format!("{}, however they are sent; {costs}", in_words(tried));
+    Finding::refusal(SUBJECT, expected, came, remedy(situation, law, tried))
+}
+
+/// A slower or smaller plan first, then a value.
+fn remedy(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> String {
+    let misses = tried.tracking_m > TRACKING_SHARE * situation.tracking_max_m;
+    let plan = match tried.worst.filter(|worst| worst.excess_m > 0.0 && !misses) {
+        Some(worst) => format!(
+            "plan slower near {}, or {:.1} m further from it",
+            worst.border,
+            (10.0 * worst.excess_m).ceil() / 10.0
+        ),
+        None => {
+            "plan a slower trajectory, or raise the limits of the autopilot that the checks name".to_owned()
+        }
+    };
+    match safe_timeout_s(situation, law) {
+        Some(seconds) => format!("{plan}; or set {} to {seconds:.1} or less", timeout_name(law)),
+        None => plan,
+    }
+}
+
+/// The longest time-out (s, in tenths) with which something safe can be sent; `None` where none helps.
+fn safe_timeout_s(situation: &Situation<'_>, law: &FollowLaw) -> Option<f64> {
+    let tried = [2.0, 1.0, 0.5, 0.3, 0.1];
+    tried.into_iter().filter(|seconds| *seconds < law.timeout_s()).find(|seconds| {
+        let law = law.with_timeout_s(*seconds);
+        choose(situation, &law).is_ok_and(|tried| tried.excess_m() <= 0.0)
+    })
+}
+
+/// PX4's mode after the loss may not stop it, or lead it out again.
+fn aftermath(situation: &Situation<'_>) -> Option<Finding> {
+    let action = situation.parameters.get("COM_OBL_RC_ACT")?;
+    let is = |value: f64| (action - value).abs() < 0.5;
+    let ceiling_m = situation.limits.z_max_m?;
+    let came = if is(1.0) || is(2.0) {
+        format!("a mode that does not stop it (COM_OBL_RC_ACT = {action})")
+    } else if is(3.0) {
+        let height_m = situation.parameters.get("RTL_RETURN_ALT").filter(|height_m| *height_m > ceiling_m)?;
+        format!("a return that climbs to {height_m:.0} m (RTL_RETURN_ALT), the room ends at {ceiling_m:.1} m")
+    } else {
+        return None;
+    };
+    let remedy = "set COM_OBL_RC_ACT to 4 (land) or 5 (hold)";
+    Some(Finding::warning(SUBJECT, "a mode that stops it and keeps it in the room", came, remedy))
+}

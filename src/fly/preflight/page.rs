@@ -1,0 +1,217 @@
+//! The page before the flight: what to be warned of, what is flown and where, and what happens by itself.
+
+use std::fmt::Write;
+
+use super::extremes::samples;
+use super::{Extremes, Situation, TAKEOVER};
+use crate::fly::finding::{Finding, Level};
+use crate::units::deg_from_rad;
+
+/// Columns of a drawing, and the rows of the one from above: letters are twice as high as wide.
+const COLUMNS: usize = 41;
+const ROWS: usize = 15;
+/// Findings that are said also where all is well.
+const ALWAYS: [&str; 5] = ["if we die now", "battery", "fence", "room", TAKEOVER];
+
+/// What is shown before the vehicle is armed.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Page {
+    /// what to be warned of, the worst first
+    warnings: Vec<String>,
+    /// what is flown, and what happens by itself
+    facts: Vec<String>,
+    /// the room, with the trajectory in it
+    drawing: Vec<String>,
+}
+
+impl Page {
+    /// Of a situation and what was found in it.
+    #[must_use]
+    pub fn new(situation: &Situation<'_>, findings: &[Finding]) -> Self {
+        let mut facts = flown(situation);
+        let good = findings.iter().filter(|finding| finding.level == Level::Ok);
+        facts.extend(
+            good.filter(|finding| ALWAYS.contains(&finding.subject))
+                .map(|finding| format!("{}: {}", finding.subject, finding.came)),
+        );
+        let mut page = Self { warnings: Vec::new(), facts, drawing: drawing(situation) };
+        page.warn_of(findings);
+        page
+    }
+
+    /// Its warnings are those of these findings, the worst first.
+    pub fn warn_of(&mut self, findings: &[Finding]) {
+        let mut warned: Vec<&Finding> =
+            findings.iter().filter(|finding| finding.level >= Level::Warning).collect();
+        warned.sort_by_key(|finding| std::cmp::Reverse(finding.level));
+        self.warnings = warned.into_iter().map(Finding::to_string).collect();
+    }
+
+    /// The page's lines, none longer than `columns`; the drawing stays as it is.
+    #[must_use]
+    pub fn lines(&self, columns: usize) -> Vec<String> {
+        let mut lines = Vec::new();
+        for text in self.warnings.iter().chain(&self.facts) {
+            lines.extend(wrapped(text, columns));
+        }
+        lines.extend(self.drawing.iter().cloned());
+        lines
+    }
+}
+
+/// The box round the trajectory, its greatest speed and tilt, its duration, in sentences.
+fn flown(situation: &Situation<'_>) -> Vec<String> {
+    let extremes = Extremes::of(situation.path, situation.vehicle);
+    let (low, high) = bounding_box(situation);
+    let limits = situation.limits;
+    let wall = |max: Option<f64>| max.map_or("no wall".to_owned(), |max| format!("wall at {max:.2}"));
+    let height = |bound: Option<f64>| bound.map_or_else(|| "none".to_owned(), |bound| format!("{bound:.2}"));
+    let up_m_s = extremes.up_speed_m_s.max(extremes.down_speed_m_s);
+    vec![
+        format!(
+            "trajectory: {:.0} s; north {:.2} to {:.2} m ({}), west {:.2} to {:.2} m ({}), up {:.2} to {:.2} m (room {} to {})",
+            situation.path.duration_s(),
+            low[0],
+            high[0],
+            wall(limits.x_max_m),
+            low[1],
+            high[1],
+            wall(limits.y_max_m),
+            low[2],
+            high[2],
+            height(limits.z_min_m),
+            height(limits.z_max_m),
+        ),
+        format!(
+            "at most {:.2} m/s along the ground, {up_m_s:.2} m/s up or down, {:.1} degrees of tilt",
+            extremes.horizontal_speed_m_s,
+            deg_from_rad(extremes.tilt_rad)
+        ),
+    ]
+}
+
+/// Least and greatest x, y, z of the path, m.
+fn bounding_box(situation: &Situation<'_>) -> ([f64; 3], [f64; 3]) {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for (_, entry) in samples(situation.path) {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(entry[axis][0]);
+            high[axis] = high[axis].max(entry[axis][0]);
+        }
+    }
+    (low, high)
+}
+
+/// The trajectory in its room, from above (north up, west left) and from the side (up, north to the right).
+fn drawing(situation: &Situation<'_>) -> Vec<String> {
+    let limits = situation.limits;
+    let (Some(x), Some(y), Some(z_max)) = (limits.x_max_m, limits.y_max_m, limits.z_max_m) else {
+        return Vec::new();
+    };
+    let mut above = Canvas::new((-y, y), (-x, x), ROWS);
+    let mut side = Canvas::new((-x, x), (0.0, z_max), ROWS / 2);
+    for (_, [x, y, z, _]) in samples(situation.path) {
+        above.mark((-y[0], x[0]), '.');
+        side.mark((x[0], z[0]), '.');
+    }
+    if let Some(stand_m) = situation.stand_m {
+        let stand = stand_m - situation.origin_m;
+        above.mark((-stand.y, stand.x), 'o');
+        side.mark((stand.x, stand.z), 'o');
+    }
+    let mut lines = vec![format!("from above, {:.1} by {:.1} m, north up, o: the vehicle", 2.0 * y, 2.0 * x)];
+    lines.extend(above.lines());
+    lines.push(format!("from the side, {z_max:.1} m high, north to the right, the ground below"));
+    lines.extend(side.lines());
+    lines
+}
+
+/// A rectangle of letters over a rectangle of metres.
+struct Canvas {
+    across_m: (f64, f64),
+    up_m: (f64, f64),
+    rows: Vec<[char; COLUMNS]>,
+}
+
+impl Canvas {
+    fn new(across_m: (f64, f64), up_m: (f64, f64), rows: usize) -> Self {
+        Self { across_m, up_m, rows: vec![[' '; COLUMNS]; rows.max(1)] }
+    }
+
+    /// Puts a letter at a place, where it is inside.
+    fn mark(&mut self, (across, up): (f64, f64), letter: char) {
+        let Some(column) = cell(across, self.across_m, COLUMNS) else { return };
+        let Some(row) = cell(up, self.up_m, self.rows.len()) else { return };
+        let last = self.rows.len() - 1;
+        self.rows[last - row][column] = letter;
+    }
+
+    fn lines(&self) -> Vec<String> {
+        let edge = format!("+{}+", "-".repeat(COLUMNS));
+        let inside = self.rows.iter().map(|row| format!("|{}|", row.iter().collect::<String>()));
+        std::iter::once(edge.clone()).chain(inside).chain(std::iter::once(edge)).collect()
+    }
+}
+
+/// Which of `count` cells of a span a value is in.
+fn cell(value: f64, (low, high): (f64, f64), count: usize) -> Option<usize> {
+    let share = (value - low) / (high - low);
+    let cells = count as f64;
+    (0..count).find(|index| {
+        let from = *index as f64 / cells;
+        let is_last = index + 1 == count;
+        share >= from && (share < from + 1.0 / cells || is_last && share <= 1.0)
+    })
+}
+
+/// Lines of at most so many columns, broken between words; those after the first are moved in.
+fn wrapped(text: &str, columns: usize) -> Vec<String> {
+    const INDENT: &str = "  ";
+    let columns = columns.max(20);
+    let mut lines = Vec::new();
+    let mut line = String::new();
+    for word in text.split_whitespace() {
+        let space = usize::from(!line.trim().is_empty());
+        if space > 0 && line.chars().count() + space + word.chars().count() > columns {
+            lines.push(std::mem::replace(&mut line, INDENT.to_owned()));
+        }
+        let between = if line.trim().is_empty() { "" } else { " " };
+        // writing to a String cannot fail
+        let _ = write!(line, "{between}{word}");
+    }
+    if !line.trim().is_empty() {
+        lines.push(line);
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_broken_between_words_and_none_is_lost() {
+        let text =
+            "warning: fence: expected a fence round the place of the flight, came none in force; set one";
+        for columns in [20, 37, 80, 200] {
+            let lines = wrapped(text, columns);
+            assert!(lines.iter().all(|line| line.chars().count() <= columns), "{lines:#?}");
+            let words: Vec<&str> = lines.iter().flat_map(|line| line.split_whitespace()).collect();
+            assert_eq!(words, text.split_whitespace().collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn a_canvas_shows_what_is_inside_and_keeps_its_size() {
+        let mut canvas = Canvas::new((-2.0, 2.0), (0.0, 4.0), 4);
+        canvas.mark((-2.0, 0.0), 'a');
+        canvas.mark((2.0, 4.0), 'b');
+        canvas.mark((2.5, 1.0), 'c');
+        canvas.mark((f64::NAN, 1.0), 'd');
+        let lines = canvas.lines();
+        assert_eq!(lines.len(), 6);
+        assert!(lines.iter().all(|line| line.chars().count() == COLUMNS + 2));
+        assert!(lines[4].starts_with("|a") && lines[1].ends_with("b|"), "{lines:#?}");
+        assert!(!lines.concat().contains('c') && !lines.concat().contains('d'));
+    }
+}

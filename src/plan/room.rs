@@ -1,0 +1,124 @@
+//! The room that every plan and every flight has: walls, a ceiling and a floor above the ground.
+
+use crate::units::{deg_from_rad, rad_from_deg};
+use crate::vehicle::{Limits, Vehicle};
+
+/// Error of an estimated height above the place of takeoff, m: what barometers and estimators are off by within minutes.
+pub const HEIGHT_ERROR_M: f64 = 0.3;
+/// Tilt at which rotors still have to be clear of the ground, degrees.
+const TILT_DEG: f64 = 45.0;
+
+/// The room where none is stated: half its length and width, heights, m.
+const WALL_M: f64 = 2.0;
+const HEIGHTS_M: (f64, f64) = (1.0, 3.0);
+/// How lively it is flown where no limit at all is stated.
+const SPEED_M_S: f64 = 1.5;
+const TILT_MAX_DEG: f64 = 15.0;
+const YAW_RATE_MAX_DEG_S: f64 = 60.0;
+
+/// Limits with a room, and what of it was not stated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Roomed {
+    /// with all walls, ceiling and floor
+    pub limits: Limits,
+    /// what was added or changed, a sentence each; empty where the room was stated in whole
+    pub notes: Vec<String>,
+}
+
+/// The least height above the ground (m) at which no rotor can touch it: the reach of the tilted rotors, and the error of
+/// the height.
+#[must_use]
+pub fn floor_m(vehicle: &Vehicle) -> f64 {
+    let radius_m = vehicle.propulsion.rotor_radius_m.unwrap_or(0.0);
+    let (sin, cos) = rad_from_deg(TILT_DEG).sin_cos();
+    let reach = |position: &nalgebra::Vector3<f64>| {
+        (position.xy().norm() + radius_m) * sin - (position.z * cos).min(0.0)
+    };
+    let reach_m = vehicle.rotors.iter().map(|rotor| reach(&rotor.position_m)).fold(0.0, f64::max);
+    reach_m + HEIGHT_ERROR_M
+}
+
+/// The limits with a careful default for each part of the room that they do not state, and a floor that is above the
+/// ground.
+#[must_use]
+pub fn with_room(limits: &Limits, vehicle: &Vehicle) -> Roomed {
+    let floor_m = floor_m(vehicle);
+    let mut roomed = *limits;
+    let mut missing = Vec::new();
+    let mut fill = |value: &mut Option<f64>, name: &str, default: f64| {
+        if value.is_none() {
+            *value = Some(default);
+            missing.push(format!("{name} = {default:.2}"));
+        }
+    };
+    fill(&mut roomed.x_max_m, "x_max_m", WALL_M);
+    fill(&mut roomed.y_max_m, "y_max_m", WALL_M);
+    let low_m = HEIGHTS_M.0.max(floor_m);
+    fill(&mut roomed.z_min_m, "z_min_m", low_m);
+    let above_m = roomed.z_min_m.unwrap_or(low_m).max(floor_m) + HEIGHTS_M.1 - HEIGHTS_M.0;
+    fill(&mut roomed.z_max_m, "z_max_m", above_m);
+    if *limits == Limits::default() {
+        fill(&mut roomed.speed_max_m_s, "speed_max_m_s", SPEED_M_S);
+        roomed.roll_max_rad = Some(rad_from_deg(TILT_MAX_DEG));
+        roomed.pitch_max_rad = roomed.roll_max_rad;
+        roomed.yaw_rate_max_rad_s = Some(rad_from_deg(YAW_RATE_MAX_DEG_S));
+        missing.extend(tilt_notes(&roomed));
+    }
+    let mut notes = Vec::new();
+    if !missing.is_empty() {
+        notes.push(format!(
+            "expected a room in [limits], came none or a part of one: the default room is used for what is missing, {}; \
+             state your own there if it is another",
+            missing.join(", ")
+        ));
+    }
+    if let Some(stated_m) = roomed.z_min_m.filter(|z_min_m| *z_min_m < floor_m) {
+        roomed.z_min_m = Some(floor_m);
+        notes.push(format!(
+            "expected z_min_m of at least {floor_m:.2} (rotors' reach and {HEIGHT_ERROR_M} m of error in height), came \
+             {stated_m:.2}: {floor_m:.2} is the floor of the room"
+        ));
+    }
+    Roomed { limits: roomed, notes }
+}
+
+fn tilt_notes(limits: &Limits) -> Vec<String> {
+    [
+        ("roll_max_deg", limits.roll_max_rad),
+        ("pitch_max_deg", limits.pitch_max_rad),
+        ("yaw_rate_max_deg_s", limits.yaw_rate_max_rad_s),
+    ]
+    .into_iter()
+    .filter_map(|(name, value)| Some(format!("{name} = {:.0}", deg_from_rad(value?))))
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::random_vehicle;
+
+    #[test]
+    fn a_room_that_is_stated_stays_and_one_that_is_not_is_stated() {
+        let vehicle = random_vehicle(1).truth;
+        let whole = with_room(&Limits::default(), &vehicle);
+        let limits = whole.limits;
+        assert!(limits.z_min_m.unwrap() >= 1.0 && limits.z_max_m.unwrap() <= 10.0, "{limits:?}");
+        assert!(whole.notes[0].contains("default room") && whole.notes[0].contains("roll_max_deg = 15"));
+        assert_eq!(with_room(&limits, &vehicle), Roomed { limits, notes: Vec::new() });
+        let part = with_room(&Limits { x_max_m: Some(5.0), ..Limits::default() }, &vehicle);
+        assert_eq!((part.limits.x_max_m, part.limits.speed_max_m_s), (Some(5.0), None));
+        assert!(part.notes[0].contains("y_max_m") && !part.notes[0].contains("x_max_m"), "{:?}", part.notes);
+    }
+
+    #[test]
+    fn no_room_reaches_to_the_ground() {
+        let vehicle = random_vehicle(2).truth;
+        let floor_m = floor_m(&vehicle);
+        assert!(floor_m > HEIGHT_ERROR_M);
+        let stated = Limits { z_min_m: Some(-5.0), z_max_m: Some(4.0), ..Limits::default() };
+        let roomed = with_room(&stated, &vehicle);
+        assert_eq!(roomed.limits.z_min_m, Some(floor_m));
+        assert!(roomed.notes.iter().any(|note| note.contains("came -5.00")), "{:?}", roomed.notes);
+    }
+}
