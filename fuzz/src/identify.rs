@@ -24,7 +24,10 @@ pub fn run(data: &[u8], seeded: bool) {
         return;
     };
     let reset = !loaded.recording.clock_resets_s.is_empty();
-    assert!(!(seeded && reset && loaded.report.bad_crc > 0), "the seeded bug");
+    assert!(
+        !(seeded && reset && loaded.report.bad_crc > 0),
+        "the seeded bug: two kinds of damage in one flight"
+    );
     let flights = [signals];
     let Ok(mut identification) = identify(&flights, &flight.vehicle, &IdentifySettings::default()) else {
         return;

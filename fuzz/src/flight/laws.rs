@@ -64,7 +64,7 @@ impl Laws {
     }
 
     /// The station sends a message.
-    pub fn sent(&mut self, now: Duration, message: &MavMessage, seeded: bool) {
+    pub fn sent(&mut self, now: Duration, message: &MavMessage) {
         if let MavMessage::SET_POSITION_TARGET_LOCAL_NED(data) = message {
             let fields = [data.x, data.y, data.z, data.vx, data.vy, data.vz, data.afx, data.afy, data.afz];
             assert!(
@@ -89,15 +89,14 @@ impl Laws {
         if ![SET_MODE, ARM, TAKEOFF].contains(&number) || kills {
             return;
         }
-        let blind = self.out_of_order || seeded && number == ARM;
         assert!(!self.hands_off, "{command:?} at {now:?} with hands off");
         assert!(
-            blind || self.other.is_none(),
+            self.out_of_order || self.other.is_none(),
             "{command:?} at {now:?}, and another has the vehicle: {self:?}"
         );
     }
 
-    /// A mode was asked for, and the vehicle heard it.
+    /// A mode was asked for, whether the vehicle heard it or not.
     pub fn asked_for(&mut self, mode: u32) {
         if !self.ours.contains(&mode) {
             self.ours.push(mode);

@@ -102,14 +102,17 @@ impl Vehicle {
         }
     }
 
+    /// The mode that a command asks for.
+    pub fn asked_for(&self, command: &COMMAND_LONG_DATA) -> u32 {
+        let (main, sub) = (whole(command.param2), whole(command.param3));
+        if self.stack == Stack::Px4 { px4(main, sub) } else { main }
+    }
+
     /// Does what it is told; the answers.
     pub fn obey(&mut self, command: &COMMAND_LONG_DATA) -> Vec<Vec<u8>> {
         let number = command.command as u32;
         match number {
-            SET_MODE => {
-                let (main, sub) = (whole(command.param2), whole(command.param3));
-                self.mode = if self.stack == Stack::Px4 { px4(main, sub) } else { main };
-            }
+            SET_MODE => self.mode = self.asked_for(command),
             ARM => self.armed = command.param1 > 0.5,
             TAKEOFF => self.climbs_to_m = Some(command.param7.into()),
             _ => {}
