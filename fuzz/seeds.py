@@ -25,6 +25,7 @@ def splitter():
         frames = b"".join(frame for _, frame in records(log, 25))
         yield bytes([0, 7]) + frames
         yield bytes([2, 255, 40]) + frames[:40]
+    yield from scripts(5, [1, 2], 6, 150)
     # mavlink#2555, alone and before a whole frame
     short = bytes([0xFD, 0, 0, 0, 0, 1, 1, 0x83, 0, 0, 0])
     yield bytes([0, 3]) + short
@@ -37,6 +38,7 @@ def tlog():
         yield bytes([0, 5]) + b"".join(stamp + frame for stamp, frame in some)
         yield bytes([0, 5]) + b"".join(stamp[::-1] + frame for stamp, frame in some)
         yield bytes([0, 5]) + b"".join([some[0][0]] + [frame for _, frame in some])
+    yield from scripts(6, [1], 8, 200)
 
 
 def csv():
