@@ -248,7 +248,7 @@ impl Host {
                     while self.tick_due <= now {
                         self.tick_due += TICK;
                     }
-                    self.supervisor.tick(now, self.reader.is_behind());
+                    self.supervisor.tick(now, self.reader.waiting());
                 }
                 2 => match self.wishes.pop_front() {
                     Some(Wish::Key(key)) => self.supervisor.handle(now, Event::Key(key)),
