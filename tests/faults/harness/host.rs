@@ -313,7 +313,11 @@ impl Host {
 
     /// The recording, ended.
     pub fn recorded(&self, runtime: &Runtime) -> Vec<u8> {
-        runtime.block_on(self.recorder.end()).unwrap();
+        // its thread writes in real time
+        runtime.block_on(async {
+            tokio::time::resume();
+            self.recorder.end().await.unwrap();
+        });
         self.memory.0.lock().unwrap().clone()
     }
 }
