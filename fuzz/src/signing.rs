@@ -11,6 +11,7 @@ use super::frames::{From, SEEDS, frame, signed, v2};
 
 /// Signing time, units of 10 us since 2015, of the year 2027.
 const NOW: u64 = 40_000_000_000_000;
+const SECOND: u64 = 100_000;
 /// A stream not heard before may be a minute behind.
 const STALE: u64 = 6_000_000;
 /// 89 years of signing time fit its 48 bits; clocks stay well below.
@@ -35,17 +36,21 @@ struct Memory {
 }
 
 impl Memory {
-    /// Whether a frame with a right signature is new, of a time read from it.
-    fn is_new(&mut self, bytes: &[u8], now: u64) -> bool {
+    /// Whether a frame with a right signature is believed, by the time read from it.
+    fn judge(&mut self, bytes: &[u8], now: u64) -> Result<(), Distrust> {
         let (header, time) = (*frame(bytes).header(), time_of(bytes));
         let stream = (bytes[bytes.len() - 13], header.system, header.component);
         self.own = self.own.max(now);
-        let new = self.streams.get(&stream).map_or(time + STALE >= self.own, |last| time > *last);
-        if new {
-            self.streams.insert(stream, time);
-            self.own = self.own.max(time);
+        match self.streams.get(&stream) {
+            Some(last) if time <= *last => return Err(Distrust::Replayed),
+            None if time + STALE < self.own => {
+                return Err(Distrust::Old { behind_s: (self.own - time) / SECOND });
+            }
+            _ => {}
         }
-        new
+        self.streams.insert(stream, time);
+        self.own = self.own.max(time);
+        Ok(())
     }
 }
 
@@ -105,8 +110,7 @@ fn conversation(mut script: Bytes<'_>, seeded: bool) {
             (false, _) if header.message_id == RADIO_STATUS => Ok(()),
             (false, _) => Err(Distrust::Unsigned),
             (true, false) => Err(Distrust::Wrong),
-            (true, true) if memory.is_new(&bytes, now) => Ok(()),
-            (true, true) => Err(Distrust::Replayed),
+            (true, true) => memory.judge(&bytes, now),
         };
         assert_eq!(verdict, expected, "{bytes:02x?} at {now}, {memory:?}");
         assert!(!(genuine && frame(&bytes).check(&SEEDS) != Check::Right), "a genuine frame is whole");

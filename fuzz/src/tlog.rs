@@ -169,7 +169,9 @@ fn whole_records(mut script: Bytes<'_>, seeded: bool) {
     bytes.truncate(bytes.len() - cut);
     sent.truncate(sent.len() - usize::from(cut > 0));
     let got = read(&bytes, usize::MAX, seeded);
-    let given: Vec<&Vec<u8>> = got.records.iter().map(|(_, _, frame)| frame).collect();
+    // behind a torn head a whole record may stand in what is left of its payload
+    let whole = if cut > 0 { sent.len().min(got.records.len()) } else { got.records.len() };
+    let given: Vec<&Vec<u8>> = got.records[..whole].iter().map(|(_, _, frame)| frame).collect();
     assert!(given.iter().copied().eq(&sent), "sent {sent:02x?}, given {given:02x?}, {:?}", got.report);
     put_together(&got);
 }

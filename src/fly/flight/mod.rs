@@ -270,7 +270,11 @@ impl Flight {
             Phase::Leave(_) => self.leave(now),
             Phase::Lost => self.wait_for_word(now),
             Phase::Watch => self.watch_others(now),
-            Phase::Done => return,
+            Phase::Done => {}
+        }
+        // nothing follows the end
+        if matches!(self.phase, Phase::Done) {
+            return;
         }
         self.follow(now);
         self.hold_back(now);
