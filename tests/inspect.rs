@@ -210,7 +210,8 @@ fn the_truth_of_a_simulator_is_counted_and_not_shown() {
 #[test]
 fn every_shared_flight_is_inspected_without_and_with_its_vehicle() {
     let Some(shared) = support::shared() else { return };
-    for path in support::files(&shared, "tlog") {
+    let folders = ["cases", "noisy", "recordings/autopilots"].map(|folder| shared.join(folder));
+    for path in folders.iter().flat_map(|folder| support::files(folder, "tlog")) {
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
         let vehicle = match &name {
             name if name.starts_with("ap_") => path.with_file_name("ardupilot-quad.toml"),
@@ -218,7 +219,11 @@ fn every_shared_flight_is_inspected_without_and_with_its_vehicle() {
             _ => path.with_file_name("vehicle.toml"),
         };
         let vehicle = read_vehicle(&vehicle).unwrap().vehicle;
-        assert!(inspected(&path, None).verdict.starts_with("Has what identification of mass, Ixx"), "{name}");
+        // a mission flown on an estimator's belief need not turn enough for inertia; without a vehicle file that is said
+        let needs = if path.starts_with(shared.join("noisy")) { "mass" } else { "mass, Ixx" };
+        let verdict = inspected(&path, None).verdict;
+        let expected = format!("Has what identification of {needs}");
+        assert!(verdict.starts_with(&expected), "{}: {verdict}", path.display());
         let inspection = inspected(&path, Some(&vehicle));
         assert!(
             inspection.verdict.starts_with("This log is good for mass"),

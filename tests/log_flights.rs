@@ -222,7 +222,7 @@ fn two_flights_of_a_log_are_explained() {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let document = document(&output);
     assert_eq!(document["verdict"], "nothing_missing");
-    assert_eq!(document["inputs"].as_array().unwrap().len(), 2);
+    assert_eq!(document["data_quality"]["inputs"].as_array().unwrap().len(), 2);
 }
 
 fn beat(system: u32, armed: bool) -> Vec<u8> {

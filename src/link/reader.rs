@@ -216,10 +216,10 @@ impl LinkReader {
         }
     }
 
-    /// Whether frames or events wait to be taken.
+    /// Frames and events that wait to be taken.
     #[must_use]
-    pub fn is_behind(&self) -> bool {
-        self.shared.waiting.load(Ordering::Relaxed) > 0
+    pub fn waiting(&self) -> usize {
+        self.shared.waiting.load(Ordering::Relaxed)
     }
 
     /// Where a `udpin` or `tcpin` link listens: the port that the system chose where the address said 0.

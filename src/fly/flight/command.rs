@@ -82,7 +82,8 @@ impl Flight {
 
     /// Whether the vehicle may be commanded now, as far as its mode is known.
     fn permission(&self) -> Permission {
-        Permission { reports: self.known.reports(), ours: !self.known.is_in_doubt() && self.is_to_command() }
+        let ours = !self.unread && !self.known.is_in_doubt() && self.is_to_command();
+        Permission { reports: self.known.reports(), ours }
     }
 
     /// The vehicle's mode is one that it is in by our doing, or for a start one that it was found in.

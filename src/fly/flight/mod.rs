@@ -104,6 +104,8 @@ pub struct Flight {
     known: ModeKnowledge,
     /// what looks like another master, and the reports of the mode that had come by then
     suspected: Option<(Cause, u64)>,
+    /// frames lie in the link that were not read yet: no command goes out before
+    unread: bool,
     /// when it was last asked to go on
     stepped: Option<Duration>,
     phase: Phase,
@@ -147,6 +149,7 @@ impl Flight {
             commander: Commander::default(),
             known: ModeKnowledge::default(),
             suspected: None,
+            unread: false,
             stepped: None,
             phase: Phase::Connect,
             entered: Duration::ZERO,
@@ -242,6 +245,11 @@ impl Flight {
     #[must_use]
     pub fn wants_clearance(&self) -> bool {
         matches!(&self.phase, Phase::Check(checking) if checking.has_asked()) && self.clearance.is_none()
+    }
+
+    /// Says whether frames lie in the link that may say more: until they are read, no command goes out.
+    pub fn set_unread(&mut self, unread: bool) {
+        self.unread = unread;
     }
 
     /// One step of time: the safety rules first, then the phase, then what is to be sent.

@@ -258,8 +258,8 @@ impl Flight {
             self.give_up_listening(now);
         } else if !self.is_armed() {
             self.finish_watching(now);
-        } else if self.known.is_in_doubt() {
-            // the mode from before the silence is not known to be its mode still: it is asked
+        } else if self.known.is_in_doubt() || contact.telemetry.is_arming_contradicted() {
+            // it may have landed meanwhile, and the mode from before the silence is not known to be its mode still: it is asked
         } else if self.is_in(Mode::External) {
             self.note(now, Level::Warning, "link", "heard again, still in our mode: it is told to hold");
             self.begin_hold(now);

@@ -111,9 +111,9 @@ impl Drive {
     }
 
     /// Time went on; whether the link has something that was not taken.
-    pub(super) fn tick(&mut self, wait: bool) {
+    pub(super) fn tick(&mut self, waiting: usize) {
         let now = self.clock.elapsed();
-        self.supervisor.tick(now, wait);
+        self.supervisor.tick(now, waiting);
         self.act(now);
     }
 

@@ -139,15 +139,18 @@ fn work(mut store: impl Write, from: &Receiver<Entry>, state: &Mutex<State>) {
                     torn = whole.is_err();
                     whole
                 });
-                locked(state).missing += u64::from(written.is_err());
-                written.err().map(|error| error.to_string())
+                written.err().map(|error| (1, error.to_string()))
             }
             Entry::File(path, text) => {
-                std::fs::write(&path, text).err().map(|error| format!("{}: {error}", text::path(&path)))
+                let written = std::fs::write(&path, text);
+                written.err().map(|error| (0, format!("{}: {error}", text::path(&path))))
             }
         };
-        if failure.is_some() {
-            locked(state).failure = failure;
+        // both at once: whoever asks meanwhile is not told a line without its reason
+        if let Some((lines, failure)) = failure {
+            let mut state = locked(state);
+            state.missing += lines;
+            state.failure = Some(failure);
         }
     }
 }

@@ -223,7 +223,7 @@ async fn conduct(
                     drive.handle(Event::LinkEnded);
                 }
             },
-            _ = ticks.tick() => drive.tick(reader.is_behind()),
+            _ = ticks.tick() => drive.tick(reader.waiting()),
             key = console.keys.recv(), if keyed => match key {
                 Some(key) => drive.key(key),
                 None => keyed = false,

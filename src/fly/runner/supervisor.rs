@@ -27,6 +27,8 @@ pub struct Supervisor {
     told_waiting: bool,
     /// something of the link was taken since the last tick
     took: bool,
+    /// frames and events that waited at a tick before and are not taken yet
+    to_read: usize,
 }
 
 impl Supervisor {
@@ -42,6 +44,7 @@ impl Supervisor {
             actions: VecDeque::new(),
             told_waiting: false,
             took: true,
+            to_read: 0,
         }
     }
 
@@ -59,7 +62,7 @@ impl Supervisor {
 
     /// Takes a frame that the link delivered, with the host's stamp of its arrival.
     pub fn frame(&mut self, now: Duration, record: &Record<'_>) {
-        self.took = true;
+        self.took();
         self.handle(now, Event::Frame(record.frame));
         let known = record.frame.check(self.flight.seeds()) == Check::Right;
         if let Some(clearance) = &mut self.clearance {
@@ -67,12 +70,23 @@ impl Supervisor {
         }
     }
 
-    /// Time went on; `wait` says whether the link has something that was not taken. Where it has, and nothing was taken
-    /// since the last tick, the way from the link stands still: a supervisor that does not see renews nothing.
-    pub fn tick(&mut self, now: Duration, wait: bool) {
-        if std::mem::replace(&mut self.took, false) || !wait {
+    /// Time went on; `waiting` frames and events of the link were not taken yet. Where there are some, and nothing was taken
+    /// since the last tick, the way from the link stands still: a supervisor that does not see renews nothing. Commands go
+    /// out once all that waited at an earlier tick is read: the next frame may say that the pilot took over.
+    pub fn tick(&mut self, now: Duration, waiting: usize) {
+        if std::mem::replace(&mut self.took, false) || waiting == 0 {
+            self.flight.set_unread(self.to_read > 0 && waiting > 0);
             self.handle(now, Event::Tick);
         }
+        if self.to_read == 0 || waiting == 0 {
+            self.to_read = waiting;
+        }
+        self.flight.set_unread(true);
+    }
+
+    fn took(&mut self) {
+        self.took = true;
+        self.to_read = self.to_read.saturating_sub(1);
     }
 
     /// Takes what else happened.
@@ -86,7 +100,7 @@ impl Supervisor {
 
     /// Takes what the link says of itself.
     pub fn link_event(&mut self, now: Duration, event: &LinkEvent) {
-        self.took = true;
+        self.took();
         let (up, level) = match event {
             LinkEvent::Connected { .. } => (Some(true), Level::Information),
             LinkEvent::Restored { .. } => (Some(true), Level::Warning),

@@ -178,7 +178,7 @@ impl Signing {
         Self::new(key, Times { own: now(), ..Times::default() }, None, Vec::new())
     }
 
-    /// The same, begun at a time of the caller's clock: for whoever has no other ([`time_of`]).
+    /// The same, begun at a time of the caller's clock: for whoever has no other.
     #[must_use]
     pub fn with_key_at(key: SigningKey, time: u64) -> Self {
         Self::new(key, Times { own: time, ..Times::default() }, None, Vec::new())

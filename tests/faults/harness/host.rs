@@ -248,7 +248,7 @@ impl Host {
                     while self.tick_due <= now {
                         self.tick_due += TICK;
                     }
-                    self.supervisor.tick(now, self.reader.is_behind());
+                    self.supervisor.tick(now, self.reader.waiting());
                 }
                 2 => match self.wishes.pop_front() {
                     Some(Wish::Key(key)) => self.supervisor.handle(now, Event::Key(key)),
@@ -313,7 +313,11 @@ impl Host {
 
     /// The recording, ended.
     pub fn recorded(&self, runtime: &Runtime) -> Vec<u8> {
-        runtime.block_on(self.recorder.end()).unwrap();
+        // its thread writes in real time
+        runtime.block_on(async {
+            tokio::time::resume();
+            self.recorder.end().await.unwrap();
+        });
         self.memory.0.lock().unwrap().clone()
     }
 }
