@@ -47,6 +47,7 @@ fn inputs(folder: &Path) -> Vec<Vec<u8>> {
     let mut paths: Vec<PathBuf> =
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
+    assert!(!paths.is_empty(), "no inputs in {}", folder.display());
     paths.iter().map(|path| std::fs::read(path).unwrap()).collect()
 }
 
@@ -82,7 +83,6 @@ fn mutated(random: &mut Pcg64, corpus: &[Vec<u8>]) -> Vec<u8> {
 fn twin(name: &str, mutations: u32) {
     let Target { run, .. } = TARGETS.into_iter().find(|target| target.name == name).unwrap();
     let corpus = inputs(&folder("corpus", name));
-    assert!(!corpus.is_empty());
     for input in &corpus {
         run(input, false);
     }
@@ -95,58 +95,48 @@ fn twin(name: &str, mutations: u32) {
             std::panic::resume_unwind(broken);
         }
     }
-    let seeded = inputs(&folder("seeded", name));
-    assert!(!seeded.is_empty());
-    for input in &seeded {
+    for input in &inputs(&folder("seeded", name)) {
         run(input, false);
         assert!(catch_unwind(|| run(input, true)).is_err(), "{name}: the seeded bug is not seen");
     }
 }
 
 #[test]
-#[ignore = "the targets are not finished: seeded bugs are not kept yet"]
 fn splitter() {
     twin("splitter", 100_000);
 }
 
 #[test]
-#[ignore = "the targets are not finished: seeded bugs are not kept yet"]
 fn tlog() {
     twin("tlog", 10_000);
 }
 
 #[test]
-#[ignore = "the targets are not finished: seeded bugs are not kept yet"]
 fn csv() {
     twin("csv", 20_000);
 }
 
 #[test]
-#[ignore = "the targets are not finished: seeded bugs are not kept yet"]
 fn toml() {
     twin("toml", 20_000);
 }
 
 #[test]
-#[ignore = "the targets are not finished: seeded bugs are not kept yet"]
 fn signing() {
     twin("signing", 10_000);
 }
 
 #[test]
-#[ignore = "the targets are not finished: seeded bugs are not kept yet"]
 fn flight() {
-    twin("flight", 500);
+    twin("flight", 2000);
 }
 
 #[test]
-#[ignore = "the targets are not finished: seeded bugs are not kept yet"]
 fn identify() {
     twin("identify", 100);
 }
 
 #[test]
-#[ignore = "the targets are not finished: seeded bugs are not kept yet"]
 fn explain() {
     twin("explain", 10);
 }
