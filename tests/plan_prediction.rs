@@ -54,5 +54,6 @@ fn fifty_flights_scatter_as_promised() {
         println!("{name:<5} promised {:.5}, scatter over promise {ratio:.2}", promised[k]);
         worst = worst.max(ratio.max(1.0 / ratio));
     }
-    assert!(worst < 1.2, "worst ratio {worst:.2}");
+    // of fifty flights a standard deviation is known to 10 %, and this is the worst of seven
+    assert!(worst < 1.35, "worst ratio {worst:.2}");
 }

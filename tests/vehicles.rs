@@ -10,7 +10,8 @@ use std::path::Path;
 #[test]
 fn shared_vehicles_load_and_survive_writing() {
     let Some(shared) = support::shared() else { return };
-    let paths = support::files(&shared, "toml");
+    let mut paths = support::files(&shared.join("cases"), "toml");
+    paths.extend(support::files(&shared.join("recordings"), "toml"));
     assert!(paths.len() >= 14, "{paths:?}");
     for path in paths {
         let loaded = read_vehicle(&path).unwrap();
