@@ -56,6 +56,8 @@ pub struct Telemetry {
     pub landed: Option<Seen<bool>>,
     /// since when it says so without a break
     landed_since: Option<Duration>,
+    /// it was told to take off and has not said that it is in the air yet
+    takes_off: bool,
     /// what the estimator says
     pub estimator: Option<Seen<EstimatorReport>>,
     /// since when the estimator is good without a break
@@ -99,6 +101,7 @@ impl Telemetry {
             attitude: None,
             landed: None,
             landed_since: None,
+            takes_off: false,
             estimator: None,
             estimator_good_since: None,
             estimator_bad_since: None,
@@ -237,6 +240,7 @@ impl Telemetry {
             news.push(Novelty::Target(target_m));
         }
         if let Some(Seen { at, value }) = self.landed {
+            self.takes_off &= value;
             self.landed_since = value.then(|| self.landed_since.unwrap_or(at));
         }
         let oriented = self.attitude.filter(|seen| seen.at == now).map(|seen| seen.value);
@@ -350,8 +354,16 @@ impl Telemetry {
         self.landed.is_some_and(|landed| landed.value)
     }
 
+    /// It is told to take off: that it stands on the ground says little from now on, until it said that it is in the air.
+    pub fn expect_takeoff(&mut self) {
+        self.takes_off = true;
+    }
+
     /// It says so, said it lately, and has said nothing else for a while: single frames can be forged or old.
     fn is_landed_at(&self, now: Duration) -> bool {
+        if self.takes_off {
+            return false;
+        }
         let fresh = self.landed.is_some_and(|landed| now.saturating_sub(landed.at) < LANDED_VALID.0);
         fresh && self.landed_since.is_some_and(|since| now.saturating_sub(since) >= LANDED_VALID.1)
     }

@@ -56,6 +56,9 @@ impl Flight {
         let (Some(stand), Some(top), Some((_, stack))) = (self.stand, self.top(), self.target()) else {
             return;
         };
+        if let Some(contact) = &mut self.contact {
+            contact.telemetry.expect_takeoff();
+        }
         match stack {
             Stack::Px4 => {
                 let path = Arc::new(transfer(&stand, &top, CLIMB_M_S, TURN_RAD_S));
@@ -101,6 +104,7 @@ impl Flight {
         let from = self.guide.setpoint(now).map_or(here, |setpoint| setpoint.place());
         let path = Arc::new(transfer(&from, &start, TRANSFER_M_S, TURN_RAD_S));
         self.lead_along(Track { path, offset_m: Vector3::zeros(), clock: PathClock::start(now) });
+        self.climbed = true;
         self.enter(now, Phase::Transfer);
     }
 
@@ -172,14 +176,11 @@ impl Flight {
         }
     }
 
-    /// Where setpoints may be now: in the room, and on the way up and out of our mode down to the ground as well.
+    /// Where setpoints may be now: in the room, and until it came to its height down to the ground as well.
     fn bounds(&self) -> Option<SetpointBounds> {
         let stand = self.stand.or_else(|| self.place_now())?;
         let room = SetpointBounds::room(&self.sortie.limits, &self.offset_m(&stand.position_m));
-        Some(match self.phase {
-            Phase::Transfer | Phase::Gate | Phase::Course => room,
-            _ => room.with(&stand.position_m),
-        })
+        Some(if self.climbed { room } else { room.with(&stand.position_m) })
     }
 
     /// Position and smoothed velocity, m and m/s, world, local.

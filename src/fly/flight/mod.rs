@@ -114,6 +114,8 @@ pub struct Flight {
     engaged: Duration,
     /// where it stood when it was armed
     stand: Option<Place>,
+    /// it came to its height: from then on nothing below the room's floor is sent
+    climbed: bool,
     guide: Guide,
     watch: Watch,
     gate: Gate,
@@ -155,6 +157,7 @@ impl Flight {
             entered: Duration::ZERO,
             engaged: Duration::ZERO,
             stand: None,
+            climbed: false,
             guide: Guide::silent(Duration::ZERO),
             watch,
             gate: Gate::default(),

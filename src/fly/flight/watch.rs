@@ -93,7 +93,7 @@ impl Flight {
                 return;
             }
         }
-        if self.phase.is_ours() || matches!(self.phase, Phase::Leave(_)) {
+        if self.phase.is_ours() || matches!(self.phase, Phase::Prime | Phase::Engage(_) | Phase::Leave(_)) {
             self.check_link(now);
         }
     }

@@ -106,6 +106,8 @@ pub fn check(trace: &Trace, given: &Given) -> Vec<Broken> {
 /// Which modes the vehicle may be in by our doing: ours, then those that were asked for, in their order.
 #[derive(Debug, Clone)]
 struct Ours {
+    /// something that steers or commands left: what was before is nobody's business
+    begun: bool,
     wishes: Vec<u32>,
     /// of the latest that was seen; `None` before ours was
     at: Option<usize>,
@@ -114,17 +116,24 @@ struct Ours {
 
 impl Ours {
     fn new(given: &Given) -> Self {
-        Self { wishes: vec![given.external()], at: None, external: given.external() }
+        Self { begun: false, wishes: vec![given.external()], at: None, external: given.external() }
     }
 
-    fn asked(&mut self, mode: u32) {
-        if mode != self.external && self.wishes.last() != Some(&mode) {
-            self.wishes.push(mode);
+    fn left(&mut self, left: &Left) {
+        self.begun |= left.commands() || matches!(left, Left::Setpoint(_));
+        if let Left::Mode(mode) = left
+            && *mode != self.external
+            && self.wishes.last() != Some(mode)
+        {
+            self.wishes.push(*mode);
         }
     }
 
     /// Whether the mode is one of ours, or ours was not entered yet.
     fn admits(&mut self, mode: u32) -> bool {
+        if !self.begun {
+            return true;
+        }
         let from = self.at.unwrap_or(0);
         let found = self.wishes[from..].iter().position(|wish| *wish == mode).map(|at| from + at);
         match (self.at, found) {
@@ -144,7 +153,7 @@ fn taken(trace: &Trace, given: &Given) -> Option<(Duration, u32)> {
     let mut armed = false;
     for Entry { at, seen } in &trace.entries {
         match seen {
-            Seen::Left(Left::Mode(mode)) => ours.asked(*mode),
+            Seen::Left(left) => ours.left(left),
             Seen::Vehicle(state) => {
                 // one that has landed chooses what it rests in
                 if armed && !state.armed {
@@ -204,6 +213,8 @@ fn stale(trace: &Trace, given: &Given) -> Option<Broken> {
     let mut ours = Ours::new(given);
     // the reason of what is commanded next, the last command, and the last report of our mode: when it came to the socket
     let (mut reason, mut last, mut report) = (None::<Duration>, None::<Left>, None::<Duration>);
+    // when a report of another mode was heard, with the report of ours before it; the latest that the vehicle itself said
+    let (mut lost, mut said) = (None::<(Duration, Option<Duration>)>, Duration::ZERO);
     for Entry { at, seen } in &trace.entries {
         match seen {
             Seen::Note(note) if note.kind == "abort" || note.kind == "phase" => {
@@ -216,13 +227,23 @@ fn stale(trace: &Trace, given: &Given) -> Option<Broken> {
                 }
             }
             Seen::Heard(heard, came) => {
-                report = ours.admits(heard.mode).then_some(*came);
+                // one that others had overtaken says nothing
+                if heard.said.is_some_and(|at| at < said) {
+                    continue;
+                }
+                said = heard.said.unwrap_or(said);
+                let ours = ours.admits(heard.mode);
+                if !ours && report.is_some() {
+                    lost = Some((*at, report));
+                }
+                report = ours.then_some(*came);
             }
             Seen::Left(left) if left.commands() => {
                 let engages = matches!(left, Left::Mode(mode) if *mode == given.external());
-                if let Left::Mode(mode) = left {
-                    ours.asked(*mode);
-                }
+                ours.left(left);
+                // made in the same instant, it may still have been on its way out
+                let before = lost.filter(|(lost, _)| *at <= *lost + TOLD).and_then(|(_, before)| before);
+                let report = report.or(before);
                 if engages || by_the_operator(trace, *at) {
                     continue;
                 }
@@ -243,6 +264,7 @@ fn stale(trace: &Trace, given: &Given) -> Option<Broken> {
                 last = Some(left.clone());
                 reason = None;
             }
+            Seen::Left(left) => ours.left(left),
             _ => {}
         }
     }
@@ -336,8 +358,8 @@ fn range(trace: &Trace) -> Option<Broken> {
 fn was_told_off(trace: &Trace, given: &Given) -> bool {
     let mut ours = Ours::new(given);
     trace.entries.iter().any(|entry| match &entry.seen {
-        Seen::Left(Left::Mode(mode)) => {
-            ours.asked(*mode);
+        Seen::Left(left) => {
+            ours.left(left);
             false
         }
         Seen::Heard(report, _) => !ours.admits(report.mode),
