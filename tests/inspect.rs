@@ -235,6 +235,53 @@ fn every_shared_flight_is_inspected_without_and_with_its_vehicle() {
         assert!(mass < 0.05, "{name}: {mass}");
         assert!(inspection.losses.is_empty(), "{name}");
     }
+}
+
+#[test]
+fn every_shared_log_of_a_simulator_with_a_log_on_board_is_inspected() {
+    let Some(shared) = support::shared() else { return };
+    let paths = support::files(&shared.join("onboard"), "tlog");
+    let (mut turned, mut still) = (0, 0);
+    for path in &paths {
+        let inspection = inspected(path, None);
+        let verdict = &inspection.verdict;
+        let (needs, stood) =
+            ("Has what identification of mass", "Nothing can be identified from this log: no flight");
+        assert!(verdict.starts_with(needs) || verdict.starts_with(stood), "{}: {verdict}", path.display());
+        // one takes off, stands in the air for 3 s and lands
+        still += usize::from(verdict.starts_with(stood));
+        assert!(inspection.losses.is_empty(), "{}: {:?}", path.display(), inspection.losses);
+        turned += usize::from(verdict.starts_with("Has what identification of mass, Ixx, Iyy, Izz needs"));
+    }
+    // some of the flights go straight
+    assert!(paths.len() >= 32 && turned >= 24 && still <= 1, "{turned} and {still} of {}", paths.len());
+}
+
+#[test]
+fn every_shared_recording_of_others_gets_a_verdict_and_what_is_no_recording_is_refused() {
+    let Some(shared) = support::shared() else { return };
+    for path in support::files(&shared.join("recordings/tlogs"), "tlog") {
+        let name = path.file_name().unwrap().to_str().unwrap();
+        let found = inspect_tlog(&path, &LoadOptions::default(), None, &mut |_| ());
+        if name == "not_mavlink.tlog" {
+            assert!(found.is_err());
+            continue;
+        }
+        // boats and submarines that tell no outputs, and one copter of 2014
+        let silent = ["boat_430dev", "copter_32dev", "rover_455", "sub_47dev"];
+        let expected = if silent.iter().any(|silent| name.starts_with(silent)) {
+            "Nothing can be identified from this log: no actuator outputs"
+        } else {
+            "Has what identification of mass needs, but not what Ixx, Iyy, Izz would need"
+        };
+        let verdict = found.unwrap().verdict;
+        assert!(verdict.starts_with(expected), "{name}: {verdict}");
+    }
+}
+
+#[test]
+fn every_shared_table_is_inspected() {
+    let Some(shared) = support::shared() else { return };
     for path in support::files(&shared.join("recordings"), "csv") {
         let (recording, report) = read_csv(&path, &default_csv_mapping().unwrap()).unwrap();
         let vehicle = read_vehicle(&path.with_file_name("vehicle.toml")).unwrap().vehicle;

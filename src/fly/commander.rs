@@ -169,6 +169,11 @@ impl Commander {
         self.pending.iter().any(|waiting| waiting.order == *order && waiting.sent > 0)
     }
 
+    /// It is done: it is not sent again.
+    pub fn forget(&mut self, order: &Order) {
+        self.pending.retain(|waiting| waiting.order != *order);
+    }
+
     /// Forgets all of them.
     pub fn clear(&mut self) {
         self.pending.clear();

@@ -13,6 +13,8 @@ pub enum Novelty {
         /// now
         to: FlightState,
     },
+    /// another mode than the one that is known, in a frame that was sent before: late, or the order is forged
+    LateMode,
     /// the vehicle said something: MAV_SEVERITY and text
     Text(u8, String),
     /// its clock started anew

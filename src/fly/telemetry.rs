@@ -176,6 +176,9 @@ impl Telemetry {
     /// said whether it is armed.
     fn note_state(&mut self, at: Duration, state: FlightState, place: i64, news: &mut Vec<Novelty>) -> bool {
         if place < self.state_place {
+            if self.state.is_some_and(|seen| seen.value.custom_mode != state.custom_mode) {
+                news.push(Novelty::LateMode);
+            }
             return false;
         }
         self.state_place = place;

@@ -14,11 +14,8 @@ const FLIGHTS: u64 = 300;
 #[test]
 fn no_law_is_broken_on_three_hundred_flights() {
     let reports: Vec<_> = (0..FLIGHTS).into_par_iter().map(|number| fly(SEED, number, false)).collect();
-    let broken: Vec<String> = reports
-        .iter()
-        .filter(|report| !report.broken.is_empty())
-        .map(|report| report.text(SEED))
-        .collect();
+    let broken: Vec<String> =
+        reports.iter().filter(|report| !report.broken.is_empty()).map(|report| report.text(SEED)).collect();
     let attacked = reports.iter().filter(|report| report.attacked).count();
     assert!(broken.is_empty(), "{} flights broke a law:\n{}", broken.len(), broken.join("\n"));
     assert!(attacked > 250, "only {attacked} flights came to their faults");

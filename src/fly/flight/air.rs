@@ -104,7 +104,6 @@ impl Flight {
         let from = self.guide.setpoint(now).map_or(here, |setpoint| setpoint.place());
         let path = Arc::new(transfer(&from, &start, TRANSFER_M_S, TURN_RAD_S));
         self.lead_along(Track { path, offset_m: Vector3::zeros(), clock: PathClock::start(now) });
-        self.climbed = true;
         self.enter(now, Phase::Transfer);
     }
 
@@ -172,15 +171,21 @@ impl Flight {
             self.watch.tracking.told(now, reference.position_m);
         }
         if let Some(sent) = self.guide.sent(now) {
+            self.climbed |= self.stand.is_some_and(|stand| self.room(&stand).contains(&sent.position_m));
             self.watch.masters.told(now, sent);
         }
     }
 
-    /// Where setpoints may be now: in the room, and until it came to its height down to the ground as well.
+    /// Where setpoints may be now: in the room, and on the way up from the ground as well.
     fn bounds(&self) -> Option<SetpointBounds> {
         let stand = self.stand.or_else(|| self.place_now())?;
-        let room = SetpointBounds::room(&self.sortie.limits, &self.offset_m(&stand.position_m));
+        let room = self.room(&stand);
         Some(if self.climbed { room } else { room.with(&stand.position_m) })
+    }
+
+    /// The room around a vehicle that stood there; local frame.
+    fn room(&self, stand: &Place) -> SetpointBounds {
+        SetpointBounds::room(&self.sortie.limits, &self.offset_m(&stand.position_m))
     }
 
     /// Position and smoothed velocity, m and m/s, world, local.

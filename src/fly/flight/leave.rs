@@ -21,8 +21,10 @@ const GROUND_IS_HEARD: Duration = Duration::from_millis(1500);
 const GROUND_BY: Duration = Duration::from_secs(180);
 /// On the ground, the autopilot disarms by itself; after this long it is told to.
 const DISARM_AFTER: Duration = Duration::from_secs(3);
-/// A program that is told to end waits no longer.
-const STOP_WITHIN: Duration = Duration::from_secs(1);
+/// A vehicle that accepted it and does not say that it is disarmed is told again.
+const DISARM_AGAIN: Duration = Duration::from_secs(4);
+/// A program that is told to end waits no longer for the vehicle to hold: a link that is silent may come back.
+const STOP_WITHIN: Duration = Duration::from_secs(5);
 /// How hard a vehicle that is told to hold may be expected to brake, m/s^2.
 const BRAKING_M_S2: f64 = 3.0;
 
@@ -46,6 +48,8 @@ pub(super) struct Leaving {
     /// the program ends by then
     stop_by: Option<Duration>,
     landed: Sustained,
+    /// when it was last told to disarm
+    disarmed: Option<Duration>,
 }
 
 impl Leaving {
@@ -61,6 +65,7 @@ impl Leaving {
             by_operator: false,
             stop_by: None,
             landed: Sustained::default(),
+            disarmed: None,
         }
     }
 
@@ -77,9 +82,10 @@ impl Leaving {
         self.ordered
     }
 
-    /// It was in this mode when it was told to leave it.
+    /// It was in this mode when it was told to leave it, and is not seen to have left it. Who shows it again afterwards is
+    /// flown by somebody else.
     pub(super) fn comes_from(&self, custom_mode: u32) -> bool {
-        self.from == Some(custom_mode)
+        self.reached.is_none() && self.from == Some(custom_mode)
     }
 
     pub(super) fn name(&self) -> &'static str {
@@ -154,6 +160,10 @@ impl Flight {
             (true, None) => {
                 leaving.reached = Some(now);
                 self.guide.lead = Lead::Silent;
+                // what it shows needs no order any more: whoever else chose the same is not to hear one
+                if let Some((_, stack)) = self.target() {
+                    self.commander.forget(&Order::set_mode(stack, wish));
+                }
             }
             (true, Some(_)) => {
                 leaving.left.update(now, false);
@@ -171,7 +181,8 @@ impl Flight {
                 return;
             }
         }
-        if self.known.is_in_doubt() {
+        // a vehicle in another mode in the air is on its way to "hands off"
+        if self.known.is_in_doubt() || !seen && !on_ground {
             return;
         }
         self.wait_for_the_ground(now, wish, wished);
@@ -225,9 +236,14 @@ impl Flight {
     fn wish(&mut self, now: Duration, wish: Mode) {
         let shown = self.custom_mode();
         let by_us = self.is_to_command();
+        let stack = self.target().map(|(_, stack)| stack);
         if let Phase::Leave(leaving) = &mut self.phase {
             // what somebody else chose meanwhile stays his
-            leaving.from = if by_us { shown } else { leaving.from };
+            leaving.from = match leaving.reached {
+                _ if by_us => shown,
+                Some(_) => stack.map(|stack| stack.number_of(leaving.wish)),
+                None => leaving.from,
+            };
             (leaving.wish, leaving.wished, leaving.reached, leaving.ordered) = (wish, now, None, false);
             let name = leaving.name();
             self.note(now, Level::Information, "phase", name);
@@ -241,12 +257,14 @@ impl Flight {
         let landed_for = leaving.landed.update(now, on_ground);
         let held = !leaving.by_operator && now.saturating_sub(wished) > hold_then_land;
         let disarm = Order::arm(false);
+        let asked = leaving.disarmed.is_some_and(|at| now.saturating_sub(at) < DISARM_AGAIN);
         if wish == Mode::Hold {
             if held {
                 self.note(now, Level::Warning, "abort", "held long enough: to the ground");
                 self.wish(now, Mode::Land);
             }
-        } else if landed_for > DISARM_AFTER && !self.commander.waits_for(&disarm) {
+        } else if landed_for > DISARM_AFTER && !asked && !self.commander.waits_for(&disarm) {
+            leaving.disarmed = Some(now);
             self.give(now, disarm, Manner::PATIENT);
         } else if now.saturating_sub(wished) > GROUND_BY {
             self.cause.get_or_insert(Cause::NotReached("the ground is not reached".to_owned()));

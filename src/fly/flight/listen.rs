@@ -77,6 +77,7 @@ impl Flight {
                     self.note(now, Level::Information, "mode", format!("{mode}, {armed}"));
                 }
             }
+            Novelty::LateMode => self.known.doubt(now, Doubted::ByContradiction),
             Novelty::Text(severity, text) => {
                 let level = match severity {
                     0..=3 => Level::Error,

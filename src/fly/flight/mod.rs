@@ -109,12 +109,11 @@ pub struct Flight {
     /// when it was last asked to go on
     stepped: Option<Duration>,
     phase: Phase,
-    /// when the phase was entered, and when our mode was engaged
+    /// when the phase was entered
     entered: Duration,
-    engaged: Duration,
     /// where it stood when it was armed
     stand: Option<Place>,
-    /// it came to its height: from then on nothing below the room's floor is sent
+    /// what is sent came above the room's floor: from then on nothing below is sent
     climbed: bool,
     guide: Guide,
     watch: Watch,
@@ -155,7 +154,6 @@ impl Flight {
             stepped: None,
             phase: Phase::Connect,
             entered: Duration::ZERO,
-            engaged: Duration::ZERO,
             stand: None,
             climbed: false,
             guide: Guide::silent(Duration::ZERO),

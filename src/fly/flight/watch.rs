@@ -22,9 +22,6 @@ const POSITION_MAX: Duration = Duration::from_secs(2);
 const STILL_HEARD: Duration = Duration::from_millis(500);
 /// Innovation tests fail for an instant; an estimate bad for this long is bad.
 const ESTIMATOR_BAD: Duration = Duration::from_secs(1);
-/// A report of the mode before ours may have been under way when ours was engaged.
-const ENGAGING: Duration = Duration::from_millis(1500);
-const LATE_REPORT: Duration = Duration::from_millis(400);
 /// An autopilot that declares an emergency changes its mode by itself, within this time.
 const FAILSAFE_ACTS: Duration = Duration::from_secs(1);
 /// Beyond what is planned, degrees.
@@ -38,7 +35,6 @@ pub(super) struct Watch {
     pub(super) tracking: Tracking,
     pub(super) masters: Masters,
     pub(super) envelope: Envelope,
-    other_mode: Sustained,
     failsafe: Sustained,
     unhealthy: Sustained,
     paused_since: Option<Duration>,
@@ -60,7 +56,6 @@ impl Watch {
             tracking: Tracking::default(),
             masters: Masters::new(settings.station.0, settings.station.1),
             envelope: Envelope::new(sortie.limits, settings.room_margin_m, tilt_max_rad),
-            other_mode: Sustained::default(),
             failsafe: Sustained::default(),
             unhealthy: Sustained::default(),
             paused_since: None,
@@ -82,6 +77,10 @@ impl Flight {
             return;
         }
         self.tell_contradiction(now);
+        if let Some(cause) = self.check_stand() {
+            self.end(now, cause);
+            return;
+        }
         if self.phase.is_ours() {
             let cause = self
                 .check_mode(now)
@@ -99,12 +98,7 @@ impl Flight {
     }
 
     fn check_mode(&mut self, now: Duration) -> Option<Cause> {
-        let left = self.left_our_mode();
-        let lasts = self.watch.other_mode.update(now, left.is_some());
-        let engaging = now.saturating_sub(self.engaged) < ENGAGING;
-        if let Some(what) = left
-            && (!engaging || lasts >= LATE_REPORT)
-        {
+        if let Some(what) = self.left_our_mode() {
             let said = self.contact.as_ref().map(|contact| {
                 let recent = now.saturating_sub(Duration::from_secs(3));
                 contact.telemetry.complaints_since(recent)
@@ -258,15 +252,15 @@ impl Flight {
             self.give_up_listening(now);
         } else if !self.is_armed() {
             self.finish_watching(now);
-        } else if self.known.is_in_doubt() || contact.telemetry.is_arming_contradicted() {
-            // it may have landed meanwhile, and the mode from before the silence is not known to be its mode still: it is asked
-        } else if self.is_in(Mode::External) {
-            self.note(now, Level::Warning, "link", "heard again, still in our mode: it is told to hold");
-            self.begin_hold(now);
-        } else {
+        } else if !self.is_in(Mode::External) {
+            // whatever it shows later, it was in another mode since
             let mode = self.mode_name();
             self.note(now, Level::Warning, "link", format!("heard again, in {mode}"));
             self.hands_off(now);
+        } else if !self.known.is_in_doubt() && !contact.telemetry.is_arming_contradicted() {
+            // else it may have landed meanwhile, and the mode from before the silence need not be its mode still: it is asked
+            self.note(now, Level::Warning, "link", "heard again, still in our mode: it is told to hold");
+            self.begin_hold(now);
         }
     }
 

@@ -29,6 +29,12 @@ impl SetpointBounds {
         Self { low_m: self.low_m.inf(place_m), high_m: self.high_m.sup(place_m) }
     }
 
+    /// The place (m) is within.
+    #[must_use]
+    pub fn contains(&self, place_m: &Vector3<f64>) -> bool {
+        self.nearest(place_m) == *place_m
+    }
+
     /// The nearest place within, m.
     #[must_use]
     pub fn nearest(&self, place_m: &Vector3<f64>) -> Vector3<f64> {

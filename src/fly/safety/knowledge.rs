@@ -23,6 +23,8 @@ pub enum Doubted {
     ByStall(Duration),
     /// the vehicle was not heard
     BySilence,
+    /// another mode was reported by a frame that was sent before the last report, as far as sequence numbers tell
+    ByContradiction,
 }
 
 /// What makes the mode uncertain, and what was done about it.
@@ -89,7 +91,10 @@ impl ModeKnowledge {
     /// A report of the mode was read.
     pub fn report(&mut self, now: Duration) {
         let counts = self.doubt.is_none_or(|doubt| {
-            let read_by = if doubt.why == Doubted::BySilence { RADIO_IS_READ } else { SOCKET_IS_READ };
+            let read_by = match doubt.why {
+                Doubted::ByStall(_) => SOCKET_IS_READ,
+                Doubted::BySilence | Doubted::ByContradiction => RADIO_IS_READ,
+            };
             doubt.answered || doubt.asked.is_some() && now.saturating_sub(doubt.since) >= read_by
         });
         if counts {

@@ -173,11 +173,13 @@ fn taken(trace: &Trace, given: &Given) -> Option<(Duration, u32)> {
 /// When the program was told so: the first genuine report of it at its socket.
 fn told(trace: &Trace, given: &Given) -> Option<(Duration, Duration, u32)> {
     let (taken, mode) = taken(trace, given)?;
+    let mut latest = Duration::ZERO;
     trace.entries.iter().find_map(|Entry { at, seen }| match seen {
-        Seen::Reached(Report { mode: reported, said: Some(said), .. })
-            if *reported == mode && *said >= taken =>
-        {
-            Some((*at, taken, mode))
+        Seen::Reached(Report { mode: reported, said: Some(said), .. }) => {
+            // one that a later one has overtaken says nothing: that one tells whether it is still so
+            let news = *said >= latest;
+            latest = latest.max(*said);
+            (news && *reported == mode && *said >= taken).then_some((*at, taken, mode))
         }
         _ => None,
     })
@@ -288,12 +290,28 @@ fn age(trace: &Trace) -> Option<Broken> {
 
 fn room(trace: &Trace, given: &Given) -> Option<Broken> {
     let [x_m, y_m, low_m, high_m] = given.room_m;
-    let (_, first) = setpoints(trace).next()?;
-    // both lots of ground are flat and at zero
+    let takes_off = |entry: &&Entry| matches!(&entry.seen, Seen::Note(note) if note.kind == "phase" && note.text == "take off");
+    let up = trace.entries.iter().find(takes_off).map_or(Duration::MAX, |entry| entry.at);
+    let (_, first) =
+        setpoints(trace).take_while(|(at, _)| *at <= up).last().or_else(|| setpoints(trace).next())?;
     let origin = if given.here { [first.position_m[0], first.position_m[1]] } else { [0.0, 0.0] };
+    // both lots of ground are flat and at zero, of which an estimate may be off before it takes off
+    let jumps: Vec<(Duration, f64)> = trace
+        .entries
+        .iter()
+        .filter_map(|entry| match entry.seen {
+            Seen::Jumped(by_m) => Some((entry.at, by_m)),
+            _ => None,
+        })
+        .collect();
+    let ground_m = |at: Duration| {
+        let before = |jump: &&(Duration, f64)| jump.0 <= at.min(up);
+        jumps.iter().filter(before).map(|(_, by_m)| by_m).sum::<f64>()
+    };
     let mut above = false;
     setpoints(trace).find_map(|(at, setpoint)| {
         let [x, y, z] = setpoint.position_m;
+        let z = z - ground_m(at);
         above |= z >= low_m;
         let floor_m = if above { low_m } else { -0.3 };
         let outside = [(x - origin[0]).abs() - x_m, (y - origin[1]).abs() - y_m, z - high_m, floor_m - z];
@@ -323,22 +341,33 @@ fn silence(trace: &Trace) -> Option<Broken> {
 }
 
 fn standstill(trace: &Trace) -> Option<Broken> {
-    let mut stands: Vec<(Part, Duration, Duration)> = Vec::new();
+    // which part, since when, until when, and whether that can be told
+    let mut stands: Vec<(Part, Duration, Duration, bool)> = Vec::new();
     trace.entries.iter().find_map(|Entry { at, seen }| match seen {
         Seen::Parked(part, until) => {
             // one that stands already goes on standing
-            let from =
-                stands.iter().filter(|(other, _, to)| other == part && to >= at).map(|(_, from, _)| *from);
-            let from = from.min().unwrap_or(*at);
-            stands.push((*part, from, *until));
+            let before = stands.iter().filter(|(other, _, to, _)| other == part && to >= at);
+            let before = before.map(|(_, from, _, told)| (*from, *told)).min();
+            let (from, told) = before.unwrap_or((*at, *part != Part::Telemetry));
+            stands.push((*part, from, *until, told));
+            None
+        }
+        // where nothing comes, nothing of it stands still
+        Seen::Came => {
+            for stood in stands.iter_mut().filter(|stood| stood.0 == Part::Telemetry && !stood.3) {
+                (stood.1, stood.3) = (*at, true);
+            }
             None
         }
         Seen::Left(left) if left.commands() || matches!(left, Left::Setpoint(_)) => {
             // where no setpoints are made, who knows the mode may still command
-            let stood = stands.iter().find(|(part, from, until)| {
-                *at > *from + STANDSTILL && at < until && !(*part == Part::Setpoints && left.commands())
+            let stood = stands.iter().find(|(part, from, until, told)| {
+                *told
+                    && *at > *from + STANDSTILL
+                    && at < until
+                    && !(*part == Part::Setpoints && left.commands())
             });
-            stood.and_then(|(part, from, _)| {
+            stood.and_then(|(part, from, ..)| {
                 let how = format!("{left:?} while {part:?} stands still since {:.3}", from.as_secs_f64());
                 broken(Law::Standstill, *at, how)
             })

@@ -67,6 +67,8 @@ pub enum Seen {
     Note(Note),
     /// what was done to them
     Fault(String),
+    /// the vehicle's estimate jumped upwards by so much, m
+    Jumped(f64),
     /// a part stands still until then
     Parked(Part, Duration),
     /// the program has ended
@@ -136,6 +138,7 @@ impl fmt::Display for Seen {
             Self::Left(left) => write!(f, "LEFT {left:?}"),
             Self::Note(note) => write!(f, "says {}: {}", note.kind, note.text),
             Self::Fault(what) => write!(f, "FAULT {what}"),
+            Self::Jumped(by_m) => write!(f, "its estimate jumped upwards by {by_m:.2} m"),
             Self::Parked(part, until) => write!(f, "{part:?} stands still until {:.3}", until.as_secs_f64()),
             Self::Over(outcome) => write!(f, "over: {:?}, {:?}", outcome.cause, outcome.ending),
         }

@@ -277,7 +277,10 @@ impl World {
             }
             Trouble::Station { heartbeat, lasts_s } => self.station(heartbeat, seconds(lasts_s)),
             Trouble::Reboot => self.vehicle.fault(Fault::Reboot),
-            Trouble::Jump(by_m) => self.vehicle.fault(Fault::EstimatorJump(by_m)),
+            Trouble::Jump(by_m) => {
+                self.trace.add(now, Seen::Jumped(by_m[2]));
+                self.vehicle.fault(Fault::EstimatorJump(by_m));
+            }
             Trouble::Battery(share) => self.vehicle.fault(Fault::Battery(share)),
             Trouble::Push(force_n, lasts_s) => {
                 let (torque_nm, duration) = ([0.0; 3], seconds(lasts_s));
