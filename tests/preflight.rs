@@ -428,6 +428,7 @@ impl Scene {
             limits: &self.limits,
             tracking_max_m: 1.0,
             parameters: &self.parameters,
+            release: Some((4, 6)),
             fence: &self.fence,
             battery: &self.battery,
             readiness: &self.readiness,

@@ -34,6 +34,8 @@ pub struct Summary {
     /// what is left to each bound on 2 ms samples, SI
     margins: BTreeMap<String, f64>,
     first_violation: Option<String>,
+    /// share of the rotor commands at a rotor's bound when it is flown in simulation; none where it cannot be flown
+    share_at_rotor_bound: Option<f64>,
     /// from takeoff to the series and back; none where no transition keeps the limits
     transitions: Option<Transitions>,
 }
@@ -259,6 +261,7 @@ fn summarize(worth: &Assessment, criterion: Criterion, criterion_value: Option<f
         flight_s: worth.flight_s,
         margins: margins.map(|margin| (margin_name(margin), margin.spare())).collect(),
         first_violation: worth.check.first_violation.map(|violation| violation.to_string()),
+        share_at_rotor_bound: worth.share_at_bound,
         transitions: None,
     }
 }
@@ -291,6 +294,16 @@ fn page(summary: &Summary) -> String {
         let (spare, name) = in_degrees(*spare, name);
         let _ = writeln!(page, "  {name:<30} {spare:.6}");
     }
+    let _ = match summary.share_at_rotor_bound {
+        Some(share) => {
+            writeln!(
+                page,
+                "flown in simulation, {:.1} % of the rotors' commands are at a bound",
+                100.0 * share
+            )
+        }
+        None => writeln!(page, "the simulated controller cannot fly it"),
+    };
     if let Some(around) = &summary.transitions {
         // no minus zero
         let shown = |place: [f64; 4]| place.map(|value| if value.abs() < 0.005 { 0.0 } else { value });

@@ -93,18 +93,26 @@ pub fn solve_weak(flights: &[WeakRows], start: &Theta, method: WeakMethod<'_>) -
 }
 
 /// Covariance over repeated flights of `Theta` as the weak form will estimate it from such rows, beside
-/// all its nuisances, for noise that is known (one list of independent terms an equation, in N and N m).
+/// all its nuisances, for independent noises that are known (outputs in N and N m, channels as in [`CHANNELS`]).
 /// `None` where some parameter has no column.
 #[must_use]
 pub fn expected_covariance(
     flights: &[WeakRows],
     theta: &Theta,
-    noise: &[Vec<NoiseTerm>; CHANNELS],
+    noise: &[NoiseTerm],
 ) -> Option<ThetaCovariance> {
     let problem = assemble(flights, theta, WeakMethod::LeastSquares, false);
-    let measured: Vec<Vec<NoiseTerm>> =
-        (0..CHANNELS).filter(|&c| is_measured(flights, c)).map(|c| noise[c].clone()).collect();
-    let covariance = problem.expected_covariance(&measured);
+    let measured: Vec<usize> = (0..CHANNELS).filter(|&c| is_measured(flights, c)).collect();
+    let place = |channel: usize| measured.iter().position(|other| *other == channel);
+    let noise: Vec<NoiseTerm> = noise
+        .iter()
+        .map(|term| {
+            let reaches = term.reaches.iter();
+            let reaches = reaches.filter_map(|(channel, factors)| Some((place(*channel)?, factors.clone())));
+            NoiseTerm { reaches: reaches.collect(), ..term.clone() }
+        })
+        .collect();
+    let covariance = problem.expected_covariance(&noise);
     let of_theta = covariance.view_range(..THETA.min(covariance.nrows()), ..THETA.min(covariance.ncols()));
     let known = of_theta.nrows() == THETA && (0..THETA).all(|i| of_theta[(i, i)] > 0.0);
     known.then(|| ThetaCovariance::from_fn(|i, j| of_theta[(i, j)]))

@@ -5,6 +5,8 @@ use std::time::Duration;
 /// A vehicle that says "disarmed" with nothing else to agree is believed after so long and so many reports.
 const PERSISTS: Duration = Duration::from_millis(2500);
 const REPORTS: u32 = 3;
+/// Words further apart than this are not said in a row.
+const APART: Duration = Duration::from_secs(2);
 
 /// Armed or not. One HEARTBEAT can be forged or damaged, and a vehicle that is wrongly taken for disarmed loses its
 /// supervision in the air. "Armed" is believed at once; "disarmed" once the vehicle says too that it stands on the
@@ -12,8 +14,8 @@ const REPORTS: u32 = 3;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Arming {
     armed: bool,
-    /// since when, and how often in a row, "disarmed" is said of what is believed to be armed
-    contradicted: Option<(Duration, u32)>,
+    /// since when, until when, and how often in a row, "disarmed" is said of what is believed to be armed
+    contradicted: Option<(Duration, Duration, u32)>,
 }
 
 impl Arming {
@@ -23,9 +25,10 @@ impl Arming {
             (self.armed, self.contradicted) = (armed, None);
             return;
         }
-        let (since, count) = self.contradicted.unwrap_or((now, 0));
+        let in_a_row = self.contradicted.filter(|(_, last, _)| now.saturating_sub(*last) <= APART);
+        let (since, _, count) = in_a_row.unwrap_or((now, now, 0));
         let count = count.saturating_add(1);
-        self.contradicted = Some((since, count));
+        self.contradicted = Some((since, now, count));
         if on_ground || count >= REPORTS && now.saturating_sub(since) >= PERSISTS {
             (self.armed, self.contradicted) = (false, None);
         }
@@ -73,7 +76,13 @@ mod tests {
             arming.report(ms(t), false, false);
         }
         assert!(arming.is_armed(), "ten within ten milliseconds");
-        arming.report(ms(3500), false, false);
+        arming.report(ms(3100), false, false);
+        assert!(arming.is_armed(), "two seconds without a word");
+        for t in [4100, 5100] {
+            arming.report(ms(t), false, false);
+            assert!(arming.is_armed());
+        }
+        arming.report(ms(6100), false, false);
         assert!(!arming.is_armed());
     }
 

@@ -46,14 +46,25 @@ pub enum FollowLaw {
 }
 
 impl FollowLaw {
-    /// From the vehicle's parameters, by the autopilot's defaults where one did not answer; `None` for an autopilot that
-    /// is not known.
+    /// From the vehicle's parameters, by the autopilot's defaults where one did not answer, and its release (major and minor
+    /// number): all that it may follow, the likeliest first; none for an autopilot that is not known. ArduPilot changed its law
+    /// and its parameters' names on the way to 4.7, the law first: where it has the old names and does not say that it is
+    /// older, both laws are possible.
     #[must_use]
-    pub fn of(parameters: &Parameters) -> Option<Self> {
+    pub fn of(parameters: &Parameters, release: Option<(u8, u8)>) -> Vec<Self> {
         match parameters.autopilot {
-            Autopilot::ArduPilot => Some(ardupilot(parameters)),
-            Autopilot::Px4 => Some(px4(parameters)),
-            Autopilot::Other | Autopilot::Unknown => None,
+            Autopilot::ArduPilot => {
+                let renamed = parameters.name_of("WPNAV_ACCEL") != "WPNAV_ACCEL";
+                let laws: &[ShaperLaw] = match release {
+                    _ if renamed => &[ShaperLaw::From4_7],
+                    Some(release) if release < (4, 7) => &[ShaperLaw::UpTo4_6],
+                    Some(_) => &[ShaperLaw::From4_7, ShaperLaw::UpTo4_6],
+                    None => &[ShaperLaw::UpTo4_6, ShaperLaw::From4_7],
+                };
+                laws.iter().map(|law| ardupilot(parameters, *law)).collect()
+            }
+            Autopilot::Px4 => vec![px4(parameters)],
+            Autopilot::Other | Autopilot::Unknown => Vec::new(),
         }
     }
 
@@ -151,14 +162,13 @@ pub const STEP_S: f64 = 0.02;
 const SETTLES_S: f64 = 8.0;
 const RESTS_M_S: f64 = 0.02;
 
-fn ardupilot(parameters: &Parameters) -> FollowLaw {
+fn ardupilot(parameters: &Parameters, law: ShaperLaw) -> FollowLaw {
     let positive = |name: &str, scale: f64, default: f64| {
         let value = parameters.get(name).map(|value| scale * value).filter(|value| *value > 0.0);
         value.unwrap_or(default).max(LEAST)
     };
     let turning = |name: &str| rad_from_deg(parameters.get(name).unwrap_or(110_000.0) * 0.01);
     let acceleration_m_s2 = positive("WPNAV_ACCEL", 0.01, 2.5);
-    let is_new = parameters.name_of("WPNAV_ACCEL") != "WPNAV_ACCEL";
     let limits = ShaperLimits {
         speed_m_s: positive("WPNAV_SPEED", 0.01, 10.0),
         climb_m_s: positive("WPNAV_SPEED_UP", 0.01, 2.5),
@@ -171,7 +181,7 @@ fn ardupilot(parameters: &Parameters) -> FollowLaw {
             turning("ATC_ACCEL_R_MAX").min(turning("ATC_ACCEL_P_MAX")),
         ),
         vertical_jerk_m_s3: positive("PSC_JERK_Z", 1.0, 5.0),
-        law: if is_new { ShaperLaw::From4_7 } else { ShaperLaw::UpTo4_6 },
+        law,
     };
     let timeout_s = parameters.get("GUID_TIMEOUT").unwrap_or(GUID_TIMEOUT_S).clamp(0.1, 5.0);
     FollowLaw::ArduPilot { limits, timeout_s }
@@ -198,7 +208,20 @@ mod tests {
 
     fn law(autopilot: Autopilot, values: &[(&str, f64)]) -> FollowLaw {
         let values = values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
-        FollowLaw::of(&Parameters { autopilot, values, ..Parameters::default() }).unwrap()
+        FollowLaw::of(&Parameters { autopilot, values, ..Parameters::default() }, None).remove(0)
+    }
+
+    #[test]
+    fn old_names_of_a_release_that_is_not_known_to_be_older_leave_both_laws() {
+        let of = |name: &str, release| {
+            let values = [(name.to_owned(), 2.5)].into();
+            let autopilot = Autopilot::ArduPilot;
+            FollowLaw::of(&Parameters { autopilot, values, ..Parameters::default() }, release)
+        };
+        let number = |name, release| of(name, release).len();
+        assert_eq!((number("WPNAV_ACCEL", Some((4, 6))), number("WP_ACC", Some((4, 7)))), (1, 1));
+        assert_eq!((number("WPNAV_ACCEL", Some((4, 7))), number("WPNAV_ACCEL", None)), (2, 2));
+        assert_ne!(of("WPNAV_ACCEL", Some((4, 6)))[0], of("WPNAV_ACCEL", Some((4, 7)))[0]);
     }
 
     fn farthest_x_m(law: &FollowLaw, target: &GuidedTarget) -> f64 {

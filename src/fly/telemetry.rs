@@ -32,6 +32,8 @@ const JUMP_GAP_S: f64 = 0.5;
 const POSITION_GAP: Duration = Duration::from_secs(1);
 /// "On the ground" counts while it was said within the first of these, and after it was said for the second.
 const LANDED_VALID: (Duration, Duration) = (Duration::from_secs(2), Duration::from_secs(1));
+/// So long after its clock jumped nothing but repetition is believed: frames of long ago agree with one another.
+const CLOCK_SETTLES: Duration = Duration::from_secs(3);
 /// The estimator's reports pass through tests that fail for an instant; faults this long count.
 const STATUS_VALID: Duration = Duration::from_secs(3);
 
@@ -58,6 +60,8 @@ pub struct Telemetry {
     landed_since: Option<Duration>,
     /// it was told to take off and has not said that it is in the air yet
     takes_off: bool,
+    /// when its clock last jumped: it started anew, or frames of long ago came
+    clock_jumped: Option<Duration>,
     /// what the estimator says
     pub estimator: Option<Seen<EstimatorReport>>,
     /// since when the estimator is good without a break
@@ -102,6 +106,7 @@ impl Telemetry {
             landed: None,
             landed_since: None,
             takes_off: false,
+            clock_jumped: None,
             estimator: None,
             estimator_good_since: None,
             estimator_bad_since: None,
@@ -207,7 +212,7 @@ impl Telemetry {
         let (mut position, mut velocity, mut rates, mut reset) = (None, None, None, false);
         let mut target_m = None;
         let (attitude, landed, volts) = (&mut self.attitude, &mut self.landed, &mut self.battery_v);
-        let outputs = &mut self.outputs;
+        let (outputs, clock_jumped) = (&mut self.outputs, &mut self.clock_jumped);
         outputs.clear();
         self.decoder.decode(&record, &mut |event| match event {
             log::Event::Sample { stream, time_s, values } => match (stream.quantity, values) {
@@ -232,10 +237,12 @@ impl Telemetry {
             },
             log::Event::Text { severity, text, .. } => news.push(Novelty::Text(severity, text.to_owned())),
             // a network that holds frames back for seconds shows old stamps, which are not those of a start
-            log::Event::ClockReset { stamp_s, .. } if stamp_s < silence.as_secs_f64() + STARTED_S => {
-                news.push(Novelty::Reboot);
+            log::Event::ClockReset { stamp_s, .. } => {
+                *clock_jumped = Some(now);
+                if stamp_s < silence.as_secs_f64() + STARTED_S {
+                    news.push(Novelty::Reboot);
+                }
             }
-            log::Event::ClockReset { .. } => {}
             log::Event::EstimatorReset { .. } => reset = true,
             log::Event::Parameter { .. } => {}
         });
@@ -364,7 +371,8 @@ impl Telemetry {
 
     /// It says so, said it lately, and has said nothing else for a while: single frames can be forged or old.
     fn is_landed_at(&self, now: Duration) -> bool {
-        if self.takes_off {
+        let jumped = self.clock_jumped.is_some_and(|at| now.saturating_sub(at) < CLOCK_SETTLES);
+        if self.takes_off || jumped {
             return false;
         }
         let fresh = self.landed.is_some_and(|landed| now.saturating_sub(landed.at) < LANDED_VALID.0);

@@ -247,15 +247,30 @@ pub fn bounds_of(limits: &Limits, vehicle: &Vehicle) -> Vec<Bound> {
     bounds
 }
 
-/// Of the full thrust of a rotor and of what is left to each of its bounds in hover, the lesser is kept free by a plan:
-/// gusts, drag and the controller itself need it, and a rotor at its bound makes another flight than the planned one.
-const ROTOR_MARGIN: (f64, f64) = (0.1, 0.25);
+/// What a plan leaves free of each rotor's thrust: gusts, drag and the controller itself need it, and a rotor at its bound
+/// makes another flight than the planned one. The lesser of the two counts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RotorMargin {
+    /// share of the full thrust
+    pub of_full: f64,
+    /// share of what is left to each bound in hover
+    pub of_rest: f64,
+}
+
+/// The margins in the order in which they are tried: the first that keeps the rotors of the flown series off their bounds.
+pub const ROTOR_MARGINS: [RotorMargin; 5] = [
+    RotorMargin { of_full: 0.1, of_rest: 0.25 },
+    RotorMargin { of_full: 0.2, of_rest: 0.5 },
+    RotorMargin { of_full: 0.3, of_rest: 0.7 },
+    RotorMargin { of_full: 0.35, of_rest: 0.8 },
+    RotorMargin { of_full: 0.4, of_rest: 0.88 },
+];
 
 /// The bounds within which a flight is planned: those of [`bounds_of`], with a margin to the rotors' own.
 #[must_use]
-pub fn bounds_to_plan_in(limits: &Limits, vehicle: &Vehicle) -> Vec<Bound> {
+pub fn bounds_to_plan_in(limits: &Limits, vehicle: &Vehicle, margin: RotorMargin) -> Vec<Bound> {
     let hover_n = vehicle.body.mass_kg * vehicle.gravity_m_s2 / vehicle.rotors.len() as f64;
-    let (of_full, of_rest) = ROTOR_MARGIN;
+    let RotorMargin { of_full, of_rest } = margin;
     let mut bounds = bounds_of(limits, vehicle);
     for bound in &mut bounds {
         if let (Quantity::RotorThrust(_), Some(min), Some(max)) = (bound.quantity, bound.min, bound.max) {

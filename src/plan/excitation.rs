@@ -1,11 +1,11 @@
 //! Plans an excitation trajectory: from limits and a criterion to coefficients, margins and the
 //! standard errors that the flight will have.
 
-use super::bounds::{Bound, Dynamics, Quantity, bounds_of, bounds_to_plan_in};
+use super::bounds::{Bound, Dynamics, Quantity, ROTOR_MARGINS, bounds_of, bounds_to_plan_in};
 use super::check::{CheckReport, SAMPLE_S, Violation, check};
 use super::criterion::{Criterion, condition_number, scaled_condition_number};
-use super::descent::Problem;
-use super::expected::{FlightSpan, expected_standard_errors};
+use super::descent::{Iterate, Problem};
+use super::expected::{FlightSpan, expected_standard_errors, share_at_bound};
 use super::feasible::{Conflict, StartPlace, feasible};
 use super::information::GramSampler;
 use super::noise::{NoiseModel, parameter_scale};
@@ -72,6 +72,8 @@ pub struct Assessment {
     pub flight_s: f64,
     /// bounds over one period
     pub check: CheckReport,
+    /// share (0 to 1) of the rotor commands at a rotor's bound when it is flown in simulation; `None` where it cannot be
+    pub share_at_bound: Option<f64>,
 }
 
 /// A planned trajectory.
@@ -119,6 +121,11 @@ pub enum PlanError {
     NotDetermined,
 }
 
+/// How often a plan that breaks a bound is polished.
+const POLISHES: u32 = 3;
+/// Share of the commands of a flown plan that may be at a rotor's bound: an instant of the way from hover into the series.
+const AT_BOUND_MAX: f64 = 0.002;
+
 /// Plans a trajectory. `done` is called once a descent, [`Search::work`] times in all.
 ///
 /// # Errors
@@ -131,29 +138,55 @@ pub fn plan(
 ) -> Result<Plan, PlanError> {
     check_request(request)?;
     feasible(limits, vehicle, &request.start)?;
-    let problem = problem_of(vehicle, limits, request);
-    let samples = (request.period_s / SAMPLE_S).ceil();
+    let mut problem = problem_of(vehicle, limits, request);
+    let samples = whole((request.period_s / SAMPLE_S).ceil());
     let search = search_of(request);
-    let mut best = search.run(&problem, whole(samples), done).ok_or(PlanError::NotDetermined)?;
-    for _ in 0..3 {
+    let best = search.run(&problem, samples, done).ok_or(PlanError::NotDetermined)?;
+    let mut best = settled(&search, &problem, best, (vehicle, request))?;
+    // what a controller adds to the planned thrusts is known once it is flown
+    for margin in &ROTOR_MARGINS[1..] {
+        let trajectory = problem.space.trajectory(&best.unknowns);
+        if share_at_bound(&trajectory, vehicle).is_none_or(|share| share <= AT_BOUND_MAX) {
+            break;
+        }
+        problem.bounds = bounds_to_plan_in(limits, vehicle, *margin);
+        let calmer = search.polish(&problem, best.unknowns.clone(), samples);
+        match settled(&search, &problem, calmer, (vehicle, request)) {
+            Ok(calmer) => best = calmer,
+            // no calmer one fits in
+            Err(_) => break,
+        }
+    }
+    let trajectory = problem.space.trajectory(&best.unknowns);
+    // what is left is told to the bounds themselves
+    let assessment = assess(&trajectory, vehicle, &bounds_of(limits, vehicle), request);
+    Ok(Plan { trajectory, criterion_value: best.log_value.exp(), assessment })
+}
+
+/// Polishes until every bound is kept.
+fn settled(
+    search: &Search,
+    problem: &Problem,
+    mut best: Iterate,
+    (vehicle, request): (&Vehicle, &PlanRequest),
+) -> Result<Iterate, PlanError> {
+    let samples = whole((request.period_s / SAMPLE_S).ceil());
+    let dynamics = Dynamics::new(vehicle);
+    let mut polished = 0;
+    loop {
         if !best.log_value.is_finite() {
             return Err(PlanError::NotDetermined);
         }
         let trajectory = problem.space.trajectory(&best.unknowns);
-        let assessment = assess(&trajectory, vehicle, &problem.bounds, request);
-        if assessment.check.first_violation.is_none() {
-            let criterion_value = best.log_value.exp();
-            // what is left is told to the bounds themselves
-            let assessment = assess(&trajectory, vehicle, &bounds_of(limits, vehicle), request);
-            return Ok(Plan { trajectory, criterion_value, assessment });
+        let report = check(|t| trajectory.derivatives(t), trajectory.period_s, &problem.bounds, &dynamics);
+        match report.first_violation {
+            None => return Ok(best),
+            Some(violation) if polished == POLISHES => {
+                return Err(PlanError::OutsideLimits { starts: request.starts, violation });
+            }
+            Some(_) => best = search.polish(problem, best.unknowns, samples),
         }
-        best = search.polish(&problem, best.unknowns, whole(samples));
-    }
-    let trajectory = problem.space.trajectory(&best.unknowns);
-    let report = assess(&trajectory, vehicle, &problem.bounds, request).check;
-    match report.first_violation {
-        Some(violation) => Err(PlanError::OutsideLimits { starts: request.starts, violation }),
-        None => Err(PlanError::NotDetermined),
+        polished += 1;
     }
 }
 
@@ -196,6 +229,7 @@ pub fn assess(
         ),
         flight_s,
         check: check(|t| trajectory.derivatives(t), trajectory.period_s, bounds, &dynamics),
+        share_at_bound: share_at_bound(trajectory, vehicle),
     }
 }
 
@@ -213,7 +247,7 @@ fn problem_of(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Prob
         sampler: GramSampler::new(&space, samples, information, vehicle.gravity_m_s2),
         criterion: request.criterion,
         parameter_scale: parameter_scale(vehicle),
-        bounds: bounds_to_plan_in(limits, vehicle),
+        bounds: bounds_to_plan_in(limits, vehicle, ROTOR_MARGINS[0]),
         dynamics: Dynamics::new(vehicle),
         space,
     }

@@ -5,8 +5,9 @@
 //! be flown larger than planned by a third. The rows of that flight are those of the identification, with
 //! all its nuisances; the noise is that of [`NoiseModel`], coloured by the kernel.
 
-use super::noise::{NoiseModel, RowSpacing, parameter_scale};
+use super::noise::{NoiseModel, RowMotion, RowSpacing, parameter_scale};
 use crate::estimate::{expected_covariance, theta_of};
+use crate::log::{Quantity, Recording};
 use crate::regression::{WeakMotion, weak_rows};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference, WeakKernel, condition, stride};
 use crate::simulate::{FlightSettings, Reference, TelemetrySettings, Truth, simulate_flight};
@@ -23,6 +24,9 @@ pub struct FlightSpan {
     pub left_out_s: f64,
 }
 
+/// Commands nearer to a bound are at it (-).
+const COMMAND_STEP: f64 = 1e-3;
+
 /// Change-over from hover to the series, s.
 const RAMP_S: f64 = 0.5;
 
@@ -36,35 +40,60 @@ pub fn expected_standard_errors(
     noise: &NoiseModel,
     span: FlightSpan,
 ) -> Option<[f64; 7]> {
-    let reference = Reference { trajectory: series.clone(), hover_s: 0.0, ramp_s: RAMP_S };
-    let telemetry = TelemetrySettings { noise_scale: 0.0, loss: 0.0, ..TelemetrySettings::default() };
-    let settings = FlightSettings {
-        duration_s: span.flown_s,
-        control_noise_scale: 0.0,
-        telemetry,
-        ..FlightSettings::default()
-    };
-    let flown = simulate_flight(Truth::clean(vehicle.clone()), vehicle, &reference, &settings).ok()?;
+    let flown = flown(series, vehicle, span.flown_s, 1.0)?;
     let settings = ConditionSettings {
         transient_s: Some(span.left_out_s),
         weak_half_width_s: noise.kernel_half_width_s,
         thrust: ThrustPreference::Commands,
         ..ConditionSettings::default()
     };
-    let signals = condition(&flown.recording, vehicle, &settings).ok()?;
+    let signals = condition(&flown, vehicle, &settings).ok()?;
     let kernel = WeakKernel::new(noise.kernel_half_width_s, signals.grid.step_s);
     let motion = WeakMotion::measured(&signals, &kernel, vehicle.gravity_m_s2);
     let rows = weak_rows(&signals, &motion, &kernel);
     let stride = stride(signals.grid.step_s);
     let centers = kernel.centers(&signals.usable, stride);
     let tilting: Vec<[f64; 3]> =
-        centers.into_iter().map(|at| tilting(&signals, at, vehicle.gravity_m_s2)).collect();
+        centers.iter().map(|at| tilting(&signals, *at, vehicle.gravity_m_s2)).collect();
     let tilting = std::array::from_fn(|axis| tilting.iter().map(|factors| factors[axis]).collect());
+    let rate = |at: usize| motion.omega.as_ref().map_or(0.0, |omega| omega[at].xy().norm());
+    let motion = RowMotion { tilting, turning_rad_s: centers.into_iter().map(rate).collect() };
     let spacing = RowSpacing { kernel: &kernel, step_s: signals.grid.step_s, stride };
-    let noise = noise.of_rows(vehicle, &spacing, tilting);
+    let noise = noise.of_rows(vehicle, &spacing, motion);
     let covariance = expected_covariance(&[rows], &theta_of(&vehicle.body), &noise)?;
     let scale = parameter_scale(vehicle);
     Some(std::array::from_fn(|k| covariance[(k, k)].sqrt() / scale[k]))
+}
+
+/// The series as the simulated controller flies it with this share of its usual noise, recorded without noise. `None` where
+/// it cannot.
+fn flown(
+    series: &FourierTrajectory,
+    vehicle: &Vehicle,
+    flown_s: f64,
+    control_noise_scale: f64,
+) -> Option<Recording> {
+    let reference = Reference { trajectory: series.clone(), hover_s: 0.0, ramp_s: RAMP_S };
+    let telemetry = TelemetrySettings { noise_scale: 0.0, loss: 0.0, ..TelemetrySettings::default() };
+    let settings =
+        FlightSettings { duration_s: flown_s, control_noise_scale, telemetry, ..FlightSettings::default() };
+    let flown = simulate_flight(Truth::clean(vehicle.clone()), vehicle, &reference, &settings);
+    flown.ok().map(|flown| flown.recording)
+}
+
+/// Share (0 to 1) of the rotor commands that are at a bound of the rotor when two periods of the series are flown, by the
+/// simulated controller and without noise: what a controller adds to the planned thrusts is in it. `None` where it cannot fly
+/// the series.
+#[must_use]
+pub fn share_at_bound(series: &FourierTrajectory, vehicle: &Vehicle) -> Option<f64> {
+    let flown = flown(series, vehicle, 2.0 * series.period_s, 0.0)?;
+    let lowest = FlightSettings::default().command_min;
+    let commands = || {
+        let streams = flown.streams.iter().filter(|(key, _)| key.quantity == Quantity::ActuatorCommand);
+        streams.flat_map(|(_, stream)| &stream.values).map(|value| vehicle.propulsion.normalized(*value))
+    };
+    let at_bound = commands().filter(|u| *u >= 1.0 - COMMAND_STEP || *u <= lowest + COMMAND_STEP).count();
+    Some(at_bound as f64 / commands().count().max(1) as f64)
 }
 
 /// What a noisy tilt in hover becomes about body x, y, z: the angle is inverse to the thrust, and its share

@@ -81,17 +81,15 @@ impl NoiseModel {
         (1.0 / self.log_rate_hz - 1.0 / self.control_rate_hz).max(0.0)
     }
 
-    /// Densities of white noise in the four balances: of their own (N^2 s, (N m)^2 s), and of what the
-    /// kernel's derivative acts on ((N s)^2 s, (N m s)^2 s).
+    /// Densities of white noise in the four balances: of what commands and accelerometer bring (N^2 s, (N m)^2 s), and of what
+    /// the kernel's derivative acts on ((N s)^2 s, (N m s)^2 s).
     fn densities(&self, vehicle: &Vehicle) -> [(f64, f64); CHANNELS] {
         let moments = vehicle.body.inertia_kg_m2.diagonal();
         std::array::from_fn(|channel| {
             if channel == 0 {
-                let measured = (ACCELEROMETER_SHARE * self.accelerometer_m_s2).powi(2) / self.log_rate_hz;
-                let kinematic =
-                    ((1.0 - ACCELEROMETER_SHARE) * self.velocity_m_s).powi(2) / self.velocity_rate_hz;
                 let square = vehicle.body.mass_kg.powi(2);
-                (square * (measured + self.thrust_jitter_m_s2.powi(2) * self.unseen_s()), square * kinematic)
+                let kinematic = (1.0 - ACCELEROMETER_SHARE).powi(2) * self.velocity_density();
+                (square * self.thrust_jitter_m_s2.powi(2) * self.unseen_s(), square * kinematic)
             } else {
                 let square = moments[channel - 1].powi(2);
                 let jitter = self.torque_jitter_rad_s2[channel - 1].powi(2) * self.unseen_s();
@@ -100,29 +98,52 @@ impl NoiseModel {
         })
     }
 
-    /// Noise of the weak form's rows. `tilting` is what a noisy tilt in hover becomes about body x, y, z at
-    /// each row, a factor.
+    /// Density of the velocity's noise, (m/s)^2 s.
+    fn velocity_density(&self) -> f64 {
+        self.velocity_m_s.powi(2) / self.velocity_rate_hz
+    }
+
+    /// Density of the accelerometer's share in the vertical balance, N^2 s.
+    fn accelerometer_density(&self, vehicle: &Vehicle) -> f64 {
+        (vehicle.body.mass_kg * ACCELEROMETER_SHARE * self.accelerometer_m_s2).powi(2) / self.log_rate_hz
+    }
+
+    /// Noises of the weak form's rows.
     #[must_use]
     pub fn of_rows(
         &self,
         vehicle: &Vehicle,
         rows: &RowSpacing<'_>,
-        tilting: [Vec<f64>; 3],
-    ) -> [Vec<NoiseTerm>; CHANNELS] {
-        let mut noise = self.densities(vehicle).map(|(own, derived)| {
-            vec![rows.coloured(own, 0, Vec::new()), rows.coloured(derived, 1, Vec::new())]
+        RowMotion { tilting, turning_rad_s }: RowMotion,
+    ) -> Vec<NoiseTerm> {
+        let densities = self.densities(vehicle).into_iter().enumerate();
+        let mut noise: Vec<NoiseTerm> = densities
+            .flat_map(|(channel, (own, derived))| {
+                let reaches = || vec![(channel, Vec::new())];
+                [rows.coloured(own, 0, reaches()), rows.coloured(derived, 1, reaches())]
+            })
+            .collect();
+        // the accelerometer's offset is that to the velocity's kinematics: its own mean is gone, and theirs is in its place
+        let measured = rows.coloured(self.accelerometer_density(vehicle), 0, vec![(0, Vec::new())]);
+        noise.push(NoiseTerm { of_mean: -1.0, ..measured });
+        let rest = vehicle.body.mass_kg * (1.0 - ACCELEROMETER_SHARE);
+        let across = turning_rad_s.into_iter().map(|rate| rest * rate).collect();
+        let kinematic = rows.coloured(self.velocity_density(), 0, vec![(0, across)]);
+        noise.push(NoiseTerm { of_mean: ACCELEROMETER_SHARE / (1.0 - ACCELEROMETER_SHARE), ..kinematic });
+        let moments = vehicle.body.inertia_kg_m2.diagonal();
+        let mut reaches = tilting.into_iter().enumerate().map(|(axis, tilting)| {
+            (1 + axis, tilting.into_iter().map(|factor| moments[axis] * factor).collect::<Vec<f64>>())
         });
-        for ((terms, amplitude), tilt) in noise[1..].iter_mut().zip(tilting).zip(self.tilt_densities(vehicle))
-        {
-            terms.push(rows.coloured(tilt, 0, amplitude));
-        }
+        let [about_x, about_y, about_z] = std::array::from_fn(|_| reaches.next());
+        let tilt = self.tilt_density();
+        noise.push(rows.coloured(tilt, 0, about_x.into_iter().chain(about_z).collect()));
+        noise.push(rows.coloured(tilt, 0, about_y.into_iter().collect()));
         noise
     }
 
-    /// Densities of the torques that answer a noisy tilt in hover, (N m)^2 s.
-    fn tilt_densities(&self, vehicle: &Vehicle) -> [f64; 3] {
-        let jitter = self.tilt_jitter_rad_s2.powi(2) * self.unseen_s();
-        vehicle.body.inertia_kg_m2.diagonal().map(|moment| moment * moment * jitter).into()
+    /// Density of the angular acceleration that answers a noisy tilt in hover, (rad/s^2)^2 s.
+    fn tilt_density(&self) -> f64 {
+        self.tilt_jitter_rad_s2.powi(2) * self.unseen_s()
     }
 
     /// Inverse variance, per second of flight, of the balances Fz, `tau_x`, `tau_y`, `tau_z`
@@ -135,11 +156,21 @@ impl NoiseModel {
     pub fn row_information(&self, vehicle: &Vehicle) -> Vector4<f64> {
         const KERNEL_RATIO: f64 = 34.0 / 7.0;
         let widened = KERNEL_RATIO / self.kernel_half_width_s.powi(2);
-        let [tilt_x, tilt_y, _] = self.tilt_densities(vehicle);
-        let tilting = Vector4::new(0.0, tilt_x, tilt_y, 0.0);
+        let moments = vehicle.body.inertia_kg_m2.diagonal();
+        let tilting = Vector4::new(0.0, moments.x.powi(2), moments.y.powi(2), 0.0) * self.tilt_density();
         let rest = Vector4::from(self.densities(vehicle).map(|(own, derived)| own + widened * derived));
-        (rest + tilting).map(f64::recip)
+        let measured = Vector4::new(self.accelerometer_density(vehicle), 0.0, 0.0, 0.0);
+        (rest + tilting + measured).map(f64::recip)
     }
+}
+
+/// What the motion at each row makes of noise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RowMotion {
+    /// what a noisy tilt in hover becomes about body x, y, z, factors: about z it is the tilt about x that turns the vehicle
+    pub tilting: [Vec<f64>; 3],
+    /// rate across body z, rad/s, by which horizontal velocity comes into the vertical balance
+    pub turning_rad_s: Vec<f64>,
 }
 
 /// How rows lie in time.
@@ -155,11 +186,11 @@ pub struct RowSpacing<'a> {
 
 impl RowSpacing<'_> {
     /// White noise of this density under the kernel's derivative of this order.
-    fn coloured(&self, density: f64, order: usize, amplitude: Vec<f64>) -> NoiseTerm {
+    fn coloured(&self, density: f64, order: usize, reaches: Vec<(usize, Vec<f64>)>) -> NoiseTerm {
         let lags = (0..=2 * self.kernel.half_count).step_by(self.stride.max(1));
         let variance = density / self.step_s;
         let autocovariance = lags.map(|lag| variance * self.kernel.noise_covariance(order, lag)).collect();
-        NoiseTerm { autocovariance, amplitude }
+        NoiseTerm { autocovariance, reaches, of_mean: 0.0 }
     }
 }
 

@@ -162,7 +162,7 @@ impl Flying {
     pub fn places_ahead(&mut self) {
         let values = [("WP_ACC".to_owned(), 2.5)].into();
         let parameters = Parameters { autopilot: Autopilot::ArduPilot, values, ..Parameters::default() };
-        let law = FollowLaw::of(&parameters).unwrap();
+        let law = FollowLaw::of(&parameters, None).remove(0);
         let room = SetpointBounds::room(&self.flight.sortie().limits, &Vector3::zeros());
         self.event(Event::Feed(Feeding::ahead(law, 0.0, room)));
     }

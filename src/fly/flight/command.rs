@@ -33,6 +33,7 @@ impl Flight {
             {
                 leaving.ordered();
             }
+            self.arm_ordered |= self.commander.has_sent(&Order::arm(true));
             self.actions.extend(messages.into_iter().map(Action::Send));
             for answer in answers {
                 self.answered(now, &answer);
@@ -47,9 +48,9 @@ impl Flight {
         if gap <= STOOD_STILL || self.contact.is_none() {
             return;
         }
-        self.watch.awake = now;
         self.known.doubt(now, Doubted::ByStall(gap));
         if gap >= STALLED {
+            self.watch.awake = now;
             if self.phase.is_ours() && self.phase.is_airborne() {
                 self.stalled(now, gap);
             } else {
@@ -75,7 +76,9 @@ impl Flight {
     }
 
     pub(super) fn stalled(&mut self, now: Duration, gap: Duration) {
-        self.watch.awake = now;
+        if gap >= STALLED {
+            self.watch.awake = now;
+        }
         self.known.doubt(now, Doubted::ByStall(gap));
         self.end(now, Cause::Stalled(stall(gap)));
     }
@@ -94,8 +97,8 @@ impl Flight {
         match &self.phase {
             Phase::Engage(found) => *found == Some(state.value.custom_mode) && !state.value.armed,
             Phase::Leave(leaving) => {
-                leaving.is_ordered() && self.is_in(leaving.wish())
-                    || leaving.comes_from(state.value.custom_mode)
+                let wished = leaving.is_ordered() && self.is_in(leaving.wish());
+                !leaving.has_strayed() && (wished || leaving.comes_from(state.value.custom_mode))
             }
             // of a vehicle that is left to others only the motors are stopped, by the operator's typed word
             Phase::Watch => {

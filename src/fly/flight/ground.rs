@@ -28,6 +28,8 @@ const START_MAX_M: f64 = 5.0;
 /// A vehicle may stand so far outside the room's walls, m: its estimate wanders.
 const OUTSIDE_MAX_M: f64 = 0.1;
 const AUTOPILOT_VERSION: u16 = 148;
+/// Where it says the release.
+const FLIGHT_SW_VERSION: usize = 16;
 /// One in five datagrams lost: the version stays away once in three thousand flights.
 const VERSION_CHANCES: u32 = 4;
 
@@ -120,6 +122,9 @@ impl Flight {
     /// else it says of itself, anybody could.
     pub(super) fn version(&mut self, now: Duration, payload: Payload<'_>) {
         let own = self.sortie.own_vehicle.is_some_and(|nonce| nonce.is_in(payload));
+        // flight_sw_version: major, minor, patch, kind of release from its highest byte on
+        let [_, _, minor, major] = payload.u32(FLIGHT_SW_VERSION).to_le_bytes();
+        self.release = Some((major, minor)).filter(|release| *release != (0, 0));
         if let Phase::Check(checking) = &mut self.phase
             && checking.own.replace(own) != Some(own)
             && own
@@ -381,6 +386,8 @@ impl Flight {
             _ => false,
         };
         if decides {
+            let refused = matches!(answer.result, AnswerResult::Refused { .. });
+            self.arm_ordered &= !(refused && answer.order == Order::arm(true));
             self.end(now, Cause::Refused(text));
         }
     }

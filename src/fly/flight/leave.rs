@@ -10,6 +10,8 @@ use crate::fly::safety::{Lead, Sustained};
 use crate::fly::setpoint::Place;
 use crate::fly::target::Order;
 
+/// A vehicle that was told to arm and does not say within this time that it is armed has not done so.
+const ARMS_WITHIN: Duration = Duration::from_millis(2500);
 /// A mode that is not entered within this time is not going to be.
 const HOLD_BY: Duration = Duration::from_secs(3);
 const LAND_BY: Duration = Duration::from_secs(5);
@@ -41,8 +43,9 @@ pub(super) struct Leaving {
     asked: Duration,
     /// when the wished mode was first seen
     reached: Option<Duration>,
-    /// seen in another mode after that
+    /// seen in another mode after that, and whether it ever was in the air
     left: Sustained,
+    strayed: bool,
     /// somebody decides what follows a hold
     by_operator: bool,
     /// the program ends by then
@@ -62,6 +65,7 @@ impl Leaving {
             asked: now,
             reached: None,
             left: Sustained::default(),
+            strayed: false,
             by_operator: false,
             stop_by: None,
             landed: Sustained::default(),
@@ -80,6 +84,11 @@ impl Leaving {
 
     pub(super) fn is_ordered(&self) -> bool {
         self.ordered
+    }
+
+    /// It was seen in another mode after the one that was wished for: somebody else flies it.
+    pub(super) fn has_strayed(&self) -> bool {
+        self.strayed
     }
 
     /// It was in this mode when it was told to leave it, and is not seen to have left it. Who shows it again afterwards is
@@ -147,7 +156,10 @@ impl Flight {
         let seen = leaving.is_ordered() && self.is_in(wish);
         let on_ground = self.is_on_ground();
         if !armed {
-            self.finish(now, if self.stand.is_some() { Ending::Landed } else { Ending::NotFlown });
+            // the order to arm may still act
+            if self.stand.is_some() || !self.arm_ordered || now.saturating_sub(self.entered) > ARMS_WITHIN {
+                self.finish(now, if self.stand.is_some() { Ending::Landed } else { Ending::NotFlown });
+            }
             return;
         }
         if stop_by.is_some_and(|by| now >= by || seen) {
@@ -165,12 +177,18 @@ impl Flight {
                     self.commander.forget(&Order::set_mode(stack, wish));
                 }
             }
+            (true, Some(_)) if leaving.strayed => {
+                self.end(now, Cause::Override(format!("{} was left and entered anew", self.phase.name())));
+                return;
+            }
             (true, Some(_)) => {
                 leaving.left.update(now, false);
             }
             // somebody else has chosen another mode after ours; one on the ground says nothing
             (false, Some(_)) => {
-                if leaving.left.update(now, !on_ground) > GROUND_IS_HEARD {
+                leaving.strayed |= !on_ground;
+                let patience = if wish == Mode::Hold { Duration::ZERO } else { GROUND_IS_HEARD };
+                if leaving.left.update(now, !on_ground) >= patience && !on_ground {
                     let mode = self.mode_name();
                     self.end(now, Cause::Override(format!("{} left for {mode}", self.phase.name())));
                     return;
@@ -245,6 +263,7 @@ impl Flight {
                 None => leaving.from,
             };
             (leaving.wish, leaving.wished, leaving.reached, leaving.ordered) = (wish, now, None, false);
+            leaving.strayed &= !by_us;
             let name = leaving.name();
             self.note(now, Level::Information, "phase", name);
             self.ask(now, wish);

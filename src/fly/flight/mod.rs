@@ -98,6 +98,8 @@ pub struct Flight {
     seeds: CrcSeeds,
     roster: Roster,
     told_others: bool,
+    /// major and minor number of the autopilot's release, where it said so
+    release: Option<(u8, u8)>,
     contact: Option<Contact>,
     commander: Commander,
     /// whether the vehicle's mode is known well enough to command it
@@ -123,6 +125,8 @@ pub struct Flight {
     clearance: Option<Result<(), String>>,
     /// the word for arming, after the page before the flight
     word_given: bool,
+    /// the order to arm left, and may act later than the vehicle says so
+    arm_ordered: bool,
     /// by which the vehicle is weighed once it hovers
     lift: Option<Box<Lift>>,
     /// the mode in which the operator stopped the motors
@@ -146,6 +150,7 @@ impl Flight {
             seeds: CrcSeeds::new(),
             roster: Roster::default(),
             told_others: false,
+            release: None,
             contact: None,
             commander: Commander::default(),
             known: ModeKnowledge::default(),
@@ -163,6 +168,7 @@ impl Flight {
             heartbeat_due: Duration::ZERO,
             clearance: None,
             word_given: false,
+            arm_ordered: false,
             lift: None,
             killed_in: None,
             cause: None,
@@ -177,6 +183,10 @@ impl Flight {
             return;
         }
         self.note_time(now);
+        // an order of the operator is no look at the vehicle
+        if matches!(event, Event::Tick | Event::Frame(_)) {
+            self.guide.issued = now;
+        }
         match event {
             Event::Frame(frame) => self.hear(now, frame),
             Event::Tick => {}
@@ -230,6 +240,12 @@ impl Flight {
         self.contact.as_ref().map(|contact| contact.telemetry.vehicle())
     }
 
+    /// Major and minor number of the autopilot's release, where it said so.
+    #[must_use]
+    pub fn release(&self) -> Option<(u8, u8)> {
+        self.release
+    }
+
     /// What tells a known message by its checksum.
     #[must_use]
     pub fn seeds(&self) -> &CrcSeeds {
@@ -255,7 +271,6 @@ impl Flight {
 
     /// One step of time: the safety rules first, then the phase, then what is to be sent.
     fn step(&mut self, now: Duration) {
-        self.guide.issued = now;
         self.supervise(now);
         match &self.phase {
             Phase::Connect => self.connect(now),
@@ -312,7 +327,7 @@ impl Flight {
         }
         self.note(now, Level::Error, "abort", cause.to_string());
         self.cause.get_or_insert(cause);
-        if !self.phase.is_airborne() && !self.is_armed() {
+        if !self.phase.is_airborne() && !self.is_armed() && !self.arm_ordered {
             self.finish(now, Ending::NotFlown);
             return;
         }

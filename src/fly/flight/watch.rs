@@ -18,6 +18,8 @@ const GIVE_UP_AFTER: Duration = Duration::from_secs(5);
 const HEARTBEAT_MAX: Duration = Duration::from_secs(6);
 /// No position for this long is no estimate.
 const POSITION_MAX: Duration = Duration::from_secs(2);
+/// After a standstill of this program, what lies in the socket is read by then.
+const SOCKET_IS_READ: Duration = Duration::from_millis(500);
 /// Other messages come meanwhile: what is silent is the estimate, not the link.
 const STILL_HEARD: Duration = Duration::from_millis(500);
 /// Innovation tests fail for an instant; an estimate bad for this long is bad.
@@ -38,7 +40,7 @@ pub(super) struct Watch {
     failsafe: Sustained,
     unhealthy: Sustained,
     paused_since: Option<Duration>,
-    /// when this program last woke from a standstill: silence counts from then
+    /// when this program last woke from a standstill of 0.3 s or more: what came meanwhile is not read at once
     pub(super) awake: Duration,
     /// that the vehicle calls itself disarmed and is not believed was told
     told_contradiction: bool,
@@ -201,11 +203,13 @@ impl Flight {
 
     fn check_link(&mut self, now: Duration) {
         let Some(contact) = &self.contact else { return };
-        let awake = self.watch.awake;
-        let silent = now.saturating_sub(contact.telemetry.heard.max(awake));
+        // no setpoint goes out meanwhile
+        if self.watch.awake > Duration::ZERO && now.saturating_sub(self.watch.awake) < SOCKET_IS_READ {
+            return;
+        }
+        let silent = now.saturating_sub(contact.telemetry.heard);
         // what comes first after a silence is seldom a HEARTBEAT
-        let no_mode =
-            now.saturating_sub(contact.telemetry.heartbeat.max(contact.telemetry.resumed).max(awake));
+        let no_mode = now.saturating_sub(contact.telemetry.heartbeat.max(contact.telemetry.resumed));
         if silent > GIVE_UP_AFTER || no_mode > HEARTBEAT_MAX {
             let what = if silent > GIVE_UP_AFTER { "anything" } else { "a HEARTBEAT" };
             let age_s = silent.max(no_mode.min(HEARTBEAT_MAX)).as_secs_f64();

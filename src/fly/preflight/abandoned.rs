@@ -82,34 +82,45 @@ impl Tried {
 
 /// Chooses how setpoints are sent, and says what an end at the worst instant would come to.
 pub(super) fn judge(situation: &Situation<'_>) -> (Feeding, Vec<Finding>) {
-    let Some(law) = FollowLaw::of(situation.parameters) else {
+    let laws = FollowLaw::of(situation.parameters, situation.release);
+    let Some(law) = laws.first() else {
         let remedy = "fly PX4 or ArduPilot, or where there is nothing to hit";
         let came = "an autopilot whose behaviour is not known here";
         return (Feeding::whole(), vec![Finding::warning(SUBJECT, EXPECTED, came, remedy)]);
     };
     let mut findings = Vec::new();
-    let chosen = choose(situation, &law);
+    let chosen = choose(situation, &laws);
     findings.push(match &chosen {
-        Ok(tried) => said(situation, &law, tried),
-        Err(tried) => refused(situation, &law, tried),
+        Ok(tried) => said(situation, law, tried),
+        Err(tried) => refused(situation, &laws, tried),
     });
+    findings.extend((laws.len() > 1).then(|| {
+        let expected = "to know how the autopilot follows setpoints";
+        let came = "a development version that follows them in one of two ways: setpoints may end at any time with both, and with the \
+                    less likely one it may leave the reference, which ends the flight";
+        Finding::warning(SUBJECT, expected, came, "fly a stable release of ArduPilot")
+    }));
     findings.extend(aftermath(situation));
     (chosen.map_or_else(|tried| tried.feeding, |tried| tried.feeding), findings)
 }
 
 const EXPECTED: &str = "rest inside room and fence and clear of the ground, whenever setpoints end";
 
-/// The way that follows the reference best among those that are safe; or, as an error, the least unsafe one.
-fn choose(situation: &Situation<'_>, law: &FollowLaw) -> Result<Tried, Box<Tried>> {
+/// The way that follows the reference best among those that are safe by each of the laws; or, as an error, the least unsafe
+/// one.
+fn choose(situation: &Situation<'_>, laws: &[FollowLaw]) -> Result<Tried, Box<Tried>> {
     let room = SetpointBounds::room(situation.limits, &situation.origin_m);
-    let shares = match law {
-        FollowLaw::ArduPilot { .. } => ALL_OR_NOTHING,
-        FollowLaw::Px4 { .. } => SHARES,
+    let shares = match laws {
+        [FollowLaw::Px4 { .. }, ..] => SHARES,
+        _ => ALL_OR_NOTHING,
     };
-    let mut tries = Vec::with_capacity(shares.len());
-    for share in shares {
-        let feeding = if *share < 1.0 { Feeding::ahead(*law, *share, room) } else { Feeding::whole() };
-        let tried = attempt(situation, law, feeding);
+    let ways = shares.iter().flat_map(|share| {
+        let ahead = laws.iter().map(|law| Feeding::ahead(*law, *share, room));
+        if *share < 1.0 { ahead.collect() } else { vec![Feeding::whole()] }
+    });
+    let mut tries = Vec::new();
+    for feeding in ways {
+        let tried = attempt(situation, laws, feeding);
         if tried.is_safe(situation.tracking_max_m, 0.0) {
             return Ok(tried);
         }
@@ -124,7 +135,7 @@ fn choose(situation: &Situation<'_>, law: &FollowLaw) -> Result<Tried, Box<Tried
     nearly.ok_or_else(|| Box::new(least.unwrap_or(none)))
 }
 
-fn attempt(situation: &Situation<'_>, law: &FollowLaw, feeding: Feeding) -> Tried {
+fn attempt(situation: &Situation<'_>, laws: &[FollowLaw], feeding: Feeding) -> Tried {
     let way = situation.stand_m.zip(situation.path.derivatives(0.0)).map(|(stand_m, start)| {
         let [x, y, z, yaw] = start.map(|axis| axis[0]);
         let place = |position_m, yaw_rad| Place { position_m, yaw_rad };
@@ -147,15 +158,22 @@ fn attempt(situation: &Situation<'_>, law: &FollowLaw, feeding: Feeding) -> Trie
     }
     let mut tried = Tried { feeding, worst: None, hard_m: f64::NEG_INFINITY, tracking_m: 0.0 };
     for leg in &legs {
-        fly(situation, law, leg, &mut tried);
+        for law in laws {
+            let tracking_m = fly(situation, law, leg, &mut tried);
+            // by another law than the likeliest it may leave the reference, and then holds; what it does then is in the room
+            if laws.first() == Some(law) {
+                tried.tracking_m = tried.tracking_m.max(tracking_m);
+            }
+        }
     }
     tried
 }
 
-/// Flies a leg by the model, and ends it at every instant.
-fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tried) {
+/// Flies a leg by the model, and ends it at every instant; the greatest distance to the reference, m.
+fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tried) -> f64 {
     let reference = |time_s: f64| reference_at(leg.path, time_s, &leg.offset_m, Duration::ZERO);
-    let Some(first) = reference(0.0) else { return };
+    let mut tracking_m = 0.0_f64;
+    let Some(first) = reference(0.0) else { return tracking_m };
     let mut motion = Motion::at(first.position_m, first.velocity_m_s);
     motion.acceleration_m_s2 = first.acceleration_m_s2;
     let off_m = if matches!(law, FollowLaw::Px4 { .. }) { PX4_OFF_M } else { ARDUPILOT_OFF_M };
@@ -163,9 +181,11 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
     loop {
         let time_s = step as f64 * STEP_S;
         if time_s > leg.path.duration_s() {
-            return;
+            return tracking_m;
         }
-        let (Some(now), Some(next)) = (reference(time_s), reference(time_s + STEP_S)) else { return };
+        let (Some(now), Some(next)) = (reference(time_s), reference(time_s + STEP_S)) else {
+            return tracking_m;
+        };
         let target = tried.feeding.target(&now);
         law.step(&mut motion, &target, STEP_S);
         recent.push_back(next.position_m);
@@ -173,7 +193,7 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
             recent.pop_front();
         }
         let distances = recent.iter().map(|place_m| (motion.position_m - place_m).norm());
-        tried.tracking_m = tried.tracking_m.max(distances.fold(f64::INFINITY, f64::min));
+        tracking_m = tracking_m.max(distances.fold(f64::INFINITY, f64::min));
         if step.is_multiple_of(EVERY) {
             law.abandoned(&motion, &target, |place_m| {
                 for (beyond_m, allowed_m, border) in borders(situation, leg, place_m) {
@@ -268,29 +288,31 @@ fn timeout_name(law: &FollowLaw) -> &'static str {
 fn said(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> Finding {
     let expected = format!("{EXPECTED} ({})", timeout(situation, law));
     let came = format!(
-        "{}; {}, which costs {:.2} m off the reference at most",
+        "{}; {}, by which the autopilot asks of the vehicle up to {:.2} m off the reference (its own lag comes to that)",
         in_words(tried),
         manner(&tried.feeding),
         tried.tracking_m
     );
     if tried.excess_m() > 0.0 {
-        return Finding::warning(SUBJECT, expected, came, remedy(situation, law, tried));
+        let remedy = remedy(situation, std::slice::from_ref(law), tried);
+        return Finding::warning(SUBJECT, expected, came, remedy);
     }
     Finding::ok(SUBJECT, expected, came)
 }
 
-fn refused(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> Finding {
-    let expected = format!("{EXPECTED} ({})", timeout(situation, law));
+fn refused(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> Finding {
+    let stated = laws.first().map_or_else(String::new, |law| timeout(situation, law));
+    let expected = format!("{EXPECTED} ({stated})");
     let costs = format!(
         "setpoints that come nearest to it cost {:.2} m off the reference, of which {:.2} m end the flight",
         tried.tracking_m, situation.tracking_max_m
     );
     let came = format!("{}, however they are sent; {costs}", in_words(tried));
-    Finding::refusal(SUBJECT, expected, came, remedy(situation, law, tried))
+    Finding::refusal(SUBJECT, expected, came, remedy(situation, laws, tried))
 }
 
 /// A slower or smaller plan first, then a value.
-fn remedy(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> String {
+fn remedy(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> String {
     let misses = tried.tracking_m > TRACKING_SHARE * situation.tracking_max_m;
     let plan = match tried.worst.filter(|worst| worst.excess_m > 0.0 && !misses) {
         Some(worst) => format!(
@@ -302,18 +324,19 @@ fn remedy(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> String {
             "plan a slower trajectory, or raise the limits of the autopilot that the checks name".to_owned()
         }
     };
-    match safe_timeout_s(situation, law) {
-        Some(seconds) => format!("{plan}; or set {} to {seconds:.1} or less", timeout_name(law)),
+    match laws.first().zip(safe_timeout_s(situation, laws)) {
+        Some((law, seconds)) => format!("{plan}; or set {} to {seconds:.1} or less", timeout_name(law)),
         None => plan,
     }
 }
 
 /// The longest time-out (s, in tenths) with which something safe can be sent; `None` where none helps.
-fn safe_timeout_s(situation: &Situation<'_>, law: &FollowLaw) -> Option<f64> {
+fn safe_timeout_s(situation: &Situation<'_>, laws: &[FollowLaw]) -> Option<f64> {
     let tried = [2.0, 1.0, 0.5, 0.3, 0.1];
-    tried.into_iter().filter(|seconds| *seconds < law.timeout_s()).find(|seconds| {
-        let law = law.with_timeout_s(*seconds);
-        choose(situation, &law).is_ok_and(|tried| tried.excess_m() <= 0.0)
+    let longest_s = laws.iter().map(FollowLaw::timeout_s).fold(0.0, f64::max);
+    tried.into_iter().filter(|seconds| *seconds < longest_s).find(|seconds| {
+        let laws: Vec<FollowLaw> = laws.iter().map(|law| law.with_timeout_s(*seconds)).collect();
+        choose(situation, &laws).is_ok_and(|tried| tried.excess_m() <= 0.0)
     })
 }
 

@@ -46,6 +46,8 @@ pub struct Situation<'a> {
     pub tracking_max_m: f64,
     /// what the vehicle said of its parameters
     pub parameters: &'a Parameters,
+    /// major and minor number of the autopilot's release, where it said so
+    pub release: Option<(u8, u8)>,
     /// the vehicle's fence
     pub fence: &'a Fence,
     /// charge

@@ -296,22 +296,20 @@ fn room(trace: &Trace, given: &Given) -> Option<Broken> {
         setpoints(trace).take_while(|(at, _)| *at <= up).last().or_else(|| setpoints(trace).next())?;
     let origin = if given.here { [first.position_m[0], first.position_m[1]] } else { [0.0, 0.0] };
     // both lots of ground are flat and at zero, of which an estimate may be off before it takes off
-    let jumps: Vec<(Duration, f64)> = trace
-        .entries
-        .iter()
-        .filter_map(|entry| match entry.seen {
-            Seen::Jumped(by_m) => Some((entry.at, by_m)),
-            _ => None,
-        })
-        .collect();
-    let ground_m = |at: Duration| {
-        let before = |jump: &&(Duration, f64)| jump.0 <= at.min(up);
-        jumps.iter().filter(before).map(|(_, by_m)| by_m).sum::<f64>()
-    };
+    let jumps = trace.entries.iter().filter(|entry| entry.at <= up).filter_map(|entry| match entry.seen {
+        Seen::Jumped(by_m) => Some(by_m),
+        _ => None,
+    });
+    let ground_m: f64 = jumps.sum();
     let mut above = false;
     setpoints(trace).find_map(|(at, setpoint)| {
         let [x, y, z] = setpoint.position_m;
-        let z = z - ground_m(at);
+        // what stands on the ground is told to stay where its estimate says that it is
+        let (x, y, z) = match (at <= up, given.here) {
+            (false, _) => (x, y, z - ground_m),
+            (true, false) => (x, y, 0.0),
+            (true, true) => return None,
+        };
         above |= z >= low_m;
         let floor_m = if above { low_m } else { -0.3 };
         let outside = [(x - origin[0]).abs() - x_m, (y - origin[1]).abs() - y_m, z - high_m, floor_m - z];
