@@ -1,7 +1,7 @@
 //! What the flight will determine, and how well: relative standard errors before it is flown.
 //!
-//! The planned trajectory is flown once without noise, by the simulated controller, and conditioned as a
-//! recording is. A controller does not track exactly: its attitude lags behind, and the fifth harmonic may
+//! The planned trajectory is flown once by the simulated controller on its usual noise, recorded without noise, and
+//! conditioned as a recording is: the jitter of the commands is a nuisance of the identification, and has to be there. A controller does not track exactly: its attitude lags behind, and the fifth harmonic may
 //! be flown larger than planned by a third. The rows of that flight are those of the identification, with
 //! all its nuisances; the noise is that of [`NoiseModel`], coloured by the kernel.
 

@@ -4,7 +4,9 @@
 //! mean of all ticks: of white jitter of `s` a tick, `s^2 (1/f_log - 1/f_control)` is left as density of
 //! the difference. The jitter is the controller's answer to the noise on which it flies, an acceleration
 //! times the mass or inertia that the controller believes in, and so does not follow from the rotors.
-//! Accelerometer, velocity and the gyro's derivative come with the regressor.
+//! Accelerometer, velocity and the gyro's derivative come with the regressor. A tilt that is wanted by noise reaches the
+//! balances about x and z together. What the accelerometer's noise adds to the mean is gone with its offset, and the
+//! velocity's is there in its place.
 
 use crate::estimate::{NoiseTerm, Theta, scale_of, theta_of};
 use crate::regression::CHANNELS;
