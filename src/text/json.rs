@@ -29,7 +29,7 @@ fn written(document: &impl Serialize, form: impl Formatter) -> serde_json::Resul
     String::from_utf8(bytes).map_err(|error| serde_json::Error::io(io::Error::other(error)))
 }
 
-/// Any form, with the characters that JSON need not escape, and terminals obey, as `\uXXXX`.
+/// Any form of JSON. Characters that a terminal obeys become `\uXXXX`, also where JSON would allow them as they are.
 struct Seen<F>(F);
 
 impl<F: Formatter> Formatter for Seen<F> {
