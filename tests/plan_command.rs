@@ -38,6 +38,17 @@ fn json_has_the_settled_keys() {
     assert!((first.unwrap() - second.unwrap()).abs() < 1e-9);
 }
 
+/// With the first margin alone 3 to 6 % of the X500's commands are at a bound.
+#[test]
+fn the_rotors_of_a_plan_stay_off_their_bounds_as_it_is_flown() {
+    for vehicle in ["x500.toml", "iris.toml"] {
+        let output = plan(vehicle, &["--starts", "4", "--json"]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let share = json(&output)["share_at_rotor_bound"].as_f64().unwrap();
+        assert!(share <= 0.002, "{vehicle}: {share}");
+    }
+}
+
 #[test]
 fn a_circle_is_written_with_the_way_to_it() {
     let out = temporary("circle.toml");
