@@ -2,7 +2,9 @@
 
 use super::NextSettings;
 use super::foresight::Foresight;
-use crate::plan::{AxisStart, Bound, Dynamics, Instant, SeriesSpace, bounds_of};
+use crate::plan::{
+    AxisStart, Bound, Dynamics, Instant, ROTOR_MARGINS, RotorMargin, SeriesSpace, bounds_to_plan_in,
+};
 use crate::trajectory::FourierTrajectory;
 use crate::vehicle::{Limits, Vehicle};
 use nalgebra::DVector;
@@ -14,6 +16,8 @@ use rayon::prelude::*;
 const INSTANTS: u32 = 100;
 /// Every bound is kept with this share of its scale to spare, for what lies between the instants.
 const SPARE: f64 = 0.02;
+/// As flown, this keeps the rotors off their bounds for a vehicle that lifts twice its weight.
+const ROTOR_MARGIN: RotorMargin = ROTOR_MARGINS[2];
 /// Halvings of a factor.
 const HALVINGS: u32 = 14;
 /// First size of a move, relative to the series; it shrinks by [`SHRINK`] when a move fails.
@@ -81,7 +85,7 @@ impl Room {
         let start = [AxisStart::At(0.0), AxisStart::At(0.0), AxisStart::Near(height), AxisStart::At(0.0)];
         Self {
             space: SeriesSpace::new(settings.period_s, settings.harmonics, start),
-            bounds: bounds_of(limits, vehicle),
+            bounds: bounds_to_plan_in(limits, vehicle, ROTOR_MARGIN),
             dynamics: Dynamics::new(&foresight.base().vehicle),
         }
     }

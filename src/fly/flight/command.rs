@@ -48,7 +48,7 @@ impl Flight {
         if gap <= STOOD_STILL || self.contact.is_none() {
             return;
         }
-        self.known.doubt(now, Doubted::ByStall(gap));
+        self.known.doubt(now, Doubted::Stall(gap));
         if gap >= STALLED {
             self.watch.awake = now;
             if self.phase.is_ours() && self.phase.is_airborne() {
@@ -79,7 +79,7 @@ impl Flight {
         if gap >= STALLED {
             self.watch.awake = now;
         }
-        self.known.doubt(now, Doubted::ByStall(gap));
+        self.known.doubt(now, Doubted::Stall(gap));
         self.end(now, Cause::Stalled(stall(gap)));
     }
 

@@ -28,7 +28,7 @@ impl Flight {
             return;
         }
         if now.saturating_sub(contact.telemetry.heard) > SILENCE {
-            self.known.doubt(now, Doubted::BySilence);
+            self.known.doubt(now, Doubted::Silence);
         }
         let reports = contact.telemetry.mode_reports();
         let news = contact.telemetry.take(now, frame);
@@ -77,7 +77,7 @@ impl Flight {
                     self.note(now, Level::Information, "mode", format!("{mode}, {armed}"));
                 }
             }
-            Novelty::LateMode => self.known.doubt(now, Doubted::ByContradiction),
+            Novelty::LateMode => self.known.doubt(now, Doubted::Contradiction),
             Novelty::Text(severity, text) => {
                 let level = match severity {
                     0..=3 => Level::Error,
@@ -88,7 +88,7 @@ impl Flight {
             }
             // frames of long ago look like it too: the mode tells whether it is still ours to hold
             Novelty::Reboot if self.phase.is_airborne() => {
-                self.known.doubt(now, Doubted::BySilence);
+                self.known.doubt(now, Doubted::Silence);
                 self.end(now, Cause::Reboot);
             }
             Novelty::Reboot => {

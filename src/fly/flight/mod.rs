@@ -202,7 +202,7 @@ impl Flight {
             Event::Stalled(gap) => self.stalled(now, gap),
             Event::LinkEnded => self.end(now, Cause::LinkLost("the program's own link has ended".to_owned())),
             Event::Link(up) => {
-                self.known.doubt(now, Doubted::BySilence);
+                self.known.doubt(now, Doubted::Silence);
                 let (level, text) =
                     if up { (Level::Information, "link is up") } else { (Level::Warning, "link is down") };
                 self.note(now, level, "link", text);

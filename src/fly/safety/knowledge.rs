@@ -20,11 +20,11 @@ const SHORT: Duration = Duration::from_millis(300);
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Doubted {
     /// this program stood still for so long
-    ByStall(Duration),
+    Stall(Duration),
     /// the vehicle was not heard
-    BySilence,
+    Silence,
     /// another mode was reported by a frame that was sent before the last report, as far as sequence numbers tell
-    ByContradiction,
+    Contradiction,
 }
 
 /// What makes the mode uncertain, and what was done about it.
@@ -92,8 +92,8 @@ impl ModeKnowledge {
     pub fn report(&mut self, now: Duration) {
         let counts = self.doubt.is_none_or(|doubt| {
             let read_by = match doubt.why {
-                Doubted::ByStall(_) => SOCKET_IS_READ,
-                Doubted::BySilence | Doubted::ByContradiction => RADIO_IS_READ,
+                Doubted::Stall(_) => SOCKET_IS_READ,
+                Doubted::Silence | Doubted::Contradiction => RADIO_IS_READ,
             };
             doubt.answered || doubt.asked.is_some() && now.saturating_sub(doubt.since) >= read_by
         });
@@ -111,7 +111,7 @@ impl ModeKnowledge {
 }
 
 fn is_long(why: Doubted) -> bool {
-    !matches!(why, Doubted::ByStall(gap) if gap < SHORT)
+    !matches!(why, Doubted::Stall(gap) if gap < SHORT)
 }
 
 #[cfg(test)]
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn after_a_stall_only_a_report_behind_an_answer_counts() {
         let mut known = ModeKnowledge::default();
-        known.doubt(ms(1000), Doubted::ByStall(ms(400)));
+        known.doubt(ms(1000), Doubted::Stall(ms(400)));
         let asked = known.asks(ms(1002), false).unwrap();
         known.answered(asked - 1);
         known.report(ms(1003));
@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn a_vehicle_that_answers_no_question_is_believed_later() {
         let mut known = ModeKnowledge::default();
-        known.doubt(ms(0), Doubted::BySilence);
+        known.doubt(ms(0), Doubted::Silence);
         for t in (0..1500).step_by(100) {
             known.asks(ms(t), false);
             known.report(ms(t));
@@ -166,10 +166,10 @@ mod tests {
     #[test]
     fn a_second_stall_makes_the_first_answer_worthless() {
         let mut known = ModeKnowledge::default();
-        known.doubt(ms(0), Doubted::BySilence);
+        known.doubt(ms(0), Doubted::Silence);
         let asked = known.asks(ms(0), false).unwrap();
         known.answered(asked);
-        known.doubt(ms(50), Doubted::ByStall(ms(120)));
+        known.doubt(ms(50), Doubted::Stall(ms(120)));
         assert!(known.is_in_doubt_for_long(), "a hiccup makes a silence no shorter");
         known.report(ms(60));
         assert_eq!(known.reports(), 0);
