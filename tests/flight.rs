@@ -219,6 +219,56 @@ fn a_kill_stops_the_motors() {
 }
 
 #[test]
+fn a_kill_as_it_takes_off_stops_the_motors() {
+    for kind in BOTH {
+        for after_s in [0.05, 0.3] {
+            let mut flying = Flying::of(kind);
+            flying.until(60.0, "take off", |flying| flying.phase() == "take off");
+            flying.wait(after_s);
+            flying.event(Event::Key(Key::Kill));
+            flying.until(3.0, "motors off", |flying| !flying.vehicle.beheld().armed);
+            flying.finish();
+        }
+    }
+}
+
+/// The stream ends with the order, and PX4 would leave our mode for that.
+#[test]
+fn a_kill_gets_through_a_link_that_loses_it() {
+    for kind in BOTH {
+        let timeout = ("COM_OF_LOSS_T".to_owned(), 0.3);
+        let base = vehicle_settings(kind);
+        let parameters = if kind == PX4 { vec![timeout] } else { Vec::new() };
+        let mut flying = Flying::new(VehicleSettings { parameters, ..base }, |_| {});
+        flying.fly_into_the_trajectory(2.0);
+        flying.up.loss = 1.0;
+        flying.event(Event::Key(Key::Kill));
+        flying.wait(0.15);
+        flying.up.loss = 0.0;
+        flying.until(2.0, "motors off", |flying| !flying.vehicle.beheld().armed);
+        let outcome = flying.finish();
+        assert_eq!((outcome.cause, outcome.ending), (Some(Cause::Killed), Ending::Fell));
+    }
+}
+
+#[test]
+fn an_abort_withdraws_the_order_to_arm() {
+    for kind in BOTH {
+        let mut flying = Flying::of(kind);
+        flying.until(60.0, "arm", |flying| flying.phase() == "arm");
+        flying.up.loss = 1.0;
+        flying.until(2.0, "the order", |flying| flying.commands_since(ARM, Duration::ZERO) > 0);
+        flying.event(Event::Key(Key::Abort));
+        flying.up.loss = 0.0;
+        let since = flying.now;
+        flying.wait(4.0);
+        assert_eq!(flying.commands_since(ARM, since), 0, "{}", flying.story());
+        assert!(!flying.vehicle.beheld().armed);
+        assert_eq!(flying.finish().ending, Ending::NotFlown);
+    }
+}
+
+#[test]
 fn a_signal_leaves_the_vehicle_holding_within_a_second() {
     for kind in BOTH {
         let mut flying = Flying::of(kind);

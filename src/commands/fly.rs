@@ -7,7 +7,7 @@ use std::thread;
 use std::time::Duration;
 
 use mavid::config::{StoredTrajectory, read_trajectory, read_vehicle};
-use mavid::fly::view::{KeyCommand, Keys, PlainLog, Screen, ViewModel};
+use mavid::fly::view::{KeyCommand, Keys, PlainLog, Screen, ViewModel, page_rows};
 use mavid::fly::{
     self, Around, Console, Course, Ending, Origin, Outcome as FlightOutcome, Record, Ride, Sortie,
 };
@@ -132,6 +132,12 @@ pub fn outcome(record: &Record, analysis: Option<&Analysis>) -> Result<Outcome, 
 /// Everything that is read and checked before the link is opened.
 pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
     let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
+    if args.system_id == Some(args.station_id) {
+        return Err(CommandError::Input(format!(
+            "--station-id: expected another system id than the vehicle's, got {} for both",
+            args.station_id
+        )));
+    }
     let address = args.connect.parse().map_err(|error| input(&error))?;
     let loaded = read_vehicle(&args.vehicle)?;
     output::warnings(&args.vehicle, &loaded.warnings);
@@ -276,14 +282,29 @@ fn tell(pictures: &Receiver<ViewModel>, pressed: Option<&UnboundedSender<KeyComm
     }
 }
 
+/// A terminal that says so often that it has ended is gone.
+const ENDS_MAX: u32 = 20;
+
 /// Each line a command, until there are no more or the flight is over.
 fn read_keys(pressed: &UnboundedSender<KeyCommand>) {
     let mut input = std::io::stdin().lock();
     let mut line = Vec::new();
+    let mut ends = 0;
     loop {
         line.clear();
         match input.by_ref().take(LINE_MAX).read_until(b'\n', &mut line) {
-            Ok(0) => return,
+            // at a terminal Ctrl-D ends nothing but the line
+            Ok(0) if std::io::stdin().is_terminal() && ends < ENDS_MAX => {
+                ends += 1;
+                output::message(KEYS);
+                continue;
+            }
+            Ok(0) => {
+                output::message(
+                    "standard input has ended: keys are no longer read, Ctrl-C alone ends the flight",
+                );
+                return;
+            }
             Ok(_) => {}
             Err(error) => {
                 output::message(&format!(
@@ -317,6 +338,12 @@ fn draw(pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<KeyCommand>) {
         match pictures.recv_timeout(LOOK) {
             Ok(mut model) => {
                 keys.ask(model.awaits_word);
+                if let (true, Some(page), Ok((columns, rows))) =
+                    (model.awaits_word, &model.page, terminal::size())
+                {
+                    keys.page(page.lines(usize::from(columns)).len(), page_rows(rows));
+                    model.page_from = keys.from();
+                }
                 model.typed = keys.typed().map(str::to_owned);
                 if screen.draw(&model).is_err() {
                     // lines and Ctrl-C need the terminal as it was

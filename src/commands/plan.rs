@@ -8,12 +8,14 @@ use indicatif::{ProgressBar, ProgressStyle};
 use mavid::config::{
     StoredTrajectory, StoredTransitions, read_limits, read_trajectory, read_vehicle, trajectory_to_toml,
 };
+use mavid::fly::preflight::Extremes;
 use mavid::plan::{
     Assessment, Criterion, Dynamics, FlightPlan, Margin, PARAMETERS, Plan, PlanError, PlanRequest, Roomed,
     StartPlace, assess, bounds_of, flight_path, floor_m, plan, search_of, with_room,
 };
 use mavid::text;
 use mavid::trajectory::{CirclePath, FlightPath, FourierTrajectory, Segment};
+use mavid::units::deg_from_rad;
 use mavid::vehicle::{Limits, Vehicle};
 use serde::Serialize;
 
@@ -38,6 +40,32 @@ pub struct Summary {
     share_at_rotor_bound: Option<f64>,
     /// from takeoff to the series and back; none where no transition keeps the limits
     transitions: Option<Transitions>,
+    /// of the whole flight from takeoff to landing; none where no transition keeps the limits
+    flown: Option<Flown>,
+}
+
+/// The box round a flight and its extremes.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Flown {
+    /// x, y, z
+    low_m: [f64; 3],
+    high_m: [f64; 3],
+    horizontal_speed_m_s: f64,
+    vertical_speed_m_s: f64,
+    tilt_deg: f64,
+}
+
+impl Flown {
+    fn of(path: &FlightPath, vehicle: &Vehicle) -> Self {
+        let extremes = Extremes::of(path, vehicle);
+        Self {
+            low_m: extremes.low_m,
+            high_m: extremes.high_m,
+            horizontal_speed_m_s: extremes.horizontal_speed_m_s,
+            vertical_speed_m_s: extremes.up_speed_m_s.max(extremes.down_speed_m_s),
+            tilt_deg: deg_from_rad(extremes.tilt_rad),
+        }
+    }
 }
 
 /// What is flown before and after the series.
@@ -104,7 +132,10 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
         summary.first_violation.get_or_insert(violation);
     }
     match flight_path(&series, &flight, &bounds, &Dynamics::new(&vehicle)) {
-        Ok(path) => summary.transitions = transitions_of(&path, &flight),
+        Ok(path) => {
+            summary.transitions = transitions_of(&path, &flight);
+            summary.flown = Some(Flown::of(&path, &vehicle));
+        }
         Err(error) => {
             summary.first_violation.get_or_insert(error.to_string());
         }
@@ -263,6 +294,7 @@ fn summarize(worth: &Assessment, criterion: Criterion, criterion_value: Option<f
         first_violation: worth.check.first_violation.map(|violation| violation.to_string()),
         share_at_rotor_bound: worth.share_at_bound,
         transitions: None,
+        flown: None,
     }
 }
 
@@ -293,6 +325,13 @@ fn page(summary: &Summary) -> String {
     for (name, spare) in &summary.margins {
         let (spare, name) = in_degrees(*spare, name);
         let _ = writeln!(page, "  {name:<30} {spare:.6}");
+    }
+    if let Some(Flown { low_m, high_m, horizontal_speed_m_s, vertical_speed_m_s, tilt_deg }) = summary.flown {
+        let _ = writeln!(
+            page,
+            "flown: north {:.2} to {:.2} m, west {:.2} to {:.2} m, up {:.2} to {:.2} m; at most {horizontal_speed_m_s:.2} m/s along the ground, {vertical_speed_m_s:.2} m/s up or down, {tilt_deg:.1} degrees of tilt",
+            low_m[0], high_m[0], low_m[1], high_m[1], low_m[2], high_m[2],
+        );
     }
     let _ = match summary.share_at_rotor_bound {
         Some(share) => {

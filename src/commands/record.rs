@@ -113,6 +113,10 @@ async fn record(json: bool, args: &RecordArgs, signing: Option<Signing>) -> Resu
     let stats = capture.reader.stats();
     // whether or not the link held, what came is brought onto the disk
     let status = capture.recorder.end().await.map_err(|error| CommandError::Failure(error.to_string()))?;
+    if status.is_whole() && stats.received_frames == 0 && is_empty(&args.out) {
+        // the same command begins again; a file that cannot be removed is an empty one
+        let _ = std::fs::remove_file(&args.out);
+    }
     let document = document(args, start.elapsed().as_secs_f64(), &status, &stats);
     let told = if json { output::json(&document) } else { output::text(&text(&document)) };
     capture.teller.finish();
@@ -123,6 +127,10 @@ async fn record(json: bool, args: &RecordArgs, signing: Option<Signing>) -> Resu
     }
     let whole = status.is_whole() && stats.received_frames > 0;
     Ok(if whole { Outcome::Done } else { Outcome::DoneWithLoss })
+}
+
+fn is_empty(path: &std::path::Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() == 0)
 }
 
 fn refused(error: &RecordError) -> CommandError {

@@ -2,6 +2,7 @@
 
 mod anchor;
 mod compensate;
+mod expected;
 mod identify;
 mod information;
 mod live;
@@ -16,12 +17,13 @@ mod theta;
 mod weak;
 
 pub use anchor::{ThrustScale, apply_anchor, identified_vehicle, rescaled, thrust_scale};
+pub use expected::NoiseTerm;
 pub use identify::{EstimateError, Identification, IdentifySettings, Method, identify};
 pub use information::WeakInformation;
 pub use live::RecursiveEstimator;
 pub(crate) use physical::{LogCholesky, log_cholesky, unpack};
 pub use physical::{is_physical, nearest_physical, second_moments};
-pub use problem::{Channel, NoiseTerm, Problem, Solution};
+pub use problem::{Channel, Problem, Solution};
 pub use recommend::Recommendation;
 pub use recursive::{GradientStep, History, PAPER_SIGMA, PaperEstimate, gradient_descent, least_squares};
 pub use result::{Estimated, Finding, MethodResult, Parameter, finding};

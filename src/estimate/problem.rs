@@ -27,31 +27,6 @@ pub struct Problem {
     pub overlap: usize,
 }
 
-/// One noise, and the equations whose rows it reaches: what reaches several makes their errors go together.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NoiseTerm {
-    /// over row lags from 0 on, zero beyond its end; its own unit squared
-    pub autocovariance: Vec<f64>,
-    /// channel, and the factor by which it comes into each of its rows, the output's unit over its own; empty where that is 1
-    pub reaches: Vec<(usize, Vec<f64>)>,
-    /// what an offset that is estimated from the same rows adds to each of them, in parts of this noise's mean: -1 where it
-    /// takes the mean away, 0 where there is none
-    pub of_mean: f64,
-}
-
-impl NoiseTerm {
-    /// Mean variance of a channel's row.
-    fn variance(&self, channel: usize) -> f64 {
-        let mean_square = |factors: &[f64]| {
-            let square = factors.iter().map(|a| a * a).sum::<f64>();
-            if factors.is_empty() { 1.0 } else { square / factors.len() as f64 }
-        };
-        let reached = self.reaches.iter().filter(|(reached, _)| *reached == channel);
-        let share: f64 = reached.map(|(_, factors)| mean_square(factors)).sum();
-        share * self.autocovariance.first().copied().unwrap_or(0.0)
-    }
-}
-
 /// A solution and what it rests on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
@@ -137,7 +112,7 @@ impl Problem {
         self.channels.iter().map(|channel| &channel.y - &channel.x * &theta).collect()
     }
 
-    fn normal_share(&self, index: usize, row_weights: Option<&[DVector<f64>]>) -> Normal {
+    pub(super) fn normal_share(&self, index: usize, row_weights: Option<&[DVector<f64>]>) -> Normal {
         let channel = &self.channels[index];
         let z = channel.z.as_ref().unwrap_or(&channel.x);
         let mut share = Normal::empty(self.parameters());
@@ -217,37 +192,6 @@ impl Problem {
         rows / (rows - spent)
     }
 
-    /// The covariance that the estimate will have over repeated flights, for noises that are known and independent.
-    #[must_use]
-    pub fn expected_covariance(&self, noise: &[NoiseTerm]) -> DMatrix<f64> {
-        let shares: Vec<Normal> =
-            (0..self.channels.len()).map(|index| self.normal_share(index, None)).collect();
-        let sigma: Vec<f64> = (0..self.channels.len())
-            .map(|channel| noise.iter().map(|term| term.variance(channel)).sum::<f64>().sqrt())
-            .collect();
-        let bread = Normal::weighted(&shares, &sigma, &self.priors).inverse();
-        let mut meat = DMatrix::zeros(self.parameters(), self.parameters());
-        for term in noise {
-            let mut weighted: Option<DMatrix<f64>> = None;
-            for (channel, factors) in &term.reaches {
-                let Channel { x, z, .. } = &self.channels[*channel];
-                let mut rows = z.as_ref().unwrap_or(x) / sigma[*channel].powi(2);
-                for mut column in rows.column_iter_mut() {
-                    let mean = column.mean();
-                    column.add_scalar_mut(term.of_mean * mean);
-                }
-                for (mut row, factor) in rows.row_iter_mut().zip(factors) {
-                    row *= *factor;
-                }
-                weighted = Some(weighted.map_or_else(|| rows.clone(), |sum| sum + &rows));
-            }
-            if let Some(weighted) = weighted {
-                meat += self.meat_of(&weighted, &term.autocovariance);
-            }
-        }
-        &bread * meat * bread.transpose()
-    }
-
     fn meat_of_residuals(&self, scaled: &Scaled<'_>) -> DMatrix<f64> {
         let mut meat = DMatrix::zeros(self.parameters(), self.parameters());
         for (index, channel) in self.channels.iter().enumerate() {
@@ -260,7 +204,7 @@ impl Problem {
     }
 
     /// One channel's `sum_|l|<=L gamma(l) sum_t x(t) x(t+l)^T`, as `X^T (gamma * X)`.
-    fn meat_of(&self, z: &DMatrix<f64>, gamma: &[f64]) -> DMatrix<f64> {
+    pub(super) fn meat_of(&self, z: &DMatrix<f64>, gamma: &[f64]) -> DMatrix<f64> {
         let lags = gamma.len().saturating_sub(1);
         let mut smeared = DMatrix::<f64>::zeros(z.nrows(), z.ncols());
         for run in &self.runs {
@@ -318,7 +262,7 @@ struct Scaled<'a> {
 }
 
 /// Normal equations with their columns scaled to unit diagonal.
-struct Normal {
+pub(super) struct Normal {
     matrix: DMatrix<f64>,
     right: DVector<f64>,
     /// square root of the diagonal; 0 where a column is empty
@@ -333,7 +277,7 @@ struct Fit {
 }
 
 impl Normal {
-    fn weighted(shares: &[Self], sigma: &[f64], priors: &[(usize, f64)]) -> Self {
+    pub(super) fn weighted(shares: &[Self], sigma: &[f64], priors: &[(usize, f64)]) -> Self {
         let mut sum = Self::empty(shares.first().map_or(0, |share| share.right.len()));
         for (share, sigma) in shares.iter().zip(sigma) {
             let weight = 1.0 / (sigma * sigma);
@@ -364,7 +308,7 @@ impl Normal {
     }
 
     /// Inverse of the normal matrix; rows and columns of empty parameters are zero.
-    fn inverse(&self) -> DMatrix<f64> {
+    pub(super) fn inverse(&self) -> DMatrix<f64> {
         let n = self.right.len();
         let scaled = DMatrix::from_fn(n, n, |i, j| {
             if self.scale[i] > 0.0 && self.scale[j] > 0.0 {

@@ -1,6 +1,7 @@
 //! Identification from the weak form: mass, inertia, actuation latency and trim torques together.
 
-use super::problem::{Channel, NoiseTerm, Problem, Solution};
+use super::expected::NoiseTerm;
+use super::problem::{Channel, Problem, Solution};
 use super::theta::{THETA, Theta, ThetaCovariance};
 use crate::regression::{CHANNELS, WeakRows};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};

@@ -15,6 +15,8 @@ const GUID_TIMEOUT_S: f64 = 3.0;
 const COM_OF_LOSS_T_S: f64 = 1.0;
 /// PX4 looks for the loss ten times a second, and changes the mode with its next control period.
 const NOTICES_S: f64 = 0.15;
+/// PX4's own allowance for its delay and jerk in the distance to a stop, s.
+const STOPS_S: f64 = 0.6;
 /// Time constant with which a vehicle leans over for an acceleration, s: what its attitude loop takes.
 const LEANS_S: f64 = 0.12;
 /// ArduPilot's least acceleration and jerk, so that a zero does not stop the model for ever.
@@ -31,13 +33,18 @@ pub enum FollowLaw {
         /// GUID_TIMEOUT, s
         timeout_s: f64,
     },
-    /// PX4 in OFFBOARD: the vehicle itself follows, `v = v_ff + P (p - p_now)`, `a = a_ff + K (v - v_now)`; the last
-    /// setpoint stays for the time-out, then a mode of its own brakes
+    /// PX4 in OFFBOARD: the vehicle itself follows, `v = v_ff + P (p - p_now)` within its limits and
+    /// `(1 + D) a = a_ff + K (v - v_now)`, without what the velocity's integral learns of drag; the last setpoint stays for the
+    /// time-out, then a mode of its own brakes
     Px4 {
         /// MPC_XY_P, MPC_Z_P, 1/s
         position_1_s: Vector3<f64>,
         /// MPC_XY_VEL_P_ACC, MPC_Z_VEL_P_ACC, 1/s
         velocity_1_s: Vector3<f64>,
+        /// D: MPC_XY_VEL_D_ACC, MPC_Z_VEL_D_ACC
+        damping: Vector3<f64>,
+        /// m/s: MPC_XY_VEL_MAX, MPC_Z_VEL_MAX_UP, MPC_Z_VEL_MAX_DN
+        speeds_m_s: [f64; 3],
         /// COM_OF_LOSS_T, s
         timeout_s: f64,
         /// m/s^2 and m/s^3 of the mode that follows
@@ -81,8 +88,8 @@ impl FollowLaw {
     pub fn with_timeout_s(self, seconds: f64) -> Self {
         match self {
             Self::ArduPilot { limits, .. } => Self::ArduPilot { limits, timeout_s: seconds },
-            Self::Px4 { position_1_s, velocity_1_s, braking, .. } => {
-                Self::Px4 { position_1_s, velocity_1_s, braking, timeout_s: seconds }
+            Self::Px4 { position_1_s, velocity_1_s, damping, speeds_m_s, braking, .. } => {
+                Self::Px4 { position_1_s, velocity_1_s, damping, speeds_m_s, braking, timeout_s: seconds }
             }
         }
     }
@@ -92,8 +99,9 @@ impl FollowLaw {
     pub fn place_ahead(&self, motion: &Motion) -> Vector3<f64> {
         match self {
             Self::ArduPilot { limits, .. } => motion.place_ahead(limits),
-            Self::Px4 { position_1_s, velocity_1_s, .. } => {
-                let wanted = motion.velocity_m_s + motion.acceleration_m_s2.component_div(velocity_1_s);
+            Self::Px4 { position_1_s, velocity_1_s, damping, .. } => {
+                let asked_m_s2 = motion.acceleration_m_s2.component_mul(&damping.add_scalar(1.0));
+                let wanted = motion.velocity_m_s + asked_m_s2.component_div(velocity_1_s);
                 motion.position_m + wanted.component_div(position_1_s)
             }
         }
@@ -106,11 +114,13 @@ impl FollowLaw {
                 let GuidedTarget { position_m, velocity_m_s, acceleration_m_s2 } = *target;
                 motion.step(&Wish { position_m, velocity_m_s, acceleration_m_s2 }, limits, period_s);
             }
-            Self::Px4 { position_1_s, velocity_1_s, .. } => {
+            Self::Px4 { position_1_s, velocity_1_s, damping, speeds_m_s, .. } => {
                 let wanted =
                     target.velocity_m_s + (target.position_m - motion.position_m).component_mul(position_1_s);
-                let acceleration =
+                let wanted = within_speeds(wanted, speeds_m_s);
+                let asked_m_s2 =
                     target.acceleration_m_s2 + (wanted - motion.velocity_m_s).component_mul(velocity_1_s);
+                let acceleration = asked_m_s2.component_div(&damping.add_scalar(1.0));
                 let share = 1.0 - (-period_s / LEANS_S).exp();
                 motion.acceleration_m_s2 += (acceleration - motion.acceleration_m_s2) * share;
                 motion.position_m +=
@@ -151,7 +161,10 @@ impl FollowLaw {
                 // with the greatest deceleration, or by a law that is linear in the speed where that takes longer
                 let brakes_s =
                     (0.5 * speed / acceleration + 0.5 * acceleration / jerk).max(acceleration / jerk);
-                at(&(motion.position_m + motion.velocity_m_s * brakes_s));
+                // where its mode puts the place to stop at (`Navigator::preproject_stop_point`), or later
+                let level_s = brakes_s.max(0.5 * speed / acceleration + STOPS_S);
+                let times_s = Vector3::new(level_s, level_s, brakes_s);
+                at(&(motion.position_m + motion.velocity_m_s.component_mul(&times_s)));
             }
         }
     }
@@ -161,6 +174,12 @@ impl FollowLaw {
 pub const STEP_S: f64 = 0.02;
 const SETTLES_S: f64 = 8.0;
 const RESTS_M_S: f64 = 0.02;
+
+/// A velocity (m/s) along and across the vertical within its limits.
+fn within_speeds(wanted_m_s: Vector3<f64>, [level, up, down]: &[f64; 3]) -> Vector3<f64> {
+    let share = (level / wanted_m_s.xy().norm().max(f64::MIN_POSITIVE)).min(1.0);
+    Vector3::new(wanted_m_s.x * share, wanted_m_s.y * share, wanted_m_s.z.min(*up).max(-down))
+}
 
 fn ardupilot(parameters: &Parameters, law: ShaperLaw) -> FollowLaw {
     let positive = |name: &str, scale: f64, default: f64| {
@@ -183,17 +202,24 @@ fn ardupilot(parameters: &Parameters, law: ShaperLaw) -> FollowLaw {
         vertical_jerk_m_s3: positive("PSC_JERK_Z", 1.0, 5.0),
         law,
     };
-    let timeout_s = parameters.get("GUID_TIMEOUT").unwrap_or(GUID_TIMEOUT_S).clamp(0.1, 5.0);
+    let timeout_s = parameters.get("GUID_TIMEOUT").unwrap_or(GUID_TIMEOUT_S).max(0.1);
     FollowLaw::ArduPilot { limits, timeout_s }
 }
 
 fn px4(parameters: &Parameters) -> FollowLaw {
     let positive =
         |name: &str, default: f64| parameters.get(name).filter(|value| *value > 0.0).unwrap_or(default);
+    let stated = |name: &str, default: f64| parameters.get(name).unwrap_or(default).max(0.0);
     let axes = |level: f64, upright: f64| Vector3::new(level, level, upright);
     FollowLaw::Px4 {
         position_1_s: axes(positive("MPC_XY_P", 0.95), positive("MPC_Z_P", 1.0)),
         velocity_1_s: axes(positive("MPC_XY_VEL_P_ACC", 1.8), positive("MPC_Z_VEL_P_ACC", 4.0)),
+        damping: axes(stated("MPC_XY_VEL_D_ACC", 0.2), stated("MPC_Z_VEL_D_ACC", 0.0)),
+        speeds_m_s: [
+            positive("MPC_XY_VEL_MAX", 12.0),
+            positive("MPC_Z_VEL_MAX_UP", 3.0),
+            positive("MPC_Z_VEL_MAX_DN", 1.5),
+        ],
         timeout_s: parameters.get("COM_OF_LOSS_T").unwrap_or(COM_OF_LOSS_T_S).max(0.0),
         braking: (
             positive("MPC_ACC_HOR", 3.0).min(positive("MPC_ACC_DOWN_MAX", 3.0)),

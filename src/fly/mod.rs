@@ -18,6 +18,7 @@ mod commander;
 mod course;
 pub mod finding;
 mod flight;
+mod ground;
 mod health;
 mod law;
 mod lift;

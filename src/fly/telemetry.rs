@@ -6,6 +6,7 @@ use std::time::Duration;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::arming::Arming;
+use super::ground::Ground;
 use super::health::{BatteryLevel, EstimatorReport, SystemReport, battery_status, level_of_percent};
 use super::lift::Outputs;
 use super::modes::Stack;
@@ -30,10 +31,6 @@ const JUMP_M: f64 = 0.7;
 const JUMP_GAP_S: f64 = 0.5;
 /// Positions further apart are not one stream.
 const POSITION_GAP: Duration = Duration::from_secs(1);
-/// "On the ground" counts while it was said within the first of these, and after it was said for the second.
-const LANDED_VALID: (Duration, Duration) = (Duration::from_secs(2), Duration::from_secs(1));
-/// So long after its clock jumped nothing but repetition is believed: frames of long ago agree with one another.
-const CLOCK_SETTLES: Duration = Duration::from_secs(3);
 /// The estimator's reports pass through tests that fail for an instant; faults this long count.
 const STATUS_VALID: Duration = Duration::from_secs(3);
 
@@ -55,13 +52,7 @@ pub struct Telemetry {
     /// orientation
     pub attitude: Option<Seen<Attitude>>,
     /// on the ground, as EXTENDED_SYS_STATE says
-    pub landed: Option<Seen<bool>>,
-    /// since when it says so without a break
-    landed_since: Option<Duration>,
-    /// it was told to take off and has not said that it is in the air yet
-    takes_off: bool,
-    /// when its clock last jumped: it started anew, or frames of long ago came
-    clock_jumped: Option<Duration>,
+    pub(super) ground: Ground,
     /// what the estimator says
     pub estimator: Option<Seen<EstimatorReport>>,
     /// since when the estimator is good without a break
@@ -103,10 +94,7 @@ impl Telemetry {
             state: None,
             motion: None,
             attitude: None,
-            landed: None,
-            landed_since: None,
-            takes_off: false,
-            clock_jumped: None,
+            ground: Ground::default(),
             estimator: None,
             estimator_good_since: None,
             estimator_bad_since: None,
@@ -148,7 +136,7 @@ impl Telemetry {
                 let (custom_mode, armed) = (payload.u32(0), payload.u8(6) & ARMED != 0);
                 let state = FlightState { custom_mode, armed, system_status: payload.u8(7) };
                 if self.note_state(now, state, place, news) {
-                    let on_ground = self.is_landed_at(now);
+                    let on_ground = self.ground.is_landed_at(now);
                     self.arming.report(now, armed, on_ground);
                 }
             }
@@ -211,8 +199,8 @@ impl Telemetry {
         let record = Record { stamp_us: micros(now), offset: 0, known: true, frame };
         let (mut position, mut velocity, mut rates, mut reset) = (None, None, None, false);
         let mut target_m = None;
-        let (attitude, landed, volts) = (&mut self.attitude, &mut self.landed, &mut self.battery_v);
-        let (outputs, clock_jumped) = (&mut self.outputs, &mut self.clock_jumped);
+        let (attitude, ground, volts) = (&mut self.attitude, &mut self.ground, &mut self.battery_v);
+        let outputs = &mut self.outputs;
         outputs.clear();
         self.decoder.decode(&record, &mut |event| match event {
             log::Event::Sample { stream, time_s, values } => match (stream.quantity, values) {
@@ -224,7 +212,7 @@ impl Telemetry {
                 }
                 (Quantity::AngularRate, &[x, y, z]) => rates = Some(Vector3::new(x, y, z)),
                 (Quantity::LandedState, &[state]) => {
-                    *landed = Some(Seen { at: now, value: (state - LANDED_STATE_ON_GROUND).abs() < 0.5 });
+                    ground.report(now, (state - LANDED_STATE_ON_GROUND).abs() < 0.5);
                 }
                 (quantity @ (Quantity::ActuatorCommand | Quantity::RotorSpeed), values) => {
                     outputs.push(Outputs { quantity, source: stream.key().source, values: values.to_vec() });
@@ -238,7 +226,7 @@ impl Telemetry {
             log::Event::Text { severity, text, .. } => news.push(Novelty::Text(severity, text.to_owned())),
             // a network that holds frames back for seconds shows old stamps, which are not those of a start
             log::Event::ClockReset { stamp_s, .. } => {
-                *clock_jumped = Some(now);
+                ground.clock_jumped(now);
                 if stamp_s < silence.as_secs_f64() + STARTED_S {
                     news.push(Novelty::Reboot);
                 }
@@ -248,10 +236,6 @@ impl Telemetry {
         });
         if frame.header().message_id == POSITION_TARGET {
             news.push(Novelty::Target(target_m));
-        }
-        if let Some(Seen { at, value }) = self.landed {
-            self.takes_off &= value;
-            self.landed_since = value.then(|| self.landed_since.unwrap_or(at));
         }
         let oriented = self.attitude.filter(|seen| seen.at == now).map(|seen| seen.value);
         let pose = position.zip(velocity).zip(oriented.zip(rates));
@@ -356,27 +340,6 @@ impl Telemetry {
     #[must_use]
     pub fn mode_reports(&self) -> u64 {
         self.mode_reports
-    }
-
-    /// It says that it stands on the ground.
-    #[must_use]
-    pub fn is_landed(&self) -> bool {
-        self.landed.is_some_and(|landed| landed.value)
-    }
-
-    /// It is told to take off: that it stands on the ground says little from now on, until it said that it is in the air.
-    pub fn expect_takeoff(&mut self) {
-        self.takes_off = true;
-    }
-
-    /// It says so, said it lately, and has said nothing else for a while: single frames can be forged or old.
-    fn is_landed_at(&self, now: Duration) -> bool {
-        let jumped = self.clock_jumped.is_some_and(|at| now.saturating_sub(at) < CLOCK_SETTLES);
-        if self.takes_off || jumped {
-            return false;
-        }
-        let fresh = self.landed.is_some_and(|landed| now.saturating_sub(landed.at) < LANDED_VALID.0);
-        fresh && self.landed_since.is_some_and(|since| now.saturating_sub(since) >= LANDED_VALID.1)
     }
 
     /// The autopilot has taken measures of its own.

@@ -120,8 +120,9 @@ pub fn load_flights(path: &Path, options: &LoadOptions, most: &Hold) -> Result<L
     let (plan, options) = (cells.plan(most), LoadOptions { system: Some(walk.vehicle.system) });
     let builder = match (builder, &plan) {
         (Some(builder), _) => builder,
-        (None, Some(plan)) => within(path, &options, plan)?,
-        (None, None) => RecordingBuilder::new(),
+        (None, Some(plan)) => within(path, &options, Some(plan))?,
+        // it fits in, but for what stands empty where a stream grows wider
+        (None, None) => within(path, &options, None)?,
     };
     let (recording, repairs) = builder.finish(&walk.vehicle);
     walk.report.streams = repairs;
@@ -133,12 +134,13 @@ pub fn load_flights(path: &Path, options: &LoadOptions, most: &Hold) -> Result<L
     })
 }
 
-/// What a log holds in the spans that are kept.
-fn within(path: &Path, options: &LoadOptions, plan: &Plan) -> Result<RecordingBuilder, LogError> {
+/// What a log holds in the spans that are kept; all of it without a plan.
+fn within(path: &Path, options: &LoadOptions, plan: Option<&Plan>) -> Result<RecordingBuilder, LogError> {
     let mut builder = RecordingBuilder::new();
+    let keeps = |time_s: f64| plan.is_none_or(|plan| plan.keeps(time_s));
     let kept = |event: &Event<'_>| match event {
-        Event::Sample { stream, time_s, .. } => is_state(stream.quantity) || plan.keeps(*time_s),
-        Event::Text { time_s, .. } => plan.keeps(*time_s),
+        Event::Sample { stream, time_s, .. } => is_state(stream.quantity) || keeps(*time_s),
+        Event::Text { time_s, .. } => keeps(*time_s),
         Event::Parameter { .. } | Event::ClockReset { .. } | Event::EstimatorReset { .. } => true,
     };
     TlogWalk::open(path, options)?.run(&mut |_, event| {

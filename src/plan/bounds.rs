@@ -269,11 +269,13 @@ pub const ROTOR_MARGINS: [RotorMargin; 5] = [
 /// The bounds within which a flight is planned: those of [`bounds_of`], with a margin to the rotors' own.
 #[must_use]
 pub fn bounds_to_plan_in(limits: &Limits, vehicle: &Vehicle, margin: RotorMargin) -> Vec<Bound> {
-    let hover_n = vehicle.body.mass_kg * vehicle.gravity_m_s2 / vehicle.rotors.len() as f64;
+    let weight_n = vehicle.body.mass_kg * vehicle.gravity_m_s2;
+    let dynamics = Dynamics::new(vehicle);
     let RotorMargin { of_full, of_rest } = margin;
     let mut bounds = bounds_of(limits, vehicle);
     for bound in &mut bounds {
-        if let (Quantity::RotorThrust(_), Some(min), Some(max)) = (bound.quantity, bound.min, bound.max) {
+        if let (Quantity::RotorThrust(rotor), Some(min), Some(max)) = (bound.quantity, bound.min, bound.max) {
+            let hover_n = dynamics.allocation[(rotor, 0)] * weight_n;
             let margin = |rest_n: f64| (of_full * (max - min)).min(of_rest * rest_n).max(0.0);
             bound.min = Some(min + margin(hover_n - min));
             bound.max = Some(max - margin(max - hover_n));

@@ -146,7 +146,7 @@ pub fn plan(
     // what a controller adds to the planned thrusts is known once it is flown
     for margin in &ROTOR_MARGINS[1..] {
         let trajectory = problem.space.trajectory(&best.unknowns);
-        if share_at_bound(&trajectory, vehicle).is_none_or(|share| share <= AT_BOUND_MAX) {
+        if share_at_bound(&trajectory, vehicle).is_some_and(|share| share <= AT_BOUND_MAX) {
             break;
         }
         problem.bounds = bounds_to_plan_in(limits, vehicle, *margin);

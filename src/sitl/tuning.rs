@@ -242,7 +242,7 @@ fn ardupilot(release: ArduPilotRelease, p: &Parameters) -> Tuning {
         takeoff_height_m: 0.0,
         return_height_m: metres("RTL_ALT", "RTL_ALT_M"),
         return_cone: p.value("RTL_CONE_SLOPE"),
-        setpoint_timeout: seconds(p.value("GUID_TIMEOUT").clamp(0.1, 5.0)),
+        setpoint_timeout: seconds(p.value("GUID_TIMEOUT").max(0.1)),
         setpoint_loss: Action::Warn,
         ground_timeout: seconds(p.value("FS_GCS_TIMEOUT")),
         ground_loss: ardupilot_ground_loss(choice(p, "FS_GCS_ENABLE")),

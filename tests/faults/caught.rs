@@ -156,7 +156,8 @@ fn setpoints_into_a_silence_of_more_than_five_seconds_are_caught() {
 
 #[test]
 fn what_leaves_while_a_part_stands_still_is_caught() {
-    let parked = |part| flying().at(1300, Seen::Parked(part, ms(2500)));
+    // where nothing comes, nothing tells that its way stands still
+    let parked = |part| flying().at(1300, Seen::Parked(part, ms(2500))).at(1300, Seen::Came);
     for part in [Part::Link, Part::Telemetry, Part::Supervisor, Part::Setpoints] {
         let early = parked(part).setpoint(1440, 1440, [0.0, 0.0, 2.0]);
         assert_eq!(landed(early, 3000).breaks(), [], "{part:?}");

@@ -57,7 +57,7 @@ impl Flight {
             return;
         };
         if let Some(contact) = &mut self.contact {
-            contact.telemetry.expect_takeoff();
+            contact.telemetry.ground.expect_takeoff();
         }
         match stack {
             Stack::Px4 => {

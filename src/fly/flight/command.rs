@@ -101,9 +101,7 @@ impl Flight {
                 !leaving.has_strayed() && (wished || leaving.comes_from(state.value.custom_mode))
             }
             // of a vehicle that is left to others only the motors are stopped, by the operator's typed word
-            Phase::Watch => {
-                matches!(self.cause, Some(Cause::Killed)) && self.killed_in == Some(state.value.custom_mode)
-            }
+            Phase::Watch => self.killed_in == Some(state.value.custom_mode),
             phase => phase.is_ours() && self.is_in(Mode::External),
         }
     }

@@ -8,14 +8,13 @@ use crate::fly::health::BatteryLevel;
 use crate::fly::modes::{Mode, Stack};
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::roster::Choice;
-use crate::fly::safety::{Lead, SetpointBounds};
+use crate::fly::safety::Lead;
 use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
 use crate::fly::target::{Order, Period};
 use crate::fly::telemetry::Telemetry;
 use crate::log::Payload;
 use mavlink::dialects::ardupilotmega::MavCmd;
-use nalgebra::Vector3;
 
 /// The estimate must have been good for this long.
 const ESTIMATOR_GOOD: Duration = Duration::from_secs(5);
@@ -25,8 +24,6 @@ const PRIME: Duration = Duration::from_millis(1500);
 const POSITION_FRESH: Duration = Duration::from_millis(500);
 /// A trajectory that starts further from the vehicle, m, is in the wrong place.
 const START_MAX_M: f64 = 5.0;
-/// A vehicle may stand so far outside the room's walls, m: its estimate wanders.
-const OUTSIDE_MAX_M: f64 = 0.1;
 const AUTOPILOT_VERSION: u16 = 148;
 /// Where it says the release.
 const FLIGHT_SW_VERSION: usize = 16;
@@ -244,25 +241,6 @@ impl Flight {
             }
         }
         missing
-    }
-
-    /// Whether it still stands in the room in which it was checked: its estimate may have jumped, or somebody have moved it.
-    pub(super) fn check_stand(&self) -> Option<Cause> {
-        let told = self.guide.lead != Lead::Silent || matches!(self.phase, Phase::Arm);
-        let on_ground = matches!(self.phase, Phase::Prime | Phase::Engage(_) | Phase::Ready | Phase::Arm);
-        let place = self.place_now().filter(|_| told && on_ground)?;
-        self.stands_outside(&place.position_m).map(Cause::Refused)
-    }
-
-    /// That it stands beyond the walls of the room, if it does.
-    fn stands_outside(&self, stand_m: &Vector3<f64>) -> Option<String> {
-        let room = SetpointBounds::room(&self.sortie.limits, &self.offset_m(stand_m));
-        let beyond_m = (stand_m - room.nearest(stand_m)).xy().norm();
-        (beyond_m > OUTSIDE_MAX_M).then(|| {
-            format!(
-                "it stands {beyond_m:.2} m outside the room (--origin here takes the room to where it stands)"
-            )
-        })
     }
 
     /// Ends the flight where the wait for what is `missing` was too long.

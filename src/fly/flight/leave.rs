@@ -55,6 +55,9 @@ pub(super) struct Leaving {
     disarmed: Option<Duration>,
 }
 
+/// Motors off: ten times a second for as long as an ordinary command is repeated.
+const KILLING: Manner = Manner { repeat: Manner::URGENT.repeat, ..Manner::PATIENT };
+
 impl Leaving {
     fn to(wish: Mode, from: Option<u32>, now: Duration) -> Self {
         Self {
@@ -129,6 +132,8 @@ impl Flight {
             }
         }
         self.enter(now, Phase::Leave(Leaving::to(wish, from, now)));
+        // what was ordered for the flight is over
+        self.commander.clear();
         self.ask(now, wish);
     }
 
@@ -154,7 +159,7 @@ impl Flight {
         let Phase::Leave(leaving) = &self.phase else { return };
         let (wish, wished, stop_by) = (leaving.wish, leaving.wished, leaving.stop_by);
         let seen = leaving.is_ordered() && self.is_in(wish);
-        let on_ground = self.is_on_ground();
+        let on_ground = self.is_on_ground(now);
         if !armed {
             // the order to arm may still act
             if self.stand.is_some() || !self.arm_ordered || now.saturating_sub(self.entered) > ARMS_WITHIN {
@@ -266,12 +271,13 @@ impl Flight {
             leaving.strayed &= !by_us;
             let name = leaving.name();
             self.note(now, Level::Information, "phase", name);
+            self.commander.clear();
             self.ask(now, wish);
         }
     }
 
     fn wait_for_the_ground(&mut self, now: Duration, wish: Mode, wished: Duration) {
-        let (on_ground, hold_then_land) = (self.is_on_ground(), self.sortie.settings.hold_then_land);
+        let (on_ground, hold_then_land) = (self.is_on_ground(now), self.sortie.settings.hold_then_land);
         let Phase::Leave(leaving) = &mut self.phase else { return };
         let landed_for = leaving.landed.update(now, on_ground);
         let held = !leaving.by_operator && now.saturating_sub(wished) > hold_then_land;
@@ -292,8 +298,8 @@ impl Flight {
         }
     }
 
-    fn is_on_ground(&self) -> bool {
-        self.contact.as_ref().is_some_and(|contact| contact.telemetry.is_landed())
+    fn is_on_ground(&self, now: Duration) -> bool {
+        self.contact.as_ref().is_some_and(|contact| contact.telemetry.ground.is_landed_at(now))
     }
 
     /// The operator's keys.
@@ -306,14 +312,23 @@ impl Flight {
         }
         if key == Key::Kill {
             self.note(now, Level::Error, "abort", "motors off by the operator");
-            let flying = self.phase.is_airborne() && !self.is_on_ground();
+            let flying = self.phase.is_airborne() && !self.is_on_ground(now);
             self.cause = Some(if flying { Cause::Killed } else { Cause::Operator });
-            self.guide.lead = Lead::Silent;
             self.commander.clear();
             let ours =
                 self.is_to_command() || matches!(self.phase, Phase::Lost) && self.is_in(Mode::External);
             self.killed_in = self.custom_mode().filter(|_| ours);
-            self.give(now, Order::kill(), Manner::PATIENT);
+            if self.killed_in.is_some() {
+                self.give(now, Order::kill(), KILLING);
+            } else {
+                let text = "the vehicle is not in our mode: its motors are its pilot's to stop";
+                self.note(now, Level::Error, "abort", text);
+            }
+            // a stream that ends makes PX4 choose another mode, in which nothing of ours is obeyed: it ends with the order
+            self.guide.lead = match self.stopping_place() {
+                Some(place) if self.guide.lead != Lead::Silent => Lead::Hold(place),
+                _ => Lead::Silent,
+            };
             if self.contact.is_some() {
                 self.enter(now, Phase::Watch);
             } else {

@@ -7,6 +7,7 @@ mod ground;
 mod leave;
 mod listen;
 mod phase;
+mod stand;
 mod status;
 mod watch;
 

@@ -8,6 +8,7 @@ use crate::fly::modes::Mode;
 use crate::fly::outcome::{Cause, Ending, Level};
 use crate::fly::safety::{Envelope, Lead, Masters, Sustained, Tracking};
 use crate::fly::sortie::Sortie;
+use crate::fly::target::Order;
 use crate::units::rad_from_deg;
 
 /// Silence after which the trajectory waits.
@@ -124,8 +125,11 @@ impl Flight {
 
     /// A single "disarmed" in the air is not believed, and is told.
     fn tell_contradiction(&mut self, now: Duration) {
-        let contradicted =
-            self.contact.as_ref().is_some_and(|contact| contact.telemetry.is_arming_contradicted());
+        let contradicted = self.contact.as_ref().is_some_and(|contact| {
+            let telemetry = &contact.telemetry;
+            // after a landing the ground is heard a moment later
+            telemetry.is_arming_contradicted() && !telemetry.ground.is_said()
+        });
         if contradicted && !std::mem::replace(&mut self.watch.told_contradiction, contradicted) {
             let text = "a HEARTBEAT says that it is disarmed and nothing else agrees: not believed unless it is said again";
             self.note(now, Level::Warning, "vehicle", text);
@@ -282,7 +286,11 @@ impl Flight {
     pub(super) fn watch_others(&mut self, now: Duration) {
         let Some(contact) = &self.contact else { return };
         let heard = now.saturating_sub(contact.telemetry.heard) < PAUSE_AFTER;
-        if heard && !self.is_armed() {
+        let killing = self.commander.waits_for(&Order::kill()) && self.is_to_command();
+        if !killing {
+            self.guide.lead = Lead::Silent;
+        }
+        if heard && !self.is_armed() && !killing {
             self.finish_watching(now);
         } else if now.saturating_sub(self.entered) > self.sortie.settings.watch_max {
             let mode = if heard { self.mode_name() } else { "not heard".to_owned() };

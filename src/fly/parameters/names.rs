@@ -122,6 +122,8 @@ const PX4: &[(Purpose, &[&str])] = &[
             "MPC_Z_P",
             "MPC_XY_VEL_P_ACC",
             "MPC_Z_VEL_P_ACC",
+            "MPC_XY_VEL_D_ACC",
+            "MPC_Z_VEL_D_ACC",
             "MC_YAWRATE_MAX",
         ],
     ),

@@ -248,8 +248,10 @@ fn in_words(tried: &Tried) -> String {
         |worst| {
             let Worst { beyond_m, border, time_s, leg, .. } = worst;
             let side = if beyond_m > 0.0 { "beyond" } else { "short of" };
+            let allowed =
+                if beyond_m > 0.0 { format!(" ({WALL_M} m of a wall are allowed)") } else { String::new() };
             format!(
-                "{:.2} m {side} {border} at worst, should they end at {time_s:.1} s {leg}",
+                "{:.2} m {side} {border} at worst{allowed}, should they end at {time_s:.1} s {leg}",
                 beyond_m.abs()
             )
         },

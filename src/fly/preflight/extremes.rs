@@ -23,15 +23,22 @@ pub struct Extremes {
     pub vertical_jerk_m_s3: f64,
     pub tilt_rad: f64,
     pub yaw_rate_rad_s: f64,
+    /// least and greatest x, y, z
+    pub low_m: [f64; 3],
+    pub high_m: [f64; 3],
 }
 
 impl Extremes {
     /// Of a whole path.
     #[must_use]
     pub fn of(path: &FlightPath, vehicle: &Vehicle) -> Self {
-        let mut out = Self::default();
+        let mut out = Self { low_m: [f64::INFINITY; 3], high_m: [f64::NEG_INFINITY; 3], ..Self::default() };
         for (_, entry) in samples(path) {
             let [x, y, z, yaw] = entry;
+            for (axis, place) in [x, y, z].into_iter().enumerate() {
+                out.low_m[axis] = out.low_m[axis].min(place[0]);
+                out.high_m[axis] = out.high_m[axis].max(place[0]);
+            }
             let horizontal = |order: usize| x[order].hypot(y[order]);
             let motion = Reference::new(entry, vehicle.gravity_m_s2).motion;
             out.horizontal_speed_m_s = out.horizontal_speed_m_s.max(horizontal(1));

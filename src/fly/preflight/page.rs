@@ -62,7 +62,7 @@ impl Page {
 /// The box round the trajectory, its greatest speed and tilt, its duration, in sentences.
 fn flown(situation: &Situation<'_>) -> Vec<String> {
     let extremes = Extremes::of(situation.path, situation.vehicle);
-    let (low, high) = bounding_box(situation);
+    let (low, high) = (extremes.low_m, extremes.high_m);
     let limits = situation.limits;
     let wall = |max: Option<f64>| max.map_or("no wall".to_owned(), |max| format!("wall at {max:.2}"));
     let height = |bound: Option<f64>| bound.map_or_else(|| "none".to_owned(), |bound| format!("{bound:.2}"));
@@ -88,18 +88,6 @@ fn flown(situation: &Situation<'_>) -> Vec<String> {
             deg_from_rad(extremes.tilt_rad)
         ),
     ]
-}
-
-/// Least and greatest x, y, z of the path, m.
-fn bounding_box(situation: &Situation<'_>) -> ([f64; 3], [f64; 3]) {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for (_, entry) in samples(situation.path) {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(entry[axis][0]);
-            high[axis] = high[axis].max(entry[axis][0]);
-        }
-    }
-    (low, high)
 }
 
 /// The trajectory in its room, from above (north up, west left) and from the side (up, north to the right).

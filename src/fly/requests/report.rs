@@ -214,6 +214,10 @@ impl NeedReport {
                 "the flight cannot be watched without it: check the link and the autopilot's stream settings";
             return Finding::refusal("messages", expected, came, remedy);
         }
+        if !self.is_served() && *need == Need::Setpoints {
+            // an autopilot tells them where it follows some: in the mode that is not entered yet
+            return Finding::ok("messages", expected, format!("{came} before our mode is entered"));
+        }
         if !self.is_served() {
             let remedy = "identify from the on-board log, or raise what the link carries";
             return Finding::warning("messages", expected, came, remedy);

@@ -47,7 +47,15 @@ pub struct Keys {
     word: Option<String>,
     /// the word for arming is waited for: letters are its letters
     asks: bool,
+    /// the line of the page from which on it is read, and the last one from which it is seen to its end
+    from: usize,
+    last: usize,
+    /// it was seen to its end
+    read: bool,
 }
+
+/// Lines that are turned over at once.
+const LEAF: usize = 10;
 
 impl Keys {
     /// Whether the word for arming is waited for.
@@ -55,6 +63,23 @@ impl Keys {
         if asks != self.asks {
             (self.asks, self.word) = (asks, None);
         }
+    }
+
+    /// The page before the flight has so many lines, of which so many are seen at once.
+    pub fn page(&mut self, lines: usize, seen: usize) {
+        self.last = lines.saturating_sub(seen);
+        self.turn(self.from);
+    }
+
+    /// The line of the page from which on it is read.
+    #[must_use]
+    pub fn from(&self) -> usize {
+        self.from
+    }
+
+    fn turn(&mut self, from: usize) {
+        self.from = from.min(self.last);
+        self.read |= self.from == self.last;
     }
 
     /// Takes one key event.
@@ -66,6 +91,11 @@ impl Keys {
             return matches!(event.code, KeyCode::Char('c')).then_some(KeyCommand::Quit);
         }
         match (&mut self.word, event.code) {
+            (_, KeyCode::Down) if self.asks => self.turn(self.from.saturating_add(1)),
+            (_, KeyCode::Up) if self.asks => self.turn(self.from.saturating_sub(1)),
+            (_, KeyCode::PageDown) if self.asks => self.turn(self.from.saturating_add(LEAF)),
+            (_, KeyCode::PageUp) if self.asks => self.turn(self.from.saturating_sub(LEAF)),
+            (None, KeyCode::Char(' ')) if self.asks => self.turn(self.from.saturating_add(LEAF)),
             (_, KeyCode::Esc) => self.word = None,
             (None, KeyCode::Char(letter)) if self.asks => self.word = Some(letter.to_string()),
             (None, KeyCode::Char(WORD_KEY)) => self.word = Some(String::new()),
@@ -79,7 +109,9 @@ impl Keys {
             (Some(_), KeyCode::Enter) => {
                 let (wanted, command) =
                     if self.asks { (ARM_WORD, KeyCommand::Arm) } else { (KILL_WORD, KeyCommand::Kill) };
-                return self.word.take().filter(|word| word == wanted).map(|_| command);
+                // nobody arms on a page that was not seen whole
+                let allowed = !self.asks || self.read;
+                return self.word.take().filter(|word| allowed && word == wanted).map(|_| command);
             }
             _ => {}
         }
@@ -135,6 +167,11 @@ mod tests {
         let mut keys = Keys::default();
         assert_eq!(press(&mut keys, "arm\n"), [KeyCommand::Return]);
         keys.ask(true);
+        keys.page(50, 23);
+        assert_eq!(press(&mut keys, "arm\n"), [], "most of the page was not seen");
+        assert_eq!((press(&mut keys, "  "), keys.from()), (vec![], 20));
+        keys.press(KeyEvent::from(KeyCode::PageDown));
+        assert_eq!(keys.from(), 27);
         assert_eq!(press(&mut keys, "ar\nh\n:kill\n"), []);
         assert_eq!(press(&mut keys, "arm\n"), [KeyCommand::Arm]);
         keys.ask(false);

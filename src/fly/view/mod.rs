@@ -14,6 +14,6 @@ pub use model::{
     Attitude, Battery, EventLine, HISTORY, LinkView, ParameterRow, Phase, Trace, Tracking, ViewModel,
 };
 pub use plain::PlainLog;
-pub use render::render;
+pub use render::{page_rows, render};
 pub use screen::Screen;
 pub use spark::spark;

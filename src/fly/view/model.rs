@@ -132,6 +132,8 @@ pub struct ViewModel {
     pub armed: bool,
     /// what there is to read before the vehicle is armed
     pub page: Option<Arc<Page>>,
+    /// the line of it from which on it is shown
+    pub page_from: usize,
     /// the word for arming is waited for
     pub awaits_word: bool,
     /// s since the connection

@@ -45,12 +45,25 @@ pub fn render(frame: &mut Frame<'_>, model: &ViewModel) {
 
 /// The page before the flight, as much of it as fits, and the field for the word.
 fn before_flight(frame: &mut Frame<'_>, model: &ViewModel, page: &Page) {
-    let [above, foot] = Layout::vertical([Constraint::Min(3), Constraint::Length(1)]).areas(frame.area());
-    let lines = page.lines(usize::from(above.width)).into_iter().map(Line::raw);
-    frame.render_widget(Paragraph::new(lines.collect::<Vec<_>>()), above);
+    let [above, foot] = Layout::vertical([Constraint::Min(1), Constraint::Length(1)]).areas(frame.area());
+    let lines = page.lines(usize::from(above.width));
+    let end = model.page_from + usize::from(above.height);
+    let (more, all) = (end < lines.len(), lines.len());
+    let shown = lines.into_iter().skip(model.page_from).map(Line::raw);
+    frame.render_widget(Paragraph::new(shown.collect::<Vec<_>>()), above);
     let typed = model.typed.as_deref().unwrap_or_default();
-    let asked = format!("type {ARM_WORD} and Enter to arm and fly, Ctrl-C to leave: {typed}_");
+    let asked = if more {
+        format!("line {end} of {all}: Space for more, Ctrl-C leaves")
+    } else {
+        format!("{ARM_WORD}> {typed}_   type {ARM_WORD} and Enter to arm and fly; Ctrl-C leaves, Up for more")
+    };
     frame.render_widget(Paragraph::new(Line::styled(asked, Modifier::BOLD)), foot);
+}
+
+/// How many lines of the page before the flight a terminal of so many rows shows at once.
+#[must_use]
+pub fn page_rows(rows: u16) -> usize {
+    usize::from(rows.saturating_sub(1).max(1))
 }
 
 fn boxed(frame: &mut Frame<'_>, title: &str, lines: Vec<Line<'_>>, area: Rect) {

@@ -108,6 +108,8 @@ pub fn check(trace: &Trace, given: &Given) -> Vec<Broken> {
 struct Ours {
     /// something that steers or commands left: what was before is nobody's business
     begun: bool,
+    /// the mode that was seen last
+    shown: Option<u32>,
     wishes: Vec<u32>,
     /// of the latest that was seen; `None` before ours was
     at: Option<usize>,
@@ -116,11 +118,21 @@ struct Ours {
 
 impl Ours {
     fn new(given: &Given) -> Self {
-        Self { begun: false, wishes: vec![given.external()], at: None, external: given.external() }
+        Self {
+            begun: false,
+            shown: None,
+            wishes: vec![given.external()],
+            at: None,
+            external: given.external(),
+        }
     }
 
     fn left(&mut self, left: &Left) {
-        self.begun |= left.commands() || matches!(left, Left::Setpoint(_));
+        let begins = left.commands() || matches!(left, Left::Setpoint(_));
+        if begins && !self.begun {
+            self.begun = true;
+            self.at = (self.shown == Some(self.external)).then_some(0);
+        }
         if let Left::Mode(mode) = left
             && *mode != self.external
             && self.wishes.last() != Some(mode)
@@ -131,6 +143,7 @@ impl Ours {
 
     /// Whether the mode is one of ours, or ours was not entered yet.
     fn admits(&mut self, mode: u32) -> bool {
+        self.shown = Some(mode);
         if !self.begun {
             return true;
         }
@@ -291,7 +304,9 @@ fn age(trace: &Trace) -> Option<Broken> {
 fn room(trace: &Trace, given: &Given) -> Option<Broken> {
     let [x_m, y_m, low_m, high_m] = given.room_m;
     let takes_off = |entry: &&Entry| matches!(&entry.seen, Seen::Note(note) if note.kind == "phase" && note.text == "take off");
-    let up = trace.entries.iter().find(takes_off).map_or(Duration::MAX, |entry| entry.at);
+    let flies = |entry: &&Entry| matches!(&entry.seen, Seen::Vehicle(state) if !state.landed);
+    let up = trace.entries.iter().find(takes_off).or_else(|| trace.entries.iter().find(flies));
+    let up = up.map_or(Duration::MAX, |entry| entry.at);
     let (_, first) =
         setpoints(trace).take_while(|(at, _)| *at <= up).last().or_else(|| setpoints(trace).next())?;
     let origin = if given.here { [first.position_m[0], first.position_m[1]] } else { [0.0, 0.0] };

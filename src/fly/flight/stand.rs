@@ -1,0 +1,30 @@
+//! Where the vehicle stands before its takeoff: inside the room, from the checks to the climb.
+
+use super::{Flight, Phase};
+use crate::fly::outcome::Cause;
+use crate::fly::safety::{Lead, SetpointBounds};
+use nalgebra::Vector3;
+
+/// A vehicle may stand so far outside the room's walls, m: its estimate wanders.
+const OUTSIDE_MAX_M: f64 = 0.1;
+
+impl Flight {
+    /// Whether it still stands in the room in which it was checked: its estimate may have jumped, or somebody have moved it.
+    pub(super) fn check_stand(&self) -> Option<Cause> {
+        let told = self.guide.lead != Lead::Silent || matches!(self.phase, Phase::Arm);
+        let on_ground = matches!(self.phase, Phase::Prime | Phase::Engage(_) | Phase::Ready | Phase::Arm);
+        let place = self.place_now().filter(|_| told && on_ground)?;
+        self.stands_outside(&place.position_m).map(Cause::Refused)
+    }
+
+    /// That it stands beyond the walls of the room, if it does.
+    pub(super) fn stands_outside(&self, stand_m: &Vector3<f64>) -> Option<String> {
+        let room = SetpointBounds::room(&self.sortie.limits, &self.offset_m(stand_m));
+        let beyond_m = (stand_m - room.nearest(stand_m)).xy().norm();
+        (beyond_m > OUTSIDE_MAX_M).then(|| {
+            format!(
+                "it stands {beyond_m:.2} m outside the room (--origin here takes the room to where it stands)"
+            )
+        })
+    }
+}

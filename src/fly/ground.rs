@@ -1,0 +1,94 @@
+//! Whether the vehicle stands on the ground, as far as it is believed.
+
+use std::time::Duration;
+
+use super::state::Seen;
+
+/// "On the ground" counts while it was said within the first of these, and after it was said for the second.
+const VALID: (Duration, Duration) = (Duration::from_secs(2), Duration::from_secs(1));
+/// So long after its clock jumped nothing but repetition is believed: frames of long ago agree with one another.
+const CLOCK_SETTLES: Duration = Duration::from_secs(3);
+
+/// What EXTENDED_SYS_STATE said, and what speaks against it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Ground {
+    said: Option<Seen<bool>>,
+    /// since when it says "on the ground" without a break
+    since: Option<Duration>,
+    /// it was told to take off and has not said that it is in the air yet
+    takes_off: bool,
+    /// when its clock last jumped: it started anew, or frames of long ago came
+    jumped: Option<Duration>,
+}
+
+impl Ground {
+    /// Takes the vehicle's word.
+    pub(super) fn report(&mut self, now: Duration, on_ground: bool) {
+        self.takes_off &= on_ground;
+        self.since = on_ground.then(|| self.since.unwrap_or(now));
+        self.said = Some(Seen { at: now, value: on_ground });
+    }
+
+    /// It is told to take off: that it stands on the ground says little from now on, until it said that it is in the air.
+    pub(super) fn expect_takeoff(&mut self) {
+        self.takes_off = true;
+    }
+
+    /// The vehicle's clock jumped.
+    pub(super) fn clock_jumped(&mut self, now: Duration) {
+        self.jumped = Some(now);
+    }
+
+    /// Its last word is that it stands on the ground.
+    pub(super) fn is_said(&self) -> bool {
+        self.said.is_some_and(|said| said.value)
+    }
+
+    /// It says that it stands on the ground, said it lately, and has said nothing else for a while: single frames can be
+    /// forged or old.
+    pub(super) fn is_landed_at(&self, now: Duration) -> bool {
+        let jumped = self.jumped.is_some_and(|at| now.saturating_sub(at) < CLOCK_SETTLES);
+        let fresh = self.said.is_some_and(|said| now.saturating_sub(said.at) < VALID.0);
+        let lasts = self.since.is_some_and(|since| now.saturating_sub(since) >= VALID.1);
+        !self.takes_off && !jumped && fresh && lasts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ms(value: u64) -> Duration {
+        Duration::from_millis(value)
+    }
+
+    #[test]
+    fn it_is_believed_once_it_is_said_for_a_second_and_while_it_is_said() {
+        let mut ground = Ground::default();
+        ground.report(ms(0), true);
+        assert!(!ground.is_landed_at(ms(500)));
+        ground.report(ms(1000), true);
+        assert!(ground.is_landed_at(ms(1000)) && !ground.is_landed_at(ms(3000)), "an old word");
+        ground.report(ms(3000), false);
+        ground.report(ms(3100), true);
+        assert!(!ground.is_landed_at(ms(3200)), "the second begins anew");
+    }
+
+    #[test]
+    fn a_takeoff_and_a_clock_that_jumped_speak_against_it() {
+        let mut ground = Ground::default();
+        ground.expect_takeoff();
+        for t in (0..5000).step_by(200) {
+            ground.report(ms(t), true);
+        }
+        assert!(!ground.is_landed_at(ms(5000)));
+        ground.report(ms(5000), false);
+        for t in (5200..8000).step_by(200) {
+            ground.report(ms(t), true);
+        }
+        assert!(ground.is_landed_at(ms(8000)));
+        ground.clock_jumped(ms(8000));
+        ground.report(ms(9000), true);
+        assert!(!ground.is_landed_at(ms(9000)));
+    }
+}
