@@ -21,9 +21,9 @@ const SUBJECT: &str = "if we die now";
 /// Steps of the model from one tried instant to the next: 0.1 s.
 const EVERY: usize = 5;
 /// How far a vehicle is from what the model makes of it, m. ArduPilot shapes its own reference and follows that; of PX4
-/// the vehicle itself is modelled, and the embedded one came to rest 0.4 m further on.
+/// the vehicle itself is modelled, and the embedded one came to rest 0.46 m further on.
 const ARDUPILOT_OFF_M: f64 = 0.15;
-const PX4_OFF_M: f64 = 0.4;
+const PX4_OFF_M: f64 = 0.5;
 /// A wall of the room may be passed by so much, m: a plan may touch it, and no vehicle follows to the centimetre. Where
 /// nothing better is found, by so much and with a warning: a flight is ended only there.
 const WALL_M: f64 = 0.25;
@@ -51,7 +51,7 @@ struct Leg<'a> {
 struct Worst {
     /// beyond what is allowed of the border, m; negative within
     excess_m: f64,
-    /// beyond the border itself, m
+    /// beyond the border itself, m, with what a vehicle is off the model
     beyond_m: f64,
     border: &'static str,
     /// s from the beginning of the leg
@@ -196,8 +196,9 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
         tracking_m = tracking_m.max(distances.fold(f64::INFINITY, f64::min));
         if step.is_multiple_of(EVERY) {
             law.abandoned(&motion, &target, |place_m| {
-                for (beyond_m, allowed_m, border) in borders(situation, leg, place_m) {
-                    let excess_m = beyond_m + off_m - allowed_m;
+                for (model_m, allowed_m, border) in borders(situation, leg, place_m) {
+                    let beyond_m = model_m + off_m;
+                    let excess_m = beyond_m - allowed_m;
                     if allowed_m <= 0.0 {
                         tried.hard_m = tried.hard_m.max(excess_m);
                     }
