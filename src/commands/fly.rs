@@ -133,9 +133,9 @@ pub fn outcome(record: &Record, analysis: Option<&Analysis>) -> Result<Outcome, 
 pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
     let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
     if args.system_id == Some(args.station_id) {
-        return Err(CommandError::Input(format!(
-            "--station-id: expected another system id than the vehicle's, got {} for both",
-            args.station_id
+        let got = args.station_id;
+        return Err(input(&format!(
+            "--station-id: expected another id than the vehicle's, got {got} for both"
         )));
     }
     let address = args.connect.parse().map_err(|error| input(&error))?;
@@ -288,8 +288,7 @@ const ENDS_MAX: u32 = 20;
 /// Each line a command, until there are no more or the flight is over.
 fn read_keys(pressed: &UnboundedSender<KeyCommand>) {
     let mut input = std::io::stdin().lock();
-    let mut line = Vec::new();
-    let mut ends = 0;
+    let (mut line, mut ends) = (Vec::new(), 0);
     loop {
         line.clear();
         match input.by_ref().take(LINE_MAX).read_until(b'\n', &mut line) {
@@ -300,9 +299,7 @@ fn read_keys(pressed: &UnboundedSender<KeyCommand>) {
                 continue;
             }
             Ok(0) => {
-                output::message(
-                    "standard input has ended: keys are no longer read, Ctrl-C alone ends the flight",
-                );
+                output::message("standard input has ended: no more keys, Ctrl-C alone ends the flight");
                 return;
             }
             Ok(_) => {}

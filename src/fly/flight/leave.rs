@@ -19,6 +19,8 @@ const LAND_BY: Duration = Duration::from_secs(5);
 const ASK_AGAIN: Duration = Duration::from_millis(400);
 /// An autopilot that disarms after its landing may change its mode before it is heard to stand on the ground.
 const GROUND_IS_HEARD: Duration = Duration::from_millis(1500);
+/// The same, until it is heard that it is disarmed.
+const DISARM_IS_HEARD: Duration = Duration::from_secs(3);
 /// From the order to land to the ground; a vehicle that returns first flies home.
 const GROUND_BY: Duration = Duration::from_secs(180);
 /// On the ground, the autopilot disarms by itself; after this long it is told to.
@@ -123,7 +125,10 @@ impl Flight {
     fn leave_to(&mut self, now: Duration, wish: Mode) {
         // a mode that is not ours is not left: whoever chose it flies
         let from = self.contact.as_ref().map(|contact| contact.telemetry.stack().number_of(Mode::External));
-        // setpoints go on until the mode is seen, but say: stop here
+        // setpoints go on until the mode is seen, but say: stop here; what stands on the ground is not steered
+        if self.stand.is_none() {
+            self.guide.lead = Lead::Silent;
+        }
         if self.guide.lead != Lead::Silent {
             let planned = self.cause.is_none();
             let place = if planned { self.guide.setpoint(now).map(|told| told.place()) } else { None };
@@ -189,11 +194,15 @@ impl Flight {
             (true, Some(_)) => {
                 leaving.left.update(now, false);
             }
-            // somebody else has chosen another mode after ours; one on the ground says nothing
+            // somebody else has chosen another mode after ours; on the ground it may be the autopilot, as it disarms
             (false, Some(_)) => {
                 leaving.strayed |= !on_ground;
-                let patience = if wish == Mode::Hold { Duration::ZERO } else { GROUND_IS_HEARD };
-                if leaving.left.update(now, !on_ground) >= patience && !on_ground {
+                let patience = match wish {
+                    _ if on_ground => DISARM_IS_HEARD,
+                    Mode::Hold => Duration::ZERO,
+                    _ => GROUND_IS_HEARD,
+                };
+                if leaving.left.update(now, true) >= patience {
                     let mode = self.mode_name();
                     self.end(now, Cause::Override(format!("{} left for {mode}", self.phase.name())));
                     return;
