@@ -15,6 +15,9 @@ const KILL: f32 = 21_196.0;
 /// Setpoints end so soon after a report of another's mode.
 const SETPOINTS_END: Duration = Duration::from_millis(1200);
 
+/// An order to stop the motors waits for a report of the mode, and is repeated for 5 s.
+const KILLING: Duration = Duration::from_secs(8);
+
 /// The laws, and what they remember.
 #[derive(Debug)]
 pub struct Laws {
@@ -26,6 +29,8 @@ pub struct Laws {
     other: Option<Duration>,
     /// hands were taken off, and no operator ordered anything since
     hands_off: bool,
+    /// when the operator last ordered the motors off: the stream goes on until that is answered or given up
+    killed: Option<Duration>,
     /// frames of the vehicle with an odd number are about: which report is the latest is not known
     pub out_of_order: bool,
     stack: Stack,
@@ -34,7 +39,7 @@ pub struct Laws {
 impl Laws {
     pub fn new(stack: Stack) -> Self {
         let ours = vec![modes(stack).external];
-        Self { ours, engaged: false, other: None, hands_off: false, out_of_order: false, stack }
+        Self { ours, engaged: false, other: None, hands_off: false, killed: None, out_of_order: false, stack }
     }
 
     /// The station took a frame of the vehicle with a right checksum.
@@ -52,7 +57,8 @@ impl Laws {
     }
 
     /// The operator ordered something: it is no takeover any more.
-    pub fn ordered(&mut self) {
+    pub fn ordered(&mut self, now: Duration, kill: bool) {
+        self.killed = kill.then_some(now).or(self.killed);
         self.hands_off = false;
         self.other = None;
         self.engaged = false;
@@ -76,7 +82,8 @@ impl Laws {
                 self.out_of_order || !late,
                 "a setpoint at {now:?}, and another has the vehicle: {self:?}"
             );
-            assert!(!self.hands_off, "a setpoint at {now:?} with hands off");
+            let killing = self.killed.is_some_and(|since| now.saturating_sub(since) < KILLING);
+            assert!(!self.hands_off || killing, "a setpoint at {now:?} with hands off");
             return;
         }
         let Some(command) = command_of(message) else { return };

@@ -173,7 +173,7 @@ impl World {
     }
 
     fn key(&mut self, key: u8) {
-        self.laws.ordered();
+        self.laws.ordered(self.now, key % 8 > 6);
         let key = match key % 8 {
             0..=3 => Key::Abort,
             4 => Key::To(Mode::Hold),
