@@ -13,8 +13,8 @@ pub enum Novelty {
         /// now
         to: FlightState,
     },
-    /// another mode than the one that is known, in a frame that was sent before: late, or the order is forged
-    LateMode,
+    /// this mode, another than the one that is known, in a frame that was sent before: late, or the order is forged
+    LateMode(u32),
     /// the vehicle said something: MAV_SEVERITY and text
     Text(u8, String),
     /// its clock started anew

@@ -170,7 +170,7 @@ impl Telemetry {
     fn note_state(&mut self, at: Duration, state: FlightState, place: i64, news: &mut Vec<Novelty>) -> bool {
         if place < self.state_place {
             if self.state.is_some_and(|seen| seen.value.custom_mode != state.custom_mode) {
-                news.push(Novelty::LateMode);
+                news.push(Novelty::LateMode(state.custom_mode));
             }
             return false;
         }

@@ -5,7 +5,8 @@ use std::time::Duration;
 use mavid::fly::{Cause, Ending, Flown, Level, Note, Outcome};
 use mavid::sitl::Beheld;
 
-use crate::harness::laws::{Given, Law, check};
+use crate::harness::laws::{Law, check};
+use crate::harness::ours::Given;
 use crate::harness::trace::{Part, Report, Seen, Trace};
 use crate::harness::wire::{Left, SetpointSeen};
 

@@ -95,7 +95,7 @@ impl Flight {
             return false;
         };
         match &self.phase {
-            Phase::Engage(found) => *found == Some(state.value.custom_mode) && !state.value.armed,
+            Phase::Engage => self.found == Some(state.value.custom_mode) && !state.value.armed,
             Phase::Leave(leaving) => {
                 let wished = leaving.is_ordered() && self.is_in(leaving.wish());
                 !leaving.has_strayed() && (wished || leaving.comes_from(state.value.custom_mode))

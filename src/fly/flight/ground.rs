@@ -174,6 +174,7 @@ impl Flight {
             self.entered = now;
             return;
         }
+        self.found = self.custom_mode();
         match self.target() {
             Some((_, Stack::Px4)) => {
                 self.hold_here();
@@ -274,6 +275,9 @@ impl Flight {
 
     pub(super) fn prime(&mut self, now: Duration) {
         self.hold_here();
+        if self.left_before_ours(now) {
+            return;
+        }
         if now.saturating_sub(self.entered) >= PRIME {
             self.begin_engage(now);
         }
@@ -282,7 +286,7 @@ impl Flight {
     fn begin_engage(&mut self, now: Duration) {
         let Some((_, stack)) = self.target() else { return };
         self.give(now, Order::set_mode(stack, Mode::External), Manner::PATIENT);
-        self.enter(now, Phase::Engage(self.custom_mode()));
+        self.enter(now, Phase::Engage);
     }
 
     pub(super) fn engage(&mut self, now: Duration) {
@@ -290,21 +294,25 @@ impl Flight {
         if self.guide.lead != Lead::Silent {
             self.hold_here();
         }
-        let Phase::Engage(found) = self.phase else { return };
-        let shown = self.custom_mode();
         if self.is_in(Mode::External) {
             self.enter(now, Phase::Ready);
-        } else if shown != found {
-            let (found, shown) = (found.map(|mode| stack.mode_name(mode)), self.mode_name());
-            let found = found.unwrap_or_else(|| "an unknown mode".to_owned());
-            self.end(
-                now,
-                Cause::Override(format!("{found} was left for {shown} before our mode was entered")),
-            );
-        } else if now.saturating_sub(self.entered) > 2 * Manner::PATIENT.patience {
+        } else if !self.left_before_ours(now)
+            && now.saturating_sub(self.entered) > 2 * Manner::PATIENT.patience
+        {
             let mode = stack.name_of(Mode::External);
             self.end(now, Cause::Refused(format!("{mode} was accepted and is not entered")));
         }
+    }
+
+    /// Ends the start of a vehicle that somebody put into another mode than it was found in.
+    fn left_before_ours(&mut self, now: Duration) -> bool {
+        if self.custom_mode() == self.found {
+            return false;
+        }
+        let found = self.target().zip(self.found).map(|((_, stack), mode)| stack.mode_name(mode));
+        let (found, shown) = (found.unwrap_or_else(|| "an unknown mode".to_owned()), self.mode_name());
+        self.end(now, Cause::Override(format!("{found} was left for {shown} before our mode was entered")));
+        true
     }
 
     pub(super) fn ready(&mut self, now: Duration) {
@@ -358,7 +366,7 @@ impl Flight {
         let text = format!("{name}: {}", reasons.join("; "));
         self.note(now, Level::Warning, "command", text.clone());
         let decides = match self.phase {
-            Phase::Engage(_) => answer.order.command() == MavCmd::MAV_CMD_DO_SET_MODE,
+            Phase::Engage => answer.order.command() == MavCmd::MAV_CMD_DO_SET_MODE,
             Phase::Arm => answer.order.command() == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
             Phase::Climb => answer.order.command() == MavCmd::MAV_CMD_NAV_TAKEOFF,
             _ => false,

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use super::{Flight, Phase};
+use crate::fly::modes::Mode;
 use crate::fly::news::Novelty;
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::safety::Doubted;
@@ -77,7 +78,17 @@ impl Flight {
                     self.note(now, Level::Information, "mode", format!("{mode}, {armed}"));
                 }
             }
-            Novelty::LateMode => self.known.doubt(now, Doubted::Contradiction),
+            Novelty::LateMode(mode) => {
+                self.known.doubt(now, Doubted::Contradiction);
+                // however late: into a mode that is none of ours somebody else has put it
+                let ours = [Mode::External, Mode::Hold, Mode::Land, Mode::Return];
+                let was_ours =
+                    self.found == Some(mode) || ours.into_iter().any(|ours| stack.is_in(ours, mode));
+                if self.phase.is_airborne() && !was_ours {
+                    let mode = stack.mode_name(mode);
+                    self.end(now, Cause::Override(format!("{mode} was reported, late")));
+                }
+            }
             Novelty::Text(severity, text) => {
                 let level = match severity {
                     0..=3 => Level::Error,

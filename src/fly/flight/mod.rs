@@ -114,6 +114,8 @@ pub struct Flight {
     phase: Phase,
     /// when the phase was entered
     entered: Duration,
+    /// the mode in which it was found once all checks were passed
+    found: Option<u32>,
     /// where it stood when it was armed
     stand: Option<Place>,
     /// what is sent came above the room's floor: from then on nothing below is sent
@@ -160,6 +162,7 @@ impl Flight {
             stepped: None,
             phase: Phase::Connect,
             entered: Duration::ZERO,
+            found: None,
             stand: None,
             climbed: false,
             guide: Guide::silent(Duration::ZERO),
@@ -277,7 +280,7 @@ impl Flight {
             Phase::Connect => self.connect(now),
             Phase::Check(_) => self.check(now),
             Phase::Prime => self.prime(now),
-            Phase::Engage(_) => self.engage(now),
+            Phase::Engage => self.engage(now),
             Phase::Ready => self.ready(now),
             Phase::Arm => self.arm(now),
             Phase::Climb => self.climb(now),

@@ -12,8 +12,8 @@ pub(super) enum Phase {
     Check(Checking),
     /// setpoints before OFFBOARD
     Prime,
-    /// our mode is asked for, of a vehicle that was in this one
-    Engage(Option<u32>),
+    /// our mode is asked for, of a vehicle that is in the one in which it was found
+    Engage,
     /// in our mode, until the estimator is good
     Ready,
     /// arming is asked for
@@ -42,7 +42,7 @@ impl Phase {
             Self::Connect => "connect",
             Self::Check(_) => "check",
             Self::Prime => "stream",
-            Self::Engage(_) => "engage",
+            Self::Engage => "engage",
             Self::Ready => "ready",
             Self::Arm => "arm",
             Self::Climb => "take off",

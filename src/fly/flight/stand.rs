@@ -12,7 +12,7 @@ impl Flight {
     /// Whether it still stands in the room in which it was checked: its estimate may have jumped, or somebody have moved it.
     pub(super) fn check_stand(&self) -> Option<Cause> {
         let told = self.guide.lead != Lead::Silent || matches!(self.phase, Phase::Arm);
-        let on_ground = matches!(self.phase, Phase::Prime | Phase::Engage(_) | Phase::Ready | Phase::Arm);
+        let on_ground = matches!(self.phase, Phase::Prime | Phase::Engage | Phase::Ready | Phase::Arm);
         let place = self.place_now().filter(|_| told && on_ground)?;
         self.stands_outside(&place.position_m).map(Cause::Refused)
     }

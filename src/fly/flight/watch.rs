@@ -95,7 +95,7 @@ impl Flight {
                 return;
             }
         }
-        if self.phase.is_ours() || matches!(self.phase, Phase::Prime | Phase::Engage(_) | Phase::Leave(_)) {
+        if self.phase.is_ours() || matches!(self.phase, Phase::Prime | Phase::Engage | Phase::Leave(_)) {
             self.check_link(now);
         }
     }

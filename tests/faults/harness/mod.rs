@@ -14,6 +14,7 @@ pub mod host;
 pub mod laws;
 pub mod lot;
 pub mod network;
+pub mod ours;
 pub mod trace;
 pub mod wire;
 pub mod world;
@@ -25,8 +26,9 @@ use std::time::Duration;
 use mavid::log::TlogReader;
 use mavid::sitl::AutopilotKind;
 
-use laws::{Broken, Given, Law, check};
+use laws::{Broken, Law, check};
 use lot::Lot;
+use ours::Given;
 use world::World;
 
 /// What became of a flight.
