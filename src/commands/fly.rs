@@ -165,16 +165,18 @@ fn copy(from: &Path, to: &Path) -> Result<(), CommandError> {
 }
 
 fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> Result<Sortie, CommandError> {
-    let positive = [
-        ("--tracking-max", Some(args.tracking_max)),
-        ("--tilt-max", args.tilt_max),
-        ("--hover-time", args.hover_time),
-        ("--gate-distance", args.gate_distance),
-        ("--gate-speed", args.gate_speed),
+    // a guard beyond these would guard nothing
+    let ranges = [
+        ("--tracking-max", Some(args.tracking_max), 10.0),
+        ("--tilt-max", args.tilt_max, 90.0),
+        ("--hover-time", args.hover_time, 1e5),
+        ("--gate-distance", args.gate_distance, 10.0),
+        ("--gate-speed", args.gate_speed, 10.0),
     ];
-    for (name, value) in positive {
-        if let Some(value) = value.filter(|value| !value.is_finite() || *value <= 0.0) {
-            return Err(CommandError::Input(format!("{name}: expected a positive number, got {value}")));
+    for (name, value, most) in ranges {
+        if let Some(value) = value.filter(|value| !(*value > 0.0 && *value <= most)) {
+            let expected = format!("expected a number above 0 and at most {most}");
+            return Err(CommandError::Input(format!("{name}: {expected}, got {value}")));
         }
     }
     let around = trajectory.transitions.map(|stored| Around {

@@ -35,7 +35,7 @@ impl SigningKey {
     /// The key in a file, which holds one of
     /// - 64 hexadecimal digits, white space around them does not count;
     /// - 32 bytes, not all of them printable ASCII;
-    /// - any other UTF-8 text: a passphrase, without the line's end.
+    /// - any other UTF-8 text: a passphrase, without the line's end. 32 or more hexadecimal digits are a key that was cut, not a passphrase.
     ///
     /// # Errors
     /// The file cannot be read, holds none of these, or a key of zeros.
@@ -68,6 +68,9 @@ impl SigningKey {
         }
         match text.trim_end_matches(['\r', '\n']) {
             "" => Err("nothing"),
+            cut if cut.len() >= KEY_BYTES && cut.bytes().all(|byte| byte.is_ascii_hexdigit()) => {
+                Err("hexadecimal digits, but not 64 of them")
+            }
             passphrase if passphrase.contains(['\r', '\n']) => Err("several lines"),
             passphrase => Ok(Self::from_passphrase(passphrase)),
         }
@@ -109,7 +112,7 @@ mod tests {
         assert_eq!(SigningKey::parse(b"abc\r\n").unwrap(), SigningKey(abc));
         let words = b"a passphrase of 32 characters ..";
         assert_eq!((words.len(), SigningKey::parse(words).unwrap().0 == *words), (32, false));
-        for wrong in [&b""[..], b"\n", b"two\nlines\n", &[0xFF; 31]] {
+        for wrong in [&b""[..], b"\n", b"two\nlines\n", &[0xFF; 31], &[b'a'; 62]] {
             assert!(SigningKey::parse(wrong).is_err(), "{wrong:?}");
         }
         assert_eq!(format!("{:?}", SigningKey(abc)), "SigningKey(..)");
