@@ -1,43 +1,11 @@
 //! Force and torque of a model along a flight that was flown: recorded states, known rotor thrusts.
 
 use super::base::Base;
+use super::rotors::Turning;
 use super::spin_up::SpinUp;
 use super::trace::Trace;
-use crate::physics::{Airframe, Input, MAX_ROTORS, Model, Wrench};
-use crate::signals::{ActuationLatency, central_difference, delayed_thrusts_n};
+use crate::physics::{Input, Model, Wrench};
 use nalgebra::{Vector3, Vector4};
-
-/// One thrust a rotor, N; those beyond the rotor count are zero.
-pub type Thrusts = [f64; MAX_ROTORS];
-
-/// What the rotors do at each grid instant.
-#[derive(Debug, Clone)]
-pub struct Turning {
-    /// N
-    pub thrust_n: Vec<Thrusts>,
-    /// the speed that belongs to it, relative to hover
-    pub speed: Vec<Thrusts>,
-    /// rate of the speed relative to hover, 1/s
-    pub acceleration_1_s: Vec<Thrusts>,
-}
-
-impl Turning {
-    /// Speeds that belong to the thrusts, and their rate.
-    #[must_use]
-    pub fn new(thrust_n: Vec<Thrusts>, airframe: &Airframe, step_s: f64) -> Self {
-        let mut speed = vec![[0.0; MAX_ROTORS]; thrust_n.len()];
-        let mut acceleration_1_s = speed.clone();
-        for rotor in 0..airframe.rotor_count() {
-            let of_rotor: Vec<f64> =
-                thrust_n.iter().map(|thrusts| airframe.relative_speed_of_thrust(thrusts[rotor])).collect();
-            let rates = central_difference(&of_rotor, step_s);
-            for (index, (value, rate)) in of_rotor.iter().zip(rates).enumerate() {
-                (speed[index][rotor], acceleration_1_s[index][rotor]) = (*value, rate);
-            }
-        }
-        Self { thrust_n, speed, acceleration_1_s }
-    }
-}
 
 /// Weights of the last slopes, newest first, until enough of them are known. The fourth order keeps a pendulum that
 /// is pushed at its own frequency as wide as it is; the second makes it ever wider.
@@ -90,27 +58,6 @@ pub fn wrench_along(model: &Model, trace: &Trace, turning: &Turning) -> Vec<Wren
         }
     }
     out
-}
-
-/// Thrusts behind an actuation latency. The lag acts on the rotors' speed, as a motor's does.
-pub(super) fn felt(
-    commanded_n: &[Thrusts],
-    airframe: &Airframe,
-    step_s: f64,
-    latency: ActuationLatency,
-) -> Vec<Thrusts> {
-    if latency == ActuationLatency::default() {
-        return commanded_n.to_vec();
-    }
-    let rotors = airframe.rotor_count();
-    let flat: Vec<f64> = commanded_n.iter().flat_map(|thrusts| &thrusts[..rotors]).copied().collect();
-    let delayed = delayed_thrusts_n(&flat, rotors, step_s, latency);
-    let of_all = |thrusts: &[f64]| {
-        let mut all = [0.0; MAX_ROTORS];
-        all[..rotors].copy_from_slice(thrusts);
-        all
-    };
-    delayed.chunks_exact(rotors).map(of_all).collect()
 }
 
 /// Passes over the motion's rotor thrusts, which depend on the effects that depend on them.

@@ -169,3 +169,21 @@ fn positive(inertia: &Matrix3<f64>) -> Matrix3<f64> {
     let raised = eigen.recompose();
     0.5 * (raised + raised.transpose())
 }
+
+/// The effect that a large tilt of the thrust is.
+pub(super) const THRUST_TILT: &str = "thrust_tilt";
+
+/// The effect that a large error of the attitude's level is.
+pub(super) const FRAME_MISALIGNMENT: &str = "frame_misalignment";
+
+/// Where an attitude that is turned with its frame comes in place of the nuisance for its level.
+const WITH_ATTITUDE: usize = 3;
+
+/// The base has an effect for an attitude that is not level.
+pub(super) fn turns_attitude(base: &Base) -> bool {
+    base.estimates(FRAME_MISALIGNMENT)
+        && base.present.iter().any(|present| {
+            present.effect.id() == FRAME_MISALIGNMENT
+                && present.values.get(WITH_ATTITUDE).is_none_or(|share| *share > 0.0)
+        })
+}

@@ -2,10 +2,12 @@
 
 use super::base::Base;
 use super::candidates::Candidate;
+use super::channels::CHANNELS;
 use super::evidence::Weighted;
 use super::explanation::Confusable;
-use super::rows::{CHANNELS, Rows};
-use super::search::{Fitted, Tested};
+use super::fit::Fitted;
+use super::rows::Rows;
+use super::tested::Tested;
 use super::trace::Trace;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;

@@ -2,11 +2,11 @@
 //!
 //! It names nothing. It holds inside what was flown and is zero outside.
 
+use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing};
 use super::evidence::weighted;
 use super::explain::ExplainSettings;
 use super::explanation::{Explanation, Verdict};
-use super::rows::{Channels, Nuisance, SECOND, append, channels, nothing};
-use super::search::Fitted;
+use super::fit::Fitted;
 use super::trace::{Trace, TraceError};
 use crate::physics::{State, Wrench};
 use crate::signals::Signals;

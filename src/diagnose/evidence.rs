@@ -4,13 +4,16 @@
 //! channel, or the autocovariance of the scores (Newey-West), whichever is larger. Physics that nothing
 //! explains enlarges it, so the evidence turns cautious where the model is wrong.
 
+use super::channels::{CHANNELS, Channels};
 use super::cluster::chance_by_stretches;
 use super::deviate::normal_deviate;
-use super::rows::{CHANNELS, Channels, Rows};
+use super::rows::Rows;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 use std::ops::Range;
 
+/// Fewest rows that twelve blocks make sense of.
+pub(super) const LEAST_ROWS: usize = 120;
 /// Rows over which the kernels of neighbouring rows overlap.
 const OVERLAP: usize = 8;
 /// Longest residual correlation allowed for, rows (6 s).

@@ -1,16 +1,19 @@
 //! The whole method: search, lack of fit, verdict.
 
 use super::base::{Base, Present};
+use super::channels::{AXES, CHANNELS};
 use super::confusable::confusable_with;
 use super::deviate::normal_deviate;
+use super::evidence::LEAST_ROWS;
 use super::explanation::{Confusable, Explanation, Named, NamedParameter, Strength, Verdict};
+use super::fit::{Fitted, Newton, fit};
 use super::gates::{Gates, WEAKEST_CEILING, ordinary_size};
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
-use super::latency::latency_name;
+use super::latency_name::latency_name;
 use super::limits::{COM_NUISANCE_M, is_beyond_showing, limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
-use super::rows::{AXES, CHANNELS};
-use super::search::{Fitted, Newton, Search, Step, Tested, fit, search};
+use super::search::search;
+use super::tested::{Search, Step, Tested};
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
 use crate::physics::effects::by_id;
@@ -55,15 +58,11 @@ pub enum ExplainError {
     },
 }
 
-/// Fewest rows that twelve blocks make sense of.
-pub(super) const LEAST_ROWS: usize = 120;
 /// Chance below which something is left at the harmonics.
 const LACK_P: f64 = 1e-6;
 /// and it must be larger than this in force (of gravity) or torque (of the torque's own rms).
 const LACK_FORCE_G: f64 = 0.002;
 const LACK_TORQUE: f64 = 0.1;
-/// A lag or delay is named beyond sampling and a fast motor, s.
-pub(super) const FAST_MOTOR_S: f64 = 0.004;
 /// No line that holds anything weighs less, kg/m.
 const LEAST_LINE_KG_M: f64 = 0.005;
 /// Rotors of one vehicle differ by as much.

@@ -2,7 +2,7 @@
 
 use super::harmonics::LackOfFit;
 use super::locate::{Aperiodic, FieldTest, Localisation};
-use super::search::Search;
+use super::tested::Search;
 
 /// The answer in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

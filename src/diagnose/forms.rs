@@ -3,8 +3,8 @@
 //! About nothing the forms of the ground effect look alike; with the size that they come to they do not.
 
 use super::base::Present;
+use super::fit::{Fitted, Newton, fit};
 use super::hubs::cost;
-use super::search::{Fitted, Newton, fit};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 

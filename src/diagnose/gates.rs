@@ -1,9 +1,10 @@
 //! What is asked of a candidate before it is named.
 
 use super::base::moved_to;
+use super::channels::SECOND;
+use super::fit::Fitted;
 use super::mounting;
-use super::rows::SECOND;
-use super::search::{Fitted, Tested};
+use super::tested::Tested;
 
 /// What is asked of a candidate before it is named.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,7 +3,7 @@
 //! A trajectory that is flown several times puts everything that the model lacks at multiples of its
 //! frequency; noise lies between them as well. It cannot see what does not repeat.
 
-use super::rows::{AXES, CHANNELS};
+use super::channels::{AXES, CHANNELS};
 use super::trace::Trace;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 use std::f64::consts::TAU;

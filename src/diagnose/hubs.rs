@@ -5,7 +5,7 @@
 
 use super::base::Present;
 use super::candidates::present;
-use super::search::{Fitted, Newton, fit};
+use super::fit::{Fitted, Newton, fit};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 

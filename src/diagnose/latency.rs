@@ -6,15 +6,12 @@
 
 use super::base::{Base, Present};
 use super::candidates::present;
-use super::confusable::APART;
+use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing, per_step};
 use super::evidence::Weighted;
-use super::explain::FAST_MOTOR_S;
-use super::explanation::{Confusable, Named, NamedParameter, Strength};
-use super::rows::{Channels, Nuisance, Rows, SECOND, append, channels, nothing, per_step, residuals};
-use super::search::{Fitted, Newton, Search, fit};
+use super::fit::{Fitted, Newton, fit};
+use super::rows::{Rows, residuals};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
-use crate::physics::effects::by_id;
 use crate::signals::{ActuationLatency, delayed_wrench};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector4;
@@ -43,8 +40,10 @@ const LEAST_S: f64 = 0.010;
 const HELD: f64 = 0.25;
 /// Gyroscopes noisier than this let no kind be told.
 const NOISY_RAD_S: f64 = 0.03;
+/// A lag or delay is named beyond sampling and a fast motor, s.
+pub(super) const FAST_MOTOR_S: f64 = 0.004;
 /// A kind is refused beyond this many standard deviations.
-const REFUSED: f64 = 6.0;
+pub(super) const REFUSED: f64 = 6.0;
 
 /// Fits the rigid body alone, with the latency that is left when what could be taken for one (damping and
 /// drag move with the derivative of force and torque, too) is allowed for.
@@ -139,9 +138,6 @@ pub(super) fn stated_uneven(vehicle: &Vehicle) -> f64 {
     vehicle.propulsion.falling_over_rising().ln()
 }
 
-/// A lag is told from a delay beyond this: rotors that spin up and down in different times are neither, and look more
-/// like a delay.
-const TOLD_APART: f64 = 15.0;
 /// Mean of the stated time constants, s; 0 where none is stated.
 pub(super) fn stated_lag_s(vehicle: &Vehicle) -> f64 {
     vehicle.propulsion.mean_time_constant_s().unwrap_or(0.0)
@@ -264,73 +260,4 @@ fn turning(trace: &Trace, base: &Base, order: usize, behind: ActuationLatency) -
     let torque: Vec<Vector4<f64>> = torque.iter().map(|t| Vector4::new(t.x, t.y, t.z, 0.0)).collect();
     let late = delayed_wrench(&torque, trace.grid.step_s, behind);
     [0, 1, 2].map(|axis| trace.weak(order, &late.iter().map(|t| -t[axis]).collect::<Vec<f64>>()))
-}
-
-/// A lag by its time constants of rising and falling speed, where they are told apart; else what was found, as a whole.
-fn parameters_of(
-    parts: ActuationLatency,
-    (name, value, std): (&'static str, f64, f64),
-    uneven_std: Option<f64>,
-) -> Vec<NamedParameter> {
-    let Some(uneven_std) = uneven_std else {
-        return vec![NamedParameter { name, value, std, unit: "s" }];
-    };
-    let (rising_s, falling_s) = parts.rising_and_falling_s();
-    // both of the mean's standard error and of the logarithm's of their ratio
-    let by_uneven_s = rising_s * falling_s / (2.0 * parts.lag_s) * uneven_std;
-    let of = |name, value: f64| {
-        let std = (value / parts.lag_s * std).hypot(by_uneven_s);
-        NamedParameter { name, value, std, unit: "s" }
-    };
-    vec![of(name, rising_s), of("time_constant_down", falling_s)]
-}
-
-/// A lag or delay beyond what sampling and a fast motor make.
-pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<Named> {
-    let LatencyFinding { total_s, std_s, parts, against_lag, against_delay, uneven_std } = found.latency;
-    let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
-    let motor_s = stated_lag_s(vehicle);
-    let of_sensors_s = |trace: &Trace| trace.inertial_late_s + trace.inertial_unsure_s;
-    let late_s = traces.iter().map(of_sensors_s).fold(0.0, f64::max);
-    let ordinary_s = motor_s + FAST_MOTOR_S + 0.5 * period_s + late_s;
-    if total_s - ordinary_s < 4.0 * std_s {
-        return None;
-    }
-    let unsure_s = traces.iter().map(|trace| trace.inertial_unsure_s).fold(0.0, f64::max);
-    let std_s = std_s.hypot(unsure_s);
-    let is_lag = parts.lag_s > parts.delay_s && !is_delay(parts, vehicle);
-    let (id, other, name) = if is_lag {
-        ("motor_lag", "transport_delay", "time_constant")
-    } else {
-        ("transport_delay", "motor_lag", "delay")
-    };
-    let (value, std) = if is_lag {
-        (parts.lag_s, std_s)
-    } else if parts.lag_s > 0.0 {
-        (parts.delay_s - held_s(traces), std_s)
-    } else {
-        // the motor, which also lags, and the command's hold are in the total
-        let (motor_s, unsure_s) = match vehicle.propulsion.mean_time_constant_s() {
-            Some(known_s) => (known_s, 0.0),
-            None => (FAST_MOTOR_S, 0.5 * FAST_MOTOR_S),
-        };
-        (parts.delay_s - held_s(traces) - motor_s, std_s.hypot(unsure_s))
-    };
-    let (own, others) = if is_lag { (against_lag, against_delay) } else { (against_delay, against_lag) };
-    let told_apart = others > TOLD_APART && own < 0.5 * REFUSED;
-    let z = (total_s - ordinary_s) / found.latency.std_s;
-    Some(Named {
-        id,
-        sentence: by_id(id)?.sentence(),
-        parameters: parameters_of(parts, (name, value, std), uneven_std.filter(|_| is_lag)),
-        strength: Strength { z, gain: 0.0, energy: z * z, count: 1 },
-        confusable_with: if told_apart {
-            Vec::new()
-        } else {
-            vec![Confusable {
-                id: other,
-                distinguishability: Some((others - own).max(0.0)).filter(|d| *d < APART),
-            }]
-        },
-    })
 }

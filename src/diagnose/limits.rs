@@ -8,8 +8,9 @@
 use super::base::Present;
 use super::candidates::Candidate;
 use super::explanation::DetectionLimit;
+use super::fit::Fitted;
 use super::gates::{Gates, ordinary_size};
-use super::search::{Fitted, Tested};
+use super::tested::Tested;
 use crate::vehicle::Vehicle;
 
 /// Standard errors at which an effect stands out.

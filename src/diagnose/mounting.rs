@@ -3,19 +3,15 @@
 //! What stands in a nuisance's place is tried only when nothing else passes: almost any force that does not
 //! change looks a little like a lean.
 
-use super::base::Base;
+use super::base::{FRAME_MISALIGNMENT, THRUST_TILT};
 use super::candidates::{Candidate, present};
+use super::channels::Nuisance;
 use super::evidence::Weighted;
-use super::rows::Nuisance;
-use super::search::{Fitted, Tested};
+use super::fit::Fitted;
+use super::tested::Tested;
 use super::trace::Trace;
 use super::trial::{columns_of, is_present};
 use rayon::prelude::*;
-
-/// The effect that a large tilt of the thrust is.
-pub(super) const THRUST_TILT: &str = "thrust_tilt";
-/// The effect that a large error of the attitude's level is.
-pub(super) const FRAME_MISALIGNMENT: &str = "frame_misalignment";
 
 /// Mountings are true to about half a degree, rad.
 const ORDINARY_RAD: f64 = 0.0087;
@@ -52,18 +48,6 @@ const MOUNTINGS: [Mounting; 5] = [
     mounting("imu_misalignment", (&[0, 1, 2], &[0.0; 3]), ORDINARY_RAD, Turn::First),
     mounting("imu_offset", (&[0, 1, 2], &[0.0; 3]), ORDINARY_M, Turn::First),
 ];
-
-/// Where an attitude that is turned with its frame comes in place of the nuisance for its level.
-const WITH_ATTITUDE: usize = 3;
-
-/// The base has an effect for an attitude that is not level.
-pub(super) fn turns_attitude(base: &Base) -> bool {
-    base.estimates(FRAME_MISALIGNMENT)
-        && base.present.iter().any(|present| {
-            present.effect.id() == FRAME_MISALIGNMENT
-                && present.values.get(WITH_ATTITUDE).is_none_or(|share| *share > 0.0)
-        })
-}
 
 /// The size (norm of the parameters) below which a mounting is like any other; `None` for other effects.
 pub(super) fn ordinary_size(id: &str) -> Option<f64> {

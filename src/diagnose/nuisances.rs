@@ -1,9 +1,8 @@
 //! Columns that are always in: what no vehicle file has exactly, and what sensors are off by.
 
-use super::along::Turning;
-use super::base::Base;
-use super::mounting::{THRUST_TILT, turns_attitude};
-use super::rows::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
+use super::base::{Base, THRUST_TILT, turns_attitude};
+use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
+use super::rotors::Turning;
 use super::trace::Trace;
 use crate::physics::effects::RotorInertia;
 use crate::physics::{Effect, Wrench};

@@ -5,74 +5,17 @@
 //! by the kinematics: what acts on the vehicle shows in both, a fault of a sensor in one of them. A parameter's column is built from the signals that are not
 //! on the left of its row: rotor thrusts by the commands for forces, by the measured motion for torques.
 
-use super::along::{Thrusts, Turning, moved_by, wrench_along};
+use super::along::{moved_by, wrench_along};
 use super::base::{Base, Present, step_of};
+use super::channels::{Channels, NuisanceColumn, SECOND, append, channels, per_step};
 use super::nuisances::{momentum_rows, nuisances};
+use super::rotors::{Thrusts, Turning};
 use super::sensors::{is_of_sensors, true_motion, true_readings};
 use super::trace::Trace;
 use crate::physics::{Model, PhysicsError, Wrench};
 use nalgebra::{Vector3, Vector4};
 use rayon::prelude::*;
 use std::ops::Range;
-
-/// Force on body x, y, z (N), torque about them (N m), and the force's second reading (N).
-///
-/// The first reading is the accelerometer's, the second the kinematics' (velocity and attitude); where there
-/// is but one, it is the first, and the second is zero throughout.
-pub const CHANNELS: usize = 9;
-/// Axes of force and torque: the first channels.
-pub const AXES: usize = 6;
-/// Where the second reading of the force begins.
-pub const SECOND: usize = 6;
-/// Names of the channels, as in JSON.
-pub const CHANNEL_NAMES: [&str; CHANNELS] = [
-    "force_x",
-    "force_y",
-    "force_z",
-    "torque_x",
-    "torque_y",
-    "torque_z",
-    "kinematic_force_x",
-    "kinematic_force_y",
-    "kinematic_force_z",
-];
-
-/// One value a row and channel.
-pub type Channels = [Vec<f64>; CHANNELS];
-
-/// What a nuisance column stands for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Nuisance {
-    /// kg
-    Mass,
-    /// kg m^2: xx xy xz yy yz zz
-    Inertia(usize),
-    /// s, of all channels
-    Latency,
-    /// s, of the force beyond that of the torque
-    ForceLatency,
-    /// rad, thrust axis about body x, y
-    Tilt(usize),
-    /// share of the commands' jitter that the rotors do not follow, less one half
-    Jitter,
-    /// m/s^2, on body x, y, z of the accelerometer
-    AccelerometerBias(usize),
-    /// rad, of the attitude's level about world x, y
-    Level(usize),
-}
-
-/// A column with what is known of its coefficient beforehand.
-#[derive(Debug, Clone)]
-pub struct NuisanceColumn {
-    /// what it is
-    pub nuisance: Nuisance,
-    /// per unit
-    pub values: Channels,
-    /// standard deviation of the coefficient about zero, its unit; `None`: nothing is known
-    pub prior_std: Option<f64>,
-    /// per unit, in rows that shall not estimate it: its error is one of theirs
-    pub considered: Option<Channels>,
-}
 
 /// All flights in weak form, linearised about a base.
 #[derive(Debug, Clone)]
@@ -300,31 +243,8 @@ pub(super) fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, Phy
     Ok(out)
 }
 
-/// By how much the residual falls.
-pub(super) fn per_step(mut up: Channels, down: &Channels, step: f64) -> Channels {
-    for (up, down) in up.iter_mut().zip(down) {
-        up.iter_mut().zip(down).for_each(|(up, down)| *up = (down - *up) / step);
-    }
-    up
-}
-
-pub(super) fn append(to: &mut Channels, from: &Channels) {
-    to.iter_mut().zip(from).for_each(|(to, from)| to.extend_from_slice(from));
-}
-
 fn weak_wrench(trace: &Trace, forces: &[Vector3<f64>], torques: &[Vector3<f64>]) -> Channels {
     channels(trace, trace.weak_vector(0, forces), trace.weak_vector(0, torques))
-}
-
-/// Force in each reading there is, and torque.
-pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
-    let second = if trace.reads_force_twice() { force.clone() } else { nothing(trace) };
-    let ([fx, fy, fz], [tx, ty, tz], [kx, ky, kz]) = (force, torque, second);
-    [fx, fy, fz, tx, ty, tz, kx, ky, kz]
-}
-
-pub(super) fn nothing(trace: &Trace) -> [Vec<f64>; 3] {
-    std::array::from_fn(|_| vec![0.0; trace.rows()])
 }
 
 /// Residual and nuisances of one flight.

@@ -1,194 +1,22 @@
 //! The forward search: fit, test every candidate, take the one that explains most, fit again.
 
 use super::base::{Base, Present, lift_load, moved_to};
-use super::candidates::{Candidate, candidates};
-use super::evidence::{Evidence, Weighted};
+use super::candidates::candidates;
+use super::fit::{Fitted, Newton, fit};
 use super::forms::other_form;
 use super::gates::{Gates, passes};
 use super::hubs::one_place;
 use super::latency::{LatencyFinding, finding_of, fit_latency, is_delay};
 use super::locate::mass_step_std_kg;
 use super::mounting::{Turn, mountings};
-use super::rows::{AXES, CHANNELS, Nuisance, NuisanceColumn, Rows};
 use super::settle::{SETTLED_S, settle};
 use super::sharpen::{between_grid, sharpened};
+use super::tested::{Search, Step, Tested};
 use super::trace::Trace;
 use super::trial::test_all;
 use crate::physics::effects::RotorInertia;
 use crate::physics::{Effect, PhysicsError};
 use crate::vehicle::Vehicle;
-use nalgebra::{DMatrix, DVector};
-
-/// A base fitted to the flights.
-#[derive(Debug, Clone)]
-pub struct Fitted {
-    /// the model
-    pub base: Base,
-    /// linearised about it
-    pub rows: Rows,
-    /// weighted, partialled
-    pub weighted: Weighted,
-    /// coefficients left over (about zero after convergence), nuisances first
-    pub coefficients: DVector<f64>,
-    /// their covariance
-    pub covariance: DMatrix<f64>,
-}
-
-impl Fitted {
-    /// Sum over the rows of the logarithm of each channel's standard deviation, forces as the accelerations that
-    /// were measured: minus the logarithm of the likelihood, up to a constant.
-    #[must_use]
-    pub fn misfit(&self) -> f64 {
-        let rows = self.rows.len() as f64;
-        let mass_kg = self.base.vehicle.body.mass_kg;
-        let measured = |channel: usize| {
-            let of_torque = (3..AXES).contains(&channel);
-            self.weighted.sigma[channel] / if of_torque { 1.0 } else { mass_kg }
-        };
-        let used: Vec<f64> = (0..CHANNELS).map(measured).filter(|sigma| *sigma != 0.0).collect();
-        // a form that cannot be carried along the flight is no candidate
-        if used.iter().all(|sigma| *sigma > 0.0) {
-            used.iter().map(|sigma| rows * sigma.ln()).sum()
-        } else {
-            f64::INFINITY
-        }
-    }
-
-    /// Minus the logarithm of how likely the nuisances' coefficients are by what is known of them beforehand, up to a
-    /// constant.
-    #[must_use]
-    pub fn against_priors(&self) -> f64 {
-        let of = |(column, value): (&NuisanceColumn, &f64)| {
-            column.prior_std.map_or(0.0, |std| 0.5 * (value / std).powi(2))
-        };
-        self.rows.nuisances.iter().zip(self.coefficients.iter()).map(of).sum()
-    }
-}
-
-/// Most Gauss-Newton passes.
-const PASSES: usize = 8;
-/// A coefficient that moves by less than this many standard errors has converged.
-const CONVERGED: f64 = 0.05;
-
-/// Whether the latency is estimated, or stays as it is and only its column is in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Newton {
-    /// estimated
-    Free,
-    /// its delay is estimated, whatever its lag
-    Delay,
-    /// as given
-    Held,
-}
-
-/// Fits rigid body, latency and the base's effects.
-///
-/// # Errors
-/// [`PhysicsError`] where the estimate leaves what is physical.
-pub fn fit(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted, PhysicsError> {
-    let mut fitted = evaluate(flights, base.clone())?;
-    for _ in 0..PASSES {
-        let moved = step(&mut base, &fitted, newton);
-        fitted = evaluate(flights, base.clone())?;
-        if moved < CONVERGED {
-            break;
-        }
-    }
-    Ok(fitted)
-}
-
-/// Rows, weights and coefficients about a base, without a step.
-pub(super) fn evaluate(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsError> {
-    let rows = Rows::new(flights, &base)?;
-    let weighted = Weighted::new(&rows);
-    let (coefficients, covariance) = weighted.coefficients(&rows);
-    Ok(Fitted { base, rows, weighted, coefficients, covariance })
-}
-
-/// Moves the base by the coefficients; returns the largest move in standard errors.
-fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
-    let mut most = 0.0_f64;
-    let body = &mut base.vehicle.body;
-    for (index, column) in fitted.rows.nuisances.iter().enumerate() {
-        let by = fitted.coefficients[index];
-        let std = fitted.covariance[(index, index)].max(0.0).sqrt();
-        match column.nuisance {
-            Nuisance::Mass => {
-                body.mass_kg = (body.mass_kg + by).clamp(0.3 * body.mass_kg, 3.0 * body.mass_kg)
-            }
-            Nuisance::Inertia(entry) => {
-                const PLACES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
-                let (row, column) = PLACES[entry];
-                let scale = (body.inertia_kg_m2[(row, row)] * body.inertia_kg_m2[(column, column)]).sqrt();
-                // a diagonal entry neither vanishes nor triples in one pass
-                let by = if row == column {
-                    by.clamp(-0.7 * scale, 2.0 * scale)
-                } else {
-                    by.clamp(-0.5 * scale, 0.5 * scale)
-                };
-                body.inertia_kg_m2[(row, column)] += by;
-                if row != column {
-                    body.inertia_kg_m2[(column, row)] += by;
-                }
-            }
-            Nuisance::Latency if newton != Newton::Held => {
-                let by = by.clamp(-0.05, 0.05);
-                if base.latency.lag_s > 0.0 && newton == Newton::Free {
-                    base.latency.lag_s = (base.latency.lag_s + by).max(1e-4);
-                } else {
-                    base.latency.delay_s = (base.latency.delay_s + by).clamp(-0.03, 0.3);
-                }
-            }
-            _ => continue,
-        }
-        most = most.max(by.abs() / std.max(f64::MIN_POSITIVE));
-    }
-    let mut index = fitted.rows.nuisances.len();
-    for present in &mut base.present {
-        for &free in &present.free {
-            let by = fitted.coefficients[index];
-            let std = fitted.covariance[(index, index)].max(0.0).sqrt();
-            let before = present.values[free];
-            present.values[free] = present.possible(free, before + by);
-            most = most.max((present.values[free] - before).abs() / std.max(f64::MIN_POSITIVE));
-            index += 1;
-        }
-    }
-    most
-}
-
-/// A candidate with its evidence.
-#[derive(Debug, Clone)]
-pub struct Tested {
-    /// which
-    pub candidate: Candidate,
-    /// its coefficients in order of the parts' free parameters
-    pub evidence: Evidence,
-}
-
-/// One accepted step.
-#[derive(Debug, Clone)]
-pub struct Step {
-    /// what was taken
-    pub taken: Tested,
-    /// others that would have passed, with their evidence
-    pub rivals: Vec<Tested>,
-}
-
-/// Where the search ended.
-#[derive(Debug, Clone)]
-pub struct Search {
-    /// rigid body alone, with its latency
-    pub before: Fitted,
-    /// with all that was accepted
-    pub after: Fitted,
-    /// between command and rotor
-    pub latency: LatencyFinding,
-    /// in the order in which they were taken
-    pub steps: Vec<Step>,
-    /// every candidate about the final base
-    pub last: Vec<Tested>,
-}
 
 /// Searches.
 ///

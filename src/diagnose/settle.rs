@@ -1,7 +1,7 @@
 //! After the search: what has become superfluous goes, and the latency is estimated once more.
 
 use super::base::{Base, Present};
-use super::search::{Fitted, Newton, fit};
+use super::fit::{Fitted, Newton, fit};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 

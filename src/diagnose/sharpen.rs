@@ -2,7 +2,8 @@
 //! cord is.
 
 use super::candidates::Candidate;
-use super::search::{Fitted, Tested};
+use super::fit::Fitted;
+use super::tested::Tested;
 use super::trace::Trace;
 use super::trial::columns_of;
 use rayon::prelude::*;

@@ -5,8 +5,8 @@
 //! thrust. `L` is often longer than the motion's periods, so `tau_drag` is `tau` behind a lag of `L`; subtracting what
 //! the last pass found would not converge.
 
-use super::along::Turning;
 use super::base::Base;
+use super::rotors::Turning;
 use super::trace::Trace;
 use crate::physics::effects::RotorInertia;
 use crate::physics::{Airframe, Condition, Effect, Input, Own, Rotors, State, Wrench};

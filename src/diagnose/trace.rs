@@ -1,6 +1,6 @@
 //! One flight as the weak form sees it: measured states, and the rotor thrusts in two readings.
 
-use super::along::{Thrusts, Turning, felt};
+use super::rotors::{Thrusts, Turning, felt};
 use crate::log::Quantity;
 use crate::physics::{Airframe, MAX_ROTORS, State};
 use crate::signals::{

@@ -2,8 +2,9 @@
 
 use super::base::{Base, Present};
 use super::candidates::{Candidate, drag_and_wind};
-use super::rows::Channels;
-use super::search::{Fitted, Tested};
+use super::channels::Channels;
+use super::fit::Fitted;
+use super::tested::Tested;
 use super::trace::Trace;
 use rayon::prelude::*;
 

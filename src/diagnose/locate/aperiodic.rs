@@ -1,8 +1,8 @@
 //! What never repeats, which the harmonic test cannot see: slow trends, noise redder than any sensor's, gusts;
 //! and a lack of fit for flights without a period.
 
-use super::super::rows::{AXES, Channels, SECOND};
-use super::super::search::Fitted;
+use super::super::channels::{AXES, Channels, SECOND};
+use super::super::fit::Fitted;
 use super::super::trace::Trace;
 use super::Localisation;
 use super::gust::{GustFound, axial_drag_n_s_m, gust, lateral_drag};

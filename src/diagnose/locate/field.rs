@@ -3,8 +3,8 @@
 //! A library of vehicle effects gives such a field a wrong name sooner or later. So it is a rival of every
 //! name: tested on what the names leave, and compared with what they took.
 
-use super::super::rows::{AXES, CHANNELS, Channels, channels};
-use super::super::search::Fitted;
+use super::super::channels::{AXES, CHANNELS, Channels, channels};
+use super::super::fit::Fitted;
 use super::super::trace::Trace;
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;

@@ -1,6 +1,6 @@
 //! The residual over frequency: the band in which it exceeds noise, and what it moves with.
 
-use super::super::rows::AXES;
+use super::super::channels::AXES;
 use super::super::trace::Trace;
 use super::spectrum::{Ordinate, noise_shapes};
 use super::view::{Followed, View};

@@ -5,7 +5,7 @@ use super::aperiodic::{
 };
 use super::spectrum::{Ordinate, Whittle, noise_shapes, whittle};
 use super::view::{Followed, View};
-use crate::diagnose::search::Fitted;
+use crate::diagnose::fit::Fitted;
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 

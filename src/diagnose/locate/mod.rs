@@ -18,8 +18,8 @@ pub use states::{Bin, Follow};
 pub use time::{Change, ChangeKind, Drift, Span};
 pub use view::Followed;
 
-use super::rows::AXES;
-use super::search::Fitted;
+use super::channels::AXES;
+use super::fit::Fitted;
 use super::trace::Trace;
 use spectrum::{noise_variance, periodogram};
 use view::View;

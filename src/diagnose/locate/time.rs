@@ -1,6 +1,6 @@
 //! The residual in time: sudden changes of its mean, slope or gain on thrust, drift, and where it exceeds noise.
 
-use super::super::rows::AXES;
+use super::super::channels::AXES;
 use super::view::View;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;

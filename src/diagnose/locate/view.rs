@@ -1,8 +1,8 @@
 //! A fit's residual row by row, beside the states that it may follow.
 
+use super::super::channels::{AXES, CHANNELS, SECOND};
+use super::super::fit::Fitted;
 use super::super::harmonics::flown_period_s;
-use super::super::rows::{AXES, CHANNELS, SECOND};
-use super::super::search::Fitted;
 use super::super::trace::Trace;
 use crate::signals::{WeakKernel, central_difference};
 use nalgebra::Vector3;

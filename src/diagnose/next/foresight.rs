@@ -3,10 +3,11 @@
 use super::{NOT_BY_MOTION, NextSettings};
 use crate::diagnose::base::Base;
 use crate::diagnose::candidates::Candidate;
+use crate::diagnose::channels::CHANNELS;
 use crate::diagnose::confusable::Signal;
 use crate::diagnose::evidence::Weighted;
 use crate::diagnose::explanation::Explanation;
-use crate::diagnose::rows::{CHANNELS, Rows};
+use crate::diagnose::rows::Rows;
 use crate::diagnose::trace::Trace;
 use crate::log::Quantity;
 use crate::signals::{ActuationLatency, Grid, Quality, Signals, ThrustSource, Usable};

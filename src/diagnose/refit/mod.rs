@@ -14,7 +14,7 @@ mod segments;
 mod solve;
 
 use super::explanation::Explanation;
-use super::search::Fitted;
+use super::fit::Fitted;
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
 use crate::signals::Signals;

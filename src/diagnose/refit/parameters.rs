@@ -1,8 +1,8 @@
 //! What is estimated, as numbers that may be anything: whatever they are, the model is physical.
 
 use crate::diagnose::base::Base;
-use crate::diagnose::rows::Nuisance;
-use crate::diagnose::search::Fitted;
+use crate::diagnose::channels::Nuisance;
+use crate::diagnose::fit::Fitted;
 use crate::estimate::{
     LogCholesky, NAMES, THETA, UNITS, inertia_of, log_cholesky, second_moments, theta_of, unpack,
 };

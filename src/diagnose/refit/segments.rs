@@ -1,8 +1,8 @@
 //! Segments of the flights and what the model makes of them.
 
 use super::RefitSettings;
-use crate::diagnose::along::Turning;
 use crate::diagnose::base::Base;
+use crate::diagnose::rotors::Turning;
 use crate::diagnose::trace::Trace;
 use crate::physics::{Input, Model, State};
 use crate::signals::Grid;

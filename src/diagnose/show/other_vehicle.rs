@@ -3,9 +3,9 @@
 use super::weak::Weak;
 use super::{HeldOut, Ready, ShowError, ShowSettings, trace_of};
 use crate::diagnose::base::Present;
+use crate::diagnose::channels::{CHANNEL_NAMES, CHANNELS, Nuisance};
 use crate::diagnose::explanation::Explanation;
-use crate::diagnose::rows::{CHANNEL_NAMES, CHANNELS, Nuisance};
-use crate::diagnose::search::{Fitted, evaluate};
+use crate::diagnose::fit::{Fitted, evaluate};
 use crate::estimate::{NAMES, UNITS};
 use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;

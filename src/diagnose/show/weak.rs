@@ -3,10 +3,10 @@
 use super::bootstrap::Compared;
 use super::{Blocks, Ready, ShowSettings};
 use crate::diagnose::base::Base;
+use crate::diagnose::channels::{CHANNELS, Channels, Nuisance, SECOND};
 use crate::diagnose::empirical::Empirical;
 use crate::diagnose::explanation::Explanation;
-use crate::diagnose::rows::{CHANNELS, Channels, Nuisance, SECOND};
-use crate::diagnose::search::{Fitted, evaluate};
+use crate::diagnose::fit::{Fitted, evaluate};
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
 use rayon::prelude::*;

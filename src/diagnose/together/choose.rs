@@ -2,7 +2,7 @@
 
 use super::wanted::Wanted;
 use crate::diagnose::base::{Base, Present, lift_load};
-use crate::diagnose::search::{Newton, fit};
+use crate::diagnose::fit::{Newton, fit};
 use crate::diagnose::trace::Trace;
 use crate::physics::{Airframe, PhysicsError};
 use rayon::prelude::*;

@@ -3,7 +3,7 @@
 use super::choose::Chosen;
 use crate::diagnose::base::{Base, Present};
 use crate::diagnose::evidence::Weighted;
-use crate::diagnose::search::{Fitted, Newton, fit};
+use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
 use nalgebra::DVector;

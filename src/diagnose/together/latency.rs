@@ -2,8 +2,8 @@
 
 use super::wanted::Wanted;
 use crate::diagnose::base::Base;
+use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::latency::{LatencyFinding, held_s, lag_column, stated_lag_s, stated_uneven};
-use crate::diagnose::search::{Fitted, Newton, fit};
 use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, PhysicsError};
 use crate::signals::ActuationLatency;

@@ -17,11 +17,11 @@ pub use finding::{EffectFound, Found, ParameterFound};
 pub use wanted::Wanted;
 
 use super::base::Base;
+use super::channels::CHANNELS;
 use super::deviate::normal_deviate;
-use super::explain::LEAST_ROWS;
+use super::evidence::LEAST_ROWS;
+use super::fit::{Fitted, Newton, fit};
 use super::latency::{LatencyFinding, finding_of};
-use super::rows::CHANNELS;
-use super::search::{Fitted, Newton, fit};
 use super::trace::{Trace, TraceError};
 use crate::estimate::{
     Estimated, Finding, Method, MethodResult, THETA, Theta, ThetaCovariance, ThrustScale, identified_vehicle,

@@ -4,8 +4,8 @@
 use super::held::{Settled, settle};
 use super::{choose::Chosen, wanted};
 use crate::diagnose::base::{Base, Present};
+use crate::diagnose::fit::{Fitted, Newton};
 use crate::diagnose::latency::{LatencyFinding, fit_latency};
-use crate::diagnose::search::{Fitted, Newton};
 use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, PhysicsError};
 use crate::vehicle::{Anchor, Vehicle};

@@ -5,10 +5,11 @@
 //! scatter is added to their covariance.
 
 use super::held::{Held, Settled, estimates};
+use crate::diagnose::channels::{Channels, Nuisance};
 use crate::diagnose::evidence::weighted;
+use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::gates::Gates;
-use crate::diagnose::rows::{Channels, Nuisance, residuals};
-use crate::diagnose::search::{Fitted, Newton, fit};
+use crate::diagnose::rows::residuals;
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::signals::white_level_of;

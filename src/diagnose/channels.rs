@@ -1,0 +1,88 @@
+//! One value a row for each axis of force and torque, and the columns that are always in.
+
+use super::trace::Trace;
+
+/// One value a row and channel.
+pub type Channels = [Vec<f64>; CHANNELS];
+
+/// Force on body x, y, z (N), torque about them (N m), and the force's second reading (N).
+///
+/// The first reading is the accelerometer's, the second the kinematics' (velocity and attitude); where there
+/// is but one, it is the first, and the second is zero throughout.
+pub const CHANNELS: usize = 9;
+
+/// Axes of force and torque: the first channels.
+pub const AXES: usize = 6;
+
+/// Where the second reading of the force begins.
+pub const SECOND: usize = 6;
+
+/// Names of the channels, as in JSON.
+pub const CHANNEL_NAMES: [&str; CHANNELS] = [
+    "force_x",
+    "force_y",
+    "force_z",
+    "torque_x",
+    "torque_y",
+    "torque_z",
+    "kinematic_force_x",
+    "kinematic_force_y",
+    "kinematic_force_z",
+];
+
+/// What a nuisance column stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Nuisance {
+    /// kg
+    Mass,
+    /// kg m^2: xx xy xz yy yz zz
+    Inertia(usize),
+    /// s, of all channels
+    Latency,
+    /// s, of the force beyond that of the torque
+    ForceLatency,
+    /// rad, thrust axis about body x, y
+    Tilt(usize),
+    /// share of the commands' jitter that the rotors do not follow, less one half
+    Jitter,
+    /// m/s^2, on body x, y, z of the accelerometer
+    AccelerometerBias(usize),
+    /// rad, of the attitude's level about world x, y
+    Level(usize),
+}
+
+/// A column with what is known of its coefficient beforehand.
+#[derive(Debug, Clone)]
+pub struct NuisanceColumn {
+    /// what it is
+    pub nuisance: Nuisance,
+    /// per unit
+    pub values: Channels,
+    /// standard deviation of the coefficient about zero, its unit; `None`: nothing is known
+    pub prior_std: Option<f64>,
+    /// per unit, in rows that shall not estimate it: its error is one of theirs
+    pub considered: Option<Channels>,
+}
+
+/// Force in each reading there is, and torque.
+pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
+    let second = if trace.reads_force_twice() { force.clone() } else { nothing(trace) };
+    let ([fx, fy, fz], [tx, ty, tz], [kx, ky, kz]) = (force, torque, second);
+    [fx, fy, fz, tx, ty, tz, kx, ky, kz]
+}
+
+pub(super) fn nothing(trace: &Trace) -> [Vec<f64>; 3] {
+    std::array::from_fn(|_| vec![0.0; trace.rows()])
+}
+
+pub(super) fn append(to: &mut Channels, from: &Channels) {
+    to.iter_mut().zip(from).for_each(|(to, from)| to.extend_from_slice(from));
+}
+
+/// By how much the residual falls.
+pub(super) fn per_step(mut up: Channels, down: &Channels, step: f64) -> Channels {
+    for (up, down) in up.iter_mut().zip(down) {
+        up.iter_mut().zip(down).for_each(|(up, down)| *up = (down - *up) / step);
+    }
+    up
+}

@@ -1,0 +1,148 @@
+//! Rigid body, latency and effects fitted to the flights: Gauss-Newton on the weak-form rows.
+
+use super::base::Base;
+use super::channels::{AXES, CHANNELS, Nuisance, NuisanceColumn};
+use super::evidence::Weighted;
+use super::rows::Rows;
+use super::trace::Trace;
+use crate::physics::PhysicsError;
+use nalgebra::{DMatrix, DVector};
+
+/// A base fitted to the flights.
+#[derive(Debug, Clone)]
+pub struct Fitted {
+    /// the model
+    pub base: Base,
+    /// linearised about it
+    pub rows: Rows,
+    /// weighted, partialled
+    pub weighted: Weighted,
+    /// coefficients left over (about zero after convergence), nuisances first
+    pub coefficients: DVector<f64>,
+    /// their covariance
+    pub covariance: DMatrix<f64>,
+}
+
+impl Fitted {
+    /// Sum over the rows of the logarithm of each channel's standard deviation, forces as the accelerations that
+    /// were measured: minus the logarithm of the likelihood, up to a constant.
+    #[must_use]
+    pub fn misfit(&self) -> f64 {
+        let rows = self.rows.len() as f64;
+        let mass_kg = self.base.vehicle.body.mass_kg;
+        let measured = |channel: usize| {
+            let of_torque = (3..AXES).contains(&channel);
+            self.weighted.sigma[channel] / if of_torque { 1.0 } else { mass_kg }
+        };
+        let used: Vec<f64> = (0..CHANNELS).map(measured).filter(|sigma| *sigma != 0.0).collect();
+        // a form that cannot be carried along the flight is no candidate
+        if used.iter().all(|sigma| *sigma > 0.0) {
+            used.iter().map(|sigma| rows * sigma.ln()).sum()
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Minus the logarithm of how likely the nuisances' coefficients are by what is known of them beforehand, up to a
+    /// constant.
+    #[must_use]
+    pub fn against_priors(&self) -> f64 {
+        let of = |(column, value): (&NuisanceColumn, &f64)| {
+            column.prior_std.map_or(0.0, |std| 0.5 * (value / std).powi(2))
+        };
+        self.rows.nuisances.iter().zip(self.coefficients.iter()).map(of).sum()
+    }
+}
+
+/// Whether the latency is estimated, or stays as it is and only its column is in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Newton {
+    /// estimated
+    Free,
+    /// its delay is estimated, whatever its lag
+    Delay,
+    /// as given
+    Held,
+}
+
+/// Fits rigid body, latency and the base's effects.
+///
+/// # Errors
+/// [`PhysicsError`] where the estimate leaves what is physical.
+pub fn fit(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted, PhysicsError> {
+    let mut fitted = evaluate(flights, base.clone())?;
+    for _ in 0..PASSES {
+        let moved = step(&mut base, &fitted, newton);
+        fitted = evaluate(flights, base.clone())?;
+        if moved < CONVERGED {
+            break;
+        }
+    }
+    Ok(fitted)
+}
+
+/// Rows, weights and coefficients about a base, without a step.
+pub(super) fn evaluate(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsError> {
+    let rows = Rows::new(flights, &base)?;
+    let weighted = Weighted::new(&rows);
+    let (coefficients, covariance) = weighted.coefficients(&rows);
+    Ok(Fitted { base, rows, weighted, coefficients, covariance })
+}
+
+/// Moves the base by the coefficients; returns the largest move in standard errors.
+fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
+    let mut most = 0.0_f64;
+    let body = &mut base.vehicle.body;
+    for (index, column) in fitted.rows.nuisances.iter().enumerate() {
+        let by = fitted.coefficients[index];
+        let std = fitted.covariance[(index, index)].max(0.0).sqrt();
+        match column.nuisance {
+            Nuisance::Mass => {
+                body.mass_kg = (body.mass_kg + by).clamp(0.3 * body.mass_kg, 3.0 * body.mass_kg)
+            }
+            Nuisance::Inertia(entry) => {
+                const PLACES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+                let (row, column) = PLACES[entry];
+                let scale = (body.inertia_kg_m2[(row, row)] * body.inertia_kg_m2[(column, column)]).sqrt();
+                // a diagonal entry neither vanishes nor triples in one pass
+                let by = if row == column {
+                    by.clamp(-0.7 * scale, 2.0 * scale)
+                } else {
+                    by.clamp(-0.5 * scale, 0.5 * scale)
+                };
+                body.inertia_kg_m2[(row, column)] += by;
+                if row != column {
+                    body.inertia_kg_m2[(column, row)] += by;
+                }
+            }
+            Nuisance::Latency if newton != Newton::Held => {
+                let by = by.clamp(-0.05, 0.05);
+                if base.latency.lag_s > 0.0 && newton == Newton::Free {
+                    base.latency.lag_s = (base.latency.lag_s + by).max(1e-4);
+                } else {
+                    base.latency.delay_s = (base.latency.delay_s + by).clamp(-0.03, 0.3);
+                }
+            }
+            _ => continue,
+        }
+        most = most.max(by.abs() / std.max(f64::MIN_POSITIVE));
+    }
+    let mut index = fitted.rows.nuisances.len();
+    for present in &mut base.present {
+        for &free in &present.free {
+            let by = fitted.coefficients[index];
+            let std = fitted.covariance[(index, index)].max(0.0).sqrt();
+            let before = present.values[free];
+            present.values[free] = present.possible(free, before + by);
+            most = most.max((present.values[free] - before).abs() / std.max(f64::MIN_POSITIVE));
+            index += 1;
+        }
+    }
+    most
+}
+
+/// Most Gauss-Newton passes.
+const PASSES: usize = 8;
+
+/// A coefficient that moves by less than this many standard errors has converged.
+const CONVERGED: f64 = 0.05;

@@ -1,0 +1,39 @@
+//! What a search tried, took and ended with.
+
+use super::candidates::Candidate;
+use super::evidence::Evidence;
+use super::fit::Fitted;
+use super::latency::LatencyFinding;
+
+/// A candidate with its evidence.
+#[derive(Debug, Clone)]
+pub struct Tested {
+    /// which
+    pub candidate: Candidate,
+    /// its coefficients in order of the parts' free parameters
+    pub evidence: Evidence,
+}
+
+/// One accepted step.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// what was taken
+    pub taken: Tested,
+    /// others that would have passed, with their evidence
+    pub rivals: Vec<Tested>,
+}
+
+/// Where the search ended.
+#[derive(Debug, Clone)]
+pub struct Search {
+    /// rigid body alone, with its latency
+    pub before: Fitted,
+    /// with all that was accepted
+    pub after: Fitted,
+    /// between command and rotor
+    pub latency: LatencyFinding,
+    /// in the order in which they were taken
+    pub steps: Vec<Step>,
+    /// every candidate about the final base
+    pub last: Vec<Tested>,
+}
