@@ -1,6 +1,6 @@
 //! What a flight that was not flown would show.
 
-use super::{NOT_BY_MOTION, NextSettings};
+use super::settings::NextSettings;
 use crate::diagnose::base::Base;
 use crate::diagnose::candidates::Candidate;
 use crate::diagnose::channels::CHANNELS;
@@ -14,6 +14,9 @@ use crate::signals::{ActuationLatency, Grid, Quality, Signals, ThrustSource, Usa
 use crate::simulate::Allocation;
 use crate::trajectory::{FourierTrajectory, Reference};
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
+
+/// What neither depends on how the vehicle moves.
+pub(super) const NOT_BY_MOTION: [&str; 2] = ["mass_change", "battery_sag"];
 
 /// What the next flight is to show.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! Random starts and random moves inside the limits. The distance has no slope that is cheap to have.
 
-use super::NextSettings;
 use super::foresight::Foresight;
+use super::settings::NextSettings;
 use crate::plan::{
     AxisStart, Bound, Dynamics, Instant, ROTOR_MARGINS, RotorMargin, SeriesSpace, bounds_to_plan_in,
 };

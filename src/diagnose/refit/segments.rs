@@ -1,6 +1,6 @@
 //! Segments of the flights and what the model makes of them.
 
-use super::RefitSettings;
+use super::settings::RefitSettings;
 use crate::diagnose::base::Base;
 use crate::diagnose::rotors::Turning;
 use crate::diagnose::trace::Trace;
@@ -9,7 +9,7 @@ use crate::signals::Grid;
 use crate::simulate::{Plant, SimulateError};
 use nalgebra::{DVector, UnitQuaternion, Vector3};
 
-use super::RefitError;
+use super::error::RefitError;
 
 /// Velocity, turn of the attitude, rates: what is free at a node and compared at an instant.
 pub(super) const STATE: usize = 9;

@@ -1,9 +1,10 @@
 //! Gauss-Newton over parameters and nodes: each segment's node is eliminated (Schur complement), so that the
 //! work grows with the number of segments only.
 
+use super::error::RefitError;
 use super::parameters::Unknowns;
 use super::segments::{STATE, Segment, Shooter};
-use super::{RefitError, RefitSettings};
+use super::settings::RefitSettings;
 use crate::compare::StateNoise;
 use crate::diagnose::trace::Trace;
 use nalgebra::{Const, DMatrix, DVector, Dyn, OMatrix, SMatrix, SVector};

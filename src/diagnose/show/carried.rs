@@ -1,6 +1,6 @@
 //! What of the identified model carries over to another flight.
 
-use super::{HeldOut, ShowSettings};
+use super::settings::{HeldOut, ShowSettings};
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
 use crate::diagnose::explanation::{Explanation, Verdict};

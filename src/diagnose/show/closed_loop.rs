@@ -1,6 +1,8 @@
 //! The held-out flights flown again from their setpoints, as in Table 4.
 
-use super::{Blocks, Compared, Ready, ShowSettings, flown};
+use super::bootstrap::{Blocks, Compared};
+use super::ready::{Ready, flown};
+use super::settings::ShowSettings;
 use crate::compare::{SIGNALS, TenSignals, autopilot_flight};
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;

@@ -1,7 +1,10 @@
 //! Open-loop prediction from the measured state, fed the recorded actuators.
 
+use super::bootstrap::{Blocks, Compared, Interval};
+use super::error::ShowError;
 use super::floor::{command_noise, state_noise};
-use super::{Blocks, Compared, Interval, Ready, ShowError, ShowSettings, flown};
+use super::ready::{Ready, flown};
+use super::settings::ShowSettings;
 use crate::compare::{
     CommandNoise, PlaybackSettings, StateNoise, WindowErrors, playback_floor, playback_windows,
 };

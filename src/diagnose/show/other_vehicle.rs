@@ -1,7 +1,9 @@
 //! Whether the held-out flights can be of the vehicle that was identified.
 
+use super::error::ShowError;
+use super::ready::{Ready, trace_of};
+use super::settings::{HeldOut, ShowSettings};
 use super::weak::Weak;
-use super::{HeldOut, Ready, ShowError, ShowSettings, trace_of};
 use crate::diagnose::base::Present;
 use crate::diagnose::channels::{CHANNEL_NAMES, CHANNELS, Nuisance};
 use crate::diagnose::explanation::Explanation;

@@ -1,7 +1,9 @@
 //! The weak form's residual of the frozen models.
 
+use super::bootstrap::Blocks;
 use super::bootstrap::Compared;
-use super::{Blocks, Ready, ShowSettings};
+use super::ready::Ready;
+use super::settings::ShowSettings;
 use crate::diagnose::base::Base;
 use crate::diagnose::channels::{CHANNELS, Channels, Nuisance, SECOND};
 use crate::diagnose::empirical::Empirical;

@@ -1,6 +1,6 @@
 //! What was asked for: names, what they need of the recording, and the forms in which each is tried.
 
-use super::TogetherError;
+use super::error::TogetherError;
 use crate::diagnose::base::Present;
 use crate::diagnose::candidates::{ceilings_m, change_times, full_voltage, present};
 use crate::diagnose::trace::Trace;

@@ -1,0 +1,166 @@
+//! Noise redder than any sensor's: a force or torque that wanders.
+
+use super::super::fit::Fitted;
+use super::lateral_drag::{axial_drag_n_s_m, lateral_drag};
+use super::spectrum::{Ordinate, VELOCITY_SCALE_S2, Whittle, noise_shapes, periodogram, whittle};
+use super::view::View;
+use std::f64::consts::TAU;
+
+/// Quantities that are looked at for trends and redness.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// gain of the rotors' thrust (-)
+    Lift,
+    /// force along body z, N
+    BodyZ,
+    /// force along world x (0) or y (1), N
+    World(usize),
+    /// torque about a body axis, N m
+    Torque(usize),
+}
+
+/// Noise that is redder than white sensor noise behind the weak form.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Redness {
+    /// of what
+    pub of: Quantity,
+    /// twice the logarithm of the likelihood ratio against sensor noise alone, harmonics left out
+    pub statistic: f64,
+    /// of the red part, N or N m
+    pub rms: f64,
+    /// correlation time of the red part, s
+    pub correlation_s: f64,
+    /// rms of the weight, or of the torque's rms
+    pub relative: f64,
+    /// N, what the velocity's own slow error makes of the drag (rms)
+    pub of_velocity_n: f64,
+    /// certain, large enough to matter, and more than the velocity's error makes
+    pub certain: bool,
+}
+
+pub(super) fn red_quantities(view: &View) -> Vec<(Quantity, Vec<f64>)> {
+    let mut out = vec![(Quantity::BodyZ, view.residual[2].clone())];
+    if let Some(world) = &view.world_force_n {
+        out.extend([0, 1].map(|axis| (Quantity::World(axis), world[axis].clone())));
+    }
+    out.extend([0, 1, 2].map(|axis| (Quantity::Torque(axis), view.residual[3 + axis].clone())));
+    out
+}
+
+pub(super) fn redness(view: &View, fitted: &Fitted, of: Quantity, series: &[f64]) -> Option<Redness> {
+    let ordinates = beside_harmonics(view, series);
+    let (correlation_s, fit, statistic) = red_fit(view, &ordinates)?;
+    let rms = fit.coefficients[2].sqrt();
+    let relative = rms / scale(fitted, of).max(f64::MIN_POSITIVE);
+    let least = if matches!(of, Quantity::Torque(_)) { LEAST_TORQUE } else { RED_G };
+    let of_velocity_n = force_of_velocity_error_n(view, fitted, (of, correlation_s));
+    let of_jitter =
+        matches!(of, Quantity::Torque(_)) && correlation_s < OF_JITTER * fitted.base.latency.lag_s;
+    let certain =
+        statistic > RED_STATISTIC && relative > least && rms > CONTRADICTED * of_velocity_n && !of_jitter;
+    Some(Redness { of, statistic, rms, correlation_s, relative, of_velocity_n, certain })
+}
+
+/// The correlation time that explains most, its fit, and the likelihood ratio against noise alone.
+pub(super) fn red_fit(view: &View, ordinates: &[Ordinate]) -> Option<(f64, Whittle, f64)> {
+    let power: Vec<f64> = ordinates.iter().map(|o| o.power).collect();
+    let [force, velocity] = noise_shapes(view, ordinates);
+    let plain = whittle(&power, &[&force, &velocity])?;
+    TIMES_S
+        .iter()
+        .filter_map(|&correlation_s| {
+            let red = red_shape(view, ordinates, &force, correlation_s);
+            let fit = whittle(&power, &[&force, &velocity, &red])?;
+            let ratio = 2.0 * (plain.deviance - fit.deviance);
+            Some((correlation_s, fit, ratio))
+        })
+        .max_by(|a, b| a.2.total_cmp(&b.2))
+}
+
+/// What a first-order Gauss-Markov force of unit variance has behind the weak form.
+pub(super) fn red_shape(view: &View, ordinates: &[Ordinate], kernel: &[f64], correlation_s: f64) -> Vec<f64> {
+    ordinates
+        .iter()
+        .zip(kernel)
+        .map(|(o, kernel)| {
+            let turn = TAU * o.frequency_hz * correlation_s;
+            2.0 * correlation_s / (1.0 + turn * turn) / view.step_s * kernel
+        })
+        .collect()
+}
+
+/// Ordinates that the trajectory does not reach.
+pub(super) fn beside_harmonics(view: &View, series: &[f64]) -> Vec<Ordinate> {
+    periodogram(view, series).into_iter().filter(|ordinate| !ordinate.harmonic).collect()
+}
+
+/// What the velocity's own slow error makes of the drag, N (rms): an estimated velocity that wanders does not
+/// follow from the accelerometer, and the two readings of the force contradict each other by the error's rate.
+fn force_of_velocity_error_n(view: &View, fitted: &Fitted, (of, correlation_s): (Quantity, f64)) -> f64 {
+    let (axis, across) = match of {
+        Quantity::World(axis) => (axis, true),
+        Quantity::BodyZ => (2, false),
+        Quantity::Lift | Quantity::Torque(_) => return 0.0,
+    };
+    let Some(contradiction) = &view.contradiction_n else { return 0.0 };
+    let ordinates = beside_harmonics(view, &contradiction[axis]);
+    let mass_kg = fitted.base.vehicle.body.mass_kg;
+    let drag_n_s_m = if across {
+        lateral_drag(view, fitted).map_or(0.0, |(drag_n_s_m, _)| drag_n_s_m)
+    } else {
+        axial_drag_n_s_m(fitted)
+    };
+    // an error whose rate wanders, and one that is itself a first-order Gauss-Markov process as a gust is
+    let of_rate_m_s = red_fit(view, &ordinates)
+        .filter(|(.., statistic)| *statistic > CONTRADICTION_STATISTIC)
+        .map_or(0.0, |(correlation_s, fit, _)| fit.coefficients[2].sqrt() * correlation_s / mass_kg);
+    let of_process_m_s = velocity_error_m_s(view, &ordinates, correlation_s).unwrap_or(0.0) / mass_kg;
+    drag_n_s_m * of_rate_m_s.max(of_process_m_s)
+}
+
+/// Standard deviation, times the mass (kg m/s), of a velocity's Gauss-Markov error that the contradiction shows
+/// with certainty.
+fn velocity_error_m_s(view: &View, ordinates: &[Ordinate], correlation_s: f64) -> Option<f64> {
+    let power: Vec<f64> = ordinates.iter().map(|o| o.power).collect();
+    let [force, velocity] = noise_shapes(view, ordinates);
+    let plain = whittle(&power, &[&force, &velocity])?;
+    let rate = red_shape(view, ordinates, &velocity, correlation_s);
+    let fit = whittle(&power, &[&force, &velocity, &rate])?;
+    let certain = 2.0 * (plain.deviance - fit.deviance) > CONTRADICTION_STATISTIC;
+    certain.then(|| (fit.coefficients[2] * VELOCITY_SCALE_S2).sqrt())
+}
+
+/// What a quantity is measured by: weight or the torque's rms.
+pub(super) fn scale(fitted: &Fitted, of: Quantity) -> f64 {
+    match of {
+        Quantity::Lift => 1.0,
+        Quantity::Torque(axis) => fitted.rows.torque_rms[axis],
+        Quantity::BodyZ | Quantity::World(_) => weight_n(fitted),
+    }
+}
+
+pub(super) fn weight_n(fitted: &Fitted) -> f64 {
+    fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2
+}
+
+/// Likelihood ratio of redness.
+pub(super) const RED_STATISTIC: f64 = 30.0;
+
+/// A red force is no force unless it is larger than this many times what the velocity's error makes.
+pub(super) const CONTRADICTED: f64 = 2.0;
+
+/// Likelihood ratio of a redness in what the force's two readings contradict each other by.
+const CONTRADICTION_STATISTIC: f64 = 10.0;
+
+/// Least rms of a red force, of the weight.
+const RED_G: f64 = 0.002;
+
+/// Torque that forgets faster than this many of the rotors' lag is what commands did between two samples, behind the lag.
+const OF_JITTER: f64 = 2.0;
+
+/// Least torque of any kind, of the torque's rms.
+pub(super) const LEAST_TORQUE: f64 = 0.1;
+
+/// Correlation times that are tried, s: from the kernel's width to half a minute.
+const TIMES_S: [f64; 16] =
+    [0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.8, 1.1, 1.5, 2.1, 3.0, 4.2, 6.0, 8.5, 12.0, 20.0];

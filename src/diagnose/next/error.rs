@@ -1,0 +1,27 @@
+//! Why there is no next flight.
+
+use super::flight::Inseparable;
+use crate::diagnose::trace::TraceError;
+use crate::physics::PhysicsError;
+
+/// Why there is no next flight.
+#[derive(Debug, thiserror::Error)]
+pub enum NextError {
+    /// nothing to tell apart
+    #[error(
+        "there is nothing to tell apart: nothing was named that could be taken for another effect, or that motion would show better"
+    )]
+    NothingToTell,
+    /// only by other means
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+    Inseparable(Vec<Inseparable>),
+    /// limits without room
+    #[error("no flight inside the limits shows {0}")]
+    NoRoom(&'static str),
+    /// streams are missing
+    #[error(transparent)]
+    Trace(#[from] TraceError),
+    /// the model is not physical
+    #[error(transparent)]
+    Physics(#[from] PhysicsError),
+}

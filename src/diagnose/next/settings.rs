@@ -1,0 +1,36 @@
+//! What the next flight may be.
+
+use crate::diagnose::explain::ExplainSettings;
+
+/// What the next flight may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NextSettings {
+    /// s
+    pub period_s: f64,
+    /// of the series (18)
+    pub harmonics: u32,
+    /// periods that will be flown; comparing periods with each other needs four
+    pub repeats: u32,
+    /// random starts
+    pub starts: u64,
+    /// moves of each start
+    pub moves: u32,
+    /// same seed, same flight
+    pub seed: u64,
+    /// s, half width of the weak form's test function
+    pub half_width_s: f64,
+}
+
+impl Default for NextSettings {
+    fn default() -> Self {
+        Self {
+            period_s: 10.0,
+            harmonics: 5,
+            repeats: 6,
+            starts: 4,
+            moves: 120,
+            seed: 1,
+            half_width_s: ExplainSettings::default().half_width_s,
+        }
+    }
+}
