@@ -2,7 +2,8 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
-use super::{CompareError, MeanSquare};
+use super::CompareError;
+use super::mean_square::MeanSquare;
 use crate::log::{Quantity, Recording, Stream};
 use crate::physics::{Input, MAX_ROTORS, Model, State};
 use crate::signals::{Grid, Signals, best, linear_onto};

@@ -4,9 +4,10 @@ use std::path::Path;
 
 use serde::Deserialize;
 
+use super::ConfigError;
 use super::check::Check;
 use super::kind::Kind;
-use super::{ConfigError, parse_toml, read_text};
+use super::read::{parse_toml, read_text};
 use crate::log::Quantity;
 use crate::log::csv::{AttitudeForm, AxisFrame, CsvMapping, CsvQuantity, CsvTime, CsvUnit, column_count};
 use crate::text;

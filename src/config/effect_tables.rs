@@ -5,8 +5,9 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::Table;
 
+use super::ConfigError;
 use super::kind::Kind;
-use super::{ConfigError, parse_toml, read_text};
+use super::read::{parse_toml, read_text};
 use crate::text;
 
 #[derive(Deserialize)]

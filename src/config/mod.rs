@@ -3,6 +3,7 @@
 mod check;
 mod csv_mapping;
 mod effect_tables;
+mod error;
 mod kind;
 mod read;
 mod trajectory;
@@ -12,80 +13,10 @@ mod vehicle_writer;
 
 pub use csv_mapping::{default_csv_mapping, load_csv_mapping, parse_csv_mapping};
 pub use effect_tables::{parse_effect_tables, read_effect_tables};
+pub use error::ConfigError;
 pub use trajectory::{
     StoredTrajectory, StoredTransitions, parse_limits, parse_trajectory, read_limits, read_trajectory,
     trajectory_to_toml,
 };
 pub use vehicle::{LoadedVehicle, ModelTables, load_vehicle, parse_vehicle, read_vehicle};
 pub use vehicle_writer::vehicle_to_toml;
-
-use read::{parse_toml, read_text};
-use std::path::PathBuf;
-
-use crate::text;
-
-/// Why a configuration file was refused.
-#[derive(Debug, thiserror::Error)]
-pub enum ConfigError {
-    /// the file could not be read
-    #[error("cannot read {}: {source}", text::path(path))]
-    Read {
-        /// which file
-        path: PathBuf,
-        /// what the system said
-        source: std::io::Error,
-    },
-    /// bytes that are no text
-    #[error("{}: expected {expected}, came a file that is no text", text::path(path))]
-    NoText {
-        /// which file
-        path: PathBuf,
-        /// what it was to be
-        expected: &'static str,
-    },
-    /// more bytes than such a file may have
-    #[error("{}: expected {expected} of at most {max} bytes, came a larger file", text::path(path))]
-    TooLarge {
-        /// which file
-        path: PathBuf,
-        /// what it was to be
-        expected: &'static str,
-        /// the most that it may have
-        max: u64,
-    },
-    /// a file of another kind
-    #[error("{origin}: expected {expected}, came {came}")]
-    OtherKind {
-        /// file name, or what the text is
-        origin: String,
-        /// what it was to be
-        expected: &'static str,
-        /// what it is, by its keys
-        came: String,
-    },
-    /// not TOML, a key that does not exist, a key that is missing, or a value of the wrong kind
-    #[error("{origin}: expected {expected}: {reason}")]
-    Parse {
-        /// file name, or what the text is
-        origin: String,
-        /// what it was to be
-        expected: &'static str,
-        /// line, column, what stands there and what is wrong with it
-        reason: String,
-    },
-    /// a value, or several together, that cannot be
-    #[error("{origin}: `{key}`: expected {expected}, came {came}")]
-    Invalid {
-        /// file name, or what the text is
-        origin: String,
-        /// key with its table, `body.mass`
-        key: String,
-        /// what would have been right
-        expected: String,
-        /// what the file says
-        came: String,
-    },
-    /// a value that cannot be written as TOML
-    #[error("cannot write as TOML: {0}")]
-    Write(#[from] toml::ser::Error),
-}

@@ -1,11 +1,12 @@
 //! `trajectory.toml`: the coefficients of (18), what they were planned for, and what they are worth.
 
+use super::ConfigError;
 use super::check::Check;
 use super::kind::Kind;
+use super::read::{parse_toml, read_text};
 use super::vehicle::limits;
 use super::vehicle_file::LimitsTable;
 use super::vehicle_writer::limits_table;
-use super::{ConfigError, parse_toml, read_text};
 use crate::text;
 use crate::trajectory::{FourierAxis, FourierTrajectory, check_size};
 use crate::vehicle::Limits;

@@ -5,13 +5,14 @@ use std::path::Path;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::ConfigError;
 use super::check::Check;
 use super::kind::Kind;
+use super::read::{parse_toml, read_text};
 use super::vehicle_file::{
     ActuatorKind, AnchorKey, BodyTable, InertiaTable, LimitsTable, PropulsionTable, RotorTable, SpinKey,
     VehicleFile,
 };
-use super::{ConfigError, parse_toml, read_text};
 use crate::text;
 use crate::units;
 use crate::vehicle::{

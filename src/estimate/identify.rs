@@ -1,6 +1,8 @@
 //! All methods on one or several flights of a vehicle, and which of them to believe.
 
 use super::compensate::{as_stated, compensation, take_out};
+use super::error::EstimateError;
+use super::method::Method;
 use super::plausible::{disagreeing, implausible};
 use super::recommend::{Recommendation, recommend};
 use super::result::{Estimated, MethodResult};
@@ -13,41 +15,6 @@ use crate::signals::{
     ActuationLatency, Butterworth, Signals, ThrustSource, WeakKernel, WindowedFir, highest_harmonic_hz,
 };
 use crate::vehicle::Vehicle;
-
-/// A method's name as in files and JSON.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Method {
-    /// standard model (34), least squares (40)
-    Ls,
-    /// standard model (34), gradient descent (42)
-    Gd,
-    /// filtered model (38), least squares (40)
-    Fmls,
-    /// filtered model (38), gradient descent (42)
-    Fmgd,
-    /// weak form, weighted least squares
-    Weak,
-    /// weak form, Huber weights
-    WeakRobust,
-    /// weak form, the commanded trajectory as instrument
-    WeakIv,
-}
-
-impl Method {
-    /// Short name in tables and JSON.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Ls => "LS",
-            Self::Gd => "GD",
-            Self::Fmls => "FMLS",
-            Self::Fmgd => "FMGD",
-            Self::Weak => "WEAK",
-            Self::WeakRobust => "WEAK-ROBUST",
-            Self::WeakIv => "WEAK-IV",
-        }
-    }
-}
 
 /// How the identification is done.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -197,24 +164,6 @@ fn identify_evenly(
 /// What the standard errors do not hold where thrust is from commands.
 const BY_COMMANDS: &str = "thrust from commands: what they do between two samples is not in the standard errors, which leaves mass and \
                            moments uncertain by some tenths of a percent more; measured rotor speeds (ESC_STATUS) do not have this";
-
-/// Why nothing could be identified.
-#[derive(Debug, thiserror::Error)]
-pub enum EstimateError {
-    /// no usable rows
-    #[error("no usable stretch of flight is as long as the weak form's kernel; record a longer flight")]
-    NoRows,
-    /// the cut-off does not fit the data's rate
-    #[error(
-        "low-pass cut-off {cutoff_hz} Hz: expected more than 0 and less than half the grid's {rate_hz:.1} Hz"
-    )]
-    Cutoff {
-        /// Hz
-        cutoff_hz: f64,
-        /// Hz
-        rate_hz: f64,
-    },
-}
 
 /// Ten times the highest harmonic, as the paper's lambda is (30 rad/s over 180 deg/s); 5 Hz where the
 /// trajectory is not known; never beyond a fifth of the sample rate.

@@ -2,10 +2,12 @@
 
 mod anchor;
 mod compensate;
+mod error;
 mod expected;
 mod identify;
 mod information;
 mod live;
+mod method;
 mod physical;
 mod plausible;
 mod problem;
@@ -17,10 +19,12 @@ mod theta;
 mod weak;
 
 pub use anchor::{ThrustScale, apply_anchor, identified_vehicle, rescaled, thrust_scale};
+pub use error::EstimateError;
 pub use expected::NoiseTerm;
-pub use identify::{EstimateError, Identification, IdentifySettings, Method, identify};
+pub use identify::{Identification, IdentifySettings, identify};
 pub use information::WeakInformation;
 pub use live::RecursiveEstimator;
+pub use method::Method;
 pub(crate) use physical::{LogCholesky, log_cholesky, unpack};
 pub use physical::{is_physical, nearest_physical, second_moments};
 pub use problem::{Channel, Problem, Solution};

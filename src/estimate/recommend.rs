@@ -1,6 +1,6 @@
 //! Which method to believe for this flight, and why.
 
-use super::identify::Method;
+use super::method::Method;
 use super::physical::{is_physical, nearest_physical};
 use super::result::{Estimated, Finding, MethodResult};
 use super::theta::{NAMES, Theta, scale_of};

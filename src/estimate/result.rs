@@ -1,6 +1,6 @@
 //! Estimates as they are handed on: a value with its standard error, or why there is none.
 
-use super::identify::Method;
+use super::method::Method;
 use super::theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, scale_of};
 use super::weak::WeakEstimate;
 

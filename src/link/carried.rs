@@ -9,7 +9,8 @@ use tokio::sync::{mpsc, watch};
 
 use super::clock::HostStamp;
 use super::incoming::Incoming;
-use super::open::{Ends, Link, LinkOptions, QUEUE};
+use super::open::{Ends, Link, QUEUE};
+use super::options::LinkOptions;
 use super::outgoing::Outgoing;
 use super::pen::Direct;
 use super::reader::LinkReader;

@@ -6,8 +6,9 @@ use std::sync::atomic::Ordering;
 use tokio::sync::mpsc;
 
 use super::clock::{HostClock, HostStamp};
-use super::open::LinkOptions;
-use super::reader::{LinkEvent, Received, ReceivedFrame};
+use super::event::LinkEvent;
+use super::options::LinkOptions;
+use super::received::{Received, ReceivedFrame};
 use super::recorder::Recorder;
 use super::shared::Shared;
 use super::signing::{Signing, Told};

@@ -7,17 +7,14 @@ use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 
 use super::address::Address;
-use super::clock::HostClock;
 use super::error::LinkError;
 use super::incoming::Incoming;
+use super::options::LinkOptions;
 use super::outgoing::Outgoing;
 use super::reader::LinkReader;
-use super::recorder::Recorder;
 use super::shared::Shared;
-use super::signing::Signing;
 use super::transport::{self, Transport};
 use super::writer::LinkWriter;
-use crate::log::{ComponentId, SystemId};
 
 /// Frames that may wait to be sent.
 pub(super) const QUEUE: usize = 4096;
@@ -26,48 +23,6 @@ const LINGER: Duration = Duration::from_secs(1);
 
 /// So often the link's task says that it runs.
 const RUNS: Duration = Duration::from_millis(10);
-
-/// How a link is to be.
-#[derive(Debug, Clone)]
-pub struct LinkOptions {
-    /// system id of the messages sent (default 255, a ground station)
-    pub system: SystemId,
-    /// component id of the messages sent (default 190, a ground station's)
-    pub component: ComponentId,
-    /// where the stamps come from: share one clock among the links of a process
-    pub clock: HostClock,
-    /// a `udpin` link forgets its peer after this silence and answers the next that sends a heartbeat; until then it goes
-    /// on sending to it. Longer than the 5 s for which a flight streams setpoints into a silence: where the downlink
-    /// alone is lost, the vehicle still hears them
-    pub peer_timeout: Duration,
-    /// a `tcpout` link that is refused is open all the same, and goes on trying: whichever end is started first,
-    /// the other is waited for
-    pub patient: bool,
-    /// signs what is sent, and believes only what is signed; without it signed frames pass unchecked
-    pub signing: Option<Signing>,
-    /// records every frame received and sent
-    pub recorder: Option<Recorder>,
-    /// for tests: the link's task stands still while this is set
-    pub parked: Option<Arc<AtomicBool>>,
-}
-
-impl Default for LinkOptions {
-    fn default() -> Self {
-        Self {
-            system: SystemId(255),
-            component: ComponentId(190),
-            clock: HostClock::start(),
-            peer_timeout: Duration::from_secs(8),
-            patient: false,
-            signing: None,
-            recorder: None,
-            parked: None,
-        }
-    }
-}
-
-/// Both halves of a link.
-pub type Ends = (LinkReader, LinkWriter);
 
 /// Opens links.
 #[derive(Debug)]
@@ -96,6 +51,9 @@ impl Link {
         (start(one, first), start(two, second))
     }
 }
+
+/// Both halves of a link.
+pub type Ends = (LinkReader, LinkWriter);
 
 fn start(name: String, transport: Transport, options: &LinkOptions) -> Ends {
     let shared = Arc::new(Shared::new(name, transport.local(), options));

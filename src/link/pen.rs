@@ -13,7 +13,7 @@ use tokio::net::UdpSocket;
 use tokio::sync::mpsc;
 
 use super::clock::{HostClock, HostStamp};
-use super::open::LinkOptions;
+use super::options::LinkOptions;
 use super::recorder::Recorder;
 use super::signing::Signing;
 use crate::log::{ComponentId, Frame, SystemId};

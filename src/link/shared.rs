@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::{Notify, watch};
 
 use super::given::Given;
-use super::open::LinkOptions;
+use super::options::LinkOptions;
 use super::pen::Pen;
 use super::stats::LinkStats;
 

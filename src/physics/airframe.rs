@@ -2,11 +2,8 @@
 
 use nalgebra::{SMatrix, Vector3, Vector4};
 
-use super::{PhysicsError, Wrench};
+use super::{MAX_ROTORS, PhysicsError, Wrench};
 use crate::vehicle::{Propulsion, Vehicle};
-
-/// Fixed capacity for rotors, so that no step of a simulation allocates.
-pub const MAX_ROTORS: usize = 8;
 
 /// Rotors about the centre of mass and the scale of hover.
 ///

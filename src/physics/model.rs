@@ -5,107 +5,10 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::{
-    Airframe, Condition, Effect, Hook, MAX_ROTORS, Measurement, Own, PhysicsError, RigidBodyModel, Rotors,
-    State, Wrench, effects,
+    ActiveEffect, Airframe, Condition, Effect, Hook, Input, Measurement, Own, PhysicsError, RigidBodyModel,
+    Rotors, State, Wrench,
 };
 use crate::vehicle::Vehicle;
-
-/// What comes from outside at one instant.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Input {
-    /// s
-    pub time_s: f64,
-    /// rotor speed commanded, over the hover speed (-)
-    pub speed_command: [f64; MAX_ROTORS],
-    /// its rate, 1/s, where the speeds are measured ones; commands step, and have none
-    pub speed_rate_1_s: [f64; MAX_ROTORS],
-    /// world, m/s
-    pub wind_m_s: Vector3<f64>,
-    /// V, where known
-    pub battery_voltage_v: Option<f64>,
-}
-
-impl Input {
-    /// Commands u in 0..1, no wind. Commands beyond the rotor count are ignored.
-    #[must_use]
-    pub fn from_commands(airframe: &Airframe, time_s: f64, commands: &[f64]) -> Self {
-        let mut speed_command = [0.0; MAX_ROTORS];
-        for (speed, command) in speed_command.iter_mut().zip(commands).take(airframe.rotor_count()) {
-            *speed = airframe.relative_speed(*command);
-        }
-        let speed_rate_1_s = [0.0; MAX_ROTORS];
-        Self { time_s, speed_command, speed_rate_1_s, wind_m_s: Vector3::zeros(), battery_voltage_v: None }
-    }
-}
-
-/// An effect with its values.
-#[derive(Debug, Clone)]
-pub struct ActiveEffect {
-    effect: &'static dyn Effect,
-    parameters: Vec<f64>,
-}
-
-impl ActiveEffect {
-    /// # Errors
-    /// If the number of values is not that of the effect's parameters, with or without the finer ones.
-    pub fn new(effect: &'static dyn Effect, parameters: &[f64]) -> Result<Self, PhysicsError> {
-        let (expected, got) = (effect.parameters().len(), parameters.len());
-        if got != expected && got != expected + effect.finer_parameters().len() {
-            return Err(PhysicsError::ParameterCount { id: effect.id(), expected, got });
-        }
-        Ok(Self { effect, parameters: parameters.to_vec() })
-    }
-
-    /// By names, as files have them.
-    ///
-    /// # Errors
-    /// If there is no such effect, a parameter is missing, unknown, or outside its bounds.
-    pub fn named(id: &str, values: &[(&str, f64)]) -> Result<Self, PhysicsError> {
-        let effect = effects::by_id(id).ok_or_else(|| PhysicsError::UnknownEffect { id: id.to_owned() })?;
-        let refuse = |name: &str, expected: String, got: String| {
-            Err(PhysicsError::EffectParameter { id: effect.id(), name: name.to_owned(), expected, got })
-        };
-        let (common, finer) = (effect.parameters(), effect.finer_parameters());
-        let names: Vec<_> = common.iter().chain(finer).map(|parameter| parameter.name).collect();
-        if let Some((name, _)) = values.iter().find(|(name, _)| !names.contains(name)) {
-            return refuse(name, format!("one of {}", names.join(", ")), "an unknown name".to_owned());
-        }
-        let is_finer = finer.iter().any(|parameter| values.iter().any(|(name, _)| *name == parameter.name));
-        let mut parameters = Vec::with_capacity(names.len());
-        for parameter in common.iter().chain(if is_finer { finer } else { &[] }) {
-            let range = format!("{} to {} {}", parameter.min, parameter.max, parameter.unit);
-            match values.iter().find(|(name, _)| *name == parameter.name) {
-                Some((_, value)) if (parameter.min..=parameter.max).contains(value) => {
-                    parameters.push(*value)
-                }
-                Some((_, value)) => return refuse(parameter.name, range, value.to_string()),
-                None => return refuse(parameter.name, range, "nothing".to_owned()),
-            }
-        }
-        Ok(Self { effect, parameters })
-    }
-
-    /// Which effect.
-    #[must_use]
-    pub fn effect(&self) -> &'static dyn Effect {
-        self.effect
-    }
-
-    /// Its values, in the order of [`Effect::parameters`], then of [`Effect::finer_parameters`] if it has them.
-    #[must_use]
-    pub fn parameters(&self) -> &[f64] {
-        &self.parameters
-    }
-}
-
-/// Force and torque at one instant, and what the rotors do.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Evaluation {
-    /// all but gravity, body, about the centre of mass
-    pub wrench: Wrench,
-    /// after all effects
-    pub rotors: Rotors,
-}
 
 /// A vehicle with effects.
 #[derive(Debug, Clone)]
@@ -119,42 +22,6 @@ pub struct Model {
     slots: Vec<Range<usize>>,
     own_state_count: usize,
     by_hook: ByHook,
-}
-
-/// An effect where it acts, with its part of the own states.
-#[derive(Debug, Clone)]
-struct Acting {
-    active: ActiveEffect,
-    slot: Range<usize>,
-}
-
-/// The effects that act through each hook, side by side for the inner loop.
-#[derive(Debug, Clone, Default)]
-struct ByHook {
-    air: Vec<Acting>,
-    center_of_mass: Vec<Acting>,
-    rotor_speed: Vec<Acting>,
-    rotor_thrust: Vec<Acting>,
-    wrench: Vec<Acting>,
-    reaction: Vec<Acting>,
-}
-
-impl ByHook {
-    fn of(effects: &[ActiveEffect], slots: &[Range<usize>]) -> Self {
-        let through = |hook: Hook| {
-            let acts = |(active, _): &(&ActiveEffect, _)| active.effect.hooks().contains(&hook);
-            let all = effects.iter().zip(slots).filter(acts);
-            all.map(|(active, slot)| Acting { active: active.clone(), slot: slot.clone() }).collect()
-        };
-        Self {
-            air: through(Hook::Air),
-            center_of_mass: through(Hook::CenterOfMass),
-            rotor_speed: through(Hook::RotorSpeed),
-            rotor_thrust: through(Hook::RotorThrust),
-            wrench: through(Hook::Wrench),
-            reaction: through(Hook::Reaction),
-        }
-    }
 }
 
 impl Model {
@@ -297,6 +164,51 @@ impl Model {
             active.effect.measure(state, &turning, &active.parameters, &mut seen);
         }
         seen
+    }
+}
+
+/// Force and torque at one instant, and what the rotors do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Evaluation {
+    /// all but gravity, body, about the centre of mass
+    pub wrench: Wrench,
+    /// after all effects
+    pub rotors: Rotors,
+}
+
+/// An effect where it acts, with its part of the own states.
+#[derive(Debug, Clone)]
+struct Acting {
+    active: ActiveEffect,
+    slot: Range<usize>,
+}
+
+/// The effects that act through each hook, side by side for the inner loop.
+#[derive(Debug, Clone, Default)]
+struct ByHook {
+    air: Vec<Acting>,
+    center_of_mass: Vec<Acting>,
+    rotor_speed: Vec<Acting>,
+    rotor_thrust: Vec<Acting>,
+    wrench: Vec<Acting>,
+    reaction: Vec<Acting>,
+}
+
+impl ByHook {
+    fn of(effects: &[ActiveEffect], slots: &[Range<usize>]) -> Self {
+        let through = |hook: Hook| {
+            let acts = |(active, _): &(&ActiveEffect, _)| active.effect.hooks().contains(&hook);
+            let all = effects.iter().zip(slots).filter(acts);
+            all.map(|(active, slot)| Acting { active: active.clone(), slot: slot.clone() }).collect()
+        };
+        Self {
+            air: through(Hook::Air),
+            center_of_mass: through(Hook::CenterOfMass),
+            rotor_speed: through(Hook::RotorSpeed),
+            rotor_thrust: through(Hook::RotorThrust),
+            wrench: through(Hook::Wrench),
+            reaction: through(Hook::Reaction),
+        }
     }
 }
 

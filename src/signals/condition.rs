@@ -6,13 +6,14 @@ use super::align::{
     AlignFrame, InertialOnGrid, StreamOffset, attitude_offset, attitudes_onto, position_offset, vectors_onto,
     velocity_offset,
 };
+use super::flight::{Quality, Reference, Signals};
 use super::select::{best, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
-use super::usable::{Evidence, Usable, airborne_spans, usable};
+use super::usable::{Evidence, airborne_spans, usable};
 use super::{Grid, SignalsError, WeakKernel, plausible, sufficient};
 use crate::log::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
-use nalgebra::{UnitQuaternion, Vector3, Vector4};
+use nalgebra::{UnitQuaternion, Vector3};
 
 /// How a flight is conditioned.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,106 +39,6 @@ impl Default for ConditionSettings {
             thrust: ThrustPreference::Measured,
             askew: false,
         }
-    }
-}
-
-/// A flight on one clock and one grid. Vectors have one entry a grid instant; SI, body FLU, world NWU.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Signals {
-    /// instants, s of the vehicle's clock
-    pub grid: Grid,
-    /// airborne, exciting, not saturated, no gap in any stream that is used
-    pub usable: Vec<bool>,
-    /// body to world
-    pub attitude: Option<Vec<UnitQuaternion<f64>>>,
-    /// rad/s, body
-    pub rate: Option<Vec<Vector3<f64>>>,
-    /// m/s^2, body
-    pub specific_force: Option<Vec<Vector3<f64>>>,
-    /// m/s^2, world, gravity removed, where the log holds it
-    pub world_acceleration: Option<Vec<Vector3<f64>>>,
-    /// m, world
-    pub position: Option<Vec<Vector3<f64>>>,
-    /// m/s, world
-    pub velocity: Option<Vec<Vector3<f64>>>,
-    /// N, one a rotor and instant, rotor after rotor; empty where the log holds the wrench itself
-    pub rotor_thrust_n: Vec<f64>,
-    /// `F = [Fz tau]`, N and N m, from the rotors through the nominal mixer, less half of
-    /// [`Self::jitter_wrench`]
-    pub wrench: Vec<Vector4<f64>>,
-    /// what the commands' jitter adds to the wrench if the rotors follow all of it (N, N m); they follow
-    /// a share of it between none and all
-    pub jitter_wrench: Option<Vec<Vector4<f64>>>,
-    /// V; `None` where it is not recorded
-    pub battery_voltage_v: Option<Vec<f64>>,
-    /// what was commanded
-    pub reference: Option<Reference>,
-    /// where things came from and what was repaired
-    pub quality: Quality,
-}
-
-/// The commanded trajectory on the grid, world NWU.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reference {
-    /// m/s^2, without gravity
-    pub acceleration: Vec<Vector3<f64>>,
-    /// rad about up
-    pub yaw: Vec<f64>,
-    /// message that it came from
-    pub message: &'static str,
-}
-
-/// Where the signals came from and what was done to them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Quality {
-    /// quantity, message, samples a second
-    pub sources: Vec<(Quantity, &'static str, f64)>,
-    /// what the thrusts rest on
-    pub thrust_source: ThrustSource,
-    /// offsets of streams against the inertial unit
-    pub offsets: Vec<(Quantity, StreamOffset)>,
-    /// airborne spans, s
-    pub airborne_s: Vec<(f64, f64)>,
-    /// how the mask came about
-    pub usable: Usable,
-    /// remarks for the user
-    pub notes: Vec<String>,
-}
-
-/// The streams that were chosen.
-struct Chosen<'a> {
-    attitude: Option<(&'static str, &'a Stream)>,
-    rate: Option<(&'static str, &'a Stream)>,
-    specific_force: Option<(&'static str, &'a Stream)>,
-    world_acceleration: Option<(&'static str, &'a Stream)>,
-    position: Option<(&'static str, &'a Stream)>,
-    velocity: Option<(&'static str, &'a Stream)>,
-}
-
-impl<'a> Chosen<'a> {
-    fn from(recording: &'a Recording) -> Self {
-        let pick = |quantity, width| {
-            best(recording, quantity, |s: &Stream| s.width == width).map(|(key, stream)| (key.source, stream))
-        };
-        Self {
-            attitude: pick(Quantity::Attitude, 4),
-            rate: pick(Quantity::AngularRate, 3),
-            specific_force: pick(Quantity::SpecificForce, 3),
-            world_acceleration: pick(Quantity::WorldAcceleration, 3),
-            position: pick(Quantity::Position, 3),
-            velocity: pick(Quantity::Velocity, 3),
-        }
-    }
-
-    fn list(&self) -> [(Quantity, Option<(&'static str, &'a Stream)>); 6] {
-        [
-            (Quantity::Attitude, self.attitude),
-            (Quantity::AngularRate, self.rate),
-            (Quantity::SpecificForce, self.specific_force),
-            (Quantity::WorldAcceleration, self.world_acceleration),
-            (Quantity::Position, self.position),
-            (Quantity::Velocity, self.velocity),
-        ]
     }
 }
 
@@ -234,6 +135,43 @@ pub fn stride(step_s: f64) -> usize {
         stride += 1;
     }
     stride
+}
+
+/// The streams that were chosen.
+struct Chosen<'a> {
+    attitude: Option<(&'static str, &'a Stream)>,
+    rate: Option<(&'static str, &'a Stream)>,
+    specific_force: Option<(&'static str, &'a Stream)>,
+    world_acceleration: Option<(&'static str, &'a Stream)>,
+    position: Option<(&'static str, &'a Stream)>,
+    velocity: Option<(&'static str, &'a Stream)>,
+}
+
+impl<'a> Chosen<'a> {
+    fn from(recording: &'a Recording) -> Self {
+        let pick = |quantity, width| {
+            best(recording, quantity, |s: &Stream| s.width == width).map(|(key, stream)| (key.source, stream))
+        };
+        Self {
+            attitude: pick(Quantity::Attitude, 4),
+            rate: pick(Quantity::AngularRate, 3),
+            specific_force: pick(Quantity::SpecificForce, 3),
+            world_acceleration: pick(Quantity::WorldAcceleration, 3),
+            position: pick(Quantity::Position, 3),
+            velocity: pick(Quantity::Velocity, 3),
+        }
+    }
+
+    fn list(&self) -> [(Quantity, Option<(&'static str, &'a Stream)>); 6] {
+        [
+            (Quantity::Attitude, self.attitude),
+            (Quantity::AngularRate, self.rate),
+            (Quantity::SpecificForce, self.specific_force),
+            (Quantity::WorldAcceleration, self.world_acceleration),
+            (Quantity::Position, self.position),
+            (Quantity::Velocity, self.velocity),
+        ]
+    }
 }
 
 fn step(

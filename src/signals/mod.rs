@@ -7,7 +7,9 @@ mod actuation;
 mod actuators;
 mod align;
 mod condition;
+mod error;
 mod filter;
+mod flight;
 mod grid;
 mod latency;
 mod noise;
@@ -24,8 +26,10 @@ pub use actuators::{
     thrusts_from_speeds,
 };
 pub use align::StreamOffset;
-pub use condition::{ConditionSettings, Quality, Reference, Signals, condition, stride};
+pub use condition::{ConditionSettings, condition, stride};
+pub use error::SignalsError;
 pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference};
+pub use flight::{Quality, Reference, Signals};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use latency::{ActuationLatency, delayed_thrusts_n, delayed_wrench};
 pub use noise::{median, white_level, white_level_of};
@@ -34,79 +38,3 @@ pub use spectrum::{hann_windowed, highest_harmonic_hz, power_at};
 pub use sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ};
 pub use usable::{Evidence, Usable, in_air, usable};
 pub use weak::{MAX_ORDER, WeakKernel};
-
-use crate::log::Quantity;
-
-/// Why a recording cannot be conditioned.
-#[derive(Debug, thiserror::Error)]
-pub enum SignalsError {
-    /// no actuator stream that fits the vehicle
-    #[error(
-        "no actuator outputs for {rotors} rotors: expected {unit}, as the vehicle file's [propulsion] says; \
-         the recording holds {found}. They must be in that unit and move. Record actuator outputs (over MAVLink SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS), or correct `actuator`"
-    )]
-    NoActuators {
-        /// rotors of the vehicle
-        rotors: usize,
-        /// what the vehicle file expects
-        unit: &'static str,
-        /// what the recording has
-        found: String,
-    },
-    /// a stream that is needed is there, but hardly a sample of it
-    #[error(
-        "{message} holds {count} usable sample{} of {}: at least {needed} are needed",
-        if *count == 1 { "" } else { "s" },
-        quantity.name()
-    )]
-    TooFewSamples {
-        /// which
-        quantity: Quantity,
-        /// message or column group that it comes from
-        message: &'static str,
-        /// samples that hold a number for every channel that is used
-        count: usize,
-        /// how many it takes
-        needed: usize,
-    },
-    /// nothing that moves
-    #[error(
-        "no stream of motion: expected body rates, attitude or acceleration; record them (over MAVLink ATTITUDE_QUATERNION and HIGHRES_IMU or RAW_IMU)"
-    )]
-    NoMotion,
-    /// sampled too slowly
-    #[error(
-        "sampled too slowly to identify from: {slow}. 100 Hz of each is good: request it on a link that carries it, \
-         or take the on-board log. If the log is faster than that, its time column is not in the unit that the mapping \
-         says"
-    )]
-    TooSlow {
-        /// each slow stream, its rate, and the rate that was expected
-        slow: String,
-    },
-    /// streams do not share a span
-    #[error("motion and actuator streams overlap for {overlap_s:.2} s only; at least 1 s is needed")]
-    NoOverlap {
-        /// s
-        overlap_s: f64,
-    },
-    /// more than one flight
-    #[error(
-        "motion and actuator streams go on for {span_s:.0} s or more: expected one flight, of at most {} samples; divide the log into its flights",
-        Grid::LONGEST
-    )]
-    TooLong {
-        /// s
-        span_s: f64,
-    },
-    /// no stretch of flight is left
-    #[error("nothing to identify from: {usable_s:.1} s usable, at least {needed_s:.1} s needed ({reason})")]
-    NothingUsable {
-        /// s left
-        usable_s: f64,
-        /// s needed
-        needed_s: f64,
-        /// where the time went
-        reason: String,
-    },
-}

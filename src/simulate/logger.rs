@@ -6,9 +6,10 @@ use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
+use super::SimulateError;
 use super::controller::Setpoint;
 use super::sensors::{NoiseLevels, TelemetrySettings};
-use super::{SimulateError, not_negative, positive, whole_steps};
+use super::setting::{not_negative, positive, whole_steps};
 use crate::log::{Quantity, Recording, Stream, StreamKey};
 use crate::physics::{MAX_ROTORS, State};
 

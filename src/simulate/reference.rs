@@ -5,8 +5,9 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
+use super::SimulateError;
 use super::controller::Setpoint;
-use super::{SimulateError, positive};
+use super::setting::positive;
 use crate::trajectory::{FourierAxis, FourierTrajectory};
 
 /// Bounds of a random Fourier trajectory (18); each axis is scaled until it touches its first bound.

@@ -1,6 +1,6 @@
 //! Clean text inside other formats, one function each; JSON and tables of TOML are written by their crates.
 
-use super::clean;
+use super::escape::clean;
 
 /// For the text and the attributes of XML, SVG and HTML.
 #[must_use]

@@ -1,7 +1,9 @@
 //! What a model that is right would leave: noise of the measured states and of the logged commands.
 
-use super::{CompareError, PlaybackSettings, Played, WindowErrors, played};
-use crate::compare::MeanSquare;
+use super::settings::PlaybackSettings;
+use super::windows::{Played, WindowErrors, played};
+use crate::compare::CompareError;
+use crate::compare::mean_square::MeanSquare;
 use crate::physics::{MAX_ROTORS, Model, State};
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;

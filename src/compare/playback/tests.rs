@@ -1,10 +1,13 @@
-use super::*;
-use crate::physics::ActiveEffect;
+use super::commands::Commands;
+use super::{PlaybackSettings, playback};
+use crate::compare::CompareError;
 use crate::physics::effects::{BatterySag, LinearDrag, MotorLag, RotorInertia, TransportDelay};
-use crate::signals::{ConditionSettings, ThrustPreference, condition};
+use crate::physics::{ActiveEffect, MAX_ROTORS, Model};
+use crate::signals::{ConditionSettings, Signals, ThrustPreference, ThrustSource, condition};
 use crate::simulate::{
     FlightSettings, RandomTrajectory, Reference, TelemetrySettings, Truth, random_vehicle, simulate_flight,
 };
+use crate::vehicle::Vehicle;
 
 /// A flight of the true vehicle with these effects, conditioned; sensors with this share of their noise.
 fn flown(effects: Vec<ActiveEffect>, noise: f64, thrust: ThrustPreference) -> (Vehicle, Signals) {

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::io::{self, Write};
 
-use super::worker::Store;
+use super::store::Store;
 
 /// Handed to the store at a time.
 const BATCH: usize = 1 << 16;

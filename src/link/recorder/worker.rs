@@ -1,39 +1,19 @@
 //! The thread that writes a recording.
 
-use std::fs::File;
-use std::io::{self, Write};
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use tokio::sync::oneshot;
 
-use super::State;
 use super::backlog::Backlog;
+use super::state::State;
+use super::store::Store;
 use super::watch::ModeWatch;
 use crate::log::{Frame, TlogWriter};
 
 /// A kill costs no more than what came within this.
 const FLUSH: Duration = Duration::from_secs(1);
-
-/// What a recording is written to.
-pub trait Store: Write + Send {
-    /// Brings what was written to where a power loss does not reach it.
-    ///
-    /// # Errors
-    /// What the system says.
-    fn sync(&mut self) -> io::Result<()>;
-}
-
-impl Store for File {
-    fn sync(&mut self) -> io::Result<()> {
-        match self.sync_data() {
-            // a device or a pipe: nothing of it is kept back
-            Err(error) if error.kind() == io::ErrorKind::InvalidInput => Ok(()),
-            synced => synced,
-        }
-    }
-}
 
 /// Something for the thread to do.
 #[derive(Debug)]

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use super::{SigningError, owner};
+use super::error::SigningError;
+use super::owner;
 
 const KEY_BYTES: usize = 32;
 

@@ -1,8 +1,11 @@
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 
-use super::*;
-use crate::link::reader::LinkEvent;
+use super::clock::{STALE, clock_warning, now};
+use super::times::{AHEAD, Times};
+use super::{Distrust, Signing, SigningError, SigningKey, Told};
+use crate::link::event::LinkEvent;
+use crate::log::Frame;
 
 const NOW: u64 = 40_000_000_000_000;
 

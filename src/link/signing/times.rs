@@ -8,9 +8,14 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::thread::JoinHandle;
 
-use super::{AHEAD, ComponentId, SigningError, SystemId, owner};
+use super::clock::SECOND;
+use super::error::SigningError;
+use super::owner;
+use crate::log::{ComponentId, SystemId};
 
 const TITLE: &str = "mavid signing times 1";
+/// Time is kept ahead by this much, so that it need not be written with each frame: 10 s.
+pub(super) const AHEAD: u64 = 10 * SECOND;
 /// A signature has 48 bits for its time.
 const LATEST: u64 = (1 << 48) - 1;
 

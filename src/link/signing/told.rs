@@ -2,8 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use super::{Distrust, SECOND, STALE, Signing};
-use crate::link::reader::LinkEvent;
+use super::clock::{SECOND, STALE};
+use super::distrust::Distrust;
+use super::signer::Signing;
+use crate::link::event::LinkEvent;
 use crate::log::{ComponentId, Frame, SystemId};
 
 /// Senders and reasons that are told; further ones are only counted, so that noise does not flood who listens.

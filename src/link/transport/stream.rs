@@ -1,13 +1,18 @@
 //! A connection that carries a stream of bytes.
 
+use std::time::Duration;
+
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::time::timeout;
 
 use super::super::incoming::Incoming;
 use super::super::outgoing::Outgoing;
-use super::SILENCE;
 
 const BUFFER: usize = 1 << 16;
+/// A frame in a stream is not interrupted for longer: what waits for more bytes is then decided. Radios that
+/// take turns pause for less.
+pub(super) const SILENCE: Duration = Duration::from_millis(250);
+
 /// Carries bytes both ways until the connection ends, and says why it did.
 pub(super) async fn session(
     stream: impl AsyncRead + AsyncWrite,

@@ -11,7 +11,8 @@ use tokio::time::timeout;
 use super::super::incoming::Incoming;
 use super::super::outgoing::Outgoing;
 use super::backoff::Backoff;
-use super::{resolve, stream};
+use super::resolver::resolve;
+use super::stream;
 
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
 /// A peer that is gone without a word is found out after this and a few probes.

@@ -12,7 +12,7 @@ use tokio::time::timeout;
 use super::super::clock::HostStamp;
 use super::super::incoming::Incoming;
 use super::super::outgoing::Outgoing;
-use super::SILENCE;
+use super::stream::SILENCE;
 
 const BUFFER: usize = 4096;
 /// Pieces that may wait for the task.

@@ -14,7 +14,7 @@ use super::super::clock::HostStamp;
 use super::super::incoming::Incoming;
 use super::super::outgoing::Outgoing;
 use super::backoff::Backoff;
-use super::resolve;
+use super::resolver::resolve;
 
 /// Larger than any datagram.
 const BUFFER: usize = 1 << 16;

@@ -1,6 +1,7 @@
 //! Actuator outputs and rotor speeds.
 
-use super::{Samples, Source};
+use super::samples::Samples;
+use super::source::Source;
 use crate::log::frame::Payload;
 use crate::log::recording::Quantity;
 use crate::units::rad_s_from_rpm;

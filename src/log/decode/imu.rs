@@ -1,7 +1,7 @@
 //! Accelerometer and gyroscope.
 
-use super::Samples;
 use super::motion::xyz;
+use super::samples::Samples;
 use crate::frames::body_from_frd;
 use crate::log::frame::Payload;
 use crate::log::recording::{Autopilot, Quantity};

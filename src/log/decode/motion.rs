@@ -1,6 +1,6 @@
 //! Attitude, rates, position and velocity as the vehicle estimates them.
 
-use super::Samples;
+use super::samples::Samples;
 use crate::frames::{
     Attitude, attitude_from_euler_frd_ned, attitude_from_frd_ned, body_from_frd, world_from_ned,
 };

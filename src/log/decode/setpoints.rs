@@ -1,7 +1,8 @@
 //! What the vehicle was told to do.
 
 use super::motion::{wxyz, xyz};
-use super::{Samples, Source};
+use super::samples::Samples;
+use super::source::Source;
 use crate::frames::{attitude_from_frd_ned, body_from_frd, world_from_ned, yaw_from_ned};
 use crate::log::frame::{Payload, SystemId};
 use crate::log::recording::Quantity;

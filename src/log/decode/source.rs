@@ -1,6 +1,5 @@
 //! The messages that are read, and where each keeps its time.
 
-use super::{Samples, actuators, imu, motion, setpoints, status};
 use crate::log::clock::Stamp;
 use crate::log::frame::Payload;
 use crate::log::recording::{Quantity, StreamKey};
@@ -36,7 +35,7 @@ enum TimeField {
 }
 
 macro_rules! sources {
-    ($($variant:ident = $id:literal, $name:literal, $time:ident, $decode:path;)*) => {
+    ($($variant:ident = $id:literal, $name:literal, $time:ident;)*) => {
         /// A message that is read.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[allow(missing_docs)] // the variants are MAVLink's own names
@@ -67,42 +66,38 @@ macro_rules! sources {
             fn time_field(self) -> TimeField {
                 match self { $(Self::$variant => TimeField::$time,)* }
             }
-
-            pub(super) fn decode(self, payload: Payload<'_>, samples: &mut Samples<'_>) {
-                match self { $(Self::$variant => $decode(payload, samples),)* }
-            }
         }
     };
 }
 
 sources! {
-    Heartbeat = 0, "HEARTBEAT", Absent, status::heartbeat;
-    SysStatus = 1, "SYS_STATUS", Absent, status::sys_status;
-    SystemTime = 2, "SYSTEM_TIME", BootMsAt8, nothing;
-    ParamValue = 22, "PARAM_VALUE", Absent, nothing;
-    ScaledImu = 26, "SCALED_IMU", BootMs, imu::scaled_imu;
-    RawImu = 27, "RAW_IMU", Us, imu::raw_imu;
-    Attitude = 30, "ATTITUDE", BootMs, motion::attitude;
-    AttitudeQuaternion = 31, "ATTITUDE_QUATERNION", BootMs, motion::attitude_quaternion;
-    LocalPositionNed = 32, "LOCAL_POSITION_NED", BootMs, motion::local_position_ned;
-    ServoOutputRaw = 36, "SERVO_OUTPUT_RAW", BootUs32, actuators::servo_output_raw;
-    SetAttitudeTarget = 82, "SET_ATTITUDE_TARGET", Absent, setpoints::set_attitude_target;
-    AttitudeTarget = 83, "ATTITUDE_TARGET", BootMs, setpoints::attitude_target;
-    SetPositionTargetLocalNed = 84, "SET_POSITION_TARGET_LOCAL_NED", Absent, setpoints::set_position_target_local_ned;
-    PositionTargetLocalNed = 85, "POSITION_TARGET_LOCAL_NED", BootMs, setpoints::position_target_local_ned;
-    HighresImu = 105, "HIGHRES_IMU", Us, imu::highres_imu;
-    ScaledImu2 = 116, "SCALED_IMU2", BootMs, imu::scaled_imu;
-    ScaledImu3 = 129, "SCALED_IMU3", BootMs, imu::scaled_imu;
-    BatteryStatus = 147, "BATTERY_STATUS", Absent, status::battery_status;
-    ExtendedSysState = 245, "EXTENDED_SYS_STATE", Absent, status::extended_sys_state;
-    Statustext = 253, "STATUSTEXT", Absent, nothing;
-    EscStatus = 291, "ESC_STATUS", Us, actuators::esc_status;
-    Odometry = 331, "ODOMETRY", Us, motion::odometry;
-    ActuatorOutputStatus = 375, "ACTUATOR_OUTPUT_STATUS", Us, actuators::actuator_output_status;
-    CurrentMode = 436, "CURRENT_MODE", Absent, status::current_mode;
-    EscTelemetry1To4 = 11030, "ESC_TELEMETRY_1_TO_4", Absent, actuators::esc_telemetry;
-    EscTelemetry5To8 = 11031, "ESC_TELEMETRY_5_TO_8", Absent, actuators::esc_telemetry;
-    EscTelemetry9To12 = 11032, "ESC_TELEMETRY_9_TO_12", Absent, actuators::esc_telemetry;
+    Heartbeat = 0, "HEARTBEAT", Absent;
+    SysStatus = 1, "SYS_STATUS", Absent;
+    SystemTime = 2, "SYSTEM_TIME", BootMsAt8;
+    ParamValue = 22, "PARAM_VALUE", Absent;
+    ScaledImu = 26, "SCALED_IMU", BootMs;
+    RawImu = 27, "RAW_IMU", Us;
+    Attitude = 30, "ATTITUDE", BootMs;
+    AttitudeQuaternion = 31, "ATTITUDE_QUATERNION", BootMs;
+    LocalPositionNed = 32, "LOCAL_POSITION_NED", BootMs;
+    ServoOutputRaw = 36, "SERVO_OUTPUT_RAW", BootUs32;
+    SetAttitudeTarget = 82, "SET_ATTITUDE_TARGET", Absent;
+    AttitudeTarget = 83, "ATTITUDE_TARGET", BootMs;
+    SetPositionTargetLocalNed = 84, "SET_POSITION_TARGET_LOCAL_NED", Absent;
+    PositionTargetLocalNed = 85, "POSITION_TARGET_LOCAL_NED", BootMs;
+    HighresImu = 105, "HIGHRES_IMU", Us;
+    ScaledImu2 = 116, "SCALED_IMU2", BootMs;
+    ScaledImu3 = 129, "SCALED_IMU3", BootMs;
+    BatteryStatus = 147, "BATTERY_STATUS", Absent;
+    ExtendedSysState = 245, "EXTENDED_SYS_STATE", Absent;
+    Statustext = 253, "STATUSTEXT", Absent;
+    EscStatus = 291, "ESC_STATUS", Us;
+    Odometry = 331, "ODOMETRY", Us;
+    ActuatorOutputStatus = 375, "ACTUATOR_OUTPUT_STATUS", Us;
+    CurrentMode = 436, "CURRENT_MODE", Absent;
+    EscTelemetry1To4 = 11030, "ESC_TELEMETRY_1_TO_4", Absent;
+    EscTelemetry5To8 = 11031, "ESC_TELEMETRY_5_TO_8", Absent;
+    EscTelemetry9To12 = 11032, "ESC_TELEMETRY_9_TO_12", Absent;
 }
 
 impl Source {
@@ -125,6 +120,3 @@ impl Source {
         }
     }
 }
-
-/// For messages that hold no samples.
-fn nothing(_: Payload<'_>, _: &mut Samples<'_>) {}

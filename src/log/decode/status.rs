@@ -1,6 +1,6 @@
 //! Mode, arming, battery, parameters.
 
-use super::Samples;
+use super::samples::Samples;
 use crate::log::frame::Payload;
 use crate::log::recording::{Autopilot, Quantity};
 use crate::units::{amperes_from_ca, volts_from_mv};

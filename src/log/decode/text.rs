@@ -1,6 +1,6 @@
 //! STATUSTEXT: texts longer than 50 bytes come in chunks.
 
-use super::Event;
+use super::event::Event;
 use crate::log::frame::Payload;
 use crate::text;
 

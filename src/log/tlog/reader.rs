@@ -2,7 +2,8 @@
 
 use std::io::Read;
 
-use super::{ByteOrder, NEIGHBOUR_US, STAMP_BYTES, is_wall_clock};
+use super::record::Record;
+use super::stamp::{ByteOrder, STAMP_BYTES, is_wall_clock};
 use crate::log::crc::CrcSeeds;
 use crate::log::error::LogError;
 use crate::log::frame::{Check, Frame, Header, MARKER_V1, MARKER_V2, MAX_FRAME_BYTES, Start};
@@ -16,19 +17,8 @@ const BUFFER_BYTES: usize = 1 << 18;
 const SEARCH_BYTES: u64 = 1 << 20;
 /// Records whose stamps tell the byte order.
 const ORDER_RECORDS: usize = 3;
-
-/// One frame of a log with its host stamp.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Record<'a> {
-    /// host's time of reception, microseconds since 1970 UTC as written, low two bits included
-    pub stamp_us: u64,
-    /// byte offset of the frame in the file
-    pub offset: u64,
-    /// the dialect knows the message, and its checksum is right
-    pub known: bool,
-    /// the frame, byte for byte
-    pub frame: Frame<'a>,
-}
+/// Neighbouring stamps further apart than three days are no neighbours (pymavlink's measure).
+const NEIGHBOUR_US: u64 = 3 * 86_400 * 1_000_000;
 
 /// Reads a telemetry log.
 ///

@@ -3,6 +3,7 @@
 mod angular_damping;
 mod battery_sag;
 mod blade_flapping;
+mod catalogue;
 mod ceiling_effect;
 mod com_offset;
 mod frame_misalignment;
@@ -29,6 +30,7 @@ mod weak_rotor;
 pub use angular_damping::AngularDamping;
 pub use battery_sag::BatterySag;
 pub use blade_flapping::BladeFlapping;
+pub use catalogue::{ALL, by_id};
 pub use ceiling_effect::CeilingEffect;
 pub use com_offset::ComOffset;
 pub use frame_misalignment::FrameMisalignment;
@@ -51,43 +53,6 @@ pub use translational_lift::TranslationalLift;
 pub use transport_delay::TransportDelay;
 pub use vortex_ring::VortexRing;
 pub use weak_rotor::WeakRotor;
-
-use super::Effect;
-
-/// All effects that the program knows.
-pub static ALL: &[&dyn Effect] = &[
-    &LinearDrag,
-    &QuadraticDrag,
-    &GroundEffect,
-    &CeilingEffect,
-    &MotorLag,
-    &TransportDelay,
-    &ThrustCurve,
-    &BatterySag,
-    &WeakRotor,
-    &ComOffset,
-    &ThrustTilt,
-    &RotorInertia,
-    &AngularDamping,
-    &BladeFlapping,
-    &Inflow,
-    &TranslationalLift,
-    &SteadyWind,
-    &Gust,
-    &SlungLoad,
-    &MassChange,
-    &ImuMisalignment,
-    &ImuOffset,
-    &FrameMisalignment,
-    &Tether,
-    &VortexRing,
-];
-
-/// The effect of this identifier.
-#[must_use]
-pub fn by_id(id: &str) -> Option<&'static dyn Effect> {
-    ALL.iter().copied().find(|effect| effect.id() == id)
-}
 
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,11 @@
+use super::flight::feedback;
 use super::*;
-use crate::trajectory::FourierAxis;
+use crate::log::{Quantity, StreamKey};
+use crate::physics::{RigidBodyModel, State, Wrench};
+use crate::simulate::{NoiseLevels, SimulateError};
+use crate::trajectory::{FourierAxis, FourierTrajectory};
 use crate::vehicle::RigidBody;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3, Vector4};
 
 /// Table 2 of the paper, period 10 s.
 fn table2() -> FourierTrajectory {

@@ -1,6 +1,11 @@
 //! Laws that hold for every effect: symmetry, and what takes energy out.
 
-use super::*;
+use nalgebra::{UnitQuaternion, Vector3};
+use proptest::prelude::*;
+
+use super::fixtures::*;
+use crate::physics::effects::*;
+use crate::physics::{ActiveEffect, Airframe, Condition, Effect, Input, Rotors, State};
 
 proptest! {
     /// Turning world, state and wind about the vertical changes nothing that the body feels.

@@ -1,7 +1,13 @@
 //! Each effect's limit cases, computed by hand.
 
-use super::*;
-use crate::physics::Measurement;
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::fixtures::*;
+use crate::physics::effects::*;
+use crate::physics::{
+    ActiveEffect, Airframe, Condition, Effect, Input, MAX_ROTORS, Measurement, Model, Own, Rotors, State,
+    Wrench,
+};
 
 /// Change that an effect makes to a hovering vehicle in this state.
 fn change(effect: &'static dyn Effect, theta: &[f64], state: &State) -> Wrench {
@@ -329,4 +335,38 @@ fn vortex_ring_takes_thrust_only_in_a_steep_descent() {
     assert!(all.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 1e-3));
     // half formed at x = -0.5: k = 1.543313, over k(0) 1.342011, less sqrt(1.0625) + 0.25 = 1.280776
     assert!((lost(-0.5, 0.0) + 0.061_235).abs() < 1e-5, "{}", lost(-0.5, 0.0));
+}
+
+#[test]
+fn hover_drag_is_its_coefficient_times_speed_and_acts_at_the_hubs() {
+    let drag = || vec![ActiveEffect::new(&LinearDrag, &[0.4, 0.3, 0.0]).unwrap()];
+    let state = drifting(Vector3::new(2.0, 0.0, 0.0));
+    let change = evaluate(drag(), &state) - evaluate(vec![], &state);
+    assert!((change.force_n - Vector3::new(-0.8, 0.0, 0.0)).norm() < 1e-9);
+    // hubs are 19 mm above the centre of mass: -0.8 N there pitches the nose up, negative about y;
+    // and 2 mm to the left of it on average, which yaws: -r_y F_x = 0.0016
+    assert!((change.torque_nm - Vector3::new(0.0, -0.0152, 0.0016)).norm() < 1e-9);
+}
+
+#[test]
+fn wind_acts_through_drag_alone() {
+    let wind = || ActiveEffect::new(&SteadyWind, &[3.0, -1.0, 0.0]).unwrap();
+    let drag = || ActiveEffect::new(&LinearDrag, &[0.4, 0.3, 0.1]).unwrap();
+    let still = drifting(Vector3::zeros());
+    assert_eq!(evaluate(vec![wind()], &still), evaluate(vec![], &still));
+    let blown = evaluate(vec![drag(), wind()], &still);
+    assert!((blown.force_n.x - 1.2).abs() < 1e-9 && (blown.force_n.y + 0.3).abs() < 1e-9);
+    // drifting with the wind there is no drag
+    let carried = drifting(Vector3::new(3.0, -1.0, 0.0));
+    let change = evaluate(vec![drag(), wind()], &carried) - evaluate(vec![], &carried);
+    assert!(change.force_n.norm() < 1e-12);
+}
+
+#[test]
+fn damping_opposes_the_rates() {
+    let state = State { rates_rad_s: Vector3::new(1.0, -2.0, 0.5), ..drifting(Vector3::zeros()) };
+    let damping = ActiveEffect::new(&AngularDamping, &[0.01, 0.02, 0.03]).unwrap();
+    let change = evaluate(vec![damping], &state) - evaluate(vec![], &state);
+    assert!((change.torque_nm - Vector3::new(-0.01, 0.04, -0.015)).norm() < 1e-12);
+    assert!(change.force_n.norm() < 1e-12);
 }

@@ -1,7 +1,13 @@
 //! What acts between command and rotor speed, and what is left of it where the speed is measured.
 
-use super::*;
-use crate::physics::Effect;
+use nalgebra::Vector3;
+
+use super::fixtures::*;
+use crate::physics::effects::*;
+use crate::physics::{
+    ActiveEffect, Airframe, Condition, Effect, Input, MAX_ROTORS, Model, Own, Rotors, effect_wrench,
+};
+use crate::vehicle::Propulsion;
 
 /// Thrust at hover of the test vehicle, N.
 const WEIGHT_N: f64 = 19.62;
@@ -113,4 +119,20 @@ fn measured_rotors_spin_up_as_measured() {
     // a lag has its own rate of change
     let lagging = model(vec![inertia, ActiveEffect::new(&MotorLag, &[0.05]).unwrap()]);
     assert!((torque(&lagging, &[1.0; 4]) - torque(&model(vec![]), &[])).abs() < 1e-12);
+}
+
+#[test]
+fn lagging_rotors_keep_their_speed_and_head_for_the_command() {
+    let vehicle = vehicle();
+    let airframe = Airframe::new(&vehicle).unwrap();
+    let state = drifting(Vector3::zeros());
+    let input = Input { speed_command: [1.5; MAX_ROTORS], ..Input::from_commands(&airframe, 0.0, &[]) };
+    let at = Condition::new(&airframe, &state, &input, Vector3::zeros());
+    let rotors = Rotors::as_commanded(&airframe, &input.speed_command);
+    let mut rates = [0.0; 4];
+    let mut own = Own { parameters: &[0.05], states: &[1.0; 4], rates: &mut rates };
+    let change = effect_wrench(&MotorLag, &at, &rotors, &mut own);
+    // still at hover thrust: 19.62 instead of 1.5^2 times that
+    assert!((change.force_n.z - 19.62 * (1.0 - 2.25)).abs() < 1e-9);
+    assert!(rates.iter().all(|rate| (rate - 10.0).abs() < 1e-9));
 }

@@ -1,0 +1,98 @@
+//! A change of a link itself.
+
+use std::fmt;
+
+use super::signing::Distrust;
+use crate::log::{ComponentId, SystemId};
+
+/// A change of the link itself.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LinkEvent {
+    /// nobody is at the other end yet; the link tries again by itself
+    Waiting {
+        /// what the last try came to
+        why: String,
+    },
+    /// somebody is at the other end, for the first time
+    Connected {
+        /// who
+        peer: String,
+    },
+    /// nobody is at the other end any more; the link tries again by itself
+    Lost {
+        /// what happened
+        why: String,
+    },
+    /// somebody is at the other end again
+    Restored {
+        /// who
+        peer: String,
+    },
+    /// somebody else sends to this address; what they send is counted and dropped
+    Stranger {
+        /// who
+        peer: String,
+    },
+    /// the first frame of a sender that is signed with our key
+    Trusted {
+        /// its system
+        system: SystemId,
+        /// its component
+        component: ComponentId,
+    },
+    /// the first frame of a sender that is not believed, for this reason
+    Distrusted {
+        /// its system
+        system: SystemId,
+        /// its component
+        component: ComponentId,
+        /// why it is not believed
+        why: Distrust,
+    },
+    /// a sender signs, and there is no key to check it by
+    Unchecked {
+        /// its system
+        system: SystemId,
+        /// its component
+        component: ComponentId,
+    },
+    /// signing times of others are ahead of this computer's clock
+    ClockBehind {
+        /// s
+        seconds: u64,
+    },
+    /// the recording misses frames, or its file cannot be written now
+    RecordingFails,
+    /// the recording goes on
+    RecordingGoesOn,
+}
+
+impl fmt::Display for LinkEvent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Waiting { why } => write!(f, "nobody at the other end yet ({why}): it is tried again"),
+            Self::Connected { peer } => write!(f, "connected to {peer}"),
+            Self::Lost { why } => write!(f, "lost: {why}"),
+            Self::Restored { peer } => write!(f, "connected again to {peer}"),
+            Self::Stranger { peer } => write!(f, "{peer} sends here too; it is neither heard nor recorded"),
+            Self::Trusted { system, component } => {
+                write!(f, "system {system} component {component} signs with the key given")
+            }
+            Self::Distrusted { system, component, why } => {
+                write!(f, "system {system} component {component} is not believed: {why}")
+            }
+            Self::Unchecked { system, component } => write!(
+                f,
+                "system {system} component {component} signs its messages, and no key was given: nothing proves that \
+                 they are its own, and it may not believe what it is sent; give its key by --signing-key-file"
+            ),
+            Self::ClockBehind { seconds } => write!(
+                f,
+                "what is heard is signed {seconds} s ahead of this computer's clock, expected at most 60 s: set this \
+                 computer's clock, or the vehicle's"
+            ),
+            Self::RecordingFails => f.write_str("the disk does not take the recording"),
+            Self::RecordingGoesOn => f.write_str("the recording goes on"),
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! A flight on one clock and one grid.
+
+use super::actuators::ThrustSource;
+use super::align::StreamOffset;
+use super::grid::Grid;
+use super::usable::Usable;
+use crate::log::Quantity;
+use nalgebra::{UnitQuaternion, Vector3, Vector4};
+
+/// A flight on one clock and one grid. Vectors have one entry a grid instant; SI, body FLU, world NWU.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Signals {
+    /// instants, s of the vehicle's clock
+    pub grid: Grid,
+    /// airborne, exciting, not saturated, no gap in any stream that is used
+    pub usable: Vec<bool>,
+    /// body to world
+    pub attitude: Option<Vec<UnitQuaternion<f64>>>,
+    /// rad/s, body
+    pub rate: Option<Vec<Vector3<f64>>>,
+    /// m/s^2, body
+    pub specific_force: Option<Vec<Vector3<f64>>>,
+    /// m/s^2, world, gravity removed, where the log holds it
+    pub world_acceleration: Option<Vec<Vector3<f64>>>,
+    /// m, world
+    pub position: Option<Vec<Vector3<f64>>>,
+    /// m/s, world
+    pub velocity: Option<Vec<Vector3<f64>>>,
+    /// N, one a rotor and instant, rotor after rotor; empty where the log holds the wrench itself
+    pub rotor_thrust_n: Vec<f64>,
+    /// `F = [Fz tau]`, N and N m, from the rotors through the nominal mixer, less half of
+    /// [`Self::jitter_wrench`]
+    pub wrench: Vec<Vector4<f64>>,
+    /// what the commands' jitter adds to the wrench if the rotors follow all of it (N, N m); they follow
+    /// a share of it between none and all
+    pub jitter_wrench: Option<Vec<Vector4<f64>>>,
+    /// V; `None` where it is not recorded
+    pub battery_voltage_v: Option<Vec<f64>>,
+    /// what was commanded
+    pub reference: Option<Reference>,
+    /// where things came from and what was repaired
+    pub quality: Quality,
+}
+
+/// The commanded trajectory on the grid, world NWU.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// m/s^2, without gravity
+    pub acceleration: Vec<Vector3<f64>>,
+    /// rad about up
+    pub yaw: Vec<f64>,
+    /// message that it came from
+    pub message: &'static str,
+}
+
+/// Where the signals came from and what was done to them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quality {
+    /// quantity, message, samples a second
+    pub sources: Vec<(Quantity, &'static str, f64)>,
+    /// what the thrusts rest on
+    pub thrust_source: ThrustSource,
+    /// offsets of streams against the inertial unit
+    pub offsets: Vec<(Quantity, StreamOffset)>,
+    /// airborne spans, s
+    pub airborne_s: Vec<(f64, f64)>,
+    /// how the mask came about
+    pub usable: Usable,
+    /// remarks for the user
+    pub notes: Vec<String>,
+}

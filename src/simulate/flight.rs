@@ -1,0 +1,597 @@
+//! A synthetic identification flight, from seed to recording.
+
+use std::fmt;
+
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+
+use super::SimulateError;
+use super::controller::{CascadeController, CascadeGains, Setpoint};
+use super::divergence::LOST_M;
+use super::logger::{Logger, Measured};
+use super::plant::{Plant, Push};
+use super::reference::Reference;
+use super::sensors::{NoiseLevels, TelemetrySettings};
+use super::setting::{not_negative, positive, whole_steps};
+use crate::log::Recording;
+use crate::physics::effects::MotorLag;
+use crate::physics::{ActiveEffect, Effect, Evaluation, Input, MAX_ROTORS, Model, State, Wrench};
+use crate::vehicle::{Actuator, Propulsion, Vehicle};
+
+/// Everything about a flight but vehicle, effects and reference. The defaults are those of the
+/// practice recordings: 250 Hz control, 4 ms motors, telemetry as PX4 sends it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlightSettings {
+    /// same seed, same flight
+    pub seed: u64,
+    /// s, hover included
+    pub duration_s: f64,
+    /// integration step, s; control periods are whole multiples of it
+    pub step_s: f64,
+    /// period of the controller, s; commands are held so long
+    pub control_period_s: f64,
+    /// gains
+    pub gains: CascadeGains,
+    /// noise of the estimates that the controller flies on
+    pub control_noise: NoiseLevels,
+    /// factor on [`Self::control_noise`] (-)
+    pub control_noise_scale: f64,
+    /// first-order lag of the rotors, s; 0 lets them follow at once. A motor lag among the true effects comes in
+    /// its place
+    pub motor_time_constant_s: f64,
+    /// time from command to its arrival at the motors, s, in whole steps
+    pub transport_delay_s: f64,
+    /// least command u (-)
+    pub command_min: f64,
+    /// V, at the start
+    pub battery_v: f64,
+    /// V/s by which the battery falls
+    pub battery_drop_v_s: f64,
+    /// the log
+    pub telemetry: TelemetrySettings,
+}
+
+impl Default for FlightSettings {
+    fn default() -> Self {
+        Self {
+            seed: 0,
+            duration_s: 54.0,
+            step_s: 0.002,
+            control_period_s: 0.004,
+            gains: CascadeGains::default(),
+            control_noise: NoiseLevels::default(),
+            control_noise_scale: 1.0,
+            motor_time_constant_s: 0.004,
+            transport_delay_s: 0.0,
+            command_min: 0.02,
+            battery_v: 16.4,
+            battery_drop_v_s: 0.01,
+            telemetry: TelemetrySettings::default(),
+        }
+    }
+}
+
+/// Something that no effect accounts for, as force and torque (body) at a time and state.
+pub struct Disturbance(DisturbanceFn);
+
+type DisturbanceFn = Box<dyn Fn(f64, &State) -> Wrench + Send + Sync>;
+
+impl Disturbance {
+    /// From a function of time (s) and state.
+    pub fn new(push: impl Fn(f64, &State) -> Wrench + Send + Sync + 'static) -> Self {
+        Self(Box::new(push))
+    }
+}
+
+impl fmt::Debug for Disturbance {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("Disturbance")
+    }
+}
+
+/// What flies: the true vehicle, the one that its controller believes in, and what is concealed.
+#[derive(Debug)]
+pub struct Truth {
+    /// the true vehicle
+    pub vehicle: Vehicle,
+    /// what is on top of rigid body and motors
+    pub effects: Vec<ActiveEffect>,
+    /// and what is outside all effects
+    pub disturbance: Option<Disturbance>,
+}
+
+impl Truth {
+    /// A rigid body with exact thrust and nothing else.
+    #[must_use]
+    pub fn clean(vehicle: Vehicle) -> Self {
+        Self { vehicle, effects: Vec::new(), disturbance: None }
+    }
+}
+
+/// A recording and what made it.
+#[derive(Debug)]
+pub struct SimulatedFlight {
+    /// as the log holds it
+    pub recording: Recording,
+    /// what flew
+    pub truth: Truth,
+    /// greatest distance from the reference, m
+    pub tracking_error_max_m: f64,
+    /// share of the control periods in which some command was at a bound (-)
+    pub saturated: f64,
+}
+
+/// Flies `truth` along `reference` with a controller that believes `nominal`, and logs it.
+///
+/// # Errors
+/// If a vehicle or setting is not physical, or the flight leaves all bounds.
+pub fn simulate_flight(
+    truth: Truth,
+    nominal: &Vehicle,
+    reference: &Reference,
+    settings: &FlightSettings,
+) -> Result<SimulatedFlight, SimulateError> {
+    let mut effects = Vec::with_capacity(truth.effects.len() + 1);
+    let own_lag = truth.effects.iter().any(|active| active.effect().id() == MotorLag.id());
+    if not_negative("motor_time_constant_s", settings.motor_time_constant_s)? > 0.0 && !own_lag {
+        effects.push(ActiveEffect::new(&MotorLag, &[settings.motor_time_constant_s])?);
+    }
+    effects.extend(truth.effects.iter().cloned());
+    let model = Model::new(&truth.vehicle, effects)?;
+    let ticks = Ticks::new(settings, model.command_delay_s())?;
+    let push = truth.disturbance.as_ref().map(|disturbance| &*disturbance.0 as Push);
+    let rotor_count = truth.vehicle.rotors.len();
+    let mut logger =
+        Logger::new(&settings.telemetry, rotor_count, settings.duration_s, settings.seed ^ LOG_SEED)?;
+    let controller = CascadeController::new(nominal, settings.gains, settings.command_min)?;
+    let mut flight_loop = Loop::new(controller, (settings, ticks), &truth.vehicle, reference)?;
+    let start = reference.at(0.0);
+    let state = State::at_rest(start.position_m, start.yaw_rad);
+    let mut plant = Plant::new(&model, push, &state, &flight_loop.input(&model, 0))?;
+    for step in 0..ticks.steps {
+        let time_s = step as f64 * settings.step_s;
+        if step.is_multiple_of(ticks.steps_a_tick) {
+            // what the sensors show of the state does not depend on the force
+            let seen = model.measure(&plant.state(), &Wrench::zero()).state;
+            flight_loop.control(time_s, &plant.state(), (&seen, step))?;
+        }
+        let input = flight_loop.input(&model, step);
+        logger.log(&flight_loop.measured(&model, (&plant.state(), &plant.evaluate(&input)), &input));
+        plant.step(&input, settings.step_s);
+    }
+    let saturated = flight_loop.saturated_ticks as f64 / (ticks.steps / ticks.steps_a_tick).max(1) as f64;
+    let tracking_error_max_m = flight_loop.tracking_error_max_m;
+    Ok(SimulatedFlight { recording: logger.finish(), truth, tracking_error_max_m, saturated })
+}
+
+/// Keeps the log's noise apart from the controller's.
+const LOG_SEED: u64 = 0x006c_6f67_6e6f_6973;
+
+/// Durations as counts of steps.
+#[derive(Debug, Clone, Copy)]
+struct Ticks {
+    steps: usize,
+    steps_a_tick: usize,
+    delay_steps: usize,
+}
+
+impl Ticks {
+    /// `delay_s` is the effects' own, beside that of the settings.
+    fn new(settings: &FlightSettings, delay_s: f64) -> Result<Self, SimulateError> {
+        let step_s = positive("step_s", settings.step_s)?;
+        let steps_a_tick = whole_steps("control_period_s", settings.control_period_s, step_s)?.max(1);
+        let delay_steps = whole_steps("transport_delay_s", settings.transport_delay_s + delay_s, step_s)?;
+        Ok(Self { steps: whole_steps("duration_s", settings.duration_s, step_s)?, steps_a_tick, delay_steps })
+    }
+}
+
+/// The controller with its own view of the flight, and the commands under way to the motors.
+struct Loop<'a> {
+    controller: CascadeController,
+    settings: &'a FlightSettings,
+    ticks: Ticks,
+    propulsion: Propulsion,
+    reference: &'a Reference,
+    noise: NoiseLevels,
+    rng: Pcg64Mcg,
+    estimate: State,
+    setpoint: Setpoint,
+    /// the last commands, one slot a control period, newest at [`Self::newest`]
+    sent: Vec<[f64; MAX_ROTORS]>,
+    newest: usize,
+    rotor_count: usize,
+    tracking_error_max_m: f64,
+    saturated_ticks: usize,
+}
+
+impl<'a> Loop<'a> {
+    fn new(
+        controller: CascadeController,
+        (settings, ticks): (&'a FlightSettings, Ticks),
+        vehicle: &Vehicle,
+        reference: &'a Reference,
+    ) -> Result<Self, SimulateError> {
+        let setpoint = reference.at(0.0);
+        let rotor_count = vehicle.rotors.len();
+        let hover_n = vehicle.body.mass_kg * vehicle.gravity_m_s2 / rotor_count as f64;
+        let hover = [vehicle.propulsion.command_from_thrust(hover_n); MAX_ROTORS];
+        Ok(Self {
+            controller,
+            settings,
+            ticks,
+            propulsion: vehicle.propulsion,
+            reference,
+            noise: settings
+                .control_noise
+                .scaled(not_negative("control_noise_scale", settings.control_noise_scale)?),
+            rng: Pcg64Mcg::seed_from_u64(settings.seed),
+            estimate: State::at_rest(setpoint.position_m, setpoint.yaw_rad),
+            setpoint,
+            sent: vec![hover; ticks.delay_steps / ticks.steps_a_tick + 2],
+            newest: 0,
+            rotor_count,
+            tracking_error_max_m: 0.0,
+            saturated_ticks: 0,
+        })
+    }
+
+    /// One control period begins: a new estimate, a new command.
+    fn control(
+        &mut self,
+        time_s: f64,
+        state: &State,
+        (seen, step): (&State, usize),
+    ) -> Result<(), SimulateError> {
+        self.setpoint = self.reference.at(time_s);
+        self.estimate = self.noise.measure(&mut self.rng, seen);
+        let commands =
+            self.controller.commands(&self.setpoint, &self.estimate, self.settings.control_period_s);
+        self.newest = (step / self.ticks.steps_a_tick) % self.sent.len();
+        self.sent[self.newest] = commands;
+        let bounds = (self.settings.command_min, 1.0);
+        let at_bound = commands[..self.rotor_count].iter().any(|u| *u <= bounds.0 || *u >= bounds.1);
+        self.saturated_ticks += usize::from(at_bound);
+        let error_m = (state.position_m - self.setpoint.position_m).norm();
+        self.tracking_error_max_m = self.tracking_error_max_m.max(error_m);
+        if error_m < LOST_M { Ok(()) } else { Err(SimulateError::Diverged { time_s, what: "position" }) }
+    }
+
+    /// What acts on the vehicle during a step: the command that was sent one transport delay ago.
+    fn input(&self, model: &Model, step: usize) -> Input {
+        let now = step / self.ticks.steps_a_tick;
+        let acting = match step.checked_sub(self.ticks.delay_steps) {
+            Some(then) => (then / self.ticks.steps_a_tick) % self.sent.len(),
+            // nothing has arrived yet: this slot still holds the hover command
+            None => (now + 1) % self.sent.len(),
+        };
+        let time_s = step as f64 * self.settings.step_s;
+        let battery_voltage_v = self.settings.battery_v - self.settings.battery_drop_v_s * time_s;
+        Input {
+            battery_voltage_v: Some(battery_voltage_v),
+            ..Input::from_commands(&model.airframe, time_s, &self.sent[acting][..self.rotor_count])
+        }
+    }
+
+    fn measured(&self, model: &Model, (state, now): (&State, &Evaluation), input: &Input) -> Measured {
+        let mut actuators = self.sent[self.newest];
+        for value in &mut actuators {
+            *value = actuator_value(&self.propulsion, *value);
+        }
+        let rotor_speed_rad_s =
+            model.airframe.hover_speed_rad_s.map(|hover_rad_s| now.rotors.speed.map(|n| n * hover_rad_s));
+        let seen = model.measure(state, &now.wrench);
+        Measured {
+            time_s: input.time_s,
+            state: seen.state,
+            estimate: self.estimate,
+            specific_force_m_s2: seen.specific_force_m_s2,
+            actuators,
+            rotor_speed_rad_s,
+            setpoint: self.setpoint,
+            battery_voltage_v: input.battery_voltage_v.unwrap_or(f64::NAN),
+        }
+    }
+}
+
+/// The normalised command u as the log holds it; inverse of [`Propulsion::normalized`].
+fn actuator_value(propulsion: &Propulsion, u: f64) -> f64 {
+    match propulsion.actuator {
+        Actuator::Pwm(Some(range)) => range.min_us + u * (range.max_us - range.min_us),
+        Actuator::Speed | Actuator::Thrust | Actuator::Pwm(None) => u,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::{Quantity, Stream, StreamKey};
+    use crate::physics::effects::LinearDrag;
+    use crate::simulate::{RandomTrajectory, random_vehicle};
+    use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+    fn reference(seed: u64) -> Reference {
+        let trajectory = RandomTrajectory::default().draw(seed).unwrap();
+        Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 }
+    }
+
+    fn fly(seed: u64, settings: &FlightSettings) -> SimulatedFlight {
+        let pair = random_vehicle(seed);
+        simulate_flight(Truth::clean(pair.truth), &pair.nominal, &reference(seed), settings).unwrap()
+    }
+
+    fn quiet(duration_s: f64) -> FlightSettings {
+        let telemetry = TelemetrySettings { noise_scale: 0.0, loss: 0.0, ..TelemetrySettings::default() };
+        FlightSettings { duration_s, control_noise_scale: 0.0, telemetry, ..FlightSettings::default() }
+    }
+
+    fn stream<'a>(flight: &'a SimulatedFlight, quantity: Quantity, source: &'static str) -> &'a Stream {
+        &flight.recording.streams[&StreamKey { quantity, source, instance: 0 }]
+    }
+
+    fn column(stream: &Stream, column: usize) -> Vec<f64> {
+        (0..stream.len()).map(|sample| stream.sample(sample)[column]).collect()
+    }
+
+    /// White level of a signal: 1.4826 MAD of its fourth difference over sqrt(70).
+    fn white_level(values: &[f64]) -> f64 {
+        let mut fourth: Vec<f64> =
+            values.windows(5).map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).abs()).collect();
+        fourth.sort_by(f64::total_cmp);
+        1.4826 * fourth[fourth.len() / 2] / 70.0_f64.sqrt()
+    }
+
+    #[test]
+    fn default_flights_track_without_crashing() {
+        for seed in 0..12 {
+            let flight = fly(seed, &FlightSettings { seed, ..FlightSettings::default() });
+            assert!(flight.tracking_error_max_m < 0.5, "seed {seed}: {} m", flight.tracking_error_max_m);
+            assert!(flight.saturated < 0.02, "seed {seed}: {}", flight.saturated);
+        }
+    }
+
+    #[test]
+    fn telemetry_has_the_rates_and_noise_of_the_settings() {
+        let flight = fly(1, &FlightSettings::default());
+        let imu = stream(&flight, Quantity::SpecificForce, "HIGHRES_IMU");
+        let expected = 54.0 * 125.0;
+        assert!((imu.len() as f64 / expected - 0.996).abs() < 0.004, "{} samples", imu.len());
+        for (quantity, source, level) in [
+            (Quantity::SpecificForce, "HIGHRES_IMU", 0.12),
+            (Quantity::AngularRate, "HIGHRES_IMU", 6e-3),
+            (Quantity::AngularRate, "ATTITUDE_QUATERNION", 6e-3),
+            (Quantity::Position, "LOCAL_POSITION_NED", 4e-3),
+            (Quantity::Velocity, "LOCAL_POSITION_NED", 15e-3),
+        ] {
+            for axis in 0..3 {
+                let found = white_level(&column(stream(&flight, quantity, source), axis));
+                // the body's own jitter adds to the gyros and the vertical accelerometer
+                assert!(found > 0.9 * level && found < 1.35 * level, "{quantity:?} {axis}: {found}");
+            }
+        }
+        let attitude = stream(&flight, Quantity::Attitude, "ATTITUDE_QUATERNION");
+        let found = 2.0 * white_level(&column(attitude, 3));
+        assert!((found / 1.7e-3 - 1.0).abs() < 0.1, "attitude {found}");
+        assert!(attitude.time_s.windows(2).all(|pair| pair[1] > pair[0]));
+        assert_eq!(attitude.time_s[0], 0.0);
+    }
+
+    #[test]
+    fn commands_jitter_as_accelerations_do_in_the_practice_recordings() {
+        // from the practice recordings: collective .10 m/s^2, roll and pitch 1.5, yaw .32 rad/s^2
+        let pair = random_vehicle(1);
+        let flight = fly(1, &FlightSettings::default());
+        let commands = stream(&flight, Quantity::ActuatorCommand, "ACTUATOR_OUTPUT_STATUS");
+        let mut patterns = [Vec::new(), Vec::new(), Vec::new(), Vec::new()];
+        for sample in 0..commands.len() {
+            let thrusts: Vec<f64> = commands
+                .sample(sample)
+                .iter()
+                .map(|u| pair.truth.propulsion.thrust_from_command_n(*u))
+                .collect();
+            let wrench = pair.nominal.mixer().wrench(&thrusts);
+            let body = &pair.nominal.body;
+            patterns[0].push(wrench[0] / body.mass_kg);
+            for axis in 0..3 {
+                patterns[axis + 1].push(wrench[axis + 1] / body.inertia_kg_m2[(axis, axis)]);
+            }
+        }
+        for (pattern, level) in patterns.iter().zip([0.10, 1.5, 1.5, 0.32]) {
+            let found = white_level(pattern);
+            assert!((found / level - 1.0).abs() < 0.35, "found {found}, expected {level}");
+        }
+        let jitter = white_level(&column(commands, 0));
+        assert!((0.003..0.028).contains(&jitter), "one motor {jitter}");
+    }
+
+    #[test]
+    fn same_seed_same_flight_and_telemetry_does_not_disturb_it() {
+        let settings = FlightSettings { duration_s: 8.0, ..FlightSettings::default() };
+        assert_eq!(fly(3, &settings).recording, fly(3, &settings).recording);
+        let mut louder = settings;
+        louder.telemetry.noise_scale = 3.0;
+        louder.telemetry.rates.attitude_hz = 50.0;
+        let source = "POSITION_TARGET_LOCAL_NED";
+        let (a, b) = (fly(3, &settings), fly(3, &louder));
+        assert_eq!(a.tracking_error_max_m, b.tracking_error_max_m);
+        assert!(stream(&b, Quantity::PositionSetpoint, source).len() > 190);
+        assert_ne!(fly(3, &FlightSettings { seed: 1, ..settings }).recording, a.recording);
+    }
+
+    #[test]
+    fn quiet_hover_feels_gravity_and_commands_the_weight() {
+        let pair = random_vehicle(5);
+        let flight =
+            simulate_flight(Truth::clean(pair.truth.clone()), &pair.truth, &reference(5), &quiet(3.9))
+                .unwrap();
+        let imu = stream(&flight, Quantity::SpecificForce, "HIGHRES_IMU");
+        let commands = stream(&flight, Quantity::ActuatorCommand, "ACTUATOR_OUTPUT_STATUS");
+        for sample in 0..imu.len() {
+            let force = imu.sample(sample);
+            assert!(force[0].abs() < 1e-9 && force[1].abs() < 1e-9 && (force[2] - 9.81).abs() < 1e-9);
+            let thrusts: Vec<f64> = commands
+                .sample(sample)
+                .iter()
+                .map(|u| pair.truth.propulsion.thrust_from_command_n(*u))
+                .collect();
+            let wrench = pair.truth.mixer().wrench(&thrusts);
+            assert!((wrench[0] - pair.truth.body.mass_kg * 9.81).abs() < 1e-9);
+            assert!(wrench.rows(1, 3).norm() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn quiet_streams_obey_kinematics_and_newton() {
+        let pair = random_vehicle(6);
+        let flight =
+            simulate_flight(Truth::clean(pair.truth), &pair.nominal, &reference(6), &quiet(20.0)).unwrap();
+        let velocity = stream(&flight, Quantity::Velocity, "LOCAL_POSITION_NED");
+        let position = stream(&flight, Quantity::Position, "LOCAL_POSITION_NED");
+        let attitude = stream(&flight, Quantity::Attitude, "ATTITUDE_QUATERNION");
+        let imu = stream(&flight, Quantity::SpecificForce, "HIGHRES_IMU");
+        // every 40 ms all three rates coincide
+        for k in 100..450 {
+            let (slow, fast) = (2 * k, 5 * k);
+            let rate = (position.sample(slow + 1)[0] - position.sample(slow - 1)[0]) / 0.04;
+            assert!((rate - velocity.sample(slow)[0]).abs() < 0.01);
+            let q = attitude.sample(fast);
+            let attitude = UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3]));
+            let world = attitude * Vector3::from_column_slice(imu.sample(fast)) - Vector3::z() * 9.81;
+            let numeric = (Vector3::from_column_slice(velocity.sample(slow + 1))
+                - Vector3::from_column_slice(velocity.sample(slow - 1)))
+                / 0.04;
+            assert!((world - numeric).norm() < 0.08, "{world} {numeric}");
+        }
+    }
+
+    #[test]
+    fn drag_is_felt_by_the_accelerometer_against_the_motion() {
+        let pair = random_vehicle(2);
+        let mass_kg = pair.truth.body.mass_kg;
+        let drag = ActiveEffect::new(&LinearDrag, &[0.2, 0.2, 0.0]).unwrap();
+        let truth = Truth { effects: vec![drag], ..Truth::clean(pair.truth) };
+        let flight = simulate_flight(truth, &pair.nominal, &reference(2), &quiet(24.0)).unwrap();
+        let velocity = stream(&flight, Quantity::Velocity, "LOCAL_POSITION_NED");
+        let attitude = stream(&flight, Quantity::Attitude, "ATTITUDE_QUATERNION");
+        let imu = stream(&flight, Quantity::SpecificForce, "HIGHRES_IMU");
+        let (mut along, mut square) = (0.0, 0.0);
+        for k in 150..550 {
+            let q = attitude.sample(5 * k);
+            let attitude = UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3]));
+            let v = attitude.inverse_transform_vector(&Vector3::from_column_slice(velocity.sample(2 * k)));
+            along += imu.sample(5 * k)[0] * v.x;
+            square += v.x * v.x;
+        }
+        let found = -along / square * mass_kg;
+        assert!((found / 0.2 - 1.0).abs() < 0.05, "drag {found} N/(m/s)");
+    }
+
+    #[test]
+    fn skew_shifts_stamps_and_a_clock_offset_is_floored_away_in_milliseconds() {
+        let mut settings = quiet(2.0);
+        settings.telemetry.skew.position_s = 0.005;
+        settings.telemetry.clock_offset_s = 41.000_7;
+        let flight = fly(4, &settings);
+        let position = stream(&flight, Quantity::Position, "LOCAL_POSITION_NED");
+        let imu = stream(&flight, Quantity::SpecificForce, "HIGHRES_IMU");
+        let attitude = stream(&flight, Quantity::Attitude, "ATTITUDE_QUATERNION");
+        assert!((position.time_s[3] - attitude.time_s[0] - 0.065).abs() < 1e-9);
+        assert!((imu.time_s[0] - attitude.time_s[0] - 0.000_7).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_transport_delay_and_a_lag_both_postpone_the_rotors() {
+        let lateness = |settings: &FlightSettings| {
+            let flight = fly(7, settings);
+            let commands = column(stream(&flight, Quantity::ActuatorCommand, "ACTUATOR_OUTPUT_STATUS"), 0);
+            let speeds = column(stream(&flight, Quantity::RotorSpeed, "ESC_STATUS"), 0);
+            let speed_max = speeds.iter().zip(commands.iter().step_by(2)).map(|(s, u)| s / u).sum::<f64>()
+                / speeds.len() as f64;
+            // least squares of (command - speed) on the command's rate
+            let (mut along, mut square) = (0.0, 0.0);
+            for k in 300..speeds.len() - 1 {
+                let rate = (commands[2 * k + 1] - commands[2 * k - 1]) / 0.016;
+                along += (commands[2 * k] - speeds[k] / speed_max) * rate;
+                square += rate * rate;
+            }
+            along / square
+        };
+        let smooth = FlightSettings { seed: 7, ..quiet(30.0) };
+        let late = lateness(&FlightSettings { transport_delay_s: 0.02, ..smooth }) - lateness(&smooth);
+        assert!((late - 0.02).abs() < 0.003, "delay {late} s");
+        let slow = FlightSettings { motor_time_constant_s: 0.024, ..smooth };
+        let late = lateness(&slow) - lateness(&smooth);
+        assert!((late - 0.02).abs() < 0.003, "lag {late} s");
+    }
+
+    #[test]
+    fn shared_noise_makes_the_log_what_the_controller_flew_on() {
+        let mut settings = FlightSettings { duration_s: 20.0, ..FlightSettings::default() };
+        let correlation = |settings: &FlightSettings| {
+            let flight = fly(8, settings);
+            let pair = random_vehicle(8);
+            let commands = stream(&flight, Quantity::ActuatorCommand, "ACTUATOR_OUTPUT_STATUS");
+            let rates = stream(&flight, Quantity::AngularRate, "ATTITUDE_QUATERNION");
+            let (mut xy, mut xx, mut yy) = (0.0, 0.0, 0.0);
+            for k in 1..2000 {
+                let yaw = |k: usize| {
+                    let t: Vec<f64> = commands
+                        .sample(k)
+                        .iter()
+                        .map(|u| pair.truth.propulsion.thrust_from_command_n(*u))
+                        .collect();
+                    pair.truth.mixer().wrench(&t)[3]
+                };
+                let (x, y) = (rates.sample(k)[2] - rates.sample(k - 1)[2], yaw(k) - yaw(k - 1));
+                (xy, xx, yy) = (xy + x * y, xx + x * x, yy + y * y);
+            }
+            xy / (xx * yy).sqrt()
+        };
+        settings.telemetry.loss = 0.0;
+        assert!(correlation(&settings).abs() < 0.2);
+        settings.telemetry.share_controller_noise = true;
+        assert!(correlation(&settings) < -0.4);
+    }
+
+    #[test]
+    fn halving_the_step_changes_nothing_that_matters() {
+        // no noise: the same flight; the reference is the finer one
+        let pair = random_vehicle(9);
+        let run = |step_s| {
+            let settings = FlightSettings { step_s, ..quiet(14.0) };
+            simulate_flight(Truth::clean(pair.truth.clone()), &pair.nominal, &reference(9), &settings)
+                .unwrap()
+        };
+        let (coarse, fine) = (run(0.002), run(0.001));
+        let (a, b) = (
+            stream(&coarse, Quantity::Position, "LOCAL_POSITION_NED"),
+            stream(&fine, Quantity::Position, "LOCAL_POSITION_NED"),
+        );
+        let worst = a.values.iter().zip(&b.values).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+        assert!(worst < 1e-4, "{worst} m");
+    }
+
+    #[test]
+    fn bad_settings_are_refused() {
+        let pair = random_vehicle(0);
+        let run = |settings: FlightSettings, vehicle: Vehicle| {
+            simulate_flight(Truth::clean(vehicle), &pair.nominal, &reference(0), &settings).map(|_| ())
+        };
+        let base = FlightSettings { duration_s: 0.1, ..FlightSettings::default() };
+        for settings in [
+            FlightSettings { step_s: 0.0, ..base },
+            FlightSettings { step_s: f64::NAN, ..base },
+            FlightSettings { duration_s: f64::INFINITY, ..base },
+            FlightSettings { duration_s: -1.0, ..base },
+            FlightSettings { control_noise_scale: -1.0, ..base },
+            FlightSettings { telemetry: TelemetrySettings { loss: 1.5, ..base.telemetry }, ..base },
+        ] {
+            assert!(matches!(run(settings, pair.truth.clone()), Err(SimulateError::Setting { .. })));
+        }
+        let mut two = pair.truth.clone();
+        two.rotors.truncate(2);
+        assert!(run(base, two).is_ok(), "what flies may have any rotors");
+        let mut none = pair.truth.clone();
+        none.rotors.clear();
+        assert!(run(base, none).is_err());
+    }
+}

@@ -1,0 +1,34 @@
+//! A vehicle as its file states it.
+
+use super::anchor::Anchor;
+use super::body::RigidBody;
+use super::limits::Limits;
+use super::propulsion::Propulsion;
+use super::rotor::{Mixer, Rotor};
+
+/// A vehicle as its file states it, in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Vehicle {
+    /// name for reports
+    pub name: String,
+    /// nominal mass and inertia
+    pub body: RigidBody,
+    /// thrust and torque from actuator values
+    pub propulsion: Propulsion,
+    /// in the order of the actuator outputs
+    pub rotors: Vec<Rotor>,
+    /// what `plan` and `fly` must keep
+    pub limits: Limits,
+    /// what sets the scale
+    pub anchor: Anchor,
+    /// m/s^2
+    pub gravity_m_s2: f64,
+}
+
+impl Vehicle {
+    /// The map from rotor thrusts to `F = [Fz tau_x tau_y tau_z]` at the centre of mass.
+    #[must_use]
+    pub fn mixer(&self) -> Mixer {
+        Mixer::new(&self.rotors, self.body.center_of_mass_m, self.propulsion.torque_per_thrust_m)
+    }
+}
