@@ -1,6 +1,5 @@
 //! `report.html` of `identify`.
 
-use super::correlation;
 use super::input::InputFile;
 use super::model::history_charts;
 use super::page::verdict;
@@ -202,7 +201,7 @@ impl IdentificationStory<'_> {
             Some(with) => correlation(&with.together.after),
             None => (
                 NAMES.map(str::to_owned).to_vec(),
-                correlation::correlation(&self.identification.best.result),
+                super::correlation::correlation(&self.identification.best.result),
             ),
         };
         correlation_table(page, &names, &rows);
