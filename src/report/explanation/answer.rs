@@ -2,7 +2,7 @@
 
 use super::brief::brief;
 use super::located::Located;
-use super::show::{Predicted, ShownOn};
+use super::prediction::{Predicted, ShownOn};
 use super::story::Story;
 use super::words::{called, clause};
 use crate::diagnose::{Along, DetectionLimit, Named, Verdict};

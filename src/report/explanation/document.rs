@@ -2,7 +2,7 @@
 
 use super::fit::{FitValues, fit_values};
 use super::located::Located;
-use super::show::ShownOn;
+use super::prediction::ShownOn;
 use super::story::{Story, body_values, rigid_body};
 use crate::diagnose::{AXES, Along, CHANNEL_NAMES, Named};
 use crate::report::InputFile;

@@ -1,6 +1,6 @@
 //! The fit before and after as JSON: all that the report's tables show.
 
-use super::show::{Predicted, QUANTITIES, ShownOn};
+use super::prediction::{Predicted, QUANTITIES, ShownOn};
 use super::story::Story;
 use crate::compare::SIGNALS;
 use crate::diagnose::show::{Compared, OpenLoop, Shown};

@@ -1,6 +1,6 @@
 //! `report.html` of `explain`.
 
-use super::show::{Predicted, QUANTITIES, ShownOn};
+use super::prediction::{Predicted, QUANTITIES, ShownOn};
 use super::story::{Story, body_values, rigid_body};
 use super::words::{called, clause};
 use crate::compare::SIGNALS;

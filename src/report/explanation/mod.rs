@@ -9,6 +9,7 @@ mod html;
 mod located;
 mod model;
 mod page;
+mod prediction;
 mod readers;
 mod show;
 mod story;
@@ -17,8 +18,8 @@ mod words;
 pub use document::ExplanationDocument;
 pub use located::{AxisShare, Field, Located, StateShare};
 pub use page::explanation_page;
+pub use prediction::{Predicted, ShownOn};
 pub use readers::for_readers;
-pub use show::{Predicted, ShownOn};
 pub use story::{Estimate, Given, Story};
 
 pub(super) use words::called;

@@ -1,6 +1,6 @@
 //! The page of `explain` for the terminal.
 
-use super::show::{Predicted, QUANTITIES};
+use super::prediction::{Predicted, QUANTITIES};
 use super::story::{Story, body_values, rigid_body};
 use super::words::{called, clause};
 use crate::diagnose::{AXES, CHANNEL_NAMES, Named, Verdict};

@@ -1,8 +1,8 @@
 //! Everything that the report says, put together once: page, JSON, model file and HTML read from here.
 
 use super::located::Located;
+use super::prediction::{Predicted, ShownOn};
 use super::readers::for_readers;
-use super::show::{Predicted, ShownOn};
 use crate::diagnose::next::NextFlight;
 use crate::diagnose::show::{Difference, Shown};
 use crate::diagnose::{CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, Named, Nuisance, Verdict};

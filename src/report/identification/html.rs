@@ -1,6 +1,6 @@
 //! `report.html` of `identify`.
 
-use super::InputFile;
+use super::input::InputFile;
 use super::model::history_charts;
 use super::page::verdict;
 use super::with::WithEffects;
@@ -201,7 +201,7 @@ impl IdentificationStory<'_> {
             Some(with) => correlation(&with.together.after),
             None => (
                 NAMES.map(str::to_owned).to_vec(),
-                super::document::correlation(&self.identification.best.result),
+                super::correlation::correlation(&self.identification.best.result),
             ),
         };
         correlation_table(page, &names, &rows);

@@ -11,9 +11,11 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::document::{InputFile, Thrust, Value, thrust, thrust_name, values};
+use super::input::InputFile;
 use super::model::{identified_entries, provenance};
 use super::page::{flight_lines, number};
+use super::thrust_source::thrust_name;
+use super::value::{Thrust, Value, thrust, values};
 
 /// Everything about effects that were identified together with the rigid body.
 #[derive(Debug, Clone)]
