@@ -17,6 +17,8 @@ use rayon::prelude::*;
 use super::effects::effects;
 use super::flights::{EXPLAINED, Flight, is_csv, load, ready, refuse_twins, shared};
 use super::{CommandError, Outcome, output};
+use mavid::diagnose::signatures::signature_of;
+
 use crate::cli::ExplainArgs;
 
 /// How a note begins that is more than a remark.
@@ -25,8 +27,6 @@ const DOUBT: &str = "warning: ";
 const SATURATED: f64 = 0.3;
 /// A file is wrong by less than this in mass.
 const MASS_FACTOR: f64 = 1.6;
-/// What happens once in a flight.
-const MASS_CHANGE: &str = "mass_change";
 /// What a recording without velocity cannot tell.
 const NO_VELOCITY: &str = "no velocity (LOCAL_POSITION_NED or similar), or no attitude, is recorded: drag, wind and other effects of the air \
                            cannot be tried, and what is named may stand for what they do to the rotation";
@@ -109,7 +109,11 @@ impl Explained {
             let reason = "something changes in what would be held back, so the whole flight is explained; give another with --holdout";
             let shown_on = ShownOn::Nothing { reason: reason.to_owned() };
             let all = told(args, (&vehicle, &warnings), &flights, (&[], None, shown_on))?;
-            let changes = |story: &Story| story.effects.iter().any(|named| named.id == MASS_CHANGE);
+            let changes = |story: &Story| {
+                story.effects.iter().any(|named| {
+                    signature_of(named.id).is_some_and(|signature| signature.role.moment.is_some())
+                })
+            };
             if changes(&all) && !changes(&story) {
                 story = all;
             } else if let Some(last) = flights.last_mut() {

@@ -220,7 +220,7 @@ fn with_effects(
     let settings = ConditionSettings {
         transient_s: Some(args.transient.unwrap_or(TRANSIENT_S)),
         thrust: if by_commands { ThrustPreference::Commands } else { ThrustPreference::Measured },
-        askew: wanted.has("imu_misalignment"),
+        askew: wanted.turns_inertial_unit(),
         ..ConditionSettings::default()
     };
     let mut flights = Vec::new();

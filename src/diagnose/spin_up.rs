@@ -7,6 +7,7 @@
 
 use super::base::Base;
 use super::rotors::Turning;
+use super::signatures::ROTOR_INERTIA;
 use super::trace::Trace;
 use crate::physics::effects::RotorInertia;
 use crate::physics::{Airframe, Condition, Effect, Input, Own, Rotors, State, Wrench};
@@ -24,7 +25,7 @@ pub(super) struct SpinUp {
 impl SpinUp {
     /// `None` where the base has no rotor inertia, or the rotors no speed.
     pub(super) fn of(base: &Base, airframe: &Airframe) -> Option<Self> {
-        let present = base.present.iter().find(|present| present.effect.id() == RotorInertia.id())?;
+        let present = base.present.iter().find(|present| present.is(&ROTOR_INERTIA))?;
         let jr_kg_m2 = present.values.first().copied().filter(|jr| *jr > 0.0)?;
         let drag_nm = airframe.propulsion.torque_per_thrust_m * airframe.hover_thrust_n;
         let lag_s = jr_kg_m2 * airframe.hover_speed_rad_s? / (2.0 * drag_nm);

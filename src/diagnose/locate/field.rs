@@ -289,13 +289,14 @@ fn uneven(traces: &[Trace], after: &Fitted) -> Vec<Uneven> {
             .enumerate()
             .filter_map(|(index, theta)| {
                 let slot = *present.free.get(index / places.len())?;
-                let nothing = if present.effect.id() == "weak_rotor" { 1.0 } else { 0.0 };
+                let nothing =
+                    if present.signature.role.which.is_some() { present.signature.nothing } else { 0.0 };
                 let strength = (present.values[slot] - nothing).abs();
                 (strength > 0.0).then(|| theta.abs() / strength)
             })
             .fold(0.0, f64::max);
         if evidence.z > UNEVEN_Z && spread > UNEVEN_SPREAD {
-            out.push(Uneven { id: present.effect.id(), z: evidence.z, spread });
+            out.push(Uneven { id: present.id(), z: evidence.z, spread });
         }
     }
     out

@@ -195,7 +195,7 @@ impl View {
             .base
             .present
             .iter()
-            .find(|present| present.effect.id() == "steady_wind")
+            .find(|term| term.signature.role.wind.is_some())
             .map_or(Vector3::zeros(), |present| {
                 Vector3::new(present.values[0], present.values[1], present.values[2])
             });

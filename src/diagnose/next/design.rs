@@ -3,10 +3,11 @@
 use super::envelope::flown_limits;
 use super::error::NextError;
 use super::flight::{Inseparable, NextFlight, Pair};
-use super::foresight::{self, Foresight, NOT_BY_MOTION, Question};
+use super::foresight::{self, Foresight, Question};
 use super::search;
 use super::settings::NextSettings;
 use crate::diagnose::explanation::Explanation;
+use crate::diagnose::signatures::signature_of;
 use crate::diagnose::trace::{Trace, TraceError};
 use crate::signals::Signals;
 use crate::vehicle::{Limits, Vehicle};
@@ -118,7 +119,9 @@ fn questions(explanation: &Explanation, traces: &[Trace]) -> (Vec<Question>, Vec
                 continue;
             }
             let pair = [named.id, other];
-            let still = pair.iter().all(|id| NOT_BY_MOTION.contains(id)) || pair.contains(&"mass_change");
+            let role = |id: &&str| signature_of(id).map(|signature| signature.role);
+            let still = pair.iter().all(|id| role(id).is_some_and(|role| !role.by_motion))
+                || pair.iter().any(|id| role(id).is_some_and(|role| role.moment.is_some()));
             let question = (!still).then(|| foresight::question(explanation, traces, (named.id, other)));
             match question {
                 Some(Some(question)) => asked.push(question),

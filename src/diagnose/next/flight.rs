@@ -1,6 +1,6 @@
 //! What to fly, and what it will tell apart.
 
-use super::foresight;
+use crate::diagnose::signatures::latency_kind;
 use crate::trajectory::FourierTrajectory;
 use crate::vehicle::Limits;
 
@@ -32,7 +32,7 @@ impl NextFlight {
         };
         let pairs = self.pairs.iter().map(|pair| match pair.other {
             Some(other) => {
-                let better = if foresight::is_latency(pair.named) && pair.after < ENOUGH_SIGMA {
+                let better = if latency_kind(pair.named).is_some() && pair.after < ENOUGH_SIGMA {
                     BY_SPEEDS
                 } else {
                     ""

@@ -8,15 +8,14 @@ use crate::diagnose::confusable::Signal;
 use crate::diagnose::evidence::Weighted;
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::rows::Rows;
+use crate::diagnose::signature::LatencyKind;
+use crate::diagnose::signatures::{latency_kind, signature_of};
 use crate::diagnose::trace::Trace;
 use crate::log::Quantity;
 use crate::signals::{ActuationLatency, Grid, Quality, Signals, ThrustSource, Usable};
 use crate::simulate::Allocation;
 use crate::trajectory::{FourierTrajectory, Reference};
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
-
-/// What neither depends on how the vehicle moves.
-pub(super) const NOT_BY_MOTION: [&str; 2] = ["mass_change", "battery_sag"];
 
 /// What the next flight is to show.
 #[derive(Debug, Clone)]
@@ -59,7 +58,7 @@ pub(super) fn question(
     let search = &explanation.search;
     let fitted = &search.after;
     let inflation = fitted.weighted.long_run_deviation();
-    if is_latency(named) {
+    if latency_kind(named).is_some() {
         let turned = turned(fitted.base.latency, named);
         let now = of_latency(traces, (&fitted.rows, &fitted.base), &fitted.weighted, turned)?;
         return Some(Question { named, kind: Kind::Latency(other, turned), now: now / inflation });
@@ -82,7 +81,8 @@ pub(super) fn question(
 
 /// The named effect that stands out least.
 pub(super) fn least_known(explanation: &Explanation) -> Option<Question> {
-    let of_motion = explanation.named.iter().filter(|named| !NOT_BY_MOTION.contains(&named.id));
+    let of_motion =
+        explanation.named.iter().filter(|named| signature_of(named.id).is_none_or(|of| of.role.by_motion));
     let each = of_motion.filter_map(|named| size(explanation, named.id));
     each.min_by(|a, b| a.now.total_cmp(&b.now))
 }
@@ -101,17 +101,13 @@ pub(super) fn size(explanation: &Explanation, named: &'static str) -> Option<Que
 /// Where the base has an effect.
 fn places(explanation: &Explanation, id: &str) -> impl Iterator<Item = usize> {
     let present = explanation.search.after.base.present.iter().enumerate();
-    present.filter(move |(_, present)| present.effect.id() == id).map(|(place, _)| place)
-}
-
-pub(super) fn is_latency(id: &str) -> bool {
-    matches!(id, "motor_lag" | "transport_delay")
+    present.filter(move |(_, present)| present.id() == id).map(|(place, _)| place)
 }
 
 /// The same latency, all of it of the other kind.
 fn turned(latency: ActuationLatency, named: &str) -> ActuationLatency {
     let (total_s, none) = (latency.total_s(), ActuationLatency::default());
-    if named == "motor_lag" {
+    if latency_kind(named) == Some(LatencyKind::Lag) {
         ActuationLatency { delay_s: total_s, ..none }
     } else {
         ActuationLatency { lag_s: total_s, ..none }

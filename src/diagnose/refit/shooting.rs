@@ -32,8 +32,8 @@ pub fn refit(
     }
     let fitted = &explanation.search.after;
     let airframe = Airframe::new(&fitted.base.vehicle)?;
-    if let Some(own) = fitted.base.present.iter().find(|of| of.effect.state_count(&airframe) > 0) {
-        return Err(RefitError::OwnStates { id: own.effect.id() });
+    if let Some(own) = fitted.base.present.iter().find(|of| of.effect().state_count(&airframe) > 0) {
+        return Err(RefitError::OwnStates { id: own.id() });
     }
     let unknowns = Unknowns::of(&fitted.base).ok_or(RefitError::NoBody)?;
     let segments = segments::cut(&traces, settings);

@@ -6,6 +6,8 @@ use crate::diagnose::empirical::Empirical;
 use crate::diagnose::explanation::{Explanation, Verdict};
 use crate::diagnose::latency::{stated_lag_s, stated_uneven};
 use crate::diagnose::rows::Rows;
+use crate::diagnose::signature::{EffectTerm, Need};
+use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::signals::ActuationLatency;
@@ -26,9 +28,8 @@ pub(super) fn pair(
     vehicle: &Vehicle,
     command_period_s: f64,
 ) -> Pair {
-    let named = |id: &str| explanation.named.iter().any(|named| named.id == id);
     let mut before = explanation.search.before.base.clone();
-    if named("motor_lag") || named("transport_delay") {
+    if explanation.named.iter().any(|named| latency_kind(named.id).is_some()) {
         before.latency = ActuationLatency {
             delay_s: 0.5 * command_period_s,
             lag_s: stated_lag_s(vehicle),
@@ -54,25 +55,30 @@ pub(super) fn carried_over(
     settings: &ShowSettings,
 ) -> Result<Pair, PhysicsError> {
     let mut pair = pair(explained, vehicle, trace.command_period_s);
-    let of = |base: &Base, id: &str| base.present.iter().position(|present| present.effect.id() == id);
+    let moment = pair.after.present.iter().enumerate().find_map(|(place, term)| {
+        Some((place, term.signature.role.moment?, *term.signature.amounts.first()?))
+    });
     // in another part of the same flight the moment is known
-    if let Some(place) = of(&pair.after, "mass_change").filter(|_| !settings.same_flight) {
-        let kept_kg = pair.after.present[place].values[1];
-        let time_s = change_time(&pair.after, place, trace)?;
-        pair.after.present[place].values[0] = time_s.unwrap_or(NEVER_S);
+    if let Some((place, slot, amount)) = moment.filter(|_| !settings.same_flight) {
+        let kept_kg = pair.after.present[place].values[amount];
+        let time_s = change_time(&pair.after, (place, slot), trace)?;
+        pair.after.present[place].values[slot] = time_s.unwrap_or(NEVER_S);
         let when = time_s.map_or("nowhere in this flight".to_owned(), |t| format!("at {t:.1} s"));
         pair.notes.push(format!(
             "{}: the moment of the mass change was found again {when}; its size, {kept_kg:+.3} kg, was kept",
             flight.name
         ));
     }
-    if of(&pair.after, "steady_wind").is_some() && !settings.same_flight {
+    let has = |what: fn(&EffectTerm) -> bool| pair.after.present.iter().any(what);
+    let of_the_day = has(|term| term.signature.role.of_the_day);
+    let by_voltage = has(|term| term.signature.needs.contains(&Need::Voltage));
+    if of_the_day && !settings.same_flight {
         pair.notes.push(format!(
             "{}: predicted with the wind of the identification flights; another day's wind would show as a difference in the table of parameters",
             flight.name
         ));
     }
-    if of(&pair.after, "battery_sag").is_some() && trace.voltage_v.is_none() {
+    if by_voltage && trace.voltage_v.is_none() {
         pair.notes
             .push(format!("{}: the battery's voltage is not recorded, so its sag is left out", flight.name));
     }
@@ -84,10 +90,14 @@ const NEVER_S: f64 = 1e5;
 
 /// The moment from which on the changed mass explains the force along body z better than the first one;
 /// `None` where it never does.
-fn change_time(after: &Base, place: usize, trace: &Trace) -> Result<Option<f64>, PhysicsError> {
+fn change_time(
+    after: &Base,
+    (place, slot): (usize, usize),
+    trace: &Trace,
+) -> Result<Option<f64>, PhysicsError> {
     let with_time = |time_s: f64| {
         let mut base = after.clone();
-        base.present[place].values[0] = time_s;
+        base.present[place].values[slot] = time_s;
         Rows::new(std::slice::from_ref(trace), &base)
     };
     let (unchanged, changed) = (with_time(NEVER_S)?, with_time(0.0)?);

@@ -4,10 +4,10 @@ use super::error::ShowError;
 use super::ready::{Ready, trace_of};
 use super::settings::{HeldOut, ShowSettings};
 use super::weak::Weak;
-use crate::diagnose::base::Present;
 use crate::diagnose::channels::{CHANNEL_NAMES, CHANNELS, Nuisance};
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::fit::{Fitted, evaluate};
+use crate::diagnose::signature::EffectTerm;
 use crate::estimate::{NAMES, UNITS};
 use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;
@@ -247,7 +247,7 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
         for &free in &present.free {
             let Some(parameter) = present.parameter(free) else { continue };
             out.push(Agreement {
-                name: format!("{}.{}", present.effect.id(), parameter.name),
+                name: format!("{}.{}", present.id(), parameter.name),
                 unit: parameter.unit,
                 identified: present.values[free],
                 identified_std: if index < identified.covariance.nrows() {
@@ -265,9 +265,9 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
 }
 
 /// A change of mass that was over when the rows began.
-fn is_before(present: &Present, own: &Fitted) -> bool {
-    present.effect.id() == "mass_change"
-        && own.rows.time_s.first().is_some_and(|first_s| present.values[0] <= *first_s)
+fn is_before(present: &EffectTerm, own: &Fitted) -> bool {
+    let moment_s = present.signature.role.moment.map(|slot| present.values[slot]);
+    moment_s.is_some_and(|moment_s| own.rows.time_s.first().is_some_and(|first_s| moment_s <= *first_s))
 }
 
 /// Two flights' values weighted by their variances.

@@ -1,17 +1,19 @@
 //! Which form of each effect: all are fitted, the likeliest is taken.
 
 use super::wanted::Wanted;
-use crate::diagnose::base::{Base, Present, lift_load};
+use crate::diagnose::base::{Base, lift_load};
 use crate::diagnose::fit::{Newton, fit};
+use crate::diagnose::recorded::Recorded;
+use crate::diagnose::signature::EffectTerm;
 use crate::diagnose::trace::Trace;
-use crate::physics::{Airframe, PhysicsError};
+use crate::physics::PhysicsError;
 use rayon::prelude::*;
 
 /// A form of an effect that was taken.
 #[derive(Debug, Clone)]
 pub(super) struct Chosen {
     /// start values and what is estimated of them
-    pub(super) form: Present,
+    pub(super) form: EffectTerm,
     /// how many forms were tried
     pub(super) tried: usize,
     /// of what was found by trying alone (the moment of a change): its standard error
@@ -33,24 +35,24 @@ pub(super) fn choose(
     flights: &[Trace],
     base: &Base,
     wanted: &Wanted,
-    airframe: &Airframe,
+    recorded: &Recorded,
 ) -> Result<Vec<Chosen>, PhysicsError> {
-    let forms: Vec<Vec<Present>> =
-        wanted.with_columns().map(|effect| wanted.forms(effect.id(), flights, airframe)).collect();
+    let forms: Vec<Vec<EffectTerm>> =
+        wanted.with_columns().map(|signature| wanted.forms(signature, recorded)).collect();
     let open = forms.iter().filter(|forms| forms.len() > 1).count();
     // what has one form is there from the beginning; of two that have several, the first is chosen once more
-    let mut picked: Vec<Option<Present>> =
+    let mut picked: Vec<Option<EffectTerm>> =
         forms.iter().map(|forms| if forms.len() == 1 { forms.first().cloned() } else { None }).collect();
     let sweeps = if open > 1 { 2 } else { 1 };
     let mut spread = vec![None; forms.len()];
     for _ in 0..sweeps {
         for (place, forms) in forms.iter().enumerate().filter(|(_, forms)| forms.len() > 1) {
-            if forms.iter().all(|form| form.effect.id() == "slung_load") {
+            if forms.iter().all(|form| form.signature.role.hangs_below) {
                 picked[place] = Some(length(flights, base, &picked, (place, forms))?);
                 continue;
             }
             let mut best = likeliest(flights, base, &picked, (place, forms))?;
-            if best.form.effect.id() == "mass_change" {
+            if best.form.signature.role.moment.is_some() {
                 let tried = moments_about(&best.form, flights);
                 best = likeliest(flights, base, &picked, (place, &tried))?;
                 spread[place] = Some((0, moment_std_s(&best, &tried)));
@@ -66,7 +68,7 @@ pub(super) fn choose(
 
 /// The likeliest form, with the misfits of all.
 struct Likeliest {
-    form: Present,
+    form: EffectTerm,
     misfits: Vec<f64>,
     /// by how much slow noise makes rows count for less
     deviation: f64,
@@ -75,8 +77,8 @@ struct Likeliest {
 fn likeliest(
     flights: &[Trace],
     base: &Base,
-    picked: &[Option<Present>],
-    (place, forms): (usize, &[Present]),
+    picked: &[Option<EffectTerm>],
+    (place, forms): (usize, &[EffectTerm]),
 ) -> Result<Likeliest, PhysicsError> {
     // misfit, slow noise, what the nuisances ask of what is known of them beforehand, rows
     let fits: Vec<(f64, f64, f64, usize)> = forms
@@ -94,7 +96,7 @@ fn likeliest(
         })
         .collect::<Result<_, PhysicsError>>()?;
     let deviation = fits.iter().map(|(_, deviation, ..)| *deviation).fold(f64::INFINITY, f64::min);
-    let price = |form: &Present, rows: usize| 0.5 * form.free.len() as f64 * (rows.max(2) as f64).ln();
+    let price = |form: &EffectTerm, rows: usize| 0.5 * form.free.len() as f64 * (rows.max(2) as f64).ln();
     let misfits: Vec<f64> = fits
         .iter()
         .zip(forms)
@@ -105,7 +107,7 @@ fn likeliest(
 }
 
 /// The base with what was picked, but for one place.
-fn with_others(base: &Base, picked: &[Option<Present>], place: usize) -> Base {
+fn with_others(base: &Base, picked: &[Option<EffectTerm>], place: usize) -> Base {
     let mut base = base.clone();
     let others = picked.iter().enumerate().filter(|(other, _)| *other != place);
     base.present.extend(others.filter_map(|(_, present)| present.clone()));
@@ -117,12 +119,12 @@ fn with_others(base: &Base, picked: &[Option<Present>], place: usize) -> Base {
 fn length(
     flights: &[Trace],
     base: &Base,
-    picked: &[Option<Present>],
-    (place, forms): (usize, &[Present]),
-) -> Result<Present, PhysicsError> {
+    picked: &[Option<EffectTerm>],
+    (place, forms): (usize, &[EffectTerm]),
+) -> Result<EffectTerm, PhysicsError> {
     let fitted = fit(flights, with_others(base, picked, place), Newton::Held)?;
-    let most = |forms: &[Present]| {
-        let tested: Vec<(f64, Present)> = forms
+    let most = |forms: &[EffectTerm]| {
+        let tested: Vec<(f64, EffectTerm)> = forms
             .par_iter()
             .filter_map(|form| {
                 let columns = fitted.rows.columns_of(flights, &fitted.base, form).ok()?;
@@ -154,7 +156,7 @@ fn length(
 }
 
 /// The same change at moments round about the one that was found.
-fn moments_about(form: &Present, flights: &[Trace]) -> Vec<Present> {
+fn moments_about(form: &EffectTerm, flights: &[Trace]) -> Vec<EffectTerm> {
     let time_s = form.values[0];
     let flown = flights.first().and_then(|trace| {
         Some((trace.grid.time_s(*trace.centers.first()?), trace.grid.time_s(*trace.centers.last()?)))
@@ -174,7 +176,7 @@ fn moments_about(form: &Present, flights: &[Trace]) -> Vec<Present> {
 }
 
 /// Standard error of a moment by the likelihood's fall about it, and by how finely moments were tried.
-fn moment_std_s(best: &Likeliest, tried: &[Present]) -> f64 {
+fn moment_std_s(best: &Likeliest, tried: &[EffectTerm]) -> f64 {
     let least = best.misfits.iter().copied().fold(f64::INFINITY, f64::min);
     let weights = best.misfits.iter().map(|misfit| (-(misfit - least) / best.deviation.powi(2)).exp());
     let (mut sum, mut square) = (0.0, 0.0);

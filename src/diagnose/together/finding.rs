@@ -4,12 +4,13 @@ use super::held::{Held, Settled};
 use super::latency::{LEAST_LAG_S, Split};
 use super::scale::follows_force;
 use super::wanted::Wanted;
-use crate::diagnose::base::Present;
 use crate::diagnose::deviate::normal_deviate;
 use crate::diagnose::fit::Fitted;
 use crate::diagnose::gates::Gates;
 use crate::diagnose::latency::FAST_MOTOR_S;
 use crate::diagnose::latency::{LatencyFinding, held_s, stated_lag_s};
+use crate::diagnose::signature::{EffectTerm, LatencyKind, Signature, Whence};
+use crate::diagnose::signatures::signature_of;
 use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, Effect};
 use crate::vehicle::Vehicle;
@@ -105,7 +106,7 @@ impl EffectFound {
     /// It stands out of the noise as far as a name needs it to.
     #[must_use]
     pub fn is_significant(&self) -> bool {
-        self.z > Gates::default().deviate(self.effect.id())
+        signature_of(self.effect.id()).is_some_and(|signature| self.z > Gates::default().deviate(signature))
     }
 
     /// For a simulation; `None` where the flight determines nothing of it.
@@ -128,18 +129,13 @@ pub(super) fn effects(
 ) -> Vec<EffectFound> {
     let first = fitted.base.present.len() - settled.len();
     wanted
-        .effects()
+        .signatures()
         .iter()
-        .map(|&effect| {
-            let place = settled.iter().position(|of| of.chosen.form.effect.id() == effect.id());
+        .map(|&signature| {
+            let place = settled.iter().position(|of| of.chosen.form.is(signature));
             match place {
-                Some(place) => of_columns(
-                    fitted,
-                    first + place,
-                    &settled[place],
-                    (vehicle, wanted.has("inflow"), by_mass),
-                ),
-                None => of_latency(effect, flights, (latency, split), stated_lag_s(vehicle)),
+                Some(place) => of_columns(fitted, first + place, &settled[place], (vehicle, wanted, by_mass)),
+                None => of_latency(signature, flights, (latency, split), stated_lag_s(vehicle)),
             }
         })
         .collect()
@@ -150,7 +146,7 @@ fn of_columns(
     fitted: &Fitted,
     place: usize,
     settled: &Settled,
-    (vehicle, has_inflow, by_mass): (&Vehicle, bool, Option<f64>),
+    (vehicle, wanted, by_mass): (&Vehicle, &Wanted, Option<f64>),
 ) -> EffectFound {
     let present = &fitted.base.present[place];
     let before: usize = fitted.base.present[..place].iter().map(|of| of.free.len()).sum();
@@ -174,7 +170,7 @@ fn of_columns(
             }
             (None, None) => match settled.chosen.tried_std {
                 Some((of, std)) if of == slot => Found::Determined { value, std },
-                _ => set(present, slot, value, (vehicle, has_inflow)),
+                _ => set(present, slot, value, (vehicle, wanted)),
             },
         };
         let plausible = (parameter.min, parameter.max);
@@ -199,44 +195,29 @@ fn of_columns(
     });
     let strongest = allowed_for(strongest.fold(0.0, f64::max), tried);
     let z = deviate(fitted, &amounts, (bounded, tried)).max(strongest);
-    EffectFound { effect: present.effect, parameters, z, tried }
+    EffectFound { effect: present.effect(), parameters, z, tried }
 }
 
 /// Why a parameter that was neither estimated nor held is what it is.
-fn set(present: &Present, slot: usize, value: f64, (vehicle, has_inflow): (&Vehicle, bool)) -> Found {
-    let given = |why: &str| Found::Given { value, why: why.to_owned() };
-    let unknown = |reason: &str| Found::NotDetermined { held: value, reason: reason.to_owned() };
-    match (present.effect.id(), slot) {
-        ("weak_rotor", 0) => {
-            let names = vehicle.rotors.iter().enumerate().find(|(index, _)| *index as f64 == value);
-            given(names.map_or("the likeliest", |(_, rotor)| rotor.name.as_str()))
+fn set(term: &EffectTerm, slot: usize, value: f64, (vehicle, wanted): (&Vehicle, &Wanted)) -> Found {
+    match (term.signature.joint.whence)(term, slot, vehicle, wanted.signatures()) {
+        Some(Whence::Given(why)) => Found::Given { value, why },
+        Some(Whence::NotDetermined(reason)) => {
+            Found::NotDetermined { held: value, reason: reason.to_owned() }
         }
-        ("battery_sag", 1) => given(
-            "the highest recorded: the thrust that the vehicle file states is taken to be that at this voltage",
-        ),
-        ("ground_effect", 0..=2) => given("the other law is the likelier one"),
-        ("ceiling_effect", 1) => {
-            given("acts only as its sum with the distance; the height given here holds it")
-        }
-        ("linear_drag", 2) if has_inflow => given("is the inflow's kz"),
-        ("tether", 3..) => given("as it was set"),
-        ("tether", _) => unknown("the line was not taut in this flight, or pulled too little to show"),
-        ("frame_misalignment", 3..) => given("position and velocity are turned alone: the likelier of both"),
-        ("frame_misalignment", _) => unknown(
-            "position, velocity and attitude turn alike: no equation of the vehicle's own motion sees a heading",
-        ),
-        _ => given("as it was set"),
+        None => Found::Given { value, why: "as it was set".to_owned() },
     }
 }
 
 /// Lag or delay, in the latency.
 fn of_latency(
-    effect: &'static dyn Effect,
+    signature: &'static Signature,
     flights: &[Trace],
     (latency, split): (&LatencyFinding, Split),
     stated_s: f64,
 ) -> EffectFound {
-    let is_lag = effect.id() == "motor_lag";
+    let effect = signature.effect;
+    let is_lag = signature.role.latency == Some(LatencyKind::Lag);
     let (value, least, ordinary_s) = if is_lag {
         (latency.parts.lag_s, LEAST_LAG_S, FAST_MOTOR_S)
     } else {

@@ -1,9 +1,10 @@
 //! What a flight does not determine is held where it does nothing, what physics does not allow at its bound.
 
 use super::choose::Chosen;
-use crate::diagnose::base::{Base, Present};
+use crate::diagnose::base::Base;
 use crate::diagnose::evidence::Weighted;
 use crate::diagnose::fit::{Fitted, Newton, fit};
+use crate::diagnose::signature::EffectTerm;
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
 use nalgebra::DVector;
@@ -82,8 +83,8 @@ pub(super) fn settle(
 }
 
 /// Mass of a slung load that an effect starts with, kg.
-fn load_kg(form: &Present) -> Option<f64> {
-    form.values.first().copied().filter(|_| form.effect.id() == "slung_load")
+fn load_kg(form: &EffectTerm) -> Option<f64> {
+    form.values.first().copied().filter(|_| form.signature.role.hangs_below)
 }
 
 /// Where columns cannot be told from each other at all, the last one goes. Whether there was one.
@@ -134,7 +135,7 @@ fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
         let range = parameter.max - parameter.min;
         let amount = present.is_amount(slot);
         // a finer form was taken because it is the likelier one: what it adds stays in, whatever its error
-        let finer = slot >= present.effect.parameters().len();
+        let finer = slot >= present.effect().parameters().len();
         let reason = if !amount && !seen {
             "the effect itself does not stand out of the noise".to_owned()
         } else {
@@ -180,18 +181,14 @@ fn hold_at_bounds(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
 fn free_vertical_wind(fitted: &Fitted, settled: &mut [Settled], (before, next): (usize, &mut Base)) -> bool {
     const UP: usize = 2;
     let shows = fitted.base.present.iter().enumerate().any(|(place, present)| {
-        let along_z = match present.effect.id() {
-            "linear_drag" | "quadratic_drag" => 2,
-            "inflow" => 0,
-            _ => return false,
-        };
+        let Some(along_z) = present.signature.role.vertical else { return false };
         let free = estimates(fitted, place).into_iter().find(|(slot, ..)| *slot == along_z);
         free.is_some_and(|(_, value, std, _)| value > SHOWS_WIND * std)
             || !present.free.contains(&along_z) && place < before && present.values[along_z] > 0.0
     });
     let mut freed = false;
     for (index, of) in settled.iter_mut().enumerate() {
-        if of.chosen.form.effect.id() != "steady_wind" || of.chosen.form.free.is_empty() {
+        if of.chosen.form.signature.role.wind.is_none() || of.chosen.form.free.is_empty() {
             continue;
         }
         if shows {

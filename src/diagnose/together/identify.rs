@@ -5,13 +5,14 @@ use super::finding::{self, EffectFound};
 use super::held::Settled;
 use super::result::{Physical, Together};
 use super::scale::Kept;
-use super::wanted::{self, Wanted};
+use super::wanted::Wanted;
 use super::{choose, latency, swing};
 use crate::diagnose::base::Base;
 use crate::diagnose::deviate::normal_deviate;
 use crate::diagnose::evidence::LEAST_ROWS;
 use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::latency::{LatencyFinding, finding_of};
+use crate::diagnose::recorded::Recorded;
 use crate::diagnose::trace::Trace;
 use crate::estimate::{
     Estimated, Finding, Method, MethodResult, THETA, Theta, ThetaCovariance, identified_vehicle, is_physical,
@@ -36,7 +37,8 @@ pub fn together(
     let traces: Vec<Trace> =
         flights.iter().map(|signals| Trace::new(signals, vehicle, half_width_s)).collect::<Result<_, _>>()?;
     let airframe = Airframe::new(vehicle)?;
-    wanted.check_flights(&traces, &airframe)?;
+    let recorded = Recorded::new(vehicle, &traces);
+    wanted.check_flights(&recorded, &airframe)?;
     let rows: usize = traces.iter().map(Trace::rows).sum();
     if rows < LEAST_ROWS {
         let (seconds, needed_s) = (rows as f64 * 0.05, LEAST_ROWS as f64 * 0.05);
@@ -45,11 +47,11 @@ pub fn together(
     let kept: Vec<&ActiveEffect> = known.iter().filter(|of| !wanted.has(of.effect().id())).collect();
     let of_file = Kept { vehicle, effects: &kept };
     let (rigid, plain, first) = of_file.fit_latency(&traces)?;
-    let latency_named = wanted.effects().iter().any(|effect| wanted::is_latency(effect.id()));
+    let latency_named = wanted.signatures().iter().any(|signature| signature.role.latency.is_some());
     let before = if latency_named { fit(&traces, rigid, Newton::Held)? } else { plain.clone() };
     let (start, newton) = latency::held_as(wanted, &traces, (vehicle, known), first, plain.base.latency);
     let base = Base { latency: start, ..plain.base };
-    let chosen = choose::choose(&traces, &base, wanted, &airframe)?;
+    let chosen = choose::choose(&traces, &base, wanted, &recorded)?;
     let (after, mut settled) = of_file.settle(&traces, base, &chosen, newton)?;
     let (mut after, split) = latency::split(&traces, after, wanted)?;
     swing::allow_for_noise(&traces, &mut after, &mut settled)?;
@@ -99,7 +101,7 @@ fn put_together(
     acting.extend(effects.iter().filter_map(EffectFound::acting));
     Together {
         vehicle: identified_vehicle(vehicle, &body, scale.as_ref()),
-        latency_named: wanted.effects().iter().any(|effect| wanted::is_latency(effect.id())),
+        latency_named: wanted.signatures().iter().any(|signature| signature.role.latency.is_some()),
         before,
         after,
         body,

@@ -4,6 +4,8 @@ use super::wanted::Wanted;
 use crate::diagnose::base::Base;
 use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::latency::{LatencyFinding, held_s, lag_column, stated_lag_s, stated_uneven};
+use crate::diagnose::signature::LatencyKind;
+use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, PhysicsError};
 use crate::signals::ActuationLatency;
@@ -27,23 +29,23 @@ pub(super) fn held_as(
     first: LatencyFinding,
     found: ActuationLatency,
 ) -> (ActuationLatency, Newton) {
-    let of_file = |id: &str| {
-        let known = known.iter().find(|of| of.effect().id() == id);
+    let of_file = |kind: LatencyKind| {
+        let known = known.iter().find(|of| latency_kind(of.effect().id()) == Some(kind));
         // a lag's two time constants by their mean
         known.map(|of| of.parameters().iter().sum::<f64>() / of.parameters().len().max(1) as f64)
     };
     let held_s = held_s(flights);
     let uneven = stated_uneven(vehicle);
     let beyond_s = first.total_s - held_s;
-    match (wanted.has("motor_lag"), wanted.has("transport_delay")) {
+    match (wanted.has_latency(LatencyKind::Lag), wanted.has_latency(LatencyKind::Delay)) {
         (false, false) => (found, Newton::Free),
         (true, false) => {
-            let delay_s = of_file("transport_delay").unwrap_or(0.0);
+            let delay_s = of_file(LatencyKind::Delay).unwrap_or(0.0);
             let lag_s = (beyond_s - delay_s).max(10.0 * LEAST_LAG_S);
             (ActuationLatency { delay_s: delay_s + held_s, lag_s, uneven }, Newton::Free)
         }
         (false, true) => {
-            let lag_s = of_file("motor_lag").unwrap_or_else(|| stated_lag_s(vehicle));
+            let lag_s = of_file(LatencyKind::Lag).unwrap_or_else(|| stated_lag_s(vehicle));
             (ActuationLatency { delay_s: first.total_s - lag_s, lag_s, uneven }, Newton::Delay)
         }
         (true, true) => {
@@ -59,7 +61,7 @@ pub(super) fn split(
     mut after: Fitted,
     wanted: &Wanted,
 ) -> Result<(Fitted, Split), PhysicsError> {
-    if !(wanted.has("motor_lag") && wanted.has("transport_delay")) {
+    if !(wanted.has_latency(LatencyKind::Lag) && wanted.has_latency(LatencyKind::Delay)) {
         return Ok((after, None));
     }
     let mut lag_std_s = f64::INFINITY;

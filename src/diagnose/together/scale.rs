@@ -1,11 +1,13 @@
 //! The scale of force where the mass was weighed: the fit is on the scale of the stated thrust, what the vehicle's
 //! file has of effects on that of the weighed mass.
 
+use super::choose::Chosen;
 use super::held::{Settled, settle};
-use super::{choose::Chosen, wanted};
-use crate::diagnose::base::{Base, Present};
+use crate::diagnose::base::Base;
 use crate::diagnose::fit::{Fitted, Newton};
 use crate::diagnose::latency::{LatencyFinding, fit_latency};
+use crate::diagnose::signature::EffectTerm;
+use crate::diagnose::signatures::signature_of;
 use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, PhysicsError};
 use crate::vehicle::{Anchor, Vehicle};
@@ -29,16 +31,16 @@ pub(super) struct Kept<'a> {
 impl Kept<'_> {
     /// On the stated thrust's scale, where the weighed mass is `factor` times the mass on that scale. What acts before
     /// the rotor's speed goes through the latency.
-    fn present(&self, factor: f64) -> Vec<Present> {
+    fn present(&self, factor: f64) -> Vec<EffectTerm> {
         let one = |known: &&ActiveEffect| {
-            let (effect, values) = (known.effect(), known.parameters().to_vec());
-            let mut present = Present { effect, values, free: Vec::new() };
+            let signature = signature_of(known.effect().id())?;
+            let mut present = signature.term(known.parameters(), &[]);
             for slot in 0..present.values.len() {
                 if present.parameter(slot).is_some_and(|parameter| follows_force(parameter.unit)) {
                     present.values[slot] /= factor;
                 }
             }
-            (!wanted::is_latency(effect.id())).then_some(present)
+            signature.role.latency.is_none().then_some(present)
         };
         self.effects.iter().filter_map(one).collect()
     }

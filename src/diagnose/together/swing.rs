@@ -24,7 +24,6 @@ const REPLICATES: u64 = 12;
 /// many standard errors.
 const CHANGED_SHARE: f64 = 0.25;
 const CHANGED: f64 = 3.0;
-const LOAD: &str = "slung_load";
 
 /// Adds it, where a load is estimated. A swing that the noise hides says nothing of its load.
 pub(super) fn allow_for_noise(
@@ -35,11 +34,13 @@ pub(super) fn allow_for_noise(
     scatter(flights, fitted)?;
     let before = fitted.base.present.len() - settled.len();
     let mut hidden = Vec::new();
-    for (index, of) in settled.iter_mut().enumerate().filter(|(_, of)| of.chosen.form.effect.id() == LOAD) {
+    for (index, of) in
+        settled.iter_mut().enumerate().filter(|(_, of)| of.chosen.form.signature.role.hangs_below)
+    {
         let all = estimates(fitted, before + index);
         // the number of cords that were tried allowed for
         let tried = 2.0 * (of.chosen.tried.max(1) as f64).ln();
-        let needed = (Gates::default().deviate(LOAD).powi(2) + tried).sqrt();
+        let needed = (Gates::default().deviate(of.chosen.form.signature).powi(2) + tried).sqrt();
         let seen = all.iter().any(|(slot, value, std, _)| *slot == 0 && *value > needed * std);
         let changes = seen && runs_out_of_step(fitted, before + index);
         if !seen || changes {
@@ -95,7 +96,7 @@ fn runs_out_of_step(fitted: &Fitted, place: usize) -> bool {
 }
 
 fn scatter(flights: &[Trace], fitted: &mut Fitted) -> Result<(), PhysicsError> {
-    if !fitted.base.estimates(LOAD) {
+    if !fitted.base.estimates(|term| term.signature.role.hangs_below) {
         return Ok(());
     }
     let (rows, weights) = (&fitted.rows, &fitted.weighted);

@@ -194,7 +194,7 @@ fn effect_values(story: &Story, effects: &[Named]) -> Vec<EffectValue> {
         .iter()
         .map(|effect| EffectValue {
             id: effect.id,
-            sentence: format!("{}.", super::words::clause(effect, story.vehicle())),
+            sentence: format!("{}.", crate::diagnose::clause(effect, story.vehicle())),
             parameters: effect
                 .parameters
                 .iter()

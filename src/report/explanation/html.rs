@@ -2,10 +2,10 @@
 
 use super::prediction::{Predicted, QUANTITIES, ShownOn};
 use super::story::{Story, body_values, rigid_body};
-use super::words::{called, clause};
 use crate::compare::SIGNALS;
 use crate::diagnose::show::{Compared, Shown};
 use crate::diagnose::{AXES, CHANNEL_NAMES, Named, Tested, Trace, Verdict};
+use crate::diagnose::{called, clause};
 use crate::report::chart::inline;
 use crate::report::html::{Cell, Page, number, text};
 use crate::report::number::{chance, percent, significant, spoken, with_error};

@@ -3,9 +3,8 @@
 //! At the hubs it damps the rotation, too, and so a body that drags at its centre and whose rotation is damped
 //! looks like one that drags partly at the hubs. One place and damping is the simpler description.
 
-use super::base::Present;
-use super::candidates::present;
 use super::fit::{Fitted, Newton, fit};
+use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 
@@ -27,10 +26,11 @@ pub(super) fn one_place(flights: &[Trace], after: &mut Fitted, price: f64) -> Re
         let drag = &mut base.present[place];
         drag.values[slot] = at_hubs;
         drag.free.retain(|free| *free != slot);
-        let damping = base.present.iter().position(|present| present.effect.id() == "angular_damping");
-        match damping {
-            Some(damping) => base.present[damping].free = vec![0, 1, 2],
-            None => base.present.extend(present("angular_damping", &[0.0; 3], &[0, 1, 2])),
+        if let Some(damping) = base.present[place].signature.role.damped_by.map(|damping| damping()) {
+            match base.present.iter_mut().find(|term| term.is(damping.signature)) {
+                Some(known) => known.free = damping.free,
+                None => base.present.push(damping),
+            }
         }
         let fitted = fit(flights, base, Newton::Held)?;
         let cost = cost(&fitted, price);
@@ -63,7 +63,7 @@ fn divided(fitted: &Fitted) -> Option<(usize, usize)> {
     None
 }
 
-fn is_share(present: &Present, slot: usize) -> bool {
+fn is_share(present: &EffectTerm, slot: usize) -> bool {
     present.parameter(slot).is_some_and(|parameter| parameter.name == "at_hubs")
 }
 

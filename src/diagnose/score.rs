@@ -1,9 +1,11 @@
 //! Every candidate about a fitted base: its columns, and the evidence for it.
 
-use super::base::{Base, Present};
-use super::candidates::{Candidate, drag_and_wind};
+use super::base::Base;
+use super::candidates::Candidate;
 use super::channels::Channels;
 use super::fit::Fitted;
+use super::signature::{Carried, EffectTerm};
+use super::signatures::ALL;
 use super::tested::Tested;
 use super::trace::Trace;
 use rayon::prelude::*;
@@ -34,7 +36,10 @@ pub(super) fn test_all(flights: &[Trace], fitted: &Fitted, candidates: &[Candida
             Some(Tested { candidate: (*candidate).clone(), evidence })
         })
         .collect();
-    out.extend([1.0, 0.0].into_iter().filter_map(|at_hubs| test_drag_and_wind(flights, fitted, at_hubs)));
+    out.extend(test_winds(flights, fitted));
+    // in the order of the signatures
+    let place = |tested: &Tested| ALL.iter().position(|signature| signature.id() == tested.candidate.id);
+    out.sort_by_key(place);
     out
 }
 
@@ -42,7 +47,7 @@ pub(super) fn test_all(flights: &[Trace], fitted: &Fitted, candidates: &[Candida
 fn covers(wide: &Candidate, candidate: &Candidate) -> bool {
     wide.parts.len() == candidate.parts.len()
         && wide.parts.iter().zip(&candidate.parts).all(|(wide, part)| {
-            wide.effect.id() == part.effect.id()
+            wide.is(part.signature)
                 && wide.values == part.values
                 && part.free.iter().all(|slot| wide.free.contains(slot))
         })
@@ -73,45 +78,53 @@ pub(super) fn columns_of(flights: &[Trace], fitted: &Fitted, candidate: &Candida
 pub(super) fn is_present(base: &Base, candidate: &Candidate) -> bool {
     candidate.parts.iter().all(|part| {
         base.present.iter().any(|present| {
-            present.effect.id() == part.effect.id()
-                && (part.effect.id() != "weak_rotor" || present.values[0] == part.values[0])
+            present.is(part.signature) && is_the_same(present, part)
                 || drags_along_z(present) && drags_along_z(part)
         })
     })
 }
 
+/// Of several of the same effect (rotors), the same one.
+fn is_the_same(present: &EffectTerm, part: &EffectTerm) -> bool {
+    part.signature.role.which.is_none_or(|slot| present.values[slot] == part.values[slot])
+}
+
 /// Inflow and the z of drag are one term.
-fn drags_along_z(present: &Present) -> bool {
-    match present.effect.id() {
-        "inflow" => true,
-        "linear_drag" => present.free.contains(&2),
-        _ => false,
-    }
+fn drags_along_z(term: &EffectTerm) -> bool {
+    term.signature.role.axial.is_some_and(|slot| term.free.contains(&slot))
 }
 
 /// Wind acts through drag: both together, or wind alone where drag is known already.
-fn test_drag_and_wind(flights: &[Trace], fitted: &Fitted, at_hubs: f64) -> Option<Tested> {
-    let (drag, wind, unit) = drag_and_wind(at_hubs)?;
-    let known = |id: &str| fitted.base.present.iter().any(|present| present.effect.id() == id);
-    if known("steady_wind") || !flights.iter().all(|trace| trace.known.velocity && trace.known.attitude) {
-        return None;
+fn test_winds(flights: &[Trace], fitted: &Fitted) -> Vec<Tested> {
+    let present = &fitted.base.present;
+    let is_wind = |term: &EffectTerm| term.signature.role.wind.is_some();
+    let moving = flights.iter().all(|trace| trace.known.velocity && trace.known.attitude);
+    if present.iter().any(is_wind) || !moving {
+        return Vec::new();
     }
-    if known("linear_drag") || known("quadratic_drag") {
-        if at_hubs < 1.0 {
-            return None; // its columns come through the drag that is there
-        }
-        let candidate = Candidate { id: "steady_wind", parts: vec![wind], through: None };
-        let columns = columns_of(flights, fitted, &candidate)?;
-        let evidence = fitted.weighted.test(&columns)?;
-        return Some(Tested { candidate, evidence });
+    let carried = ALL.iter().filter_map(|signature| signature.role.wind).flat_map(|carried| carried());
+    if present.iter().any(|term| term.signature.role.lateral_slope.is_some()) {
+        // its columns come through the drag that is there
+        let alone = carried.take(1).filter_map(|wind| {
+            let candidate = Candidate::alone(wind.term);
+            let evidence = fitted.weighted.test(&columns_of(flights, fitted, &candidate)?)?;
+            Some(Tested { candidate, evidence })
+        });
+        return alone.collect();
     }
+    carried.filter_map(|wind| test_carried(flights, fitted, wind)).collect()
+}
+
+/// An effect together with the one that carries it.
+fn test_carried(flights: &[Trace], fitted: &Fitted, carried: Carried) -> Option<Tested> {
+    let Carried { carrier, unit, term } = carried;
     let mut with_unit = fitted.base.clone();
     with_unit.present.push(unit.clone());
-    let mut columns = fitted.rows.columns_of(flights, &fitted.base, &drag).ok()?;
-    columns.extend(fitted.rows.columns_through(flights, &with_unit, &wind).ok()?);
+    let mut columns = fitted.rows.columns_of(flights, &fitted.base, &carrier).ok()?;
+    columns.extend(fitted.rows.columns_through(flights, &with_unit, &term).ok()?);
     let evidence = fitted.weighted.test(&columns)?;
-    // wind is named only for what it adds to drag
-    let more = fitted.weighted.conditional(&columns, 2)?;
-    let candidate = Candidate { id: "steady_wind", parts: vec![drag, wind], through: Some(unit) };
+    // it is named only for what it adds to its carrier
+    let more = fitted.weighted.conditional(&columns, carrier.free.len())?;
+    let candidate = Candidate { id: term.id(), parts: vec![carrier, term], through: Some(unit) };
     (more > 4.0).then_some(Tested { candidate, evidence })
 }

@@ -1,18 +1,19 @@
 //! After the search: what has become superfluous goes, and the latency is estimated once more.
 
-use super::base::{Base, Present};
+use super::base::Base;
 use super::fit::{Fitted, Newton, fit};
+use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 
 /// A latency that moves by less than this when it is estimated with the effects changes nothing, s.
-pub(super) const SETTLED_S: f64 = 0.001;
+pub(super) const UNCHANGED_S: f64 = 0.001;
 
 /// Effects that the later ones have made superfluous go, and the latency is estimated with those that stay.
 /// Returns whether any went, and by how much the latency moved, s.
-pub(super) fn settle(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64), PhysicsError> {
+pub(super) fn prune(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64), PhysicsError> {
     let mut index = after.rows.nuisances.len();
-    let mut kept: Vec<Present> = Vec::new();
+    let mut kept: Vec<EffectTerm> = Vec::new();
     let mut dropped = false;
     for present in &after.base.present {
         let mut pruned = present.clone();

@@ -3,49 +3,33 @@
 
 use super::candidates::Candidate;
 use super::fit::Fitted;
+use super::score::columns_of;
+use super::signature::GridScale;
 use super::tested::Tested;
 use super::trace::Trace;
-use super::trial::columns_of;
 use rayon::prelude::*;
-
-/// The slot that lies on a grid, its first step and where refining ends.
-#[derive(Debug, Clone, Copy)]
-enum Scale {
-    /// steps in the value's unit
-    Even { slot: usize, step: f64, least: f64 },
-    /// steps as shares of the value
-    Relative { slot: usize, step: f64, least: f64 },
-}
-
-fn scale_of(id: &str) -> Option<Scale> {
-    match id {
-        // s
-        "mass_change" => Some(Scale::Even { slot: 0, step: 0.5, least: 0.03 }),
-        // m
-        "ceiling_effect" => Some(Scale::Even { slot: 2, step: 0.03, least: 0.003 }),
-        // of the length
-        "slung_load" => Some(Scale::Relative { slot: 1, step: 0.04, least: 0.002 }),
-        _ => None,
-    }
-}
 
 /// The likeliest cord brought between the grid's lengths: a load that swings freely is out of step with its
 /// neighbours on the grid, and they explain too little of it to be taken.
 pub(super) fn between_grid(flights: &[Trace], fitted: &Fitted, tested: &[Tested]) -> Option<Tested> {
-    let loads = tested.iter().filter(|tested| tested.candidate.id == "slung_load");
+    let before = |tested: &&Tested| {
+        tested.candidate.signature().is_some_and(|signature| signature.refinement.grid_before_test)
+    };
+    let loads = tested.iter().filter(before);
     let most = loads.max_by(|a, b| a.evidence.energy.total_cmp(&b.evidence.energy))?;
-    (most.evidence.gain > WORTH_SHARPENING).then(|| sharpened(flights, fitted, most.clone()))
+    (most.evidence.gain > WORTH_REFINING).then(|| refined(flights, fitted, most.clone()))
 }
 
 /// Share of the residual that a cord of the grid has to explain.
-const WORTH_SHARPENING: f64 = 0.01;
+const WORTH_REFINING: f64 = 0.01;
 
 /// Neighbours on either side that are tried first.
 const NEIGHBOURS: i32 = 6;
 
 /// The candidate with the value that explains most energy, near the one it has.
-pub(super) fn sharpened(flights: &[Trace], fitted: &Fitted, tested: Tested) -> Tested {
-    let Some(scale) = scale_of(tested.candidate.id) else { return tested };
+pub(super) fn refined(flights: &[Trace], fitted: &Fitted, tested: Tested) -> Tested {
+    let scale = tested.candidate.signature().and_then(|signature| signature.refinement.grid);
+    let Some(scale) = scale else { return tested };
     let at = |from: &Tested, by: f64| {
         let candidate = moved(&from.candidate, scale, by);
         let columns = columns_of(flights, fitted, &candidate)?;
@@ -57,7 +41,7 @@ pub(super) fn sharpened(flights: &[Trace], fitted: &Fitted, tested: Tested) -> T
         _ => a,
     };
     let (mut step, least) = match scale {
-        Scale::Even { step, least, .. } | Scale::Relative { step, least, .. } => (step, least),
+        GridScale::Even { step, least, .. } | GridScale::Relative { step, least, .. } => (step, least),
     };
     let around: Vec<Option<Tested>> =
         (-NEIGHBOURS..=NEIGHBOURS).into_par_iter().map(|k| at(&tested, f64::from(k) * step)).collect();
@@ -70,12 +54,12 @@ pub(super) fn sharpened(flights: &[Trace], fitted: &Fitted, tested: Tested) -> T
     best
 }
 
-fn moved(candidate: &Candidate, scale: Scale, by: f64) -> Candidate {
+fn moved(candidate: &Candidate, scale: GridScale, by: f64) -> Candidate {
     let mut candidate = candidate.clone();
     for part in &mut candidate.parts {
         match scale {
-            Scale::Even { slot, .. } => part.values[slot] = part.possible(slot, part.values[slot] + by),
-            Scale::Relative { slot, .. } => {
+            GridScale::Even { slot, .. } => part.values[slot] = part.possible(slot, part.values[slot] + by),
+            GridScale::Relative { slot, .. } => {
                 part.values[slot] = part.possible(slot, part.values[slot] * by.exp());
             }
         }

@@ -1,0 +1,518 @@
+//! What the diagnosis knows of an effect beside its equation: one value of [`Signature`] an effect.
+
+use super::channels::Nuisance;
+use super::named::Named;
+use super::recorded::Recorded;
+use crate::physics::{Effect, Parameter};
+use crate::vehicle::Vehicle;
+
+/// What the diagnosis knows of an effect. Data and small functions; nothing else in the diagnosis, the report or the
+/// commands asks for an effect by its identifier.
+#[derive(Debug)]
+pub struct Signature {
+    /// the equation
+    pub effect: &'static dyn Effect,
+    /// what a flight has to hold for the effect to be tried
+    pub needs: &'static [Need],
+    /// slots of the values that say how much of the effect there is; the others say what it is like
+    pub amounts: &'static [usize],
+    /// how the effect grows with its amount
+    pub growth: Growth,
+    /// value of an amount at which the effect vanishes
+    pub nothing: f64,
+    /// forms that the search tries
+    pub forms: fn(&Recorded) -> Vec<Form>,
+    /// how the search goes on once a form is taken
+    pub refinement: Refinement,
+    /// what is asked of it before it is named
+    pub naming: Naming,
+    /// through what it acts, and what it shares with other effects
+    pub role: Role,
+    /// how it is fitted where the user asks for it
+    pub joint: Joint,
+    /// what a person reads
+    pub words: Words,
+}
+
+impl Signature {
+    /// A signature with nothing special: every parameter is an amount, tried from zero in one form.
+    #[must_use]
+    pub const fn of(effect: &'static dyn Effect, amounts: &'static [usize], words: Words) -> Self {
+        Self {
+            effect,
+            needs: &[],
+            amounts,
+            growth: Growth::Proportional,
+            nothing: 0.0,
+            forms: |_| Vec::new(),
+            refinement: Refinement::NONE,
+            naming: Naming::PLAIN,
+            role: Role::NONE,
+            joint: Joint::PLAIN,
+            words,
+        }
+    }
+
+    /// Identifier as in reports and files.
+    #[must_use]
+    pub fn id(&self) -> &'static str {
+        self.effect.id()
+    }
+
+    /// The effect at these values, of which `free` are estimated.
+    #[must_use]
+    pub fn term(&'static self, values: &[f64], free: &[usize]) -> EffectTerm {
+        EffectTerm { signature: self, values: values.to_vec(), free: free.to_vec() }
+    }
+
+    /// The same as a form of the search.
+    #[must_use]
+    pub fn form(&'static self, values: &[f64], free: &[usize]) -> Form {
+        Form { term: self.term(values, free), instead_of_nuisance: false }
+    }
+
+    /// All parameters from zero, all estimated.
+    #[must_use]
+    pub fn whole(&'static self) -> EffectTerm {
+        let count = self.effect.parameters().len();
+        self.term(&vec![0.0; count], &(0..count).collect::<Vec<_>>())
+    }
+}
+
+/// What a flight has to hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Need {
+    /// velocity and attitude
+    Velocity,
+    /// position and attitude
+    Position,
+    /// specific force
+    Accelerometer,
+    /// accelerometer, velocity and attitude: the force in two readings
+    ForceTwice,
+    /// battery voltage
+    Voltage,
+    /// a moment belongs to one flight
+    OneFlight,
+}
+
+/// How an effect grows with its amount.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Growth {
+    /// in proportion
+    Proportional,
+    /// with the inverse of the amount; `usual` is an amount that was measured
+    Inverse {
+        /// in the amount's unit
+        usual: f64,
+    },
+}
+
+/// A form in which the search tries an effect.
+#[derive(Debug, Clone)]
+pub struct Form {
+    /// start values, and what of them is estimated
+    pub term: EffectTerm,
+    /// a nuisance stands for small sizes of it: it is tested without that nuisance, and only when nothing else passes
+    pub instead_of_nuisance: bool,
+}
+
+/// A value that lies on a grid, its first step and where refining ends.
+#[derive(Debug, Clone, Copy)]
+pub enum GridScale {
+    /// steps in the value's unit
+    Even {
+        /// slot of the values
+        slot: usize,
+        /// first step
+        step: f64,
+        /// last step
+        least: f64,
+    },
+    /// steps as shares of the value
+    Relative {
+        /// slot of the values
+        slot: usize,
+        /// first step
+        step: f64,
+        /// last step
+        least: f64,
+    },
+}
+
+/// How the search goes on once a form is taken.
+#[derive(Debug, Clone, Copy)]
+pub struct Refinement {
+    /// a value that is tried on a grid is brought between the grid's points
+    pub grid: Option<GridScale>,
+    /// that is done before the test: neighbours on the grid explain too little of it
+    pub grid_before_test: bool,
+    /// slots that are estimated from then on
+    pub freed: fn(&EffectTerm) -> Vec<usize>,
+    /// slots that are estimated at the end, in place of those before
+    pub freed_last: &'static [usize],
+    /// the same size in other forms
+    pub other_forms: fn(&EffectTerm) -> Vec<EffectTerm>,
+}
+
+impl Refinement {
+    /// The finer parameters, once the effect is there.
+    pub const NONE: Self = Self {
+        grid: None,
+        grid_before_test: false,
+        freed: first_finer,
+        freed_last: &[],
+        other_forms: |_| Vec::new(),
+    };
+}
+
+/// The first finer parameter, where the values have it.
+#[must_use]
+pub fn first_finer(term: &EffectTerm) -> Vec<usize> {
+    let finer = term.effect().parameters().len();
+    if term.values.len() > finer { vec![finer] } else { Vec::new() }
+}
+
+/// What is asked of an effect before it is named.
+#[derive(Debug, Clone, Copy)]
+pub struct Naming {
+    /// size (norm of the amounts) up to which every vehicle has it
+    pub ordinary: Option<f64>,
+    /// size of all parameters below which it stays in the model and gets no name
+    pub least: f64,
+    /// whether it is like any vehicle's beside the others of the model, whatever its size
+    pub is_ordinary: fn(&EffectTerm, &[EffectTerm]) -> bool,
+    /// added to the normal deviate that is asked for: it is tried at many values, the likeliest of which counts
+    pub extra_z: f64,
+    /// every rotor has it: a twentieth of the family-wise chance is its share
+    pub ubiquitous: bool,
+    /// greatest amount that is possible, where it is less than the parameter's bound
+    pub most: Option<f64>,
+    /// standard error that no flight gets below, in the amounts' unit
+    pub least_std: f64,
+    /// size on ordinary vehicles of what shows only where the vehicle moves
+    pub usual: fn(&str, &Vehicle) -> Option<f64>,
+    /// whether a parameter that is held belongs to what is said
+    pub says: fn(&EffectTerm, usize) -> bool,
+    /// whether a form has a smallest size that would have been named
+    pub has_limit: fn(&EffectTerm) -> bool,
+}
+
+impl Naming {
+    /// Nothing special.
+    pub const PLAIN: Self = Self {
+        ordinary: None,
+        least: 0.0,
+        is_ordinary: |_, _| false,
+        extra_z: 0.0,
+        ubiquitous: false,
+        most: None,
+        least_std: 0.0,
+        usual: |_, _| None,
+        says: |term, slot| term.values[slot] != 0.0,
+        has_limit: |_| true,
+    };
+}
+
+/// Lag or delay between command and rotor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LatencyKind {
+    /// first order
+    Lag,
+    /// pure
+    Delay,
+}
+
+/// Through what an effect acts, and what it shares with other effects.
+#[derive(Debug, Clone, Copy)]
+pub struct Role {
+    /// acts through the latency and has no columns of its own
+    pub latency: Option<LatencyKind>,
+    /// a force of the air, through which wind shows
+    pub of_air: bool,
+    /// N/(m/s) of lateral drag for one of the first two parameters, at a mean airspeed, m/s
+    pub lateral_slope: Option<fn(f64) -> f64>,
+    /// slot of the drag along body z that is linear in the airspeed
+    pub axial: Option<usize>,
+    /// slot through which wind along body z shows
+    pub vertical: Option<usize>,
+    /// the law along body z of this other effect: for readers one drag where both agree
+    pub axial_part_of: Option<&'static dyn Effect>,
+    /// it is the wind, world, m/s: the forms in which it is tried together with the drag that carries it
+    pub wind: Option<fn() -> Vec<Carried>>,
+    /// slot that tells apart several of the same effect (which rotor)
+    pub which: Option<usize>,
+    /// what damps the rotation where a drag acts at the centre of mass
+    pub damped_by: Option<fn() -> EffectTerm>,
+    /// columns that resemble a latency's
+    pub like_latency: Option<fn() -> EffectTerm>,
+    /// shortens the latency that is found without it
+    pub shortens_latency: bool,
+    /// hangs below: it is no part of the vehicle's mass
+    pub hangs_below: bool,
+    /// slot of the moment at which it happens, s
+    pub moment: Option<usize>,
+    /// the day's, not the vehicle's
+    pub of_the_day: bool,
+    /// depends on how the vehicle moves
+    pub by_motion: bool,
+    /// the nuisance that stands for small sizes of it
+    pub stands_for: fn(&EffectTerm, Nuisance) -> bool,
+    /// the inertial unit is turned against the body
+    pub turns_inertial_unit: bool,
+}
+
+impl Role {
+    /// Nothing special.
+    pub const NONE: Self = Self {
+        latency: None,
+        of_air: false,
+        lateral_slope: None,
+        axial: None,
+        vertical: None,
+        axial_part_of: None,
+        wind: None,
+        which: None,
+        damped_by: None,
+        like_latency: None,
+        shortens_latency: false,
+        hangs_below: false,
+        moment: None,
+        of_the_day: false,
+        by_motion: true,
+        stands_for: |_, _| false,
+        turns_inertial_unit: false,
+    };
+}
+
+/// An effect that acts through another one.
+#[derive(Debug, Clone)]
+pub struct Carried {
+    /// the other one, to be estimated with it
+    pub carrier: EffectTerm,
+    /// the other one at a strength of one unit, about which the columns are
+    pub unit: EffectTerm,
+    /// the effect
+    pub term: EffectTerm,
+}
+
+/// Why a parameter that was neither estimated nor held is what it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Whence {
+    /// set
+    Given(String),
+    /// the flight does not say
+    NotDetermined(&'static str),
+}
+
+/// How an effect is fitted where the user asks for it.
+#[derive(Debug, Clone, Copy)]
+pub struct Joint {
+    /// forms, the likeliest of which is taken; the effects are all that are asked for. `None`: one form, all
+    /// parameters from zero
+    pub forms: Option<fn(&Recorded, &[&'static Signature]) -> Vec<EffectTerm>>,
+    /// why a parameter is what it is
+    pub whence: fn(&EffectTerm, usize, &Vehicle, &[&'static Signature]) -> Option<Whence>,
+    /// force and torque are no function of its parameters
+    pub is_irregular: bool,
+}
+
+impl Joint {
+    /// One form, all parameters from zero.
+    pub const PLAIN: Self = Self { forms: None, whence: |_, _, _, _| None, is_irregular: false };
+}
+
+/// An effect as a clause that begins with a capital and ends without a full stop.
+#[derive(Debug, Clone, Copy)]
+pub enum Clause {
+    /// one number and the words about it
+    OneNumber {
+        /// parameter
+        parameter: &'static str,
+        /// brings it to the unit that is said
+        factor: f64,
+        /// words before the number
+        before: &'static str,
+        /// and after it
+        after: &'static str,
+    },
+    /// in its own words
+    Own(fn(&Named, &Vehicle) -> String),
+    /// the effect's sentence with its values
+    Sentence,
+}
+
+/// What a person reads.
+#[derive(Debug, Clone, Copy)]
+pub struct Words {
+    /// how it is called in a list
+    pub noun: &'static str,
+    /// how one that was named is called in a list, where that says more
+    pub noun_of: Option<fn(&Named, &Vehicle) -> String>,
+    /// with its numbers
+    pub clause: Clause,
+    /// the number by which it is known, with its unit
+    pub size: Size,
+    /// the smallest size (in its unit) that would have been named, in words
+    pub limit: Option<fn(f64) -> String>,
+    /// place among the effects that are told first where nothing is missing
+    pub told_if_absent: Option<usize>,
+    /// place among the effects that everybody expects of a vehicle that moves
+    pub expected_in_motion: Option<usize>,
+}
+
+impl Words {
+    /// A noun, the effect's own sentence and its first parameter.
+    #[must_use]
+    pub const fn of(noun: &'static str) -> Self {
+        Self {
+            noun,
+            noun_of: None,
+            clause: Clause::Sentence,
+            size: Size::First,
+            limit: None,
+            told_if_absent: None,
+            expected_in_motion: None,
+        }
+    }
+}
+
+/// The number by which an effect is known.
+#[derive(Debug, Clone, Copy)]
+pub enum Size {
+    /// the first parameter
+    First,
+    /// one for each axis: their common value, or their range
+    Axes,
+    /// norm of all parameters that have a unit, times a factor, with as many digits
+    Norm {
+        /// brings it to the unit that is said
+        factor: f64,
+        /// unit as it is said
+        unit: &'static str,
+        /// significant digits
+        digits: i32,
+    },
+    /// one parameter
+    Of {
+        /// which
+        parameter: &'static str,
+        /// brings it to the unit that is said
+        factor: f64,
+        /// unit as it is said
+        unit: &'static str,
+    },
+    /// in its own words
+    Own(fn(&Named) -> Option<String>),
+}
+
+/// An effect with its values, and which of them are estimated: a term of the model.
+#[derive(Debug, Clone)]
+pub struct EffectTerm {
+    /// which effect
+    pub signature: &'static Signature,
+    /// in the order of [`Effect::parameters`], then of [`Effect::finer_parameters`]
+    pub values: Vec<f64>,
+    /// indices of those that are estimated
+    pub free: Vec<usize>,
+}
+
+impl EffectTerm {
+    /// Its equation.
+    #[must_use]
+    pub fn effect(&self) -> &'static dyn Effect {
+        self.signature.effect
+    }
+
+    /// Its identifier.
+    #[must_use]
+    pub fn id(&self) -> &'static str {
+        self.signature.effect.id()
+    }
+
+    /// The same effect.
+    #[must_use]
+    pub fn is(&self, signature: &Signature) -> bool {
+        self.id() == signature.id()
+    }
+
+    /// The parameter of a slot of the values; `None` beyond the last.
+    #[must_use]
+    pub fn parameter(&self, slot: usize) -> Option<&'static Parameter> {
+        self.effect().parameters().iter().chain(self.effect().finer_parameters()).nth(slot)
+    }
+
+    /// The value that physics allows nearest to this.
+    #[must_use]
+    pub fn possible(&self, slot: usize, value: f64) -> f64 {
+        self.parameter(slot).map_or(value, |parameter| value.clamp(parameter.min, parameter.max))
+    }
+
+    /// Whether a parameter says how much of the effect there is; the others say what it is like.
+    #[must_use]
+    pub fn is_amount(&self, slot: usize) -> bool {
+        self.signature.amounts.contains(&slot)
+    }
+
+    /// Value at which a parameter's effect vanishes.
+    #[must_use]
+    pub fn nothing_at(&self, slot: usize) -> f64 {
+        if self.is_amount(slot) { self.signature.nothing } else { 0.0 }
+    }
+
+    /// How far a parameter is from where its effect vanishes, in its unit: what its column has to be multiplied by to
+    /// give the effect.
+    #[must_use]
+    pub fn from_nothing(&self, slot: usize) -> f64 {
+        match self.inverse_usual(slot) {
+            // it divides: nothing lies at infinity, and the distance to it is in the inverse
+            Some(_) => -self.values[slot],
+            None => self.values[slot] - self.nothing_at(slot),
+        }
+    }
+
+    /// The same in standard errors of `std`.
+    #[must_use]
+    pub fn away_from_nothing(&self, slot: usize, std: f64) -> f64 {
+        self.from_nothing(slot) / std.max(f64::MIN_POSITIVE)
+    }
+
+    /// Where a coefficient of the slot's column takes the parameter.
+    pub(super) fn moved_to(&self, slot: usize, by: f64) -> f64 {
+        let from = self.values[slot];
+        match self.inverse_usual(slot).filter(|_| from == self.nothing_at(slot)) {
+            // so much of a usual one's, and the effect goes with the inverse
+            Some(usual) => {
+                let share = by / (usual - from);
+                if share > 0.0 { usual / share } else { from }
+            }
+            None => from + by,
+        }
+    }
+
+    /// By how much a parameter is moved to see what it does.
+    pub(super) fn step_of(&self, slot: usize) -> f64 {
+        let at_nothing = self.values[slot] == self.nothing_at(slot);
+        if let Some(usual) = self.inverse_usual(slot).filter(|_| at_nothing) {
+            // it is taken to a usual one's at once: its slope at nothing leads nowhere
+            return usual - self.values[slot];
+        }
+        let span = self.parameter(slot).map_or(1.0, |parameter| (parameter.max - parameter.min).min(1.0));
+        (1e-4 * span).max(1e-3 * self.values[slot].abs())
+    }
+
+    /// A usual amount where the slot is one that divides.
+    fn inverse_usual(&self, slot: usize) -> Option<f64> {
+        match self.signature.growth {
+            Growth::Inverse { usual } if self.is_amount(slot) => Some(usual),
+            _ => None,
+        }
+    }
+
+    /// Norm of the amounts that are estimated.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        let amounts = self.free.iter().filter(|slot| self.is_amount(**slot));
+        amounts.map(|&slot| self.values[slot].powi(2)).sum::<f64>().sqrt()
+    }
+}
