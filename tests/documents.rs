@@ -61,7 +61,7 @@ fn prose(text: &str) -> Vec<(usize, &str)> {
 fn without_code(line: &str) -> String {
     let mut parts: Vec<&str> = line.split('`').collect();
     // an unpaired mark begins no code
-    let unpaired = if parts.len() % 2 == 0 { parts.pop() } else { None };
+    let unpaired = if parts.len().is_multiple_of(2) { parts.pop() } else { None };
     let mut text: String = parts.iter().step_by(2).copied().collect();
     text.extend(unpaired);
     text
