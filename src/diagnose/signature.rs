@@ -305,12 +305,15 @@ pub enum Whence {
     NotDetermined(&'static str),
 }
 
+/// Forms of an effect for the flights, given all effects that are asked for.
+pub type JointForms = fn(&Recorded, &[&'static Signature]) -> Vec<EffectTerm>;
+
 /// How an effect is fitted where the user asks for it.
 #[derive(Debug, Clone, Copy)]
 pub struct Joint {
     /// forms, the likeliest of which is taken; the effects are all that are asked for. `None`: one form, all
     /// parameters from zero
-    pub forms: Option<fn(&Recorded, &[&'static Signature]) -> Vec<EffectTerm>>,
+    pub forms: Option<JointForms>,
     /// why a parameter is what it is
     pub whence: fn(&EffectTerm, usize, &Vehicle, &[&'static Signature]) -> Option<Whence>,
     /// force and torque are no function of its parameters

@@ -12,7 +12,7 @@ pub static SIGNATURE: Signature = Signature {
     forms: |_| [1.0, 0.0].map(|at_hubs| SIGNATURE.form(&[0.0, at_hubs], &[0])).to_vec(),
     // 1/s: forces scale with the mass
     naming: Naming {
-        usual: |parameter, vehicle| (parameter == "kz").then(|| 0.4 * vehicle.body.mass_kg),
+        usual: |parameter, vehicle| (parameter == "kz").then_some(0.4 * vehicle.body.mass_kg),
         ..Naming::PLAIN
     },
     role: Role {

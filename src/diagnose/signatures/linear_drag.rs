@@ -25,7 +25,7 @@ pub static SIGNATURE: Signature = Signature {
     naming: Naming {
         // 1/s: forces scale with the mass
         usual: |parameter, vehicle| {
-            ["dx", "dy", "dz"].contains(&parameter).then(|| 0.3 * vehicle.body.mass_kg)
+            ["dx", "dy", "dz"].contains(&parameter).then_some(0.3 * vehicle.body.mass_kg)
         },
         ..Naming::PLAIN
     },

@@ -35,7 +35,7 @@ pub static SIGNATURE: Signature = Signature {
     },
     naming: Naming {
         extra_z: 1.0,
-        usual: |parameter, vehicle| (parameter == "mass").then(|| 0.08 * vehicle.body.mass_kg),
+        usual: |parameter, vehicle| (parameter == "mass").then_some(0.08 * vehicle.body.mass_kg),
         ..Naming::PLAIN
     },
     role: Role { hangs_below: true, ..Role::NONE },

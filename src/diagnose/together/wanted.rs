@@ -136,6 +136,7 @@ pub(super) fn names() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::physics::effects::ALL;
 
     #[test]
     fn every_effect_is_taken_or_refused_with_a_reason() {
