@@ -2,7 +2,6 @@
 
 use super::recorded::Recorded;
 use super::signature::{EffectTerm, Form, Signature};
-use super::signatures::ALL;
 use super::trace::Trace;
 use crate::vehicle::Vehicle;
 
@@ -34,19 +33,27 @@ impl Candidate {
 /// All candidates that the vehicle's description and the recordings allow, but for those that act through others and
 /// those that a nuisance stands for.
 #[must_use]
-pub fn candidates(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
-    forms(vehicle, flights, false)
+pub fn candidates(vehicle: &Vehicle, flights: &[Trace], signatures: &[&'static Signature]) -> Vec<Candidate> {
+    forms((vehicle, flights), signatures, false)
 }
 
 /// Those that a nuisance stands for.
 #[must_use]
-pub(super) fn instead_of_nuisances(vehicle: &Vehicle, flights: &[Trace]) -> Vec<Candidate> {
-    forms(vehicle, flights, true)
+pub(super) fn instead_of_nuisances(
+    vehicle: &Vehicle,
+    flights: &[Trace],
+    signatures: &[&'static Signature],
+) -> Vec<Candidate> {
+    forms((vehicle, flights), signatures, true)
 }
 
-fn forms(vehicle: &Vehicle, flights: &[Trace], instead_of_nuisance: bool) -> Vec<Candidate> {
+fn forms(
+    (vehicle, flights): (&Vehicle, &[Trace]),
+    signatures: &[&'static Signature],
+    instead_of_nuisance: bool,
+) -> Vec<Candidate> {
     let recorded = Recorded::new(vehicle, flights);
-    let possible = ALL.iter().filter(|signature| recorded.lacks(signature).is_none());
+    let possible = signatures.iter().filter(|signature| recorded.lacks(signature).is_none());
     let forms = possible.flat_map(|signature| (signature.forms)(&recorded));
     let of_turn = forms.filter(|form: &Form| form.instead_of_nuisance == instead_of_nuisance);
     of_turn.map(|form| Candidate::alone(form.term)).collect()

@@ -14,8 +14,8 @@ use super::limits::{is_beyond_showing, limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
 use super::named::{Confusable, Named, NamedParameter, Strength};
 use super::search::search;
-use super::signature::EffectTerm;
-use super::signatures::GUST;
+use super::signature::{EffectTerm, Signature};
+use super::signatures::{ALL, GUST};
 use super::tested::{Search, Step, Tested};
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
@@ -25,17 +25,19 @@ use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
 /// How a recording is explained.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct ExplainSettings {
     /// s, half width of the weak form's test function
     pub half_width_s: f64,
     /// what is asked of a name
     pub gates: Gates,
+    /// effects that are tried; an effect from outside of this library stands beside [`ALL`]
+    pub signatures: &'static [&'static Signature],
 }
 
 impl Default for ExplainSettings {
     fn default() -> Self {
-        Self { half_width_s: 0.2, gates: Gates::default() }
+        Self { half_width_s: 0.2, gates: Gates::default(), signatures: ALL }
     }
 }
 
@@ -84,7 +86,7 @@ pub fn explain(
         let (seconds, needed_s) = (rows as f64 * 0.05, LEAST_ROWS as f64 * 0.05);
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
-    let mut found = search(&traces, vehicle, &settings.gates)?;
+    let mut found = search(&traces, vehicle, &settings.gates, settings.signatures)?;
     leave_out_ordinary(&traces, &mut found)?;
     let beyond = beyond(&traces, &found);
     Ok(judge(&traces, vehicle, found, beyond))

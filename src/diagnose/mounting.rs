@@ -5,13 +5,18 @@ use super::candidates::instead_of_nuisances;
 use super::evidence::Weighted;
 use super::fit::Fitted;
 use super::score::{columns_of, is_present};
+use super::signature::Signature;
 use super::tested::Tested;
 use super::trace::Trace;
 use rayon::prelude::*;
 
 /// Each that the recordings show, tested without the nuisance that stands for it.
-pub(super) fn mountings(flights: &[Trace], fitted: &Fitted) -> Vec<Tested> {
-    instead_of_nuisances(&fitted.base.vehicle, flights)
+pub(super) fn mountings(
+    flights: &[Trace],
+    fitted: &Fitted,
+    signatures: &[&'static Signature],
+) -> Vec<Tested> {
+    instead_of_nuisances(&fitted.base.vehicle, flights, signatures)
         .into_par_iter()
         .filter_map(|candidate| {
             if is_present(&fitted.base, &candidate) {

@@ -4,14 +4,18 @@ use super::base::Base;
 use super::candidates::Candidate;
 use super::channels::Channels;
 use super::fit::Fitted;
-use super::signature::{Carried, EffectTerm};
-use super::signatures::ALL;
+use super::signature::{Carried, EffectTerm, Signature};
 use super::tested::Tested;
 use super::trace::Trace;
 use rayon::prelude::*;
 
 /// Candidates that the base does not have yet, wind with its drag among them.
-pub(super) fn test_all(flights: &[Trace], fitted: &Fitted, candidates: &[Candidate]) -> Vec<Tested> {
+pub(super) fn test_all(
+    flights: &[Trace],
+    fitted: &Fitted,
+    candidates: &[Candidate],
+    signatures: &[&'static Signature],
+) -> Vec<Tested> {
     let open: Vec<&Candidate> =
         candidates.iter().filter(|candidate| !is_present(&fitted.base, candidate)).collect();
     // the same effect with fewer parameters has some of the columns
@@ -36,9 +40,10 @@ pub(super) fn test_all(flights: &[Trace], fitted: &Fitted, candidates: &[Candida
             Some(Tested { candidate: (*candidate).clone(), evidence })
         })
         .collect();
-    out.extend(test_winds(flights, fitted));
+    out.extend(test_winds(flights, fitted, signatures));
     // in the order of the signatures
-    let place = |tested: &Tested| ALL.iter().position(|signature| signature.id() == tested.candidate.id);
+    let place =
+        |tested: &Tested| signatures.iter().position(|signature| signature.id() == tested.candidate.id);
     out.sort_by_key(place);
     out
 }
@@ -95,14 +100,14 @@ fn drags_along_z(term: &EffectTerm) -> bool {
 }
 
 /// Wind acts through drag: both together, or wind alone where drag is known already.
-fn test_winds(flights: &[Trace], fitted: &Fitted) -> Vec<Tested> {
+fn test_winds(flights: &[Trace], fitted: &Fitted, signatures: &[&'static Signature]) -> Vec<Tested> {
     let present = &fitted.base.present;
     let is_wind = |term: &EffectTerm| term.signature.role.wind.is_some();
     let moving = flights.iter().all(|trace| trace.known.velocity && trace.known.attitude);
     if present.iter().any(is_wind) || !moving {
         return Vec::new();
     }
-    let carried = ALL.iter().filter_map(|signature| signature.role.wind).flat_map(|carried| carried());
+    let carried = signatures.iter().filter_map(|signature| signature.role.wind).flat_map(|carried| carried());
     if present.iter().any(|term| term.signature.role.lateral_slope.is_some()) {
         // its columns come through the drag that is there
         let alone = carried.take(1).filter_map(|wind| {

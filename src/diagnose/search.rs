@@ -12,7 +12,7 @@ use super::mounting::mountings;
 use super::other_forms::other_form;
 use super::pruning::{UNCHANGED_S, prune};
 use super::score::test_all;
-use super::signature::EffectTerm;
+use super::signature::{EffectTerm, Signature};
 use super::tested::{Search, Step, Tested};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
@@ -22,7 +22,12 @@ use crate::vehicle::Vehicle;
 ///
 /// # Errors
 /// [`PhysicsError`] where the vehicle is not physical.
-pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Search, PhysicsError> {
+pub fn search(
+    flights: &[Trace],
+    vehicle: &Vehicle,
+    gates: &Gates,
+    signatures: &[&'static Signature],
+) -> Result<Search, PhysicsError> {
     let (before, latency) = fit_latency(flights, Base::rigid(vehicle))?;
     let mut after = before.clone();
     let mut steps: Vec<Step> = Vec::new();
@@ -30,8 +35,8 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
     let mut settled = 0;
     let mut refused: Vec<&'static str> = Vec::new();
     loop {
-        let candidates = candidates(&after.base.vehicle, flights);
-        last = test_all(flights, &after, &candidates);
+        let candidates = candidates(&after.base.vehicle, flights, signatures);
+        last = test_all(flights, &after, &candidates, signatures);
         last.extend(between_grid(flights, &after, &last));
         let count = last.len() as f64;
         let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);
@@ -42,7 +47,7 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         };
         let mut passed = ranked(&last);
         if passed.is_empty() {
-            let mounted = mountings(flights, &after);
+            let mounted = mountings(flights, &after, signatures);
             passed = ranked(&mounted);
             last.extend(mounted);
         }

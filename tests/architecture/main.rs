@@ -278,6 +278,24 @@ fn mod_files_declare_and_export() {
     assert!(wrong.is_empty(), "items in mod.rs, which belong into files of their own:\n{}", wrong.join("\n"));
 }
 
+/// An effect is known by its equation, its signature and the exporters: nothing else asks for one by its identifier.
+#[test]
+fn effects_are_asked_for_by_role_and_not_by_name() {
+    const MOST: usize = 20;
+    let own = ["physics/effects/", "diagnose/signatures/", "export/"];
+    let mut mentions = Vec::new();
+    for source in sources().iter().filter(|source| !own.iter().any(|path| source.path.starts_with(path))) {
+        let is_test = source.path.ends_with("tests.rs") || source.path.contains("/tests/");
+        let text = code(without_tests(&source.text));
+        for effect in mavid::physics::effects::ALL.iter().filter(|_| !is_test) {
+            let count = text.matches(&format!("\"{}\"", effect.id())).count();
+            mentions.extend((count > 0).then(|| format!("{}: {} {count} times", source.path, effect.id())));
+        }
+    }
+    println!("identifiers of effects outside of their own files: {}", mentions.len());
+    assert!(mentions.len() <= MOST, "at most {MOST} are allowed:\n{}", mentions.join("\n"));
+}
+
 #[test]
 fn simulation_never_sees_an_estimate() {
     assert!(!reached("simulate").contains("estimate"));

@@ -54,3 +54,31 @@ pub fn latency_signature(kind: LatencyKind) -> Option<&'static Signature> {
 pub fn latency_kind(id: &str) -> Option<LatencyKind> {
     signature_of(id)?.role.latency
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::effects::ALL as EFFECTS;
+
+    #[test]
+    fn every_effect_has_a_signature_and_every_signature_an_effect() {
+        for effect in EFFECTS {
+            let signature = signature_of(effect.id());
+            let signature = signature.unwrap_or_else(|| {
+                panic!("{0}: expected diagnose/signatures/{0}.rs and its place in ALL", effect.id())
+            });
+            assert!(!signature.words.noun.is_empty(), "{}: expected a noun", effect.id());
+            let parameters = effect.parameters().len();
+            let amounts = signature.amounts;
+            assert!(!amounts.is_empty() && amounts.iter().all(|slot| *slot < parameters), "{}", effect.id());
+            let role = &signature.role;
+            let found_otherwise =
+                role.latency.is_some() || role.wind.is_some() || signature.joint.is_irregular;
+            let forms = signature.whole();
+            assert!(found_otherwise || forms.values.len() == parameters, "{}", effect.id());
+        }
+        assert_eq!(ALL.len(), EFFECTS.len());
+        let ids: std::collections::BTreeSet<&str> = ALL.iter().map(|signature| signature.id()).collect();
+        assert_eq!(ids.len(), ALL.len(), "each once");
+    }
+}
