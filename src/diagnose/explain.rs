@@ -3,7 +3,6 @@
 use super::base::{Base, Present};
 use super::channels::{AXES, CHANNELS};
 use super::confusable::confusable_with;
-use super::deviate::normal_deviate;
 use super::evidence::LEAST_ROWS;
 use super::explanation::{Confusable, Explanation, Named, NamedParameter, Strength, Verdict};
 use super::fit::{Fitted, Newton, fit};
@@ -18,6 +17,7 @@ use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
 use crate::physics::effects::by_id;
 use crate::signals::Signals;
+use crate::stats::normal_deviate;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;

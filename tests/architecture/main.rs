@@ -10,6 +10,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("units", &[]),
     // what others wrote, made harmless where it enters
     ("text", &[]),
+    // of any series: nothing of flights, and no import
+    ("stats", &[]),
     ("frames", &["units"]),
     ("vehicle", &["units", "frames"]),
     ("trajectory", &["units", "frames"]),
@@ -19,7 +21,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     // frames over sockets and serial ports, and their recording
     ("link", &["log"]),
     // vehicle: from actuator values to force
-    ("signals", &["log", "vehicle"]),
+    ("signals", &["log", "vehicle", "stats"]),
     ("regression", &["physics", "signals"]),
     ("estimate", &["regression"]),
     ("inspect", &["log", "signals", "regression", "estimate"]),

@@ -5,13 +5,13 @@ use super::latency::{LEAST_LAG_S, Split};
 use super::scale::follows_force;
 use super::wanted::Wanted;
 use crate::diagnose::base::Present;
-use crate::diagnose::deviate::normal_deviate;
 use crate::diagnose::fit::Fitted;
 use crate::diagnose::gates::Gates;
 use crate::diagnose::latency::FAST_MOTOR_S;
 use crate::diagnose::latency::{LatencyFinding, held_s, stated_lag_s};
 use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, Effect};
+use crate::stats::normal_deviate;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
 
