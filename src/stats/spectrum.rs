@@ -1,26 +1,33 @@
 //! Transforms and power of evenly sampled series, and power at any frequency of any series.
 
 use nalgebra::{Complex, Vector3};
+use realfft::RealFftPlanner;
 use std::f64::consts::TAU;
 
 /// Fourier coefficients of a series and their frequencies (Hz): at whole turns over its length, from one turn on, to
 /// `highest_hz` at most and below half the sampling rate.
 #[must_use]
 pub fn transform(series: &[f64], step_s: f64, highest_hz: f64) -> Vec<(f64, Complex<f64>)> {
-    let count = series.len() as f64;
-    (1..series.len().div_ceil(2))
-        .map(|bin| (bin as f64, bin as f64 / (count * step_s)))
-        .take_while(|(_, frequency_hz)| *frequency_hz <= highest_hz)
-        .map(|(bin, frequency_hz)| {
-            let turn = Complex::from_polar(1.0, -TAU * bin / count);
-            let (mut sum, mut wave) = (Complex::new(0.0, 0.0), Complex::new(1.0, 0.0));
-            for value in series {
-                sum += wave * *value;
-                wave *= turn;
-            }
-            (frequency_hz, sum)
-        })
-        .collect()
+    let length_s = series.len() as f64 * step_s;
+    let bins = 1..series.len().div_ceil(2);
+    let frequencies_hz = bins.map(|bin| bin as f64 / length_s).take_while(|hz| *hz <= highest_hz);
+    // the first coefficient is the sum
+    frequencies_hz.zip(coefficients(series).into_iter().skip(1)).collect()
+}
+
+/// The discrete Fourier transform of a series from zero to half the sampling rate; empty of an empty one.
+fn coefficients(series: &[f64]) -> Vec<Complex<f64>> {
+    if series.is_empty() {
+        return Vec::new();
+    }
+    let plan = RealFftPlanner::new().plan_fft_forward(series.len());
+    // the plan works in its input
+    let (mut values, mut out) = (series.to_vec(), plan.make_output_vec());
+    match plan.process(&mut values, &mut out) {
+        Ok(()) => out,
+        // only buffers of other lengths are refused
+        Err(_) => Vec::new(),
+    }
 }
 
 /// A series less its mean under Hann's window.
@@ -137,6 +144,33 @@ mod tests {
         assert_eq!(transform(&sine, 0.1, 100.0).len(), 49);
         assert_eq!(transform(&sine[..99], 0.1, 100.0).len(), 49);
         assert!(transform(&[1.0], 0.1, 100.0).is_empty() && transform(&[], 0.1, 100.0).is_empty());
+    }
+
+    /// A sum over the samples with every sine and cosine of its own.
+    fn direct(series: &[f64], bin: usize) -> Complex<f64> {
+        let wave = |i: usize| {
+            // whole turns left out exactly
+            let part = (bin * i % series.len()) as f64 / series.len() as f64;
+            Complex::from_polar(1.0, -TAU * part)
+        };
+        series.iter().enumerate().map(|(i, value)| wave(i) * *value).sum()
+    }
+
+    #[test]
+    fn the_transform_is_the_direct_sum() {
+        // short, even, odd, prime, and of many factors
+        for length in [2_usize, 3, 7, 50, 97, 167, 625, 1009, 1024] {
+            let series: Vec<f64> = (0..length).map(|i| (0.3 * (i * i % 101) as f64).sin() + 0.5).collect();
+            let found = transform(&series, 1.0, 1.0);
+            let expected: Vec<Complex<f64>> =
+                (1..length.div_ceil(2)).map(|bin| direct(&series, bin)).collect();
+            assert_eq!(found.len(), expected.len());
+            let largest = expected.iter().map(|value| value.norm()).fold(0.0, f64::max);
+            for (bin, ((frequency_hz, found), expected)) in found.iter().zip(&expected).enumerate() {
+                assert_eq!(*frequency_hz, (bin + 1) as f64 / length as f64);
+                assert!((found - expected).norm() <= 1e-12 * largest, "{length} {bin}: {found} {expected}");
+            }
+        }
     }
 
     #[test]
