@@ -53,7 +53,7 @@ fn forms(
     instead_of_nuisance: bool,
 ) -> Vec<Candidate> {
     let recorded = Recorded::new(vehicle, flights);
-    let possible = signatures.iter().filter(|signature| recorded.lacks(signature).is_none());
+    let possible = signatures.iter().filter(|signature| recorded.lacks(signature.needs).is_none());
     let forms = possible.flat_map(|signature| (signature.forms)(&recorded));
     let of_turn = forms.filter(|form: &Form| form.instead_of_nuisance == instead_of_nuisance);
     of_turn.map(|form| Candidate::alone(form.term)).collect()

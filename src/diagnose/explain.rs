@@ -3,7 +3,6 @@
 use super::base::Base;
 use super::channels::{AXES, CHANNELS};
 use super::confusable::confusable_with;
-use super::deviate::normal_deviate;
 use super::evidence::LEAST_ROWS;
 use super::explanation::{Explanation, Verdict};
 use super::fit::{Fitted, Newton, fit};
@@ -20,6 +19,7 @@ use super::tested::{Search, Step, Tested};
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
 use crate::signals::Signals;
+use crate::stats::normal_deviate;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;

@@ -1,9 +1,25 @@
 //! What a signature may ask of the flights and of the vehicle's description.
 
-use super::signature::{Need, Signature};
 use super::trace::Trace;
 use crate::physics::Airframe;
 use crate::vehicle::Vehicle;
+
+/// What a flight has to hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Need {
+    /// velocity and attitude
+    Velocity,
+    /// position and attitude
+    Position,
+    /// specific force
+    Accelerometer,
+    /// accelerometer, velocity and attitude: the force in two readings
+    ForceTwice,
+    /// battery voltage
+    Voltage,
+    /// a moment belongs to one flight
+    OneFlight,
+}
 
 /// The flights of a vehicle, as a signature sees them.
 #[derive(Debug)]
@@ -31,8 +47,8 @@ impl<'a> Recorded<'a> {
 
     /// What the flights lack for an effect to be tried, and why that is needed.
     #[must_use]
-    pub fn lacks(&self, signature: &Signature) -> Option<(Need, &'static str, &'static str)> {
-        let unmet = signature.needs.iter().copied().find(|need| !self.has(*need))?;
+    pub fn lacks(&self, needs: &[Need]) -> Option<(Need, &'static str, &'static str)> {
+        let unmet = needs.iter().copied().find(|need| !self.has(*need))?;
         let (what, why) = match unmet {
             Need::Velocity => ("velocity and attitude", "it acts by how the vehicle moves"),
             Need::Position => ("position and attitude", "it acts by where the vehicle is"),

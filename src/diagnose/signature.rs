@@ -2,7 +2,7 @@
 
 use super::channels::Nuisance;
 use super::named::Named;
-use super::recorded::Recorded;
+use super::recorded::{Need, Recorded};
 use crate::physics::{Effect, Parameter};
 use crate::vehicle::Vehicle;
 
@@ -77,23 +77,6 @@ impl Signature {
         let count = self.effect.parameters().len();
         self.term(&vec![0.0; count], &(0..count).collect::<Vec<_>>())
     }
-}
-
-/// What a flight has to hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Need {
-    /// velocity and attitude
-    Velocity,
-    /// position and attitude
-    Position,
-    /// specific force
-    Accelerometer,
-    /// accelerometer, velocity and attitude: the force in two readings
-    ForceTwice,
-    /// battery voltage
-    Voltage,
-    /// a moment belongs to one flight
-    OneFlight,
 }
 
 /// How an effect grows with its amount.

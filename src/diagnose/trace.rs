@@ -5,8 +5,8 @@ use crate::log::Quantity;
 use crate::physics::{Airframe, MAX_ROTORS, State};
 use crate::signals::{
     ActuationLatency, Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride,
-    white_level_of,
 };
+use crate::stats::white_level_of;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
 use std::ops::Range;

@@ -14,6 +14,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("units", &[]),
     // what others wrote, made harmless where it enters
     ("text", &[]),
+    // of any series: nothing of flights, and no import
+    ("stats", &[]),
     ("frames", &[]),
     ("vehicle", &[]),
     ("trajectory", &["frames"]),
@@ -23,12 +25,12 @@ const LAYERS: &[(&str, &[&str])] = &[
     // frames over sockets and serial ports, and their recording
     ("link", &["text", "log"]),
     // vehicle: from actuator values to force
-    ("signals", &["vehicle", "log"]),
+    ("signals", &["stats", "vehicle", "log"]),
     ("regression", &["signals"]),
-    ("estimate", &["vehicle", "signals", "regression"]),
-    ("inspect", &["units", "vehicle", "log", "signals", "regression", "estimate"]),
+    ("estimate", &["stats", "vehicle", "signals", "regression"]),
+    ("inspect", &["units", "stats", "vehicle", "log", "signals", "regression", "estimate"]),
     // never estimate
-    ("simulate", &["units", "frames", "vehicle", "trajectory", "physics", "log"]),
+    ("simulate", &["units", "stats", "frames", "vehicle", "trajectory", "physics", "log"]),
     ("config", &["units", "text", "vehicle", "trajectory", "log"]),
     ("compare", &["vehicle", "physics", "log", "signals", "simulate"]),
     // estimate: what a flight will determine is for its estimator to say
@@ -37,6 +39,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     (
         "diagnose",
         &[
+            "text",
+            "stats",
             "vehicle",
             "trajectory",
             "physics",
@@ -45,6 +49,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "regression",
             "estimate",
             "simulate",
+            "config",
             "compare",
             "plan",
         ],

@@ -6,6 +6,7 @@
 use super::super::channels::{AXES, CHANNELS, Channels, channels};
 use super::super::fit::Fitted;
 use super::super::trace::Trace;
+use crate::stats::quantile;
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -148,8 +149,7 @@ fn flown(traces: &[Trace], axis: usize) -> (f64, f64) {
         .flat_map(|trace| trace.centers.iter().map(move |&center| trace.states[center].position_m[axis]))
         .collect();
     values.sort_by(f64::total_cmp);
-    let last = values.len().saturating_sub(1);
-    let at = |percent: usize| values.get(last * percent / 100).copied().unwrap_or(0.0);
+    let at = |percent: usize| quantile(&values, (percent, 100)).unwrap_or(0.0);
     (at(2), at(98))
 }
 

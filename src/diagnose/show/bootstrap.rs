@@ -1,8 +1,7 @@
 //! Errors of two models on the same stretches of flight, with intervals from resampled blocks.
 
 use crate::compare::improvement_percent;
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64Mcg;
+use crate::stats::{percentiles_95, resamples};
 
 /// Fewer blocks than this carry no interval.
 const LEAST_BLOCKS: usize = 5;
@@ -86,19 +85,15 @@ impl Blocks {
     /// Errors of every quantity, and the mean of their improvements; `None` for a quantity that was
     /// nowhere measured.
     pub(super) fn compared(&self, draws: usize, seed: u64) -> (Vec<Option<Compared>>, Option<Interval>) {
-        let whole = self.roots(&mut (0..self.blocks.len()));
+        let whole = self.roots(0..self.blocks.len());
         let mut drawn: Vec<Roots> = Vec::new();
         if self.blocks.len() >= LEAST_BLOCKS {
-            let mut generator = Pcg64Mcg::seed_from_u64(seed);
-            for _ in 0..draws {
-                let mut picks = (0..self.blocks.len()).map(|_| generator.random_range(0..self.blocks.len()));
-                drawn.push(self.roots(&mut picks));
-            }
+            drawn.extend(resamples(self.blocks.len(), draws, seed).map(|picks| self.roots(picks)));
         }
         let interval = |of: &dyn Fn(&Roots) -> Option<f64>| -> Option<Interval> {
             let value = of(&whole)?;
             let spread: Vec<f64> = drawn.iter().filter_map(of).collect();
-            Some(Interval { value, range: percentiles(spread) })
+            Some(Interval { value, range: percentiles_95(spread) })
         };
         let each = (0..self.quantities)
             .map(|quantity| {
@@ -115,7 +110,7 @@ impl Blocks {
         (each, interval(&mean_improvement))
     }
 
-    fn roots(&self, picks: &mut dyn Iterator<Item = usize>) -> Roots {
+    fn roots(&self, picks: impl IntoIterator<Item = usize>) -> Roots {
         let mut sums = vec![[0.0; 3]; self.quantities];
         for pick in picks {
             let block = &self.blocks[pick];
@@ -136,13 +131,6 @@ fn mean_improvement(roots: &Roots) -> Option<f64> {
     let each: Vec<f64> =
         roots.iter().flatten().map(|(before, after)| improvement_percent(*before, *after)).collect();
     (!each.is_empty()).then(|| each.iter().sum::<f64>() / each.len() as f64)
-}
-
-fn percentiles(mut values: Vec<f64>) -> Option<(f64, f64)> {
-    values.retain(|value| value.is_finite());
-    values.sort_by(f64::total_cmp);
-    let (low, high) = (values.len() / 40, values.len().checked_sub(1 + values.len() / 40)?);
-    Some((values[low], values[high]))
 }
 
 #[cfg(test)]

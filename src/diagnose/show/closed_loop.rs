@@ -6,7 +6,7 @@ use super::settings::ShowSettings;
 use crate::compare::{SIGNALS, TenSignals, autopilot_flight};
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
-use crate::signals::white_level_of;
+use crate::stats::white_level_of;
 use crate::vehicle::Vehicle;
 
 /// Errors of the ten signals against the recording. The autopilot's controller is not known: the

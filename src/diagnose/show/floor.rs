@@ -3,7 +3,8 @@
 use crate::compare::{CommandNoise, StateNoise};
 use crate::log::{Quantity, Stream};
 use crate::physics::MAX_ROTORS;
-use crate::signals::{Signals, ThrustSource, median, white_level};
+use crate::signals::{Signals, ThrustSource, white_level};
+use crate::stats::median;
 use nalgebra::{SMatrix, SVector, Vector3};
 
 /// White noise of each part of the state; zero where it is not recorded. Real autopilots' estimates are

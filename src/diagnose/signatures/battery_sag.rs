@@ -1,9 +1,7 @@
 //! How the battery's sag is tried, named and said.
 
-use crate::diagnose::recorded::Recorded;
-use crate::diagnose::signature::{
-    Clause, EffectTerm, Form, Joint, Need, Role, Signature, Size, Whence, Words,
-};
+use crate::diagnose::recorded::{Need, Recorded};
+use crate::diagnose::signature::{Clause, EffectTerm, Form, Joint, Role, Signature, Size, Whence, Words};
 use crate::diagnose::words;
 use crate::physics::effects::BatterySag;
 use crate::text::significant;

@@ -1,6 +1,7 @@
 //! How the rotors' hub moment is tried, named and said.
 
-use crate::diagnose::signature::{Clause, Need, Role, Signature, Words};
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Clause, Role, Signature, Words};
 use crate::physics::effects::BladeFlapping;
 
 /// A moment at the rotors' hubs by the airspeed across their axes.

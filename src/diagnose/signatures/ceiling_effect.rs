@@ -1,8 +1,8 @@
 //! How a ceiling is tried, named and said.
 
-use crate::diagnose::recorded::Recorded;
+use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{
-    EffectTerm, GridScale, Growth, Joint, Naming, Need, Refinement, Signature, Whence, Words,
+    EffectTerm, GridScale, Growth, Joint, Naming, Refinement, Signature, Whence, Words,
 };
 use crate::diagnose::trace::Trace;
 use crate::physics::Airframe;

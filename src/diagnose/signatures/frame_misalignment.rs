@@ -1,9 +1,9 @@
 //! How a position reference that is askew is tried, named and said.
 
 use crate::diagnose::channels::Nuisance;
-use crate::diagnose::recorded::Recorded;
+use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{
-    EffectTerm, Form, Joint, Naming, Need, Refinement, Role, Signature, Size, Whence, Words,
+    EffectTerm, Form, Joint, Naming, Refinement, Role, Signature, Size, Whence, Words,
 };
 use crate::physics::effects::FrameMisalignment;
 

@@ -1,8 +1,9 @@
 //! How the ground effect is tried, named and said.
 
 use crate::diagnose::named::Named;
+use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{
-    Clause, EffectTerm, Joint, Naming, Need, Refinement, Signature, Size, Whence, Words, first_finer,
+    Clause, EffectTerm, Joint, Naming, Refinement, Signature, Size, Whence, Words, first_finer,
 };
 use crate::diagnose::words;
 use crate::physics::effects::GroundEffect;

@@ -1,6 +1,7 @@
 //! How an inertial unit that sits askew is tried, named and said.
 
-use crate::diagnose::signature::{Naming, Need, Role, Signature, Size, Words};
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Naming, Role, Signature, Size, Words};
 use crate::physics::effects::ImuMisalignment;
 
 /// Mountings are true to about half a degree, rad.

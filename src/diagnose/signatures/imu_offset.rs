@@ -1,6 +1,7 @@
 //! How an accelerometer away from the centre of mass is tried, named and said.
 
-use crate::diagnose::signature::{Naming, Need, Signature, Size, Words};
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Naming, Signature, Size, Words};
 use crate::diagnose::trace::Trace;
 use crate::physics::effects::ImuOffset;
 

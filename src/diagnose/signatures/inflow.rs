@@ -1,6 +1,7 @@
 //! How thrust that falls with climb is tried, named and said.
 
-use crate::diagnose::signature::{Clause, Joint, Naming, Need, Role, Signature, Words};
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Clause, Joint, Naming, Role, Signature, Words};
 use crate::physics::effects::{Inflow, LinearDrag};
 
 use super::angular_damping;

@@ -1,7 +1,8 @@
 //! How drag in proportion to the airspeed is tried, named and said.
 
 use crate::diagnose::named::Named;
-use crate::diagnose::signature::{Clause, Joint, Naming, Need, Role, Signature, Size, Whence, Words};
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Clause, Joint, Naming, Role, Signature, Size, Whence, Words};
 use crate::diagnose::words::axes;
 use crate::physics::effects::LinearDrag;
 use crate::text::significant;

@@ -1,6 +1,7 @@
 //! How drag with the square of the airspeed is tried, named and said.
 
-use crate::diagnose::signature::{Clause, Joint, Naming, Need, Role, Signature, Size, Words};
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Clause, Joint, Naming, Role, Signature, Size, Words};
 use crate::diagnose::words::axes;
 use crate::physics::effects::QuadraticDrag;
 

@@ -1,8 +1,8 @@
 //! How a load that swings below is tried, named and said.
 
-use crate::diagnose::recorded::Recorded;
+use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{
-    Clause, EffectTerm, GridScale, Joint, Naming, Need, Refinement, Role, Signature, Words, first_finer,
+    Clause, EffectTerm, GridScale, Joint, Naming, Refinement, Role, Signature, Words, first_finer,
 };
 use crate::physics::effects::SlungLoad;
 

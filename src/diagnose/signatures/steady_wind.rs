@@ -1,7 +1,8 @@
 //! How a steady wind is tried, named and said.
 
 use crate::diagnose::named::Named;
-use crate::diagnose::signature::{Carried, Clause, Joint, Need, Role, Signature, Size, Words};
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Carried, Clause, Joint, Role, Signature, Size, Words};
 use crate::diagnose::words::{from_deg, point_of};
 use crate::physics::effects::SteadyWind;
 use crate::text::{significant, with_error};

@@ -1,6 +1,7 @@
 //! How translational lift is tried, named and said.
 
-use crate::diagnose::signature::{Clause, Naming, Need, Role, Signature, Words};
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Clause, Naming, Role, Signature, Words};
 use crate::physics::effects::TranslationalLift;
 
 /// Thrust that grows with the airspeed across the rotor axis.

@@ -1,6 +1,7 @@
 //! How the vortex ring state is tried, named and said.
 
-use crate::diagnose::signature::{Clause, Need, Role, Signature, Words};
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Clause, Role, Signature, Words};
 use crate::physics::effects::VortexRing;
 
 /// Loss of thrust in a descent into the own wake.

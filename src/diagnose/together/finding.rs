@@ -4,7 +4,6 @@ use super::held::{Held, Settled};
 use super::latency::{LEAST_LAG_S, Split};
 use super::scale::follows_force;
 use super::wanted::Wanted;
-use crate::diagnose::deviate::normal_deviate;
 use crate::diagnose::fit::Fitted;
 use crate::diagnose::gates::Gates;
 use crate::diagnose::latency::FAST_MOTOR_S;
@@ -13,6 +12,7 @@ use crate::diagnose::signature::{EffectTerm, LatencyKind, Signature, Whence};
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, Effect};
+use crate::stats::normal_deviate;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
 

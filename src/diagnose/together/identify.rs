@@ -8,7 +8,6 @@ use super::scale::Kept;
 use super::wanted::Wanted;
 use super::{choose, latency, swing};
 use crate::diagnose::base::Base;
-use crate::diagnose::deviate::normal_deviate;
 use crate::diagnose::evidence::LEAST_ROWS;
 use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::latency::{LatencyFinding, finding_of};
@@ -20,6 +19,7 @@ use crate::estimate::{
 };
 use crate::physics::{ActiveEffect, Airframe};
 use crate::signals::Signals;
+use crate::stats::normal_deviate;
 use crate::vehicle::{Anchor, Vehicle};
 
 /// Identifies the wanted effects together with the rigid body. `known` are effects that the vehicle's file has: what is

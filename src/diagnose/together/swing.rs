@@ -12,7 +12,7 @@ use crate::diagnose::gates::Gates;
 use crate::diagnose::rows::residuals;
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
-use crate::signals::white_level_of;
+use crate::stats::white_level_of;
 use nalgebra::{DMatrix, Vector3};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;

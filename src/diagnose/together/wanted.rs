@@ -1,8 +1,8 @@
 //! What was asked for: names, what they need of the recording, and the forms in which each is tried.
 
 use super::error::TogetherError;
-use crate::diagnose::recorded::Recorded;
-use crate::diagnose::signature::{EffectTerm, LatencyKind, Need, Signature};
+use crate::diagnose::recorded::{Need, Recorded};
+use crate::diagnose::signature::{EffectTerm, LatencyKind, Signature};
 use crate::diagnose::signatures::signature_of;
 use crate::physics::{ActiveEffect, Airframe};
 
@@ -108,7 +108,7 @@ impl Wanted {
                     "it acts between the command and the rotor's speed, and only measured speeds are recorded",
                 ));
             }
-            match recorded.lacks(signature) {
+            match recorded.lacks(signature.needs) {
                 Some((Need::OneFlight, ..)) => {
                     return Err(TogetherError::SeveralFlights { id, flights: flights.len() });
                 }
