@@ -74,7 +74,9 @@ impl Flight {
         self.follow(now);
         self.hold_back(now);
         self.command(now);
-        if now >= self.heartbeat_due {
+        // a command that is given up may have ended it
+        let is_over = matches!(self.phase, Phase::Done);
+        if now >= self.heartbeat_due && !is_over {
             self.heartbeat_due = (self.heartbeat_due + HEARTBEAT_PERIOD).max(now);
             self.actions.push_back(Action::Send(heartbeat()));
         }
