@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use mavid::config::{StoredTrajectory, read_vehicle, trajectory_to_toml};
-use mavid::diagnose::next::{NextFlight, NextSettings, design};
-use mavid::diagnose::show::{HeldOut, ShowSettings, Split, differing, split_last_periods};
+use mavid::diagnose::experiment::{NextFlight, NextSettings, design};
+use mavid::diagnose::holdout::{HeldOut, HoldoutSettings, Split, differing, split_last_periods};
 use mavid::diagnose::{Empirical, ExplainSettings, Named, Trace, Verdict, explain};
 use mavid::log::Recording;
 use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page};
@@ -345,7 +345,7 @@ fn show(story: &mut Story, flights: &[Flown], (held, back): (&[Flown], Option<&S
         story.given.warnings.push(format!("open-loop prediction: {error}"));
     }
     if let [_, _, ..] = used.as_slice() {
-        let settings = ShowSettings::default();
+        let settings = HoldoutSettings::default();
         match differing(&story.explanation, &used, &story.given.vehicle, &settings) {
             Ok(why) => story.given.warnings.extend(why),
             Err(error) => {

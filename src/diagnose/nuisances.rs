@@ -2,7 +2,7 @@
 
 use super::base::Base;
 use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
-use super::rotors::Turning;
+use super::rotors::RotorMotion;
 use super::trace::Trace;
 use crate::physics::Wrench;
 use crate::regression::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor};
@@ -40,7 +40,7 @@ pub(super) fn momentum_rows(trace: &Trace) -> [[Vec<f64>; 3]; 6] {
 pub(super) fn nuisances(
     trace: &Trace,
     base: &Base,
-    commanded: &Turning,
+    commanded: &RotorMotion,
     by_commands: &[Wrench],
 ) -> Vec<NuisanceColumn> {
     let none = || vec![0.0; trace.rows()];

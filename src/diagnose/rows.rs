@@ -9,7 +9,7 @@ use super::along::{moved_by, wrench_along};
 use super::base::Base;
 use super::channels::{Channels, NuisanceColumn, SECOND, append, channels, per_step};
 use super::nuisances::{momentum_rows, nuisances};
-use super::rotors::{Thrusts, Turning};
+use super::rotors::{RotorMotion, Thrusts};
 use super::sensors::{is_of_sensors, true_motion, true_readings};
 use super::signature::EffectTerm;
 use super::trace::Trace;
@@ -41,8 +41,8 @@ pub struct Rows {
 #[derive(Debug, Clone)]
 struct Along {
     felt: Vec<Thrusts>,
-    commanded: Turning,
-    motion: Turning,
+    commanded: RotorMotion,
+    motion: RotorMotion,
     by_commands: Vec<Wrench>,
     by_motion: Vec<Wrench>,
 }
@@ -96,7 +96,7 @@ impl Rows {
 
     /// What the rotors of a flight do by their commands, after the latency and smoothed.
     #[must_use]
-    pub fn commanded(&self, flight: usize) -> Option<&Turning> {
+    pub fn commanded(&self, flight: usize) -> Option<&RotorMotion> {
         self.flights.get(flight).map(|along| &along.commanded)
     }
 
@@ -265,7 +265,7 @@ fn residual(
     trace: &Trace,
     base: &Base,
     model: &Model,
-    (felt, commanded, motion): (&[Thrusts], &Turning, &Turning),
+    (felt, commanded, motion): (&[Thrusts], &RotorMotion, &RotorMotion),
     (by_commands, by_motion): (&[Wrench], &[Wrench]),
 ) -> Channels {
     let airframe = &model.airframe;

@@ -6,7 +6,7 @@
 //! the last pass found would not converge.
 
 use super::base::Base;
-use super::rotors::Turning;
+use super::rotors::RotorMotion;
 use super::signatures::ROTOR_INERTIA;
 use super::trace::Trace;
 use crate::physics::effects::RotorInertia;
@@ -37,7 +37,7 @@ impl SpinUp {
     pub(super) fn share(
         &self,
         trace: &Trace,
-        (airframe, motion): (&Airframe, &Turning),
+        (airframe, motion): (&Airframe, &RotorMotion),
         inertia: &Matrix3<f64>,
         effects: &mut [Vector4<f64>],
     ) {
@@ -59,7 +59,7 @@ impl SpinUp {
     }
 
     /// What the effect itself makes of the rotors' motion about z, N m.
-    fn torque_nm(&self, airframe: &Airframe, state: &State, motion: &Turning, index: usize) -> f64 {
+    fn torque_nm(&self, airframe: &Airframe, state: &State, motion: &RotorMotion, index: usize) -> f64 {
         let input = Input::from_commands(airframe, 0.0, &[]);
         let at = Condition::new(airframe, state, &input, Vector3::zeros());
         let mut rotors = Rotors::still();

@@ -10,6 +10,7 @@ mod error;
 mod format;
 mod mjcf;
 mod notes;
+mod places;
 mod px4;
 mod rotorpy;
 mod sdf;
@@ -17,4 +18,5 @@ mod source;
 
 pub use error::ExportError;
 pub use format::{Format, export};
+pub use places::{PLACES, places};
 pub use source::Exported;

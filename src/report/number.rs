@@ -1,6 +1,6 @@
 //! Intervals as people read them.
 
-use crate::diagnose::show::Interval;
+use crate::diagnose::holdout::Interval;
 use crate::text::rounded;
 
 pub use crate::text::{chance, significant, spoken, with_error};

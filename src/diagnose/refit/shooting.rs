@@ -7,7 +7,7 @@ use super::settings::RefitSettings;
 use super::{segments, solve};
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::fit::Fitted;
-use crate::diagnose::show::state_noise;
+use crate::diagnose::holdout::state_noise;
 use crate::diagnose::trace::Trace;
 use crate::physics::Airframe;
 use crate::signals::Signals;

@@ -10,18 +10,21 @@ pub static SIGNATURE: Signature = Signature {
     forms: |_| forms(),
     naming: Naming { usual, ..Naming::PLAIN },
     role: Role { like_latency: Some(|| SIGNATURE.whole()), ..Role::NONE },
-    words: Words {
-        clause: Clause::Own(|named, _| {
-            format!(
-                "Damping of the rotation was left out: {}",
-                axes(named, &["bx", "by", "bz"], "N m per rad/s")
-            )
-        }),
-        size: Size::Axes,
-        expected_in_motion: Some(1),
-        ..Words::of("damping of the rotation")
-    },
-    ..Signature::of(&AngularDamping, &[0, 1, 2], Words::of(""))
+    ..Signature::of(
+        &AngularDamping,
+        &[0, 1, 2],
+        Words {
+            clause: Clause::Own(|named, _| {
+                format!(
+                    "Damping of the rotation was left out: {}",
+                    axes(named, &["bx", "by", "bz"], "N m per rad/s")
+                )
+            }),
+            size: Size::Axes,
+            expected_in_motion: Some(1),
+            ..Words::of("damping of the rotation")
+        },
+    )
 };
 
 fn forms() -> Vec<Form> {

@@ -1,7 +1,7 @@
 //! The errors of open-loop prediction, and the flights that they are shown on.
 
 use crate::compare::improvement_percent;
-use crate::diagnose::show::{Compared, Interval, OpenLoop, Shown};
+use crate::diagnose::holdout::{Compared, HoldoutFit, Interval, OpenLoop};
 use crate::report::InputFile;
 
 /// Open-loop errors on one set of flights.
@@ -57,8 +57,8 @@ impl Predicted {
     }
 }
 
-impl From<&Shown> for Predicted {
-    fn from(shown: &Shown) -> Self {
+impl From<&HoldoutFit> for Predicted {
+    fn from(shown: &HoldoutFit) -> Self {
         Self { open_loop: shown.open_loop.clone(), improvement_percent: shown.improvement_percent }
     }
 }

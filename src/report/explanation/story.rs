@@ -3,8 +3,8 @@
 use super::located::Located;
 use super::prediction::{Predicted, ShownOn};
 use super::readers::for_readers;
-use crate::diagnose::next::NextFlight;
-use crate::diagnose::show::{Difference, Shown};
+use crate::diagnose::experiment::NextFlight;
+use crate::diagnose::holdout::{Difference, HoldoutFit};
 use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::{CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, Named, Nuisance, Verdict};
 use crate::physics::ActiveEffect;
@@ -60,7 +60,7 @@ pub struct Story {
     /// and on those that were not used
     pub holdout: Option<Predicted>,
     /// everything that was shown on them
-    pub shown: Option<Shown>,
+    pub shown: Option<HoldoutFit>,
     /// a term without a mechanism, where none serves
     pub empirical: Option<Empirical>,
     /// which those are

@@ -5,7 +5,7 @@ use super::model::history_charts;
 use super::page::verdict;
 use super::with::WithEffects;
 use crate::diagnose::called;
-use crate::diagnose::together::{EffectFound, Found};
+use crate::diagnose::joint::{EffectFound, Found};
 use crate::estimate::{Finding, Identification, NAMES, Parameter, THETA, Theta, ThrustScale, theta_of};
 use crate::report::chart::inline;
 use crate::report::html::{Cell, Page, number, text};

@@ -2,7 +2,7 @@
 
 use crate::config::{ConfigError, vehicle_to_toml};
 use crate::diagnose::CHANNEL_NAMES;
-use crate::diagnose::together::{EffectFound, Found, ParameterFound, Physical, Together};
+use crate::diagnose::joint::{EffectFound, Found, JointEstimate, ParameterFound, Physical};
 use crate::estimate::{Finding, Parameter, theta_of};
 use crate::report::model_parts::{correlation, correlations, effect_tables};
 use crate::signals::Quality;
@@ -21,7 +21,7 @@ use super::value::{Thrust, Value, thrust, values};
 #[derive(Debug, Clone)]
 pub struct WithEffects {
     /// what was found
-    pub together: Together,
+    pub together: JointEstimate,
     /// nominal
     pub vehicle: Vehicle,
     /// where the signals come from, flight by flight

@@ -1,11 +1,11 @@
 //! Rigid body and named effects in one fit.
 
-use super::error::TogetherError;
+use super::error::JointError;
 use super::finding::{self, EffectFound};
 use super::held::Settled;
-use super::result::{Physical, Together};
+use super::result::{JointEstimate, Physical};
 use super::scale::Kept;
-use super::wanted::Wanted;
+use super::wanted::RequestedEffects;
 use super::{choose, latency, swing};
 use crate::diagnose::base::Base;
 use crate::diagnose::evidence::LEAST_ROWS;
@@ -26,13 +26,13 @@ use crate::vehicle::{Anchor, Vehicle};
 /// among the wanted is estimated anew, the others act as they are.
 ///
 /// # Errors
-/// [`TogetherError`] where the recordings or the vehicle's description lack what an effect needs.
-pub fn together(
+/// [`JointError`] where the recordings or the vehicle's description lack what an effect needs.
+pub fn identify_jointly(
     flights: &[Signals],
     (vehicle, known): (&Vehicle, &[ActiveEffect]),
-    wanted: &Wanted,
+    wanted: &RequestedEffects,
     half_width_s: f64,
-) -> Result<Together, TogetherError> {
+) -> Result<JointEstimate, JointError> {
     wanted.check_wind(known)?;
     let traces: Vec<Trace> =
         flights.iter().map(|signals| Trace::new(signals, vehicle, half_width_s)).collect::<Result<_, _>>()?;
@@ -42,7 +42,7 @@ pub fn together(
     let rows: usize = traces.iter().map(Trace::rows).sum();
     if rows < LEAST_ROWS {
         let (seconds, needed_s) = (rows as f64 * 0.05, LEAST_ROWS as f64 * 0.05);
-        return Err(TogetherError::TooShort { seconds, needed_s });
+        return Err(JointError::TooShort { seconds, needed_s });
     }
     let kept: Vec<&ActiveEffect> = known.iter().filter(|of| !wanted.has(of.effect().id())).collect();
     let of_file = Kept { vehicle, effects: &kept };
@@ -70,9 +70,9 @@ struct Fits {
 fn put_together(
     traces: &[Trace],
     (vehicle, kept): (&Vehicle, &[&ActiveEffect]),
-    wanted: &Wanted,
+    wanted: &RequestedEffects,
     fits: Fits,
-) -> Together {
+) -> JointEstimate {
     let Fits { before, after, settled, split, first } = fits;
     let nominal = theta_of(&vehicle.body);
     let (mut estimated, mut estimated_before) = (estimated(&after), estimated(&before));
@@ -99,7 +99,7 @@ fn put_together(
     let effects = finding::effects((traces, vehicle), wanted, (&after, &settled), (&latency, split), by_mass);
     let mut acting: Vec<ActiveEffect> = kept.iter().map(|of| (*of).clone()).collect();
     acting.extend(effects.iter().filter_map(EffectFound::acting));
-    Together {
+    JointEstimate {
         vehicle: identified_vehicle(vehicle, &body, scale.as_ref()),
         latency_named: wanted.signatures().iter().any(|signature| signature.role.latency.is_some()),
         before,

@@ -16,8 +16,8 @@ mod scale;
 mod swing;
 mod wanted;
 
-pub use error::TogetherError;
+pub use error::JointError;
 pub use finding::{EffectFound, Found, ParameterFound};
-pub use identify::together;
-pub use result::{Physical, Together};
-pub use wanted::Wanted;
+pub use identify::identify_jointly;
+pub use result::{JointEstimate, Physical};
+pub use wanted::RequestedEffects;

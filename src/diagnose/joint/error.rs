@@ -6,7 +6,7 @@ use crate::physics::PhysicsError;
 
 /// Why effects cannot be identified.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum TogetherError {
+pub enum JointError {
     /// no effect of this name
     #[error("no effect `{id}`; expected one or more of {}", wanted::names())]
     Unknown {

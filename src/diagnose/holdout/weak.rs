@@ -3,7 +3,7 @@
 use super::bootstrap::Blocks;
 use super::bootstrap::Compared;
 use super::ready::Ready;
-use super::settings::ShowSettings;
+use super::settings::HoldoutSettings;
 use crate::diagnose::base::Base;
 use crate::diagnose::channels::{CHANNELS, Channels, Nuisance, SECOND};
 use crate::diagnose::empirical::Empirical;
@@ -28,7 +28,7 @@ pub(super) fn residuals(
     ready: &[Ready],
     explanation: &Explanation,
     empirical: Option<&Empirical>,
-    settings: &ShowSettings,
+    settings: &HoldoutSettings,
 ) -> Result<Weak, PhysicsError> {
     let parts: Vec<(Channels, Channels, Fitted)> = ready
         .par_iter()

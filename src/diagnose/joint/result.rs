@@ -10,7 +10,7 @@ use crate::vehicle::Vehicle;
 
 /// Rigid body and effects, identified together.
 #[derive(Debug, Clone)]
-pub struct Together {
+pub struct JointEstimate {
     /// the rigid body alone, on the same rows; where a lag or delay was named, without any latency
     pub before: Fitted,
     /// rigid body and effects; forces on the scale of the stated thrust
@@ -35,7 +35,7 @@ pub struct Together {
     pub physical: Physical,
 }
 
-impl Together {
+impl JointEstimate {
     /// Root mean square of what is left in each channel, before and with the effects, N and N m; `None` where
     /// the recording does not give the channel.
     #[must_use]

@@ -1,6 +1,6 @@
 //! Lag and delay that were named: held as that kind, their sum estimated with everything else.
 
-use super::wanted::Wanted;
+use super::wanted::RequestedEffects;
 use crate::diagnose::base::Base;
 use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::latency::{LatencyFinding, held_s, lag_column, stated_lag_s, stated_uneven};
@@ -23,7 +23,7 @@ pub(super) type Split = Option<(f64, f64)>;
 
 /// Where the latency starts, and what of it is estimated. A kind that was not named is as the vehicle states it.
 pub(super) fn held_as(
-    wanted: &Wanted,
+    wanted: &RequestedEffects,
     flights: &[Trace],
     (vehicle, known): (&Vehicle, &[ActiveEffect]),
     first: LatencyFinding,
@@ -59,7 +59,7 @@ pub(super) fn held_as(
 pub(super) fn split(
     flights: &[Trace],
     mut after: Fitted,
-    wanted: &Wanted,
+    wanted: &RequestedEffects,
 ) -> Result<(Fitted, Split), PhysicsError> {
     if !(wanted.has_latency(LatencyKind::Lag) && wanted.has_latency(LatencyKind::Delay)) {
         return Ok((after, None));

@@ -2,11 +2,11 @@
 
 use super::bootstrap::Interval;
 use super::carried::{carried_over, pair};
-use super::error::ShowError;
+use super::error::HoldoutError;
 use super::open_loop::OpenLoop;
 use super::ready::{Ready, trace_of};
-use super::settings::{HeldOut, ShowSettings};
-use super::shown::Shown;
+use super::settings::{HeldOut, HoldoutSettings};
+use super::shown::HoldoutFit;
 use super::{closed_loop, open_loop, other_vehicle, weak};
 use crate::diagnose::empirical::Empirical;
 use crate::diagnose::explanation::Explanation;
@@ -16,13 +16,13 @@ use crate::vehicle::Vehicle;
 /// beside the better model where no mechanism was found.
 ///
 /// # Errors
-/// [`ShowError`] where a flight lacks streams or is too short.
+/// [`HoldoutError`] where a flight lacks streams or is too short.
 pub fn on_holdout(
     (explanation, empirical): (&Explanation, Option<&Empirical>),
     flights: &[HeldOut],
     vehicle: &Vehicle,
-    settings: &ShowSettings,
-) -> Result<Shown, ShowError> {
+    settings: &HoldoutSettings,
+) -> Result<HoldoutFit, HoldoutError> {
     let mut ready = Vec::with_capacity(flights.len());
     for flight in flights {
         let trace = trace_of(flight, vehicle, settings)?;
@@ -30,14 +30,14 @@ pub fn on_holdout(
         ready.push(Ready { flight, trace, pair });
     }
     if ready.is_empty() {
-        return Err(ShowError::NoFlight);
+        return Err(HoldoutError::NoFlight);
     }
     let mut notes: Vec<String> = ready.iter().flat_map(|ready| ready.pair.notes.clone()).collect();
     // what cannot be played back still has its residuals
     let (open_loop, improvement_percent, blocks, no_open_loop) =
         match open_loop::open_loop(&ready, empirical, settings) {
             Ok((open_loop, improvement, blocks)) => (open_loop, improvement, blocks, None),
-            Err(why @ ShowError::Compare { .. }) => (Vec::new(), None, 0, Some(why.to_string())),
+            Err(why @ HoldoutError::Compare { .. }) => (Vec::new(), None, 0, Some(why.to_string())),
             Err(other) => return Err(other),
         };
     let weak = weak::residuals(&ready, explanation, empirical, settings)?;
@@ -47,7 +47,7 @@ pub fn on_holdout(
         "the floor is what white noise of the sensors and of the logged commands would leave of a model that is right; noise that an autopilot's estimator has smoothed is not in it"
             .to_owned(),
     );
-    Ok(Shown {
+    Ok(HoldoutFit {
         flights: ready.len(),
         blocks,
         open_loop,
@@ -64,13 +64,13 @@ pub fn on_holdout(
 /// The same open-loop errors on the flights that were used, so that both can stand side by side.
 ///
 /// # Errors
-/// [`ShowError`] where a flight cannot be played back.
+/// [`HoldoutError`] where a flight cannot be played back.
 pub fn on_identification(
     (explanation, empirical): (&Explanation, Option<&Empirical>),
     flights: &[HeldOut],
     vehicle: &Vehicle,
-    settings: &ShowSettings,
-) -> Result<(Vec<OpenLoop>, Option<Interval>), ShowError> {
+    settings: &HoldoutSettings,
+) -> Result<(Vec<OpenLoop>, Option<Interval>), HoldoutError> {
     let mut ready = Vec::with_capacity(flights.len());
     for flight in flights {
         let trace = trace_of(flight, vehicle, settings)?;

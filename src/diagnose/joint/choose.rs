@@ -1,6 +1,6 @@
 //! Which form of each effect: all are fitted, the likeliest is taken.
 
-use super::wanted::Wanted;
+use super::wanted::RequestedEffects;
 use crate::diagnose::base::{Base, lift_load};
 use crate::diagnose::fit::{Newton, fit};
 use crate::diagnose::recorded::Recorded;
@@ -34,7 +34,7 @@ const EVERY_S: f64 = 0.25;
 pub(super) fn choose(
     flights: &[Trace],
     base: &Base,
-    wanted: &Wanted,
+    wanted: &RequestedEffects,
     recorded: &Recorded,
 ) -> Result<Vec<Chosen>, PhysicsError> {
     let forms: Vec<Vec<EffectTerm>> =

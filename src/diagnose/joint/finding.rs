@@ -3,7 +3,7 @@
 use super::held::{Held, Settled};
 use super::latency::{LEAST_LAG_S, Split};
 use super::scale::follows_force;
-use super::wanted::Wanted;
+use super::wanted::RequestedEffects;
 use crate::diagnose::fit::Fitted;
 use crate::diagnose::gates::Gates;
 use crate::diagnose::latency::FAST_MOTOR_S;
@@ -122,7 +122,7 @@ impl EffectFound {
 /// weighed mass.
 pub(super) fn effects(
     (flights, vehicle): (&[Trace], &Vehicle),
-    wanted: &Wanted,
+    wanted: &RequestedEffects,
     (fitted, settled): (&Fitted, &[Settled]),
     (latency, split): (&LatencyFinding, Split),
     by_mass: Option<f64>,
@@ -146,7 +146,7 @@ fn of_columns(
     fitted: &Fitted,
     place: usize,
     settled: &Settled,
-    (vehicle, wanted, by_mass): (&Vehicle, &Wanted, Option<f64>),
+    (vehicle, wanted, by_mass): (&Vehicle, &RequestedEffects, Option<f64>),
 ) -> EffectFound {
     let present = &fitted.base.present[place];
     let before: usize = fitted.base.present[..place].iter().map(|of| of.free.len()).sum();
@@ -199,7 +199,12 @@ fn of_columns(
 }
 
 /// Why a parameter that was neither estimated nor held is what it is.
-fn set(term: &EffectTerm, slot: usize, value: f64, (vehicle, wanted): (&Vehicle, &Wanted)) -> Found {
+fn set(
+    term: &EffectTerm,
+    slot: usize,
+    value: f64,
+    (vehicle, wanted): (&Vehicle, &RequestedEffects),
+) -> Found {
     match (term.signature.joint.whence)(term, slot, vehicle, wanted.signatures()) {
         Some(Whence::Given(why)) => Found::Given { value, why },
         Some(Whence::NotDetermined(reason)) => {

@@ -6,7 +6,7 @@ use crate::physics::PhysicsError;
 
 /// Why nothing can be shown.
 #[derive(Debug, thiserror::Error)]
-pub enum ShowError {
+pub enum HoldoutError {
     /// nothing to show on
     #[error("expected at least one flight to show the model on, got none")]
     NoFlight,

@@ -1,8 +1,8 @@
 //! A held-out flight made ready.
 
 use super::carried::Pair;
-use super::error::ShowError;
-use super::settings::{HeldOut, ShowSettings};
+use super::error::HoldoutError;
+use super::settings::{HeldOut, HoldoutSettings};
 use crate::diagnose::base::Base;
 use crate::diagnose::trace::Trace;
 use crate::physics::{Model, PhysicsError};
@@ -18,13 +18,13 @@ pub(super) struct Ready<'a> {
 pub(super) fn trace_of(
     flight: &HeldOut,
     vehicle: &Vehicle,
-    settings: &ShowSettings,
-) -> Result<Trace, ShowError> {
+    settings: &HoldoutSettings,
+) -> Result<Trace, HoldoutError> {
     let trace = Trace::new(flight.signals, vehicle, settings.half_width_s)
-        .map_err(|source| ShowError::Trace { flight: flight.name.to_owned(), source })?;
+        .map_err(|source| HoldoutError::Trace { flight: flight.name.to_owned(), source })?;
     let seconds = flight.signals.usable.iter().filter(|usable| **usable).count() as f64 * trace.grid.step_s;
     if seconds < LEAST_S {
-        return Err(ShowError::TooShort { flight: flight.name.to_owned(), seconds, needed_s: LEAST_S });
+        return Err(HoldoutError::TooShort { flight: flight.name.to_owned(), seconds, needed_s: LEAST_S });
     }
     Ok(trace)
 }

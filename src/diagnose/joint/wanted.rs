@@ -1,6 +1,6 @@
 //! What was asked for: names, what they need of the recording, and the forms in which each is tried.
 
-use super::error::TogetherError;
+use super::error::JointError;
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{EffectTerm, LatencyKind, Signature};
 use crate::diagnose::signatures::signature_of;
@@ -11,34 +11,33 @@ const ALWAYS: [&str; 3] = ["thrust_scale", "torque_scale", "inertia_products"];
 
 /// The effects that are to be identified, each of them once.
 #[derive(Debug, Clone)]
-pub struct Wanted {
+pub struct RequestedEffects {
     signatures: Vec<&'static Signature>,
 }
 
-impl Wanted {
+impl RequestedEffects {
     /// From names as the user gives them.
     ///
     /// # Errors
-    /// [`TogetherError`] for a name that is none, is there twice, or cannot be identified as parameters.
-    pub fn of(names: &[String]) -> Result<Self, TogetherError> {
+    /// [`JointError`] for a name that is none, is there twice, or cannot be identified as parameters.
+    pub fn of(names: &[String]) -> Result<Self, JointError> {
         let mut signatures: Vec<&'static Signature> = Vec::with_capacity(names.len());
         for name in names {
             let name = name.trim();
             if ALWAYS.contains(&name) {
-                return Err(TogetherError::Always { id: name.to_owned() });
+                return Err(JointError::Always { id: name.to_owned() });
             }
-            let signature =
-                signature_of(name).ok_or_else(|| TogetherError::Unknown { id: name.to_owned() })?;
+            let signature = signature_of(name).ok_or_else(|| JointError::Unknown { id: name.to_owned() })?;
             if signatures.iter().any(|known| known.id() == signature.id()) {
-                return Err(TogetherError::Twice { id: signature.id() });
+                return Err(JointError::Twice { id: signature.id() });
             }
             if signature.joint.is_irregular {
-                return Err(TogetherError::Gust);
+                return Err(JointError::Gust);
             }
             signatures.push(signature);
         }
         if signatures.is_empty() {
-            return Err(TogetherError::Unknown { id: String::new() });
+            return Err(JointError::Unknown { id: String::new() });
         }
         Ok(Self { signatures })
     }
@@ -81,24 +80,20 @@ impl Wanted {
     /// Wind without anything through which it acts; `known` is what the vehicle's file has.
     ///
     /// # Errors
-    /// [`TogetherError::WindAlone`].
-    pub fn check_wind(&self, known: &[ActiveEffect]) -> Result<(), TogetherError> {
+    /// [`JointError::WindAlone`].
+    pub fn check_wind(&self, known: &[ActiveEffect]) -> Result<(), JointError> {
         let known = known.iter().filter_map(|of| signature_of(of.effect().id()));
         let of_air = self.signatures.iter().copied().chain(known).any(|signature| signature.role.of_air);
         let has_wind = self.signatures.iter().any(|signature| signature.role.wind.is_some());
-        if has_wind && !of_air { Err(TogetherError::WindAlone) } else { Ok(()) }
+        if has_wind && !of_air { Err(JointError::WindAlone) } else { Ok(()) }
     }
 
     /// What the flights must hold and the vehicle's description must state for each of them.
-    pub(super) fn check_flights(
-        &self,
-        recorded: &Recorded,
-        airframe: &Airframe,
-    ) -> Result<(), TogetherError> {
+    pub(super) fn check_flights(&self, recorded: &Recorded, airframe: &Airframe) -> Result<(), JointError> {
         let flights = recorded.flights;
         for signature in self.signatures.iter().copied() {
             let (id, effect) = (signature.id(), signature.effect);
-            let lacks = |what: &'static str, why: &'static str| TogetherError::Stream { id, what, why };
+            let lacks = |what: &'static str, why: &'static str| JointError::Stream { id, what, why };
             if let Some(what) = effect.missing(airframe) {
                 return Err(crate::physics::PhysicsError::Missing { id, what }.into());
             }
@@ -110,7 +105,7 @@ impl Wanted {
             }
             match recorded.lacks(signature.needs) {
                 Some((Need::OneFlight, ..)) => {
-                    return Err(TogetherError::SeveralFlights { id, flights: flights.len() });
+                    return Err(JointError::SeveralFlights { id, flights: flights.len() });
                 }
                 Some((_, what, why)) => return Err(lacks(what, why)),
                 None => {}
@@ -141,21 +136,21 @@ mod tests {
     #[test]
     fn every_effect_is_taken_or_refused_with_a_reason() {
         for effect in ALL {
-            match Wanted::of(&[format!(" {} ", effect.id())]) {
+            match RequestedEffects::of(&[format!(" {} ", effect.id())]) {
                 Ok(wanted) => assert!(wanted.has(effect.id()) && wanted.signatures().len() == 1),
-                Err(error) => assert_eq!((error, effect.id()), (TogetherError::Gust, "gust")),
+                Err(error) => assert_eq!((error, effect.id()), (JointError::Gust, "gust")),
             }
         }
-        assert!(Wanted::of(&["motor_lag".to_owned()]).is_ok_and(|wanted| wanted.need_commands()));
-        assert!(Wanted::of(&["com_offset".to_owned()]).is_ok_and(|wanted| !wanted.need_commands()));
+        assert!(RequestedEffects::of(&["motor_lag".to_owned()]).is_ok_and(|wanted| wanted.need_commands()));
+        assert!(RequestedEffects::of(&["com_offset".to_owned()]).is_ok_and(|wanted| !wanted.need_commands()));
     }
 
     #[test]
     fn wind_that_the_files_drag_carries_is_not_alone() {
-        let wind = Wanted::of(&["steady_wind".to_owned()]);
+        let wind = RequestedEffects::of(&["steady_wind".to_owned()]);
         let drag = ActiveEffect::named("linear_drag", &[("dx", 0.1), ("dy", 0.1), ("dz", 0.0)]);
         let (wind, drag) = (wind.unwrap(), drag.unwrap());
-        assert_eq!(wind.check_wind(&[]), Err(TogetherError::WindAlone));
+        assert_eq!(wind.check_wind(&[]), Err(JointError::WindAlone));
         assert_eq!(wind.check_wind(&[drag]), Ok(()));
     }
 }

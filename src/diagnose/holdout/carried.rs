@@ -1,6 +1,6 @@
 //! What of the identified model carries over to another flight.
 
-use super::settings::{HeldOut, ShowSettings};
+use super::settings::{HeldOut, HoldoutSettings};
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
 use crate::diagnose::explanation::{Explanation, Verdict};
@@ -53,7 +53,7 @@ pub(super) fn carried_over(
     explained: (&Explanation, Option<&Empirical>),
     (flight, trace): (&HeldOut, &Trace),
     vehicle: &Vehicle,
-    settings: &ShowSettings,
+    settings: &HoldoutSettings,
 ) -> Result<Pair, PhysicsError> {
     let mut pair = pair(explained, vehicle, trace.command_period_s);
     let moment = pair.after.present.iter().enumerate().find_map(|(place, term)| {

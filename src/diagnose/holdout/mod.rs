@@ -20,11 +20,11 @@ mod weak;
 
 pub use bootstrap::{Compared, Interval};
 pub use closed_loop::ClosedLoop;
-pub use error::ShowError;
+pub use error::HoldoutError;
 pub use floor::{command_noise, state_noise};
 pub use hold_out::{on_holdout, on_identification};
 pub use open_loop::{OpenLoop, WINDOWS_S};
 pub use other_vehicle::{Agreement, Difference, OtherVehicle, differing};
-pub use settings::{HeldOut, ShowSettings};
-pub use shown::Shown;
+pub use settings::{HeldOut, HoldoutSettings};
+pub use shown::HoldoutFit;
 pub use split::{Split, split_last_periods};

@@ -1,8 +1,8 @@
 //! Whether the held-out flights can be of the vehicle that was identified.
 
-use super::error::ShowError;
+use super::error::HoldoutError;
 use super::ready::{Ready, trace_of};
-use super::settings::{HeldOut, ShowSettings};
+use super::settings::{HeldOut, HoldoutSettings};
 use super::weak::Weak;
 use crate::diagnose::channels::{CHANNEL_NAMES, CHANNELS, Nuisance};
 use crate::diagnose::explanation::Explanation;
@@ -129,13 +129,13 @@ pub(super) fn judged(
 /// share, against the first's. `None` where they may be.
 ///
 /// # Errors
-/// [`ShowError`] where a flight lacks streams or is too short.
+/// [`HoldoutError`] where a flight lacks streams or is too short.
 pub fn differing(
     explanation: &Explanation,
     flights: &[HeldOut],
     vehicle: &Vehicle,
-    settings: &ShowSettings,
-) -> Result<Option<String>, ShowError> {
+    settings: &HoldoutSettings,
+) -> Result<Option<String>, HoldoutError> {
     let shared = &explanation.search.after;
     let mut first: Option<Vec<Agreement>> = None;
     for flight in flights {

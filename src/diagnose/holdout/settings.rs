@@ -6,7 +6,7 @@ use crate::signals::Signals;
 
 /// How it is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShowSettings {
+pub struct HoldoutSettings {
     /// s, half width of the weak form's test function
     pub half_width_s: f64,
     /// s, length of the resampled blocks
@@ -19,7 +19,7 @@ pub struct ShowSettings {
     pub same_flight: bool,
 }
 
-impl Default for ShowSettings {
+impl Default for HoldoutSettings {
     fn default() -> Self {
         Self {
             half_width_s: ExplainSettings::default().half_width_s,

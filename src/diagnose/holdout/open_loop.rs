@@ -1,10 +1,10 @@
 //! Open-loop prediction from the measured state, fed the recorded actuators.
 
 use super::bootstrap::{Blocks, Compared, Interval};
-use super::error::ShowError;
+use super::error::HoldoutError;
 use super::floor::{command_noise, state_noise};
 use super::ready::{Ready, flown};
-use super::settings::ShowSettings;
+use super::settings::HoldoutSettings;
 use crate::compare::{
     CommandNoise, PlaybackSettings, StateNoise, WindowErrors, playback_floor, playback_windows,
 };
@@ -53,8 +53,8 @@ struct Models {
 pub(super) fn open_loop(
     ready: &[Ready],
     empirical: Option<&Empirical>,
-    settings: &ShowSettings,
-) -> Result<(Vec<OpenLoop>, Option<Interval>, usize), ShowError> {
+    settings: &HoldoutSettings,
+) -> Result<(Vec<OpenLoop>, Option<Interval>, usize), HoldoutError> {
     let models: Vec<Models> = ready.iter().map(models_of).collect::<Result<_, _>>()?;
     let parts: Vec<(OpenLoop, Option<Interval>, usize)> = WINDOWS_S
         .par_iter()
@@ -78,14 +78,14 @@ fn one_length(
     window_s: f64,
     (ready, models): (&[Ready], &[Models]),
     empirical: Option<&Empirical>,
-    settings: &ShowSettings,
-) -> Result<(OpenLoop, Option<Interval>, usize), ShowError> {
+    settings: &HoldoutSettings,
+) -> Result<(OpenLoop, Option<Interval>, usize), HoldoutError> {
     // grids are seldom faster than 4 ms: one step an instant
     let playback = PlaybackSettings { window_s, step_s: 0.004, ..PlaybackSettings::default() };
     let mut blocks = Blocks::new(4, settings.block_s);
     let (mut floor, mut windows) = ([(0.0, 0usize); 4], 0);
     for (index, (ready, models)) in ready.iter().zip(models).enumerate() {
-        let failed = |source| ShowError::Compare { flight: ready.flight.name.to_owned(), source };
+        let failed = |source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source };
         let signals = ready.flight.signals;
         let run = |model: &Model, base: &Base, empirical: Option<&Empirical>| {
             let push = empirical.map(Empirical::push);

@@ -2,7 +2,7 @@
 
 use super::bootstrap::{Blocks, Compared};
 use super::ready::{Ready, flown};
-use super::settings::ShowSettings;
+use super::settings::HoldoutSettings;
 use crate::compare::{SIGNALS, TenSignals, autopilot_flight};
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
@@ -22,7 +22,7 @@ pub(super) fn flown_again(
     ready: &[Ready],
     empirical: Option<&Empirical>,
     nominal: &Vehicle,
-    settings: &ShowSettings,
+    settings: &HoldoutSettings,
 ) -> Result<ClosedLoop, String> {
     if empirical.is_some() {
         return Err("an empirical term is not flown in closed loop".to_owned());

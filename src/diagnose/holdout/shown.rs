@@ -7,7 +7,7 @@ use super::other_vehicle::{Agreement, OtherVehicle};
 
 /// The fit on flights that were not used.
 #[derive(Debug, Clone)]
-pub struct Shown {
+pub struct HoldoutFit {
     /// how many flights
     pub flights: usize,
     /// blocks that the intervals come from
@@ -30,7 +30,7 @@ pub struct Shown {
     pub notes: Vec<String>,
 }
 
-impl Shown {
+impl HoldoutFit {
     /// Open loop over windows of 0.5 s.
     #[must_use]
     pub fn half_second(&self) -> Option<&OpenLoop> {
