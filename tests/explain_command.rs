@@ -1,12 +1,14 @@
 //! `mavid explain` and `mavid export` at their process boundary.
 
-#![allow(clippy::print_stderr, reason = "says what it skips")]
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+
+mod support;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use serde_json::Value;
+use support::shared_case;
 
 fn mavid(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_mavid")).args(arguments).output().unwrap()
@@ -26,18 +28,6 @@ fn stdout(output: &Output) -> String {
 
 fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-/// A practice case beside the repository, or a word that it is not there.
-fn case(name: &str) -> Option<PathBuf> {
-    let shared = std::env::var_os("MAVID_SHARED")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
-    let folder = shared.join("cases").join(name);
-    if !folder.is_dir() {
-        eprintln!("skipped: no {}", folder.display());
-        return None;
-    }
-    Some(folder)
 }
 
 #[test]
@@ -168,7 +158,7 @@ fn explained(log: &Path, vehicle: &Path, holdout: &Path, further: &[&str]) -> Va
 
 #[test]
 fn drag_is_named_shown_on_the_hold_out_and_carried_into_every_command() {
-    let Some(folder) = case("p02-linear-drag") else { return };
+    let Some(folder) = shared_case("p02-linear-drag") else { return };
     let out = temporary("explain-p02");
     let [log, holdout, vehicle] =
         ["identify.tlog", "holdout.tlog", "vehicle.toml"].map(|name| folder.join(name));
@@ -201,7 +191,9 @@ fn drag_is_named_shown_on_the_hold_out_and_carried_into_every_command() {
 
 #[test]
 fn a_hold_out_of_another_vehicle_is_found_out_and_said() {
-    let (Some(folder), Some(other)) = (case("p02-linear-drag"), case("p04-motor-lag")) else { return };
+    let (Some(folder), Some(other)) = (shared_case("p02-linear-drag"), shared_case("p04-motor-lag")) else {
+        return;
+    };
     let out = temporary("explain-other");
     let (log, vehicle) = (folder.join("identify.tlog"), folder.join("vehicle.toml"));
     let out = ["--out", out.to_str().unwrap()];
@@ -226,7 +218,7 @@ fn a_hold_out_of_another_vehicle_is_found_out_and_said() {
 /// It cannot be played back without an attitude, and is found out by its residuals all the same.
 #[test]
 fn a_hold_out_of_another_vehicle_without_attitude_is_found_out() {
-    let Some(folder) = case("p02-linear-drag") else { return };
+    let Some(folder) = shared_case("p02-linear-drag") else { return };
     let other = folder.join("../../recordings/crazyflie_1khz/log15.csv");
     let (log, vehicle) = (folder.join("identify.tlog"), folder.join("vehicle.toml"));
     let document = explained(&log, &vehicle, &other, &[]);

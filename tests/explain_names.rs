@@ -2,33 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
-use mavid::diagnose::{ExplainSettings, Explanation, Named, Verdict, explain};
-use mavid::physics::ActiveEffect;
-use mavid::signals::{ConditionSettings, ThrustPreference, condition};
-use mavid::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight};
+#[path = "support/concealed.rs"]
+mod concealed;
 
-type Sizes<'a> = &'a [(&'a str, f64)];
-
-/// One flight with what is concealed, explained from the recording and the nominal vehicle alone.
-fn explained(seed: u64, concealed: &[(&str, Sizes)], trajectory: RandomTrajectory) -> Explanation {
-    let pair = random_vehicle(seed.wrapping_mul(7919));
-    let effects = concealed.iter().map(|(id, sizes)| ActiveEffect::named(id, sizes).unwrap()).collect();
-    let reference = Reference {
-        trajectory: trajectory.draw(seed.wrapping_mul(104_729)).unwrap(),
-        hover_s: 4.0,
-        ramp_s: 2.0,
-    };
-    let settings = FlightSettings { seed, ..FlightSettings::default() };
-    let truth = Truth { vehicle: pair.truth, effects, disturbance: None };
-    let flight = simulate_flight(truth, &pair.nominal, &reference, &settings).unwrap();
-    let how = ConditionSettings {
-        transient_s: Some(1.0),
-        thrust: ThrustPreference::Commands,
-        ..ConditionSettings::default()
-    };
-    let signals = condition(&flight.recording, &pair.nominal, &how).unwrap();
-    explain(&[signals], &pair.nominal, &ExplainSettings::default()).unwrap()
-}
+use concealed::{Sizes, explained};
+use mavid::diagnose::{Explanation, Named, Verdict};
+use mavid::simulate::RandomTrajectory;
 
 fn ids(explanation: &Explanation) -> Vec<&'static str> {
     explanation.named.iter().map(|named| named.id).collect()

@@ -18,6 +18,7 @@ use std::thread;
 use mavid::log::TlogReader;
 use processes::{fly, folder, free_port, planned};
 use serde_json::{Value, json};
+use support::Needed;
 
 const RATE_HZ: u32 = 50;
 const VEHICLE: &str = "vehicle_with_pymavlink.py";
@@ -25,7 +26,7 @@ const VEHICLE: &str = "vehicle_with_pymavlink.py";
 #[test]
 fn a_vehicle_played_by_pymavlink_is_flown_to_the_ground_and_its_log_is_read_by_pymavlink_to_the_byte() {
     if let Err(why) = python::ask(VEHICLE, &["--check"], &json!(null)) {
-        return support::skip(&why);
+        return support::skip(Needed::Peers, &why);
     }
     let trajectory = planned("peer_plan", 2);
     let out = folder("peer").join("flight");

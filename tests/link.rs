@@ -10,7 +10,7 @@ use std::time::Duration;
 use mavid::link::{Address, Link, LinkError, LinkEvent, LinkOptions, LinkReader, Received, ReceivedFrame};
 use mavid::log::{ComponentId, SystemId};
 use mavlink::dialects::ardupilotmega::MavMessage;
-use support::{ground_heartbeat, header, heartbeat, unknown, v1, v2};
+use support::{Needed, ground_heartbeat, header, heartbeat, unknown, v1, v2};
 use tokio::io::AsyncWriteExt;
 use tokio::net::{TcpListener, UdpSocket};
 use tokio::time::timeout;
@@ -79,7 +79,7 @@ async fn udp_carries_frames_both_ways() {
 #[tokio::test]
 async fn udp_carries_frames_over_ipv6() {
     if std::net::UdpSocket::bind("[::1]:0").is_err() {
-        return support::skip("this machine has no IPv6");
+        return support::skip(Needed::Ipv6, "no socket could be bound to [::1]");
     }
     both_ways("[::1]").await;
 }

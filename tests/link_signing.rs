@@ -14,7 +14,7 @@ use mavid::link::{
 };
 use mavlink::dialects::ardupilotmega::MavMessage;
 use serde_json::json;
-use support::{header, heartbeat, unknown, v1, v2};
+use support::{Needed, header, heartbeat, unknown, v1, v2};
 use tokio::time::timeout;
 
 const KEY: [u8; 32] = [7; 32];
@@ -160,7 +160,7 @@ async fn pymavlink_takes_our_signatures_and_we_take_its() {
     });
     let answer = match python::ask("signing_with_pymavlink.py", &[], &given) {
         Ok(answer) => answer,
-        Err(missing) => return support::skip(&missing),
+        Err(missing) => return support::skip(Needed::Peers, &missing),
     };
     assert_eq!(answer["accepted"], json!([true, true, true, false, false]));
     let ((mut reader, _out), (_in, bare)) = pair(options(Some(KEY)), options(None)).await;

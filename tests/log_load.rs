@@ -13,7 +13,7 @@ use mavid::log::{
     Autopilot, LoadOptions, LogError, Quantity, StreamKey, StreamTally, SystemId, load, stream_tlog,
 };
 use mavlink::dialects::ardupilotmega::{MavMessage, SYS_STATUS_DATA};
-use support::{START_US, attitude, ground_heartbeat, header, heartbeat, record, tlog, v2};
+use support::{Needed, START_US, attitude, ground_heartbeat, header, heartbeat, record, tlog, v2};
 
 const ATTITUDE: StreamKey = StreamKey { quantity: Quantity::Attitude, source: "ATTITUDE", instance: 0 };
 
@@ -125,11 +125,11 @@ fn pymavlink(what: &str, log: &Path) -> Option<String> {
     let python = python::interpreter();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers/read_with_pymavlink.py");
     let Ok(output) = Command::new(&python).arg(script).arg(what).arg(log).output() else {
-        support::skip(&format!("{} does not run", python.display()));
+        support::skip(Needed::Peers, &format!("{} does not run", python.display()));
         return None;
     };
     if output.status.code() == Some(77) {
-        support::skip("pymavlink is missing");
+        support::skip(Needed::Peers, &format!("pymavlink is missing (looked for by {})", python.display()));
         return None;
     }
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

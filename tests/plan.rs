@@ -2,6 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
 
+#[path = "support/python.rs"]
+mod python;
+#[path = "support/require.rs"]
+mod require;
+
 use mavid::config::{read_trajectory, read_vehicle};
 use mavid::plan::{
     Criterion, FlightPlan, PlanError, PlanRequest, Quantity, StartPlace, assess, bounds_of, check,
@@ -158,16 +163,12 @@ fn a_whole_flight_keeps_the_limits_and_has_no_steps() {
 /// The Python peer is written from the paper's equations on its own.
 #[test]
 fn an_independent_program_finds_the_same() {
-    let python = std::env::var("MAVID_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let table_2 = root.join("configs/trajectories/table2.toml");
-    let script = root.join("tests/peers/plan_with_slsqp.py");
-    let output = std::process::Command::new(python).arg(script).arg("assess").arg(&table_2).output();
-    let Some(output) = output.ok().filter(|output| output.status.success()) else {
-        println!("skipped: no Python with scipy");
-        return;
+    let table_2 = configs().join("trajectories/table2.toml");
+    let asked = ["assess", table_2.to_str().unwrap()];
+    let theirs = match python::ask("plan_with_slsqp.py", &asked, &serde_json::Value::Null) {
+        Ok(theirs) => theirs,
+        Err(why) => return require::skip(require::Needed::Peers, &why),
     };
-    let theirs: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let vehicle = vehicle("qball2.toml");
     let bounds = bounds_of(&vehicle.limits, &vehicle);
     let ours = assess(&read_trajectory(&table_2).unwrap().series, &vehicle, &bounds, &PlanRequest::default());

@@ -18,6 +18,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rotorpy::HUMMINGBIRD;
 use serde_json::json;
+use support::Needed;
 
 fn any(random: &mut Pcg64Mcg, size: f64) -> Vector3<f64> {
     Vector3::from_fn(|_, _| random.random_range(-size..size))
@@ -65,7 +66,7 @@ fn both_integrators_agree_with_scipy() {
         );
         let answer = match answer {
             Ok(answer) => python::numbers(&answer),
-            Err(why) => return support::skip(&why),
+            Err(why) => return support::skip(Needed::Peers, &why),
         };
         let mut derivative = |_: f64, vector: &SVector<f64, RIGID_STATES>| {
             let mut out = SVector::zeros();
@@ -119,7 +120,7 @@ fn accelerations_are_rotorpys() {
     }
     let given = json!({"params": HUMMINGBIRD.params(), "cases": cases});
     match python::ask("rotorpy_multirotor.py", &["--accelerations"], &given) {
-        Err(why) => support::skip(&why),
+        Err(why) => support::skip(Needed::Peers, &why),
         Ok(answer) => {
             for (theirs, (linear, angular)) in answer.as_array().unwrap().iter().zip(ours) {
                 let theirs = python::numbers(theirs);
@@ -151,7 +152,7 @@ fn five_seconds_open_loop_end_where_rotorpys_do() {
         });
         let answer = match python::ask("rotorpy_multirotor.py", &["--trajectory"], &given) {
             Ok(answer) => answer,
-            Err(why) => return support::skip(&why),
+            Err(why) => return support::skip(Needed::Peers, &why),
         };
         let of = |speeds: &[f64; 4]| {
             let u = speeds.map(|speed| speed / HUMMINGBIRD.speed_max_rad_s);

@@ -13,6 +13,7 @@ use std::net::{TcpListener, UdpSocket};
 use std::process::{Child, Command, Stdio};
 
 use serde_json::{Value, json};
+use support::Needed;
 
 /// The running program; ended when the test is.
 struct Sitl(Child);
@@ -70,7 +71,7 @@ fn pymavlink_flies_px4_offboard_in_lockstep_over_udp() {
     let connection = format!("udpin:127.0.0.1:{port}");
     match python::ask("fly_with_pymavlink.py", &[&connection, "px4"], &json!(null)) {
         Ok(answer) => flown(&answer, 12, 1.0),
-        Err(why) => return support::skip(&why),
+        Err(why) => return support::skip(Needed::Peers, &why),
     }
     let (status, said) = sitl.interrupt();
     assert_eq!(status, Some(0), "{said}");
@@ -87,7 +88,7 @@ fn pymavlink_flies_ardupilot_guided_fast_over_tcp() {
     let connection = format!("tcp:127.0.0.1:{port}");
     match python::ask("fly_with_pymavlink.py", &[&connection, "ardupilot"], &json!(null)) {
         Ok(answer) => flown(&answer, 3, 3.0),
-        Err(why) => return support::skip(&why),
+        Err(why) => return support::skip(Needed::Peers, &why),
     }
     assert_eq!(sitl.interrupt().0, Some(0));
 }
@@ -101,7 +102,7 @@ fn mavsdk_finds_px4_healthy_stores_a_fence_and_flies_offboard() {
     let connection = format!("udpin://127.0.0.1:{port}");
     let answer = match python::ask("fly_with_mavsdk.py", &[&connection], &json!(null)) {
         Ok(answer) => answer,
-        Err(why) => return support::skip(&why),
+        Err(why) => return support::skip(Needed::Mavsdk, &why),
     };
     assert_eq!((&answer["autopilot"], &answer["version"]), (&json!("PX4"), &json!([1, 16])));
     let health = answer["health"].as_object().unwrap();

@@ -220,3 +220,88 @@ impl Periodogram<'_> {
         (joint_chance(chances), lines)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEP_S: f64 = 0.05;
+    /// Four periods of 4 s, after one row that belongs to none.
+    const ROWS: i32 = 320;
+
+    fn times() -> Vec<f64> {
+        (0..=ROWS).map(|row| STEP_S * f64::from(row)).collect()
+    }
+
+    /// The test with one series in the first channel, a function of the row within the periods.
+    fn lack_of(series: impl Fn(i32) -> f64) -> LackOfFit {
+        let first: Vec<f64> = (-1..ROWS).map(series).collect();
+        let none = vec![0.0; first.len()];
+        let residual = std::array::from_fn(|channel| if channel == 0 { &first[..] } else { &none[..] });
+        lack_of_fit(&times(), residual, 4.0).unwrap()
+    }
+
+    fn is_near(found: f64, expected: f64, relative: f64) -> bool {
+        (found - expected).abs() < relative * expected.abs()
+    }
+
+    /// Every bin of 1/16 Hz holds a line of amplitude 1, the first harmonic one of 3. By hand: its ratio is 9, its excess
+    /// `N / 2 (3^2 - 1)`, and F of 2 and 8 degrees of freedom exceeds r with chance `(1 + r / 4)^-4`, so that Fisher's sum is
+    /// `8 ln(13 / 4) + 56 ln(5 / 4)`. SciPy: `scipy.stats.chi2.sf(8 * log(3.25) + 56 * log(1.25), 16)`
+    #[test]
+    fn one_harmonic_over_even_lines_has_its_amplitude() {
+        let found = lack_of(|row| {
+            let bin = |m: i32| (TAU * f64::from(m) / 16.0 * STEP_S * f64::from(row)).cos();
+            (1..=34).map(bin).sum::<f64>() + 2.0 * bin(4)
+        });
+        assert_eq!((found.periods, found.lines[0].len()), (4, 8));
+        let [first, others @ ..] = &found.lines[0][..] else { panic!("no lines") };
+        assert!(is_near(first.ratio, 9.0, 1e-9) && is_near(first.excess, 1280.0, 1e-9), "{first:?}");
+        assert!(others.iter().all(|line| is_near(line.ratio, 1.0, 1e-9) && line.excess.abs() < 1e-6));
+        assert!(is_near(found.excess_rms[0], 2.0, 1e-9) && is_near(found.excess_energy, 1280.0, 1e-9));
+        assert!(is_near(found.p_value[0], 0.145_620_605_030_294_2, 1e-9), "{}", found.p_value[0]);
+        // nothing in the other channels
+        assert!(found.p_value[1..].iter().all(|p| *p == 1.0) && is_near(found.p_least(), 1.0, 1e-12));
+    }
+
+    /// NumPy and SciPy: `python3 tests/peers/evidence_numbers.py harmonics`
+    #[test]
+    fn powers_and_chance_are_those_of_a_fourier_transform() {
+        let found = lack_of(|row| {
+            let j = row + 1;
+            f64::from((j * j * 74 + j * 362) % 1009) / 1009.0 - 0.5
+                + 0.2 * (TAU * 0.5 * STEP_S * f64::from(row)).cos()
+        });
+        let ratios = [
+            0.002_883_866_567_779_738_3,
+            40.295_042_818_607_48,
+            1.107_524_530_231_700_3,
+            1.836_089_832_194_591_5,
+            1.302_994_128_772_227,
+            1.901_034_772_458_710_4,
+            8.914_505_826_068_034,
+            5.820_229_312_005_573,
+        ];
+        for (line, ratio) in found.lines[0].iter().zip(ratios) {
+            assert!(is_near(line.ratio, ratio, 1e-7), "{line:?}, not {ratio}");
+        }
+        assert!(is_near(found.p_value[0], 9.236_132_195_695_311e-5, 1e-7), "{}", found.p_value[0]);
+        assert!(is_near(found.excess_energy, 7.707_834_895_773_386, 1e-7), "{}", found.excess_energy);
+    }
+
+    #[test]
+    fn the_period_of_a_sum_of_two_harmonics_is_found() {
+        let time_s: Vec<f64> = (0..1000).map(|row| STEP_S * f64::from(row)).collect();
+        let of = |period_s: f64| -> Vec<f64> {
+            let w = TAU / period_s;
+            time_s.iter().map(|t| (w * t).sin() + 0.6 * (2.0 * w * t).cos()).collect()
+        };
+        // what the ends cut off moves the peak: by less than a row over four periods and more, by 2 % over three
+        for (truth_s, within_s) in [(5.3, STEP_S), (8.0, STEP_S), (11.17, 0.25)] {
+            let found = period_s(&time_s, &[&of(truth_s)]).unwrap();
+            assert!((found - truth_s).abs() < within_s, "{found} s, not {truth_s} s");
+        }
+        // longer than the middle of the flight
+        assert_eq!(period_s(&time_s, &[&of(40.0)]), None);
+    }
+}

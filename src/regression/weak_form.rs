@@ -242,3 +242,99 @@ impl GyroscopicColumns {
         momentum_regressor(0.0, &accelerations) + gyroscopic_from_products(&products)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::Quantity;
+    use crate::signals::{Quality, ThrustSource, Usable};
+    use nalgebra::SVector;
+
+    const STEP_S: f64 = 0.01;
+
+    /// 4 s with body rates (rad/s), specific force along z (m/s^2) and wrench as functions of time.
+    fn rows_of(
+        rate: impl Fn(f64) -> Vector3<f64>,
+        lift: impl Fn(f64) -> f64,
+        wrench: Vector4<f64>,
+    ) -> (WeakRows, WeakKernel) {
+        let count = 400;
+        let series = |of: &dyn Fn(f64) -> Vector3<f64>| -> Vec<Vector3<f64>> {
+            (0..count).map(|i| of(STEP_S * i as f64)).collect()
+        };
+        let signals = Signals {
+            grid: Grid { start_s: 0.0, step_s: STEP_S, count },
+            usable: vec![true; count],
+            attitude: None,
+            rate: Some(series(&rate)),
+            specific_force: Some(series(&|t| Vector3::new(0.0, 0.0, lift(t)))),
+            world_acceleration: None,
+            position: None,
+            velocity: None,
+            rotor_thrust_n: Vec::new(),
+            wrench: vec![wrench; count],
+            jitter_wrench: None,
+            battery_voltage_v: None,
+            reference: None,
+            quality: Quality {
+                sources: vec![(Quantity::ActuatorCommand, "by hand", 1.0 / STEP_S)],
+                thrust_source: ThrustSource::Command,
+                offsets: Vec::new(),
+                airborne_s: Vec::new(),
+                usable: Usable::default(),
+                notes: Vec::new(),
+            },
+        };
+        let kernel = WeakKernel::new(0.2, STEP_S);
+        let motion = WeakMotion::measured(&signals, &kernel, 9.81);
+        (weak_rows(&signals, &motion, &kernel), kernel)
+    }
+
+    /// `regressor * Theta` of a row and order.
+    fn acting(rows: &WeakRows, order: usize, row: usize, theta: [f64; 7]) -> Vector4<f64> {
+        rows.regressor[order][row] * SVector::<f64, 7>::from(theta)
+    }
+
+    /// By hand: Euler's equations without torque let the rate of a body with moments (a, a, c) turn about z at
+    /// `(c - a) / a` of its spin. Its rows hold no torque, in any order; its thrust is what it is.
+    #[test]
+    fn a_symmetric_top_turns_without_torque() {
+        let (a, c, spin) = (0.02, 0.035, 2.0);
+        let w = (c - a) / a * spin;
+        let rate = |t: f64| Vector3::new((w * t).cos(), (w * t).sin(), spin);
+        let thrust = Vector4::new(18.5, 0.0, 0.0, 0.0);
+        let (rows, _) = rows_of(rate, |_| 18.5 / 1.6, thrust);
+        let theta = [1.6, a, 0.0, 0.0, a, 0.0, c];
+        assert!(rows.time_s.len() > 60);
+        for row in 0..rows.time_s.len() {
+            assert!((acting(&rows, 0, row, theta) - rows.output[row]).norm() < 1e-7);
+            // against what each of the two terms has
+            for (order, size, sampled) in [(1, a * w.powi(2), 1e-6), (2, a * w.powi(3), 5e-5)] {
+                let left = acting(&rows, order, row, theta).norm();
+                assert!(left < sampled * size, "order {order}: {left} of {size}");
+            }
+            assert!((rows.output[row] - thrust).norm() < 1e-9);
+        }
+    }
+
+    /// By hand: at a rate `A t` about x the torque is `A (Ixx, Ixy, Ixz) + A^2 t^2 (0, -Ixz, Ixy)`, and the test function
+    /// of half width H makes `t^2 + H^2 / 11` of `t^2`. A specific force that grows by 0.5 m/s^3 stays what it is.
+    #[test]
+    fn a_steady_spin_up_takes_the_torque_of_the_products_of_inertia() {
+        let (up, xx, xy, xz) = (0.9, 0.02, 0.001, -0.002);
+        let (rows, kernel) = rows_of(|t| Vector3::new(up * t, 0.0, 0.0), |t| 9.0 + 0.5 * t, Vector4::zeros());
+        let theta = [1.6, xx, xy, xz, 0.03, 0.0015, 0.045];
+        let h = (kernel.half_count as f64 + 1.0) * STEP_S;
+        for (row, t) in rows.time_s.iter().enumerate() {
+            let square = up * up * (t * t + h * h / 11.0);
+            let expected =
+                Vector4::new(1.6 * (9.0 + 0.5 * t), up * xx, up * xy - square * xz, up * xz + square * xy);
+            let found = acting(&rows, 0, row, theta);
+            assert!((found - expected).norm() < 1e-8, "{found}, not {expected}");
+            let slope = 2.0 * up * up * t;
+            let expected = Vector4::new(1.6 * 0.5, 0.0, -slope * xz, slope * xy);
+            let found = acting(&rows, 1, row, theta);
+            assert!((found - expected).norm() < 1e-8, "{found}, not {expected}");
+        }
+    }
+}

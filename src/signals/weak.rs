@@ -122,6 +122,49 @@ mod tests {
         }
     }
 
+    /// Of `phi` with `H` as half its width the second moment is `H^2 / 11`, the fourth `3 H^4 / 143` (beta functions, by
+    /// hand); a cosine is lowered by `gamma(5.5) (2 / x)^4.5 J_4.5(x)`, x = w H, in every order.
+    /// SciPy: `gamma(5.5) * (2 / x) ** 4.5 * jv(4.5, x)` at x = 4 H and 10 H. Samples in place of the integral leave more
+    /// where the derivative of `phi` bends more at the ends.
+    #[test]
+    fn integrals_with_the_test_function_are_known() {
+        let step = 0.008;
+        let kernel = WeakKernel::new(0.2, step);
+        let h = 26.0 * step;
+        let t = |i: i32| step * f64::from(i - 200);
+        let column = |of: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..=400).map(|i| of(t(i))).collect() };
+        let near = |order: usize, of: &dyn Fn(f64) -> f64, expected: f64| {
+            let found = kernel.at(order, &column(of), 200);
+            let sampled = [2e-7, 1e-5, 5e-5, 1e-3][order];
+            assert!((found / expected - 1.0).abs() < sampled, "order {order}: {found}, not {expected}");
+        };
+        near(0, &|t| t * t, h * h / 11.0);
+        near(0, &|t| t.powi(4), 3.0 * h.powi(4) / 143.0);
+        // 3 t^2 and 12 t^2
+        near(1, &|t| t.powi(3), 3.0 * h * h / 11.0);
+        near(2, &|t| t.powi(4), 12.0 * h * h / 11.0);
+        for (w, lowered) in [(4.0, 0.968_950_925_916_139_2), (10.0, 0.818_945_050_243_385)] {
+            near(0, &|t| (w * t).cos(), lowered);
+            near(1, &|t| (w * t).sin(), w * lowered);
+            near(2, &|t| (w * t).cos(), -w * w * lowered);
+            near(3, &|t| (w * t).sin(), -w * w * w * lowered);
+        }
+    }
+
+    /// White noise of unit variance becomes `step / H` times `beta(1/2, 9) / beta(1/2, 5)^2`, its derivative `step / H^3`
+    /// times `64 beta(3/2, 7) / beta(1/2, 5)^2`.
+    /// SciPy: `beta(.5, 9) / beta(.5, 5) ** 2` and `64 * beta(1.5, 7) / beta(.5, 5) ** 2`
+    #[test]
+    fn noise_that_passes_is_known() {
+        let step = 0.008;
+        let (kernel, h) = (WeakKernel::new(0.2, step), 26.0 * step);
+        let known = [0.907_034_142_328_260_2 * step / h, 4.405_594_405_594_406 * step / h.powi(3)];
+        for (order, expected) in known.into_iter().enumerate() {
+            let found = kernel.noise_gain(order);
+            assert!((found / expected - 1.0).abs() < 1e-5, "order {order}: {found}, not {expected}");
+        }
+    }
+
     #[test]
     fn constants_have_no_derivative() {
         let kernel = WeakKernel::new(0.2, 0.01);

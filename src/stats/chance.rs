@@ -102,4 +102,31 @@ mod tests {
         assert!((joint_chance([0.1, 0.2]) - p * (1.0 - p.ln())).abs() < 1e-9);
         assert_eq!(joint_chance([]), 1.0);
     }
+
+    /// SciPy: `scipy.stats.norm.isf(scipy.stats.chi2.sf(wald, size) / 2)`; beyond where that underflows mpmath, the root z
+    /// of `log(erfc(z / sqrt(2))) - log(gammainc(size / 2, wald / 2, inf, regularized=True))`
+    #[test]
+    fn deviates_are_those_of_the_same_chance() {
+        let known = [
+            (0.5, 4, 0.033_217_705_659_310_68),
+            (4.0, 2, 1.493_389_410_657_259_4),
+            (9.0, 3, 2.179_549_299_204_780_2),
+            (30.0, 6, 4.111_507_277_726_657),
+            (50.0, 2, 6.759_070_886_879_882),
+            (70.0, 2, 8.083_273_181_647_408),
+            (100.0, 3, 9.531_239_772_341_49),
+            (2000.0, 3, 44.551_137_095_970_08),
+            (30_000.0, 6, 173.066_934_448_649_86),
+        ];
+        for (wald, size, z) in known {
+            let found = normal_deviate(wald, size);
+            assert!((found / z - 1.0).abs() < 1e-9, "{wald} {size}: {found}, not {z}");
+        }
+    }
+
+    #[test]
+    fn one_coefficient_has_the_root_and_nothing_has_none() {
+        assert_eq!(normal_deviate(16.0, 1), 4.0);
+        assert_eq!([0.0, -1.0, f64::NAN].map(|wald| normal_deviate(wald, 3)), [0.0; 3]);
+    }
 }

@@ -6,7 +6,7 @@
         JSON: one entry a start, until the time is up. LIMITS: roll, pitch (rad), x, y (m), z_min, z_max (m),
         speed (m/s), yaw_rate (rad/s), period (s), harmonics.
 
-Written from the paper's equations (12), (18), (26), (27) with numeric gradients; shares nothing with the program.
+Exit status 77 where SciPy is missing. Written from the paper's equations (12), (18), (26), (27) with numeric gradients; shares nothing with the program.
 """
 
 import json
@@ -14,9 +14,13 @@ import sys
 import time
 import tomllib
 
-import numpy as np
-from scipy.linalg import null_space
-from scipy.optimize import minimize
+try:
+    import numpy as np
+    from scipy.linalg import null_space
+    from scipy.optimize import minimize
+except ImportError as missing:
+    sys.stderr.write(f"SciPy is missing: {missing}\n")
+    sys.exit(77)
 
 GRAVITY = 9.81
 

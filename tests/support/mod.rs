@@ -1,13 +1,16 @@
 //! What several tests need.
 
-#![allow(dead_code, clippy::print_stderr, clippy::unwrap_used)] // no test uses all of it; a skipped test says so
+#![allow(dead_code, unused_imports, clippy::unwrap_used)] // no test uses all of it
 
-use std::path::PathBuf;
+pub mod require;
+
+use std::path::{Path, PathBuf};
 
 use mavid::log::{Frame, MARKER_V2, TlogReader};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 use mavlink::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, Message};
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
+pub use require::{Needed, skip};
 
 /// A message id that no dialect has.
 pub const UNKNOWN_ID: u32 = 60_001;
@@ -21,18 +24,25 @@ pub fn cases() -> ProptestConfig {
 
 /// The folder of shared recordings; `None`, with a message, where it is not there.
 pub fn shared() -> Option<PathBuf> {
-    let folder = std::env::var_os("MAVID_SHARED")
-        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
-    let found = folder.is_dir();
-    if !found {
-        skip(&format!("no folder of shared recordings at {}", folder.display()));
-    }
-    found.then_some(folder)
+    is_there(shared_path())
 }
 
-/// Says why a test asserts nothing here.
-pub fn skip(why: &str) {
-    eprintln!("skipped: {why}");
+/// A practice case of the shared recordings; `None`, with a message, where it is not there.
+pub fn shared_case(name: &str) -> Option<PathBuf> {
+    is_there(shared_path().join("cases").join(name))
+}
+
+fn shared_path() -> PathBuf {
+    std::env::var_os("MAVID_SHARED")
+        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from)
+}
+
+fn is_there(folder: PathBuf) -> Option<PathBuf> {
+    let found = folder.is_dir();
+    if !found {
+        skip(Needed::Shared, &format!("no shared recordings at {}", folder.display()));
+    }
+    found.then_some(folder)
 }
 
 pub fn header(system_id: u32, sequence: u8) -> MavHeader {
@@ -137,8 +147,9 @@ pub fn frames(records: &[(u64, Vec<u8>)]) -> Vec<Vec<u8>> {
 pub fn frame(bytes: &[u8]) -> Frame<'_> {
     Frame::at_start(bytes).unwrap()
 }
+
 /// All files under a folder with this extension, sorted.
-pub fn files(folder: &std::path::Path, extension: &str) -> Vec<PathBuf> {
+pub fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(folder) = folders.pop() {

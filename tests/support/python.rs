@@ -36,7 +36,7 @@ pub fn ask(script: &str, arguments: &[&str], given: &Value) -> Result<Value, Str
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn();
-    let mut child = child.map_err(|error| format!("no Python: {error}"))?;
+    let mut child = child.map_err(|error| format!("{} does not run: {error}", interpreter().display()))?;
     let mut stdin = child.stdin.take().unwrap();
     // a script that stops early closes its end: its status tells
     let _ = stdin.write_all(given.to_string().as_bytes());
@@ -44,7 +44,7 @@ pub fn ask(script: &str, arguments: &[&str], given: &Value) -> Result<Value, Str
     let output = child.wait_with_output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr).trim().to_owned();
     if output.status.code() == Some(MISSING) {
-        return Err(said);
+        return Err(format!("{said} (looked for by {})", interpreter().display()));
     }
     assert!(output.status.success(), "{script}: {said}");
     Ok(serde_json::from_slice(&output.stdout).unwrap())
