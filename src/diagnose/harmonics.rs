@@ -224,6 +224,7 @@ impl Periodogram<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     const STEP_S: f64 = 0.05;
     /// Four periods of 4 s, after one row that belongs to none.
