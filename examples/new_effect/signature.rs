@@ -1,7 +1,8 @@
 //! How the side force is tried, named and said.
 
 use mavid::diagnose::Need;
-use mavid::diagnose::signature::{Role, Signature, Words};
+use mavid::diagnose::signature::{Role, Signature};
+use mavid::diagnose::wording::Words;
 
 use super::effect::SideForce;
 

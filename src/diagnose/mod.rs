@@ -6,6 +6,7 @@ mod candidates;
 mod channels;
 mod confusable;
 mod drag_location;
+mod effect_term;
 mod empirical;
 mod evidence;
 pub mod experiment;
@@ -39,6 +40,7 @@ pub mod signatures;
 mod spin_up;
 mod tested;
 mod trace;
+pub mod wording;
 mod words;
 
 pub use along::wrench_along;

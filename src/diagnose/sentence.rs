@@ -1,8 +1,9 @@
 //! A named effect in the words of its signature.
 
 use super::named::{DetectionLimit, Named};
-use super::signature::{Clause, Signature, Size};
+use super::signature::Signature;
 use super::signatures::signature_of;
+use super::wording::{Clause, Size};
 use super::words::{norm, plain, range, said};
 use crate::text::{significant, spoken, with_error};
 use crate::vehicle::Vehicle;

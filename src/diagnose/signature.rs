@@ -1,9 +1,9 @@
 //! What the diagnosis knows of an effect beside its equation: one value of [`Signature`] an effect.
 
 use super::channels::Nuisance;
-use super::named::Named;
 use super::recorded::{Need, Recorded};
-use crate::physics::{Effect, Parameter};
+use super::wording::Words;
+use crate::physics::Effect;
 use crate::vehicle::Vehicle;
 
 /// What the diagnosis knows of an effect. Data and small functions; nothing else in the diagnosis, the report or the
@@ -308,90 +308,6 @@ impl Joint {
     pub const PLAIN: Self = Self { forms: None, whence: |_, _, _, _| None, is_irregular: false };
 }
 
-/// An effect as a clause that begins with a capital and ends without a full stop.
-#[derive(Debug, Clone, Copy)]
-pub enum Clause {
-    /// one number and the words about it
-    OneNumber {
-        /// parameter
-        parameter: &'static str,
-        /// brings it to the unit that is said
-        factor: f64,
-        /// words before the number
-        before: &'static str,
-        /// and after it
-        after: &'static str,
-    },
-    /// in its own words
-    Own(fn(&Named, &Vehicle) -> String),
-    /// the effect's sentence with its values
-    Sentence,
-}
-
-/// What a person reads.
-#[derive(Debug, Clone, Copy)]
-pub struct Words {
-    /// how it is called in a list
-    pub noun: &'static str,
-    /// how one that was named is called in a list, where that says more
-    pub noun_of: Option<fn(&Named, &Vehicle) -> String>,
-    /// with its numbers
-    pub clause: Clause,
-    /// the number by which it is known, with its unit
-    pub size: Size,
-    /// the smallest size (in its unit) that would have been named, in words
-    pub limit: Option<fn(f64) -> String>,
-    /// place among the effects that are told first where nothing is missing
-    pub told_if_absent: Option<usize>,
-    /// place among the effects that everybody expects of a vehicle that moves
-    pub expected_in_motion: Option<usize>,
-}
-
-impl Words {
-    /// A noun, the effect's own sentence and its first parameter.
-    #[must_use]
-    pub const fn of(noun: &'static str) -> Self {
-        Self {
-            noun,
-            noun_of: None,
-            clause: Clause::Sentence,
-            size: Size::First,
-            limit: None,
-            told_if_absent: None,
-            expected_in_motion: None,
-        }
-    }
-}
-
-/// The number by which an effect is known.
-#[derive(Debug, Clone, Copy)]
-pub enum Size {
-    /// the first parameter
-    First,
-    /// one for each axis: their common value, or their range
-    Axes,
-    /// norm of all parameters that have a unit, times a factor, with as many digits
-    Norm {
-        /// brings it to the unit that is said
-        factor: f64,
-        /// unit as it is said
-        unit: &'static str,
-        /// significant digits
-        digits: i32,
-    },
-    /// one parameter
-    Of {
-        /// which
-        parameter: &'static str,
-        /// brings it to the unit that is said
-        factor: f64,
-        /// unit as it is said
-        unit: &'static str,
-    },
-    /// in its own words
-    Own(fn(&Named) -> Option<String>),
-}
-
 /// An effect with its values, and which of them are estimated: a term of the model.
 #[derive(Debug, Clone)]
 pub struct EffectTerm {
@@ -401,104 +317,4 @@ pub struct EffectTerm {
     pub values: Vec<f64>,
     /// indices of those that are estimated
     pub free: Vec<usize>,
-}
-
-impl EffectTerm {
-    /// Its equation.
-    #[must_use]
-    pub fn effect(&self) -> &'static dyn Effect {
-        self.signature.effect
-    }
-
-    /// Its identifier.
-    #[must_use]
-    pub fn id(&self) -> &'static str {
-        self.signature.effect.id()
-    }
-
-    /// The same effect.
-    #[must_use]
-    pub fn is(&self, signature: &Signature) -> bool {
-        self.id() == signature.id()
-    }
-
-    /// The parameter of a slot of the values; `None` beyond the last.
-    #[must_use]
-    pub fn parameter(&self, slot: usize) -> Option<&'static Parameter> {
-        self.effect().parameters().iter().chain(self.effect().finer_parameters()).nth(slot)
-    }
-
-    /// The value that physics allows nearest to this.
-    #[must_use]
-    pub fn possible(&self, slot: usize, value: f64) -> f64 {
-        self.parameter(slot).map_or(value, |parameter| value.clamp(parameter.min, parameter.max))
-    }
-
-    /// Whether a parameter says how much of the effect there is; the others say what it is like.
-    #[must_use]
-    pub fn is_amount(&self, slot: usize) -> bool {
-        self.signature.amounts.contains(&slot)
-    }
-
-    /// Value at which a parameter's effect vanishes.
-    #[must_use]
-    pub fn nothing_at(&self, slot: usize) -> f64 {
-        if self.is_amount(slot) { self.signature.nothing } else { 0.0 }
-    }
-
-    /// How far a parameter is from where its effect vanishes, in its unit: what its column has to be multiplied by to
-    /// give the effect.
-    #[must_use]
-    pub fn from_nothing(&self, slot: usize) -> f64 {
-        match self.inverse_usual(slot) {
-            // it divides: nothing lies at infinity, and the distance to it is in the inverse
-            Some(_) => -self.values[slot],
-            None => self.values[slot] - self.nothing_at(slot),
-        }
-    }
-
-    /// The same in standard errors of `std`.
-    #[must_use]
-    pub fn away_from_nothing(&self, slot: usize, std: f64) -> f64 {
-        self.from_nothing(slot) / std.max(f64::MIN_POSITIVE)
-    }
-
-    /// Where a coefficient of the slot's column takes the parameter.
-    pub(super) fn moved_to(&self, slot: usize, by: f64) -> f64 {
-        let from = self.values[slot];
-        match self.inverse_usual(slot).filter(|_| from == self.nothing_at(slot)) {
-            // so much of a usual one's, and the effect goes with the inverse
-            Some(usual) => {
-                let share = by / (usual - from);
-                if share > 0.0 { usual / share } else { from }
-            }
-            None => from + by,
-        }
-    }
-
-    /// By how much a parameter is moved to see what it does.
-    pub(super) fn step_of(&self, slot: usize) -> f64 {
-        let at_nothing = self.values[slot] == self.nothing_at(slot);
-        if let Some(usual) = self.inverse_usual(slot).filter(|_| at_nothing) {
-            // it is taken to a usual one's at once: its slope at nothing leads nowhere
-            return usual - self.values[slot];
-        }
-        let span = self.parameter(slot).map_or(1.0, |parameter| (parameter.max - parameter.min).min(1.0));
-        (1e-4 * span).max(1e-3 * self.values[slot].abs())
-    }
-
-    /// A usual amount where the slot is one that divides.
-    fn inverse_usual(&self, slot: usize) -> Option<f64> {
-        match self.signature.growth {
-            Growth::Inverse { usual } if self.is_amount(slot) => Some(usual),
-            _ => None,
-        }
-    }
-
-    /// Norm of the amounts that are estimated.
-    #[must_use]
-    pub fn size(&self) -> f64 {
-        let amounts = self.free.iter().filter(|slot| self.is_amount(**slot));
-        amounts.map(|&slot| self.values[slot].powi(2)).sum::<f64>().sqrt()
-    }
 }

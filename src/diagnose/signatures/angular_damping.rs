@@ -1,6 +1,7 @@
 //! How damping of the rotation is tried, named and said.
 
-use crate::diagnose::signature::{Clause, Form, Naming, Role, Signature, Size, Words};
+use crate::diagnose::signature::{Form, Naming, Role, Signature};
+use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words::axes;
 use crate::physics::effects::AngularDamping;
 use crate::vehicle::Vehicle;

@@ -1,7 +1,8 @@
 //! How the battery's sag is tried, named and said.
 
 use crate::diagnose::recorded::{Need, Recorded};
-use crate::diagnose::signature::{Clause, EffectTerm, Form, Joint, Role, Signature, Size, Whence, Words};
+use crate::diagnose::signature::{EffectTerm, Form, Joint, Role, Signature, Whence};
+use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words;
 use crate::physics::effects::BatterySag;
 use crate::text::significant;

@@ -1,7 +1,8 @@
 //! How the rotors' hub moment is tried, named and said.
 
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Clause, Role, Signature, Words};
+use crate::diagnose::signature::{Role, Signature};
+use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::BladeFlapping;
 
 /// A moment at the rotors' hubs by the airspeed across their axes.

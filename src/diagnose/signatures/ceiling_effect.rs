@@ -2,9 +2,10 @@
 
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{
-    EffectTerm, GridScale, Growth, Joint, Naming, Refinement, Signature, Whence, Words,
+    EffectTerm, GridScale, Growth, Joint, Naming, Refinement, Signature, Whence,
 };
 use crate::diagnose::trace::Trace;
+use crate::diagnose::wording::Words;
 use crate::physics::Airframe;
 use crate::physics::effects::CeilingEffect;
 

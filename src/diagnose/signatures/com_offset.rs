@@ -1,7 +1,8 @@
 //! How an offset of the centre of mass is tried, named and said.
 
 use crate::diagnose::named::Named;
-use crate::diagnose::signature::{Clause, Naming, Signature, Size, Words};
+use crate::diagnose::signature::{Naming, Signature};
+use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ComOffset;
 use crate::text::{significant, with_error};
 

@@ -2,9 +2,8 @@
 
 use crate::diagnose::channels::Nuisance;
 use crate::diagnose::recorded::{Need, Recorded};
-use crate::diagnose::signature::{
-    EffectTerm, Form, Joint, Naming, Refinement, Role, Signature, Size, Whence, Words,
-};
+use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, Refinement, Role, Signature, Whence};
+use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::FrameMisalignment;
 
 /// Mountings are true to about half a degree, rad.

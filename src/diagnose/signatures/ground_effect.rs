@@ -2,9 +2,8 @@
 
 use crate::diagnose::named::Named;
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{
-    Clause, EffectTerm, Joint, Naming, Refinement, Signature, Size, Whence, Words, first_finer,
-};
+use crate::diagnose::signature::{EffectTerm, Joint, Naming, Refinement, Signature, Whence, first_finer};
+use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words;
 use crate::physics::effects::GroundEffect;
 use crate::text::significant;

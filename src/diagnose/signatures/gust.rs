@@ -1,6 +1,7 @@
 //! How gusts are named and said: they are found in what is left, not by a column.
 
-use crate::diagnose::signature::{Joint, Signature, Size, Words};
+use crate::diagnose::signature::{Joint, Signature};
+use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::Gust;
 
 /// Wind that changes.

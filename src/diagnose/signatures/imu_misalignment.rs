@@ -1,7 +1,8 @@
 //! How an inertial unit that sits askew is tried, named and said.
 
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Naming, Role, Signature, Size, Words};
+use crate::diagnose::signature::{Naming, Role, Signature};
+use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::ImuMisalignment;
 
 /// Mountings are true to about half a degree, rad.

@@ -1,8 +1,9 @@
 //! How an accelerometer away from the centre of mass is tried, named and said.
 
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Naming, Signature, Size, Words};
+use crate::diagnose::signature::{Naming, Signature};
 use crate::diagnose::trace::Trace;
+use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::ImuOffset;
 
 /// No inertial unit sits at the centre of mass to better than this, m.

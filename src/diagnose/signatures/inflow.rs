@@ -1,7 +1,8 @@
 //! How thrust that falls with climb is tried, named and said.
 
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Clause, Joint, Naming, Role, Signature, Words};
+use crate::diagnose::signature::{Joint, Naming, Role, Signature};
+use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::{Inflow, LinearDrag};
 
 use super::angular_damping;

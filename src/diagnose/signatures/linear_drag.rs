@@ -2,7 +2,8 @@
 
 use crate::diagnose::named::Named;
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Clause, Joint, Naming, Role, Signature, Size, Whence, Words};
+use crate::diagnose::signature::{Joint, Naming, Role, Signature, Whence};
+use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words::axes;
 use crate::physics::effects::LinearDrag;
 use crate::text::significant;

@@ -1,9 +1,8 @@
 //! How a change of mass in flight is tried, named and said.
 
 use crate::diagnose::recorded::{Need, Recorded};
-use crate::diagnose::signature::{
-    Clause, EffectTerm, Form, GridScale, Joint, Naming, Refinement, Role, Signature, Size, Words,
-};
+use crate::diagnose::signature::{EffectTerm, Form, GridScale, Joint, Naming, Refinement, Role, Signature};
+use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words;
 use crate::physics::effects::MassChange;
 use crate::text::significant;

@@ -1,7 +1,8 @@
 //! How a lag of the motors is said: it is found with the latency, not by a column.
 
 use crate::diagnose::named::Named;
-use crate::diagnose::signature::{Clause, LatencyKind, Refinement, Role, Signature, Size, Words};
+use crate::diagnose::signature::{LatencyKind, Refinement, Role, Signature};
+use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words;
 use crate::physics::effects::MotorLag;
 

@@ -1,7 +1,8 @@
 //! How drag with the square of the airspeed is tried, named and said.
 
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Clause, Joint, Naming, Role, Signature, Size, Words};
+use crate::diagnose::signature::{Joint, Naming, Role, Signature};
+use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words::axes;
 use crate::physics::effects::QuadraticDrag;
 

@@ -1,6 +1,7 @@
 //! How the rotors' own inertia is tried, named and said.
 
-use crate::diagnose::signature::{Clause, Naming, Role, Signature, Words};
+use crate::diagnose::signature::{Naming, Role, Signature};
+use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::RotorInertia;
 
 /// The rotors' own inertia.

@@ -2,8 +2,9 @@
 
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{
-    Clause, EffectTerm, GridScale, Joint, Naming, Refinement, Role, Signature, Words, first_finer,
+    EffectTerm, GridScale, Joint, Naming, Refinement, Role, Signature, first_finer,
 };
+use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::SlungLoad;
 
 /// Lengths of a load's cord that are tried, m: their periods lie 20 % apart.

@@ -2,7 +2,8 @@
 
 use crate::diagnose::named::Named;
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Carried, Clause, Joint, Role, Signature, Size, Words};
+use crate::diagnose::signature::{Carried, Joint, Role, Signature};
+use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words::{from_deg, point_of};
 use crate::physics::effects::SteadyWind;
 use crate::text::{significant, with_error};

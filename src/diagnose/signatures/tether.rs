@@ -1,7 +1,8 @@
 //! How a tether is tried, named and said.
 
 use crate::diagnose::recorded::{Need, Recorded};
-use crate::diagnose::signature::{Clause, EffectTerm, Joint, Naming, Signature, Whence, Words};
+use crate::diagnose::signature::{EffectTerm, Joint, Naming, Signature, Whence};
+use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::Tether;
 
 /// A length that no flight reaches, m.

@@ -1,6 +1,7 @@
 //! How a bent thrust curve is tried, named and said.
 
-use crate::diagnose::signature::{Clause, Joint, Naming, Signature, Size, Words};
+use crate::diagnose::signature::{Joint, Naming, Signature};
+use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ThrustCurve;
 
 /// No thrust curve is known to better than this (-).

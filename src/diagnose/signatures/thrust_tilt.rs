@@ -1,7 +1,8 @@
 //! How a leaning thrust axis is tried, named and said.
 
 use crate::diagnose::channels::Nuisance;
-use crate::diagnose::signature::{Clause, Form, Naming, Role, Signature, Size, Words};
+use crate::diagnose::signature::{Form, Naming, Role, Signature};
+use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ThrustTilt;
 
 /// Mountings are true to about half a degree, rad.

@@ -1,7 +1,8 @@
 //! How translational lift is tried, named and said.
 
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Clause, Naming, Role, Signature, Words};
+use crate::diagnose::signature::{Naming, Role, Signature};
+use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::TranslationalLift;
 
 /// Thrust that grows with the airspeed across the rotor axis.

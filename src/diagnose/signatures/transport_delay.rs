@@ -1,6 +1,7 @@
 //! How a delay of the commands is said: it is found with the latency, not by a column.
 
-use crate::diagnose::signature::{Clause, LatencyKind, Role, Signature, Size, Words};
+use crate::diagnose::signature::{LatencyKind, Role, Signature};
+use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::TransportDelay;
 
 /// Commands that act later than they were sent.

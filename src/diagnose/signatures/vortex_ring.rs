@@ -1,7 +1,8 @@
 //! How the vortex ring state is tried, named and said.
 
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Clause, Role, Signature, Words};
+use crate::diagnose::signature::{Role, Signature};
+use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::VortexRing;
 
 /// Loss of thrust in a descent into the own wake.

@@ -2,9 +2,8 @@
 
 use crate::diagnose::named::Named;
 use crate::diagnose::recorded::Recorded;
-use crate::diagnose::signature::{
-    Clause, EffectTerm, Form, Joint, Naming, Role, Signature, Size, Whence, Words,
-};
+use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, Role, Signature, Whence};
+use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words;
 use crate::physics::effects::WeakRotor;
 use crate::text::{significant, with_error};

@@ -3,8 +3,8 @@
 use super::located::Located;
 use super::prediction::{Predicted, ShownOn};
 use super::story::Story;
-use crate::diagnose::signature::Words;
 use crate::diagnose::signatures::ALL;
+use crate::diagnose::wording::Words;
 use crate::diagnose::{Along, DetectionLimit, Named, Verdict, brief, called, clause, limit};
 use crate::report::number::significant;
 use std::fmt::Write;
