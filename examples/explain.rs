@@ -1,5 +1,7 @@
 //! Explains a log and prints the effects that the model lacks: `cargo run --release --example explain`.
 
+#![allow(clippy::print_stdout, reason = "an example prints its result")]
+
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;

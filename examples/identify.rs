@@ -1,5 +1,7 @@
 //! Reads a log and identifies mass and inertia: `cargo run --release --example identify`.
 
+#![allow(clippy::print_stdout, reason = "an example prints its result")]
+
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;

@@ -4,6 +4,8 @@
 //! Inside of the library the two files stand in `src/physics/effects` and `src/diagnose/signatures`, and the two lines
 //! in the lists of these folders.
 
+#![allow(clippy::print_stdout, reason = "an example prints its result")]
+
 mod effect;
 mod signature;
 

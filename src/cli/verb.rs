@@ -47,7 +47,7 @@ pub enum Verb {
     Record(RecordArgs),
     /// Play a recorded flight back as live traffic; nothing is commanded
     Replay(ReplayArgs),
-    /// Say where simulation and recording differ and which physics was left out
+    /// Locate the mismatch between model and recording and name the missing physical effects
     Explain(ExplainArgs),
     /// Write a model for another simulator
     Export(ExportArgs),

@@ -84,7 +84,7 @@ fn story(
     let (limits, trajectory) = (folder.join("limits.toml"), folder.join("trajectory.toml"));
     output::file(&vehicle, DEFAULT_VEHICLE)?;
     output::file(&limits, LIMITS)?;
-    progress.stage("planning a flight that teaches much", 0);
+    progress.stage("planning the identification trajectory", 0);
     plan::make(&plan_args(&vehicle, limits, &trajectory))?;
     let embedded = Embedded::start(args.effects.clone())?;
     let port = embedded.port;
