@@ -8,7 +8,7 @@
 mod support;
 
 use mavid::diagnose::ExplainSettings;
-use mavid::diagnose::together::{Found, Together, TogetherError, Wanted, together};
+use mavid::diagnose::joint::{Found, JointError, JointEstimate, RequestedEffects, identify_jointly};
 use mavid::physics::ActiveEffect;
 use mavid::signals::{ConditionSettings, ThrustPreference, condition};
 use mavid::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight};
@@ -91,7 +91,7 @@ struct How {
 }
 
 fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), how: How) {
-    let found: Vec<(u64, Result<Together, TogetherError>, Vec<ActiveEffect>)> =
+    let found: Vec<(u64, Result<JointEstimate, JointError>, Vec<ActiveEffect>)> =
         (first..first + each).into_par_iter().filter_map(|seed| fly(seed, how, set)).collect();
     let mut tally = Tally { least: f64::INFINITY, ..Tally::default() };
     for (seed, together, truth) in &found {
@@ -124,7 +124,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, seed: u64, together: &Together, truth: &[ActiveEffect], show: bool) {
+    fn add(&mut self, seed: u64, together: &JointEstimate, truth: &[ActiveEffect], show: bool) {
         for (effect, truth) in together.effects.iter().zip(truth) {
             self.least = self.least.min(effect.z);
             let id = effect.effect.id();
@@ -164,7 +164,7 @@ fn fly(
     seed: u64,
     how: How,
     set: &'static [Sizes],
-) -> Option<(u64, Result<Together, TogetherError>, Vec<ActiveEffect>)> {
+) -> Option<(u64, Result<JointEstimate, JointError>, Vec<ActiveEffect>)> {
     let pair = random_vehicle(seed.wrapping_mul(7919));
     let effects: Vec<ActiveEffect> = set.iter().map(|sizes| sized(sizes, &pair.truth)).collect();
     let has = |id: &str| set.iter().any(|(other, _)| *other == id);
@@ -196,7 +196,7 @@ fn fly(
     let truth = Truth { vehicle: pair.truth, effects: effects.clone(), disturbance: None };
     let flight = simulate_flight(truth, &nominal, &reference, &settings).ok()?;
     let names: Vec<String> = set.iter().map(|(id, _)| (*id).to_owned()).collect();
-    let wanted = Wanted::of(&names).expect("known effects");
+    let wanted = RequestedEffects::of(&names).expect("known effects");
     let conditions = ConditionSettings {
         transient_s: Some(1.0),
         thrust: if wanted.need_commands() { ThrustPreference::Commands } else { ThrustPreference::Measured },
@@ -205,7 +205,7 @@ fn fly(
     };
     let signals = condition(&flight.recording, &nominal, &conditions).ok()?;
     let half_width_s = ExplainSettings::default().half_width_s;
-    Some((seed, together(&[signals], (&nominal, &[]), &wanted, half_width_s), effects))
+    Some((seed, identify_jointly(&[signals], (&nominal, &[]), &wanted, half_width_s), effects))
 }
 
 fn sized((id, values): &Sizes, vehicle: &Vehicle) -> ActiveEffect {

@@ -36,6 +36,7 @@ pub mod report;
 pub mod signals;
 pub mod simulate;
 pub mod sitl;
+pub mod stats;
 pub mod text;
 pub mod trajectory;
 pub mod units;

@@ -82,12 +82,12 @@ fn help_and_version_succeed() {
     assert_eq!(stdout(&version), format!("mavid {}\n", env!("CARGO_PKG_VERSION")));
 }
 
-/// The README shows what the program prints (the demo's flight is in real time, and no two are the same to the last digit).
+/// The book shows what the program prints (the demo's flight is in real time, and no two are the same to the last digit).
 #[test]
-fn the_readmes_example_is_what_is_printed() {
+fn the_books_example_is_what_is_printed() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
-    let example = &readme[readme.find("cargo run --release -- identify").unwrap()..];
+    let chapter = std::fs::read_to_string(root.join("docs/src/log.md")).unwrap();
+    let example = &chapter[chapter.find("cargo run --release -- identify").unwrap()..];
     let command = example.lines().next().unwrap().trim_start_matches("cargo run --release -- ");
     let shown = example.split("```text\n").nth(1).unwrap().split("```").next().unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_mavid"))

@@ -2,11 +2,11 @@
 
 #![allow(clippy::panic, clippy::unwrap_used, reason = "a test ends where it fails")]
 
-use mavid::diagnose::next::{NextError, NextFlight, NextSettings, design, told_apart};
-use mavid::diagnose::refit::{RefitSettings, refit};
-use mavid::diagnose::show::{
-    HeldOut, ShowError, ShowSettings, Shown, differing, on_holdout, split_last_periods,
+use mavid::diagnose::experiment::{NextError, NextFlight, NextSettings, design, told_apart};
+use mavid::diagnose::holdout::{
+    HeldOut, HoldoutError, HoldoutFit, HoldoutSettings, differing, on_holdout, split_last_periods,
 };
+use mavid::diagnose::refit::{RefitSettings, refit};
 use mavid::diagnose::{Along, Empirical, ExplainSettings, Explanation, Verdict, explain};
 use mavid::log::{Quantity, Recording};
 use mavid::physics::effects::by_id;
@@ -62,9 +62,9 @@ fn explained(vehicles: &VehiclePair, effects: Vec<ActiveEffect>) -> (Explanation
     (found, flight.1)
 }
 
-fn shown(explanation: &Explanation, nominal: &Vehicle, flight: &(Recording, Signals)) -> Shown {
+fn shown(explanation: &Explanation, nominal: &Vehicle, flight: &(Recording, Signals)) -> HoldoutFit {
     let held = HeldOut { name: "holdout", signals: &flight.1, recording: Some(&flight.0) };
-    on_holdout((explanation, None), &[held], nominal, &ShowSettings::default()).unwrap()
+    on_holdout((explanation, None), &[held], nominal, &HoldoutSettings::default()).unwrap()
 }
 
 #[test]
@@ -128,7 +128,7 @@ fn flights_of_two_vehicles_are_told_from_two_of_one() {
         let named = ["one", "two"].into_iter().zip(flights);
         let held: Vec<HeldOut> =
             named.map(|(name, flight)| HeldOut { name, signals: &flight.1, recording: None }).collect();
-        differing(&found, &held, &vehicles.nominal, &ShowSettings::default()).unwrap()
+        differing(&found, &held, &vehicles.nominal, &HoldoutSettings::default()).unwrap()
     };
     assert_eq!(said([&first, &second]), None);
     let why = said([&first, &other]).unwrap();
@@ -187,7 +187,7 @@ fn nothing_missing_changes_nothing_and_no_flight_is_refused() {
     let first = split.holdout.usable.iter().position(|usable| *usable).unwrap();
     assert!(last(&split.identify) < first && last(&split.holdout) == last(&flight));
     let held = HeldOut { name: "end", signals: &split.holdout, recording: None };
-    let settings = ShowSettings { same_flight: true, ..ShowSettings::default() };
+    let settings = HoldoutSettings { same_flight: true, ..HoldoutSettings::default() };
     let shown = on_holdout((&found, None), &[held], &vehicles.nominal, &settings).unwrap();
     assert_eq!(shown.improvement_percent.unwrap().value, 0.0);
     assert_eq!(shown.other_vehicle, None);
@@ -195,9 +195,9 @@ fn nothing_missing_changes_nothing_and_no_flight_is_refused() {
     nothing.usable.fill(false);
     let held = HeldOut { name: "ground", signals: &nothing, recording: None };
     let refused = on_holdout((&found, None), &[held], &vehicles.nominal, &settings);
-    assert!(matches!(refused, Err(ShowError::TooShort { .. })));
+    assert!(matches!(refused, Err(HoldoutError::TooShort { .. })));
     let refused = on_holdout((&found, None), &[], &vehicles.nominal, &settings);
-    assert!(matches!(refused, Err(ShowError::NoFlight)));
+    assert!(matches!(refused, Err(HoldoutError::NoFlight)));
     let next = design(&found, &[flight], &vehicles.nominal, &NextSettings::default());
     assert!(matches!(next, Err(NextError::NothingToTell)));
 }
@@ -238,7 +238,7 @@ fn a_force_fixed_in_the_room_is_predicted_without_a_name() {
     let holdout = flown(both, (Vec::new(), field()), trajectory(6), (2, 34.0));
     let held = HeldOut { name: "holdout", signals: &holdout.1, recording: Some(&holdout.0) };
     let shown =
-        on_holdout((&found, Some(&term)), &[held], &vehicles.nominal, &ShowSettings::default()).unwrap();
+        on_holdout((&found, Some(&term)), &[held], &vehicles.nominal, &HoldoutSettings::default()).unwrap();
     assert!(shown.improvement_percent.unwrap().range.unwrap().0 > 0.0, "{:?}", shown.improvement_percent);
     assert!(shown.closed_loop.is_err());
 }

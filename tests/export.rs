@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
-use mavid::export::{Format, export};
+use mavid::export::{Format, PLACES, export, places};
 use mavid::physics::ActiveEffect;
-use mavid::physics::effects::by_id;
+use mavid::physics::effects::{ALL, by_id};
 use mavid::units::AIR_DENSITY_KG_M3;
 use mavid::vehicle::{ThrustLaw, Vehicle};
 
@@ -144,4 +144,26 @@ fn what_a_simulator_cannot_be_is_said() {
     vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 10.0, expo: 0.5 };
     let error = export(&vehicle, &[], Format::Rotorpy).unwrap_err();
     assert!(error.to_string().contains("thrust_coefficient"), "{error}");
+}
+
+/// What the table says of each effect and simulator is what the exporters do.
+#[test]
+fn every_effect_stands_in_the_table_of_what_simulators_can_hold() {
+    let mut wrong = Vec::new();
+    for effect in ALL {
+        let id = effect.id();
+        let Some(places) = places(id) else { panic!("{id}: expected an entry in export/places.rs") };
+        let values: Vec<f64> = effect.parameters().iter().map(|p| 0.01_f64.clamp(p.min, p.max)).collect();
+        let active = [ActiveEffect::new(*effect, &values).unwrap()];
+        for format in [Format::Px4Sih, Format::ArdupilotSitl, Format::Sdf, Format::Mjcf, Format::Rotorpy] {
+            let exported = export(&vehicle(), &active, format).unwrap();
+            let has_place =
+                !exported.left_out.iter().any(|note| note.starts_with(&format!("{id} has no place")));
+            if has_place != places.contains(&format) {
+                wrong.push(format!("{id} in {format:?}: has a place: {has_place}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert_eq!(PLACES.len(), ALL.len());
 }

@@ -5,7 +5,7 @@
 
 use std::time::Duration;
 
-use mavid::fly::parameters::{Download, DownloadSettings, Purpose, Wanted, wanted};
+use mavid::fly::parameters::{Download, DownloadSettings, Purpose, RequestedEffects, wanted};
 use mavid::fly::preflight::FenceDownload;
 use mavid::fly::requests::{Capacity, LinkKind, Need, RequestSettings, Requests, StreamRequest};
 use mavid::fly::{MessageId, Mode, Order, ParameterName, Period, Setpoint, Stack, Target, heartbeat};
@@ -168,7 +168,7 @@ proptest! {
         };
         let capacity = Capacity::new(LinkKind::Wide, Autopilot::Px4);
         let mut requests = Requests::new(vehicle, vec![request], capacity, RequestSettings::default());
-        let asked = Wanted { names: vec![name], purpose: Purpose::Limit };
+        let asked = RequestedEffects { names: vec![name], purpose: Purpose::Limit };
         let mut download = Download::new(vehicle, vec![asked], DownloadSettings::default());
         let mut fence = FenceDownload::new(vehicle);
         for message in [requests.poll(now), download.poll(now), fence.poll(now)].into_iter().flatten() {

@@ -1,6 +1,6 @@
 //! Frames told from the bytes of a link.
 
-use mavid::log::{Check, SplitCounts, Splitter, Version};
+use mavid::log::{Check, Frame, SplitCounts, Splitter, Version};
 
 use super::bytes::Bytes;
 use super::frames::{From, SEEDS, UNKNOWN_ID, VEHICLE, frame, signed, v1, v2};
@@ -118,11 +118,29 @@ fn whole_frames(mut script: Bytes<'_>, seeded: bool) {
         sent.push(scripted(&mut script, true));
     }
     let bytes: Vec<u8> = sent.iter().flat_map(|(bytes, _)| bytes.iter().copied()).collect();
+    if runs_across_by_chance(&bytes, &sent) {
+        return;
+    }
     let given = split(&bytes, piece, seeded);
     let sound: Vec<&Vec<u8>> =
         sent.iter().filter(|(_, fate)| *fate == Fate::Sound).map(|(bytes, _)| bytes).collect();
     assert!(given.frames.iter().eq(sound.iter().copied()), "sent {sound:02x?}, given {:02x?}", given.frames);
     assert_eq!(given.counts.bad_crc, (sent.len() - sound.len()) as u64);
+}
+
+/// A frame with a right checksum begins inside of a sent one and ends behind it: no sender made it, and among
+/// 65 536 places that look like a header one has such a checksum. Nothing tells it from a frame behind noise.
+fn runs_across_by_chance(bytes: &[u8], sent: &[(Vec<u8>, Fate)]) -> bool {
+    let mut start = 0;
+    sent.iter().any(|(frame, _)| {
+        let end = start + frame.len();
+        let across = (start + 1..end).any(|at| {
+            Frame::at_start(&bytes[at..])
+                .is_some_and(|inside| at + inside.bytes().len() > end && inside.check(&SEEDS) == Check::Right)
+        });
+        start = end;
+        across
+    })
 }
 
 /// Noise, whatever it looks like, costs none of the frames behind it (rust-mavlink#508, the other way).

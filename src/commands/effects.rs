@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use mavid::config::{parse_effect_tables, read_effect_tables};
+use mavid::diagnose::signatures::signature_of;
 use mavid::physics::effects::MotorLag;
 use mavid::physics::{ActiveEffect, Effect};
 use mavid::text;
@@ -29,9 +30,10 @@ fn each_once(all: &[ActiveEffect]) -> Result<(), CommandError> {
     for (index, active) in all.iter().enumerate() {
         let id = active.effect().id();
         // each rotor may be weak in its own way
+        let which = signature_of(id).and_then(|signature| signature.role.which);
         let again = |other: &&ActiveEffect| {
             other.effect().id() == id
-                && (id != "weak_rotor" || other.parameters()[0] == active.parameters()[0])
+                && which.is_none_or(|slot| other.parameters()[slot] == active.parameters()[slot])
         };
         if all[..index].iter().any(|other| again(&other)) {
             return Err(CommandError::Input(format!(

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use mavid::config::{StoredTrajectory, read_vehicle, trajectory_to_toml};
-use mavid::diagnose::next::{NextFlight, NextSettings, design};
-use mavid::diagnose::show::{HeldOut, ShowSettings, Split, differing, split_last_periods};
+use mavid::diagnose::experiment::{NextFlight, NextSettings, design};
+use mavid::diagnose::holdout::{HeldOut, HoldoutSettings, Split, differing, split_last_periods};
 use mavid::diagnose::{Empirical, ExplainSettings, Named, Trace, Verdict, explain};
 use mavid::log::Recording;
 use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page};
@@ -17,6 +17,8 @@ use rayon::prelude::*;
 use super::effects::effects;
 use super::flights::{EXPLAINED, Flight, is_csv, load, ready, refuse_twins, shared};
 use super::{CommandError, Outcome, output};
+use mavid::diagnose::signatures::signature_of;
+
 use crate::cli::ExplainArgs;
 
 /// How a note begins that is more than a remark.
@@ -25,8 +27,6 @@ const DOUBT: &str = "warning: ";
 const SATURATED: f64 = 0.3;
 /// A file is wrong by less than this in mass.
 const MASS_FACTOR: f64 = 1.6;
-/// What happens once in a flight.
-const MASS_CHANGE: &str = "mass_change";
 /// What a recording without velocity cannot tell.
 const NO_VELOCITY: &str = "no velocity (LOCAL_POSITION_NED or similar), or no attitude, is recorded: drag, wind and other effects of the air \
                            cannot be tried, and what is named may stand for what they do to the rotation";
@@ -109,7 +109,11 @@ impl Explained {
             let reason = "something changes in what would be held back, so the whole flight is explained; give another with --holdout";
             let shown_on = ShownOn::Nothing { reason: reason.to_owned() };
             let all = told(args, (&vehicle, &warnings), &flights, (&[], None, shown_on))?;
-            let changes = |story: &Story| story.effects.iter().any(|named| named.id == MASS_CHANGE);
+            let changes = |story: &Story| {
+                story.effects.iter().any(|named| {
+                    signature_of(named.id).is_some_and(|signature| signature.role.moment.is_some())
+                })
+            };
             if changes(&all) && !changes(&story) {
                 story = all;
             } else if let Some(last) = flights.last_mut() {
@@ -341,7 +345,7 @@ fn show(story: &mut Story, flights: &[Flown], (held, back): (&[Flown], Option<&S
         story.given.warnings.push(format!("open-loop prediction: {error}"));
     }
     if let [_, _, ..] = used.as_slice() {
-        let settings = ShowSettings::default();
+        let settings = HoldoutSettings::default();
         match differing(&story.explanation, &used, &story.given.vehicle, &settings) {
             Ok(why) => story.given.warnings.extend(why),
             Err(error) => {

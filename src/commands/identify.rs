@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use mavid::config::{LoadedVehicle, read_vehicle};
 use mavid::diagnose::ExplainSettings;
-use mavid::diagnose::together::{Wanted, together};
+use mavid::diagnose::joint::{RequestedEffects, identify_jointly};
 use mavid::estimate::{Identification, IdentifySettings, PAPER_SIGMA, ThrustScale, apply_anchor, identify};
 use mavid::report::{
     IdentificationDocument, IdentificationStory, InputFile, WithEffects, history_charts, identification_page,
@@ -165,11 +165,13 @@ fn settings(args: &IdentifyArgs) -> Result<IdentifySettings, CommandError> {
 }
 
 /// The effects that were asked for; `None` without any.
-fn wanted(args: &IdentifyArgs) -> Result<Option<Wanted>, CommandError> {
+fn wanted(args: &IdentifyArgs) -> Result<Option<RequestedEffects>, CommandError> {
     if args.with.is_empty() {
         return Ok(None);
     }
-    Wanted::of(&args.with).map(Some).map_err(|error| CommandError::Input(format!("--with: {error}")))
+    RequestedEffects::of(&args.with)
+        .map(Some)
+        .map_err(|error| CommandError::Input(format!("--with: {error}")))
 }
 
 /// Loads the flights of every log, side by side; the same file twice is refused.
@@ -211,7 +213,7 @@ const TRANSIENT_S: f64 = 1.0;
 fn with_effects(
     args: &IdentifyArgs,
     (recorded, loaded): (&[Vec<Flight>], &LoadedVehicle),
-    wanted: &Wanted,
+    wanted: &RequestedEffects,
 ) -> Result<WithEffects, CommandError> {
     let vehicle = &loaded.vehicle;
     let known = effects(&loaded.model.effects, &text::path(&args.vehicle), vehicle)?;
@@ -220,7 +222,7 @@ fn with_effects(
     let settings = ConditionSettings {
         transient_s: Some(args.transient.unwrap_or(TRANSIENT_S)),
         thrust: if by_commands { ThrustPreference::Commands } else { ThrustPreference::Measured },
-        askew: wanted.has("imu_misalignment"),
+        askew: wanted.turns_inertial_unit(),
         ..ConditionSettings::default()
     };
     let mut flights = Vec::new();
@@ -233,7 +235,7 @@ fn with_effects(
         flights.extend(usable.into_iter().flatten());
     }
     let half_width_s = ExplainSettings::default().half_width_s;
-    let together = together(&flights, (vehicle, &known), wanted, half_width_s).map_err(|error| {
+    let together = identify_jointly(&flights, (vehicle, &known), wanted, half_width_s).map_err(|error| {
         let logs: Vec<String> = args.logs.iter().map(|log| text::path(&log)).collect();
         CommandError::Input(format!("{}: {error}", logs.join(", ")))
     })?;

@@ -30,6 +30,19 @@ pub fn message(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", text::clean(text));
 }
 
+impl CommandError {
+    /// Says it on standard error, unless that was done, and gives the exit status.
+    pub fn report(&self) -> u8 {
+        let status = match self {
+            Self::Input(_) => 2,
+            Self::Failure(_) => 1,
+            Self::Told(status) => return *status,
+        };
+        message(&format!("mavid: {self}"));
+        status
+    }
+}
+
 /// What is hardly meant in a file.
 pub fn warnings(of: &Path, warnings: &[String]) {
     for warning in warnings {

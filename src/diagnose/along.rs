@@ -1,7 +1,7 @@
 //! Force and torque of a model along a flight that was flown: recorded states, known rotor thrusts.
 
 use super::base::Base;
-use super::rotors::Turning;
+use super::rotors::RotorMotion;
 use super::spin_up::SpinUp;
 use super::trace::Trace;
 use crate::physics::{Input, Model, Wrench};
@@ -21,7 +21,7 @@ const ORDER: usize = 4;
 /// along. What hangs on the vehicle is swung by the motion that was measured, not by what the model makes of it, which
 /// would lose step with it. Instants that no row uses are left zero, unless states run through them.
 #[must_use]
-pub fn wrench_along(model: &Model, trace: &Trace, turning: &Turning) -> Vec<Wrench> {
+pub fn wrench_along(model: &Model, trace: &Trace, turning: &RotorMotion) -> Vec<Wrench> {
     let count = model.own_state_count();
     let (mut states, mut rates) = (vec![0.0; count], vec![0.0; count]);
     // newest first
@@ -67,15 +67,15 @@ const MOTION_PASSES: usize = 2;
 pub(super) fn moved_by(
     trace: &Trace,
     (base, model): (&Base, &Model),
-    commanded: &Turning,
-) -> (Turning, Vec<Wrench>) {
+    commanded: &RotorMotion,
+) -> (RotorMotion, Vec<Wrench>) {
     let airframe = &model.airframe;
     let spin_up = SpinUp::of(base, airframe);
     let (mass_kg, inertia) = (base.vehicle.body.mass_kg, base.vehicle.body.inertia_kg_m2);
     let (mut motion, mut by_motion, mut beyond) = (commanded.clone(), Vec::new(), None);
     for _ in 0..MOTION_PASSES {
         let thrusts = trace.by_motion(&base.vehicle, (mass_kg, &inertia), commanded, beyond.as_deref());
-        motion = Turning::new(thrusts, airframe, trace.grid.step_s);
+        motion = RotorMotion::new(thrusts, airframe, trace.grid.step_s);
         by_motion = wrench_along(model, trace, &motion);
         if base.present.is_empty() {
             break;

@@ -4,8 +4,8 @@ use super::base::Base;
 use super::candidates::Candidate;
 use super::channels::CHANNELS;
 use super::evidence::Weighted;
-use super::explanation::Confusable;
 use super::fit::Fitted;
+use super::named::Confusable;
 use super::rows::Rows;
 use super::tested::Tested;
 use super::trace::Trace;
@@ -85,7 +85,7 @@ impl Signal {
         for (index, &slot) in amounts {
             sum += partialled.column(index) * effect.from_nothing(slot);
         }
-        Some(Self { id: effect.effect.id(), weighted, sum })
+        Some(Self { id: effect.id(), weighted, sum })
     }
 
     /// How far the effect stands out, in standard deviations of rows that are independent.
@@ -115,7 +115,7 @@ impl Signal {
                     rows.columns_through(flights, &with_unit, part)
                 }
                 // and what is named already is not its own rival
-                Some(_) if part.effect.id() == self.id => continue,
+                Some(_) if part.id() == self.id => continue,
                 _ => rows.columns_of(flights, base, part),
             };
             columns.extend(found.into_iter().flatten());

@@ -5,9 +5,8 @@
 //! explains enlarges it, so the evidence turns cautious where the model is wrong.
 
 use super::channels::{CHANNELS, Channels};
-use super::cluster::chance_by_stretches;
-use super::deviate::normal_deviate;
 use super::rows::Rows;
+use crate::stats::{chance_by_stretches, normal_deviate};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 use std::ops::Range;

@@ -1,39 +1,43 @@
 //! The whole method: search, lack of fit, verdict.
 
-use super::base::{Base, Present};
+use super::base::Base;
 use super::channels::{AXES, CHANNELS};
 use super::confusable::confusable_with;
-use super::deviate::normal_deviate;
 use super::evidence::LEAST_ROWS;
-use super::explanation::{Confusable, Explanation, Named, NamedParameter, Strength, Verdict};
+use super::explanation::{Explanation, Verdict};
 use super::fit::{Fitted, Newton, fit};
-use super::gates::{Gates, WEAKEST_CEILING, ordinary_size};
+use super::gates::Gates;
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
 use super::latency_name::latency_name;
-use super::limits::{COM_NUISANCE_M, is_beyond_showing, limits, too_little_excitation};
+use super::limits::{is_beyond_showing, limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
+use super::named::{Confusable, Named, NamedParameter, Strength};
 use super::search::search;
+use super::signature::{EffectTerm, Signature};
+use super::signatures::{ALL, GUST};
 use super::tested::{Search, Step, Tested};
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
-use crate::physics::effects::by_id;
 use crate::signals::Signals;
+use crate::stats::normal_deviate;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
 /// How a recording is explained.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct ExplainSettings {
     /// s, half width of the weak form's test function
     pub half_width_s: f64,
     /// what is asked of a name
     pub gates: Gates,
+    /// effects that are tried; an effect from outside of this library stands beside [`ALL`]
+    pub signatures: &'static [&'static Signature],
 }
 
 impl Default for ExplainSettings {
     fn default() -> Self {
-        Self { half_width_s: 0.2, gates: Gates::default() }
+        Self { half_width_s: 0.2, gates: Gates::default(), signatures: ALL }
     }
 }
 
@@ -63,10 +67,6 @@ const LACK_P: f64 = 1e-6;
 /// and it must be larger than this in force (of gravity) or torque (of the torque's own rms).
 const LACK_FORCE_G: f64 = 0.002;
 const LACK_TORQUE: f64 = 0.1;
-/// No line that holds anything weighs less, kg/m.
-const LEAST_LINE_KG_M: f64 = 0.005;
-/// Rotors of one vehicle differ by as much.
-const SCATTER: f64 = 0.08;
 /// Rivals that explain nearly as much as what was taken.
 const RIVAL: f64 = 0.93;
 
@@ -86,7 +86,7 @@ pub fn explain(
         let (seconds, needed_s) = (rows as f64 * 0.05, LEAST_ROWS as f64 * 0.05);
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
-    let mut found = search(&traces, vehicle, &settings.gates)?;
+    let mut found = search(&traces, vehicle, &settings.gates, settings.signatures)?;
     leave_out_ordinary(&traces, &mut found)?;
     let beyond = beyond(&traces, &found);
     Ok(judge(&traces, vehicle, found, beyond))
@@ -215,7 +215,7 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
 
 /// Gusts have no signature of their own in the search: their size and time are those of the residual.
 fn gust_name(gust: &GustFound) -> Option<Named> {
-    let effect = by_id("gust")?;
+    let effect = GUST.effect;
     let values = [(gust.sigma_m_s, gust.sigma_std_m_s), (gust.correlation_s, gust.correlation_std_s)];
     let parameters = effect.parameters().iter().zip(values);
     let parameters = parameters
@@ -228,7 +228,13 @@ fn gust_name(gust: &GustFound) -> Option<Named> {
         .collect();
     let z = gust.statistic.max(0.0).sqrt();
     let strength = Strength { z, gain: 0.0, energy: gust.statistic, count: 2 };
-    Some(Named { id: "gust", sentence: effect.sentence(), parameters, strength, confusable_with: Vec::new() })
+    Some(Named {
+        id: effect.id(),
+        sentence: effect.sentence(),
+        parameters,
+        strength,
+        confusable_with: Vec::new(),
+    })
 }
 
 /// Energy that the accepted effects took away, in sigma squared of the final residual.
@@ -240,12 +246,6 @@ fn explained_energy(found: &Search) -> f64 {
         .map(|channel| rows * ((before.sigma[channel] / after.sigma[channel]).powi(2) - 1.0))
         .sum()
 }
-
-/// What noise leaves uncertain by a hundredth of a percent,
-const WEAK_ROTOR: &str = "weak_rotor";
-/// is known to this of its thrust (-) where a rotor is sampled 100 times a second and flies on between: flights of the
-/// embedded vehicle are off by 0.09 to 0.10 %, all on the same side.
-const BETWEEN_SAMPLES: f64 = 0.001;
 
 /// One name an accepted effect.
 fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
@@ -264,19 +264,20 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
             } else {
                 0.0
             };
-            let unseen = free && present.effect.id() == WEAK_ROTOR && present.is_amount(slot);
-            let std = if unseen { std.hypot(BETWEEN_SAMPLES) } else { std };
-            if free || says_its_form(present, slot) {
+            let is_amount = free && present.is_amount(slot);
+            let std = if is_amount { std.hypot(present.signature.naming.least_std) } else { std };
+            if free || (present.signature.naming.says)(present, slot) {
                 let value = present.values[slot];
                 parameters.push(NamedParameter { name: parameter.name, value, std, unit: parameter.unit });
             }
         }
-        let step = found.steps.iter().find(|step| {
-            step.taken.candidate.parts.iter().any(|part| part.effect.id() == present.effect.id())
-        });
+        let step = found
+            .steps
+            .iter()
+            .find(|step| step.taken.candidate.parts.iter().any(|part| part.is(present.signature)));
         out.push(Named {
-            id: present.effect.id(),
-            sentence: present.effect.sentence(),
+            id: present.id(),
+            sentence: present.effect().sentence(),
             parameters,
             strength: step.map_or_else(|| fitted_strength(fitted, present, first), strength),
             confusable_with: step.map_or_else(Vec::new, |step| confusable(traces, found, place, step)),
@@ -285,40 +286,20 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
     out
 }
 
-/// Whether a parameter that is held belongs to what is said.
-fn says_its_form(present: &Present, slot: usize) -> bool {
-    match present.effect.id() {
-        // its decay says nothing where its form has none
-        "ground_effect" if slot == 2 => present.values[1] != 0.0,
-        // whether the attitude is turned as well
-        "frame_misalignment" => slot == 3 || present.values[slot] != 0.0,
-        _ => present.values[slot] != 0.0,
-    }
-}
-
 /// What every vehicle has a little of, or what is too small to be what the effect is called: it stays in the
 /// model and gets no name.
-fn is_ordinary(present: &Present, base: &Base) -> bool {
-    let size = |slots: &[usize]| slots.iter().map(|&slot| present.values[slot].powi(2)).sum::<f64>().sqrt();
-    let amounts: Vec<usize> = present.free.iter().copied().filter(|slot| present.is_amount(*slot)).collect();
-    let rotors = base.present.iter().filter(|other| other.effect.id() == "weak_rotor");
-    match present.effect.id() {
-        id if ordinary_size(id).is_some_and(|ordinary| size(&amounts) < ordinary) => true,
-        "ceiling_effect" => present.values[0] > WEAKEST_CEILING,
-        "com_offset" => size(&[0, 1, 2]) < COM_NUISANCE_M,
-        "tether" => present.values[0] < LEAST_LINE_KG_M && present.values[1] == 0.0,
-        // one that is stronger, or several that differ: the rotors' scatter
-        "weak_rotor" => {
-            present.values[1] > 1.0
-                || rotors.clone().count() > 1 && rotors.clone().all(|rotor| rotor.values[1] > 1.0 - SCATTER)
-                || rotors.clone().any(|rotor| rotor.values[1] > 1.0) && present.values[1] > 1.0 - SCATTER
-        }
-        _ => false,
-    }
+fn is_ordinary(term: &EffectTerm, base: &Base) -> bool {
+    let naming = &term.signature.naming;
+    let of_all = || term.values.iter().map(|value| value * value).sum::<f64>().sqrt();
+    let amounts = || term.signature.amounts.iter().filter_map(|&slot| term.values.get(slot));
+    naming.ordinary.is_some_and(|ordinary| term.size() < ordinary)
+        || naming.least > 0.0 && of_all() < naming.least
+        || naming.most.is_some_and(|most| amounts().any(|amount| *amount > most))
+        || (naming.is_ordinary)(term, &base.present)
 }
 
 /// Of an effect that came in with another: how far its amounts are from nothing.
-fn fitted_strength(fitted: &Fitted, present: &Present, first: usize) -> Strength {
+fn fitted_strength(fitted: &Fitted, present: &EffectTerm, first: usize) -> Strength {
     let amounts: Vec<(usize, usize)> = present
         .free
         .iter()

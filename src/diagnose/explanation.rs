@@ -2,6 +2,7 @@
 
 use super::harmonics::LackOfFit;
 use super::locate::{Aperiodic, FieldTest, Localisation};
+use super::named::{DetectionLimit, Named};
 use super::tested::Search;
 
 /// The answer in one word.
@@ -28,71 +29,6 @@ impl Verdict {
             Self::Unexplained => "unexplained",
         }
     }
-}
-
-/// A parameter of a named effect.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NamedParameter {
-    /// as [`crate::physics::Parameter`] has it
-    pub name: &'static str,
-    /// in `unit`
-    pub value: f64,
-    /// standard error; 0 where it was set, not estimated
-    pub std: f64,
-    /// SI
-    pub unit: &'static str,
-}
-
-/// How strong the evidence was when the effect was taken.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Strength {
-    /// normal deviate
-    pub z: f64,
-    /// share of the residual energy that it explains (0..1)
-    pub gain: f64,
-    /// energy in sigma squared
-    pub energy: f64,
-    /// coefficients
-    pub count: usize,
-}
-
-/// Another effect that explains the same.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Confusable {
-    /// which
-    pub id: &'static str,
-    /// standard deviations by which this flight tells them apart, where that could be computed
-    pub distinguishability: Option<f64>,
-}
-
-/// A named effect.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Named {
-    /// which
-    pub id: &'static str,
-    /// what a person reads
-    pub sentence: &'static str,
-    /// values
-    pub parameters: Vec<NamedParameter>,
-    /// evidence
-    pub strength: Strength,
-    /// what it may be taken for
-    pub confusable_with: Vec<Confusable>,
-}
-
-/// The smallest size at which an effect would have been named in this flight.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DetectionLimit {
-    /// which effect
-    pub id: &'static str,
-    /// which parameter
-    pub parameter: &'static str,
-    /// in `unit`
-    pub limit: f64,
-    /// size on ordinary vehicles, in `unit`, of what shows only where the vehicle moves
-    pub usual: Option<f64>,
-    /// SI
-    pub unit: &'static str,
 }
 
 /// The whole result.

@@ -1,9 +1,8 @@
 //! What is asked of a candidate before it is named.
 
-use super::base::moved_to;
 use super::channels::SECOND;
 use super::fit::Fitted;
-use super::mounting;
+use super::signature::Signature;
 use super::tested::Tested;
 
 /// What is asked of a candidate before it is named.
@@ -24,17 +23,17 @@ pub struct Gates {
 impl Gates {
     /// Normal deviate asked of an effect.
     #[must_use]
-    pub fn deviate(&self, id: &str) -> f64 {
-        if LIKELIER.contains(&id) { self.z + MORE_Z } else { self.z }
+    pub fn deviate(&self, signature: &Signature) -> f64 {
+        self.z + signature.naming.extra_z
     }
 
     /// An effect's share of the family-wise chance, among so many candidates: a twentieth of it for what every vehicle
     /// has, the rest for the others alike.
-    fn share(&self, id: &str, candidates: f64) -> f64 {
-        if id == EVERYWHERE {
-            EVERYWHERE_SHARE * self.p_cluster
+    fn share(&self, signature: &Signature, candidates: f64) -> f64 {
+        if signature.naming.ubiquitous {
+            UBIQUITOUS_SHARE * self.p_cluster
         } else {
-            (1.0 - EVERYWHERE_SHARE) * self.p_cluster / candidates
+            (1.0 - UBIQUITOUS_SHARE) * self.p_cluster / candidates
         }
     }
 }
@@ -45,25 +44,7 @@ impl Default for Gates {
     }
 }
 
-/// Effects that are tried at many heights, lengths or times, the largest of which counts; and the thrust curve, which
-/// bends the commands' own noise, too.
-const LIKELIER: [&str; 4] = ["ceiling_effect", "slung_load", "mass_change", "thrust_curve"];
-/// Every rotor has it; and no force of the room, which position and velocity tell of, looks like it.
-const EVERYWHERE: &str = "rotor_inertia";
-const EVERYWHERE_SHARE: f64 = 0.05;
-/// What that adds to the normal deviate asked for.
-const MORE_Z: f64 = 1.0;
-
-/// No thrust curve is known to better than this (-).
-const ORDINARY_BEND: f64 = 0.02;
-
-/// The size (norm of the amounts) below which an effect is like any vehicle's; `None` for those that no vehicle has.
-pub(super) fn ordinary_size(id: &str) -> Option<f64> {
-    if id == "thrust_curve" { Some(ORDINARY_BEND) } else { mounting::ordinary_size(id) }
-}
-
-/// A ceiling whose a1 is larger lifts by little more than a twentieth a rotor's radius below it: that is none.
-pub(super) const WEAKEST_CEILING: f64 = 20.0;
+const UBIQUITOUS_SHARE: f64 = 0.05;
 
 /// Significant, spread over the flight, possible, and large enough to matter.
 pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates: f64) -> bool {
@@ -75,11 +56,12 @@ pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates
             || force(SECOND + axis)
             || evidence.rms[3 + axis] > gates.matters.1 * fitted.rows.torque_rms[axis]
     });
-    evidence.z.abs() > gates.deviate(tested.candidate.id)
-        && evidence.p_cluster < gates.share(tested.candidate.id, candidates)
+    let Some(signature) = tested.candidate.signature() else { return false };
+    evidence.z.abs() > gates.deviate(signature)
+        && evidence.p_cluster < gates.share(signature, candidates)
         && evidence.gain >= gates.gain
         && matters
-        && ordinary_size(tested.candidate.id).is_none_or(|ordinary| evidence.size() > ordinary)
+        && signature.naming.ordinary.is_none_or(|ordinary| evidence.size() > ordinary)
         && possible(tested)
 }
 
@@ -102,9 +84,9 @@ fn possible(tested: &Tested) -> bool {
             let (by, slack) = (tested.evidence.theta[index], 2.0 * tested.evidence.std(index));
             // towards what is possible by two standard errors
             let reaches = |by: f64| {
-                let value = moved_to(part, free, by);
-                let ceiling = part.effect.id() == "ceiling_effect" && free == 0;
-                part.possible(free, value) == value && !(ceiling && value > WEAKEST_CEILING)
+                let value = part.moved_to(free, by);
+                let most = part.signature.naming.most.filter(|_| part.is_amount(free));
+                part.possible(free, value) == value && most.is_none_or(|most| value <= most)
             };
             all &= reaches(by) || reaches(by - slack) || reaches(by + slack);
             index += 1;

@@ -5,8 +5,7 @@
 
 use super::channels::{AXES, CHANNELS};
 use super::trace::Trace;
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
-use std::f64::consts::TAU;
+use crate::stats::{f_tail, joint_chance, median_step, power_at};
 
 /// Highest frequency that is looked at, Hz.
 const HIGHEST_HZ: f64 = 2.0;
@@ -59,7 +58,7 @@ impl LackOfFit {
 pub fn period_s(time_s: &[f64], signals: &[&[f64]]) -> Option<f64> {
     let (first, last) = middle(time_s)?;
     let used: Vec<usize> = (0..time_s.len()).filter(|&row| (first..=last).contains(&time_s[row])).collect();
-    let step_s = median_step(time_s)?;
+    let step_s = Some(median_step(time_s)).filter(|step_s| *step_s > 0.0)?;
     let mut index = Vec::with_capacity(used.len());
     let (mut slot, mut at_s) = (0usize, first);
     for time in used.iter().map(|&row| &time_s[row]) {
@@ -131,12 +130,6 @@ fn middle(time_s: &[f64]) -> Option<(f64, f64)> {
     Some((first + edge, last - edge))
 }
 
-fn median_step(time_s: &[f64]) -> Option<f64> {
-    let mut steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().filter(|step| *step > 0.0)
-}
-
 /// Mean-free, zero where nothing was measured.
 fn onto(index: &[usize], signal: &[f64], count: usize) -> Vec<f64> {
     let mean = signal.iter().sum::<f64>() / signal.len().max(1) as f64;
@@ -151,7 +144,7 @@ fn onto(index: &[usize], signal: &[f64], count: usize) -> Vec<f64> {
 #[must_use]
 pub fn lack_of_fit(time_s: &[f64], residual: [&[f64]; CHANNELS], period_s: f64) -> Option<LackOfFit> {
     let (first, last) = (*time_s.first()?, *time_s.last()?);
-    let step_s = median_step(time_s)?;
+    let step_s = Some(median_step(time_s)).filter(|step_s| *step_s > 0.0)?;
     let periods = whole_periods(last - first + step_s, period_s);
     if periods < LEAST_PERIODS {
         return None;
@@ -170,7 +163,7 @@ pub fn lack_of_fit(time_s: &[f64], residual: [&[f64]; CHANNELS], period_s: f64) 
     };
     let count = used.len() as f64;
     for (channel, series) in residual.into_iter().enumerate() {
-        let (p_value, lines) = rest.harmonics(series, (period_s, periods))?;
+        let (p_value, lines) = rest.harmonics(series, (period_s, periods));
         let excess = lines.iter().map(|line| line.excess).sum::<f64>().max(0.0);
         out.p_value[channel] = p_value;
         out.lines[channel] = lines;
@@ -201,23 +194,17 @@ struct Periodogram<'a> {
 impl Periodogram<'_> {
     /// Of a series without its mean, at a frequency.
     fn power(&self, series: &[f64], mean: f64, frequency_hz: f64) -> f64 {
-        let (mut re, mut im) = (0.0, 0.0);
-        for &row in self.used {
-            let (s, c) = (TAU * frequency_hz * (self.time_s[row] - self.from_s)).sin_cos();
-            re += (series[row] - mean) * c;
-            im += (series[row] - mean) * s;
-        }
-        re * re + im * im
+        let used = self.used.iter().map(|&row| (self.time_s[row] - self.from_s, series[row] - mean));
+        power_at(used, frequency_hz)
     }
 
     /// Each harmonic against its neighbours, which fall between harmonics, and Fisher's sum of all as a probability.
-    fn harmonics(&self, series: &[f64], (period_s, periods): (f64, usize)) -> Option<(f64, Vec<Line>)> {
+    fn harmonics(&self, series: &[f64], (period_s, periods): (f64, usize)) -> (f64, Vec<Line>) {
         let neighbours: &[i32] = if periods > LEAST_PERIODS { &[-2, -1, 1, 2] } else { &[-1, 1] };
-        let law = FisherSnedecor::new(2.0, 2.0 * neighbours.len() as f64).ok()?;
         let count = self.used.len() as f64;
         let mean = self.used.iter().map(|&row| series[row]).sum::<f64>() / count;
         let spacing_hz = 1.0 / (periods as f64 * period_s);
-        let (mut statistic, mut lines, mut harmonic) = (0.0, Vec::new(), 1.0);
+        let (mut chances, mut lines, mut harmonic) = (Vec::new(), Vec::new(), 1.0);
         while harmonic / period_s <= HIGHEST_HZ {
             let frequency_hz = harmonic / period_s;
             let beside = neighbours
@@ -226,20 +213,18 @@ impl Periodogram<'_> {
             let noise = beside.sum::<f64>() / neighbours.len() as f64;
             let at = self.power(series, mean, frequency_hz);
             let ratio = if noise > 0.0 { at / noise } else { 0.0 };
-            statistic -= 2.0 * law.sf(ratio).max(1e-300).ln();
+            chances.push(f_tail(ratio, (2.0, 2.0 * neighbours.len() as f64)));
             lines.push(Line { frequency_hz, ratio, excess: 2.0 * (at - noise) / count });
             harmonic += 1.0;
         }
-        // with no degree of freedom there is nothing to be improbable
-        let freedom = 2.0 * lines.len().max(1) as f64;
-        let p_value = ChiSquared::new(freedom).map_or(1.0, |law| law.sf(statistic));
-        Some((p_value, lines))
+        (joint_chance(chances), lines)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     const STEP_S: f64 = 0.05;
     /// Four periods of 4 s, after one row that belongs to none.

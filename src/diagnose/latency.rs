@@ -4,12 +4,13 @@
 //! the torque that the motion took. So the second-order term tells them apart; the residual's size does not,
 //! because a lag also smooths noise and wins for that reason.
 
-use super::base::{Base, Present};
-use super::candidates::present;
+use super::base::Base;
 use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing, per_step};
 use super::evidence::Weighted;
 use super::fit::{Fitted, Newton, fit};
 use super::rows::{Rows, residuals};
+use super::signature::EffectTerm;
+use super::signatures::{ALL, BENT_THRUST};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::signals::{ActuationLatency, delayed_wrench};
@@ -105,17 +106,10 @@ pub(super) fn held_s(flights: &[Trace]) -> f64 {
 }
 
 /// Effects whose columns resemble that of a latency.
-fn look_alikes(flights: &[Trace]) -> Vec<Present> {
+fn look_alikes(flights: &[Trace]) -> Vec<EffectTerm> {
     let moving = flights.iter().all(|trace| trace.known.velocity && trace.known.attitude);
-    let drag = if moving {
-        [
-            present("linear_drag", &[0.0, 0.0, 0.0, 0.0], &[0, 1, 2]),
-            present("quadratic_drag", &[0.0; 3], &[0, 1, 2]),
-        ]
-    } else {
-        [None, None]
-    };
-    std::iter::once(present("angular_damping", &[0.0; 3], &[0, 1, 2])).chain(drag).flatten().collect()
+    let alike = ALL.iter().filter(|signature| moving || !signature.role.of_air);
+    alike.filter_map(|signature| signature.role.like_latency).map(|term| term()).collect()
 }
 
 /// Total and standard error of a fit's latency.
@@ -170,7 +164,7 @@ fn uneven_lag(flights: &[Trace], fitted: &mut Fitted, stated: f64) -> Result<Opt
         let mut further = fitted.base.clone();
         further.latency.uneven += UNEVEN_STEP;
         let column = per_step(residuals(flights, &further)?, &fitted.rows.residual, UNEVEN_STEP);
-        let Some(curve) = present("thrust_curve", &[0.0; 2], &[0, 1]) else { break };
+        let curve = BENT_THRUST.term(&[0.0; 2], &[0, 1]);
         let mut columns = fitted.rows.columns_of(flights, &fitted.base, &curve)?;
         columns.push(column);
         let last = columns.len() - 1;

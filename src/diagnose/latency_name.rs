@@ -1,11 +1,12 @@
 //! The name of a lag or delay that is more than any vehicle has.
 
 use super::confusable::APART;
-use super::explanation::{Confusable, Named, NamedParameter, Strength};
 use super::latency::{FAST_MOTOR_S, LatencyFinding, REFUSED, held_s, is_delay, stated_lag_s};
+use super::named::{Confusable, Named, NamedParameter, Strength};
+use super::signature::LatencyKind;
+use super::signatures::latency_signature;
 use super::tested::Search;
 use super::trace::Trace;
-use crate::physics::effects::by_id;
 use crate::signals::ActuationLatency;
 use crate::vehicle::Vehicle;
 
@@ -23,11 +24,9 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     let unsure_s = traces.iter().map(|trace| trace.inertial_unsure_s).fold(0.0, f64::max);
     let std_s = std_s.hypot(unsure_s);
     let is_lag = parts.lag_s > parts.delay_s && !is_delay(parts, vehicle);
-    let (id, other, name) = if is_lag {
-        ("motor_lag", "transport_delay", "time_constant")
-    } else {
-        ("transport_delay", "motor_lag", "delay")
-    };
+    let (lag, delay) = (latency_signature(LatencyKind::Lag)?, latency_signature(LatencyKind::Delay)?);
+    let (kind, other) = if is_lag { (lag, delay) } else { (delay, lag) };
+    let name = kind.effect.parameters().first()?.name;
     let (value, std) = if is_lag {
         (parts.lag_s, std_s)
     } else if parts.lag_s > 0.0 {
@@ -44,15 +43,15 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     let told_apart = others > TOLD_APART && own < 0.5 * REFUSED;
     let z = (total_s - ordinary_s) / found.latency.std_s;
     Some(Named {
-        id,
-        sentence: by_id(id)?.sentence(),
+        id: kind.id(),
+        sentence: kind.effect.sentence(),
         parameters: parameters_of(parts, (name, value, std), uneven_std.filter(|_| is_lag)),
         strength: Strength { z, gain: 0.0, energy: z * z, count: 1 },
         confusable_with: if told_apart {
             Vec::new()
         } else {
             vec![Confusable {
-                id: other,
+                id: other.id(),
                 distinguishability: Some((others - own).max(0.0)).filter(|d| *d < APART),
             }]
         },

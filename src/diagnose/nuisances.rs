@@ -1,11 +1,10 @@
 //! Columns that are always in: what no vehicle file has exactly, and what sensors are off by.
 
-use super::base::{Base, THRUST_TILT, turns_attitude};
+use super::base::Base;
 use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
-use super::rotors::Turning;
+use super::rotors::RotorMotion;
 use super::trace::Trace;
-use crate::physics::effects::RotorInertia;
-use crate::physics::{Effect, Wrench};
+use crate::physics::Wrench;
 use crate::regression::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor};
 use crate::signals::central_difference;
 use nalgebra::Vector3;
@@ -41,7 +40,7 @@ pub(super) fn momentum_rows(trace: &Trace) -> [[Vec<f64>; 3]; 6] {
 pub(super) fn nuisances(
     trace: &Trace,
     base: &Base,
-    commanded: &Turning,
+    commanded: &RotorMotion,
     by_commands: &[Wrench],
 ) -> Vec<NuisanceColumn> {
     let none = || vec![0.0; trace.rows()];
@@ -74,7 +73,7 @@ pub(super) fn nuisances(
     // in yaw the rotors' inertia leads by as much as a latency lags: where the one is estimated, roll and pitch tell the
     // other, and its error goes into the inertia's
     let of_yaw = torque([none(), none(), late_z.clone()]);
-    let spins_up = base.estimates(RotorInertia.id());
+    let spins_up = base.estimates(|term| term.signature.role.shortens_latency);
     let late_torque = [late_x, late_y, if spins_up { none() } else { late_z }];
     let both = channels(trace, [none(), none(), late.clone()], late_torque);
     let considered = spins_up.then_some(of_yaw);
@@ -84,7 +83,7 @@ pub(super) fn nuisances(
     let thrust = trace.weak(0, &thrust);
     let negative: Vec<f64> = thrust.iter().map(|t| -t).collect();
     // no thrust axis is known to a tenth of a degree; one that leans much is an effect
-    if !base.estimates(THRUST_TILT) {
+    if !base.stands_for(Nuisance::Tilt(0)) {
         out.push(column(Nuisance::Tilt(0), None, force([none(), negative, none()])));
         out.push(column(Nuisance::Tilt(1), None, force([thrust, none(), none()])));
     }
@@ -94,7 +93,7 @@ pub(super) fn nuisances(
         let values = channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);
         out.push(column(Nuisance::Jitter, Some(JITTER_STD), values));
     }
-    out.extend(sensor_nuisances(trace, mass_kg, turns_attitude(base)));
+    out.extend(sensor_nuisances(trace, mass_kg, base.stands_for(Nuisance::Level(0))));
     out
 }
 

@@ -8,7 +8,7 @@ pub type Thrusts = [f64; MAX_ROTORS];
 
 /// What the rotors do at each grid instant.
 #[derive(Debug, Clone)]
-pub struct Turning {
+pub struct RotorMotion {
     /// N
     pub thrust_n: Vec<Thrusts>,
     /// the speed that belongs to it, relative to hover
@@ -17,7 +17,7 @@ pub struct Turning {
     pub acceleration_1_s: Vec<Thrusts>,
 }
 
-impl Turning {
+impl RotorMotion {
     /// Speeds that belong to the thrusts, and their rate.
     #[must_use]
     pub fn new(thrust_n: Vec<Thrusts>, airframe: &Airframe, step_s: f64) -> Self {

@@ -6,11 +6,12 @@
 //! on the left of its row: rotor thrusts by the commands for forces, by the measured motion for torques.
 
 use super::along::{moved_by, wrench_along};
-use super::base::{Base, Present, step_of};
+use super::base::Base;
 use super::channels::{Channels, NuisanceColumn, SECOND, append, channels, per_step};
 use super::nuisances::{momentum_rows, nuisances};
-use super::rotors::{Thrusts, Turning};
+use super::rotors::{RotorMotion, Thrusts};
 use super::sensors::{is_of_sensors, true_motion, true_readings};
+use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::{Model, PhysicsError, Wrench};
 use nalgebra::{Vector3, Vector4};
@@ -40,8 +41,8 @@ pub struct Rows {
 #[derive(Debug, Clone)]
 struct Along {
     felt: Vec<Thrusts>,
-    commanded: Turning,
-    motion: Turning,
+    commanded: RotorMotion,
+    motion: RotorMotion,
     by_commands: Vec<Wrench>,
     by_motion: Vec<Wrench>,
 }
@@ -95,7 +96,7 @@ impl Rows {
 
     /// What the rotors of a flight do by their commands, after the latency and smoothed.
     #[must_use]
-    pub fn commanded(&self, flight: usize) -> Option<&Turning> {
+    pub fn commanded(&self, flight: usize) -> Option<&RotorMotion> {
         self.flights.get(flight).map(|along| &along.commanded)
     }
 
@@ -120,15 +121,15 @@ impl Rows {
         &self,
         flights: &[Trace],
         base: &Base,
-        candidate: &Present,
+        candidate: &EffectTerm,
     ) -> Result<Vec<Channels>, PhysicsError> {
         let motion = true_motion(flights, base);
         let mut columns = Vec::with_capacity(candidate.free.len());
         for &index in &candidate.free {
             let mut moved = candidate.clone();
-            let step = step_of(candidate, index);
+            let step = candidate.step_of(index);
             moved.values[index] += step;
-            if is_of_sensors(candidate.effect) {
+            if is_of_sensors(candidate.effect()) {
                 let mut with = base.clone();
                 with.present.push(moved);
                 columns.push(per_step(self.shown(flights, &with)?, &self.residual, step));
@@ -148,13 +149,13 @@ impl Rows {
         &self,
         flights: &[Trace],
         base: &Base,
-        candidate: &Present,
+        candidate: &EffectTerm,
     ) -> Result<Vec<Channels>, PhysicsError> {
         let (without, motion) = (base.model(&[])?, true_motion(flights, base));
         let mut columns = Vec::with_capacity(candidate.free.len());
         for &index in &candidate.free {
             let mut moved = candidate.clone();
-            let step = step_of(candidate, index);
+            let step = candidate.step_of(index);
             moved.values[index] += step;
             let model = base.model(std::slice::from_ref(&moved))?;
             columns.push(self.difference(&motion, &model, Some(&without), step));
@@ -177,7 +178,7 @@ impl Rows {
         places
             .into_par_iter()
             .map(|(effect, index)| {
-                let step = step_of(&base.present[effect], index);
+                let step = base.present[effect].step_of(index);
                 let moved = |by: f64| {
                     let mut moved = base.clone();
                     moved.present[effect].values[index] += by;
@@ -187,7 +188,7 @@ impl Rows {
                 let (present, value) = (&base.present[effect], base.present[effect].values[index]);
                 let below = present.possible(index, value - 0.5 * step) - value;
                 let (up, down) = (moved(below + step), moved(below));
-                if is_of_sensors(base.present[effect].effect) {
+                if is_of_sensors(base.present[effect].effect()) {
                     return Ok(per_step(self.shown(recorded, &up)?, &self.shown(recorded, &down)?, step));
                 }
                 let (up, down) = (up.model(&[])?, down.model(&[])?);
@@ -264,7 +265,7 @@ fn residual(
     trace: &Trace,
     base: &Base,
     model: &Model,
-    (felt, commanded, motion): (&[Thrusts], &Turning, &Turning),
+    (felt, commanded, motion): (&[Thrusts], &RotorMotion, &RotorMotion),
     (by_commands, by_motion): (&[Wrench], &[Wrench]),
 ) -> Channels {
     let airframe = &model.airframe;

@@ -1,28 +1,33 @@
 //! The forward search: fit, test every candidate, take the one that explains most, fit again.
 
-use super::base::{Base, Present, lift_load, moved_to};
+use super::base::{Base, lift_load};
 use super::candidates::candidates;
+use super::drag_location::one_place;
 use super::fit::{Fitted, Newton, fit};
-use super::forms::other_form;
 use super::gates::{Gates, passes};
-use super::hubs::one_place;
+use super::grid_refinement::{between_grid, refined};
 use super::latency::{LatencyFinding, finding_of, fit_latency, is_delay};
 use super::locate::mass_step_std_kg;
-use super::mounting::{Turn, mountings};
-use super::settle::{SETTLED_S, settle};
-use super::sharpen::{between_grid, sharpened};
+use super::mounting::mountings;
+use super::other_forms::other_form;
+use super::pruning::{UNCHANGED_S, prune};
+use super::score::test_all;
+use super::signature::{EffectTerm, Signature};
 use super::tested::{Search, Step, Tested};
 use super::trace::Trace;
-use super::trial::test_all;
-use crate::physics::effects::RotorInertia;
-use crate::physics::{Effect, PhysicsError};
+use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;
 
 /// Searches.
 ///
 /// # Errors
 /// [`PhysicsError`] where the vehicle is not physical.
-pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Search, PhysicsError> {
+pub fn search(
+    flights: &[Trace],
+    vehicle: &Vehicle,
+    gates: &Gates,
+    signatures: &[&'static Signature],
+) -> Result<Search, PhysicsError> {
     let (before, latency) = fit_latency(flights, Base::rigid(vehicle))?;
     let mut after = before.clone();
     let mut steps: Vec<Step> = Vec::new();
@@ -30,10 +35,9 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
     let mut settled = 0;
     let mut refused: Vec<&'static str> = Vec::new();
     loop {
-        let candidates = candidates(&after.base.vehicle, flights);
-        last = test_all(flights, &after, &candidates);
+        let candidates = candidates(&after.base.vehicle, flights, signatures);
+        last = test_all(flights, &after, &candidates, signatures);
         last.extend(between_grid(flights, &after, &last));
-        last.extend(mountings(flights, &after, Turn::First));
         let count = last.len() as f64;
         let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);
         let ranked = |tested: &[Tested]| {
@@ -43,13 +47,13 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
         };
         let mut passed = ranked(&last);
         if passed.is_empty() {
-            let mounted = mountings(flights, &after, Turn::Last);
+            let mounted = mountings(flights, &after, signatures);
             passed = ranked(&mounted);
             last.extend(mounted);
         }
         match passed.first().cloned() {
             Some(taken) if steps.len() < gates.steps => {
-                let sharper = sharpened(flights, &after, taken.clone());
+                let sharper = refined(flights, &after, taken.clone());
                 let mut fitted = with_taken(flights, &after, &sharper)?;
                 let mut taken = sharper;
                 if at_bound(&fitted, &taken) {
@@ -68,18 +72,18 @@ pub fn search(flights: &[Trace], vehicle: &Vehicle, gates: &Gates) -> Result<Sea
             _ => {
                 settled += 1;
                 let before = after.base.present.clone();
-                let (dropped, moved) = settle(flights, &mut after)?;
+                let (dropped, moved) = prune(flights, &mut after)?;
                 let placed = one_place(flights, &mut after, price)? | other_form(flights, &mut after, price)?;
-                let gone = before.iter().map(|present| present.effect.id());
-                let kept = |id: &&'static str| after.base.present.iter().any(|p| p.effect.id() == *id);
+                let gone = before.iter().map(|present| present.id());
+                let kept = |id: &&'static str| after.base.present.iter().any(|p| p.id() == *id);
                 refused.extend(gone.filter(|id| !kept(id)));
-                if !dropped && !placed && moved < SETTLED_S {
+                if !dropped && !placed && moved < UNCHANGED_S {
                     break;
                 }
             }
         }
     }
-    let after = with_heights(flights, after)?;
+    let after = with_last(flights, after)?;
     let found = finding_of(&after);
     let latency = LatencyFinding {
         against_lag: latency.against_lag,
@@ -103,11 +107,12 @@ fn by_worth(mut tested: Vec<Tested>, price: f64) -> Vec<Tested> {
 fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitted, PhysicsError> {
     let mut base = after.base.clone();
     base.present.extend(started(taken).into_iter().map(released));
-    if let Some(load) = base.present.last_mut().filter(|present| present.effect.id() == "slung_load") {
+    if let Some(load) = base.present.last_mut().filter(|term| term.signature.role.hangs_below) {
         base.vehicle.body.mass_kg = lift_load(load, base.vehicle.body.mass_kg);
     }
     // a latency that the rotors' inertia had shortened is found again beside it
-    let newton = match taken.candidate.id == RotorInertia.id() {
+    let shortened = taken.candidate.signature().is_some_and(|signature| signature.role.shortens_latency);
+    let newton = match shortened {
         true if is_delay(base.latency, &base.vehicle) => Newton::Delay,
         true => Newton::Free,
         false => Newton::Held,
@@ -115,17 +120,20 @@ fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitte
     fit(flights, base, newton)
 }
 
-/// The ceilings of a fit with their height estimated, too: from one between those that were tried on, unless it runs away.
-/// While effects are weighed against each other it stays where it was tried, or the height would take the others' part.
-fn with_heights(flights: &[Trace], fitted: Fitted) -> Result<Fitted, PhysicsError> {
-    let is_ceiling = |present: &Present| present.effect.id() == "ceiling_effect";
-    if !fitted.base.present.iter().any(is_ceiling) {
+/// With the parameters that are estimated last (a ceiling's height): from values between those that were tried on,
+/// unless they run away. While effects are weighed against each other they stay where they were tried, or they would take
+/// the others' part.
+fn with_last(flights: &[Trace], fitted: Fitted) -> Result<Fitted, PhysicsError> {
+    let has_last = |term: &EffectTerm| !term.signature.refinement.freed_last.is_empty();
+    if !fitted.base.present.iter().any(has_last) {
         return Ok(fitted);
     }
     let mut base = fitted.base.clone();
-    base.present.iter_mut().filter(|of| is_ceiling(of)).for_each(|of| of.free = vec![0, 2]);
+    for term in base.present.iter_mut().filter(|term| has_last(term)) {
+        term.free = term.signature.refinement.freed_last.to_vec();
+    }
     let placed = fit(flights, base, Newton::Held)?;
-    let bounded = placed.base.present.iter().filter(|of| is_ceiling(of)).any(|of| {
+    let bounded = placed.base.present.iter().filter(|of| has_last(of)).any(|of| {
         of.free.iter().any(|&slot| {
             of.parameter(slot).is_some_and(|p| of.values[slot] <= p.min || of.values[slot] >= p.max)
         })
@@ -138,13 +146,13 @@ const SETTLINGS: usize = 2;
 /// What a column must explain to be worth having, in independent squared sigmas.
 const COLUMN_PRICE: f64 = 12.0;
 /// The candidate's effects at the values that the evidence has.
-fn started(tested: &Tested) -> Vec<Present> {
+fn started(tested: &Tested) -> Vec<EffectTerm> {
     let mut theta = tested.evidence.theta.iter();
     let mut parts = tested.candidate.parts.clone();
     for part in &mut parts {
         for &free in &part.free {
             if let Some(by) = theta.next() {
-                part.values[free] = part.possible(free, moved_to(part, free, *by));
+                part.values[free] = part.possible(free, part.moved_to(free, *by));
             }
         }
     }
@@ -164,7 +172,7 @@ fn started(tested: &Tested) -> Vec<Present> {
 fn at_bound(fitted: &Fitted, taken: &Tested) -> bool {
     let just_taken = &fitted.base.present[fitted.base.present.len() - taken.candidate.parts.len()..];
     just_taken.iter().any(|present| {
-        let common = present.effect.parameters().iter().enumerate();
+        let common = present.effect().parameters().iter().enumerate();
         let mut free = common.filter(|(slot, _)| present.free.contains(slot));
         free.any(|(slot, parameter)| {
             let value = present.values[slot];
@@ -176,10 +184,11 @@ fn at_bound(fitted: &Fitted, taken: &Tested) -> bool {
 
 /// A step of the mass that a wandering force could be.
 fn wanders(flights: &[Trace], fitted: &Fitted, taken: &Tested) -> bool {
-    let changes = taken.candidate.parts.iter().filter(|part| part.effect.id() == "mass_change");
-    changes.into_iter().any(|part| {
+    let moments =
+        taken.candidate.parts.iter().filter_map(|part| Some(part.values[part.signature.role.moment?]));
+    moments.into_iter().any(|moment_s| {
         let delta_kg = taken.evidence.theta[0].abs();
-        delta_kg < WANDERED * mass_step_std_kg(flights, fitted, part.values[0])
+        delta_kg < WANDERED * mass_step_std_kg(flights, fitted, moment_s)
     })
 }
 
@@ -187,17 +196,8 @@ fn wanders(flights: &[Trace], fitted: &Fitted, taken: &Tested) -> bool {
 const WANDERED: f64 = 4.0;
 
 /// Parameters that only show once the effect is there are estimated from then on.
-fn released(mut present: Present) -> Present {
-    let finer = present.effect.parameters().len();
-    if present.effect.id() == "slung_load" {
-        present.free.push(1);
-    }
-    if present.effect.id() == "ground_effect" && present.free == [1] {
-        present.free.push(2);
-    }
-    let shaped = !["motor_lag", "frame_misalignment"].contains(&present.effect.id());
-    if present.values.len() > finer && shaped {
-        present.free.push(finer);
-    }
-    present
+fn released(mut term: EffectTerm) -> EffectTerm {
+    let freed = (term.signature.refinement.freed)(&term);
+    term.free.extend(freed);
+    term
 }

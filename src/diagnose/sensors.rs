@@ -3,7 +3,8 @@
 //! An effect says what ideal sensors show of a true motion ([`Effect::measure`]); here that is solved for the
 //! true motion, so that its equation stands in one place.
 
-use super::base::{Base, Present};
+use super::base::Base;
+use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::{Effect, Hook, Measurement, State};
 use crate::signals::central_difference;
@@ -47,12 +48,12 @@ pub(super) fn true_readings<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [T
     Cow::Owned(flights.iter().map(moved).collect())
 }
 
-fn faults(base: &Base) -> Vec<&Present> {
-    base.present.iter().filter(|present| is_of_sensors(present.effect)).collect()
+fn faults(base: &Base) -> Vec<&EffectTerm> {
+    base.present.iter().filter(|present| is_of_sensors(present.effect())).collect()
 }
 
 /// One flight's states and, where it was recorded, specific force (m/s^2, body).
-fn undone(trace: &Trace, faults: &[&Present]) -> (Vec<State>, Option<Vec<Vector3<f64>>>) {
+fn undone(trace: &Trace, faults: &[&EffectTerm]) -> (Vec<State>, Option<Vec<Vector3<f64>>>) {
     let shown_force = trace.specific_force_m_s2();
     let mut states = trace.states.clone();
     let mut force: Vec<Vector3<f64>> =
@@ -64,7 +65,7 @@ fn undone(trace: &Trace, faults: &[&Present]) -> (Vec<State>, Option<Vec<Vector3
             let now = states[index];
             let mut seen = Measurement { state: now, specific_force_m_s2: force[index] };
             for fault in faults {
-                fault.effect.measure(&now, &turning[index], &fault.values, &mut seen);
+                fault.effect().measure(&now, &turning[index], &fault.values, &mut seen);
             }
             let of_motion = [
                 shown.position_m - seen.state.position_m,

@@ -6,7 +6,8 @@
 //! the last pass found would not converge.
 
 use super::base::Base;
-use super::rotors::Turning;
+use super::rotors::RotorMotion;
+use super::signatures::ROTOR_INERTIA;
 use super::trace::Trace;
 use crate::physics::effects::RotorInertia;
 use crate::physics::{Airframe, Condition, Effect, Input, Own, Rotors, State, Wrench};
@@ -24,7 +25,7 @@ pub(super) struct SpinUp {
 impl SpinUp {
     /// `None` where the base has no rotor inertia, or the rotors no speed.
     pub(super) fn of(base: &Base, airframe: &Airframe) -> Option<Self> {
-        let present = base.present.iter().find(|present| present.effect.id() == RotorInertia.id())?;
+        let present = base.present.iter().find(|present| present.is(&ROTOR_INERTIA))?;
         let jr_kg_m2 = present.values.first().copied().filter(|jr| *jr > 0.0)?;
         let drag_nm = airframe.propulsion.torque_per_thrust_m * airframe.hover_thrust_n;
         let lag_s = jr_kg_m2 * airframe.hover_speed_rad_s? / (2.0 * drag_nm);
@@ -36,7 +37,7 @@ impl SpinUp {
     pub(super) fn share(
         &self,
         trace: &Trace,
-        (airframe, motion): (&Airframe, &Turning),
+        (airframe, motion): (&Airframe, &RotorMotion),
         inertia: &Matrix3<f64>,
         effects: &mut [Vector4<f64>],
     ) {
@@ -58,7 +59,7 @@ impl SpinUp {
     }
 
     /// What the effect itself makes of the rotors' motion about z, N m.
-    fn torque_nm(&self, airframe: &Airframe, state: &State, motion: &Turning, index: usize) -> f64 {
+    fn torque_nm(&self, airframe: &Airframe, state: &State, motion: &RotorMotion, index: usize) -> f64 {
         let input = Input::from_commands(airframe, 0.0, &[]);
         let at = Condition::new(airframe, state, &input, Vector3::zeros());
         let mut rotors = Rotors::still();

@@ -1,12 +1,12 @@
 //! One flight as the weak form sees it: measured states, and the rotor thrusts in two readings.
 
-use super::rotors::{Thrusts, Turning, felt};
+use super::rotors::{RotorMotion, Thrusts, felt};
 use crate::log::Quantity;
 use crate::physics::{Airframe, MAX_ROTORS, State};
 use crate::signals::{
     ActuationLatency, Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride,
-    white_level_of,
 };
+use crate::stats::white_level_of;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
 use std::ops::Range;
@@ -299,7 +299,7 @@ impl Trace {
 
     /// What the rotors gave by their commands, N, after the latency: raw, and smoothed for regressors.
     #[must_use]
-    pub fn by_commands(&self, airframe: &Airframe, latency: ActuationLatency) -> (Vec<Thrusts>, Turning) {
+    pub fn by_commands(&self, airframe: &Airframe, latency: ActuationLatency) -> (Vec<Thrusts>, RotorMotion) {
         let felt = self.felt_n(airframe, latency);
         let rate_hz = 1.0 / self.grid.step_s;
         let mut smooth = vec![[0.0; MAX_ROTORS]; self.grid.count];
@@ -311,7 +311,7 @@ impl Trace {
                 }
             }
         }
-        let turning = Turning::new(smooth, airframe, self.grid.step_s);
+        let turning = RotorMotion::new(smooth, airframe, self.grid.step_s);
         (felt, turning)
     }
 
@@ -322,7 +322,7 @@ impl Trace {
         &self,
         vehicle: &Vehicle,
         (mass_kg, inertia): (f64, &Matrix3<f64>),
-        commanded: &Turning,
+        commanded: &RotorMotion,
         effects: Option<&[Vector4<f64>]>,
     ) -> Vec<Thrusts> {
         let mixer = vehicle.mixer().matrix;

@@ -302,7 +302,7 @@ fn huber(problem: &Problem) -> (Solution, f64) {
             .iter()
             .map(|residual| {
                 let mut sizes: Vec<f64> = residual.iter().map(|r| r.abs()).collect();
-                let sigma = (1.4826 * crate::signals::median(&mut sizes)).max(f64::MIN_POSITIVE);
+                let sigma = crate::stats::normal_sigma(&mut sizes).max(f64::MIN_POSITIVE);
                 residual.map(|r| (TUNING * sigma / r.abs().max(f64::MIN_POSITIVE)).min(1.0))
             })
             .collect();

@@ -5,7 +5,10 @@
 //! `mdrag_coef sqrt(rho disc_area m g) v`); bluff-body drag from `refSpd` at `refAngle`; rotation damped by
 //! `400 deg / refRotRate` of the rate; motor positions from the centre of mass, forward-right-down.
 
-use super::{ExportError, Exported, Source, frd, line_comments};
+use super::axes::frd;
+use super::error::ExportError;
+use super::notes::line_comments;
+use super::source::{Exported, Source};
 use crate::text::json_pretty;
 use crate::units::AIR_DENSITY_KG_M3;
 use crate::vehicle::{Actuator, ThrustLaw};

@@ -3,7 +3,9 @@
 //! A `general` actuator at each hub: control is the thrust in newtons, gear its force along body z and its
 //! reaction torque. `fullinertia` is xx yy zz xy xz yz about the centre of mass. Frames and units are ours.
 
-use super::{ExportError, Exported, Source, xml_comments};
+use super::error::ExportError;
+use super::notes::xml_comments;
+use super::source::{Exported, Source};
 use crate::text::markup;
 use std::fmt::Write;
 

@@ -4,7 +4,10 @@
 //! `Mx = L_ROLL T_MAX (-u0 + u1 + u2 - u3)`, `My = L_PITCH T_MAX (u0 - u1 + u2 - u3)`,
 //! `Mz = Q_MAX (u0 + u1 - u2 - u3)`, drag `-KDV v`, damping `-KDW w`.
 
-use super::{ExportError, Exported, Source, frd, line_comments};
+use super::axes::frd;
+use super::error::ExportError;
+use super::notes::line_comments;
+use super::source::{Exported, Source};
 use crate::text::line_comment;
 use nalgebra::Vector3;
 use std::fmt::Write;

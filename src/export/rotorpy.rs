@@ -4,7 +4,9 @@
 //! `T += k_h v_xy^2`, body drag `-|v| diag(c_D) v`, lag `tau_m`; hubs from the centre of mass. Frames and units
 //! are ours; the sign of a rotor is that of its reaction torque.
 
-use super::{ExportError, Exported, Source, line_comments};
+use super::error::ExportError;
+use super::notes::line_comments;
+use super::source::{Exported, Source};
 use crate::text::line_comment;
 use nalgebra::Vector3;
 use std::fmt::Write;

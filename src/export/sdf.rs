@@ -3,7 +3,9 @@
 //! Its motor: `T = motorConstant w^2`, reaction torque `momentConstant T`, drag `rotorDragCoefficient |w| v` across
 //! the rotor axis, first-order lag up and down. Frames and units are ours.
 
-use super::{ExportError, Exported, Source, xml_comments};
+use super::error::ExportError;
+use super::notes::xml_comments;
+use super::source::{Exported, Source};
 use crate::text::markup;
 use crate::vehicle::{Rotor, Spin};
 

@@ -2,7 +2,8 @@
 
 use super::inspection::Excitation;
 use super::motion::Motion;
-use crate::signals::{Grid, WeakKernel, hann_windowed, power_at, stride};
+use crate::signals::{Grid, WeakKernel, stride};
+use crate::stats::hann_power;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use nalgebra::Vector3;
 
@@ -155,15 +156,12 @@ impl ExcitationTally {
         if series.len() < 50 {
             return;
         }
-        let windowed = hann_windowed(series);
-        let span_s = series.len() as f64 * step_s;
+        let mut bins = hann_power(series, step_s, BIN_HZ * BINS as f64).into_iter().peekable();
         // Hann's window spreads a line over the length: longer windows weigh more, as they should
-        let mut bin = 1.0;
         for (index, sum) in self.power.iter_mut().enumerate() {
             let top_hz = BIN_HZ * (index as f64 + 1.0);
-            while bin / span_s <= top_hz && bin / span_s < 0.5 / step_s {
-                *sum += power_at(&windowed, bin) / series.len() as f64;
-                bin += 1.0;
+            while let Some((_, power)) = bins.next_if(|(frequency_hz, _)| *frequency_hz <= top_hz) {
+                *sum += power / series.len() as f64;
             }
         }
     }

@@ -1,66 +1,20 @@
 //! MAVLink's checksum (CRC-16/MCRF4XX) and the seed that each known message adds to it.
 
+use crc::{CRC_16_MCRF4XX, Crc, Table};
 use mavlink::Message;
 use mavlink::dialects::ardupilotmega::MavMessage;
 
-const SLICES: usize = 8;
-
-/// `TABLES[0]` is the classic byte table; `TABLES[k][b]` is byte `b` followed by `k` zero bytes. Eight
-/// bytes are then eight independent look-ups (Kounavis and Berry, "slicing-by-8").
-static TABLES: [[u16; 256]; SLICES] = tables();
-
-const fn tables() -> [[u16; 256]; SLICES] {
-    let mut tables = [[0_u16; 256]; SLICES];
-    let mut byte = 0_u16;
-    while byte < 256 {
-        let mut crc = byte;
-        let mut bit = 0;
-        while bit < 8 {
-            crc = if crc & 1 == 1 { (crc >> 1) ^ 0x8408 } else { crc >> 1 };
-            bit += 1;
-        }
-        tables[0][byte as usize] = crc;
-        byte += 1;
-    }
-    let mut slice = 1;
-    while slice < SLICES {
-        let mut index = 0;
-        while index < 256 {
-            let before = tables[slice - 1][index];
-            tables[slice][index] = (before >> 8) ^ tables[0][(before & 0xFF) as usize];
-            index += 1;
-        }
-        slice += 1;
-    }
-    tables
-}
+/// Sixteen bytes at a time.
+static CRC: Crc<u16, Table<16>> = Crc::<u16, Table<16>>::new(&CRC_16_MCRF4XX);
 
 /// Checksum of `bytes` (a frame without its marker, up to the end of the payload) and of the message's
 /// seed after it.
 #[must_use]
 pub fn checksum(bytes: &[u8], seed: u8) -> u16 {
-    let mut crc = 0xFFFF_u16;
-    let (chunks, rest) = bytes.as_chunks::<SLICES>();
-    for chunk in chunks {
-        let [low, high] = crc.to_le_bytes();
-        crc = TABLES[7][usize::from(chunk[0] ^ low)]
-            ^ TABLES[6][usize::from(chunk[1] ^ high)]
-            ^ TABLES[5][usize::from(chunk[2])]
-            ^ TABLES[4][usize::from(chunk[3])]
-            ^ TABLES[3][usize::from(chunk[4])]
-            ^ TABLES[2][usize::from(chunk[5])]
-            ^ TABLES[1][usize::from(chunk[6])]
-            ^ TABLES[0][usize::from(chunk[7])];
-    }
-    for &byte in rest {
-        crc = step(crc, byte);
-    }
-    step(crc, seed)
-}
-
-fn step(crc: u16, byte: u8) -> u16 {
-    let [low, high] = crc.to_le_bytes();
-    u16::from(high) ^ TABLES[0][usize::from(low ^ byte)]
+    let mut digest = CRC.digest();
+    digest.update(bytes);
+    digest.update(&[seed]);
+    digest.finalize()
 }
 
 /// Every id of the dialect lies below this.

@@ -24,9 +24,9 @@ mod splitter;
 mod stats;
 mod tlog;
 
+pub use self::crc::{CrcSeeds, checksum};
 pub use builder::RecordingBuilder;
 pub use clock::{Anchor, Stamp};
-pub use crc::{CrcSeeds, checksum};
 pub use decode::{DecodeReport, Decoder, Event, Source, StreamId, Vehicle};
 pub use embedded::{EMBEDDED_UID2, Nonce};
 pub use error::LogError;

@@ -34,7 +34,7 @@ pub(super) fn correlation(fitted: &Fitted) -> (Vec<String>, Vec<Vec<Option<f64>>
     for present in &fitted.base.present {
         for &free in &present.free {
             let parameter = present.parameter(free).map_or("", |parameter| parameter.name);
-            kept.push((index, format!("{}.{parameter}", present.effect.id())));
+            kept.push((index, format!("{}.{parameter}", present.id())));
             index += 1;
         }
     }

@@ -32,9 +32,9 @@ pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, Windowe
 pub use flight::{Quality, Reference, Signals};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use latency::{ActuationLatency, delayed_thrusts_n, delayed_wrench};
-pub use noise::{median, white_level, white_level_of};
+pub use noise::white_level;
 pub use select::{best, best_rank, is_live, mean_rate_hz, median_period_s};
-pub use spectrum::{hann_windowed, highest_harmonic_hz, power_at};
+pub use spectrum::highest_harmonic_hz;
 pub use sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ};
 pub use usable::{Evidence, Usable, in_air, usable};
 pub use weak::{MAX_ORDER, WeakKernel};

@@ -1,6 +1,7 @@
 //! White noise level of a recorded stream, from the stream itself.
 
 use crate::log::Stream;
+use crate::stats::white_level_of;
 
 /// Standard deviation of the white part of each channel of a stream. Empty with fewer than 20 samples.
 #[must_use]
@@ -13,29 +14,6 @@ pub fn white_level(stream: &Stream) -> Vec<f64> {
             white_level_of(&(0..stream.len()).map(|i| stream.sample(i)[channel]).collect::<Vec<_>>())
         })
         .collect()
-}
-
-/// Standard deviation of the white part of an evenly sampled series: 1.4826 MAD of the fourth difference over
-/// `sqrt(70)`. A smooth signal hardly moves a fourth difference, and the median makes lost samples
-/// harmless. NaN with fewer than five samples.
-#[must_use]
-pub fn white_level_of(series: &[f64]) -> f64 {
-    let mut differences: Vec<f64> = series
-        .windows(5)
-        .map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).abs())
-        .filter(|d| d.is_finite())
-        .collect();
-    median(&mut differences) * 1.4826 / 70.0_f64.sqrt()
-}
-
-/// Median, reordering the values; NaN where there are none.
-#[must_use]
-pub fn median(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
-        return f64::NAN;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 #[cfg(test)]

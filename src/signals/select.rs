@@ -1,8 +1,8 @@
 //! Which of several streams of one quantity is used.
 
 use super::SignalsError;
-use super::noise::median;
 use crate::log::{Quantity, Recording, Stream, StreamKey};
+use crate::stats::median_step;
 
 /// Message names of one quantity, best first. A source that is not listed comes last.
 fn preference(quantity: Quantity) -> &'static [&'static str] {
@@ -43,8 +43,7 @@ pub fn mean_rate_hz(stream: &Stream) -> f64 {
 /// Median period between samples, s; NaN for fewer than two samples.
 #[must_use]
 pub fn median_period_s(stream: &Stream) -> f64 {
-    let mut periods: Vec<f64> = stream.time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    median(&mut periods)
+    median_step(&stream.time_s)
 }
 
 /// Something in the stream moves: a frozen stream says nothing.

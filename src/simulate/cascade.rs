@@ -100,7 +100,7 @@ impl Pid {
 
 /// What a cascade last asked of its inner loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wanted {
+pub struct RequestedEffects {
     /// body to world
     pub attitude: UnitQuaternion<f64>,
     /// body, rad/s
@@ -117,7 +117,7 @@ pub struct AutopilotCascade {
     allocation: Allocation,
     velocity: Pid,
     rates: Pid,
-    wanted: Wanted,
+    wanted: RequestedEffects,
 }
 
 /// Cosine of the lean beyond which no more thrust makes up for it (-).
@@ -135,7 +135,7 @@ impl AutopilotCascade {
             allocation: Allocation::new(vehicle, command_min)?,
             velocity: Pid::new(gains.velocity, gains.derivative_pole_rad_s),
             rates: Pid::new(gains.rates, gains.derivative_pole_rad_s),
-            wanted: Wanted {
+            wanted: RequestedEffects {
                 attitude: UnitQuaternion::identity(),
                 rates_rad_s: Vector3::zeros(),
                 thrust_n: 0.0,
@@ -145,7 +145,7 @@ impl AutopilotCascade {
 
     /// What the last call of [`Self::commands`] or [`Self::turn`] asked of the inner loops.
     #[must_use]
-    pub fn wanted(&self) -> &Wanted {
+    pub fn wanted(&self) -> &RequestedEffects {
         &self.wanted
     }
 
@@ -162,7 +162,7 @@ impl AutopilotCascade {
         let up = estimate.attitude * Vector3::z();
         let rates = self.rates_wanted(&attitude, estimate, setpoint.yaw_rate_rad_s);
         let thrust_n = self.body.mass_kg * acceleration.dot(&up);
-        self.wanted = Wanted { attitude, rates_rad_s: rates, thrust_n };
+        self.wanted = RequestedEffects { attitude, rates_rad_s: rates, thrust_n };
         self.rate_commands(estimate, period_s)
     }
 
@@ -214,12 +214,13 @@ impl AutopilotCascade {
             Some(attitude) => self.rates_wanted(attitude, estimate, rates_rad_s.z),
             None => rates_rad_s.zip_map(&most, |rate, most| rate.clamp(-most, most)),
         };
-        self.wanted = Wanted { attitude: attitude.unwrap_or(estimate.attitude), rates_rad_s, thrust_n };
+        self.wanted =
+            RequestedEffects { attitude: attitude.unwrap_or(estimate.attitude), rates_rad_s, thrust_n };
         self.rate_commands(estimate, period_s)
     }
 
     fn rate_commands(&mut self, estimate: &State, period_s: f64) -> [f64; MAX_ROTORS] {
-        let Wanted { rates_rad_s: rates, thrust_n, .. } = self.wanted;
+        let RequestedEffects { rates_rad_s: rates, thrust_n, .. } = self.wanted;
         let turning = self.rates.update(&rates, &estimate.rates_rad_s, period_s);
         let w = &estimate.rates_rad_s;
         let torque = self.body.inertia_kg_m2 * turning + w.cross(&(self.body.inertia_kg_m2 * w));

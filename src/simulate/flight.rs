@@ -307,6 +307,7 @@ mod tests {
     use crate::log::{Quantity, Stream, StreamKey};
     use crate::physics::effects::LinearDrag;
     use crate::simulate::{RandomTrajectory, random_vehicle};
+    use crate::stats::white_level_of;
     use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
     fn reference(seed: u64) -> Reference {
@@ -332,14 +333,6 @@ mod tests {
         (0..stream.len()).map(|sample| stream.sample(sample)[column]).collect()
     }
 
-    /// White level of a signal: 1.4826 MAD of its fourth difference over sqrt(70).
-    fn white_level(values: &[f64]) -> f64 {
-        let mut fourth: Vec<f64> =
-            values.windows(5).map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).abs()).collect();
-        fourth.sort_by(f64::total_cmp);
-        1.4826 * fourth[fourth.len() / 2] / 70.0_f64.sqrt()
-    }
-
     #[test]
     fn default_flights_track_without_crashing() {
         for seed in 0..12 {
@@ -363,13 +356,13 @@ mod tests {
             (Quantity::Velocity, "LOCAL_POSITION_NED", 15e-3),
         ] {
             for axis in 0..3 {
-                let found = white_level(&column(stream(&flight, quantity, source), axis));
+                let found = white_level_of(&column(stream(&flight, quantity, source), axis));
                 // the body's own jitter adds to the gyros and the vertical accelerometer
                 assert!(found > 0.9 * level && found < 1.35 * level, "{quantity:?} {axis}: {found}");
             }
         }
         let attitude = stream(&flight, Quantity::Attitude, "ATTITUDE_QUATERNION");
-        let found = 2.0 * white_level(&column(attitude, 3));
+        let found = 2.0 * white_level_of(&column(attitude, 3));
         assert!((found / 1.7e-3 - 1.0).abs() < 0.1, "attitude {found}");
         assert!(attitude.time_s.windows(2).all(|pair| pair[1] > pair[0]));
         assert_eq!(attitude.time_s[0], 0.0);
@@ -396,10 +389,10 @@ mod tests {
             }
         }
         for (pattern, level) in patterns.iter().zip([0.10, 1.5, 1.5, 0.32]) {
-            let found = white_level(pattern);
+            let found = white_level_of(pattern);
             assert!((found / level - 1.0).abs() < 0.35, "found {found}, expected {level}");
         }
-        let jitter = white_level(&column(commands, 0));
+        let jitter = white_level_of(&column(commands, 0));
         assert!((0.003..0.028).contains(&jitter), "one motor {jitter}");
     }
 

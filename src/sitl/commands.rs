@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use super::autopilot::{Answer, Severity};
 use super::message::Message;
-use super::streams::{AUTOPILOT_VERSION, HEARTBEAT, HOME_POSITION, IntervalRefusal};
+use super::message_id::{AUTOPILOT_VERSION, HEARTBEAT, HOME_POSITION};
+use super::streams::IntervalRefusal;
 use super::{AutopilotKind, Mode, Vehicle};
 use crate::log::Payload;
 use crate::units::whole;

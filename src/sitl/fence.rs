@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::Settings;
-use super::tuning::Action;
+use super::action::Action;
 use crate::fence::{Areas, Zone};
 
 /// The areas of the stored fence, in the local frame.

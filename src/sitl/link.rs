@@ -5,22 +5,9 @@ use std::time::Duration;
 
 use super::message::Message;
 use super::streams::Streams;
-use super::{AutopilotKind, Outgoing};
+use super::{AutopilotKind, LinkId, LinkRole, Outgoing};
 use crate::link::Signing;
 use crate::log::{CrcSeeds, Splitter};
-
-/// Which connection of a vehicle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct LinkId(pub usize);
-
-/// What PX4 takes whoever is at the other end for; ArduPilot makes no difference.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LinkRole {
-    /// port 14550: attitude, position, servo outputs at 50 Hz, no inertial unit
-    GroundStation,
-    /// port 14540: what a companion computer needs
-    Onboard,
-}
 
 /// Parameters that go out in one loop period while the list is downloaded.
 const PARAMETERS_A_LOOP: usize = 2;

@@ -7,7 +7,8 @@ use super::Vehicle;
 use super::autopilot::Severity;
 use super::fence::Fence;
 use super::message::Message;
-use super::requests::id;
+use super::request_id as id;
+use super::upload::Upload;
 use crate::fence::{CIRCLE_INSIDE, CIRCLE_OUTSIDE, FenceItem, POLYGON_INSIDE, POLYGON_OUTSIDE};
 use crate::frames::Geodetic;
 use crate::log::Payload;
@@ -42,17 +43,6 @@ enum MissionResult {
     InvalidSequence = 13,
     Denied = 14,
     Cancelled = 15,
-}
-
-/// An upload under way.
-#[derive(Debug)]
-pub(super) struct Upload {
-    link: usize,
-    sender: (u8, u8),
-    items: Vec<FenceItem>,
-    count: usize,
-    asked: Duration,
-    heard: Duration,
 }
 
 fn count(items: usize, (system, component): (u8, u8), mission_type: u8) -> Message {

@@ -12,20 +12,27 @@
 //!
 //! What it does is what both autopilots were seen to do; nothing that it sends tells the simulation's truth.
 
+mod action;
 mod autopilot;
 mod battery;
 mod commands;
+mod connection;
 mod craft;
 mod demand;
+mod error;
 mod estimator;
+mod failsafe;
 mod fault;
 mod fence;
 mod guidance;
 mod link;
 mod message;
+mod message_id;
 mod mission;
 mod modes;
+mod outgoing;
 mod parameters;
+mod request_id;
 mod requests;
 mod safety;
 mod serve;
@@ -34,35 +41,14 @@ mod settings;
 mod streams;
 mod telemetry;
 mod tuning;
+mod upload;
 mod vehicle;
 
+pub use connection::{LinkId, LinkRole};
+pub use error::SitlError;
 pub use fault::Fault;
-pub use link::{LinkId, LinkRole};
 pub use modes::{ArduPilotRelease, AutopilotKind, Mode};
+pub use outgoing::Outgoing;
 pub use serve::{LOCKSTEP, Pace, Served, serve};
 pub use settings::{Origin, SensorSettings, Settings};
-pub use vehicle::{Beheld, Outgoing, Vehicle};
-
-use crate::physics::PhysicsError;
-use crate::simulate::SimulateError;
-
-/// Why a vehicle cannot be simulated.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum SitlError {
-    /// the vehicle or an effect is not physical
-    #[error(transparent)]
-    Physics(#[from] PhysicsError),
-    /// the simulation or its controller cannot be set up
-    #[error(transparent)]
-    Simulate(#[from] SimulateError),
-    /// a setting out of range
-    #[error("{name}: expected {expected}, got {got}")]
-    Setting {
-        /// which
-        name: String,
-        /// the range
-        expected: &'static str,
-        /// what came
-        got: String,
-    },
-}
+pub use vehicle::{Beheld, Vehicle};

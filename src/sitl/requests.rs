@@ -7,31 +7,9 @@ use super::Vehicle;
 use super::autopilot::Severity;
 use super::commands::Command;
 use super::message::Message;
+use super::request_id as id;
 use super::telemetry::Telemetry;
 use crate::log::{Frame, Payload};
-
-/// Messages that are listened to.
-pub(super) mod id {
-    pub(in crate::sitl) const HEARTBEAT: u32 = 0;
-    pub(in crate::sitl) const PING: u32 = 4;
-    pub(in crate::sitl) const SET_MODE: u32 = 11;
-    pub(in crate::sitl) const PARAM_REQUEST_READ: u32 = 20;
-    pub(in crate::sitl) const PARAM_REQUEST_LIST: u32 = 21;
-    pub(in crate::sitl) const PARAM_SET: u32 = 23;
-    pub(in crate::sitl) const MISSION_REQUEST_LIST: u32 = 43;
-    pub(in crate::sitl) const MISSION_COUNT: u32 = 44;
-    pub(in crate::sitl) const MISSION_CLEAR_ALL: u32 = 45;
-    pub(in crate::sitl) const MISSION_ACK: u32 = 47;
-    pub(in crate::sitl) const MISSION_REQUEST_INT: u32 = 51;
-    pub(in crate::sitl) const REQUEST_DATA_STREAM: u32 = 66;
-    pub(in crate::sitl) const MISSION_ITEM_INT: u32 = 73;
-    pub(in crate::sitl) const COMMAND_INT: u32 = 75;
-    pub(in crate::sitl) const COMMAND_LONG: u32 = 76;
-    pub(in crate::sitl) const SET_ATTITUDE_TARGET: u32 = 82;
-    pub(in crate::sitl) const SET_POSITION_TARGET_LOCAL_NED: u32 = 84;
-    pub(in crate::sitl) const TIMESYNC: u32 = 111;
-    pub(in crate::sitl) const SETUP_SIGNING: u32 = 256;
-}
 
 /// MAV_TYPE_GCS
 const GROUND_STATION: u8 = 6;

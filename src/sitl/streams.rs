@@ -3,6 +3,14 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
+use super::message_id::{
+    ACTUATOR_OUTPUT_STATUS, ALTITUDE, ATTITUDE, ATTITUDE_QUATERNION, ATTITUDE_TARGET, AUTOPILOT_VERSION,
+    BATTERY_STATUS, CURRENT_EVENT_SEQUENCE, CURRENT_MODE, EKF_STATUS_REPORT, ESC_INFO, ESC_STATUS,
+    ESC_TELEMETRY_1_TO_4, ESTIMATOR_STATUS, EXTENDED_SYS_STATE, GLOBAL_POSITION_INT, GPS_GLOBAL_ORIGIN,
+    GPS_RAW_INT, HIGHRES_IMU, HOME_POSITION, LINK_NODE_STATUS, LOCAL_POSITION_NED, ODOMETRY, PING,
+    POSITION_TARGET_LOCAL_NED, RAW_IMU, RC_CHANNELS, RPM, SCALED_IMU2, SERVO_OUTPUT_RAW, SYS_STATUS,
+    SYSTEM_TIME, TIMESYNC, VFR_HUD,
+};
 use super::{AutopilotKind, LinkRole};
 
 /// Messages of PX4 with rates on its ground-station link and on its onboard link, Hz.
@@ -75,42 +83,6 @@ const GROUPS: &[(u8, &[u32])] = &[
     (11, &[VFR_HUD]),
     (12, &[BATTERY_STATUS, EKF_STATUS_REPORT, SYSTEM_TIME, RPM]),
 ];
-
-pub(super) const HEARTBEAT: u32 = 0;
-pub(super) const SYS_STATUS: u32 = 1;
-pub(super) const SYSTEM_TIME: u32 = 2;
-pub(super) const PING: u32 = 4;
-pub(super) const LINK_NODE_STATUS: u32 = 8;
-pub(super) const GPS_RAW_INT: u32 = 24;
-pub(super) const RAW_IMU: u32 = 27;
-pub(super) const ATTITUDE: u32 = 30;
-pub(super) const ATTITUDE_QUATERNION: u32 = 31;
-pub(super) const LOCAL_POSITION_NED: u32 = 32;
-pub(super) const GLOBAL_POSITION_INT: u32 = 33;
-pub(super) const SERVO_OUTPUT_RAW: u32 = 36;
-pub(super) const GPS_GLOBAL_ORIGIN: u32 = 49;
-pub(super) const RC_CHANNELS: u32 = 65;
-pub(super) const VFR_HUD: u32 = 74;
-pub(super) const ATTITUDE_TARGET: u32 = 83;
-pub(super) const POSITION_TARGET_LOCAL_NED: u32 = 85;
-pub(super) const HIGHRES_IMU: u32 = 105;
-pub(super) const TIMESYNC: u32 = 111;
-pub(super) const SCALED_IMU2: u32 = 116;
-pub(super) const ALTITUDE: u32 = 141;
-pub(super) const BATTERY_STATUS: u32 = 147;
-pub(super) const AUTOPILOT_VERSION: u32 = 148;
-pub(super) const EKF_STATUS_REPORT: u32 = 193;
-pub(super) const RPM: u32 = 226;
-pub(super) const ESTIMATOR_STATUS: u32 = 230;
-pub(super) const HOME_POSITION: u32 = 242;
-pub(super) const EXTENDED_SYS_STATE: u32 = 245;
-pub(super) const ESC_INFO: u32 = 290;
-pub(super) const ESC_STATUS: u32 = 291;
-pub(super) const ODOMETRY: u32 = 331;
-pub(super) const ACTUATOR_OUTPUT_STATUS: u32 = 375;
-pub(super) const CURRENT_EVENT_SEQUENCE: u32 = 411;
-pub(super) const CURRENT_MODE: u32 = 436;
-pub(super) const ESC_TELEMETRY_1_TO_4: u32 = 11_030;
 
 /// ArduPilot refuses whatever is faster than this share of its loop rate (-).
 const ARDUPILOT_LOAD: f64 = 0.8;

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use super::action::Action;
 use super::battery::Thresholds;
 use super::demand::ThrustField;
 use super::fence::FenceRules;
@@ -9,19 +10,6 @@ use super::parameters::Parameters;
 use super::{ArduPilotRelease, AutopilotKind, Mode};
 use crate::simulate::{ShaperLaw, ShaperLimits, jerk_within};
 use crate::units::rad_from_deg;
-
-/// What a failsafe does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Action {
-    /// says so and goes on
-    Warn,
-    /// changes to this mode
-    Enter(Mode),
-    /// shows this mode but nobody holds the sticks: descends where it is
-    Descend(Mode),
-    /// rotors off
-    Terminate,
-}
 
 /// The flight's settings.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,12 +8,12 @@ use super::autopilot::{Autopilot, Severity, Text};
 use super::craft::Craft;
 use super::link::Link;
 use super::message::Message;
-use super::mission::Upload;
+use super::message_id::HEARTBEAT;
 use super::parameters::{Parameters, Pulses};
-use super::streams::HEARTBEAT;
 use super::telemetry::{Snapshot, Telemetry};
 use super::tuning::Tuning;
-use super::{Fault, LinkId, LinkRole, Mode, Settings, SitlError};
+use super::upload::Upload;
+use super::{Fault, LinkId, LinkRole, Mode, Outgoing, Settings, SitlError};
 use crate::link::{Signing, SigningKey, time_of};
 use crate::log::{Check, CrcSeeds, Frame, Payload};
 use crate::physics::MAX_ROTORS;
@@ -25,17 +25,6 @@ const STATUSTEXT: u32 = 253;
 const CHUNK_BYTES: usize = 50;
 /// Time between heartbeats.
 const HEARTBEAT_PERIOD: Duration = Duration::from_secs(1);
-
-/// A frame that the vehicle sends.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Outgoing {
-    /// on which connection
-    pub link: LinkId,
-    /// when it arrives, since the vehicle was made
-    pub time: Duration,
-    /// one MAVLink 2 frame
-    pub bytes: Vec<u8>,
-}
 
 /// What somebody who stands beside a vehicle sees of it, whatever its messages say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -63,7 +63,8 @@ impl Graph {
             if !seen.insert(file) || !reach[file].contains(&file) {
                 continue;
             }
-            let circle: Vec<usize> = reach[file].iter().copied().filter(|to| reach[*to].contains(&file)).collect();
+            let circle: Vec<usize> =
+                reach[file].iter().copied().filter(|to| reach[*to].contains(&file)).collect();
             seen.extend(&circle);
             circles.push(circle.iter().map(|file| self.files[*file].as_str()).collect::<Vec<_>>());
         }
@@ -119,7 +120,8 @@ impl Reader {
                     let child = if let Some((_, items)) = &inner.content {
                         self.module(src, &folder.join(&name), file, Some(at), items)
                     } else {
-                        let [flat, deep] = [format!("{name}.rs"), format!("{name}/mod.rs")].map(|end| folder.join(end));
+                        let [flat, deep] =
+                            [format!("{name}.rs"), format!("{name}/mod.rs")].map(|end| folder.join(end));
                         self.file(src, if src.join(&flat).exists() { &flat } else { &deep }, Some(at))
                     };
                     self.modules[at].children.insert(name, child);
@@ -222,7 +224,9 @@ impl Paths {
                     path.push(name.to_string());
                     colons = 0;
                 }
-                TokenTree::Punct(mark) if mark.as_char() == ':' && !path.is_empty() && colons < 2 => colons += 1,
+                TokenTree::Punct(mark) if mark.as_char() == ':' && !path.is_empty() && colons < 2 => {
+                    colons += 1
+                }
                 other => {
                     self.0.extend((!path.is_empty()).then(|| std::mem::take(&mut path)));
                     colons = 0;
@@ -291,7 +295,8 @@ fn named(modules: &[Module], at: usize, name: &str, rest: &[String], depth: usiz
         }
     }
     module.uses.iter().filter(|import| import.name == "*" && depth < 8).find_map(|import| {
-        let whole: Vec<String> = import.path.iter().cloned().chain([name.to_owned()]).chain(rest.iter().cloned()).collect();
+        let whole: Vec<String> =
+            import.path.iter().cloned().chain([name.to_owned()]).chain(rest.iter().cloned()).collect();
         resolve(modules, at, &whole, depth + 4)
     })
 }

@@ -2,40 +2,84 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
 
+mod graph;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Each stage and those directly below it. A stage may use these and all that they may use.
+use graph::Graph;
+
+/// Each stage, from the bottom, and all that it uses: no less, and no more.
 const LAYERS: &[(&str, &[&str])] = &[
     ("units", &[]),
     // what others wrote, made harmless where it enters
     ("text", &[]),
-    ("frames", &["units"]),
-    ("vehicle", &["units", "frames"]),
-    ("trajectory", &["units", "frames"]),
+    // of any series: nothing of flights, and no import
+    ("stats", &[]),
+    ("frames", &[]),
+    ("vehicle", &[]),
+    ("trajectory", &["frames"]),
     ("fence", &["frames"]),
-    ("physics", &["vehicle"]),
-    ("log", &["units", "frames", "text"]),
+    ("physics", &["units", "frames", "vehicle"]),
+    ("log", &["units", "text", "frames"]),
     // frames over sockets and serial ports, and their recording
-    ("link", &["log"]),
+    ("link", &["text", "log"]),
     // vehicle: from actuator values to force
-    ("signals", &["log", "vehicle"]),
-    ("regression", &["physics", "signals"]),
-    ("estimate", &["regression"]),
-    ("inspect", &["log", "signals", "regression", "estimate"]),
+    ("signals", &["stats", "vehicle", "log"]),
+    ("regression", &["signals"]),
+    ("estimate", &["stats", "vehicle", "signals", "regression"]),
+    ("inspect", &["units", "stats", "vehicle", "log", "signals", "regression", "estimate"]),
     // never estimate
-    ("simulate", &["physics", "signals", "log", "trajectory"]),
-    ("config", &["vehicle", "log", "trajectory"]),
-    ("compare", &["signals", "simulate"]),
+    ("simulate", &["units", "stats", "frames", "vehicle", "trajectory", "physics", "log"]),
+    ("config", &["units", "text", "vehicle", "trajectory", "log"]),
+    ("compare", &["vehicle", "physics", "log", "signals", "simulate"]),
     // estimate: what a flight will determine is for its estimator to say
-    ("plan", &["physics", "regression", "estimate", "simulate", "trajectory"]),
+    ("plan", &["units", "vehicle", "trajectory", "log", "signals", "regression", "estimate", "simulate"]),
     // plan: the flight that tells two explanations apart keeps the vehicle's limits
-    ("diagnose", &["regression", "estimate", "simulate", "compare", "plan"]),
+    (
+        "diagnose",
+        &[
+            "text",
+            "stats",
+            "vehicle",
+            "trajectory",
+            "physics",
+            "log",
+            "signals",
+            "regression",
+            "estimate",
+            "simulate",
+            "config",
+            "compare",
+            "plan",
+        ],
+    ),
     // config: a model file is a vehicle file
-    ("report", &["diagnose", "config"]),
-    ("export", &["diagnose"]),
-    ("sitl", &["physics", "simulate", "log", "link", "fence"]),
-    ("fly", &["plan", "log", "vehicle", "trajectory", "link", "fence"]),
+    (
+        "report",
+        &["text", "vehicle", "physics", "signals", "regression", "estimate", "config", "compare", "diagnose"],
+    ),
+    ("export", &["units", "text", "vehicle", "physics"]),
+    ("sitl", &["units", "frames", "vehicle", "fence", "physics", "log", "link", "simulate"]),
+    (
+        "fly",
+        &[
+            "units",
+            "text",
+            "frames",
+            "vehicle",
+            "trajectory",
+            "fence",
+            "physics",
+            "log",
+            "link",
+            "signals",
+            "regression",
+            "estimate",
+            "simulate",
+            "plan",
+        ],
+    ),
 ];
 
 /// The binary's own modules: they may use anything, and nothing of the library may use them.
@@ -145,19 +189,30 @@ fn imports(text: &str, depth: usize) -> BTreeSet<String> {
     found
 }
 
-/// Each stage with all that it may use, itself among it.
+/// Each stage with what it uses directly, itself among it.
 fn allowed() -> BTreeMap<&'static str, BTreeSet<&'static str>> {
-    let mut closed: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    let mut all: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for (stage, below) in LAYERS {
-        let mut all = BTreeSet::from([*stage]);
         for name in *below {
-            // LAYERS is in order from the bottom, so each name is closed already: there can be no cycle
-            let further = closed.get(name).unwrap_or_else(|| panic!("{stage} is listed above {name}"));
-            all.extend(further);
+            // in order from the bottom: there can be no circle
+            assert!(all.contains_key(name), "{stage} is listed above {name}");
         }
-        closed.insert(stage, all);
+        all.insert(stage, below.iter().copied().chain([*stage]).collect());
     }
-    closed
+    all
+}
+
+/// All stages that a stage reaches, itself among them.
+fn reached(stage: &str) -> BTreeSet<&'static str> {
+    let allowed = allowed();
+    let mut reached: BTreeSet<&str> = BTreeSet::new();
+    let mut open: Vec<&str> = allowed[stage].iter().copied().collect();
+    while let Some(name) = open.pop() {
+        if reached.insert(name) {
+            open.extend(&allowed[name]);
+        }
+    }
+    reached
 }
 
 #[test]
@@ -182,9 +237,73 @@ fn imports_point_one_way() {
     assert!(wrong.is_empty(), "imports against the layers:\n{}", wrong.join("\n"));
 }
 
+/// What a stage may use is what some file of it uses.
+#[test]
+fn the_layers_are_no_looser_than_what_is_used() {
+    let sources = sources();
+    let mut unused = Vec::new();
+    for (stage, below) in LAYERS {
+        let of_stage = sources.iter().filter(|source| source.module == *stage);
+        let used: BTreeSet<String> =
+            of_stage.flat_map(|source| imports(&source.text, source.depth)).collect();
+        unused.extend(
+            below.iter().filter(|name| !used.contains(**name)).map(|name| format!("{stage}: {name}")),
+        );
+    }
+    assert!(unused.is_empty(), "allowed and not used:\n{}", unused.join("\n"));
+}
+
+#[test]
+fn no_two_files_import_each_other() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    for root in ["lib.rs", "main.rs"] {
+        let graph = Graph::of(&src, root);
+        let circles = graph.circles();
+        println!("{root}: {} files, {} circles", graph.files.len(), circles.len());
+        let text: Vec<String> =
+            circles.iter().map(|circle| format!("{} files: {}", circle.len(), circle.join(" "))).collect();
+        assert!(circles.is_empty(), "circles of imports:\n{}", text.join("\n"));
+    }
+}
+
+/// `mod.rs` is a table of contents.
+#[test]
+fn mod_files_declare_and_export() {
+    let mut wrong = Vec::new();
+    for source in sources().iter().filter(|source| source.path.ends_with("/mod.rs")) {
+        let file = syn::parse_file(&source.text).unwrap();
+        let holds = |item: &syn::Item| match item {
+            syn::Item::Mod(inner) => inner.content.is_some(),
+            other => !matches!(other, syn::Item::Use(_)),
+        };
+        if file.items.iter().any(holds) {
+            wrong.push(source.path.clone());
+        }
+    }
+    assert!(wrong.is_empty(), "items in mod.rs, which belong into files of their own:\n{}", wrong.join("\n"));
+}
+
+/// An effect is known by its equation, its signature and the exporters: nothing else asks for one by its identifier.
+#[test]
+fn effects_are_asked_for_by_role_and_not_by_name() {
+    const MOST: usize = 20;
+    let own = ["physics/effects/", "diagnose/signatures/", "export/"];
+    let mut mentions = Vec::new();
+    for source in sources().iter().filter(|source| !own.iter().any(|path| source.path.starts_with(path))) {
+        let is_test = source.path.ends_with("tests.rs") || source.path.contains("/tests/");
+        let text = code(without_tests(&source.text));
+        for effect in mavid::physics::effects::ALL.iter().filter(|_| !is_test) {
+            let count = text.matches(&format!("\"{}\"", effect.id())).count();
+            mentions.extend((count > 0).then(|| format!("{}: {} {count} times", source.path, effect.id())));
+        }
+    }
+    println!("identifiers of effects outside of their own files: {}", mentions.len());
+    assert!(mentions.len() <= MOST, "at most {MOST} are allowed:\n{}", mentions.join("\n"));
+}
+
 #[test]
 fn simulation_never_sees_an_estimate() {
-    assert!(!allowed()["simulate"].contains("estimate"));
+    assert!(!reached("simulate").contains("estimate"));
 }
 
 #[test]
@@ -262,7 +381,8 @@ fn foreign_text_goes_through_one_place() {
     for source in sources().iter().filter(|source| source.module != "text") {
         let code = code(without_tests(&source.text));
         for needle in [".display()", "to_string_lossy()", "serde_json::to_string", "serde_json::to_writer"] {
-            let names_the_system = ["fly/runner/mod.rs", "link/transport/pty.rs", "link/transport/serial.rs"];
+            let names_the_system =
+                ["fly/runner/link_kind.rs", "link/transport/pty.rs", "link/transport/serial.rs"];
             let hands_on = needle == "to_string_lossy()" && names_the_system.contains(&source.path.as_str());
             if code.contains(needle) && !hands_on {
                 wrong.push(format!("{}: {needle}", source.path));

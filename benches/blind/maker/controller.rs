@@ -6,7 +6,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::GRAVITY;
 use super::body::{State, place, rotation, three};
-use super::path::{Path, Wanted};
+use super::path::{Path, RequestedEffects};
 use super::vehicle::Craft;
 
 /// What the estimates are wrong by, one sigma, anew each time.
@@ -110,7 +110,7 @@ impl Controller {
 }
 
 /// Specific force that a reference asks for, m/s^2, world.
-fn up(wanted: &Wanted) -> Vector3<f64> {
+fn up(wanted: &RequestedEffects) -> Vector3<f64> {
     wanted.acceleration + Vector3::new(0.0, 0.0, GRAVITY)
 }
 

@@ -7,7 +7,7 @@ use rand_distr::{Distribution, StandardNormal};
 use super::body::{Drive, SIZE, State, place, put, rotation, straighten, terminals, three};
 use super::controller::{Controller, Doubt};
 use super::hidden::{Gust, Hidden};
-use super::path::{Path, Wanted};
+use super::path::{Path, RequestedEffects};
 use super::vehicle::Craft;
 use super::{GRAVITY, dice, dopri};
 
@@ -40,7 +40,7 @@ pub struct Instant {
     /// rad by which the load's cord leans
     pub swing: f64,
     /// what was asked for
-    pub wanted: Wanted,
+    pub wanted: RequestedEffects,
 }
 
 /// Why a flight cannot be used.

@@ -25,7 +25,7 @@ pub struct Room {
 
 /// What is asked for at an instant.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Wanted {
+pub struct RequestedEffects {
     /// m, world
     pub position: Vector3<f64>,
     /// m/s
@@ -124,7 +124,7 @@ impl Path {
     }
 
     /// What is asked for `time` s after the flight's beginning.
-    pub fn at(&self, time: f64) -> Wanted {
+    pub fn at(&self, time: f64) -> RequestedEffects {
         let since = (time - HOVER).max(0.0);
         let [share, rise, bend] = blend(since / BLEND);
         let (rise, bend) = (rise / BLEND, bend / (BLEND * BLEND));
@@ -136,7 +136,7 @@ impl Path {
                 share * wave[2] + 2.0 * rise * wave[1] + bend * wave[0],
             ]
         });
-        Wanted {
+        RequestedEffects {
             position: Vector3::new(x[0], y[0], z[0] + self.height),
             velocity: Vector3::new(x[1], y[1], z[1]),
             acceleration: Vector3::new(x[2], y[2], z[2]),

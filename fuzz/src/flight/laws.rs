@@ -23,7 +23,9 @@ const KILLING: Duration = Duration::from_secs(8);
 pub struct Laws {
     /// modes that are ours: that in which setpoints are flown, and those that were asked for
     ours: Vec<u32>,
-    /// our mode was seen
+    /// the station has ordered or sent something: whatever mode the vehicle was left for before is nobody's takeover
+    began: bool,
+    /// our mode was seen since then
     engaged: bool,
     /// since when the latest report that the station took says another's mode
     other: Option<Duration>,
@@ -39,7 +41,16 @@ pub struct Laws {
 impl Laws {
     pub fn new(stack: Stack) -> Self {
         let ours = vec![modes(stack).external];
-        Self { ours, engaged: false, other: None, hands_off: false, killed: None, out_of_order: false, stack }
+        Self {
+            ours,
+            began: false,
+            engaged: false,
+            other: None,
+            hands_off: false,
+            killed: None,
+            out_of_order: false,
+            stack,
+        }
     }
 
     /// The station took a frame of the vehicle with a right checksum.
@@ -48,7 +59,7 @@ impl Laws {
             return;
         }
         let mode = frame.payload().u32(0);
-        self.engaged |= mode == modes(self.stack).external;
+        self.engaged |= self.began && mode == modes(self.stack).external;
         if !self.engaged || self.ours.contains(&mode) {
             self.other = None;
         } else {
@@ -84,6 +95,7 @@ impl Laws {
             );
             let killing = self.killed.is_some_and(|since| now.saturating_sub(since) < KILLING);
             assert!(!self.hands_off || killing, "a setpoint at {now:?} with hands off");
+            self.began = true;
             return;
         }
         let Some(command) = command_of(message) else { return };
@@ -101,6 +113,7 @@ impl Laws {
             self.out_of_order || self.other.is_none(),
             "{command:?} at {now:?}, and another has the vehicle: {self:?}"
         );
+        self.began = true;
     }
 
     /// A mode was asked for, whether the vehicle heard it or not.

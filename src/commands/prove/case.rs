@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use mavid::config::read_vehicle;
-use mavid::diagnose::show::{HeldOut, ShowSettings, Shown, on_holdout};
+use mavid::diagnose::holdout::{HeldOut, HoldoutFit, HoldoutSettings, on_holdout};
 use mavid::diagnose::{Empirical, ExplainSettings, Explanation, Named, explain};
 use mavid::log::Recording;
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
@@ -102,7 +102,7 @@ pub fn verdict(folder: &Path) -> Verdict {
     }
 }
 
-type Found = (Explanation, Option<Empirical>, Option<Shown>);
+type Found = (Explanation, Option<Empirical>, Option<HoldoutFit>);
 
 fn explained(folder: &Path, sha256: &mut Vec<String>) -> Result<Found, CommandError> {
     let vehicle = read_vehicle(&folder.join(VEHICLE))?.vehicle;
@@ -133,8 +133,9 @@ fn explained(folder: &Path, sha256: &mut Vec<String>) -> Result<Found, CommandEr
         .iter()
         .map(|(recording, signals)| HeldOut { name: "holdout", signals, recording: Some(recording) })
         .collect();
-    let shown = on_holdout((&explanation, empirical.as_ref()), &flights, &vehicle, &ShowSettings::default())
-        .map_err(|error| refuse(&error))?;
+    let shown =
+        on_holdout((&explanation, empirical.as_ref()), &flights, &vehicle, &HoldoutSettings::default())
+            .map_err(|error| refuse(&error))?;
     Ok((explanation, empirical, Some(shown)))
 }
 
@@ -198,7 +199,7 @@ fn effect(named: &Named) -> Effect {
     }
 }
 
-fn gain(shown: &Shown) -> Gain {
+fn gain(shown: &HoldoutFit) -> Gain {
     let quantities = shown.half_second().map_or([None; 4], |of| of.quantities());
     Gain {
         improvement_percent: shown.improvement_percent.map(|improvement| improvement.value),

@@ -3,7 +3,7 @@
 use mavid::text;
 use std::fmt::Write;
 
-use super::Document;
+use super::document::Document;
 use super::score::{Scored, SizeError};
 
 /// Writing to a String cannot fail.

@@ -3,6 +3,7 @@
 
 use super::super::channels::{AXES, Channels, SECOND};
 use super::super::fit::Fitted;
+use super::super::signature::EffectTerm;
 use super::super::trace::Trace;
 use super::gust::{GustFound, gust};
 use super::localisation::Localisation;
@@ -138,8 +139,8 @@ pub fn mass_step_std_kg(traces: &[Trace], fitted: &Fitted, at_s: f64) -> f64 {
 /// Leaves out the time about a mass change, which is known to some seconds only: a step at the wrong time is
 /// a large push of short duration, and not noise.
 fn quieten(view: &mut View, fitted: &Fitted) {
-    let changes = fitted.base.present.iter().filter(|present| present.effect.id() == "mass_change");
-    for at_s in changes.filter_map(|present| present.values.first()) {
+    let moment_s = |term: &EffectTerm| Some(term.values[term.signature.role.moment?]);
+    for at_s in fitted.base.present.iter().filter_map(moment_s) {
         for row in 0..view.len() {
             if (view.time_s[row] - at_s).abs() < CHANGE_S {
                 view.residual.iter_mut().for_each(|channel| channel[row] = 0.0);

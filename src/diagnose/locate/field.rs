@@ -6,6 +6,7 @@
 use super::super::channels::{AXES, CHANNELS, Channels, channels};
 use super::super::fit::Fitted;
 use super::super::trace::Trace;
+use crate::stats::quantile;
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -148,8 +149,7 @@ fn flown(traces: &[Trace], axis: usize) -> (f64, f64) {
         .flat_map(|trace| trace.centers.iter().map(move |&center| trace.states[center].position_m[axis]))
         .collect();
     values.sort_by(f64::total_cmp);
-    let last = values.len().saturating_sub(1);
-    let at = |percent: usize| values.get(last * percent / 100).copied().unwrap_or(0.0);
+    let at = |percent: usize| quantile(&values, (percent, 100)).unwrap_or(0.0);
     (at(2), at(98))
 }
 
@@ -289,13 +289,14 @@ fn uneven(traces: &[Trace], after: &Fitted) -> Vec<Uneven> {
             .enumerate()
             .filter_map(|(index, theta)| {
                 let slot = *present.free.get(index / places.len())?;
-                let nothing = if present.effect.id() == "weak_rotor" { 1.0 } else { 0.0 };
+                let nothing =
+                    if present.signature.role.which.is_some() { present.signature.nothing } else { 0.0 };
                 let strength = (present.values[slot] - nothing).abs();
                 (strength > 0.0).then(|| theta.abs() / strength)
             })
             .fold(0.0, f64::max);
         if evidence.z > UNEVEN_Z && spread > UNEVEN_SPREAD {
-            out.push(Uneven { id: present.effect.id(), z: evidence.z, spread });
+            out.push(Uneven { id: present.id(), z: evidence.z, spread });
         }
     }
     out

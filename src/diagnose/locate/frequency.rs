@@ -4,8 +4,8 @@ use super::super::channels::AXES;
 use super::super::trace::Trace;
 use super::spectrum::{Ordinate, noise_shapes};
 use super::view::{Followed, View};
+use crate::stats::{coherence, coherence_of_noise, hann_windowed, transform};
 use rayon::prelude::*;
-use std::f64::consts::TAU;
 
 /// Frequencies between which most of a channel's misfit lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,11 +89,10 @@ pub(super) fn coherences(view: &View, traces: &[Trace]) -> Vec<Coherence> {
     if windows.len() < LEAST_WINDOWS {
         return Vec::new();
     }
-    // neighbouring Hann windows that overlap by half share a little: they count for this much
-    let free = 0.95 * windows.len() as f64;
-    let noise = 1.0 - 0.05_f64.powf(1.0 / (free - 1.0));
-    let spectra = |series: &[f64]| -> Vec<Vec<(f64, f64)>> {
-        windows.iter().map(|&from| windowed(&series[from..from + length], view.step_s)).collect()
+    let noise = coherence_of_noise(windows.len());
+    let spectra = |series: &[f64]| -> Vec<Vec<_>> {
+        let windowed = windows.iter().map(|&from| hann_windowed(&series[from..from + length]));
+        windowed.map(|window| transform(&window, view.step_s, HIGHEST_HZ)).collect()
     };
     let of_inputs: Vec<_> = inputs.par_iter().map(|(_, values)| spectra(values)).collect();
     let of_channels: Vec<_> =
@@ -101,7 +100,8 @@ pub(super) fn coherences(view: &View, traces: &[Trace]) -> Vec<Coherence> {
     let mut out = Vec::new();
     for (channel, residual) in of_channels.iter().enumerate() {
         for ((state, _), input) in inputs.iter().zip(&of_inputs) {
-            let (mean, frequency_hz) = squared(residual, input, length as f64 * view.step_s);
+            let found = coherence(residual, input);
+            let (mean, frequency_hz) = (found.mean, found.frequency_hz);
             out.push(Coherence { channel, with: *state, mean, noise, frequency_hz });
         }
     }
@@ -120,51 +120,4 @@ fn windows(view: &View, length: usize) -> Vec<usize> {
         }
     }
     out
-}
-
-/// Fourier coefficients of a windowed series from the first bin to the highest frequency.
-fn windowed(series: &[f64], step_s: f64) -> Vec<(f64, f64)> {
-    let count = series.len() as f64;
-    let mean = series.iter().sum::<f64>() / count;
-    let tapered: Vec<f64> = series
-        .iter()
-        .enumerate()
-        .map(|(i, value)| (value - mean) * (0.5 - 0.5 * (TAU * i as f64 / count).cos()))
-        .collect();
-    let mut out = Vec::new();
-    let mut bin = 1.0;
-    while bin / (count * step_s) <= HIGHEST_HZ {
-        let (turn_sin, turn_cos) = (TAU * bin / count).sin_cos();
-        let (mut re, mut im, mut s, mut c) = (0.0, 0.0, 0.0_f64, 1.0_f64);
-        for value in &tapered {
-            re += value * c;
-            im -= value * s;
-            (s, c) = (s * turn_cos + c * turn_sin, c * turn_cos - s * turn_sin);
-        }
-        out.push((re, im));
-        bin += 1.0;
-    }
-    out
-}
-
-/// Power-weighted mean of the squared coherence, and the frequency that gives most to it.
-fn squared(residual: &[Vec<(f64, f64)>], input: &[Vec<(f64, f64)>], length_s: f64) -> (f64, f64) {
-    let bins = residual.first().map_or(0, Vec::len);
-    let (mut weighted, mut power, mut best) = (0.0, 0.0, (0.0, 0.0));
-    for bin in 0..bins {
-        let (mut rr, mut ii, mut re, mut im) = (0.0, 0.0, 0.0, 0.0);
-        for (r, i) in residual.iter().zip(input).map(|(r, i)| (r[bin], i[bin])) {
-            rr += r.0 * r.0 + r.1 * r.1;
-            ii += i.0 * i.0 + i.1 * i.1;
-            re += r.0 * i.0 + r.1 * i.1;
-            im += r.1 * i.0 - r.0 * i.1;
-        }
-        let moved = if ii > 0.0 { (re * re + im * im) / ii } else { 0.0 };
-        weighted += moved;
-        power += rr;
-        if moved > best.1 {
-            best = ((bin + 1) as f64 / length_s, moved);
-        }
-    }
-    (if power > 0.0 { weighted / power } else { 0.0 }, best.0)
 }

@@ -2,9 +2,10 @@
 
 use super::lateral_drag::lateral_drag;
 use super::redness::{CONTRADICTED, Quantity, RED_STATISTIC, Redness, beside_harmonics, red_fit, red_shape};
-use super::spectrum::{Ordinate, Whittle, noise_shapes, whittle};
+use super::spectrum::{Ordinate, noise_shapes};
 use super::view::View;
 use crate::diagnose::fit::Fitted;
+use crate::stats::{Whittle, whittle};
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 

@@ -2,6 +2,7 @@
 
 use super::super::fit::Fitted;
 use super::view::{Followed, View};
+use crate::diagnose::signature::EffectTerm;
 
 /// Lateral drag of the accepted effects with its standard error, N/(m/s) at the speeds flown.
 pub(super) fn lateral_drag(view: &View, fitted: &Fitted) -> Option<(f64, f64)> {
@@ -10,12 +11,7 @@ pub(super) fn lateral_drag(view: &View, fitted: &Fitted) -> Option<(f64, f64)> {
     let speed = view.states.iter().find(|(state, _)| *state == Followed::Speed).map(|(_, values)| values);
     let mean_speed = speed.map_or(0.0, |values| values.iter().sum::<f64>() / values.len().max(1) as f64);
     for present in &fitted.base.present {
-        // a quadratic drag's slope, mean of along and across the motion
-        let slope = match present.effect.id() {
-            "linear_drag" => 1.0,
-            "quadratic_drag" => 1.5 * mean_speed,
-            _ => 0.0,
-        };
+        let slope = present.signature.role.lateral_slope.map_or(0.0, |slope| slope(mean_speed));
         if slope > 0.0 {
             drag += slope * 0.5 * (present.values[0] + present.values[1]);
             for (index, slot) in present.free.iter().enumerate() {
@@ -31,10 +27,6 @@ pub(super) fn lateral_drag(view: &View, fitted: &Fitted) -> Option<(f64, f64)> {
 
 /// Drag of the accepted effects along body z, N/(m/s).
 pub(super) fn axial_drag_n_s_m(fitted: &Fitted) -> f64 {
-    let along_z = fitted.base.present.iter().filter_map(|present| match present.effect.id() {
-        "linear_drag" => present.values.get(2),
-        "inflow" => present.values.first(),
-        _ => None,
-    });
-    along_z.sum()
+    let along_z = |term: &EffectTerm| term.values.get(term.signature.role.axial?).copied();
+    fitted.base.present.iter().filter_map(along_z).sum()
 }

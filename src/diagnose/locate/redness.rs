@@ -2,8 +2,9 @@
 
 use super::super::fit::Fitted;
 use super::lateral_drag::{axial_drag_n_s_m, lateral_drag};
-use super::spectrum::{Ordinate, VELOCITY_SCALE_S2, Whittle, noise_shapes, periodogram, whittle};
+use super::spectrum::{Ordinate, VELOCITY_SCALE_S2, noise_shapes, periodogram};
 use super::view::View;
+use crate::stats::{Whittle, whittle};
 use std::f64::consts::TAU;
 
 /// Quantities that are looked at for trends and redness.

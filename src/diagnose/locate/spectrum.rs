@@ -5,7 +5,7 @@
 
 use super::view::View;
 use crate::signals::WeakKernel;
-use nalgebra::{DMatrix, DVector};
+use crate::stats::{transform, whittle, without_line};
 use std::f64::consts::TAU;
 
 /// Highest frequency that the fits look at, Hz; the kernel lets little pass beyond.
@@ -47,46 +47,17 @@ pub(super) fn periodogram(view: &View, series: &[f64]) -> Vec<Ordinate> {
             from += 1;
         }
         let values = without_line(&series[from..run.end]);
-        transform(&values, (view.step_s, period_s), &mut out);
+        let count = values.len() as f64;
+        let length_s = count * view.step_s;
+        out.extend(transform(&values, view.step_s, HIGHEST_HZ).into_iter().map(|(frequency_hz, value)| {
+            let harmonic = period_s.is_some_and(|period_s| {
+                let turns = frequency_hz * period_s;
+                turns > 0.5 && (turns - turns.round()).abs() < 0.6 * period_s / length_s
+            });
+            Ordinate { frequency_hz, power: value.norm_sqr() / count, harmonic }
+        }));
     }
     out
-}
-
-fn transform(values: &[f64], (step_s, period_s): (f64, Option<f64>), out: &mut Vec<Ordinate>) {
-    let length_s = values.len() as f64 * step_s;
-    let mut bin = 1.0;
-    while bin / length_s <= HIGHEST_HZ {
-        let frequency_hz = bin / length_s;
-        let (turn_sin, turn_cos) = (TAU * frequency_hz * step_s).sin_cos();
-        let (mut re, mut im, mut s, mut c) = (0.0, 0.0, 0.0_f64, 1.0_f64);
-        for value in values {
-            re += value * c;
-            im += value * s;
-            (s, c) = (s * turn_cos + c * turn_sin, c * turn_cos - s * turn_sin);
-        }
-        let harmonic = period_s.is_some_and(|period_s| {
-            let turns = frequency_hz * period_s;
-            turns > 0.5 && (turns - turns.round()).abs() < 0.6 * period_s / length_s
-        });
-        let power = (re * re + im * im) / values.len() as f64;
-        out.push(Ordinate { frequency_hz, power, harmonic });
-        bin += 1.0;
-    }
-}
-
-/// Less the least-squares line.
-pub(super) fn without_line(values: &[f64]) -> Vec<f64> {
-    let count = values.len() as f64;
-    let middle = 0.5 * (count - 1.0);
-    let mean = values.iter().sum::<f64>() / count.max(1.0);
-    let (mut up, mut down) = (0.0, 0.0);
-    for (index, value) in values.iter().enumerate() {
-        let x = index as f64 - middle;
-        up += x * value;
-        down += x * x;
-    }
-    let slope = if down > 0.0 { up / down } else { 0.0 };
-    values.iter().enumerate().map(|(index, value)| value - mean - slope * (index as f64 - middle)).collect()
 }
 
 /// Power with which the kernel's order lets a frequency pass, of 1 for order 0 at zero.
@@ -106,74 +77,6 @@ pub(super) fn kernel_power(
     re += kernel.at(order, &waves[0], half);
     im += kernel.at(order, &waves[1], half);
     re * re + im * im
-}
-
-/// A spectrum as a sum of shapes, fitted by Whittle's likelihood.
-#[derive(Debug, Clone)]
-pub(super) struct Whittle {
-    /// of each shape, not negative
-    pub(super) coefficients: Vec<f64>,
-    /// of the whole at each ordinate
-    pub(super) spectrum: Vec<f64>,
-    /// `sum ln S + I/S`
-    pub(super) deviance: f64,
-}
-
-/// Fits `power` (one an ordinate) by `shapes` (each one value an ordinate); `None` where nothing fits.
-pub(super) fn whittle(power: &[f64], shapes: &[&[f64]]) -> Option<Whittle> {
-    let count = power.len();
-    if count < shapes.len() + 2 {
-        return None;
-    }
-    let mean = power.iter().sum::<f64>() / count as f64;
-    if mean.is_nan() || mean <= 0.0 {
-        return None;
-    }
-    let mut spectrum = vec![mean; count];
-    let mut coefficients = vec![0.0; shapes.len()];
-    for _ in 0..25 {
-        let next = weighted_fit(power, shapes, &spectrum)?;
-        let moved = next.iter().zip(&coefficients).any(|(a, b)| (a - b).abs() > 1e-5 * a.abs().max(b.abs()));
-        coefficients = next;
-        spectrum = (0..count)
-            .map(|i| shapes.iter().zip(&coefficients).map(|(s, c)| s[i] * c).sum::<f64>().max(1e-9 * mean))
-            .collect();
-        if !moved {
-            break;
-        }
-    }
-    let deviance = power.iter().zip(&spectrum).map(|(i, s)| s.ln() + i / s).sum();
-    Some(Whittle { coefficients, spectrum, deviance })
-}
-
-/// Least squares weighted by the inverse square of `spectrum`, negative shapes left out.
-fn weighted_fit(power: &[f64], shapes: &[&[f64]], spectrum: &[f64]) -> Option<Vec<f64>> {
-    let mut used: Vec<usize> = (0..shapes.len()).collect();
-    while !used.is_empty() {
-        let size = used.len();
-        let mut normal = DMatrix::<f64>::zeros(size, size);
-        let mut right = DVector::<f64>::zeros(size);
-        for (row, (power, spectrum)) in power.iter().zip(spectrum).enumerate() {
-            let weight = spectrum.powi(-2);
-            for (a, &i) in used.iter().enumerate() {
-                right[a] += weight * shapes[i][row] * power;
-                for (b, &j) in used.iter().enumerate() {
-                    normal[(a, b)] += weight * shapes[i][row] * shapes[j][row];
-                }
-            }
-        }
-        let scale = normal.diagonal().map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });
-        let scaled = DMatrix::from_fn(size, size, |i, j| normal[(i, j)] * scale[i] * scale[j]);
-        let solved = scaled.cholesky()?.solve(&right.component_mul(&scale)).component_mul(&scale);
-        let least = (0..size).min_by(|&a, &b| (solved[a] / scale[a]).total_cmp(&(solved[b] / scale[b])))?;
-        if solved[least] >= 0.0 {
-            let mut out = vec![0.0; shapes.len()];
-            used.iter().zip(solved.iter()).for_each(|(&place, value)| out[place] = *value);
-            return Some(out);
-        }
-        used.remove(least);
-    }
-    None
 }
 
 /// Variance that white sensor noise gives a channel: the kernels' shapes fitted between 1.5 and 4 Hz, where
@@ -223,18 +126,5 @@ mod tests {
             let found = noise_variance(view, &periodogram(view, &view.residual[2])).unwrap();
             assert!((found / expected - 1.0).abs() < 0.25, "{found} {expected}");
         }
-    }
-
-    #[test]
-    fn a_sum_of_shapes_is_found_and_none_is_negative() {
-        let shapes: [Vec<f64>; 2] = [
-            (0..200).map(|i| 1.0 + f64::from(i)).collect(),
-            (0..200).map(|i| 300.0 / (1.0 + f64::from(i))).collect(),
-        ];
-        let power: Vec<f64> = (0..200).map(|i| 2.0 * shapes[0][i] + 5.0 * shapes[1][i]).collect();
-        let fit = whittle(&power, &[&shapes[0], &shapes[1]]).unwrap();
-        assert!((fit.coefficients[0] - 2.0).abs() < 1e-3 && (fit.coefficients[1] - 5.0).abs() < 1e-3);
-        let only = whittle(&shapes[0], &[&shapes[0], &shapes[1]]).unwrap();
-        assert!(only.coefficients.iter().all(|c| *c >= 0.0));
     }
 }

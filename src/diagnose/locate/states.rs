@@ -2,11 +2,9 @@
 //! taken out by an additive model.
 
 use super::view::{Followed, View};
+use crate::stats::{f_tail, median, quantile, resamples};
 use nalgebra::{DMatrix, DVector};
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 /// Equal-count bins of a state.
 const BINS: usize = 12;
@@ -132,7 +130,7 @@ fn variance_ratio(cut: &Cut, residual: &[f64]) -> (f64, f64, f64) {
     }
     let noise = within / free_within;
     let f = between / free_between / noise;
-    let p = FisherSnedecor::new(free_between, free_within).map_or(1.0, |law| law.sf(f));
+    let p = f_tail(f, (free_between, free_within));
     let energy: f64 = residual.iter().map(|v| v * v).sum();
     let share = (between - free_between * noise).max(0.0) / energy.max(f64::MIN_POSITIVE);
     (f, p, share.min(1.0))
@@ -280,12 +278,10 @@ fn bins(cut: &Cut, residual: &[f64], channel: usize) -> Vec<Bin> {
         centers[bin].1 += 1.0;
     }
     let stream = SEED ^ (channel as u64) << 8 ^ cut.values.len() as u64;
-    let mut rng = Pcg64Mcg::seed_from_u64(stream);
     let mut drawn: Vec<Vec<f64>> = vec![Vec::new(); BINS];
-    for _ in 0..RESAMPLES {
+    for picks in resamples(cut.blocks, RESAMPLES, stream) {
         let mut totals = [(0.0, 0.0); BINS];
-        for _ in 0..cut.blocks {
-            let block = rng.random_range(0..cut.blocks);
+        for block in picks {
             for (total, cell) in totals.iter_mut().zip(&sums[block * BINS..(block + 1) * BINS]) {
                 total.0 += cell.0;
                 total.1 += cell.1;
@@ -303,9 +299,7 @@ fn bins(cut: &Cut, residual: &[f64], channel: usize) -> Vec<Bin> {
             let drawn = &mut drawn[bin];
             drawn.sort_by(f64::total_cmp);
             let mean = sum / f64::max(count, 1.0);
-            let at = |permille: usize| {
-                drawn.get(drawn.len().saturating_sub(1) * permille / 1000).copied().unwrap_or(mean)
-            };
+            let at = |permille: usize| quantile(drawn, (permille, 1000)).unwrap_or(mean);
             let center = centers[bin].0 / f64::max(centers[bin].1, 1.0);
             Bin { center, mean, low: at(25), high: at(975) }
         })
@@ -315,8 +309,7 @@ fn bins(cut: &Cut, residual: &[f64], channel: usize) -> Vec<Bin> {
 /// Where the mean is farthest from the bins' median.
 fn peak(bins: &[Bin]) -> f64 {
     let mut means: Vec<f64> = bins.iter().map(|bin| bin.mean).collect();
-    means.sort_by(f64::total_cmp);
-    let median = means.get(means.len() / 2).copied().unwrap_or(0.0);
+    let median = median(&mut means);
     bins.iter()
         .max_by(|a, b| (a.mean - median).abs().total_cmp(&(b.mean - median).abs()))
         .map_or(0.0, |bin| bin.center)

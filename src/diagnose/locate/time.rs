@@ -2,6 +2,7 @@
 
 use super::super::channels::AXES;
 use super::view::View;
+use crate::stats::normal_sigma;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
 
@@ -196,8 +197,7 @@ fn long_run_variance(means: &[Mean]) -> Option<f64> {
     if apart.len() < 4 * SIDE {
         return None;
     }
-    apart.sort_by(f64::total_cmp);
-    let deviation = 1.4826 * apart[apart.len() / 2];
+    let deviation = normal_sigma(&mut apart);
     Some(0.5 * deviation * deviation).filter(|variance| *variance > 0.0)
 }
 

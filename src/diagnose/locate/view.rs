@@ -5,6 +5,7 @@ use super::super::fit::Fitted;
 use super::super::harmonics::flown_period_s;
 use super::super::trace::Trace;
 use crate::signals::{WeakKernel, central_difference};
+use crate::stats::median_step;
 use nalgebra::Vector3;
 use std::ops::Range;
 
@@ -134,7 +135,7 @@ impl View {
         });
         let mut view = Self {
             time_s: fitted.rows.time_s.clone(),
-            step_s: median_step(&fitted.rows.time_s)?,
+            step_s: Some(median_step(&fitted.rows.time_s)).filter(|step_s| *step_s > 0.0)?,
             flights: Vec::new(),
             runs: fitted.rows.runs.clone(),
             blocks: Vec::with_capacity(rows),
@@ -195,7 +196,7 @@ impl View {
             .base
             .present
             .iter()
-            .find(|present| present.effect.id() == "steady_wind")
+            .find(|term| term.signature.role.wind.is_some())
             .map_or(Vector3::zeros(), |present| {
                 Vector3::new(present.values[0], present.values[1], present.values[2])
             });
@@ -288,12 +289,6 @@ fn moves(values: &[f64]) -> bool {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
     values.iter().all(|v| v.is_finite()) && high - low > 1e-9 * high.abs().max(1e-6)
-}
-
-fn median_step(time_s: &[f64]) -> Option<f64> {
-    let mut steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().filter(|step| *step > 0.0)
 }
 
 #[cfg(test)]

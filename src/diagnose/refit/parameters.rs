@@ -149,7 +149,7 @@ impl Unknowns {
         for &Slot { effect, slot, .. } in &self.slots {
             let present = &self.base.present[effect];
             let (name, unit) = present.parameter(slot).map_or(("", "-"), |of| (of.name, of.unit));
-            out.push((format!("{}.{name}", present.effect.id()), unit));
+            out.push((format!("{}.{name}", present.id()), unit));
         }
         out
     }

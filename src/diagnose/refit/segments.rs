@@ -2,7 +2,7 @@
 
 use super::settings::RefitSettings;
 use crate::diagnose::base::Base;
-use crate::diagnose::rotors::Turning;
+use crate::diagnose::rotors::RotorMotion;
 use crate::diagnose::trace::Trace;
 use crate::physics::{Input, Model, State};
 use crate::signals::Grid;
@@ -50,7 +50,7 @@ pub(super) fn cut(traces: &[Trace], settings: &RefitSettings) -> Vec<Segment> {
 /// A base ready to be simulated along the flights.
 pub(super) struct Shooter {
     model: Model,
-    turning: Vec<Turning>,
+    turning: Vec<RotorMotion>,
 }
 
 impl Shooter {
@@ -60,7 +60,7 @@ impl Shooter {
             .iter()
             .map(|trace| {
                 let felt = trace.felt_n(&model.airframe, base.latency);
-                Turning::new(felt, &model.airframe, trace.grid.step_s)
+                RotorMotion::new(felt, &model.airframe, trace.grid.step_s)
             })
             .collect();
         Ok(Self { model, turning })
@@ -92,7 +92,7 @@ impl Shooter {
     }
 
     /// What acts from one instant to the next: the middle of both.
-    fn input(&self, trace: &Trace, turning: &Turning, index: usize) -> Input {
+    fn input(&self, trace: &Trace, turning: &RotorMotion, index: usize) -> Input {
         let airframe = &self.model.airframe;
         let next = (index + 1).min(turning.thrust_n.len() - 1);
         let time_s = trace.grid.time_s(index) + 0.5 * trace.grid.step_s;

@@ -7,7 +7,7 @@ use super::settings::RefitSettings;
 use super::{segments, solve};
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::fit::Fitted;
-use crate::diagnose::show::state_noise;
+use crate::diagnose::holdout::state_noise;
 use crate::diagnose::trace::Trace;
 use crate::physics::Airframe;
 use crate::signals::Signals;
@@ -32,8 +32,8 @@ pub fn refit(
     }
     let fitted = &explanation.search.after;
     let airframe = Airframe::new(&fitted.base.vehicle)?;
-    if let Some(own) = fitted.base.present.iter().find(|of| of.effect.state_count(&airframe) > 0) {
-        return Err(RefitError::OwnStates { id: own.effect.id() });
+    if let Some(own) = fitted.base.present.iter().find(|of| of.effect().state_count(&airframe) > 0) {
+        return Err(RefitError::OwnStates { id: own.id() });
     }
     let unknowns = Unknowns::of(&fitted.base).ok_or(RefitError::NoBody)?;
     let segments = segments::cut(&traces, settings);

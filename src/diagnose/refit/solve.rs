@@ -117,7 +117,7 @@ fn weights(residuals: &[DVector<f64>], segments: &[Segment]) -> DVector<f64> {
     DVector::from_fn(length, |entry, _| {
         let mut sizes: Vec<f64> =
             residuals.iter().filter_map(|of| of.get(entry)).map(|value| value.abs()).collect();
-        let std = 1.4826 * crate::signals::median(&mut sizes);
+        let std = crate::stats::normal_sigma(&mut sizes);
         if std > 0.0 { std.powi(-2) } else { 0.0 }
     })
 }

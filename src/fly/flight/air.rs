@@ -6,7 +6,8 @@ use std::time::Duration;
 use nalgebra::Vector3;
 
 use super::gate::Gate;
-use super::{Flight, Phase};
+use super::phase::Phase;
+use super::state::Flight;
 use crate::fly::commander::Manner;
 use crate::fly::course::{CLIMB_M_S, PathClock, TRANSFER_M_S, TURN_RAD_S, Track, transfer};
 use crate::fly::health::BatteryLevel;

@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use super::{Action, Flight, Phase};
+use super::action::Action;
+use super::phase::Phase;
+use super::state::Flight;
 use crate::fly::commander::{Manner, Permission};
 use crate::fly::modes::Mode;
 use crate::fly::outcome::{Cause, Level};

@@ -1,40 +1,25 @@
-//! The start gate: the trajectory begins once the vehicle stands still at its start.
+//! How well the vehicle hovers at the start gate, and for how long the gate has been open.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use super::Flight;
-use crate::fly::health::BatteryLevel;
-use crate::fly::outcome::{Cause, Level};
 use crate::fly::safety::Sustained;
-use crate::fly::setpoint::wrapped;
 
-/// What is asked for at first.
-const NEAR_M: f64 = 0.3;
-const SLOW_M_S: f64 = 0.2;
-const TURNED_RAD: f64 = 0.15;
-/// For how long it must keep to that.
-const HOLDS: Duration = Duration::from_secs(1);
 /// A vehicle that hovers less well is watched for so long, and judged by the worst of it.
 const WATCHED: Duration = Duration::from_secs(5);
-/// More than it did while it was watched.
-const SPARE: f64 = 1.25;
-/// No more than this share of the tracking limit is ever allowed, and no more than this speed.
-const SHARE_OF_TRACKING: f64 = 0.6;
-const FAST_M_S: f64 = 0.6;
 
 /// How well the vehicle hovers, and for how long the gate has been open.
 #[derive(Debug, Default)]
 pub(super) struct Gate {
-    open: Sustained,
+    pub(super) open: Sustained,
     /// when, m off the start, m/s
     hover: VecDeque<(Duration, f64, f64)>,
     begun: Option<Duration>,
-    told: bool,
+    pub(super) told: bool,
 }
 
 impl Gate {
-    fn watch(&mut self, now: Duration, off_m: f64, speed_m_s: f64) {
+    pub(super) fn watch(&mut self, now: Duration, off_m: f64, speed_m_s: f64) {
         self.begun.get_or_insert(now);
         self.hover.push_back((now, off_m, speed_m_s));
         while self.hover.front().is_some_and(|(at, ..)| now.saturating_sub(*at) > WATCHED) {
@@ -43,98 +28,12 @@ impl Gate {
     }
 
     /// The worst distance (m) and speed (m/s) of the last seconds; `None` before there are enough.
-    fn worst(&self, now: Duration) -> Option<(f64, f64)> {
+    pub(super) fn worst(&self, now: Duration) -> Option<(f64, f64)> {
         self.begun.filter(|begun| now.saturating_sub(*begun) >= WATCHED)?;
         let worst = self.hover.iter().fold((0.0_f64, 0.0_f64), |(off_m, speed_m_s), (_, off, speed)| {
             (off_m.max(*off), speed_m_s.max(*speed))
         });
         Some(worst)
-    }
-}
-
-impl Flight {
-    pub(super) fn gate(&mut self, now: Duration) {
-        let (allowed_m, allowed_m_s) = self.gate_allows(now);
-        let missing = self.gate_misses(now, (allowed_m, allowed_m_s));
-        if !missing.is_empty()
-            && let Some(lift) = &mut self.lift
-        {
-            lift.clear();
-        }
-        if self.gate.open.update(now, missing.is_empty()) >= HOLDS {
-            self.weigh(now);
-            self.begin_course(now);
-        } else if now.saturating_sub(self.entered) > self.sortie.settings.reach_timeout {
-            let remedy = "allow more with --gate-distance and --gate-speed where the room permits, or have the vehicle \
-                          hold its position better";
-            self.end(
-                now,
-                Cause::NotReached(format!("the start gate stays shut: {} ({remedy})", missing.join("; "))),
-            );
-        }
-    }
-
-    /// m and m/s that are allowed: what the operator says, or the usual, or what the vehicle has shown in hover.
-    fn gate_allows(&mut self, now: Duration) -> (f64, f64) {
-        let settings = &self.sortie.settings;
-        let (most_m, most_m_s) = (SHARE_OF_TRACKING * settings.tracking_max_m, FAST_M_S);
-        let (stated_m, stated_m_s) = (settings.gate_m, settings.gate_m_s);
-        if let (Some(start), Some(here), Some((_, velocity_m_s))) =
-            (self.start(), self.place_now(), self.motion_now())
-        {
-            self.gate.watch(now, (here.position_m - start.position_m).norm(), velocity_m_s.norm());
-        }
-        let worst = self.gate.worst(now);
-        let grown = |usual: f64, worst: f64, most: f64| (SPARE * worst).clamp(usual, most.max(usual));
-        let (hover_m, hover_m_s) = worst.map_or((NEAR_M, SLOW_M_S), |(off_m, speed_m_s)| {
-            (grown(NEAR_M, off_m, most_m), grown(SLOW_M_S, speed_m_s, most_m_s))
-        });
-        let allowed = (stated_m.unwrap_or(hover_m), stated_m_s.unwrap_or(hover_m_s));
-        if (allowed.0 > NEAR_M && stated_m.is_none() || allowed.1 > SLOW_M_S && stated_m_s.is_none())
-            && !std::mem::replace(&mut self.gate.told, true)
-        {
-            let text = format!(
-                "it hovers no nearer than it does: the start gate opens within {:.2} m and {:.2} m/s instead of {NEAR_M} m \
-                 and {SLOW_M_S} m/s",
-                allowed.0, allowed.1
-            );
-            self.note(now, Level::Warning, "gate", text);
-        }
-        allowed
-    }
-
-    fn gate_misses(&self, now: Duration, (allowed_m, allowed_m_s): (f64, f64)) -> Vec<String> {
-        let (Some(start), Some(here), Some((_, velocity_m_s))) =
-            (self.start(), self.place_now(), self.motion_now())
-        else {
-            return vec!["its position is not known".to_owned()];
-        };
-        let mut missing = Vec::new();
-        let off_m = (here.position_m - start.position_m).norm();
-        if off_m > allowed_m {
-            missing.push(format!("{off_m:.2} m off the start, {allowed_m:.2} m are allowed"));
-        }
-        let speed_m_s = velocity_m_s.norm();
-        if speed_m_s > allowed_m_s {
-            missing.push(format!("{speed_m_s:.2} m/s, {allowed_m_s:.2} m/s are allowed"));
-        }
-        let turned_rad = wrapped(here.yaw_rad - start.yaw_rad).abs();
-        if turned_rad > TURNED_RAD {
-            missing.push(format!("heading {turned_rad:.2} rad off, {TURNED_RAD} rad are allowed"));
-        }
-        if let Some(contact) = &self.contact {
-            missing.extend(contact.telemetry.estimator_faults(now));
-        }
-        if self.battery_level() > BatteryLevel::Good {
-            missing.push("the battery is low".to_owned());
-        }
-        if self.watch.is_paused() {
-            missing.push("nothing is heard of the vehicle".to_owned());
-        }
-        if self.known.is_in_doubt() {
-            missing.push("its mode is not known since a silence".to_owned());
-        }
-        missing
     }
 }
 

@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use super::{Flight, Phase};
+use super::checking::{AUTOPILOT_VERSION, Checking, interval};
+use super::phase::Phase;
+use super::state::{Contact, Flight};
 use crate::fly::commander::{Answer, AnswerResult, Manner};
 use crate::fly::health::BatteryLevel;
 use crate::fly::modes::{Mode, Stack};
@@ -11,7 +13,7 @@ use crate::fly::roster::Choice;
 use crate::fly::safety::Lead;
 use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
-use crate::fly::target::{Order, Period};
+use crate::fly::target::Order;
 use crate::fly::telemetry::Telemetry;
 use crate::log::Payload;
 use mavlink::dialects::ardupilotmega::MavCmd;
@@ -24,53 +26,8 @@ const PRIME: Duration = Duration::from_millis(1500);
 const POSITION_FRESH: Duration = Duration::from_millis(500);
 /// A trajectory that starts further from the vehicle, m, is in the wrong place.
 const START_MAX_M: f64 = 5.0;
-const AUTOPILOT_VERSION: u16 = 148;
 /// Where it says the release.
 const FLIGHT_SW_VERSION: usize = 16;
-/// One in five datagrams lost: the version stays away once in three thousand flights.
-const VERSION_CHANCES: u32 = 4;
-
-/// Messages that the safety rules rest on, and how often, Hz: LOCAL_POSITION_NED, ATTITUDE_QUATERNION,
-/// SYS_STATUS, EXTENDED_SYS_STATE, BATTERY_STATUS, CURRENT_MODE, POSITION_TARGET_LOCAL_NED, and the
-/// estimator's own report.
-const STREAMS: [(u16, u16); 7] = [(32, 30), (31, 50), (1, 2), (245, 5), (147, 1), (436, 10), (85, 27)];
-const PX4_STREAMS: [(u16, u16); 2] = [(230, 2), (331, 30)];
-/// ArduPilot has no CURRENT_MODE: its HEARTBEAT tells of a pilot who takes over.
-const ARDUPILOT_STREAMS: [(u16, u16); 2] = [(193, 2), (0, 5)];
-
-/// What is asked before the flight.
-#[derive(Debug)]
-pub(super) struct Checking {
-    wanted: Vec<Order>,
-    /// it is the one that this program started; `None` until it says what it is
-    own: Option<bool>,
-    all_asked: bool,
-    /// how often the version may be asked for again
-    version_chances: u32,
-}
-
-impl Checking {
-    fn new(stack: Stack) -> Self {
-        let own: &[(u16, u16)] = match stack {
-            Stack::Px4 => &PX4_STREAMS,
-            Stack::ArduPilot => &ARDUPILOT_STREAMS,
-        };
-        // taken from the end: the version first
-        let mut wanted: Vec<Order> =
-            own.iter().chain(&STREAMS).map(|(id, rate_hz)| interval(*id, *rate_hz)).collect();
-        wanted.push(Order::request_message(AUTOPILOT_VERSION));
-        Self { wanted, own: None, all_asked: false, version_chances: VERSION_CHANCES }
-    }
-
-    pub(super) fn has_asked(&self) -> bool {
-        self.all_asked
-    }
-}
-
-fn interval(id: u16, rate_hz: u16) -> Order {
-    Order::interval(id, Period::of_whole_rate(rate_hz))
-}
-
 /// Answers to questions come soon or not at all.
 const QUESTION: Manner = Manner {
     repeat: Duration::from_millis(400),
@@ -86,7 +43,7 @@ impl Flight {
                     format!("system {} component {}, {}", target.system, target.component, stack.name());
                 self.note(now, Level::Information, "vehicle", text);
                 let telemetry = Telemetry::new(vehicle, stack, now);
-                self.contact = Some(super::Contact { target, telemetry });
+                self.contact = Some(Contact { target, telemetry });
                 self.guide.target = Some((target, stack));
                 self.enter(now, Phase::Check(Checking::new(stack)));
             }

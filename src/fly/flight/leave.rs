@@ -2,11 +2,14 @@
 
 use std::time::Duration;
 
-use super::{Flight, Key, Phase};
+use super::event::Key;
+use super::leaving::Leaving;
+use super::phase::Phase;
+use super::state::Flight;
 use crate::fly::commander::Manner;
 use crate::fly::modes::Mode;
 use crate::fly::outcome::{Cause, Ending, Level};
-use crate::fly::safety::{Lead, Sustained};
+use crate::fly::safety::Lead;
 use crate::fly::setpoint::Place;
 use crate::fly::target::Order;
 
@@ -32,84 +35,8 @@ const STOP_WITHIN: Duration = Duration::from_secs(5);
 /// How hard a vehicle that is told to hold may be expected to brake, m/s^2.
 const BRAKING_M_S2: f64 = 3.0;
 
-/// On the way out.
-#[derive(Debug)]
-pub(super) struct Leaving {
-    wish: Mode,
-    /// the mode that it was in, by our doing, when that was wished for
-    from: Option<u32>,
-    wished: Duration,
-    /// the command for it left: a mode that shows before is somebody else's choice
-    ordered: bool,
-    /// when it was last asked for
-    asked: Duration,
-    /// when the wished mode was first seen
-    reached: Option<Duration>,
-    /// seen in another mode after that, and whether it ever was in the air
-    left: Sustained,
-    strayed: bool,
-    /// somebody decides what follows a hold
-    by_operator: bool,
-    /// the program ends by then
-    stop_by: Option<Duration>,
-    landed: Sustained,
-    /// when it was last told to disarm
-    disarmed: Option<Duration>,
-}
-
 /// Motors off: ten times a second for as long as an ordinary command is repeated.
 const KILLING: Manner = Manner { repeat: Manner::URGENT.repeat, ..Manner::PATIENT };
-
-impl Leaving {
-    fn to(wish: Mode, from: Option<u32>, now: Duration) -> Self {
-        Self {
-            wish,
-            from,
-            wished: now,
-            ordered: false,
-            asked: now,
-            reached: None,
-            left: Sustained::default(),
-            strayed: false,
-            by_operator: false,
-            stop_by: None,
-            landed: Sustained::default(),
-            disarmed: None,
-        }
-    }
-
-    pub(super) fn wish(&self) -> Mode {
-        self.wish
-    }
-
-    /// The command for it left.
-    pub(super) fn ordered(&mut self) {
-        self.ordered = true;
-    }
-
-    pub(super) fn is_ordered(&self) -> bool {
-        self.ordered
-    }
-
-    /// It was seen in another mode after the one that was wished for: somebody else flies it.
-    pub(super) fn has_strayed(&self) -> bool {
-        self.strayed
-    }
-
-    /// It was in this mode when it was told to leave it, and is not seen to have left it. Who shows it again afterwards is
-    /// flown by somebody else.
-    pub(super) fn comes_from(&self, custom_mode: u32) -> bool {
-        self.reached.is_none() && self.from == Some(custom_mode)
-    }
-
-    pub(super) fn name(&self) -> &'static str {
-        match self.wish {
-            Mode::External | Mode::Hold => "hold",
-            Mode::Land => "land",
-            Mode::Return => "return",
-        }
-    }
-}
 
 impl Flight {
     /// To the vehicle's hold mode.

@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use super::{Flight, Phase};
+use super::phase::Phase;
+use super::state::Flight;
 use crate::fly::modes::Mode;
 use crate::fly::news::Novelty;
 use crate::fly::outcome::{Cause, Level};

@@ -1,7 +1,7 @@
 //! The phases of a flight.
 
-use super::ground::Checking;
-use super::leave::Leaving;
+use super::checking::Checking;
+use super::leaving::Leaving;
 
 /// Where in the flight.
 #[derive(Debug)]

@@ -1,6 +1,7 @@
 //! Where the vehicle stands before its takeoff: inside the room, from the checks to the climb.
 
-use super::{Flight, Phase};
+use super::phase::Phase;
+use super::state::Flight;
 use crate::fly::outcome::Cause;
 use crate::fly::safety::{Lead, SetpointBounds};
 use nalgebra::Vector3;

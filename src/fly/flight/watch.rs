@@ -1,32 +1,11 @@
-//! The safety rules, asked at every step.
+//! What the safety rules remember.
 
 use std::time::Duration;
 
-use super::{Flight, Phase};
-use crate::fly::health::BatteryLevel;
-use crate::fly::modes::Mode;
-use crate::fly::outcome::{Cause, Ending, Level};
-use crate::fly::safety::{Envelope, Lead, Masters, Sustained, Tracking};
+use crate::fly::safety::{Envelope, Masters, Sustained, Tracking};
 use crate::fly::sortie::Sortie;
-use crate::fly::target::Order;
 use crate::units::rad_from_deg;
 
-/// Silence after which the trajectory waits.
-const PAUSE_AFTER: Duration = Duration::from_secs(2);
-/// Silence after which the flight is given up.
-const GIVE_UP_AFTER: Duration = Duration::from_secs(5);
-/// The mode is not known without a HEARTBEAT of this time; other messages may still come.
-const HEARTBEAT_MAX: Duration = Duration::from_secs(6);
-/// No position for this long is no estimate.
-const POSITION_MAX: Duration = Duration::from_secs(2);
-/// After a standstill of this program, what lies in the socket is read by then.
-const SOCKET_IS_READ: Duration = Duration::from_millis(500);
-/// Other messages come meanwhile: what is silent is the estimate, not the link.
-const STILL_HEARD: Duration = Duration::from_millis(500);
-/// Innovation tests fail for an instant; an estimate bad for this long is bad.
-const ESTIMATOR_BAD: Duration = Duration::from_secs(1);
-/// An autopilot that declares an emergency changes its mode by itself, within this time.
-const FAILSAFE_ACTS: Duration = Duration::from_secs(1);
 /// Beyond what is planned, degrees.
 const TILT_BEYOND_DEG: f64 = 20.0;
 const TILT_LEAST_DEG: f64 = 25.0;
@@ -38,13 +17,13 @@ pub(super) struct Watch {
     pub(super) tracking: Tracking,
     pub(super) masters: Masters,
     pub(super) envelope: Envelope,
-    failsafe: Sustained,
-    unhealthy: Sustained,
-    paused_since: Option<Duration>,
+    pub(super) failsafe: Sustained,
+    pub(super) unhealthy: Sustained,
+    pub(super) paused_since: Option<Duration>,
     /// when this program last woke from a standstill of 0.3 s or more: what came meanwhile is not read at once
     pub(super) awake: Duration,
     /// that the vehicle calls itself disarmed and is not believed was told
-    told_contradiction: bool,
+    pub(super) told_contradiction: bool,
 }
 
 impl Watch {
@@ -70,260 +49,5 @@ impl Watch {
     /// Nothing is heard: the trajectory waits.
     pub(super) fn is_paused(&self) -> bool {
         self.paused_since.is_some()
-    }
-}
-
-impl Flight {
-    /// All rules that hold while the vehicle is ours.
-    pub(super) fn supervise(&mut self, now: Duration) {
-        if self.contact.is_none() || matches!(self.phase, Phase::Done) {
-            return;
-        }
-        self.tell_contradiction(now);
-        if let Some(cause) = self.check_stand() {
-            self.end(now, cause);
-            return;
-        }
-        if self.phase.is_ours() {
-            let cause = self
-                .check_mode(now)
-                .or_else(|| self.check_setpoint(now))
-                .or_else(|| self.check_suspicion())
-                .or_else(|| self.check_vehicle(now));
-            if let Some(cause) = cause {
-                self.end(now, cause);
-                return;
-            }
-        }
-        if self.phase.is_ours() || matches!(self.phase, Phase::Prime | Phase::Engage | Phase::Leave(_)) {
-            self.check_link(now);
-        }
-    }
-
-    fn check_mode(&mut self, now: Duration) -> Option<Cause> {
-        if let Some(what) = self.left_our_mode() {
-            let said = self.contact.as_ref().map(|contact| {
-                let recent = now.saturating_sub(Duration::from_secs(3));
-                contact.telemetry.complaints_since(recent)
-            });
-            let said = said.filter(|said| !said.is_empty()).map(|said| format!(" ({})", said.join("; ")));
-            return Some(Cause::Override(what + &said.unwrap_or_default()));
-        }
-        let flying = self.phase.is_airborne();
-        if flying && !self.is_armed() {
-            return Some(Cause::Override("it was disarmed".to_owned()));
-        }
-        None
-    }
-
-    /// What looks like another master may be the vehicle's own failsafe or its pilot, of which a report of the mode tells a
-    /// moment later: only one who is seen while the mode stays ours is another master.
-    fn check_suspicion(&mut self) -> Option<Cause> {
-        let confirmed = |(_, reports): &mut (Cause, u64)| self.known.reports() > *reports;
-        self.suspected.take_if(confirmed).map(|(cause, _)| cause)
-    }
-
-    /// A single "disarmed" in the air is not believed, and is told.
-    fn tell_contradiction(&mut self, now: Duration) {
-        let contradicted = self.contact.as_ref().is_some_and(|contact| {
-            let telemetry = &contact.telemetry;
-            // after a landing the ground is heard a moment later
-            telemetry.is_arming_contradicted() && !telemetry.ground.is_said()
-        });
-        if contradicted && !std::mem::replace(&mut self.watch.told_contradiction, contradicted) {
-            let text = "a HEARTBEAT says that it is disarmed and nothing else agrees: not believed unless it is said again";
-            self.note(now, Level::Warning, "vehicle", text);
-        }
-    }
-
-    /// What is streamed can be sent.
-    fn check_setpoint(&self, now: Duration) -> Option<Cause> {
-        let (target, _) = self.target()?;
-        let why = self.guide.setpoint(now)?.message(target).err()?;
-        Some(Cause::Unfit(why.to_string()))
-    }
-
-    fn check_vehicle(&mut self, now: Duration) -> Option<Cause> {
-        let flying = self.phase.is_airborne();
-        let telemetry = &self.contact.as_ref()?.telemetry;
-        if !flying {
-            return None;
-        }
-        if telemetry.battery_level() == BatteryLevel::Critical {
-            return Some(Cause::Battery("it is critical".to_owned()));
-        }
-        let bad =
-            telemetry.estimator_bad_since.is_some_and(|since| now.saturating_sub(since) >= ESTIMATOR_BAD);
-        let unhealthy = telemetry.system.as_ref().is_some_and(|seen| !seen.value.unhealthy.is_empty());
-        let unhealthy = self.watch.unhealthy.update(now, unhealthy) >= ESTIMATOR_BAD;
-        if bad || unhealthy {
-            return Some(Cause::Estimator(telemetry.estimator_faults(now).join("; ")));
-        }
-        // after a silence the first message is seldom a position
-        let since = telemetry.motion.map_or(telemetry.resumed, |motion| motion.at.max(telemetry.resumed));
-        let heard = now.saturating_sub(telemetry.heard) < STILL_HEARD;
-        if heard && now.saturating_sub(since) > POSITION_MAX {
-            return Some(Cause::Estimator("no local position arrives".to_owned()));
-        }
-        if self.watch.failsafe.update(now, telemetry.is_in_failsafe()) >= FAILSAFE_ACTS {
-            let said = telemetry.complaints_since(now.saturating_sub(Duration::from_secs(5))).join("; ");
-            return Some(Cause::Failsafe(format!(
-                "declared, and the mode is still ours; it says \"{said}\""
-            )));
-        }
-        None
-    }
-
-    /// Rules on where the vehicle is, asked when a frame of it came.
-    pub(super) fn check_motion(&mut self, now: Duration) {
-        if !self.phase.is_ours() || !self.phase.is_airborne() {
-            return;
-        }
-        let Some(contact) = &self.contact else { return };
-        let telemetry = &contact.telemetry;
-        let tilted = telemetry
-            .attitude
-            .filter(|attitude| attitude.at == now)
-            .and_then(|attitude| self.watch.envelope.check_tilt(now, &attitude.value));
-        let motion = telemetry.motion.filter(|motion| motion.at == now);
-        let on_course = matches!(self.phase, Phase::Course);
-        let mut cause = tilted;
-        if let (Some(motion), Some(stand)) = (motion, self.stand) {
-            let position_m = motion.value.position_m;
-            let offset_m = self.offset_m(&stand.position_m);
-            let limit_m = self.sortie.settings.tracking_max_m;
-            let off = self.watch.tracking.check(now, &position_m, limit_m, 0.0);
-            if on_course {
-                self.watch.tracking.count();
-                let outside = self.watch.envelope.check_room(now, &(position_m - offset_m));
-                cause = cause.or(outside);
-            }
-            cause = cause.or(off);
-        }
-        if let Some(cause) = cause {
-            self.end(now, cause);
-        }
-    }
-
-    fn check_link(&mut self, now: Duration) {
-        let Some(contact) = &self.contact else { return };
-        // no setpoint goes out meanwhile
-        if self.watch.awake > Duration::ZERO && now.saturating_sub(self.watch.awake) < SOCKET_IS_READ {
-            return;
-        }
-        let silent = now.saturating_sub(contact.telemetry.heard);
-        // what comes first after a silence is seldom a HEARTBEAT
-        let no_mode = now.saturating_sub(contact.telemetry.heartbeat.max(contact.telemetry.resumed));
-        if silent > GIVE_UP_AFTER || no_mode > HEARTBEAT_MAX {
-            let what = if silent > GIVE_UP_AFTER { "anything" } else { "a HEARTBEAT" };
-            let age_s = silent.max(no_mode.min(HEARTBEAT_MAX)).as_secs_f64();
-            self.end(now, Cause::LinkLost(format!("{age_s:.1} s without {what} of the vehicle")));
-            return;
-        }
-        match (silent > PAUSE_AFTER, self.watch.paused_since) {
-            (true, None) => {
-                self.watch.paused_since = Some(now);
-                self.note(now, Level::Warning, "link", "2 s without a message: the trajectory waits");
-            }
-            (false, Some(since)) => {
-                self.watch.paused_since = None;
-                let lasted_s = now.saturating_sub(since).as_secs_f64();
-                if matches!(self.phase, Phase::Course) {
-                    self.flown.paused_s += lasted_s;
-                    self.losses.push(format!("the trajectory waited {lasted_s:.1} s for the link"));
-                }
-                self.note(
-                    now,
-                    Level::Warning,
-                    "link",
-                    format!("heard again after {lasted_s:.1} s of waiting"),
-                );
-            }
-            _ => {}
-        }
-    }
-
-    /// Nothing is heard of the vehicle: nothing is sent until it is, and then only where it is still in our mode.
-    pub(super) fn lose(&mut self, now: Duration) {
-        self.guide.lead = Lead::Silent;
-        self.commander.clear();
-        self.enter(now, Phase::Lost);
-        let text = "setpoints have ended; its own failsafe acts. If it is heard again in our mode, it is told to hold";
-        self.note(now, Level::Warning, "link", text);
-    }
-
-    /// The link is lost, or was until now.
-    pub(super) fn wait_for_word(&mut self, now: Duration) {
-        let Some(contact) = &self.contact else { return };
-        let heard = now.saturating_sub(contact.telemetry.heard) < PAUSE_AFTER;
-        if !heard {
-            self.give_up_listening(now);
-        } else if !self.is_armed() {
-            self.finish_watching(now);
-        } else if !self.is_in(Mode::External) {
-            // whatever it shows later, it was in another mode since
-            let mode = self.mode_name();
-            self.note(now, Level::Warning, "link", format!("heard again, in {mode}"));
-            self.hands_off(now);
-        } else if !self.known.is_in_doubt() && !contact.telemetry.is_arming_contradicted() {
-            // else it may have landed meanwhile, and the mode from before the silence need not be its mode still: it is asked
-            self.note(now, Level::Warning, "link", "heard again, still in our mode: it is told to hold");
-            self.begin_hold(now);
-        }
-    }
-
-    /// Lets go for good: nothing is sent any more but heartbeats, and no mode is asked for again, whatever the vehicle
-    /// shows later.
-    pub(super) fn hands_off(&mut self, now: Duration) {
-        self.guide.lead = Lead::Silent;
-        self.commander.clear();
-        self.enter(now, Phase::Watch);
-        let text = "nothing is sent but heartbeats; the vehicle is recorded until it is disarmed (Ctrl-C ends it now)";
-        self.note(now, Level::Information, "watch", text);
-    }
-
-    /// Others fly the vehicle.
-    pub(super) fn watch_others(&mut self, now: Duration) {
-        let Some(contact) = &self.contact else { return };
-        let heard = now.saturating_sub(contact.telemetry.heard) < PAUSE_AFTER;
-        let killing = self.commander.waits_for(&Order::kill()) && self.is_to_command();
-        if !killing {
-            self.guide.lead = Lead::Silent;
-        }
-        if heard && !self.is_armed() && !killing {
-            self.finish_watching(now);
-        } else if now.saturating_sub(self.entered) > self.sortie.settings.watch_max {
-            let mode = if heard { self.mode_name() } else { "not heard".to_owned() };
-            self.finish(now, Ending::InTheAir(mode));
-        } else {
-            self.give_up_listening(now);
-        }
-    }
-
-    /// The motors are off.
-    fn finish_watching(&mut self, now: Duration) {
-        let ending = match self.cause {
-            Some(Cause::Killed) => Ending::Fell,
-            _ if self.stand.is_some() => Ending::Landed,
-            _ => Ending::NotFlown,
-        };
-        self.finish(now, ending);
-    }
-
-    /// Ends where nothing was heard for too long.
-    fn give_up_listening(&mut self, now: Duration) {
-        let Some(contact) = &self.contact else { return };
-        let silent = now.saturating_sub(contact.telemetry.heard.max(self.watch.awake));
-        if silent > self.sortie.settings.gone_after {
-            self.finish(now, Ending::InTheAir("not heard".to_owned()));
-        }
-    }
-
-    /// The vehicle's mode in its own words.
-    pub(super) fn mode_name(&self) -> String {
-        let state = self.contact.as_ref().and_then(|contact| {
-            Some(contact.telemetry.stack().mode_name(contact.telemetry.state?.value.custom_mode))
-        });
-        state.unwrap_or_else(|| "not known".to_owned())
     }
 }

@@ -1,7 +1,8 @@
 //! ArduCopter's failsafes.
 
 use super::Parameters;
-use super::failsafe::{Choice, Sentence, Topic, has_bit, rounded};
+use super::bitmask::has_bit;
+use super::sentence::{Choice, Sentence, Topic, rounded};
 use crate::fly::finding::Level::{Ok, Warning};
 
 const GROUND_STATION_LOST: &[Choice] = &[

@@ -1,7 +1,8 @@
 //! PX4's failsafes.
 
 use super::Parameters;
-use super::failsafe::{Choice, Sentence, Topic, has_bit};
+use super::bitmask::has_bit;
+use super::sentence::{Choice, Sentence, Topic};
 use crate::fly::finding::Level::{Ok, Warning};
 
 const OFFBOARD_LOST: &[Choice] = &[

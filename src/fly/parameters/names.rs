@@ -54,7 +54,7 @@ pub const RENAMED: &[Renamed] = &[
 
 /// A parameter to ask for.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Wanted {
+pub struct RequestedEffects {
     /// names by which it may answer, older first
     pub names: Vec<String>,
     /// what for
@@ -218,19 +218,22 @@ const BANK: usize = 8;
 
 /// What to ask a vehicle with this many rotors, most needed first; nothing for other autopilots.
 #[must_use]
-pub fn wanted(autopilot: Autopilot, rotors: usize) -> Vec<Wanted> {
+pub fn wanted(autopilot: Autopilot, rotors: usize) -> Vec<RequestedEffects> {
     let (table, numbered) = match autopilot {
         Autopilot::Px4 => (PX4, px4_outputs(rotors)),
         Autopilot::ArduPilot => (ARDUPILOT, ardupilot_outputs(rotors)),
         Autopilot::Other | Autopilot::Unknown => return Vec::new(),
     };
     let named = table.iter().flat_map(|(purpose, names)| {
-        names.iter().map(|name| Wanted { names: all_names(name), purpose: *purpose })
+        names.iter().map(|name| RequestedEffects { names: all_names(name), purpose: *purpose })
     });
-    let numbered = numbered.into_iter().map(|name| Wanted { names: vec![name], purpose: Purpose::Thrust });
+    let numbered =
+        numbered.into_iter().map(|name| RequestedEffects { names: vec![name], purpose: Purpose::Thrust });
     let switches = if autopilot == Autopilot::ArduPilot { SWITCHES } else { 0..0 };
-    let switches = switches
-        .map(|channel| Wanted { names: vec![format!("RC{channel}_OPTION")], purpose: Purpose::Failsafe });
+    let switches = switches.map(|channel| RequestedEffects {
+        names: vec![format!("RC{channel}_OPTION")],
+        purpose: Purpose::Failsafe,
+    });
     named.chain(numbered).chain(switches).collect()
 }
 

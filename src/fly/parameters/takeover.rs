@@ -1,7 +1,7 @@
 //! How a pilot takes the vehicle over: by which switch, by which sticks, and how the motors are stopped.
 
 use super::Parameters;
-use super::failsafe::Sentence;
+use super::sentence::Sentence;
 use crate::fly::finding::Level;
 use crate::fly::modes::Stack;
 use crate::log::Autopilot;

@@ -27,7 +27,7 @@ const PX4_OFF_M: f64 = 0.5;
 /// A wall of the room may be passed by so much, m: a plan may touch it, and no vehicle follows to the centimetre. Where
 /// nothing better is found, by so much and with a warning: a flight is ended only there.
 const WALL_M: f64 = 0.25;
-const WALL_AT_MOST_M: f64 = 1.0;
+const WALL_AT_MOST_M: f64 = 1.25;
 /// Shares of velocity and acceleration that are tried, most first. ArduPilot flies on with whatever it was given for
 /// seconds: all or nothing.
 const SHARES: &[f64] = &[1.0, 0.75, 0.5, 0.35, 0.25, 0.15, 0.1, 0.0];

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use super::extremes::samples;
-use super::{Extremes, Situation, TAKEOVER};
+use super::failsafes::TAKEOVER;
+use super::{Extremes, Situation};
 use crate::fly::finding::{Finding, Level};
 use crate::units::deg_from_rad;
 

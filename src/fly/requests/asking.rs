@@ -1,7 +1,7 @@
 //! One SET_MESSAGE_INTERVAL after the other, then a look at what arrives.
 
 use super::report::{RatesReport, StreamReport};
-use super::{Capacity, StreamRequest};
+use super::{Answer, Capacity, StreamRequest};
 use crate::fly::address::is_from;
 use crate::fly::target::{MessageId, Order, OutOfRange, Period, Target};
 use crate::log::{Frame, Vehicle};
@@ -43,21 +43,6 @@ impl Default for RequestSettings {
             own: (255, 190),
         }
     }
-}
-
-/// What the vehicle said to a request.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Answer {
-    /// not asked (yet)
-    NotAsked,
-    /// accepted
-    Accepted,
-    /// refused, with its MAV_RESULT
-    Refused(u8),
-    /// no answer to any try
-    Silent,
-    /// its id or rate is in no message's range, or the vehicle's system id is: not asked
-    OutOfRange,
 }
 
 /// One message of the set.

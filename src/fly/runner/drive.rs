@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 
 use super::clearance::Cleared;
 use super::estimating::Estimating;
+use super::files::{EVENTS, PARAMETERS};
 use super::journal::Journal;
 use super::stream::SharedGuide;
 use super::supervisor::Supervisor;
-use super::{EVENTS, PARAMETERS};
 use crate::fly::finding;
 use crate::fly::flight::{Action, Event, Flight, Key};
 use crate::fly::live::{LiveIdentification, LiveSettings};

@@ -287,13 +287,15 @@ fn numbered(pattern: &str, present: &[String]) -> Vec<String> {
 }
 
 /// Sorted by time (equal times stay in the file's order, the first is kept), counted from `start_s`.
-fn in_order(stream: Stream, start_s: f64) -> Stream {
+fn in_order(mut stream: Stream, start_s: f64) -> Stream {
+    // first, for times that differ by a rounding error may be equal afterwards
+    stream.time_s.iter_mut().for_each(|time_s| *time_s -= start_s);
     let mut order: Vec<usize> = (0..stream.len()).collect();
     order.sort_by(|a, b| stream.time_s[*a].total_cmp(&stream.time_s[*b]));
     order.dedup_by(|next, kept| stream.time_s[*next] == stream.time_s[*kept]);
     let mut sorted = Stream { width: stream.width, ..Stream::default() };
     for index in order {
-        sorted.time_s.push(stream.time_s[index] - start_s);
+        sorted.time_s.push(stream.time_s[index]);
         sorted.values.extend_from_slice(stream.sample(index));
     }
     sorted

@@ -1,4 +1,4 @@
-//! Turning is held back in proportion to the body rates.
+//! RotorMotion is held back in proportion to the body rates.
 
 use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
@@ -18,7 +18,7 @@ impl Effect for AngularDamping {
     }
 
     fn sentence(&self) -> &'static str {
-        "Turning is damped: a torque against the body rates, in proportion to them."
+        "RotorMotion is damped: a torque against the body rates, in proportion to them."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

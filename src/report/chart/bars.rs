@@ -1,6 +1,7 @@
 //! Horizontal bars, several series a name.
 
-use super::{WIDTH, colour, framed};
+use super::colour::colour;
+use super::frame::{WIDTH, framed};
 use crate::text::markup;
 use std::fmt::Write;
 

@@ -1,10 +1,14 @@
 //! A panel: axes, shading, bands, lines, legend.
 
 use super::axis::Axis;
-use super::{Band, HEIGHT, Line, Panel, Stroke, WIDTH, colour};
+use super::colour::colour;
+use super::frame::WIDTH;
+use super::panel::{Band, Line, Panel, Stroke};
 use crate::text::markup;
 use std::fmt::Write;
 
+/// Dots.
+pub(super) const HEIGHT: f64 = 230.0;
 const LEFT: f64 = 74.0;
 const RIGHT: f64 = 130.0;
 const TOP: f64 = 26.0;

@@ -1,7 +1,7 @@
 //! Rows of cells along time, darker where more is.
 
 use super::axis::Axis;
-use super::{WIDTH, framed};
+use super::frame::{WIDTH, framed};
 use crate::text::markup;
 use std::fmt::Write;
 

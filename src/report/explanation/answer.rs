@@ -1,16 +1,14 @@
 //! The answer in one sentence.
 
-use super::brief::brief;
 use super::located::Located;
-use super::show::{Predicted, ShownOn};
+use super::prediction::{Predicted, ShownOn};
 use super::story::Story;
-use super::words::{called, clause};
-use crate::diagnose::{Along, DetectionLimit, Named, Verdict};
-use crate::report::number::{significant, spoken};
+use crate::diagnose::signatures::ALL;
+use crate::diagnose::wording::Words;
+use crate::diagnose::{Along, DetectionLimit, Named, Verdict, brief, called, clause, limit};
+use crate::report::number::significant;
 use std::fmt::Write;
 
-/// Effects in the motion that everybody knows.
-const IN_MOTION: [&str; 3] = ["linear_drag", "angular_damping", "ground_effect"];
 /// Most effects of a sentence that come with their numbers.
 const SIZED: usize = 4;
 /// An error that rises by more is said, percent.
@@ -106,11 +104,11 @@ impl Story {
     }
 
     fn nothing(&self) -> String {
-        let seen: Vec<String> = ["linear_drag", "com_offset", "weak_rotor", "ground_effect"]
+        let seen: Vec<String> = ranked(|words| words.told_if_absent)
             .iter()
             .filter_map(|id| self.limit(id))
             .filter(|limit| limit.usual.is_none_or(|usual| limit.limit < usual))
-            .map(|limit| seen_from(&limit))
+            .map(|of| limit(&of))
             .take(3)
             .collect();
         let other = self.other_vehicle().map_or_else(String::new, |by| {
@@ -125,7 +123,7 @@ impl Story {
         }
         let would =
             if seen.is_empty() { String::new() } else { format!("; it would have shown {}", list_or(&seen)) };
-        let unseen: Vec<String> = IN_MOTION
+        let unseen: Vec<String> = ranked(|words| words.expected_in_motion)
             .iter()
             .filter(|id| {
                 let limit = self.limit(id);
@@ -220,14 +218,12 @@ fn spoken_state(variable: &str) -> String {
     }
 }
 
-fn seen_from(limit: &DetectionLimit) -> String {
-    match limit.id {
-        "com_offset" => format!("a centre of mass {} mm off", significant(1e3 * limit.limit, 2)),
-        "weak_rotor" => format!("a rotor {} % weak", significant(100.0 * limit.limit, 2)),
-        id => format!("{} of {} {}", called(id), significant(limit.limit, 2), spoken(limit.unit))
-            .trim_end()
-            .to_owned(),
-    }
+/// Identifiers of the effects that have such a rank, in its order.
+fn ranked(rank: fn(&Words) -> Option<usize>) -> Vec<&'static str> {
+    let mut all: Vec<(usize, &str)> =
+        ALL.iter().filter_map(|signature| Some((rank(&signature.words)?, signature.id()))).collect();
+    all.sort_unstable();
+    all.into_iter().map(|(_, id)| id).collect()
 }
 
 fn list(parts: &[String]) -> String {

@@ -2,7 +2,7 @@
 
 use super::fit::{FitValues, fit_values};
 use super::located::Located;
-use super::show::ShownOn;
+use super::prediction::ShownOn;
 use super::story::{Story, body_values, rigid_body};
 use crate::diagnose::{AXES, Along, CHANNEL_NAMES, Named};
 use crate::report::InputFile;
@@ -194,7 +194,7 @@ fn effect_values(story: &Story, effects: &[Named]) -> Vec<EffectValue> {
         .iter()
         .map(|effect| EffectValue {
             id: effect.id,
-            sentence: format!("{}.", super::words::clause(effect, story.vehicle())),
+            sentence: format!("{}.", crate::diagnose::clause(effect, story.vehicle())),
             parameters: effect
                 .parameters
                 .iter()

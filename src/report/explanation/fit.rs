@@ -1,9 +1,9 @@
 //! The fit before and after as JSON: all that the report's tables show.
 
-use super::show::{Predicted, QUANTITIES, ShownOn};
+use super::prediction::{Predicted, QUANTITIES, ShownOn};
 use super::story::Story;
 use crate::compare::SIGNALS;
-use crate::diagnose::show::{Compared, OpenLoop, Shown};
+use crate::diagnose::holdout::{Compared, HoldoutFit, OpenLoop};
 use crate::diagnose::{AXES, CHANNEL_NAMES};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -146,7 +146,7 @@ fn window(of: &OpenLoop) -> WindowValue {
     }
 }
 
-fn shown(of: &Shown) -> ShownValue {
+fn shown(of: &HoldoutFit) -> ShownValue {
     let weak = of.weak.iter().zip(CHANNEL_NAMES).take(AXES);
     let (closed_loop, no_closed_loop) = match &of.closed_loop {
         Ok(flown) => {

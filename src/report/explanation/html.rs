@@ -1,11 +1,11 @@
 //! `report.html` of `explain`.
 
-use super::show::{Predicted, QUANTITIES, ShownOn};
+use super::prediction::{Predicted, QUANTITIES, ShownOn};
 use super::story::{Story, body_values, rigid_body};
-use super::words::{called, clause};
 use crate::compare::SIGNALS;
-use crate::diagnose::show::{Compared, Shown};
+use crate::diagnose::holdout::{Compared, HoldoutFit};
 use crate::diagnose::{AXES, CHANNEL_NAMES, Named, Tested, Trace, Verdict};
+use crate::diagnose::{called, clause};
 use crate::report::chart::inline;
 use crate::report::html::{Cell, Page, number, text};
 use crate::report::number::{chance, percent, significant, spoken, with_error};
@@ -303,7 +303,7 @@ fn prediction_table(page: &mut Page, on: &str, predicted: &Predicted) {
     page.table(&format!("Prediction error, rms, {on}{mean}"), &COMPARED, &rows);
 }
 
-fn weak_table(page: &mut Page, shown: &Shown) {
+fn weak_table(page: &mut Page, shown: &HoldoutFit) {
     let rows: Vec<Vec<Cell>> = shown
         .weak
         .iter()
@@ -317,7 +317,7 @@ fn weak_table(page: &mut Page, shown: &Shown) {
     page.table("Residual of the weak form on the same flights, rms", &COMPARED, &rows);
 }
 
-fn closed_loop_table(page: &mut Page, shown: &Shown) {
+fn closed_loop_table(page: &mut Page, shown: &HoldoutFit) {
     match &shown.closed_loop {
         Ok(flown) => {
             let rows: Vec<Vec<Cell>> = flown
@@ -336,7 +336,7 @@ fn closed_loop_table(page: &mut Page, shown: &Shown) {
     }
 }
 
-fn agreement_table(page: &mut Page, shown: &Shown) {
+fn agreement_table(page: &mut Page, shown: &HoldoutFit) {
     let rows: Vec<Vec<Cell>> = shown
         .agreement
         .iter()

@@ -1,7 +1,6 @@
 //! What `explain` says: the sentence, a page for the terminal, JSON, the model file, the report.
 
 mod answer;
-mod brief;
 mod document;
 mod figures;
 mod fit;
@@ -9,16 +8,14 @@ mod html;
 mod located;
 mod model;
 mod page;
+mod prediction;
 mod readers;
 mod show;
 mod story;
-mod words;
 
 pub use document::ExplanationDocument;
 pub use located::{AxisShare, Field, Located, StateShare};
 pub use page::explanation_page;
+pub use prediction::{Predicted, ShownOn};
 pub use readers::for_readers;
-pub use show::{Predicted, ShownOn};
 pub use story::{Estimate, Given, Story};
-
-pub(super) use words::called;

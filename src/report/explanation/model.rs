@@ -1,6 +1,6 @@
 //! The model file of `explain`: the vehicle with its effects, and what they rest on.
 
-use super::show::ShownOn;
+use super::prediction::ShownOn;
 use super::story::Story;
 use crate::config::{ConfigError, vehicle_to_toml};
 use crate::report::model_parts::{correlations, effect_tables};

@@ -1,9 +1,9 @@
 //! The page of `explain` for the terminal.
 
-use super::show::{Predicted, QUANTITIES};
+use super::prediction::{Predicted, QUANTITIES};
 use super::story::{Story, body_values, rigid_body};
-use super::words::{called, clause};
 use crate::diagnose::{AXES, CHANNEL_NAMES, Named, Verdict};
+use crate::diagnose::{called, clause};
 use crate::report::number::{chance, percent, significant, with_error};
 use std::fmt::Write;
 

@@ -1,5 +1,6 @@
 //! The effects as readers want them: what is one thing to them is one entry.
 
+use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{Named, NamedParameter};
 
 /// Drag along the rotor axis within this share of that across it is one isotropic drag.
@@ -10,8 +11,10 @@ const ISOTROPIC: f64 = 0.35;
 #[must_use]
 pub fn for_readers(named: &[Named]) -> Vec<Named> {
     let mut out = named.to_vec();
-    let place = |id: &str| named.iter().position(|effect| effect.id == id);
-    let (Some(drag), Some(inflow)) = (place("linear_drag"), place("inflow")) else { return out };
+    let axial_part_of = |named: &Named| signature_of(named.id)?.role.axial_part_of;
+    let axial = named.iter().enumerate().find_map(|(place, of)| Some((place, axial_part_of(of)?)));
+    let Some((inflow, whole)) = axial else { return out };
+    let Some(drag) = named.iter().position(|effect| effect.id == whole.id()) else { return out };
     let value = |effect: usize, name: &str| named[effect].parameters.iter().find(|p| p.name == name).copied();
     let (Some(dx), Some(dy), Some(kz)) = (value(drag, "dx"), value(drag, "dy"), value(inflow, "kz")) else {
         return out;
@@ -23,11 +26,11 @@ pub fn for_readers(named: &[Named]) -> Vec<Named> {
     out[drag].parameters.push(NamedParameter { name: "dz", ..kz });
     for confusable in &named[inflow].confusable_with {
         let known = out[drag].confusable_with.iter().any(|other| other.id == confusable.id);
-        if !known && confusable.id != "linear_drag" {
+        if !known && confusable.id != whole.id() {
             out[drag].confusable_with.push(*confusable);
         }
     }
-    out[drag].confusable_with.retain(|confusable| confusable.id != "inflow");
+    out[drag].confusable_with.retain(|confusable| confusable.id != named[inflow].id);
     out.remove(inflow);
     out
 }

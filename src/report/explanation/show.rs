@@ -1,133 +1,23 @@
 //! The better model on flights that were not used.
 
+use super::prediction::{Predicted, ShownOn};
 use super::story::Story;
-use crate::compare::improvement_percent;
 use crate::diagnose::Empirical;
-use crate::diagnose::show::{
-    Compared, HeldOut, Interval, OpenLoop, ShowError, ShowSettings, Shown, on_holdout, on_identification,
-};
-use crate::report::InputFile;
-
-/// What the improvement is shown on.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ShownOn {
-    /// flights that were not used otherwise, by their files
-    Flights(Vec<InputFile>),
-    /// the end of the flight that was explained, held back from it
-    HeldBack {
-        /// s, from where on
-        from_s: f64,
-        /// s of flight
-        seconds: f64,
-    },
-    /// nothing was left to show it on
-    Nothing {
-        /// why
-        reason: String,
-    },
-}
-
-impl ShownOn {
-    /// Words for a sentence.
-    #[must_use]
-    pub fn words(&self) -> &'static str {
-        match self {
-            Self::Flights(_) => "the hold-out",
-            Self::HeldBack { .. } => "the part of the flight held back",
-            Self::Nothing { .. } => "nothing",
-        }
-    }
-
-    /// Words for a heading.
-    #[must_use]
-    pub fn heading(&self) -> String {
-        match self {
-            Self::Flights(inputs) if inputs.len() == 1 => "hold-out flight".to_owned(),
-            Self::Flights(inputs) => format!("{} hold-out flights", inputs.len()),
-            Self::HeldBack { from_s, seconds } => {
-                format!("held back: {seconds:.0} s from {from_s:.0} s on")
-            }
-            Self::Nothing { reason } => format!("nothing to show it on: {reason}"),
-        }
-    }
-}
-
-/// Names of the quantities of [`OpenLoop::quantities`] in their order.
-pub const QUANTITIES: [(&str, &str); 4] =
-    [("position", "m"), ("velocity", "m/s"), ("attitude", "rad"), ("body rate", "rad/s")];
-
-/// Open-loop errors on one set of flights.
-#[derive(Debug, Clone, Default)]
-pub struct Predicted {
-    /// one a length of window
-    pub open_loop: Vec<OpenLoop>,
-    /// mean over the quantities at 0.5 s
-    pub improvement_percent: Option<Interval>,
-}
-
-impl Predicted {
-    /// Errors over windows of 0.5 s.
-    #[must_use]
-    pub fn half_second(&self) -> [Option<Compared>; 4] {
-        let half = self.open_loop.iter().find(|of| (of.window_s - 0.5).abs() < 1e-9);
-        half.map_or([None; 4], OpenLoop::quantities)
-    }
-
-    /// The quantity whose error falls most, and by how much, percent.
-    #[must_use]
-    pub fn most(&self) -> Option<(&'static str, f64)> {
-        self.half_second()
-            .into_iter()
-            .zip(QUANTITIES)
-            .filter_map(|(compared, (name, _))| Some((name, compared?.improvement_percent.value)))
-            // a model that left the flight has no error to speak of
-            .filter(|(_, percent)| percent.is_finite())
-            .max_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
-    /// The quantity whose error falls least, or rises, and by how much, percent.
-    #[must_use]
-    pub fn least(&self) -> Option<(&'static str, f64)> {
-        self.half_second()
-            .into_iter()
-            .zip(QUANTITIES)
-            .filter_map(|(compared, (name, _))| Some((name, compared?.improvement_percent.value)))
-            .filter(|(_, percent)| percent.is_finite())
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
-    /// Mean improvement over the quantities, percent.
-    #[must_use]
-    pub fn improvement(&self) -> Option<f64> {
-        let each: Vec<f64> = self
-            .half_second()
-            .into_iter()
-            .flatten()
-            .map(|of| improvement_percent(of.before.value, of.after.value))
-            .collect();
-        (!each.is_empty()).then(|| each.iter().sum::<f64>() / each.len() as f64)
-    }
-}
-
-impl From<&Shown> for Predicted {
-    fn from(shown: &Shown) -> Self {
-        Self { open_loop: shown.open_loop.clone(), improvement_percent: shown.improvement_percent }
-    }
-}
+use crate::diagnose::holdout::{HeldOut, HoldoutError, HoldoutSettings, on_holdout, on_identification};
 
 impl Story {
     /// Errors before and after on the flights that were explained.
     ///
     /// # Errors
-    /// [`ShowError`] where a flight cannot be played back.
+    /// [`HoldoutError`] where a flight cannot be played back.
     pub fn show_identification(
         &mut self,
         flights: &[HeldOut],
         empirical: Option<&Empirical>,
-    ) -> Result<(), ShowError> {
+    ) -> Result<(), HoldoutError> {
         let of = (&self.explanation, empirical);
         let (open_loop, improvement_percent) =
-            on_identification(of, flights, &self.given.vehicle, &ShowSettings::default())?;
+            on_identification(of, flights, &self.given.vehicle, &HoldoutSettings::default())?;
         self.identify = Some(Predicted { open_loop, improvement_percent });
         Ok(())
     }
@@ -135,15 +25,15 @@ impl Story {
     /// Errors before and after on flights that were not used.
     ///
     /// # Errors
-    /// [`ShowError`] where a flight cannot be played back.
+    /// [`HoldoutError`] where a flight cannot be played back.
     pub fn show_holdout(
         &mut self,
         flights: &[HeldOut],
         empirical: Option<&Empirical>,
         shown_on: ShownOn,
-    ) -> Result<(), ShowError> {
+    ) -> Result<(), HoldoutError> {
         let same_flight = matches!(shown_on, ShownOn::HeldBack { .. });
-        let settings = ShowSettings { same_flight, ..ShowSettings::default() };
+        let settings = HoldoutSettings { same_flight, ..HoldoutSettings::default() };
         let shown = on_holdout((&self.explanation, empirical), flights, &self.given.vehicle, &settings)?;
         self.given.warnings.extend(shown.other_vehicle.as_ref().map(|other| other.reason.clone()));
         self.holdout = Some(Predicted::from(&shown));

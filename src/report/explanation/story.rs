@@ -1,10 +1,11 @@
 //! Everything that the report says, put together once: page, JSON, model file and HTML read from here.
 
 use super::located::Located;
+use super::prediction::{Predicted, ShownOn};
 use super::readers::for_readers;
-use super::show::{Predicted, ShownOn};
-use crate::diagnose::next::NextFlight;
-use crate::diagnose::show::{Difference, Shown};
+use crate::diagnose::experiment::NextFlight;
+use crate::diagnose::holdout::{Difference, HoldoutFit};
+use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::{CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, Named, Nuisance, Verdict};
 use crate::physics::ActiveEffect;
 use crate::report::InputFile;
@@ -59,7 +60,7 @@ pub struct Story {
     /// and on those that were not used
     pub holdout: Option<Predicted>,
     /// everything that was shown on them
-    pub shown: Option<Shown>,
+    pub shown: Option<HoldoutFit>,
     /// a term without a mechanism, where none serves
     pub empirical: Option<Empirical>,
     /// which those are
@@ -141,7 +142,7 @@ impl Story {
         effects.extend(self.found());
         if self.latency_named() {
             let latency = self.explanation.search.after.base.latency_effects();
-            effects.extend(latency.iter().filter_map(|l| ActiveEffect::new(l.effect, &l.values).ok()));
+            effects.extend(latency.iter().filter_map(|l| ActiveEffect::new(l.effect(), &l.values).ok()));
         }
         effects
     }
@@ -150,19 +151,24 @@ impl Story {
     fn found(&self) -> Vec<ActiveEffect> {
         let base = &self.explanation.search.after.base;
         let entries = if self.verdict() == Verdict::Unexplained { &self.closest } else { &self.effects };
-        let merged_dz = entries
-            .iter()
-            .find(|effect| effect.id == "linear_drag")
-            .and_then(|effect| effect.parameters.iter().find(|p| p.name == "dz"));
+        // one isotropic drag has taken the place of the part along body z
+        let merged = base.present.iter().find_map(|term| {
+            let whole = term.signature.role.axial_part_of?;
+            let entry = entries.iter().find(|effect| effect.id == whole.id())?;
+            Some((whole, entry.get("dz")?.value))
+        });
         let mut out = Vec::new();
         for present in &base.present {
             let mut values = present.values.clone();
-            match (present.effect.id(), merged_dz) {
-                ("inflow", Some(_)) => continue,
-                ("linear_drag", Some(dz)) => values[2] = dz.value,
-                _ => {}
+            if let Some((whole, dz)) = merged {
+                if present.signature.role.axial_part_of.is_some() {
+                    continue;
+                }
+                if let Some(slot) = present.signature.role.axial.filter(|_| present.id() == whole.id()) {
+                    values[slot] = dz;
+                }
             }
-            out.extend(ActiveEffect::new(present.effect, &values).ok());
+            out.extend(ActiveEffect::new(present.effect(), &values).ok());
         }
         out
     }
@@ -184,7 +190,7 @@ impl Story {
     /// A lag or delay is among the names.
     #[must_use]
     pub fn latency_named(&self) -> bool {
-        let is_latency = |named: &Named| matches!(named.id, "motor_lag" | "transport_delay");
+        let is_latency = |named: &Named| latency_kind(named.id).is_some();
         self.explanation.named.iter().chain(&self.explanation.closest).any(is_latency)
     }
 }

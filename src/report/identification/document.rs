@@ -1,27 +1,17 @@
 //! The JSON document of `identify`.
 
-use crate::estimate::{Finding, Identification, LatencyKind, MethodResult, NAMES, THETA, ThrustScale};
-use crate::signals::{Quality, ThrustSource};
+use crate::estimate::{Identification, LatencyKind, NAMES, THETA, ThrustScale};
+use crate::signals::Quality;
 use crate::vehicle::{Anchor, Vehicle};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+use super::correlation::correlation;
+use super::input::InputFile;
 use super::page::verdict;
+use super::thrust_source::thrust_name;
+use super::value::{Thrust, Value, thrust, values};
 use super::with::{With, WithEffects};
-
-/// One recording that went in.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct InputFile {
-    /// file name as given, and which flight of it where it holds several
-    pub path: String,
-    /// SHA-256 of its bytes, hexadecimal
-    pub sha256: String,
-    /// what was lost on reading: sentence by sentence
-    pub losses: Vec<String>,
-    /// what else is to be known of it: whose flight it is, what of the log is no flight
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub notes: Vec<String>,
-}
 
 /// The JSON document of `identify`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -47,17 +37,6 @@ pub struct IdentificationDocument {
     with: Option<With>,
 }
 
-/// A number with its standard error, or why there is none.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Value {
-    value: Option<f64>,
-    std: Option<f64>,
-    unit: &'static str,
-    status: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<String>,
-}
-
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Best {
     method: &'static str,
@@ -67,14 +46,6 @@ struct Best {
     /// names in the order of rows and columns
     correlation_of: [&'static str; THETA],
     correlation: Vec<Vec<Option<f64>>>,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Thrust {
-    name: &'static str,
-    #[serde(flatten)]
-    value: Value,
-    factor: Value,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -212,40 +183,6 @@ fn anchor_name(anchor: Anchor) -> &'static str {
     }
 }
 
-fn value(finding: &Finding, unit: &'static str) -> Value {
-    let empty = Value { value: None, std: None, unit, status: "", reason: None };
-    match finding {
-        Finding::Determined { value, std } => {
-            Value { value: Some(*value), std: Some(*std), status: "determined", ..empty }
-        }
-        Finding::Given { value } => Value { value: Some(*value), std: Some(0.0), status: "given", ..empty },
-        Finding::NotDetermined { reason } => {
-            Value { status: "not_determined", reason: Some(reason.clone()), ..empty }
-        }
-    }
-}
-
-pub(super) fn thrust(scale: &ThrustScale) -> Thrust {
-    let ThrustScale { name, unit, factor, .. } = scale;
-    Thrust { name, value: value(&scale.value, unit), factor: value(factor, "-") }
-}
-
-pub(super) fn values(result: &MethodResult) -> BTreeMap<&'static str, Value> {
-    result.parameters.iter().map(|p| (p.name, value(&p.finding, p.unit))).collect()
-}
-
-pub(super) fn correlation(result: &MethodResult) -> Vec<Vec<Option<f64>>> {
-    let covariance = &result.estimated.covariance;
-    (0..THETA)
-        .map(|i| {
-            (0..THETA)
-                .map(|j| covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt())
-                .map(|r| r.is_finite().then_some(r))
-                .collect()
-        })
-        .collect()
-}
-
 fn kind_name(kind: LatencyKind) -> &'static str {
     match kind {
         LatencyKind::Undetermined => "undetermined",
@@ -311,14 +248,6 @@ fn data_quality(identification: &Identification, quality: &[&Quality], inputs: &
         residual: channels.zip(identification.residual.iter().copied()).collect(),
         explained,
         instrument_f: identification.instrument_f,
-    }
-}
-
-pub(in crate::report) fn thrust_name(source: ThrustSource) -> &'static str {
-    match source {
-        ThrustSource::MeasuredSpeed => "measured rotor speed",
-        ThrustSource::Command => "commands",
-        ThrustSource::Wrench => "recorded force and torque",
     }
 }
 

@@ -1,13 +1,13 @@
 //! `report.html` of `identify`.
 
-use super::InputFile;
+use super::input::InputFile;
 use super::model::history_charts;
 use super::page::verdict;
 use super::with::WithEffects;
-use crate::diagnose::together::{EffectFound, Found};
+use crate::diagnose::called;
+use crate::diagnose::joint::{EffectFound, Found};
 use crate::estimate::{Finding, Identification, NAMES, Parameter, THETA, Theta, ThrustScale, theta_of};
 use crate::report::chart::inline;
-use crate::report::explanation::called;
 use crate::report::html::{Cell, Page, number, text};
 use crate::report::model_parts::correlation;
 use crate::report::number::{significant, spoken, with_error};
@@ -201,7 +201,7 @@ impl IdentificationStory<'_> {
             Some(with) => correlation(&with.together.after),
             None => (
                 NAMES.map(str::to_owned).to_vec(),
-                super::document::correlation(&self.identification.best.result),
+                super::correlation::correlation(&self.identification.best.result),
             ),
         };
         correlation_table(page, &names, &rows);

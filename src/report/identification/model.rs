@@ -8,7 +8,8 @@ use crate::text::toml_string;
 use crate::vehicle::Vehicle;
 use std::fmt::Write;
 
-use super::document::{InputFile, correlation};
+use super::correlation::correlation;
+use super::input::InputFile;
 
 /// The model file: the vehicle with its identified values, and where they came from.
 ///

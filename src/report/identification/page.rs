@@ -5,7 +5,7 @@ use crate::signals::Quality;
 use crate::vehicle::Vehicle;
 use std::fmt::Write;
 
-use super::document::thrust_name;
+use super::thrust_source::thrust_name;
 
 /// The page for the terminal.
 #[must_use]

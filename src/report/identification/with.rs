@@ -2,7 +2,7 @@
 
 use crate::config::{ConfigError, vehicle_to_toml};
 use crate::diagnose::CHANNEL_NAMES;
-use crate::diagnose::together::{EffectFound, Found, ParameterFound, Physical, Together};
+use crate::diagnose::joint::{EffectFound, Found, JointEstimate, ParameterFound, Physical};
 use crate::estimate::{Finding, Parameter, theta_of};
 use crate::report::model_parts::{correlation, correlations, effect_tables};
 use crate::signals::Quality;
@@ -11,15 +11,17 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::document::{InputFile, Thrust, Value, thrust, thrust_name, values};
+use super::input::InputFile;
 use super::model::{identified_entries, provenance};
 use super::page::{flight_lines, number};
+use super::thrust_source::thrust_name;
+use super::value::{Thrust, Value, thrust, values};
 
 /// Everything about effects that were identified together with the rigid body.
 #[derive(Debug, Clone)]
 pub struct WithEffects {
     /// what was found
-    pub together: Together,
+    pub together: JointEstimate,
     /// nominal
     pub vehicle: Vehicle,
     /// where the signals come from, flight by flight

@@ -1,6 +1,6 @@
 //! `report.html` of `validate`.
 
-use super::ErrorTable;
+use super::error_table::ErrorTable;
 use crate::report::InputFile;
 use crate::report::chart::{Bars, Panel, inline};
 use crate::report::html::{Cell, Page, number, text};

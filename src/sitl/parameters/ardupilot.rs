@@ -1,7 +1,9 @@
 //! ArduCopter's parameters: defaults, what follows from the vehicle, and the names and units of 4.6 and 4.7.
 
-use super::ParameterType::{Int8 as B, Int16 as H, Int32 as I, Real32 as R};
-use super::{Parameter, Pulses, Row, SPIN, expo, hover_share, parameter, rows};
+use super::parameter::ParameterType::{Int8 as B, Int16 as H, Int32 as I, Real32 as R};
+use super::parameter::{Parameter, Row, parameter, rows};
+use super::pulses::{Pulses, SPIN};
+use super::thrust::{expo, hover_share};
 use crate::sitl::ArduPilotRelease;
 use crate::vehicle::{Rotor, Spin, Vehicle as Description};
 

@@ -1,7 +1,9 @@
 //! PX4's parameters: defaults of the multicopter modules (v1.16), and what follows from the vehicle.
 
-use super::ParameterType::{Int32 as I, Real32 as R};
-use super::{Parameter, Pulses, Row, expo, hover_share, parameter, rows};
+use super::parameter::ParameterType::{Int32 as I, Real32 as R};
+use super::parameter::{Parameter, Row, parameter, rows};
+use super::pulses::Pulses;
+use super::thrust::{expo, hover_share};
 use crate::frames::{Body, frd_from_body};
 use crate::vehicle::{Spin, Vehicle as Description};
 

@@ -1,6 +1,10 @@
 //! Outputs and rotor speeds.
 
-use super::{Message, Scene, Telemetry, ids, ushort};
+use super::super::message::Message;
+use super::super::message_id as ids;
+use super::field::ushort;
+use super::scene::Scene;
+use super::source::Telemetry;
 use crate::physics::MAX_ROTORS;
 use crate::units::{rad_s_from_rpm, whole};
 

@@ -1,7 +1,11 @@
 //! Attitude, rates and the inertial unit.
 
 use super::super::demand::frd;
-use super::{Message, Scene, Telemetry, ids, short};
+use super::super::message::Message;
+use super::super::message_id as ids;
+use super::field::short;
+use super::scene::Scene;
+use super::source::Telemetry;
 use crate::frames::{Attitude, frd_ned_from_attitude, yaw_from_ned};
 use crate::units::STANDARD_GRAVITY_M_S2;
 

@@ -5,7 +5,11 @@ use nalgebra::Vector3;
 use super::super::Origin;
 use super::super::demand::{frd, ned};
 use super::super::guidance::Task;
-use super::{Message, Scene, Telemetry, ids, short, ushort};
+use super::super::message::Message;
+use super::super::message_id as ids;
+use super::field::{short, ushort};
+use super::scene::Scene;
+use super::source::Telemetry;
 use crate::frames::{Attitude, frd_ned_from_attitude, yaw_from_ned};
 use crate::units::whole;
 

@@ -2,8 +2,12 @@
 
 use super::super::battery::Charge;
 use super::super::guidance::Task;
+use super::super::message::Message;
+use super::super::message_id as ids;
 use super::super::{ArduPilotRelease, AutopilotKind, Mode};
-use super::{Message, Scene, Telemetry, ids, nanoseconds, ushort};
+use super::field::{nanoseconds, ushort};
+use super::scene::Scene;
+use super::source::Telemetry;
 use crate::units::whole;
 
 /// MAV_MODE_FLAG.
@@ -198,8 +202,13 @@ impl Telemetry {
 
     /// The answer to a TIMESYNC that asks.
     pub(in super::super) fn timesync_answer(now: std::time::Duration, asked: i64, to: (u8, u8)) -> Message {
-        super::timesync(nanoseconds(now), asked).u8(to.0).u8(to.1)
+        timesync(nanoseconds(now), asked).u8(to.0).u8(to.1)
     }
+}
+
+/// TIMESYNC: `tc1` 0 asks, else it answers `ts1`; nanoseconds.
+pub(super) fn timesync(tc1: i64, ts1: i64) -> Message {
+    Message::new(ids::TIMESYNC).i64(tc1).i64(ts1)
 }
 
 fn percent(share: f64) -> i8 {

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use mavid::config::read_vehicle;
-use mavid::fly::{Around, Course, Key, Mode as Wanted, Origin, Settings, Sortie};
+use mavid::fly::{Around, Course, Key, Mode as RequestedEffects, Origin, Settings, Sortie};
 use mavid::sitl::{ArduPilotRelease, AutopilotKind, LinkRole, Mode, Settings as VehicleSettings};
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
 use mavid::vehicle::Vehicle;
@@ -289,7 +289,12 @@ fn trouble(random: &mut Pcg64, kind: AutopilotKind) -> Trouble {
         88..91 => Trouble::Station { heartbeat: chance(random, 0.5), lasts_s: between(random, 0.1, 3.0) },
         91..94 => Trouble::Key(one(
             random,
-            &[Key::Abort, Key::To(Wanted::Hold), Key::To(Wanted::Land), Key::To(Wanted::Return)],
+            &[
+                Key::Abort,
+                Key::To(RequestedEffects::Hold),
+                Key::To(RequestedEffects::Land),
+                Key::To(RequestedEffects::Return),
+            ],
         )),
         94..96 => Trouble::Stop,
         _ => Trouble::Cut(length(random, 6.0)),

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
-use mavid::fly::{Key, Mode as Wanted};
+use mavid::fly::{Key, Mode as RequestedEffects};
 use mavid::log::CrcSeeds;
 use mavid::sitl::{AutopilotKind, Beheld, Fault, LinkId, Mode, Vehicle};
 use rand::RngExt;
@@ -290,7 +290,7 @@ impl World {
                 self.host.wish(Wish::Key(key));
                 // he who took it brings it down
                 for after_s in [6.0, 30.0] {
-                    self.later(now + seconds(after_s), Act::Wish(Wish::Key(Key::To(Wanted::Land))));
+                    self.later(now + seconds(after_s), Act::Wish(Wish::Key(Key::To(RequestedEffects::Land))));
                 }
             }
             Trouble::Stop => self.host.wish(Wish::Stop),

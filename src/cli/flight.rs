@@ -1,0 +1,84 @@
+//! Arguments of the verb that flies a vehicle.
+
+use super::address::ADDRESS;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// Arguments of `mavid fly`.
+#[derive(Debug, Clone, Args)]
+pub struct FlyArgs {
+    #[arg(long, value_name = "ADDRESS", help = ADDRESS)]
+    pub connect: String,
+    /// trajectory.toml
+    #[arg(long, value_name = "FILE")]
+    pub trajectory: PathBuf,
+    /// vehicle.toml, or a model
+    #[arg(long, value_name = "FILE")]
+    pub vehicle: PathBuf,
+    /// new folder for recording, events, parameters and results
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// arm the vehicle; without it everything is checked and nothing is armed
+    #[arg(long)]
+    pub arm: bool,
+    /// do not ask for the word `arm` at a terminal before arming
+    #[arg(long)]
+    pub yes: bool,
+    /// the vehicle's MAVLink system id; without it the only vehicle on the link
+    #[arg(long, value_name = "ID", value_parser = clap::value_parser!(u32).range(1..=255))]
+    pub system_id: Option<u32>,
+    /// our own MAVLink system id
+    #[arg(long, value_name = "ID", default_value_t = 255, value_parser = clap::value_parser!(u32).range(1..=255))]
+    pub station_id: u32,
+    /// periods to fly, instead of the trajectory's own
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub repeats: Option<u32>,
+    /// setpoints a second
+    #[arg(long, value_name = "HZ", default_value_t = 50, value_parser = clap::value_parser!(u32).range(20..=200))]
+    pub setpoint_hz: u32,
+    /// where the trajectory's horizontal origin lies; its heights count from the ground
+    #[arg(long, value_enum, default_value = "local")]
+    pub origin: OriginName,
+    /// distance to the reference at which the flight is aborted, m
+    #[arg(long, value_name = "M", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub tracking_max: f64,
+    /// tilt at which the flight is aborted, degrees [default: 20 more than planned]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    pub tilt_max: Option<f64>,
+    /// s that the vehicle hovers on a full battery: the flight is then refused where the charge does not last for it
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub hover_time: Option<f64>,
+    /// how near to its start the vehicle must hover before the trajectory begins, m [default: 0.3, or what it can do]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub gate_distance: Option<f64>,
+    /// how slow it must be there, m/s [default: 0.2, or what it can do]
+    #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
+    pub gate_speed: Option<f64>,
+    /// a check whose refusal is taken for a warning; may be given several times
+    #[arg(long, value_enum, value_name = "CHECK")]
+    pub accept: Vec<CheckName>,
+    /// key that signs what is sent
+    #[arg(long, value_name = "FILE")]
+    pub signing_key_file: Option<PathBuf>,
+    /// lines instead of the terminal view
+    #[arg(long)]
+    pub plain: bool,
+}
+
+/// Checks that may be overruled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CheckName {
+    /// that the vehicle file's thrust carries its weight by what the vehicle hovers on
+    HoverThrust,
+    /// that the vehicle file's rotors are as many and as far out as the autopilot's
+    Rotors,
+}
+
+/// Where a trajectory's horizontal origin lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum OriginName {
+    /// at the origin of the vehicle's local position
+    Local,
+    /// so that the vehicle stands below the place of its takeoff
+    Here,
+}

@@ -1,0 +1,64 @@
+//! Arguments of the verbs that take a vehicle or a model alone.
+
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// Arguments of `mavid vehicle`.
+#[derive(Debug, Args)]
+pub struct VehicleArgs {
+    /// vehicle.toml or model.toml
+    pub file: PathBuf,
+}
+
+/// Arguments of `mavid simulate`.
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// vehicle.toml or model.toml: what flies
+    pub vehicle: PathBuf,
+    /// trajectory.toml
+    #[arg(long, value_name = "FILE")]
+    pub trajectory: PathBuf,
+    /// further effects: [[effect]] tables with `id` and the parameters by name
+    #[arg(long, value_name = "FILE")]
+    pub effects: Option<PathBuf>,
+    /// the vehicle that the controller believes it flies; without it the one that flies
+    #[arg(long, value_name = "FILE")]
+    pub nominal: Option<PathBuf>,
+    /// telemetry log to write
+    #[arg(long, value_name = "LOG.TLOG")]
+    pub out: PathBuf,
+    /// same seed, same noise
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// factor on the sensors' noise
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    pub noise: f64,
+}
+
+/// Arguments of `mavid export`.
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// model.toml or vehicle.toml
+    pub model: PathBuf,
+    /// for which simulator
+    #[arg(long, value_enum)]
+    pub to: ExportFormat,
+    /// where to write it; without it standard output
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+/// Names of the simulators.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ExportFormat {
+    /// parameters of PX4's simulation in hardware
+    Px4Sih,
+    /// frame of ArduPilot's simulator: --model "x:frame.json"
+    ArdupilotSitl,
+    /// Gazebo
+    Sdf,
+    /// MuJoCo
+    Mjcf,
+    /// RotorPy
+    Rotorpy,
+}

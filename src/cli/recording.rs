@@ -1,0 +1,129 @@
+//! Arguments of the verbs that read recordings of flights.
+
+use clap::Args;
+use std::path::PathBuf;
+
+/// Arguments of `mavid identify`.
+#[derive(Debug, Args)]
+pub struct IdentifyArgs {
+    /// recordings of one vehicle: .tlog, or .csv with known columns
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// vehicle.toml, or a model
+    #[arg(long)]
+    pub vehicle: PathBuf,
+    /// write the identified vehicle here, and a report beside it under the same name with .html
+    #[arg(long, value_name = "MODEL.TOML")]
+    pub out: Option<PathBuf>,
+    /// write the report here
+    #[arg(long, value_name = "FILE.HTML")]
+    pub report: Option<PathBuf>,
+    /// write the parameters along time here as a chart
+    #[arg(long, value_name = "FILE.SVG")]
+    pub chart: Option<PathBuf>,
+    /// how the recordings are read
+    #[command(flatten)]
+    pub read: ReadArgs,
+    /// s of flight left out at the beginning [default: 10, at most a fifth of the flight]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub transient: Option<f64>,
+    /// cut-off of the zero-phase low-pass, Hz; without it ten times the trajectory's highest harmonic
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    pub cutoff: Option<f64>,
+    /// use the 31-tap windowed filter in place of the Butterworth
+    #[arg(long)]
+    pub fir: bool,
+    /// adaptation gain of gradient descent
+    #[arg(long, default_value_t = mavid::estimate::PAPER_SIGMA, allow_negative_numbers = true)]
+    pub sigma: f64,
+    /// use commands even where rotor speeds are measured
+    #[arg(long)]
+    pub commands: bool,
+    /// identify these physical effects together with the rigid body, by the names that `explain` gives them
+    #[arg(long, value_name = "EFFECT,...", value_delimiter = ',')]
+    pub with: Vec<String>,
+}
+
+/// Arguments of `mavid explain`.
+#[derive(Debug, Args)]
+pub struct ExplainArgs {
+    /// recordings of one vehicle: .tlog, or .csv with known columns
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// vehicle.toml, or a model
+    #[arg(long)]
+    pub vehicle: PathBuf,
+    /// other flights of the same vehicle, on which the improvement is shown; without them the end of the
+    /// flight is held back for it
+    #[arg(long, value_name = "LOG", num_args = 1..)]
+    pub holdout: Vec<PathBuf>,
+    /// design the flight that best tells apart what these flights cannot, and write its trajectory here
+    #[arg(long, value_name = "TRAJECTORY.TOML")]
+    pub next: Option<PathBuf>,
+    /// write report.html, model.toml and explanation.json into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// how the recordings are read
+    #[command(flatten)]
+    pub read: ReadArgs,
+    /// s of flight left out at the beginning
+    #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub transient: f64,
+}
+
+/// Arguments of `mavid validate`.
+#[derive(Debug, Args)]
+pub struct ValidateArgs {
+    /// recordings of one vehicle: .tlog, or .csv with known columns
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// a vehicle or model file; the first is what the others are compared with
+    #[arg(long = "model", required = true, value_name = "FILE")]
+    pub models: Vec<PathBuf>,
+    /// write report.html, and charts of each flight flown again, into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// how the recordings are read
+    #[command(flatten)]
+    pub read: ReadArgs,
+    /// s of flight left out at the beginning
+    #[arg(long, value_name = "S", default_value_t = 10.0, allow_negative_numbers = true)]
+    pub transient: f64,
+}
+
+/// Arguments of `mavid inspect`.
+#[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// flight.tlog or flight.csv
+    pub log: PathBuf,
+    /// vehicle.toml or model.toml: says how well each parameter can be identified
+    #[arg(long)]
+    pub vehicle: Option<PathBuf>,
+    /// how the recordings are read
+    #[command(flatten)]
+    pub read: ReadArgs,
+}
+
+/// Arguments of `mavid prove`.
+#[derive(Debug, Args)]
+pub struct ProveArgs {
+    /// folder of cases, each with vehicle.toml, identify.tlog (or other logs) and, where there is one, holdout.tlog
+    pub cases: PathBuf,
+    /// what was concealed; opened after all verdicts are written and hashed
+    #[arg(long, value_name = "FILE")]
+    pub answers: Option<PathBuf>,
+    /// write the verdicts into this folder
+    #[arg(long, value_name = "DIR", default_value = "verdicts")]
+    pub out: PathBuf,
+}
+
+/// How recordings are read.
+#[derive(Debug, Default, Args)]
+pub struct ReadArgs {
+    /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
+    #[arg(long, value_name = "FILE")]
+    pub csv_map: Option<PathBuf>,
+    /// MAVLink system id of the vehicle; without it the only one of the log that flew
+    #[arg(long = "system-id", alias = "system", value_name = "ID")]
+    pub system: Option<u32>,
+}

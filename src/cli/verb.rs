@@ -1,0 +1,56 @@
+//! The command line as a whole: a verb, and what holds for each.
+
+use clap::{Parser, Subcommand};
+
+use super::flight::FlyArgs;
+use super::live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
+use super::model::{ExportArgs, SimulateArgs, VehicleArgs};
+use super::plan::PlanArgs;
+use super::recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ValidateArgs};
+
+/// Learns a multirotor's parameters from a recorded flight and says which physics the model left out
+#[derive(Debug, Parser)]
+#[command(name = "mavid", version, arg_required_else_help = true, after_help = AFTER_HELP)]
+pub struct Cli {
+    /// Print one JSON document on standard output and nothing else there
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// what to do
+    #[command(subcommand)]
+    pub verb: Verb,
+}
+
+const AFTER_HELP: &str = "Exit status: 0 done, 1 failure, 2 bad usage or input, 3 done with loss.";
+
+/// The verbs.
+#[derive(Debug, Subcommand)]
+pub enum Verb {
+    /// Plan, fly, identify and explain a simulated vehicle with something wrong about it, in under two minutes
+    Demo(DemoArgs),
+    /// Check a vehicle file (or a model) and say what it means
+    Vehicle(VehicleArgs),
+    /// Plan an excitation trajectory inside limits, or check one
+    Plan(PlanArgs),
+    /// Identify mass and inertia from recorded flights
+    Identify(IdentifyArgs),
+    /// Fly a vehicle along a trajectory in simulation and write its log
+    Simulate(SimulateArgs),
+    /// Fly a vehicle along a trajectory, record the flight and identify the vehicle from it
+    Fly(FlyArgs),
+    /// Run the embedded simulated vehicle, for any ground station
+    Sitl(SitlArgs),
+    /// Compare models with recorded flights: flown again, predicted, played back
+    Validate(ValidateArgs),
+    /// Say what is in a log and what can be identified from it
+    Inspect(InspectArgs),
+    /// Record a MAVLink link until interrupted
+    Record(RecordArgs),
+    /// Play a recorded flight back as live traffic; nothing is commanded
+    Replay(ReplayArgs),
+    /// Locate the mismatch between model and recording and name the missing physical effects
+    Explain(ExplainArgs),
+    /// Write a model for another simulator
+    Export(ExportArgs),
+    /// Explain a folder of cases and score the sealed verdicts against their answers
+    Prove(ProveArgs),
+}

@@ -1,0 +1,33 @@
+//! The failure of a verb.
+
+/// Why a verb did not do its work.
+#[derive(Debug, thiserror::Error)]
+pub enum CommandError {
+    /// what the user gave cannot be used
+    #[error("{0}")]
+    Input(String),
+    /// the program or the machine failed
+    #[error("{0}")]
+    Failure(String),
+    /// it failed and said so; the exit status
+    #[error("it failed, and said why")]
+    Told(u8),
+}
+
+impl From<mavid::config::ConfigError> for CommandError {
+    fn from(error: mavid::config::ConfigError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<mavid::log::LogError> for CommandError {
+    fn from(error: mavid::log::LogError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<mavid::log::csv::CsvError> for CommandError {
+    fn from(error: mavid::log::csv::CsvError) -> Self {
+        Self::Input(error.to_string())
+    }
+}

@@ -1,0 +1,21 @@
+//! The outcome of a verb that did not fail.
+
+use std::process::ExitCode;
+
+/// How a verb ended that did not fail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// all of it
+    Done,
+    /// done, but something was lost or left out; the output says what
+    DoneWithLoss,
+}
+
+impl From<Outcome> for ExitCode {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Done => Self::SUCCESS,
+            Outcome::DoneWithLoss => Self::from(3),
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Where a drag acts: at the rotors' hubs, at the centre of mass, or at both.
+//!
+//! At the hubs it damps the rotation, too, and so a body that drags at its centre and whose rotation is damped
+//! looks like one that drags partly at the hubs. One place and damping is the simpler description.
+
+use super::fit::{Fitted, Newton, fit};
+use super::signature::EffectTerm;
+use super::trace::Trace;
+use crate::physics::PhysicsError;
+
+/// A share of the hubs nearer than this to none or all is one of them.
+const NEAR: f64 = 0.05;
+/// The same in standard errors.
+const NEAR_STD: f64 = 3.0;
+
+/// Puts drags that seem to act partly at the hubs to one place, where damping explains the flight as well.
+/// Returns whether anything changed.
+///
+/// # Errors
+/// [`PhysicsError`] where the estimate leaves what is physical.
+pub(super) fn one_place(flights: &[Trace], after: &mut Fitted, price: f64) -> Result<bool, PhysicsError> {
+    let Some((place, slot)) = divided(after) else { return Ok(false) };
+    let mut best: Option<(f64, Fitted)> = None;
+    for at_hubs in [0.0, 1.0] {
+        let mut base = after.base.clone();
+        let drag = &mut base.present[place];
+        drag.values[slot] = at_hubs;
+        drag.free.retain(|free| *free != slot);
+        if let Some(damping) = base.present[place].signature.role.damped_by.map(|damping| damping()) {
+            match base.present.iter_mut().find(|term| term.is(damping.signature)) {
+                Some(known) => known.free = damping.free,
+                None => base.present.push(damping),
+            }
+        }
+        let fitted = fit(flights, base, Newton::Held)?;
+        let cost = cost(&fitted, price);
+        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+            best = Some((cost, fitted));
+        }
+    }
+    match best {
+        Some((least, fitted)) if least < cost(after, price) => {
+            *after = fitted;
+            Ok(true)
+        }
+        _ => Ok(false),
+    }
+}
+
+/// The first drag whose share at the hubs is neither none nor all: its place and the share's slot.
+fn divided(fitted: &Fitted) -> Option<(usize, usize)> {
+    let mut index = fitted.rows.nuisances.len();
+    for (place, present) in fitted.base.present.iter().enumerate() {
+        for &slot in &present.free {
+            let near = (NEAR_STD * fitted.covariance[(index, index)].max(0.0).sqrt()).max(NEAR);
+            index += 1;
+            let value = present.values[slot];
+            if is_share(present, slot) && value > near && value < 1.0 - near {
+                return Some((place, slot));
+            }
+        }
+    }
+    None
+}
+
+fn is_share(present: &EffectTerm, slot: usize) -> bool {
+    present.parameter(slot).is_some_and(|parameter| parameter.name == "at_hubs")
+}
+
+/// Twice the negative logarithm of the likelihood, and `price` a column.
+pub(super) fn cost(fitted: &Fitted, price: f64) -> f64 {
+    2.0 * fitted.misfit() + price * fitted.rows.effects.len() as f64
+}

@@ -1,0 +1,104 @@
+//! What a term of the model does with its values.
+
+use super::signature::{EffectTerm, Growth, Signature};
+use crate::physics::{Effect, Parameter};
+
+impl EffectTerm {
+    /// Its equation.
+    #[must_use]
+    pub fn effect(&self) -> &'static dyn Effect {
+        self.signature.effect
+    }
+
+    /// Its identifier.
+    #[must_use]
+    pub fn id(&self) -> &'static str {
+        self.signature.effect.id()
+    }
+
+    /// The same effect.
+    #[must_use]
+    pub fn is(&self, signature: &Signature) -> bool {
+        self.id() == signature.id()
+    }
+
+    /// The parameter of a slot of the values; `None` beyond the last.
+    #[must_use]
+    pub fn parameter(&self, slot: usize) -> Option<&'static Parameter> {
+        self.effect().parameters().iter().chain(self.effect().finer_parameters()).nth(slot)
+    }
+
+    /// The value that physics allows nearest to this.
+    #[must_use]
+    pub fn possible(&self, slot: usize, value: f64) -> f64 {
+        self.parameter(slot).map_or(value, |parameter| value.clamp(parameter.min, parameter.max))
+    }
+
+    /// Whether a parameter says how much of the effect there is; the others say what it is like.
+    #[must_use]
+    pub fn is_amount(&self, slot: usize) -> bool {
+        self.signature.amounts.contains(&slot)
+    }
+
+    /// Value at which a parameter's effect vanishes.
+    #[must_use]
+    pub fn nothing_at(&self, slot: usize) -> f64 {
+        if self.is_amount(slot) { self.signature.nothing } else { 0.0 }
+    }
+
+    /// How far a parameter is from where its effect vanishes, in its unit: what its column has to be multiplied by to
+    /// give the effect.
+    #[must_use]
+    pub fn from_nothing(&self, slot: usize) -> f64 {
+        match self.inverse_usual(slot) {
+            // it divides: nothing lies at infinity, and the distance to it is in the inverse
+            Some(_) => -self.values[slot],
+            None => self.values[slot] - self.nothing_at(slot),
+        }
+    }
+
+    /// The same in standard errors of `std`.
+    #[must_use]
+    pub fn away_from_nothing(&self, slot: usize, std: f64) -> f64 {
+        self.from_nothing(slot) / std.max(f64::MIN_POSITIVE)
+    }
+
+    /// Where a coefficient of the slot's column takes the parameter.
+    pub(super) fn moved_to(&self, slot: usize, by: f64) -> f64 {
+        let from = self.values[slot];
+        match self.inverse_usual(slot).filter(|_| from == self.nothing_at(slot)) {
+            // so much of a usual one's, and the effect goes with the inverse
+            Some(usual) => {
+                let share = by / (usual - from);
+                if share > 0.0 { usual / share } else { from }
+            }
+            None => from + by,
+        }
+    }
+
+    /// By how much a parameter is moved to see what it does.
+    pub(super) fn step_of(&self, slot: usize) -> f64 {
+        let at_nothing = self.values[slot] == self.nothing_at(slot);
+        if let Some(usual) = self.inverse_usual(slot).filter(|_| at_nothing) {
+            // it is taken to a usual one's at once: its slope at nothing leads nowhere
+            return usual - self.values[slot];
+        }
+        let span = self.parameter(slot).map_or(1.0, |parameter| (parameter.max - parameter.min).min(1.0));
+        (1e-4 * span).max(1e-3 * self.values[slot].abs())
+    }
+
+    /// A usual amount where the slot is one that divides.
+    fn inverse_usual(&self, slot: usize) -> Option<f64> {
+        match self.signature.growth {
+            Growth::Inverse { usual } if self.is_amount(slot) => Some(usual),
+            _ => None,
+        }
+    }
+
+    /// Norm of the amounts that are estimated.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        let amounts = self.free.iter().filter(|slot| self.is_amount(**slot));
+        amounts.map(|&slot| self.values[slot].powi(2)).sum::<f64>().sqrt()
+    }
+}

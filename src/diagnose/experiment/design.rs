@@ -1,0 +1,139 @@
+//! The flight that tells best apart what the flights so far cannot.
+
+use super::envelope::flown_limits;
+use super::error::NextError;
+use super::flight::{Inseparable, NextFlight, Pair};
+use super::foresight::{self, Foresight, Question};
+use super::search;
+use super::settings::NextSettings;
+use crate::diagnose::explanation::Explanation;
+use crate::diagnose::signatures::signature_of;
+use crate::diagnose::trace::{Trace, TraceError};
+use crate::signals::Signals;
+use crate::vehicle::{Limits, Vehicle};
+
+/// Designs the next flight for an explanation of `flights`. `vehicle` gives the limits; where it states none,
+/// those of the flights so far are kept.
+///
+/// # Errors
+/// [`NextError`] where there is nothing to tell apart, or no room to do it in.
+pub fn design(
+    explanation: &Explanation,
+    flights: &[Signals],
+    vehicle: &Vehicle,
+    settings: &NextSettings,
+) -> Result<NextFlight, NextError> {
+    let traces = traces(flights, vehicle, settings)?;
+    let (mut questions, mut inseparable) = questions(explanation, &traces);
+    let limits_are_flown = vehicle.limits == Limits::default();
+    let limits = if limits_are_flown { flown_limits(flights) } else { vehicle.limits };
+    if let Some(first) = questions.first().map(|question| question.named) {
+        let foresight = Foresight::new(explanation, &traces, &questions, settings);
+        let most = search::probed(&foresight, &limits, vehicle, settings);
+        if most.is_empty() {
+            return Err(NextError::NoRoom(first));
+        }
+        let told: Vec<bool> = most.iter().map(|most| *most > SAME_SIGMA).collect();
+        let same = questions.iter().zip(&told).filter(|(_, told)| !**told);
+        inseparable.extend(same.filter_map(|(question, _)| {
+            Some(Inseparable { named: question.named, other: question.other()?, why: SAME })
+        }));
+        let mut told = told.into_iter();
+        questions.retain(|_| told.next().unwrap_or(false));
+    }
+    if questions.is_empty() {
+        return Err(if inseparable.is_empty() {
+            NextError::NothingToTell
+        } else {
+            NextError::Inseparable(inseparable)
+        });
+    }
+    let foresight = Foresight::new(explanation, &traces, &questions, settings);
+    let (trajectory, distances) =
+        search::best(&foresight, &limits, vehicle, settings).ok_or(NextError::NoRoom(questions[0].named))?;
+    let mut pairs: Vec<Pair> = questions
+        .iter()
+        .zip(distances)
+        .map(|(question, after)| Pair {
+            named: question.named,
+            other: question.other(),
+            now: question.now,
+            after,
+        })
+        .collect();
+    pairs.sort_by(|a, b| a.after.total_cmp(&b.after));
+    Ok(NextFlight {
+        trajectory,
+        repeats: settings.repeats,
+        seconds: f64::from(settings.repeats) * settings.period_s,
+        limits,
+        limits_are_flown,
+        pairs,
+        inseparable,
+    })
+}
+
+/// Standard deviations by which flights tell a named effect from another that could stand for it, or, with `None`,
+/// from nothing; `None` where the effect was not named or the other was not tried.
+///
+/// # Errors
+/// [`TraceError`] where the flights lack streams.
+pub fn told_apart(
+    (explanation, named): (&Explanation, &str),
+    other: Option<&'static str>,
+    (flights, vehicle): (&[Signals], &Vehicle),
+    settings: &NextSettings,
+) -> Result<Option<f64>, TraceError> {
+    let traces = traces(flights, vehicle, settings)?;
+    let Some(named) = explanation.named.iter().map(|named| named.id).find(|id| *id == named) else {
+        return Ok(None);
+    };
+    let question = match other {
+        Some(other) => foresight::question(explanation, &traces, (named, other)),
+        None => foresight::size(explanation, named),
+    };
+    Ok(question.map(|question| question.now))
+}
+
+fn traces(flights: &[Signals], vehicle: &Vehicle, settings: &NextSettings) -> Result<Vec<Trace>, TraceError> {
+    flights.iter().map(|signals| Trace::new(signals, vehicle, settings.half_width_s)).collect()
+}
+
+/// Below this many standard deviations in every flight that was tried, two effects do the same.
+const SAME_SIGMA: f64 = 0.5;
+const SAME: &str = "in every flight inside the limits both do the same to the vehicle";
+const BY_WEIGHING: &str =
+    "weigh the vehicle before and after, swap the pack in between, and record the battery's voltage";
+const NOT_TRIED: &str = "what it would do in another flight is not known";
+
+/// The pairs of all confusable sets, and of those what no trajectory tells apart; where every name is certain, the
+/// one that is known worst.
+fn questions(explanation: &Explanation, traces: &[Trace]) -> (Vec<Question>, Vec<Inseparable>) {
+    let (mut asked, mut inseparable): (Vec<Question>, Vec<Inseparable>) = (Vec::new(), Vec::new());
+    for named in &explanation.named {
+        for other in named.confusable_with.iter().map(|other| other.id) {
+            let known = |a: &str, b: &str| a == named.id && b == other;
+            if asked.iter().any(|q| q.other().is_some_and(|of| known(q.named, of)))
+                || inseparable.iter().any(|pair| known(pair.named, pair.other))
+            {
+                continue;
+            }
+            let pair = [named.id, other];
+            let role = |id: &&str| signature_of(id).map(|signature| signature.role);
+            let still = pair.iter().all(|id| role(id).is_some_and(|role| !role.by_motion))
+                || pair.iter().any(|id| role(id).is_some_and(|role| role.moment.is_some()));
+            let question = (!still).then(|| foresight::question(explanation, traces, (named.id, other)));
+            match question {
+                Some(Some(question)) => asked.push(question),
+                found => {
+                    let why = if found.is_none() { BY_WEIGHING } else { NOT_TRIED };
+                    inseparable.push(Inseparable { named: named.id, other, why });
+                }
+            }
+        }
+    }
+    if asked.is_empty() && inseparable.is_empty() {
+        asked.extend(foresight::least_known(explanation));
+    }
+    (asked, inseparable)
+}

@@ -1,0 +1,68 @@
+//! Values that candidates have on a grid, brought between the grid's points: when a mass changed, how long a
+//! cord is.
+
+use super::candidates::Candidate;
+use super::fit::Fitted;
+use super::score::columns_of;
+use super::signature::GridScale;
+use super::tested::Tested;
+use super::trace::Trace;
+use rayon::prelude::*;
+
+/// The likeliest cord brought between the grid's lengths: a load that swings freely is out of step with its
+/// neighbours on the grid, and they explain too little of it to be taken.
+pub(super) fn between_grid(flights: &[Trace], fitted: &Fitted, tested: &[Tested]) -> Option<Tested> {
+    let before = |tested: &&Tested| {
+        tested.candidate.signature().is_some_and(|signature| signature.refinement.grid_before_test)
+    };
+    let loads = tested.iter().filter(before);
+    let most = loads.max_by(|a, b| a.evidence.energy.total_cmp(&b.evidence.energy))?;
+    (most.evidence.gain > WORTH_REFINING).then(|| refined(flights, fitted, most.clone()))
+}
+
+/// Share of the residual that a cord of the grid has to explain.
+const WORTH_REFINING: f64 = 0.01;
+
+/// Neighbours on either side that are tried first.
+const NEIGHBOURS: i32 = 6;
+
+/// The candidate with the value that explains most energy, near the one it has.
+pub(super) fn refined(flights: &[Trace], fitted: &Fitted, tested: Tested) -> Tested {
+    let scale = tested.candidate.signature().and_then(|signature| signature.refinement.grid);
+    let Some(scale) = scale else { return tested };
+    let at = |from: &Tested, by: f64| {
+        let candidate = moved(&from.candidate, scale, by);
+        let columns = columns_of(flights, fitted, &candidate)?;
+        let evidence = fitted.weighted.test(&columns)?;
+        Some(Tested { candidate, evidence })
+    };
+    let better = |a: Tested, b: Option<Tested>| match b {
+        Some(b) if b.evidence.energy > a.evidence.energy => b,
+        _ => a,
+    };
+    let (mut step, least) = match scale {
+        GridScale::Even { step, least, .. } | GridScale::Relative { step, least, .. } => (step, least),
+    };
+    let around: Vec<Option<Tested>> =
+        (-NEIGHBOURS..=NEIGHBOURS).into_par_iter().map(|k| at(&tested, f64::from(k) * step)).collect();
+    let mut best = around.into_iter().fold(tested.clone(), better);
+    while step > least {
+        step *= 0.5;
+        let sides = rayon::join(|| at(&best, step), || at(&best, -step));
+        best = [sides.0, sides.1].into_iter().fold(best, better);
+    }
+    best
+}
+
+fn moved(candidate: &Candidate, scale: GridScale, by: f64) -> Candidate {
+    let mut candidate = candidate.clone();
+    for part in &mut candidate.parts {
+        match scale {
+            GridScale::Even { slot, .. } => part.values[slot] = part.possible(slot, part.values[slot] + by),
+            GridScale::Relative { slot, .. } => {
+                part.values[slot] = part.possible(slot, part.values[slot] * by.exp());
+            }
+        }
+    }
+    candidate
+}

@@ -1,0 +1,78 @@
+//! The held-out flights flown again from their setpoints, as in Table 4.
+
+use super::bootstrap::{Blocks, Compared};
+use super::ready::{Ready, flown};
+use super::settings::HoldoutSettings;
+use crate::compare::{SIGNALS, TenSignals, autopilot_flight};
+use crate::diagnose::base::Base;
+use crate::diagnose::empirical::Empirical;
+use crate::stats::white_level_of;
+use crate::vehicle::Vehicle;
+
+/// Errors of the ten signals against the recording. The autopilot's controller is not known: the
+/// simulator's own flies both models, so their difference counts, not their size.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClosedLoop {
+    /// in the order of [`SIGNALS`]; the floor is the recording's own white noise
+    pub signals: Vec<Option<Compared>>,
+}
+
+/// Both models of every flight; an error says why it could not be done.
+pub(super) fn flown_again(
+    ready: &[Ready],
+    empirical: Option<&Empirical>,
+    nominal: &Vehicle,
+    settings: &HoldoutSettings,
+) -> Result<ClosedLoop, String> {
+    if empirical.is_some() {
+        return Err("an empirical term is not flown in closed loop".to_owned());
+    }
+    let mut blocks = Blocks::new(SIGNALS.len(), settings.block_s);
+    let mut floors = [0.0; SIGNALS.len()];
+    for (index, ready) in ready.iter().enumerate() {
+        let named = |error: &dyn std::fmt::Display| format!("{}: {error}", ready.flight.name);
+        let recording = ready
+            .flight
+            .recording
+            .ok_or_else(|| named(&"part of a flight that was used is not flown again"))?;
+        let recorded = TenSignals::of_signals(ready.flight.signals).map_err(|error| named(&error))?;
+        let levels = noise_levels(&recorded);
+        floors.iter_mut().zip(levels).for_each(|(floor, level)| *floor += level * level);
+        let fly = |base: &Base| -> Result<Vec<(f64, [f64; 10])>, String> {
+            let model = flown(base).map_err(|error| named(&error))?;
+            let again = autopilot_flight(recording, &model, nominal).map_err(|error| named(&error))?;
+            Ok(recorded.square_errors(&again, span_s(ready)))
+        };
+        let (before, after) = rayon::join(|| fly(&ready.pair.before), || fly(&ready.pair.after));
+        for ((time_s, before), (_, after)) in before?.iter().zip(&after?) {
+            blocks.add((index, *time_s), before, after, &[1.0; SIGNALS.len()]);
+        }
+    }
+    if blocks.len() == 0 {
+        return Err("recording and simulation share no instant".to_owned());
+    }
+    let mut signals = blocks.compared(settings.draws, settings.seed).0;
+    let flights = ready.len() as f64;
+    for (compared, floor) in signals.iter_mut().zip(floors) {
+        if let Some(compared) = compared {
+            compared.floor = Some((floor / flights).sqrt()).filter(|floor| floor.is_finite());
+        }
+    }
+    Ok(ClosedLoop { signals })
+}
+
+/// Standard deviation of each signal's white noise, which no model takes out of the recording.
+fn noise_levels(recorded: &TenSignals) -> [f64; SIGNALS.len()] {
+    std::array::from_fn(|signal| {
+        let series: Vec<f64> = recorded.values.iter().map(|values| values[signal]).collect();
+        white_level_of(&series)
+    })
+}
+
+/// From the first to the last usable instant.
+fn span_s(ready: &Ready) -> (f64, f64) {
+    let (usable, grid) = (&ready.trace.usable, &ready.trace.grid);
+    let first = usable.iter().position(|usable| *usable).unwrap_or(0);
+    let last = usable.iter().rposition(|usable| *usable).unwrap_or(0);
+    (grid.time_s(first), grid.time_s(last))
+}

@@ -1,0 +1,136 @@
+//! Open-loop prediction from the measured state, fed the recorded actuators.
+
+use super::bootstrap::{Blocks, Compared, Interval};
+use super::error::HoldoutError;
+use super::floor::{command_noise, state_noise};
+use super::ready::{Ready, flown};
+use super::settings::HoldoutSettings;
+use crate::compare::{
+    CommandNoise, PlaybackSettings, StateNoise, WindowErrors, playback_floor, playback_windows,
+};
+use crate::diagnose::base::Base;
+use crate::diagnose::empirical::Empirical;
+use crate::physics::{Model, PhysicsError};
+use rayon::prelude::*;
+
+/// Lengths of the windows, s.
+pub const WINDOWS_S: [f64; 3] = [0.1, 0.5, 1.0];
+
+/// Errors over windows of one length. A quantity that the recording does not hold is `None`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OpenLoop {
+    /// s
+    pub window_s: f64,
+    /// windows of all flights
+    pub windows: usize,
+    /// m
+    pub position_m: Option<Compared>,
+    /// m/s
+    pub velocity_m_s: Option<Compared>,
+    /// rad
+    pub attitude_rad: Option<Compared>,
+    /// rad/s
+    pub rates_rad_s: Option<Compared>,
+}
+
+impl OpenLoop {
+    /// Position, velocity, attitude, rates.
+    #[must_use]
+    pub fn quantities(&self) -> [Option<Compared>; 4] {
+        [self.position_m, self.velocity_m_s, self.attitude_rad, self.rates_rad_s]
+    }
+}
+
+/// One flight's models.
+struct Models {
+    before: Model,
+    after: Model,
+    noise: StateNoise,
+    commands: Option<CommandNoise>,
+}
+
+/// All window lengths, the mean improvement at 0.5 s, and the number of its blocks.
+pub(super) fn open_loop(
+    ready: &[Ready],
+    empirical: Option<&Empirical>,
+    settings: &HoldoutSettings,
+) -> Result<(Vec<OpenLoop>, Option<Interval>, usize), HoldoutError> {
+    let models: Vec<Models> = ready.iter().map(models_of).collect::<Result<_, _>>()?;
+    let parts: Vec<(OpenLoop, Option<Interval>, usize)> = WINDOWS_S
+        .par_iter()
+        .map(|&window_s| one_length(window_s, (ready, &models), empirical, settings))
+        .collect::<Result<_, _>>()?;
+    let half = parts.iter().find(|(of, ..)| (of.window_s - 0.5).abs() < 1e-9);
+    let (improvement, blocks) = half.map_or((None, 0), |(_, improvement, blocks)| (*improvement, *blocks));
+    Ok((parts.into_iter().map(|(of, ..)| of).collect(), improvement, blocks))
+}
+
+fn models_of(ready: &Ready) -> Result<Models, PhysicsError> {
+    Ok(Models {
+        before: flown(&ready.pair.before)?,
+        after: flown(&ready.pair.after)?,
+        noise: state_noise(ready.flight.signals),
+        commands: command_noise(ready.flight.signals),
+    })
+}
+
+fn one_length(
+    window_s: f64,
+    (ready, models): (&[Ready], &[Models]),
+    empirical: Option<&Empirical>,
+    settings: &HoldoutSettings,
+) -> Result<(OpenLoop, Option<Interval>, usize), HoldoutError> {
+    // grids are seldom faster than 4 ms: one step an instant
+    let playback = PlaybackSettings { window_s, step_s: 0.004, ..PlaybackSettings::default() };
+    let mut blocks = Blocks::new(4, settings.block_s);
+    let (mut floor, mut windows) = ([(0.0, 0usize); 4], 0);
+    for (index, (ready, models)) in ready.iter().zip(models).enumerate() {
+        let failed = |source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source };
+        let signals = ready.flight.signals;
+        let run = |model: &Model, base: &Base, empirical: Option<&Empirical>| {
+            let push = empirical.map(Empirical::push);
+            let push = push.as_ref().map(|push| push as crate::simulate::Push);
+            playback_windows((model, &base.vehicle), push, signals, &playback)
+        };
+        let ((before, after), noise) = rayon::join(
+            || {
+                rayon::join(
+                    || run(&models.before, &ready.pair.before, None),
+                    || run(&models.after, &ready.pair.after, empirical),
+                )
+            },
+            || {
+                let seed = settings.seed ^ index as u64;
+                let of = (&models.after, &ready.pair.after.vehicle);
+                playback_floor(of, signals, &playback, (&models.noise, models.commands.as_ref(), seed))
+            },
+        );
+        let (before, after, noise) =
+            (before.map_err(failed)?, after.map_err(failed)?, noise.map_err(failed)?);
+        windows += before.len();
+        for (before, after) in before.iter().zip(&after) {
+            let counts = before.counts.map(|count| count as f64);
+            blocks.add((index, before.start_s), &before.squares, &after.squares, &counts);
+        }
+        for WindowErrors { squares, counts, .. } in noise {
+            for (floor, (square, count)) in floor.iter_mut().zip(squares.iter().zip(counts)) {
+                *floor = (floor.0 + square, floor.1 + count);
+            }
+        }
+    }
+    let (mut each, improvement) = blocks.compared(settings.draws, settings.seed);
+    for (compared, (sum, count)) in each.iter_mut().zip(floor) {
+        if let Some(compared) = compared.as_mut().filter(|_| count > 0) {
+            compared.floor = Some((sum / count as f64).sqrt());
+        }
+    }
+    let of = OpenLoop {
+        window_s,
+        windows,
+        position_m: each[0],
+        velocity_m_s: each[1],
+        attitude_rad: each[2],
+        rates_rad_s: each[3],
+    };
+    Ok((of, improvement, blocks.len()))
+}

@@ -1,0 +1,280 @@
+//! Whether the held-out flights can be of the vehicle that was identified.
+
+use super::error::HoldoutError;
+use super::ready::{Ready, trace_of};
+use super::settings::{HeldOut, HoldoutSettings};
+use super::weak::Weak;
+use crate::diagnose::channels::{CHANNEL_NAMES, CHANNELS, Nuisance};
+use crate::diagnose::explanation::Explanation;
+use crate::diagnose::fit::{Fitted, evaluate};
+use crate::diagnose::signature::EffectTerm;
+use crate::estimate::{NAMES, UNITS};
+use crate::physics::PhysicsError;
+use crate::vehicle::Vehicle;
+
+/// A parameter's value on the held-out flights against that of the model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agreement {
+    /// `mass`, `ixx` ... or `effect.parameter`
+    pub name: String,
+    /// SI
+    pub unit: &'static str,
+    /// of the model
+    pub identified: f64,
+    /// its standard error
+    pub identified_std: f64,
+    /// of the held-out flights alone
+    pub held_out: f64,
+    /// its standard error
+    pub held_out_std: f64,
+}
+
+impl Agreement {
+    /// Difference in standard errors of the difference.
+    #[must_use]
+    pub fn sigmas(&self) -> f64 {
+        (self.held_out - self.identified) / self.identified_std.hypot(self.held_out_std)
+    }
+
+    fn share(&self) -> f64 {
+        (self.held_out - self.identified) / self.identified
+    }
+
+    /// Certainly, and by more than a vehicle of one kind differs from flight to flight.
+    fn differs(&self) -> bool {
+        let share = match self.name.as_str() {
+            "mass" => MASS_SHARE,
+            "ixx" | "iyy" | "izz" => INERTIA_SHARE,
+            name if OF_THE_VEHICLE.iter().any(|amount| name.starts_with(amount)) => AMOUNT_SHARE,
+            _ => return false,
+        };
+        // a small component of it moves by much of itself
+        let moved = !self.name.starts_with(COM) || (self.held_out - self.identified).abs() > COM_M;
+        self.sigmas().abs() > SIGMAS && self.share().abs() > share && moved
+    }
+}
+
+/// Certain: beyond this many standard errors.
+const SIGMAS: f64 = 8.0;
+/// And relevant: beyond this share of the mass, of a principal inertia.
+const MASS_SHARE: f64 = 0.08;
+const INERTIA_SHARE: f64 = 0.22;
+/// What it has of an effect that is its own, not the day's.
+const OF_THE_VEHICLE: [&str; 6] = [
+    "linear_drag.d",
+    "angular_damping.b",
+    "com_offset.",
+    "weak_rotor.factor",
+    "rotor_inertia.",
+    "thrust_curve.curvature",
+];
+const AMOUNT_SHARE: f64 = 0.6;
+const COM: &str = "com_offset.";
+/// A pack put back elsewhere moves the centre of mass by this, m.
+const COM_M: f64 = 0.002;
+/// What even a fit of its own leaves is so many times what is left of the flights that were identified.
+const LEFT_RATIO: f64 = 4.0;
+/// And it shows: a channel's residual is this much larger than the held-out flight's own fit leaves.
+const RESIDUAL_RATIO: f64 = 1.3;
+
+/// One linear step about the carried model gives the held-out flights' own values.
+pub(super) fn judged(
+    ready: &[Ready],
+    explanation: &Explanation,
+    weak: &Weak,
+    same_flight: bool,
+) -> Result<(Vec<Agreement>, Option<OtherVehicle>), PhysicsError> {
+    let identified = &explanation.search.after;
+    let mut all: Vec<Agreement> = Vec::new();
+    for (index, own) in weak.own.iter().enumerate() {
+        let found = agreements(own, identified);
+        if index == 0 {
+            all = found;
+        } else {
+            all.iter_mut().zip(found).for_each(|(all, one)| pool(all, &one));
+        }
+    }
+    let jumps: Vec<(usize, f64)> = weak
+        .compared
+        .iter()
+        .enumerate()
+        .filter_map(|(channel, compared)| {
+            let compared = compared.as_ref()?;
+            let ratio = compared.after.value / weak.own_rms[channel];
+            (ratio > RESIDUAL_RATIO).then_some((channel, ratio))
+        })
+        .collect();
+    let different: Vec<&Agreement> = all.iter().filter(|agreement| agreement.differs()).collect();
+    let worst = jumps.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    let whose = if same_flight {
+        "something changed in the part of the flight that was held back"
+    } else if ready.len() == 1 {
+        "the hold-out is not of the vehicle that was identified"
+    } else {
+        "the hold-outs are not of the vehicle that was identified"
+    };
+    let by_parameters = worst.filter(|_| !different.is_empty()).map(|(channel, ratio)| {
+        let parameters: Vec<String> = different.iter().map(|agreement| described(agreement)).collect();
+        let parameters = parameters.join(", ");
+        let channel = CHANNEL_NAMES[*channel];
+        let reason = format!(
+            "{whose}: {parameters}; the residual of {channel} is {ratio:.1} times what its own fit leaves"
+        );
+        OtherVehicle { by: Difference::Parameter(different[0].clone()), reason }
+    });
+    Ok((all, by_parameters.or_else(|| by_what_is_left(identified, weak, whose))))
+}
+
+/// Why flights that were explained together should not have been: each one's own linear step about the model that all
+/// share, against the first's. `None` where they may be.
+///
+/// # Errors
+/// [`HoldoutError`] where a flight lacks streams or is too short.
+pub fn differing(
+    explanation: &Explanation,
+    flights: &[HeldOut],
+    vehicle: &Vehicle,
+    settings: &HoldoutSettings,
+) -> Result<Option<String>, HoldoutError> {
+    let shared = &explanation.search.after;
+    let mut first: Option<Vec<Agreement>> = None;
+    for flight in flights {
+        let trace = trace_of(flight, vehicle, settings)?;
+        let own = agreements(&evaluate(std::slice::from_ref(&trace), shared.base.clone())?, shared);
+        let Some(first) = &first else {
+            first = Some(own);
+            continue;
+        };
+        let pairs = own.into_iter().zip(first).map(|(own, first)| Agreement {
+            identified: first.held_out,
+            identified_std: first.held_out_std,
+            ..own
+        });
+        let different: Vec<String> = pairs.filter(Agreement::differs).map(|pair| described(&pair)).collect();
+        if !different.is_empty() {
+            return Ok(Some(format!(
+                "{} and {} differ by more than flights of one vehicle do (another vehicle, load or battery), so what is \
+                 explained may be of neither: {}",
+                flights[0].name,
+                flight.name,
+                different.join(", ")
+            )));
+        }
+    }
+    Ok(None)
+}
+
+/// Why the held-out flights are not of the vehicle that was identified.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OtherVehicle {
+    /// what shows it most plainly
+    pub by: Difference,
+    /// in full
+    pub reason: String,
+}
+
+/// What shows that flights are of different vehicles.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Difference {
+    /// a parameter
+    Parameter(Agreement),
+    /// what a fit of its own leaves of a channel
+    Residual {
+        /// as in [`CHANNEL_NAMES`]
+        channel: &'static str,
+        /// over what is left of the flights that were identified
+        ratio: f64,
+    },
+}
+
+/// Something that no parameter of the model follows: far more is left of these flights than of those that were identified.
+fn by_what_is_left(identified: &Fitted, weak: &Weak, whose: &str) -> Option<OtherVehicle> {
+    let ratios = (0..CHANNELS).filter_map(|channel| {
+        let ratio = weak.own_rms[channel] / identified.weighted.sigma[channel];
+        (ratio.is_finite() && ratio > LEFT_RATIO).then_some((channel, ratio))
+    });
+    let (channel, ratio) = ratios.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let channel = CHANNEL_NAMES[channel];
+    let reason = format!(
+        "{whose}, or it holds something that the others do not: even a fit of its own leaves {ratio:.1} times as much of \
+         {channel} there as here"
+    );
+    let by = Difference::Residual { channel, ratio };
+    Some(OtherVehicle { by, reason })
+}
+
+fn described(agreement: &Agreement) -> String {
+    format!(
+        "{} {:.4} +- {:.4} {} there, {:.4} +- {:.4} here ({:+.0} %, {:.0} sigma)",
+        agreement.name,
+        agreement.held_out,
+        agreement.held_out_std,
+        agreement.unit,
+        agreement.identified,
+        agreement.identified_std,
+        100.0 * agreement.share(),
+        agreement.sigmas().abs()
+    )
+}
+
+fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
+    const PLACES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+    let body = &own.base.vehicle.body;
+    let std = |fitted: &Fitted, index: usize| fitted.covariance[(index, index)].max(0.0).sqrt();
+    let mut out = Vec::new();
+    for (index, column) in own.rows.nuisances.iter().enumerate() {
+        let (name, unit, value) = match column.nuisance {
+            // before a change that these rows do not hold
+            Nuisance::Mass if own.base.present.iter().any(|of| is_before(of, own)) => continue,
+            Nuisance::Mass => (NAMES[0], UNITS[0], body.mass_kg),
+            Nuisance::Inertia(entry) => {
+                let (row, column) = PLACES[entry];
+                (NAMES[1 + entry], UNITS[1 + entry], body.inertia_kg_m2[(row, column)])
+            }
+            _ => continue,
+        };
+        out.push(Agreement {
+            name: name.to_owned(),
+            unit,
+            identified: value,
+            identified_std: std(identified, index),
+            held_out: value + own.coefficients[index],
+            held_out_std: std(own, index),
+        });
+    }
+    let mut index = own.rows.nuisances.len();
+    for present in &own.base.present {
+        for &free in &present.free {
+            let Some(parameter) = present.parameter(free) else { continue };
+            out.push(Agreement {
+                name: format!("{}.{}", present.id(), parameter.name),
+                unit: parameter.unit,
+                identified: present.values[free],
+                identified_std: if index < identified.covariance.nrows() {
+                    std(identified, index)
+                } else {
+                    0.0
+                },
+                held_out: present.values[free] + own.coefficients[index],
+                held_out_std: std(own, index),
+            });
+            index += 1;
+        }
+    }
+    out
+}
+
+/// A change of mass that was over when the rows began.
+fn is_before(present: &EffectTerm, own: &Fitted) -> bool {
+    let moment_s = present.signature.role.moment.map(|slot| present.values[slot]);
+    moment_s.is_some_and(|moment_s| own.rows.time_s.first().is_some_and(|first_s| moment_s <= *first_s))
+}
+
+/// Two flights' values weighted by their variances.
+fn pool(all: &mut Agreement, one: &Agreement) {
+    let (a, b) = (all.held_out_std.powi(-2), one.held_out_std.powi(-2));
+    if a.is_finite() && b.is_finite() && a + b > 0.0 {
+        all.held_out = (all.held_out * a + one.held_out * b) / (a + b);
+        all.held_out_std = (a + b).powf(-0.5);
+    }
+}

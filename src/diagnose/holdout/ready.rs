@@ -1,0 +1,38 @@
+//! A held-out flight made ready.
+
+use super::carried::Pair;
+use super::error::HoldoutError;
+use super::settings::{HeldOut, HoldoutSettings};
+use crate::diagnose::base::Base;
+use crate::diagnose::trace::Trace;
+use crate::physics::{Model, PhysicsError};
+use crate::vehicle::Vehicle;
+
+/// A held-out flight made ready.
+pub(super) struct Ready<'a> {
+    pub(super) flight: &'a HeldOut<'a>,
+    pub(super) trace: Trace,
+    pub(super) pair: Pair,
+}
+
+pub(super) fn trace_of(
+    flight: &HeldOut,
+    vehicle: &Vehicle,
+    settings: &HoldoutSettings,
+) -> Result<Trace, HoldoutError> {
+    let trace = Trace::new(flight.signals, vehicle, settings.half_width_s)
+        .map_err(|source| HoldoutError::Trace { flight: flight.name.to_owned(), source })?;
+    let seconds = flight.signals.usable.iter().filter(|usable| **usable).count() as f64 * trace.grid.step_s;
+    if seconds < LEAST_S {
+        return Err(HoldoutError::TooShort { flight: flight.name.to_owned(), seconds, needed_s: LEAST_S });
+    }
+    Ok(trace)
+}
+
+/// A base's model with its latency as effects.
+pub(super) fn flown(base: &Base) -> Result<Model, PhysicsError> {
+    base.model(&base.latency_effects())
+}
+
+/// Least flight that errors are averaged over, s.
+const LEAST_S: f64 = 3.0;

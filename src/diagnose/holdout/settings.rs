@@ -1,0 +1,43 @@
+//! What a model is shown on, and how.
+
+use crate::diagnose::explain::ExplainSettings;
+use crate::log::Recording;
+use crate::signals::Signals;
+
+/// How it is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HoldoutSettings {
+    /// s, half width of the weak form's test function
+    pub half_width_s: f64,
+    /// s, length of the resampled blocks
+    pub block_s: f64,
+    /// resamplings
+    pub draws: usize,
+    /// of resamplings and noise
+    pub seed: u64,
+    /// the held-out part belongs to the flight that was explained
+    pub same_flight: bool,
+}
+
+impl Default for HoldoutSettings {
+    fn default() -> Self {
+        Self {
+            half_width_s: ExplainSettings::default().half_width_s,
+            block_s: 2.0,
+            draws: 400,
+            seed: 1,
+            same_flight: false,
+        }
+    }
+}
+
+/// A flight that was not used.
+#[derive(Debug, Clone, Copy)]
+pub struct HeldOut<'a> {
+    /// by which it is called in messages
+    pub name: &'a str,
+    /// conditioned with the vehicle file that the others were conditioned with
+    pub signals: &'a Signals,
+    /// with its setpoints, for the closed loop; `None`: it is left out
+    pub recording: Option<&'a Recording>,
+}

@@ -1,0 +1,39 @@
+//! The fit on flights that were not used.
+
+use super::bootstrap::{Compared, Interval};
+use super::closed_loop::ClosedLoop;
+use super::open_loop::OpenLoop;
+use super::other_vehicle::{Agreement, OtherVehicle};
+
+/// The fit on flights that were not used.
+#[derive(Debug, Clone)]
+pub struct HoldoutFit {
+    /// how many flights
+    pub flights: usize,
+    /// blocks that the intervals come from
+    pub blocks: usize,
+    /// open-loop prediction, one entry a length of window; none where `no_open_loop` says why
+    pub open_loop: Vec<OpenLoop>,
+    /// why nothing could be played back
+    pub no_open_loop: Option<String>,
+    /// mean over the four quantities at 0.5 s of `100 (1 - after/before)`
+    pub improvement_percent: Option<Interval>,
+    /// residual of the weak form, N and N m, in the order of [`crate::diagnose::CHANNEL_NAMES`]
+    pub weak: Vec<Option<Compared>>,
+    /// flown again from the recorded setpoints; `Err`: why not
+    pub closed_loop: Result<ClosedLoop, String>,
+    /// the held-out flights' own values against those of the model
+    pub agreement: Vec<Agreement>,
+    /// why the held-out flights cannot be of the identified vehicle
+    pub other_vehicle: Option<OtherVehicle>,
+    /// what was not simply kept, and what is not known
+    pub notes: Vec<String>,
+}
+
+impl HoldoutFit {
+    /// Open loop over windows of 0.5 s.
+    #[must_use]
+    pub fn half_second(&self) -> Option<&OpenLoop> {
+        self.open_loop.iter().find(|of| (of.window_s - 0.5).abs() < 1e-9)
+    }
+}

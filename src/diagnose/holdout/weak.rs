@@ -1,0 +1,105 @@
+//! The weak form's residual of the frozen models.
+
+use super::bootstrap::Blocks;
+use super::bootstrap::Compared;
+use super::ready::Ready;
+use super::settings::HoldoutSettings;
+use crate::diagnose::base::Base;
+use crate::diagnose::channels::{CHANNELS, Channels, Nuisance, SECOND};
+use crate::diagnose::empirical::Empirical;
+use crate::diagnose::explanation::Explanation;
+use crate::diagnose::fit::{Fitted, evaluate};
+use crate::diagnose::trace::Trace;
+use crate::physics::PhysicsError;
+use rayon::prelude::*;
+
+/// Residuals, and the held-out flights' own linear fits about the carried model.
+pub(super) struct Weak {
+    pub(super) compared: Vec<Option<Compared>>,
+    pub(super) own: Vec<Fitted>,
+    /// what everything fitted to the held-out flights themselves leaves
+    pub(super) own_rms: [f64; CHANNELS],
+}
+
+/// Root mean square of each channel (N, N m). What the identification found of the nuisances that are
+/// known beforehand (tilt of the frame, timing of the accelerometer, jitter) is kept like all else. The
+/// floor is what remains where everything is fitted to the held-out flight itself.
+pub(super) fn residuals(
+    ready: &[Ready],
+    explanation: &Explanation,
+    empirical: Option<&Empirical>,
+    settings: &HoldoutSettings,
+) -> Result<Weak, PhysicsError> {
+    let parts: Vec<(Channels, Channels, Fitted)> = ready
+        .par_iter()
+        .map(|ready| {
+            let frozen = |base: &Base, from: &Fitted| -> Result<(Channels, Fitted), PhysicsError> {
+                let own = evaluate(std::slice::from_ref(&ready.trace), base.clone())?;
+                Ok((without_known_nuisances(&own, from), own))
+            };
+            let search = &explanation.search;
+            let (before, _) = frozen(&ready.pair.before, &search.before)?;
+            let (mut after, own) = frozen(&ready.pair.after, &search.after)?;
+            if let Some(empirical) = empirical {
+                subtract(&mut after, empirical, &ready.trace);
+            }
+            Ok((before, after, own))
+        })
+        .collect::<Result<_, PhysicsError>>()?;
+    let mut blocks = Blocks::new(CHANNELS, settings.block_s);
+    let (mut floor, mut rows) = ([0.0; CHANNELS], 0);
+    for (flight, (before, after, own)) in parts.iter().enumerate() {
+        let count = own.rows.len();
+        rows += count;
+        for (row, time_s) in own.rows.time_s.iter().enumerate() {
+            let squares = |channels: &Channels| -> [f64; CHANNELS] {
+                std::array::from_fn(|channel| channels[channel][row].powi(2))
+            };
+            blocks.add((flight, *time_s), &squares(before), &squares(after), &[1.0; CHANNELS]);
+        }
+        for (channel, floor) in floor.iter_mut().enumerate() {
+            *floor += count as f64 * own.weighted.sigma[channel].powi(2);
+        }
+    }
+    let (mut compared, _) = blocks.compared(settings.draws, settings.seed);
+    let root = |sum: f64| (sum / rows.max(1) as f64).sqrt();
+    for (entry, sum) in compared.iter_mut().zip(floor) {
+        // force that is read once only has no second reading
+        *entry = entry
+            .filter(|compared| compared.before.value > 0.0 && sum > 0.0)
+            // a flight's own fit has no empirical term
+            .map(|compared| Compared { floor: empirical.is_none().then(|| root(sum)), ..compared });
+    }
+    Ok(Weak { own_rms: floor.map(root), compared, own: parts.into_iter().map(|(.., own)| own).collect() })
+}
+
+/// The residual less the share of each nuisance that the base does not hold: the sensors' own (a bias, the
+/// attitude's level) as the flight itself has it, the vehicle's as it was identified.
+fn without_known_nuisances(own: &Fitted, identified: &Fitted) -> Channels {
+    let mut residual = own.rows.residual.clone();
+    for (index, column) in own.rows.nuisances.iter().enumerate() {
+        let share = match column.nuisance {
+            Nuisance::Mass | Nuisance::Inertia(_) | Nuisance::Latency => continue,
+            Nuisance::AccelerometerBias(_) | Nuisance::Level(_) => own.coefficients[index],
+            Nuisance::ForceLatency | Nuisance::Tilt(_) | Nuisance::Jitter => {
+                let columns = &identified.rows.nuisances;
+                let place = columns.iter().position(|known| known.nuisance == column.nuisance);
+                place.map_or(0.0, |index| identified.coefficients[index])
+            }
+        };
+        for (residual, values) in residual.iter_mut().zip(&column.values) {
+            residual.iter_mut().zip(values).for_each(|(r, v)| *r -= share * v);
+        }
+    }
+    residual
+}
+
+fn subtract(residual: &mut Channels, empirical: &Empirical, trace: &Trace) {
+    let force = empirical.weak_force(trace);
+    let readings: &[usize] = if trace.reads_force_twice() { &[0, SECOND] } else { &[0] };
+    for first in readings {
+        for (axis, force) in force.iter().enumerate() {
+            residual[first + axis].iter_mut().zip(force).for_each(|(r, f)| *r -= f);
+        }
+    }
+}

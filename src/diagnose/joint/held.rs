@@ -1,0 +1,204 @@
+//! What a flight does not determine is held where it does nothing, what physics does not allow at its bound.
+
+use super::choose::Chosen;
+use crate::diagnose::base::Base;
+use crate::diagnose::evidence::Weighted;
+use crate::diagnose::fit::{Fitted, Newton, fit};
+use crate::diagnose::signature::EffectTerm;
+use crate::diagnose::trace::Trace;
+use crate::physics::PhysicsError;
+use nalgebra::DVector;
+
+/// Why a parameter is not estimated.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Held {
+    /// the flight does not say; for the user
+    NotDetermined(String),
+    /// what the flight asks for, with its standard error, lies beyond what physics allows
+    AtBound { wanted: f64, std: f64 },
+}
+
+/// A form with what became of its parameters.
+#[derive(Debug, Clone)]
+pub(super) struct Settled {
+    pub(super) chosen: Chosen,
+    /// slot, why
+    pub(super) held: Vec<(usize, Held)>,
+}
+
+/// Share of the plausible range above which a standard error says nothing.
+const SAYS_NOTHING: f64 = 0.125;
+/// Share of a column that must be its own.
+const OWN: f64 = 1e-7;
+/// An effect's further parameters show only with it: standard errors from nothing.
+const SEEN: f64 = 2.5;
+/// A drag along z that shows a wind along it, standard errors.
+const SHOWS_WIND: f64 = 4.0;
+
+/// Fits, holds what cannot be estimated, and fits again until all that is left is determined.
+pub(super) fn settle(
+    flights: &[Trace],
+    base: &Base,
+    chosen: Vec<Chosen>,
+    newton: Newton,
+) -> Result<(Fitted, Vec<Settled>), PhysicsError> {
+    let mut settled: Vec<Settled> =
+        chosen.into_iter().map(|chosen| Settled { chosen, held: Vec::new() }).collect();
+    let before = base.present.len();
+    let start = |settled: &[Settled]| {
+        let mut base = base.clone();
+        // what hangs below is no part of the vehicle
+        let load_kg: f64 = settled.iter().filter_map(|of| load_kg(&of.chosen.form)).sum();
+        base.vehicle.body.mass_kg -= load_kg;
+        base.present.extend(settled.iter().map(|of| of.chosen.form.clone()));
+        base
+    };
+    let mut fitted = fit(flights, start(&settled), newton)?;
+    let mut up_tried = false;
+    loop {
+        let singular = fitted.weighted.normal.is_none();
+        let mut anew = singular && hold_last(&mut settled);
+        for (index, of) in settled.iter_mut().enumerate().filter(|_| !singular) {
+            anew |= hold_undetermined(&fitted, before + index, of);
+        }
+        if anew {
+            fitted = fit(flights, start(&settled), newton)?;
+            continue;
+        }
+        let mut next = fitted.base.clone();
+        let mut bounded = false;
+        for (index, of) in settled.iter_mut().enumerate() {
+            bounded |= hold_at_bounds(&fitted, before + index, of);
+            next.present[before + index].free.clone_from(&of.chosen.form.free);
+        }
+        if !bounded && !up_tried {
+            up_tried = true;
+            bounded = free_vertical_wind(&fitted, &mut settled, (before, &mut next));
+        }
+        if !bounded {
+            return Ok((fitted, settled));
+        }
+        fitted = fit(flights, next, newton)?;
+    }
+}
+
+/// Mass of a slung load that an effect starts with, kg.
+fn load_kg(form: &EffectTerm) -> Option<f64> {
+    form.values.first().copied().filter(|_| form.signature.role.hangs_below)
+}
+
+/// Where columns cannot be told from each other at all, the last one goes. Whether there was one.
+fn hold_last(settled: &mut [Settled]) -> bool {
+    let last = settled.iter_mut().rev().find_map(|of| Some((of.chosen.form.free.pop()?, of)));
+    let Some((slot, of)) = last else { return false };
+    let why = "in this flight it does exactly what other parameters do";
+    of.held.push((slot, Held::NotDetermined(why.to_owned())));
+    true
+}
+
+/// Column of an effect's free parameter.
+fn column(fitted: &Fitted, place: usize, nth: usize) -> usize {
+    let before: usize = fitted.base.present[..place].iter().map(|present| present.free.len()).sum();
+    fitted.rows.nuisances.len() + before + nth
+}
+
+/// Slot, value, standard error, share of its column that is its own (`None`: the column is nothing).
+pub(super) fn estimates(fitted: &Fitted, place: usize) -> Vec<(usize, f64, f64, Option<f64>)> {
+    let present = &fitted.base.present[place];
+    let of = |(nth, &slot): (usize, &usize)| {
+        let at = column(fitted, place, nth);
+        let std = fitted.covariance[(at, at)].max(0.0).sqrt();
+        (slot, present.values[slot], std, own_share(&fitted.weighted, at))
+    };
+    present.free.iter().enumerate().map(of).collect()
+}
+
+/// Share of a column of the rows (nuisances first, then the base's effects) that no other column makes; `None`
+/// where it is nothing.
+fn own_share(weighted: &Weighted, index: usize) -> Option<f64> {
+    let plain = weighted.nuisances.column(index).norm_squared();
+    let mut unit = DVector::zeros(weighted.nuisances.ncols());
+    unit[index] = 1.0;
+    let own = weighted.normal.as_ref()?.solve(&unit)[index].recip();
+    (plain > 0.0).then(|| own / plain)
+}
+
+fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
+    let present = &fitted.base.present[place];
+    let all = estimates(fitted, place);
+    let seen = all.iter().any(|(slot, _, std, _)| {
+        present.is_amount(*slot) && present.away_from_nothing(*slot, *std).abs() > SEEN
+    });
+    let mut anew = false;
+    for (slot, _, std, own) in all {
+        let Some(parameter) = present.parameter(slot) else { continue };
+        let range = parameter.max - parameter.min;
+        let amount = present.is_amount(slot);
+        // a finer form was taken because it is the likelier one: what it adds stays in, whatever its error
+        let finer = slot >= present.effect().parameters().len();
+        let reason = if !amount && !seen {
+            "the effect itself does not stand out of the noise".to_owned()
+        } else {
+            match own {
+                None => "nothing in this flight excites it".to_owned(),
+                Some(own) if own < OWN => {
+                    "in this flight it does what mass, inertia or another parameter does".to_owned()
+                }
+                _ if !finer && std > SAYS_NOTHING * range => format!(
+                    "its standard error, {std:.2e} {}, is no smaller than what is plausible at all ({} to {})",
+                    parameter.unit, parameter.min, parameter.max
+                ),
+                _ => continue,
+            }
+        };
+        of.chosen.form.free.retain(|free| *free != slot);
+        if amount {
+            of.chosen.form.values[slot] = present.nothing_at(slot);
+        }
+        of.held.push((slot, Held::NotDetermined(reason)));
+        anew = true;
+    }
+    anew
+}
+
+fn hold_at_bounds(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
+    let present = &fitted.base.present[place];
+    let mut any = false;
+    for (nth, (slot, value, std, _)) in estimates(fitted, place).into_iter().enumerate() {
+        let wanted = value + fitted.coefficients[column(fitted, place, nth)];
+        let outside = present.possible(slot, wanted) != wanted && present.possible(slot, wanted) == value;
+        if outside {
+            of.chosen.form.free.retain(|free| *free != slot);
+            of.chosen.form.values[slot] = value;
+            of.held.push((slot, Held::AtBound { wanted, std }));
+            any = true;
+        }
+    }
+    any
+}
+
+/// Wind from below shows only through drag along z that is known to be there.
+fn free_vertical_wind(fitted: &Fitted, settled: &mut [Settled], (before, next): (usize, &mut Base)) -> bool {
+    const UP: usize = 2;
+    let shows = fitted.base.present.iter().enumerate().any(|(place, present)| {
+        let Some(along_z) = present.signature.role.vertical else { return false };
+        let free = estimates(fitted, place).into_iter().find(|(slot, ..)| *slot == along_z);
+        free.is_some_and(|(_, value, std, _)| value > SHOWS_WIND * std)
+            || !present.free.contains(&along_z) && place < before && present.values[along_z] > 0.0
+    });
+    let mut freed = false;
+    for (index, of) in settled.iter_mut().enumerate() {
+        if of.chosen.form.signature.role.wind.is_none() || of.chosen.form.free.is_empty() {
+            continue;
+        }
+        if shows {
+            of.chosen.form.free.push(UP);
+            next.present[before + index].free.push(UP);
+            freed = true;
+        } else {
+            let why = "no drag along body z stands out of the noise through which it would show";
+            of.held.push((UP, Held::NotDetermined(why.to_owned())));
+        }
+    }
+    freed
+}

@@ -1,0 +1,143 @@
+//! Rigid body and named effects in one fit.
+
+use super::error::JointError;
+use super::finding::{self, EffectFound};
+use super::held::Settled;
+use super::result::{JointEstimate, Physical};
+use super::scale::Kept;
+use super::wanted::RequestedEffects;
+use super::{choose, latency, swing};
+use crate::diagnose::base::Base;
+use crate::diagnose::evidence::LEAST_ROWS;
+use crate::diagnose::fit::{Fitted, Newton, fit};
+use crate::diagnose::latency::{LatencyFinding, finding_of};
+use crate::diagnose::recorded::Recorded;
+use crate::diagnose::trace::Trace;
+use crate::estimate::{
+    Estimated, Finding, Method, MethodResult, THETA, Theta, ThetaCovariance, identified_vehicle, is_physical,
+    nearest_physical, rescaled, theta_of, thrust_scale,
+};
+use crate::physics::{ActiveEffect, Airframe};
+use crate::signals::Signals;
+use crate::stats::normal_deviate;
+use crate::vehicle::{Anchor, Vehicle};
+
+/// Identifies the wanted effects together with the rigid body. `known` are effects that the vehicle's file has: what is
+/// among the wanted is estimated anew, the others act as they are.
+///
+/// # Errors
+/// [`JointError`] where the recordings or the vehicle's description lack what an effect needs.
+pub fn identify_jointly(
+    flights: &[Signals],
+    (vehicle, known): (&Vehicle, &[ActiveEffect]),
+    wanted: &RequestedEffects,
+    half_width_s: f64,
+) -> Result<JointEstimate, JointError> {
+    wanted.check_wind(known)?;
+    let traces: Vec<Trace> =
+        flights.iter().map(|signals| Trace::new(signals, vehicle, half_width_s)).collect::<Result<_, _>>()?;
+    let airframe = Airframe::new(vehicle)?;
+    let recorded = Recorded::new(vehicle, &traces);
+    wanted.check_flights(&recorded, &airframe)?;
+    let rows: usize = traces.iter().map(Trace::rows).sum();
+    if rows < LEAST_ROWS {
+        let (seconds, needed_s) = (rows as f64 * 0.05, LEAST_ROWS as f64 * 0.05);
+        return Err(JointError::TooShort { seconds, needed_s });
+    }
+    let kept: Vec<&ActiveEffect> = known.iter().filter(|of| !wanted.has(of.effect().id())).collect();
+    let of_file = Kept { vehicle, effects: &kept };
+    let (rigid, plain, first) = of_file.fit_latency(&traces)?;
+    let latency_named = wanted.signatures().iter().any(|signature| signature.role.latency.is_some());
+    let before = if latency_named { fit(&traces, rigid, Newton::Held)? } else { plain.clone() };
+    let (start, newton) = latency::held_as(wanted, &traces, (vehicle, known), first, plain.base.latency);
+    let base = Base { latency: start, ..plain.base };
+    let chosen = choose::choose(&traces, &base, wanted, &recorded)?;
+    let (after, mut settled) = of_file.settle(&traces, base, &chosen, newton)?;
+    let (mut after, split) = latency::split(&traces, after, wanted)?;
+    swing::allow_for_noise(&traces, &mut after, &mut settled)?;
+    Ok(put_together(&traces, (vehicle, &kept), wanted, Fits { before, after, settled, split, first }))
+}
+
+/// What the fits gave.
+struct Fits {
+    before: Fitted,
+    after: Fitted,
+    settled: Vec<Settled>,
+    split: latency::Split,
+    first: LatencyFinding,
+}
+
+fn put_together(
+    traces: &[Trace],
+    (vehicle, kept): (&Vehicle, &[&ActiveEffect]),
+    wanted: &RequestedEffects,
+    fits: Fits,
+) -> JointEstimate {
+    let Fits { before, after, settled, split, first } = fits;
+    let nominal = theta_of(&vehicle.body);
+    let (mut estimated, mut estimated_before) = (estimated(&after), estimated(&before));
+    let physical = made_physical(&mut estimated, &nominal);
+    let result = |estimated: &Estimated| MethodResult::new(Method::Weak, estimated, &nominal);
+    let (mut body, mut body_before) = (result(&estimated), result(&estimated_before));
+    let mut scale = None;
+    if vehicle.anchor == Anchor::Mass {
+        scale = Some(thrust_scale(&body, vehicle));
+        let weighed = vehicle.body.mass_kg;
+        estimated = rescaled(&estimated, weighed);
+        estimated_before = rescaled(&estimated_before, weighed);
+        (body, body_before) = (result(&estimated), result(&estimated_before));
+        body.parameters[0].finding = Finding::Given { value: weighed };
+        body_before.parameters[0].finding = Finding::Given { value: weighed };
+    }
+    let latency = LatencyFinding {
+        against_lag: first.against_lag,
+        against_delay: first.against_delay,
+        uneven_std: first.uneven_std,
+        ..finding_of(&after)
+    };
+    let by_mass = scale.is_some().then(|| vehicle.body.mass_kg / after.base.vehicle.body.mass_kg);
+    let effects = finding::effects((traces, vehicle), wanted, (&after, &settled), (&latency, split), by_mass);
+    let mut acting: Vec<ActiveEffect> = kept.iter().map(|of| (*of).clone()).collect();
+    acting.extend(effects.iter().filter_map(EffectFound::acting));
+    JointEstimate {
+        vehicle: identified_vehicle(vehicle, &body, scale.as_ref()),
+        latency_named: wanted.signatures().iter().any(|signature| signature.role.latency.is_some()),
+        before,
+        after,
+        body,
+        body_before,
+        scale,
+        effects,
+        acting,
+        latency,
+        physical,
+    }
+}
+
+/// Moves an inertia that no body has to the nearest that is one, if that lies within its error.
+fn made_physical(estimated: &mut Estimated, nominal: &Theta) -> Physical {
+    if is_physical(&estimated.theta) {
+        return Physical::AsEstimated;
+    }
+    let Some(theta) = nearest_physical(&estimated.theta, &estimated.covariance, nominal) else {
+        return Physical::No;
+    };
+    let moved = theta - estimated.theta;
+    let factor = estimated.covariance.cholesky();
+    let wald = factor.map_or(f64::INFINITY, |factor| moved.dot(&factor.solve(&moved)));
+    if normal_deviate(wald, THETA) > WITHIN_ERROR {
+        return Physical::No;
+    }
+    estimated.theta = theta;
+    Physical::Moved
+}
+
+/// Standard errors by which an inertia may be moved.
+const WITHIN_ERROR: f64 = 3.0;
+
+/// Mass and inertia of a fit: the first columns of its nuisances, in the same order.
+fn estimated(fitted: &Fitted) -> Estimated {
+    let covariance = ThetaCovariance::from_fn(|i, j| fitted.covariance[(i, j)]);
+    debug_assert!(fitted.covariance.nrows() >= THETA);
+    Estimated { theta: theta_of(&fitted.base.vehicle.body), covariance, explained: None }
+}

@@ -1,0 +1,97 @@
+//! The scale of force where the mass was weighed: the fit is on the scale of the stated thrust, what the vehicle's
+//! file has of effects on that of the weighed mass.
+
+use super::choose::Chosen;
+use super::held::{Settled, settle};
+use crate::diagnose::base::Base;
+use crate::diagnose::fit::{Fitted, Newton};
+use crate::diagnose::latency::{LatencyFinding, fit_latency};
+use crate::diagnose::signature::EffectTerm;
+use crate::diagnose::signatures::signature_of;
+use crate::diagnose::trace::Trace;
+use crate::physics::{ActiveEffect, PhysicsError};
+use crate::vehicle::{Anchor, Vehicle};
+
+/// Most passes over the scale.
+const PASSES: usize = 4;
+/// A scale that moves by less than this share has converged.
+const CONVERGED: f64 = 1e-4;
+
+/// Force, mass and inertia follow the scale; lengths, angles, times and ratios do not.
+pub(super) fn follows_force(unit: &str) -> bool {
+    unit.starts_with('N') || unit.starts_with("kg")
+}
+
+/// Effects of the vehicle's file that act as they are.
+pub(super) struct Kept<'a> {
+    pub(super) vehicle: &'a Vehicle,
+    pub(super) effects: &'a [&'a ActiveEffect],
+}
+
+impl Kept<'_> {
+    /// On the stated thrust's scale, where the weighed mass is `factor` times the mass on that scale. What acts before
+    /// the rotor's speed goes through the latency.
+    fn present(&self, factor: f64) -> Vec<EffectTerm> {
+        let one = |known: &&ActiveEffect| {
+            let signature = signature_of(known.effect().id())?;
+            let mut present = signature.term(known.parameters(), &[]);
+            for slot in 0..present.values.len() {
+                if present.parameter(slot).is_some_and(|parameter| follows_force(parameter.unit)) {
+                    present.values[slot] /= factor;
+                }
+            }
+            signature.role.latency.is_none().then_some(present)
+        };
+        self.effects.iter().filter_map(one).collect()
+    }
+
+    /// The factor that a fit has; `None` where nothing depends on it.
+    fn factor(&self, fitted: &Fitted) -> Option<f64> {
+        let weighed = self.vehicle.anchor == Anchor::Mass && !self.effects.is_empty();
+        weighed.then(|| self.vehicle.body.mass_kg / fitted.base.vehicle.body.mass_kg)
+    }
+
+    /// The rigid body with them alone, and its latency.
+    pub(super) fn fit_latency(
+        &self,
+        flights: &[Trace],
+    ) -> Result<(Base, Fitted, LatencyFinding), PhysicsError> {
+        let mut factor = 1.0_f64;
+        let mut pass = 0;
+        loop {
+            let base = Base { present: self.present(factor), ..Base::rigid(self.vehicle) };
+            let (fitted, latency) = fit_latency(flights, base.clone())?;
+            pass += 1;
+            match self.factor(&fitted) {
+                Some(now) if (now / factor - 1.0).abs() > CONVERGED && pass < PASSES => factor = now,
+                _ => return Ok((base, fitted, latency)),
+            }
+        }
+    }
+
+    /// [`settle`] on the scale that comes out of it; `base` holds them before all others.
+    pub(super) fn settle(
+        &self,
+        flights: &[Trace],
+        mut base: Base,
+        chosen: &[Chosen],
+        newton: Newton,
+    ) -> Result<(Fitted, Vec<Settled>), PhysicsError> {
+        let mut factor: Option<f64> = None;
+        let mut pass = 0;
+        loop {
+            let settled = settle(flights, &base, chosen.to_vec(), newton)?;
+            pass += 1;
+            match self.factor(&settled.0) {
+                Some(now)
+                    if factor.is_none_or(|factor| (now / factor - 1.0).abs() > CONVERGED)
+                        && pass < PASSES =>
+                {
+                    base.present = self.present(now);
+                    factor = Some(now);
+                }
+                _ => return Ok(settled),
+            }
+        }
+    }
+}

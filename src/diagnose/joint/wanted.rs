@@ -1,0 +1,156 @@
+//! What was asked for: names, what they need of the recording, and the forms in which each is tried.
+
+use super::error::JointError;
+use crate::diagnose::recorded::{Need, Recorded};
+use crate::diagnose::signature::{EffectTerm, LatencyKind, Signature};
+use crate::diagnose::signatures::signature_of;
+use crate::physics::{ActiveEffect, Airframe};
+
+/// Names of what is identified in any case.
+const ALWAYS: [&str; 3] = ["thrust_scale", "torque_scale", "inertia_products"];
+
+/// The effects that are to be identified, each of them once.
+#[derive(Debug, Clone)]
+pub struct RequestedEffects {
+    signatures: Vec<&'static Signature>,
+}
+
+impl RequestedEffects {
+    /// From names as the user gives them.
+    ///
+    /// # Errors
+    /// [`JointError`] for a name that is none, is there twice, or cannot be identified as parameters.
+    pub fn of(names: &[String]) -> Result<Self, JointError> {
+        let mut signatures: Vec<&'static Signature> = Vec::with_capacity(names.len());
+        for name in names {
+            let name = name.trim();
+            if ALWAYS.contains(&name) {
+                return Err(JointError::Always { id: name.to_owned() });
+            }
+            let signature = signature_of(name).ok_or_else(|| JointError::Unknown { id: name.to_owned() })?;
+            if signatures.iter().any(|known| known.id() == signature.id()) {
+                return Err(JointError::Twice { id: signature.id() });
+            }
+            if signature.joint.is_irregular {
+                return Err(JointError::Gust);
+            }
+            signatures.push(signature);
+        }
+        if signatures.is_empty() {
+            return Err(JointError::Unknown { id: String::new() });
+        }
+        Ok(Self { signatures })
+    }
+
+    /// In the order in which they were asked for.
+    #[must_use]
+    pub fn signatures(&self) -> &[&'static Signature] {
+        &self.signatures
+    }
+
+    /// Some of them act between the command and the rotor's speed: commands must be used, not measured speeds.
+    #[must_use]
+    pub fn need_commands(&self) -> bool {
+        self.signatures.iter().any(|signature| signature.effect.is_before_speed())
+    }
+
+    /// Asked for.
+    #[must_use]
+    pub fn has(&self, id: &str) -> bool {
+        self.signatures.iter().any(|signature| signature.id() == id)
+    }
+
+    /// A lag or a delay was asked for.
+    #[must_use]
+    pub fn has_latency(&self, kind: LatencyKind) -> bool {
+        self.signatures.iter().any(|signature| signature.role.latency == Some(kind))
+    }
+
+    /// Some of them turn the inertial unit against the body.
+    #[must_use]
+    pub fn turns_inertial_unit(&self) -> bool {
+        self.signatures.iter().any(|signature| signature.role.turns_inertial_unit)
+    }
+
+    /// Effects with columns of their own.
+    pub(super) fn with_columns(&self) -> impl Iterator<Item = &'static Signature> + '_ {
+        self.signatures.iter().copied().filter(|signature| signature.role.latency.is_none())
+    }
+
+    /// Wind without anything through which it acts; `known` is what the vehicle's file has.
+    ///
+    /// # Errors
+    /// [`JointError::WindAlone`].
+    pub fn check_wind(&self, known: &[ActiveEffect]) -> Result<(), JointError> {
+        let known = known.iter().filter_map(|of| signature_of(of.effect().id()));
+        let of_air = self.signatures.iter().copied().chain(known).any(|signature| signature.role.of_air);
+        let has_wind = self.signatures.iter().any(|signature| signature.role.wind.is_some());
+        if has_wind && !of_air { Err(JointError::WindAlone) } else { Ok(()) }
+    }
+
+    /// What the flights must hold and the vehicle's description must state for each of them.
+    pub(super) fn check_flights(&self, recorded: &Recorded, airframe: &Airframe) -> Result<(), JointError> {
+        let flights = recorded.flights;
+        for signature in self.signatures.iter().copied() {
+            let (id, effect) = (signature.id(), signature.effect);
+            let lacks = |what: &'static str, why: &'static str| JointError::Stream { id, what, why };
+            if let Some(what) = effect.missing(airframe) {
+                return Err(crate::physics::PhysicsError::Missing { id, what }.into());
+            }
+            if effect.is_before_speed() && flights.iter().any(|trace| trace.measured_speeds) {
+                return Err(lacks(
+                    "actuator commands",
+                    "it acts between the command and the rotor's speed, and only measured speeds are recorded",
+                ));
+            }
+            match recorded.lacks(signature.needs) {
+                Some((Need::OneFlight, ..)) => {
+                    return Err(JointError::SeveralFlights { id, flights: flights.len() });
+                }
+                Some((_, what, why)) => return Err(lacks(what, why)),
+                None => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// The forms in which an effect is tried: start values, and what of them is estimated.
+    pub(super) fn forms(&self, signature: &'static Signature, recorded: &Recorded) -> Vec<EffectTerm> {
+        match signature.joint.forms {
+            Some(forms) => forms(recorded, &self.signatures),
+            None => vec![signature.whole()],
+        }
+    }
+}
+
+/// All names, for messages.
+pub(super) fn names() -> String {
+    crate::physics::effects::ALL.iter().map(|effect| effect.id()).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::effects::ALL;
+
+    #[test]
+    fn every_effect_is_taken_or_refused_with_a_reason() {
+        for effect in ALL {
+            match RequestedEffects::of(&[format!(" {} ", effect.id())]) {
+                Ok(wanted) => assert!(wanted.has(effect.id()) && wanted.signatures().len() == 1),
+                Err(error) => assert_eq!((error, effect.id()), (JointError::Gust, "gust")),
+            }
+        }
+        assert!(RequestedEffects::of(&["motor_lag".to_owned()]).is_ok_and(|wanted| wanted.need_commands()));
+        assert!(RequestedEffects::of(&["com_offset".to_owned()]).is_ok_and(|wanted| !wanted.need_commands()));
+    }
+
+    #[test]
+    fn wind_that_the_files_drag_carries_is_not_alone() {
+        let wind = RequestedEffects::of(&["steady_wind".to_owned()]);
+        let drag = ActiveEffect::named("linear_drag", &[("dx", 0.1), ("dy", 0.1), ("dz", 0.0)]);
+        let (wind, drag) = (wind.unwrap(), drag.unwrap());
+        assert_eq!(wind.check_wind(&[]), Err(JointError::WindAlone));
+        assert_eq!(wind.check_wind(&[drag]), Ok(()));
+    }
+}

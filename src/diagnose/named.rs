@@ -1,0 +1,88 @@
+//! An effect that was named, with its values and the evidence for it.
+
+use crate::text::with_error;
+
+/// A named effect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Named {
+    /// which
+    pub id: &'static str,
+    /// what a person reads
+    pub sentence: &'static str,
+    /// values
+    pub parameters: Vec<NamedParameter>,
+    /// evidence
+    pub strength: Strength,
+    /// what it may be taken for
+    pub confusable_with: Vec<Confusable>,
+}
+
+/// A parameter of a named effect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NamedParameter {
+    /// as [`crate::physics::Parameter`] has it
+    pub name: &'static str,
+    /// in `unit`
+    pub value: f64,
+    /// standard error; 0 where it was set, not estimated
+    pub std: f64,
+    /// SI
+    pub unit: &'static str,
+}
+
+/// How strong the evidence was when the effect was taken.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Strength {
+    /// normal deviate
+    pub z: f64,
+    /// share of the residual energy that it explains (0..1)
+    pub gain: f64,
+    /// energy in sigma squared
+    pub energy: f64,
+    /// coefficients
+    pub count: usize,
+}
+
+/// Another effect that explains the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Confusable {
+    /// which
+    pub id: &'static str,
+    /// standard deviations by which this flight tells them apart, where that could be computed
+    pub distinguishability: Option<f64>,
+}
+
+/// The smallest size at which an effect would have been named in this flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DetectionLimit {
+    /// which effect
+    pub id: &'static str,
+    /// which parameter
+    pub parameter: &'static str,
+    /// in `unit`
+    pub limit: f64,
+    /// size on ordinary vehicles, in `unit`, of what shows only where the vehicle moves
+    pub usual: Option<f64>,
+    /// SI
+    pub unit: &'static str,
+}
+
+impl Named {
+    /// A parameter by its name.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<&NamedParameter> {
+        self.parameters.iter().find(|parameter| parameter.name == name)
+    }
+
+    /// A parameter's value in its unit; zero where it is not among the parameters.
+    #[must_use]
+    pub fn value(&self, name: &str) -> f64 {
+        self.get(name).map_or(0.0, |parameter| parameter.value)
+    }
+
+    /// Value and standard error; `factor` brings them to the unit in which they are said.
+    #[must_use]
+    pub fn said(&self, name: &str, factor: f64) -> String {
+        self.get(name).map_or_else(|| "0".to_owned(), |p| with_error(factor * p.value, factor.abs() * p.std))
+    }
+}

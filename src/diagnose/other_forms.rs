@@ -1,0 +1,28 @@
+//! Effects that are written in more than one form: the one that explains more is kept.
+
+use super::drag_location::cost;
+use super::fit::{Fitted, Newton, fit};
+use super::trace::Trace;
+use crate::physics::PhysicsError;
+
+/// Puts each effect of a fit into another form where that explains more than its columns cost (`price` a column, in
+/// squared sigmas). Returns whether it did.
+///
+/// # Errors
+/// [`PhysicsError`] where the estimate leaves what is physical.
+pub(super) fn other_form(flights: &[Trace], fitted: &mut Fitted, price: f64) -> Result<bool, PhysicsError> {
+    let mut taken = false;
+    for place in 0..fitted.base.present.len() {
+        let term = &fitted.base.present[place];
+        for form in (term.signature.refinement.other_forms)(term) {
+            let mut base = fitted.base.clone();
+            base.present[place] = form;
+            let other = fit(flights, base, Newton::Held)?;
+            if cost(&other, price) < cost(fitted, price) {
+                *fitted = other;
+                taken = true;
+            }
+        }
+    }
+    Ok(taken)
+}

@@ -1,0 +1,48 @@
+//! After the search: what has become superfluous goes, and the latency is estimated once more.
+
+use super::base::Base;
+use super::fit::{Fitted, Newton, fit};
+use super::signature::EffectTerm;
+use super::trace::Trace;
+use crate::physics::PhysicsError;
+
+/// A latency that moves by less than this when it is estimated with the effects changes nothing, s.
+pub(super) const UNCHANGED_S: f64 = 0.001;
+
+/// Effects that the later ones have made superfluous go, and the latency is estimated with those that stay.
+/// Returns whether any went, and by how much the latency moved, s.
+pub(super) fn prune(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64), PhysicsError> {
+    let mut index = after.rows.nuisances.len();
+    let mut kept: Vec<EffectTerm> = Vec::new();
+    let mut dropped = false;
+    for present in &after.base.present {
+        let mut pruned = present.clone();
+        let mut strength = 0.0;
+        for (place, &slot) in present.free.iter().enumerate() {
+            let std = after.covariance[(index + place, index + place)].max(0.0).sqrt();
+            let z = present.away_from_nothing(slot, std).abs();
+            let amount = present.is_amount(slot);
+            if amount && z < PRUNED {
+                pruned.values[slot] = present.nothing_at(slot);
+                pruned.free.retain(|free| *free != slot);
+                dropped = true;
+            } else if amount {
+                strength = f64::max(strength, z);
+            }
+        }
+        index += present.free.len();
+        if strength > KEPT {
+            kept.push(pruned);
+        }
+    }
+    dropped |= kept.len() < after.base.present.len();
+    let before_s = after.base.latency.total_s();
+    let base = Base { present: kept, ..after.base.clone() };
+    *after = fit(flights, base, Newton::Free)?;
+    Ok((dropped, (after.base.latency.total_s() - before_s).abs()))
+}
+
+/// An accepted effect stays while it is this many standard deviations from nothing.
+const KEPT: f64 = 4.0;
+/// A parameter of it goes back to nothing when it is nearer than this.
+const PRUNED: f64 = 2.5;

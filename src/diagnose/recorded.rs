@@ -1,0 +1,89 @@
+//! What a signature may ask of the flights and of the vehicle's description.
+
+use super::trace::Trace;
+use crate::physics::Airframe;
+use crate::vehicle::Vehicle;
+
+/// What a flight has to hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Need {
+    /// velocity and attitude
+    Velocity,
+    /// position and attitude
+    Position,
+    /// specific force
+    Accelerometer,
+    /// accelerometer, velocity and attitude: the force in two readings
+    ForceTwice,
+    /// battery voltage
+    Voltage,
+    /// a moment belongs to one flight
+    OneFlight,
+}
+
+/// The flights of a vehicle, as a signature sees them.
+#[derive(Debug)]
+pub struct Recorded<'a> {
+    /// as its file describes it
+    pub vehicle: &'a Vehicle,
+    /// rotors' geometry; `None` where the description is not that of a vehicle
+    pub airframe: Option<Airframe>,
+    /// one or more
+    pub flights: &'a [Trace],
+}
+
+impl<'a> Recorded<'a> {
+    /// The flights of a vehicle.
+    #[must_use]
+    pub fn new(vehicle: &'a Vehicle, flights: &'a [Trace]) -> Self {
+        Self { vehicle, airframe: Airframe::new(vehicle).ok(), flights }
+    }
+
+    /// Something is so in every flight.
+    #[must_use]
+    pub fn all(&self, what: fn(&Trace) -> bool) -> bool {
+        self.flights.iter().all(what)
+    }
+
+    /// What the flights lack for an effect to be tried, and why that is needed.
+    #[must_use]
+    pub fn lacks(&self, needs: &[Need]) -> Option<(Need, &'static str, &'static str)> {
+        let unmet = needs.iter().copied().find(|need| !self.has(*need))?;
+        let (what, why) = match unmet {
+            Need::Velocity => ("velocity and attitude", "it acts by how the vehicle moves"),
+            Need::Position => ("position and attitude", "it acts by where the vehicle is"),
+            Need::Accelerometer => ("accelerometer", "only the inertial unit sees it"),
+            Need::ForceTwice => (
+                "accelerometer, velocity and attitude",
+                "it shows in the difference between the inertial unit and the position reference",
+            ),
+            Need::Voltage => ("battery voltage", "thrust falls with it; record BATTERY_STATUS or SYS_STATUS"),
+            Need::OneFlight => ("one flight", "its moment belongs to one"),
+        };
+        Some((unmet, what, why))
+    }
+
+    fn has(&self, need: Need) -> bool {
+        match need {
+            Need::Velocity => self.all(|trace| trace.known.velocity && trace.known.attitude),
+            Need::Position => self.all(|trace| trace.known.position && trace.known.attitude),
+            Need::Accelerometer => self.all(Trace::has_accelerometer),
+            Need::ForceTwice => self.all(Trace::reads_force_twice),
+            Need::Voltage => self.full_voltage().is_some(),
+            Need::OneFlight => self.flights.len() == 1,
+        }
+    }
+
+    /// Highest voltage that is held for a while, V.
+    #[must_use]
+    pub fn full_voltage(&self) -> Option<f64> {
+        let mut full: Option<f64> = None;
+        for trace in self.flights {
+            let voltage = trace.voltage_v.as_ref()?;
+            let used = trace.centers.iter().map(|&center| voltage[center]).filter(|v| *v > 0.0);
+            let most = used.fold(0.0, f64::max);
+            full = Some(full.map_or(most, |full| full.max(most)));
+        }
+        full.filter(|full_v| (2.5..60.0).contains(full_v))
+    }
+}

@@ -1,0 +1,135 @@
+//! Every candidate about a fitted base: its columns, and the evidence for it.
+
+use super::base::Base;
+use super::candidates::Candidate;
+use super::channels::Channels;
+use super::fit::Fitted;
+use super::signature::{Carried, EffectTerm, Signature};
+use super::tested::Tested;
+use super::trace::Trace;
+use rayon::prelude::*;
+
+/// Candidates that the base does not have yet, wind with its drag among them.
+pub(super) fn test_all(
+    flights: &[Trace],
+    fitted: &Fitted,
+    candidates: &[Candidate],
+    signatures: &[&'static Signature],
+) -> Vec<Tested> {
+    let open: Vec<&Candidate> =
+        candidates.iter().filter(|candidate| !is_present(&fitted.base, candidate)).collect();
+    // the same effect with fewer parameters has some of the columns
+    let widest: Vec<&Candidate> = open
+        .iter()
+        .enumerate()
+        .filter(|(place, candidate)| {
+            let wider = |(other, wide): (usize, &&Candidate)| {
+                other != *place && covers(wide, candidate) && !(other > *place && covers(candidate, wide))
+            };
+            !open.iter().enumerate().any(wider)
+        })
+        .map(|(_, candidate)| *candidate)
+        .collect();
+    let columns: Vec<Option<Vec<Channels>>> =
+        widest.par_iter().map(|candidate| columns_of(flights, fitted, candidate)).collect();
+    let mut out: Vec<Tested> = open
+        .par_iter()
+        .filter_map(|candidate| {
+            let (wide, columns) = widest.iter().zip(&columns).find(|(wide, _)| covers(wide, candidate))?;
+            let evidence = fitted.weighted.test(&chosen(columns.as_ref()?, wide, candidate))?;
+            Some(Tested { candidate: (*candidate).clone(), evidence })
+        })
+        .collect();
+    out.extend(test_winds(flights, fitted, signatures));
+    // in the order of the signatures
+    let place =
+        |tested: &Tested| signatures.iter().position(|signature| signature.id() == tested.candidate.id);
+    out.sort_by_key(place);
+    out
+}
+
+/// Every column of `candidate` is one of `wide`, too.
+fn covers(wide: &Candidate, candidate: &Candidate) -> bool {
+    wide.parts.len() == candidate.parts.len()
+        && wide.parts.iter().zip(&candidate.parts).all(|(wide, part)| {
+            wide.is(part.signature)
+                && wide.values == part.values
+                && part.free.iter().all(|slot| wide.free.contains(slot))
+        })
+}
+
+/// The columns of `wide` that `candidate` has.
+fn chosen(columns: &[Channels], wide: &Candidate, candidate: &Candidate) -> Vec<Channels> {
+    let mut of_wide = columns.iter();
+    let mut out = Vec::new();
+    for (wide, part) in wide.parts.iter().zip(&candidate.parts) {
+        let own: Vec<(&usize, &Channels)> = wide.free.iter().zip(of_wide.by_ref()).collect();
+        let of_slot = |slot: &usize| own.iter().find(|(free, _)| *free == slot);
+        out.extend(part.free.iter().filter_map(of_slot).map(|(_, column)| (*column).clone()));
+    }
+    out
+}
+
+/// Columns of a candidate's free parameters; `None` where the vehicle lacks what it needs.
+pub(super) fn columns_of(flights: &[Trace], fitted: &Fitted, candidate: &Candidate) -> Option<Vec<Channels>> {
+    let mut columns = Vec::new();
+    for part in &candidate.parts {
+        columns.extend(fitted.rows.columns_of(flights, &fitted.base, part).ok()?);
+    }
+    Some(columns)
+}
+
+/// The same effect, for rotors the same rotor.
+pub(super) fn is_present(base: &Base, candidate: &Candidate) -> bool {
+    candidate.parts.iter().all(|part| {
+        base.present.iter().any(|present| {
+            present.is(part.signature) && is_the_same(present, part)
+                || drags_along_z(present) && drags_along_z(part)
+        })
+    })
+}
+
+/// Of several of the same effect (rotors), the same one.
+fn is_the_same(present: &EffectTerm, part: &EffectTerm) -> bool {
+    part.signature.role.which.is_none_or(|slot| present.values[slot] == part.values[slot])
+}
+
+/// Inflow and the z of drag are one term.
+fn drags_along_z(term: &EffectTerm) -> bool {
+    term.signature.role.axial.is_some_and(|slot| term.free.contains(&slot))
+}
+
+/// Wind acts through drag: both together, or wind alone where drag is known already.
+fn test_winds(flights: &[Trace], fitted: &Fitted, signatures: &[&'static Signature]) -> Vec<Tested> {
+    let present = &fitted.base.present;
+    let is_wind = |term: &EffectTerm| term.signature.role.wind.is_some();
+    let moving = flights.iter().all(|trace| trace.known.velocity && trace.known.attitude);
+    if present.iter().any(is_wind) || !moving {
+        return Vec::new();
+    }
+    let carried = signatures.iter().filter_map(|signature| signature.role.wind).flat_map(|carried| carried());
+    if present.iter().any(|term| term.signature.role.lateral_slope.is_some()) {
+        // its columns come through the drag that is there
+        let alone = carried.take(1).filter_map(|wind| {
+            let candidate = Candidate::alone(wind.term);
+            let evidence = fitted.weighted.test(&columns_of(flights, fitted, &candidate)?)?;
+            Some(Tested { candidate, evidence })
+        });
+        return alone.collect();
+    }
+    carried.filter_map(|wind| test_carried(flights, fitted, wind)).collect()
+}
+
+/// An effect together with the one that carries it.
+fn test_carried(flights: &[Trace], fitted: &Fitted, carried: Carried) -> Option<Tested> {
+    let Carried { carrier, unit, term } = carried;
+    let mut with_unit = fitted.base.clone();
+    with_unit.present.push(unit.clone());
+    let mut columns = fitted.rows.columns_of(flights, &fitted.base, &carrier).ok()?;
+    columns.extend(fitted.rows.columns_through(flights, &with_unit, &term).ok()?);
+    let evidence = fitted.weighted.test(&columns)?;
+    // it is named only for what it adds to its carrier
+    let more = fitted.weighted.conditional(&columns, carrier.free.len())?;
+    let candidate = Candidate { id: term.id(), parts: vec![carrier, term], through: Some(unit) };
+    (more > 4.0).then_some(Tested { candidate, evidence })
+}

@@ -1,0 +1,149 @@
+//! A named effect in the words of its signature.
+
+use super::named::{DetectionLimit, Named};
+use super::signature::Signature;
+use super::signatures::signature_of;
+use super::wording::{Clause, Size};
+use super::words::{norm, plain, range, said};
+use crate::text::{significant, spoken, with_error};
+use crate::vehicle::Vehicle;
+
+/// What was left out, as a clause that begins with a capital and ends without a full stop.
+#[must_use]
+pub fn clause(named: &Named, vehicle: &Vehicle) -> String {
+    match signature_of(named.id).map(|signature| signature.words.clause) {
+        Some(Clause::OneNumber { parameter, factor, before, after }) => {
+            format!("{before} {} {after}", named.said(parameter, factor))
+        }
+        Some(Clause::Own(own)) => own(named, vehicle),
+        Some(Clause::Sentence) | None => in_general(named),
+    }
+}
+
+/// The effect's own sentence with its values.
+fn in_general(named: &Named) -> String {
+    let values: Vec<String> = named
+        .parameters
+        .iter()
+        .map(|p| {
+            format!("{} {} {}", p.name, with_error(p.value, p.std), spoken(p.unit)).trim_end().to_owned()
+        })
+        .collect();
+    format!("{} ({})", named.sentence.trim_end_matches('.'), values.join(", "))
+}
+
+/// How an effect is called in a list.
+#[must_use]
+pub fn called(id: &str) -> &str {
+    signature_of(id).map_or(id, |signature| signature.words.noun)
+}
+
+/// Name and, where `with_size` says so, size: `drag (0.41 +- 0.02 N per m/s)`.
+#[must_use]
+pub fn brief(named: &Named, vehicle: &Vehicle, with_size: bool) -> String {
+    let signature = signature_of(named.id);
+    let own = signature.and_then(|signature| signature.words.noun_of);
+    let name = own.map_or_else(|| called(named.id).to_owned(), |own| own(named, vehicle));
+    match size(named, signature).filter(|_| with_size) {
+        // no parentheses within parentheses
+        Some(size) => format!("{name} ({})", size.replace("(m/s)^2", "m^2/s^2")),
+        None => name,
+    }
+}
+
+/// The number by which the effect is known, with its unit.
+fn size(named: &Named, signature: Option<&Signature>) -> Option<String> {
+    match signature.map_or(Size::First, |signature| signature.words.size) {
+        Size::Axes => Some(range(named)),
+        Size::Norm { factor, unit, digits } => {
+            Some(format!("{} {unit}", significant(factor * norm(named), digits)))
+        }
+        Size::Of { parameter, factor, unit } => said(named, parameter, factor, unit),
+        Size::Own(own) => own(named),
+        Size::First => {
+            let first = named.parameters.first()?;
+            Some(format!("{} {}", plain(first.value, first.std), spoken(first.unit)).trim_end().to_owned())
+        }
+    }
+}
+
+/// The smallest size of an effect that would have been named.
+#[must_use]
+pub fn limit(limit: &DetectionLimit) -> String {
+    match signature_of(limit.id).and_then(|signature| signature.words.limit) {
+        Some(own) => own(limit.limit),
+        None => {
+            let size = format!("{} {}", significant(limit.limit, 2), spoken(limit.unit));
+            format!("{} of {}", called(limit.id), size).trim_end().to_owned()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::{NamedParameter, Strength};
+    use crate::physics::effects::ALL;
+    use crate::physics::effects::by_id;
+
+    fn vehicle() -> Vehicle {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
+        crate::config::load_vehicle(&path).unwrap()
+    }
+
+    fn named(id: &str, values: &[(&str, f64, f64)]) -> Named {
+        let effect = by_id(id).unwrap();
+        let parameters = effect
+            .parameters()
+            .iter()
+            .filter_map(|p| {
+                let (_, value, std) = values.iter().find(|(name, ..)| *name == p.name)?;
+                Some(NamedParameter { name: p.name, value: *value, std: *std, unit: p.unit })
+            })
+            .collect();
+        Named {
+            id: effect.id(),
+            sentence: effect.sentence(),
+            parameters,
+            strength: Strength::default(),
+            confusable_with: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn drag_is_one_number_where_the_axes_agree() {
+        let vehicle = vehicle();
+        let text = clause(&named("linear_drag", &[("dx", 0.41, 0.02), ("dy", 0.42, 0.02)]), &vehicle);
+        assert!(
+            text.starts_with("Drag was left out: 0.415 +- 0.014 N per m/s along body x and y (0.2"),
+            "{text}"
+        );
+        let text = clause(&named("linear_drag", &[("dx", 0.41, 0.01), ("dy", 0.61, 0.02)]), &vehicle);
+        assert!(text.contains("0.410 +- 0.010 along x and 0.61 +- 0.02 along y N per m/s"), "{text}");
+    }
+
+    #[test]
+    fn wind_comes_from_where_it_blows() {
+        // towards north and west: from the south-east
+        let text = clause(&named("steady_wind", &[("north", 2.5, 0.1), ("west", 1.5, 0.1)]), &vehicle());
+        assert!(text.contains("2.92 +- 0.10 m/s from south-east (149 deg)"), "{text}");
+    }
+
+    #[test]
+    fn every_effect_has_a_clause_of_its_own_or_its_sentence() {
+        let vehicle = vehicle();
+        for effect in ALL {
+            let values: Vec<(&str, f64, f64)> = effect
+                .parameters()
+                .iter()
+                .map(|p| (p.name, (p.min + 0.1 * (p.max.min(10.0) - p.min)).max(0.01), 0.01))
+                .collect();
+            let text = clause(&named(effect.id(), &values), &vehicle);
+            let begins = text.chars().next().is_some_and(char::is_uppercase);
+            assert!(begins && !text.ends_with('.') && !text.contains("NaN"), "{}: {text}", effect.id());
+            assert_ne!(called(effect.id()), effect.id());
+        }
+        let rotor = clause(&named("weak_rotor", &[("rotor", 1.0, 0.0), ("factor", 0.97, 0.001)]), &vehicle);
+        assert!(rotor.starts_with("Rotor ") && rotor.contains("3.00 +- 0.10 % less"), "{rotor}");
+    }
+}

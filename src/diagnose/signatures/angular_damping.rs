@@ -1,0 +1,39 @@
+//! How damping of the rotation is tried, named and said.
+
+use crate::diagnose::signature::{Form, Naming, Role, Signature};
+use crate::diagnose::wording::{Clause, Size, Words};
+use crate::diagnose::words::axes;
+use crate::physics::effects::AngularDamping;
+use crate::vehicle::Vehicle;
+
+/// Damping of the rotation.
+pub static SIGNATURE: Signature = Signature {
+    forms: |_| forms(),
+    naming: Naming { usual, ..Naming::PLAIN },
+    role: Role { like_latency: Some(|| SIGNATURE.whole()), ..Role::NONE },
+    ..Signature::of(
+        &AngularDamping,
+        &[0, 1, 2],
+        Words {
+            clause: Clause::Own(|named, _| {
+                format!(
+                    "Damping of the rotation was left out: {}",
+                    axes(named, &["bx", "by", "bz"], "N m per rad/s")
+                )
+            }),
+            size: Size::Axes,
+            expected_in_motion: Some(1),
+            ..Words::of("damping of the rotation")
+        },
+    )
+};
+
+fn forms() -> Vec<Form> {
+    vec![SIGNATURE.form(&[0.0; 3], &[0, 1, 2]), SIGNATURE.form(&[0.0; 3], &[0, 1])]
+}
+
+/// Torques scale with the inertia: 0.8 1/s.
+fn usual(parameter: &str, vehicle: &Vehicle) -> Option<f64> {
+    let axis = ["bx", "by", "bz"].iter().position(|name| *name == parameter)?;
+    Some(0.8 * vehicle.body.inertia_kg_m2[(axis, axis)])
+}

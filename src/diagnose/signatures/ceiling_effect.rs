@@ -1,0 +1,75 @@
+//! How a ceiling is tried, named and said.
+
+use crate::diagnose::recorded::{Need, Recorded};
+use crate::diagnose::signature::{
+    EffectTerm, GridScale, Growth, Joint, Naming, Refinement, Signature, Whence,
+};
+use crate::diagnose::trace::Trace;
+use crate::diagnose::wording::Words;
+use crate::physics::Airframe;
+use crate::physics::effects::CeilingEffect;
+
+/// Distances of a ceiling over the highest rotor that are tried, rotor radii.
+const CEILINGS_RADII: [f64; 7] = [0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0];
+/// A ceiling's a1 that is as good as none, the parameter's bound: the thrust grows with its inverse.
+const NO_CEILING: f64 = 50.0;
+/// a1 of ceilings that were measured.
+const USUAL: f64 = 5.0;
+/// A ceiling whose a1 is larger lifts by little more than a twentieth a rotor's radius below it: that is none.
+const WEAKEST: f64 = 20.0;
+
+/// More thrust under a ceiling.
+pub static SIGNATURE: Signature = Signature {
+    needs: &[Need::Position],
+    growth: Growth::Inverse { usual: USUAL },
+    nothing: NO_CEILING,
+    forms: |recorded| {
+        let forms = heights_m(recorded).into_iter();
+        forms.map(|height_m| SIGNATURE.form(&[NO_CEILING, 0.0, height_m], &[0])).collect()
+    },
+    refinement: Refinement {
+        // m
+        grid: Some(GridScale::Even { slot: 2, step: 0.03, least: 0.003 }),
+        freed_last: &[0, 2],
+        ..Refinement::NONE
+    },
+    naming: Naming {
+        extra_z: 1.0,
+        most: Some(WEAKEST),
+        // it divides: it has no smallest size
+        has_limit: |_| false,
+        ..Naming::PLAIN
+    },
+    joint: Joint {
+        forms: Some(|recorded, _| {
+            let forms = heights_m(recorded).into_iter();
+            forms.map(|height_m| SIGNATURE.term(&[3.0, 0.0, height_m], &[0, 2])).collect()
+        }),
+        whence: |_: &EffectTerm, slot, _, _| {
+            (slot == 1).then(|| {
+                Whence::Given(
+                    "acts only as its sum with the distance; the height given here holds it".to_owned(),
+                )
+            })
+        },
+        ..Joint::PLAIN
+    },
+    ..Signature::of(&CeilingEffect, &[0], Words::of("ceiling effect"))
+};
+
+/// Heights that a ceiling may have over the flown ones, m.
+fn heights_m(recorded: &Recorded) -> Vec<f64> {
+    recorded.airframe.as_ref().map(|airframe| over(recorded.flights, airframe)).unwrap_or_default()
+}
+
+fn over(flights: &[Trace], airframe: &Airframe) -> Vec<f64> {
+    let radius_m = airframe.propulsion.rotor_radius_m.unwrap_or(0.0);
+    let hub_m = |trace: &Trace, row: usize| {
+        let state = &trace.states[row];
+        let over = airframe.arms_m().iter().map(|arm| (state.attitude * arm).z).fold(f64::MIN, f64::max);
+        state.position_m.z + over
+    };
+    let flown = flights.iter().flat_map(|trace| trace.centers.iter().map(move |&row| hub_m(trace, row)));
+    let top_m = flown.fold(f64::MIN, f64::max);
+    CEILINGS_RADII.iter().map(|radii| top_m + radii * radius_m).filter(|height_m| *height_m >= 0.5).collect()
+}

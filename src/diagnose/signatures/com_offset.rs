@@ -1,0 +1,45 @@
+//! How an offset of the centre of mass is tried, named and said.
+
+use crate::diagnose::named::Named;
+use crate::diagnose::signature::{Naming, Signature};
+use crate::diagnose::wording::{Clause, Size, Words};
+use crate::physics::effects::ComOffset;
+use crate::text::{significant, with_error};
+
+/// A centre of mass is not known better, m.
+const NUISANCE_M: f64 = 0.000_15;
+
+/// A centre of mass that is not where the vehicle file has it.
+pub static SIGNATURE: Signature = Signature {
+    forms: |_| vec![SIGNATURE.form(&[0.0; 3], &[0, 1])],
+    naming: Naming { least: NUISANCE_M, ..Naming::PLAIN },
+    ..Signature::of(
+        &ComOffset,
+        &[0, 1, 2],
+        Words {
+            clause: Clause::Own(|named, _| clause(named)),
+            size: Size::Norm { factor: 1e3, unit: "mm", digits: 3 },
+            limit: Some(|limit| format!("a centre of mass {} mm off", significant(1e3 * limit, 2))),
+            told_if_absent: Some(1),
+            ..Words::of("a centre of mass that is off")
+        },
+    )
+};
+
+/// Sides, not signs; what was not estimated is not said.
+fn clause(named: &Named) -> String {
+    let side = |name: &str, plus: &str, minus: &str| {
+        let p = named.get(name).filter(|p| p.std > 0.0)?;
+        let side = if p.value < 0.0 { minus } else { plus };
+        Some(format!("{} mm {side}", with_error(1e3 * p.value.abs(), 1e3 * p.std)))
+    };
+    let sides: Vec<String> =
+        [side("x", "forward", "aft"), side("y", "to the left", "to the right"), side("z", "above", "below")]
+            .into_iter()
+            .flatten()
+            .collect();
+    format!(
+        "The centre of mass is {} of where the vehicle file has it: thrust turns the vehicle about it",
+        sides.join(" and ")
+    )
+}

@@ -1,0 +1,63 @@
+//! How a position reference that is askew is tried, named and said.
+
+use crate::diagnose::channels::Nuisance;
+use crate::diagnose::recorded::{Need, Recorded};
+use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, Refinement, Role, Signature, Whence};
+use crate::diagnose::wording::{Size, Words};
+use crate::physics::effects::FrameMisalignment;
+
+/// Mountings are true to about half a degree, rad.
+const ORDINARY_RAD: f64 = 0.0087;
+/// Slot of the share by which the attitude is turned with its frame.
+const WITH_ATTITUDE: usize = 3;
+
+/// A position reference, and perhaps an attitude, that is not level.
+pub static SIGNATURE: Signature = Signature {
+    needs: &[Need::ForceTwice],
+    forms: |_: &Recorded| {
+        vec![
+            // turned with the attitude: about the vertical nothing changes
+            Form { instead_of_nuisance: true, ..SIGNATURE.form(&[0.0; 3], &[0, 1]) },
+            // only the position is askew, not the attitude
+            SIGNATURE.form(&[0.0; 4], &[0, 1, 2]),
+        ]
+    },
+    refinement: Refinement { freed: |_| Vec::new(), ..Refinement::NONE },
+    naming: Naming {
+        ordinary: Some(ORDINARY_RAD),
+        // whether the attitude is turned as well
+        says: |term, slot| slot == WITH_ATTITUDE || term.values[slot] != 0.0,
+        ..Naming::PLAIN
+    },
+    role: Role {
+        stands_for: |term, nuisance| matches!(nuisance, Nuisance::Level(_)) && turns_attitude(term),
+        ..Role::NONE
+    },
+    joint: Joint {
+        // turned with the attitude, its heading is for no equation of the vehicle's own motion to see; or only the
+        // position is askew
+        forms: Some(|_, _| vec![SIGNATURE.term(&[0.0; 3], &[0, 1]), SIGNATURE.term(&[0.0; 4], &[0, 1, 2])]),
+        whence: |_, slot, _, _| {
+            Some(if slot >= WITH_ATTITUDE {
+                Whence::Given("position and velocity are turned alone: the likelier of both".to_owned())
+            } else {
+                Whence::NotDetermined(
+                    "position, velocity and attitude turn alike: no equation of the vehicle's own motion sees a heading",
+                )
+            })
+        },
+        ..Joint::PLAIN
+    },
+    ..Signature::of(
+        &FrameMisalignment,
+        &[0, 1, 2],
+        Words {
+            size: Size::Norm { factor: 1.0_f64.to_degrees(), unit: "deg", digits: 2 },
+            ..Words::of("a position reference that is askew")
+        },
+    )
+};
+
+fn turns_attitude(term: &EffectTerm) -> bool {
+    term.values.get(WITH_ATTITUDE).is_none_or(|share| *share > 0.0)
+}

@@ -1,0 +1,15 @@
+//! How gusts are named and said: they are found in what is left, not by a column.
+
+use crate::diagnose::signature::{Joint, Signature};
+use crate::diagnose::wording::{Size, Words};
+use crate::physics::effects::Gust;
+
+/// Wind that changes.
+pub static SIGNATURE: Signature = Signature {
+    joint: Joint { is_irregular: true, ..Joint::PLAIN },
+    ..Signature::of(
+        &Gust,
+        &[0, 1],
+        Words { size: Size::Of { parameter: "sigma", factor: 1.0, unit: "m/s rms" }, ..Words::of("gusts") },
+    )
+};

@@ -1,0 +1,29 @@
+//! How an accelerometer away from the centre of mass is tried, named and said.
+
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Naming, Signature};
+use crate::diagnose::trace::Trace;
+use crate::diagnose::wording::{Size, Words};
+use crate::physics::effects::ImuOffset;
+
+/// No inertial unit sits at the centre of mass to better than this, m.
+const ORDINARY_M: f64 = 0.005;
+
+/// An accelerometer away from the centre of mass.
+pub static SIGNATURE: Signature = Signature {
+    needs: &[Need::Accelerometer],
+    // against the kinematics alone
+    forms: |recorded| {
+        let twice = recorded.all(Trace::reads_force_twice);
+        twice.then(|| SIGNATURE.form(&[0.0; 3], &[0, 1, 2])).into_iter().collect()
+    },
+    naming: Naming { ordinary: Some(ORDINARY_M), ..Naming::PLAIN },
+    ..Signature::of(
+        &ImuOffset,
+        &[0, 1, 2],
+        Words {
+            size: Size::Norm { factor: 1e3, unit: "mm", digits: 2 },
+            ..Words::of("an accelerometer away from the centre of mass")
+        },
+    )
+};

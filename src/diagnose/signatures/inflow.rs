@@ -1,0 +1,45 @@
+//! How thrust that falls with climb is tried, named and said.
+
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Joint, Naming, Role, Signature};
+use crate::diagnose::wording::{Clause, Words};
+use crate::physics::effects::{Inflow, LinearDrag};
+
+use super::angular_damping;
+
+/// Thrust that falls with the airspeed along the rotor axis.
+pub static SIGNATURE: Signature = Signature {
+    needs: &[Need::Velocity],
+    // of the rotors, at their hubs, or of the body, at its centre
+    forms: |_| [1.0, 0.0].map(|at_hubs| SIGNATURE.form(&[0.0, at_hubs], &[0])).to_vec(),
+    // 1/s: forces scale with the mass
+    naming: Naming {
+        usual: |parameter, vehicle| (parameter == "kz").then_some(0.4 * vehicle.body.mass_kg),
+        ..Naming::PLAIN
+    },
+    role: Role {
+        of_air: true,
+        axial: Some(0),
+        vertical: Some(0),
+        axial_part_of: Some(&LinearDrag),
+        damped_by: Some(|| angular_damping::SIGNATURE.whole()),
+        ..Role::NONE
+    },
+    joint: Joint {
+        forms: Some(|_, _| [1.0, 0.0].map(|at_hubs| SIGNATURE.term(&[0.0, at_hubs], &[0, 1])).to_vec()),
+        ..Joint::PLAIN
+    },
+    ..Signature::of(
+        &Inflow,
+        &[0],
+        Words {
+            clause: Clause::OneNumber {
+                parameter: "kz",
+                factor: 1.0,
+                before: "Thrust falls with climb: by",
+                after: "N per m/s of airspeed along the rotor axis",
+            },
+            ..Words::of("thrust that falls with climb")
+        },
+    )
+};

@@ -1,0 +1,83 @@
+//! How drag in proportion to the airspeed is tried, named and said.
+
+use crate::diagnose::named::Named;
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Joint, Naming, Role, Signature, Whence};
+use crate::diagnose::wording::{Clause, Size, Words};
+use crate::diagnose::words::axes;
+use crate::physics::effects::LinearDrag;
+use crate::text::significant;
+
+use super::angular_damping;
+
+/// Slot of the drag along body z.
+const DZ: usize = 2;
+
+/// Drag in proportion to the airspeed.
+pub static SIGNATURE: Signature = Signature {
+    needs: &[Need::Velocity],
+    forms: |_| {
+        // of the rotors, at their hubs, or of the body, at its centre
+        let at = |at_hubs: f64| {
+            let values = [0.0, 0.0, 0.0, at_hubs];
+            [SIGNATURE.form(&values, &[0, 1]), SIGNATURE.form(&values, &[0, 1, 2])]
+        };
+        [1.0, 0.0].into_iter().flat_map(at).collect()
+    },
+    naming: Naming {
+        // 1/s: forces scale with the mass
+        usual: |parameter, vehicle| {
+            ["dx", "dy", "dz"].contains(&parameter).then_some(0.3 * vehicle.body.mass_kg)
+        },
+        ..Naming::PLAIN
+    },
+    role: Role {
+        of_air: true,
+        lateral_slope: Some(|_| 1.0),
+        axial: Some(DZ),
+        vertical: Some(DZ),
+        damped_by: Some(|| angular_damping::SIGNATURE.whole()),
+        like_latency: Some(|| SIGNATURE.term(&[0.0; 4], &[0, 1, 2])),
+        ..Role::NONE
+    },
+    joint: Joint {
+        forms: Some(|_, asked| {
+            // an effect along body z is the same term as the drag's z
+            let free: &[usize] = if has_axial_part(asked) { &[0, 1, 3] } else { &[0, 1, 2, 3] };
+            [1.0, 0.0].map(|at_hubs| SIGNATURE.term(&[0.0, 0.0, 0.0, at_hubs], free)).to_vec()
+        }),
+        whence: |_, slot, _, asked| {
+            let elsewhere = slot == DZ && has_axial_part(asked);
+            elsewhere.then(|| Whence::Given("is the inflow's kz".to_owned()))
+        },
+        ..Joint::PLAIN
+    },
+    ..Signature::of(
+        &LinearDrag,
+        &[0, 1, 2],
+        Words {
+            clause: Clause::Own(|named, vehicle| {
+                format!(
+                    "Drag was left out: {} ({} 1/s), throughout the flight, growing with airspeed",
+                    axes(named, &["dx", "dy", "dz"], "N per m/s"),
+                    significant(mean(named) / vehicle.body.mass_kg, 2)
+                )
+            }),
+            size: Size::Axes,
+            told_if_absent: Some(0),
+            expected_in_motion: Some(0),
+            ..Words::of("drag")
+        },
+    )
+};
+
+fn has_axial_part(asked: &[&'static Signature]) -> bool {
+    asked.iter().any(|other| other.role.axial_part_of.is_some_and(|of| of.id() == SIGNATURE.id()))
+}
+
+/// Mean of the drag along body x and y, of those that were found.
+fn mean(named: &Named) -> f64 {
+    let found: Vec<f64> =
+        ["dx", "dy"].iter().map(|name| named.value(name)).filter(|value| *value != 0.0).collect();
+    found.iter().sum::<f64>() / found.len().max(1) as f64
+}

@@ -1,0 +1,33 @@
+//! What the diagnosis knows of each effect: one file an effect, of the same name as in [`crate::physics::effects`].
+
+mod angular_damping;
+mod battery_sag;
+mod blade_flapping;
+mod ceiling_effect;
+mod com_offset;
+mod frame_misalignment;
+mod ground_effect;
+mod gust;
+mod imu_misalignment;
+mod imu_offset;
+mod inflow;
+mod linear_drag;
+mod list;
+mod mass_change;
+mod motor_lag;
+mod quadratic_drag;
+mod rotor_inertia;
+mod slung_load;
+mod steady_wind;
+mod tether;
+mod thrust_curve;
+mod thrust_tilt;
+mod translational_lift;
+mod transport_delay;
+mod vortex_ring;
+mod weak_rotor;
+
+pub(super) use gust::SIGNATURE as GUST;
+pub use list::{ALL, latency_kind, latency_signature, signature_of};
+pub(super) use rotor_inertia::SIGNATURE as ROTOR_INERTIA;
+pub(super) use thrust_curve::SIGNATURE as BENT_THRUST;

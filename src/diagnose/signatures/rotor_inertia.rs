@@ -1,0 +1,26 @@
+//! How the rotors' own inertia is tried, named and said.
+
+use crate::diagnose::signature::{Naming, Role, Signature};
+use crate::diagnose::wording::{Clause, Words};
+use crate::physics::effects::RotorInertia;
+
+/// The rotors' own inertia.
+pub static SIGNATURE: Signature = Signature {
+    forms: |_| vec![SIGNATURE.form(&[0.0], &[0])],
+    // and no force of the room, which position and velocity tell of, looks like it
+    naming: Naming { ubiquitous: true, ..Naming::PLAIN },
+    role: Role { shortens_latency: true, ..Role::NONE },
+    ..Signature::of(
+        &RotorInertia,
+        &[0],
+        Words {
+            clause: Clause::OneNumber {
+                parameter: "jr",
+                factor: 1.0,
+                before: "The rotors' own inertia was left out:",
+                after: "kg m^2 each; spinning them up yaws the vehicle, turning it tilts them",
+            },
+            ..Words::of("the rotors' inertia")
+        },
+    )
+};

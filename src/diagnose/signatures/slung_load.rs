@@ -1,0 +1,101 @@
+//! How a load that swings below is tried, named and said.
+
+use crate::diagnose::recorded::{Need, Recorded};
+use crate::diagnose::signature::{
+    EffectTerm, GridScale, Joint, Naming, Refinement, Role, Signature, first_finer,
+};
+use crate::diagnose::wording::{Clause, Words};
+use crate::physics::effects::SlungLoad;
+
+/// Lengths of a load's cord that are tried, m: their periods lie 20 % apart.
+const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
+/// What the air takes of a load's swing before more is known, 1/s.
+const SWING_DAMPING_1_S: f64 = 0.2;
+/// Shortest and longest cord that is fitted, m.
+const CORDS_M: (f64, f64) = (0.2, 4.0);
+/// What the air takes of its swing, 1/s, with the ratio of the cords that are fitted: neighbours stay in step while the
+/// swing lasts, or are a tenth of a period apart after a minute.
+const SWINGS: [(f64, f64); 3] = [(0.0, 1.015), (0.1, 1.03), (0.5, 1.1)];
+
+/// A load that swings below on a cord.
+pub static SIGNATURE: Signature = Signature {
+    needs: &[Need::Velocity],
+    forms: |recorded| {
+        // a load that lies on the ground does not swing
+        let height_m = highest_m(recorded);
+        let cords = CORD_LENGTHS_M.into_iter().filter(|length_m| *length_m < height_m);
+        cords.map(|length_m| SIGNATURE.form(&[0.0, length_m, SWING_DAMPING_1_S], &[0])).collect()
+    },
+    refinement: Refinement {
+        // of the length
+        grid: Some(GridScale::Relative { slot: 1, step: 0.04, least: 0.002 }),
+        // a load that swings freely is out of step with its neighbours on the grid
+        grid_before_test: true,
+        freed: |term| std::iter::once(1).chain(first_finer(term)).collect(),
+        ..Refinement::NONE
+    },
+    naming: Naming {
+        extra_z: 1.0,
+        usual: |parameter, vehicle| (parameter == "mass").then_some(0.08 * vehicle.body.mass_kg),
+        ..Naming::PLAIN
+    },
+    role: Role { hangs_below: true, ..Role::NONE },
+    joint: Joint {
+        forms: Some(|_, _| {
+            let of = |(damping_1_s, ratio): (f64, f64)| {
+                cords_m(ratio)
+                    .into_iter()
+                    .map(move |length_m| SIGNATURE.term(&[0.0, length_m, damping_1_s], &[0]))
+            };
+            SWINGS.into_iter().flat_map(of).collect::<Vec<EffectTerm>>()
+        }),
+        ..Joint::PLAIN
+    },
+    ..Signature::of(
+        &SlungLoad,
+        &[0],
+        Words {
+            clause: Clause::Own(|named, _| {
+                let (mass, length) = (named.said("mass", 1.0), named.said("length", 1.0));
+                format!("A load swings below: {mass} kg on a cord of {length} m")
+            }),
+            ..Words::of("a slung load")
+        },
+    )
+};
+
+/// Above the ground where position is known and the ground is zero, else boundless, m.
+fn highest_m(recorded: &Recorded) -> f64 {
+    if !recorded.all(|trace| trace.known.position) {
+        return f64::INFINITY;
+    }
+    let heights = recorded
+        .flights
+        .iter()
+        .flat_map(|trace| trace.centers.iter().map(|&row| trace.states[row].position_m.z));
+    let highest_m = heights.fold(f64::MIN, f64::max);
+    if highest_m > 0.0 { highest_m } else { f64::INFINITY }
+}
+
+/// Lengths of a cord that are fitted, m, each so many times the one before.
+fn cords_m(ratio: f64) -> Vec<f64> {
+    let mut out = vec![CORDS_M.0];
+    while let Some(last_m) = out.last().map(|length_m| length_m * ratio).filter(|m| *m <= CORDS_M.1) {
+        out.push(last_m);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cords_reach_from_the_shortest_to_the_longest() {
+        for (_, ratio) in SWINGS {
+            let cords = cords_m(ratio);
+            assert!(cords.windows(2).all(|pair| pair[1] > pair[0]) && cords[0] == CORDS_M.0);
+            assert!(cords.last().is_some_and(|last| *last <= CORDS_M.1 && *last * ratio > CORDS_M.1));
+        }
+    }
+}

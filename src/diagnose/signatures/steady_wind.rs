@@ -1,0 +1,65 @@
+//! How a steady wind is tried, named and said.
+
+use crate::diagnose::named::Named;
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Carried, Joint, Role, Signature};
+use crate::diagnose::wording::{Clause, Size, Words};
+use crate::diagnose::words::{from_deg, point_of};
+use crate::physics::effects::SteadyWind;
+use crate::text::{significant, with_error};
+
+use super::linear_drag;
+
+/// Wind that does not change.
+pub static SIGNATURE: Signature = Signature {
+    needs: &[Need::Velocity],
+    // together with a drag, or alone where a drag is known: see the role
+    role: Role { wind: Some(carried), of_the_day: true, ..Role::NONE },
+    joint: Joint {
+        // up comes when the rest is known
+        forms: Some(|_, _| vec![SIGNATURE.term(&[0.0; 3], &[0, 1])]),
+        ..Joint::PLAIN
+    },
+    ..Signature::of(
+        &SteadyWind,
+        &[0, 1, 2],
+        Words {
+            clause: Clause::Own(|named, _| clause(named)),
+            size: Size::Own(|named| {
+                let (north, west) = (named.value("north"), named.value("west"));
+                Some(format!("{} m/s from the {}", significant(north.hypot(west), 3), point_of(north, west)))
+            }),
+            ..Words::of("a steady wind")
+        },
+    )
+};
+
+/// Tried together with drag at the hubs or at the centre: its columns are those that it has through a drag of one
+/// unit.
+fn carried() -> Vec<Carried> {
+    let of = |at_hubs: f64| Carried {
+        carrier: linear_drag::SIGNATURE.term(&[0.0, 0.0, 0.0, at_hubs], &[0, 1]),
+        unit: linear_drag::SIGNATURE.term(&[1.0, 1.0, 0.0, at_hubs], &[]),
+        term: SIGNATURE.term(&[0.0; 3], &[0, 1]),
+    };
+    [1.0, 0.0].map(of).to_vec()
+}
+
+fn clause(named: &Named) -> String {
+    let (north, east) = (named.value("north"), -named.value("west"));
+    let speed = north.hypot(east);
+    let std = |name: &str| named.get(name).map_or(0.0, |p| p.std);
+    let speed_std = if speed > 0.0 {
+        (north * std("north")).hypot(east * std("west")) / speed
+    } else {
+        std("north").max(std("west"))
+    };
+    let from_deg = from_deg(north, -east);
+    let point = point_of(north, -east);
+    format!(
+        "A steady wind was left out: {} m/s from {point} ({from_deg:.0} deg), {} m/s towards north and {} m/s towards west",
+        with_error(speed, speed_std),
+        named.said("north", 1.0),
+        named.said("west", 1.0)
+    )
+}

@@ -1,0 +1,68 @@
+//! How a tether is tried, named and said.
+
+use crate::diagnose::recorded::{Need, Recorded};
+use crate::diagnose::signature::{EffectTerm, Joint, Naming, Signature, Whence};
+use crate::diagnose::wording::{Clause, Words};
+use crate::physics::effects::Tether;
+
+/// A length that no flight reaches, m.
+const SLACK_M: f64 = 500.0;
+/// No line that holds anything weighs less, kg/m.
+const LEAST_LINE_KG_M: f64 = 0.005;
+/// A line that is carried shows only once it weighs something, kg/m.
+const LINE_KG_M: f64 = 0.01;
+/// Lengths of a tether that are fitted, of the farthest distance flown.
+const TAUT_AT: [f64; 6] = [0.4, 0.55, 0.7, 0.8, 0.9, 0.96];
+
+/// A line to the ground.
+pub static SIGNATURE: Signature = Signature {
+    needs: &[Need::Position],
+    forms: |_| vec![SIGNATURE.form(&[0.0, 0.0, SLACK_M, 0.0], &[0])],
+    naming: Naming {
+        is_ordinary: |term, _| term.values[0] < LEAST_LINE_KG_M && term.values[1] == 0.0,
+        ..Naming::PLAIN
+    },
+    joint: Joint {
+        forms: Some(|recorded, _| terms(recorded)),
+        whence: |_, slot, _, _| {
+            (slot < 3).then_some(Whence::NotDetermined(
+                "the line was not taut in this flight, or pulled too little to show",
+            ))
+        },
+        ..Joint::PLAIN
+    },
+    ..Signature::of(
+        &Tether,
+        &[0, 1],
+        Words {
+            clause: Clause::OneNumber {
+                parameter: "line_mass",
+                factor: 1e3,
+                before: "A line leads down to the ground:",
+                after: "g more for each metre of height",
+            },
+            ..Words::of("a tether")
+        },
+    )
+};
+
+/// Slack, with a line that the vehicle carries or not; or taut at some distance.
+fn terms(recorded: &Recorded) -> Vec<EffectTerm> {
+    let far_m = farthest_m(recorded);
+    let slack = [
+        SIGNATURE.term(&[0.0, 0.0, SLACK_M], &[0]),
+        SIGNATURE.term(&[LINE_KG_M, 0.0, SLACK_M, 0.5], &[0, 3]),
+    ];
+    let taut = TAUT_AT.iter().map(|share| share * far_m).filter(|length_m| *length_m > 0.5);
+    let taut = taut.map(|length_m| SIGNATURE.term(&[0.0, 0.0, length_m], &[0, 1, 2]));
+    slack.into_iter().chain(taut).collect()
+}
+
+/// From the world's origin, m.
+fn farthest_m(recorded: &Recorded) -> f64 {
+    let flown = recorded
+        .flights
+        .iter()
+        .flat_map(|trace| trace.centers.iter().map(move |&row| trace.states[row].position_m.norm()));
+    flown.fold(0.0, f64::max)
+}

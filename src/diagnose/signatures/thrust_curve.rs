@@ -1,0 +1,40 @@
+//! How a bent thrust curve is tried, named and said.
+
+use crate::diagnose::signature::{Joint, Naming, Signature};
+use crate::diagnose::wording::{Clause, Size, Words};
+use crate::physics::effects::ThrustCurve;
+
+/// No thrust curve is known to better than this (-).
+const ORDINARY_BEND: f64 = 0.02;
+
+/// A thrust curve that is bent otherwise than the vehicle file says.
+pub static SIGNATURE: Signature = Signature {
+    forms: |_| vec![SIGNATURE.form(&[0.0; 2], &[0])],
+    naming: Naming {
+        ordinary: Some(ORDINARY_BEND),
+        // it bends the commands' own noise, too
+        extra_z: 1.0,
+        usual: |parameter, _| (parameter == "curvature").then_some(0.15),
+        ..Naming::PLAIN
+    },
+    joint: Joint {
+        forms: Some(|_, _| vec![SIGNATURE.term(&[0.0], &[0]), SIGNATURE.term(&[0.0; 2], &[0, 1])]),
+        ..Joint::PLAIN
+    },
+    ..Signature::of(
+        &ThrustCurve,
+        &[0],
+        Words {
+            clause: Clause::Own(|named, _| {
+                let bend = named.value("curvature");
+                format!(
+                    "The thrust curve is bent: about hover thrust changes with the command {} % {} than the vehicle file says",
+                    named.said("curvature", 100.0 * bend.signum()),
+                    if bend > 0.0 { "more" } else { "less" }
+                )
+            }),
+            size: Size::Of { parameter: "curvature", factor: 100.0, unit: "% about hover" },
+            ..Words::of("a bent thrust curve")
+        },
+    )
+};

@@ -1,0 +1,26 @@
+//! How the vortex ring state is tried, named and said.
+
+use crate::diagnose::recorded::Need;
+use crate::diagnose::signature::{Role, Signature};
+use crate::diagnose::wording::{Clause, Words};
+use crate::physics::effects::VortexRing;
+
+/// Loss of thrust in a descent into the own wake.
+pub static SIGNATURE: Signature = Signature {
+    needs: &[Need::Velocity],
+    forms: |_| vec![SIGNATURE.form(&[0.0], &[0])],
+    role: Role { of_air: true, ..Role::NONE },
+    ..Signature::of(
+        &VortexRing,
+        &[0],
+        Words {
+            clause: Clause::OneNumber {
+                parameter: "loss",
+                factor: 1.0,
+                before: "It sank into its own wake: the loss of thrust is",
+                after: "times that of Leishman's vortex ring",
+            },
+            ..Words::of("the vortex ring state")
+        },
+    )
+};

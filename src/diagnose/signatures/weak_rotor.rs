@@ -1,0 +1,97 @@
+//! How a rotor that is weaker than the others is tried, named and said.
+
+use crate::diagnose::named::Named;
+use crate::diagnose::recorded::Recorded;
+use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, Role, Signature, Whence};
+use crate::diagnose::wording::{Clause, Size, Words};
+use crate::diagnose::words;
+use crate::physics::effects::WeakRotor;
+use crate::text::{significant, with_error};
+use crate::vehicle::Vehicle;
+
+/// Slots of the values.
+const ROTOR: usize = 0;
+const FACTOR: usize = 1;
+/// Rotors of one vehicle differ by as much.
+const SCATTER: f64 = 0.08;
+/// What noise leaves uncertain by a hundredth of a percent is known to this of its thrust (-) where a rotor is sampled
+/// 100 times a second and flies on between: flights of the embedded vehicle are off by 0.09 to 0.10 %, all on the same
+/// side.
+const BETWEEN_SAMPLES: f64 = 0.001;
+
+/// A rotor that is weaker than the others.
+pub static SIGNATURE: Signature = Signature {
+    nothing: 1.0,
+    forms: |recorded| {
+        let rotors = terms(recorded.vehicle.rotors.len()).into_iter();
+        rotors.map(|term| Form { term, instead_of_nuisance: false }).collect()
+    },
+    naming: Naming { is_ordinary, least_std: BETWEEN_SAMPLES, ..Naming::PLAIN },
+    role: Role { which: Some(ROTOR), ..Role::NONE },
+    joint: Joint {
+        forms: Some(|recorded: &Recorded, _| {
+            terms(recorded.airframe.as_ref().map_or(0, |airframe| airframe.rotor_count()))
+        }),
+        whence: |term, slot, vehicle, _| {
+            (slot == ROTOR).then(|| {
+                let mut rotors = vehicle.rotors.iter().enumerate();
+                let named = rotors.find(|(index, _)| *index as f64 == term.values[ROTOR]);
+                Whence::Given(named.map_or("the likeliest", |(_, rotor)| rotor.name.as_str()).to_owned())
+            })
+        },
+        ..Joint::PLAIN
+    },
+    ..Signature::of(
+        &WeakRotor,
+        &[FACTOR],
+        Words {
+            noun_of: Some(|named, vehicle| {
+                let what = if named.value("factor") < 1.0 { "weak" } else { "strong" };
+                format!("a {what} {}", rotor_name(vehicle, named.value("rotor")))
+            }),
+            clause: Clause::Own(clause),
+            size: Size::Own(|named| {
+                let p = named.get("factor")?;
+                let change = 100.0 * (1.0 - p.value).abs();
+                Some(format!("{} %", words::plain(change, 100.0 * p.std)))
+            }),
+            limit: Some(|limit| format!("a rotor {} % weak", significant(100.0 * limit, 2))),
+            told_if_absent: Some(2),
+            ..Words::of("a weak rotor")
+        },
+    )
+};
+
+fn terms(rotors: usize) -> Vec<EffectTerm> {
+    (0..rotors).map(|rotor| SIGNATURE.term(&[rotor as f64, 1.0], &[FACTOR])).collect()
+}
+
+/// One that is stronger, or several that differ: the rotors' scatter.
+fn is_ordinary(term: &EffectTerm, all: &[EffectTerm]) -> bool {
+    let rotors = || all.iter().filter(|other| other.is(&SIGNATURE)).map(|rotor| rotor.values[FACTOR]);
+    let factor = term.values[FACTOR];
+    factor > 1.0
+        || rotors().count() > 1 && rotors().all(|other| other > 1.0 - SCATTER)
+        || rotors().any(|other| other > 1.0) && factor > 1.0 - SCATTER
+}
+
+/// `rotor front_left`, by its number.
+fn rotor_name(vehicle: &Vehicle, number: f64) -> String {
+    let mut rotors = vehicle.rotors.iter().enumerate();
+    rotors
+        .find(|(index, _)| (*index as f64 - number).abs() < 0.5)
+        .map_or_else(|| format!("rotor {number:.0}"), |(_, rotor)| format!("rotor {}", rotor.name))
+}
+
+fn clause(named: &Named, vehicle: &Vehicle) -> String {
+    let name = rotor_name(vehicle, named.value("rotor"));
+    let factor = named.value("factor");
+    let std = named.get("factor").map_or(0.0, |p| p.std);
+    let (what, change) = if factor < 1.0 { ("weak", 1.0 - factor) } else { ("strong", factor - 1.0) };
+    format!(
+        "{name} is {what}: its thrust and torque are {} % {} than the others'",
+        with_error(100.0 * change, 100.0 * std),
+        if factor < 1.0 { "less" } else { "more" }
+    )
+    .replacen("rotor", "Rotor", 1)
+}

@@ -1,0 +1,88 @@
+//! Numbers of a named effect in words.
+
+use super::named::{Named, NamedParameter};
+use crate::text::{significant, spoken, with_error};
+
+/// One number where the axes agree within two standard errors, else one an axis; of the parameters that `names` gives
+/// for x, y and z.
+#[must_use]
+pub fn axes(named: &Named, names: &[&str], unit: &str) -> String {
+    const AXES: [&str; 3] = ["x", "y", "z"];
+    let known: Vec<(&str, &NamedParameter)> =
+        names.iter().zip(AXES).filter_map(|(name, axis)| Some((axis, named.get(name)?))).collect();
+    let list = |parts: Vec<String>| match parts.as_slice() {
+        [most @ .., last] if !most.is_empty() => format!("{} and {last}", most.join(", ")),
+        all => all.concat(),
+    };
+    let parameters: Vec<&NamedParameter> = known.iter().map(|(_, p)| *p).collect();
+    if let Some((mean, std)) = common(&parameters).filter(|_| known.len() > 1) {
+        let along = list(known.iter().map(|(axis, _)| (*axis).to_owned()).collect());
+        return format!("{} {unit} along body {along}", with_error(mean, std));
+    }
+    let each = known.iter().map(|(axis, p)| format!("{} along {axis}", with_error(p.value, p.std)));
+    format!("{} {unit} of the body", list(each.collect()))
+}
+
+/// Weighted mean and standard error of values that agree within two standard errors.
+fn common(parameters: &[&NamedParameter]) -> Option<(f64, f64)> {
+    let weight: f64 = parameters.iter().map(|p| p.std.powi(-2)).sum();
+    let mean = parameters.iter().map(|p| p.value * p.std.powi(-2)).sum::<f64>() / weight;
+    let alike = parameters.iter().all(|p| (p.value - mean).abs() < 2.0 * p.std);
+    (alike && weight.is_finite()).then(|| (mean, weight.powf(-0.5)))
+}
+
+/// One number where the axes agree within two standard errors, else the least and the greatest.
+#[must_use]
+pub fn range(named: &Named) -> String {
+    let Some(first) = named.parameters.first() else { return String::new() };
+    let same: Vec<&NamedParameter> = named.parameters.iter().filter(|p| p.unit == first.unit).collect();
+    let unit = spoken(first.unit);
+    if let Some((mean, std)) = common(&same) {
+        return format!("{} {unit}", plain(mean, std));
+    }
+    let least = same.iter().map(|p| p.value).fold(f64::INFINITY, f64::min);
+    let most = same.iter().map(|p| p.value).fold(f64::NEG_INFINITY, f64::max);
+    format!("{} to {} {unit}", significant(least, 2), significant(most, 2))
+}
+
+/// Norm of the parameters that have a unit.
+#[must_use]
+pub fn norm(named: &Named) -> f64 {
+    named.parameters.iter().filter(|p| p.unit != "-").map(|p| p.value * p.value).sum::<f64>().sqrt()
+}
+
+/// Value and standard error where that needs no parentheses.
+#[must_use]
+pub fn plain(value: f64, std: f64) -> String {
+    let text = with_error(value, std);
+    if text.starts_with('(') { significant(value, 3) } else { text }
+}
+
+/// A parameter in the unit in which it is said, which `factor` brings it to.
+#[must_use]
+pub fn said(named: &Named, name: &str, factor: f64, unit: &str) -> Option<String> {
+    let p = named.get(name)?;
+    Some(format!("{} {unit}", plain(factor * p.value, factor.abs() * p.std)).trim_end().to_owned())
+}
+
+/// Compass points, clockwise from north.
+const POINTS: [&str; 8] =
+    ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
+
+/// Degrees from north, clockwise, from where a wind towards north and west (m/s) comes.
+#[must_use]
+pub fn from_deg(north: f64, west: f64) -> f64 {
+    west.atan2(-north).to_degrees().rem_euclid(360.0)
+}
+
+/// The point of the compass from where a wind towards north and west (m/s) comes.
+#[must_use]
+pub fn point_of(north: f64, west: f64) -> &'static str {
+    let from_deg = from_deg(north, west);
+    POINTS
+        .iter()
+        .cycle()
+        .zip([0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0, 360.0])
+        .min_by(|a, b| (a.1 - from_deg).abs().total_cmp(&(b.1 - from_deg).abs()))
+        .map_or("north", |(name, _)| name)
+}

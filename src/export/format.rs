@@ -1,0 +1,37 @@
+//! The formats of simulators, and the export of a model to each.
+
+use super::error::ExportError;
+use super::source::{Exported, Source};
+use super::{ardupilot, mjcf, px4, rotorpy, sdf};
+use crate::physics::ActiveEffect;
+use crate::vehicle::Vehicle;
+
+/// A simulator's file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// parameters of PX4's simulation in hardware
+    Px4Sih,
+    /// frame of ArduPilot's simulator, `--model "x:frame.json"`
+    ArdupilotSitl,
+    /// Gazebo, with the multicopter motor model
+    Sdf,
+    /// MuJoCo
+    Mjcf,
+    /// RotorPy's parameter dictionary
+    Rotorpy,
+}
+
+/// The model in a simulator's form.
+///
+/// # Errors
+/// [`ExportError`] where the simulator cannot take such a vehicle.
+pub fn export(vehicle: &Vehicle, effects: &[ActiveEffect], format: Format) -> Result<Exported, ExportError> {
+    let source = Source::new(vehicle, effects)?;
+    match format {
+        Format::Px4Sih => px4::write(source),
+        Format::ArdupilotSitl => ardupilot::write(source),
+        Format::Sdf => sdf::write(source),
+        Format::Mjcf => mjcf::write(source),
+        Format::Rotorpy => rotorpy::write(source),
+    }
+}

@@ -1,0 +1,113 @@
+//! The model as the writers read it, and the file that they make of it.
+
+use super::error::ExportError;
+use crate::physics::{ActiveEffect, Airframe};
+use crate::vehicle::{ThrustLaw, Vehicle};
+use nalgebra::Vector3;
+
+/// The model as the writers read it; what they do not take is told at the end.
+pub(super) struct Source<'a> {
+    pub(super) vehicle: &'a Vehicle,
+    pub(super) airframe: Airframe,
+    effects: &'a [ActiveEffect],
+    taken: Vec<&'static str>,
+    left_out: Vec<String>,
+}
+
+impl<'a> Source<'a> {
+    pub(super) fn new(vehicle: &'a Vehicle, effects: &'a [ActiveEffect]) -> Result<Self, ExportError> {
+        let airframe = Airframe::new(vehicle)?;
+        Ok(Self { vehicle, airframe, effects, taken: Vec::new(), left_out: Vec::new() })
+    }
+
+    /// An effect's parameter, 0 where the model does not have the effect; it counts as carried over.
+    pub(super) fn take(&mut self, id: &'static str, parameter: &str) -> f64 {
+        self.taken.push(id);
+        let active = self.effects.iter().find(|active| active.effect().id() == id);
+        active.map_or(0.0, |active| {
+            let names = active.effect().parameters().iter().chain(active.effect().finer_parameters());
+            names.zip(active.parameters()).find(|(p, _)| p.name == parameter).map_or(0.0, |(_, value)| *value)
+        })
+    }
+
+    pub(super) fn has(&self, id: &str) -> bool {
+        self.effects.iter().any(|active| active.effect().id() == id)
+    }
+
+    pub(super) fn note(&mut self, text: impl Into<String>) {
+        self.left_out.push(text.into());
+    }
+
+    /// s, lag of the rotors: of the effect, else what the vehicle's file knows.
+    pub(super) fn time_constant_s(&mut self) -> Option<f64> {
+        if self.has("motor_lag") {
+            return Some(self.take("motor_lag", "time_constant"));
+        }
+        self.vehicle.propulsion.time_constant_s.filter(|time_constant_s| *time_constant_s > 0.0)
+    }
+
+    /// Centre of mass in the frame of the rotor positions, m, with the offset that was found.
+    pub(super) fn center_of_mass_m(&mut self) -> Vector3<f64> {
+        let offset = ["x", "y", "z"].map(|axis| self.take("com_offset", axis));
+        self.vehicle.body.center_of_mass_m + Vector3::from(offset)
+    }
+
+    /// Hubs from the centre of mass, m, body FLU.
+    pub(super) fn arms_m(&mut self) -> Vec<Vector3<f64>> {
+        let center = self.center_of_mass_m();
+        self.vehicle.rotors.iter().map(|rotor| rotor.position_m - center).collect()
+    }
+
+    /// N, one rotor at full command.
+    pub(super) fn thrust_max_n(&self) -> f64 {
+        self.vehicle.propulsion.thrust_from_command_n(1.0)
+    }
+
+    /// N/(rad/s)^2 and rad/s at full command.
+    pub(super) fn speeds(&self, format: &'static str) -> Result<(f64, f64), ExportError> {
+        let missing = |what| ExportError::Missing { format, what };
+        let coefficient = self
+            .vehicle
+            .propulsion
+            .thrust_coefficient
+            .ok_or_else(|| missing("thrust_coefficient (thrust by rotor speed)"))?;
+        let speed_max = match self.vehicle.propulsion.law {
+            ThrustLaw::Speed { speed_max_rad_s } => speed_max_rad_s,
+            ThrustLaw::Curve { thrust_max_n, .. } => (thrust_max_n / coefficient).sqrt(),
+        };
+        Ok((coefficient, speed_max))
+    }
+
+    /// rad/s of each rotor at hover.
+    pub(super) fn hover_rad_s(&self, format: &'static str) -> Result<f64, ExportError> {
+        let (coefficient, _) = self.speeds(format)?;
+        Ok((self.airframe.hover_thrust_n / coefficient).sqrt())
+    }
+
+    /// Done: what was not taken is told.
+    pub(super) fn finish(mut self, write: impl FnOnce(&[String]) -> String) -> Exported {
+        for active in self.effects {
+            let id = active.effect().id();
+            if !self.taken.contains(&id) {
+                let values: Vec<String> = active
+                    .effect()
+                    .parameters()
+                    .iter()
+                    .zip(active.parameters())
+                    .map(|(p, value)| format!("{} = {value} {}", p.name, p.unit))
+                    .collect();
+                self.left_out.push(format!("{id} has no place here: {}", values.join(", ")));
+            }
+        }
+        Exported { text: write(&self.left_out), left_out: self.left_out }
+    }
+}
+
+/// A file, and what of the model is not in it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Exported {
+    /// the file
+    pub text: String,
+    /// sentence by sentence; they stand in the file as comments too
+    pub left_out: Vec<String>,
+}

@@ -1,0 +1,195 @@
+//! The state of a flight, and what is known of it.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use super::action::Action;
+use super::gate::Gate;
+use super::phase::Phase;
+use super::watch::Watch;
+use crate::fly::commander::Commander;
+use crate::fly::health::BatteryLevel;
+use crate::fly::lift::Lift;
+use crate::fly::modes::Stack;
+use crate::fly::outcome::{Cause, Flown, Level, Note};
+use crate::fly::roster::Roster;
+use crate::fly::safety::{Guide, ModeKnowledge};
+use crate::fly::setpoint::Place;
+use crate::fly::sortie::Sortie;
+use crate::fly::target::Target;
+use crate::fly::telemetry::Telemetry;
+use crate::log::{self, CrcSeeds};
+use crate::units::deg_from_rad;
+
+/// A flight.
+#[derive(Debug)]
+pub struct Flight {
+    pub(super) sortie: Sortie,
+    pub(super) seeds: CrcSeeds,
+    pub(super) roster: Roster,
+    pub(super) told_others: bool,
+    /// major and minor number of the autopilot's release, where it said so
+    pub(super) release: Option<(u8, u8)>,
+    pub(super) contact: Option<Contact>,
+    pub(super) commander: Commander,
+    /// whether the vehicle's mode is known well enough to command it
+    pub(super) known: ModeKnowledge,
+    /// what looks like another master, and the reports of the mode that had come by then
+    pub(super) suspected: Option<(Cause, u64)>,
+    /// frames lie in the link that were not read yet: no command goes out before
+    pub(super) unread: bool,
+    /// when it was last asked to go on
+    pub(super) stepped: Option<Duration>,
+    pub(super) phase: Phase,
+    /// when the phase was entered
+    pub(super) entered: Duration,
+    /// the mode in which it was found once all checks were passed
+    pub(super) found: Option<u32>,
+    /// where it stood when it was armed
+    pub(super) stand: Option<Place>,
+    /// what is sent came above the room's floor: from then on nothing below is sent
+    pub(super) climbed: bool,
+    pub(super) guide: Guide,
+    pub(super) watch: Watch,
+    pub(super) gate: Gate,
+    pub(super) actions: VecDeque<Action>,
+    pub(super) heartbeat_due: Duration,
+    pub(super) clearance: Option<Result<(), String>>,
+    /// the word for arming, after the page before the flight
+    pub(super) word_given: bool,
+    /// the order to arm left, and may act later than the vehicle says so
+    pub(super) arm_ordered: bool,
+    /// by which the vehicle is weighed once it hovers
+    pub(super) lift: Option<Box<Lift>>,
+    /// the mode in which the operator stopped the motors
+    pub(super) killed_in: Option<u32>,
+    pub(super) cause: Option<Cause>,
+    pub(super) flown: Flown,
+    pub(super) losses: Vec<String>,
+}
+
+/// The vehicle that was chosen.
+#[derive(Debug)]
+pub(super) struct Contact {
+    pub(super) target: Target,
+    pub(super) telemetry: Telemetry,
+}
+
+impl Flight {
+    /// A flight that begins at zero of the clock that it will be told.
+    #[must_use]
+    pub fn new(sortie: Sortie) -> Self {
+        let watch = Watch::new(&sortie);
+        let flown = Flown {
+            tilt_planned_deg: deg_from_rad(sortie.course.tilt_max_rad(sortie.gravity_m_s2)),
+            ..Flown::default()
+        };
+        Self {
+            sortie,
+            seeds: CrcSeeds::new(),
+            roster: Roster::default(),
+            told_others: false,
+            release: None,
+            contact: None,
+            commander: Commander::default(),
+            known: ModeKnowledge::default(),
+            suspected: None,
+            unread: false,
+            stepped: None,
+            phase: Phase::Connect,
+            entered: Duration::ZERO,
+            found: None,
+            stand: None,
+            climbed: false,
+            guide: Guide::silent(Duration::ZERO),
+            watch,
+            gate: Gate::default(),
+            actions: VecDeque::new(),
+            heartbeat_due: Duration::ZERO,
+            clearance: None,
+            word_given: false,
+            arm_ordered: false,
+            lift: None,
+            killed_in: None,
+            cause: None,
+            flown,
+            losses: Vec::new(),
+        }
+    }
+
+    /// What is to be done next; ask until `None`.
+    pub fn next_action(&mut self) -> Option<Action> {
+        self.actions.pop_front()
+    }
+
+    /// What is to be streamed. It is as old as the last [`Flight::handle`].
+    #[must_use]
+    pub fn guide(&self) -> &Guide {
+        &self.guide
+    }
+
+    /// The flight is over.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        matches!(self.phase, Phase::Done)
+    }
+
+    /// The vehicle, once it is found.
+    #[must_use]
+    pub fn target(&self) -> Option<(Target, Stack)> {
+        self.contact.as_ref().map(|contact| (contact.target, contact.telemetry.stack()))
+    }
+
+    /// The vehicle as the log knows it, once it is found.
+    #[must_use]
+    pub fn vehicle(&self) -> Option<log::Vehicle> {
+        self.contact.as_ref().map(|contact| contact.telemetry.vehicle())
+    }
+
+    /// Major and minor number of the autopilot's release, where it said so.
+    #[must_use]
+    pub fn release(&self) -> Option<(u8, u8)> {
+        self.release
+    }
+
+    /// What tells a known message by its checksum.
+    #[must_use]
+    pub fn seeds(&self) -> &CrcSeeds {
+        &self.seeds
+    }
+
+    /// What is flown.
+    #[must_use]
+    pub fn sortie(&self) -> &Sortie {
+        &self.sortie
+    }
+
+    /// The flight's own message requests are done and it waits for [`Event::Cleared`](super::Event::Cleared).
+    #[must_use]
+    pub fn wants_clearance(&self) -> bool {
+        matches!(&self.phase, Phase::Check(checking) if checking.has_asked()) && self.clearance.is_none()
+    }
+
+    /// Says whether frames lie in the link that may say more: until they are read, no command goes out.
+    pub fn set_unread(&mut self, unread: bool) {
+        self.unread = unread;
+    }
+
+    pub(super) fn enter(&mut self, now: Duration, phase: Phase) {
+        self.note(now, Level::Information, "phase", phase.name());
+        self.phase = phase;
+        self.entered = now;
+    }
+
+    pub(super) fn note(&mut self, now: Duration, level: Level, kind: &'static str, text: impl Into<String>) {
+        self.actions.push_back(Action::Note(Note::new(now, level, kind, text)));
+    }
+
+    pub(super) fn is_armed(&self) -> bool {
+        self.contact.as_ref().is_some_and(|contact| contact.telemetry.is_armed())
+    }
+
+    pub(super) fn battery_level(&self) -> BatteryLevel {
+        self.contact.as_ref().map_or(BatteryLevel::Good, |contact| contact.telemetry.battery_level())
+    }
+}

@@ -1,0 +1,69 @@
+//! A sentence on what the vehicle does by itself, from parameters that may not have answered.
+
+use super::Parameters;
+use crate::fly::finding::Level;
+
+/// One thing that may happen and what the vehicle then does.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Sentence {
+    /// what may happen, such as `setpoints stop`
+    pub about: &'static str,
+    /// [`Level::Warning`] where the outcome is unknown or not what a flight test wants
+    pub level: Level,
+    /// for the operator
+    pub text: String,
+}
+
+/// Builds one sentence from parameters that may not have answered.
+pub(super) struct Topic<'a> {
+    pub parameters: &'a Parameters,
+    pub about: &'static str,
+}
+
+impl Topic<'_> {
+    /// A sentence.
+    pub fn say(&self, level: Level, text: impl Into<String>) -> Sentence {
+        Sentence { about: self.about, level, text: text.into() }
+    }
+
+    /// What cannot be told, and why.
+    pub fn unknown(&self, what: &str, name: &str) -> Sentence {
+        let name = self.parameters.name_of(name);
+        let absent = self.parameters.absent.iter().any(|absent| absent == name);
+        let why = if absent { "the vehicle has no parameter" } else { "no answer came for parameter" };
+        self.say(Level::Warning, format!("{what}: unknown, because {why} {name}."))
+    }
+
+    /// `what` completed by what the value of `name` means.
+    pub fn choose(&self, what: &str, name: &str, choices: &[Choice]) -> Sentence {
+        let Some(value) = self.parameters.get(name) else { return self.unknown(what, name) };
+        let shown = self.parameters.name_of(name);
+        let found = choices.iter().find(|(choice, ..)| (value - f64::from(*choice)).abs() < 0.5);
+        match found {
+            Some((_, does, level)) => self.say(*level, format!("{what}: it {does} ({shown} = {value}).")),
+            None => self.say(
+                Level::Warning,
+                format!("{what}: unknown, because {shown} = {value} has no meaning known here."),
+            ),
+        }
+    }
+
+    /// `name`'s value with its unit, or that it is not known.
+    pub fn number(&self, name: &str, unit: &str) -> String {
+        let shown = self.parameters.name_of(name);
+        match self.parameters.get(name) {
+            Some(value) => {
+                format!("{} {unit} ({shown})", rounded(self.parameters.in_own_unit(name, value)))
+            }
+            None => format!("an unknown time or size ({shown} did not answer)"),
+        }
+    }
+}
+
+/// A value of a parameter, what the vehicle does then, and whether that is what a flight test wants.
+pub(super) type Choice = (i32, &'static str, Level);
+
+/// Single-precision values without the digits that come from widening them.
+pub(super) fn rounded(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4
+}

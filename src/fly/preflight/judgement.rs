@@ -1,0 +1,45 @@
+//! The judgement of a flight before it begins, from all checks.
+
+use super::extremes::{Extremes, Stopping};
+use super::failsafes::failsafes;
+use super::page::Page;
+use super::situation::Situation;
+use super::{abandoned, autopilot, energy, fence_clearance, hover, readiness, room};
+use crate::fly::finding::Finding;
+use crate::fly::safety::Feeding;
+
+/// Checks everything; each finding says what was expected, what came, and what to do. The vehicle may
+/// be armed where none of them is a [`Level::Refusal`](crate::fly::finding::Level::Refusal).
+#[must_use]
+pub fn preflight(situation: &Situation<'_>) -> Vec<Finding> {
+    judge(situation).findings
+}
+
+/// As [`preflight`], with the way of sending setpoints that it chose.
+#[must_use]
+pub fn judge(situation: &Situation<'_>) -> Judged {
+    let extremes = Extremes::of(situation.path, situation.vehicle);
+    let stopping = Stopping::of(situation.parameters, situation.limits, situation.vehicle.gravity_m_s2);
+    let mut findings = room::findings(situation, &stopping);
+    findings.extend(fence_clearance::findings(situation, &stopping));
+    let (feeding, abandoned) = abandoned::judge(situation);
+    findings.extend(abandoned);
+    findings.extend(autopilot::findings(situation.parameters, &extremes));
+    findings.extend(hover::findings(situation));
+    findings.push(energy::finding(situation.battery, situation.path.duration_s()));
+    findings.extend(readiness::findings(situation.readiness, situation.parameters.autopilot));
+    findings.extend(failsafes(situation));
+    let page = Page::new(situation, &findings);
+    Judged { findings, feeding, page }
+}
+
+/// What the checks found, and how setpoints are to be sent.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// one a check
+    pub findings: Vec<Finding>,
+    /// safe, as far as anything is, if any setpoint is the last
+    pub feeding: Feeding,
+    /// for people
+    pub page: Page,
+}

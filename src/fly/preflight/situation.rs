@@ -1,0 +1,40 @@
+//! What is known before a flight, by which it is judged.
+
+use super::energy::BatteryState;
+use super::fence::Fence;
+use super::readiness::Readiness;
+use crate::fly::parameters::Parameters;
+use crate::trajectory::FlightPath;
+use crate::vehicle::{Limits, Vehicle};
+use nalgebra::Vector3;
+
+/// What is known before the flight.
+#[derive(Debug, Clone, Copy)]
+pub struct Situation<'a> {
+    /// the whole flight from hover after takeoff to hover before landing, m and rad, NWU
+    pub path: &'a FlightPath,
+    /// where the path's origin lies in the autopilot's local frame, m, NWU
+    pub origin_m: Vector3<f64>,
+    /// where the vehicle stands in the autopilot's local frame, m, NWU
+    pub stand_m: Option<Vector3<f64>>,
+    /// home in the autopilot's local frame, m, NWU
+    pub home_m: Option<Vector3<f64>>,
+    /// what flies
+    pub vehicle: &'a Vehicle,
+    /// room and limits to keep, in the path's frame
+    pub limits: &'a Limits,
+    /// distance to the reference that is allowed, m
+    pub tracking_max_m: f64,
+    /// what the vehicle said of its parameters
+    pub parameters: &'a Parameters,
+    /// major and minor number of the autopilot's release, where it said so
+    pub release: Option<(u8, u8)>,
+    /// the vehicle's fence
+    pub fence: &'a Fence,
+    /// charge
+    pub battery: &'a BatteryState,
+    /// health, estimate, home
+    pub readiness: &'a Readiness,
+    /// the ground station's MAVLink system id
+    pub own_system: u8,
+}

@@ -1,0 +1,29 @@
+//! Why there is no flight, or no end of it.
+
+use std::io;
+
+use crate::link::{LinkError, RecordError};
+
+/// Why there was no flight, or no end of it.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// the link cannot be used
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// the recording cannot be made
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// a file or thread cannot be made
+    #[error("cannot make {what}: {source}")]
+    Make {
+        /// which
+        what: String,
+        /// what the system said
+        source: io::Error,
+    },
+    /// the program itself failed; nothing is sent any more
+    #[error(
+        "the flight broke off by a fault of this program; no setpoint is sent any more, and the vehicle's own failsafe acts: {0}"
+    )]
+    Broken(String),
+}

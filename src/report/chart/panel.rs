@@ -1,0 +1,62 @@
+//! A panel of a chart: axes with lines and bands.
+
+/// One set of axes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Panel {
+    /// over the axes
+    pub title: String,
+    /// with its unit
+    pub x_label: String,
+    /// with its unit
+    pub y_label: String,
+    /// drawn in order
+    pub lines: Vec<Line>,
+    /// drawn below the lines
+    pub bands: Vec<Band>,
+    /// shaded from one abscissa to another
+    pub spans: Vec<[f64; 2]>,
+    /// words for the shading, for the legend
+    pub spans_label: String,
+    /// logarithmic abscissa, ordinate
+    pub log: (bool, bool),
+}
+
+/// One line of a chart.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Line {
+    /// for the legend; none where it is empty
+    pub label: String,
+    /// abscissa
+    pub x: Vec<f64>,
+    /// ordinate; what is not finite is left out
+    pub y: Vec<f64>,
+    /// how
+    pub stroke: Stroke,
+    /// which of the colours; `None`: its place among the lines
+    pub colour: Option<usize>,
+}
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Stroke {
+    /// through all points
+    #[default]
+    Solid,
+    /// likewise, broken
+    Dashed,
+    /// from the axis up to each point
+    Stems,
+}
+
+/// An interval at each abscissa.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Band {
+    /// abscissa
+    pub x: Vec<f64>,
+    /// lower end
+    pub low: Vec<f64>,
+    /// upper end
+    pub high: Vec<f64>,
+    /// which of the colours
+    pub colour: usize,
+}

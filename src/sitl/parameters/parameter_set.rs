@@ -1,0 +1,108 @@
+//! All parameters of an autopilot, by name.
+
+use std::collections::BTreeMap;
+
+use super::parameter::{Parameter, ParameterType};
+use super::pulses::Pulses;
+use super::{ardupilot, px4};
+use crate::log::Payload;
+use crate::sitl::battery::Battery;
+use crate::sitl::message::Message;
+use crate::sitl::{AutopilotKind, Settings, SitlError};
+use crate::units::{narrow, whole};
+
+/// All parameters, by name.
+#[derive(Debug)]
+pub(in crate::sitl) struct Parameters {
+    autopilot: AutopilotKind,
+    list: Vec<Parameter>,
+    index: BTreeMap<String, usize>,
+}
+
+impl Parameters {
+    /// The autopilot's defaults with the values of the settings.
+    ///
+    /// # Errors
+    /// If the settings name a parameter that this autopilot does not have.
+    pub(in crate::sitl) fn new(settings: &Settings) -> Result<Self, SitlError> {
+        let pulses = Pulses::of(&settings.vehicle, settings.autopilot);
+        let mut list = match settings.autopilot {
+            AutopilotKind::Px4 => px4::defaults(settings.believed(), &pulses, settings.system),
+            AutopilotKind::ArduPilot(release) => {
+                ardupilot::defaults(settings.believed(), &pulses, settings.system, release)
+            }
+        };
+        list.sort_by(|a, b| a.name.cmp(&b.name));
+        let index = list.iter().enumerate().map(|(at, parameter)| (parameter.name.clone(), at)).collect();
+        let mut all = Self { autopilot: settings.autopilot, list, index };
+        // a battery of this voltage, with its lines at the same shares as PX4's
+        for (name, remaining) in [("BATT_LOW_VOLT", 0.15), ("BATT_CRT_VOLT", 0.07)] {
+            all.set(name, Battery::volts_at(settings.battery_v, remaining));
+        }
+        for (name, value) in &settings.parameters {
+            if !all.set(name, *value) {
+                return Err(SitlError::Setting {
+                    name: format!("parameter {name}"),
+                    expected: "one that this autopilot has",
+                    got: value.to_string(),
+                });
+            }
+        }
+        Ok(all)
+    }
+
+    pub(in crate::sitl) fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    pub(in crate::sitl) fn find(&self, name: &str) -> Option<usize> {
+        self.index.get(name).copied()
+    }
+
+    /// Value of a parameter; zero where this autopilot has none of that name.
+    pub(in crate::sitl) fn value(&self, name: &str) -> f64 {
+        self.find(name).map_or(0.0, |at| self.list[at].value)
+    }
+
+    /// The first of these names that exists, with its factor to SI.
+    pub(in crate::sitl) fn first(&self, names: &[(&str, f64)]) -> f64 {
+        let found =
+            names.iter().find_map(|(name, factor)| self.find(name).map(|at| self.list[at].value * factor));
+        found.unwrap_or(0.0)
+    }
+
+    /// Sets a value as the parameter's type holds it; false where there is none of that name.
+    pub(in crate::sitl) fn set(&mut self, name: &str, value: f64) -> bool {
+        let Some(parameter) = self.find(name).and_then(|at| self.list.get_mut(at)) else { return false };
+        parameter.value = match parameter.kind {
+            ParameterType::Real32 => narrow(value).into(),
+            _ => whole(value).into(),
+        };
+        true
+    }
+
+    /// What a PARAM_SET of this type and these bytes asks for; `None` where PX4 refuses the type.
+    pub(in crate::sitl) fn decode(&self, at: usize, kind: u8, payload: Payload) -> Option<f64> {
+        let parameter = self.list.get(at)?;
+        match self.autopilot {
+            AutopilotKind::Px4 if kind != parameter.kind.mav() => None,
+            AutopilotKind::Px4 if parameter.kind != ParameterType::Real32 => Some(payload.i32(0).into()),
+            _ => Some(payload.f32(0)).filter(|value| value.is_finite()),
+        }
+    }
+
+    /// PARAM_VALUE. `index` as asked for: PX4 and ArduPilot give an index also where the name was asked.
+    pub(in crate::sitl) fn message(&self, at: usize) -> Option<Message> {
+        let parameter = self.list.get(at)?;
+        let whole_value = whole(parameter.value);
+        let message = Message::new(22);
+        let message = match (self.autopilot, parameter.kind) {
+            // the bytes of the integer in the place of the float
+            (AutopilotKind::Px4, ParameterType::Int32) => message.i32(whole_value),
+            _ => message.f32(parameter.value),
+        };
+        let count = u16::try_from(self.list.len()).unwrap_or(u16::MAX);
+        let index = u16::try_from(at).unwrap_or(u16::MAX);
+        Some(message.u16(count).u16(index).text(parameter.name.as_bytes(), 16).u8(parameter.kind.mav()))
+    }
+}
