@@ -20,7 +20,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("vehicle", &[]),
     ("trajectory", &["frames"]),
     ("fence", &["frames"]),
-    ("physics", &["units", "frames", "vehicle"]),
+    ("physics", &["units", "text", "frames", "vehicle"]),
     ("log", &["units", "text", "frames"]),
     // frames over sockets and serial ports, and their recording
     ("link", &["text", "log"]),
