@@ -16,7 +16,8 @@ use std::time::Duration;
 
 use lossy::{Faults, LossyProxy};
 use mavid::config::load_vehicle;
-use mavid::log::{Check, CrcSeeds, TlogReader};
+use mavid::log::TlogReader;
+use mavid::wire::{Check, CrcSeeds};
 use processes::{config, fly, folder, free_port, planned, vehicle};
 use serde_json::Value;
 
