@@ -111,6 +111,21 @@ fn flights_far_apart_are_flights_of_their_own_whatever_lies_between() {
 }
 
 #[test]
+fn margins_in_which_nothing_is_recorded_are_nothing_that_is_left_out() {
+    let most = Hold { seconds: 480.0, numbers: 3_000_000 };
+    for count in [3_u8, 4, 8, 12] {
+        let spans: Vec<(f64, f64)> =
+            (0..count).map(|day| 86_400.0 * f64::from(day)).map(|from_s| (from_s, from_s + 20.0)).collect();
+        let Flights { flights, left_out_s } = Flights::of(recording(&spans, &spans, (0.0, 20.0)), &most);
+        assert_eq!((flights.len(), left_out_s), (usize::from(count), 0.0));
+        for flight in &flights {
+            let (first_s, last_s) = span_s(&flight.recording);
+            assert!(last_s - first_s > 19.9, "{first_s} to {last_s}");
+        }
+    }
+}
+
+#[test]
 fn a_stretch_on_the_ground_is_no_flight_beside_one_that_is() {
     let log = recording(&[(0.0, 60.0), (300.0, 400.0)], &[(305.0, 395.0)], (0.0, 400.0));
     let flights = Flights::of(log, &MOST).flights;
