@@ -7,10 +7,9 @@ mod support;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use mavid::log::{
-    CrcSeeds, Flights, Hold, LoadOptions, LogError, LogFlight, Quantity, Recording, Stream, StreamKey,
-    SystemId, checksum, load, load_flights, who_flew,
-};
+use mavid::log::{Flights, Hold, LoadOptions, LogError, LogFlight, load, load_flights, who_flew};
+use mavid::recording::{Quantity, Recording, Stream, StreamKey};
+use mavid::wire::{CrcSeeds, SystemId, checksum};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 use serde_json::Value;
 use support::{header, heartbeat, record, v2};

@@ -5,7 +5,13 @@
 //! [--askew] [--out FILE]`: `--fed-back` has the controller fly on the noise that is logged, `--askew` leans every thrust
 //! axis by 0.2 degrees, which is no finding. `--out` writes the results, with a picture of each effect, as JSON: the book's
 //! figures are made from `docs/measured.json`.
-#![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, reason = "a benchmark prints")]
+#![allow(
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a benchmark prints"
+)]
 
 mod clean;
 mod effects;

@@ -6,8 +6,8 @@
 
 use std::collections::BTreeMap;
 
-use super::decode::Event;
-use super::recording::{Quantity, Recording, Stream};
+use crate::recording::{Quantity, Recording, Stream};
+use crate::wire::Event;
 
 /// Length of a cell, s.
 const CELL_S: f64 = 10.0;
