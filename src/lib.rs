@@ -33,6 +33,7 @@ pub mod physics;
 pub mod plan;
 pub mod recording;
 pub mod regression;
+pub mod replay;
 pub mod report;
 pub mod signals;
 pub mod simulate;

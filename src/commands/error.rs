@@ -25,9 +25,3 @@ impl From<mavid::log::LogError> for CommandError {
         Self::Input(error.to_string())
     }
 }
-
-impl From<mavid::log::csv::CsvError> for CommandError {
-    fn from(error: mavid::log::csv::CsvError) -> Self {
-        Self::Input(error.to_string())
-    }
-}

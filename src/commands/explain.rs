@@ -15,7 +15,7 @@ use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
 use super::effects::effects;
-use super::flights::{EXPLAINED, Flight, is_csv, load, ready, refuse_twins, shared};
+use super::flights::{EXPLAINED, Flight, load, may_be_table, ready, refuse_twins, shared};
 use super::{CommandError, Outcome, output};
 use mavid::diagnose::signatures::signature_of;
 
@@ -196,8 +196,10 @@ fn check(args: &ExplainArgs) -> Result<(), CommandError> {
             "--transient: expected seconds from 0 on, got {transient_s}"
         )));
     }
-    if args.read.csv_map.is_some() && !args.logs.iter().chain(&args.holdout).any(|log| is_csv(log)) {
-        return Err(CommandError::Input("--csv-map: expected a .csv among the logs, got none".into()));
+    if args.read.csv_map.is_some() && !may_be_table(args.logs.iter().chain(&args.holdout)) {
+        return Err(CommandError::Input(
+            "--csv-map: expected a .csv among the logs, got none".into(),
+        ));
     }
     if let Some(path) = args.out.as_ref().filter(|path| path.exists() && !path.is_dir()) {
         return Err(CommandError::Input(format!(

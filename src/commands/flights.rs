@@ -1,7 +1,7 @@
 //! Loads recordings, whatever their format.
 
-use mavid::config::{default_csv_mapping, load_csv_mapping};
-use mavid::log::{Flights, Hold, LoadOptions, LoadedFlights, LogFlight, csv, load_flights};
+use mavid::config::load_csv_mapping;
+use mavid::log::{Hold, LogError, LogFlight, OpenOptions, ReadReport, format_of, open_flights};
 use mavid::recording::{Recording, shared_share};
 use mavid::report::InputFile;
 use mavid::signals::{ConditionSettings, Signals, condition};
@@ -10,7 +10,7 @@ use mavid::vehicle::Vehicle;
 use mavid::wire::SystemId;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::{CommandError, Outcome, output};
 use crate::cli::ReadArgs;
@@ -49,52 +49,44 @@ impl Flight {
     }
 }
 
-/// Read by a mapping of its columns.
-pub fn is_csv(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
+/// Whether a mapping of columns may be of use: a log is a table, or cannot be read, which is told later.
+pub fn may_be_table<'a>(mut logs: impl Iterator<Item = &'a PathBuf>) -> bool {
+    logs.any(|log| format_of(log).map_or(true, |format| format.takes_columns))
+}
+
+/// How the user wants logs to be read.
+pub fn open_options(read: &ReadArgs) -> Result<OpenOptions, CommandError> {
+    let columns = read.csv_map.as_deref().map(load_csv_mapping).transpose()?.unwrap_or_default();
+    Ok(OpenOptions { system: read.system.map(SystemId), columns })
+}
+
+/// Why a log cannot be read, with its name.
+pub fn unread(path: &Path, error: &LogError) -> CommandError {
+    CommandError::Input(match error {
+        // which name it already
+        LogError::Open { .. } | LogError::Table(_) => error.to_string(),
+        _ => format!("{}: {error}", text::path(&path)),
+    })
 }
 
 /// Reads the flights of one log, at least one and at most `most`.
 pub fn load(path: &Path, read: &ReadArgs, most: &Hold) -> Result<Vec<Flight>, CommandError> {
-    let named =
-        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&path)));
-    let (flights, mut losses, notes) = if is_csv(path) {
-        let mapping =
-            read.csv_map.as_ref().map_or_else(default_csv_mapping, |file| load_csv_mapping(file))?;
-        let (recording, report) =
-            csv::read_csv(path, &mapping).map_err(|error| CommandError::Input(error.to_string()))?;
-        (Flights::of(recording, most), report.losses(), Vec::new())
-    } else {
-        let options = LoadOptions { system: read.system.map(SystemId) };
-        let loaded = load_flights(path, &options, most).map_err(|error| named(&error))?;
-        let mut notes: Vec<String> = whose(&loaded).into_iter().collect();
-        notes.extend(loaded.report.oddities());
-        (loaded.flights, loaded.report.losses(), notes)
-    };
-    losses.extend(left_out(&flights));
-    let sha256 = sha256_of(path).map_err(|error| named(&error))?;
-    let log = InputFile { path: text::path(&path), sha256, losses, notes };
-    Ok(of_log(flights.flights, &log))
+    let opened = open_flights(path, &open_options(read)?, most).map_err(|error| unread(path, &error))?;
+    let mut notes: Vec<String> = whose(&opened.report).into_iter().collect();
+    notes.extend(opened.report.oddities.iter().map(ToString::to_string));
+    let losses = opened.report.losses.iter().map(ToString::to_string).collect();
+    let log = InputFile { losses, notes, ..file(path)? };
+    Ok(of_log(opened.flights.flights, &log))
 }
 
 /// Which of several vehicles it is.
-fn whose(loaded: &LoadedFlights) -> Option<String> {
-    let others: Vec<String> = loaded.others.iter().map(ToString::to_string).collect();
-    (!others.is_empty()).then(|| {
+fn whose(report: &ReadReport) -> Option<String> {
+    let others: Vec<String> = report.others.iter().map(ToString::to_string).collect();
+    report.vehicle.filter(|_| !others.is_empty()).map(|vehicle| {
         format!(
             "system {} is analysed; system(s) {} speak in the log as well (--system-id chooses another)",
-            loaded.vehicle.system,
+            vehicle.system,
             others.join(", ")
-        )
-    })
-}
-
-/// What of a log is more than is held.
-fn left_out(flights: &Flights) -> Option<String> {
-    (flights.left_out_s > 0.0).then(|| {
-        format!(
-            "{:.0} s of flight at the end are left out: the log holds more than is analysed at once; cut it to analyse the rest",
-            flights.left_out_s
         )
     })
 }

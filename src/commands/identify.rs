@@ -16,7 +16,7 @@ use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 
 use super::effects::effects;
-use super::flights::{Flight, IDENTIFIED, is_csv, load, ready, refuse_twins, say};
+use super::flights::{Flight, IDENTIFIED, load, may_be_table, ready, refuse_twins, say};
 use super::{CommandError, Outcome, output};
 use crate::cli::IdentifyArgs;
 
@@ -153,8 +153,10 @@ fn settings(args: &IdentifyArgs) -> Result<IdentifySettings, CommandError> {
     if let Some(value) = args.transient.filter(|value| !value.is_finite() || *value < 0.0) {
         return Err(CommandError::Input(format!("--transient: expected seconds from 0 on, got {value}")));
     }
-    if args.read.csv_map.is_some() && !args.logs.iter().any(|log| is_csv(log)) {
-        return Err(CommandError::Input("--csv-map: expected a .csv among the logs, got none".into()));
+    if args.read.csv_map.is_some() && !may_be_table(args.logs.iter()) {
+        return Err(CommandError::Input(
+            "--csv-map: expected a .csv among the logs, got none".into(),
+        ));
     }
     Ok(IdentifySettings {
         cutoff_hz: args.cutoff,

@@ -6,7 +6,8 @@
 use std::io::IsTerminal;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use mavid::link::{LinkOptions, Replay, ReplayCounts, ReplayError};
+use mavid::link::LinkOptions;
+use mavid::replay::{Replay, ReplayCounts, ReplayError};
 use mavid::text;
 use serde::Serialize;
 
@@ -91,7 +92,7 @@ async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome,
         unsent: counts.unsent,
         discarded: counts.discarded,
         interrupted,
-        losses: replay.losses().to_vec(),
+        losses: replay.losses().iter().map(ToString::to_string).collect(),
     };
     for loss in &document.losses {
         output::message(&format!("warning: {}: {loss}", document.log));
