@@ -136,11 +136,11 @@ fn what_is_no_log_is_status_two_with_a_message() {
     let name = |path: &Path| path.display().to_string();
     for (argument, expected) in [
         (name(&empty), "empty"),
-        (name(&text), "begins with"),
+        (name(&text), "text without a header of columns"),
         (name(&table), "empty file"),
         (folder.to_owned(), "folder"),
         ("absent.tlog".to_owned(), "absent.tlog"),
-        ("flight.bag".to_owned(), "*.tlog or *.csv"),
+        ("absent".to_owned(), "cannot open"),
     ] {
         let output = mavid(&["inspect", &argument, "--json"]);
         assert_eq!(output.status.code(), Some(2), "{argument}");

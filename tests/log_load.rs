@@ -212,7 +212,9 @@ fn a_host_clock_that_is_set_in_flight_moves_no_sample() {
         assert!((time_s - (index as f64 - 0.049)).abs() < 0.15, "{index}: {time_s}");
     }
     assert_eq!(loaded.report.telemetry().unwrap().decode.host_steps, 2);
-    let [oddity @ Oddity::HostClockSet { count: 2 }] = loaded.report.oddities.as_slice() else {
+    let [Oddity::BackwardStamps { count: 1, .. }, oddity @ Oddity::HostClockSet { count: 2 }] =
+        loaded.report.oddities.as_slice()
+    else {
         panic!("{:?}", loaded.report.oddities)
     };
     let told = oddity.to_string();

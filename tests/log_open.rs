@@ -192,13 +192,8 @@ fn flights_are_the_same_whether_all_of_the_log_was_held_or_not() {
 #[test]
 fn a_stream_of_another_vehicle_than_the_one_that_flew_says_which_one_did() {
     let beat = |system, armed| {
-        let mut data = match heartbeat() {
-            MavMessage::HEARTBEAT(data) => data,
-            other => panic!("{other:?}"),
-        };
-        if armed {
-            data.base_mode |= dialect::MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED;
-        }
+        let MavMessage::HEARTBEAT(mut data) = heartbeat() else { panic!() };
+        data.base_mode.set(dialect::MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED, armed);
         v2(header(system, 0), &MavMessage::HEARTBEAT(data))
     };
     let turning = |system, time_boot_ms| {

@@ -197,9 +197,7 @@ fn check(args: &ExplainArgs) -> Result<(), CommandError> {
         )));
     }
     if args.read.csv_map.is_some() && !may_be_table(args.logs.iter().chain(&args.holdout)) {
-        return Err(CommandError::Input(
-            "--csv-map: expected a .csv among the logs, got none".into(),
-        ));
+        return Err(CommandError::Input("--csv-map: expected a .csv among the logs, got none".into()));
     }
     if let Some(path) = args.out.as_ref().filter(|path| path.exists() && !path.is_dir()) {
         return Err(CommandError::Input(format!(

@@ -154,9 +154,7 @@ fn settings(args: &IdentifyArgs) -> Result<IdentifySettings, CommandError> {
         return Err(CommandError::Input(format!("--transient: expected seconds from 0 on, got {value}")));
     }
     if args.read.csv_map.is_some() && !may_be_table(args.logs.iter()) {
-        return Err(CommandError::Input(
-            "--csv-map: expected a .csv among the logs, got none".into(),
-        ));
+        return Err(CommandError::Input("--csv-map: expected a .csv among the logs, got none".into()));
     }
     Ok(IdentifySettings {
         cutoff_hz: args.cutoff,
