@@ -159,18 +159,23 @@ impl Explained {
         output::file(&folder.join(DOCUMENT), &output::json_text(&self.document())?)
     }
 
-    /// Says what is to be known about the data.
-    pub fn outcome(&self) -> Outcome {
-        for warning in &self.story.given.warnings {
-            output::message(&format!("warning: {warning}"));
-        }
+    fn inputs(&self) -> impl Iterator<Item = &InputFile> {
         let held: &[InputFile] =
             if let ShownOn::Flights(inputs) = &self.story.shown_on { inputs } else { &[] };
-        let inputs = || self.story.given.inputs.iter().chain(held);
-        for input in inputs() {
-            input.notes.iter().for_each(|note| output::message(&format!("{}: {note}", input.path)));
-        }
-        let lossless = inputs().all(|input| input.losses.is_empty());
+        self.story.given.inputs.iter().chain(held)
+    }
+
+    /// What is to be known about the data, line by line.
+    pub fn remarks(&self) -> Vec<String> {
+        let warnings = self.story.given.warnings.iter().map(|warning| format!("warning: {warning}"));
+        let notes =
+            self.inputs().flat_map(|input| input.notes.iter().map(|note| format!("{}: {note}", input.path)));
+        warnings.chain(notes).collect()
+    }
+
+    /// Whether something of the recordings was lost.
+    pub fn outcome(&self) -> Outcome {
+        let lossless = self.inputs().all(|input| input.losses.is_empty());
         if lossless { Outcome::Done } else { Outcome::DoneWithLoss }
     }
 }
@@ -186,6 +191,7 @@ pub fn run(json: bool, args: &ExplainArgs) -> Result<Outcome, CommandError> {
     } else {
         output::text(&explained.page())?;
     }
+    explained.remarks().iter().for_each(|remark| output::message(remark));
     Ok(explained.outcome())
 }
 
@@ -375,7 +381,7 @@ fn next_flight(
         Ok(next) => next,
         Err(why) => {
             output::message(&format!("--next: nothing written: {why}"));
-            output::outdated(path)?;
+            output::outdated(path)?.iter().for_each(|note| output::message(note));
             return Ok(Err(why.to_string()));
         }
     };

@@ -32,8 +32,8 @@ pub struct Identified {
 }
 
 impl Identified {
-    /// Loads, conditions and identifies.
-    pub fn from(args: &IdentifyArgs) -> Result<Self, CommandError> {
+    /// Loads, conditions and identifies; what is odd about the vehicle's file is told before the work.
+    pub fn from(args: &IdentifyArgs, tell: impl FnOnce(&[String])) -> Result<Self, CommandError> {
         let inputs: Vec<&PathBuf> = args.logs.iter().chain([&args.vehicle]).collect();
         let report = report(args);
         let outputs: Vec<&PathBuf> = args.out.iter().chain(&args.chart).chain(&report).collect();
@@ -41,7 +41,7 @@ impl Identified {
         let wanted = wanted(args)?;
         let loaded = read_vehicle(&args.vehicle)?;
         let LoadedVehicle { vehicle, warnings, .. } = &loaded;
-        output::warnings(&args.vehicle, warnings);
+        tell(warnings);
         let settings = settings(args)?;
         let recorded = recorded(args)?;
         let with = wanted.map(|wanted| with_effects(args, (&recorded, &loaded), &wanted)).transpose()?;
@@ -121,7 +121,7 @@ impl Identified {
 
 /// Runs the verb.
 pub fn run(json: bool, args: &IdentifyArgs) -> Result<Outcome, CommandError> {
-    let identified = Identified::from(args)?;
+    let identified = Identified::from(args, |warnings| output::warnings(&args.vehicle, warnings))?;
     if json {
         output::json(&identified.document())?;
     } else {

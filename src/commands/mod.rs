@@ -18,6 +18,7 @@ mod live;
 mod network;
 mod outcome;
 mod output;
+mod patience;
 mod plan;
 mod prove;
 mod record;

@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use mavid::config::{
     StoredTrajectory, StoredTransitions, read_limits, read_trajectory, read_vehicle, trajectory_to_toml,
 };
+use mavid::files::write_whole;
 use mavid::fly::preflight::Extremes;
 use mavid::plan::{
     Assessment, Criterion, Dynamics, FlightPlan, Margin, PARAMETERS, Plan, PlanError, PlanRequest, Roomed,
@@ -245,7 +246,7 @@ fn store(
             to_landing_s: t.to_landing_s,
         }),
     };
-    std::fs::write(path, trajectory_to_toml(&stored)?)
+    write_whole(path, trajectory_to_toml(&stored)?.as_bytes())
         .map_err(|error| CommandError::Failure(format!("cannot write {}: {error}", text::path(&path))))
 }
 

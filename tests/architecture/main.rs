@@ -12,6 +12,7 @@ use graph::Graph;
 /// Each stage, from the bottom, and all that it uses: no less, and no more.
 const LAYERS: &[(&str, &[&str])] = &[
     ("units", &[]),
+    ("files", &[]),
     // what others wrote, made harmless where it enters
     ("text", &[]),
     // of any series: nothing of flights, and no import
@@ -64,6 +65,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         "fly",
         &[
             "units",
+            "files",
             "text",
             "frames",
             "vehicle",

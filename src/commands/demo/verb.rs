@@ -53,7 +53,7 @@ fn show(json: bool, args: &DemoArgs, work: &Work) -> Result<Outcome, CommandErro
     let done = story(args, &folder, (&progress, work));
     progress.end();
     let (record, analysis) = done?;
-    fly::say(&record);
+    fly::words(&record).iter().for_each(|line| output::message(line));
     // the verdict is written: only now is it read again what had been concealed
     let acting = concealed(args.effects.as_deref(), &vehicle)?;
     let explained = analysis.as_ref().and_then(|analysis| analysis.explained.as_ref().ok());
@@ -71,6 +71,8 @@ fn show(json: bool, args: &DemoArgs, work: &Work) -> Result<Outcome, CommandErro
         ];
         output::text(&parts.into_iter().flatten().collect::<Vec<_>>().join("\n\n"))?;
     }
+    let remarks = analysis.as_ref().map(Analysis::remarks).unwrap_or_default();
+    remarks.iter().for_each(|remark| output::message(remark));
     fly::outcome(&record, analysis.as_ref())
 }
 
@@ -98,10 +100,12 @@ fn story(
     let watched = progress.clone();
     let record = fly::fly_it(ride, work, move |pictures, _| watched.follow(pictures));
     embedded.stop();
-    let record = record?;
+    let (record, _) = record?;
     let landed = record.outcome.ending == Ending::Landed;
     progress.stage("identifying and explaining", progress::LANDED);
-    let analysis = Analysis::of((folder, landed), &vehicle, record.system.map(|system| system.0))?;
+    let system = record.system.map(|system| system.0);
+    let tell = &mut |note: String| progress.say(&note);
+    let analysis = Analysis::of((folder, landed), &vehicle, system, tell)?;
     Ok((record, analysis))
 }
 

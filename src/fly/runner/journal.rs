@@ -14,6 +14,7 @@ use std::time::Duration;
 use tokio::sync::oneshot;
 use tokio::time::timeout;
 
+use crate::files::write_whole;
 use crate::fly::outcome::Note;
 use crate::text;
 
@@ -142,7 +143,7 @@ fn work(mut store: impl Write, from: &Receiver<Entry>, state: &Mutex<State>) {
                 written.err().map(|error| (1, error.to_string()))
             }
             Entry::File(path, text) => {
-                let written = std::fs::write(&path, text);
+                let written = write_whole(&path, text.as_bytes());
                 written.err().map(|error| (0, format!("{}: {error}", text::path(&path))))
             }
         };
