@@ -7,6 +7,7 @@ use mavid::text;
 
 use super::explain::{self, Explained, REPORT};
 use super::identify::Identified;
+use super::words::Word;
 use super::{CommandError, Outcome, output};
 use crate::cli::{ExplainArgs, IdentifyArgs, ReadArgs};
 
@@ -42,27 +43,27 @@ impl Analysis {
         (folder, landed): (&Path, bool),
         vehicle: &Path,
         system: Option<u32>,
-        tell: &mut impl FnMut(String),
+        tell: &mut impl FnMut(Word),
     ) -> Result<Option<Self>, CommandError> {
         let parameters = [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(|name| folder.join(name));
         let explanation = explain::WRITTEN.map(|name| folder.join(EXPLAINED).join(name));
         // a model that was flown by is what this flight's own are compared with
         for path in parameters.iter().chain(&explanation).filter(|path| !output::is_same(path, vehicle)) {
-            output::outdated(path)?.into_iter().for_each(&mut *tell);
+            output::outdated(path)?.map(Word::Message).into_iter().for_each(&mut *tell);
         }
         Ok(landed.then(|| Self::made(folder, vehicle, system, tell)))
     }
 
-    fn made(folder: &Path, vehicle: &Path, system: Option<u32>, tell: &mut impl FnMut(String)) -> Self {
+    fn made(folder: &Path, vehicle: &Path, system: Option<u32>, tell: &mut impl FnMut(Word)) -> Self {
         let done = Done { folder, vehicle, system };
         let (identified, parameters) = done.identified();
         let (explained, explanation) = done.explained();
         let failures = [("identified", identified.as_ref().err()), ("explained", explained.as_ref().err())];
         for (what, failure) in failures {
-            failure.into_iter().for_each(|failure| tell(format!("not {what}: {failure}")));
+            failure.into_iter().for_each(|failure| tell(Word::Error(format!("not {what}: {failure}"))));
         }
         let unwritten = [parameters, explanation];
-        unwritten.iter().flatten().for_each(|why| tell(why.clone()));
+        unwritten.iter().flatten().for_each(|why| tell(Word::Error(why.clone())));
         Self { identified, explained, unwritten, folder: folder.to_owned() }
     }
 
@@ -85,7 +86,7 @@ impl Analysis {
     }
 
     /// What is to be known about the data, line by line.
-    pub fn remarks(&self) -> Vec<String> {
+    pub fn remarks(&self) -> Vec<Word> {
         self.explained.as_ref().map(Explained::remarks).unwrap_or_default()
     }
 
@@ -213,7 +214,7 @@ mod tests {
         let analysis = Analysis::of((&folder, true), &vehicle, None, &mut |line| told.push(line));
         let analysis = analysis.unwrap().unwrap();
         let [parameters, explanation] = analysis.unwritten.clone().map(Option::unwrap);
-        assert_eq!(told, [parameters.clone(), explanation.clone()]);
+        assert_eq!(told, [&parameters, &explanation].map(|why| Word::Error(why.clone())));
         for (said, verb, names) in [
             (parameters, "mavid identify ", &["model.toml", "identification.txt"][..]),
             (explanation, "mavid explain ", &["report.html", "explanation.json"]),
@@ -224,7 +225,11 @@ mod tests {
         }
         assert!(!folder.join(MODEL).exists() && !folder.join(EXPLAINED).join(REPORT).exists());
         // it is told all the same
-        assert!(analysis.page().contains("ixx") && !analysis.page().contains("report"), "{}", analysis.page());
+        assert!(
+            analysis.page().contains("ixx") && !analysis.page().contains("report"),
+            "{}",
+            analysis.page()
+        );
         assert!(matches!(analysis.outcome(), Err(CommandError::Told(NOT_WRITTEN))));
         fs::remove_dir_all(folder).unwrap();
     }

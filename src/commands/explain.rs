@@ -7,7 +7,7 @@ use mavid::config::{StoredTrajectory, read_vehicle, trajectory_to_toml};
 use mavid::diagnose::experiment::{NextFlight, NextSettings, design};
 use mavid::diagnose::holdout::{HeldOut, HoldoutSettings, Split, differing, split_last_periods};
 use mavid::diagnose::{Empirical, ExplainSettings, Named, Trace, Verdict, explain};
-use mavid::log::Recording;
+use mavid::recording::Recording;
 use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page};
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference};
 use mavid::text;
@@ -16,6 +16,7 @@ use rayon::prelude::*;
 
 use super::effects::effects;
 use super::flights::{EXPLAINED, Flight, is_csv, load, ready, refuse_twins, shared};
+use super::words::Word;
 use super::{CommandError, Outcome, output};
 use mavid::diagnose::signatures::signature_of;
 
@@ -166,10 +167,11 @@ impl Explained {
     }
 
     /// What is to be known about the data, line by line.
-    pub fn remarks(&self) -> Vec<String> {
-        let warnings = self.story.given.warnings.iter().map(|warning| format!("warning: {warning}"));
-        let notes =
-            self.inputs().flat_map(|input| input.notes.iter().map(|note| format!("{}: {note}", input.path)));
+    pub fn remarks(&self) -> Vec<Word> {
+        let warnings = self.story.given.warnings.iter().map(|warning| Word::Warning(warning.clone()));
+        let notes = self.inputs().flat_map(|input| {
+            input.notes.iter().map(|note| Word::Message(format!("{}: {note}", input.path)))
+        });
         warnings.chain(notes).collect()
     }
 
@@ -191,7 +193,7 @@ pub fn run(json: bool, args: &ExplainArgs) -> Result<Outcome, CommandError> {
     } else {
         output::text(&explained.page())?;
     }
-    explained.remarks().iter().for_each(|remark| output::message(remark));
+    explained.remarks().iter().for_each(Word::say);
     Ok(explained.outcome())
 }
 

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::watch;
 
-use super::patience::{PATIENCE, last_word, within};
+use super::last_word::{PATIENCE, last_word, within};
 use super::{CommandError, Outcome, network, output};
 
 /// From the signal, or from the end of what must be waited for, to that of the program.
@@ -87,7 +87,7 @@ pub fn run(
                 GRACE.as_secs()
             ),
         };
-        last_word(move || output::message(&text));
+        last_word(move || output::error(&text));
         return Err(CommandError::Told(FAILED));
     }
 }
@@ -120,7 +120,7 @@ fn watch_signals(signals: std::sync::mpsc::Sender<String>) -> Result<(), Command
 fn report_in_time(error: CommandError) -> CommandError {
     let status = error.status();
     if let Some(words) = error.words() {
-        let _ = within(PATIENCE, move || output::message(&words));
+        let _ = within(PATIENCE, move || output::error(&words));
     }
     CommandError::Told(status)
 }

@@ -8,11 +8,11 @@ use mavid::config::{StoredTrajectory, read_trajectory, read_vehicle};
 use mavid::files::write_whole;
 use mavid::fly::{self, Around, Course, Origin, Ride, Sortie};
 use mavid::link::Signing;
-use mavid::log::{ComponentId, SystemId};
 use mavid::plan::{Roomed, with_room};
 use mavid::text;
 use mavid::units::rad_from_deg;
 use mavid::vehicle::{Limits, Vehicle};
+use mavid::wire::{ComponentId, SystemId};
 
 use crate::cli::{CheckName, FlyArgs, OriginName};
 use crate::commands::{CommandError, leftover, output};
@@ -107,7 +107,7 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
             gate_m: args.gate_distance,
             gate_m_s: args.gate_speed,
             await_clearance: true,
-            await_word: args.arm && !args.yes && is_attended(),
+            await_word: asks_for_the_word(args),
             accepted: args.accept.iter().map(|name| check(*name)).collect(),
             ..fly::Settings::default()
         },
@@ -115,8 +115,13 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
 }
 
 /// Somebody sits at a terminal.
-fn is_attended() -> bool {
+pub fn is_attended() -> bool {
     std::io::stdin().is_terminal() && std::io::stderr().is_terminal()
+}
+
+/// The flight waits for somebody to type the word for arming.
+pub fn asks_for_the_word(args: &FlyArgs) -> bool {
+    args.arm && !args.yes && is_attended()
 }
 
 fn check(name: CheckName) -> fly::Check {

@@ -112,9 +112,7 @@ pub fn read_keys(pressed: &UnboundedSender<KeyCommand>, shown: &Shown) {
             },
             Ok((count, after_page)) => lines.take(&bytes[..count], after_page),
             Err(error) => {
-                output::message(&format!(
-                    "warning: keys are no longer read ({error}): Ctrl-C alone ends the flight"
-                ));
+                output::warning(&format!("keys are no longer read ({error}): Ctrl-C alone ends the flight"));
                 return;
             }
         };

@@ -1,5 +1,6 @@
 //! The flight with who watches it: a drawn view, or lines.
 
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel, sync_channel};
 use std::thread;
 use std::time::Duration;
@@ -10,8 +11,9 @@ use ratatui::crossterm::{event, terminal};
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 
 use super::typed::{KEYS, Shown, read_keys};
+use crate::commands::last_word::{PATIENCE, last_word};
 use crate::commands::live::Work;
-use crate::commands::patience::{PATIENCE, last_word};
+use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, output};
 
 /// Pictures that may wait for a slow terminal.
@@ -69,10 +71,12 @@ pub fn fly_it(
 }
 
 /// How a flight is watched.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Watch {
-    /// by a drawn view, and not by lines
-    pub drawn: bool,
+    /// by a drawn view on this, and not by lines
+    pub drawn: Option<StandardError>,
+    /// where messages and log lines go meanwhile: they would tear the view
+    pub log: PathBuf,
     /// lines of standard input are keys
     pub typed: bool,
     /// there is a page to read and a word to type before it is armed
@@ -80,25 +84,28 @@ pub struct Watch {
 }
 
 /// Watches until the flight is over.
-pub fn watch(how: Watch, pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<KeyCommand>) {
-    if how.drawn {
-        draw(how, pictures, pressed);
-    } else {
-        tell(how, pictures, pressed);
+pub fn watch(how: &Watch, pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<KeyCommand>) {
+    match &how.drawn {
+        Some(stderr) => draw(stderr, how, pictures, pressed),
+        None => tell((how.typed, how.has_page), pictures, pressed),
     }
 }
 
 /// Lines; and lines of standard input as keys, where they may be.
-fn tell(how: Watch, pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<KeyCommand>) {
-    let shown = Shown::new(how.has_page);
-    if how.typed {
+fn tell(
+    (typed, has_page): (bool, bool),
+    pictures: &Receiver<ViewModel>,
+    pressed: &UnboundedSender<KeyCommand>,
+) {
+    let shown = Shown::new(has_page);
+    if typed {
         let (pressed, shown) = (pressed.clone(), shown.clone());
         // it ends with the process: nothing else can be done about a read that waits
         let reading = thread::Builder::new().name("keys".into()).spawn(move || read_keys(&pressed, &shown));
-        output::message(match reading {
-            Ok(_) => KEYS,
-            Err(_) => "warning: standard input cannot be read: Ctrl-C alone ends the flight",
-        });
+        match reading {
+            Ok(_) => output::message(KEYS),
+            Err(_) => output::warning("standard input cannot be read: Ctrl-C alone ends the flight"),
+        }
     }
     let columns = terminal::size().map_or(0, |(columns, _)| usize::from(columns));
     let mut log = PlainLog::of_width(columns);
@@ -114,9 +121,16 @@ fn tell(how: Watch, pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<Ke
 }
 
 /// The terminal view; lines where the terminal cannot be drawn on.
-fn draw(how: Watch, pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<KeyCommand>) {
+fn draw(
+    stderr: &StandardError,
+    how: &Watch,
+    pictures: &Receiver<ViewModel>,
+    pressed: &UnboundedSender<KeyCommand>,
+) {
+    let away = stderr.away(how.log.clone());
     let Ok(mut screen) = Screen::open(std::io::stderr) else {
-        return tell(Watch { typed: true, ..how }, pictures, pressed);
+        drop(away);
+        return tell((true, how.has_page), pictures, pressed);
     };
     let mut keys = Keys::default();
     loop {
@@ -140,8 +154,8 @@ fn draw(how: Watch, pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<Ke
                 model.typed = keys.typed().map(str::to_owned);
                 if screen.draw(&model).is_err() {
                     // lines and Ctrl-C need the terminal as it was
-                    drop(screen);
-                    return tell(Watch { typed: true, ..how }, pictures, pressed);
+                    drop((screen, away));
+                    return tell((true, how.has_page), pictures, pressed);
                 }
             }
             Err(RecvTimeoutError::Timeout) => {}
