@@ -20,6 +20,16 @@ impl From<mavid::config::ConfigError> for CommandError {
     }
 }
 
+/// A setting is named as on the command line.
+impl From<mavid::study::StudyError> for CommandError {
+    fn from(error: mavid::study::StudyError) -> Self {
+        match error {
+            mavid::study::StudyError::Setting { name, why } => Self::Input(format!("--{name}: {why}")),
+            other => Self::Input(other.to_string()),
+        }
+    }
+}
+
 impl From<mavid::log::LogError> for CommandError {
     fn from(error: mavid::log::LogError) -> Self {
         Self::Input(error.to_string())

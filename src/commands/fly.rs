@@ -23,8 +23,6 @@ use serde::Serialize;
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 
 use super::after_flight::Analysis;
-use super::explain::Explained;
-use super::identify::Identified;
 use super::leftover;
 use super::live::{self, Work};
 use super::{CommandError, Outcome, output};
@@ -72,9 +70,9 @@ impl Document {
             setpoints: record.stream,
             recorded_frames: record.recorder.frames,
             dropped_frames: record.recorder.dropped,
-            identification: identified.and_then(|done| done.as_ref().ok()).map(Identified::document),
+            identification: identified.and_then(|done| done.as_ref().ok()).map(IdentificationDocument::new),
             identification_failure: identified.and_then(|done| done.as_ref().err()).cloned(),
-            explanation: explained.and_then(|done| done.as_ref().ok()).map(Explained::document),
+            explanation: explained.and_then(|done| done.as_ref().ok()).map(ExplanationDocument::new),
             explanation_failure: explained.and_then(|done| done.as_ref().err()).cloned(),
             report: analysis.and_then(Analysis::report).map(|path| text::path(&path)),
         }
@@ -99,8 +97,7 @@ fn fly(json: bool, args: &FlyArgs, work: &Work) -> Result<Outcome, CommandError>
     })?;
     say(&record);
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
-    let system = record.system.map(|system| system.0);
-    let analysis = Analysis::of((&args.out, landed), &args.vehicle, system)?;
+    let analysis = Analysis::of((&args.out, landed), &args.vehicle, record.system)?;
     if json {
         output::json(&Document::new(&record, &args.out, analysis.as_ref()))?;
     } else if let Some(analysis) = &analysis {

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use mavid::link::Signing;
+use mavid::note::Note;
 use mavid::text;
 use serde::Serialize;
 
@@ -47,6 +48,13 @@ impl CommandError {
 pub fn warnings(of: &Path, warnings: &[String]) {
     for warning in warnings {
         message(&format!("warning: {}: {warning}", text::path(&of)));
+    }
+}
+
+/// What is to be known beside a result.
+pub fn notes(notes: &[Note]) {
+    for note in notes {
+        message(&note.to_string());
     }
 }
 

@@ -9,9 +9,9 @@ use mavid::log::{ComponentId, SystemId};
 use mavid::sitl::{
     ArduPilotRelease, AutopilotKind, LinkRole, Pace, SensorSettings, Served, Settings, Vehicle, serve,
 };
+use mavid::study::with_further;
 use serde::Serialize;
 
-use super::effects::with_further;
 use super::{CommandError, Outcome, live, network, output};
 use crate::cli::{ArduPilotVersion, AutopilotName, SitlArgs};
 

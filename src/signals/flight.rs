@@ -5,6 +5,7 @@ use super::align::StreamOffset;
 use super::grid::Grid;
 use super::usable::Usable;
 use crate::log::Quantity;
+use crate::note::Note;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 
 /// A flight on one clock and one grid. Vectors have one entry a grid instant; SI, body FLU, world NWU.
@@ -66,6 +67,6 @@ pub struct Quality {
     pub airborne_s: Vec<(f64, f64)>,
     /// how the mask came about
     pub usable: Usable,
-    /// remarks for the user
-    pub notes: Vec<String>,
+    /// what the user should know of it
+    pub notes: Vec<Note>,
 }

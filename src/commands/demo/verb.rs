@@ -7,6 +7,7 @@ use std::time::Instant;
 use mavid::config::parse_vehicle;
 use mavid::fly::Ending;
 use mavid::log::SystemId;
+use mavid::report::explanation_answer;
 use mavid::text;
 use serde::Serialize;
 
@@ -15,7 +16,6 @@ use super::embedded::Embedded;
 use super::progress::{self, Progress};
 use crate::cli::{CriterionName, DemoArgs, FlyArgs, OriginName, PlanArgs};
 use crate::commands::after_flight::Analysis;
-use crate::commands::explain::Explained;
 use crate::commands::live::{self, Work};
 use crate::commands::sitl::DEFAULT_VEHICLE;
 use crate::commands::{CommandError, Outcome, fly, leftover, output, plan};
@@ -57,7 +57,7 @@ fn show(json: bool, args: &DemoArgs, work: &Work) -> Result<Outcome, CommandErro
     // the verdict is written: only now is it read again what had been concealed
     let acting = concealed(args.effects.as_deref(), &vehicle)?;
     let explained = analysis.as_ref().and_then(|analysis| analysis.explained.as_ref().ok());
-    let rows = compare(&acting, explained.map_or(&[], Explained::named));
+    let rows = compare(&acting, explained.map_or(&[], |study| study.effects.as_slice()));
     let took_s = since.elapsed().as_secs_f64();
     if json {
         let flown = fly::Document::new(&record, &folder, analysis.as_ref());
@@ -65,7 +65,7 @@ fn show(json: bool, args: &DemoArgs, work: &Work) -> Result<Outcome, CommandErro
     } else {
         let report = analysis.as_ref().and_then(Analysis::report);
         let parts = [
-            explained.map(Explained::answer),
+            explained.map(explanation_answer),
             Some(table(&rows, &vehicle)),
             report.map(|path| format!("{took_s:.0} s; report: {}", text::path(&path))),
         ];
@@ -101,7 +101,7 @@ fn story(
     let record = record?;
     let landed = record.outcome.ending == Ending::Landed;
     progress.stage("identifying and explaining", progress::LANDED);
-    let analysis = Analysis::of((folder, landed), &vehicle, record.system.map(|system| system.0))?;
+    let analysis = Analysis::of((folder, landed), &vehicle, record.system)?;
     Ok((record, analysis))
 }
 
