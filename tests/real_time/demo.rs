@@ -1,7 +1,5 @@
 //! `mavid demo` as it is run from a clone: the whole story in real time.
 
-#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
-
 use std::path::Path;
 use std::process::{Command, Output};
 

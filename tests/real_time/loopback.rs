@@ -1,30 +1,19 @@
 //! `mavid fly` against `mavid sitl`, two processes in real time: both autopilots over UDP, TCP and a serial port, from
 //! the plan to the explained flight. The flights run side by side and are asleep for most of their time.
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
-
-#[path = "support/lossy.rs"]
-mod lossy;
-#[path = "support/processes.rs"]
-mod processes;
-
 use std::path::{Path, PathBuf};
 use std::process::Output;
 use std::thread;
 use std::time::Duration;
 
-use lossy::{Faults, LossyProxy};
+use crate::lossy::{Faults, LossyProxy};
+use crate::processes::{config, fly, folder, free_port, planned, vehicle};
 use mavid::config::load_vehicle;
 use mavid::log::{Check, CrcSeeds, TlogReader};
-use processes::{config, fly, folder, free_port, planned, vehicle};
 use serde_json::Value;
 
 const SET_POSITION_TARGET_LOCAL_NED: u32 = 84;
 const PERIODS: u64 = 4;
-
-/// Flights in real time share the machine with nothing but each other.
-static MACHINE: std::sync::Mutex<()> = std::sync::Mutex::new(());
 
 /// Which end of a link waits for the other.
 #[derive(Clone, Copy)]
@@ -60,7 +49,6 @@ fn flight(name: &str, autopilot: &str, link: Link, trajectory: &Path) -> (PathBu
 
 #[test]
 fn both_autopilots_fly_over_every_link_and_are_identified() {
-    let _alone = MACHINE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let trajectory = planned("plan", PERIODS);
     let flights = [
         ("px4_udp", "px4", Link::GroundListens("udp")),
@@ -121,7 +109,6 @@ async fn over_a_bad_network_the_flight_ends_on_the_ground_and_nothing_of_its_log
     let output = tokio::task::spawn_blocking({
         let (out, address) = (out.clone(), proxy.address);
         move || {
-            let _alone = MACHINE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             let _vehicle = vehicle("px4", &format!("udpout:{address}"));
             fly(&out, &format!("udpin:127.0.0.1:{port}"), &trajectory, &[])
         }

@@ -1,24 +1,15 @@
 //! Standard output and standard error on pipes that nobody reads, and disks that are full: what flies goes on flying,
 //! what records ends when it is told to, and no count claims what is not there.
 
-#![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
-
-#[path = "support/processes.rs"]
-mod processes;
-#[path = "support/stuck.rs"]
-mod stuck;
-mod support;
-
 use std::net::UdpSocket;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use processes::{config, folder, planned, vehicle};
+use crate::processes::{config, folder, planned, vehicle};
+use crate::stuck::full_pipe;
+use crate::support::{frames, header, heartbeat, read, v2};
 use serde_json::Value;
-use stuck::full_pipe;
-use support::{frames, header, heartbeat, read, v2};
 
 const MAVID: &str = env!("CARGO_BIN_EXE_mavid");
 /// Long after everything that is waited for.
@@ -178,7 +169,7 @@ fn after_a_connection_that_failed_the_same_command_begins_again() {
     }
     // one frame of a vehicle, and nobody takes it away
     let mut recording = std::fs::read(&tlog).unwrap();
-    recording.extend(support::tlog(&[v2(header(1, 0), &heartbeat())]));
+    recording.extend(crate::support::tlog(&[v2(header(1, 0), &heartbeat())]));
     std::fs::write(&tlog, &recording).unwrap();
     let output = fly(&out, &silent).output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();

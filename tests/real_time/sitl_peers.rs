@@ -1,19 +1,12 @@
 //! `mavid sitl` as a program, commanded by pymavlink and by MAVSDK over UDP and TCP. Skipped, with a message, where Python
 //! or the package is missing (`tests/peers/setup.sh` installs them).
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
-
-#[path = "support/python.rs"]
-mod python;
-mod support;
-
 use std::io::{BufRead, BufReader};
 use std::net::{TcpListener, UdpSocket};
 use std::process::{Child, Command, Stdio};
 
+use crate::support::Needed;
 use serde_json::{Value, json};
-use support::Needed;
 
 /// The running program; ended when the test is.
 struct Sitl(Child);
@@ -57,9 +50,9 @@ fn flown(answer: &Value, autopilot: u8, parameter: f64) {
     assert_eq!(answer["parameter"], parameter);
     assert!(answer["parameters"].as_u64().unwrap() > 100);
     assert_eq!(answer["bad"], 0);
-    let there = python::numbers(&answer["there"]);
+    let there = crate::python::numbers(&answer["there"]);
     assert!((there[0] - 1.5).abs() < 0.35 && (there[1] - 1.0).abs() < 0.35, "{there:?}");
-    let landed_at = python::numbers(&answer["landed_at"]);
+    let landed_at = crate::python::numbers(&answer["landed_at"]);
     assert!(landed_at[2].abs() < 0.2, "{landed_at:?}");
 }
 
@@ -69,9 +62,9 @@ fn pymavlink_flies_px4_offboard_in_lockstep_over_udp() {
     let listen = format!("udpout:127.0.0.1:{port}");
     let sitl = Sitl::start(&["--lockstep", "--listen", &listen]);
     let connection = format!("udpin:127.0.0.1:{port}");
-    match python::ask("fly_with_pymavlink.py", &[&connection, "px4"], &json!(null)) {
+    match crate::python::ask("fly_with_pymavlink.py", &[&connection, "px4"], &json!(null)) {
         Ok(answer) => flown(&answer, 12, 1.0),
-        Err(why) => return support::skip(Needed::Peers, &why),
+        Err(why) => return crate::support::skip(Needed::Peers, &why),
     }
     let (status, said) = sitl.interrupt();
     assert_eq!(status, Some(0), "{said}");
@@ -86,9 +79,9 @@ fn pymavlink_flies_ardupilot_guided_fast_over_tcp() {
         ["--autopilot", "ardupilot", "--speed", "10", "--warm-up", "5", "--listen", listen.as_str()];
     let sitl = Sitl::start(&options);
     let connection = format!("tcp:127.0.0.1:{port}");
-    match python::ask("fly_with_pymavlink.py", &[&connection, "ardupilot"], &json!(null)) {
+    match crate::python::ask("fly_with_pymavlink.py", &[&connection, "ardupilot"], &json!(null)) {
         Ok(answer) => flown(&answer, 3, 3.0),
-        Err(why) => return support::skip(Needed::Peers, &why),
+        Err(why) => return crate::support::skip(Needed::Peers, &why),
     }
     assert_eq!(sitl.interrupt().0, Some(0));
 }
@@ -100,9 +93,9 @@ fn mavsdk_finds_px4_healthy_stores_a_fence_and_flies_offboard() {
     let listen = format!("udpout:127.0.0.1:{port}");
     let sitl = Sitl::start(&["--warm-up", "2", "--listen", &listen]);
     let connection = format!("udpin://127.0.0.1:{port}");
-    let answer = match python::ask("fly_with_mavsdk.py", &[&connection], &json!(null)) {
+    let answer = match crate::python::ask("fly_with_mavsdk.py", &[&connection], &json!(null)) {
         Ok(answer) => answer,
-        Err(why) => return support::skip(Needed::Mavsdk, &why),
+        Err(why) => return crate::support::skip(Needed::Mavsdk, &why),
     };
     assert_eq!((&answer["autopilot"], &answer["version"]), (&json!("PX4"), &json!([1, 16])));
     let health = answer["health"].as_object().unwrap();
@@ -111,11 +104,11 @@ fn mavsdk_finds_px4_healthy_stores_a_fence_and_flies_offboard() {
     assert_eq!(answer["fence"], json!([4, 60.0]));
     assert_eq!((&answer["mission"], &answer["early"]), (&json!("UNSUPPORTED"), &json!("NO_SETPOINT_SET")));
     assert_eq!(answer["in_air"], json!([true, "IN_AIR"]));
-    let there = python::numbers(&answer["there"]);
+    let there = crate::python::numbers(&answer["there"]);
     assert!((there[0] - 1.5).abs() < 0.35 && (there[1] - 1.0).abs() < 0.35, "{there:?}");
-    let drifted = python::numbers(&answer["drifted"]);
+    let drifted = crate::python::numbers(&answer["drifted"]);
     assert!(drifted[1] > 3.2 && (drifted[2] + 3.0).abs() < 0.7, "{drifted:?}");
-    let landed_at = python::numbers(&answer["landed_at"]);
+    let landed_at = crate::python::numbers(&answer["landed_at"]);
     assert!(landed_at[1] > 3.2 && landed_at[2].abs() < 0.2, "{landed_at:?}");
     let texts = answer["texts"].to_string();
     assert!(texts.contains("Takeoff detected") && texts.contains("Disarmed by landing"), "{texts}");

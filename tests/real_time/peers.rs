@@ -1,32 +1,23 @@
 //! `mavid fly` with a vehicle that pymavlink plays, and its log as pymavlink reads it. Skipped, with a message, where
 //! Python or pymavlink is missing (`tests/peers/setup.sh` installs it).
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
-
-#[path = "support/processes.rs"]
-mod processes;
-#[path = "support/python.rs"]
-mod python;
-mod support;
-
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
 use std::thread;
 
+use crate::processes::{fly, folder, free_port, planned};
+use crate::support::Needed;
 use mavid::log::TlogReader;
-use processes::{fly, folder, free_port, planned};
 use serde_json::{Value, json};
-use support::Needed;
 
 const RATE_HZ: u32 = 50;
 const VEHICLE: &str = "vehicle_with_pymavlink.py";
 
 #[test]
 fn a_vehicle_played_by_pymavlink_is_flown_to_the_ground_and_its_log_is_read_by_pymavlink_to_the_byte() {
-    if let Err(why) = python::ask(VEHICLE, &["--check"], &json!(null)) {
-        return support::skip(Needed::Peers, &why);
+    if let Err(why) = crate::python::ask(VEHICLE, &["--check"], &json!(null)) {
+        return crate::support::skip(Needed::Peers, &why);
     }
     let trajectory = planned("peer_plan", 2);
     let out = folder("peer").join("flight");
@@ -36,7 +27,8 @@ fn a_vehicle_played_by_pymavlink_is_flown_to_the_ground_and_its_log_is_read_by_p
     let further = ["--setpoint-hz", &rate];
     let (output, seen) = thread::scope(|scope| {
         let flight = scope.spawn(|| fly(&out, &connect, &trajectory, &further));
-        let seen = python::ask(VEHICLE, &[&format!("udpout:127.0.0.1:{port}"), &rate], &json!(null)).unwrap();
+        let seen =
+            crate::python::ask(VEHICLE, &[&format!("udpout:127.0.0.1:{port}"), &rate], &json!(null)).unwrap();
         (flight.join().unwrap(), seen)
     });
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -74,7 +66,8 @@ fn setpoints_come_at_their_rate_and_fresh(seen: &Value, sent: &Value) {
 
 fn pymavlink_reads(tlog: &Path, recorded: u64) {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers/read_with_pymavlink.py");
-    let output = Command::new(python::interpreter()).arg(script).arg("--records").arg(tlog).output().unwrap();
+    let output =
+        Command::new(crate::python::interpreter()).arg(script).arg("--records").arg(tlog).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let theirs = String::from_utf8(output.stdout).unwrap();
     let bytes = std::fs::read(tlog).unwrap();
