@@ -1,5 +1,7 @@
 //! The failure of a verb.
 
+use mavid::plan::PlanError;
+
 /// Why a verb did not do its work.
 #[derive(Debug, thiserror::Error)]
 pub enum CommandError {
@@ -25,6 +27,9 @@ impl From<mavid::study::StudyError> for CommandError {
     fn from(error: mavid::study::StudyError) -> Self {
         match error {
             mavid::study::StudyError::Setting { name, why } => Self::Input(format!("--{name}: {why}")),
+            mavid::study::StudyError::Plan(
+                why @ (PlanError::OutsideLimits { .. } | PlanError::NotDetermined),
+            ) => Self::Failure(why.to_string()),
             other => Self::Input(other.to_string()),
         }
     }

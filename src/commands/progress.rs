@@ -3,7 +3,7 @@
 use std::io::IsTerminal;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use mavid::note::Note;
 use mavid::study::{Progress, Stage};
 
@@ -38,6 +38,44 @@ impl Progress for Spinner {
 
     fn note(&self, note: &Note) {
         self.0.suspend(|| output::message(&note.to_string()));
+    }
+}
+
+/// A bar of steps on standard error, after this template; none where standard error is no terminal.
+#[derive(Debug)]
+pub struct Bar(ProgressBar);
+
+impl Bar {
+    /// Shown from the first word of its steps on.
+    pub fn new(template: &str) -> Self {
+        let bar = ProgressBar::hidden();
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        Self(bar)
+    }
+}
+
+impl Progress for Bar {
+    fn stage(&self, _: Stage) {}
+
+    fn note(&self, note: &Note) {
+        output::message(&note.to_string());
+    }
+
+    fn steps(&self, count: u64) {
+        self.0.set_length(count);
+        self.0.set_draw_target(ProgressDrawTarget::stderr());
+    }
+
+    fn step(&self) {
+        self.0.inc(1);
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
     }
 }
 

@@ -9,10 +9,12 @@ mod identification;
 mod inspection;
 mod model_parts;
 mod number;
+mod plan;
 mod proof;
 mod quality;
 mod thrust_source;
 mod validation;
+mod vehicle;
 
 pub use chart::{Band, Bars, Line, Panel, Strip, Stroke, svg};
 pub use explanation::{
@@ -23,7 +25,9 @@ pub use identification::{
 };
 pub use inspection::{InspectionDocument, inspection_text};
 pub use number::{significant, spoken, with_error};
+pub use plan::{PlanDocument, plan_text};
 pub use proof::proof_text;
 pub use validation::{
     ValidationDocument, closed_loop_charts, error_table_text, validation_html, validation_text,
 };
+pub use vehicle::vehicle_text;

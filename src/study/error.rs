@@ -5,6 +5,7 @@ use crate::diagnose::ExplainError;
 use crate::diagnose::joint::JointError;
 use crate::estimate::EstimateError;
 use crate::log::csv::CsvError;
+use crate::plan::PlanError;
 use crate::signals::SignalsError;
 
 /// Why a study has no result. Each is of what went in: files, flights or settings.
@@ -52,6 +53,9 @@ pub enum StudyError {
         /// what of the log was not read
         losses: Vec<String>,
     },
+    /// no flight keeps the limits, or the search cannot be asked for
+    #[error(transparent)]
+    Plan(#[from] PlanError),
     /// a case that cannot be explained, or whose hold-out shows nothing
     #[error("{0}")]
     Case(String),

@@ -12,9 +12,11 @@ mod explain;
 mod flights;
 mod identify;
 mod input;
+mod plan;
 mod progress;
 mod prove;
 mod validate;
+mod vehicle;
 
 pub use after_flight::{AfterFlight, after_flight};
 pub use correlation::Correlation;
@@ -30,6 +32,7 @@ pub use identify::{
     COMPONENTS, IdentifyRequest, IdentifyStudy, Misfit, RotorsAndMotion, WithEffects, identify,
 };
 pub use input::InputFile;
+pub use plan::{Circle, Flown, PlanStudy, PlannedSeries, PlanningRequest, plan_flight};
 pub use progress::{Progress, Silent, Stage};
 pub use prove::{
     CaseEffect, CaseParameter, CaseVerdict, Gain, Proof, ProofSummary, ScoredCase, SealedVerdicts, SizeError,
@@ -39,3 +42,4 @@ pub use validate::{
     Column, ErrorRow, ErrorTable, Prediction, ValidateRequest, ValidateStudy, ValidatedFlight,
     ValidatedModel, closed_loop_table, playback_table, prediction_table, validate,
 };
+pub use vehicle::{RotorSummary, VehicleSummary, vehicle_summary};

@@ -44,6 +44,12 @@ pub trait Progress: Sync {
 
     /// Something is to be known before the result, of which it is a part as well: there may be no result.
     fn note(&self, note: &Note);
+
+    /// The stage takes so many steps.
+    fn steps(&self, _count: u64) {}
+
+    /// One of them is done.
+    fn step(&self) {}
 }
 
 /// Nobody waits.

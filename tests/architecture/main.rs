@@ -61,8 +61,10 @@ const LAYERS: &[(&str, &[&str])] = &[
         "study",
         &[
             "note",
+            "units",
             "text",
             "vehicle",
+            "trajectory",
             "physics",
             "log",
             "signals",
@@ -71,6 +73,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "simulate",
             "config",
             "compare",
+            "plan",
             "diagnose",
         ],
     ),
@@ -79,7 +82,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         "report",
         &[
             "note", "text", "vehicle", "physics", "signals", "estimate", "inspect", "config", "compare",
-            "diagnose", "study",
+            "plan", "diagnose", "study",
         ],
     ),
     ("export", &["units", "text", "vehicle", "physics"]),
