@@ -1,8 +1,8 @@
 //! Arguments of the verbs that read recordings of flights.
 
 use clap::Args;
-use mavid::log::SystemId;
 use mavid::study::ReadSettings;
+use mavid::wire::SystemId;
 use std::path::PathBuf;
 
 /// Arguments of `mavid identify`.

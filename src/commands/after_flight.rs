@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use mavid::fly;
-use mavid::log::SystemId;
 use mavid::report::{IdentificationDocument, explanation_answer, identification_text};
 use mavid::study::{AfterFlight, ExplainStudy, IdentifyStudy, after_flight};
 use mavid::text;
+use mavid::wire::SystemId;
 
 use super::explain::{self, REPORT};
 use super::identify::Targets;

@@ -305,7 +305,7 @@ fn residual(
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::log::Quantity;
+    use crate::recording::Quantity;
     use crate::signals::{Grid, Quality, Signals, ThrustSource, Usable};
     use crate::simulate::random_vehicle;
     use crate::vehicle::{RigidBody, Rotor, Spin, Vehicle};

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::log::SystemId;
+use crate::wire::SystemId;
 
 use super::{
     ExplainRequest, ExplainStudy, IdentifyRequest, IdentifyStudy, Progress, ReadSettings, StudyError,

@@ -113,5 +113,5 @@ fn effect(table: &toml::Table, vehicle: &Vehicle) -> Result<ActiveEffect, String
         }
         values.push((name.as_str(), number));
     }
-    ActiveEffect::named(id, &values).map_err(|error| error.to_string())
+    ActiveEffect::named(id, &values, &vehicle.size()).map_err(|error| error.to_string())
 }

@@ -4,14 +4,13 @@ use std::path::{Path, PathBuf};
 
 use crate::config::{default_csv_mapping, load_csv_mapping};
 use crate::diagnose::holdout::HeldOut;
-use crate::log::{
-    Flights, Hold, LoadOptions, LoadedFlights, LogFlight, Recording, SystemId, csv, load_flights,
-    shared_share,
-};
+use crate::log::{Flights, Hold, LoadOptions, LoadedFlights, LogFlight, csv, load_flights};
 use crate::note::{About, Note};
+use crate::recording::{Recording, shared_share};
 use crate::signals::{ConditionSettings, Signals, condition};
 use crate::text;
 use crate::vehicle::Vehicle;
+use crate::wire::SystemId;
 use rayon::prelude::*;
 
 use super::{InputFile, StudyError};

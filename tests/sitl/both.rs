@@ -60,7 +60,7 @@ fn a_concealed_effect_changes_the_flight_and_is_told_nowhere() {
     assert_ne!(plain, dragged);
     let place = |flight: &[(Duration, u32, Vec<u8>)]| {
         let last = flight.iter().rev().find(|(_, id, _)| *id == 32).unwrap();
-        mavid::log::Frame::at_start(&last.2).unwrap().payload().f32s::<3>(4)
+        mavid::wire::Frame::at_start(&last.2).unwrap().payload().f32s::<3>(4)
     };
     assert!(
         (place(&plain)[0] - place(&dragged)[0]).abs() > 0.01,
@@ -89,7 +89,7 @@ fn a_steady_wind_leans_the_vehicle() {
             .rev()
             .filter(|(_, id, _)| *id == 30)
             .take(50)
-            .map(|(_, _, bytes)| mavid::log::Frame::at_start(bytes).unwrap().payload().f32(8))
+            .map(|(_, _, bytes)| mavid::wire::Frame::at_start(bytes).unwrap().payload().f32(8))
             .collect();
         pitch.iter().sum::<f64>() / pitch.len() as f64
     };
@@ -165,7 +165,7 @@ fn clocks_are_answered() {
         payload.extend(123_456_789_012_i64.to_le_bytes());
         ground.send_raw(111, 34, &payload);
         let answer = ground.received.iter().find(|(_, id, _)| *id == 111).unwrap();
-        let answer = mavid::log::Frame::at_start(&answer.2).unwrap().payload();
+        let answer = mavid::wire::Frame::at_start(&answer.2).unwrap().payload();
         assert_eq!((answer.u64(0), answer.u64(8)), (1_500_000_000, 123_456_789_012));
         let mut ping = 99_u64.to_le_bytes().to_vec();
         ping.extend([7, 0, 0, 0, 0, 0]);
@@ -189,7 +189,7 @@ fn every_parameter_comes_once_by_list_and_by_index() {
             .received
             .iter()
             .filter(|(_, id, _)| *id == 22)
-            .map(|(_, _, bytes)| mavid::log::Frame::at_start(bytes).unwrap().payload())
+            .map(|(_, _, bytes)| mavid::wire::Frame::at_start(bytes).unwrap().payload())
             .map(|payload| (payload.u16(6), payload.u16(4), payload.text(8, 16)))
             .collect();
         let count = values[0].1;
@@ -373,7 +373,7 @@ fn a_foreign_heartbeat_comes_as_it_is() {
         .received
         .iter()
         .filter(|(_, id, _)| *id == 0)
-        .map(|(_, _, bytes)| *mavid::log::Frame::at_start(bytes).unwrap().header())
+        .map(|(_, _, bytes)| *mavid::wire::Frame::at_start(bytes).unwrap().header())
         .any(|header| header.system.0 == 255 && header.component.0 == 190);
     assert!(foreign);
 }
@@ -388,7 +388,7 @@ fn frames_take_their_time_and_some_get_lost() {
     let sequences: Vec<u8> = ground
         .received
         .iter()
-        .map(|(_, _, bytes)| mavid::log::Frame::at_start(bytes).unwrap().header().sequence)
+        .map(|(_, _, bytes)| mavid::wire::Frame::at_start(bytes).unwrap().header().sequence)
         .collect();
     let gaps: usize = sequences.windows(2).map(|pair| usize::from(pair[1].wrapping_sub(pair[0])) - 1).sum();
     let lost = gaps as f64 / (gaps + sequences.len()) as f64;
@@ -432,7 +432,7 @@ fn any_bytes_may_come_in() {
         ground.wait(0.02);
     }
     for id in [4, 11, 20, 21, 23, 43, 44, 51, 66, 75, 76, 84, 111_u8] {
-        let seed = mavid::log::CrcSeeds::new().get(id.into()).unwrap();
+        let seed = mavid::wire::CrcSeeds::new().get(id.into()).unwrap();
         for fill in [0x00, 0x01, 0x7F, 0xFF] {
             let frame = ground.raw(id, seed, &[fill; 60]);
             ground.vehicle.receive(ground.link, &frame, ground.now);

@@ -4,11 +4,12 @@ use std::path::Path;
 
 use mavid::config::{default_csv_mapping, load_csv_mapping, read_vehicle};
 use mavid::inspect::{Inspection, inspect_csv, inspect_tlog};
+use mavid::log::LoadOptions;
 use mavid::log::csv::read_csv;
-use mavid::log::{LoadOptions, SystemId};
 use mavid::report::{InspectionDocument, inspection_text};
 use mavid::text;
 use mavid::vehicle::Vehicle;
+use mavid::wire::SystemId;
 
 use super::progress;
 use crate::cli::InspectArgs;

@@ -3,8 +3,8 @@
 
 use crate::fly::finding::Finding;
 use crate::fly::parameters::Parameters;
-use crate::log::Autopilot;
 use crate::plan::Extremes;
+use crate::recording::Autopilot;
 use crate::units::deg_from_rad;
 
 /// One limit: what it bounds, its parameter (older name), how many of its units make one of SI, the value

@@ -1,7 +1,7 @@
 //! What it takes to stop.
 
 use crate::fly::parameters::Parameters;
-use crate::log::Autopilot;
+use crate::recording::Autopilot;
 use crate::units::rad_from_deg;
 use crate::vehicle::Limits;
 use nalgebra::Vector3;

@@ -4,6 +4,7 @@ use crate::diagnose::joint::{ParameterFound, Physical};
 use crate::estimate::{Finding, MethodResult};
 use crate::report::thrust_source::thrust_name;
 use crate::signals::Quality;
+use crate::text::compact;
 use std::fmt::Write;
 
 /// What the flight is good for, in one sentence.
@@ -76,5 +77,9 @@ pub(super) fn beyond(parameter: &ParameterFound, wanted: f64, std: f64) -> Strin
     let (least, most) = parameter.plausible;
     let away = if wanted < least { least - wanted } else { wanted - most };
     let what = if away > 3.0 * std { "that is not this effect" } else { "the bound is within the error" };
-    format!("the flight asks for {wanted:.3e} +- {std:.1e}, physics allows {least} to {most}: {what}")
+    format!(
+        "the flight asks for {wanted:.3e} +- {std:.1e}, physics allows {} to {}: {what}",
+        compact(least),
+        compact(most)
+    )
 }

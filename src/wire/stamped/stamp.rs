@@ -19,7 +19,9 @@ pub enum ByteOrder {
 }
 
 impl ByteOrder {
-    pub(super) fn stamp_us(self, bytes: &[u8]) -> Option<u64> {
+    /// The stamp that `bytes` begin with, microseconds since 1970 UTC; `None` where there are too few.
+    #[must_use]
+    pub fn stamp_us(self, bytes: &[u8]) -> Option<u64> {
         let bytes = *bytes.first_chunk::<STAMP_BYTES>()?;
         Some(match self {
             Self::Big => u64::from_be_bytes(bytes),
@@ -28,7 +30,8 @@ impl ByteOrder {
     }
 }
 
-/// A stamp that may be the host's wall clock.
-pub(in crate::log) fn is_wall_clock(stamp_us: u64) -> bool {
+/// A stamp that may be the host's wall clock: between 2010 and 2100.
+#[must_use]
+pub fn is_wall_clock(stamp_us: u64) -> bool {
     (EARLIEST_US..LATEST_US).contains(&stamp_us)
 }

@@ -6,11 +6,11 @@ use std::time::Duration;
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::MessageWriter;
+use super::stamped::MessageWriter;
 use crate::frames::{
     Attitude, Body, World, frd_from_body, frd_ned_from_attitude, ned_from_world, yaw_from_ned,
 };
-use crate::log::recording::{Quantity, Recording, Stream};
+use crate::recording::{Quantity, Recording, Stream};
 use crate::units::{narrow, rad_s_from_rpm, whole};
 
 /// Time between heartbeats, s.
@@ -82,7 +82,7 @@ struct Sample<'a> {
 impl Sample<'_> {
     /// NaN where the source has no such stream.
     fn vector(&self, quantity: Quantity) -> Vector3<f64> {
-        let find = |(key, _): &(&crate::log::StreamKey, &Stream)| {
+        let find = |(key, _): &(&crate::recording::StreamKey, &Stream)| {
             key.quantity == quantity && key.source == self.source
         };
         let stream = self.recording.streams.iter().find(find).map(|(_, stream)| stream);
@@ -198,7 +198,7 @@ impl Sample<'_> {
     }
 
     fn yaw_setpoint(&self) -> f32 {
-        let find = |(key, _): &(&crate::log::StreamKey, &Stream)| {
+        let find = |(key, _): &(&crate::recording::StreamKey, &Stream)| {
             key.quantity == Quantity::YawSetpoint && key.source == self.source
         };
         let stream = self.recording.streams.iter().find(find).map(|(_, stream)| stream);

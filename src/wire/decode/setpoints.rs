@@ -4,8 +4,8 @@ use super::motion::{wxyz, xyz};
 use super::samples::Samples;
 use super::source::Source;
 use crate::frames::{attitude_from_frd_ned, body_from_frd, world_from_ned, yaw_from_ned};
-use crate::log::frame::{Payload, SystemId};
-use crate::log::recording::Quantity;
+use crate::recording::Quantity;
+use crate::wire::frame::{Payload, SystemId};
 
 const LOCAL_NED: u8 = 1;
 /// Bits of POSITION_TARGET_TYPEMASK: three for each vector, then force instead of acceleration, yaw, yaw rate.

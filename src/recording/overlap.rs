@@ -1,6 +1,6 @@
 //! Whether two recordings hold the same flight, or parts of one.
 
-use super::recording::{Quantity, Recording, Stream};
+use super::flight::{Quantity, Recording, Stream};
 use std::collections::HashSet;
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
@@ -55,7 +55,7 @@ fn runs(stream: &Stream) -> impl Iterator<Item = u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::StreamKey;
+    use crate::recording::StreamKey;
 
     /// Samples `from..to` of a sensor that never shows the same twice.
     fn recording(from: u32, to: u32, shift_s: f64) -> Recording {

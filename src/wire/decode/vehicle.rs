@@ -1,9 +1,9 @@
 //! The vehicle whose messages are decoded.
 
 use super::source::Source;
-use crate::log::frame::{ComponentId, SystemId};
-use crate::log::recording::Autopilot;
-use crate::log::tlog::Record;
+use crate::recording::Autopilot;
+use crate::wire::frame::{ComponentId, SystemId};
+use crate::wire::stamped::Record;
 
 /// MAV_AUTOPILOT_INVALID and MAV_TYPE_GCS: a HEARTBEAT with either is not a vehicle's.
 const AUTOPILOT_INVALID: u8 = 8;

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use super::STAMP_BYTES;
-use crate::log::frame::{Frame, MAX_FRAME_BYTES};
+use super::stamp::STAMP_BYTES;
+use crate::wire::frame::{Frame, MAX_FRAME_BYTES};
 
 /// Stamp bits that some ground stations use for the link's number; ours are zero.
 const LINK_BITS: u64 = 0b11;

@@ -1,8 +1,8 @@
 //! STATUSTEXT: texts longer than 50 bytes come in chunks.
 
 use super::event::Event;
-use crate::log::frame::Payload;
 use crate::text;
+use crate::wire::frame::Payload;
 
 const CHUNK_BYTES: usize = 50;
 /// No text has more, whatever a broken sender counts.

@@ -7,9 +7,9 @@ use super::source::Source;
 use super::text::Texts;
 use super::vehicle::Vehicle;
 use super::{motion, setpoints, status};
-use crate::log::clock::{Anchor, Placed, VehicleClock};
-use crate::log::frame::Payload;
-use crate::log::tlog::Record;
+use crate::wire::clock::{Anchor, Placed, VehicleClock};
+use crate::wire::frame::Payload;
+use crate::wire::stamped::Record;
 
 /// Messages that tell a simulator's truth: SIMSTATE, SIM_STATE, HIL_*.
 const TRUTH_IDS: [u32; 10] = [90, 91, 92, 93, 107, 108, 113, 114, 115, 164];

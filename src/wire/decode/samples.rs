@@ -4,7 +4,7 @@ use super::event::Event;
 use super::report::DecodeReport;
 use super::source::{Source, StreamId};
 use super::vehicle::Vehicle;
-use crate::log::recording::Quantity;
+use crate::recording::Quantity;
 
 /// Where a message's samples go.
 pub(super) struct Samples<'a> {

@@ -5,8 +5,9 @@ use std::io::{self, Write};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 
-use super::{STAMP_BYTES, TlogWriter};
-use crate::log::frame::Frame;
+use super::stamp::STAMP_BYTES;
+use super::writer::TlogWriter;
+use crate::wire::frame::Frame;
 
 /// Writes messages of one sender (system 1, component 1) as MAVLink 2 frames, numbered as that sender would.
 #[derive(Debug)]

@@ -3,9 +3,9 @@
 use super::motion::xyz;
 use super::samples::Samples;
 use crate::frames::body_from_frd;
-use crate::log::frame::Payload;
-use crate::log::recording::{Autopilot, Quantity};
+use crate::recording::{Autopilot, Quantity};
 use crate::units::{m_s2_from_milli_g, rad_s_from_mrad_s};
+use crate::wire::frame::Payload;
 
 /// HIGHRES_IMU.fields_updated: which values are new.
 const ACCELERATION_UPDATED: u16 = 0b111;

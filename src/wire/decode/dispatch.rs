@@ -3,7 +3,7 @@
 use super::samples::Samples;
 use super::source::Source;
 use super::{actuators, imu, motion, setpoints, status};
-use crate::log::frame::Payload;
+use crate::wire::frame::Payload;
 
 impl Source {
     /// Gives the samples that a payload of this message holds.

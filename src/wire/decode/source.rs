@@ -1,8 +1,8 @@
 //! The messages that are read, and where each keeps its time.
 
-use crate::log::clock::Stamp;
-use crate::log::frame::Payload;
-use crate::log::recording::{Quantity, StreamKey};
+use crate::recording::{Quantity, StreamKey};
+use crate::wire::clock::Stamp;
+use crate::wire::frame::Payload;
 
 /// Which stream a sample is of; small and quick to compare.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

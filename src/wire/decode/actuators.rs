@@ -2,9 +2,9 @@
 
 use super::samples::Samples;
 use super::source::Source;
-use crate::log::frame::Payload;
-use crate::log::recording::Quantity;
+use crate::recording::Quantity;
 use crate::units::rad_s_from_rpm;
+use crate::wire::frame::Payload;
 
 /// Eight channels of a port in microseconds (or whatever the output protocol counts), sixteen where the
 /// sender knows the extension. 65535 is no output.

@@ -2,7 +2,7 @@
 
 use std::hash::{BuildHasher, RandomState};
 
-use super::Payload;
+use super::frame::Payload;
 
 /// `uid2` of AUTOPILOT_VERSION of an embedded vehicle that runs on its own. The autopilots fill this field with the
 /// serial number of a processor, which is binary; a sentence of 18 letters cannot be one by accident. Anybody can send

@@ -1,6 +1,6 @@
 //! Finds MAVLink frames in a stream of bytes. It does no I/O: feed it, then take frames.
 
-use super::crc::CrcSeeds;
+use super::checksum::CrcSeeds;
 use super::frame::{Check, ComponentId, Frame, Header, MARKER_V1, MARKER_V2, Start, SystemId};
 
 /// How far a chain of frames is followed to tell whether an unproven frame ends where it says.

@@ -1,6 +1,6 @@
 //! One frame of a log with its host stamp.
 
-use crate::log::frame::Frame;
+use crate::wire::frame::Frame;
 
 /// One frame of a log with its host stamp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,8 +4,8 @@ use super::samples::Samples;
 use crate::frames::{
     Attitude, attitude_from_euler_frd_ned, attitude_from_frd_ned, body_from_frd, world_from_ned,
 };
-use crate::log::frame::Payload;
-use crate::log::recording::Quantity;
+use crate::recording::Quantity;
+use crate::wire::frame::Payload;
 
 /// MAV_FRAME values that ODOMETRY uses.
 const LOCAL_NED: u8 = 1;

@@ -1,9 +1,9 @@
 //! Mode, arming, battery, parameters.
 
 use super::samples::Samples;
-use crate::log::frame::Payload;
-use crate::log::recording::{Autopilot, Quantity};
+use crate::recording::{Autopilot, Quantity};
 use crate::units::{amperes_from_ca, volts_from_mv};
+use crate::wire::frame::Payload;
 
 const ARMED: u8 = 128;
 /// Centiamperes by which the autopilots say that they do not know: MAVLink's -1, and PX4's -1 A.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::crc::{CrcSeeds, checksum};
+use super::checksum::{CrcSeeds, checksum};
 use crate::text;
 
 /// Marker of a MAVLink 1 frame.
