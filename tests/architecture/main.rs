@@ -23,7 +23,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("vehicle", &[]),
     ("trajectory", &["frames"]),
     ("fence", &["frames"]),
-    ("physics", &["units", "vehicle"]),
+    ("physics", &["units", "text", "vehicle"]),
     // a flight as typed streams, from wherever
     ("recording", &[]),
     // MAVLink's bytes, frames and messages

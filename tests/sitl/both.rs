@@ -6,6 +6,7 @@ use mavid::fence::FenceItem;
 use mavid::frames::Geodetic;
 use mavid::link::SigningKey;
 use mavid::physics::ActiveEffect;
+use mavid::physics::effects::{LinearDrag, SteadyWind};
 use mavid::sitl::{Fault, LinkRole, Mode, Settings, SitlError, Vehicle};
 use mavlink::dialects::ardupilotmega::{COMMAND_LONG_DATA, MavCmd, MavMessage, SETUP_SIGNING_DATA};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
@@ -54,7 +55,7 @@ fn how_often_the_clock_is_read_changes_nothing() {
 
 #[test]
 fn a_concealed_effect_changes_the_flight_and_is_told_nowhere() {
-    let drag = ActiveEffect::named("linear_drag", &[("dx", 0.9), ("dy", 0.9), ("dz", 0.0)]).unwrap();
+    let drag = ActiveEffect::new(&LinearDrag, &[0.9, 0.9, 0.0]).unwrap();
     let plain = flight(settings(PX4));
     let dragged = flight(Settings { effects: vec![drag], ..settings(PX4) });
     assert_ne!(plain, dragged);
@@ -93,9 +94,8 @@ fn a_steady_wind_leans_the_vehicle() {
             .collect();
         pitch.iter().sum::<f64>() / pitch.len() as f64
     };
-    let drag = || ActiveEffect::named("linear_drag", &[("dx", 0.9), ("dy", 0.9), ("dz", 0.0)]).unwrap();
-    let wind = ActiveEffect::named("steady_wind", &[("north", 4.0), ("west", 0.0), ("up", 0.0)]);
-    let Ok(wind) = wind else { panic!("{wind:?}") };
+    let drag = || ActiveEffect::new(&LinearDrag, &[0.9, 0.9, 0.0]).unwrap();
+    let wind = ActiveEffect::new(&SteadyWind, &[4.0, 0.0, 0.0]).unwrap();
     let calm = lean(vec![drag()]);
     let windy = lean(vec![drag(), wind]);
     // a wind to the north: it leans back, nose up. 0.9 * 4 / (2.06 * 9.81) = 0.18
