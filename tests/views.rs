@@ -55,7 +55,7 @@ fn shortened(value: Value) -> Value {
     }
 }
 
-/// A page with the title of each chart in its place, without its style.
+/// A page with the title of each chart in its place, without its style and the program's version.
 fn outline(page: &str) -> String {
     let mut out = String::new();
     let mut rest = page;
@@ -67,7 +67,7 @@ fn outline(page: &str) -> String {
         out.push_str(&title.map_or_else(|| "[style]".to_owned(), |(title, _)| format!("[chart: {title}]")));
         rest = after;
     }
-    out + rest
+    (out + rest).replace(concat!("mavid ", env!("CARGO_PKG_VERSION")), "mavid [version]")
 }
 
 #[test]
