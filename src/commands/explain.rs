@@ -8,6 +8,7 @@ use mavid::study::{ExplainRequest, ExplainStudy, explain, stored_trajectory};
 use mavid::text;
 
 use super::progress::Spinner;
+use super::standard_error::StandardError;
 use super::{CommandError, Outcome, output};
 use crate::cli::ExplainArgs;
 
@@ -19,7 +20,7 @@ const DOCUMENT: &str = "explanation.json";
 pub const WRITTEN: [&str; 3] = [MODEL, REPORT, DOCUMENT];
 
 /// Runs the verb.
-pub fn run(json: bool, args: &ExplainArgs) -> Result<Outcome, CommandError> {
+pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Outcome, CommandError> {
     let request = ExplainRequest {
         logs: args.logs.clone(),
         vehicle: args.vehicle.clone(),
@@ -30,7 +31,7 @@ pub fn run(json: bool, args: &ExplainArgs) -> Result<Outcome, CommandError> {
     };
     request.check()?;
     check_targets(args)?;
-    let study = explain(&request, &Spinner::new())?;
+    let study = explain(&request, &Spinner::new(stderr))?;
     if let Some(path) = &args.next {
         write_next(&study, path)?;
     }
@@ -55,7 +56,7 @@ pub fn write(study: &ExplainStudy, folder: &Path) -> Result<(), CommandError> {
 
 /// Says what is to be known about the data.
 pub fn tell(study: &ExplainStudy) -> Outcome {
-    output::notes(&study.notes);
+    study.notes.iter().for_each(output::note);
     for input in study.inputs() {
         input.remarks().iter().for_each(|remark| output::message(&format!("{}: {remark}", input.path)));
     }

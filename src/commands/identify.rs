@@ -8,6 +8,7 @@ use mavid::report::{
 use mavid::study::{IdentifyRequest, IdentifyStudy, InputFile, identify};
 
 use super::progress::Spinner;
+use super::standard_error::StandardError;
 use super::{CommandError, Outcome, output};
 use crate::cli::IdentifyArgs;
 
@@ -50,7 +51,7 @@ impl Targets {
 }
 
 /// Runs the verb.
-pub fn run(json: bool, args: &IdentifyArgs) -> Result<Outcome, CommandError> {
+pub fn run(json: bool, stderr: &StandardError, args: &IdentifyArgs) -> Result<Outcome, CommandError> {
     let request = IdentifyRequest {
         logs: args.logs.clone(),
         vehicle: args.vehicle.clone(),
@@ -65,7 +66,7 @@ pub fn run(json: bool, args: &IdentifyArgs) -> Result<Outcome, CommandError> {
     let targets = Targets::of(args);
     let inputs: Vec<&PathBuf> = args.logs.iter().chain([&args.vehicle]).collect();
     output::refuse_overwriting(&inputs, &targets.all())?;
-    let study = identify(&request, &Spinner::new())?;
+    let study = identify(&request, &Spinner::new(stderr))?;
     if json {
         output::json(&IdentificationDocument::new(&study))?;
     } else {

@@ -6,13 +6,14 @@ use mavid::report::{PlanDocument, plan_text};
 use mavid::study::{Circle, PlanStudy, PlannedSeries, PlanningRequest, plan_flight};
 use mavid::text;
 
-use super::progress::Bar;
+use super::progress::Steps;
+use super::standard_error::StandardError;
 use super::{CommandError, Outcome, output};
 use crate::cli::{CriterionName, PlanArgs};
 
 /// Runs the verb.
-pub fn run(json: bool, args: &PlanArgs) -> Result<Outcome, CommandError> {
-    let study = make(args)?;
+pub fn run(json: bool, stderr: &StandardError, args: &PlanArgs) -> Result<Outcome, CommandError> {
+    let study = make(stderr, args)?;
     if json {
         output::json(&PlanDocument::new(&study))?;
     } else {
@@ -22,8 +23,8 @@ pub fn run(json: bool, args: &PlanArgs) -> Result<Outcome, CommandError> {
 }
 
 /// Plans or checks, and writes the trajectory where one is asked for.
-pub fn make(args: &PlanArgs) -> Result<PlanStudy, CommandError> {
-    let study = plan_flight(&request(args)?, &Bar::new("planning {bar:30} {pos}/{len} descents"))?;
+pub fn make(stderr: &StandardError, args: &PlanArgs) -> Result<PlanStudy, CommandError> {
+    let study = plan_flight(&request(args)?, &Steps::new(stderr, "planning {bar:30} {pos}/{len} descents"))?;
     if let Some(path) = &args.out {
         let text = trajectory_to_toml(&study.stored())?;
         std::fs::write(path, text)

@@ -1,32 +1,36 @@
-//! What a study tells while it works: a line at a terminal, and its notes.
+//! What a study tells while it works: its notes, and at a terminal how far it is.
 
-use std::io::IsTerminal;
+use std::sync::OnceLock;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressStyle};
 use mavid::note::Note;
 use mavid::study::{Progress, Stage};
 
 use super::output;
+use super::standard_error::StandardError;
 
 /// Between two pictures of the line.
 const TICK: Duration = Duration::from_millis(100);
 
-/// A line on standard error that says what is done now; none where standard error is no terminal.
+fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
+    match ProgressStyle::with_template(template) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+/// A line that says what is done now.
 #[derive(Debug)]
 pub struct Spinner(ProgressBar);
 
 impl Spinner {
     /// Empty until the first stage.
-    pub fn new() -> Self {
-        if !std::io::stderr().is_terminal() {
-            return Self(ProgressBar::hidden());
+    pub fn new(stderr: &StandardError) -> Self {
+        let bar = stderr.bar(styled(ProgressBar::new_spinner(), "{spinner} {msg}"));
+        if stderr.can_draw() {
+            bar.enable_steady_tick(TICK);
         }
-        let bar = ProgressBar::new_spinner();
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}") {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(TICK);
         Self(bar)
     }
 }
@@ -37,51 +41,50 @@ impl Progress for Spinner {
     }
 
     fn note(&self, note: &Note) {
-        self.0.suspend(|| output::message(&note.to_string()));
-    }
-}
-
-/// A bar of steps on standard error, after this template; none where standard error is no terminal.
-#[derive(Debug)]
-pub struct Bar(ProgressBar);
-
-impl Bar {
-    /// Shown from the first word of its steps on.
-    pub fn new(template: &str) -> Self {
-        let bar = ProgressBar::hidden();
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
-        }
-        Self(bar)
-    }
-}
-
-impl Progress for Bar {
-    fn stage(&self, _: Stage) {}
-
-    fn note(&self, note: &Note) {
-        output::message(&note.to_string());
-    }
-
-    fn steps(&self, count: u64) {
-        self.0.set_length(count);
-        self.0.set_draw_target(ProgressDrawTarget::stderr());
-    }
-
-    fn step(&self) {
-        self.0.inc(1);
-    }
-}
-
-impl Drop for Bar {
-    fn drop(&mut self) {
-        self.0.finish_and_clear();
+        output::note(note);
     }
 }
 
 impl Drop for Spinner {
     fn drop(&mut self) {
         self.0.finish_and_clear();
+    }
+}
+
+/// A bar of steps after a template; none before the first is to be done.
+#[derive(Debug)]
+pub struct Steps<'a> {
+    stderr: &'a StandardError,
+    template: &'static str,
+    bar: OnceLock<ProgressBar>,
+}
+
+impl<'a> Steps<'a> {
+    /// With indicatif's names in the template.
+    pub fn new(stderr: &'a StandardError, template: &'static str) -> Self {
+        Self { stderr, template, bar: OnceLock::new() }
+    }
+}
+
+impl Progress for Steps<'_> {
+    fn stage(&self, _: Stage) {}
+
+    fn note(&self, note: &Note) {
+        output::note(note);
+    }
+
+    fn steps(&self, count: u64) {
+        self.bar.get_or_init(|| self.stderr.bar(styled(ProgressBar::new(count), self.template)));
+    }
+
+    fn step(&self) {
+        self.bar.get().into_iter().for_each(|bar| bar.inc(1));
+    }
+}
+
+impl Drop for Steps<'_> {
+    fn drop(&mut self) {
+        self.bar.get().into_iter().for_each(ProgressBar::finish_and_clear);
     }
 }
 
@@ -93,6 +96,6 @@ impl Progress for Quiet {
     fn stage(&self, _: Stage) {}
 
     fn note(&self, note: &Note) {
-        output::message(&note.to_string());
+        output::note(note);
     }
 }

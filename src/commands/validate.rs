@@ -9,6 +9,7 @@ use mavid::text;
 use super::explain::REPORT;
 use super::identify::tell;
 use super::progress::Spinner;
+use super::standard_error::StandardError;
 use super::{CommandError, Outcome, output};
 use crate::cli::ValidateArgs;
 
@@ -16,7 +17,7 @@ use crate::cli::ValidateArgs;
 const FIGURE: &str = "<!-- a figure of mavid validate -->\n";
 
 /// Runs the verb.
-pub fn run(json: bool, args: &ValidateArgs) -> Result<Outcome, CommandError> {
+pub fn run(json: bool, stderr: &StandardError, args: &ValidateArgs) -> Result<Outcome, CommandError> {
     let request = ValidateRequest {
         logs: args.logs.clone(),
         models: args.models.clone(),
@@ -28,7 +29,7 @@ pub fn run(json: bool, args: &ValidateArgs) -> Result<Outcome, CommandError> {
     if let Some(folder) = &args.out {
         output::folder(folder)?;
     }
-    let study = validate(&request, &Spinner::new())?;
+    let study = validate(&request, &Spinner::new(stderr))?;
     if let Some(folder) = &args.out {
         write_charts(folder, &study)?;
         output::file(&folder.join(REPORT), &validation_html(&study))?;
