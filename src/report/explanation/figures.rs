@@ -104,7 +104,7 @@ pub(super) fn axes(of: &[AxisResidual], after: &str) -> Bars {
         names: of.iter().map(|of| spoken(of.axis)).collect(),
         series: vec![
             (ALONE.to_owned(), BEFORE, of.iter().map(|of| of.before).collect()),
-            (after.to_owned(), AFTER, of.iter().map(|of| of.after).collect()),
+            (after.to_owned(), AFTER, vec![1.0; of.len()]),
         ],
     }
 }

@@ -81,10 +81,8 @@ pub struct Followed {
 pub struct AxisResidual {
     /// name
     pub axis: &'static str,
-    /// by the rigid body alone
+    /// by the rigid body alone; by the model found it is 1
     pub before: f64,
-    /// by the model found: 1
-    pub after: f64,
 }
 
 /// Residual of each axis along time beyond what is left after, in units of that; NaN where there is none.
@@ -234,11 +232,7 @@ impl ExplainStudy {
         };
         let residual = |axis: usize| {
             let after = search.after.weighted.sigma[axis] * share(axis);
-            AxisResidual {
-                axis: CHANNEL_NAMES[axis],
-                before: search.before.weighted.sigma[axis] / after,
-                after: after / after,
-            }
+            AxisResidual { axis: CHANNEL_NAMES[axis], before: search.before.weighted.sigma[axis] / after }
         };
         (0..AXES).map(residual).collect()
     }
