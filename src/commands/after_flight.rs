@@ -12,7 +12,7 @@ use crate::cli::{ExplainArgs, IdentifyArgs, ReadArgs};
 
 /// Folder of the explanation in that of the flight.
 const EXPLAINED: &str = "explained";
-/// s of flight that `explain` leaves out at the beginning, as by itself.
+/// Flight time that `explain` leaves out at the beginning by default, s.
 const TRANSIENT_S: f64 = 1.0;
 
 /// Names of what is written of the parameters.
