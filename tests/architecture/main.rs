@@ -354,6 +354,57 @@ fn only_the_commands_print() {
     assert!(wrong.is_empty(), "only {} may print:\n{}", PRINT.join(", "), wrong.join("\n"));
 }
 
+/// A subscriber may stand still, as whoever reads what it writes: nothing between a setpoint's time and the wire says
+/// anything to it. What is to be said of setpoints and of the link is said by the flight, which hears of it.
+#[test]
+fn nothing_that_carries_setpoints_waits_for_a_subscriber() {
+    let carries = [
+        "fly/runner/stream.rs",
+        "fly/runner/priority.rs",
+        "fly/safety/",
+        "fly/law.rs",
+        "fly/course.rs",
+        "fly/setpoint.rs",
+        "fly/target/",
+        "link/incoming.rs",
+        "link/outgoing.rs",
+        "link/pen.rs",
+        "link/recorder/",
+        "link/shared.rs",
+        "link/signing/",
+        "link/transport/",
+        "link/writer.rs",
+        "wire/frame.rs",
+        "wire/splitter.rs",
+    ];
+    let (all, mut wrong) = (sources(), Vec::new());
+    for path in carries {
+        let mut found = all.iter().filter(|source| source.path.starts_with(path)).peekable();
+        assert!(found.peek().is_some(), "no file is {path}: where did it go?");
+        wrong.extend(
+            found
+                .filter(|source| code(without_tests(&source.text)).contains("tracing"))
+                .map(|source| source.path.clone()),
+        );
+    }
+    assert!(wrong.is_empty(), "they say something:\n{}", wrong.join("\n"));
+}
+
+/// The library says what it does; who hears it is the program's choice.
+#[test]
+fn only_the_program_installs_a_subscriber() {
+    let mut wrong = Vec::new();
+    for source in sources().iter().filter(|source| !BINARY.contains(&source.module.as_str())) {
+        let code = code(without_tests(&source.text));
+        for needle in ["set_global_default", "set_default", "with_default", "try_init"] {
+            if code.contains(needle) {
+                wrong.push(format!("{}: {needle}", source.path));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "only {} may:\n{}", BINARY.join(", "), wrong.join("\n"));
+}
+
 /// Messages that leave are made from types that cannot be out of range, and nowhere else.
 #[test]
 fn only_the_typed_orders_make_messages() {
