@@ -109,7 +109,7 @@ fn story(
     Ok((record, analysis))
 }
 
-/// That of the arguments, or the first that is free; made.
+/// Creates the folder of the arguments, or the first that is free.
 fn folder(args: &DemoArgs) -> Result<PathBuf, CommandError> {
     let numbered = (2_u32..).map(|number| PathBuf::from(format!("{FOLDER}-{number}")));
     let free = || std::iter::once(PathBuf::from(FOLDER)).chain(numbered).find(|path| !path.exists());
