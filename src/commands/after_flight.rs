@@ -3,19 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use mavid::fly;
+use mavid::report::{IdentificationDocument, explanation_answer, identification_text};
+use mavid::study::{AfterFlight, ExplainStudy, IdentifyStudy, after_flight};
 use mavid::text;
+use mavid::wire::SystemId;
 
-use super::explain::{self, Explained, REPORT};
-use super::identify::Identified;
+use super::explain::{self, REPORT};
+use super::identify::Targets;
+use super::progress::Notes;
 use super::words::Word;
 use super::{CommandError, Outcome, output};
-use crate::cli::{ExplainArgs, IdentifyArgs, ReadArgs};
 
 /// Folder of the explanation in that of the flight.
 const EXPLAINED: &str = "explained";
-/// s of flight that `explain` leaves out at the beginning, as by itself.
-const TRANSIENT_S: f64 = 1.0;
-
 /// Names of what is written of the parameters.
 const MODEL: &str = "model.toml";
 const CHART: &str = "parameters.svg";
@@ -28,9 +28,9 @@ const NOT_WRITTEN: u8 = 1;
 #[derive(Debug)]
 pub struct Analysis {
     /// written beside the recording
-    pub identified: Result<Identified, String>,
+    pub identified: Result<IdentifyStudy, String>,
     /// written into a folder of its own
-    pub explained: Result<Explained, String>,
+    pub explained: Result<ExplainStudy, String>,
     /// what of it is in no file, why, and how it is made again: of the parameters, and of the explanation
     pub unwritten: [Option<String>; 2],
     folder: PathBuf,
@@ -42,7 +42,7 @@ impl Analysis {
     pub fn of(
         (folder, landed): (&Path, bool),
         vehicle: &Path,
-        system: Option<u32>,
+        system: Option<SystemId>,
         tell: &mut impl FnMut(Word),
     ) -> Result<Option<Self>, CommandError> {
         let parameters = [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(|name| folder.join(name));
@@ -54,15 +54,22 @@ impl Analysis {
         Ok(landed.then(|| Self::made(folder, vehicle, system, tell)))
     }
 
-    fn made(folder: &Path, vehicle: &Path, system: Option<u32>, tell: &mut impl FnMut(Word)) -> Self {
-        let done = Done { folder, vehicle, system };
-        let (identified, parameters) = done.identified();
-        let (explained, explanation) = done.explained();
+    fn made(folder: &Path, vehicle: &Path, system: Option<SystemId>, tell: &mut impl FnMut(Word)) -> Self {
+        let notes = Notes::default();
+        let AfterFlight { identified, explained } =
+            after_flight(&folder.join(fly::TLOG), vehicle, system, &notes);
+        notes.words().into_iter().for_each(&mut *tell);
+        let identified = identified.map_err(|error| CommandError::from(error).to_string());
+        let explained = explained.map_err(|error| CommandError::from(error).to_string());
         let failures = [("identified", identified.as_ref().err()), ("explained", explained.as_ref().err())];
         for (what, failure) in failures {
             failure.into_iter().for_each(|failure| tell(Word::Error(format!("not {what}: {failure}"))));
         }
-        let unwritten = [parameters, explanation];
+        let written = Written { folder, vehicle, system };
+        let unwritten = [
+            identified.as_ref().ok().and_then(|study| written.parameters(study)),
+            explained.as_ref().ok().and_then(|study| written.explanation(study)),
+        ];
         unwritten.iter().flatten().for_each(|why| tell(Word::Error(why.clone())));
         Self { identified, explained, unwritten, folder: folder.to_owned() }
     }
@@ -75,19 +82,19 @@ impl Analysis {
 
     /// For people: parameters, then the explanation's answer and where its report lies.
     pub fn page(&self) -> String {
-        let mut parts: Vec<String> = self.identified.iter().map(Identified::page).collect();
+        let mut parts: Vec<String> = self.identified.iter().map(identification_text).collect();
         if self.identified.is_ok() && self.unwritten[0].is_none() {
             let parameters = self.folder.join(REPORT);
             parts.push(format!("report of the parameters: {}", text::path(&parameters)));
         }
-        parts.extend(self.explained.iter().map(Explained::answer));
+        parts.extend(self.explained.iter().map(explanation_answer));
         parts.extend(self.report().map(|path| format!("report: {}", text::path(&path))));
         parts.join("\n\n")
     }
 
     /// What is to be known about the data, line by line.
     pub fn remarks(&self) -> Vec<Word> {
-        self.explained.as_ref().map(Explained::remarks).unwrap_or_default()
+        self.explained.as_ref().map(explain::remarks).unwrap_or_default()
     }
 
     /// The first part that failed or is in no file, and otherwise whether something was lost.
@@ -99,49 +106,38 @@ impl Analysis {
         if self.unwritten.iter().any(Option::is_some) {
             return Err(CommandError::Told(NOT_WRITTEN));
         }
-        Ok(explained.outcome())
+        Ok(explain::outcome(explained))
     }
 }
 
-/// A flight that is over.
-struct Done<'a> {
+/// Where the results of a flight are written.
+struct Written<'a> {
     folder: &'a Path,
     vehicle: &'a Path,
-    system: Option<u32>,
+    system: Option<SystemId>,
 }
 
-impl Done<'_> {
-    /// The parameters, and what of them is in no file.
-    fn identified(&self) -> (Result<Identified, String>, Option<String>) {
-        let Self { folder, vehicle, system } = *self;
-        let args = identify_args(folder, vehicle, system);
-        // what is odd about the vehicle's file was told before the flight
-        let identified = match Identified::from(&args, |_| {}) {
-            Ok(identified) => identified,
-            Err(error) => return (Err(error.to_string()), None),
+impl Written<'_> {
+    /// Writes the parameters: model, report and chart, and the page and the document beside them. What of it is in no file.
+    fn parameters(&self, study: &IdentifyStudy) -> Option<String> {
+        let place = |name| self.folder.join(name);
+        let targets =
+            Targets { model: Some(place(MODEL)), report: Some(place(REPORT)), chart: Some(place(CHART)) };
+        let written = || {
+            targets.write(study)?;
+            output::file(&place(PAGE), &format!("{}\n", identification_text(study)))?;
+            output::file(&place(DOCUMENT), &output::json_text(&IdentificationDocument::new(study))?)
         };
-        let written = write(&identified, &args, folder).err();
-        let out = folder.join(MODEL);
-        let unwritten = written.map(|error| {
-            let names = [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(|name| folder.join(name));
-            self.again(&error, &names, ("identify", &out))
-        });
-        (Ok(identified), unwritten)
+        let error = written().err()?;
+        let names = [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(place);
+        Some(self.again(&error, &names, ("identify", &place(MODEL))))
     }
 
-    /// The explanation, and what of it is in no file.
-    fn explained(&self) -> (Result<Explained, String>, Option<String>) {
-        let Self { folder, vehicle, system } = *self;
-        let explained = match Explained::from(&explain_args(folder, vehicle, system)) {
-            Ok(explained) => explained,
-            Err(error) => return (Err(error.to_string()), None),
-        };
-        let out = folder.join(EXPLAINED);
-        let unwritten = explained.write(&out).err().map(|error| {
-            let names = explain::WRITTEN.map(|name| out.join(name));
-            self.again(&error, &names, ("explain", &out))
-        });
-        (Ok(explained), unwritten)
+    /// Writes the explanation. What of it is in no file.
+    fn explanation(&self, study: &ExplainStudy) -> Option<String> {
+        let out = self.folder.join(EXPLAINED);
+        let error = explain::write(study, &out).err()?;
+        Some(self.again(&error, &explain::WRITTEN.map(|name| out.join(name)), ("explain", &out)))
     }
 
     /// What of these files is missing, why, and the command that makes it again.
@@ -156,42 +152,6 @@ impl Done<'_> {
             text::path(&out),
             self.system.map_or_else(String::new, |system| format!(" --system-id {system}"))
         )
-    }
-}
-
-/// Model, report and chart, and the page and the document beside them.
-fn write(identified: &Identified, args: &IdentifyArgs, folder: &Path) -> Result<(), CommandError> {
-    identified.write(args)?;
-    output::file(&folder.join(PAGE), &format!("{}\n", identified.page()))?;
-    output::file(&folder.join(DOCUMENT), &output::json_text(&identified.document())?)
-}
-
-fn identify_args(folder: &Path, vehicle: &Path, system: Option<u32>) -> IdentifyArgs {
-    IdentifyArgs {
-        logs: vec![folder.join(fly::TLOG)],
-        vehicle: vehicle.to_owned(),
-        out: Some(folder.join(MODEL)),
-        report: Some(folder.join(REPORT)),
-        chart: Some(folder.join(CHART)),
-        read: ReadArgs { csv_map: None, system },
-        transient: None,
-        cutoff: None,
-        fir: false,
-        sigma: mavid::estimate::PAPER_SIGMA,
-        commands: false,
-        with: Vec::new(),
-    }
-}
-
-fn explain_args(folder: &Path, vehicle: &Path, system: Option<u32>) -> ExplainArgs {
-    ExplainArgs {
-        logs: vec![folder.join(fly::TLOG)],
-        vehicle: vehicle.to_owned(),
-        holdout: Vec::new(),
-        next: None,
-        out: None,
-        read: ReadArgs { csv_map: None, system },
-        transient: TRANSIENT_S,
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use mavid::files::write_whole;
 use mavid::link::Signing;
+use mavid::note::Note;
 use mavid::text;
 use serde::Serialize;
 
@@ -76,6 +77,11 @@ pub fn warnings(of: &Path, warnings: &[String]) {
     for warning in warnings {
         self::warning(&format!("{}: {warning}", text::path(&of)));
     }
+}
+
+/// What is to be known beside a result.
+pub fn note(note: &Note) {
+    if note.is_warning() { warning(&note.sentence()) } else { message(&note.sentence()) }
 }
 
 /// What is odd about the files of a signing key.

@@ -8,10 +8,10 @@ use mavid::link::{Address, LinkOptions, LinkReader, SigningKey};
 use mavid::sitl::{
     ArduPilotRelease, AutopilotKind, LinkRole, Pace, SensorSettings, Served, Settings, Vehicle, serve,
 };
+use mavid::study::with_further;
 use mavid::wire::{ComponentId, SystemId};
 use serde::Serialize;
 
-use super::effects::with_further;
 use super::{CommandError, Outcome, live, network, output};
 use crate::cli::{ArduPilotVersion, AutopilotName, SitlArgs};
 

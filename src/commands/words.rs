@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use mavid::note::Note;
+
 use super::last_word::{LAST_WORD, PATIENCE, within};
 use super::output;
 
@@ -14,6 +16,12 @@ pub enum Word {
     Warning(String),
     /// why the work is not done
     Error(String),
+}
+
+impl From<&Note> for Word {
+    fn from(note: &Note) -> Self {
+        if note.is_warning() { Self::Warning(note.sentence()) } else { Self::Message(note.sentence()) }
+    }
 }
 
 impl Word {

@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use graph::Graph;
+use proc_macro2::{TokenStream, TokenTree};
 
 /// Each stage, from the bottom, and all that it uses: no less, and no more.
 const LAYERS: &[(&str, &[&str])] = &[
@@ -17,6 +18,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("text", &[]),
     // of any series: nothing of flights, and no import
     ("stats", &[]),
+    // what a stage has to say beside its result
+    ("note", &[]),
     ("frames", &[]),
     ("vehicle", &[]),
     ("trajectory", &["frames"]),
@@ -31,12 +34,23 @@ const LAYERS: &[(&str, &[&str])] = &[
     // frames over sockets and serial ports, and their recording
     ("link", &["text", "wire", "log"]),
     // vehicle: from actuator values to force
-    ("signals", &["stats", "vehicle", "recording"]),
+    ("signals", &["note", "stats", "vehicle", "recording"]),
     ("regression", &["signals"]),
-    ("estimate", &["stats", "vehicle", "signals", "regression"]),
+    ("estimate", &["note", "stats", "vehicle", "signals", "regression"]),
     (
         "inspect",
-        &["units", "stats", "vehicle", "recording", "wire", "log", "signals", "regression", "estimate"],
+        &[
+            "units",
+            "note",
+            "stats",
+            "vehicle",
+            "recording",
+            "wire",
+            "log",
+            "signals",
+            "regression",
+            "estimate",
+        ],
     ),
     // never estimate
     ("simulate", &["units", "frames", "vehicle", "trajectory", "physics", "recording"]),
@@ -65,10 +79,36 @@ const LAYERS: &[(&str, &[&str])] = &[
             "plan",
         ],
     ),
-    // config: a model file is a vehicle file
+    // a whole piece of work: opens files, calls the stages, collects what they say
+    (
+        "study",
+        &[
+            "note",
+            "units",
+            "text",
+            "vehicle",
+            "trajectory",
+            "physics",
+            "recording",
+            "wire",
+            "log",
+            "signals",
+            "regression",
+            "estimate",
+            "simulate",
+            "config",
+            "compare",
+            "plan",
+            "diagnose",
+        ],
+    ),
+    // config: a model file is a vehicle file. Of the stages it names what a study holds, and fits nothing
     (
         "report",
-        &["text", "vehicle", "physics", "signals", "regression", "estimate", "config", "compare", "diagnose"],
+        &[
+            "note", "text", "vehicle", "physics", "signals", "estimate", "inspect", "config", "compare",
+            "plan", "diagnose", "study",
+        ],
     ),
     ("export", &["units", "text", "vehicle", "physics"]),
     ("sitl", &["units", "frames", "vehicle", "fence", "physics", "wire", "link", "simulate"]),
@@ -326,6 +366,40 @@ fn imports_are_seen_however_they_are_written() {
                 #[cfg(test)]\nmod tests { use super::super::estimate; }";
     let names: Vec<String> = imports(text, 2).into_iter().collect();
     assert_eq!(names, ["estimate", "frames", "log", "units"]);
+}
+
+/// What is shown was found before: the report names nothing that fits, searches or computes a statistic.
+#[test]
+fn the_report_computes_nothing() {
+    const STAGES: [&str; 8] =
+        ["search", "fit", "Rows", "Trace", "paper_models", "Recording", "statrs", "rayon"];
+    let mut wrong = Vec::new();
+    for source in sources().iter().filter(|source| source.module == "report") {
+        let tokens: TokenStream = without_tests(&source.text).parse().unwrap();
+        let named = identifiers(tokens);
+        wrong.extend(
+            STAGES
+                .iter()
+                .filter(|stage| named.contains(**stage))
+                .map(|stage| format!("{}: {stage}", source.path)),
+        );
+    }
+    assert!(wrong.is_empty(), "the report is a view of a study, which holds this:\n{}", wrong.join("\n"));
+}
+
+/// Every identifier of the code, also inside of macros.
+fn identifiers(tokens: TokenStream) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for token in tokens {
+        match token {
+            TokenTree::Ident(name) => {
+                found.insert(name.to_string());
+            }
+            TokenTree::Group(group) => found.extend(identifiers(group.stream())),
+            TokenTree::Punct(_) | TokenTree::Literal(_) => {}
+        }
+    }
+    found
 }
 
 #[test]

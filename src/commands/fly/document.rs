@@ -8,8 +8,6 @@ use mavid::text;
 use serde::Serialize;
 
 use crate::commands::after_flight::Analysis;
-use crate::commands::explain::Explained;
-use crate::commands::identify::Identified;
 
 /// What was flown and what it says.
 #[derive(Serialize)]
@@ -44,9 +42,9 @@ impl Document {
             setpoints: record.stream,
             recorded_frames: record.recorder.frames,
             dropped_frames: record.recorder.dropped,
-            identification: identified.and_then(|done| done.as_ref().ok()).map(Identified::document),
+            identification: identified.and_then(|done| done.as_ref().ok()).map(IdentificationDocument::new),
             identification_failure: identified.and_then(|done| done.as_ref().err()).cloned().or(unwritten(0)),
-            explanation: explained.and_then(|done| done.as_ref().ok()).map(Explained::document),
+            explanation: explained.and_then(|done| done.as_ref().ok()).map(ExplanationDocument::new),
             explanation_failure: explained.and_then(|done| done.as_ref().err()).cloned().or(unwritten(1)),
             report: analysis.and_then(Analysis::report).map(|path| text::path(&path)),
         }

@@ -43,9 +43,9 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
     let mut said = Words::new(view == View::Stuck);
     said.say(words(&record));
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
-    let system = record.system.map(|system| system.0);
     let mut notes = Vec::new();
-    let analysis = Analysis::of((&args.out, landed), &args.vehicle, system, &mut |note| notes.push(note));
+    let analysis =
+        Analysis::of((&args.out, landed), &args.vehicle, record.system, &mut |note| notes.push(note));
     said.say(notes);
     let analysis = analysis?;
     let heard = view == View::Ended && said.are_heard();
