@@ -10,7 +10,7 @@ use std::time::Duration;
 use mavid::config::read_vehicle;
 use mavid::fly::parameters::Parameters;
 use mavid::fly::{
-    Action, Around, Cause, Course, Event, Feeding, Flight, FollowLaw, Note, Outcome, Setpoint,
+    Action, Around, Cause, Course, Event, Feeding, FirstQuestion, Flight, FollowLaw, Note, Outcome, Setpoint,
     SetpointBounds, Settings, Sortie, Streamed, Streamer,
 };
 use mavid::log::{Autopilot, Frame, Nonce};
@@ -89,6 +89,8 @@ pub struct Flying {
     sequence: u8,
     /// of the vehicle's last frame
     pub heard_sequence: u8,
+    /// MAV_STATE of its last HEARTBEAT
+    pub system_status: u8,
 }
 
 /// A lively trajectory of a few seconds.
@@ -129,7 +131,11 @@ pub fn sortie(vehicle: &VehicleSettings) -> Sortie {
         system: None,
         may_arm: false,
         own_vehicle: vehicle.nonce,
-        settings: Settings { ready_timeout: Duration::from_secs(30), ..Settings::default() },
+        settings: Settings {
+            ready_timeout: Duration::from_secs(30),
+            first_question: FirstQuestion::of_seed(1),
+            ..Settings::default()
+        },
     }
 }
 
@@ -155,6 +161,7 @@ impl Flying {
             link,
             sequence: 0,
             heard_sequence: 0,
+            system_status: 0,
         }
     }
 
@@ -219,11 +226,23 @@ impl Flying {
             for bytes in self.down.take(self.now) {
                 let frame = Frame::at_start(&bytes).unwrap();
                 self.heard_sequence = frame.header().sequence;
+                if frame.header().message_id == 0 {
+                    self.system_status = frame.payload().u8(7);
+                }
                 self.event(Event::Frame(frame));
             }
             self.event(Event::Tick);
         }
         self.stream();
+    }
+
+    /// A message of the vehicle that somebody else asked for, and that comes down beside ours.
+    pub fn overhear(&mut self, message: &MavMessage) {
+        let mut raw = MAVLinkV2MessageRaw::new();
+        let header =
+            MavHeader { system_id: 1, component_id: 1, sequence: self.heard_sequence.wrapping_add(1) };
+        raw.serialize_message(header, message);
+        self.down.give(self.now, raw.raw_bytes().to_vec());
     }
 
     fn stream(&mut self) {

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, TrySendError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::clearance::Cleared;
+use super::clock::Clock;
 use super::estimating::Estimating;
 use super::files::{EVENTS, PARAMETERS};
 use super::journal::Journal;
@@ -46,7 +47,7 @@ pub(super) struct Drive {
     supervisor: Supervisor,
     guide: SharedGuide,
     writer: LinkWriter,
-    clock: Instant,
+    clock: Clock,
     dir: PathBuf,
     estimating: Estimating,
     notes: Vec<Note>,
@@ -68,7 +69,7 @@ impl Drive {
         flight: Flight,
         guide: SharedGuide,
         writer: LinkWriter,
-        clock: Instant,
+        clock: Clock,
         (place, estimating): (Place, Estimating),
     ) -> Self {
         let mut model = ViewModel { title: place.vehicle.name.clone(), ..ViewModel::default() };
