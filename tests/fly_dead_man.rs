@@ -13,8 +13,9 @@ use std::time::Duration;
 use mavid::fly::view::{KeyCommand, ViewModel};
 use mavid::fly::{self, Cause, Console, Ending, Parking, Part, Record, Ride, RunError};
 use mavid::link::{Link, LinkOptions, Recorder};
-use mavid::log::{ComponentId, SystemId, TlogReader};
+use mavid::log::TlogReader;
 use mavid::sitl::{AutopilotKind, LinkRole, Pace, Vehicle, serve};
+use mavid::wire::{ComponentId, SystemId};
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 use tokio::task::JoinHandle;
 

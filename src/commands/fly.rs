@@ -12,12 +12,12 @@ use mavid::fly::{
     self, Around, Console, Course, Ending, Origin, Outcome as FlightOutcome, Record, Ride, Sortie,
 };
 use mavid::link::Signing;
-use mavid::log::{ComponentId, SystemId};
 use mavid::plan::{Roomed, with_room};
 use mavid::report::{ExplanationDocument, IdentificationDocument};
 use mavid::text;
 use mavid::units::rad_from_deg;
 use mavid::vehicle::{Limits, Vehicle};
+use mavid::wire::{ComponentId, SystemId};
 use ratatui::crossterm::{event, terminal};
 use serde::Serialize;
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};

@@ -10,8 +10,8 @@ use mavid::link::{
     LinkEvent, LinkOptions, LinkReader, LinkStats, LinkWriter, Received, ReceivedFrame, RecordError,
     Recorder, RecorderStatus, Signing,
 };
-use mavid::log::{ComponentId, SystemId};
 use mavid::text;
+use mavid::wire::{ComponentId, SystemId};
 use serde::Serialize;
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 

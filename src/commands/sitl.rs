@@ -5,10 +5,10 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use mavid::config::{LoadedVehicle, parse_vehicle, read_vehicle};
 use mavid::link::{Address, LinkOptions, LinkReader, SigningKey};
-use mavid::log::{ComponentId, SystemId};
 use mavid::sitl::{
     ArduPilotRelease, AutopilotKind, LinkRole, Pace, SensorSettings, Served, Settings, Vehicle, serve,
 };
+use mavid::wire::{ComponentId, SystemId};
 use serde::Serialize;
 
 use super::effects::with_further;

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::signing::Distrust;
-use crate::log::{ComponentId, SystemId};
+use crate::wire::{ComponentId, SystemId};
 
 /// A change of the link itself.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use super::select::{best, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
 use super::usable::{Evidence, airborne_spans, usable};
 use super::{Grid, SignalsError, WeakKernel, plausible, sufficient};
-use crate::log::{Quantity, Recording, Stream};
+use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::{UnitQuaternion, Vector3};
 

@@ -4,7 +4,7 @@ use super::actuators::ThrustSource;
 use super::align::StreamOffset;
 use super::grid::Grid;
 use super::usable::Usable;
-use crate::log::Quantity;
+use crate::recording::Quantity;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 
 /// A flight on one clock and one grid. Vectors have one entry a grid instant; SI, body FLU, world NWU.

@@ -13,9 +13,9 @@ use super::plant::{Plant, Push};
 use super::reference::Reference;
 use super::sensors::{NoiseLevels, TelemetrySettings};
 use super::setting::{not_negative, positive, whole_steps};
-use crate::log::Recording;
 use crate::physics::effects::MotorLag;
 use crate::physics::{ActiveEffect, Effect, Evaluation, Input, MAX_ROTORS, Model, State, Wrench};
+use crate::recording::Recording;
 use crate::vehicle::{Actuator, Propulsion, Vehicle};
 
 /// Everything about a flight but vehicle, effects and reference. The defaults are those of the
@@ -304,8 +304,8 @@ fn actuator_value(propulsion: &Propulsion, u: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::{Quantity, Stream, StreamKey};
     use crate::physics::effects::LinearDrag;
+    use crate::recording::{Quantity, Stream, StreamKey};
     use crate::simulate::{RandomTrajectory, random_vehicle};
     use crate::stats::white_level_of;
     use nalgebra::{Quaternion, UnitQuaternion, Vector3};

@@ -20,21 +20,32 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("vehicle", &[]),
     ("trajectory", &["frames"]),
     ("fence", &["frames"]),
-    ("physics", &["units", "vehicle"]),
-    ("log", &["units", "text", "frames"]),
+    ("physics", &["units", "text", "vehicle"]),
+    // a flight as typed streams, from wherever
+    ("recording", &[]),
+    // MAVLink's bytes, frames and messages
+    ("wire", &["units", "text", "frames", "recording"]),
+    // files
+    ("log", &["units", "text", "frames", "recording", "wire"]),
     // frames over sockets and serial ports, and their recording
-    ("link", &["text", "log"]),
+    ("link", &["text", "wire", "log"]),
     // vehicle: from actuator values to force
-    ("signals", &["stats", "vehicle", "log"]),
+    ("signals", &["stats", "vehicle", "recording"]),
     ("regression", &["signals"]),
     ("estimate", &["stats", "vehicle", "signals", "regression"]),
-    ("inspect", &["units", "stats", "vehicle", "log", "signals", "regression", "estimate"]),
+    (
+        "inspect",
+        &["units", "stats", "vehicle", "recording", "wire", "log", "signals", "regression", "estimate"],
+    ),
     // never estimate
-    ("simulate", &["units", "frames", "vehicle", "trajectory", "physics", "log"]),
-    ("config", &["units", "text", "vehicle", "trajectory", "log"]),
-    ("compare", &["vehicle", "physics", "log", "signals", "simulate"]),
+    ("simulate", &["units", "frames", "vehicle", "trajectory", "physics", "recording"]),
+    ("config", &["units", "text", "vehicle", "trajectory", "recording", "log"]),
+    ("compare", &["vehicle", "physics", "recording", "signals", "simulate"]),
     // estimate: what a flight will determine is for its estimator to say
-    ("plan", &["units", "vehicle", "trajectory", "log", "signals", "regression", "estimate", "simulate"]),
+    (
+        "plan",
+        &["units", "vehicle", "trajectory", "recording", "signals", "regression", "estimate", "simulate"],
+    ),
     // plan: the flight that tells two explanations apart keeps the vehicle's limits
     (
         "diagnose",
@@ -44,7 +55,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "vehicle",
             "trajectory",
             "physics",
-            "log",
+            "recording",
             "signals",
             "regression",
             "estimate",
@@ -59,7 +70,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         &["text", "vehicle", "physics", "signals", "regression", "estimate", "config", "compare", "diagnose"],
     ),
     ("export", &["units", "text", "vehicle", "physics"]),
-    ("sitl", &["units", "frames", "vehicle", "fence", "physics", "log", "link", "simulate"]),
+    ("sitl", &["units", "frames", "vehicle", "fence", "physics", "wire", "link", "simulate"]),
     (
         "fly",
         &[
@@ -70,7 +81,8 @@ const LAYERS: &[(&str, &[&str])] = &[
             "trajectory",
             "fence",
             "physics",
-            "log",
+            "recording",
+            "wire",
             "link",
             "signals",
             "regression",
@@ -348,8 +360,7 @@ fn only_the_typed_orders_make_messages() {
     let mut wrong = Vec::new();
     for source in sources() {
         // the embedded vehicle's own messages, those of logs that tests read, and names of the dialect in patterns
-        let makes =
-            ["fly/target/", "fly/setpoint.rs", "sitl/", "log/tlog/encode.rs", "link/signing/tests.rs"];
+        let makes = ["fly/target/", "fly/setpoint.rs", "sitl/", "wire/encode.rs", "link/signing/tests.rs"];
         if !makes.iter().any(|path| source.path.starts_with(path))
             && code(without_tests(&source.text)).contains("_DATA {")
         {

@@ -9,7 +9,8 @@ use std::time::Duration;
 use crate::lossy::{Faults, LossyProxy};
 use crate::processes::{config, fly, folder, free_port, planned, vehicle};
 use mavid::config::load_vehicle;
-use mavid::log::{Check, CrcSeeds, TlogReader};
+use mavid::log::TlogReader;
+use mavid::wire::{Check, CrcSeeds};
 use serde_json::Value;
 
 const SET_POSITION_TARGET_LOCAL_NED: u32 = 84;

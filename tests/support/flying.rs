@@ -13,10 +13,11 @@ use mavid::fly::{
     Action, Around, Cause, Course, Event, Feeding, FirstQuestion, Flight, FollowLaw, Note, Outcome, Setpoint,
     SetpointBounds, Settings, Sortie, Streamed, Streamer,
 };
-use mavid::log::{Autopilot, Frame, Nonce};
+use mavid::recording::Autopilot;
 use mavid::sitl::{AutopilotKind, LinkId, LinkRole, Settings as VehicleSettings, Vehicle};
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
 use mavid::vehicle::Limits;
+use mavid::wire::{Frame, Nonce};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::Vector3;

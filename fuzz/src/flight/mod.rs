@@ -14,8 +14,8 @@ use mavid::fly::{
     Action, Around, Course, Event, FirstQuestion, Flight, Key, Lift, Mode, Setpoint, Settings, Sortie, Stack,
     Streamed, Streamer,
 };
-use mavid::log::Frame;
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
+use mavid::wire::Frame;
 use mavlink::dialects::ardupilotmega::MavMessage;
 
 use super::bytes::Bytes;

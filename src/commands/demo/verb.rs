@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use mavid::config::parse_vehicle;
 use mavid::fly::Ending;
-use mavid::log::SystemId;
 use mavid::text;
+use mavid::wire::SystemId;
 use serde::Serialize;
 
 use super::concealed::{Compared, compare, concealed, table};

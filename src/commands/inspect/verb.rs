@@ -4,10 +4,11 @@ use std::path::Path;
 
 use mavid::config::{default_csv_mapping, load_csv_mapping, read_vehicle};
 use mavid::inspect::{Inspection, inspect_csv, inspect_tlog};
+use mavid::log::LoadOptions;
 use mavid::log::csv::read_csv;
-use mavid::log::{LoadOptions, SystemId};
 use mavid::text;
 use mavid::vehicle::Vehicle;
+use mavid::wire::SystemId;
 use serde::Serialize;
 
 use super::{page, progress};

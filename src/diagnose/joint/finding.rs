@@ -135,7 +135,7 @@ pub(super) fn effects(
             let place = settled.iter().position(|of| of.chosen.form.is(signature));
             match place {
                 Some(place) => of_columns(fitted, first + place, &settled[place], (vehicle, wanted, by_mass)),
-                None => of_latency(signature, flights, (latency, split), stated_lag_s(vehicle)),
+                None => of_latency(signature, flights, (latency, split), vehicle),
             }
         })
         .collect()
@@ -173,7 +173,7 @@ fn of_columns(
                 _ => set(present, slot, value, (vehicle, wanted)),
             },
         };
-        let plausible = (parameter.min, parameter.max);
+        let plausible = parameter.bounds.at(&fitted.base.size);
         parameters.push(ParameterFound { name: parameter.name, unit: parameter.unit, plausible, found });
     }
     let amounts: Vec<(usize, f64)> = present
@@ -219,9 +219,10 @@ fn of_latency(
     signature: &'static Signature,
     flights: &[Trace],
     (latency, split): (&LatencyFinding, Split),
-    stated_s: f64,
+    vehicle: &Vehicle,
 ) -> EffectFound {
     let effect = signature.effect;
+    let (stated_s, size) = (stated_lag_s(vehicle), &vehicle.size());
     let is_lag = signature.role.latency == Some(LatencyKind::Lag);
     let (value, least, ordinary_s) = if is_lag {
         (latency.parts.lag_s, LEAST_LAG_S, FAST_MOTOR_S)
@@ -245,7 +246,7 @@ fn of_latency(
         .map(|(slot, of)| ParameterFound {
             name: of.name,
             unit: of.unit,
-            plausible: (of.min, of.max),
+            plausible: of.bounds.at(size),
             found: if uneven { found.times(shares[slot]) } else { found.clone() },
         })
         .collect();

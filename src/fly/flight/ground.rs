@@ -15,7 +15,7 @@ use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
 use crate::fly::target::Order;
 use crate::fly::telemetry::Telemetry;
-use crate::log::Payload;
+use crate::wire::Payload;
 use mavlink::dialects::ardupilotmega::MavCmd;
 
 /// The estimate must have been good for this long.

@@ -8,7 +8,7 @@ use crate::fly::modes::Mode;
 use crate::fly::news::Novelty;
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::safety::Doubted;
-use crate::log::{Check, Frame, Payload};
+use crate::wire::{Check, Frame, Payload};
 
 /// For a vehicle to fly our setpoints after its takeoff, and to say so.
 const TAKEN_OVER: Duration = Duration::from_millis(1500);

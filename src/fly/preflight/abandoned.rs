@@ -12,8 +12,8 @@ use crate::fly::finding::Finding;
 use crate::fly::law::{FollowLaw, Motion, STEP_S};
 use crate::fly::safety::{Feeding, SetpointBounds};
 use crate::fly::setpoint::Place;
-use crate::log::Autopilot;
 use crate::plan::{HEIGHT_ERROR_M, floor_m};
+use crate::recording::Autopilot;
 use crate::trajectory::FlightPath;
 
 /// Subject of the findings.

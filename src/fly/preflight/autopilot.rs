@@ -4,7 +4,7 @@
 use super::Extremes;
 use crate::fly::finding::Finding;
 use crate::fly::parameters::Parameters;
-use crate::log::Autopilot;
+use crate::recording::Autopilot;
 use crate::units::deg_from_rad;
 
 /// One limit: what it bounds, its parameter (older name), how many of its units make one of SI, the value

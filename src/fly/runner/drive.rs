@@ -22,10 +22,10 @@ use crate::fly::requests::LinkKind;
 use crate::fly::safety::Lead;
 use crate::fly::view::{Attitude, Battery, KeyCommand, LinkView, Phase, ViewModel};
 use crate::link::{LinkEvent, LinkWriter, ReceivedFrame};
-use crate::log::{Frame, Record};
 use crate::text;
 use crate::units::deg_from_rad;
 use crate::vehicle::Vehicle;
+use crate::wire::{Frame, Record};
 
 /// A terminal that takes no picture for so long is told.
 const BLIND: Duration = Duration::from_secs(2);

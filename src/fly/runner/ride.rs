@@ -24,8 +24,8 @@ use crate::fly::view::{KeyCommand, ViewModel};
 use crate::link::{
     Address, Link, LinkOptions, LinkReader, LinkStats, Received, Recorder, RecorderStatus, Signing,
 };
-use crate::log::SystemId;
 use crate::vehicle::Vehicle;
+use crate::wire::SystemId;
 
 /// Between two looks at the clock.
 const TICK: Duration = Duration::from_millis(10);

@@ -11,8 +11,8 @@ use crate::fly::lift::Lift;
 use crate::fly::outcome::{Level, Note};
 use crate::fly::requests::LinkKind;
 use crate::link::LinkEvent;
-use crate::log::{Check, Record};
 use crate::vehicle::Vehicle;
+use crate::wire::{Check, Record};
 
 /// A flight with the checks that clear it. Times are those of the flight's clock.
 #[derive(Debug)]
