@@ -3,31 +3,31 @@
 use std::path::{Path, PathBuf};
 
 use mavid::fly;
+use mavid::report::{IdentificationDocument, explanation_answer, identification_text};
+use mavid::study::{AfterFlight, ExplainStudy, IdentifyStudy, after_flight};
 use mavid::text;
+use mavid::wire::SystemId;
 
-use super::explain::{self, Explained, REPORT};
-use super::identify::Identified;
+use super::explain::{self, REPORT};
+use super::identify::Targets;
+use super::progress::Quiet;
 use super::{CommandError, Outcome, output};
-use crate::cli::{ExplainArgs, IdentifyArgs, ReadArgs};
 
 /// Folder of the explanation in that of the flight.
 const EXPLAINED: &str = "explained";
-/// s of flight that `explain` leaves out at the beginning, as by itself.
-const TRANSIENT_S: f64 = 1.0;
-
 /// Names of what is written of the parameters.
 const MODEL: &str = "model.toml";
 const CHART: &str = "parameters.svg";
 const PAGE: &str = "identification.txt";
 const DOCUMENT: &str = "identification.json";
 
-/// What a flight says; a part that it cannot say holds why.
+/// What a flight says; a part that it cannot say, or that could not be written, holds why.
 #[derive(Debug)]
 pub struct Analysis {
     /// written beside the recording
-    pub identified: Result<Identified, String>,
+    pub identified: Result<IdentifyStudy, String>,
     /// written into a folder of its own
-    pub explained: Result<Explained, String>,
+    pub explained: Result<ExplainStudy, String>,
     folder: PathBuf,
 }
 
@@ -37,7 +37,7 @@ impl Analysis {
     pub fn of(
         (folder, landed): (&Path, bool),
         vehicle: &Path,
-        system: Option<u32>,
+        system: Option<SystemId>,
     ) -> Result<Option<Self>, CommandError> {
         let parameters = [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(|name| folder.join(name));
         let explanation = explain::WRITTEN.map(|name| folder.join(EXPLAINED).join(name));
@@ -48,16 +48,11 @@ impl Analysis {
         Ok(landed.then(|| Self::made(folder, vehicle, system)))
     }
 
-    fn made(folder: &Path, vehicle: &Path, system: Option<u32>) -> Self {
-        let identified = parameters(folder, vehicle, system).map_err(|error| error.to_string());
-        let explained = explanation(folder, vehicle, system).map_err(|error| error.to_string());
-        for (what, failure) in
-            [("identified", identified.as_ref().err()), ("explained", explained.as_ref().err())]
-        {
-            if let Some(failure) = failure {
-                output::message(&format!("not {what}: {failure}"));
-            }
-        }
+    fn made(folder: &Path, vehicle: &Path, system: Option<SystemId>) -> Self {
+        let AfterFlight { identified, explained } =
+            after_flight(&folder.join(fly::TLOG), vehicle, system, &Quiet);
+        let identified = kept("identified", identified, |study| write_parameters(study, folder));
+        let explained = kept("explained", explained, |study| explain::write(study, &folder.join(EXPLAINED)));
         Self { identified, explained, folder: folder.to_owned() }
     }
 
@@ -68,12 +63,12 @@ impl Analysis {
 
     /// For people: parameters, then the explanation's answer and where its report lies.
     pub fn page(&self) -> String {
-        let mut parts: Vec<String> = self.identified.iter().map(Identified::page).collect();
+        let mut parts: Vec<String> = self.identified.iter().map(identification_text).collect();
         let parameters = self.folder.join(REPORT);
         parts.extend(
             self.identified.iter().map(|_| format!("report of the parameters: {}", text::path(&parameters))),
         );
-        parts.extend(self.explained.iter().map(Explained::answer));
+        parts.extend(self.explained.iter().map(explanation_answer));
         parts.extend(self.report().map(|path| format!("report: {}", text::path(&path))));
         parts.join("\n\n")
     }
@@ -82,45 +77,26 @@ impl Analysis {
     pub fn outcome(&self) -> Result<Outcome, CommandError> {
         let failed = |why: &String| CommandError::Failure(why.clone());
         self.identified.as_ref().map_err(failed)?;
-        self.explained.as_ref().map_err(failed).map(Explained::outcome)
+        self.explained.as_ref().map_err(failed).map(explain::tell)
     }
 }
 
-fn parameters(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Identified, CommandError> {
-    let args = IdentifyArgs {
-        logs: vec![folder.join(fly::TLOG)],
-        vehicle: vehicle.to_owned(),
-        out: Some(folder.join(MODEL)),
-        report: Some(folder.join(REPORT)),
-        chart: Some(folder.join(CHART)),
-        read: ReadArgs { csv_map: None, system },
-        transient: None,
-        cutoff: None,
-        fir: false,
-        sigma: mavid::estimate::PAPER_SIGMA,
-        commands: false,
-        with: Vec::new(),
-    };
-    let identified = Identified::from(&args)?;
-    identified.write(&args)?;
-    output::file(&folder.join(PAGE), &format!("{}\n", identified.page()))?;
-    let json = output::json_text(&identified.document())?;
-    output::file(&folder.join(DOCUMENT), &json)?;
-    Ok(identified)
+/// The study, if there is one and it was written; says what is missing and why.
+fn kept<S>(
+    what: &str,
+    study: Result<S, mavid::study::StudyError>,
+    write: impl Fn(&S) -> Result<(), CommandError>,
+) -> Result<S, String> {
+    let written = study.map_err(CommandError::from).and_then(|study| write(&study).map(|()| study));
+    written.map_err(|error| {
+        output::message(&format!("not {what}: {error}"));
+        error.to_string()
+    })
 }
 
-fn explanation(folder: &Path, vehicle: &Path, system: Option<u32>) -> Result<Explained, CommandError> {
-    let out = folder.join(EXPLAINED);
-    let args = ExplainArgs {
-        logs: vec![folder.join(fly::TLOG)],
-        vehicle: vehicle.to_owned(),
-        holdout: Vec::new(),
-        next: None,
-        out: None,
-        read: ReadArgs { csv_map: None, system },
-        transient: TRANSIENT_S,
-    };
-    let explained = Explained::from(&args)?;
-    explained.write(&out)?;
-    Ok(explained)
+fn write_parameters(study: &IdentifyStudy, folder: &Path) -> Result<(), CommandError> {
+    let place = |name| Some(folder.join(name));
+    Targets { model: place(MODEL), report: place(REPORT), chart: place(CHART) }.write(study)?;
+    output::file(&folder.join(PAGE), &format!("{}\n", identification_text(study)))?;
+    output::file(&folder.join(DOCUMENT), &output::json_text(&IdentificationDocument::new(study))?)
 }

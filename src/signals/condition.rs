@@ -52,6 +52,7 @@ pub fn condition(
     vehicle: &Vehicle,
     settings: &ConditionSettings,
 ) -> Result<Signals, SignalsError> {
+    let _stage = tracing::info_span!("condition").entered();
     let chosen = Chosen::from(recording);
     let actuation = Actuation::from(recording, vehicle, settings.thrust)?;
     let step_s = step(recording, &chosen, actuation.stream(), settings)?;
@@ -124,6 +125,7 @@ pub fn condition(
     };
     let doubts = plausible::check(&signals, vehicle);
     signals.quality.notes.extend(doubts);
+    signals.emit();
     Ok(signals)
 }
 

@@ -131,6 +131,7 @@ pub fn simulate_flight(
     reference: &Reference,
     settings: &FlightSettings,
 ) -> Result<SimulatedFlight, SimulateError> {
+    let _stage = tracing::debug_span!("simulate", duration_s = settings.duration_s).entered();
     let mut effects = Vec::with_capacity(truth.effects.len() + 1);
     let own_lag = truth.effects.iter().any(|active| active.effect().id() == MotorLag.id());
     if not_negative("motor_time_constant_s", settings.motor_time_constant_s)? > 0.0 && !own_lag {

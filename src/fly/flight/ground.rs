@@ -46,6 +46,8 @@ impl Flight {
             Choice::Vehicle(vehicle, target, stack) => {
                 let text =
                     format!("system {} component {}, {}", target.system, target.component, stack.name());
+                let (system, component) = (target.system.0, target.component.0);
+                tracing::info!(system, component, autopilot = stack.name(), "vehicle found");
                 self.note(now, Level::Information, "vehicle", text);
                 let telemetry = Telemetry::new(vehicle, stack, now);
                 self.contact = Some(Contact { target, telemetry });
@@ -322,11 +324,13 @@ impl Flight {
         let name = answer.order.name();
         let question = matches!(self.phase, Phase::Check(_));
         if answer.result == AnswerResult::Accepted {
+            tracing::debug!(command = name, "command accepted");
             if !question {
                 self.note(now, Level::Information, "command", format!("{name} accepted"));
             }
             return;
         }
+        tracing::warn!(command = name, result = answer.result.text(), "command refused, or not answered");
         let mut reasons = vec![answer.result.text()];
         if !question {
             reasons.extend(self.complaints());

@@ -86,6 +86,7 @@ impl Flight {
                 let mode = stack.mode_name(to.custom_mode);
                 let armed = if to.armed { "armed" } else { "disarmed" };
                 if from.is_none_or(|from| (from.custom_mode, from.armed) != (to.custom_mode, to.armed)) {
+                    tracing::info!(mode, armed = to.armed, "mode reported");
                     self.note(now, Level::Information, "mode", format!("{mode}, {armed}"));
                 }
             }

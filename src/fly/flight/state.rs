@@ -177,6 +177,7 @@ impl Flight {
     }
 
     pub(super) fn enter(&mut self, now: Duration, phase: Phase) {
+        tracing::info!(phase = phase.name(), left = self.phase.name(), "phase entered");
         self.note(now, Level::Information, "phase", phase.name());
         self.phase = phase;
         self.entered = now;
