@@ -51,6 +51,7 @@ struct Climbing {
 
 async fn climbing(name: &str) -> Climbing {
     let settings = flying::vehicle_settings(AutopilotKind::Px4);
+    flying::write_events();
     let mut sortie = flying::sortie(&settings);
     sortie.may_arm = true;
     let file = settings.vehicle.clone();

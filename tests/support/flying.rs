@@ -23,9 +23,17 @@ use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use tracing_subscriber::layer::SubscriberExt;
+use tracing_subscriber::util::SubscriberInitExt;
 
 /// Between two looks at the clock.
 const STEP: Duration = Duration::from_millis(10);
+
+/// Events of flights are written by this program's subscriber; one for all of its tests.
+pub fn write_events() {
+    static SUBSCRIBER: std::sync::Once = std::sync::Once::new();
+    SUBSCRIBER.call_once(|| tracing_subscriber::registry().with(mavid::fly::event_layer()).init());
+}
 
 /// What lies between two ends: loss, delay, and delay that differs from frame to frame.
 pub struct Way {
