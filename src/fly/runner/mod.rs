@@ -10,6 +10,7 @@
 //! The live identification hears what the flight hears, on a thread of its own.
 
 mod clearance;
+mod clock;
 mod drive;
 mod error;
 mod estimating;
