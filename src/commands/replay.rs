@@ -3,14 +3,13 @@
 //! Only telemetry that autopilots sent goes out, so that a vehicle that hears it does nothing; what the other end sends
 //! is dropped.
 
-use std::io::IsTerminal;
-
 use indicatif::{ProgressBar, ProgressStyle};
 use mavid::link::LinkOptions;
 use mavid::replay::{Replay, ReplayCounts, ReplayError};
 use mavid::text;
 use serde::Serialize;
 
+use super::standard_error::StandardError;
 use super::{CommandError, Outcome, live, network, output};
 use crate::cli::ReplayArgs;
 
@@ -44,12 +43,12 @@ struct Document {
 }
 
 /// Runs the verb.
-pub fn run(json: bool, args: &ReplayArgs) -> Result<Outcome, CommandError> {
-    let args = args.clone();
+pub fn run(json: bool, stderr: &StandardError, args: &ReplayArgs) -> Result<Outcome, CommandError> {
+    let (args, stderr) = (args.clone(), stderr.clone());
     live::run(move |work| {
         work.ends_itself();
         let replay = Replay::open(&args.log, args.speed).map_err(|error| failed(&error))?;
-        network::block_on(play(json, &args, &replay))
+        network::block_on(play((json, &stderr), &args, &replay))
     })
 }
 
@@ -60,12 +59,16 @@ fn failed(error: &ReplayError) -> CommandError {
     }
 }
 
-async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome, CommandError> {
+async fn play(
+    (json, stderr): (bool, &StandardError),
+    args: &ReplayArgs,
+    replay: &Replay,
+) -> Result<Outcome, CommandError> {
     let (mut reader, writer) = network::open(&network::address(&args.to)?, LinkOptions::default()).await?;
     if !writer.is_connected() {
         output::message(&format!("waiting for somebody at {}", args.to));
     }
-    let bar = bar(replay.frames());
+    let bar = stderr.bar(bar(replay.frames()));
     let mut so_far = ReplayCounts::default();
     let mut progress = |frame: u64, counts: &ReplayCounts| {
         so_far = *counts;
@@ -95,7 +98,7 @@ async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome,
         losses: replay.losses().iter().map(ToString::to_string).collect(),
     };
     for loss in &document.losses {
-        output::message(&format!("warning: {}: {loss}", document.log));
+        output::warning(&format!("{}: {loss}", document.log));
     }
     if json {
         output::json(&document)?;
@@ -119,9 +122,6 @@ async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome,
 }
 
 fn bar(frames: u64) -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
     let bar = ProgressBar::new(frames);
     match ProgressStyle::with_template("playing {wide_bar} {pos}/{len} {eta}") {
         Ok(style) => bar.with_style(style),

@@ -28,6 +28,7 @@ pub fn search(
     gates: &Gates,
     signatures: &[&'static Signature],
 ) -> Result<Search, PhysicsError> {
+    let _step = tracing::info_span!("search").entered();
     let (before, latency) = fit_latency(flights, Base::rigid(vehicle))?;
     let mut after = before.clone();
     let mut steps: Vec<Step> = Vec::new();
@@ -38,7 +39,9 @@ pub fn search(
         let candidates = candidates(&after.base.vehicle, flights, signatures);
         last = test_all(flights, &after, &candidates, signatures);
         last.extend(between_grid(flights, &after, &last));
+        last.iter().for_each(Tested::emit);
         let count = last.len() as f64;
+        tracing::debug!(candidates = last.len(), taken = steps.len(), "candidates tested");
         let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);
         let ranked = |tested: &[Tested]| {
             let open = tested.iter().filter(|tested| !refused.contains(&tested.candidate.id));
@@ -62,11 +65,14 @@ pub fn search(
                     fitted = with_taken(flights, &after, &taken)?;
                 }
                 if wanders(flights, &fitted, &taken) || at_bound(&fitted, &taken) {
+                    tracing::debug!(effect = taken.candidate.id, "effect refused");
                     refused.push(taken.candidate.id);
                     continue;
                 }
                 after = fitted;
-                steps.push(Step { taken, rivals: passed.split_off(1) });
+                let step = Step { taken, rivals: passed.split_off(1) };
+                step.emit();
+                steps.push(step);
             }
             _ if settled == SETTLINGS || steps.is_empty() => break,
             _ => {
@@ -76,7 +82,9 @@ pub fn search(
                 let placed = one_place(flights, &mut after, price)? | other_form(flights, &mut after, price)?;
                 let gone = before.iter().map(|present| present.id());
                 let kept = |id: &&'static str| after.base.present.iter().any(|p| p.id() == *id);
-                refused.extend(gone.filter(|id| !kept(id)));
+                refused.extend(gone.filter(|id| !kept(id)).inspect(|effect| {
+                    tracing::info!(effect, "effect dropped from the model");
+                }));
                 if !dropped && !placed && moved < UNCHANGED_S {
                     break;
                 }
@@ -142,10 +150,11 @@ fn with_last(flights: &[Trace], fitted: Fitted) -> Result<Fitted, PhysicsError> 
     Ok(if placed.misfit() < fitted.misfit() && !bounded { placed } else { fitted })
 }
 
-/// How often the search may go on after that.
+/// How often effects are pruned and the search goes on after no candidate passes any more.
 const SETTLINGS: usize = 2;
-/// What a column must explain to be worth having, in independent squared sigmas.
+/// Energy that a column must explain to be worth a parameter, in squared standard deviations of independent rows.
 const COLUMN_PRICE: f64 = 12.0;
+
 /// The candidate's effects at the values that the evidence has.
 fn started(tested: &Tested, size: &VehicleSize) -> Vec<EffectTerm> {
     let mut theta = tested.evidence.theta.iter();

@@ -6,13 +6,6 @@
 //!
 //! [`open`] does all of it. [`open_flights`] divides a log into flights of bounded size. [`stream`] gives the events to
 //! whoever wants them without keeping any.
-//!
-//! ```
-//! let log = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/p01_identify_0_25s.tlog");
-//! let opened = mavid::log::open(log, &mavid::log::OpenOptions::default())?;
-//! assert!(opened.recording.streams.len() > 5 && opened.report.losses.is_empty());
-//! # Ok::<_, mavid::log::LogError>(())
-//! ```
 
 pub mod csv;
 mod error;

@@ -25,6 +25,19 @@ pub struct Opened {
 
 /// Reads a log into memory, all of it. Of several vehicles, the one that flew is read, unless `options` choose one.
 ///
+/// ```
+/// use mavid::log::{self, OpenOptions};
+/// use mavid::recording::Quantity;
+/// use std::path::Path;
+///
+/// let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/p04_identify_10_22s.tlog");
+/// let log = log::open(&path, &OpenOptions::default())?;
+/// let attitude = log.recording.streams.iter().find(|(key, _)| key.quantity == Quantity::Attitude);
+/// assert!(attitude.is_some_and(|(_, stream)| stream.len() > 100));
+/// assert!(log.report.losses.is_empty());
+/// # Ok::<(), mavid::log::LogError>(())
+/// ```
+///
 /// # Errors
 /// The file cannot be read, is of no known format, holds no vehicle, or several that flew.
 pub fn open<'a>(log: impl Into<Input<'a>>, options: &OpenOptions) -> Result<Opened, LogError> {

@@ -186,7 +186,8 @@ fn a_flight_goes_on_though_its_terminal_takes_nothing() {
     let (reader, writer) = full_pipe();
     let mut running = Owned(
         Command::new(MAVID)
-            .args(["--json", "fly", "--plain", "--arm", "--connect", &listens.replace("in:", "out:")])
+            // every event becomes a log line, which nobody takes either
+            .args(["-vvv", "--json", "fly", "--plain", "--arm", "--connect", &listens.replace("in:", "out:")])
             .args(["--vehicle", &config("x500.toml"), "--out"])
             .arg(&out)
             .arg("--trajectory")

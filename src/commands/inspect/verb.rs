@@ -3,44 +3,40 @@
 use mavid::config::read_vehicle;
 use mavid::inspect::{self, Inspection};
 use mavid::log::format_of;
+use mavid::report::{InspectionDocument, inspection_text};
+use mavid::study::unread;
 use mavid::text;
 use mavid::vehicle::Vehicle;
-use serde::Serialize;
 
-use super::{page, progress};
+use super::progress;
 use crate::cli::InspectArgs;
-use crate::commands::flights::{open_options, unread};
+use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, Outcome, output};
 
-/// The JSON document.
-#[derive(Serialize)]
-struct Document<'a> {
-    schema: u32,
-    file: String,
-    #[serde(flatten)]
-    inspection: &'a Inspection,
-}
-
 /// Runs the verb.
-pub fn run(json: bool, args: &InspectArgs) -> Result<Outcome, CommandError> {
+pub fn run(json: bool, stderr: &StandardError, args: &InspectArgs) -> Result<Outcome, CommandError> {
     let loaded = args.vehicle.as_deref().map(read_vehicle).transpose()?;
     if let (Some(path), Some(loaded)) = (&args.vehicle, &loaded) {
         output::warnings(path, &loaded.warnings);
     }
     let vehicle = loaded.as_ref().map(|loaded| &loaded.vehicle);
-    let inspection = inspect(args, vehicle)?;
+    let inspection = inspect(stderr, args, vehicle)?;
     let file = text::path(&args.log);
     if json {
-        output::json(&Document { schema: 1, file, inspection: &inspection })?;
+        output::json(&InspectionDocument::new(&file, &inspection))?;
     } else {
-        output::text(&page::page(&file, &inspection))?;
+        output::text(&inspection_text(&file, &inspection))?;
     }
     Ok(if inspection.losses.is_empty() { Outcome::Done } else { Outcome::DoneWithLoss })
 }
 
-fn inspect(args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, CommandError> {
+fn inspect(
+    stderr: &StandardError,
+    args: &InspectArgs,
+    vehicle: Option<&Vehicle>,
+) -> Result<Inspection, CommandError> {
     let path = args.log.as_path();
-    let format = format_of(path).map_err(|error| unread(path, &error))?;
+    let format = format_of(path).map_err(|error| unread(path, error))?;
     let refused = [
         ("--csv-map is for tables (.csv)", args.read.csv_map.is_some() && !format.takes_columns),
         ("--system-id is for telemetry logs (.tlog)", args.read.system.is_some() && !format.takes_system),
@@ -48,9 +44,9 @@ fn inspect(args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, 
     if let Some((option, _)) = refused.into_iter().find(|(_, is_refused)| *is_refused) {
         return Err(CommandError::Input(format!("{option}; this one is a {}", format.name)));
     }
-    let options = open_options(&args.read)?;
-    let bar = progress::of_file(path);
+    let options = args.read.settings().open_options()?;
+    let bar = stderr.bar(progress::of_file(path));
     let inspection = inspect::inspect(path, &options, vehicle, &mut |bytes| bar.set_position(bytes));
     bar.finish_and_clear();
-    inspection.map_err(|error| unread(path, &error))
+    Ok(inspection.map_err(|error| unread(path, error))?)
 }

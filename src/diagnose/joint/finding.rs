@@ -109,6 +109,16 @@ impl EffectFound {
         signature_of(self.effect.id()).is_some_and(|signature| self.z > Gates::default().deviate(signature))
     }
 
+    /// Emits it as a tracing event.
+    pub(super) fn emit(&self) {
+        let (effect, z, tried) = (self.effect.id(), self.z, self.tried);
+        let significant = self.is_significant();
+        tracing::info!(effect, z, tried, significant, "effect estimated");
+        for ParameterFound { name, unit, found, .. } in &self.parameters {
+            tracing::debug!(effect, name, unit, value = found.value(), ?found, "parameter of the effect");
+        }
+    }
+
     /// For a simulation; `None` where the flight determines nothing of it.
     #[must_use]
     pub fn acting(&self) -> Option<ActiveEffect> {

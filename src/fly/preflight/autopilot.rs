@@ -1,9 +1,9 @@
 //! The trajectory against what the autopilot makes of a setpoint. A limit that it exceeds makes the
 //! vehicle miss it, and the miss looks like physics that is not there.
 
-use super::Extremes;
 use crate::fly::finding::Finding;
 use crate::fly::parameters::Parameters;
+use crate::plan::Extremes;
 use crate::recording::Autopilot;
 use crate::units::deg_from_rad;
 

@@ -156,6 +156,9 @@ impl Supervisor {
                 finding::Level::Ok | finding::Level::Awaited => Level::Information,
                 _ => Level::Warning,
             };
+            let finding::Finding { subject, expected, came, remedy, .. } = finding;
+            let found = finding.level.name();
+            tracing::debug!(subject, level = found, expected, came, remedy, "checked before the flight");
             self.note(now, level, "check", finding.to_string());
         }
         let lift = Lift::new(&self.vehicle, &cleared.parameters);

@@ -1,0 +1,241 @@
+//! Flights of logs, whatever their format: read, conditioned, and told apart.
+
+use std::path::{Path, PathBuf};
+
+use crate::config::{ConfigError, load_csv_mapping};
+use crate::diagnose::holdout::HeldOut;
+use crate::log::{Hold, LogError, LogFlight, OpenOptions, ReadReport, format_of, open_flights};
+use crate::note::{About, Note};
+use crate::recording::{Recording, shared_share};
+use crate::signals::{ConditionSettings, Signals, condition};
+use crate::text;
+use crate::vehicle::Vehicle;
+use crate::wire::SystemId;
+use rayon::prelude::*;
+
+use super::{InputFile, StudyError};
+
+/// What is identified and validated from of one log: it takes 20 MB a minute at 125 Hz.
+pub(super) const IDENTIFIED: Hold = Hold { seconds: 1800.0, numbers: 9_000_000 };
+/// What is explained of one log: it takes 75 MB a minute at 125 Hz on two cores, and 130 MB on eight.
+pub(super) const EXPLAINED: Hold = Hold { seconds: 480.0, numbers: 3_000_000 };
+/// Share of a hold-out's samples that may be in an explained flight: none are, but for chance.
+const MOST_SHARED: f64 = 0.02;
+
+/// How logs are read.
+#[derive(Debug, Clone, Default)]
+pub struct ReadSettings {
+    /// what the columns of a CSV mean; `None`: the names in `configs/csv/default.toml`
+    pub csv_map: Option<PathBuf>,
+    /// the vehicle; `None`: the only one of the log that flew
+    pub system: Option<SystemId>,
+}
+
+impl ReadSettings {
+    /// What they mean for the reader.
+    ///
+    /// # Errors
+    /// The mapping of columns cannot be read.
+    pub fn open_options(&self) -> Result<OpenOptions, ConfigError> {
+        let columns = self.csv_map.as_deref().map(load_csv_mapping).transpose()?.unwrap_or_default();
+        Ok(OpenOptions { system: self.system, columns })
+    }
+
+    /// A mapping of columns needs a table among the logs. A log that cannot be read may be one: that is told later.
+    ///
+    /// # Errors
+    /// [`StudyError::Setting`] otherwise.
+    pub(super) fn check<'a>(&self, mut logs: impl Iterator<Item = &'a PathBuf>) -> Result<(), StudyError> {
+        let may_be_table = |log: &PathBuf| format_of(log).map_or(true, |format| format.takes_columns);
+        if self.csv_map.is_some() && !logs.any(may_be_table) {
+            let why = "expected a .csv among the logs, got none".to_owned();
+            return Err(StudyError::Setting { name: "csv-map", why });
+        }
+        Ok(())
+    }
+}
+
+/// A flight and the log that it came from.
+#[derive(Debug)]
+pub(super) struct Flight {
+    pub(super) recording: Recording,
+    /// name, hash, losses
+    pub(super) input: InputFile,
+}
+
+/// Flights that are ready for estimation; all have one entry a flight.
+#[derive(Debug, Default)]
+pub(super) struct Prepared {
+    pub(super) recordings: Vec<Recording>,
+    pub(super) signals: Vec<Signals>,
+    pub(super) inputs: Vec<InputFile>,
+}
+
+impl Prepared {
+    pub(super) fn is_empty(&self) -> bool {
+        self.signals.is_empty()
+    }
+
+    /// Each flight's file and signals.
+    pub(super) fn each(&self) -> impl Iterator<Item = (&InputFile, &Signals)> {
+        self.inputs.iter().zip(&self.signals)
+    }
+
+    /// As flights that a model is shown on.
+    pub(super) fn held_out(&self) -> Vec<HeldOut<'_>> {
+        let each = self.recordings.iter().zip(&self.signals).zip(&self.inputs);
+        each.map(|((recording, signals), input)| HeldOut {
+            name: &input.path,
+            signals,
+            recording: Some(recording),
+        })
+        .collect()
+    }
+}
+
+/// The flights of every log, read side by side: each has at least one, and at most as much as `most`.
+pub(super) fn load_all(
+    logs: &[PathBuf],
+    read: &ReadSettings,
+    most: &Hold,
+) -> Result<Vec<Vec<Flight>>, StudyError> {
+    let options = read.open_options()?;
+    let done: Vec<_> = logs.par_iter().map(|path| load(path, &options, most)).collect();
+    done.into_iter().collect()
+}
+
+fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, StudyError> {
+    let opened = open_flights(path, options, most).map_err(|error| unread(path, error))?;
+    let about = || About::File(text::path(&path));
+    let losses = opened.report.losses.iter().map(ToString::to_string);
+    let oddities = opened.report.oddities.iter().map(ToString::to_string);
+    let mut input = InputFile::of(path)?;
+    input.notes.extend(losses.map(|text| Note::loss(about(), text)));
+    input
+        .notes
+        .extend(whose(&opened.report).into_iter().chain(oddities).map(|text| Note::remark(about(), text)));
+    Ok(of_log(opened.flights.flights, &input))
+}
+
+/// Why a log cannot be read, with its name.
+#[must_use]
+pub fn unread(path: &Path, error: LogError) -> StudyError {
+    match error {
+        // these name it
+        LogError::Open { .. } | LogError::Table(_) => StudyError::Log(error),
+        _ => StudyError::File { file: text::path(&path), why: error.to_string() },
+    }
+}
+
+/// Which of several vehicles it is.
+fn whose(report: &ReadReport) -> Option<String> {
+    let others: Vec<String> = report.others.iter().map(ToString::to_string).collect();
+    report.vehicle.filter(|_| !others.is_empty()).map(|vehicle| {
+        format!(
+            "system {} is analysed; system(s) {} speak in the log as well (--system-id chooses another)",
+            vehicle.system,
+            others.join(", ")
+        )
+    })
+}
+
+/// Each flight under a name of its own; what is to be said of the log is said of the first.
+fn of_log(flights: Vec<LogFlight>, log: &InputFile) -> Vec<Flight> {
+    let of = flights.len();
+    let named = |(index, flight): (usize, LogFlight)| {
+        let mut input = log.clone();
+        if index > 0 {
+            input.notes.clear();
+        }
+        if let Some((from_s, to_s)) = flight.part_s {
+            input.path = format!("{}, flight {} of {of} ({from_s:.0} to {to_s:.0} s)", log.path, index + 1);
+        }
+        Flight { recording: flight.recording, input }
+    };
+    flights.into_iter().enumerate().map(named).collect()
+}
+
+impl Flight {
+    /// Conditioned for a vehicle of this file.
+    pub(super) fn conditioned(
+        &self,
+        (vehicle, file): (&Vehicle, &Path),
+        settings: &ConditionSettings,
+    ) -> Result<Signals, StudyError> {
+        condition(&self.recording, vehicle, settings).map_err(|source| StudyError::Flight {
+            flight: self.input.path.clone(),
+            vehicle: text::path(&file),
+            source,
+            losses: self.input.losses().into_iter().map(str::to_owned).collect(),
+        })
+    }
+}
+
+/// The flights of every log, conditioned side by side for a vehicle of this file.
+pub(super) fn prepare(
+    logs: Vec<Vec<Flight>>,
+    vehicle: (&Vehicle, &Path),
+    settings: &ConditionSettings,
+) -> Result<Prepared, StudyError> {
+    let one = |log| ready(log, |flight: &Flight| flight.conditioned(vehicle, settings));
+    let done: Vec<_> = logs.into_par_iter().map(one).collect();
+    let mut prepared = Prepared::default();
+    for log in done {
+        for (flight, signals) in log? {
+            prepared.recordings.push(flight.recording);
+            prepared.inputs.push(flight.input);
+            prepared.signals.push(signals);
+        }
+    }
+    Ok(prepared)
+}
+
+/// The flights of one log that can be made ready. Of several flights one that cannot is left out, and noted with the first
+/// that can.
+pub(super) fn ready<T>(
+    log: Vec<Flight>,
+    make: impl Fn(&Flight) -> Result<T, StudyError>,
+) -> Result<Vec<(Flight, T)>, StudyError> {
+    let (mut ready, mut refusal, mut notes) = (Vec::new(), None, Vec::new());
+    for flight in log {
+        match make(&flight) {
+            Ok(made) => ready.push((flight, made)),
+            Err(why) => {
+                notes.extend(flight.input.notes);
+                notes.push(Note::remark(About::File(flight.input.path), format!("left out: {why}")));
+                refusal.get_or_insert(why);
+            }
+        }
+    }
+    let Some(why) = refusal else { return Ok(ready) };
+    let Some((first, _)) = ready.first_mut() else { return Err(why) };
+    first.input.notes.splice(0..0, notes);
+    Ok(ready)
+}
+
+/// The share (0..1) of a recording that the other holds as well, where it is more than chance.
+pub(super) fn shared(of: &Recording, other: &Recording) -> Option<f64> {
+    Some(shared_share(of, other)).filter(|share| *share > MOST_SHARED)
+}
+
+/// The same file twice is refused; `logs` are the flights of each.
+pub(super) fn refuse_twins<'a>(logs: impl Iterator<Item = &'a Vec<Flight>>) -> Result<(), StudyError> {
+    let inputs: Vec<&InputFile> = logs.filter_map(|log| log.first()).map(|flight| &flight.input).collect();
+    for (index, input) in inputs.iter().enumerate() {
+        if let Some(twin) = inputs[..index].iter().find(|other| other.sha256 == input.sha256) {
+            return Err(StudyError::Twins { one: twin.path.clone(), other: input.path.clone() });
+        }
+    }
+    Ok(())
+}
+
+/// What is hardly meant in a vehicle's file.
+pub(super) fn file_notes(file: &Path, warnings: &[String]) -> Vec<Note> {
+    let about = || About::File(text::path(&file));
+    warnings.iter().map(|warning| Note::warning(about(), warning.as_str())).collect()
+}
+
+/// Names of logs in one line.
+pub(super) fn names(logs: &[PathBuf]) -> String {
+    logs.iter().map(|log| text::path(&log)).collect::<Vec<_>>().join(", ")
+}
