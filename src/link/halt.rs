@@ -16,6 +16,18 @@ pub enum Stop {
     Ends,
 }
 
+/// Ends a part by a panic, as a fault in it would.
+///
+/// # Panics
+/// Always: a test asked for it.
+#[expect(
+    clippy::panic,
+    reason = "that a panic does no harm is what the test is for; nothing but a test asks for one"
+)]
+pub fn panic_for_test(part: &'static str) -> ! {
+    std::panic::panic_any(part)
+}
+
 /// Where a part of the program is stopped, and when it last ran. By itself it never stops. Clones share it.
 #[derive(Debug, Clone, Default)]
 pub struct Halt(Arc<State>);

@@ -37,7 +37,7 @@ pub use carried::Carrier;
 pub use clock::{HostClock, HostStamp};
 pub use error::LinkError;
 pub use event::LinkEvent;
-pub use halt::{Halt, Stop};
+pub use halt::{Halt, Stop, panic_for_test};
 pub use open::{Ends, Link};
 pub use options::LinkOptions;
 pub use reader::LinkReader;

@@ -8,7 +8,7 @@ use tokio::sync::{mpsc, watch};
 
 use super::address::Address;
 use super::error::LinkError;
-use super::halt::{Halt, Stop};
+use super::halt::{Halt, Stop, panic_for_test};
 use super::incoming::Incoming;
 use super::options::LinkOptions;
 use super::outgoing::Outgoing;
@@ -98,7 +98,7 @@ async fn run(shared: &Shared, halt: &Halt) {
                 std::thread::sleep(RUNS);
                 continue;
             }
-            Some(Stop::Panics) => std::panic::panic_any("a test stops the link"),
+            Some(Stop::Panics) => panic_for_test("a test stops the link"),
             Some(Stop::Ends) => return,
             None => {}
         }

@@ -26,6 +26,7 @@ use crate::fly::sortie::Sortie;
 use crate::fly::view::{KeyCommand, ViewModel};
 use crate::link::{
     Address, Link, LinkOptions, LinkReader, LinkStats, Received, Recorder, RecorderStatus, Signing, Stop,
+    panic_for_test,
 };
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
@@ -163,7 +164,7 @@ async fn conduct(
     loop {
         match parking.halt(Part::Supervisor).stopped() {
             Some(Stop::Stands) => std::future::pending().await,
-            Some(Stop::Panics) => std::panic::panic_any("a test stops the supervisor"),
+            Some(Stop::Panics) => panic_for_test("a test stops the supervisor"),
             Some(Stop::Ends) => return Err(RunError::Broken("a test ends the supervisor".to_owned())),
             None => {}
         }
@@ -172,7 +173,7 @@ async fn conduct(
         tokio::select! {
             received = reader.receive(), if hears && telemetry.stopped() != Some(Stop::Stands) => match received {
                 Ok(_) if telemetry.stopped() == Some(Stop::Panics) => {
-                    std::panic::panic_any("a test stops the telemetry")
+                    panic_for_test("a test stops the telemetry")
                 }
                 Ok(Received::Frame(frame)) => {
                     drive.frame(frame);
