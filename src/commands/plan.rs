@@ -112,26 +112,30 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
     output::warnings(file, &notes);
     let mut request = request_of(args)?;
     let bounds = bounds_of(&limits, &vehicle);
-    let (series, worth, criterion_value) = if let Some(file) = &args.check {
+    let (series, worth, criterion_value, rest) = if let Some(file) = &args.check {
         let stored = read_trajectory(file)?;
         request.repeats = stored.repeats;
         let worth = assess(&stored.series, &vehicle, &bounds, &request);
-        (stored.series, worth, None)
+        (stored.series, worth, None, Vec::new())
     } else if let Some(circle) = &args.circle {
         let series = circle_of(circle, &limits)?;
         series.check_size(request.repeats).map_err(PlanError::from)?;
         let worth = assess(&series, &vehicle, &bounds, &request);
-        (series, worth, None)
+        (series, worth, None, Vec::new())
     } else {
         let plan = planned(&vehicle, &limits, &request)?;
-        (plan.trajectory, plan.assessment, Some(plan.criterion_value))
+        (plan.trajectory, plan.assessment, Some(plan.criterion_value), plan.rest)
     };
     let mut summary = summarize(&worth, request.criterion, criterion_value);
     let flight = around(&series, args, request.repeats)?;
     if let Some(violation) = below_floor(&flight, &vehicle) {
         summary.first_violation.get_or_insert(violation);
     }
-    match flight_path(&series, &flight, &bounds, &Dynamics::new(&vehicle)) {
+    let dynamics = Dynamics::new(&vehicle);
+    let calm = [bounds.as_slice(), &rest].concat();
+    let path = flight_path(&series, &flight, &calm, &dynamics)
+        .or_else(|_| flight_path(&series, &flight, &bounds, &dynamics));
+    match path {
         Ok(path) => {
             summary.transitions = transitions_of(&path, &flight);
             summary.flown = Some(Flown::of(&path, &vehicle));
@@ -148,7 +152,8 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
 }
 
 fn planned(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Result<Plan, CommandError> {
-    let bar = ProgressBar::new(search_of(request).work());
+    let searches = if request.rests_inside { 2 } else { 1 };
+    let bar = ProgressBar::new(searches * search_of(request).work());
     if let Ok(style) = ProgressStyle::with_template("planning {bar:30} {pos}/{len} descents") {
         bar.set_style(style);
     }
@@ -253,8 +258,8 @@ fn request_of(args: &PlanArgs) -> Result<PlanRequest, CommandError> {
     let start = match args.start.as_deref() {
         None => StartPlace::default(),
         Some([x_m, y_m, rest @ ..]) => StartPlace {
-            x_m: *x_m,
-            y_m: *y_m,
+            x_m: Some(*x_m),
+            y_m: Some(*y_m),
             z_m: rest.first().copied(),
             yaw_rad: rest.get(1).map_or(0.0, |deg| deg.to_radians()),
         },
@@ -275,6 +280,7 @@ fn request_of(args: &PlanArgs) -> Result<PlanRequest, CommandError> {
         },
         seed: args.seed,
         starts: args.starts,
+        rests_inside: true,
         ..PlanRequest::default()
     })
 }

@@ -10,6 +10,7 @@ use super::feasible::{Conflict, StartPlace, feasible};
 use super::information::GramSampler;
 use super::noise::{NoiseModel, parameter_scale};
 use super::optimise::Search;
+use super::room::rest_bounds;
 use super::space::{AxisStart, SeriesSpace};
 use crate::trajectory::{FourierTrajectory, SizeError, check_size};
 use crate::vehicle::{Limits, Vehicle};
@@ -40,10 +41,12 @@ pub struct PlanRequest {
     pub seed: u64,
     /// number of random starts
     pub starts: u64,
+    /// a vehicle that hears nothing more is to come to rest inside the room, as far as that costs little
+    pub rests_inside: bool,
 }
 
 impl Default for PlanRequest {
-    /// The paper's series, five periods, sixteen starts.
+    /// The paper's series, five periods, sixteen starts; without regard to an end of the setpoints, as in the paper.
     fn default() -> Self {
         Self {
             period_s: 10.0,
@@ -54,6 +57,7 @@ impl Default for PlanRequest {
             noise: NoiseModel::default(),
             seed: 1,
             starts: 16,
+            rests_inside: false,
         }
     }
 }
@@ -85,6 +89,9 @@ pub struct Plan {
     pub criterion_value: f64,
     /// what it is worth
     pub assessment: Assessment,
+    /// bounds, beside those of the limits, by which a vehicle that hears nothing more comes to rest inside the room; for
+    /// the ways to the series and back as well
+    pub rest: Vec<Bound>,
 }
 
 /// Why there is no plan.
@@ -123,10 +130,15 @@ pub enum PlanError {
 
 /// How often a plan that breaks a bound is polished.
 const POLISHES: u32 = 3;
+/// By how much the criterion may grow, for a plan that is safe where the setpoints may end.
+const CALM_COSTS: f64 = 1.1;
+/// How far inside the room the vehicle is to come to rest then, m, in the order in which it is tried.
+const INSIDE_M: [f64; 7] = [0.5, 0.25, 0.0, -0.25, -0.5, -0.75, -1.0];
 /// Share of the commands of a flown plan that may be at a rotor's bound: an instant of the way from hover into the series.
 const AT_BOUND_MAX: f64 = 0.002;
 
-/// Plans a trajectory. `done` is called once a descent, [`Search::work`] times in all.
+/// Plans a trajectory. `done` is called once a descent, [`Search::work`] times in all, or twice as often where it is to
+/// rest inside.
 ///
 /// # Errors
 /// If a number is out of range, limits conflict, or no trajectory inside the limits was found.
@@ -143,6 +155,10 @@ pub fn plan(
     let search = search_of(request);
     let best = search.run(&problem, samples, done).ok_or(PlanError::NotDetermined)?;
     let mut best = settled(&search, &problem, best, (vehicle, request))?;
+    let mut rest = Vec::new();
+    if request.rests_inside {
+        (best, rest) = calmed(&search, &problem, best, (vehicle, limits, request), done);
+    }
     // what a controller adds to the planned thrusts is known once it is flown
     for margin in &ROTOR_MARGINS[1..] {
         let trajectory = problem.space.trajectory(&best.unknowns);
@@ -150,6 +166,7 @@ pub fn plan(
             break;
         }
         problem.bounds = bounds_to_plan_in(limits, vehicle, *margin);
+        problem.bounds.extend_from_slice(&rest);
         let calmer = search.polish(&problem, best.unknowns.clone(), samples);
         match settled(&search, &problem, calmer, (vehicle, request)) {
             Ok(calmer) => best = calmer,
@@ -160,7 +177,43 @@ pub fn plan(
     let trajectory = problem.space.trajectory(&best.unknowns);
     // what is left is told to the bounds themselves
     let assessment = assess(&trajectory, vehicle, &bounds_of(limits, vehicle), request);
-    Ok(Plan { trajectory, criterion_value: best.log_value.exp(), assessment })
+    Ok(Plan { trajectory, criterion_value: best.log_value.exp(), assessment, rest })
+}
+
+/// The plan by which a vehicle that hears nothing more stays furthest inside the room, as far as that costs little of the
+/// criterion, and the bounds that keep it there; as it was where there is none.
+fn calmed(
+    search: &Search,
+    problem: &Problem,
+    best: Iterate,
+    (vehicle, limits, request): (&Vehicle, &Limits, &PlanRequest),
+    done: &(dyn Fn() + Sync),
+) -> (Iterate, Vec<Bound>) {
+    let samples = whole((request.period_s / SAMPLE_S).ceil());
+    let worth = best.log_value + CALM_COSTS.ln();
+    let with = |rest: &[Bound]| {
+        let mut calm = problem.clone();
+        calm.bounds.extend_from_slice(rest);
+        calm
+    };
+    // what is best without these bounds may be far from what is best with them
+    let inside = rest_bounds(limits, vehicle, 0.0);
+    let another = inside.and_then(|rest| search.run(&with(&rest), samples, done));
+    for inside_m in INSIDE_M {
+        let Some(rest) = rest_bounds(limits, vehicle, inside_m) else { continue };
+        let calm = with(&rest);
+        let starts = another.iter().chain([&best]).map(|start| start.unknowns.clone());
+        let calmer = starts
+            .filter_map(|start| {
+                let calmer = search.polish(&calm, start, samples);
+                settled(search, &calm, calmer, (vehicle, request)).ok()
+            })
+            .min_by(|a, b| a.log_value.total_cmp(&b.log_value));
+        if let Some(calmer) = calmer.filter(|calmer| calmer.log_value <= worth) {
+            return (calmer, rest);
+        }
+    }
+    (best, Vec::new())
 }
 
 /// Polishes until every bound is kept.
@@ -253,7 +306,7 @@ fn problem_of(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Prob
     }
 }
 
-/// The height is free unless prescribed. A start on a bound gets no jerk, and stands off the bound by as
+/// The height is free unless prescribed, and so is the place of a plan that is to rest inside. A start on a bound gets no jerk, and stands off the bound by as
 /// little as all else does.
 fn starts_of(limits: &Limits, request: &PlanRequest) -> [AxisStart; 4] {
     let margin = search_of(request).margin;
@@ -278,9 +331,14 @@ fn starts_of(limits: &Limits, request: &PlanRequest) -> [AxisStart; 4] {
         (None, None, Some(only)) => AxisStart::Near(only - 1.0),
         (None, None, None) => AxisStart::At(0.0),
     };
+    // where a series lies costs nothing: in the middle it is furthest from the walls
+    let level = |value: Option<f64>, max: Option<f64>| match value {
+        None if request.rests_inside => AxisStart::Near(0.0),
+        value => both(value.unwrap_or(0.0), max),
+    };
     [
-        both(start.x_m, limits.x_max_m),
-        both(start.y_m, limits.y_max_m),
+        level(start.x_m, limits.x_max_m),
+        level(start.y_m, limits.y_max_m),
         height,
         both(start.yaw_rad, limits.yaw_max_rad),
     ]
@@ -298,8 +356,8 @@ fn check_request(request: &PlanRequest) -> Result<(), PlanError> {
     if request.starts == 0 || request.starts > STARTS_MAX {
         return refuse("starts", "1 to 100000", request.starts.to_string());
     }
-    let place =
-        [request.start.x_m, request.start.y_m, request.start.z_m.unwrap_or(0.0), request.start.yaw_rad];
+    let StartPlace { x_m, y_m, z_m, yaw_rad } = request.start;
+    let place = [x_m.unwrap_or(0.0), y_m.unwrap_or(0.0), z_m.unwrap_or(0.0), yaw_rad];
     if place.iter().any(|value| !value.is_finite()) {
         return refuse("start", "finite numbers", format!("{place:?}"));
     }

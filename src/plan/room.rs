@@ -1,5 +1,6 @@
 //! The room that every plan and every flight has: walls, a ceiling and a floor above the ground.
 
+use super::bounds::{Bound, Quantity};
 use crate::units::{deg_from_rad, rad_from_deg};
 use crate::vehicle::{Limits, Vehicle};
 
@@ -25,17 +26,59 @@ pub struct Roomed {
     pub notes: Vec<String>,
 }
 
+/// How far rotors reach from the place (the body's origin) of a vehicle, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// to each side, level
+    pub side_m: f64,
+    /// up, tilted by 45 degrees
+    pub up_m: f64,
+    /// down, tilted by 45 degrees
+    pub down_m: f64,
+}
+
+impl Reach {
+    /// Of a vehicle; of one without rotors zero.
+    #[must_use]
+    pub fn of(vehicle: &Vehicle) -> Self {
+        let radius_m = vehicle.propulsion.rotor_radius_m.unwrap_or(0.0);
+        let (sin, cos) = rad_from_deg(TILT_DEG).sin_cos();
+        let greatest = |reach: &dyn Fn(f64, f64) -> f64| {
+            let reaches = vehicle.rotors.iter().map(|rotor| {
+                let place_m = rotor.position_m;
+                reach(place_m.xy().norm() + radius_m, place_m.z)
+            });
+            reaches.fold(0.0, f64::max)
+        };
+        Self {
+            side_m: greatest(&|side_m, _| side_m),
+            up_m: greatest(&|side_m, up_m| side_m * sin + (up_m * cos).max(0.0)),
+            down_m: greatest(&|side_m, up_m| side_m * sin - (up_m * cos).min(0.0)),
+        }
+    }
+}
+
 /// The least height above the ground (m) at which no rotor can touch it: the reach of the tilted rotors, and the error of
 /// the height.
 #[must_use]
 pub fn floor_m(vehicle: &Vehicle) -> f64 {
-    let radius_m = vehicle.propulsion.rotor_radius_m.unwrap_or(0.0);
-    let (sin, cos) = rad_from_deg(TILT_DEG).sin_cos();
-    let reach = |position: &nalgebra::Vector3<f64>| {
-        (position.xy().norm() + radius_m) * sin - (position.z * cos).min(0.0)
-    };
-    let reach_m = vehicle.rotors.iter().map(|rotor| reach(&rotor.position_m)).fold(0.0, f64::max);
-    reach_m + HEIGHT_ERROR_M
+    Reach::of(vehicle).down_m + HEIGHT_ERROR_M
+}
+
+/// Bounds by which a vehicle that hears nothing more comes to rest at least so far (m) inside: its rotors off walls and
+/// ceiling, itself off the floor; negative: outside. `None` where the room is not that large.
+#[must_use]
+pub(super) fn rest_bounds(limits: &Limits, vehicle: &Vehicle, inside_m: f64) -> Option<Vec<Bound>> {
+    let reach = Reach::of(vehicle);
+    let side = |wall_m: Option<f64>| wall_m.map(|wall_m| wall_m - reach.side_m - inside_m);
+    let (x_m, y_m) = (side(limits.x_max_m), side(limits.y_max_m));
+    let low_m = limits.z_min_m.map(|z_min_m| z_min_m + inside_m);
+    let high_m = limits.z_max_m.map(|z_max_m| z_max_m - reach.up_m - inside_m);
+    let of = |axis, min, max| Bound { quantity: Quantity::Rest(axis), min, max };
+    let bounds = [of(0, x_m.map(|x_m| -x_m), x_m), of(1, y_m.map(|y_m| -y_m), y_m), of(2, low_m, high_m)];
+    let is_room = |bound: &Bound| bound.min.zip(bound.max).is_none_or(|(min, max)| min < max);
+    let stated = bounds.into_iter().filter(|bound| bound.min.is_some() || bound.max.is_some());
+    bounds.iter().all(is_room).then(|| stated.collect())
 }
 
 /// The limits with a careful default for each part of the room that they do not state, and a floor that is above the
