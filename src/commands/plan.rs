@@ -152,8 +152,7 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
 }
 
 fn planned(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Result<Plan, CommandError> {
-    let searches = if request.rests_inside { 2 } else { 1 };
-    let bar = ProgressBar::new(searches * search_of(request).work());
+    let bar = ProgressBar::new(search_of(request).work());
     if let Ok(style) = ProgressStyle::with_template("planning {bar:30} {pos}/{len} descents") {
         bar.set_style(style);
     }

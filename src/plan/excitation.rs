@@ -133,12 +133,11 @@ const POLISHES: u32 = 3;
 /// By how much the criterion may grow, for a plan that is safe where the setpoints may end.
 const CALM_COSTS: f64 = 1.1;
 /// How far inside the room the vehicle is to come to rest then, m, in the order in which it is tried.
-const INSIDE_M: [f64; 7] = [0.5, 0.25, 0.0, -0.25, -0.5, -0.75, -1.0];
+const INSIDE_M: [f64; 8] = [-1.25, -1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5];
 /// Share of the commands of a flown plan that may be at a rotor's bound: an instant of the way from hover into the series.
 const AT_BOUND_MAX: f64 = 0.002;
 
-/// Plans a trajectory. `done` is called once a descent, [`Search::work`] times in all, or twice as often where it is to
-/// rest inside.
+/// Plans a trajectory. `done` is called once a descent, [`Search::work`] times in all.
 ///
 /// # Errors
 /// If a number is out of range, limits conflict, or no trajectory inside the limits was found.
@@ -157,7 +156,7 @@ pub fn plan(
     let mut best = settled(&search, &problem, best, (vehicle, request))?;
     let mut rest = Vec::new();
     if request.rests_inside {
-        (best, rest) = calmed(&search, &problem, best, (vehicle, limits, request), done);
+        (best, rest) = calmed(&search, &problem, best, (vehicle, limits, request));
     }
     // what a controller adds to the planned thrusts is known once it is flown
     for margin in &ROTOR_MARGINS[1..] {
@@ -181,39 +180,28 @@ pub fn plan(
 }
 
 /// The plan by which a vehicle that hears nothing more stays furthest inside the room, as far as that costs little of the
-/// criterion, and the bounds that keep it there; as it was where there is none.
+/// criterion, and the bounds that keep it there; as it was where there is none. It is led there in steps: what is best
+/// without these bounds lies far outside them.
 fn calmed(
     search: &Search,
     problem: &Problem,
     best: Iterate,
     (vehicle, limits, request): (&Vehicle, &Limits, &PlanRequest),
-    done: &(dyn Fn() + Sync),
 ) -> (Iterate, Vec<Bound>) {
     let samples = whole((request.period_s / SAMPLE_S).ceil());
     let worth = best.log_value + CALM_COSTS.ln();
-    let with = |rest: &[Bound]| {
-        let mut calm = problem.clone();
-        calm.bounds.extend_from_slice(rest);
-        calm
-    };
-    // what is best without these bounds may be far from what is best with them
-    let inside = rest_bounds(limits, vehicle, 0.0);
-    let another = inside.and_then(|rest| search.run(&with(&rest), samples, done));
+    let (mut calmest, mut kept) = (best, Vec::new());
     for inside_m in INSIDE_M {
-        let Some(rest) = rest_bounds(limits, vehicle, inside_m) else { continue };
-        let calm = with(&rest);
-        let starts = another.iter().chain([&best]).map(|start| start.unknowns.clone());
-        let calmer = starts
-            .filter_map(|start| {
-                let calmer = search.polish(&calm, start, samples);
-                settled(search, &calm, calmer, (vehicle, request)).ok()
-            })
-            .min_by(|a, b| a.log_value.total_cmp(&b.log_value));
-        if let Some(calmer) = calmer.filter(|calmer| calmer.log_value <= worth) {
-            return (calmer, rest);
+        let Some(rest) = rest_bounds(limits, vehicle, inside_m) else { break };
+        let mut calm = problem.clone();
+        calm.bounds.extend_from_slice(&rest);
+        let calmer = search.polish(&calm, calmest.unknowns.clone(), samples);
+        match settled(search, &calm, calmer, (vehicle, request)) {
+            Ok(calmer) if calmer.log_value <= worth => (calmest, kept) = (calmer, rest),
+            _ => break,
         }
     }
-    (best, Vec::new())
+    (calmest, kept)
 }
 
 /// Polishes until every bound is kept.
