@@ -17,8 +17,8 @@ use mavid::fly::{
     Around, Course, Event, Feeding, FollowLaw, Motion, PathClock, PathTime, Place, Setpoint, Track,
     reference_at, transfer,
 };
-use mavid::log::Autopilot;
 use mavid::plan::{Criterion, PlanRequest, Reach, plan};
+use mavid::recording::Autopilot;
 use mavid::sitl::{ArduPilotRelease, AutopilotKind, Settings as VehicleSettings};
 use mavid::vehicle::{Limits, Vehicle};
 use nalgebra::Vector3;

@@ -8,9 +8,9 @@ use mavid::diagnose::holdout::{
 };
 use mavid::diagnose::refit::{RefitSettings, refit};
 use mavid::diagnose::{Along, Empirical, ExplainSettings, Explanation, Verdict, explain};
-use mavid::log::{Quantity, Recording};
 use mavid::physics::effects::by_id;
 use mavid::physics::{ActiveEffect, Wrench};
+use mavid::recording::{Quantity, Recording};
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
 use mavid::simulate::{
     Disturbance, FlightSettings, RandomTrajectory, Reference, Truth, VehiclePair, random_vehicle,
@@ -139,7 +139,7 @@ fn flights_of_two_vehicles_are_told_from_two_of_one() {
 fn doubts(recording: &Recording, vehicle: &Vehicle) -> Vec<String> {
     let settings = ConditionSettings { thrust: ThrustPreference::Commands, ..ConditionSettings::default() };
     let notes = condition(recording, vehicle, &settings).unwrap().quality.notes;
-    notes.into_iter().filter(|note| note.starts_with("warning: the bod")).collect()
+    notes.iter().map(ToString::to_string).filter(|note| note.starts_with("warning: the bod")).collect()
 }
 
 #[test]

@@ -9,7 +9,8 @@ use mavid::fly::parameters::{Download, DownloadSettings, Purpose, RequestedEffec
 use mavid::fly::preflight::FenceDownload;
 use mavid::fly::requests::{Capacity, LinkKind, Need, RequestSettings, Requests, StreamRequest};
 use mavid::fly::{MessageId, Mode, Order, ParameterName, Period, Setpoint, Stack, Target, heartbeat};
-use mavid::log::{Autopilot, Check, ComponentId, CrcSeeds, Frame, SystemId, Vehicle};
+use mavid::recording::Autopilot;
+use mavid::wire::{Check, ComponentId, CrcSeeds, Frame, SystemId, Vehicle};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::Vector3;

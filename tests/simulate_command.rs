@@ -2,10 +2,11 @@
 
 #![allow(clippy::panic, clippy::unwrap_used, reason = "a test ends where it fails")]
 
-use mavid::log::{LoadOptions, load, write_recording};
+use mavid::log::{LoadOptions, load};
 use mavid::simulate::{
     FlightSettings, RandomTrajectory, Reference, TelemetrySettings, Truth, random_vehicle, simulate_flight,
 };
+use mavid::wire::write_recording;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -106,7 +107,7 @@ fn bad_effects_are_refused_with_what_was_expected() {
     let (log, trajectory) = (place("flight.tlog"), config("trajectories/table2.toml"));
     for (text, expected) in [
         ("[[effect]]\nid = \"no_such\"\n", "expected one of"),
-        ("[[effect]]\nid = \"inflow\"\nkz = -3.0\n", "0 to 5"),
+        ("[[effect]]\nid = \"inflow\"\nkz = -3.0\n", "0 to 20.64 N/(m/s) for a vehicle of 2.064 kg"),
         ("[[effect]]\nid = \"inflow\"\nkz = \"much\"\n", "expected a number"),
         ("[[effect]]\nid = \"inflow\"\n", "kz"),
         (

@@ -7,10 +7,12 @@ mod model;
 mod plan;
 mod recording;
 mod verb;
+mod verbosity;
 
 pub use flight::{CheckName, FlyArgs, OriginName};
 pub use live::{ArduPilotVersion, AutopilotName, DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 pub use model::{ExportArgs, ExportFormat, SimulateArgs, VehicleArgs};
 pub use plan::{CriterionName, PlanArgs};
-pub use recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ReadArgs, ValidateArgs};
+pub use recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ValidateArgs};
 pub use verb::{Cli, Verb};
+pub use verbosity::Verbosity;

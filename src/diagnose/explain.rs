@@ -62,15 +62,36 @@ pub enum ExplainError {
     },
 }
 
-/// Chance below which something is left at the harmonics.
+/// p-value below which power is left at the harmonics.
 const LACK_P: f64 = 1e-6;
-/// and it must be larger than this in force (of gravity) or torque (of the torque's own rms).
+/// Least force that is left at the harmonics, as a share of gravity.
 const LACK_FORCE_G: f64 = 0.002;
+/// Least torque that is left at the harmonics, as a share of the rms of the torque.
 const LACK_TORQUE: f64 = 0.1;
-/// Rivals that explain nearly as much as what was taken.
+/// Share of the energy of the effect that was taken which a rival must explain.
 const RIVAL: f64 = 0.93;
 
-/// Explains one or more flights of a vehicle.
+/// Explains one or more flights of a vehicle: names the physical effects that the rigid body lacks.
+///
+/// ```
+/// # use mavid::config::load_vehicle;
+/// # use mavid::log::{LoadOptions, load};
+/// # use mavid::signals::{ConditionSettings, condition};
+/// use mavid::diagnose::{ExplainSettings, clause, explain};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let fixtures = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
+/// # let log = load(&fixtures.join("p04_identify_10_22s.tlog"), &LoadOptions::default())?;
+/// # let vehicle = load_vehicle(&fixtures.join("p04_vehicle.toml"))?;
+/// let signals = condition(&log.recording, &vehicle, &ConditionSettings::default())?;
+/// let explanation = explain(&[signals], &vehicle, &ExplainSettings::default())?;
+/// // the rotors of this flight follow their commands with a lag of 60 ms
+/// let named: Vec<_> = explanation.named.iter().map(|named| named.id).collect();
+/// assert_eq!(named, ["motor_lag"]);
+/// println!("{}.", clause(&explanation.named[0], &vehicle));
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
 /// [`ExplainError`] where streams are missing or too little was flown.
@@ -79,6 +100,7 @@ pub fn explain(
     vehicle: &Vehicle,
     settings: &ExplainSettings,
 ) -> Result<Explanation, ExplainError> {
+    let _stage = tracing::info_span!("explain", flights = flights.len()).entered();
     let trace = |signals| Trace::new(signals, vehicle, settings.half_width_s);
     let traces: Vec<Trace> = flights.iter().map(trace).collect::<Result<_, _>>()?;
     let rows: usize = traces.iter().map(Trace::rows).sum();
@@ -88,8 +110,10 @@ pub fn explain(
     }
     let mut found = search(&traces, vehicle, &settings.gates, settings.signatures)?;
     leave_out_ordinary(&traces, &mut found)?;
-    let beyond = beyond(&traces, &found);
-    Ok(judge(&traces, vehicle, found, beyond))
+    let beyond = tracing::info_span!("locate").in_scope(|| beyond(&traces, &found));
+    let explanation = judge(&traces, vehicle, found, beyond);
+    explanation.emit();
+    Ok(explanation)
 }
 
 /// What gets no name is not in the model either: what is ordinary, and what the flight could not have shown.

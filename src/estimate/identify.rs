@@ -10,6 +10,7 @@ use super::rotor_check::{WeakRotor, weak_rotor, with_weak_rotor};
 use super::theta::{Theta, ThetaCovariance, theta_of};
 use super::weak::{Latency, WeakEstimate, WeakMethod, latency, solve_weak};
 use super::{GradientStep, History, gradient_descent, least_squares};
+use crate::note::{About, Note};
 use crate::regression::{SampledModel, WeakMotion, WeakRows, ZeroPhase, paper_models, weak_rows};
 use crate::signals::{
     ActuationLatency, Butterworth, Signals, ThrustSource, WeakKernel, WindowedFir, highest_harmonic_hz,
@@ -71,10 +72,29 @@ pub struct Identification {
     /// m/s^2, vertical accelerometer less kinematics, per flight
     pub accelerometer_bias: Vec<Option<f64>>,
     /// why methods are missing, and other remarks
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// Identifies the rigid body from conditioned flights of one vehicle.
+///
+/// ```
+/// # use mavid::config::load_vehicle;
+/// # use mavid::log::{LoadOptions, load};
+/// # use mavid::signals::{ConditionSettings, condition};
+/// use mavid::estimate::{IdentifySettings, identify};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let fixtures = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
+/// # let log = load(&fixtures.join("p04_identify_10_22s.tlog"), &LoadOptions::default())?;
+/// # let vehicle = load_vehicle(&fixtures.join("p04_vehicle.toml"))?;
+/// let signals = condition(&log.recording, &vehicle, &ConditionSettings::default())?;
+/// let identification = identify(&[signals], &vehicle, &IdentifySettings::default())?;
+/// for parameter in &identification.best.result.parameters {
+///     println!("{}: {:?} {}", parameter.name, parameter.finding, parameter.unit);
+/// }
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
 /// [`EstimateError`] where no method can run.
@@ -83,14 +103,28 @@ pub fn identify(
     vehicle: &Vehicle,
     settings: &IdentifySettings,
 ) -> Result<Identification, EstimateError> {
+    let _stage = tracing::info_span!("identify", flights = flights.len()).entered();
+    let found = with_even_rotors(flights, vehicle, settings)?;
+    found.best.result.emit();
+    Ok(found)
+}
+
+/// With a rotor taken out that gives less than its command says, where there is one.
+fn with_even_rotors(
+    flights: &[Signals],
+    vehicle: &Vehicle,
+    settings: &IdentifySettings,
+) -> Result<Identification, EstimateError> {
     let found = identify_evenly(flights, vehicle, settings)?;
     let Some(weak) = found.weak_rotor else { return Ok(found) };
+    tracing::info!(rotor = weak.name, factor = weak.factor, std = weak.std, "weak rotor taken out");
     let mended = with_weak_rotor(flights, vehicle, &weak);
     let mut again = identify_evenly(&mended, vehicle, settings)?;
-    again.notes.push(format!(
+    let text = format!(
         "the torque left over is that of rotor {} giving {:.3} +- {:.3} of its thrust: taken out, the other rotors set the scale",
         weak.name, weak.factor, weak.std
-    ));
+    );
+    again.notes.push(Note::remark(About::Estimate, text));
     again.weak_rotor = Some(weak);
     Ok(again)
 }
@@ -121,9 +155,8 @@ fn identify_evenly(
     let filter = zero_phase(settings, cutoff_hz, rate_hz)?;
     let paper = PaperRuns::from(&weak.signals, vehicle, &filter, settings.sigma);
     if paper.standard.time_s.is_empty() {
-        notes.push(
-            "LS, GD, FMLS and FMGD need body rates and the vertical motion; this recording lacks one".into(),
-        );
+        let text = "LS, GD, FMLS and FMGD need body rates and the vertical motion; this recording lacks one";
+        notes.push(Note::remark(About::Estimate, text));
     }
 
     let mut methods = paper.results();
@@ -138,7 +171,7 @@ fn identify_evenly(
     notes.extend(implausible(&best.result, &nominal));
     notes.extend(disagreeing(&weak.rows, &nominal));
     if flights.iter().any(|signals| signals.quality.thrust_source == ThrustSource::Command) {
-        notes.push(BY_COMMANDS.to_owned());
+        notes.push(Note::remark(About::Actuators, BY_COMMANDS));
     }
     Ok(Identification {
         best,
@@ -233,11 +266,12 @@ impl WeakFlights {
     }
 
     /// Rows of the commanded trajectory; `None` (and why) where a flight has none.
-    fn instruments(&self, notes: &mut Vec<String>) -> Option<Vec<WeakRows>> {
+    fn instruments(&self, notes: &mut Vec<Note>) -> Option<Vec<WeakRows>> {
         let mut out = Vec::new();
         for (signals, kernel) in self.signals.iter().zip(&self.kernels) {
             let (Some(reference), Some(rate)) = (&signals.reference, &signals.rate) else {
-                notes.push("no instrumental variables: the commanded acceleration or the body rates are not recorded".into());
+                let text = "no instrumental variables: the commanded acceleration or the body rates are not recorded";
+                notes.push(Note::remark(About::Estimate, text));
                 return None;
             };
             let step_s = signals.grid.step_s;

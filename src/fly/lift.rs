@@ -2,7 +2,7 @@
 //! or one whose actuator unit is not the autopilot's, does not give the weight that hovers.
 
 use super::parameters::Parameters;
-use crate::log::{Quantity, Recording};
+use crate::recording::{Quantity, Recording};
 use crate::signals::{motor_channels, propulsion_from_log};
 use crate::vehicle::{Propulsion, Vehicle};
 use std::ops::RangeInclusive;
@@ -176,7 +176,7 @@ pub(super) fn apart(came: f64, expected: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::Autopilot;
+    use crate::recording::Autopilot;
     use crate::simulate::random_vehicle;
     use crate::vehicle::{Actuator, PwmRange};
 

@@ -1,6 +1,6 @@
 //! The flight modes that a flight needs, by the numbers that each autopilot gives them.
 
-use crate::log::Autopilot;
+use crate::recording::Autopilot;
 
 /// Whose rules the vehicle follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

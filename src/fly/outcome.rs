@@ -1,5 +1,6 @@
 //! How a flight ends, and what is told on the way.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::time::Duration;
 
@@ -21,7 +22,7 @@ pub enum Cause {
     NotReached(String),
     /// the vehicle left our mode without our command: its pilot, another station, or a failsafe
     Override(String),
-    /// the autopilot's own failsafe acts
+    /// the autopilot declares a failsafe that leaves our mode as it is
     Failsafe(String),
     /// further off the reference than allowed
     Tracking(String),
@@ -67,7 +68,7 @@ impl Cause {
     #[must_use]
     pub fn response(&self) -> Response {
         match self {
-            Self::Override(_) | Self::Failsafe(_) => Response::HandsOff,
+            Self::Override(_) => Response::HandsOff,
             Self::LinkLost(_) => Response::Wait,
             Self::Estimator(_) | Self::Battery(_) | Self::NotReached(_) | Self::Refused(_) => Response::Land,
             _ => Response::Hold,
@@ -172,7 +173,7 @@ pub struct Note {
     /// how much it matters
     pub level: Level,
     /// of what kind: `phase`, `vehicle`, `command`, `mode`, `link`, `stream`, `abort`, `end`
-    pub kind: &'static str,
+    pub kind: Cow<'static, str>,
     /// for people
     pub text: String,
 }
@@ -181,6 +182,6 @@ impl Note {
     /// At `now` of the flight's clock.
     #[must_use]
     pub fn new(now: Duration, level: Level, kind: &'static str, text: impl Into<String>) -> Self {
-        Self { time_s: now.as_secs_f64(), level, kind, text: text.into() }
+        Self { time_s: now.as_secs_f64(), level, kind: Cow::Borrowed(kind), text: text.into() }
     }
 }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::modes::Stack;
 use super::target::Target;
-use crate::log::{self, Frame, Record, SystemId};
+use crate::wire::{self, Frame, Record, SystemId};
 
 /// After the first vehicle, others are waited for this long: each sends a HEARTBEAT a second.
 const SETTLE: Duration = Duration::from_millis(2500);
@@ -18,7 +18,7 @@ const ARMED: u8 = 128;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Listed {
     /// who
-    pub vehicle: log::Vehicle,
+    pub vehicle: wire::Vehicle,
     mav_type: u8,
     armed: bool,
 }
@@ -29,7 +29,7 @@ pub enum Choice {
     /// not yet known
     Wait,
     /// this one, by these rules
-    Vehicle(log::Vehicle, Target, Stack),
+    Vehicle(wire::Vehicle, Target, Stack),
     /// none, and why
     Refuse(String),
 }
@@ -45,7 +45,7 @@ impl Roster {
     /// Takes a frame.
     pub fn hear(&mut self, now: Duration, frame: Frame<'_>) {
         let record = Record { stamp_us: 0, offset: 0, known: true, frame };
-        let Some(vehicle) = log::Vehicle::from_heartbeat(&record) else { return };
+        let Some(vehicle) = wire::Vehicle::from_heartbeat(&record) else { return };
         let payload = frame.payload();
         let listed = Listed { vehicle, mav_type: payload.u8(4), armed: payload.u8(6) & ARMED != 0 };
         self.first.get_or_insert(now);
@@ -138,7 +138,7 @@ fn admit(listed: &Listed) -> Choice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::{CrcSeeds, checksum};
+    use crate::wire::{CrcSeeds, checksum};
 
     /// A HEARTBEAT: who, MAV_TYPE, MAV_AUTOPILOT, base mode.
     fn heartbeat(system: u8, mav_type: u8, autopilot: u8, base_mode: u8) -> Vec<u8> {

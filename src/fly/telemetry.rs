@@ -15,7 +15,8 @@ use super::order::SendingOrder;
 use super::reset::{Pose, Step};
 pub use super::state::{FlightState, Motion, Seen};
 use crate::frames::Attitude;
-use crate::log::{self, Decoder, Frame, Payload, Quantity, Record};
+use crate::recording::Quantity;
+use crate::wire::{self, Decoder, Frame, Payload, Record};
 
 const POSITION_TARGET: u32 = 85;
 const ODOMETRY: u32 = 331;
@@ -71,6 +72,8 @@ pub struct Telemetry {
     outputs: Vec<Outputs>,
     texts: VecDeque<(Duration, u8, String)>,
     order: SendingOrder,
+    /// of the last frame
+    place: i64,
     /// last ODOMETRY
     pose: Option<Pose>,
     /// place of the frame from which `state` is
@@ -84,7 +87,7 @@ pub struct Telemetry {
 impl Telemetry {
     /// Of the vehicle whose HEARTBEAT was heard at `now`.
     #[must_use]
-    pub fn new(vehicle: log::Vehicle, stack: Stack, now: Duration) -> Self {
+    pub fn new(vehicle: wire::Vehicle, stack: Stack, now: Duration) -> Self {
         Self {
             decoder: Decoder::new(vehicle, None, micros(now)),
             stack,
@@ -105,6 +108,7 @@ impl Telemetry {
             outputs: Vec::new(),
             texts: VecDeque::new(),
             order: SendingOrder::default(),
+            place: 0,
             pose: None,
             state_place: i64::MIN,
             mode_reports: 0,
@@ -122,6 +126,7 @@ impl Telemetry {
         }
         self.heard = now;
         let place = self.order.place(header.sequence, silence);
+        self.place = place;
         let mut news = Vec::new();
         self.status(now, header.message_id, frame.payload(), place, &mut news);
         self.samples((now, silence), frame, &mut news);
@@ -203,7 +208,7 @@ impl Telemetry {
         let outputs = &mut self.outputs;
         outputs.clear();
         self.decoder.decode(&record, &mut |event| match event {
-            log::Event::Sample { stream, time_s, values } => match (stream.quantity, values) {
+            wire::Event::Sample { stream, time_s, values } => match (stream.quantity, values) {
                 (Quantity::Position, &[x, y, z]) => position = Some((time_s, Vector3::new(x, y, z))),
                 (Quantity::Velocity, &[x, y, z]) => velocity = Some(Vector3::new(x, y, z)),
                 (Quantity::Attitude, &[w, x, y, z]) => {
@@ -223,16 +228,16 @@ impl Telemetry {
                 }
                 _ => {}
             },
-            log::Event::Text { severity, text, .. } => news.push(Novelty::Text(severity, text.to_owned())),
+            wire::Event::Text { severity, text, .. } => news.push(Novelty::Text(severity, text.to_owned())),
             // a network that holds frames back for seconds shows old stamps, which are not those of a start
-            log::Event::ClockReset { stamp_s, .. } => {
+            wire::Event::ClockReset { stamp_s, .. } => {
                 ground.clock_jumped(now);
                 if stamp_s < silence.as_secs_f64() + STARTED_S {
                     news.push(Novelty::Reboot);
                 }
             }
-            log::Event::EstimatorReset { .. } => reset = true,
-            log::Event::Parameter { .. } => {}
+            wire::Event::EstimatorReset { .. } => reset = true,
+            wire::Event::Parameter { .. } => {}
         });
         if frame.header().message_id == POSITION_TARGET {
             news.push(Novelty::Target(target_m));
@@ -306,9 +311,15 @@ impl Telemetry {
         &self.outputs
     }
 
+    /// Place of the last frame among all that the vehicle sent: greater means sent later.
+    #[must_use]
+    pub fn place(&self) -> i64 {
+        self.place
+    }
+
     /// Who it is.
     #[must_use]
-    pub fn vehicle(&self) -> log::Vehicle {
+    pub fn vehicle(&self) -> wire::Vehicle {
         *self.decoder.vehicle()
     }
 
@@ -340,12 +351,6 @@ impl Telemetry {
     #[must_use]
     pub fn mode_reports(&self) -> u64 {
         self.mode_reports
-    }
-
-    /// The autopilot has taken measures of its own.
-    #[must_use]
-    pub fn is_in_failsafe(&self) -> bool {
-        self.state.is_some_and(|state| state.value.is_in_failsafe())
     }
 
     /// Warnings and errors that the vehicle said since `since`, the same only once.

@@ -1,7 +1,7 @@
 //! Armed, in the air, modes: from state messages to spans.
 
 use super::inspection::{ModeChange, Timeline};
-use crate::log::{Autopilot, Quantity};
+use crate::recording::{Autopilot, Quantity};
 
 /// Entries kept of each list; a log with more is counted.
 const KEPT: usize = 1000;

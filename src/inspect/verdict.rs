@@ -2,7 +2,7 @@
 
 use super::inspection::{Outlook, VehicleSummary};
 use super::outlook::{AXIS_NAMES, Evidence, LEAST_ANGULAR_ACCELERATION};
-use crate::log::Quantity;
+use crate::recording::Quantity;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 
 /// Flight that a good identification wants, s.
@@ -216,6 +216,6 @@ fn remarks(evidence: &Evidence<'_>, vehicle: &VehicleSummary) -> Vec<String> {
             ));
         }
     }
-    advice.extend(evidence.assessment.notes.iter().cloned());
+    advice.extend(evidence.assessment.notes.iter().map(ToString::to_string));
     advice
 }

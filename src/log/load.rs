@@ -5,15 +5,13 @@ use std::fs::File;
 use std::path::Path;
 
 use super::builder::RecordingBuilder;
-use super::clock::Anchor;
-use super::decode::{Decoder, Event, Source, Vehicle};
 use super::error::LogError;
 use super::flights::{Cells, Flights, Hold, Plan, is_state};
 use super::flown::who_flew;
-use super::frame::{ComponentId, SystemId};
-use super::recording::{Autopilot, Recording};
 use super::report::ReadReport;
-use super::tlog::{Record, TlogReader};
+use super::tlog::TlogReader;
+use crate::recording::{Autopilot, Recording};
+use crate::wire::{Anchor, ComponentId, Decoder, Event, Record, Source, SystemId, Vehicle};
 
 /// The component that autopilots use, where no HEARTBEAT says otherwise.
 const AUTOPILOT_COMPONENT: ComponentId = ComponentId(1);
@@ -36,6 +34,18 @@ pub struct Loaded {
 
 /// Reads a log into memory, all of it. The name's extension tells its format. Of several vehicles, the one that flew is
 /// read, unless `options` choose one.
+///
+/// ```
+/// use mavid::log::{LoadOptions, load};
+/// use mavid::recording::Quantity;
+/// use std::path::Path;
+///
+/// let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/p04_identify_10_22s.tlog");
+/// let log = load(&path, &LoadOptions::default())?;
+/// let attitude = log.recording.streams.iter().find(|(key, _)| key.quantity == Quantity::Attitude);
+/// assert!(attitude.is_some_and(|(_, stream)| stream.len() > 100));
+/// # Ok::<(), mavid::log::LogError>(())
+/// ```
 ///
 /// # Errors
 /// The file cannot be read, is not what its name says, holds no vehicle, or several that flew.

@@ -139,6 +139,20 @@ const AT_BOUND_MAX: f64 = 0.002;
 
 /// Plans a trajectory. `done` is called once a descent, [`Search::work`] times in all.
 ///
+/// ```no_run
+/// use mavid::config::load_vehicle;
+/// use mavid::plan::{Criterion, PlanRequest, plan};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let vehicle = load_vehicle("configs/qball2.toml".as_ref())?;
+/// let request = PlanRequest { criterion: Criterion::DOpt, ..PlanRequest::default() };
+/// let plan = plan(&vehicle, &vehicle.limits, &request, &|| ())?;
+/// // relative standard errors of mass and inertia after five periods
+/// println!("{:?}", plan.assessment.standard_errors);
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 /// If a number is out of range, limits conflict, or no trajectory inside the limits was found.
 pub fn plan(
@@ -147,6 +161,7 @@ pub fn plan(
     request: &PlanRequest,
     done: &(dyn Fn() + Sync),
 ) -> Result<Plan, PlanError> {
+    let _stage = tracing::info_span!("plan", seed = request.seed, starts = request.starts).entered();
     check_request(request)?;
     feasible(limits, vehicle, &request.start)?;
     let mut problem = problem_of(vehicle, limits, request);
@@ -176,7 +191,9 @@ pub fn plan(
     let trajectory = problem.space.trajectory(&best.unknowns);
     // what is left is told to the bounds themselves
     let assessment = assess(&trajectory, vehicle, &bounds_of(limits, vehicle), request);
-    Ok(Plan { trajectory, criterion_value: best.log_value.exp(), assessment, rest })
+    let criterion_value = best.log_value.exp();
+    tracing::info!(criterion = ?request.criterion, criterion_value, "trajectory planned");
+    Ok(Plan { trajectory, criterion_value, assessment, rest })
 }
 
 /// The plan by which a vehicle that hears nothing more stays furthest inside the room, as far as that costs little of the

@@ -11,7 +11,7 @@ use super::select::{best, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
 use super::usable::{Evidence, airborne_spans, usable};
 use super::{Grid, SignalsError, WeakKernel, plausible, sufficient};
-use crate::log::{Quantity, Recording, Stream};
+use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -42,7 +42,27 @@ impl Default for ConditionSettings {
     }
 }
 
-/// Conditions one flight.
+/// Conditions one flight: chooses streams, aligns them in time, and puts them on one grid. Nothing is smoothed.
+///
+/// ```
+/// use mavid::config::load_vehicle;
+/// use mavid::log::{LoadOptions, load};
+/// use mavid::signals::{ConditionSettings, condition};
+/// use std::path::Path;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
+/// let log = load(&fixtures.join("p04_identify_10_22s.tlog"), &LoadOptions::default())?;
+/// let vehicle = load_vehicle(&fixtures.join("p04_vehicle.toml"))?;
+/// let signals = condition(&log.recording, &vehicle, &ConditionSettings::default())?;
+/// // each stream with its offset in time
+/// for (quantity, offset) in &signals.quality.offsets {
+///     println!("{}: {offset:?}", quantity.name());
+/// }
+/// assert!(signals.grid.step_s > 0.0);
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
 /// [`SignalsError`] where the log has no actuators in the vehicle's unit, no streams of motion, hardly a sample of
@@ -52,6 +72,7 @@ pub fn condition(
     vehicle: &Vehicle,
     settings: &ConditionSettings,
 ) -> Result<Signals, SignalsError> {
+    let _stage = tracing::info_span!("condition").entered();
     let chosen = Chosen::from(recording);
     let actuation = Actuation::from(recording, vehicle, settings.thrust)?;
     let step_s = step(recording, &chosen, actuation.stream(), settings)?;
@@ -124,6 +145,7 @@ pub fn condition(
     };
     let doubts = plausible::check(&signals, vehicle);
     signals.quality.notes.extend(doubts);
+    signals.emit();
     Ok(signals)
 }
 

@@ -4,7 +4,8 @@ use super::actuators::ThrustSource;
 use super::align::StreamOffset;
 use super::grid::Grid;
 use super::usable::Usable;
-use crate::log::Quantity;
+use crate::note::Note;
+use crate::recording::Quantity;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 
 /// A flight on one clock and one grid. Vectors have one entry a grid instant; SI, body FLU, world NWU.
@@ -42,6 +43,22 @@ pub struct Signals {
     pub quality: Quality,
 }
 
+impl Signals {
+    /// Emits it as tracing events.
+    pub(super) fn emit(&self) {
+        let (samples, step_s) = (self.grid.count, self.grid.step_s);
+        let usable_s = self.usable.iter().filter(|usable| **usable).count() as f64 * step_s;
+        let Quality { sources, thrust_source, offsets, .. } = &self.quality;
+        for (quantity, message, rate_hz) in sources {
+            tracing::debug!(?quantity, message, rate_hz, "stream chosen");
+        }
+        for (quantity, offset) in offsets {
+            tracing::debug!(?quantity, ?offset, "stream aligned");
+        }
+        tracing::info!(samples, step_s, usable_s, thrust = ?thrust_source, "flight conditioned");
+    }
+}
+
 /// The commanded trajectory on the grid, world NWU.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
@@ -66,6 +83,6 @@ pub struct Quality {
     pub airborne_s: Vec<(f64, f64)>,
     /// how the mask came about
     pub usable: Usable,
-    /// remarks for the user
-    pub notes: Vec<String>,
+    /// what the user should know of it
+    pub notes: Vec<Note>,
 }

@@ -7,8 +7,8 @@ use super::message::Message;
 use super::message_id::{AUTOPILOT_VERSION, HEARTBEAT, HOME_POSITION};
 use super::streams::IntervalRefusal;
 use super::{AutopilotKind, Mode, Vehicle};
-use crate::log::Payload;
 use crate::units::whole;
+use crate::wire::Payload;
 
 /// MAV_CMD.
 mod cmd {

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use mavid::fly::{Setpoint, Stack};
-use mavid::log::Frame;
+use mavid::wire::Frame;
 use mavlink::dialects::ardupilotmega::MavMessage;
 
 use super::vehicle::{ARM, SET_MODE, TAKEOFF, command_of, modes};

@@ -4,43 +4,40 @@ use std::path::Path;
 
 use mavid::config::{default_csv_mapping, load_csv_mapping, read_vehicle};
 use mavid::inspect::{Inspection, inspect_csv, inspect_tlog};
+use mavid::log::LoadOptions;
 use mavid::log::csv::read_csv;
-use mavid::log::{LoadOptions, SystemId};
+use mavid::report::{InspectionDocument, inspection_text};
 use mavid::text;
 use mavid::vehicle::Vehicle;
-use serde::Serialize;
+use mavid::wire::SystemId;
 
-use super::{page, progress};
+use super::progress;
 use crate::cli::InspectArgs;
+use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, Outcome, output};
 
-/// The JSON document.
-#[derive(Serialize)]
-struct Document<'a> {
-    schema: u32,
-    file: String,
-    #[serde(flatten)]
-    inspection: &'a Inspection,
-}
-
 /// Runs the verb.
-pub fn run(json: bool, args: &InspectArgs) -> Result<Outcome, CommandError> {
+pub fn run(json: bool, stderr: &StandardError, args: &InspectArgs) -> Result<Outcome, CommandError> {
     let loaded = args.vehicle.as_deref().map(read_vehicle).transpose()?;
     if let (Some(path), Some(loaded)) = (&args.vehicle, &loaded) {
         output::warnings(path, &loaded.warnings);
     }
     let vehicle = loaded.as_ref().map(|loaded| &loaded.vehicle);
-    let inspection = inspect(args, vehicle)?;
+    let inspection = inspect(stderr, args, vehicle)?;
     let file = text::path(&args.log);
     if json {
-        output::json(&Document { schema: 1, file, inspection: &inspection })?;
+        output::json(&InspectionDocument::new(&file, &inspection))?;
     } else {
-        output::text(&page::page(&file, &inspection))?;
+        output::text(&inspection_text(&file, &inspection))?;
     }
     Ok(if inspection.losses.is_empty() { Outcome::Done } else { Outcome::DoneWithLoss })
 }
 
-fn inspect(args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, CommandError> {
+fn inspect(
+    stderr: &StandardError,
+    args: &InspectArgs,
+    vehicle: Option<&Vehicle>,
+) -> Result<Inspection, CommandError> {
     let path = args.log.as_path();
     if path.is_dir() {
         let text = format!("expected a log (*.tlog, *.csv), got the folder {}", text::path(&path));
@@ -58,7 +55,7 @@ fn inspect(args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, 
         return Err(CommandError::Input("--csv-map is for *.csv logs; this one is a *.tlog".into()));
     }
     let options = LoadOptions { system: args.read.system.map(SystemId) };
-    let bar = progress::of_file(path);
+    let bar = stderr.bar(progress::of_file(path));
     let inspection = inspect_tlog(path, &options, vehicle, &mut |bytes| bar.set_position(bytes));
     bar.finish_and_clear();
     inspection.map_err(|error| CommandError::Input(named(path, &error.to_string())))

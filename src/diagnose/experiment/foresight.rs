@@ -11,7 +11,7 @@ use crate::diagnose::rows::Rows;
 use crate::diagnose::signature::LatencyKind;
 use crate::diagnose::signatures::{latency_kind, signature_of};
 use crate::diagnose::trace::Trace;
-use crate::log::Quantity;
+use crate::recording::Quantity;
 use crate::signals::{ActuationLatency, Grid, Quality, Signals, ThrustSource, Usable};
 use crate::simulate::Allocation;
 use crate::trajectory::{FourierTrajectory, Reference};

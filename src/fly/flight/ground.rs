@@ -15,7 +15,7 @@ use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
 use crate::fly::target::Order;
 use crate::fly::telemetry::Telemetry;
-use crate::log::Payload;
+use crate::wire::Payload;
 use mavlink::dialects::ardupilotmega::MavCmd;
 
 /// The estimate must have been good for this long.
@@ -26,6 +26,11 @@ const PRIME: Duration = Duration::from_millis(1500);
 const POSITION_FRESH: Duration = Duration::from_millis(500);
 /// A trajectory that starts further from the vehicle, m, is in the wrong place.
 const START_MAX_M: f64 = 5.0;
+/// A vehicle that is asked five times a second and has not answered for so long never does.
+const ANSWERS_WITHIN: Duration = Duration::from_secs(10);
+const NO_ANSWERS: &str = "expected an answer to TIMESYNC, got none within 10 s: without it, after a stall or a silence, an old \
+     report of the mode could not be told from a new one, and no abort could be ordered. PX4 and ArduPilot answer; \
+     let what lies on the way pass TIMESYNC";
 /// Where it says the release.
 const FLIGHT_SW_VERSION: usize = 16;
 /// Answers to questions come soon or not at all.
@@ -41,6 +46,8 @@ impl Flight {
             Choice::Vehicle(vehicle, target, stack) => {
                 let text =
                     format!("system {} component {}, {}", target.system, target.component, stack.name());
+                let (system, component) = (target.system.0, target.component.0);
+                tracing::info!(system, component, autopilot = stack.name(), "vehicle found");
                 self.note(now, Level::Information, "vehicle", text);
                 let telemetry = Telemetry::new(vehicle, stack, now);
                 self.contact = Some(Contact { target, telemetry });
@@ -109,6 +116,12 @@ impl Flight {
         if let Some(Err(why)) = &self.clearance {
             let why = why.clone();
             self.end(now, Cause::Refused(why));
+            return;
+        }
+        if !self.known.has_answers() {
+            if now.saturating_sub(self.entered) > ANSWERS_WITHIN {
+                self.end(now, Cause::Refused(NO_ANSWERS.to_owned()));
+            }
             return;
         }
         let cleared = !self.sortie.settings.await_clearance || self.clearance.is_some();
@@ -311,11 +324,13 @@ impl Flight {
         let name = answer.order.name();
         let question = matches!(self.phase, Phase::Check(_));
         if answer.result == AnswerResult::Accepted {
+            tracing::debug!(command = name, "command accepted");
             if !question {
                 self.note(now, Level::Information, "command", format!("{name} accepted"));
             }
             return;
         }
+        tracing::warn!(command = name, result = answer.result.text(), "command refused, or not answered");
         let mut reasons = vec![answer.result.text()];
         if !question {
             reasons.extend(self.complaints());

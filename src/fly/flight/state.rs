@@ -18,8 +18,8 @@ use crate::fly::setpoint::Place;
 use crate::fly::sortie::Sortie;
 use crate::fly::target::Target;
 use crate::fly::telemetry::Telemetry;
-use crate::log::{self, CrcSeeds};
 use crate::units::deg_from_rad;
+use crate::wire::{self, CrcSeeds};
 
 /// A flight.
 #[derive(Debug)]
@@ -84,6 +84,7 @@ impl Flight {
             tilt_planned_deg: deg_from_rad(sortie.course.tilt_max_rad(sortie.gravity_m_s2)),
             ..Flown::default()
         };
+        let known = ModeKnowledge::new(sortie.settings.first_question);
         Self {
             sortie,
             seeds: CrcSeeds::new(),
@@ -92,7 +93,7 @@ impl Flight {
             release: None,
             contact: None,
             commander: Commander::default(),
-            known: ModeKnowledge::default(),
+            known,
             suspected: None,
             unread: false,
             stepped: None,
@@ -142,7 +143,7 @@ impl Flight {
 
     /// The vehicle as the log knows it, once it is found.
     #[must_use]
-    pub fn vehicle(&self) -> Option<log::Vehicle> {
+    pub fn vehicle(&self) -> Option<wire::Vehicle> {
         self.contact.as_ref().map(|contact| contact.telemetry.vehicle())
     }
 
@@ -176,6 +177,7 @@ impl Flight {
     }
 
     pub(super) fn enter(&mut self, now: Duration, phase: Phase) {
+        tracing::info!(phase = phase.name(), left = self.phase.name(), "phase entered");
         self.note(now, Level::Information, "phase", phase.name());
         self.phase = phase;
         self.entered = now;

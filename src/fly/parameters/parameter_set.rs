@@ -1,7 +1,7 @@
 //! What a vehicle said of its parameters, and the file of it.
 
 use super::names::{RENAMED, Renamed};
-use crate::log::Autopilot;
+use crate::recording::Autopilot;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

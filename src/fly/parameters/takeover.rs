@@ -4,7 +4,7 @@ use super::Parameters;
 use super::sentence::Sentence;
 use crate::fly::finding::Level;
 use crate::fly::modes::Stack;
-use crate::log::Autopilot;
+use crate::recording::Autopilot;
 
 /// Positions of a mode switch.
 const POSITIONS: std::ops::RangeInclusive<u8> = 1..=6;

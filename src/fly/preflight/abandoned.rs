@@ -13,8 +13,8 @@ use crate::fly::finding::Finding;
 use crate::fly::law::{FollowLaw, Motion, STEP_S};
 use crate::fly::safety::{Feeding, SetpointBounds};
 use crate::fly::setpoint::Place;
-use crate::log::Autopilot;
 use crate::plan::Reach;
+use crate::recording::Autopilot;
 use crate::trajectory::FlightPath;
 
 /// Steps of the model from one tried instant to the next: 0.1 s.

@@ -4,9 +4,10 @@
 use nalgebra::Vector3;
 
 use super::Situation;
-use super::extremes::{place_and_velocity, samples};
+use super::stopping::place_and_velocity;
 use crate::fly::finding::Finding;
-use crate::log::Autopilot;
+use crate::plan::path_samples;
+use crate::recording::Autopilot;
 
 /// Subject of the findings on the end of this program.
 pub(super) const SUBJECT: &str = "if we die now";
@@ -145,7 +146,7 @@ fn highest_return(situation: &Situation<'_>) -> Option<(f64, f64)> {
         }
         target_m.min((slope * from_home_m.xy().norm()).max(least_m))
     };
-    samples(situation.path)
+    path_samples(situation.path)
         .map(|(time_s, entry)| {
             let (place_m, _) = place_and_velocity(&entry);
             (climbs_to_m(&(place_m + situation.origin_m - home_m)), time_s)

@@ -3,7 +3,7 @@
 use crate::fence::{Areas, FenceItem, Zone};
 use crate::fly::parameters::{FenceSwitch, Parameters, has_bit};
 use crate::frames::Geodetic;
-use crate::log::Autopilot;
+use crate::recording::Autopilot;
 use nalgebra::Vector3;
 
 /// Bits of FENCE_TYPE.

@@ -1,7 +1,7 @@
 //! Whether the vehicle itself is ready.
 
 use crate::fly::finding::Finding;
-use crate::log::Autopilot;
+use crate::recording::Autopilot;
 use std::time::Duration;
 
 /// The estimate must have been good for so long.

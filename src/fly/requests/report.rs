@@ -3,7 +3,7 @@
 use super::capacity::bytes_s;
 use super::{Answer, Capacity, Need, StreamRequest, granted_hz};
 use crate::fly::finding::Finding;
-use crate::log::Autopilot;
+use crate::recording::Autopilot;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ};
 
 /// A stream at less than this share of what the autopilot should give is slower than asked for.

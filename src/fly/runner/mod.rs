@@ -10,9 +10,12 @@
 //! The live identification hears what the flight hears, on a thread of its own.
 
 mod clearance;
+mod clock;
 mod drive;
 mod error;
 mod estimating;
+mod event_layer;
+mod feed;
 mod files;
 mod journal;
 mod link_kind;
@@ -24,9 +27,12 @@ mod supervisor;
 mod termination;
 
 pub use error::RunError;
+pub use event_layer::{EVENTS_TARGET, event_layer};
 pub use files::{EVENTS, PARAMETERS, TLOG};
 pub use parking::{Parking, Part};
 pub use priority::raise_priority;
 pub use ride::{Console, Record, Ride, run};
 pub use stream::{Due, StreamFigures, send_due};
 pub use supervisor::Supervisor;
+#[cfg(unix)]
+pub use termination::HangUp;

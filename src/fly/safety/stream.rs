@@ -149,7 +149,7 @@ impl Streamer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::{ComponentId, SystemId};
+    use crate::wire::{ComponentId, SystemId};
     use nalgebra::Vector3;
     use proptest::prelude::*;
 

@@ -7,7 +7,7 @@ use super::clock::{SECOND, STALE, clock_warning, now};
 use super::times::{AHEAD, StreamKey, Times};
 use super::{Distrust, Signing, SigningError, SigningKey, Told};
 use crate::link::event::LinkEvent;
-use crate::log::{ComponentId, Frame, SystemId};
+use crate::wire::{ComponentId, Frame, SystemId};
 
 const NOW: u64 = 40_000_000_000_000;
 

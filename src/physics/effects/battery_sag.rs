@@ -1,16 +1,16 @@
 //! Thrust falls with the battery's voltage.
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `T_i = T (V / V_full)^exponent`, reaction torque alike, because the rotors turn slower by the root of that;
-/// nothing where the voltage is not known, or the rotors' speed is. With speed in proportion to voltage the
-/// exponent is 2; with speed controlled by the ESC it is 0.
+/// `T_i = T (V / V_full)^exponent`. The reaction torque changes by the same factor, because the rotors turn slower by
+/// its square root. Nothing changes where the voltage is unknown or the rotor speeds are measured. The exponent is 2
+/// if the speed is proportional to the voltage, and 0 if the ESC controls the speed.
 #[derive(Debug, Clone, Copy)]
 pub struct BatterySag;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "exponent", unit: "-", min: 0.0, max: 4.0 },
-    Parameter { name: "full_voltage", unit: "V", min: 2.5, max: 60.0 },
+    Parameter { name: "exponent", unit: "-", bounds: Bounds::of(0.0, 4.0) },
+    Parameter { name: "full_voltage", unit: "V", bounds: Bounds::of(2.5, 60.0) },
 ];
 
 /// V / V_full; 1 where the voltage is not known or not positive.

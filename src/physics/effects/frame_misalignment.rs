@@ -2,22 +2,22 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::physics::{Effect, Hook, Measurement, Parameter, State};
+use crate::physics::{Bounds, Effect, Hook, Measurement, Parameter, State};
 
-/// The reference's axes are turned against the world's by the rotation vector `(x, y, z)`, `p_world = R_e p`
-/// and `q_world = q_e q`: position, velocity and attitude are shown in its axes, the inertial unit is not
-/// affected. In the finer form only the share `with_attitude` of the rotation vector turns the attitude: none where
-/// the vehicle estimates its attitude by itself and takes only its position from outside.
+/// The axes of the reference are turned against those of the world by the rotation vector `(x, y, z)`:
+/// `p_world = R_e p` and `q_world = q_e q`. Position, velocity and attitude are given in its axes. The inertial unit
+/// is not affected. In the finer form, only the share `with_attitude` of the rotation vector turns the attitude. The
+/// share is zero for a vehicle that estimates its attitude alone and takes only its position from outside.
 #[derive(Debug, Clone, Copy)]
 pub struct FrameMisalignment;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "x", unit: "rad", min: -0.2, max: 0.2 },
-    Parameter { name: "y", unit: "rad", min: -0.2, max: 0.2 },
-    Parameter { name: "z", unit: "rad", min: -0.2, max: 0.2 },
+    Parameter { name: "x", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
+    Parameter { name: "y", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
+    Parameter { name: "z", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
 ];
 
-const FINER: &[Parameter] = &[Parameter { name: "with_attitude", unit: "-", min: 0.0, max: 1.0 }];
+const FINER: &[Parameter] = &[Parameter { name: "with_attitude", unit: "-", bounds: Bounds::of(0.0, 1.0) }];
 
 impl Effect for FrameMisalignment {
     fn id(&self) -> &'static str {

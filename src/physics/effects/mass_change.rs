@@ -1,15 +1,15 @@
 //! The vehicle becomes lighter or heavier in flight.
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// From `time` on the mass is `m + delta` at the same centre and inertia: all force `F` accelerates it by
-/// `F / (m + delta)`, which on the body of mass `m` is the force `-delta / (m + delta) F` beside it.
+/// From `time` on, the mass is `m + delta` with the same centre and inertia. The total force `F` then accelerates the
+/// vehicle by `F / (m + delta)`. For a body of mass `m` this is an additional force `-delta / (m + delta) F`.
 #[derive(Debug, Clone, Copy)]
 pub struct MassChange;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "time", unit: "s", min: 0.0, max: 1e5 },
-    Parameter { name: "delta", unit: "kg", min: -5.0, max: 5.0 },
+    Parameter { name: "time", unit: "s", bounds: Bounds::of(0.0, 1e5) },
+    Parameter { name: "delta", unit: "kg", bounds: Bounds::of(-5.0, 5.0).by_mass() },
 ];
 
 /// By how much the mass differs now, kg; never so much that less than a tenth is left.

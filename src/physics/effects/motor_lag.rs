@@ -1,11 +1,11 @@
 //! Rotors take time to reach the commanded speed.
 
-use crate::physics::{ActiveEffect, Airframe, Condition, Effect, Hook, Own, Parameter, Rotors};
+use crate::physics::{ActiveEffect, Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors};
 use crate::vehicle::Propulsion;
 
-/// `Omega' = (Omega_command - Omega) / time_constant`, one state a rotor. In the finer form, with
-/// `time_constant_down`, `time_constant` is that of a rotor that speeds up and the other that of one that slows
-/// down: the motor drives it up, often only the air holds it back.
+/// `Omega' = (Omega_command - Omega) / time_constant`, with one state for each rotor. In the finer form,
+/// `time_constant` is that of a rotor that speeds up, and `time_constant_down` that of a rotor that slows down: the
+/// motor drives the rotor up, and often only the drag of the air slows it down.
 #[derive(Debug, Clone, Copy)]
 pub struct MotorLag;
 
@@ -13,7 +13,7 @@ pub struct MotorLag;
 const LEAST_TIME_CONSTANT_S: f64 = 1e-4;
 
 const fn time_constant(name: &'static str) -> Parameter {
-    Parameter { name, unit: "s", min: LEAST_TIME_CONSTANT_S, max: 0.5 }
+    Parameter { name, unit: "s", bounds: Bounds::of(LEAST_TIME_CONSTANT_S, 0.5) }
 }
 
 const PARAMETERS: &[Parameter] = &[time_constant("time_constant")];

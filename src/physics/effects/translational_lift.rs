@@ -1,14 +1,16 @@
 //! Flying sideways gives thrust.
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `F_i = (kh / N) ((v_air + w x r_i)_x^2 + (..)_y^2) e_z` at each hub, with `kh` of the whole vehicle.
+/// `F_i = (kh / N) ((v_air + w x r_i)_x^2 + (..)_y^2) e_z` at each hub, where `kh` is the coefficient of the whole
+/// vehicle.
 ///
 /// Faessler et al. 2018 (arXiv 1712.02402); Svacha et al. 2017.
 #[derive(Debug, Clone, Copy)]
 pub struct TranslationalLift;
 
-const PARAMETERS: &[Parameter] = &[Parameter { name: "kh", unit: "N/(m/s)^2", min: 0.0, max: 1.0 }];
+const PARAMETERS: &[Parameter] =
+    &[Parameter { name: "kh", unit: "N/(m/s)^2", bounds: Bounds::of(0.0, 1.0).by_mass() }];
 
 /// Force and torque for one N/(m/s)^2.
 fn per_coefficient(at: &Condition) -> Wrench {

@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use super::parameter::{Parameter, ParameterType};
 use super::pulses::Pulses;
 use super::{ardupilot, px4};
-use crate::log::Payload;
 use crate::sitl::battery::Battery;
 use crate::sitl::message::Message;
 use crate::sitl::{AutopilotKind, Settings, SitlError};
 use crate::units::{narrow, whole};
+use crate::wire::Payload;
 
 /// All parameters, by name.
 #[derive(Debug)]

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use mavid::config::read_vehicle;
-use mavid::fly::{Around, Course, Key, Mode as RequestedEffects, Origin, Settings, Sortie};
+use mavid::fly::{Around, Course, FirstQuestion, Key, Mode as RequestedEffects, Origin, Settings, Sortie};
 use mavid::sitl::{ArduPilotRelease, AutopilotKind, LinkRole, Mode, Settings as VehicleSettings};
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
 use mavid::vehicle::Vehicle;
@@ -180,6 +180,7 @@ impl Lot {
             hold_then_land: s(3),
             watch_max: s(20),
             await_clearance: self.clearance,
+            first_question: FirstQuestion::of_seed(1),
             ..Settings::default()
         };
         let gravity_m_s2 = vehicle.gravity_m_s2;

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
 use mavid::fly::{Key, Mode as RequestedEffects};
-use mavid::log::CrcSeeds;
 use mavid::sitl::{AutopilotKind, Beheld, Fault, LinkId, Mode, Vehicle};
+use mavid::wire::CrcSeeds;
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use tokio::runtime::{Builder, Runtime};
