@@ -17,9 +17,10 @@ use mavid::fly::{
     Around, Course, Event, Feeding, FollowLaw, Motion, PathClock, PathTime, Place, Setpoint, Track,
     reference_at, transfer,
 };
-use mavid::plan::{Criterion, PlanRequest, Reach, plan};
+use mavid::plan::{Criterion, Dynamics, FlightPlan, PlanRequest, Reach, bounds_of, flight_path, plan};
 use mavid::recording::Autopilot;
 use mavid::sitl::{ArduPilotRelease, AutopilotKind, Settings as VehicleSettings};
+use mavid::trajectory::Segment;
 use mavid::vehicle::{Limits, Vehicle};
 use nalgebra::Vector3;
 
@@ -51,7 +52,15 @@ fn course(vehicle: &Vehicle) -> Course {
         ..PlanRequest::default()
     };
     let planned = plan(vehicle, &room(), &request, &|| {}).unwrap();
-    Course::new(&planned.trajectory, 1, None::<&Around>, &room(), vehicle).unwrap()
+    let place = planned.trajectory.axes.each_ref().map(|axis| axis.c);
+    let flight = FlightPlan { takeoff: place, landing: place, hover_s: 0.0, repeats: 1 };
+    let bounds = [bounds_of(&room(), vehicle), planned.rest].concat();
+    let path = flight_path(&planned.trajectory, &flight, &bounds, &Dynamics::new(vehicle)).unwrap();
+    let transitions = path.segments.iter().filter(|(segment, _)| matches!(segment, Segment::Transition(_)));
+    let lasts_s: Vec<f64> = transitions.map(|(_, lasts_s)| *lasts_s).collect();
+    let (to_start_s, to_landing_s) = (lasts_s[0], lasts_s[1]);
+    let around = Around { takeoff: place, landing: place, to_start_s, to_landing_s };
+    Course::new(&planned.trajectory, 1, Some(&around), &room(), vehicle).unwrap()
 }
 
 /// The vehicle, and what it would say of its parameters.
@@ -173,7 +182,6 @@ fn a_px4_that_is_left_alone_stays_in_a_room_of_four_metres() {
     let said: Vec<String> = findings.iter().map(ToString::to_string).collect();
     let instants: Vec<f64> = (0..14).map(|step| 2.3 + 0.75 * f64::from(step)).collect();
     let (_, beyond_m) = worst(AutopilotKind::Px4, &course, feeding, &instants);
-
     // its last setpoint stays for a second, and then it has to brake
     assert!(beyond_m < 0.25, "{beyond_m} m; {}", said.join("\n"));
 }
@@ -278,110 +286,12 @@ fn a_vehicle_keeps_to_a_reference_that_pauses_and_resumes() {
                 }
             }
             let outcome = flying.finish();
-            eprintln!("{kind:?} share {}: {worst_m} {:?}", feeding.share(), outcome.flown);
             assert!(outcome.is_whole(), "{kind:?}: {outcome:?} {}", flying.story());
             assert!(
                 worst_m < 0.9 && outcome.flown.tracking_max_m < 0.3,
                 "{kind:?}, {}: {worst_m} m",
                 feeding.share()
             );
-        }
-    }
-}
-
-#[test]
-fn gtmp_model_against_vehicle() {
-    for kind in [AutopilotKind::Px4, COPTER] {
-        let (settings, parameters) = lively(kind);
-        for (rests_inside, criterion) in [
-            (true, Criterion::Cond),
-            (true, Criterion::DOpt),
-            (false, Criterion::Cond),
-            (false, Criterion::DOpt),
-        ] {
-            let limits = Limits { z_min_m: Some(1.2), ..room() };
-            let request = PlanRequest { repeats: 2, criterion, rests_inside, ..PlanRequest::default() };
-            let planned = plan(&settings.vehicle, &limits, &request, &|| {}).unwrap();
-            let errors = planned.assessment.standard_errors;
-            eprintln!(
-                "GT {kind:?} calm {rests_inside} {criterion:?} value {} errors {errors:?}",
-                planned.criterion_value
-            );
-            let rest = |t: f64| {
-                let d = planned.trajectory.derivatives(t);
-                std::array::from_fn::<f64, 3, _>(|k| {
-                    d[k][0] + mavid::plan::AHEAD_S[0] * d[k][1] + mavid::plan::AHEAD_S[1] * d[k][2]
-                })
-            };
-            for axis in 0..3 {
-                let values: Vec<f64> = (0..1000).map(|k| rest(0.01 * f64::from(k))[axis]).collect();
-                let fold = |f: fn(f64, f64) -> f64, s: f64| values.iter().copied().fold(s, f);
-                eprintln!("GT rest axis {axis}: {} {}", fold(f64::min, 9.0), fold(f64::max, -9.0));
-            }
-            let course =
-                Course::new(&planned.trajectory, 2, None::<&Around>, &limits, &settings.vehicle).unwrap();
-            let Judged { findings, feeding, .. } = judged(&course, &parameters, &settings.vehicle);
-            for finding in findings.iter().filter(|finding| finding.subject == "if we die now") {
-                eprintln!("GT {finding}");
-            }
-            let law = FollowLaw::of(&parameters, Some((4, 6))).remove(0);
-            let first = reference_at(course.path(), 0.0, &Vector3::zeros(), Duration::ZERO).unwrap();
-            let mut motion = Motion::at(first.position_m, first.velocity_m_s);
-            let mut ends = Vec::new();
-            let mut step = 0_u32;
-            while 0.02 * f64::from(step) < course.path().duration_s() {
-                let now =
-                    reference_at(course.path(), 0.02 * f64::from(step), &Vector3::zeros(), Duration::ZERO)
-                        .unwrap();
-                let target = feeding.target(&now);
-                law.step(&mut motion, &target, 0.02);
-                let (mut low, mut high) = (motion.position_m, motion.position_m);
-                law.abandoned(&motion, &target, |p| {
-                    low = low.inf(p);
-                    high = high.sup(p);
-                });
-                ends.push((low, high, motion.velocity_m_s));
-                step += 1;
-            }
-            let mut off_max = [f64::NEG_INFINITY; 3];
-            let mut out_max = f64::NEG_INFINITY;
-            for k in 0..14 {
-                let after_s = 3.0 + 1.27 * f64::from(k);
-                let mut flying = Flying::new(settings.clone(), |sortie| {
-                    sortie.course = course.clone();
-                    sortie.limits = limits;
-                });
-                flying.event(Event::Feed(feeding));
-                flying.until(120.0, "trajectory", |flying| flying.phase() == "trajectory");
-                flying.wait(after_s);
-                flying.up.loss = 1.0;
-                let here = Vector3::from(flying.flight.status(flying.now).position_m.unwrap());
-                let (mut low, mut high) = (here, here);
-                let end = flying.now + Duration::from_secs(9);
-                while flying.now < end {
-                    flying.step(true);
-                    let place = Vector3::from(flying.flight.status(flying.now).position_m.unwrap());
-                    low = low.inf(&place);
-                    high = high.sup(&place);
-                }
-                let (mlow, mhigh, v) = ends[(after_s / 0.02).round() as usize];
-                let off = (high - mhigh).sup(&(mlow - low));
-                for axis in 0..3 {
-                    // a landing goes down afterwards
-                    let one = if axis == 2 { high.z - mhigh.z } else { off[axis] };
-                    off_max[axis] = off_max[axis].max(one);
-                }
-                let outside = low.x.abs().max(high.x.abs()).max(low.y.abs()).max(high.y.abs()) - 2.0;
-                out_max = out_max.max(outside);
-                eprintln!(
-                    "GT {kind:?} at {after_s:.2} off {:.2} {:.2} {:.2} v {:.2} outside(centre) {outside:.2}",
-                    off.x,
-                    off.y,
-                    high.z - mhigh.z,
-                    v.norm()
-                );
-            }
-            eprintln!("GT {kind:?} calm {rests_inside} {criterion:?} OFF {off_max:?} OUT {out_max}");
         }
     }
 }

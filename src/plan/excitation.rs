@@ -131,7 +131,7 @@ pub enum PlanError {
 /// How often a plan that breaks a bound is polished.
 const POLISHES: u32 = 3;
 /// By how much the criterion may grow, for a plan that is safe where the setpoints may end.
-const CALM_COSTS: f64 = 1.1;
+const CALM_COSTS: f64 = 1.5;
 /// How far inside the room the vehicle is to come to rest then, m, in the order in which it is tried.
 const INSIDE_M: [f64; 8] = [-1.25, -1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5];
 /// Share of the commands of a flown plan that may be at a rotor's bound: an instant of the way from hover into the series.
@@ -311,8 +311,8 @@ fn problem_of(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Prob
     }
 }
 
-/// The height is free unless prescribed, and so is the place of a plan that is to rest inside. A start on a bound gets no jerk, and stands off the bound by as
-/// little as all else does.
+/// The height is free unless prescribed, and so is the place of a plan that is to rest inside. A start on a bound gets no
+/// jerk, and stands off the bound by as little as all else does.
 fn starts_of(limits: &Limits, request: &PlanRequest) -> [AxisStart; 4] {
     let margin = search_of(request).margin;
     let at = |value: f64, min: Option<f64>, max: Option<f64>| {

@@ -102,7 +102,9 @@ const EXPECTED: &str = "rest inside room and fence and clear of the ground, when
 /// The way that follows the reference best among those that are safe by each of the laws; or, as an error, the least unsafe
 /// one.
 fn choose(situation: &Situation<'_>, laws: &[FollowLaw]) -> Result<Tried, Box<Tried>> {
-    let room = SetpointBounds::room(situation.limits, &situation.origin_m);
+    let reach = Reach::of(situation.vehicle);
+    let room = SetpointBounds::room(situation.limits, &situation.origin_m)
+        .smaller(reach.side_m + ARDUPILOT_OFF_M, reach.up_m + ARDUPILOT_OFF_M);
     let ways = SHARES.iter().flat_map(|share| {
         let ahead = laws.iter().map(|law| Feeding::ahead(*law, *share, room));
         if *share < 1.0 { ahead.collect() } else { vec![Feeding::whole()] }
