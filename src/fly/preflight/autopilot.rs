@@ -2,7 +2,7 @@
 //! vehicle miss it, and the miss looks like physics that is not there.
 
 use crate::fly::finding::Finding;
-use crate::fly::parameters::Parameters;
+use crate::fly::parameters::{Parameters, has_bit};
 use crate::plan::Extremes;
 use crate::recording::Autopilot;
 use crate::units::deg_from_rad;
@@ -17,6 +17,9 @@ struct Limit {
     unit: &'static str,
 }
 
+const SUBJECT: &str = "autopilot limits";
+/// Bits of GUID_OPTIONS, and what is not stabilised then.
+const NOT_FOLLOWED: &[(u32, &str)] = &[(4, "position"), (5, "velocity")];
 /// Reserve that the controller needs above what the trajectory asks for.
 const RESERVE: f64 = 1.3;
 
@@ -26,7 +29,7 @@ pub(super) fn findings(parameters: &Parameters, extremes: &Extremes) -> Vec<Find
         Autopilot::Px4 => px4(extremes),
         Autopilot::Other | Autopilot::Unknown => return Vec::new(),
     };
-    let (mut findings, mut silent) = (Vec::new(), Vec::new());
+    let (mut findings, mut silent) = (Vec::from_iter(not_followed(parameters)), Vec::new());
     for limit in &limits {
         match parameters.get(limit.name) {
             None => silent.push(parameters.name_of(limit.name)),
@@ -39,15 +42,15 @@ pub(super) fn findings(parameters: &Parameters, extremes: &Extremes) -> Vec<Find
     }
     if !silent.is_empty() {
         findings.push(Finding::warning(
-            "autopilot limits",
+            SUBJECT,
             "the limits that the autopilot puts on a setpoint",
             format!("no answer for {}", silent.join(", ")),
             "look them up: one that is too low makes the vehicle miss the trajectory",
         ));
     }
-    if findings.is_empty() {
+    if findings.iter().all(|finding| finding.subject != SUBJECT) {
         findings.push(Finding::ok(
-            "autopilot limits",
+            SUBJECT,
             "limits above what the trajectory asks for",
             format!("all {} are", limits.len()),
         ));
@@ -55,11 +58,30 @@ pub(super) fn findings(parameters: &Parameters, extremes: &Extremes) -> Vec<Find
     findings
 }
 
+/// GUIDED follows no place or velocity while these bits of GUID_OPTIONS are set (`ModeGuided::posvelaccel_control_run`).
+fn not_followed(parameters: &Parameters) -> Option<Finding> {
+    if parameters.autopilot != Autopilot::ArduPilot {
+        return None;
+    }
+    let mask = parameters.get("GUID_OPTIONS")?;
+    let set: Vec<_> = NOT_FOLLOWED.iter().filter(|(bit, _)| has_bit(mask, *bit)).collect();
+    let without = set.iter().fold(mask, |mask, (bit, _)| mask - f64::from(1_u32 << bit));
+    let names: Vec<String> = set.iter().map(|(bit, what)| format!("{what} is not (bit {bit})")).collect();
+    (!set.is_empty()).then(|| {
+        Finding::refusal(
+            "guided options",
+            "position and velocity stabilised in GUIDED",
+            format!("{} (GUID_OPTIONS = {mask})", names.join(", ")),
+            format!("the vehicle would drift: set GUID_OPTIONS to {without}"),
+        )
+    })
+}
+
 fn too_low(parameters: &Parameters, limit: &Limit, value: f64) -> Finding {
     let name = parameters.name_of(limit.name);
     let advice = parameters.in_own_unit(limit.name, limit.per_si * limit.needed * RESERVE);
     Finding::warning(
-        "autopilot limits",
+        SUBJECT,
         format!("{} of at least {:.2} {}", limit.what, limit.needed, limit.unit),
         format!(
             "{:.2} {} ({name} = {:.4})",

@@ -29,6 +29,7 @@ const COMMON: &[Row] = &[
     ("FENCE_ACTION", B, 1.0),
     ("FENCE_ALT_MAX", R, 100.0),
     ("FENCE_ALT_MIN", R, -10.0),
+    ("FENCE_AUTOENABLE", B, 0.0),
     ("FENCE_ENABLE", B, 0.0),
     ("FENCE_MARGIN", R, 2.0),
     ("FENCE_RADIUS", R, 300.0),
