@@ -57,5 +57,5 @@ pub use runner::{
 };
 pub use safety::{Feeding, FirstQuestion, Guide, Lead, SetpointBounds, Streamed, Streamer};
 pub use setpoint::{Place, Setpoint};
-pub use sortie::{Check, Origin, Settings, Sortie};
+pub use sortie::{Check, Origin, SETPOINT_HZ, Settings, Sortie};
 pub use target::{MessageId, Order, OutOfRange, ParameterName, Period, TakeoffHeight, Target, heartbeat};

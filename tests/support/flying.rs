@@ -143,6 +143,8 @@ pub fn sortie(vehicle: &VehicleSettings) -> Sortie {
         settings: Settings {
             ready_timeout: Duration::from_secs(30),
             first_question: FirstQuestion::of_seed(1),
+            // the steps of this clock
+            setpoint_period: Duration::from_millis(20),
             ..Settings::default()
         },
     }

@@ -174,6 +174,7 @@ impl Lot {
         let s = Duration::from_secs;
         let settings = Settings {
             origin: self.origin,
+            setpoint_period: Duration::from_millis(20),
             connect_timeout: s(10),
             ready_timeout: s(20),
             reach_timeout: s(15),
