@@ -54,7 +54,7 @@ fn course(vehicle: &Vehicle) -> Course {
     let planned = plan(vehicle, &room(), &request, &|| {}).unwrap();
     let place = planned.trajectory.axes.each_ref().map(|axis| axis.c);
     let flight = FlightPlan { takeoff: place, landing: place, hover_s: 0.0, repeats: 1 };
-    let bounds = [bounds_of(&room(), vehicle), planned.rest].concat();
+    let bounds = [bounds_of(&room(), vehicle), planned.rest.unwrap().bounds].concat();
     let path = flight_path(&planned.trajectory, &flight, &bounds, &Dynamics::new(vehicle)).unwrap();
     let transitions = path.segments.iter().filter(|(segment, _)| matches!(segment, Segment::Transition(_)));
     let lasts_s: Vec<f64> = transitions.map(|(_, lasts_s)| *lasts_s).collect();

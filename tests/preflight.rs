@@ -582,7 +582,7 @@ fn what_px4_does_after_the_loss_is_held_against_the_room() {
 fn what_follows_when_our_heartbeats_end_is_held_against_the_room() {
     let mut scene = Scene::good();
     scene.limits.z_max_m = Some(4.0);
-    // the path's middle is above home: a return from its rim, 1 m out, climbs by a cone of slope 6
+    // a return from where it comes to rest climbs by a cone of slope 6
     let returning = |enable: f64, more: &[(&str, f64)]| {
         let mut parameters =
             ardupilot(&[("FS_GCS_ENABLE", enable), ("RTL_ALT_M", 15.0), ("RTL_CONE_SLOPE", 6.0)]);
@@ -592,9 +592,12 @@ fn what_follows_when_our_heartbeats_end_is_held_against_the_room() {
     for enable in [1.0, 2.0, 3.0, 6.0] {
         scene.parameters = returning(enable, &[]);
         let said = scene.said(DIES);
-        assert!(said.level == Level::Warning && said.came.contains("climbs to 6."), "{enable}: {said}");
         assert!(
-            said.remedy.contains("FS_GCS_ENABLE to 5") && said.remedy.contains("RTL_ALT_M to 4 or less"),
+            said.level == Level::Warning && said.came.contains("the ceiling allows 3.7 m"),
+            "{enable}: {said}"
+        );
+        assert!(
+            said.remedy.contains("FS_GCS_ENABLE to 5") && said.remedy.contains("RTL_ALT_M to 3.6 or less"),
             "{said}"
         );
     }
@@ -604,8 +607,8 @@ fn what_follows_when_our_heartbeats_end_is_held_against_the_room() {
         returning(4.0, &[]),
         returning(5.0, &[]),
         returning(7.0, &[]),
-        returning(1.0, &[("RTL_ALT_M", 3.9)]),
-        returning(1.0, &[("RTL_CONE_SLOPE", 3.0)]),
+        returning(1.0, &[("RTL_ALT_M", 3.6)]),
+        returning(1.0, &[("RTL_CONE_SLOPE", 0.7)]),
         returning(1.0, &[("MAV_GCS_SYSID", 254.0)]),
     ] {
         scene.parameters = safe;
@@ -642,7 +645,7 @@ fn what_px4_does_without_a_ground_station_is_held_against_the_room() {
         (
             5.0,
             2.0,
-            "climbs to 60 m (RTL_RETURN_ALT), the room ends at 6.0 m, once no ground station is heard for 10 s",
+            "climbs to 60 m above home (RTL_RETURN_ALT), the ceiling allows 5.7 m, once no ground station is heard for 10 s",
         ),
         (5.0, 5.0, "motors that stop in the air once"),
         (4.0, 6.0, "motors that stop in the air once"),

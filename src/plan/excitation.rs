@@ -89,9 +89,17 @@ pub struct Plan {
     pub criterion_value: f64,
     /// what it is worth
     pub assessment: Assessment,
-    /// bounds, beside those of the limits, by which a vehicle that hears nothing more comes to rest inside the room; for
-    /// the ways to the series and back as well
-    pub rest: Vec<Bound>,
+    /// what keeps a vehicle that hears nothing more inside the room; `None` where that was not asked for, or cost too much
+    pub rest: Option<RestInside>,
+}
+
+/// What keeps a vehicle that hears nothing more inside the room.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RestInside {
+    /// how far inside its rotors come to rest, m; negative: outside
+    pub inside_m: f64,
+    /// bounds beside those of the limits; for the ways to the series and back as well
+    pub bounds: Vec<Bound>,
 }
 
 /// Why there is no plan.
@@ -169,7 +177,7 @@ pub fn plan(
     let search = search_of(request);
     let best = search.run(&problem, samples, done).ok_or(PlanError::NotDetermined)?;
     let mut best = settled(&search, &problem, best, (vehicle, request))?;
-    let mut rest = Vec::new();
+    let mut rest = None;
     if request.rests_inside {
         (best, rest) = calmed(&search, &problem, best, (vehicle, limits, request));
     }
@@ -180,7 +188,7 @@ pub fn plan(
             break;
         }
         problem.bounds = bounds_to_plan_in(limits, vehicle, *margin);
-        problem.bounds.extend_from_slice(&rest);
+        problem.bounds.extend(rest.iter().flat_map(|rest| &rest.bounds).copied());
         let calmer = search.polish(&problem, best.unknowns.clone(), samples);
         match settled(&search, &problem, calmer, (vehicle, request)) {
             Ok(calmer) => best = calmer,
@@ -204,17 +212,19 @@ fn calmed(
     problem: &Problem,
     best: Iterate,
     (vehicle, limits, request): (&Vehicle, &Limits, &PlanRequest),
-) -> (Iterate, Vec<Bound>) {
+) -> (Iterate, Option<RestInside>) {
     let samples = whole((request.period_s / SAMPLE_S).ceil());
     let worth = best.log_value + CALM_COSTS.ln();
-    let (mut calmest, mut kept) = (best, Vec::new());
+    let (mut calmest, mut kept) = (best, None);
     for inside_m in INSIDE_M {
-        let Some(rest) = rest_bounds(limits, vehicle, inside_m) else { break };
+        let Some(bounds) = rest_bounds(limits, vehicle, inside_m) else { break };
         let mut calm = problem.clone();
-        calm.bounds.extend_from_slice(&rest);
+        calm.bounds.extend_from_slice(&bounds);
         let calmer = search.polish(&calm, calmest.unknowns.clone(), samples);
         match settled(search, &calm, calmer, (vehicle, request)) {
-            Ok(calmer) if calmer.log_value <= worth => (calmest, kept) = (calmer, rest),
+            Ok(calmer) if calmer.log_value <= worth => {
+                (calmest, kept) = (calmer, Some(RestInside { inside_m, bounds }));
+            }
             _ => break,
         }
     }

@@ -36,7 +36,7 @@ pub use bounds::{
 };
 pub use check::{CheckReport, Margin, SAMPLE_S, Violation, check};
 pub use criterion::{Criterion, condition_number, scaled_condition_number};
-pub use excitation::{Assessment, Plan, PlanError, PlanRequest, assess, plan, search_of};
+pub use excitation::{Assessment, Plan, PlanError, PlanRequest, RestInside, assess, plan, search_of};
 pub use expected::{FlightSpan, expected_standard_errors, share_at_bound};
 pub use extremes::{Extremes, path_samples};
 pub use feasible::{Conflict, StartPlace, feasible};

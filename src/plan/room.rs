@@ -111,7 +111,7 @@ pub fn with_room(limits: &Limits, vehicle: &Vehicle) -> Roomed {
         fill(&mut roomed.speed_max_m_s, "speed_max_m_s", SPEED_M_S);
         roomed.roll_max_rad = Some(rad_from_deg(TILT_MAX_DEG));
         roomed.pitch_max_rad = roomed.roll_max_rad;
-        roomed.yaw_rate_max_rad_s = Some(rad_from_deg(YAW_RATE_MAX_DEG_S));
+        roomed.yaw_rate_max_rad_s.get_or_insert(rad_from_deg(YAW_RATE_MAX_DEG_S));
         missing.extend(tilt_notes(&roomed));
     }
     let mut notes = Vec::new();
@@ -134,14 +134,8 @@ pub fn with_room(limits: &Limits, vehicle: &Vehicle) -> Roomed {
 
 /// Speed, acceleration or tilt is bounded, so that somebody thought of how lively it may be flown.
 fn bounds_motion(limits: &Limits) -> bool {
-    let of_motion = [
-        limits.speed_max_m_s,
-        limits.acceleration_max_m_s2,
-        limits.vertical_acceleration_max_m_s2,
-        limits.roll_max_rad,
-        limits.pitch_max_rad,
-        limits.yaw_rate_max_rad_s,
-    ];
+    let of_motion =
+        [limits.speed_max_m_s, limits.acceleration_max_m_s2, limits.roll_max_rad, limits.pitch_max_rad];
     of_motion.iter().any(Option::is_some)
 }
 

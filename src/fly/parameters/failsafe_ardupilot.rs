@@ -86,7 +86,14 @@ fn setpoints(topic: &Topic<'_>) -> Sentence {
     }
 }
 
-/// Heartbeats count only if they come from the one system that the vehicle was told.
+/// Whether heartbeats of ours are those of its ground station: from MAV_GCS_SYSID to MAV_GCS_SYSID_HI where that is the
+/// greater, and otherwise of that one system alone.
+pub(in crate::fly) fn hears_station(parameters: &Parameters, system: f64, own_system: u8) -> bool {
+    let highest = parameters.get("MAV_GCS_SYSID_HI").filter(|highest| *highest > system).unwrap_or(system);
+    (system - 0.5..highest + 0.5).contains(&f64::from(own_system))
+}
+
+/// Heartbeats count only if they come from the system that the vehicle was told.
 fn ground_station(topic: &Topic<'_>, own_system: u8) -> Sentence {
     let what = format!("If this ground station is not heard for {}", topic.number("FS_GCS_TIMEOUT", "s"));
     let sentence = topic.choose(&what, "FS_GCS_ENABLE", GROUND_STATION_LOST);
@@ -94,7 +101,7 @@ fn ground_station(topic: &Topic<'_>, own_system: u8) -> Sentence {
         return sentence;
     }
     match topic.parameters.get("SYSID_MYGCS") {
-        Some(system) if (system - f64::from(own_system)).abs() < 0.5 => sentence,
+        Some(system) if hears_station(topic.parameters, system, own_system) => sentence,
         Some(system) => topic.say(
             Warning,
             format!(
@@ -125,7 +132,10 @@ fn fence(topic: &Topic<'_>) -> Sentence {
     let leaves = "If it leaves its fence";
     match FenceSwitch::of(topic.parameters) {
         FenceSwitch::Unknown("FENCE_ENABLE") => topic.unknown(leaves, "FENCE_ENABLE"),
-        FenceSwitch::Unknown(name) => topic.unknown("Whether a fence is enabled in flight", name),
+        FenceSwitch::Unknown(name) => {
+            let what = "No fence is enabled now (FENCE_ENABLE = 0). Whether one is in flight (releases from 4.6 on can)";
+            topic.unknown(what, name)
+        }
         FenceSwitch::Off => {
             topic.say(Warning, "There is no fence (FENCE_ENABLE = 0): nothing stops it at a border.")
         }

@@ -15,6 +15,7 @@ mod takeover;
 pub(super) use bitmask::has_bit;
 pub use download::{Download, DownloadSettings, Progress};
 pub use failsafe::failsafe_declaration;
+pub(super) use failsafe_ardupilot::hears_station;
 pub(super) use fence_switch::FenceSwitch;
 pub use names::{Purpose, RENAMED, Renamed, RequestedEffects, wanted};
 pub use parameter_set::{Parameters, ParametersError};

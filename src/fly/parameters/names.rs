@@ -159,6 +159,7 @@ const ARDUPILOT: &[(Purpose, &[&str])] = &[
             "FS_GCS_ENABLE",
             "FS_GCS_TIMEOUT",
             "SYSID_MYGCS",
+            "MAV_GCS_SYSID_HI",
             "SYSID_THISMAV",
             "FS_THR_ENABLE",
             "FS_EKF_ACTION",

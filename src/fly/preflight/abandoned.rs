@@ -7,7 +7,7 @@ use std::time::Duration;
 use nalgebra::Vector3;
 
 use super::Situation;
-use super::aftermath::{self, SUBJECT};
+use super::aftermath::{self, Abandoned, SUBJECT};
 use crate::fly::course::{approach, reference_at};
 use crate::fly::finding::Finding;
 use crate::fly::law::{FollowLaw, Motion, STEP_S};
@@ -57,19 +57,37 @@ struct Worst {
 struct Tried {
     feeding: Feeding,
     worst: Option<Worst>,
-    /// beyond what ground and fence allow, m; negative within: of these nothing is given away
-    hard_m: f64,
+    /// of ground and fence: of these nothing is given away
+    hard: Option<Worst>,
+    /// how far along the ground from home it comes to be, and how high above, m
+    farthest_m: f64,
+    highest_m: f64,
     /// the greatest distance of the model to the reference, m
     tracking_m: f64,
 }
 
 impl Tried {
+    fn untried(feeding: Feeding) -> Self {
+        Self { feeding, worst: None, hard: None, farthest_m: 0.0, highest_m: 0.0, tracking_m: 0.0 }
+    }
+
     fn beyond_m(&self) -> f64 {
         self.worst.map_or(f64::NEG_INFINITY, |worst| worst.beyond_m)
     }
 
+    fn hard_m(&self) -> f64 {
+        self.hard.map_or(f64::NEG_INFINITY, |worst| worst.beyond_m)
+    }
+
+    /// What is to be said of it: what refuses before what warns.
+    fn told(&self) -> Option<Worst> {
+        self.hard.filter(|hard| hard.beyond_m > 0.0).or(self.worst)
+    }
+
     fn is_safe(&self, tracking_max_m: f64, wall_m: f64) -> bool {
-        self.beyond_m() <= wall_m && self.hard_m <= 0.0 && self.tracking_m <= TRACKING_SHARE * tracking_max_m
+        self.beyond_m() <= wall_m
+            && self.hard_m() <= 0.0
+            && self.tracking_m <= TRACKING_SHARE * tracking_max_m
     }
 }
 
@@ -93,8 +111,10 @@ pub(super) fn judge(situation: &Situation<'_>) -> (Feeding, Vec<Finding>) {
                     less likely one it may leave the reference, which ends the flight";
         Finding::warning(SUBJECT, expected, came, "fly a stable release of ArduPilot")
     }));
-    findings.extend(aftermath::findings(situation));
-    (chosen.map_or_else(|tried| tried.feeding, |tried| tried.feeding), findings)
+    let tried = chosen.unwrap_or_else(|tried| *tried);
+    let comes_to = Abandoned { farthest_m: tried.farthest_m, highest_m: tried.highest_m };
+    findings.extend(aftermath::findings(situation, comes_to));
+    (tried.feeding, findings)
 }
 
 const EXPECTED: &str = "rest inside room and fence and clear of the ground, whenever setpoints end";
@@ -120,8 +140,7 @@ fn choose(situation: &Situation<'_>, laws: &[FollowLaw]) -> Result<Tried, Box<Tr
     tries.sort_by(|a, b| a.beyond_m().total_cmp(&b.beyond_m()));
     let nearly = tries.iter().find(|tried| tried.is_safe(situation.tracking_max_m, WALL_AT_MOST_M)).copied();
     let least = tries.first().copied();
-    let none =
-        Tried { feeding: Feeding::whole(), worst: None, hard_m: f64::NEG_INFINITY, tracking_m: f64::NAN };
+    let none = Tried { tracking_m: f64::NAN, ..Tried::untried(Feeding::whole()) };
     nearly.ok_or_else(|| Box::new(least.unwrap_or(none)))
 }
 
@@ -146,7 +165,7 @@ fn attempt(situation: &Situation<'_>, laws: &[FollowLaw], feeding: Feeding) -> T
             legs.push(leg(climb, true, "of the takeoff"));
         }
     }
-    let mut tried = Tried { feeding, worst: None, hard_m: f64::NEG_INFINITY, tracking_m: 0.0 };
+    let mut tried = Tried::untried(feeding);
     for leg in &legs {
         for law in laws {
             let tracking_m = fly(situation, law, leg, &mut tried);
@@ -167,6 +186,7 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
     let mut motion = Motion::at(first.position_m, first.velocity_m_s);
     motion.acceleration_m_s2 = first.acceleration_m_s2;
     let off_m = if matches!(law, FollowLaw::Px4 { .. }) { PX4_OFF_M } else { ARDUPILOT_OFF_M };
+    let home_m = situation.home();
     let (mut step, mut recent) = (0_usize, VecDeque::with_capacity(RECENT + 1));
     loop {
         let time_s = step as f64 * STEP_S;
@@ -186,13 +206,17 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
         tracking_m = tracking_m.max(distances.fold(f64::INFINITY, f64::min));
         if step.is_multiple_of(EVERY) {
             law.abandoned(&motion, &target, |place_m| {
+                let from_home = place_m - home_m;
+                tried.farthest_m = tried.farthest_m.max(from_home.xy().norm());
+                tried.highest_m = tried.highest_m.max(from_home.z);
                 for Border { beyond_m, is_hard, name: border } in borders(situation, leg, place_m) {
                     let beyond_m = beyond_m + off_m;
-                    if is_hard {
-                        tried.hard_m = tried.hard_m.max(beyond_m);
+                    let this = Worst { beyond_m, border, time_s, leg: leg.name };
+                    if is_hard && tried.hard.is_none_or(|hard| beyond_m > hard.beyond_m) {
+                        tried.hard = Some(this);
                     }
                     if tried.worst.is_none_or(|worst| beyond_m > worst.beyond_m) {
-                        tried.worst = Some(Worst { beyond_m, border, time_s, leg: leg.name });
+                        tried.worst = Some(this);
                     }
                 }
             });
@@ -238,7 +262,7 @@ fn borders(situation: &Situation<'_>, leg: &Leg<'_>, place_m: &Vector3<f64>) -> 
 
 /// `0.12 m short of the wall x_max_m at worst, should they end at 3.1 s of the trajectory`.
 fn in_words(tried: &Tried) -> String {
-    tried.worst.map_or_else(
+    tried.told().map_or_else(
         || "nothing to hit".to_owned(),
         |worst| {
             let Worst { beyond_m, border, time_s, leg, .. } = worst;
@@ -316,7 +340,7 @@ fn refused(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> Find
 /// A slower or smaller plan first, then a value.
 fn remedy(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> String {
     let misses = tried.tracking_m > TRACKING_SHARE * situation.tracking_max_m;
-    let plan = match tried.worst.filter(|worst| worst.beyond_m > 0.0 && !misses) {
+    let plan = match tried.told().filter(|worst| worst.beyond_m > 0.0 && !misses) {
         Some(worst) => format!(
             "plan slower near {}, or {:.1} m further from it",
             worst.border,

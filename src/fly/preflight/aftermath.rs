@@ -1,12 +1,9 @@
 //! If we die now: what the vehicle does by itself after it has come to rest. Our setpoints end, and our heartbeats do
 //! too.
 
-use nalgebra::Vector3;
-
 use super::Situation;
-use super::stopping::place_and_velocity;
 use crate::fly::finding::Finding;
-use crate::plan::path_samples;
+use crate::fly::parameters::hears_station;
 use crate::recording::Autopilot;
 
 /// Subject of the findings on the end of this program.
@@ -22,11 +19,20 @@ const RTL_CONE_SLOPE: f64 = 3.0;
 const RTL_LEAST_M: f64 = 0.3;
 const LEAST_SLOPE: f64 = 0.5;
 
+/// Where a vehicle that hears nothing more comes to be at most, m from home.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Abandoned {
+    /// along the ground
+    pub farthest_m: f64,
+    /// above it
+    pub highest_m: f64,
+}
+
 /// What leads out of the room, or drops the vehicle.
-pub(super) fn findings(situation: &Situation<'_>) -> Vec<Finding> {
+pub(super) fn findings(situation: &Situation<'_>, at: Abandoned) -> Vec<Finding> {
     match situation.parameters.autopilot {
         Autopilot::Px4 => px4(situation),
-        Autopilot::ArduPilot => ardupilot(situation).into_iter().collect(),
+        Autopilot::ArduPilot => ardupilot(situation, at).into_iter().collect(),
         Autopilot::Other | Autopilot::Unknown => Vec::new(),
     }
 }
@@ -50,10 +56,10 @@ fn px4(situation: &Situation<'_>) -> Vec<Finding> {
     let land = "set COM_OBL_RC_ACT to 4 (land) or 5 (hold)";
     let value = |value: Option<f64>| value.unwrap_or(f64::NAN);
     let climbs = || {
-        let ceiling_m = situation.limits.z_max_m?;
-        let height_m = situation.parameters.get("RTL_RETURN_ALT").filter(|height_m| *height_m > ceiling_m)?;
+        let most_m = situation.highest_m()?;
+        let height_m = situation.parameters.get("RTL_RETURN_ALT").filter(|height_m| *height_m > most_m)?;
         Some(format!(
-            "a return that climbs to {height_m:.0} m (RTL_RETURN_ALT), the room ends at {ceiling_m:.1} m"
+            "a return that climbs to {height_m:.0} m above home (RTL_RETURN_ALT), the ceiling allows {most_m:.1} m"
         ))
     };
     if is_one_of(setpoints, &[6.0, 7.0]) {
@@ -85,22 +91,20 @@ fn px4(situation: &Situation<'_>) -> Vec<Finding> {
 }
 
 /// FS_GCS_ENABLE: most of its choices return, which begins with a climb.
-fn ardupilot(situation: &Situation<'_>) -> Option<Finding> {
+fn ardupilot(situation: &Situation<'_>, at: Abandoned) -> Option<Finding> {
     let parameters = situation.parameters;
     let enable = choice(situation, "FS_GCS_ENABLE").filter(|enable| *enable > 0.0)?;
     // 4, 5 and 7 land or brake
     if is_one_of(Some(enable), &[4.0, 5.0, 7.0]) {
         return None;
     }
-    // it notices the loss of the one station that it was told
+    // it notices the loss of the station that it was told
     let listens_to = parameters.get("SYSID_MYGCS");
-    if listens_to.is_some_and(|system| (system - f64::from(situation.own_system)).abs() > 0.5) {
+    if listens_to.is_some_and(|system| !hears_station(parameters, system, situation.own_system)) {
         return None;
     }
-    let ceiling_m = situation.limits.z_max_m?;
-    let (height_m, time_s) = highest_return(situation)?;
-    let home_m = situation.home_m.or(situation.stand_m).unwrap_or(situation.origin_m);
-    let allowed_m = ceiling_m + situation.origin_m.z - home_m.z;
+    let allowed_m = situation.highest_m()?;
+    let height_m = highest_return(situation, at);
     if height_m <= allowed_m {
         return None;
     }
@@ -112,8 +116,8 @@ fn ardupilot(situation: &Situation<'_>) -> Option<Finding> {
     let name = parameters.name_of("RTL_ALT");
     let assumed = if parameters.get("RTL_ALT").is_some() { "" } else { ", assumed: it did not answer" };
     let came = format!(
-        "{way} to {height_m:.1} m above home ({name}{assumed}) should we end at {time_s:.1} s of the trajectory, once no \
-         heartbeat of ours came for {} (FS_GCS_ENABLE = {enable}), the room ends at {allowed_m:.1} m",
+        "{way} to {height_m:.1} m above home ({name}{assumed}), once no heartbeat of ours came for {} (FS_GCS_ENABLE = \
+         {enable}), the ceiling allows {allowed_m:.1} m",
         parameters
             .get("FS_GCS_TIMEOUT")
             .map_or_else(|| "FS_GCS_TIMEOUT".to_owned(), |seconds| format!("{seconds:.0} s")),
@@ -130,26 +134,17 @@ fn ardupilot(situation: &Situation<'_>) -> Option<Finding> {
     Some(Finding::warning(SUBJECT, EXPECTED, came, remedy))
 }
 
-/// The greatest height (m above home) to which a return from the path climbs, and from which instant (s)
+/// The greatest height (m above home) to which a return climbs from where it is when nothing more is heard
 /// (`ModeRTL::compute_return_target`).
-fn highest_return(situation: &Situation<'_>) -> Option<(f64, f64)> {
+fn highest_return(situation: &Situation<'_>, at: Abandoned) -> f64 {
     let stated = |name: &str, default: f64| situation.parameters.get(name).unwrap_or(default);
     let height_m = 0.01 * stated("RTL_ALT", RTL_ALT_CM);
     let climb_m = 0.01 * stated("RTL_CLIMB_MIN", RTL_CLIMB_MIN_CM).max(0.0);
     let slope = stated("RTL_CONE_SLOPE", RTL_CONE_SLOPE);
-    let home_m = situation.home_m.or(situation.stand_m).unwrap_or(situation.origin_m);
-    let climbs_to_m = |from_home_m: &Vector3<f64>| {
-        let least_m = (from_home_m.z + climb_m).max(RTL_LEAST_M);
-        let target_m = height_m.max(least_m);
-        if slope < LEAST_SLOPE {
-            return target_m;
-        }
-        target_m.min((slope * from_home_m.xy().norm()).max(least_m))
-    };
-    path_samples(situation.path)
-        .map(|(time_s, entry)| {
-            let (place_m, _) = place_and_velocity(&entry);
-            (climbs_to_m(&(place_m + situation.origin_m - home_m)), time_s)
-        })
-        .max_by(|a, b| a.0.total_cmp(&b.0))
+    let least_m = (at.highest_m + climb_m).max(RTL_LEAST_M);
+    let target_m = height_m.max(least_m);
+    if slope < LEAST_SLOPE {
+        return target_m;
+    }
+    target_m.min((slope * at.farthest_m).max(least_m))
 }

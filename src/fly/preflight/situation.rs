@@ -4,6 +4,7 @@ use super::energy::BatteryState;
 use super::fence::Fence;
 use super::readiness::Readiness;
 use crate::fly::parameters::Parameters;
+use crate::plan::Reach;
 use crate::trajectory::FlightPath;
 use crate::vehicle::{Limits, Vehicle};
 use nalgebra::Vector3;
@@ -37,4 +38,17 @@ pub struct Situation<'a> {
     pub readiness: &'a Readiness,
     /// the ground station's MAVLink system id
     pub own_system: u8,
+}
+
+impl Situation<'_> {
+    /// Home (m, local frame), or what is nearest to it that is known: where it stands, the path's zero.
+    pub(super) fn home(&self) -> Vector3<f64> {
+        self.home_m.or(self.stand_m).unwrap_or(self.origin_m)
+    }
+
+    /// How high above home it may climb with its rotors below the ceiling, m; `None` without a ceiling.
+    pub(super) fn highest_m(&self) -> Option<f64> {
+        let ceiling_m = self.limits.z_max_m? + self.origin_m.z - self.home().z;
+        Some(ceiling_m - Reach::of(self.vehicle).up_m)
+    }
 }
