@@ -18,6 +18,7 @@
 //! Inside: body x forward, y left, z up; world north, west, up; SI units, radians, seconds of the
 //! vehicle's own clock from the recording's start; quaternions w x y z, body to world.
 
+pub mod autopilot;
 pub mod compare;
 pub mod config;
 pub mod diagnose;

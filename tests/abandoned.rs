@@ -13,14 +13,13 @@ use flying::{Flying, vehicle_settings};
 use mavid::fly::parameters::Parameters;
 use mavid::fly::preflight::{BatteryState, Fence, Judged, Readiness, Situation, judge};
 use mavid::fly::{Around, Course, Event, Feeding};
-use mavid::log::Autopilot;
 use mavid::plan::{Criterion, PlanRequest, plan};
-use mavid::sitl::{ArduPilotRelease, AutopilotKind, Settings as VehicleSettings};
+use mavid::sitl::{Firmware, Settings as VehicleSettings};
 use mavid::vehicle::{Limits, Vehicle};
 use nalgebra::Vector3;
 
-const COPTER: AutopilotKind = AutopilotKind::ArduPilot(ArduPilotRelease::V4_7);
-const OLDER: AutopilotKind = AutopilotKind::ArduPilot(ArduPilotRelease::V4_6);
+const COPTER: Firmware = Firmware::ARDUPILOT_4_7;
+const OLDER: Firmware = Firmware::ARDUPILOT_4_6;
 /// What ArduPilot needs for a lively trajectory; GUID_TIMEOUT stays at its 3 s.
 const LIVELY: [(&str, &str, f64); 6] = [
     ("WP_ACC", "WPNAV_ACCEL", 100.0),
@@ -52,16 +51,15 @@ fn course(vehicle: &Vehicle) -> Course {
 }
 
 /// The vehicle, and what it would say of its parameters.
-fn lively(kind: AutopilotKind) -> (VehicleSettings, Parameters) {
+fn lively(kind: Firmware) -> (VehicleSettings, Parameters) {
     let base = vehicle_settings(kind);
-    let autopilot = if kind == AutopilotKind::Px4 { Autopilot::Px4 } else { Autopilot::ArduPilot };
-    let mut parameters = Parameters { autopilot, ..Parameters::default() };
+    let mut parameters = Parameters { autopilot: kind.autopilot(), ..Parameters::default() };
     let mut own = Vec::new();
     for ((new, old, scale), value) in LIVELY.into_iter().zip(LIVELY_VALUES) {
         match kind {
-            AutopilotKind::Px4 => {}
-            AutopilotKind::ArduPilot(ArduPilotRelease::V4_7) => own.push((new.to_owned(), value)),
-            AutopilotKind::ArduPilot(ArduPilotRelease::V4_6) => own.push((old.to_owned(), value * scale)),
+            Firmware::PX4 => {}
+            Firmware::ARDUPILOT_4_7 => own.push((new.to_owned(), value)),
+            _ => own.push((old.to_owned(), value * scale)),
         }
     }
     parameters.values.extend(own.iter().cloned());
@@ -90,7 +88,7 @@ fn judged(course: &Course, parameters: &Parameters, vehicle: &Vehicle) -> Judged
 
 /// How it goes on when the uplink is cut so many seconds after a phase began: lowest place, and the farthest beyond any
 /// wall, m.
-fn cut(kind: AutopilotKind, (phase, after_s): (&str, f64), course: &Course, feeding: Feeding) -> (f64, f64) {
+fn cut(kind: Firmware, (phase, after_s): (&str, f64), course: &Course, feeding: Feeding) -> (f64, f64) {
     let (settings, _) = lively(kind);
     let mut flying = Flying::new(settings, |sortie| {
         sortie.course = course.clone();
@@ -115,7 +113,7 @@ fn cut(kind: AutopilotKind, (phase, after_s): (&str, f64), course: &Course, feed
 }
 
 /// Over the instants, on two threads: the lowest of the lowest and the farthest of the farthest.
-fn worst(kind: AutopilotKind, course: &Course, feeding: Feeding, instants: &[f64]) -> (f64, f64) {
+fn worst(kind: Firmware, course: &Course, feeding: Feeding, instants: &[f64]) -> (f64, f64) {
     let course = Arc::new(course.clone());
     let (left, right) = instants.split_at(instants.len() / 2);
     let halves: Vec<_> = [left, right]
@@ -163,19 +161,19 @@ fn an_ardupilot_that_is_left_alone_stays_in_a_room_of_four_metres() {
 
 #[test]
 fn a_px4_that_is_left_alone_stays_in_a_room_of_four_metres() {
-    let (settings, parameters) = lively(AutopilotKind::Px4);
+    let (settings, parameters) = lively(Firmware::PX4);
     let course = course(&settings.vehicle);
     let Judged { findings, feeding, .. } = judged(&course, &parameters, &settings.vehicle);
     let said: Vec<String> = findings.iter().map(ToString::to_string).collect();
     let instants: Vec<f64> = (0..14).map(|step| 2.3 + 0.75 * f64::from(step)).collect();
-    let (_, beyond_m) = worst(AutopilotKind::Px4, &course, feeding, &instants);
+    let (_, beyond_m) = worst(Firmware::PX4, &course, feeding, &instants);
     // its last setpoint stays for a second, and then it has to brake: within what is said with a warning
     assert!(beyond_m < 1.0, "{beyond_m} m; {}", said.join("\n"));
 }
 
 #[test]
 fn the_whole_trajectory_is_followed_by_what_is_sent() {
-    for kind in [COPTER, OLDER, AutopilotKind::Px4] {
+    for kind in [COPTER, OLDER, Firmware::PX4] {
         let (settings, parameters) = lively(kind);
         let course = course(&settings.vehicle);
         let Judged { feeding, .. } = judged(&course, &parameters, &settings.vehicle);

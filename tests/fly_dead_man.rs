@@ -14,7 +14,7 @@ use mavid::fly::view::ViewModel;
 use mavid::fly::{self, Console, Parking, Part, Ride};
 use mavid::link::{Link, LinkOptions};
 use mavid::log::{ComponentId, SystemId, TlogReader};
-use mavid::sitl::{AutopilotKind, LinkRole, Pace, Vehicle, serve};
+use mavid::sitl::{Firmware, LinkRole, Pace, Vehicle, serve};
 use tokio::sync::mpsc::unbounded_channel;
 
 const SETPOINT: u32 = 84;
@@ -38,7 +38,7 @@ fn heard(log: &Path) -> Vec<(u64, u32, u16)> {
 
 /// Parks a part two seconds into the climb; gives the vehicle's recording and when it was parked.
 async fn parked(part: Part, name: &str) -> (PathBuf, u64) {
-    let settings = flying::vehicle_settings(AutopilotKind::Px4);
+    let settings = flying::vehicle_settings(Firmware::PX4);
     let mut sortie = flying::sortie(&settings);
     sortie.may_arm = true;
     let file = settings.vehicle.clone();

@@ -6,9 +6,8 @@ mod support;
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI, TAU};
 
-use mavid::log::{
-    Anchor, Autopilot, ComponentId, Decoder, Event, Quantity, Record, Stamp, SystemId, Vehicle,
-};
+use mavid::autopilot::Autopilot;
+use mavid::log::{Anchor, ComponentId, Decoder, Event, Quantity, Record, Stamp, SystemId, Vehicle};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage as M};
 use mavlink::types::CharArray;
 use proptest::prelude::*;

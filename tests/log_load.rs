@@ -9,9 +9,8 @@ mod support;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use mavid::log::{
-    Autopilot, LoadOptions, LogError, Quantity, StreamKey, StreamTally, SystemId, load, stream_tlog,
-};
+use mavid::autopilot::Autopilot;
+use mavid::log::{LoadOptions, LogError, Quantity, StreamKey, StreamTally, SystemId, load, stream_tlog};
 use mavlink::dialects::ardupilotmega::{MavMessage, SYS_STATUS_DATA};
 use support::{Needed, START_US, attitude, ground_heartbeat, header, heartbeat, record, tlog, v2};
 

@@ -6,7 +6,8 @@ mod support;
 
 use std::path::{Path, PathBuf};
 
-use mavid::log::{Autopilot, LoadOptions, Loaded, Quantity, StreamKey, StreamStats, load};
+use mavid::autopilot::Autopilot;
+use mavid::log::{LoadOptions, Loaded, Quantity, StreamKey, StreamStats, load};
 
 fn key(quantity: Quantity, source: &'static str) -> StreamKey {
     StreamKey { quantity, source, instance: 0 }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::parameters::Parameters;
-use crate::log::Autopilot;
+use crate::autopilot::Autopilot;
 use crate::simulate::{GuidedTarget, Shaper, ShaperLaw, ShaperLimits, Wish, jerk_within};
 use crate::units::rad_from_deg;
 

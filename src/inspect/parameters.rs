@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::inspection::ParameterSummary;
-use crate::log::Autopilot;
+use crate::autopilot::Autopilot;
 
 /// Parameters kept; autopilots have about 1500.
 const KEPT: usize = 10_000;

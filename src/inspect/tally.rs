@@ -13,10 +13,10 @@ use super::streams::{StreamTallies, summary_of};
 use super::timeline::TimelineTally;
 use super::verdict::verdict;
 use super::window::{WindowRecorder, windows_of};
+use crate::autopilot::Autopilot;
 use crate::log::csv::CsvReport;
 use crate::log::{
-    Autopilot, Event, LoadOptions, LogError, Place, Recording, StreamKey, StreamStats, TlogWalk, Walk,
-    who_flew,
+    Event, LoadOptions, LogError, Place, Recording, StreamKey, StreamStats, TlogWalk, Walk, who_flew,
 };
 use crate::vehicle::Vehicle;
 
@@ -184,7 +184,7 @@ impl Pass {
             vehicle: VehicleSummary {
                 system: Some(speaker.system.0),
                 component: Some(speaker.component.0),
-                autopilot: autopilot_name(speaker.autopilot),
+                autopilot: speaker.autopilot.id(),
                 others: vehicles.iter().filter(|s| **s != speaker.system).map(|s| s.0).collect(),
                 without_heartbeat: heartbeats == 0,
             },
@@ -214,10 +214,7 @@ pub fn inspect_csv(recording: &Recording, report: &CsvReport, vehicle: Option<&V
     let mut assessor = Assessor::new(vehicle);
     windows_of(recording).for_each(|window| assessor.window(&window));
     let found = Found {
-        vehicle: VehicleSummary {
-            autopilot: autopilot_name(recording.autopilot),
-            ..VehicleSummary::default()
-        },
+        vehicle: VehicleSummary { autopilot: recording.autopilot.id(), ..VehicleSummary::default() },
         autopilot: recording.autopilot,
         losses: report.losses(),
         reading: Reading::Csv(csv_reading(report)),
@@ -260,14 +257,5 @@ impl Found {
             texts: tally.texts,
             numbers_held_max: self.numbers_held_max,
         }
-    }
-}
-
-fn autopilot_name(autopilot: Autopilot) -> &'static str {
-    match autopilot {
-        Autopilot::Px4 => "px4",
-        Autopilot::ArduPilot => "ardupilot",
-        Autopilot::Other => "other",
-        Autopilot::Unknown => "unknown",
     }
 }

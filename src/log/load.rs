@@ -11,9 +11,10 @@ use super::error::LogError;
 use super::flights::{Cells, Flights, Hold, Plan, is_state};
 use super::flown::who_flew;
 use super::frame::{ComponentId, SystemId};
-use super::recording::{Autopilot, Recording};
+use super::recording::Recording;
 use super::report::ReadReport;
 use super::tlog::{Record, TlogReader};
+use crate::autopilot::Autopilot;
 
 /// The component that autopilots use, where no HEARTBEAT says otherwise.
 const AUTOPILOT_COMPONENT: ComponentId = ComponentId(1);

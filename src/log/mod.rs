@@ -38,7 +38,7 @@ pub use frame::{
 };
 pub use load::{LoadOptions, Loaded, LoadedFlights, Place, TlogWalk, Walk, load, load_flights, stream_tlog};
 pub use overlap::shared_share;
-pub use recording::{Autopilot, Quantity, Recording, Stream, StreamKey};
+pub use recording::{Quantity, Recording, Stream, StreamKey};
 pub use report::{MessageCounts, ReadReport, Resync, Sender, StreamRepair};
 pub use splitter::{SplitCounts, Splitter};
 pub use stats::{StreamStats, StreamTally};

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::autopilot::Autopilot;
+
 /// What a stream holds. Units SI, body FLU, world NWU; the width is the number of values a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Quantity {
@@ -146,18 +148,4 @@ pub struct Recording {
     pub estimator_resets_s: Vec<f64>,
     /// what the vehicle said
     pub texts: Vec<(f64, String)>,
-}
-
-/// Which software flew.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Autopilot {
-    /// not said in the recording (CSV)
-    #[default]
-    Unknown,
-    /// PX4
-    Px4,
-    /// ArduPilot
-    ArduPilot,
-    /// another MAVLink autopilot
-    Other,
 }

@@ -7,7 +7,8 @@
 use super::SignalsError;
 use super::grid::LARGEST_VALUE;
 use super::select::{LEAST_SAMPLES, best, is_live, too_short};
-use crate::log::{Autopilot, Quantity, Recording, Stream, StreamKey};
+use crate::autopilot::Autopilot;
+use crate::log::{Quantity, Recording, Stream, StreamKey};
 use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
 
 /// What the thrusts rest on.

@@ -12,7 +12,7 @@ use super::fence::Fence;
 use super::guidance::{Guidance, Leg, Task};
 use super::safety::Safety;
 use super::tuning::Tuning;
-use super::{AutopilotKind, Mode, Settings, SitlError};
+use super::{Firmware, Mode, Settings, SitlError};
 use crate::physics::{MAX_ROTORS, State};
 use crate::simulate::{AutopilotCascade, AutopilotGains, Setpoint};
 
@@ -55,7 +55,7 @@ const STANDING_M_S: f64 = 0.2;
 /// The autopilot.
 #[derive(Debug)]
 pub(super) struct Autopilot {
-    pub(super) kind: AutopilotKind,
+    pub(super) kind: Firmware,
     pub(super) tuning: Tuning,
     pub(super) estimator: Estimator,
     pub(super) battery: Battery,

@@ -6,7 +6,8 @@ use super::autopilot::{Answer, Severity};
 use super::message::Message;
 use super::message_id::{AUTOPILOT_VERSION, HEARTBEAT, HOME_POSITION};
 use super::streams::IntervalRefusal;
-use super::{AutopilotKind, Mode, Vehicle};
+use super::{Mode, Vehicle};
+use crate::autopilot::Numbering;
 use crate::log::Payload;
 use crate::units::whole;
 
@@ -123,9 +124,9 @@ impl Vehicle {
         if whole(flags) & CUSTOM_MODE == 0 {
             return Answer::Denied;
         }
-        let custom_mode = match self.settings.autopilot {
-            AutopilotKind::Px4 => (id_of(main) & 0xFF) << 16 | (id_of(sub) & 0xFF) << 24,
-            AutopilotKind::ArduPilot(_) => id_of(main),
+        let custom_mode = match self.settings.autopilot.stack().numbering {
+            Numbering::MainAndSub => (id_of(main) & 0xFF) << 16 | (id_of(sub) & 0xFF) << 24,
+            Numbering::Whole => id_of(main),
         };
         self.set_custom_mode(custom_mode, now)
     }

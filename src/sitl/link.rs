@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::message::Message;
 use super::streams::Streams;
-use super::{AutopilotKind, LinkId, LinkRole, Outgoing};
+use super::{Firmware, LinkId, LinkRole, Outgoing};
 use crate::link::Signing;
 use crate::log::{CrcSeeds, Splitter};
 
@@ -26,7 +26,7 @@ pub(super) struct Link {
 }
 
 impl Link {
-    pub(super) fn new(id: LinkId, kind: AutopilotKind, role: LinkRole) -> Self {
+    pub(super) fn new(id: LinkId, kind: Firmware, role: LinkRole) -> Self {
         Self {
             id,
             streams: Streams::new(kind, role),
@@ -39,7 +39,7 @@ impl Link {
     }
 
     /// The autopilot starts anew: streams are its defaults.
-    pub(super) fn restart(&mut self, kind: AutopilotKind) {
+    pub(super) fn restart(&mut self, kind: Firmware) {
         self.streams = Streams::new(kind, self.role);
         self.next_parameter = None;
         self.sequence = 0;

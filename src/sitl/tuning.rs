@@ -7,7 +7,8 @@ use super::battery::Thresholds;
 use super::demand::ThrustField;
 use super::fence::FenceRules;
 use super::parameters::Parameters;
-use super::{ArduPilotRelease, AutopilotKind, Mode};
+use super::{Firmware, Mode};
+use crate::autopilot::Release;
 use crate::simulate::{ShaperLaw, ShaperLimits, jerk_within};
 use crate::units::rad_from_deg;
 
@@ -68,11 +69,8 @@ const THRUST_AS_THRUST: i32 = 1 << 3;
 const LEAST: f64 = 0.1;
 
 impl Tuning {
-    pub(super) fn of(kind: AutopilotKind, parameters: &Parameters) -> Self {
-        match kind {
-            AutopilotKind::Px4 => px4(parameters),
-            AutopilotKind::ArduPilot(release) => ardupilot(release, parameters),
-        }
+    pub(super) fn of(kind: Firmware, parameters: &Parameters) -> Self {
+        if kind.is_px4() { px4(parameters) } else { ardupilot(kind.release(), parameters) }
     }
 }
 
@@ -189,7 +187,7 @@ fn ardupilot_battery(choice: i32) -> Action {
 }
 
 /// What GUIDED allows its reference.
-fn ardupilot_limits(release: ArduPilotRelease, p: &Parameters) -> ShaperLimits {
+fn ardupilot_limits(release: Release, p: &Parameters) -> ShaperLimits {
     let limit = |old: &str, new: &str| p.first(&[(new, 1.0), (old, 0.01)]).max(LEAST);
     let jerk = |old: &str, new: &str| p.first(&[(new, 1.0), (old, 1.0)]).max(LEAST);
     let turning = |axis: char| {
@@ -210,14 +208,11 @@ fn ardupilot_limits(release: ArduPilotRelease, p: &Parameters) -> ShaperLimits {
             turning('R').min(turning('P')),
         ),
         vertical_jerk_m_s3: jerk("PSC_JERK_Z", "PSC_D_JERK"),
-        law: match release {
-            ArduPilotRelease::V4_6 => ShaperLaw::UpTo4_6,
-            ArduPilotRelease::V4_7 => ShaperLaw::From4_7,
-        },
+        law: if release < Release::new(4, 7) { ShaperLaw::UpTo4_6 } else { ShaperLaw::From4_7 },
     }
 }
 
-fn ardupilot(release: ArduPilotRelease, p: &Parameters) -> Tuning {
+fn ardupilot(release: Release, p: &Parameters) -> Tuning {
     // metres from either release's name and unit
     let metres = |old: &str, new: &str| p.first(&[(new, 1.0), (old, 0.01)]);
     let limit = |old: &str, new: &str| metres(old, new).max(LEAST);

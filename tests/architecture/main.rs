@@ -16,19 +16,21 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("text", &[]),
     // of any series: nothing of flights, and no import
     ("stats", &[]),
+    // autopilots as tables
+    ("autopilot", &[]),
     ("frames", &[]),
     ("vehicle", &[]),
     ("trajectory", &["frames"]),
     ("fence", &["frames"]),
     ("physics", &["units", "vehicle"]),
-    ("log", &["units", "text", "frames"]),
+    ("log", &["units", "text", "autopilot", "frames"]),
     // frames over sockets and serial ports, and their recording
     ("link", &["text", "log"]),
     // vehicle: from actuator values to force
-    ("signals", &["stats", "vehicle", "log"]),
+    ("signals", &["stats", "autopilot", "vehicle", "log"]),
     ("regression", &["signals"]),
     ("estimate", &["stats", "vehicle", "signals", "regression"]),
-    ("inspect", &["units", "stats", "vehicle", "log", "signals", "regression", "estimate"]),
+    ("inspect", &["units", "stats", "autopilot", "vehicle", "log", "signals", "regression", "estimate"]),
     // never estimate
     ("simulate", &["units", "frames", "vehicle", "trajectory", "physics", "log"]),
     ("config", &["units", "text", "vehicle", "trajectory", "log"]),
@@ -59,12 +61,13 @@ const LAYERS: &[(&str, &[&str])] = &[
         &["text", "vehicle", "physics", "signals", "regression", "estimate", "config", "compare", "diagnose"],
     ),
     ("export", &["units", "text", "vehicle", "physics"]),
-    ("sitl", &["units", "frames", "vehicle", "fence", "physics", "log", "link", "simulate"]),
+    ("sitl", &["units", "autopilot", "frames", "vehicle", "fence", "physics", "log", "link", "simulate"]),
     (
         "fly",
         &[
             "units",
             "text",
+            "autopilot",
             "frames",
             "vehicle",
             "trajectory",

@@ -1,6 +1,6 @@
 //! Which parameters matter, and by which names an autopilot may know them.
 
-use crate::log::Autopilot;
+use crate::autopilot::Autopilot;
 
 /// What a parameter is needed for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

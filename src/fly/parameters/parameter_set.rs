@@ -1,7 +1,7 @@
 //! What a vehicle said of its parameters, and the file of it.
 
 use super::names::{RENAMED, Renamed};
-use crate::log::Autopilot;
+use crate::autopilot::Autopilot;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -52,7 +52,7 @@ impl Parameters {
     /// If a number cannot be written as TOML.
     pub fn to_toml(&self) -> Result<String, ParametersError> {
         let file = ParametersFile {
-            autopilot: autopilot_name(self.autopilot).to_owned(),
+            autopilot: self.autopilot.id().to_owned(),
             unanswered: self.unanswered.clone(),
             absent: self.absent.clone(),
             values: self.values.clone(),
@@ -70,12 +70,7 @@ impl Parameters {
             source: Box::new(source),
         })?;
         Ok(Self {
-            autopilot: match file.autopilot.as_str() {
-                "px4" => Autopilot::Px4,
-                "ardupilot" => Autopilot::ArduPilot,
-                "other" => Autopilot::Other,
-                _ => Autopilot::Unknown,
-            },
+            autopilot: Autopilot::of_id(&file.autopilot),
             values: file.values,
             unanswered: file.unanswered,
             absent: file.absent,
@@ -111,15 +106,6 @@ struct ParametersFile {
 
 const HEADER: &str = "# Parameters as the vehicle sent them before the flight, each in the autopilot's own unit.\n\
     # unanswered: asked for, and no answer came. absent: the vehicle has none of that name.\n";
-
-fn autopilot_name(autopilot: Autopilot) -> &'static str {
-    match autopilot {
-        Autopilot::Px4 => "px4",
-        Autopilot::ArduPilot => "ardupilot",
-        Autopilot::Other => "other",
-        Autopilot::Unknown => "unknown",
-    }
-}
 
 #[cfg(test)]
 mod tests {

@@ -2,26 +2,11 @@
 
 use super::Parameters;
 use super::sentence::Sentence;
+use crate::autopilot::{ARDUPILOT, Autopilot, PX4, Stack};
 use crate::fly::finding::Level;
-use crate::fly::modes::Stack;
-use crate::log::Autopilot;
 
 /// Positions of a mode switch.
 const POSITIONS: std::ops::RangeInclusive<u8> = 1..=6;
-/// COM_FLTMODEn: modes of PX4 that a pilot would choose to take over.
-const PX4_MODES: &[(i32, &str)] = &[
-    (0, "Manual"),
-    (1, "Altitude"),
-    (2, "Position"),
-    (3, "Mission"),
-    (4, "Hold"),
-    (5, "Return"),
-    (6, "Acro"),
-    (7, "Offboard"),
-    (8, "Stabilized"),
-    (10, "Takeoff"),
-    (11, "Land"),
-];
 /// RCn_OPTION of ArduCopter that stop the motors, and channels that may have one.
 const STOPS_MOTORS: [i32; 2] = [31, 165];
 const CHANNELS: std::ops::RangeInclusive<u8> = 5..=16;
@@ -79,9 +64,9 @@ fn px4_switch(parameters: &Parameters) -> Result<String, String> {
     }
     let modes = modes(|position| {
         let value = whole(parameters, &format!("COM_FLTMODE{position}"))?;
-        PX4_MODES.iter().find(|(mode, _)| *mode == value).map(|(_, name)| (*name).to_owned())
+        PX4.mode_of_switch(value).map(|mode| mode.title.to_owned())
     });
-    took_over(&format!("channel {channel} (RC_MAP_FLTMODE)"), &modes, "Offboard", "COM_FLTMODE1 to 6")
+    took_over(&format!("channel {channel} (RC_MAP_FLTMODE)"), &modes, &PX4, "COM_FLTMODE1 to 6")
 }
 
 fn ardupilot_switch(parameters: &Parameters) -> Result<String, String> {
@@ -94,13 +79,14 @@ fn ardupilot_switch(parameters: &Parameters) -> Result<String, String> {
     }
     let modes = modes(|position| {
         let value = u32::try_from(whole(parameters, &format!("FLTMODE{position}"))?).ok()?;
-        Some(Stack::ArduPilot.mode_name(value))
+        Some(ARDUPILOT.mode_name(value))
     });
-    took_over(&format!("channel {channel} (FLTMODE_CH)"), &modes, "GUIDED", "FLTMODE1 to 6")
+    took_over(&format!("channel {channel} (FLTMODE_CH)"), &modes, &ARDUPILOT, "FLTMODE1 to 6")
 }
 
 /// By the switch on a channel, to its modes beside ours.
-fn took_over(channel: &str, modes: &[String], ours: &str, names: &str) -> Result<String, String> {
+fn took_over(channel: &str, modes: &[String], stack: &Stack, names: &str) -> Result<String, String> {
+    let ours = stack.wishes.external.title;
     let others: Vec<&str> = modes.iter().map(String::as_str).filter(|mode| *mode != ours).collect();
     if others.is_empty() {
         return Err(format!(

@@ -7,12 +7,12 @@ use std::time::Duration;
 use nalgebra::Vector3;
 
 use super::Situation;
+use crate::autopilot::Autopilot;
 use crate::fly::course::{approach, reference_at};
 use crate::fly::finding::Finding;
 use crate::fly::law::{FollowLaw, Motion, STEP_S};
 use crate::fly::safety::{Feeding, SetpointBounds};
 use crate::fly::setpoint::Place;
-use crate::log::Autopilot;
 use crate::plan::{HEIGHT_ERROR_M, floor_m};
 use crate::trajectory::FlightPath;
 

@@ -2,9 +2,9 @@
 //! vehicle miss it, and the miss looks like physics that is not there.
 
 use super::Extremes;
+use crate::autopilot::Autopilot;
 use crate::fly::finding::Finding;
 use crate::fly::parameters::Parameters;
-use crate::log::Autopilot;
 use crate::units::deg_from_rad;
 
 /// One limit: what it bounds, its parameter (older name), how many of its units make one of SI, the value

@@ -1,7 +1,7 @@
 //! The largest values along a path, and what it takes to stop on it.
 
+use crate::autopilot::Autopilot;
 use crate::fly::parameters::Parameters;
-use crate::log::Autopilot;
 use crate::trajectory::{FlightPath, Reference};
 use crate::units::rad_from_deg;
 use crate::vehicle::{Limits, Vehicle};

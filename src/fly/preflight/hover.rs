@@ -1,10 +1,11 @@
 //! Whether the vehicle file can be this vehicle's: what the autopilot hovers on, and where it has its rotors.
 
 use super::Situation;
+use crate::autopilot::Autopilot;
 use crate::fly::finding::Finding;
 use crate::fly::lift::apart;
 use crate::fly::parameters::Parameters;
-use crate::log::{Autopilot, Recording};
+use crate::log::Recording;
 use crate::signals::propulsion_from_log;
 use crate::vehicle::{Actuator, Propulsion, ThrustLaw, Vehicle};
 

@@ -2,9 +2,10 @@
 
 use super::motion::xyz;
 use super::samples::Samples;
+use crate::autopilot::Autopilot;
 use crate::frames::body_from_frd;
 use crate::log::frame::Payload;
-use crate::log::recording::{Autopilot, Quantity};
+use crate::log::recording::Quantity;
 use crate::units::{m_s2_from_milli_g, rad_s_from_mrad_s};
 
 /// HIGHRES_IMU.fields_updated: which values are new.

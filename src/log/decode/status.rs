@@ -1,8 +1,9 @@
 //! Mode, arming, battery, parameters.
 
 use super::samples::Samples;
+use crate::autopilot::Autopilot;
 use crate::log::frame::Payload;
-use crate::log::recording::{Autopilot, Quantity};
+use crate::log::recording::Quantity;
 use crate::units::{amperes_from_ca, volts_from_mv};
 
 const ARMED: u8 = 128;

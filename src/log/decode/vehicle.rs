@@ -1,8 +1,8 @@
 //! The vehicle whose messages are decoded.
 
 use super::source::Source;
+use crate::autopilot::Autopilot;
 use crate::log::frame::{ComponentId, SystemId};
-use crate::log::recording::Autopilot;
 use crate::log::tlog::Record;
 
 /// MAV_AUTOPILOT_INVALID and MAV_TYPE_GCS: a HEARTBEAT with either is not a vehicle's.
@@ -33,11 +33,7 @@ impl Vehicle {
         (autopilot != AUTOPILOT_INVALID && kind != TYPE_GCS).then_some(Self {
             system: header.system,
             component: header.component,
-            autopilot: match autopilot {
-                3 => Autopilot::ArduPilot,
-                12 => Autopilot::Px4,
-                _ => Autopilot::Other,
-            },
+            autopilot: Autopilot::of_heartbeat(autopilot),
         })
     }
 }

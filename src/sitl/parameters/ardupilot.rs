@@ -4,7 +4,7 @@ use super::parameter::ParameterType::{Int8 as B, Int16 as H, Int32 as I, Real32 
 use super::parameter::{Parameter, Row, parameter, rows};
 use super::pulses::{Pulses, SPIN};
 use super::thrust::{expo, hover_share};
-use crate::sitl::ArduPilotRelease;
+use crate::autopilot::Release;
 use crate::vehicle::{Rotor, Spin, Vehicle as Description};
 
 const COMMON: &[Row] = &[
@@ -140,11 +140,12 @@ pub(super) fn defaults(
     vehicle: &Description,
     pulses: &Pulses,
     system: u8,
-    release: ArduPilotRelease,
+    release: Release,
 ) -> Vec<Parameter> {
-    let (renamed, own_system, streams) = match release {
-        ArduPilotRelease::V4_6 => (UP_TO_4_6, "SYSID_THISMAV", "SR0_"),
-        ArduPilotRelease::V4_7 => (FROM_4_7, "MAV_SYSID", "MAV1_"),
+    let (renamed, own_system, streams) = if release < Release::new(4, 7) {
+        (UP_TO_4_6, "SYSID_THISMAV", "SR0_")
+    } else {
+        (FROM_4_7, "MAV_SYSID", "MAV1_")
     };
     let mut list: Vec<Parameter> = rows(COMMON).chain(rows(renamed)).collect();
     list.push(parameter(own_system.into(), I, system.into()));

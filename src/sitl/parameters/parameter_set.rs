@@ -8,13 +8,13 @@ use super::{ardupilot, px4};
 use crate::log::Payload;
 use crate::sitl::battery::Battery;
 use crate::sitl::message::Message;
-use crate::sitl::{AutopilotKind, Settings, SitlError};
+use crate::sitl::{Firmware, Settings, SitlError};
 use crate::units::{narrow, whole};
 
 /// All parameters, by name.
 #[derive(Debug)]
 pub(in crate::sitl) struct Parameters {
-    autopilot: AutopilotKind,
+    autopilot: Firmware,
     list: Vec<Parameter>,
     index: BTreeMap<String, usize>,
 }
@@ -26,11 +26,11 @@ impl Parameters {
     /// If the settings name a parameter that this autopilot does not have.
     pub(in crate::sitl) fn new(settings: &Settings) -> Result<Self, SitlError> {
         let pulses = Pulses::of(&settings.vehicle, settings.autopilot);
-        let mut list = match settings.autopilot {
-            AutopilotKind::Px4 => px4::defaults(settings.believed(), &pulses, settings.system),
-            AutopilotKind::ArduPilot(release) => {
-                ardupilot::defaults(settings.believed(), &pulses, settings.system, release)
-            }
+        let (vehicle, system) = (settings.believed(), settings.system);
+        let mut list = if settings.autopilot.is_px4() {
+            px4::defaults(vehicle, &pulses, system)
+        } else {
+            ardupilot::defaults(vehicle, &pulses, system, settings.autopilot.release())
         };
         list.sort_by(|a, b| a.name.cmp(&b.name));
         let index = list.iter().enumerate().map(|(at, parameter)| (parameter.name.clone(), at)).collect();
@@ -84,9 +84,9 @@ impl Parameters {
     /// What a PARAM_SET of this type and these bytes asks for; `None` where PX4 refuses the type.
     pub(in crate::sitl) fn decode(&self, at: usize, kind: u8, payload: Payload) -> Option<f64> {
         let parameter = self.list.get(at)?;
-        match self.autopilot {
-            AutopilotKind::Px4 if kind != parameter.kind.mav() => None,
-            AutopilotKind::Px4 if parameter.kind != ParameterType::Real32 => Some(payload.i32(0).into()),
+        match self.autopilot.is_px4() {
+            true if kind != parameter.kind.mav() => None,
+            true if parameter.kind != ParameterType::Real32 => Some(payload.i32(0).into()),
             _ => Some(payload.f32(0)).filter(|value| value.is_finite()),
         }
     }
@@ -96,9 +96,9 @@ impl Parameters {
         let parameter = self.list.get(at)?;
         let whole_value = whole(parameter.value);
         let message = Message::new(22);
-        let message = match (self.autopilot, parameter.kind) {
+        let message = match (self.autopilot.is_px4(), parameter.kind) {
             // the bytes of the integer in the place of the float
-            (AutopilotKind::Px4, ParameterType::Int32) => message.i32(whole_value),
+            (true, ParameterType::Int32) => message.i32(whole_value),
             _ => message.f32(parameter.value),
         };
         let count = u16::try_from(self.list.len()).unwrap_or(u16::MAX);

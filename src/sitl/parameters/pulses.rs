@@ -1,6 +1,6 @@
 //! Pulse widths that the autopilot puts out.
 
-use crate::sitl::AutopilotKind;
+use crate::sitl::Firmware;
 use crate::units::whole;
 use crate::vehicle::{Actuator, PwmRange, Vehicle as Description};
 
@@ -22,23 +22,18 @@ pub(in crate::sitl) struct Pulses {
 
 impl Pulses {
     /// Those of the vehicle's file; where it has none the autopilot's defaults.
-    pub(in crate::sitl) fn of(vehicle: &Description, autopilot: AutopilotKind) -> Self {
+    pub(in crate::sitl) fn of(vehicle: &Description, autopilot: Firmware) -> Self {
         let stated = match vehicle.propulsion.actuator {
             Actuator::Pwm(range) => range,
             Actuator::Speed | Actuator::Thrust => None,
         };
-        match autopilot {
-            AutopilotKind::Px4 => {
-                let PwmRange { min_us, max_us } =
-                    stated.unwrap_or(PwmRange { min_us: 1000.0, max_us: 2000.0 });
-                Self { min_us, max_us, off_us: PX4_OFF_US.min(min_us) }
-            }
-            AutopilotKind::ArduPilot(_) => {
-                let PwmRange { min_us, max_us } =
-                    stated.unwrap_or(PwmRange { min_us: 1150.0, max_us: 1950.0 });
-                let span_us = (max_us - min_us) / (SPIN.1 - SPIN.0);
-                Self { min_us, max_us, off_us: min_us - SPIN.0 * span_us }
-            }
+        if autopilot.is_px4() {
+            let PwmRange { min_us, max_us } = stated.unwrap_or(PwmRange { min_us: 1000.0, max_us: 2000.0 });
+            Self { min_us, max_us, off_us: PX4_OFF_US.min(min_us) }
+        } else {
+            let PwmRange { min_us, max_us } = stated.unwrap_or(PwmRange { min_us: 1150.0, max_us: 1950.0 });
+            let span_us = (max_us - min_us) / (SPIN.1 - SPIN.0);
+            Self { min_us, max_us, off_us: min_us - SPIN.0 * span_us }
         }
     }
 

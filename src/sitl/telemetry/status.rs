@@ -1,13 +1,14 @@
 //! Health, mode, battery, clocks.
 
+use super::super::Mode;
 use super::super::battery::Charge;
 use super::super::guidance::Task;
 use super::super::message::Message;
 use super::super::message_id as ids;
-use super::super::{ArduPilotRelease, AutopilotKind, Mode};
 use super::field::{nanoseconds, ushort};
 use super::scene::Scene;
 use super::source::Telemetry;
+use crate::autopilot::{Release, multirotor_type};
 use crate::units::whole;
 
 /// MAV_MODE_FLAG.
@@ -45,17 +46,12 @@ const BY_VALUE: u64 = 131_072;
 impl Telemetry {
     pub(super) fn heartbeat(&self, scene: &Scene) -> Message {
         let autopilot = scene.autopilot;
-        let kind = match self.rotor_count {
-            6 => 13,
-            8 => 14,
-            _ => 2,
-        };
         let custom_mode = autopilot.mode.custom_mode(self.kind).unwrap_or(0);
-        let own = match (self.kind, autopilot.mode) {
-            (AutopilotKind::Px4, mode) if mode.is_manual() => MANUAL_INPUT | STABILIZE,
-            (AutopilotKind::Px4, _) => AUTO | GUIDED | STABILIZE,
-            (_, Mode::Guided | Mode::Return) => MANUAL_INPUT | STABILIZE | GUIDED,
-            (AutopilotKind::ArduPilot(_), _) => MANUAL_INPUT | STABILIZE,
+        let own = match (self.kind.is_px4(), autopilot.mode) {
+            (true, mode) if mode.is_manual() => MANUAL_INPUT | STABILIZE,
+            (true, _) => AUTO | GUIDED | STABILIZE,
+            (false, Mode::Guided | Mode::Return) => MANUAL_INPUT | STABILIZE | GUIDED,
+            (false, _) => MANUAL_INPUT | STABILIZE,
         };
         let armed = if autopilot.is_armed() { ARMED } else { 0 };
         let flying = if self.kind.is_px4() { autopilot.is_armed() } else { !autopilot.is_landed() };
@@ -66,8 +62,8 @@ impl Telemetry {
         };
         Message::new(ids::HEARTBEAT)
             .u32(custom_mode)
-            .u8(kind)
-            .u8(self.kind.mav_autopilot())
+            .u8(multirotor_type(self.rotor_count))
+            .u8(self.kind.stack().mav_autopilot)
             .u8(CUSTOM_MODE | own | armed)
             .u8(status)
             .u8(3)
@@ -139,13 +135,12 @@ impl Telemetry {
     }
 
     pub(super) fn autopilot_version(&self) -> Message {
-        let (capabilities, version) = match self.kind {
-            AutopilotKind::Px4 => (CAPABILITIES | BYTEWISE, [1, 16, 0, 255]),
-            AutopilotKind::ArduPilot(ArduPilotRelease::V4_6) => (CAPABILITIES | BY_VALUE, [4, 6, 0, 255]),
-            AutopilotKind::ArduPilot(ArduPilotRelease::V4_7) => (CAPABILITIES | BY_VALUE, [4, 7, 0, 255]),
-        };
+        let parameters = if self.kind.is_px4() { BYTEWISE } else { BY_VALUE };
+        let Release { major, minor } = self.kind.release();
+        // FIRMWARE_VERSION_TYPE_OFFICIAL
+        let version = [major, minor, 0, 255];
         Message::new(ids::AUTOPILOT_VERSION)
-            .u64(capabilities)
+            .u64(CAPABILITIES | parameters)
             .u64(1)
             .u32(u32::from_be_bytes(version))
             .u32(0)
