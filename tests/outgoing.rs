@@ -6,8 +6,8 @@
 use std::time::Duration;
 
 use mavid::autopilot::Autopilot;
-use mavid::autopilot::{ARDUPILOT, Mode, PX4};
-use mavid::fly::parameters::{Download, DownloadSettings, Purpose, RequestedEffects, wanted};
+use mavid::autopilot::{ARDUPILOT, Mode, PX4, Purpose};
+use mavid::fly::parameters::{Download, DownloadSettings, RequestedParameter, wanted};
 use mavid::fly::preflight::FenceDownload;
 use mavid::fly::requests::{Capacity, LinkKind, Need, RequestSettings, Requests, StreamRequest};
 use mavid::fly::{MessageId, Order, ParameterName, Period, Setpoint, Target, heartbeat};
@@ -170,7 +170,7 @@ proptest! {
         };
         let capacity = Capacity::new(LinkKind::Wide, Autopilot::Px4);
         let mut requests = Requests::new(vehicle, vec![request], capacity, RequestSettings::default());
-        let asked = RequestedEffects { names: vec![name], purpose: Purpose::Limit };
+        let asked = RequestedParameter { names: vec![name], purpose: Purpose::Limit };
         let mut download = Download::new(vehicle, vec![asked], DownloadSettings::default());
         let mut fence = FenceDownload::new(vehicle);
         for message in [requests.poll(now), download.poll(now), fence.poll(now)].into_iter().flatten() {

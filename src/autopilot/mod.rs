@@ -4,9 +4,14 @@
 //! that have a file here. Nothing else in the library holds a mode's number.
 
 pub(crate) mod ardupilot;
+mod failsafe;
 mod kind;
+mod limits;
 mod list;
 mod modes;
+mod outputs;
+mod parameters;
+mod pilot;
 pub(crate) mod px4;
 mod release;
 mod setpoints;
@@ -14,9 +19,14 @@ mod stack;
 mod vehicle_type;
 
 pub use ardupilot::ARDUPILOT;
+pub use failsafe::{Choice, Failsafe, Reaction};
 pub use kind::Autopilot;
+pub use limits::{Bounded, Braking};
 pub use list::STACKS;
 pub use modes::{FlightMode, FlownBy, Mode, Numbering, Wishes};
+pub use outputs::{Numbered, NumberedGroup, Outputs, PulseRange, QUAD_X};
+pub use parameters::{Parameter, ParameterTable, ParameterType, Purpose, Renamed, Unit};
+pub use pilot::{KillSwitch, POSITIONS, PilotSwitches};
 pub use px4::PX4;
 pub use release::Release;
 pub use setpoints::{LastSetpoint, SetpointRules, Takeoff};

@@ -1,7 +1,12 @@
 //! All that is known of one autopilot.
 
+use super::failsafe::Failsafe;
 use super::kind::Autopilot;
+use super::limits::{Bounded, Braking};
 use super::modes::{FlightMode, Mode, Numbering, Wishes};
+use super::outputs::Outputs;
+use super::parameters::ParameterTable;
+use super::pilot::PilotSwitches;
 use super::setpoints::SetpointRules;
 
 /// All that is known of one autopilot, a "flight stack" in MAVLink's words.
@@ -25,6 +30,18 @@ pub struct Stack {
     pub wishes: Wishes,
     /// how it flies setpoints
     pub setpoints: SetpointRules,
+    /// names, units, renames
+    pub parameters: ParameterTable,
+    /// what it does by itself
+    pub failsafes: &'static [Failsafe],
+    /// limits that a trajectory must keep: what is bounded, and the parameter
+    pub limits: &'static [(Bounded, &'static str)],
+    /// how hard it brakes
+    pub braking: Braking,
+    /// from commands to rotors
+    pub outputs: Outputs,
+    /// how a pilot takes over
+    pub pilot: PilotSwitches,
 }
 
 /// There is one table of each autopilot.
@@ -71,6 +88,12 @@ impl Stack {
     #[must_use]
     pub fn mode_name(&self, custom_mode: u32) -> String {
         self.mode(custom_mode).map_or_else(|| format!("mode {custom_mode:#x}"), |mode| mode.name.to_owned())
+    }
+
+    /// The failsafe that a parameter governs; `parameter` is the older name.
+    #[must_use]
+    pub fn failsafe(&self, parameter: &str) -> Option<&'static Failsafe> {
+        self.failsafes.iter().find(|failsafe| failsafe.parameter == parameter)
     }
 
     /// The autopilot's own name of what is asked for.

@@ -14,7 +14,7 @@ mod takeover;
 pub(super) use bitmask::has_bit;
 pub use download::{Download, DownloadSettings, Progress};
 pub use failsafe::failsafe_declaration;
-pub use names::{Purpose, RENAMED, Renamed, RequestedEffects, wanted};
+pub use names::{RequestedParameter, wanted};
 pub use parameter_set::{Parameters, ParametersError};
 pub use sentence::Sentence;
 pub use takeover::takeover_declaration;

@@ -7,7 +7,7 @@ use std::time::Duration;
 use nalgebra::Vector3;
 
 use super::Situation;
-use crate::autopilot::Autopilot;
+use crate::autopilot::{PX4, Reaction, Takeoff};
 use crate::fly::course::{approach, reference_at};
 use crate::fly::finding::Finding;
 use crate::fly::law::{FollowLaw, Motion, STEP_S};
@@ -151,8 +151,9 @@ fn attempt(situation: &Situation<'_>, laws: &[FollowLaw], feeding: Feeding) -> T
     if let Some([climb, transfer]) = &way {
         let leg = |path, from_ground, name| Leg { path, offset_m: Vector3::zeros(), from_ground, name };
         legs.push(leg(transfer, false, "of the way to the start"));
-        // ArduPilot takes off by itself, and stays above where it stood
-        if situation.parameters.autopilot == Autopilot::Px4 {
+        // what takes off by command stays above where it stood
+        let stack = situation.parameters.autopilot.stack();
+        if stack.is_some_and(|stack| stack.setpoints.takeoff == Takeoff::BySetpoints) {
             legs.push(leg(climb, true, "of the takeoff"));
         }
     }
@@ -275,17 +276,15 @@ fn manner(feeding: &Feeding) -> String {
 }
 
 fn timeout(situation: &Situation<'_>, law: &FollowLaw) -> String {
-    let name = timeout_name(law);
+    let name = timeout_name(situation);
     let seconds = law.timeout_s();
     let assumed = if situation.parameters.get(name).is_some() { "" } else { ", assumed: it did not answer" };
     format!("{name} = {seconds:.1} s{assumed}")
 }
 
-fn timeout_name(law: &FollowLaw) -> &'static str {
-    match law {
-        FollowLaw::ArduPilot { .. } => "GUID_TIMEOUT",
-        FollowLaw::Px4 { .. } => "COM_OF_LOSS_T",
-    }
+/// The parameter with the time-out.
+fn timeout_name(situation: &Situation<'_>) -> &'static str {
+    situation.parameters.autopilot.stack().map_or("its time-out", |stack| stack.setpoints.timeout)
 }
 
 fn said(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> Finding {
@@ -327,8 +326,8 @@ fn remedy(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> Strin
             "plan a slower trajectory, or raise the limits of the autopilot that the checks name".to_owned()
         }
     };
-    match laws.first().zip(safe_timeout_s(situation, laws)) {
-        Some((law, seconds)) => format!("{plan}; or set {} to {seconds:.1} or less", timeout_name(law)),
+    match safe_timeout_s(situation, laws) {
+        Some(seconds) => format!("{plan}; or set {} to {seconds:.1} or less", timeout_name(situation)),
         None => plan,
     }
 }
@@ -346,11 +345,11 @@ fn safe_timeout_s(situation: &Situation<'_>, laws: &[FollowLaw]) -> Option<f64> 
 /// PX4's mode after the loss may not stop it, or lead it out again.
 fn aftermath(situation: &Situation<'_>) -> Option<Finding> {
     let action = situation.parameters.get("COM_OBL_RC_ACT")?;
-    let is = |value: f64| (action - value).abs() < 0.5;
+    let reaction = PX4.failsafe("COM_OBL_RC_ACT")?.choice(action)?.reaction;
     let ceiling_m = situation.limits.z_max_m?;
-    let came = if is(1.0) || is(2.0) {
+    let came = if matches!(reaction, Reaction::Altitude | Reaction::Stabilized) {
         format!("a mode that does not stop it (COM_OBL_RC_ACT = {action})")
-    } else if is(3.0) {
+    } else if reaction == Reaction::Return {
         let height_m = situation.parameters.get("RTL_RETURN_ALT").filter(|height_m| *height_m > ceiling_m)?;
         format!("a return that climbs to {height_m:.0} m (RTL_RETURN_ALT), the room ends at {ceiling_m:.1} m")
     } else {

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::parameter::{Parameter, ParameterType};
+use super::parameter::Parameter;
 use super::pulses::Pulses;
 use super::{ardupilot, px4};
+use crate::autopilot::{ParameterType, Reaction};
 use crate::log::Payload;
 use crate::sitl::battery::Battery;
 use crate::sitl::message::Message;
@@ -26,11 +27,11 @@ impl Parameters {
     /// If the settings name a parameter that this autopilot does not have.
     pub(in crate::sitl) fn new(settings: &Settings) -> Result<Self, SitlError> {
         let pulses = Pulses::of(&settings.vehicle, settings.autopilot);
-        let (vehicle, system) = (settings.believed(), settings.system);
+        let (vehicle, system, release) = (settings.believed(), settings.system, settings.autopilot.release());
         let mut list = if settings.autopilot.is_px4() {
-            px4::defaults(vehicle, &pulses, system)
+            px4::defaults(vehicle, &pulses, system, release)
         } else {
-            ardupilot::defaults(vehicle, &pulses, system, settings.autopilot.release())
+            ardupilot::defaults(vehicle, &pulses, system, release)
         };
         list.sort_by(|a, b| a.name.cmp(&b.name));
         let index = list.iter().enumerate().map(|(at, parameter)| (parameter.name.clone(), at)).collect();
@@ -64,11 +65,23 @@ impl Parameters {
         self.find(name).map_or(0.0, |at| self.list[at].value)
     }
 
-    /// The first of these names that exists, with its factor to SI.
-    pub(in crate::sitl) fn first(&self, names: &[(&str, f64)]) -> f64 {
-        let found =
-            names.iter().find_map(|(name, factor)| self.find(name).map(|at| self.list[at].value * factor));
-        found.unwrap_or(0.0)
+    /// Value in its base unit (SI, but degrees for angles) of a parameter by its older name, under whichever name it has;
+    /// zero where this autopilot has none of that name.
+    pub(in crate::sitl) fn in_base_unit(&self, name: &str) -> f64 {
+        let table = &self.autopilot.stack().parameters;
+        let Some(entry) = table.find(name) else { return 0.0 };
+        let factor = 1.0 / entry.unit.per_base;
+        match table.renames_of(name).find(|renamed| self.find(renamed.new).is_some()) {
+            Some(renamed) => self.value(renamed.new) * (renamed.scale * factor),
+            None => self.value(name) * factor,
+        }
+    }
+
+    /// What a failsafe's parameter (older name) asks for; nothing for a value without a meaning.
+    pub(in crate::sitl) fn reaction(&self, name: &str) -> Reaction {
+        let choice =
+            self.autopilot.stack().failsafe(name).and_then(|failsafe| failsafe.choice(self.value(name)));
+        choice.map_or(Reaction::Nothing, |choice| choice.reaction)
     }
 
     /// Sets a value as the parameter's type holds it; false where there is none of that name.
