@@ -2,10 +2,8 @@
 
 use super::rotors::{RotorMotion, Thrusts, felt};
 use crate::log::Quantity;
-use crate::physics::{Airframe, MAX_ROTORS, State};
-use crate::signals::{
-    ActuationLatency, Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride,
-};
+use crate::physics::{ActuationLatency, Airframe, MAX_ROTORS, State};
+use crate::signals::{Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride};
 use crate::stats::white_level_of;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};

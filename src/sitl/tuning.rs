@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
+use super::Firmware;
 use super::action::Action;
 use super::battery::Thresholds;
 use super::demand::ThrustField;
 use super::fence::FenceRules;
 use super::parameters::Parameters;
-use super::Firmware;
 use crate::autopilot::Release;
 use crate::simulate::{ShaperLaw, ShaperLimits, jerk_within};
 use crate::units::rad_from_deg;

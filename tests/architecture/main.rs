@@ -29,7 +29,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     // vehicle: from actuator values to force
     ("signals", &["stats", "autopilot", "vehicle", "log"]),
     ("regression", &["signals"]),
-    ("estimate", &["stats", "vehicle", "signals", "regression"]),
+    ("estimate", &["stats", "vehicle", "physics", "signals", "regression"]),
     ("inspect", &["units", "stats", "autopilot", "vehicle", "log", "signals", "regression", "estimate"]),
     // never estimate
     ("simulate", &["units", "frames", "vehicle", "trajectory", "physics", "log"]),
