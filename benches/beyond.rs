@@ -73,7 +73,7 @@ fn fly(kind: &str, seed: u64, noise: f64) -> Option<(Explanation, Option<f64>)> 
     let mut flight = simulate_flight(truth, &pair.nominal, &reference, &settings).ok()?;
     if kind == "trend" {
         // with the voltage on record it would be the battery's
-        flight.recording.streams.retain(|key, _| key.quantity != mavid::log::Quantity::BatteryVoltage);
+        flight.recording.streams.retain(|key, _| key.quantity != mavid::recording::Quantity::BatteryVoltage);
     }
     let conditioning = ConditionSettings { transient_s: Some(1.0), ..ConditionSettings::default() };
     let signals = condition(&flight.recording, &pair.nominal, &conditioning).ok()?;

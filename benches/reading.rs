@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use mavid::log::{LoadOptions, MessageWriter, SystemId, TlogReader, load, stream_tlog};
+use mavid::log::{LoadOptions, TlogReader, load, stream_tlog};
+use mavid::wire::{MessageWriter, SystemId};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage as M};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;

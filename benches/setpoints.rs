@@ -19,7 +19,7 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use mavid::log::Frame;
+use mavid::wire::Frame;
 use processes::{fly, folder, planned, vehicle};
 use serde_json::Value;
 

@@ -217,5 +217,5 @@ fn sized((id, values): &Sizes, vehicle: &Vehicle) -> ActiveEffect {
     };
     let sized: Vec<(&str, f64)> =
         values.iter().map(|(name, value, by)| (*name, value * scale(*by))).collect();
-    ActiveEffect::named(id, &sized).expect("a possible effect")
+    ActiveEffect::named(id, &sized, &vehicle.size()).expect("a possible effect")
 }

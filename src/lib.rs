@@ -13,7 +13,7 @@
 //! ```
 //!
 //! Each module is one stage, made of functions from values to values:
-//! `log -> signals -> regression -> estimate`, and `simulate`, which never sees an estimate.
+//! `log -> recording -> signals -> regression -> estimate`, and `simulate`, which never sees an estimate.
 //!
 //! Inside: body x forward, y left, z up; world north, west, up; SI units, radians, seconds of the
 //! vehicle's own clock from the recording's start; quaternions w x y z, body to world.
@@ -32,6 +32,7 @@ pub mod link;
 pub mod log;
 pub mod physics;
 pub mod plan;
+pub mod recording;
 pub mod regression;
 pub mod report;
 pub mod signals;
@@ -42,3 +43,4 @@ pub mod text;
 pub mod trajectory;
 pub mod units;
 pub mod vehicle;
+pub mod wire;

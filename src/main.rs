@@ -1,4 +1,5 @@
-//! `mavid`: parses the command line, runs the verb, and turns its outcome into the exit status.
+//! `mavid`: parses the command line, runs the verb, and turns its outcome into the exit status. It installs the
+//! subscriber of the program: the library says what it does as tracing spans and events.
 
 mod cli;
 mod commands;
@@ -11,8 +12,14 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(usage) => return commands::usage(usage),
     };
-    match commands::run(&cli) {
+    let stderr = match commands::install(&cli.verbosity, cli.verb.is_live()) {
+        Ok(stderr) => stderr,
+        Err(error) => return error.report().into(),
+    };
+    let status = match commands::run(&cli, &stderr) {
         Ok(outcome) => outcome.into(),
         Err(error) => error.report().into(),
-    }
+    };
+    stderr.finish();
+    status
 }

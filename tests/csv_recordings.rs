@@ -6,7 +6,7 @@ mod support;
 
 use mavid::config::{default_csv_mapping, load_csv_mapping, parse_csv_mapping};
 use mavid::log::csv::{CsvError, CsvReport, read_csv, read_csv_from};
-use mavid::log::{Quantity, Recording, Stream};
+use mavid::recording::{Quantity, Recording, Stream};
 use std::io::Read;
 use std::path::Path;
 

@@ -8,9 +8,9 @@ use mavid::diagnose::holdout::{
 };
 use mavid::diagnose::refit::{RefitSettings, refit};
 use mavid::diagnose::{Along, Empirical, ExplainSettings, Explanation, Verdict, explain};
-use mavid::log::{Quantity, Recording};
 use mavid::physics::effects::by_id;
 use mavid::physics::{ActiveEffect, Wrench};
+use mavid::recording::{Quantity, Recording};
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
 use mavid::simulate::{
     Disturbance, FlightSettings, RandomTrajectory, Reference, Truth, VehiclePair, random_vehicle,

@@ -153,7 +153,9 @@ fn every_effect_stands_in_the_table_of_what_simulators_can_hold() {
     for effect in ALL {
         let id = effect.id();
         let Some(places) = places(id) else { panic!("{id}: expected an entry in export/places.rs") };
-        let values: Vec<f64> = effect.parameters().iter().map(|p| 0.01_f64.clamp(p.min, p.max)).collect();
+        let near = |bounds: (f64, f64)| 0.01_f64.clamp(bounds.0, bounds.1);
+        let size = vehicle().size();
+        let values: Vec<f64> = effect.parameters().iter().map(|p| near(p.bounds.at(&size))).collect();
         let active = [ActiveEffect::new(*effect, &values).unwrap()];
         for format in [Format::Px4Sih, Format::ArdupilotSitl, Format::Sdf, Format::Mjcf, Format::Rotorpy] {
             let exported = export(&vehicle(), &active, format).unwrap();

@@ -11,8 +11,8 @@ use flying::{Flying, vehicle_settings};
 use mavid::autopilot::Autopilot;
 use mavid::fly::parameters::Parameters;
 use mavid::fly::{Cause, Ending, Event, Key, Lift, Origin, Outcome, Place, Setpoint, Target};
-use mavid::log::{ComponentId, Nonce, SystemId};
 use mavid::sitl::{Fault, Firmware, LinkRole, Mode, Settings as VehicleSettings};
+use mavid::wire::{ComponentId, Nonce, SystemId};
 use mavlink::dialects::ardupilotmega::{MavMessage, PositionTargetTypemask};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::Vector3;
@@ -608,7 +608,7 @@ fn one_forged_heartbeat_that_says_disarmed_ends_nothing() {
         let sequence = flying.heard_sequence.wrapping_add(1);
         let header = MavHeader { system_id: 1, component_id: 1, sequence };
         raw.serialize_message(header, &MavMessage::HEARTBEAT(data));
-        flying.event(Event::Frame(mavid::log::Frame::at_start(raw.raw_bytes()).unwrap()));
+        flying.event(Event::Frame(mavid::wire::Frame::at_start(raw.raw_bytes()).unwrap()));
         assert_eq!(flying.phase(), "trajectory", "{}", flying.story());
         let outcome = flying.finish();
         assert!(outcome.is_whole(), "{outcome:?} {}", flying.story());

@@ -14,9 +14,9 @@ use mavid::config::load_vehicle;
 use mavid::fly::view::{KeyCommand, ViewModel};
 use mavid::fly::{self, Check, Console, Origin, Outcome, Ride};
 use mavid::link::{Link, LinkOptions, Signing, SigningKey};
-use mavid::log::{ComponentId, SystemId};
 use mavid::sitl::{Firmware, LinkRole, Pace, Settings, Vehicle, serve};
 use mavid::vehicle::Limits;
+use mavid::wire::{ComponentId, SystemId};
 use tokio::sync::mpsc::unbounded_channel;
 
 /// Flies until the checks are over; ends by word of the operator where they let it go on. The vehicle stands 40 m

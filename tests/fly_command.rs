@@ -57,6 +57,41 @@ fn a_recording_that_is_there_already_is_kept() {
     assert_eq!(std::fs::read(out.join("flight.tlog")).unwrap(), b"kept");
 }
 
+fn nobody(out: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_mavid"));
+    command
+        .args(["fly", "--connect", "udpin:127.0.0.1:0", "--plain"])
+        .args(["--trajectory", &config("trajectories/table2.toml"), "--vehicle", &config("qball2.toml")])
+        .args(["--out", &out.display().to_string()])
+        .stderr(std::process::Stdio::piped());
+    command
+}
+
+/// Whatever the log lines are: those of the events are written at once, and a kill tears none.
+#[cfg(unix)]
+#[test]
+fn a_kill_loses_no_event_that_was_written() {
+    for (name, flags, variable) in
+        [("plain", &[][..], ""), ("quiet", &["-q"][..], "off"), ("verbose", &["-vvv"][..], "")]
+    {
+        let out = folder(&format!("fly_killed_{name}"));
+        let mut child = nobody(&out).args(flags).env("RUST_LOG", variable).spawn().unwrap();
+        let events = || std::fs::read_to_string(out.join("events.jsonl")).unwrap_or_default();
+        let first = "\"kind\":\"link\",\"text\":\"udpin:127.0.0.1:0: waiting for a vehicle\"}\n";
+        while !events().contains(first) {
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        for line in events().split_inclusive('\n') {
+            let value: serde_json::Value = serde_json::from_str(line).unwrap();
+            let keys: Vec<&String> = value.as_object().unwrap().keys().collect();
+            assert_eq!(keys, ["kind", "level", "text", "time_s"], "{line}");
+            assert!(line.starts_with("{\"time_s\":") && line.ends_with("}\n"), "{line}");
+        }
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn without_a_vehicle_it_ends_when_it_is_told_to() {
@@ -65,13 +100,7 @@ fn without_a_vehicle_it_ends_when_it_is_told_to() {
     std::fs::create_dir_all(out.join("explained")).unwrap();
     let earlier = ["report.html", "explained/report.html", "mine.html"].map(|name| out.join(name));
     earlier.iter().for_each(|path| std::fs::write(path, "earlier").unwrap());
-    let child = Command::new(env!("CARGO_BIN_EXE_mavid"))
-        .args(["fly", "--connect", "udpin:127.0.0.1:0", "--plain"])
-        .args(["--trajectory", &config("trajectories/table2.toml"), "--vehicle", &config("qball2.toml")])
-        .args(["--out", &out.display().to_string()])
-        .stderr(std::process::Stdio::piped())
-        .spawn()
-        .unwrap();
+    let child = nobody(&out).spawn().unwrap();
     // its first event is written once the handlers of signals stand
     while !std::fs::read_to_string(out.join("events.jsonl")).is_ok_and(|text| !text.is_empty()) {
         std::thread::sleep(std::time::Duration::from_millis(10));

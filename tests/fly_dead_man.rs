@@ -13,8 +13,9 @@ use std::time::Duration;
 use mavid::fly::view::ViewModel;
 use mavid::fly::{self, Console, Parking, Part, Ride};
 use mavid::link::{Link, LinkOptions};
-use mavid::log::{ComponentId, SystemId, TlogReader};
+use mavid::log::TlogReader;
 use mavid::sitl::{Firmware, LinkRole, Pace, Vehicle, serve};
+use mavid::wire::{ComponentId, SystemId};
 use tokio::sync::mpsc::unbounded_channel;
 
 const SETPOINT: u32 = 84;

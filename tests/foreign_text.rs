@@ -73,7 +73,9 @@ fn evil_log() -> Vec<u8> {
 }
 
 fn run(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_mavid")).args(arguments).stdin(Stdio::null()).output().unwrap()
+    let mut command = Command::new(env!("CARGO_BIN_EXE_mavid"));
+    // log lines quote others as well
+    command.args(arguments).env("RUST_LOG", "trace").stdin(Stdio::null()).output().unwrap()
 }
 
 /// Nothing but line breaks commands, and no line is the others'.

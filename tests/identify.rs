@@ -9,8 +9,9 @@ use mavid::estimate::{
     Finding, Identification, IdentifySettings, LatencyKind, Method, Theta, apply_anchor, identified_vehicle,
     identify, inertia_of, is_physical, scale_of, theta_of,
 };
-use mavid::log::{LoadOptions, Quantity, Recording, csv, load};
+use mavid::log::{LoadOptions, csv, load};
 use mavid::physics::RigidBodyModel;
+use mavid::recording::{Quantity, Recording};
 use mavid::signals::{ConditionSettings, SignalsError, ThrustPreference, condition};
 use mavid::simulate::pid::{PidFlightSettings, simulate_pid_flight};
 use mavid::vehicle::{Anchor, RigidBody, Vehicle};

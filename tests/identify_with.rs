@@ -285,7 +285,7 @@ fn wrong_sets_are_refused_with_what_was_expected() {
 }
 
 /// A recording of the first fixture without some of its quantities.
-fn without(folder: &Path, gone: &[mavid::log::Quantity]) -> String {
+fn without(folder: &Path, gone: &[mavid::recording::Quantity]) -> String {
     let loaded = mavid::log::load(
         Path::new(&path("fixtures/p01_identify_0_25s.tlog")),
         &mavid::log::LoadOptions::default(),
@@ -302,13 +302,13 @@ fn without(folder: &Path, gone: &[mavid::log::Quantity]) -> String {
     recording.streams.retain(|key, _| written.contains(&key.source) && !gone.contains(&key.quantity));
     let log = folder.join("less.tlog");
     let file = std::fs::File::create(&log).unwrap();
-    mavid::log::write_recording(&recording, file, support::START_US).unwrap();
+    mavid::wire::write_recording(&recording, file, support::START_US).unwrap();
     log.display().to_string()
 }
 
 #[test]
 fn streams_that_an_effect_needs_are_named_where_they_are_missing() {
-    use mavid::log::Quantity as Q;
+    use mavid::recording::Quantity as Q;
     let (folder, vehicle) = (folder("less"), path("fixtures/p01_vehicle.toml"));
     let said = |gone: &[Q], names: &str| {
         let log = without(&folder, gone);

@@ -12,8 +12,10 @@ use std::process::{Command, Output};
 use mavid::config::{default_csv_mapping, read_vehicle};
 use mavid::inspect::{Inspection, Reading, inspect_csv, inspect_tlog};
 use mavid::log::csv::{CsvReport, read_csv};
-use mavid::log::{LoadOptions, LogError, StreamStats, SystemId, load};
+use mavid::log::{LoadOptions, LogError, load};
+use mavid::recording::StreamStats;
 use mavid::vehicle::Vehicle;
+use mavid::wire::SystemId;
 use support::{header, heartbeat, record, tlog, v2};
 
 fn scratch(name: &str) -> PathBuf {

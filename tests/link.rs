@@ -8,7 +8,7 @@ use std::net::SocketAddr;
 use std::time::Duration;
 
 use mavid::link::{Address, Link, LinkError, LinkEvent, LinkOptions, LinkReader, Received, ReceivedFrame};
-use mavid::log::{ComponentId, SystemId};
+use mavid::wire::{ComponentId, SystemId};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use support::{Needed, ground_heartbeat, header, heartbeat, unknown, v1, v2};
 use tokio::io::AsyncWriteExt;

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use lossy::{Faults, LossyProxy};
 use mavid::link::{Link, LinkEvent, LinkOptions, LinkReader, Received};
-use mavid::log::{ComponentId, SystemId};
+use mavid::wire::{ComponentId, SystemId};
 use support::{ground_heartbeat, header, heartbeat, v2};
 use tokio::time::timeout;
 

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use mavid::link::{HeldBack, Link, LinkError, LinkEvent, LinkOptions, Received, Replay, ReplayError};
-use mavid::log::{CrcSeeds, checksum};
+use mavid::wire::{CrcSeeds, checksum};
 use mavlink::MavHeader;
 use mavlink::dialects::ardupilotmega::MavMessage;
 use support::{START_US, attitude, ground_heartbeat, header, heartbeat, record, unknown, v2};

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use mavid::link::{Address, Link, LinkError, LinkEvent, LinkOptions, LinkReader, Received, ReceivedFrame};
-use mavid::log::{ComponentId, SystemId};
+use mavid::wire::{ComponentId, SystemId};
 use support::{ground_heartbeat, heartbeat, unknown};
 use tokio::time::timeout;
 

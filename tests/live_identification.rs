@@ -6,9 +6,11 @@ use mavid::config::load_vehicle;
 use mavid::estimate::{Finding, IdentifySettings, Method, THETA, identify};
 use mavid::fly::live::{LiveIdentification, LiveSettings};
 use mavid::fly::parameters::Parameters;
-use mavid::log::{Event, LoadOptions, Recording, Source, StreamId, load};
+use mavid::log::{LoadOptions, load};
+use mavid::recording::Recording;
 use mavid::signals::{ConditionSettings, condition};
 use mavid::vehicle::{Anchor, Vehicle};
+use mavid::wire::{Event, Source, StreamId};
 use std::path::{Path, PathBuf};
 
 fn fixture(name: &str) -> PathBuf {

@@ -7,7 +7,8 @@ mod support;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI, TAU};
 
 use mavid::autopilot::Autopilot;
-use mavid::log::{Anchor, ComponentId, Decoder, Event, Quantity, Record, Stamp, SystemId, Vehicle};
+use mavid::recording::Quantity;
+use mavid::wire::{Anchor, ComponentId, Decoder, Event, Record, Stamp, SystemId, Vehicle};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage as M};
 use mavlink::types::CharArray;
 use proptest::prelude::*;
@@ -711,12 +712,12 @@ proptest! {
     #[test]
     fn arbitrary_payloads_do_no_harm(
         payloads in proptest::collection::vec(
-            (0..mavid::log::Source::ALL.len(), proptest::collection::vec(any::<u8>(), 0..255), any::<u32>()), 1..40,
+            (0..mavid::wire::Source::ALL.len(), proptest::collection::vec(any::<u8>(), 0..255), any::<u32>()), 1..40,
         ),
     ) {
         let mut rig = Rig::new(Autopilot::Px4);
         for (source, payload, host_ms) in payloads {
-            let id = mavid::log::Source::ALL[source].message_id();
+            let id = mavid::wire::Source::ALL[source].message_id();
             rig.hear_frame(f64::from(host_ms) * 1e-3, &by_hand(id, 0, 0, &payload, 0));
         }
         for said in &rig.said {

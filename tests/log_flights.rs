@@ -7,10 +7,9 @@ mod support;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use mavid::log::{
-    CrcSeeds, Flights, Hold, LoadOptions, LogError, LogFlight, Quantity, Recording, Stream, StreamKey,
-    SystemId, checksum, load, load_flights, who_flew,
-};
+use mavid::log::{Flights, Hold, LoadOptions, LogError, LogFlight, load, load_flights, who_flew};
+use mavid::recording::{Quantity, Recording, Stream, StreamKey};
+use mavid::wire::{CrcSeeds, SystemId, checksum};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 use serde_json::Value;
 use support::{header, heartbeat, record, v2};
@@ -108,6 +107,21 @@ fn flights_far_apart_are_flights_of_their_own_whatever_lies_between() {
         }
         // what it said last before the second flight holds in it
         assert!(flights[1].recording.streams[&key(Quantity::Armed)].time_s[0] <= 0.0);
+    }
+}
+
+#[test]
+fn margins_in_which_nothing_is_recorded_are_nothing_that_is_left_out() {
+    let most = Hold { seconds: 480.0, numbers: 3_000_000 };
+    for count in [3_u8, 4, 8, 12] {
+        let spans: Vec<(f64, f64)> =
+            (0..count).map(|day| 86_400.0 * f64::from(day)).map(|from_s| (from_s, from_s + 20.0)).collect();
+        let Flights { flights, left_out_s } = Flights::of(recording(&spans, &spans, (0.0, 20.0)), &most);
+        assert_eq!((flights.len(), left_out_s), (usize::from(count), 0.0));
+        for flight in &flights {
+            let (first_s, last_s) = span_s(&flight.recording);
+            assert!(last_s - first_s > 19.9, "{first_s} to {last_s}");
+        }
     }
 }
 

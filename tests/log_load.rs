@@ -10,7 +10,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use mavid::autopilot::Autopilot;
-use mavid::log::{LoadOptions, LogError, Quantity, StreamKey, StreamTally, SystemId, load, stream_tlog};
+use mavid::log::{LoadOptions, LogError, load, stream_tlog};
+use mavid::recording::{Quantity, StreamKey, StreamTally};
+use mavid::wire::SystemId;
 use mavlink::dialects::ardupilotmega::{MavMessage, SYS_STATUS_DATA};
 use support::{Needed, START_US, attitude, ground_heartbeat, header, heartbeat, record, tlog, v2};
 
@@ -108,7 +110,7 @@ fn streamed_samples_are_those_of_the_recording() {
     let log = Scratch::new("streamed.tlog", &two_vehicles());
     let mut tally = StreamTally::default();
     stream_tlog(&log.0, &of_system(2), &mut |event| {
-        if let mavid::log::Event::Sample { stream, time_s, values } = event
+        if let mavid::wire::Event::Sample { stream, time_s, values } = event
             && stream.key() == ATTITUDE
         {
             tally.add(time_s, values);
@@ -116,7 +118,7 @@ fn streamed_samples_are_those_of_the_recording() {
     })
     .unwrap();
     let recording = load(&log.0, &of_system(2)).unwrap().recording;
-    assert_eq!(tally.stats(), mavid::log::StreamStats::of(&recording.streams[&ATTITUDE]));
+    assert_eq!(tally.stats(), mavid::recording::StreamStats::of(&recording.streams[&ATTITUDE]));
 }
 
 /// What the Python reader prints; `None`, with a message, where it cannot run.
@@ -137,7 +139,7 @@ fn pymavlink(what: &str, log: &Path) -> Option<String> {
 
 #[test]
 fn pymavlink_reads_what_the_writer_wrote_to_the_byte() {
-    let mut writer = mavid::log::TlogWriter::new(Vec::new());
+    let mut writer = mavid::wire::TlogWriter::new(Vec::new());
     let mut wanted = String::new();
     for step in 0..200_u8 {
         let frame = match step % 4 {

@@ -7,7 +7,8 @@ mod support;
 use std::path::{Path, PathBuf};
 
 use mavid::autopilot::Autopilot;
-use mavid::log::{LoadOptions, Loaded, Quantity, StreamKey, StreamStats, load};
+use mavid::log::{LoadOptions, Loaded, load};
+use mavid::recording::{Quantity, StreamKey, StreamStats};
 
 fn key(quantity: Quantity, source: &'static str) -> StreamKey {
     StreamKey { quantity, source, instance: 0 }

@@ -4,7 +4,7 @@
 
 mod support;
 
-use mavid::log::{Check, CrcSeeds, SplitCounts, Splitter, Version};
+use mavid::wire::{Check, CrcSeeds, SplitCounts, Splitter, Version};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;

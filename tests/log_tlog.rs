@@ -4,7 +4,8 @@
 
 mod support;
 
-use mavid::log::{ByteOrder, ComponentId, LogError, Resync, STAMP_BYTES, SystemId, TlogReader, TlogWriter};
+use mavid::log::{LogError, Resync, TlogReader};
+use mavid::wire::{ByteOrder, ComponentId, STAMP_BYTES, SystemId, TlogWriter};
 use proptest::prelude::*;
 use support::{
     START_US, UNKNOWN_ID, attitude, attitudes, frames, header, heartbeat, read, record, signed, tlog,

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
 use mavid::physics::effects::ALL;
-use mavid::physics::{ActiveEffect, Input, Model, State};
+use mavid::physics::{ActiveEffect, Bounds, Input, Model, State};
 use mavid::simulate::{GroundContact, GroundSettings, Plant, random_vehicle};
 use nalgebra::Vector3;
 
@@ -13,8 +13,13 @@ fn no_step_allocates() {
     // as many rotors as fit
     let more = vehicle.rotors.clone();
     vehicle.rotors.extend(more);
+    let size = vehicle.size();
     let middle = |effect: &'static dyn mavid::physics::Effect| {
-        let values: Vec<f64> = effect.parameters().iter().map(|p| 0.7 * p.min + 0.3 * p.max).collect();
+        let within = |bounds: Bounds| {
+            let (least, greatest) = bounds.at(&size);
+            0.7 * least + 0.3 * greatest
+        };
+        let values: Vec<f64> = effect.parameters().iter().map(|p| within(p.bounds)).collect();
         ActiveEffect::new(effect, &values).unwrap()
     };
     let model = Model::new(&vehicle, ALL.iter().map(|effect| middle(*effect)).collect()).unwrap();

@@ -11,7 +11,7 @@ use mavid::fly::parameters::{Download, DownloadSettings, RequestedParameter, wan
 use mavid::fly::preflight::FenceDownload;
 use mavid::fly::requests::{Capacity, LinkKind, Need, RequestSettings, Requests, StreamRequest};
 use mavid::fly::{MessageId, Order, ParameterName, Period, Setpoint, Target, heartbeat};
-use mavid::log::{Check, ComponentId, CrcSeeds, Frame, SystemId, Vehicle};
+use mavid::wire::{Check, ComponentId, CrcSeeds, Frame, SystemId, Vehicle};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::Vector3;

@@ -10,9 +10,9 @@
 use mavid::compare::{TenSignals, resimulated};
 use mavid::config::{load_vehicle, read_trajectory};
 use mavid::estimate::{IdentifySettings, Method, identify, inertia_of, theta_of};
-use mavid::log::Recording;
 use mavid::physics::effects::{AngularDamping, MotorLag};
 use mavid::physics::{ActiveEffect, Model};
+use mavid::recording::Recording;
 use mavid::regression::{ZeroPhase, output_prediction_rms, paper_models};
 use mavid::report::{ErrorTable, closed_loop_table, prediction_table};
 use mavid::signals::{Butterworth, ConditionSettings, condition};

@@ -12,9 +12,9 @@ use mavid::fly::requests::{
     Answer, Capacity, LinkKind, Need, RequestSettings, Requests, request_set, slow_request_set,
 };
 use mavid::frames::Geodetic;
-use mavid::log::{ComponentId, Decoder, Frame, Record, SystemId, Vehicle};
 use mavid::trajectory::{FlightPath, FourierAxis, FourierTrajectory, Segment, Transition, at_rest};
 use mavid::vehicle::Limits;
+use mavid::wire::{ComponentId, Decoder, Frame, Record, SystemId, Vehicle};
 use mavlink::dialects::ardupilotmega as dialect;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::Vector3;

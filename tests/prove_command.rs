@@ -2,10 +2,10 @@
 
 #![allow(clippy::panic, clippy::unwrap_used, reason = "a test ends where it fails")]
 
-use mavid::log::write_recording;
 use mavid::physics::ActiveEffect;
 use mavid::physics::effects::by_id;
 use mavid::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, simulate_flight};
+use mavid::wire::write_recording;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use mavid::log::Frame;
+use mavid::wire::Frame;
 use mavlink::dialects::ardupilotmega::MavMessage;
 use serde_json::Value;
 use support::{attitude, frames, header, heartbeat, read, tlog, unknown, v2};

@@ -2,10 +2,11 @@
 
 #![allow(clippy::panic, clippy::unwrap_used, reason = "a test ends where it fails")]
 
-use mavid::log::{LoadOptions, load, write_recording};
+use mavid::log::{LoadOptions, load};
 use mavid::simulate::{
     FlightSettings, RandomTrajectory, Reference, TelemetrySettings, Truth, random_vehicle, simulate_flight,
 };
+use mavid::wire::write_recording;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

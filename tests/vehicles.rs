@@ -6,6 +6,7 @@ mod support;
 
 use mavid::config::{load_vehicle, parse_vehicle, read_vehicle, vehicle_to_toml};
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 #[test]
 fn shared_vehicles_load_and_survive_writing() {
@@ -90,4 +91,41 @@ fn simulated_vehicles_are_their_models() {
 fn a_missing_file_is_named() {
     let message = load_vehicle(Path::new("no/such/vehicle.toml")).unwrap_err().to_string();
     assert!(message.contains("no/such/vehicle.toml"), "{message}");
+}
+
+/// Model files of the first version: no `format`, and no parameter that was added since.
+#[test]
+fn model_files_of_the_first_version_are_read() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/models");
+    for (name, effects) in [("first_identify.toml", 0), ("first_explain.toml", 1)] {
+        let path = folder.join(name);
+        let loaded = read_vehicle(&path).unwrap();
+        assert_eq!(loaded.warnings, Vec::<String>::new(), "{name}");
+        assert_eq!(loaded.model.effects.len(), effects, "{name}");
+        assert!(loaded.model.identified.is_some() && loaded.model.provenance.is_some(), "{name}");
+        // written anew they have the format
+        let text = vehicle_to_toml(&loaded.vehicle).unwrap();
+        assert!(text.starts_with("format = 1\n"), "{text}");
+        assert_eq!(parse_vehicle(&text, "again").unwrap().vehicle.body, loaded.vehicle.body);
+        let mut export = Command::new(env!("CARGO_BIN_EXE_mavid"));
+        let output = export.arg("export").arg(&path).args(["--to", "rotorpy"]).output().unwrap();
+        assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+#[test]
+fn a_later_format_is_refused_with_what_to_do() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    assert!(parse_vehicle(&format!("format = 1\n{text}"), "v.toml").is_ok());
+    for (came, shown) in [("2", "came 2"), ("0", "came 0"), ("\"new\"", "came \"new\"")] {
+        // its unknown keys are not what is told
+        let later = format!("format = {came}\nnew_key = 1\n{text}");
+        let said = parse_vehicle(&later, "v.toml").unwrap_err().to_string();
+        assert!(
+            said.starts_with("v.toml: `format`: expected 1 or no such key") && said.contains(shown),
+            "{said}"
+        );
+        assert!(said.contains("a later version of mavid"), "{said}");
+    }
 }

@@ -27,6 +27,11 @@ impl Arguments {
         })
     }
 
+    /// All words, as they were written.
+    pub fn line(&self) -> String {
+        self.0.join(" ")
+    }
+
     /// Whether the word is there.
     pub fn has(&self, word: &str) -> bool {
         self.0.iter().any(|other| other == word)

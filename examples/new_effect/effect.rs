@@ -1,13 +1,14 @@
 //! A force across the airspeed, as a body that sheds vortices on one side has.
 
-use mavid::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use mavid::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 use nalgebra::Vector3;
 
 /// `F = k (e_z x v_air)` at the centre of mass, body.
 #[derive(Debug, Clone, Copy)]
 pub struct SideForce;
 
-const PARAMETERS: &[Parameter] = &[Parameter { name: "k", unit: "N/(m/s)", min: -5.0, max: 5.0 }];
+const PARAMETERS: &[Parameter] =
+    &[Parameter { name: "k", unit: "N/(m/s)", bounds: Bounds::of(-5.0, 5.0).by_mass() }];
 
 impl Effect for SideForce {
     fn id(&self) -> &'static str {

@@ -1,8 +1,8 @@
 //! Tables of samples.
 
 use mavid::config::default_csv_mapping;
-use mavid::log::Quantity;
 use mavid::log::csv::{CsvError, CsvMapping, read_csv_from};
+use mavid::recording::Quantity;
 
 use super::bytes::Bytes;
 use super::tlog::is_sound;

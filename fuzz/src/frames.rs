@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use mavid::log::{CrcSeeds, Frame, MARKER_V1, MARKER_V2, checksum};
+use mavid::wire::{CrcSeeds, Frame, MARKER_V1, MARKER_V2, checksum};
 
 /// The dialect's checksum seeds, made once.
 pub static SEEDS: LazyLock<CrcSeeds> = LazyLock::new(CrcSeeds::new);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use mavid::link::{Distrust, Signing, SigningError, SigningKey};
-use mavid::log::{Check, ComponentId, SystemId};
+use mavid::wire::{Check, ComponentId, SystemId};
 
 use super::bytes::Bytes;
 use super::frames::{From, SEEDS, frame, signed, v2};

@@ -1,6 +1,6 @@
 //! Frames told from the bytes of a link.
 
-use mavid::log::{Check, Frame, SplitCounts, Splitter, Version};
+use mavid::wire::{Check, Frame, SplitCounts, Splitter, Version};
 
 use super::bytes::Bytes;
 use super::frames::{From, SEEDS, UNKNOWN_ID, VEHICLE, frame, signed, v1, v2};

@@ -2,10 +2,9 @@
 
 use std::io::Read;
 
-use mavid::log::{
-    Check, ComponentId, Decoder, LogError, ReadReport, Recording, RecordingBuilder, SystemId, TlogReader,
-    Vehicle,
-};
+use mavid::log::{LogError, ReadReport, RecordingBuilder, TlogReader};
+use mavid::recording::Recording;
+use mavid::wire::{Check, ComponentId, Decoder, SystemId, Vehicle};
 
 use super::bytes::Bytes;
 use super::frames::{From, SEEDS, VEHICLE, v1, v2};

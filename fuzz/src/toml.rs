@@ -7,7 +7,8 @@ use mavid::config::{
 use mavid::fly::parameters::Parameters;
 use mavid::fly::{Course, Lift};
 use mavid::log::csv::read_csv_from;
-use mavid::physics::{ActiveEffect, Airframe};
+use mavid::physics::{ActiveEffect, Airframe, REFERENCE_SIZE};
+use mavid::vehicle::VehicleSize;
 
 use super::bytes::Bytes;
 
@@ -64,18 +65,18 @@ fn near(a: f64, b: f64) -> bool {
 fn model(text: &str) {
     let Some(loaded) = loaded(text) else { return };
     for table in &loaded.model.effects {
-        effect(table);
+        effect(table, &loaded.vehicle.size());
     }
 }
 
 fn effects(text: &str) {
     for table in told(parse_effect_tables(text, "file")).unwrap_or_default() {
-        effect(&table);
+        effect(&table, &REFERENCE_SIZE);
     }
 }
 
 /// As the commands do: an id and numbers by name.
-fn effect(table: &toml::Table) {
+fn effect(table: &toml::Table, size: &VehicleSize) {
     let Some(id) = table.get("id").and_then(toml::Value::as_str) else { return };
     let numbers = table.iter().filter_map(|(name, value)| {
         let number = value.as_float().or_else(|| {
@@ -84,7 +85,7 @@ fn effect(table: &toml::Table) {
         });
         number.map(|number| (name.as_str(), number))
     });
-    match ActiveEffect::named(id, &numbers.collect::<Vec<_>>()) {
+    match ActiveEffect::named(id, &numbers.collect::<Vec<_>>(), size) {
         Ok(active) => assert_eq!(active.effect().id(), id),
         Err(error) => assert!(!error.to_string().is_empty()),
     }

@@ -7,6 +7,7 @@ mod model;
 mod plan;
 mod recording;
 mod verb;
+mod verbosity;
 
 pub use flight::{CheckName, FlyArgs, OriginName};
 pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
@@ -14,3 +15,4 @@ pub use model::{ExportArgs, ExportFormat, SimulateArgs, VehicleArgs};
 pub use plan::{CriterionName, PlanArgs};
 pub use recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ReadArgs, ValidateArgs};
 pub use verb::{Cli, Verb};
+pub use verbosity::Verbosity;

@@ -7,6 +7,7 @@ use super::live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 use super::model::{ExportArgs, SimulateArgs, VehicleArgs};
 use super::plan::PlanArgs;
 use super::recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ValidateArgs};
+use super::verbosity::Verbosity;
 
 /// Learns a multirotor's parameters from a recorded flight and says which physics the model left out
 #[derive(Debug, Parser)]
@@ -15,6 +16,9 @@ pub struct Cli {
     /// Print one JSON document on standard output and nothing else there
     #[arg(long, global = true)]
     pub json: bool,
+    /// how much is said
+    #[command(flatten)]
+    pub verbosity: Verbosity,
     /// what to do
     #[command(subcommand)]
     pub verb: Verb,
@@ -53,4 +57,11 @@ pub enum Verb {
     Export(ExportArgs),
     /// Explain a folder of cases and score the sealed verdicts against their answers
     Prove(ProveArgs),
+}
+
+impl Verb {
+    /// It talks to vehicles: nothing in it waits for standard error.
+    pub fn is_live(&self) -> bool {
+        matches!(self, Self::Demo(_) | Self::Fly(_) | Self::Sitl(_) | Self::Record(_) | Self::Replay(_))
+    }
 }

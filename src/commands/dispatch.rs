@@ -1,5 +1,6 @@
 //! The dispatch of the command line to its verb.
 
+use super::standard_error::StandardError;
 use super::{
     CommandError, Outcome, demo, explain, export, fly, identify, inspect, plan, prove, record, replay,
     simulate, sitl, validate, vehicle,
@@ -7,19 +8,19 @@ use super::{
 use crate::cli::{Cli, Verb};
 
 /// Runs the verb.
-pub fn run(cli: &Cli) -> Result<Outcome, CommandError> {
+pub fn run(cli: &Cli, stderr: &StandardError) -> Result<Outcome, CommandError> {
     match &cli.verb {
-        Verb::Demo(args) => demo::run(cli.json, args),
+        Verb::Demo(args) => demo::run(cli.json, stderr, args),
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
-        Verb::Plan(args) => plan::run(cli.json, args),
+        Verb::Plan(args) => plan::run(cli.json, stderr, args),
         Verb::Identify(args) => identify::run(cli.json, args),
         Verb::Simulate(args) => simulate::run(cli.json, args),
-        Verb::Fly(args) => fly::run(cli.json, args),
+        Verb::Fly(args) => fly::run(cli.json, stderr, args),
         Verb::Sitl(args) => sitl::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, args),
-        Verb::Inspect(args) => inspect::run(cli.json, args),
-        Verb::Record(args) => record::run(cli.json, args),
-        Verb::Replay(args) => replay::run(cli.json, args),
+        Verb::Inspect(args) => inspect::run(cli.json, stderr, args),
+        Verb::Record(args) => record::run(cli.json, stderr, args),
+        Verb::Replay(args) => replay::run(cli.json, stderr, args),
         Verb::Explain(args) => explain::run(cli.json, args),
         Verb::Export(args) => export::run(cli.json, args),
         Verb::Prove(args) => prove::run(cli.json, args),

@@ -111,5 +111,5 @@ fn effect(table: &toml::Table, vehicle: &Vehicle) -> Result<ActiveEffect, Comman
         }
         values.push((name.as_str(), number));
     }
-    ActiveEffect::named(id, &values).map_err(|error| refuse(error.to_string()))
+    ActiveEffect::named(id, &values, &vehicle.size()).map_err(|error| refuse(error.to_string()))
 }

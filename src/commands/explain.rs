@@ -7,7 +7,7 @@ use mavid::config::{StoredTrajectory, read_vehicle, trajectory_to_toml};
 use mavid::diagnose::experiment::{NextFlight, NextSettings, design};
 use mavid::diagnose::holdout::{HeldOut, HoldoutSettings, Split, differing, split_last_periods};
 use mavid::diagnose::{Empirical, ExplainSettings, Named, Trace, Verdict, explain};
-use mavid::log::Recording;
+use mavid::recording::Recording;
 use mavid::report::{ExplanationDocument, Given, InputFile, ShownOn, Story, explanation_page};
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference};
 use mavid::text;

@@ -1,14 +1,13 @@
 //! Loads recordings, whatever their format.
 
 use mavid::config::{default_csv_mapping, load_csv_mapping};
-use mavid::log::{
-    Flights, Hold, LoadOptions, LoadedFlights, LogFlight, Recording, SystemId, csv, load_flights,
-    shared_share,
-};
+use mavid::log::{Flights, Hold, LoadOptions, LoadedFlights, LogFlight, csv, load_flights};
+use mavid::recording::{Recording, shared_share};
 use mavid::report::InputFile;
 use mavid::signals::{ConditionSettings, Signals, condition};
 use mavid::text;
 use mavid::vehicle::Vehicle;
+use mavid::wire::SystemId;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 use std::path::Path;

@@ -1,46 +1,42 @@
 //! `mavid fly --connect ADDRESS --trajectory T --vehicle V --out DIR`: flies, records, identifies.
 
-use std::io::{BufRead, IsTerminal, Read};
+use std::io::IsTerminal;
 use std::path::Path;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread;
 use std::time::Duration;
 
 use mavid::config::{StoredTrajectory, read_trajectory, read_vehicle};
-use mavid::fly::view::{KeyCommand, Keys, PlainLog, Screen, ViewModel, page_rows};
+use mavid::fly::view::{KeyCommand, ViewModel};
 use mavid::fly::{
     self, Around, Console, Course, Ending, Origin, Outcome as FlightOutcome, Record, Ride, Sortie,
 };
 use mavid::link::Signing;
-use mavid::log::{ComponentId, SystemId};
 use mavid::plan::{Roomed, with_room};
 use mavid::report::{ExplanationDocument, IdentificationDocument};
 use mavid::text;
 use mavid::units::rad_from_deg;
 use mavid::vehicle::{Limits, Vehicle};
-use ratatui::crossterm::{event, terminal};
+use mavid::wire::{ComponentId, SystemId};
 use serde::Serialize;
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 
 use super::after_flight::Analysis;
 use super::explain::Explained;
+use super::flight_view::{draw, tell};
 use super::identify::Identified;
 use super::leftover;
 use super::live::{self, Work};
+use super::standard_error::StandardError;
 use super::{CommandError, Outcome, output};
 use crate::cli::{CheckName, FlyArgs, OriginName};
 
 /// A ground station's component id.
 const STATION: ComponentId = ComponentId(190);
-/// The keys of a flight told in lines.
-const KEYS: &str =
-    "h, l, r and return: hold, land, return home; :kill and return: motors off; Ctrl-C: hold and end";
-/// Bytes of a line of them: no one types more.
-const LINE_MAX: u64 = 256;
+/// Log lines while the view is shown, in the folder of the flight.
+const LOG: &str = "log.txt";
 /// Pictures that may wait for a slow terminal.
 const PICTURES: usize = 4;
-/// How long the view waits for a key or a new picture.
-const LOOK: Duration = Duration::from_millis(50);
 
 /// What was flown and what it says.
 #[derive(Serialize)]
@@ -82,18 +78,23 @@ impl Document {
 }
 
 /// Runs the verb.
-pub fn run(json: bool, args: &FlyArgs) -> Result<Outcome, CommandError> {
-    let args = args.clone();
-    live::run(move |work| fly(json, &args, work))
+pub fn run(json: bool, stderr: &StandardError, args: &FlyArgs) -> Result<Outcome, CommandError> {
+    let (args, stderr) = (args.clone(), stderr.clone());
+    live::run(move |work| fly((json, &stderr), &args, work))
 }
 
-fn fly(json: bool, args: &FlyArgs, work: &Work) -> Result<Outcome, CommandError> {
+fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> Result<Outcome, CommandError> {
+    let drawn = !args.plain && is_attended();
+    if stderr.is_quiet() && !drawn && asks_for_the_word(args) {
+        let expected = "--quiet: expected --yes beside --arm and --plain: nothing would ask for the word";
+        return Err(CommandError::Input(expected.to_owned()));
+    }
     let ride = ride(args)?;
-    let drawn = !args.plain && std::io::stderr().is_terminal() && std::io::stdin().is_terminal();
     // lines of a script that did not ask for it are the script's
     let typed = args.plain || std::io::stdin().is_terminal();
+    let (stderr, log) = (stderr.clone(), args.out.join(LOG));
     let record = fly_it(ride, work, move |pictures, pressed| match (drawn, typed) {
-        (true, _) => draw(pictures, pressed),
+        (true, _) => draw((&stderr, log), pictures, pressed),
         (false, true) => tell(pictures, Some(pressed)),
         (false, false) => tell(pictures, None),
     })?;
@@ -216,7 +217,7 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
             gate_m: args.gate_distance,
             gate_m_s: args.gate_speed,
             await_clearance: true,
-            await_word: args.arm && !args.yes && is_attended(),
+            await_word: asks_for_the_word(args),
             accepted: args.accept.iter().map(|name| check(*name)).collect(),
             ..fly::Settings::default()
         },
@@ -226,6 +227,11 @@ fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> R
 /// Somebody sits at a terminal.
 fn is_attended() -> bool {
     std::io::stdin().is_terminal() && std::io::stderr().is_terminal()
+}
+
+/// The flight waits for somebody to type the word for arming.
+fn asks_for_the_word(args: &FlyArgs) -> bool {
+    args.arm && !args.yes && is_attended()
 }
 
 fn check(name: CheckName) -> fly::Check {
@@ -265,97 +271,6 @@ pub fn fly_it(
     record.map_err(|error| failed(&error))
 }
 
-/// Lines; and lines of standard input as keys, where they may be.
-fn tell(pictures: &Receiver<ViewModel>, pressed: Option<&UnboundedSender<KeyCommand>>) {
-    if let Some(pressed) = pressed.cloned() {
-        // it ends with the process: nothing else can be done about a read that waits
-        let reading = thread::Builder::new().name("keys".into()).spawn(move || read_keys(&pressed));
-        output::message(match reading {
-            Ok(_) => KEYS,
-            Err(_) => "warning: standard input cannot be read: Ctrl-C alone ends the flight",
-        });
-    }
-    let columns = terminal::size().map_or(0, |(columns, _)| usize::from(columns));
-    let mut log = PlainLog::of_width(columns);
-    for model in pictures {
-        for line in log.lines(&model) {
-            output::message(&line);
-        }
-    }
-}
-
-/// A terminal that says so often that it has ended is gone.
-const ENDS_MAX: u32 = 20;
-
-/// Each line a command, until there are no more or the flight is over.
-fn read_keys(pressed: &UnboundedSender<KeyCommand>) {
-    let mut input = std::io::stdin().lock();
-    let (mut line, mut ends) = (Vec::new(), 0);
-    loop {
-        line.clear();
-        match input.by_ref().take(LINE_MAX).read_until(b'\n', &mut line) {
-            // at a terminal Ctrl-D ends nothing but the line
-            Ok(0) if std::io::stdin().is_terminal() && ends < ENDS_MAX => {
-                ends += 1;
-                output::message(KEYS);
-                continue;
-            }
-            Ok(0) => {
-                output::message("standard input has ended: no more keys, Ctrl-C alone ends the flight");
-                return;
-            }
-            Ok(_) => {}
-            Err(error) => {
-                output::message(&format!(
-                    "warning: keys are no longer read ({error}): Ctrl-C alone ends the flight"
-                ));
-                return;
-            }
-        }
-        let line = String::from_utf8_lossy(&line);
-        match KeyCommand::of_line(&line) {
-            Some(command) if pressed.send(command).is_err() => return,
-            Some(_) => {}
-            None => output::message(&format!("{KEYS}; got `{}`", line.trim_end().escape_debug())),
-        }
-    }
-}
-
-/// The terminal view; lines where the terminal cannot be drawn on.
-fn draw(pictures: &Receiver<ViewModel>, pressed: &UnboundedSender<KeyCommand>) {
-    let Ok(mut screen) = Screen::open(std::io::stderr) else { return tell(pictures, Some(pressed)) };
-    let mut keys = Keys::default();
-    loop {
-        while event::poll(Duration::ZERO).unwrap_or(false) {
-            if let Ok(event::Event::Key(key)) = event::read()
-                && let Some(command) = keys.press(key)
-            {
-                // a flight that is over takes no keys
-                let _ = pressed.send(command);
-            }
-        }
-        match pictures.recv_timeout(LOOK) {
-            Ok(mut model) => {
-                keys.ask(model.awaits_word);
-                if let (true, Some(page), Ok((columns, rows))) =
-                    (model.awaits_word, &model.page, terminal::size())
-                {
-                    keys.page(page.lines(usize::from(columns)).len(), page_rows(rows));
-                    model.page_from = keys.from();
-                }
-                model.typed = keys.typed().map(str::to_owned);
-                if screen.draw(&model).is_err() {
-                    // lines and Ctrl-C need the terminal as it was
-                    drop(screen);
-                    return tell(pictures, Some(pressed));
-                }
-            }
-            Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => return,
-        }
-    }
-}
-
 /// Says how it went.
 pub fn say(record: &Record) {
     let FlightOutcome { cause, ending, flown, losses } = &record.outcome;
@@ -366,7 +281,12 @@ pub fn say(record: &Record) {
         Ending::InTheAir(mode) => format!("left in the air, mode {mode}"),
     };
     let why = cause.as_ref().map_or_else(String::new, |cause| format!(": {cause}"));
-    output::message(&format!("{how}{why}"));
+    let said = format!("{how}{why}");
+    if record.outcome.is_whole() {
+        output::message(&said)
+    } else {
+        output::error(&said)
+    }
     output::message(&format!(
         "{} periods, {:.3} m rms off the reference, {:.3} m at most; tilt {:.1} degrees, planned {:.1}",
         flown.periods, flown.tracking_rms_m, flown.tracking_max_m, flown.tilt_max_deg, flown.tilt_planned_deg
@@ -383,18 +303,16 @@ pub fn say(record: &Record) {
         record.recorder.dropped
     ));
     for loss in losses {
-        output::message(&format!("warning: {loss}"));
+        output::warning(loss);
     }
     if let Some(failure) = &record.events_failure {
-        output::message(&format!("warning: {}: {failure}", fly::EVENTS));
+        output::warning(&format!("{}: {failure}", fly::EVENTS));
     }
     if let Some(failure) = &record.recorder.failure {
-        output::message(&format!("warning: {}: cannot write: {failure}", fly::TLOG));
+        output::warning(&format!("{}: cannot write: {failure}", fly::TLOG));
     }
     if record.recorder.doubtful > 0 {
         let count = record.recorder.doubtful;
-        output::message(&format!(
-            "warning: the system could not confirm that {count} frames are on the disk"
-        ));
+        output::warning(&format!("the system could not confirm that {count} frames are on the disk"));
     }
 }

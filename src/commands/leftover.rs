@@ -4,8 +4,9 @@ use std::fs::File;
 use std::path::Path;
 
 use mavid::fly::TLOG;
-use mavid::log::{STAMP_BYTES, SystemId, TlogReader};
+use mavid::log::TlogReader;
 use mavid::text;
+use mavid::wire::{STAMP_BYTES, SystemId};
 
 use super::{CommandError, output};
 

@@ -12,12 +12,11 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::watch;
 
+use super::last_word::last_word;
 use super::{CommandError, Outcome, network, output};
 
 /// From the signal, or from the end of what must be waited for, to that of the program.
 const GRACE: Duration = Duration::from_secs(5);
-/// How long the last word of a program may take.
-const LAST_WORD: Duration = Duration::from_millis(300);
 /// Between two looks at the clock.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -88,7 +87,7 @@ pub fn run(
                 GRACE.as_secs()
             ),
         };
-        last_word(move || output::message(&text));
+        last_word(move || output::error(&text));
         return Err(CommandError::Told(FAILED));
     }
 }
@@ -115,18 +114,6 @@ fn watch_signals(signals: std::sync::mpsc::Sender<String>) -> Result<(), Command
         }
     };
     thread::Builder::new().name("signals".into()).spawn(work).map(|_| ()).map_err(failed)
-}
-
-/// Does something that may never end, and waits a little for it.
-fn last_word(say: impl FnOnce() + Send + 'static) {
-    let (done, over) = channel();
-    let said = thread::Builder::new().name("last word".into()).spawn(move || {
-        say();
-        let _ = done.send(());
-    });
-    if said.is_ok() {
-        let _ = over.recv_timeout(LAST_WORD);
-    }
 }
 
 /// A panic is told, but a terminal that takes nothing does not keep the panicking thread from ending: others still have

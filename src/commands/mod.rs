@@ -1,6 +1,7 @@
 //! One file a verb: loads, calls the library, prints. Nothing else of the program prints.
 //!
-//! To add a verb: a variant in [`Verb`](crate::cli::Verb), a file here with `run(json, args)`, and an arm in [`run`].
+//! To add a verb: a variant in [`Verb`](crate::cli::Verb), a file here with `run(json, args)`, and an arm in [`run`]. A verb
+//! that draws on standard error takes the handle of it as well.
 
 mod after_flight;
 mod demo;
@@ -9,10 +10,12 @@ mod effects;
 mod error;
 mod explain;
 mod export;
+mod flight_view;
 mod flights;
 mod fly;
 mod identify;
 mod inspect;
+mod last_word;
 mod leftover;
 mod live;
 mod network;
@@ -24,7 +27,7 @@ mod record;
 mod replay;
 mod simulate;
 mod sitl;
-mod teller;
+mod standard_error;
 mod usage;
 mod validate;
 mod vehicle;
@@ -32,4 +35,5 @@ mod vehicle;
 pub use dispatch::run;
 pub use error::CommandError;
 pub use outcome::Outcome;
+pub use standard_error::install;
 pub use usage::usage;

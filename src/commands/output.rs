@@ -8,6 +8,7 @@ use mavid::text;
 use serde::Serialize;
 
 use super::CommandError;
+use super::standard_error::MESSAGE;
 
 /// A result for people; ends the line.
 pub fn text(text: &str) -> Result<(), CommandError> {
@@ -24,10 +25,20 @@ pub fn json_text(document: &impl Serialize) -> Result<String, CommandError> {
     text::json_pretty(document).map_err(|error| CommandError::Failure(format!("cannot write JSON: {error}")))
 }
 
-/// Progress, warnings and errors, each on one line, whatever of foreign words is in it. Where standard error is closed
-/// there is nobody to tell.
+/// What goes on, on one line of standard error, whatever of foreign words is in it; nothing where it is to be quiet.
+/// Where standard error is closed there is nobody to tell.
 pub fn message(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{}", text::clean(text));
+    tracing::info!(target: MESSAGE, message = text);
+}
+
+/// What the user should know: the same, after `warning: `.
+pub fn warning(text: &str) {
+    tracing::warn!(target: MESSAGE, message = text);
+}
+
+/// Why the work is not done: a message also where it is to be quiet.
+pub fn error(text: &str) {
+    tracing::error!(target: MESSAGE, message = text);
 }
 
 impl CommandError {
@@ -38,7 +49,7 @@ impl CommandError {
             Self::Failure(_) => 1,
             Self::Told(status) => return *status,
         };
-        message(&format!("mavid: {self}"));
+        error(&format!("mavid: {self}"));
         status
     }
 }
@@ -46,14 +57,14 @@ impl CommandError {
 /// What is hardly meant in a file.
 pub fn warnings(of: &Path, warnings: &[String]) {
     for warning in warnings {
-        message(&format!("warning: {}: {warning}", text::path(&of)));
+        self::warning(&format!("{}: {warning}", text::path(&of)));
     }
 }
 
 /// What is odd about the files of a signing key.
 pub fn signing_warnings(signing: Option<&Signing>) {
     for warning in signing.iter().flat_map(|signing| signing.warnings()) {
-        message(&format!("warning: {warning}"));
+        self::warning(warning);
     }
 }
 

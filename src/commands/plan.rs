@@ -19,6 +19,7 @@ use mavid::units::deg_from_rad;
 use mavid::vehicle::{Limits, Vehicle};
 use serde::Serialize;
 
+use super::standard_error::StandardError;
 use super::{CommandError, Outcome, output};
 use crate::cli::{CriterionName, PlanArgs};
 
@@ -91,8 +92,8 @@ impl From<PlanError> for CommandError {
 }
 
 /// Runs the verb.
-pub fn run(json: bool, args: &PlanArgs) -> Result<Outcome, CommandError> {
-    let summary = make(args)?;
+pub fn run(json: bool, stderr: &StandardError, args: &PlanArgs) -> Result<Outcome, CommandError> {
+    let summary = make(stderr, args)?;
     if json {
         output::json(&summary)?;
     } else {
@@ -102,7 +103,7 @@ pub fn run(json: bool, args: &PlanArgs) -> Result<Outcome, CommandError> {
 }
 
 /// Plans or checks, and writes the trajectory where one is asked for.
-pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
+pub fn make(stderr: &StandardError, args: &PlanArgs) -> Result<Summary, CommandError> {
     let loaded = read_vehicle(&args.vehicle)?;
     output::warnings(&args.vehicle, &loaded.warnings);
     let vehicle = loaded.vehicle;
@@ -123,7 +124,7 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
         let worth = assess(&series, &vehicle, &bounds, &request);
         (series, worth, None)
     } else {
-        let plan = planned(&vehicle, &limits, &request)?;
+        let plan = planned(stderr, (&vehicle, &limits), &request)?;
         (plan.trajectory, plan.assessment, Some(plan.criterion_value))
     };
     let mut summary = summarize(&worth, request.criterion, criterion_value);
@@ -147,8 +148,12 @@ pub fn make(args: &PlanArgs) -> Result<Summary, CommandError> {
     Ok(summary)
 }
 
-fn planned(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Result<Plan, CommandError> {
-    let bar = ProgressBar::new(search_of(request).work());
+fn planned(
+    stderr: &StandardError,
+    (vehicle, limits): (&Vehicle, &Limits),
+    request: &PlanRequest,
+) -> Result<Plan, CommandError> {
+    let bar = stderr.bar(ProgressBar::new(search_of(request).work()));
     if let Ok(style) = ProgressStyle::with_template("planning {bar:30} {pos}/{len} descents") {
         bar.set_style(style);
     }

@@ -10,12 +10,12 @@ use mavid::link::{
     LinkEvent, LinkOptions, LinkReader, LinkStats, LinkWriter, Received, ReceivedFrame, RecordError,
     Recorder, RecorderStatus, Signing,
 };
-use mavid::log::{ComponentId, SystemId};
 use mavid::text;
+use mavid::wire::{ComponentId, SystemId};
 use serde::Serialize;
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
-use super::teller::Teller;
+use super::standard_error::StandardError;
 use super::{CommandError, Outcome, live, network, output};
 use crate::cli::RecordArgs;
 
@@ -83,19 +83,23 @@ struct SenderLine {
 }
 
 /// Runs the verb.
-pub fn run(json: bool, args: &RecordArgs) -> Result<Outcome, CommandError> {
-    let args = args.clone();
+pub fn run(json: bool, stderr: &StandardError, args: &RecordArgs) -> Result<Outcome, CommandError> {
+    let (args, stderr) = (args.clone(), stderr.clone());
     live::run(move |work| {
         // a signal ends the recording itself
         work.ends_itself();
         let signing = args.signing_key_file.as_deref().map(Signing::open).transpose();
         let signing = signing.map_err(|error| CommandError::Input(error.to_string()))?;
         output::signing_warnings(signing.as_ref());
-        network::block_on(record(json, &args, signing))
+        network::block_on(record((json, stderr), &args, signing))
     })
 }
 
-async fn record(json: bool, args: &RecordArgs, signing: Option<Signing>) -> Result<Outcome, CommandError> {
+async fn record(
+    (json, stderr): (bool, StandardError),
+    args: &RecordArgs,
+    signing: Option<Signing>,
+) -> Result<Outcome, CommandError> {
     let address = network::address(&args.connect)?;
     let recorder = Recorder::create(&args.out, args.force).map_err(|error| refused(&error))?;
     let options = LinkOptions { recorder: Some(recorder.clone()), signing, ..LinkOptions::default() };
@@ -106,7 +110,7 @@ async fn record(json: bool, args: &RecordArgs, signing: Option<Signing>) -> Resu
     }
     let (reader, writer) = opened?;
     let start = Instant::now();
-    let mut capture = Capture { reader, writer, teller: Teller::start()?, asked: Vec::new(), recorder };
+    let mut capture = Capture { reader, writer, stderr, asked: Vec::new(), recorder };
     let ended = capture.until(start, args).await;
     // what was asked for last is sent, recorded and counted, or the link is gone
     let _ = tokio::time::timeout(FLUSH, capture.writer.flush()).await;
@@ -119,7 +123,7 @@ async fn record(json: bool, args: &RecordArgs, signing: Option<Signing>) -> Resu
     }
     let document = document(args, start.elapsed().as_secs_f64(), &status, &stats);
     let told = if json { output::json(&document) } else { output::text(&text(&document)) };
-    capture.teller.finish();
+    capture.stderr.flush();
     ended?;
     told?;
     if let Some(failure) = &status.failure {
@@ -145,7 +149,7 @@ struct Capture {
     reader: LinkReader,
     writer: LinkWriter,
     recorder: Recorder,
-    teller: Teller,
+    stderr: StandardError,
     /// vehicles that were asked for their messages
     asked: Vec<(SystemId, ComponentId)>,
 }
@@ -179,7 +183,7 @@ impl Capture {
         }
         let status = self.recorder.status();
         let lost = self.reader.stats().lost();
-        self.teller.status(&format!(
+        self.stderr.status(&format!(
             "{:.0} s, {} frames, {:.1} kB, {lost} lost on the link",
             start.elapsed().as_secs_f64(),
             status.frames,
@@ -197,7 +201,7 @@ impl Capture {
                 | LinkEvent::ClockBehind { .. }
         );
         let text = if warns { format!("warning: {event}") } else { event.to_string() };
-        self.teller.message(&text);
+        self.stderr.tell(&text);
     }
 
     /// Asks a vehicle, once, for what identification uses.

@@ -3,13 +3,12 @@
 //! Only telemetry that autopilots sent goes out, so that a vehicle that hears it does nothing; what the other end sends
 //! is dropped.
 
-use std::io::IsTerminal;
-
 use indicatif::{ProgressBar, ProgressStyle};
 use mavid::link::{LinkOptions, Replay, ReplayCounts, ReplayError};
 use mavid::text;
 use serde::Serialize;
 
+use super::standard_error::StandardError;
 use super::{CommandError, Outcome, live, network, output};
 use crate::cli::ReplayArgs;
 
@@ -43,12 +42,12 @@ struct Document {
 }
 
 /// Runs the verb.
-pub fn run(json: bool, args: &ReplayArgs) -> Result<Outcome, CommandError> {
-    let args = args.clone();
+pub fn run(json: bool, stderr: &StandardError, args: &ReplayArgs) -> Result<Outcome, CommandError> {
+    let (args, stderr) = (args.clone(), stderr.clone());
     live::run(move |work| {
         work.ends_itself();
         let replay = Replay::open(&args.log, args.speed).map_err(|error| failed(&error))?;
-        network::block_on(play(json, &args, &replay))
+        network::block_on(play((json, &stderr), &args, &replay))
     })
 }
 
@@ -59,12 +58,16 @@ fn failed(error: &ReplayError) -> CommandError {
     }
 }
 
-async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome, CommandError> {
+async fn play(
+    (json, stderr): (bool, &StandardError),
+    args: &ReplayArgs,
+    replay: &Replay,
+) -> Result<Outcome, CommandError> {
     let (mut reader, writer) = network::open(&network::address(&args.to)?, LinkOptions::default()).await?;
     if !writer.is_connected() {
         output::message(&format!("waiting for somebody at {}", args.to));
     }
-    let bar = bar(replay.frames());
+    let bar = stderr.bar(bar(replay.frames()));
     let mut so_far = ReplayCounts::default();
     let mut progress = |frame: u64, counts: &ReplayCounts| {
         so_far = *counts;
@@ -94,7 +97,7 @@ async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome,
         losses: replay.losses().to_vec(),
     };
     for loss in &document.losses {
-        output::message(&format!("warning: {}: {loss}", document.log));
+        output::warning(&format!("{}: {loss}", document.log));
     }
     if json {
         output::json(&document)?;
@@ -118,9 +121,6 @@ async fn play(json: bool, args: &ReplayArgs, replay: &Replay) -> Result<Outcome,
 }
 
 fn bar(frames: u64) -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
     let bar = ProgressBar::new(frames);
     match ProgressStyle::with_template("playing {wide_bar} {pos}/{len} {eta}") {
         Ok(style) => bar.with_style(style),

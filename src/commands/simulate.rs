@@ -5,10 +5,11 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use mavid::config::{read_trajectory, read_vehicle};
-use mavid::log::{Recording, write_recording};
+use mavid::recording::Recording;
 use mavid::simulate::{FlightSettings, Reference, TelemetrySettings, Truth, simulate_flight};
 use mavid::text;
 use mavid::vehicle::Vehicle;
+use mavid::wire::write_recording;
 use serde::Serialize;
 
 use super::effects::{with_further, with_stated_lag};

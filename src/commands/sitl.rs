@@ -5,8 +5,8 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use mavid::config::{LoadedVehicle, parse_vehicle, read_vehicle};
 use mavid::link::{Address, LinkOptions, LinkReader, SigningKey};
-use mavid::log::{ComponentId, SystemId};
 use mavid::sitl::{Firmware, LinkRole, Pace, SensorSettings, Served, Settings, Vehicle, serve};
+use mavid::wire::{ComponentId, SystemId};
 use serde::Serialize;
 
 use super::effects::with_further;
@@ -144,7 +144,7 @@ fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
     let key = args.signing_key_file.as_deref().map(SigningKey::read).transpose();
     let signing_key = key.map_err(|error| CommandError::Input(error.to_string()))?;
     if let Some(warning) = args.signing_key_file.as_deref().and_then(SigningKey::exposure) {
-        output::message(&format!("warning: {warning}"));
+        output::warning(&warning);
     }
     let base = Settings::new(vehicle, kind);
     let sensors = SensorSettings { noise_scale: args.noise, ..base.sensors };

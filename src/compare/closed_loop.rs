@@ -4,8 +4,8 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
 use super::CompareError;
 use super::mean_square::MeanSquare;
-use crate::log::{Quantity, Recording, Stream};
 use crate::physics::{Input, MAX_ROTORS, Model, State};
+use crate::recording::{Quantity, Recording, Stream};
 use crate::signals::{Grid, Signals, best, linear_onto};
 use crate::simulate::pid::{PidFlightSettings, simulate_pid_model_flight};
 use crate::simulate::{AutopilotCascade, AutopilotGains, Plant, Setpoint, SimulateError};

@@ -8,8 +8,8 @@ use super::ConfigError;
 use super::check::Check;
 use super::kind::Kind;
 use super::read::{parse_toml, read_text};
-use crate::log::Quantity;
 use crate::log::csv::{AttitudeForm, AxisFrame, CsvMapping, CsvQuantity, CsvTime, CsvUnit, column_count};
+use crate::recording::Quantity;
 use crate::text;
 
 /// The built-in mapping, also the documentation of its columns.

@@ -53,6 +53,19 @@ pub enum ConfigError {
         /// line, column, what stands there and what is wrong with it
         reason: String,
     },
+    /// a form that no version of the program up to this one has
+    #[error(
+        "{origin}: `format`: expected {known} or no such key, came {came}: a later version of mavid wrote this file; read it \
+         with that version, or write it anew with this one"
+    )]
+    Format {
+        /// file name, or what the text is
+        origin: String,
+        /// the latest that is known
+        known: u32,
+        /// what the file says
+        came: String,
+    },
     /// a value, or several together, that cannot be
     #[error("{origin}: `{key}`: expected {expected}, came {came}")]
     Invalid {

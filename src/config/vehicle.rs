@@ -10,8 +10,8 @@ use super::check::Check;
 use super::kind::Kind;
 use super::read::{parse_toml, read_text};
 use super::vehicle_file::{
-    ActuatorKind, AnchorKey, BodyTable, InertiaTable, LimitsTable, PropulsionTable, RotorTable, SpinKey,
-    VehicleFile,
+    ActuatorKind, AnchorKey, BodyTable, FORMAT, InertiaTable, LimitsTable, PropulsionTable, RotorTable,
+    SpinKey, VehicleFile,
 };
 use crate::text;
 use crate::units;
@@ -23,6 +23,8 @@ use crate::vehicle::{
 const ROTORS_MAX: usize = 32;
 /// Characters of a vehicle's or a rotor's name.
 const NAME_CHARS: usize = 200;
+/// Characters of a format that is not known, in its refusal.
+const FORMAT_CHARS: usize = 40;
 
 /// A vehicle file as read: the vehicle, what is doubtful about it, and what an identification added.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,6 +69,7 @@ pub fn read_vehicle(path: &Path) -> Result<LoadedVehicle, ConfigError> {
 /// # Errors
 /// As [`load_vehicle`].
 pub fn parse_vehicle(text: &str, origin: &str) -> Result<LoadedVehicle, ConfigError> {
+    check_format(text, origin)?;
     let file: VehicleFile = parse_toml(text, origin, Kind::Vehicle)?;
     let check = Check { origin };
     let mut doubts = Vec::new();
@@ -88,6 +91,19 @@ pub fn parse_vehicle(text: &str, origin: &str) -> Result<LoadedVehicle, ConfigEr
     let model =
         ModelTables { identified: file.identified, provenance: file.provenance, effects: file.effects };
     Ok(LoadedVehicle { vehicle, warnings, model })
+}
+
+/// Refuses a later form before its unknown keys are refused. What is no TOML is told elsewhere.
+fn check_format(text: &str, origin: &str) -> Result<(), ConfigError> {
+    let table: Option<toml::Table> = toml::from_str(text).ok();
+    let Some(format) = table.and_then(|table| table.get("format").cloned()) else { return Ok(()) };
+    let known = format.as_integer().is_some_and(|format| (1..=i64::from(FORMAT)).contains(&format));
+    let came = || text::excerpt(&format.to_string(), FORMAT_CHARS);
+    if known {
+        Ok(())
+    } else {
+        Err(ConfigError::Format { origin: origin.to_owned(), known: FORMAT, came: came() })
+    }
 }
 
 fn rigid_body(check: &Check<'_>, table: &BodyTable) -> Result<RigidBody, ConfigError> {

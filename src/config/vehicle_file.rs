@@ -4,9 +4,15 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Version of the form of these files, their key `format`. It goes up when a key is renamed, removed or gets another
+/// meaning, not when one is added. Files without the key have version 1.
+pub(super) const FORMAT: u32 = 1;
+
 #[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct VehicleFile {
+    #[serde(default = "first_format")]
+    pub format: u32,
     pub name: String,
     pub body: BodyTable,
     pub propulsion: PropulsionTable,
@@ -22,6 +28,11 @@ pub(super) struct VehicleFile {
     pub provenance: Option<toml::Table>,
     #[serde(default, skip_serializing_if = "Vec::is_empty", rename = "effect")]
     pub effects: Vec<toml::Table>,
+}
+
+/// That of files from before there was the key.
+fn first_format() -> u32 {
+    1
 }
 
 #[derive(Debug, Deserialize, Serialize)]

@@ -2,7 +2,7 @@
 
 use super::ConfigError;
 use super::vehicle_file::{
-    ActuatorKind, AnchorKey, BodyTable, IdentifyTable, InertiaTable, LimitsTable, PropulsionTable,
+    ActuatorKind, AnchorKey, BodyTable, FORMAT, IdentifyTable, InertiaTable, LimitsTable, PropulsionTable,
     RotorTable, SpinKey, VehicleFile,
 };
 use crate::units;
@@ -15,6 +15,7 @@ use crate::vehicle::{Actuator, Anchor, Limits, Propulsion, Rotor, Spin, ThrustLa
 pub fn vehicle_to_toml(vehicle: &Vehicle) -> Result<String, ConfigError> {
     let inertia = &vehicle.body.inertia_kg_m2;
     let file = VehicleFile {
+        format: FORMAT,
         name: vehicle.name.clone(),
         body: BodyTable {
             mass: vehicle.body.mass_kg,

@@ -4,7 +4,7 @@ use super::channels::Nuisance;
 use super::signature::{EffectTerm, LatencyKind};
 use super::signatures::latency_signature;
 use crate::physics::{ActiveEffect, ActuationLatency, Model, PhysicsError, RotorLag};
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleSize};
 use nalgebra::Matrix3;
 
 /// A load to start from is no more than this share of the mass.
@@ -22,6 +22,8 @@ pub(super) fn lift_load(load: &mut EffectTerm, all_kg: f64) -> f64 {
 pub struct Base {
     /// with mass and inertia as now estimated
     pub vehicle: Vehicle,
+    /// as stated: what is plausible of an effect does not change while mass is estimated
+    pub size: VehicleSize,
     /// between command and rotor
     pub latency: ActuationLatency,
     /// beside the rigid body
@@ -32,7 +34,12 @@ impl Base {
     /// A rigid body alone.
     #[must_use]
     pub fn rigid(vehicle: &Vehicle) -> Self {
-        Self { vehicle: vehicle.clone(), latency: ActuationLatency::default(), present: Vec::new() }
+        Self {
+            vehicle: vehicle.clone(),
+            size: vehicle.size(),
+            latency: ActuationLatency::default(),
+            present: Vec::new(),
+        }
     }
 
     /// An effect for which this holds is estimated.

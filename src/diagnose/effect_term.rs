@@ -2,6 +2,7 @@
 
 use super::signature::{EffectTerm, Growth, Signature};
 use crate::physics::{Effect, Parameter};
+use crate::vehicle::VehicleSize;
 
 impl EffectTerm {
     /// Its equation.
@@ -28,10 +29,21 @@ impl EffectTerm {
         self.effect().parameters().iter().chain(self.effect().finer_parameters()).nth(slot)
     }
 
-    /// The value that physics allows nearest to this.
+    /// The value nearest to this that is plausible on a vehicle of this size.
     #[must_use]
-    pub fn possible(&self, slot: usize, value: f64) -> f64 {
-        self.parameter(slot).map_or(value, |parameter| value.clamp(parameter.min, parameter.max))
+    pub fn possible(&self, slot: usize, value: f64, size: &VehicleSize) -> f64 {
+        self.parameter(slot).map_or(value, |parameter| {
+            let (least, greatest) = parameter.bounds.at(size);
+            value.clamp(least, greatest)
+        })
+    }
+
+    /// Whether a value is the least or the greatest that is plausible on a vehicle of this size.
+    pub(super) fn is_at_bound(&self, slot: usize, size: &VehicleSize) -> bool {
+        self.parameter(slot).is_some_and(|parameter| {
+            let (least, greatest) = parameter.bounds.at(size);
+            self.values[slot] <= least || self.values[slot] >= greatest
+        })
     }
 
     /// Whether a parameter says how much of the effect there is; the others say what it is like.
@@ -77,13 +89,16 @@ impl EffectTerm {
     }
 
     /// By how much a parameter is moved to see what it does.
-    pub(super) fn step_of(&self, slot: usize) -> f64 {
+    pub(super) fn step_of(&self, slot: usize, size: &VehicleSize) -> f64 {
         let at_nothing = self.values[slot] == self.nothing_at(slot);
         if let Some(usual) = self.inverse_usual(slot).filter(|_| at_nothing) {
             // it is taken to a usual one's at once: its slope at nothing leads nowhere
             return usual - self.values[slot];
         }
-        let span = self.parameter(slot).map_or(1.0, |parameter| (parameter.max - parameter.min).min(1.0));
+        let span = self.parameter(slot).map_or(1.0, |parameter| {
+            let (least, greatest) = parameter.bounds.at(size);
+            (greatest - least).min(1.0)
+        });
         (1e-4 * span).max(1e-3 * self.values[slot].abs())
     }
 

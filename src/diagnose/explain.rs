@@ -79,6 +79,7 @@ pub fn explain(
     vehicle: &Vehicle,
     settings: &ExplainSettings,
 ) -> Result<Explanation, ExplainError> {
+    let _stage = tracing::info_span!("explain", flights = flights.len()).entered();
     let trace = |signals| Trace::new(signals, vehicle, settings.half_width_s);
     let traces: Vec<Trace> = flights.iter().map(trace).collect::<Result<_, _>>()?;
     let rows: usize = traces.iter().map(Trace::rows).sum();
@@ -88,8 +89,10 @@ pub fn explain(
     }
     let mut found = search(&traces, vehicle, &settings.gates, settings.signatures)?;
     leave_out_ordinary(&traces, &mut found)?;
-    let beyond = beyond(&traces, &found);
-    Ok(judge(&traces, vehicle, found, beyond))
+    let beyond = tracing::info_span!("locate").in_scope(|| beyond(&traces, &found));
+    let explanation = judge(&traces, vehicle, found, beyond);
+    explanation.emit();
+    Ok(explanation)
 }
 
 /// What gets no name is not in the model either: what is ordinary, and what the flight could not have shown.

@@ -31,6 +31,22 @@ impl Verdict {
     }
 }
 
+impl Explanation {
+    /// Emits it as tracing events: each name with its evidence and sizes, what is left, and the verdict.
+    pub(super) fn emit(&self) {
+        self.named.iter().for_each(|named| named.emit());
+        if let Some(lack) = &self.lack_of_fit {
+            tracing::debug!(p = lack.p_least(), excess_energy = lack.excess_energy, "left at the harmonics");
+        }
+        if let Some(field) = &self.field {
+            let FieldTest { certain, beats_named, .. } = field;
+            tracing::debug!(certain, beats_named, "a force of the room tested");
+        }
+        let (named, too_little_excitation) = (self.named.len(), self.too_little_excitation);
+        tracing::info!(verdict = self.verdict.name(), named, too_little_excitation, "explained");
+    }
+}
+
 /// The whole result.
 #[derive(Debug, Clone)]
 pub struct Explanation {

@@ -133,7 +133,7 @@ fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
             let by = fitted.coefficients[index];
             let std = fitted.covariance[(index, index)].max(0.0).sqrt();
             let before = present.values[free];
-            present.values[free] = present.possible(free, before + by);
+            present.values[free] = present.possible(free, before + by, &base.size);
             most = most.max((present.values[free] - before).abs() / std.max(f64::MIN_POSITIVE));
             index += 1;
         }

@@ -4,6 +4,7 @@ use super::channels::SECOND;
 use super::fit::Fitted;
 use super::signature::Signature;
 use super::tested::Tested;
+use crate::vehicle::VehicleSize;
 
 /// What is asked of a candidate before it is named.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,14 +63,14 @@ pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates
         && evidence.gain >= gates.gain
         && matters
         && signature.naming.ordinary.is_none_or(|ordinary| evidence.size() > ordinary)
-        && possible(tested)
+        && possible(tested, &fitted.base.size)
 }
 
 /// No multirotor flies in more wind, m/s.
 const STORM_M_S: f64 = 20.0;
 
 /// Each coefficient's sign and size is one that physics allows, within two standard errors.
-fn possible(tested: &Tested) -> bool {
+fn possible(tested: &Tested, size: &VehicleSize) -> bool {
     if tested.candidate.through.is_some() {
         // the wind's columns carry the drag's strength
         let theta = &tested.evidence.theta;
@@ -86,7 +87,7 @@ fn possible(tested: &Tested) -> bool {
             let reaches = |by: f64| {
                 let value = part.moved_to(free, by);
                 let most = part.signature.naming.most.filter(|_| part.is_amount(free));
-                part.possible(free, value) == value && most.is_none_or(|most| value <= most)
+                part.possible(free, value, size) == value && most.is_none_or(|most| value <= most)
             };
             all &= reaches(by) || reaches(by - slack) || reaches(by + slack);
             index += 1;

@@ -7,6 +7,7 @@ use super::score::columns_of;
 use super::signature::GridScale;
 use super::tested::Tested;
 use super::trace::Trace;
+use crate::vehicle::VehicleSize;
 use rayon::prelude::*;
 
 /// The likeliest cord brought between the grid's lengths: a load that swings freely is out of step with its
@@ -31,7 +32,7 @@ pub(super) fn refined(flights: &[Trace], fitted: &Fitted, tested: Tested) -> Tes
     let scale = tested.candidate.signature().and_then(|signature| signature.refinement.grid);
     let Some(scale) = scale else { return tested };
     let at = |from: &Tested, by: f64| {
-        let candidate = moved(&from.candidate, scale, by);
+        let candidate = moved(&from.candidate, scale, by, &fitted.base.size);
         let columns = columns_of(flights, fitted, &candidate)?;
         let evidence = fitted.weighted.test(&columns)?;
         Some(Tested { candidate, evidence })
@@ -54,13 +55,15 @@ pub(super) fn refined(flights: &[Trace], fitted: &Fitted, tested: Tested) -> Tes
     best
 }
 
-fn moved(candidate: &Candidate, scale: GridScale, by: f64) -> Candidate {
+fn moved(candidate: &Candidate, scale: GridScale, by: f64, size: &VehicleSize) -> Candidate {
     let mut candidate = candidate.clone();
     for part in &mut candidate.parts {
         match scale {
-            GridScale::Even { slot, .. } => part.values[slot] = part.possible(slot, part.values[slot] + by),
+            GridScale::Even { slot, .. } => {
+                part.values[slot] = part.possible(slot, part.values[slot] + by, size);
+            }
             GridScale::Relative { slot, .. } => {
-                part.values[slot] = part.possible(slot, part.values[slot] * by.exp());
+                part.values[slot] = part.possible(slot, part.values[slot] * by.exp(), size);
             }
         }
     }

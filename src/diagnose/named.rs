@@ -1,6 +1,7 @@
 //! An effect that was named, with its values and the evidence for it.
 
 use crate::text::with_error;
+use std::fmt;
 
 /// A named effect.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +29,19 @@ pub struct NamedParameter {
     pub std: f64,
     /// SI
     pub unit: &'static str,
+}
+
+/// The parameters of an effect with their standard errors, on one line.
+struct Size<'a>(&'a [NamedParameter]);
+
+impl fmt::Display for Size<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, NamedParameter { name, value, std, unit }) in self.0.iter().enumerate() {
+            let separator = if index == 0 { "" } else { ", " };
+            write!(f, "{separator}{name} {} {unit}", with_error(*value, *std))?;
+        }
+        Ok(())
+    }
 }
 
 /// How strong the evidence was when the effect was taken.
@@ -68,6 +82,12 @@ pub struct DetectionLimit {
 }
 
 impl Named {
+    /// Emits it as a tracing event.
+    pub(super) fn emit(&self) {
+        let Strength { z, gain, energy, .. } = self.strength;
+        tracing::info!(effect = self.id, size = %Size(&self.parameters), z, gain, energy, "effect named");
+    }
+
     /// A parameter by its name.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<&NamedParameter> {

@@ -2,6 +2,7 @@
 
 use super::drag_location::cost;
 use super::fit::{Fitted, Newton, fit};
+use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 
@@ -16,7 +17,9 @@ pub(super) fn other_form(flights: &[Trace], fitted: &mut Fitted, price: f64) -> 
         let term = &fitted.base.present[place];
         for form in (term.signature.refinement.other_forms)(term) {
             let mut base = fitted.base.clone();
-            base.present[place] = form;
+            let values = form.values.iter().enumerate();
+            let possible = values.map(|(slot, value)| form.possible(slot, *value, &base.size)).collect();
+            base.present[place] = EffectTerm { values: possible, ..form };
             let other = fit(flights, base, Newton::Held)?;
             if cost(&other, price) < cost(fitted, price) {
                 *fitted = other;

@@ -21,6 +21,24 @@ pub enum Need {
     OneFlight,
 }
 
+impl Need {
+    /// What is needed, and why.
+    #[must_use]
+    pub fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Velocity => ("velocity and attitude", "it acts by how the vehicle moves"),
+            Self::Position => ("position and attitude", "it acts by where the vehicle is"),
+            Self::Accelerometer => ("accelerometer", "only the inertial unit sees it"),
+            Self::ForceTwice => (
+                "accelerometer, velocity and attitude",
+                "it shows in the difference between the inertial unit and the position reference",
+            ),
+            Self::Voltage => ("battery voltage", "thrust falls with it; record BATTERY_STATUS or SYS_STATUS"),
+            Self::OneFlight => ("one flight", "its moment belongs to one"),
+        }
+    }
+}
+
 /// The flights of a vehicle, as a signature sees them.
 #[derive(Debug)]
 pub struct Recorded<'a> {
@@ -49,17 +67,7 @@ impl<'a> Recorded<'a> {
     #[must_use]
     pub fn lacks(&self, needs: &[Need]) -> Option<(Need, &'static str, &'static str)> {
         let unmet = needs.iter().copied().find(|need| !self.has(*need))?;
-        let (what, why) = match unmet {
-            Need::Velocity => ("velocity and attitude", "it acts by how the vehicle moves"),
-            Need::Position => ("position and attitude", "it acts by where the vehicle is"),
-            Need::Accelerometer => ("accelerometer", "only the inertial unit sees it"),
-            Need::ForceTwice => (
-                "accelerometer, velocity and attitude",
-                "it shows in the difference between the inertial unit and the position reference",
-            ),
-            Need::Voltage => ("battery voltage", "thrust falls with it; record BATTERY_STATUS or SYS_STATUS"),
-            Need::OneFlight => ("one flight", "its moment belongs to one"),
-        };
+        let (what, why) = unmet.words();
         Some((unmet, what, why))
     }
 

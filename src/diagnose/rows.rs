@@ -127,7 +127,7 @@ impl Rows {
         let mut columns = Vec::with_capacity(candidate.free.len());
         for &index in &candidate.free {
             let mut moved = candidate.clone();
-            let step = candidate.step_of(index);
+            let step = candidate.step_of(index, &base.size);
             moved.values[index] += step;
             if is_of_sensors(candidate.effect()) {
                 let mut with = base.clone();
@@ -155,7 +155,7 @@ impl Rows {
         let mut columns = Vec::with_capacity(candidate.free.len());
         for &index in &candidate.free {
             let mut moved = candidate.clone();
-            let step = candidate.step_of(index);
+            let step = candidate.step_of(index, &base.size);
             moved.values[index] += step;
             let model = base.model(std::slice::from_ref(&moved))?;
             columns.push(self.difference(&motion, &model, Some(&without), step));
@@ -178,7 +178,7 @@ impl Rows {
         places
             .into_par_iter()
             .map(|(effect, index)| {
-                let step = base.present[effect].step_of(index);
+                let step = base.present[effect].step_of(index, &base.size);
                 let moved = |by: f64| {
                     let mut moved = base.clone();
                     moved.present[effect].values[index] += by;
@@ -186,7 +186,7 @@ impl Rows {
                 };
                 // not beyond what is possible: a load has no negative mass
                 let (present, value) = (&base.present[effect], base.present[effect].values[index]);
-                let below = present.possible(index, value - 0.5 * step) - value;
+                let below = present.possible(index, value - 0.5 * step, &base.size) - value;
                 let (up, down) = (moved(below + step), moved(below));
                 if is_of_sensors(base.present[effect].effect()) {
                     return Ok(per_step(self.shown(recorded, &up)?, &self.shown(recorded, &down)?, step));
@@ -305,7 +305,7 @@ fn residual(
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::log::Quantity;
+    use crate::recording::Quantity;
     use crate::signals::{Grid, Quality, Signals, ThrustSource, Usable};
     use crate::simulate::random_vehicle;
     use crate::vehicle::{RigidBody, Rotor, Spin, Vehicle};

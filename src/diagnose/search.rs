@@ -16,7 +16,7 @@ use super::signature::{EffectTerm, Signature};
 use super::tested::{Search, Step, Tested};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleSize};
 
 /// Searches.
 ///
@@ -28,6 +28,7 @@ pub fn search(
     gates: &Gates,
     signatures: &[&'static Signature],
 ) -> Result<Search, PhysicsError> {
+    let _step = tracing::info_span!("search").entered();
     let (before, latency) = fit_latency(flights, Base::rigid(vehicle))?;
     let mut after = before.clone();
     let mut steps: Vec<Step> = Vec::new();
@@ -38,7 +39,9 @@ pub fn search(
         let candidates = candidates(&after.base.vehicle, flights, signatures);
         last = test_all(flights, &after, &candidates, signatures);
         last.extend(between_grid(flights, &after, &last));
+        last.iter().for_each(Tested::emit);
         let count = last.len() as f64;
+        tracing::debug!(candidates = last.len(), taken = steps.len(), "candidates tested");
         let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);
         let ranked = |tested: &[Tested]| {
             let open = tested.iter().filter(|tested| !refused.contains(&tested.candidate.id));
@@ -62,11 +65,14 @@ pub fn search(
                     fitted = with_taken(flights, &after, &taken)?;
                 }
                 if wanders(flights, &fitted, &taken) || at_bound(&fitted, &taken) {
+                    tracing::debug!(effect = taken.candidate.id, "effect refused");
                     refused.push(taken.candidate.id);
                     continue;
                 }
                 after = fitted;
-                steps.push(Step { taken, rivals: passed.split_off(1) });
+                let step = Step { taken, rivals: passed.split_off(1) };
+                step.emit();
+                steps.push(step);
             }
             _ if settled == SETTLINGS || steps.is_empty() => break,
             _ => {
@@ -76,7 +82,9 @@ pub fn search(
                 let placed = one_place(flights, &mut after, price)? | other_form(flights, &mut after, price)?;
                 let gone = before.iter().map(|present| present.id());
                 let kept = |id: &&'static str| after.base.present.iter().any(|p| p.id() == *id);
-                refused.extend(gone.filter(|id| !kept(id)));
+                refused.extend(gone.filter(|id| !kept(id)).inspect(|effect| {
+                    tracing::info!(effect, "effect dropped from the model");
+                }));
                 if !dropped && !placed && moved < UNCHANGED_S {
                     break;
                 }
@@ -106,7 +114,7 @@ fn by_worth(mut tested: Vec<Tested>, price: f64) -> Vec<Tested> {
 /// Fitted again with what was taken.
 fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitted, PhysicsError> {
     let mut base = after.base.clone();
-    base.present.extend(started(taken).into_iter().map(released));
+    base.present.extend(started(taken, &base.size).into_iter().map(released));
     if let Some(load) = base.present.last_mut().filter(|term| term.signature.role.hangs_below) {
         base.vehicle.body.mass_kg = lift_load(load, base.vehicle.body.mass_kg);
     }
@@ -133,11 +141,12 @@ fn with_last(flights: &[Trace], fitted: Fitted) -> Result<Fitted, PhysicsError> 
         term.free = term.signature.refinement.freed_last.to_vec();
     }
     let placed = fit(flights, base, Newton::Held)?;
-    let bounded = placed.base.present.iter().filter(|of| has_last(of)).any(|of| {
-        of.free.iter().any(|&slot| {
-            of.parameter(slot).is_some_and(|p| of.values[slot] <= p.min || of.values[slot] >= p.max)
-        })
-    });
+    let bounded = placed
+        .base
+        .present
+        .iter()
+        .filter(|of| has_last(of))
+        .any(|of| of.free.iter().any(|&slot| of.is_at_bound(slot, &placed.base.size)));
     Ok(if placed.misfit() < fitted.misfit() && !bounded { placed } else { fitted })
 }
 
@@ -146,13 +155,13 @@ const SETTLINGS: usize = 2;
 /// What a column must explain to be worth having, in independent squared sigmas.
 const COLUMN_PRICE: f64 = 12.0;
 /// The candidate's effects at the values that the evidence has.
-fn started(tested: &Tested) -> Vec<EffectTerm> {
+fn started(tested: &Tested, size: &VehicleSize) -> Vec<EffectTerm> {
     let mut theta = tested.evidence.theta.iter();
     let mut parts = tested.candidate.parts.clone();
     for part in &mut parts {
         for &free in &part.free {
             if let Some(by) = theta.next() {
-                part.values[free] = part.possible(free, part.moved_to(free, *by));
+                part.values[free] = part.possible(free, part.moved_to(free, *by), size);
             }
         }
     }
@@ -162,7 +171,7 @@ fn started(tested: &Tested) -> Vec<EffectTerm> {
         // the columns were those of one unit of drag
         let strength = 0.5 * (drag.values[0] + drag.values[1]).max(1e-3);
         for &free in &wind.free {
-            wind.values[free] = wind.possible(free, wind.values[free] / strength);
+            wind.values[free] = wind.possible(free, wind.values[free] / strength, size);
         }
     }
     parts
@@ -172,12 +181,11 @@ fn started(tested: &Tested) -> Vec<EffectTerm> {
 fn at_bound(fitted: &Fitted, taken: &Tested) -> bool {
     let just_taken = &fitted.base.present[fitted.base.present.len() - taken.candidate.parts.len()..];
     just_taken.iter().any(|present| {
-        let common = present.effect().parameters().iter().enumerate();
-        let mut free = common.filter(|(slot, _)| present.free.contains(slot));
-        free.any(|(slot, parameter)| {
-            let value = present.values[slot];
-            let bound = value <= parameter.min || value >= parameter.max;
-            bound && value != present.nothing_at(slot)
+        let mut common = 0..present.effect().parameters().len();
+        common.any(|slot| {
+            present.free.contains(&slot)
+                && present.is_at_bound(slot, &fitted.base.size)
+                && present.values[slot] != present.nothing_at(slot)
         })
     })
 }

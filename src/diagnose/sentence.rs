@@ -136,7 +136,10 @@ mod tests {
             let values: Vec<(&str, f64, f64)> = effect
                 .parameters()
                 .iter()
-                .map(|p| (p.name, (p.min + 0.1 * (p.max.min(10.0) - p.min)).max(0.01), 0.01))
+                .map(|p| {
+                    let (least, greatest) = p.bounds.at(&vehicle.size());
+                    (p.name, (least + 0.1 * (greatest.min(10.0) - least)).max(0.01), 0.01)
+                })
                 .collect();
             let text = clause(&named(effect.id(), &values), &vehicle);
             let begins = text.chars().next().is_some_and(char::is_uppercase);

@@ -14,6 +14,15 @@ pub struct Tested {
     pub evidence: Evidence,
 }
 
+impl Tested {
+    /// Emits it as a tracing event.
+    pub(super) fn emit(&self) {
+        let (effect, size) = (self.candidate.id, self.evidence.size());
+        let Evidence { z, gain, energy, p_cluster, .. } = self.evidence;
+        tracing::trace!(effect, z, size, gain, energy, p_cluster, "candidate tested");
+    }
+}
+
 /// One accepted step.
 #[derive(Debug, Clone)]
 pub struct Step {
@@ -21,6 +30,16 @@ pub struct Step {
     pub taken: Tested,
     /// others that would have passed, with their evidence
     pub rivals: Vec<Tested>,
+}
+
+impl Step {
+    /// Emits it as a tracing event.
+    pub(super) fn emit(&self) {
+        let (effect, size) = (self.taken.candidate.id, self.taken.evidence.size());
+        let Evidence { z, gain, energy, .. } = self.taken.evidence;
+        let rivals = self.rivals.len();
+        tracing::info!(effect, z, size, gain, energy, rivals, "effect taken into the model");
+    }
 }
 
 /// Where the search ended.

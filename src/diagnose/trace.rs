@@ -1,8 +1,8 @@
 //! One flight as the weak form sees it: measured states, and the rotor thrusts in two readings.
 
 use super::rotors::{RotorMotion, Thrusts, felt};
-use crate::log::Quantity;
 use crate::physics::{ActuationLatency, Airframe, MAX_ROTORS, State};
+use crate::recording::Quantity;
 use crate::signals::{Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride};
 use crate::stats::white_level_of;
 use crate::vehicle::Vehicle;

@@ -82,8 +82,21 @@ pub fn identify(
     vehicle: &Vehicle,
     settings: &IdentifySettings,
 ) -> Result<Identification, EstimateError> {
+    let _stage = tracing::info_span!("identify", flights = flights.len()).entered();
+    let found = with_even_rotors(flights, vehicle, settings)?;
+    found.best.result.emit();
+    Ok(found)
+}
+
+/// With a rotor taken out that gives less than its command says, where there is one.
+fn with_even_rotors(
+    flights: &[Signals],
+    vehicle: &Vehicle,
+    settings: &IdentifySettings,
+) -> Result<Identification, EstimateError> {
     let found = identify_evenly(flights, vehicle, settings)?;
     let Some(weak) = found.weak_rotor else { return Ok(found) };
+    tracing::info!(rotor = weak.name, factor = weak.factor, std = weak.std, "weak rotor taken out");
     let mended = with_weak_rotor(flights, vehicle, &weak);
     let mut again = identify_evenly(&mended, vehicle, settings)?;
     again.notes.push(format!(

@@ -93,6 +93,24 @@ impl MethodResult {
     }
 }
 
+impl MethodResult {
+    /// Emits each parameter as a tracing event.
+    pub(super) fn emit(&self) {
+        let method = self.method.name();
+        for Parameter { name, unit, finding } in &self.parameters {
+            match finding {
+                Finding::Determined { value, std } => {
+                    tracing::info!(method, name, value, std, unit, "parameter determined");
+                }
+                Finding::Given { value } => tracing::info!(method, name, value, unit, "parameter given"),
+                Finding::NotDetermined { reason } => {
+                    tracing::info!(method, name, reason, "parameter not determined");
+                }
+            }
+        }
+    }
+}
+
 /// Gradient descent with a fixed gain never stops following the noise; that is not the flight's fault.
 fn by_method(method: Method, finding: Finding) -> Finding {
     match (method, finding) {

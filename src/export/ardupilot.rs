@@ -58,6 +58,7 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     );
     if source.time_constant_s().is_some() {
         source.note("the simulator's rotors have no lag (slew_max limits their rate alone)");
+        source.refuse("motor_lag");
     }
     Ok(source.finish(|notes| {
         let head = line_comments("#", notes);

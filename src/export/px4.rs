@@ -18,6 +18,7 @@ const TAU_DEFAULT_S: f64 = 0.05;
 
 pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     let arms = source.arms_m();
+    source.refuse("com_offset");
     if arms.len() != 4 {
         let got = format!("{} rotors", arms.len());
         return Err(ExportError::Unfit { format: FORMAT, expected: "four rotors in an X", got });

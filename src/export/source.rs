@@ -30,6 +30,11 @@ impl<'a> Source<'a> {
         })
     }
 
+    /// An effect was looked at and this simulator cannot hold it: it is told as left out.
+    pub(super) fn refuse(&mut self, id: &'static str) {
+        self.taken.retain(|taken| *taken != id);
+    }
+
     pub(super) fn has(&self, id: &str) -> bool {
         self.effects.iter().any(|active| active.effect().id() == id)
     }

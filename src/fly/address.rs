@@ -1,6 +1,6 @@
 //! Whom a message is from.
 
-use crate::log::{Frame, Vehicle};
+use crate::wire::{Frame, Vehicle};
 
 /// The frame comes from the vehicle's autopilot.
 pub(super) fn is_from(vehicle: &Vehicle, frame: &Frame<'_>) -> bool {

@@ -5,7 +5,7 @@ use std::time::Duration;
 use mavlink::dialects::ardupilotmega::MavMessage;
 
 use super::target::{Order, Target};
-use crate::log::Payload;
+use crate::wire::Payload;
 
 /// MAV_RESULT as a COMMAND_ACK carries it.
 const ACCEPTED: u8 = 0;
@@ -245,7 +245,7 @@ impl Commander {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::{ComponentId, SystemId};
+    use crate::wire::{ComponentId, SystemId};
 
     fn target() -> Target {
         Target::new(SystemId(1), ComponentId(1)).unwrap()

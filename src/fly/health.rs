@@ -1,6 +1,6 @@
 //! Estimator, sensors and battery as the vehicle reports them, read by byte offset.
 
-use crate::log::Payload;
+use crate::wire::Payload;
 
 /// Flags that ESTIMATOR_STATUS and EKF_STATUS_REPORT share.
 const ATTITUDE: u16 = 1;

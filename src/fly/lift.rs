@@ -2,7 +2,7 @@
 //! or one whose actuator unit is not the autopilot's, does not give the weight that hovers.
 
 use super::parameters::Parameters;
-use crate::log::{Quantity, Recording};
+use crate::recording::{Quantity, Recording};
 use crate::signals::{motor_channels, propulsion_from_log};
 use crate::vehicle::{Propulsion, Vehicle};
 use std::ops::RangeInclusive;

@@ -48,8 +48,8 @@ pub use law::{FollowLaw, Motion};
 pub use lift::{Lift, Weighed};
 pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
 pub use runner::{
-    Console, Due, EVENTS, PARAMETERS, Parking, Part, Record, Ride, RunError, StreamFigures, Supervisor, TLOG,
-    raise_priority, run, send_due,
+    Console, Due, EVENTS, EVENTS_TARGET, PARAMETERS, Parking, Part, Record, Ride, RunError, StreamFigures,
+    Supervisor, TLOG, event_layer, raise_priority, run, send_due,
 };
 pub use safety::{Feeding, Guide, Lead, SetpointBounds, Streamed, Streamer};
 pub use setpoint::{Place, Setpoint};

@@ -1,5 +1,6 @@
 //! How a flight ends, and what is told on the way.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::time::Duration;
 
@@ -172,7 +173,7 @@ pub struct Note {
     /// how much it matters
     pub level: Level,
     /// of what kind: `phase`, `vehicle`, `command`, `mode`, `link`, `stream`, `abort`, `end`
-    pub kind: &'static str,
+    pub kind: Cow<'static, str>,
     /// for people
     pub text: String,
 }
@@ -181,6 +182,6 @@ impl Note {
     /// At `now` of the flight's clock.
     #[must_use]
     pub fn new(now: Duration, level: Level, kind: &'static str, text: impl Into<String>) -> Self {
-        Self { time_s: now.as_secs_f64(), level, kind, text: text.into() }
+        Self { time_s: now.as_secs_f64(), level, kind: Cow::Borrowed(kind), text: text.into() }
     }
 }

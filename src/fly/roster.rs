@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::target::Target;
 use crate::autopilot::{Stack, is_multirotor};
-use crate::log::{self, Frame, Record, SystemId};
+use crate::wire::{self, Frame, Record, SystemId};
 
 /// After the first vehicle, others are waited for this long: each sends a HEARTBEAT a second.
 const SETTLE: Duration = Duration::from_millis(2500);
@@ -16,7 +16,7 @@ const ARMED: u8 = 128;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Listed {
     /// who
-    pub vehicle: log::Vehicle,
+    pub vehicle: wire::Vehicle,
     mav_type: u8,
     armed: bool,
 }
@@ -27,7 +27,7 @@ pub enum Choice {
     /// not yet known
     Wait,
     /// this one, by these rules
-    Vehicle(log::Vehicle, Target, &'static Stack),
+    Vehicle(wire::Vehicle, Target, &'static Stack),
     /// none, and why
     Refuse(String),
 }
@@ -43,7 +43,7 @@ impl Roster {
     /// Takes a frame.
     pub fn hear(&mut self, now: Duration, frame: Frame<'_>) {
         let record = Record { stamp_us: 0, offset: 0, known: true, frame };
-        let Some(vehicle) = log::Vehicle::from_heartbeat(&record) else { return };
+        let Some(vehicle) = wire::Vehicle::from_heartbeat(&record) else { return };
         let payload = frame.payload();
         let listed = Listed { vehicle, mav_type: payload.u8(4), armed: payload.u8(6) & ARMED != 0 };
         self.first.get_or_insert(now);
@@ -137,7 +137,7 @@ fn admit(listed: &Listed) -> Choice {
 mod tests {
     use super::*;
     use crate::autopilot::PX4;
-    use crate::log::{CrcSeeds, checksum};
+    use crate::wire::{CrcSeeds, checksum};
 
     /// A HEARTBEAT: who, MAV_TYPE, MAV_AUTOPILOT, base mode.
     fn heartbeat(system: u8, mav_type: u8, autopilot: u8, base_mode: u8) -> Vec<u8> {

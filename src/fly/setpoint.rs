@@ -119,7 +119,7 @@ pub fn wrapped(angle_rad: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::{ComponentId, SystemId};
+    use crate::wire::{ComponentId, SystemId};
 
     #[test]
     fn a_setpoint_goes_out_in_ned_with_nothing_ignored() {

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use super::course::Course;
 use super::preflight::{HOVER, ROTORS};
-use crate::log::{ComponentId, Nonce, SystemId};
 use crate::vehicle::Limits;
+use crate::wire::{ComponentId, Nonce, SystemId};
 
 /// One flight, as ordered.
 #[derive(Debug, Clone)]

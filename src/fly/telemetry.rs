@@ -15,7 +15,8 @@ use super::reset::{Pose, Step};
 pub use super::state::{FlightState, Motion, Seen};
 use crate::autopilot::Stack;
 use crate::frames::Attitude;
-use crate::log::{self, Decoder, Frame, Payload, Quantity, Record};
+use crate::recording::Quantity;
+use crate::wire::{self, Decoder, Frame, Payload, Record};
 
 const POSITION_TARGET: u32 = 85;
 const ODOMETRY: u32 = 331;
@@ -84,7 +85,7 @@ pub struct Telemetry {
 impl Telemetry {
     /// Of the vehicle whose HEARTBEAT was heard at `now`.
     #[must_use]
-    pub fn new(vehicle: log::Vehicle, stack: &'static Stack, now: Duration) -> Self {
+    pub fn new(vehicle: wire::Vehicle, stack: &'static Stack, now: Duration) -> Self {
         Self {
             decoder: Decoder::new(vehicle, None, micros(now)),
             stack,
@@ -203,7 +204,7 @@ impl Telemetry {
         let outputs = &mut self.outputs;
         outputs.clear();
         self.decoder.decode(&record, &mut |event| match event {
-            log::Event::Sample { stream, time_s, values } => match (stream.quantity, values) {
+            wire::Event::Sample { stream, time_s, values } => match (stream.quantity, values) {
                 (Quantity::Position, &[x, y, z]) => position = Some((time_s, Vector3::new(x, y, z))),
                 (Quantity::Velocity, &[x, y, z]) => velocity = Some(Vector3::new(x, y, z)),
                 (Quantity::Attitude, &[w, x, y, z]) => {
@@ -223,16 +224,16 @@ impl Telemetry {
                 }
                 _ => {}
             },
-            log::Event::Text { severity, text, .. } => news.push(Novelty::Text(severity, text.to_owned())),
+            wire::Event::Text { severity, text, .. } => news.push(Novelty::Text(severity, text.to_owned())),
             // a network that holds frames back for seconds shows old stamps, which are not those of a start
-            log::Event::ClockReset { stamp_s, .. } => {
+            wire::Event::ClockReset { stamp_s, .. } => {
                 ground.clock_jumped(now);
                 if stamp_s < silence.as_secs_f64() + STARTED_S {
                     news.push(Novelty::Reboot);
                 }
             }
-            log::Event::EstimatorReset { .. } => reset = true,
-            log::Event::Parameter { .. } => {}
+            wire::Event::EstimatorReset { .. } => reset = true,
+            wire::Event::Parameter { .. } => {}
         });
         if frame.header().message_id == POSITION_TARGET {
             news.push(Novelty::Target(target_m));
@@ -308,7 +309,7 @@ impl Telemetry {
 
     /// Who it is.
     #[must_use]
-    pub fn vehicle(&self) -> log::Vehicle {
+    pub fn vehicle(&self) -> wire::Vehicle {
         *self.decoder.vehicle()
     }
 

@@ -1,6 +1,6 @@
 //! When a vehicle that nothing is known of was in the air.
 
-use crate::log::{Quantity, Recording, Stream};
+use crate::recording::{Quantity, Recording, Stream};
 use crate::signals::{best, in_air};
 
 /// A command is effort from here on: autopilots let motors idle at up to this.

@@ -5,7 +5,7 @@ use super::excitation::ExcitationTally;
 use super::inspection::{Excitation, FlightSummary, OffsetSummary, Segment};
 use super::motion::Motion;
 use crate::estimate::{Estimated, WeakInformation, WeakMethod, solve_weak, theta_of};
-use crate::log::{Quantity, Recording};
+use crate::recording::{Quantity, Recording};
 use crate::regression::{WeakMotion, weak_rows};
 use crate::signals::{ConditionSettings, Quality, Signals, SignalsError, WeakKernel, condition};
 use crate::vehicle::Vehicle;

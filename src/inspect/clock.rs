@@ -1,8 +1,9 @@
 //! The vehicle's clock against the host's, in constant memory.
 
 use super::inspection::ClockSummary;
-use crate::log::{Event, Place};
+use crate::log::Place;
 use crate::units::seconds_from_us;
+use crate::wire::Event;
 
 /// Arrivals are looked at together over this long, s.
 const BLOCK_S: f64 = 1.0;

@@ -1,7 +1,7 @@
 //! How the body moved, on one grid with the instants that count; with or without a vehicle.
 
 use super::airborne::normalized_commands;
-use crate::log::{Quantity, Recording, Stream};
+use crate::recording::{Quantity, Recording, Stream};
 use crate::signals::{Evidence, Grid, Signals, Usable, best, cubic_onto, median_period_s, usable};
 use crate::units::STANDARD_GRAVITY_M_S2;
 use nalgebra::Vector3;

@@ -3,7 +3,7 @@
 use super::assess::Assessment;
 use super::inspection::Outlook;
 use crate::estimate::{Estimated, Finding, NAMES, THETA, UNITS, finding, rescaled, scale_of, theta_of};
-use crate::log::{Quantity, StreamKey, StreamStats};
+use crate::recording::{Quantity, StreamKey, StreamStats};
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 use crate::vehicle::{Anchor, Vehicle};
 

@@ -1,9 +1,10 @@
 //! The readers' reports as they are told.
 
 use super::inspection::{CsvReading, SenderSummary, TlogReading};
+use crate::log::ReadReport;
 use crate::log::csv::CsvReport;
-use crate::log::{ByteOrder, ReadReport, Source};
 use crate::units::seconds_from_us;
+use crate::wire::{ByteOrder, Source};
 
 /// Damaged places told one by one.
 const TOLD_RESYNCS: usize = 20;

@@ -1,7 +1,8 @@
 //! How each stream runs.
 
 use super::inspection::StreamSummary;
-use crate::log::{Quantity, StreamId, StreamKey, StreamStats, StreamTally};
+use crate::recording::{Quantity, StreamKey, StreamStats, StreamTally};
+use crate::wire::StreamId;
 
 /// Tallies of all streams of a log.
 #[derive(Debug, Default)]

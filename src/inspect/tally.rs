@@ -15,10 +15,10 @@ use super::verdict::verdict;
 use super::window::{WindowRecorder, windows_of};
 use crate::autopilot::Autopilot;
 use crate::log::csv::CsvReport;
-use crate::log::{
-    Event, LoadOptions, LogError, Place, Recording, StreamKey, StreamStats, TlogWalk, Walk, who_flew,
-};
+use crate::log::{LoadOptions, LogError, Place, TlogWalk, Walk, who_flew};
+use crate::recording::{Recording, StreamKey, StreamStats};
 use crate::vehicle::Vehicle;
+use crate::wire::Event;
 
 /// MAV_SEVERITY_WARNING; smaller is worse.
 const WARNING: u8 = 4;
@@ -177,7 +177,7 @@ impl Pass {
             .senders
             .iter()
             .filter(|sender| sender.system == speaker.system && sender.component == speaker.component)
-            .map(|sender| sender.messages.get(crate::log::Source::Heartbeat.message_id()))
+            .map(|sender| sender.messages.get(crate::wire::Source::Heartbeat.message_id()))
             .sum::<u64>();
         let streams = self.tally.streams.summary();
         let found = Found {

@@ -2,7 +2,7 @@
 
 use super::inspection::{ModeChange, Timeline};
 use crate::autopilot::Autopilot;
-use crate::log::Quantity;
+use crate::recording::Quantity;
 use crate::units::whole_unsigned;
 
 /// Entries kept of each list; a log with more is counted.

@@ -2,7 +2,7 @@
 
 use super::inspection::{Outlook, VehicleSummary};
 use super::outlook::{AXIS_NAMES, Evidence, LEAST_ANGULAR_ACCELERATION};
-use crate::log::Quantity;
+use crate::recording::Quantity;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 
 /// Flight that a good identification wants, s.

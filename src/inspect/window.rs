@@ -1,6 +1,8 @@
 //! Recordings of bounded length, one after the other, so that memory does not grow with the log.
 
-use crate::log::{Event, Quantity, Recording, RecordingBuilder, Stream, StreamId, Vehicle};
+use crate::log::RecordingBuilder;
+use crate::recording::{Quantity, Recording, Stream};
+use crate::wire::{Event, StreamId, Vehicle};
 
 /// s of the vehicle's clock in one window.
 pub(super) const WINDOW_S: f64 = 120.0;

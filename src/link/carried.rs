@@ -102,7 +102,7 @@ impl Carrier {
 mod tests {
     use super::*;
     use crate::link::{HostClock, Received};
-    use crate::log::Frame;
+    use crate::wire::Frame;
     use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavMessage};
 
     #[test]

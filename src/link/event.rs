@@ -2,8 +2,10 @@
 
 use std::fmt;
 
+use tracing::{info, warn};
+
 use super::signing::Distrust;
-use crate::log::{ComponentId, SystemId};
+use crate::wire::{ComponentId, SystemId};
 
 /// A change of the link itself.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -65,6 +67,31 @@ pub enum LinkEvent {
     RecordingFails,
     /// the recording goes on
     RecordingGoesOn,
+}
+
+impl LinkEvent {
+    /// Emits it as a tracing event with its fields.
+    pub(super) fn emit(&self) {
+        match self {
+            Self::Waiting { why } => info!(why, "link waits for its other end"),
+            Self::Connected { peer } => info!(peer, "link connected"),
+            Self::Lost { why } => warn!(why, "link lost"),
+            Self::Restored { peer } => info!(peer, "link restored"),
+            Self::Stranger { peer } => warn!(peer, "link heard a stranger"),
+            Self::Trusted { system, component } => {
+                info!(system = system.0, component = component.0, "signature trusted");
+            }
+            Self::Distrusted { system, component, why } => {
+                warn!(system = system.0, component = component.0, %why, "signature distrusted");
+            }
+            Self::Unchecked { system, component } => {
+                warn!(system = system.0, component = component.0, "signature not checked");
+            }
+            Self::ClockBehind { seconds } => warn!(seconds, "clock behind those of others"),
+            Self::RecordingFails => warn!("recording fails"),
+            Self::RecordingGoesOn => info!("recording goes on"),
+        }
+    }
 }
 
 impl fmt::Display for LinkEvent {

@@ -12,7 +12,7 @@ use super::received::{Received, ReceivedFrame};
 use super::recorder::Recorder;
 use super::shared::Shared;
 use super::signing::{Signing, Told};
-use crate::log::{Frame, Splitter};
+use crate::wire::{Frame, Splitter};
 
 /// Frames that may wait for the reader; further ones are counted, not delivered.
 pub(super) const WAITING: usize = 1 << 14;

@@ -39,6 +39,7 @@ impl Link {
     /// The address cannot be resolved, bound, connected to or opened now. Later losses are events.
     pub async fn open(address: &Address, options: LinkOptions) -> Result<Ends, LinkError> {
         let transport = transport::open(address, (options.peer_timeout, options.patient)).await?;
+        tracing::info!(%address, connected = transport.is_connected(), "link opened");
         Ok(start(address.to_string(), transport, &options))
     }
 

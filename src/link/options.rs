@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::clock::HostClock;
 use super::recorder::Recorder;
 use super::signing::Signing;
-use crate::log::{ComponentId, SystemId};
+use crate::wire::{ComponentId, SystemId};
 
 /// How a link is to be.
 #[derive(Debug, Clone)]

@@ -16,7 +16,7 @@ use super::clock::{HostClock, HostStamp};
 use super::options::LinkOptions;
 use super::recorder::Recorder;
 use super::signing::Signing;
-use crate::log::{ComponentId, Frame, SystemId};
+use crate::wire::{ComponentId, Frame, SystemId};
 
 /// What takes datagrams from any thread.
 #[derive(Debug, Clone)]

@@ -36,8 +36,16 @@ impl LinkReader {
     /// The link has ended.
     pub async fn receive(&mut self) -> Result<Received, LinkError> {
         let received = self.from.recv().await.ok_or(LinkError::Closed)?;
+        Ok(self.take(received))
+    }
+
+    /// Emits the link's events. The link's own task emits none, because it carries setpoints and a subscriber may block.
+    fn take(&self, received: Received) -> Received {
         self.shared.waiting.fetch_sub(1, Ordering::Relaxed);
-        Ok(received)
+        if let Received::Event(event) = &received {
+            event.emit();
+        }
+        received
     }
 
     /// What is there already, `None` where nothing waits.
@@ -46,10 +54,7 @@ impl LinkReader {
     /// The link has ended.
     pub fn try_receive(&mut self) -> Result<Option<Received>, LinkError> {
         match self.from.try_recv() {
-            Ok(received) => {
-                self.shared.waiting.fetch_sub(1, Ordering::Relaxed);
-                Ok(Some(received))
-            }
+            Ok(received) => Ok(Some(self.take(received))),
             Err(mpsc::error::TryRecvError::Empty) => Ok(None),
             Err(mpsc::error::TryRecvError::Disconnected) => Err(LinkError::Closed),
         }

@@ -7,7 +7,7 @@ use mavlink::{MavlinkVersion, Message};
 use super::clock::HostStamp;
 use super::error::LinkError;
 use super::event::LinkEvent;
-use crate::log::{Frame, Header, Payload, Start, Version};
+use crate::wire::{Frame, Header, Payload, Start, Version};
 
 /// Something from a link.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::signing::Distrust;
-use crate::log::{ComponentId, Frame, Sender, SplitCounts, SystemId};
+use crate::wire::{ComponentId, Frame, Sender, SplitCounts, SystemId};
 
 /// Senders told apart; noise that looks like frames must not fill the memory.
 const SENDERS: usize = 256;

@@ -13,7 +13,7 @@ use super::given::Given;
 use super::outgoing::Item;
 use super::shared::{Alive, Shared};
 use super::stats::LinkStats;
-use crate::log::Frame;
+use crate::wire::Frame;
 
 /// How often a flush looks whether the link was lost meanwhile.
 const LOOK: Duration = Duration::from_millis(100);

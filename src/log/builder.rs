@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::decode::{Event, Source, StreamId, Vehicle};
-use super::recording::{Recording, Stream, StreamKey};
 use super::report::StreamRepair;
+use crate::recording::{Recording, Stream, StreamKey};
+use crate::wire::{Event, Source, StreamId, Vehicle};
 
 /// Collects decoded events into a [`Recording`].
 #[derive(Debug, Default)]

@@ -3,7 +3,7 @@
 use crate::text;
 use std::path::PathBuf;
 
-use super::frame::SystemId;
+use crate::wire::SystemId;
 
 /// Why a log cannot be read.
 #[derive(Debug, thiserror::Error)]

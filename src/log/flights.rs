@@ -6,8 +6,8 @@
 
 use std::collections::BTreeMap;
 
-use super::decode::Event;
-use super::recording::{Quantity, Recording, Stream};
+use crate::recording::{Quantity, Recording, Stream};
+use crate::wire::Event;
 
 /// Length of a cell, s.
 const CELL_S: f64 = 10.0;
@@ -156,8 +156,15 @@ impl Cells {
 
     /// Seconds and numbers in these spans.
     fn held(&self, spans: &[(f64, f64)]) -> (f64, usize) {
-        let seconds = spans.iter().map(|(from_s, to_s)| to_s - from_s).sum();
+        let seconds =
+            spans.iter().filter_map(|span| self.recorded(*span)).map(|(from_s, to_s)| to_s - from_s).sum();
         (seconds, spans.iter().flat_map(|span| self.within(*span)).map(|cell| cell.numbers).sum())
+    }
+
+    /// First and last of what is recorded within the span, s: the margins of a span may hold nothing.
+    fn recorded(&self, (from_s, to_s): (f64, f64)) -> Option<(f64, f64)> {
+        let cells = self.within((from_s, to_s));
+        Some((cells.first()?.start_s.max(from_s), cells.last()?.end_s().min(to_s)))
     }
 
     /// As much of these spans as is to be held: without time on the ground, and then from the first flight on.
@@ -170,9 +177,10 @@ impl Cells {
         let mut plan = Plan::default();
         let (mut held_s, mut held) = (0.0, 0);
         for span in flown {
-            let mut kept_to_s = span.0;
+            let Some((from_s, to_s)) = self.recorded(span) else { continue };
+            let mut kept_to_s = from_s;
             for cell in self.within(span) {
-                let end_s = cell.end_s().min(span.1);
+                let end_s = cell.end_s().min(to_s);
                 held_s += end_s - kept_to_s;
                 held += cell.numbers;
                 if held_s > most.seconds || held > most.numbers {
@@ -180,9 +188,10 @@ impl Cells {
                 }
                 kept_to_s = end_s;
             }
-            plan.left_out_s += span.1 - kept_to_s;
-            if kept_to_s > span.0 {
-                plan.spans_s.push((span.0, kept_to_s));
+            plan.left_out_s += to_s - kept_to_s;
+            if kept_to_s > from_s {
+                // what is kept to its end keeps the margin that was asked for
+                plan.spans_s.push((span.0, if kept_to_s < to_s { kept_to_s } else { span.1 }));
             }
         }
         plan

@@ -4,10 +4,9 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::Path;
 
-use super::decode::{Source, Vehicle};
 use super::error::LogError;
-use super::frame::SystemId;
-use super::tlog::{Record, TlogReader};
+use super::tlog::TlogReader;
+use crate::wire::{Record, Source, SystemId, Vehicle};
 
 /// MAV_MODE_FLAG_SAFETY_ARMED.
 const ARMED: u8 = 128;

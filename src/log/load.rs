@@ -5,16 +5,14 @@ use std::fs::File;
 use std::path::Path;
 
 use super::builder::RecordingBuilder;
-use super::clock::Anchor;
-use super::decode::{Decoder, Event, Source, Vehicle};
 use super::error::LogError;
 use super::flights::{Cells, Flights, Hold, Plan, is_state};
 use super::flown::who_flew;
-use super::frame::{ComponentId, SystemId};
-use super::recording::Recording;
 use super::report::ReadReport;
-use super::tlog::{Record, TlogReader};
+use super::tlog::TlogReader;
 use crate::autopilot::Autopilot;
+use crate::recording::Recording;
+use crate::wire::{Anchor, ComponentId, Decoder, Event, Record, Source, SystemId, Vehicle};
 
 /// The component that autopilots use, where no HEARTBEAT says otherwise.
 const AUTOPILOT_COMPONENT: ComponentId = ComponentId(1);

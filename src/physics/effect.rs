@@ -4,20 +4,7 @@ use std::fmt::Debug;
 
 use nalgebra::Vector3;
 
-use super::{Airframe, Input, MAX_ROTORS, Measurement, State, Wrench};
-
-/// One parameter of an effect.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parameter {
-    /// name in reports and files
-    pub name: &'static str,
-    /// SI unit, `-` if none
-    pub unit: &'static str,
-    /// least physically plausible value
-    pub min: f64,
-    /// greatest physically plausible value
-    pub max: f64,
-}
+use super::{Airframe, Input, MAX_ROTORS, Measurement, Parameter, State, Wrench};
 
 /// What the vehicle does and what flows around it at one instant.
 #[derive(Debug, Clone, Copy)]

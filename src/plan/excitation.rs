@@ -136,6 +136,7 @@ pub fn plan(
     request: &PlanRequest,
     done: &(dyn Fn() + Sync),
 ) -> Result<Plan, PlanError> {
+    let _stage = tracing::info_span!("plan", seed = request.seed, starts = request.starts).entered();
     check_request(request)?;
     feasible(limits, vehicle, &request.start)?;
     let mut problem = problem_of(vehicle, limits, request);
@@ -160,7 +161,9 @@ pub fn plan(
     let trajectory = problem.space.trajectory(&best.unknowns);
     // what is left is told to the bounds themselves
     let assessment = assess(&trajectory, vehicle, &bounds_of(limits, vehicle), request);
-    Ok(Plan { trajectory, criterion_value: best.log_value.exp(), assessment })
+    let criterion_value = best.log_value.exp();
+    tracing::info!(criterion = ?request.criterion, criterion_value, "trajectory planned");
+    Ok(Plan { trajectory, criterion_value, assessment })
 }
 
 /// Polishes until every bound is kept.

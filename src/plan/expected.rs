@@ -7,7 +7,7 @@
 
 use super::noise::{NoiseModel, RowMotion, RowSpacing, parameter_scale};
 use crate::estimate::{expected_covariance, theta_of};
-use crate::log::{Quantity, Recording};
+use crate::recording::{Quantity, Recording};
 use crate::regression::{WeakMotion, weak_rows};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference, WeakKernel, condition, stride};
 use crate::simulate::{FlightSettings, Reference, TelemetrySettings, Truth, simulate_flight};

@@ -246,7 +246,7 @@ impl GyroscopicColumns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::Quantity;
+    use crate::recording::Quantity;
     use crate::signals::{Quality, ThrustSource, Usable};
     use nalgebra::SVector;
 

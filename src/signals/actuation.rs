@@ -4,7 +4,7 @@ use super::actuators::{RotorThrusts, ThrustSource, thrusts_from_commands, thrust
 use super::select::{best, too_short};
 use super::sufficient::{REFUSED_HZ, flowing_rate_hz};
 use super::{Grid, SignalsError, linear_onto};
-use crate::log::{Quantity, Recording, Stream};
+use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector4;
 

@@ -8,7 +8,7 @@ use super::SignalsError;
 use super::grid::LARGEST_VALUE;
 use super::select::{LEAST_SAMPLES, best, is_live, too_short};
 use crate::autopilot::Outputs;
-use crate::log::{Quantity, Recording, Stream, StreamKey};
+use crate::recording::{Quantity, Recording, Stream, StreamKey};
 use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
 
 /// What the thrusts rest on.

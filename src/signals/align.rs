@@ -6,7 +6,7 @@
 //! its derivative, and its standard error from the residual's own autocovariance.
 
 use super::{Grid, WeakKernel, cubic_onto};
-use crate::log::Stream;
+use crate::recording::Stream;
 use nalgebra::{DMatrix, DVector, Quaternion, UnitQuaternion, Vector3};
 
 /// An offset of one stream against the inertial unit.

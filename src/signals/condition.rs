@@ -11,7 +11,7 @@ use super::select::{best, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
 use super::usable::{Evidence, airborne_spans, usable};
 use super::{Grid, SignalsError, WeakKernel, plausible, sufficient};
-use crate::log::{Quantity, Recording, Stream};
+use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -52,6 +52,7 @@ pub fn condition(
     vehicle: &Vehicle,
     settings: &ConditionSettings,
 ) -> Result<Signals, SignalsError> {
+    let _stage = tracing::info_span!("condition").entered();
     let chosen = Chosen::from(recording);
     let actuation = Actuation::from(recording, vehicle, settings.thrust)?;
     let step_s = step(recording, &chosen, actuation.stream(), settings)?;
@@ -124,6 +125,7 @@ pub fn condition(
     };
     let doubts = plausible::check(&signals, vehicle);
     signals.quality.notes.extend(doubts);
+    signals.emit();
     Ok(signals)
 }
 

@@ -1,7 +1,7 @@
 //! Why a recording cannot be conditioned.
 
 use super::Grid;
-use crate::log::Quantity;
+use crate::recording::Quantity;
 
 /// Why a recording cannot be conditioned.
 #[derive(Debug, thiserror::Error)]

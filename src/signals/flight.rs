@@ -4,7 +4,7 @@ use super::actuators::ThrustSource;
 use super::align::StreamOffset;
 use super::grid::Grid;
 use super::usable::Usable;
-use crate::log::Quantity;
+use crate::recording::Quantity;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 
 /// A flight on one clock and one grid. Vectors have one entry a grid instant; SI, body FLU, world NWU.
@@ -40,6 +40,22 @@ pub struct Signals {
     pub reference: Option<Reference>,
     /// where things came from and what was repaired
     pub quality: Quality,
+}
+
+impl Signals {
+    /// Emits it as tracing events.
+    pub(super) fn emit(&self) {
+        let (samples, step_s) = (self.grid.count, self.grid.step_s);
+        let usable_s = self.usable.iter().filter(|usable| **usable).count() as f64 * step_s;
+        let Quality { sources, thrust_source, offsets, .. } = &self.quality;
+        for (quantity, message, rate_hz) in sources {
+            tracing::debug!(?quantity, message, rate_hz, "stream chosen");
+        }
+        for (quantity, offset) in offsets {
+            tracing::debug!(?quantity, ?offset, "stream aligned");
+        }
+        tracing::info!(samples, step_s, usable_s, thrust = ?thrust_source, "flight conditioned");
+    }
 }
 
 /// The commanded trajectory on the grid, world NWU.

@@ -1,6 +1,6 @@
 //! Uniform time grids and interpolation of recorded streams onto them.
 
-use crate::log::Stream;
+use crate::recording::Stream;
 
 /// Uniformly spaced instants on the vehicle's clock.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,6 @@
 //! White noise level of a recorded stream, from the stream itself.
 
-use crate::log::Stream;
+use crate::recording::Stream;
 use crate::stats::white_level_of;
 
 /// Standard deviation of the white part of each channel of a stream. Empty with fewer than 20 samples.

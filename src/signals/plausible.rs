@@ -21,7 +21,7 @@ const CARRIED: f64 = 1.5;
 /// Share of a torque's energy that must be its own, and of the change's amplitude that counts at least.
 const SEEN: f64 = 0.05;
 const LEFT: f64 = 0.3;
-/// RotorMotion slower than this says nothing, rad/s rms.
+/// Rotation slower than this says nothing, rad/s rms.
 const TURNING_RAD_S: f64 = 0.02;
 /// Fewer windows say nothing.
 const LEAST: usize = 40;

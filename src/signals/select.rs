@@ -1,7 +1,7 @@
 //! Which of several streams of one quantity is used.
 
 use super::SignalsError;
-use crate::log::{Quantity, Recording, Stream, StreamKey};
+use crate::recording::{Quantity, Recording, Stream, StreamKey};
 use crate::stats::median_step;
 
 /// Message names of one quantity, best first. A source that is not listed comes last.

@@ -9,7 +9,7 @@
 //! beside body rates tells from 5 Hz on; accelerometer and velocity do not tell down to that.
 
 use super::SignalsError;
-use crate::log::Stream;
+use crate::recording::Stream;
 use crate::stats::median;
 
 /// Rotor speeds, commands, or force and torque at fewer samples a second than this give wrong numbers, Hz:

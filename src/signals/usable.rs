@@ -3,7 +3,7 @@
 use super::actuation::Actuation;
 use super::select::median_period_s;
 use super::{Grid, hold_onto};
-use crate::log::{Quantity, Recording, Stream};
+use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 

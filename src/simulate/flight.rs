@@ -13,9 +13,9 @@ use super::plant::{Plant, Push};
 use super::reference::Reference;
 use super::sensors::{NoiseLevels, TelemetrySettings};
 use super::setting::{not_negative, positive, whole_steps};
-use crate::log::Recording;
 use crate::physics::effects::MotorLag;
 use crate::physics::{ActiveEffect, Effect, Evaluation, Input, MAX_ROTORS, Model, State, Wrench};
+use crate::recording::Recording;
 use crate::vehicle::{Actuator, Propulsion, Vehicle};
 
 /// Everything about a flight but vehicle, effects and reference. The defaults are those of the
@@ -131,6 +131,7 @@ pub fn simulate_flight(
     reference: &Reference,
     settings: &FlightSettings,
 ) -> Result<SimulatedFlight, SimulateError> {
+    let _stage = tracing::debug_span!("simulate", duration_s = settings.duration_s).entered();
     let mut effects = Vec::with_capacity(truth.effects.len() + 1);
     let own_lag = truth.effects.iter().any(|active| active.effect().id() == MotorLag.id());
     if not_negative("motor_time_constant_s", settings.motor_time_constant_s)? > 0.0 && !own_lag {
@@ -304,8 +305,8 @@ fn actuator_value(propulsion: &Propulsion, u: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::{Quantity, Stream, StreamKey};
     use crate::physics::effects::LinearDrag;
+    use crate::recording::{Quantity, Stream, StreamKey};
     use crate::simulate::{RandomTrajectory, random_vehicle};
     use crate::stats::white_level_of;
     use nalgebra::{Quaternion, UnitQuaternion, Vector3};

@@ -10,8 +10,8 @@ use super::SimulateError;
 use super::controller::Setpoint;
 use super::sensors::{NoiseLevels, TelemetrySettings};
 use super::setting::{not_negative, positive, whole_steps};
-use crate::log::{Quantity, Recording, Stream, StreamKey};
 use crate::physics::{MAX_ROTORS, State};
+use crate::recording::{Quantity, Recording, Stream, StreamKey};
 
 /// All that a log can take a sample of, at one instant.
 #[derive(Debug, Clone, Copy)]

@@ -8,8 +8,8 @@ use super::message_id::{AUTOPILOT_VERSION, HEARTBEAT, HOME_POSITION};
 use super::streams::IntervalRefusal;
 use super::{Mode, Vehicle};
 use crate::autopilot::Numbering;
-use crate::log::Payload;
 use crate::units::whole;
+use crate::wire::Payload;
 
 /// MAV_CMD.
 mod cmd {

@@ -6,9 +6,9 @@ use super::Firmware;
 use crate::frames::{
     Attitude, Body, World, attitude_from_frd_ned, body_from_frd, world_from_ned, yaw_from_ned,
 };
-use crate::log::Payload;
 use crate::physics::State;
 use crate::simulate::GuidedTarget;
+use crate::wire::Payload;
 
 /// What a setpoint asks for, world; what is not asked for is NaN or `None`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,7 +7,7 @@ use super::message::Message;
 use super::streams::Streams;
 use super::{Firmware, LinkId, LinkRole, Outgoing};
 use crate::link::Signing;
-use crate::log::{CrcSeeds, Splitter};
+use crate::wire::{CrcSeeds, Splitter};
 
 /// Parameters that go out in one loop period while the list is downloaded.
 const PARAMETERS_A_LOOP: usize = 2;

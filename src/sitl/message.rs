@@ -1,8 +1,8 @@
 //! A message on its way to the wire: payload in wire order, then the frame around it.
 
 use crate::link::{Signing, TAIL_BYTES};
-use crate::log::{CrcSeeds, MARKER_V2, checksum};
 use crate::units::narrow;
+use crate::wire::{CrcSeeds, MARKER_V2, checksum};
 
 /// Payload of one message, little-endian, largest fields first as MAVLink orders them.
 #[derive(Debug, Clone, PartialEq, Eq)]

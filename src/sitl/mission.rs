@@ -11,8 +11,8 @@ use super::request_id as id;
 use super::upload::Upload;
 use crate::fence::{CIRCLE_INSIDE, CIRCLE_OUTSIDE, FenceItem, POLYGON_INSIDE, POLYGON_OUTSIDE};
 use crate::frames::Geodetic;
-use crate::log::Payload;
 use crate::units::whole;
+use crate::wire::Payload;
 
 /// MAV_MISSION_TYPE_FENCE
 const FENCE: u8 = 1;

@@ -9,7 +9,7 @@ use super::commands::Command;
 use super::message::Message;
 use super::request_id as id;
 use super::telemetry::Telemetry;
-use crate::log::{Frame, Payload};
+use crate::wire::{Frame, Payload};
 
 /// MAV_TYPE_GCS
 const GROUND_STATION: u8 = 6;

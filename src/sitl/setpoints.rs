@@ -8,7 +8,7 @@ use super::Mode;
 use super::autopilot::{Autopilot, Severity};
 use super::demand::{AttitudeDemand, Demand, Refusal};
 use super::guidance::Task;
-use crate::log::Payload;
+use crate::wire::Payload;
 
 impl Autopilot {
     /// SET_ATTITUDE_TARGET.

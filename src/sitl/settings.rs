@@ -6,10 +6,10 @@ use super::{Firmware, SitlError};
 use crate::fence::FenceItem;
 use crate::frames::Geodetic;
 use crate::link::SigningKey;
-use crate::log::Nonce;
 use crate::physics::ActiveEffect;
 use crate::simulate::{FlightSettings, NoiseLevels, StreamSkew};
 use crate::vehicle::Vehicle as Description;
+use crate::wire::Nonce;
 
 /// Where on Earth the origin of the local frame lies.
 #[derive(Debug, Clone, Copy, PartialEq)]

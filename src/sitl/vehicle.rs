@@ -15,8 +15,8 @@ use super::tuning::Tuning;
 use super::upload::Upload;
 use super::{Fault, LinkId, LinkRole, Mode, Outgoing, Settings, SitlError};
 use crate::link::{Signing, SigningKey, time_of};
-use crate::log::{Check, CrcSeeds, Frame, Payload};
 use crate::physics::MAX_ROTORS;
+use crate::wire::{Check, CrcSeeds, Frame, Payload};
 
 /// MAV_COMP_ID_AUTOPILOT1
 const COMPONENT: u8 = 1;

@@ -52,17 +52,23 @@ fn ln_chi_square_sf(x: f64, k: f64) -> f64 {
 }
 
 /// Chance that an F of `free` degrees of freedom (numerator, denominator) exceeds `f` where nothing is there; 1 where
-/// there is no such distribution.
+/// there is no such distribution, or `f` is not a number.
 #[must_use]
 pub fn f_tail(f: f64, free: (f64, f64)) -> f64 {
+    if f.is_nan() {
+        return 1.0;
+    }
     FisherSnedecor::new(free.0, free.1).map_or(1.0, |law| law.sf(f))
 }
 
 /// Fisher's method: the chance that independent `chances` are as small together where nothing is there; 1 of none.
+/// One that is not a number counts as 1.
 #[must_use]
 pub fn joint_chance(chances: impl IntoIterator<Item = f64>) -> f64 {
     let (mut statistic, mut count) = (0.0, 0_usize);
     for chance in chances {
+        // `max` would make the least chance of one that is not a number
+        let chance = if chance.is_nan() { 1.0 } else { chance };
         statistic -= 2.0 * chance.max(LEAST_CHANCE).ln();
         count += 1;
     }

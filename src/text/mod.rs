@@ -16,4 +16,4 @@ pub use excerpt::{excerpt, listed, path};
 pub use format::{line_comment, markup, markup_comment, toml_string};
 pub use json::{json_line, json_pretty};
 pub(crate) use number::rounded;
-pub use number::{chance, significant, spoken, with_error};
+pub use number::{chance, compact, significant, spoken, with_error};

@@ -44,6 +44,13 @@ pub fn with_error(value: f64, std: f64) -> String {
     format!("{} +- {}", rounded(value, places), rounded(std, places))
 }
 
+/// At most four significant digits, without zeros at the end.
+#[must_use]
+pub fn compact(value: f64) -> String {
+    let short = format!("{value:.3e}").parse::<f64>().unwrap_or(value);
+    short.to_string()
+}
+
 /// As many significant digits; without power of ten between 1e-4 and 1e6.
 #[must_use]
 pub fn significant(value: f64, digits: i32) -> String {

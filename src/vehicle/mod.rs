@@ -8,6 +8,7 @@ mod description;
 mod limits;
 mod propulsion;
 mod rotor;
+mod size;
 
 pub use anchor::Anchor;
 pub use body::RigidBody;
@@ -15,3 +16,4 @@ pub use description::Vehicle;
 pub use limits::Limits;
 pub use propulsion::{Actuator, Propulsion, PwmRange, ThrustLaw};
 pub use rotor::{Mixer, Rotor, Spin};
+pub use size::VehicleSize;

@@ -22,21 +22,43 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("vehicle", &[]),
     ("trajectory", &["frames"]),
     ("fence", &["frames"]),
-    ("physics", &["units", "vehicle"]),
-    ("log", &["units", "text", "autopilot", "frames"]),
+    ("physics", &["units", "text", "vehicle"]),
+    // a flight as typed streams, from wherever
+    ("recording", &["autopilot"]),
+    // MAVLink's bytes, frames and messages
+    ("wire", &["units", "text", "autopilot", "frames", "recording"]),
+    // files
+    ("log", &["units", "text", "autopilot", "frames", "recording", "wire"]),
     // frames over sockets and serial ports, and their recording
-    ("link", &["text", "log"]),
+    ("link", &["text", "wire", "log"]),
     // vehicle: from actuator values to force
-    ("signals", &["stats", "autopilot", "vehicle", "log"]),
+    ("signals", &["stats", "autopilot", "vehicle", "recording"]),
     ("regression", &["signals"]),
     ("estimate", &["stats", "vehicle", "physics", "signals", "regression"]),
-    ("inspect", &["units", "stats", "autopilot", "vehicle", "log", "signals", "regression", "estimate"]),
+    (
+        "inspect",
+        &[
+            "units",
+            "stats",
+            "autopilot",
+            "vehicle",
+            "recording",
+            "wire",
+            "log",
+            "signals",
+            "regression",
+            "estimate",
+        ],
+    ),
     // never estimate
-    ("simulate", &["units", "frames", "vehicle", "trajectory", "physics", "log"]),
-    ("config", &["units", "text", "vehicle", "trajectory", "log"]),
-    ("compare", &["vehicle", "physics", "log", "signals", "simulate"]),
+    ("simulate", &["units", "frames", "vehicle", "trajectory", "physics", "recording"]),
+    ("config", &["units", "text", "vehicle", "trajectory", "recording", "log"]),
+    ("compare", &["vehicle", "physics", "recording", "signals", "simulate"]),
     // estimate: what a flight will determine is for its estimator to say
-    ("plan", &["units", "vehicle", "trajectory", "log", "signals", "regression", "estimate", "simulate"]),
+    (
+        "plan",
+        &["units", "vehicle", "trajectory", "recording", "signals", "regression", "estimate", "simulate"],
+    ),
     // plan: the flight that tells two explanations apart keeps the vehicle's limits
     (
         "diagnose",
@@ -46,7 +68,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "vehicle",
             "trajectory",
             "physics",
-            "log",
+            "recording",
             "signals",
             "regression",
             "estimate",
@@ -61,7 +83,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         &["text", "vehicle", "physics", "signals", "regression", "estimate", "config", "compare", "diagnose"],
     ),
     ("export", &["units", "text", "vehicle", "physics"]),
-    ("sitl", &["units", "autopilot", "frames", "vehicle", "fence", "physics", "log", "link", "simulate"]),
+    ("sitl", &["units", "autopilot", "frames", "vehicle", "fence", "physics", "wire", "link", "simulate"]),
     (
         "fly",
         &[
@@ -73,7 +95,8 @@ const LAYERS: &[(&str, &[&str])] = &[
             "trajectory",
             "fence",
             "physics",
-            "log",
+            "recording",
+            "wire",
             "link",
             "signals",
             "regression",
@@ -345,14 +368,64 @@ fn only_the_commands_print() {
     assert!(wrong.is_empty(), "only {} may print:\n{}", PRINT.join(", "), wrong.join("\n"));
 }
 
+/// A subscriber may stand still, as whoever reads what it writes: nothing between a setpoint's time and the wire says
+/// anything to it. What is to be said of setpoints and of the link is said by the flight, which hears of it.
+#[test]
+fn nothing_that_carries_setpoints_waits_for_a_subscriber() {
+    let carries = [
+        "fly/runner/stream.rs",
+        "fly/runner/priority.rs",
+        "fly/safety/",
+        "fly/law.rs",
+        "fly/course.rs",
+        "fly/setpoint.rs",
+        "fly/target/",
+        "link/incoming.rs",
+        "link/outgoing.rs",
+        "link/pen.rs",
+        "link/recorder/",
+        "link/shared.rs",
+        "link/signing/",
+        "link/transport/",
+        "link/writer.rs",
+        "wire/frame.rs",
+        "wire/splitter.rs",
+    ];
+    let (all, mut wrong) = (sources(), Vec::new());
+    for path in carries {
+        let mut found = all.iter().filter(|source| source.path.starts_with(path)).peekable();
+        assert!(found.peek().is_some(), "no file is {path}: where did it go?");
+        wrong.extend(
+            found
+                .filter(|source| code(without_tests(&source.text)).contains("tracing"))
+                .map(|source| source.path.clone()),
+        );
+    }
+    assert!(wrong.is_empty(), "they say something:\n{}", wrong.join("\n"));
+}
+
+/// The library says what it does; who hears it is the program's choice.
+#[test]
+fn only_the_program_installs_a_subscriber() {
+    let mut wrong = Vec::new();
+    for source in sources().iter().filter(|source| !BINARY.contains(&source.module.as_str())) {
+        let code = code(without_tests(&source.text));
+        for needle in ["set_global_default", "set_default", "with_default", "try_init"] {
+            if code.contains(needle) {
+                wrong.push(format!("{}: {needle}", source.path));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "only {} may:\n{}", BINARY.join(", "), wrong.join("\n"));
+}
+
 /// Messages that leave are made from types that cannot be out of range, and nowhere else.
 #[test]
 fn only_the_typed_orders_make_messages() {
     let mut wrong = Vec::new();
     for source in sources() {
         // the embedded vehicle's own messages, those of logs that tests read, and names of the dialect in patterns
-        let makes =
-            ["fly/target/", "fly/setpoint.rs", "sitl/", "log/tlog/encode.rs", "link/signing/tests.rs"];
+        let makes = ["fly/target/", "fly/setpoint.rs", "sitl/", "wire/encode.rs", "link/signing/tests.rs"];
         if !makes.iter().any(|path| source.path.starts_with(path))
             && code(without_tests(&source.text)).contains("_DATA {")
         {

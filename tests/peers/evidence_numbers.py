@@ -107,16 +107,16 @@ def evidence(prior_std):
     print("nuisances", *without)
 
 def harmonics():
-    """Four periods of 4 s at 20 Hz: power of the bins, harmonics are each fourth."""
-    i = np.arange(320)
+    """Five periods of 4 s at 20 Hz: power of the bins, harmonics are each fifth."""
+    i = np.arange(400)
     x = chance(3, i) + 0.2 * np.cos(2 * np.pi * 0.5 * 0.05 * i)
     power = np.abs(np.fft.fft(x - x.mean())) ** 2
-    at = np.arange(4, 33, 4)
+    at = np.arange(5, 41, 5)
     beside = np.mean([power[at + shift] for shift in (-2, -1, 1, 2)], axis=0)
     ratio = power[at] / beside
     print("ratios", *ratio)
     print("p", stats.combine_pvalues(stats.f.sf(ratio, 2, 8), method="fisher").pvalue)
-    print("excess", np.sum(2 * (power[at] - beside) / 320))
+    print("excess", np.sum(2 * (power[at] - beside) / 400))
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ use mavid::fence::FenceItem;
 use mavid::frames::Geodetic;
 use mavid::link::SigningKey;
 use mavid::physics::ActiveEffect;
+use mavid::physics::effects::{LinearDrag, SteadyWind};
 use mavid::sitl::{Fault, LinkRole, Mode, Settings, SitlError, Vehicle};
 use mavlink::dialects::ardupilotmega::{COMMAND_LONG_DATA, MavCmd, MavMessage, SETUP_SIGNING_DATA};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
@@ -54,13 +55,13 @@ fn how_often_the_clock_is_read_changes_nothing() {
 
 #[test]
 fn a_concealed_effect_changes_the_flight_and_is_told_nowhere() {
-    let drag = ActiveEffect::named("linear_drag", &[("dx", 0.9), ("dy", 0.9), ("dz", 0.0)]).unwrap();
+    let drag = ActiveEffect::new(&LinearDrag, &[0.9, 0.9, 0.0]).unwrap();
     let plain = flight(settings(PX4));
     let dragged = flight(Settings { effects: vec![drag], ..settings(PX4) });
     assert_ne!(plain, dragged);
     let place = |flight: &[(Duration, u32, Vec<u8>)]| {
         let last = flight.iter().rev().find(|(_, id, _)| *id == 32).unwrap();
-        mavid::log::Frame::at_start(&last.2).unwrap().payload().f32s::<3>(4)
+        mavid::wire::Frame::at_start(&last.2).unwrap().payload().f32s::<3>(4)
     };
     assert!(
         (place(&plain)[0] - place(&dragged)[0]).abs() > 0.01,
@@ -89,13 +90,12 @@ fn a_steady_wind_leans_the_vehicle() {
             .rev()
             .filter(|(_, id, _)| *id == 30)
             .take(50)
-            .map(|(_, _, bytes)| mavid::log::Frame::at_start(bytes).unwrap().payload().f32(8))
+            .map(|(_, _, bytes)| mavid::wire::Frame::at_start(bytes).unwrap().payload().f32(8))
             .collect();
         pitch.iter().sum::<f64>() / pitch.len() as f64
     };
-    let drag = || ActiveEffect::named("linear_drag", &[("dx", 0.9), ("dy", 0.9), ("dz", 0.0)]).unwrap();
-    let wind = ActiveEffect::named("steady_wind", &[("north", 4.0), ("west", 0.0), ("up", 0.0)]);
-    let Ok(wind) = wind else { panic!("{wind:?}") };
+    let drag = || ActiveEffect::new(&LinearDrag, &[0.9, 0.9, 0.0]).unwrap();
+    let wind = ActiveEffect::new(&SteadyWind, &[4.0, 0.0, 0.0]).unwrap();
     let calm = lean(vec![drag()]);
     let windy = lean(vec![drag(), wind]);
     // a wind to the north: it leans back, nose up. 0.9 * 4 / (2.06 * 9.81) = 0.18
@@ -165,7 +165,7 @@ fn clocks_are_answered() {
         payload.extend(123_456_789_012_i64.to_le_bytes());
         ground.send_raw(111, 34, &payload);
         let answer = ground.received.iter().find(|(_, id, _)| *id == 111).unwrap();
-        let answer = mavid::log::Frame::at_start(&answer.2).unwrap().payload();
+        let answer = mavid::wire::Frame::at_start(&answer.2).unwrap().payload();
         assert_eq!((answer.u64(0), answer.u64(8)), (1_500_000_000, 123_456_789_012));
         let mut ping = 99_u64.to_le_bytes().to_vec();
         ping.extend([7, 0, 0, 0, 0, 0]);
@@ -189,7 +189,7 @@ fn every_parameter_comes_once_by_list_and_by_index() {
             .received
             .iter()
             .filter(|(_, id, _)| *id == 22)
-            .map(|(_, _, bytes)| mavid::log::Frame::at_start(bytes).unwrap().payload())
+            .map(|(_, _, bytes)| mavid::wire::Frame::at_start(bytes).unwrap().payload())
             .map(|payload| (payload.u16(6), payload.u16(4), payload.text(8, 16)))
             .collect();
         let count = values[0].1;
@@ -373,7 +373,7 @@ fn a_foreign_heartbeat_comes_as_it_is() {
         .received
         .iter()
         .filter(|(_, id, _)| *id == 0)
-        .map(|(_, _, bytes)| *mavid::log::Frame::at_start(bytes).unwrap().header())
+        .map(|(_, _, bytes)| *mavid::wire::Frame::at_start(bytes).unwrap().header())
         .any(|header| header.system.0 == 255 && header.component.0 == 190);
     assert!(foreign);
 }
@@ -388,7 +388,7 @@ fn frames_take_their_time_and_some_get_lost() {
     let sequences: Vec<u8> = ground
         .received
         .iter()
-        .map(|(_, _, bytes)| mavid::log::Frame::at_start(bytes).unwrap().header().sequence)
+        .map(|(_, _, bytes)| mavid::wire::Frame::at_start(bytes).unwrap().header().sequence)
         .collect();
     let gaps: usize = sequences.windows(2).map(|pair| usize::from(pair[1].wrapping_sub(pair[0])) - 1).sum();
     let lost = gaps as f64 / (gaps + sequences.len()) as f64;
@@ -432,7 +432,7 @@ fn any_bytes_may_come_in() {
         ground.wait(0.02);
     }
     for id in [4, 11, 20, 21, 23, 43, 44, 51, 66, 75, 76, 84, 111_u8] {
-        let seed = mavid::log::CrcSeeds::new().get(id.into()).unwrap();
+        let seed = mavid::wire::CrcSeeds::new().get(id.into()).unwrap();
         for fill in [0x00, 0x01, 0x7F, 0xFF] {
             let frame = ground.raw(id, seed, &[fill; 60]);
             ground.vehicle.receive(ground.link, &frame, ground.now);

@@ -1,7 +1,7 @@
 //! What the vehicle says of itself: fields, units, noise, agreement of its messages with each other.
 
-use mavid::log::{Check, CrcSeeds, Frame};
 use mavid::sitl::{LinkRole, Mode, Settings};
+use mavid::wire::{Check, CrcSeeds, Frame};
 use mavlink::Message;
 use mavlink::dialects::ardupilotmega::MavMessage;
 
@@ -110,7 +110,7 @@ fn px4_sends_the_same_pulses_in_both_actuator_messages() {
     assert_eq!(ground.set_interval(375, 250.0), ACCEPTED);
     ground.take_off(2.0);
     let pulses = |id: u32, at: usize| {
-        let of = move |payload: mavid::log::Payload| match id {
+        let of = move |payload: mavid::wire::Payload| match id {
             36 => f64::from(payload.u16(4 + 2 * at)),
             _ => payload.f32(12 + 4 * at),
         };

@@ -61,6 +61,8 @@ impl Flight {
 
 /// One flight of a seed with effects of these sizes concealed.
 pub fn explained(seed: u64, concealed: &[(&str, Sizes)], trajectory: RandomTrajectory) -> Explanation {
-    let effects = concealed.iter().map(|(id, sizes)| ActiveEffect::named(id, sizes).unwrap()).collect();
-    Flight { trajectory, ..Flight::of_seed(seed) }.explained(effects)
+    let flight = Flight { trajectory, ..Flight::of_seed(seed) };
+    let size = flight.vehicle().size();
+    let named = |(id, values): &(&str, Sizes)| ActiveEffect::named(id, values, &size).unwrap();
+    flight.explained(concealed.iter().map(named).collect())
 }

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::Path;
 
-use mavid::log::MessageWriter;
+use mavid::wire::MessageWriter;
 use mavlink::dialects::ardupilotmega as dialect;
 
 /// s of the sample period: 125 Hz, position at half of it.

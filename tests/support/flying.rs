@@ -14,10 +14,10 @@ use mavid::fly::{
     Action, Around, Cause, Course, Event, Feeding, Flight, FollowLaw, Note, Outcome, Setpoint,
     SetpointBounds, Settings, Sortie, Streamed, Streamer,
 };
-use mavid::log::{Frame, Nonce};
 use mavid::sitl::{Firmware, LinkId, LinkRole, Settings as VehicleSettings, Vehicle};
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
 use mavid::vehicle::Limits;
+use mavid::wire::{Frame, Nonce};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::Vector3;

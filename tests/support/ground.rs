@@ -7,9 +7,9 @@ use std::path::Path;
 use std::time::Duration;
 
 use mavid::config::read_vehicle;
-use mavid::log::{ComponentId, Frame, SystemId};
 use mavid::sitl::{Fault, Firmware, LinkId, LinkRole, Mode, Outgoing, Settings, Vehicle};
 use mavid::units::narrow;
+use mavid::wire::{ComponentId, Frame, SystemId};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 
@@ -128,7 +128,7 @@ impl Ground {
         let length = u8::try_from(payload.len()).unwrap();
         let mut frame = vec![0xFD, length, 0, 0, self.sequence, self.system, 190, id, 0, 0];
         frame.extend(payload);
-        let sum = mavid::log::checksum(&frame[1..], seed);
+        let sum = mavid::wire::checksum(&frame[1..], seed);
         frame.extend(sum.to_le_bytes());
         self.sequence = self.sequence.wrapping_add(1);
         frame
@@ -160,7 +160,7 @@ impl Ground {
     }
 
     /// The last PARAM_VALUE of this name.
-    pub fn parameter(&self, name: &str) -> Option<mavid::log::Payload<'_>> {
+    pub fn parameter(&self, name: &str) -> Option<mavid::wire::Payload<'_>> {
         let all = self.received.iter().rev().filter(|(_, id, _)| *id == 22);
         all.map(|(_, _, bytes)| Frame::at_start(bytes).unwrap().payload())
             .find(|payload| payload.text(8, 16) == name)
@@ -201,7 +201,7 @@ impl Ground {
     }
 
     /// Payload of the last message of an id.
-    pub fn last(&self, id: u32) -> Option<mavid::log::Payload<'_>> {
+    pub fn last(&self, id: u32) -> Option<mavid::wire::Payload<'_>> {
         let (_, _, bytes) = self.received.iter().rev().find(|(_, got, _)| *got == id)?;
         Frame::at_start(bytes).map(|frame| frame.payload())
     }

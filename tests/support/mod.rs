@@ -6,7 +6,8 @@ pub mod require;
 
 use std::path::{Path, PathBuf};
 
-use mavid::log::{Frame, MARKER_V2, TlogReader};
+use mavid::log::TlogReader;
+use mavid::wire::{Frame, MARKER_V2};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 use mavlink::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, Message};
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};

@@ -1,8 +1,8 @@
 //! A flight as a telemetry log. What is measured and how it is turned to the messages' axes is this maker's own; only
 //! the frames and stamps are the library's.
 
-use mavid::log::MessageWriter;
 use mavid::units::{narrow, whole};
+use mavid::wire::MessageWriter;
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use mavid::autopilot::Autopilot;
 use mavid::fly::Setpoint;
-use mavid::log::Frame;
+use mavid::wire::Frame;
 use mavlink::dialects::ardupilotmega::MavMessage;
 
 use super::vehicle::{ARM, SET_MODE, TAKEOFF, command_of, modes};

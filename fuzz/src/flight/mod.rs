@@ -14,8 +14,8 @@ use mavid::fly::parameters::Parameters;
 use mavid::fly::{
     Action, Around, Course, Event, Flight, Key, Lift, Setpoint, Settings, Sortie, Streamed, Streamer,
 };
-use mavid::log::Frame;
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
+use mavid::wire::Frame;
 use mavlink::dialects::ardupilotmega::MavMessage;
 
 use super::bytes::Bytes;

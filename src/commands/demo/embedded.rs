@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use mavid::config::parse_vehicle;
 use mavid::link::{Address, Link, LinkOptions};
-use mavid::log::{ComponentId, Nonce, SystemId};
 use mavid::sitl::{Firmware, LinkRole, Pace, Settings, Vehicle, serve};
+use mavid::wire::{ComponentId, Nonce, SystemId};
 use tokio::sync::oneshot;
 
 use super::concealed::concealed;

@@ -7,6 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use mavid::fly::view::ViewModel;
 
 use crate::commands::output;
+use crate::commands::standard_error::StandardError;
 
 /// Hundredths of the whole at which the stages end.
 pub const PLANNED: u64 = 3;
@@ -24,9 +25,9 @@ pub struct Progress {
 
 impl Progress {
     /// A bar, or lines.
-    pub fn new(drawn: bool) -> Self {
+    pub fn new(stderr: &StandardError, drawn: bool) -> Self {
         let bar = drawn.then(|| {
-            let bar = ProgressBar::new(100);
+            let bar = stderr.bar(ProgressBar::new(100));
             if let Ok(style) = ProgressStyle::with_template("{spinner} {bar:40} {elapsed:>4} {msg}") {
                 bar.set_style(style);
             }
@@ -38,10 +39,8 @@ impl Progress {
 
     /// A line that stays.
     pub fn say(&self, text: &str) {
-        match &self.bar {
-            Some(bar) => bar.suspend(|| output::message(text)),
-            None => output::message(text),
-        }
+        // the bar keeps clear of messages
+        output::message(text);
     }
 
     /// What is done now, at how many hundredths of the whole.

@@ -1,13 +1,12 @@
 //! The run of `mavid demo`, from the plan to the comparison with what had been concealed.
 
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use mavid::config::parse_vehicle;
 use mavid::fly::Ending;
-use mavid::log::SystemId;
 use mavid::text;
+use mavid::wire::SystemId;
 use serde::Serialize;
 
 use super::concealed::{Compared, compare, concealed, table};
@@ -18,6 +17,7 @@ use crate::commands::after_flight::Analysis;
 use crate::commands::explain::Explained;
 use crate::commands::live::{self, Work};
 use crate::commands::sitl::DEFAULT_VEHICLE;
+use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, Outcome, fly, leftover, output, plan};
 
 /// The room, and how lively it is flown.
@@ -38,19 +38,23 @@ struct Document {
 }
 
 /// Runs the verb.
-pub fn run(json: bool, args: &DemoArgs) -> Result<Outcome, CommandError> {
-    let args = args.clone();
-    live::run(move |work| show(json, &args, work))
+pub fn run(json: bool, stderr: &StandardError, args: &DemoArgs) -> Result<Outcome, CommandError> {
+    let (args, stderr) = (args.clone(), stderr.clone());
+    live::run(move |work| show((json, &stderr), &args, work))
 }
 
-fn show(json: bool, args: &DemoArgs, work: &Work) -> Result<Outcome, CommandError> {
+fn show(
+    (json, stderr): (bool, &StandardError),
+    args: &DemoArgs,
+    work: &Work,
+) -> Result<Outcome, CommandError> {
     let since = Instant::now();
     let vehicle = parse_vehicle(DEFAULT_VEHICLE, "the vehicle within the program")?.vehicle;
     // a file that cannot be used is told before the work
     concealed(args.effects.as_deref(), &vehicle)?;
     let folder = folder(args)?;
-    let progress = Progress::new(!args.plain && std::io::stderr().is_terminal());
-    let done = story(args, &folder, (&progress, work));
+    let progress = Progress::new(stderr, !args.plain && stderr.can_draw());
+    let done = story(args, &folder, (&progress, stderr, work));
     progress.end();
     let (record, analysis) = done?;
     fly::say(&record);
@@ -78,14 +82,14 @@ fn show(json: bool, args: &DemoArgs, work: &Work) -> Result<Outcome, CommandErro
 fn story(
     args: &DemoArgs,
     folder: &Path,
-    (progress, work): (&Progress, &Work),
+    (progress, stderr, work): (&Progress, &StandardError, &Work),
 ) -> Result<(mavid::fly::Record, Option<Analysis>), CommandError> {
     let vehicle = folder.join("vehicle.toml");
     let (limits, trajectory) = (folder.join("limits.toml"), folder.join("trajectory.toml"));
     output::file(&vehicle, DEFAULT_VEHICLE)?;
     output::file(&limits, LIMITS)?;
     progress.stage("planning the identification trajectory", 0);
-    plan::make(&plan_args(&vehicle, limits, &trajectory))?;
+    plan::make(stderr, &plan_args(&vehicle, limits, &trajectory))?;
     let embedded = Embedded::start(args.effects.clone())?;
     let port = embedded.port;
     progress.say(&format!(

@@ -1,6 +1,5 @@
 //! A bar on standard error for files that take a while.
 
-use std::io::IsTerminal;
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -8,10 +7,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// Smaller files are read before a bar could be seen.
 const BAR_FROM_BYTES: u64 = 32 << 20;
 
-/// A bar over a file's bytes; a hidden one for small files, and where standard error is no terminal.
+/// A bar over a file's bytes; a hidden one for small files.
 pub fn of_file(path: &Path) -> ProgressBar {
     let bytes = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-    if bytes < BAR_FROM_BYTES || !std::io::stderr().is_terminal() {
+    if bytes < BAR_FROM_BYTES {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(bytes);

@@ -4,14 +4,16 @@ use std::path::Path;
 
 use mavid::config::{default_csv_mapping, load_csv_mapping, read_vehicle};
 use mavid::inspect::{Inspection, inspect_csv, inspect_tlog};
+use mavid::log::LoadOptions;
 use mavid::log::csv::read_csv;
-use mavid::log::{LoadOptions, SystemId};
 use mavid::text;
 use mavid::vehicle::Vehicle;
+use mavid::wire::SystemId;
 use serde::Serialize;
 
 use super::{page, progress};
 use crate::cli::InspectArgs;
+use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, Outcome, output};
 
 /// The JSON document.
@@ -24,13 +26,13 @@ struct Document<'a> {
 }
 
 /// Runs the verb.
-pub fn run(json: bool, args: &InspectArgs) -> Result<Outcome, CommandError> {
+pub fn run(json: bool, stderr: &StandardError, args: &InspectArgs) -> Result<Outcome, CommandError> {
     let loaded = args.vehicle.as_deref().map(read_vehicle).transpose()?;
     if let (Some(path), Some(loaded)) = (&args.vehicle, &loaded) {
         output::warnings(path, &loaded.warnings);
     }
     let vehicle = loaded.as_ref().map(|loaded| &loaded.vehicle);
-    let inspection = inspect(args, vehicle)?;
+    let inspection = inspect(stderr, args, vehicle)?;
     let file = text::path(&args.log);
     if json {
         output::json(&Document { schema: 1, file, inspection: &inspection })?;
@@ -40,7 +42,11 @@ pub fn run(json: bool, args: &InspectArgs) -> Result<Outcome, CommandError> {
     Ok(if inspection.losses.is_empty() { Outcome::Done } else { Outcome::DoneWithLoss })
 }
 
-fn inspect(args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, CommandError> {
+fn inspect(
+    stderr: &StandardError,
+    args: &InspectArgs,
+    vehicle: Option<&Vehicle>,
+) -> Result<Inspection, CommandError> {
     let path = args.log.as_path();
     if path.is_dir() {
         let text = format!("expected a log (*.tlog, *.csv), got the folder {}", text::path(&path));
@@ -58,7 +64,7 @@ fn inspect(args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, 
         return Err(CommandError::Input("--csv-map is for *.csv logs; this one is a *.tlog".into()));
     }
     let options = LoadOptions { system: args.read.system.map(SystemId) };
-    let bar = progress::of_file(path);
+    let bar = stderr.bar(progress::of_file(path));
     let inspection = inspect_tlog(path, &options, vehicle, &mut |bytes| bar.set_position(bytes));
     bar.finish_and_clear();
     inspection.map_err(|error| CommandError::Input(named(path, &error.to_string())))

@@ -6,7 +6,7 @@ use std::time::Instant;
 use mavid::config::read_vehicle;
 use mavid::diagnose::holdout::{HeldOut, HoldoutFit, HoldoutSettings, on_holdout};
 use mavid::diagnose::{Empirical, ExplainSettings, Explanation, Named, explain};
-use mavid::log::Recording;
+use mavid::recording::Recording;
 use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
 use mavid::text;
 use mavid::vehicle::Vehicle;

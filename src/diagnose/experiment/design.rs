@@ -23,6 +23,7 @@ pub fn design(
     vehicle: &Vehicle,
     settings: &NextSettings,
 ) -> Result<NextFlight, NextError> {
+    let _stage = tracing::info_span!("design", flights = flights.len()).entered();
     let traces = traces(flights, vehicle, settings)?;
     let (mut questions, mut inseparable) = questions(explanation, &traces);
     let limits_are_flown = vehicle.limits == Limits::default();

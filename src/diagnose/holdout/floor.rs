@@ -1,8 +1,8 @@
 //! Noise of the measured state, from the recording itself.
 
 use crate::compare::{CommandNoise, StateNoise};
-use crate::log::{Quantity, Stream};
 use crate::physics::MAX_ROTORS;
+use crate::recording::{Quantity, Stream};
 use crate::signals::{Signals, ThrustSource, white_level};
 use crate::stats::median;
 use nalgebra::{SMatrix, SVector, Vector3};

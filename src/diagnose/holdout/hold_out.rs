@@ -23,6 +23,7 @@ pub fn on_holdout(
     vehicle: &Vehicle,
     settings: &HoldoutSettings,
 ) -> Result<HoldoutFit, HoldoutError> {
+    let _stage = tracing::info_span!("predict", holdout = true, flights = flights.len()).entered();
     let mut ready = Vec::with_capacity(flights.len());
     for flight in flights {
         let trace = trace_of(flight, vehicle, settings)?;
@@ -43,6 +44,9 @@ pub fn on_holdout(
     let weak = weak::residuals(&ready, explanation, empirical, settings)?;
     let (agreement, other_vehicle) = other_vehicle::judged(&ready, explanation, &weak, settings.same_flight)?;
     let closed_loop = closed_loop::flown_again(&ready, empirical, vehicle, settings);
+    let improvement = improvement_percent.map(|improvement| improvement.value);
+    let another = other_vehicle.is_some();
+    tracing::info!(improvement_percent = improvement, blocks, other_vehicle = another, "hold-out predicted");
     notes.push(
         "the floor is what white noise of the sensors and of the logged commands would leave of a model that is right; noise that an autopilot's estimator has smoothed is not in it"
             .to_owned(),
@@ -71,6 +75,7 @@ pub fn on_identification(
     vehicle: &Vehicle,
     settings: &HoldoutSettings,
 ) -> Result<(Vec<OpenLoop>, Option<Interval>), HoldoutError> {
+    let _stage = tracing::info_span!("predict", holdout = false, flights = flights.len()).entered();
     let mut ready = Vec::with_capacity(flights.len());
     for flight in flights {
         let trace = trace_of(flight, vehicle, settings)?;

@@ -1,7 +1,7 @@
 //! What a model is shown on, and how.
 
 use crate::diagnose::explain::ExplainSettings;
-use crate::log::Recording;
+use crate::recording::Recording;
 use crate::signals::Signals;
 
 /// How it is shown.

@@ -131,7 +131,7 @@ fn length(
                 let evidence = fitted.weighted.test(&columns)?;
                 let load_kg = evidence.theta.first().copied().filter(|load_kg| *load_kg > 0.0)?;
                 let mut form = form.clone();
-                form.values[0] = form.possible(0, load_kg);
+                form.values[0] = form.possible(0, load_kg, &base.size);
                 Some((evidence.energy, form))
             })
             .collect();
@@ -146,7 +146,7 @@ fn length(
     {
         let mut form = coarse.clone();
         let length_m = coarse.values[1] * (1.0 + every * f64::from(step));
-        form.values = vec![0.0, form.possible(1, length_m), coarse.values[2] * times];
+        form.values = vec![0.0, form.possible(1, length_m, &base.size), coarse.values[2] * times];
         finely.push(form);
     }
     let mut found = most(&finely).unwrap_or(coarse);

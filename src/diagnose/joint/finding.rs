@@ -109,6 +109,16 @@ impl EffectFound {
         signature_of(self.effect.id()).is_some_and(|signature| self.z > Gates::default().deviate(signature))
     }
 
+    /// Emits it as a tracing event.
+    pub(super) fn emit(&self) {
+        let (effect, z, tried) = (self.effect.id(), self.z, self.tried);
+        let significant = self.is_significant();
+        tracing::info!(effect, z, tried, significant, "effect estimated");
+        for ParameterFound { name, unit, found, .. } in &self.parameters {
+            tracing::debug!(effect, name, unit, value = found.value(), ?found, "parameter of the effect");
+        }
+    }
+
     /// For a simulation; `None` where the flight determines nothing of it.
     #[must_use]
     pub fn acting(&self) -> Option<ActiveEffect> {
@@ -135,7 +145,7 @@ pub(super) fn effects(
             let place = settled.iter().position(|of| of.chosen.form.is(signature));
             match place {
                 Some(place) => of_columns(fitted, first + place, &settled[place], (vehicle, wanted, by_mass)),
-                None => of_latency(signature, flights, (latency, split), stated_lag_s(vehicle)),
+                None => of_latency(signature, flights, (latency, split), vehicle),
             }
         })
         .collect()
@@ -173,7 +183,7 @@ fn of_columns(
                 _ => set(present, slot, value, (vehicle, wanted)),
             },
         };
-        let plausible = (parameter.min, parameter.max);
+        let plausible = parameter.bounds.at(&fitted.base.size);
         parameters.push(ParameterFound { name: parameter.name, unit: parameter.unit, plausible, found });
     }
     let amounts: Vec<(usize, f64)> = present
@@ -219,9 +229,10 @@ fn of_latency(
     signature: &'static Signature,
     flights: &[Trace],
     (latency, split): (&LatencyFinding, Split),
-    stated_s: f64,
+    vehicle: &Vehicle,
 ) -> EffectFound {
     let effect = signature.effect;
+    let (stated_s, size) = (stated_lag_s(vehicle), &vehicle.size());
     let is_lag = signature.role.latency == Some(LatencyKind::Lag);
     let (value, least, ordinary_s) = if is_lag {
         (latency.parts.lag_s, LEAST_LAG_S, FAST_MOTOR_S)
@@ -245,7 +256,7 @@ fn of_latency(
         .map(|(slot, of)| ParameterFound {
             name: of.name,
             unit: of.unit,
-            plausible: (of.min, of.max),
+            plausible: of.bounds.at(size),
             found: if uneven { found.times(shares[slot]) } else { found.clone() },
         })
         .collect();

@@ -7,6 +7,7 @@ use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::signature::EffectTerm;
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
+use crate::text::compact;
 use nalgebra::DVector;
 
 /// Why a parameter is not estimated.
@@ -132,7 +133,7 @@ fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
     let mut anew = false;
     for (slot, _, std, own) in all {
         let Some(parameter) = present.parameter(slot) else { continue };
-        let range = parameter.max - parameter.min;
+        let (least, greatest) = parameter.bounds.at(&fitted.base.size);
         let amount = present.is_amount(slot);
         // a finer form was taken because it is the likelier one: what it adds stays in, whatever its error
         let finer = slot >= present.effect().parameters().len();
@@ -144,9 +145,11 @@ fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
                 Some(own) if own < OWN => {
                     "in this flight it does what mass, inertia or another parameter does".to_owned()
                 }
-                _ if !finer && std > SAYS_NOTHING * range => format!(
+                _ if !finer && std > SAYS_NOTHING * (greatest - least) => format!(
                     "its standard error, {std:.2e} {}, is no smaller than what is plausible at all ({} to {})",
-                    parameter.unit, parameter.min, parameter.max
+                    parameter.unit,
+                    compact(least),
+                    compact(greatest)
                 ),
                 _ => continue,
             }
@@ -166,7 +169,8 @@ fn hold_at_bounds(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
     let mut any = false;
     for (nth, (slot, value, std, _)) in estimates(fitted, place).into_iter().enumerate() {
         let wanted = value + fitted.coefficients[column(fitted, place, nth)];
-        let outside = present.possible(slot, wanted) != wanted && present.possible(slot, wanted) == value;
+        let nearest = present.possible(slot, wanted, &fitted.base.size);
+        let outside = nearest != wanted && nearest == value;
         if outside {
             of.chosen.form.free.retain(|free| *free != slot);
             of.chosen.form.values[slot] = value;

@@ -33,6 +33,7 @@ pub fn identify_jointly(
     wanted: &RequestedEffects,
     half_width_s: f64,
 ) -> Result<JointEstimate, JointError> {
+    let _stage = tracing::info_span!("identify_jointly", flights = flights.len()).entered();
     wanted.check_wind(known)?;
     let traces: Vec<Trace> =
         flights.iter().map(|signals| Trace::new(signals, vehicle, half_width_s)).collect::<Result<_, _>>()?;
@@ -55,7 +56,10 @@ pub fn identify_jointly(
     let (after, mut settled) = of_file.settle(&traces, base, &chosen, newton)?;
     let (mut after, split) = latency::split(&traces, after, wanted)?;
     swing::allow_for_noise(&traces, &mut after, &mut settled)?;
-    Ok(put_together(&traces, (vehicle, &kept), wanted, Fits { before, after, settled, split, first }))
+    let fits = Fits { before, after, settled, split, first };
+    let estimate = put_together(&traces, (vehicle, &kept), wanted, fits);
+    estimate.effects.iter().for_each(EffectFound::emit);
+    Ok(estimate)
 }
 
 /// What the fits gave.

@@ -131,7 +131,7 @@ pub(super) fn names() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::effects::ALL;
+    use crate::physics::effects::{ALL, LinearDrag};
 
     #[test]
     fn every_effect_is_taken_or_refused_with_a_reason() {
@@ -148,7 +148,7 @@ mod tests {
     #[test]
     fn wind_that_the_files_drag_carries_is_not_alone() {
         let wind = RequestedEffects::of(&["steady_wind".to_owned()]);
-        let drag = ActiveEffect::named("linear_drag", &[("dx", 0.1), ("dy", 0.1), ("dz", 0.0)]);
+        let drag = ActiveEffect::new(&LinearDrag, &[0.1, 0.1, 0.0]);
         let (wind, drag) = (wind.unwrap(), drag.unwrap());
         assert_eq!(wind.check_wind(&[]), Err(JointError::WindAlone));
         assert_eq!(wind.check_wind(&[drag]), Ok(()));

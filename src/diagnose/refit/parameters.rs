@@ -60,10 +60,10 @@ impl Unknowns {
                 };
                 free += 1;
                 // what physics holds at a bound stays there
-                if value <= parameter.min || value >= parameter.max {
+                if present.is_at_bound(slot, &base.size) {
                     continue;
                 }
-                let from_zero = parameter.min >= 0.0;
+                let from_zero = parameter.bounds.at(&base.size).0 >= 0.0;
                 let scale = if from_zero && value > 1e-9 { Scale::Log } else { Scale::Plain };
                 start.push(match scale {
                     Scale::Log => value.ln(),
@@ -100,7 +100,7 @@ impl Unknowns {
                 Scale::Log => point[EFFECTS + index].exp(),
                 Scale::Plain => point[EFFECTS + index],
             };
-            base.present[effect].values[slot] = base.present[effect].possible(slot, value);
+            base.present[effect].values[slot] = base.present[effect].possible(slot, value, &base.size);
         }
         base
     }

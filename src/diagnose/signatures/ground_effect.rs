@@ -86,9 +86,6 @@ fn other_forms(term: &EffectTerm) -> Vec<EffectTerm> {
         let mut other = term.clone();
         other.values[..3].copy_from_slice(&values);
         other.free = slots.iter().copied().chain(beside.clone()).collect();
-        for slot in 0..3 {
-            other.values[slot] = other.possible(slot, other.values[slot]);
-        }
         other
     };
     let squared = 16.0 * ALIKE_RADII * ALIKE_RADII;

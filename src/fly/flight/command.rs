@@ -81,6 +81,7 @@ impl Flight {
         if gap >= STALLED {
             self.watch.awake = now;
         }
+        tracing::warn!(gap_s = gap.as_secs_f64(), "setpoints stalled");
         self.known.doubt(now, Doubted::Stall(gap));
         self.end(now, Cause::Stalled(stall(gap)));
     }
@@ -110,6 +111,10 @@ impl Flight {
 
     /// A command, to be sent as soon as the vehicle's mode permits it.
     pub(super) fn give(&mut self, now: Duration, order: Order, manner: Manner) {
+        match order {
+            Order::SetMode(_, mode) => tracing::info!(?mode, "mode ordered"),
+            order => tracing::info!(?order, "command ordered"),
+        }
         self.commander.give(now, order, manner, self.known.reports());
     }
 }

@@ -24,6 +24,7 @@ impl Flight {
         {
             return;
         }
+        tracing::error!(%cause, ?response, phase = self.phase.name(), "flight aborted");
         self.note(now, Level::Error, "abort", cause.to_string());
         self.cause.get_or_insert(cause);
         if !self.phase.is_airborne() && !self.is_armed() && !self.arm_ordered {

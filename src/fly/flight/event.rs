@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::autopilot::Mode;
 use crate::fly::lift::Lift;
 use crate::fly::safety::Feeding;
-use crate::log::Frame;
+use crate::wire::Frame;
 
 /// What the flight hears.
 #[derive(Debug, Clone, PartialEq)]

@@ -15,7 +15,7 @@ use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
 use crate::fly::target::Order;
 use crate::fly::telemetry::Telemetry;
-use crate::log::Payload;
+use crate::wire::Payload;
 use mavlink::dialects::ardupilotmega::MavCmd;
 
 /// The estimate must have been good for this long.
@@ -40,6 +40,8 @@ impl Flight {
         match self.roster.choose(now, self.sortie.system) {
             Choice::Vehicle(vehicle, target, stack) => {
                 let text = format!("system {} component {}, {}", target.system, target.component, stack.name);
+                let (system, component) = (target.system.0, target.component.0);
+                tracing::info!(system, component, autopilot = stack.name, "vehicle found");
                 self.note(now, Level::Information, "vehicle", text);
                 let telemetry = Telemetry::new(vehicle, stack, now);
                 self.contact = Some(Contact { target, telemetry });
@@ -313,11 +315,13 @@ impl Flight {
         let name = answer.order.name();
         let question = matches!(self.phase, Phase::Check(_));
         if answer.result == AnswerResult::Accepted {
+            tracing::debug!(command = name, "command accepted");
             if !question {
                 self.note(now, Level::Information, "command", format!("{name} accepted"));
             }
             return;
         }
+        tracing::warn!(command = name, result = answer.result.text(), "command refused, or not answered");
         let mut reasons = vec![answer.result.text()];
         if !question {
             reasons.extend(self.complaints());

@@ -8,7 +8,7 @@ use crate::autopilot::Mode;
 use crate::fly::news::Novelty;
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::safety::Doubted;
-use crate::log::{Check, Frame};
+use crate::wire::{Check, Frame};
 
 /// For a vehicle to fly our setpoints after its takeoff, and to say so.
 const TAKEN_OVER: Duration = Duration::from_millis(1500);
@@ -76,6 +76,7 @@ impl Flight {
                 let mode = stack.mode_name(to.custom_mode);
                 let armed = if to.armed { "armed" } else { "disarmed" };
                 if from.is_none_or(|from| (from.custom_mode, from.armed) != (to.custom_mode, to.armed)) {
+                    tracing::info!(mode, armed = to.armed, "mode reported");
                     self.note(now, Level::Information, "mode", format!("{mode}, {armed}"));
                 }
             }

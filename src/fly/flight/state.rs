@@ -18,8 +18,8 @@ use crate::fly::setpoint::Place;
 use crate::fly::sortie::Sortie;
 use crate::fly::target::Target;
 use crate::fly::telemetry::Telemetry;
-use crate::log::{self, CrcSeeds};
 use crate::units::deg_from_rad;
+use crate::wire::{self, CrcSeeds};
 
 /// A flight.
 #[derive(Debug)]
@@ -142,7 +142,7 @@ impl Flight {
 
     /// The vehicle as the log knows it, once it is found.
     #[must_use]
-    pub fn vehicle(&self) -> Option<log::Vehicle> {
+    pub fn vehicle(&self) -> Option<wire::Vehicle> {
         self.contact.as_ref().map(|contact| contact.telemetry.vehicle())
     }
 
@@ -176,6 +176,7 @@ impl Flight {
     }
 
     pub(super) fn enter(&mut self, now: Duration, phase: Phase) {
+        tracing::info!(phase = phase.name(), left = self.phase.name(), "phase entered");
         self.note(now, Level::Information, "phase", phase.name());
         self.phase = phase;
         self.entered = now;

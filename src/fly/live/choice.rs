@@ -1,8 +1,9 @@
 //! Which of several messages a quantity is taken from, chosen as they come.
 
 use super::track::{Track, WIDTH};
-use crate::log::{Quantity, StreamId};
+use crate::recording::Quantity;
 use crate::signals::best_rank;
+use crate::wire::StreamId;
 
 /// Sources are watched for so long before one is chosen, s.
 const WATCH_S: f64 = 2.0;

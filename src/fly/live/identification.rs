@@ -6,10 +6,11 @@ use super::track::{At, Sample};
 use crate::estimate::{Estimated, Finding, NAMES, RecursiveEstimator, THETA, Theta, UNITS};
 use crate::estimate::{finding, rescaled, theta_of};
 use crate::fly::parameters::Parameters;
-use crate::log::{Event, Quantity, Recording};
 use crate::physics::MAX_ROTORS;
+use crate::recording::{Quantity, Recording};
 use crate::signals::{motor_channels, propulsion_from_log};
 use crate::vehicle::{Anchor, Mixer, Propulsion, Vehicle};
+use crate::wire::Event;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
 /// Between instants, s.

@@ -4,7 +4,7 @@ use crate::fence::FenceItem;
 use crate::fly::address::is_from;
 use crate::fly::target::Target;
 use crate::frames::Geodetic;
-use crate::log::{Frame, Payload, Vehicle};
+use crate::wire::{Frame, Payload, Vehicle};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use std::time::Duration;
 

@@ -4,7 +4,7 @@ use super::Situation;
 use crate::fly::finding::Finding;
 use crate::fly::lift::apart;
 use crate::fly::parameters::Parameters;
-use crate::log::Recording;
+use crate::recording::Recording;
 use crate::signals::propulsion_from_log;
 use crate::vehicle::{Actuator, Propulsion, ThrustLaw, Vehicle};
 

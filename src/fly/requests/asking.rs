@@ -4,7 +4,7 @@ use super::report::{RatesReport, StreamReport};
 use super::{Answer, Capacity, StreamRequest};
 use crate::fly::address::is_from;
 use crate::fly::target::{MessageId, Order, OutOfRange, Period, Target};
-use crate::log::{Frame, Vehicle};
+use crate::wire::{Frame, Vehicle};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use std::time::Duration;
 

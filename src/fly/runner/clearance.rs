@@ -15,8 +15,8 @@ use crate::fly::requests::{
 };
 use crate::fly::safety::Feeding;
 use crate::frames::{Geodetic, world_from_ned};
-use crate::log::{self, Decoder, Frame, Payload, Record};
 use crate::vehicle::Vehicle;
+use crate::wire::{self, Decoder, Frame, Payload, Record};
 use nalgebra::Vector3;
 
 /// Subjects that the flight itself waits for before it arms: no refusal here.
@@ -63,7 +63,7 @@ enum Stage {
 /// One stage after the other. Parameters first: ArduPilot slows its messages while they are sent.
 #[derive(Debug)]
 pub(super) struct Clearance {
-    vehicle: log::Vehicle,
+    vehicle: wire::Vehicle,
     link: LinkKind,
     /// from the first frame on
     decoder: Option<Decoder>,
@@ -79,7 +79,7 @@ pub(super) struct Clearance {
 }
 
 impl Clearance {
-    pub(super) fn new(vehicle: log::Vehicle, rotors: usize, link: LinkKind) -> Self {
+    pub(super) fn new(vehicle: wire::Vehicle, rotors: usize, link: LinkKind) -> Self {
         let download = Download::new(vehicle, wanted(vehicle.autopilot, rotors), DownloadSettings::default());
         let (stage, fence) = (Stage::Parameters(Box::new(download)), FenceDownload::new(vehicle));
         Self {

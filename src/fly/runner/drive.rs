@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::clearance::Cleared;
 use super::estimating::Estimating;
+use super::event_layer::emit;
 use super::files::{EVENTS, PARAMETERS};
 use super::journal::Journal;
 use super::stream::SharedGuide;
@@ -21,10 +22,10 @@ use crate::fly::requests::LinkKind;
 use crate::fly::safety::Lead;
 use crate::fly::view::{Attitude, Battery, KeyCommand, LinkView, Phase, ViewModel};
 use crate::link::{LinkEvent, LinkWriter, ReceivedFrame};
-use crate::log::{Frame, Record};
 use crate::text;
 use crate::units::deg_from_rad;
 use crate::vehicle::Vehicle;
+use crate::wire::{Frame, Record};
 
 /// A terminal that takes no picture for so long is told.
 const BLIND: Duration = Duration::from_secs(2);
@@ -60,6 +61,8 @@ pub(super) struct Drive {
     unseen_since: Option<Duration>,
     /// and it was told
     told_blind: bool,
+    /// setpoints go out
+    streams: bool,
     outcome: Option<Outcome>,
 }
 
@@ -91,6 +94,7 @@ impl Drive {
             to_keep: None,
             unseen_since: None,
             told_blind: false,
+            streams: false,
             outcome: None,
         }
     }
@@ -131,6 +135,7 @@ impl Drive {
     /// Does what the supervisor wants done.
     fn act(&mut self, now: Duration) {
         self.guide.set(self.supervisor.flight().guide());
+        self.tell_stream();
         while let Some(action) = self.supervisor.next_action() {
             match action {
                 Action::Send(message) => {
@@ -142,6 +147,21 @@ impl Drive {
         }
         if let Some(cleared) = self.supervisor.take_cleared() {
             self.cleared(now, cleared);
+        }
+    }
+
+    /// Emits an event when setpoints start or stop. The threads that send setpoints emit none: a subscriber may block.
+    fn tell_stream(&mut self) {
+        let guide = self.supervisor.flight().guide();
+        let streams = guide.lead != Lead::Silent && !guide.held_back;
+        if std::mem::replace(&mut self.streams, streams) == streams {
+            return;
+        }
+        if streams {
+            let period = self.supervisor.flight().sortie().settings.setpoint_period;
+            tracing::info!(period_s = period.as_secs_f64(), "setpoints started");
+        } else {
+            tracing::info!(held_back = guide.held_back, "setpoints stopped");
         }
     }
 
@@ -196,7 +216,7 @@ impl Drive {
             self.notes.push(Note::new(now, Level::Warning, "file", format!("{EVENTS}: {trouble}")));
         }
         for note in std::mem::take(&mut self.notes) {
-            journal.write(&note);
+            emit(&note);
             let level = match note.level {
                 Level::Information => finding::Level::Ok,
                 Level::Warning => finding::Level::Warning,

@@ -21,6 +21,12 @@ pub enum RunError {
         /// what the system said
         source: io::Error,
     },
+    /// nobody would write down what happens on the flight
+    #[error(
+        "no flight without its log of events: expected a tracing subscriber with the layer mavid::fly::event_layer(), \
+         found one without it, or none"
+    )]
+    Unheard,
     /// the program itself failed; nothing is sent any more
     #[error(
         "the flight broke off by a fault of this program; no setpoint is sent any more, and the vehicle's own failsafe acts: {0}"

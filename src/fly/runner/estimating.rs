@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::fly::live::{LiveEstimate, LiveIdentification};
 use crate::link::ReceivedFrame;
-use crate::log::{Check, CrcSeeds, Decoder, Frame, Record};
+use crate::wire::{Check, CrcSeeds, Decoder, Frame, Record};
 
 /// Between two estimates.
 const ESTIMATE: Duration = Duration::from_secs(1);

@@ -6,15 +6,16 @@
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{self, Receiver, SyncSender};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::mpsc::{self, Receiver};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Duration;
 
 use tokio::sync::oneshot;
 use tokio::time::timeout;
 
-use crate::fly::outcome::Note;
+use super::event_layer::Subscription;
+use super::feed::{Entry, Feed, State, locked};
 use crate::text;
 
 /// Notes that may wait for the disk: more than a flight usually has.
@@ -25,44 +26,23 @@ const PATIENCE: Duration = Duration::from_secs(3);
 /// The log while it is written.
 #[derive(Debug)]
 pub(super) struct Journal {
-    to: SyncSender<Entry>,
+    feed: Feed,
+    /// by it the notes of the flight come
+    subscription: Option<Subscription>,
     state: Arc<Mutex<State>>,
     over: oneshot::Receiver<()>,
 }
 
-#[derive(Debug)]
-enum Entry {
-    Note(Note),
-    /// a file of its own
-    File(PathBuf, String),
-}
-
-/// What went wrong so far.
-#[derive(Debug, Default)]
-struct State {
-    /// notes that are not in the log
-    missing: u64,
-    /// what the system last said
-    failure: Option<String>,
-    /// of this much trouble somebody was told
-    told: bool,
-}
-
-impl State {
-    fn trouble(&self) -> Option<String> {
-        let why = self.failure.as_deref().unwrap_or("the disk is too slow");
-        match self.missing {
-            0 => self.failure.as_ref().map(|failure| format!("cannot write: {failure}")),
-            missing => Some(format!("{missing} lines of events are missing: {why}")),
-        }
-    }
-}
-
 impl Journal {
-    /// Goes on at the end of a file, or begins a new one.
-    pub(super) fn create(path: &Path) -> io::Result<Self> {
+    /// Of the notes of a flight: goes on at the end of a file, or begins a new one.
+    pub(super) fn create(path: &Path, subscription: Subscription) -> io::Result<Self> {
         let file: File = OpenOptions::new().create(true).append(true).open(path)?;
-        Self::to_store(file)
+        Ok(Self::to_store(file)?.of(subscription))
+    }
+
+    fn of(self, subscription: Subscription) -> Self {
+        subscription.begin(self.feed.clone());
+        Self { subscription: Some(subscription), ..self }
     }
 
     fn to_store(store: impl Write + Send + 'static) -> io::Result<Self> {
@@ -75,24 +55,12 @@ impl Journal {
             // whoever asked may have given up
             let _ = done.send(());
         })?;
-        Ok(Self { to, state, over })
-    }
-
-    /// Takes a note; never waits.
-    pub(super) fn write(&self, note: &Note) {
-        if self.to.try_send(Entry::Note(note.clone())).is_err() {
-            locked(&self.state).missing += 1;
-        }
+        Ok(Self { feed: Feed::new(to, state.clone()), subscription: None, state, over })
     }
 
     /// Writes a file; does not wait for it.
     pub(super) fn keep(&self, path: PathBuf, text: String) {
-        if let Err(error) = self.to.try_send(Entry::File(path, text)) {
-            let (mpsc::TrySendError::Full(entry) | mpsc::TrySendError::Disconnected(entry)) = error;
-            if let Entry::File(path, _) = entry {
-                locked(&self.state).failure = Some(format!("{}: the disk is too slow", text::path(&path)));
-            }
-        }
+        self.feed.keep(path, text);
     }
 
     /// What goes wrong, told once: by a channel that works.
@@ -105,7 +73,8 @@ impl Journal {
 
     /// Waits until all of it is written, or the disk takes nothing more; what is missing.
     pub(super) async fn finish(self) -> Option<String> {
-        drop(self.to);
+        // the thread ends with the last way to it
+        drop((self.subscription, self.feed));
         let ended = timeout(PATIENCE, self.over).await;
         let trouble = locked(&self.state).trouble();
         match ended {
@@ -120,11 +89,6 @@ impl Journal {
             }
         }
     }
-}
-
-/// A state is whole at every moment.
-fn locked(state: &Mutex<State>) -> MutexGuard<'_, State> {
-    state.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn work(mut store: impl Write, from: &Receiver<Entry>, state: &Mutex<State>) {
@@ -158,8 +122,13 @@ fn work(mut store: impl Write, from: &Receiver<Entry>, state: &Mutex<State>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fly::outcome::Level;
+    use crate::fly::outcome::{Level, Note};
+    use crate::fly::runner::event_layer::{EVENTS_TARGET, emit, event_layer, flight_span};
     use std::sync::atomic::{AtomicUsize, Ordering};
+    use tracing::Subscriber;
+    use tracing::subscriber::with_default;
+    use tracing_subscriber::filter::LevelFilter;
+    use tracing_subscriber::layer::{Layer, SubscriberExt};
 
     fn note(text: &str) -> Note {
         Note::new(Duration::ZERO, Level::Information, "test", text)
@@ -191,13 +160,90 @@ mod tests {
         }
     }
 
+    /// As the program's, with log lines that nobody asked for.
+    fn subscriber() -> impl Subscriber + Send + Sync {
+        let lines = tracing_subscriber::fmt::layer().with_writer(io::sink).with_filter(LevelFilter::OFF);
+        tracing_subscriber::registry().with(event_layer()).with(lines)
+    }
+
+    /// Hands on each piece that is written.
+    struct Pieces(mpsc::Sender<String>);
+
+    impl Write for Pieces {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.send(String::from_utf8(bytes.to_vec()).unwrap()).unwrap();
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    fn journal_of(span: &tracing::Span) -> (Journal, Receiver<String>) {
+        let (to, written) = mpsc::channel();
+        let journal = Journal::to_store(Pieces(to)).unwrap().of(Subscription::to(span).unwrap());
+        (journal, written)
+    }
+
+    #[test]
+    fn a_note_that_is_said_is_written_at_once_and_as_it_is() {
+        with_default(subscriber(), || {
+            let span = flight_span(&"udpin:127.0.0.1:14550", "X500");
+            let (_journal, written) = journal_of(&span);
+            let foreign = "x\u{1b}[31m\n\u{202e} \"quoted\" {0} \u{20ac}";
+            for (microseconds, level, text) in [
+                (0, Level::Information, "over"),
+                (123_456_789_012_345, Level::Warning, foreign),
+                (1, Level::Error, ""),
+            ] {
+                let note = Note::new(Duration::from_micros(microseconds), level, "test", text);
+                span.in_scope(|| emit(&note));
+                // what waits for nothing further is lost by no kill
+                let line = written.recv_timeout(Duration::from_secs(60)).unwrap();
+                assert_eq!(line, format!("{}\n", text::json_line(&note).unwrap()));
+            }
+            // what is said elsewhere is no event of this flight
+            emit(&note("elsewhere"));
+            span.in_scope(|| tracing::error!(time_s = 1.0, kind = "test", "of another target"));
+            span.in_scope(|| emit(&note("last")));
+            assert!(written.recv_timeout(Duration::from_secs(60)).unwrap().contains("last"));
+        });
+    }
+
+    #[test]
+    fn each_flight_has_its_own_log_until_it_ends() {
+        with_default(subscriber(), || {
+            let (one, two) = (flight_span(&"pty:one", "X500"), flight_span(&"pty:two", "X500"));
+            let ((first, lines_one), (second, lines_two)) = (journal_of(&one), journal_of(&two));
+            let within = one.in_scope(|| tracing::info_span!(target: EVENTS_TARGET, "part"));
+            within.in_scope(|| emit(&note("of the first")));
+            two.in_scope(|| emit(&note("of the second")));
+            drop(first);
+            one.in_scope(|| emit(&note("too late")));
+            let said = |lines: Receiver<String>| lines.iter().collect::<Vec<_>>();
+            drop(second);
+            let (one, two) = (said(lines_one), said(lines_two));
+            assert!(one.len() == 1 && one[0].contains("of the first"), "{one:?}");
+            assert!(two.len() == 1 && two[0].contains("of the second"), "{two:?}");
+        });
+    }
+
+    #[test]
+    fn without_its_layer_no_log_begins() {
+        assert!(Subscription::to(&flight_span(&"pty:one", "X500")).is_none());
+        with_default(tracing_subscriber::registry(), || {
+            assert!(Subscription::to(&flight_span(&"pty:one", "X500")).is_none());
+        });
+    }
+
     #[tokio::test]
     async fn a_full_disk_costs_lines_and_is_told_once_and_at_the_end() {
         let (held, room) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicUsize::new(100)));
         let disk = Disk { held: held.clone(), room: room.clone(), gate: None };
         let journal = Journal::to_store(disk).unwrap();
         for number in 0..5 {
-            journal.write(&note(&format!("before {number}")));
+            journal.feed.write(note(&format!("before {number}")));
         }
         let told = loop {
             match journal.news() {
@@ -212,7 +258,7 @@ mod tests {
             tokio::task::yield_now().await;
         }
         room.store(10_000, Ordering::SeqCst);
-        journal.write(&note("after"));
+        journal.feed.write(note("after"));
         let end = journal.finish().await.unwrap();
         assert!(end.starts_with("4 lines of events are missing"), "{end}");
         let text = String::from_utf8(held.lock().unwrap().clone()).unwrap();
@@ -226,9 +272,14 @@ mod tests {
         let (ticket, gate) = mpsc::channel();
         let room = Arc::new(AtomicUsize::new(usize::MAX));
         let held = Arc::new(Mutex::new(Vec::new()));
-        let journal = Journal::to_store(Disk { held: held.clone(), room, gate: Some(gate) }).unwrap();
+        let _default = tracing::subscriber::set_default(subscriber());
+        let span = flight_span(&"udpin:127.0.0.1:14550", "X500");
+        let journal = Journal::to_store(Disk { held: held.clone(), room, gate: Some(gate) })
+            .unwrap()
+            .of(Subscription::to(&span).unwrap());
+        // who says it waits for nothing: neither for the disk nor for room in the queue
         for number in 0..2000 {
-            journal.write(&note(&format!("{number}")));
+            span.in_scope(|| emit(&note(&format!("{number}"))));
         }
         let told = journal.news().unwrap();
         assert!(told.contains("missing: the disk is too slow"), "{told}");

@@ -13,6 +13,8 @@ mod clearance;
 mod drive;
 mod error;
 mod estimating;
+mod event_layer;
+mod feed;
 mod files;
 mod journal;
 mod link_kind;
@@ -24,6 +26,7 @@ mod supervisor;
 mod termination;
 
 pub use error::RunError;
+pub use event_layer::{EVENTS_TARGET, event_layer};
 pub use files::{EVENTS, PARAMETERS, TLOG};
 pub use parking::{Parking, Part};
 pub use priority::raise_priority;

@@ -6,10 +6,13 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 use tokio::time::MissedTickBehavior;
+use tracing::Instrument;
+use tracing::instrument::WithSubscriber;
 
 use super::drive::{self, Drive};
 use super::error::RunError;
 use super::estimating::Estimating;
+use super::event_layer::{Subscription, flight_span};
 use super::files::{EVENTS, TLOG};
 use super::journal::Journal;
 use super::link_kind::kind_of;
@@ -23,8 +26,8 @@ use crate::fly::view::{KeyCommand, ViewModel};
 use crate::link::{
     Address, Link, LinkOptions, LinkReader, LinkStats, Received, Recorder, RecorderStatus, Signing,
 };
-use crate::log::SystemId;
 use crate::vehicle::Vehicle;
+use crate::wire::SystemId;
 
 /// Between two looks at the clock.
 const TICK: Duration = Duration::from_millis(10);
@@ -77,17 +80,25 @@ pub struct Record {
     pub events_failure: Option<String>,
 }
 
-/// Flies. Returns when the vehicle is on the ground or was left to others.
+/// Flies. Returns when the vehicle is on the ground or was left to others. What happens is said as tracing events within
+/// a span `flight`; the log of events is written by [`event_layer`](super::event_layer()).
 ///
 /// # Errors
-/// If the link, the recording or a thread cannot be made, or the program itself fails.
+/// If the current subscriber is without that layer, if the link, the recording or a thread cannot be made, or the program
+/// itself fails.
 pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
+    let span = flight_span(&ride.address, &ride.vehicle.name);
+    let subscription = Subscription::to(&span).ok_or(RunError::Unheard)?;
+    fly(ride, console, subscription).instrument(span).await
+}
+
+async fn fly(ride: Ride, console: Console, subscription: Subscription) -> Result<Record, RunError> {
     let recorder = Recorder::create(&ride.dir.join(TLOG), false)?;
     let make = |what: &str| {
         let what = what.to_owned();
         move |source| RunError::Make { what, source }
     };
-    let journal = Journal::create(&ride.dir.join(EVENTS)).map_err(make(EVENTS))?;
+    let journal = Journal::create(&ride.dir.join(EVENTS), subscription).map_err(make(EVENTS))?;
     let (system, component) = ride.sortie.settings.station;
     let options = LinkOptions {
         system,
@@ -116,7 +127,8 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
     }
     // a task of its own: were it to panic, the guide is not renewed and no setpoint goes out. No mode is ordered by
     // whoever does not know it: the vehicle's own failsafe acts
-    let task = tokio::spawn(conduct(drive, (reader, ride.parking), console, journal, stalls));
+    let conducted = conduct(drive, (reader, ride.parking), console, journal, stalls);
+    let task = tokio::spawn(conducted.in_current_span().with_current_subscriber());
     let (outcome, events_failure) = match task.await {
         Ok(done) => done?,
         Err(broken) => return Err(RunError::Broken(broken.to_string())),
@@ -127,6 +139,8 @@ pub async fn run(ride: Ride, console: Console) -> Result<Record, RunError> {
     let link = writer.stats();
     let recorder = recorder.end().await?;
     let stream = stream.on_link(&link);
+    let StreamFigures { sent, late, overtaken, refused } = stream;
+    tracing::info!(sent, late, overtaken, refused, "setpoints sent");
     let system = guide.get().target.map(|(target, _)| target.system);
     Ok(Record { outcome, stream, system, recorder, link, events_failure })
 }

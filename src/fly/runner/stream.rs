@@ -234,3 +234,82 @@ pub fn send_due(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::autopilot::PX4;
+    use crate::fly::setpoint::Place;
+    use crate::fly::target::Target;
+    use crate::link::{Link, LinkOptions};
+    use crate::wire::{ComponentId, SystemId};
+    use nalgebra::Vector3;
+    use std::sync::mpsc::{Receiver, Sender, channel};
+    use std::thread::ThreadId;
+    use tracing::dispatcher::with_default;
+    use tracing::{Dispatch, Event, Subscriber, span};
+    use tracing_subscriber::Layer;
+    use tracing_subscriber::layer::{Context, SubscriberExt};
+
+    /// A subscriber that stands still: whoever says something waits until the gate opens. The sender of setpoints does
+    /// not, so that the test sees that it said something.
+    struct Stands {
+        sender: ThreadId,
+        waits: Sender<ThreadId>,
+        gate: Mutex<Receiver<()>>,
+    }
+
+    impl Stands {
+        fn stand(&self) {
+            let who = thread::current().id();
+            self.waits.send(who).unwrap();
+            if who != self.sender {
+                let _ = self.gate.lock().unwrap().recv();
+            }
+        }
+    }
+
+    impl<S: Subscriber> Layer<S> for Stands {
+        fn on_event(&self, _: &Event<'_>, _: Context<'_, S>) {
+            self.stand();
+        }
+
+        fn on_new_span(&self, _: &span::Attributes<'_>, _: &span::Id, _: Context<'_, S>) {
+            self.stand();
+        }
+
+        fn on_enter(&self, _: &span::Id, _: Context<'_, S>) {
+            self.stand();
+        }
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn setpoints_go_out_in_time_while_the_subscriber_stands_still() {
+        let (_vehicle, (_reader, writer)) = Link::pair(LinkOptions::default(), LinkOptions::default());
+        let (waits, waited) = channel();
+        let (open, gate) = channel();
+        let sender = thread::current().id();
+        let stands = Stands { sender, waits, gate: Mutex::new(gate) };
+        let subscriber = Dispatch::new(tracing_subscriber::registry().with(stands));
+        let other = {
+            let subscriber = subscriber.clone();
+            thread::spawn(move || {
+                with_default(&subscriber, || tracing::trace!("something happened"));
+            })
+        };
+        assert_eq!(waited.recv().unwrap(), other.thread().id());
+        let period = Duration::from_millis(20);
+        let mut streamer = Streamer::new(period);
+        let place = Place { position_m: Vector3::new(1.0, 0.0, 2.0), yaw_rad: 0.0 };
+        let target = Target::new(SystemId(1), ComponentId(1)).map(|target| (target, &PX4));
+        with_default(&subscriber, || {
+            for now in (0..1000).map(|number| period * number) {
+                let guide = Guide { lead: Lead::Hold(place), target, ..Guide::silent(now) };
+                assert_eq!(send_due(&mut streamer, (now, now), guide, &writer), Due::Sent, "at {now:?}");
+            }
+        });
+        drop(open);
+        other.join().unwrap();
+        assert_eq!(waited.try_iter().count(), 0, "what sends setpoints says nothing");
+    }
+}

@@ -11,8 +11,8 @@ use crate::fly::lift::Lift;
 use crate::fly::outcome::{Level, Note};
 use crate::fly::requests::LinkKind;
 use crate::link::LinkEvent;
-use crate::log::{Check, Record};
 use crate::vehicle::Vehicle;
+use crate::wire::{Check, Record};
 
 /// A flight with the checks that clear it. Times are those of the flight's clock.
 #[derive(Debug)]
@@ -156,6 +156,9 @@ impl Supervisor {
                 finding::Level::Ok | finding::Level::Awaited => Level::Information,
                 _ => Level::Warning,
             };
+            let finding::Finding { subject, expected, came, remedy, .. } = finding;
+            let found = finding.level.name();
+            tracing::debug!(subject, level = found, expected, came, remedy, "checked before the flight");
             self.note(now, level, "check", finding.to_string());
         }
         let lift = Lift::new(&self.vehicle, &cleared.parameters);

@@ -9,7 +9,7 @@ use crate::autopilot::{LastSetpoint, Stack};
 use crate::fly::outcome::Cause;
 use crate::fly::setpoint::Setpoint;
 use crate::fly::target::Target;
-use crate::log::{ComponentId, Frame, SystemId};
+use crate::wire::{ComponentId, Frame, SystemId};
 
 /// A reported target this far from all of ours is not ours. PX4 reports ours to the last bit, ArduPilot what it has
 /// made of it since, some centimetres on.

@@ -150,7 +150,7 @@ impl Streamer {
 mod tests {
     use super::*;
     use crate::autopilot::PX4;
-    use crate::log::{ComponentId, SystemId};
+    use crate::wire::{ComponentId, SystemId};
     use nalgebra::Vector3;
     use proptest::prelude::*;
 

@@ -102,7 +102,7 @@ pub fn heartbeat() -> MavMessage {
 mod tests {
     use super::*;
     use crate::autopilot::{Mode, PX4};
-    use crate::log::{ComponentId, SystemId};
+    use crate::wire::{ComponentId, SystemId};
 
     #[test]
     fn a_command_names_its_vehicle() {

@@ -1,6 +1,6 @@
 //! The vehicle that messages are for.
 
-use crate::log::{ComponentId, SystemId, Vehicle};
+use crate::wire::{ComponentId, SystemId, Vehicle};
 
 /// The one vehicle that is commanded. Zero, MAVLink's "everybody", cannot be one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

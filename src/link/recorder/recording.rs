@@ -16,7 +16,7 @@ use super::status::RecorderStatus;
 use super::store::Store;
 use super::worker::{Order, work};
 use crate::link::clock::HostStamp;
-use crate::log::{Frame, STAMP_BYTES};
+use crate::wire::{Frame, STAMP_BYTES};
 
 /// Bytes that may wait for a slow disk: 20 minutes of a lively link.
 const WAITING_BYTES: usize = 64 << 20;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::log::{ComponentId, Frame, SystemId};
+use crate::wire::{ComponentId, Frame, SystemId};
 
 const HEARTBEAT: u32 = 0;
 /// HEARTBEAT.autopilot of what is no vehicle.

@@ -10,7 +10,7 @@ use super::backlog::Backlog;
 use super::state::State;
 use super::store::Store;
 use super::watch::ModeWatch;
-use crate::log::{Frame, TlogWriter};
+use crate::wire::{Frame, TlogWriter};
 
 /// A kill costs no more than what came within this.
 const FLUSH: Duration = Duration::from_secs(1);

@@ -22,8 +22,9 @@ use crate::link::reader::LinkReader;
 use crate::link::received::{Received, ReceivedFrame};
 use crate::link::shared::Shared;
 use crate::link::writer::LinkWriter;
-use crate::log::{ComponentId, CrcSeeds, Frame, LogError, Payload, SystemId, TlogReader};
+use crate::log::{LogError, TlogReader};
 use crate::text;
+use crate::wire::{ComponentId, CrcSeeds, Frame, Payload, SystemId};
 
 const HEARTBEAT: u32 = 0;
 /// HEARTBEAT.type of a ground station and of a companion computer.

@@ -10,7 +10,7 @@ use super::key::SigningKey;
 use super::owner;
 use super::signature::{SIGNATURE_BYTES, TAIL_BYTES, equal_in_constant_time};
 use super::times::{AHEAD, StreamKey, Times, TimesFile};
-use crate::log::{Frame, Version};
+use crate::wire::{Frame, Version};
 
 /// Streams told apart; further ones are refused.
 const STREAMS: usize = 1024;

@@ -5,7 +5,7 @@ use super::clock::{STALE, clock_warning, now};
 use super::times::{AHEAD, Times};
 use super::{Distrust, Signing, SigningError, SigningKey, Told};
 use crate::link::event::LinkEvent;
-use crate::log::Frame;
+use crate::wire::Frame;
 
 const NOW: u64 = 40_000_000_000_000;
 

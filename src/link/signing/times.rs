@@ -11,7 +11,7 @@ use std::thread::JoinHandle;
 use super::clock::SECOND;
 use super::error::SigningError;
 use super::owner;
-use crate::log::{ComponentId, SystemId};
+use crate::wire::{ComponentId, SystemId};
 
 const TITLE: &str = "mavid signing times 1";
 /// Time is kept ahead by this much, so that it need not be written with each frame: 10 s.

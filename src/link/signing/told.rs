@@ -6,7 +6,7 @@ use super::clock::{SECOND, STALE};
 use super::distrust::Distrust;
 use super::signer::Signing;
 use crate::link::event::LinkEvent;
-use crate::log::{ComponentId, Frame, SystemId};
+use crate::wire::{ComponentId, Frame, SystemId};
 
 /// Senders and reasons that are told; further ones are only counted, so that noise does not flood who listens.
 const TOLD: usize = 32;

@@ -2,7 +2,7 @@
 
 use super::{AxisFrame, CsvQuantity};
 use crate::frames::{self, Attitude};
-use crate::log::Quantity;
+use crate::recording::Quantity;
 
 /// Cells (SI, NaN where empty, in the file's axes) to the sample. `None` where an attitude is not one.
 pub(super) fn to_sample(mapped: &CsvQuantity, cells: &[f64]) -> Option<Vec<f64>> {

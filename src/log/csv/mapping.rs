@@ -1,6 +1,6 @@
 //! Which column means what.
 
-use crate::log::Quantity;
+use crate::recording::Quantity;
 use crate::units;
 
 /// What the columns of a file mean.

@@ -10,7 +10,7 @@ use ::csv::{ByteRecord, ReaderBuilder};
 use super::bounded::{BUFFER, Bounded, ROW_BYTES_MAX};
 use super::rows::{Clock, cells_si, number};
 use super::{CsvError, CsvMapping, CsvQuantity, CsvReport, RowRejection, convert};
-use crate::log::{Recording, Stream, StreamKey};
+use crate::recording::{Recording, Stream, StreamKey};
 use crate::text;
 
 /// The source named in the keys of streams that came from a table.

@@ -2,12 +2,12 @@
 
 use std::io::Read;
 
-use super::record::Record;
-use super::stamp::{ByteOrder, STAMP_BYTES, is_wall_clock};
-use crate::log::crc::CrcSeeds;
 use crate::log::error::LogError;
-use crate::log::frame::{Check, Frame, Header, MARKER_V1, MARKER_V2, MAX_FRAME_BYTES, Start};
 use crate::log::report::ReadReport;
+use crate::wire::{
+    ByteOrder, Check, CrcSeeds, Frame, Header, MARKER_V1, MARKER_V2, MAX_FRAME_BYTES, Record, STAMP_BYTES,
+    Start, is_wall_clock,
+};
 
 const RECORD_BYTES: usize = STAMP_BYTES + MAX_FRAME_BYTES;
 /// What must lie ahead for every judgement: a record and the three that confirm it.

@@ -1,15 +1,15 @@
-//! RotorMotion is held back in proportion to the body rates.
+//! Rotation is damped in proportion to the body rates.
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `tau = -diag(bx, by, bz) w`: the inflow at each rotor changes as its hub rises and sinks.
 #[derive(Debug, Clone, Copy)]
 pub struct AngularDamping;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "bx", unit: "N m/(rad/s)", min: 0.0, max: 1.0 },
-    Parameter { name: "by", unit: "N m/(rad/s)", min: 0.0, max: 1.0 },
-    Parameter { name: "bz", unit: "N m/(rad/s)", min: 0.0, max: 1.0 },
+    Parameter { name: "bx", unit: "N m/(rad/s)", bounds: Bounds::of(0.0, 1.0).by_mass().by_arm(2) },
+    Parameter { name: "by", unit: "N m/(rad/s)", bounds: Bounds::of(0.0, 1.0).by_mass().by_arm(2) },
+    Parameter { name: "bz", unit: "N m/(rad/s)", bounds: Bounds::of(0.0, 1.0).by_mass().by_arm(2) },
 ];
 
 impl Effect for AngularDamping {
@@ -18,7 +18,7 @@ impl Effect for AngularDamping {
     }
 
     fn sentence(&self) -> &'static str {
-        "RotorMotion is damped: a torque against the body rates, in proportion to them."
+        "Turning is damped: a torque against the body rates, in proportion to them."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -1,6 +1,6 @@
 //! Thrust falls with the battery's voltage.
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `T_i = T (V / V_full)^exponent`, reaction torque alike, because the rotors turn slower by the root of that;
 /// nothing where the voltage is not known, or the rotors' speed is. With speed in proportion to voltage the
@@ -9,8 +9,8 @@ use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 pub struct BatterySag;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "exponent", unit: "-", min: 0.0, max: 4.0 },
-    Parameter { name: "full_voltage", unit: "V", min: 2.5, max: 60.0 },
+    Parameter { name: "exponent", unit: "-", bounds: Bounds::of(0.0, 4.0) },
+    Parameter { name: "full_voltage", unit: "V", bounds: Bounds::of(2.5, 60.0) },
 ];
 
 /// V / V_full; 1 where the voltage is not known or not positive.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `M_i = (k / N) n_i e_z x (v_air + w x r_i)` at each hub, with `k` of the whole vehicle at hover. Drag that
 /// acts h above the centre of mass has the same form with `k = -h d`, so `k` may have either sign.
@@ -11,7 +11,8 @@ use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 #[derive(Debug, Clone, Copy)]
 pub struct BladeFlapping;
 
-const PARAMETERS: &[Parameter] = &[Parameter { name: "k", unit: "N m/(m/s)", min: -0.2, max: 0.2 }];
+const PARAMETERS: &[Parameter] =
+    &[Parameter { name: "k", unit: "N m/(m/s)", bounds: Bounds::of(-0.2, 0.2).by_mass().by_arm(1) }];
 
 /// The torque for one N m/(m/s), N m.
 fn per_coefficient(at: &Condition, rotors: &Rotors) -> Vector3<f64> {

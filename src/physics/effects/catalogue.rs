@@ -6,7 +6,9 @@ use super::{
     SlungLoad, SteadyWind, Tether, ThrustCurve, ThrustTilt, TranslationalLift, TransportDelay, VortexRing,
     WeakRotor,
 };
-use crate::physics::{ActiveEffect, Effect, PhysicsError};
+use crate::physics::{ActiveEffect, Bounds, Effect, PhysicsError};
+use crate::text::compact;
+use crate::vehicle::VehicleSize;
 
 /// All effects that the program knows.
 pub static ALL: &[&dyn Effect] = &[
@@ -43,12 +45,34 @@ pub fn by_id(id: &str) -> Option<&'static dyn Effect> {
     ALL.iter().copied().find(|effect| effect.id() == id)
 }
 
+/// How much wider than in an estimate the bounds of a file are, where they scale with the vehicle.
+const WIDER: f64 = 2.0;
+
+fn widened(bounds: &Bounds, size: &VehicleSize) -> (f64, f64) {
+    let (least, greatest) = bounds.at(size);
+    let times = if bounds.powers() == (0, 0) { 1.0 } else { WIDER };
+    (times * least, times * greatest)
+}
+
+/// Of which vehicle bounds are that scale with it; nothing where they do not.
+fn of_vehicle(bounds: &Bounds, size: &VehicleSize) -> String {
+    let mass = format!("{} kg", compact(size.mass_kg));
+    match bounds.powers() {
+        (0, 0) => String::new(),
+        (_, 0) => format!(" for a vehicle of {mass}"),
+        _ => format!(" for a vehicle of {mass} with arms of {} m", compact(size.arm_m)),
+    }
+}
+
 impl ActiveEffect {
-    /// By names, as files have them.
+    /// By names, as files have them, on a vehicle of this size.
+    ///
+    /// Bounds that scale with the vehicle are twice as wide here as where an effect is estimated: those are of the
+    /// vehicle as it was stated, and a model file holds the mass that was identified.
     ///
     /// # Errors
     /// If there is no such effect, a parameter is missing, unknown, or outside its bounds.
-    pub fn named(id: &str, values: &[(&str, f64)]) -> Result<Self, PhysicsError> {
+    pub fn named(id: &str, values: &[(&str, f64)], size: &VehicleSize) -> Result<Self, PhysicsError> {
         let effect = by_id(id).ok_or_else(|| {
             let expected = ALL.iter().map(|e| e.id()).collect::<Vec<_>>().join(", ");
             PhysicsError::UnknownEffect { id: id.to_owned(), expected }
@@ -64,11 +88,16 @@ impl ActiveEffect {
         let is_finer = finer.iter().any(|parameter| values.iter().any(|(name, _)| *name == parameter.name));
         let mut parameters = Vec::with_capacity(names.len());
         for parameter in common.iter().chain(if is_finer { finer } else { &[] }) {
-            let range = format!("{} to {} {}", parameter.min, parameter.max, parameter.unit);
+            let (least, greatest) = widened(&parameter.bounds, size);
+            let range = format!(
+                "{} to {} {}{}",
+                compact(least),
+                compact(greatest),
+                parameter.unit,
+                of_vehicle(&parameter.bounds, size)
+            );
             match values.iter().find(|(name, _)| *name == parameter.name) {
-                Some((_, value)) if (parameter.min..=parameter.max).contains(value) => {
-                    parameters.push(*value)
-                }
+                Some((_, value)) if (least..=greatest).contains(value) => parameters.push(*value),
                 Some((_, value)) => return refuse(parameter.name, range, value.to_string()),
                 None => return refuse(parameter.name, range, "nothing".to_owned()),
             }

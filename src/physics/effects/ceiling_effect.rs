@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// Thrust of the rotor at distance z below a ceiling at `height` over the ground times
 /// `1 / (1 - (1/a1) (R / (z + a2))^2)`.
@@ -12,9 +12,9 @@ use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, 
 pub struct CeilingEffect;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "a1", unit: "-", min: 2.0, max: 50.0 },
-    Parameter { name: "a2", unit: "m", min: 0.0, max: 1.0 },
-    Parameter { name: "height", unit: "m", min: 0.5, max: 50.0 },
+    Parameter { name: "a1", unit: "-", bounds: Bounds::of(2.0, 50.0) },
+    Parameter { name: "a2", unit: "m", bounds: Bounds::of(0.0, 1.0).by_arm(1) },
+    Parameter { name: "height", unit: "m", bounds: Bounds::of(0.5, 50.0) },
 ];
 
 /// Closer than this no rotor gets, in radii; it keeps the factor from its pole.

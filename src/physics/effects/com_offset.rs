@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// Every force at a hub turns about the true centre: `tau = sum (r_i - c) x F_i`, for thrust alone
 /// `-c x T e_z = (-c_y T, c_x T, 0)`. The state stays that of the true centre of mass, so nothing else moves.
@@ -11,9 +11,9 @@ use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 pub struct ComOffset;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "x", unit: "m", min: -0.1, max: 0.1 },
-    Parameter { name: "y", unit: "m", min: -0.1, max: 0.1 },
-    Parameter { name: "z", unit: "m", min: -0.1, max: 0.1 },
+    Parameter { name: "x", unit: "m", bounds: Bounds::of(-0.1, 0.1).by_arm(1) },
+    Parameter { name: "y", unit: "m", bounds: Bounds::of(-0.1, 0.1).by_arm(1) },
+    Parameter { name: "z", unit: "m", bounds: Bounds::of(-0.1, 0.1).by_arm(1) },
 ];
 
 impl Effect for ComOffset {

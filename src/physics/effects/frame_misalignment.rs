@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::physics::{Effect, Hook, Measurement, Parameter, State};
+use crate::physics::{Bounds, Effect, Hook, Measurement, Parameter, State};
 
 /// The reference's axes are turned against the world's by the rotation vector `(x, y, z)`, `p_world = R_e p`
 /// and `q_world = q_e q`: position, velocity and attitude are shown in its axes, the inertial unit is not
@@ -12,12 +12,12 @@ use crate::physics::{Effect, Hook, Measurement, Parameter, State};
 pub struct FrameMisalignment;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "x", unit: "rad", min: -0.2, max: 0.2 },
-    Parameter { name: "y", unit: "rad", min: -0.2, max: 0.2 },
-    Parameter { name: "z", unit: "rad", min: -0.2, max: 0.2 },
+    Parameter { name: "x", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
+    Parameter { name: "y", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
+    Parameter { name: "z", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
 ];
 
-const FINER: &[Parameter] = &[Parameter { name: "with_attitude", unit: "-", min: 0.0, max: 1.0 }];
+const FINER: &[Parameter] = &[Parameter { name: "with_attitude", unit: "-", bounds: Bounds::of(0.0, 1.0) }];
 
 impl Effect for FrameMisalignment {
     fn id(&self) -> &'static str {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// Thrust of the rotor at height z over the ground (world z = 0) times
 /// `1 / (1 - rho (R / 4z)^2) + Ca exp(-Cb z / R)`. With Ca = 0 the form of Cheeseman and Bennett 1955 (rho = 1
@@ -17,12 +17,12 @@ use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, 
 pub struct GroundEffect;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "rho", unit: "-", min: 0.0, max: 8.0 },
-    Parameter { name: "ca", unit: "-", min: 0.0, max: 1.0 },
-    Parameter { name: "cb", unit: "-", min: 0.2, max: 8.0 },
+    Parameter { name: "rho", unit: "-", bounds: Bounds::of(0.0, 8.0) },
+    Parameter { name: "ca", unit: "-", bounds: Bounds::of(0.0, 1.0) },
+    Parameter { name: "cb", unit: "-", bounds: Bounds::of(0.2, 8.0) },
 ];
 
-const FINER: &[Parameter] = &[Parameter { name: "levelling", unit: "-", min: 0.0, max: 1.0 }];
+const FINER: &[Parameter] = &[Parameter { name: "levelling", unit: "-", bounds: Bounds::of(0.0, 1.0) }];
 
 /// Lower than this no rotor turns over the ground; it also keeps the first form from its pole.
 const LEAST_RADII: f64 = 0.75;

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Effect, Hook, Input, Own, Parameter};
+use crate::physics::{Bounds, Effect, Hook, Input, Own, Parameter};
 
 /// Wind in each world axis as a sum of sines whose spectrum is that of a first-order Gauss-Markov process,
 /// `2 sigma^2 T / (1 + (w T)^2)`, so that it is smooth, repeatable by its seed and fits every integrator. A real
@@ -13,9 +13,9 @@ use crate::physics::{Effect, Hook, Input, Own, Parameter};
 pub struct Gust;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "sigma", unit: "m/s", min: 0.0, max: 10.0 },
-    Parameter { name: "correlation_time", unit: "s", min: 0.05, max: 30.0 },
-    Parameter { name: "seed", unit: "-", min: 0.0, max: 1e9 },
+    Parameter { name: "sigma", unit: "m/s", bounds: Bounds::of(0.0, 10.0) },
+    Parameter { name: "correlation_time", unit: "s", bounds: Bounds::of(0.05, 30.0) },
+    Parameter { name: "seed", unit: "-", bounds: Bounds::of(0.0, 1e9) },
 ];
 
 /// Lines a decade and axis are enough that no period shows within a flight.

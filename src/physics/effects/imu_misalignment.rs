@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::physics::{Effect, Hook, Measurement, Parameter, State};
+use crate::physics::{Bounds, Effect, Hook, Measurement, Parameter, State};
 
 /// Accelerometer and gyroscopes show body vectors turned by the rotation vector `(x, y, z)`; position and
 /// attitude do not.
@@ -10,9 +10,9 @@ use crate::physics::{Effect, Hook, Measurement, Parameter, State};
 pub struct ImuMisalignment;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "x", unit: "rad", min: -0.2, max: 0.2 },
-    Parameter { name: "y", unit: "rad", min: -0.2, max: 0.2 },
-    Parameter { name: "z", unit: "rad", min: -0.2, max: 0.2 },
+    Parameter { name: "x", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
+    Parameter { name: "y", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
+    Parameter { name: "z", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
 ];
 
 impl Effect for ImuMisalignment {

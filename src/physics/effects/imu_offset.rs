@@ -2,16 +2,16 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Effect, Hook, Measurement, Parameter, State};
+use crate::physics::{Bounds, Effect, Hook, Measurement, Parameter, State};
 
 /// `a = a_com + w' x r + w x (w x r)` for an accelerometer at `r` from the centre of mass.
 #[derive(Debug, Clone, Copy)]
 pub struct ImuOffset;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "x", unit: "m", min: -0.3, max: 0.3 },
-    Parameter { name: "y", unit: "m", min: -0.3, max: 0.3 },
-    Parameter { name: "z", unit: "m", min: -0.3, max: 0.3 },
+    Parameter { name: "x", unit: "m", bounds: Bounds::of(-0.3, 0.3).by_arm(1) },
+    Parameter { name: "y", unit: "m", bounds: Bounds::of(-0.3, 0.3).by_arm(1) },
+    Parameter { name: "z", unit: "m", bounds: Bounds::of(-0.3, 0.3).by_arm(1) },
 ];
 
 impl Effect for ImuOffset {

@@ -1,6 +1,6 @@
 //! Climbing costs thrust.
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = -(kz / N) n_i (v_air + w x r_i)_z e_z` at each hub, with `kz` of the whole vehicle at hover: the blades
 /// meet the air at a smaller angle. The same term as the `dz` of rotor drag, which a report gives here.
@@ -10,9 +10,10 @@ use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 #[derive(Debug, Clone, Copy)]
 pub struct Inflow;
 
-const PARAMETERS: &[Parameter] = &[Parameter { name: "kz", unit: "N/(m/s)", min: 0.0, max: 5.0 }];
+const PARAMETERS: &[Parameter] =
+    &[Parameter { name: "kz", unit: "N/(m/s)", bounds: Bounds::of(0.0, 5.0).by_mass() }];
 
-const FINER: &[Parameter] = &[Parameter { name: "at_hubs", unit: "-", min: 0.0, max: 1.0 }];
+const FINER: &[Parameter] = &[Parameter { name: "at_hubs", unit: "-", bounds: Bounds::of(0.0, 1.0) }];
 
 /// Force and torque for one N/(m/s).
 fn per_coefficient(at: &Condition, rotors: &Rotors, parameters: &[f64]) -> Wrench {

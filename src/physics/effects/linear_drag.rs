@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = -(D / N) n_i (v_air + w x r_i)` at hub `r_i`, with `D = diag(dx, dy, dz)` the drag of the
 /// whole vehicle at hover and `n_i` the rotor's speed over its hover speed; torque `r_i x F_i`.
@@ -13,12 +13,12 @@ use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 pub struct LinearDrag;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "dx", unit: "N/(m/s)", min: 0.0, max: 5.0 },
-    Parameter { name: "dy", unit: "N/(m/s)", min: 0.0, max: 5.0 },
-    Parameter { name: "dz", unit: "N/(m/s)", min: 0.0, max: 5.0 },
+    Parameter { name: "dx", unit: "N/(m/s)", bounds: Bounds::of(0.0, 5.0).by_mass() },
+    Parameter { name: "dy", unit: "N/(m/s)", bounds: Bounds::of(0.0, 5.0).by_mass() },
+    Parameter { name: "dz", unit: "N/(m/s)", bounds: Bounds::of(0.0, 5.0).by_mass() },
 ];
 
-const FINER: &[Parameter] = &[Parameter { name: "at_hubs", unit: "-", min: 0.0, max: 1.0 }];
+const FINER: &[Parameter] = &[Parameter { name: "at_hubs", unit: "-", bounds: Bounds::of(0.0, 1.0) }];
 
 /// Share of the arm at which the drag acts.
 fn at_hubs(parameters: &[f64]) -> f64 {

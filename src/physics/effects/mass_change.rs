@@ -1,6 +1,6 @@
 //! The vehicle becomes lighter or heavier in flight.
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// From `time` on the mass is `m + delta` at the same centre and inertia: all force `F` accelerates it by
 /// `F / (m + delta)`, which on the body of mass `m` is the force `-delta / (m + delta) F` beside it.
@@ -8,8 +8,8 @@ use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 pub struct MassChange;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "time", unit: "s", min: 0.0, max: 1e5 },
-    Parameter { name: "delta", unit: "kg", min: -5.0, max: 5.0 },
+    Parameter { name: "time", unit: "s", bounds: Bounds::of(0.0, 1e5) },
+    Parameter { name: "delta", unit: "kg", bounds: Bounds::of(-5.0, 5.0).by_mass() },
 ];
 
 /// By how much the mass differs now, kg; never so much that less than a tenth is left.

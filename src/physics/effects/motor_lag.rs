@@ -1,6 +1,8 @@
 //! Rotors take time to reach the commanded speed.
 
-use crate::physics::{ActiveEffect, Airframe, Condition, Effect, Hook, Own, Parameter, RotorLag, Rotors};
+use crate::physics::{
+    ActiveEffect, Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, RotorLag, Rotors,
+};
 use crate::vehicle::Propulsion;
 
 /// `Omega' = (Omega_command - Omega) / time_constant`, one state a rotor. In the finer form, with
@@ -13,7 +15,7 @@ pub struct MotorLag;
 const LEAST_TIME_CONSTANT_S: f64 = 1e-4;
 
 const fn time_constant(name: &'static str) -> Parameter {
-    Parameter { name, unit: "s", min: LEAST_TIME_CONSTANT_S, max: 0.5 }
+    Parameter { name, unit: "s", bounds: Bounds::of(LEAST_TIME_CONSTANT_S, 0.5) }
 }
 
 const PARAMETERS: &[Parameter] = &[time_constant("time_constant")];

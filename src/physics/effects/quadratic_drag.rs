@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F = -|v_air| diag(cx, cy, cz) v_air` at the centre of mass; `c = rho CdA / 2` of a face. In the finer form
 /// `by_face` of it goes with each face's own speed, `F_i = -c_i |v_i| v_i`, as flat faces have it.
@@ -12,12 +12,12 @@ use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 pub struct QuadraticDrag;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "cx", unit: "N/(m/s)^2", min: 0.0, max: 2.0 },
-    Parameter { name: "cy", unit: "N/(m/s)^2", min: 0.0, max: 2.0 },
-    Parameter { name: "cz", unit: "N/(m/s)^2", min: 0.0, max: 2.0 },
+    Parameter { name: "cx", unit: "N/(m/s)^2", bounds: Bounds::of(0.0, 2.0).by_mass() },
+    Parameter { name: "cy", unit: "N/(m/s)^2", bounds: Bounds::of(0.0, 2.0).by_mass() },
+    Parameter { name: "cz", unit: "N/(m/s)^2", bounds: Bounds::of(0.0, 2.0).by_mass() },
 ];
 
-const FINER: &[Parameter] = &[Parameter { name: "by_face", unit: "-", min: 0.0, max: 1.0 }];
+const FINER: &[Parameter] = &[Parameter { name: "by_face", unit: "-", bounds: Bounds::of(0.0, 1.0) }];
 
 /// The speed that each axis' force goes with, m/s.
 fn speed_m_s(v: &Vector3<f64>, parameters: &[f64]) -> Vector3<f64> {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `tau = -(H' + w x H)` with `H = -jr sum s_i Omega_i e_z` and `s_i` the sign of the rotor's reaction torque about
 /// +z (a rotor that turns about -z pushes the body about +z): gyroscopic and spin-up torque together.
@@ -11,7 +11,8 @@ use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, 
 #[derive(Debug, Clone, Copy)]
 pub struct RotorInertia;
 
-const PARAMETERS: &[Parameter] = &[Parameter { name: "jr", unit: "kg m^2", min: 0.0, max: 0.01 }];
+const PARAMETERS: &[Parameter] =
+    &[Parameter { name: "jr", unit: "kg m^2", bounds: Bounds::of(0.0, 0.01).by_mass().by_arm(2) }];
 
 /// The torque for one kg m^2.
 fn per_inertia(at: &Condition, rotors: &Rotors) -> Wrench {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// A point mass on a taut massless cord of fixed length from the centre of mass. Own states: the unit
 /// vector `q` from vehicle to load and its rate, world. With `F` all force on the vehicle (world, gravity
@@ -15,11 +15,11 @@ use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, 
 pub struct SlungLoad;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "mass", unit: "kg", min: 0.0, max: 5.0 },
-    Parameter { name: "length", unit: "m", min: 0.05, max: 20.0 },
+    Parameter { name: "mass", unit: "kg", bounds: Bounds::of(0.0, 5.0).by_mass() },
+    Parameter { name: "length", unit: "m", bounds: Bounds::of(0.05, 20.0) },
 ];
 
-const FINER: &[Parameter] = &[Parameter { name: "damping", unit: "1/s", min: 0.0, max: 10.0 }];
+const FINER: &[Parameter] = &[Parameter { name: "damping", unit: "1/s", bounds: Bounds::of(0.0, 10.0) }];
 
 /// Direction and its rate.
 const STATES: usize = 6;

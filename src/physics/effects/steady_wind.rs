@@ -2,16 +2,16 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Effect, Hook, Input, Own, Parameter};
+use crate::physics::{Bounds, Effect, Hook, Input, Own, Parameter};
 
 /// Wind in the world frame; it acts through whatever depends on airspeed and does nothing without it.
 #[derive(Debug, Clone, Copy)]
 pub struct SteadyWind;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "north", unit: "m/s", min: -20.0, max: 20.0 },
-    Parameter { name: "west", unit: "m/s", min: -20.0, max: 20.0 },
-    Parameter { name: "up", unit: "m/s", min: -20.0, max: 20.0 },
+    Parameter { name: "north", unit: "m/s", bounds: Bounds::of(-20.0, 20.0) },
+    Parameter { name: "west", unit: "m/s", bounds: Bounds::of(-20.0, 20.0) },
+    Parameter { name: "up", unit: "m/s", bounds: Bounds::of(-20.0, 20.0) },
 ];
 
 impl Effect for SteadyWind {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// The line that was lifted weighs `line_mass` per metre of height, and beyond `length` from the anchor at the
 /// world's origin it pulls back like a spring: `F = -line_mass z (g + carried a_z) e_z - stiffness (|p| - length)+ p / |p|`,
@@ -13,12 +13,12 @@ use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 pub struct Tether;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "line_mass", unit: "kg/m", min: 0.0, max: 0.5 },
-    Parameter { name: "stiffness", unit: "N/m", min: 0.0, max: 1000.0 },
-    Parameter { name: "length", unit: "m", min: 0.5, max: 500.0 },
+    Parameter { name: "line_mass", unit: "kg/m", bounds: Bounds::of(0.0, 0.5).by_mass() },
+    Parameter { name: "stiffness", unit: "N/m", bounds: Bounds::of(0.0, 1000.0).by_mass() },
+    Parameter { name: "length", unit: "m", bounds: Bounds::of(0.5, 500.0) },
 ];
 
-const FINER: &[Parameter] = &[Parameter { name: "carried", unit: "-", min: 0.0, max: 1.0 }];
+const FINER: &[Parameter] = &[Parameter { name: "carried", unit: "-", bounds: Bounds::of(0.0, 1.0) }];
 
 fn in_body(at: &Condition, world_n: Vector3<f64>) -> Wrench {
     let force_n = at.state.attitude.inverse_transform_vector(&world_n);

@@ -1,6 +1,6 @@
 //! Thrust does not follow the law that the vehicle file states.
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `T_i = T + 2 T_hover s (s - 1) (c + e (s - 1))` with `s = sqrt(T / T_hover)`, the speed that the law says over that of
 /// hover: nothing at hover, where the scale is known, and a slope there of `1 + c` times that of the law; reaction
@@ -12,8 +12,8 @@ use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 #[derive(Debug, Clone, Copy)]
 pub struct ThrustCurve;
 
-const PARAMETERS: &[Parameter] = &[Parameter { name: "curvature", unit: "-", min: -0.5, max: 0.5 }];
-const FINER: &[Parameter] = &[Parameter { name: "bow", unit: "-", min: -1.0, max: 1.0 }];
+const PARAMETERS: &[Parameter] = &[Parameter { name: "curvature", unit: "-", bounds: Bounds::of(-0.5, 0.5) }];
+const FINER: &[Parameter] = &[Parameter { name: "bow", unit: "-", bounds: Bounds::of(-1.0, 1.0) }];
 
 /// Change of a rotor's thrust for one unit of curvature, N, and of bow.
 fn bend_n(at: &Condition, thrust_n: f64) -> (f64, f64) {

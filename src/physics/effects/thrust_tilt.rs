@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = T_i (b_y, -b_x, 0)` at each hub beside the thrust: the rotor plane turned by the small angles `x`, `y`
 /// about the body's axes.
@@ -10,8 +10,8 @@ use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 pub struct ThrustTilt;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "x", unit: "rad", min: -0.2, max: 0.2 },
-    Parameter { name: "y", unit: "rad", min: -0.2, max: 0.2 },
+    Parameter { name: "x", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
+    Parameter { name: "y", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
 ];
 
 /// Each rotor's thrust along `lean` at its hub.

@@ -1,6 +1,6 @@
 //! Flying sideways gives thrust.
 
-use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
 /// `F_i = (kh / N) ((v_air + w x r_i)_x^2 + (..)_y^2) e_z` at each hub, with `kh` of the whole vehicle.
 ///
@@ -8,7 +8,8 @@ use crate::physics::{Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 #[derive(Debug, Clone, Copy)]
 pub struct TranslationalLift;
 
-const PARAMETERS: &[Parameter] = &[Parameter { name: "kh", unit: "N/(m/s)^2", min: 0.0, max: 1.0 }];
+const PARAMETERS: &[Parameter] =
+    &[Parameter { name: "kh", unit: "N/(m/s)^2", bounds: Bounds::of(0.0, 1.0).by_mass() }];
 
 /// Force and torque for one N/(m/s)^2.
 fn per_coefficient(at: &Condition) -> Wrench {

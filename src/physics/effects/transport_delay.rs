@@ -1,12 +1,12 @@
 //! Commands take time to arrive.
 
-use crate::physics::{Effect, Hook, Parameter};
+use crate::physics::{Bounds, Effect, Hook, Parameter};
 
 /// What acts now was commanded `delay` ago: `u(t - d)`, an exact shift of the commands, no filter.
 #[derive(Debug, Clone, Copy)]
 pub struct TransportDelay;
 
-const PARAMETERS: &[Parameter] = &[Parameter { name: "delay", unit: "s", min: 0.0, max: 0.3 }];
+const PARAMETERS: &[Parameter] = &[Parameter { name: "delay", unit: "s", bounds: Bounds::of(0.0, 0.3) }];
 
 impl Effect for TransportDelay {
     fn id(&self) -> &'static str {

@@ -1,6 +1,6 @@
 //! Descending into its own wake a rotor loses thrust.
 
-use crate::physics::{Airframe, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 use crate::units::AIR_DENSITY_KG_M3;
 
 /// `F_i = -loss T_i e(x) e_z` at each hub, with `x = v_z / v_h` the climb over the induced velocity of hover,
@@ -14,7 +14,7 @@ use crate::units::AIR_DENSITY_KG_M3;
 #[derive(Debug, Clone, Copy)]
 pub struct VortexRing;
 
-const PARAMETERS: &[Parameter] = &[Parameter { name: "loss", unit: "-", min: 0.0, max: 5.0 }];
+const PARAMETERS: &[Parameter] = &[Parameter { name: "loss", unit: "-", bounds: Bounds::of(0.0, 5.0) }];
 
 /// Induced over hover velocity in descent, by powers of x (Leishman's fit of measurements).
 const INDUCED: [f64; 5] = [1.15, -1.125, -1.372, -1.718, -0.655];

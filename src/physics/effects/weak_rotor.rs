@@ -1,6 +1,6 @@
 //! One rotor gives less (or more) than the others.
 
-use crate::physics::{Condition, Effect, Hook, MAX_ROTORS, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, MAX_ROTORS, Own, Parameter, Rotors, Wrench};
 
 /// `T_i = factor T` and its reaction torque for the rotor of this number, counted from 0 in the order of the
 /// vehicle's rotors.
@@ -8,8 +8,8 @@ use crate::physics::{Condition, Effect, Hook, MAX_ROTORS, Own, Parameter, Rotors
 pub struct WeakRotor;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "rotor", unit: "-", min: 0.0, max: 7.0 },
-    Parameter { name: "factor", unit: "-", min: 0.5, max: 1.2 },
+    Parameter { name: "rotor", unit: "-", bounds: Bounds::of(0.0, 7.0) },
+    Parameter { name: "factor", unit: "-", bounds: Bounds::of(0.5, 1.2) },
 ];
 
 /// Which rotor the parameter names; past the last where there is none.

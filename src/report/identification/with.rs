@@ -6,6 +6,7 @@ use crate::diagnose::joint::{EffectFound, Found, JointEstimate, ParameterFound, 
 use crate::estimate::{Finding, Parameter, theta_of};
 use crate::report::model_parts::{correlation, correlations, effect_tables};
 use crate::signals::Quality;
+use crate::text::compact;
 use crate::vehicle::Vehicle;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -282,7 +283,11 @@ fn beyond(parameter: &ParameterFound, wanted: f64, std: f64) -> String {
     let (least, most) = parameter.plausible;
     let away = if wanted < least { least - wanted } else { wanted - most };
     let what = if away > 3.0 * std { "that is not this effect" } else { "the bound is within the error" };
-    format!("the flight asks for {wanted:.3e} +- {std:.1e}, physics allows {least} to {most}: {what}")
+    format!(
+        "the flight asks for {wanted:.3e} +- {std:.1e}, physics allows {} to {}: {what}",
+        compact(least),
+        compact(most)
+    )
 }
 
 fn effect_line(effect: &EffectFound, parameter: &ParameterFound) -> String {

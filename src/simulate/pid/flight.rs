@@ -4,8 +4,8 @@ use nalgebra::{SVector, Vector3, Vector4};
 
 use super::control::{Feedback, Pid, PidSettings};
 use super::log::Log;
-use crate::log::Recording;
 use crate::physics::{Input, Model, RIGID_STATES, RigidBodyModel, State, Wrench, euler_rates};
+use crate::recording::Recording;
 use crate::simulate::SimulateError;
 use crate::simulate::allocation::Allocation;
 use crate::simulate::divergence::LOST_M;

@@ -4,8 +4,8 @@ use nalgebra::Vector4;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
-use crate::log::{Quantity, Recording, Stream, StreamKey};
 use crate::physics::State;
+use crate::recording::{Quantity, Recording, Stream, StreamKey};
 use crate::simulate::sensors::NoiseLevels;
 
 /// Source of the recording's streams.

@@ -1,7 +1,7 @@
 use super::flight::feedback;
 use super::*;
-use crate::log::{Quantity, StreamKey};
 use crate::physics::{RigidBodyModel, State, Wrench};
+use crate::recording::{Quantity, StreamKey};
 use crate::simulate::{NoiseLevels, SimulateError};
 use crate::trajectory::{FourierAxis, FourierTrajectory};
 use crate::vehicle::RigidBody;

@@ -6,11 +6,11 @@ use super::parameter::Parameter;
 use super::pulses::Pulses;
 use super::{ardupilot, px4};
 use crate::autopilot::{ParameterType, Reaction};
-use crate::log::Payload;
 use crate::sitl::battery::Battery;
 use crate::sitl::message::Message;
 use crate::sitl::{Firmware, Settings, SitlError};
 use crate::units::{narrow, whole};
+use crate::wire::Payload;
 
 /// All parameters, by name.
 #[derive(Debug)]

@@ -3,9 +3,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::log::EMBEDDED_UID2;
 use crate::simulate::{NoiseLevels, StreamSkew};
 use crate::sitl::{Firmware, Origin, Settings};
+use crate::wire::EMBEDDED_UID2;
 
 /// Keeps the telemetry's noise apart from the autopilot's.
 const TELEMETRY_SEED: u64 = 0x7465_6c65_6d65_7472;

@@ -1,6 +1,6 @@
 //! Frames that somebody else makes.
 
-use mavid::log::{CrcSeeds, MARKER_V1, MARKER_V2, checksum};
+use mavid::wire::{CrcSeeds, MARKER_V1, MARKER_V2, checksum};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 

@@ -4,8 +4,8 @@ use std::fmt;
 use std::time::Duration;
 
 use mavid::fly::{Note, Outcome};
-use mavid::log::{Check, CrcSeeds, Frame};
 use mavid::sitl::Beheld;
+use mavid::wire::{Check, CrcSeeds, Frame};
 
 use super::wire::Left;
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use mavid::log::{Check, CrcSeeds, Frame, Payload};
+use mavid::wire::{Check, CrcSeeds, Frame, Payload};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MavlinkVersion, Message};
 

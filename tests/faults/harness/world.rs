@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use mavid::autopilot::Mode as Ours;
 use mavid::fly::Key;
-use mavid::log::CrcSeeds;
 use mavid::sitl::{Beheld, Fault, Firmware, LinkId, Mode, Vehicle};
+use mavid::wire::CrcSeeds;
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use tokio::runtime::{Builder, Runtime};

@@ -45,7 +45,11 @@ fn identifiers_are_unique_and_bounds_in_order() {
     for (index, effect) in ALL.iter().enumerate() {
         assert_eq!(by_id(effect.id()).unwrap().sentence(), effect.sentence());
         assert!(ALL.iter().skip(index + 1).all(|other| other.id() != effect.id()));
-        assert!(effect.parameters().iter().all(|p| p.min < p.max && !p.unit.is_empty()));
+        let all = effect.parameters().iter().chain(effect.finer_parameters());
+        for parameter in all {
+            let (least, greatest) = parameter.bounds.at(&vehicle().size());
+            assert!(least < greatest && !parameter.unit.is_empty(), "{} {}", effect.id(), parameter.name);
+        }
     }
     assert!(by_id("no_such_effect").is_none());
 }
@@ -58,7 +62,8 @@ fn wrong_parameter_counts_are_refused() {
 
 #[test]
 fn effects_are_made_by_name_within_their_bounds() {
-    let drag = ActiveEffect::named("linear_drag", &[("dy", 0.2), ("dx", 0.1), ("dz", 0.0)]).unwrap();
+    let size = vehicle().size();
+    let drag = ActiveEffect::named("linear_drag", &[("dy", 0.2), ("dx", 0.1), ("dz", 0.0)], &size).unwrap();
     assert_eq!(drag.parameters(), [0.1, 0.2, 0.0]);
     for (id, values) in [
         ("no_such", vec![]),
@@ -67,7 +72,7 @@ fn effects_are_made_by_name_within_their_bounds() {
         ("inflow", vec![("kz", f64::NAN)]),
         ("inflow", vec![("kz", 0.1), ("k", 0.1)]),
     ] {
-        assert!(ActiveEffect::named(id, &values).is_err(), "{id} {values:?}");
+        assert!(ActiveEffect::named(id, &values, &size).is_err(), "{id} {values:?}");
     }
 }
 

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 use crate::physics::{
-    ActiveEffect, Condition, Effect, Input, Model, Own, Rotors, State, Wrench, effect_wrench,
+    ActiveEffect, Condition, Effect, Input, Model, Own, Parameter, Rotors, State, Wrench, effect_wrench,
 };
 use crate::vehicle::{Actuator, Anchor, Limits, Propulsion, RigidBody, Rotor, Spin, ThrustLaw, Vehicle};
 
@@ -70,7 +70,12 @@ pub(super) fn size(wrench: &Wrench) -> f64 {
 
 /// A place within the bounds of each parameter.
 pub(super) fn within_bounds(effect: &dyn Effect, shares: &[f64]) -> Vec<f64> {
-    effect.parameters().iter().zip(shares).map(|(p, share)| p.min + share * (p.max - p.min)).collect()
+    let size = vehicle().size();
+    let within = |(parameter, share): (&Parameter, &f64)| {
+        let (least, greatest) = parameter.bounds.at(&size);
+        least + share * (greatest - least)
+    };
+    effect.parameters().iter().zip(shares).map(within).collect()
 }
 
 /// Model with these effects, hovering commands, at this state.

@@ -8,7 +8,7 @@ use crate::physics::effects::*;
 use crate::physics::{ActiveEffect, Airframe, Condition, Effect, Input, Rotors, State};
 
 proptest! {
-    /// RotorMotion world, state and wind about the vertical changes nothing that the body feels.
+    /// Turning world, state and wind about the vertical changes nothing that the body feels.
     #[test]
     fn no_heading_is_preferred(
         state in any_state(),

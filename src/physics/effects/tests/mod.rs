@@ -1,5 +1,6 @@
 //! What holds for the effects.
 
+mod bounds;
 mod catalogue;
 mod fixtures;
 mod laws;

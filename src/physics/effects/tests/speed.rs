@@ -38,7 +38,7 @@ fn rotors_speed_up_and_slow_down_with_their_own_time_constants() {
 
 #[test]
 fn a_finer_form_is_given_whole_or_not_at_all() {
-    let lag = |values: &[(&str, f64)]| ActiveEffect::named("motor_lag", values);
+    let lag = |values: &[(&str, f64)]| ActiveEffect::named("motor_lag", values, &vehicle().size());
     assert_eq!(lag(&[("time_constant", 0.02)]).unwrap().parameters(), [0.02]);
     let both = lag(&[("time_constant_down", 0.04), ("time_constant", 0.02)]).unwrap();
     assert_eq!(both.parameters(), [0.02, 0.04]);

@@ -1,0 +1,29 @@
+//! MAVLink: bytes to frames, frames to samples, and back.
+//!
+//! ```text
+//! bytes -> Splitter -> Frame -> Decoder -> events
+//! messages -> MessageWriter -> frames with the host's stamps
+//! ```
+
+mod checksum;
+mod clock;
+mod decode;
+mod embedded;
+mod encode;
+mod frame;
+mod sender;
+mod splitter;
+mod stamped;
+
+pub use self::checksum::{CrcSeeds, checksum};
+pub use clock::{Anchor, Stamp};
+pub use decode::{DecodeReport, Decoder, Event, Source, StreamId, Vehicle};
+pub use embedded::{EMBEDDED_UID2, Nonce};
+pub use encode::write_recording;
+pub use frame::{
+    Check, ComponentId, Frame, Header, MARKER_V1, MARKER_V2, MAX_FRAME_BYTES, Payload, Start, SystemId,
+    Version,
+};
+pub use sender::{MessageCounts, Sender};
+pub use splitter::{SplitCounts, Splitter};
+pub use stamped::{ByteOrder, MessageWriter, Record, STAMP_BYTES, TlogWriter, is_wall_clock};

@@ -1,0 +1,56 @@
+//! `mavid demo` as it is run from a clone: the whole story in real time.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn demo(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_mavid"))
+        .args(["--json", "demo", "--plain"])
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn the_demo_names_what_it_conceals_with_its_size() {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("demo");
+    let _ = std::fs::remove_dir_all(&out);
+    let output = demo(&["--out", &out.display().to_string()]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["flight"]["ending"]["id"], "landed", "{said}");
+    assert_eq!(document["explanation"]["verdict"], "explained");
+    assert_eq!(document["explanation"]["effects"][0]["id"], "weak_rotor");
+    let concealed = document["concealed"].as_array().unwrap();
+    assert_eq!(concealed.len(), 2);
+    for row in concealed {
+        let [was, found] = ["concealed", "found"].map(|key| row[key].as_f64().unwrap());
+        assert!((found - was).abs() < 0.01, "{row}");
+    }
+    let improvement = &document["explanation"]["fit"]["holdout"]["improvement_percent"];
+    assert!(improvement.as_f64().unwrap() > 60.0, "{improvement}");
+    let report = std::fs::read_to_string(document["report"].as_str().unwrap()).unwrap();
+    assert!(report.contains("rear_left"));
+    // what flies, identifies and explains was told nothing
+    let told = ["vehicle.toml", "trajectory.toml", "parameters.toml", "limits.toml"];
+    assert!(told.iter().all(|file| !std::fs::read_to_string(out.join(file)).unwrap().contains("weak")));
+    let again = demo(&["--out", &out.display().to_string()]);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&again.stderr).contains("exists already"));
+}
+
+#[test]
+fn what_cannot_be_concealed_is_refused_before_anything_flies() {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("demo_wrong");
+    let _ = std::fs::remove_dir_all(&out);
+    let effects = Path::new(env!("CARGO_TARGET_TMPDIR")).join("demo_wrong.toml");
+    std::fs::write(&effects, "[[effect]]\nid = \"phlogiston\"\n").unwrap();
+    let output = demo(&["--out", &out.display().to_string(), "--effects", &effects.display().to_string()]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("phlogiston") && said.contains("demo_wrong.toml"), "{said}");
+    assert!(!out.join("flight.tlog").exists());
+}
