@@ -139,7 +139,7 @@ fn flights_of_two_vehicles_are_told_from_two_of_one() {
 fn doubts(recording: &Recording, vehicle: &Vehicle) -> Vec<String> {
     let settings = ConditionSettings { thrust: ThrustPreference::Commands, ..ConditionSettings::default() };
     let notes = condition(recording, vehicle, &settings).unwrap().quality.notes;
-    notes.into_iter().filter(|note| note.starts_with("warning: the bod")).collect()
+    notes.iter().map(ToString::to_string).filter(|note| note.starts_with("warning: the bod")).collect()
 }
 
 #[test]

@@ -13,7 +13,7 @@ use mavid::fly::parameters::Parameters;
 use mavid::fly::{Cause, Ending, Event, Key, Lift, Origin, Outcome, Place, Setpoint, Target};
 use mavid::sitl::{Fault, Firmware, LinkRole, Mode, Settings as VehicleSettings};
 use mavid::wire::{ComponentId, Nonce, SystemId};
-use mavlink::dialects::ardupilotmega::{MavMessage, PositionTargetTypemask};
+use mavlink::dialects::ardupilotmega::{MavMessage, PositionTargetTypemask, TIMESYNC_DATA};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::Vector3;
 
@@ -24,6 +24,11 @@ const BOTH: [Firmware; 2] = [PX4, COPTER];
 const SET_MODE: u32 = 176;
 const ARM: u32 = 400;
 const AUTOPILOT_VERSION: u32 = 148;
+const TIMESYNC: u32 = 111;
+const SYS_STATUS: u32 = 1;
+const BATTERY_STATUS: u32 = 147;
+/// MAV_STATE
+const CRITICAL: u8 = 5;
 
 /// In trajectory: a fault, and how the flight ends.
 fn after(kind: Firmware, fault: Fault) -> (Flying, Duration) {
@@ -671,6 +676,149 @@ fn a_host_that_stalls_in_the_takeoff_says_so() {
         assert!(flying.cause().to_string().contains("stood still"), "{}", flying.cause());
         assert_eq!(outcome.ending, Ending::Landed);
     }
+}
+
+/// ArduCopter declares its low battery as critical whatever BATT_FS_LOW_ACT makes of it, and stays in GUIDED with 0.
+#[test]
+fn a_low_battery_of_which_the_copter_makes_nothing_ends_with_the_period() {
+    let mut settings = vehicle_settings(COPTER);
+    settings.parameters = vec![("BATT_FS_LOW_ACT".to_owned(), 0.0)];
+    let mut flying = Flying::new(settings, |_| {});
+    flying.fly_into_the_trajectory(7.0);
+    flying.vehicle.fault(Fault::Battery(0.12));
+    flying.wait(3.0);
+    assert_eq!((flying.system_status, flying.phase()), (CRITICAL, "trajectory"), "{}", flying.story());
+    let outcome = flying.finish();
+    assert!(outcome.is_whole() && outcome.flown.periods < 3, "{outcome:?} {}", flying.story());
+}
+
+/// The same without a word of the battery, as of a lost remote control with which the copter goes on in GUIDED.
+#[test]
+fn a_failsafe_that_is_declared_and_leaves_our_mode_ends_the_flight_on_the_ground() {
+    let mut flying = Flying::of(COPTER);
+    flying.fly_into_the_trajectory(2.0);
+    flying.swallowed = vec![SYS_STATUS, BATTERY_STATUS];
+    flying.vehicle.fault(Fault::Battery(0.12));
+    let since = flying.now;
+    flying.until(4.0, "an abort", |flying| flying.phase() == "hold");
+    assert_eq!(flying.system_status, CRITICAL);
+    let outcome = flying.finish();
+    assert!(matches!(outcome.cause, Some(Cause::Failsafe(_))), "{outcome:?}");
+    assert_eq!(outcome.ending, Ending::Landed, "{}", flying.story());
+    assert!(flying.commands_since(SET_MODE, since) >= 2, "hold, then land");
+}
+
+#[test]
+fn a_declared_failsafe_that_changes_the_mode_takes_our_hands_off() {
+    let mut settings = vehicle_settings(COPTER);
+    settings.parameters = vec![("BATT_FS_LOW_ACT".to_owned(), 1.0)];
+    let mut flying = Flying::new(settings, |_| {});
+    flying.fly_into_the_trajectory(2.0);
+    flying.vehicle.fault(Fault::Battery(0.12));
+    let since = flying.now;
+    let outcome = flying.finish();
+    assert!(matches!(outcome.cause, Some(Cause::Override(_))), "{outcome:?}");
+    assert_eq!(orders_since(&flying, since), [], "{}", flying.story());
+}
+
+#[test]
+fn a_vehicle_that_answers_no_question_is_not_flown() {
+    for kind in BOTH {
+        let mut flying = Flying::of(kind);
+        flying.swallowed = vec![TIMESYNC];
+        let outcome = flying.finish();
+        assert_eq!(outcome.ending, Ending::NotFlown);
+        assert!(flying.cause().to_string().contains("TIMESYNC"), "{}", flying.cause());
+        assert_eq!(orders_since(&flying, Duration::ZERO), []);
+    }
+}
+
+/// What the vehicle answered another station: by the time of day, or in nanoseconds since a start.
+fn answer_to_another(number: i64) -> MavMessage {
+    MavMessage::TIMESYNC(TIMESYNC_DATA { tc1: 1, ts1: number, ..Default::default() })
+}
+
+/// A short standstill in which the pilot takes over. What came before that is read first: another's answer, then a report of
+/// our mode. The vehicle says its mode a second later.
+#[test]
+fn an_answer_to_another_station_does_not_make_an_old_report_count() {
+    for number in [1_760_000_000_000_000_000, 200_000_000_000, i64::MAX] {
+        for kind in BOTH {
+            let mut flying = watched_briefly(kind);
+            flying.fly_into_the_trajectory(3.0);
+            // the answers come ten times a second
+            for _ in 0..30 {
+                flying.step(false);
+                flying.overhear(&answer_to_another(number));
+            }
+            flying.vehicle.fault(Fault::PilotTakesOver(Mode::Return));
+            let since = flying.now;
+            // of what came since then nothing is in the socket yet
+            flying.down.delay = Duration::from_millis(300);
+            flying.finish();
+            assert_eq!(orders_since(&flying, since), [], "{kind:?}: {}", flying.story());
+        }
+    }
+}
+
+/// What a silence held back comes at the pace of the radio: each report is six seconds old, for as long as it takes.
+#[test]
+fn a_pilot_who_takes_over_while_a_radio_drains_keeps_the_vehicle() {
+    for kind in BOTH {
+        let mut flying = watched_briefly(kind);
+        flying.fly_into_the_trajectory(3.0);
+        flying.down.delay = Duration::from_secs(6);
+        flying.wait(4.5);
+        flying.vehicle.fault(Fault::PilotTakesOver(Mode::Position));
+        let since = flying.now + Duration::from_secs(1);
+        let outcome = flying.finish();
+        assert!(matches!(outcome.cause, Some(Cause::LinkLost(_))), "{outcome:?}");
+        assert_eq!(
+            (orders_since(&flying, since), flying.setpoints_since(since)),
+            (vec![], 0),
+            "{}",
+            flying.story()
+        );
+        assert!(flying.story().contains("heard again, in"), "{}", flying.story());
+    }
+}
+
+/// The vehicle is heard and hears nothing: its mode is not known, and what could not be ordered is not given up.
+#[test]
+fn an_abort_without_an_uplink_waits_until_it_can_be_ordered() {
+    for lost_s in [3.0, 30.0] {
+        let mut flying = Flying::of(COPTER);
+        flying.places_ahead();
+        flying.fly_into_the_trajectory(3.0);
+        flying.up.loss = 1.0;
+        stall(&mut flying, 150);
+        let since = flying.now;
+        flying.event(Event::Key(Key::Abort));
+        flying.wait(lost_s);
+        assert_eq!((flying.phase(), orders_since(&flying, since)), ("hold", vec![]), "{}", flying.story());
+        flying.up.loss = 0.0;
+        flying.wait(2.0);
+        assert!(flying.commands_since(SET_MODE, since) > 0, "{}", flying.story());
+        flying.event(Event::Key(Key::To(mavid::autopilot::Mode::Land)));
+        assert_eq!(flying.finish().ending, Ending::Landed, "{}", flying.story());
+    }
+}
+
+#[test]
+fn a_vehicle_that_is_heard_and_answers_nothing_counts_as_lost_and_is_told_to_hold_once_it_does() {
+    let mut flying = Flying::of(COPTER);
+    flying.places_ahead();
+    flying.fly_into_the_trajectory(3.0);
+    flying.up.loss = 1.0;
+    flying.event(Event::Link(true));
+    let since = flying.now;
+    flying.until(5.5, "link lost", |flying| flying.phase() == "link lost");
+    flying.wait(20.0);
+    assert_eq!((flying.phase(), orders_since(&flying, since)), ("link lost", vec![]), "{}", flying.story());
+    flying.up.loss = 0.0;
+    let outcome = flying.finish();
+    assert!(matches!(outcome.cause, Some(Cause::LinkLost(_))), "{outcome:?}");
+    assert_eq!(outcome.ending, Ending::Landed, "{}", flying.story());
 }
 
 #[test]

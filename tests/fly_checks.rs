@@ -51,6 +51,7 @@ async fn checked_by(
     file: mavid::vehicle::Vehicle,
     (own_key, accepted): (Option<SigningKey>, Vec<Check>),
 ) -> Outcome {
+    flying::write_events();
     let mut sortie = flying::sortie(&settings);
     let connect_timeout = Duration::from_secs(10);
     let base = sortie.settings;

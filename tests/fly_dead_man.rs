@@ -10,13 +10,14 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::Duration;
 
-use mavid::fly::view::ViewModel;
-use mavid::fly::{self, Console, Parking, Part, Ride};
-use mavid::link::{Link, LinkOptions};
+use mavid::fly::view::{KeyCommand, ViewModel};
+use mavid::fly::{self, Cause, Console, Ending, Parking, Part, Record, Ride, RunError};
+use mavid::link::{Link, LinkOptions, Recorder};
 use mavid::log::TlogReader;
 use mavid::sitl::{Firmware, LinkRole, Pace, Vehicle, serve};
 use mavid::wire::{ComponentId, SystemId};
-use tokio::sync::mpsc::unbounded_channel;
+use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
+use tokio::task::JoinHandle;
 
 const SETPOINT: u32 = 84;
 const COMMAND_LONG: u32 = 76;
@@ -37,9 +38,20 @@ fn heard(log: &Path) -> Vec<(u64, u32, u16)> {
     heard
 }
 
-/// Parks a part two seconds into the climb; gives the vehicle's recording and when it was parked.
-async fn parked(part: Part, name: &str) -> (PathBuf, u64) {
+/// A flight of an embedded vehicle over a real link, two seconds into its climb.
+struct Climbing {
+    parking: Parking,
+    flight: JoinHandle<Result<Record, RunError>>,
+    vehicle: JoinHandle<()>,
+    recorder: Recorder,
+    log: PathBuf,
+    /// lest its keys end
+    _press: UnboundedSender<KeyCommand>,
+}
+
+async fn climbing(name: &str) -> Climbing {
     let settings = flying::vehicle_settings(Firmware::PX4);
+    flying::write_events();
     let mut sortie = flying::sortie(&settings);
     sortie.may_arm = true;
     let file = settings.vehicle.clone();
@@ -47,7 +59,7 @@ async fn parked(part: Part, name: &str) -> (PathBuf, u64) {
     let _ = std::fs::remove_dir_all(&dir);
     std::fs::create_dir_all(&dir).unwrap();
     let log = dir.join("vehicle.tlog");
-    let recorder = mavid::link::Recorder::create(&log, false).unwrap();
+    let recorder = Recorder::create(&log, false).unwrap();
     let options = LinkOptions {
         system: SystemId(1),
         component: ComponentId(1),
@@ -59,12 +71,14 @@ async fn parked(part: Part, name: &str) -> (PathBuf, u64) {
     let address = ends.0.local_address().unwrap();
     let vehicle = Vehicle::new(settings).unwrap();
     let links = vec![(LinkRole::Onboard, ends)];
-    let vehicle = tokio::spawn(serve(vehicle, links, (Pace::Times(1.0), None), std::future::pending()));
+    let vehicle = tokio::spawn(async move {
+        let _ = serve(vehicle, links, (Pace::Times(1.0), None), std::future::pending()).await;
+    });
     let parking = Parking::default();
     let address = format!("udpout:{address}").parse().unwrap();
     let ride = Ride { sortie, vehicle: file, address, signing: None, dir, parking: parking.clone() };
     let (show, pictures) = mpsc::sync_channel::<ViewModel>(4);
-    let (_press, keys) = unbounded_channel();
+    let (press, keys) = unbounded_channel();
     let (climbs, climbing) = tokio::sync::oneshot::channel();
     std::thread::spawn(move || {
         let mut climbs = Some(climbs);
@@ -79,6 +93,12 @@ async fn parked(part: Part, name: &str) -> (PathBuf, u64) {
     let flight = tokio::spawn(fly::run(ride, Console { show, keys }));
     tokio::time::timeout(Duration::from_secs(60), climbing).await.unwrap().unwrap();
     tokio::time::sleep(Duration::from_secs(2)).await;
+    Climbing { parking, flight, vehicle, recorder, log, _press: press }
+}
+
+/// Parks a part two seconds into the climb; gives the vehicle's recording and when it was parked.
+async fn parked(part: Part, name: &str) -> (PathBuf, u64) {
+    let Climbing { parking, flight, vehicle, recorder, log, _press } = climbing(name).await;
     let at = u64::try_from(std::time::UNIX_EPOCH.elapsed().unwrap().as_micros()).unwrap();
     parking.park(part);
     tokio::time::sleep(Duration::from_secs(4)).await;
@@ -88,6 +108,18 @@ async fn parked(part: Part, name: &str) -> (PathBuf, u64) {
     vehicle.abort();
     recorder.end().await.unwrap();
     (log, at)
+}
+
+/// Nothing but the flight's clock tells of it: every part goes on as if nothing had been.
+#[tokio::test(flavor = "multi_thread", worker_threads = 8)]
+async fn a_computer_that_slept_has_stood_still() {
+    let Climbing { parking, flight, vehicle, _press, .. } = climbing("sleep").await;
+    parking.sleep(Duration::from_secs(600));
+    let record = tokio::time::timeout(Duration::from_secs(120), flight).await.unwrap().unwrap().unwrap();
+    vehicle.abort();
+    let Some(Cause::Stalled(what)) = record.outcome.cause else { panic!("{:?}", record.outcome) };
+    assert!(what.contains("stood still for 600"), "{what}");
+    assert_eq!(record.outcome.ending, Ending::Landed);
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 8)]

@@ -14,10 +14,11 @@ use mavid::physics::effects::{AngularDamping, MotorLag};
 use mavid::physics::{ActiveEffect, Model};
 use mavid::recording::Recording;
 use mavid::regression::{ZeroPhase, output_prediction_rms, paper_models};
-use mavid::report::{ErrorTable, closed_loop_table, prediction_table};
+use mavid::report::error_table_text;
 use mavid::signals::{Butterworth, ConditionSettings, condition};
 use mavid::simulate::NoiseLevels;
 use mavid::simulate::pid::{PidFlightSettings, simulate_pid_model_flight};
+use mavid::study::{ErrorTable, closed_loop_table, prediction_table};
 use mavid::trajectory::{CirclePath, FourierTrajectory};
 use mavid::vehicle::Vehicle;
 use nalgebra::{Matrix3, SVector};
@@ -129,7 +130,7 @@ fn estimated_parameters_beat_the_nominal_ones() {
     flown.extend(found.iter().map(|(method, vehicle)| (method.name().to_owned(), again(vehicle))));
     let table4 =
         closed_loop_table("Identification flight, flown again, 10 to 50 s", &recorded, &flown, (10.0, 50.0));
-    println!("{}", table4.page());
+    println!("{}", error_table_text(&table4));
 
     // Tables 5 to 12
     let mut tables = predictions("Identification flight", &recording, &found).to_vec();
@@ -139,7 +140,7 @@ fn estimated_parameters_beat_the_nominal_ones() {
         tables.extend(predictions(&format!("Circular path {number}"), &recording, &found));
     }
     for table in &tables {
-        println!("{}", table.page());
+        println!("{}", error_table_text(table));
     }
 
     for table in std::iter::once(&table4).chain(&tables) {

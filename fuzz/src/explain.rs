@@ -1,8 +1,11 @@
 //! `explain` on damaged recordings: from the file to the page.
 
 use mavid::diagnose::{ExplainSettings, explain};
-use mavid::report::{ExplanationDocument, Given, Story, explanation_page};
+use mavid::report::{
+    ExplanationDocument, explained_model, explanation_answer, explanation_html, explanation_text,
+};
 use mavid::signals::{ConditionSettings, ThrustPreference, condition};
+use mavid::study::{ExplainStudy, Given};
 
 use super::bytes::Bytes;
 use super::damage::damaged;
@@ -33,11 +36,11 @@ pub fn run(data: &[u8], seeded: bool) {
         quality: flights.iter().map(|signals| signals.quality.clone()).collect(),
         settings,
         transient_s: TRANSIENT_S,
-        warnings: Vec::new(),
     };
-    let story = Story::new(given, explanation);
-    is_readable(&explanation_page(&story));
-    is_readable(&story.answer());
-    let _ = ExplanationDocument::new(&story);
-    let _ = story.model_toml();
+    let study = ExplainStudy::new(given, explanation);
+    is_readable(&explanation_text(&study));
+    is_readable(&explanation_answer(&study));
+    is_readable(&explanation_html(&study));
+    let _ = ExplanationDocument::new(&study);
+    let _ = explained_model(&study);
 }

@@ -1,9 +1,10 @@
 //! `identify` on damaged recordings: from the file to the page, the document and the model.
 
 use mavid::config::parse_vehicle;
-use mavid::estimate::{IdentifySettings, apply_anchor, identify};
-use mavid::report::{IdentificationDocument, identification_page, model_toml};
+use mavid::estimate::IdentifySettings;
+use mavid::report::{IdentificationDocument, identification_html, identification_text, identified_model};
 use mavid::signals::{ConditionSettings, condition};
+use mavid::study::IdentifyStudy;
 
 use super::bytes::Bytes;
 use super::damage::damaged;
@@ -28,16 +29,13 @@ pub fn run(data: &[u8], seeded: bool) {
         !(seeded && reset && loaded.report.bad_crc > 0),
         "the seeded bug: two kinds of damage in one flight"
     );
-    let flights = [signals];
-    let Ok(mut identification) = identify(&flights, &flight.vehicle, &IdentifySettings::default()) else {
-        return;
-    };
-    let scale = apply_anchor(&mut identification, &flight.vehicle);
-    let quality = [&flights[0].quality];
-    is_readable(&identification_page(&identification, &flight.vehicle, &quality, scale.as_ref()));
-    let _ = IdentificationDocument::new(&identification, &flight.vehicle, &quality, &[], scale.as_ref());
+    let (vehicle, settings) = (flight.vehicle.clone(), IdentifySettings::default());
+    let Ok(study) = IdentifyStudy::of_signals(vec![signals], Vec::new(), vehicle, &settings) else { return };
+    is_readable(&identification_text(&study));
+    is_readable(&identification_html(&study));
+    let _ = IdentificationDocument::new(&study);
     // a model that is written can be read
-    if let Ok(text) = model_toml(&identification, &flight.vehicle, &[], scale.as_ref()) {
+    if let Ok(text) = identified_model(&study) {
         parse_vehicle(&text, "model").unwrap_or_else(|error| panic!("{error} in\n{text}"));
     }
 }

@@ -13,6 +13,6 @@ pub use flight::{CheckName, FlyArgs, OriginName};
 pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 pub use model::{ExportArgs, ExportFormat, SimulateArgs, VehicleArgs};
 pub use plan::{CriterionName, PlanArgs};
-pub use recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ReadArgs, ValidateArgs};
+pub use recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ValidateArgs};
 pub use verb::{Cli, Verb};
 pub use verbosity::Verbosity;

@@ -1,6 +1,8 @@
 //! Arguments of the verbs that read recordings of flights.
 
 use clap::Args;
+use mavid::study::ReadSettings;
+use mavid::wire::SystemId;
 use std::path::PathBuf;
 
 /// Arguments of `mavid identify`.
@@ -67,7 +69,7 @@ pub struct ExplainArgs {
     #[command(flatten)]
     pub read: ReadArgs,
     /// s of flight left out at the beginning
-    #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = mavid::study::ExplainRequest::TRANSIENT_S, allow_negative_numbers = true)]
     pub transient: f64,
 }
 
@@ -126,4 +128,11 @@ pub struct ReadArgs {
     /// MAVLink system id of the vehicle; without it the only one of the log that flew
     #[arg(long = "system-id", alias = "system", value_name = "ID")]
     pub system: Option<u32>,
+}
+
+impl ReadArgs {
+    /// As a study takes them.
+    pub fn settings(&self) -> ReadSettings {
+        ReadSettings { csv_map: self.csv_map.clone(), system: self.system.map(SystemId) }
+    }
 }

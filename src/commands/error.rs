@@ -1,5 +1,7 @@
 //! The failure of a verb.
 
+use mavid::plan::PlanError;
+
 /// Why a verb did not do its work.
 #[derive(Debug, thiserror::Error)]
 pub enum CommandError {
@@ -17,6 +19,19 @@ pub enum CommandError {
 impl From<mavid::config::ConfigError> for CommandError {
     fn from(error: mavid::config::ConfigError) -> Self {
         Self::Input(error.to_string())
+    }
+}
+
+/// A setting is named as on the command line.
+impl From<mavid::study::StudyError> for CommandError {
+    fn from(error: mavid::study::StudyError) -> Self {
+        match error {
+            mavid::study::StudyError::Setting { name, why } => Self::Input(format!("--{name}: {why}")),
+            mavid::study::StudyError::Plan(
+                why @ (PlanError::OutsideLimits { .. } | PlanError::NotDetermined),
+            ) => Self::Failure(why.to_string()),
+            other => Self::Input(other.to_string()),
+        }
     }
 }
 

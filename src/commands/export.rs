@@ -2,10 +2,10 @@
 
 use mavid::config::read_vehicle;
 use mavid::export::{Exported, Format, export};
+use mavid::study::effects_of;
 use mavid::text;
 use serde::Serialize;
 
-use super::effects::effects;
 use super::{CommandError, Outcome, output};
 use crate::cli::{ExportArgs, ExportFormat};
 
@@ -23,7 +23,7 @@ pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
     let refuse =
         |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&args.model)));
     output::warnings(&args.model, &loaded.warnings);
-    let active = effects(&loaded.model.effects, &text::path(&args.model), &loaded.vehicle)?;
+    let active = effects_of(&loaded.model.effects, &text::path(&args.model), &loaded.vehicle)?;
     let format = match args.to {
         ExportFormat::Px4Sih => Format::Px4Sih,
         ExportFormat::ArdupilotSitl => Format::ArdupilotSitl,

@@ -6,12 +6,9 @@
 mod after_flight;
 mod demo;
 mod dispatch;
-mod effects;
 mod error;
 mod explain;
 mod export;
-mod flight_view;
-mod flights;
 mod fly;
 mod identify;
 mod inspect;
@@ -22,6 +19,7 @@ mod network;
 mod outcome;
 mod output;
 mod plan;
+mod progress;
 mod prove;
 mod record;
 mod replay;
@@ -31,6 +29,7 @@ mod standard_error;
 mod usage;
 mod validate;
 mod vehicle;
+mod words;
 
 pub use dispatch::run;
 pub use error::CommandError;

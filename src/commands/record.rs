@@ -23,7 +23,7 @@ const HEARTBEAT: u32 = 0;
 /// HEARTBEAT.autopilot of what is no vehicle.
 const NO_AUTOPILOT: u8 = 8;
 const AUTOPILOT_AT: usize = 5;
-/// Without an end that the user gave.
+/// Longest recording, where the user gives no duration.
 const YEAR: Duration = Duration::from_secs(365 * 86_400);
 /// How long the last frames may take to leave.
 const FLUSH: Duration = Duration::from_secs(1);

@@ -7,13 +7,12 @@ use std::path::Path;
 use mavid::config::{read_trajectory, read_vehicle};
 use mavid::recording::Recording;
 use mavid::simulate::{FlightSettings, Reference, TelemetrySettings, Truth, simulate_flight};
+use mavid::study::{with_further, with_stated_lag};
 use mavid::text;
 use mavid::vehicle::Vehicle;
 use mavid::wire::write_recording;
 use serde::Serialize;
 
-use super::effects::{with_further, with_stated_lag};
-use super::flights::is_csv;
 use super::{CommandError, Outcome, output};
 use crate::cli::SimulateArgs;
 
@@ -45,7 +44,7 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
     let read = [&args.vehicle, &args.trajectory].into_iter().chain(&args.effects).chain(&args.nominal);
     output::refuse_overwriting(&read.collect::<Vec<_>>(), &[&args.out])?;
-    if is_csv(&args.out) {
+    if args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv")) {
         let name = text::path(&args.out);
         return Err(CommandError::Input(format!("--out: expected the name of a .tlog, got {name}")));
     }

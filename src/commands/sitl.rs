@@ -6,10 +6,10 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use mavid::config::{LoadedVehicle, parse_vehicle, read_vehicle};
 use mavid::link::{Address, LinkOptions, LinkReader, SigningKey};
 use mavid::sitl::{Firmware, LinkRole, Pace, SensorSettings, Served, Settings, Vehicle, serve};
+use mavid::study::with_further;
 use mavid::wire::{ComponentId, SystemId};
 use serde::Serialize;
 
-use super::effects::with_further;
 use super::{CommandError, Outcome, live, network, output};
 use crate::cli::SitlArgs;
 

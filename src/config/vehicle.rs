@@ -172,7 +172,7 @@ fn propulsion(check: &Check<'_>, table: &PropulsionTable) -> Result<Propulsion, 
     })
 }
 
-/// That of rotors that slow down, which says nothing without the other.
+/// The time constant of rotors that slow down, s. It needs that of rotors that speed up.
 fn falling_time_constant(check: &Check<'_>, table: &PropulsionTable) -> Result<Option<f64>, ConfigError> {
     let because = "time_constant_down is that of falling speed beside that of rising speed";
     if table.time_constant_down.is_some() {

@@ -30,7 +30,7 @@ pub(super) struct VehicleFile {
     pub effects: Vec<toml::Table>,
 }
 
-/// That of files from before there was the key.
+/// The format of files that do not state it.
 fn first_format() -> u32 {
     1
 }

@@ -8,9 +8,9 @@ use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 
-/// A share of the hubs nearer than this to none or all is one of them.
+/// A share at the hubs that is nearer than this to 0 or 1 counts as 0 or 1.
 const NEAR: f64 = 0.05;
-/// The same in standard errors.
+/// A share at the hubs within this many standard errors of 0 or 1 counts as 0 or 1.
 const NEAR_STD: f64 = 3.0;
 
 /// Puts drags that seem to act partly at the hubs to one place, where damping explains the flight as well.

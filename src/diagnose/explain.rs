@@ -62,12 +62,13 @@ pub enum ExplainError {
     },
 }
 
-/// Chance below which something is left at the harmonics.
+/// p-value below which power is left at the harmonics.
 const LACK_P: f64 = 1e-6;
-/// and it must be larger than this in force (of gravity) or torque (of the torque's own rms).
+/// Least force that is left at the harmonics, as a share of gravity.
 const LACK_FORCE_G: f64 = 0.002;
+/// Least torque that is left at the harmonics, as a share of the rms of the torque.
 const LACK_TORQUE: f64 = 0.1;
-/// Rivals that explain nearly as much as what was taken.
+/// Share of the energy of the effect that was taken which a rival must explain.
 const RIVAL: f64 = 0.93;
 
 /// Explains one or more flights of a vehicle.

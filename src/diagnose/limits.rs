@@ -14,9 +14,9 @@ use super::signatures::signature_of;
 use super::tested::Tested;
 use crate::vehicle::Vehicle;
 
-/// Standard errors at which an effect stands out.
+/// Standard errors by which an effect of its usual size must stand out.
 const CERTAIN: f64 = 4.0;
-/// and at which it does whatever its usual size.
+/// Standard errors at which an effect stands out, whatever its usual size.
 const PLAIN: f64 = 8.0;
 
 /// The smallest coefficient that this flight would have shown, for every candidate that was not named.

@@ -9,14 +9,15 @@ use crate::regression::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor
 use crate::signals::central_difference;
 use nalgebra::Vector3;
 
-/// An accelerometer's filter differs from the gyroscopes' by some milliseconds.
+/// Prior of the latency of force against torque, s: filters of accelerometer and gyroscopes differ by milliseconds.
 const FORCE_LATENCY_STD_S: f64 = 0.004;
-/// Anything between none and all.
+/// Prior of the share of the jitter that acts: uniform between 0 and 1.
 const JITTER_STD: f64 = 0.288_675;
-/// An attitude estimate is level to about half a degree.
+/// Prior of the level of the attitude, rad: an estimate is level to about half a degree.
 const LEVEL_STD_RAD: f64 = 0.01;
-/// An accelerometer alone: nothing says better how far it is off, m/s^2.
+/// Prior of the accelerometer's bias where velocity does not determine it, m/s^2.
 const BIAS_STD_M_S2: f64 = 0.2;
+
 /// For each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2.
 pub(super) fn momentum_rows(trace: &Trace) -> [[Vec<f64>; 3]; 6] {
     let rates: Vec<Vector3<f64>> = trace.states.iter().map(|state| state.rates_rad_s).collect();

@@ -42,7 +42,7 @@ pub(super) fn prune(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64)
     Ok((dropped, (after.base.latency.total_s() - before_s).abs()))
 }
 
-/// An accepted effect stays while it is this many standard deviations from nothing.
+/// An accepted effect stays while it is this many standard deviations from zero.
 const KEPT: f64 = 4.0;
-/// A parameter of it goes back to nothing when it is nearer than this.
+/// A parameter of an accepted effect is set back to zero when it is nearer than this many standard deviations to zero.
 const PRUNED: f64 = 2.5;

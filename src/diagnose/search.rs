@@ -150,10 +150,11 @@ fn with_last(flights: &[Trace], fitted: Fitted) -> Result<Fitted, PhysicsError> 
     Ok(if placed.misfit() < fitted.misfit() && !bounded { placed } else { fitted })
 }
 
-/// How often the search may go on after that.
+/// How often effects are pruned and the search goes on after no candidate passes any more.
 const SETTLINGS: usize = 2;
-/// What a column must explain to be worth having, in independent squared sigmas.
+/// Energy that a column must explain to be worth a parameter, in squared standard deviations of independent rows.
 const COLUMN_PRICE: f64 = 12.0;
+
 /// The candidate's effects at the values that the evidence has.
 fn started(tested: &Tested, size: &VehicleSize) -> Vec<EffectTerm> {
     let mut theta = tested.evidence.theta.iter();

@@ -6,11 +6,11 @@ use crate::signals::{Signals, ThrustSource};
 use crate::vehicle::Vehicle;
 use nalgebra::{DVector, Vector4};
 
-/// A latency agrees with the stated lag within so many standard errors,
+/// A latency within this many standard errors of the stated lag agrees with it.
 const AGREES: f64 = 4.0;
-/// and one that the flight does not tell from none, within so many,
+/// A latency whose kind the flight does not show agrees with the stated lag within this many standard errors.
 const LEANS: f64 = 2.0;
-/// and what the log's sampling adds, s.
+/// The sampling of the log adds this much to both, s.
 const SAMPLED_S: f64 = 0.005;
 
 /// How a latency is shared out. A lag that agrees with the one that the vehicle's description states is as uneven as that,

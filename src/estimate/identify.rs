@@ -10,6 +10,7 @@ use super::rotor_check::{WeakRotor, weak_rotor, with_weak_rotor};
 use super::theta::{Theta, ThetaCovariance, theta_of};
 use super::weak::{Latency, WeakEstimate, WeakMethod, latency, solve_weak};
 use super::{GradientStep, History, gradient_descent, least_squares};
+use crate::note::{About, Note};
 use crate::physics::ActuationLatency;
 use crate::regression::{SampledModel, WeakMotion, WeakRows, ZeroPhase, paper_models, weak_rows};
 use crate::signals::{Butterworth, Signals, ThrustSource, WeakKernel, WindowedFir, highest_harmonic_hz};
@@ -70,7 +71,7 @@ pub struct Identification {
     /// m/s^2, vertical accelerometer less kinematics, per flight
     pub accelerometer_bias: Vec<Option<f64>>,
     /// why methods are missing, and other remarks
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// Identifies the rigid body from conditioned flights of one vehicle.
@@ -99,10 +100,11 @@ fn with_even_rotors(
     tracing::info!(rotor = weak.name, factor = weak.factor, std = weak.std, "weak rotor taken out");
     let mended = with_weak_rotor(flights, vehicle, &weak);
     let mut again = identify_evenly(&mended, vehicle, settings)?;
-    again.notes.push(format!(
+    let text = format!(
         "the torque left over is that of rotor {} giving {:.3} +- {:.3} of its thrust: taken out, the other rotors set the scale",
         weak.name, weak.factor, weak.std
-    ));
+    );
+    again.notes.push(Note::remark(About::Estimate, text));
     again.weak_rotor = Some(weak);
     Ok(again)
 }
@@ -133,9 +135,8 @@ fn identify_evenly(
     let filter = zero_phase(settings, cutoff_hz, rate_hz)?;
     let paper = PaperRuns::from(&weak.signals, vehicle, &filter, settings.sigma);
     if paper.standard.time_s.is_empty() {
-        notes.push(
-            "LS, GD, FMLS and FMGD need body rates and the vertical motion; this recording lacks one".into(),
-        );
+        let text = "LS, GD, FMLS and FMGD need body rates and the vertical motion; this recording lacks one";
+        notes.push(Note::remark(About::Estimate, text));
     }
 
     let mut methods = paper.results();
@@ -150,7 +151,7 @@ fn identify_evenly(
     notes.extend(implausible(&best.result, &nominal));
     notes.extend(disagreeing(&weak.rows, &nominal));
     if flights.iter().any(|signals| signals.quality.thrust_source == ThrustSource::Command) {
-        notes.push(BY_COMMANDS.to_owned());
+        notes.push(Note::remark(About::Actuators, BY_COMMANDS));
     }
     Ok(Identification {
         best,
@@ -245,11 +246,12 @@ impl WeakFlights {
     }
 
     /// Rows of the commanded trajectory; `None` (and why) where a flight has none.
-    fn instruments(&self, notes: &mut Vec<String>) -> Option<Vec<WeakRows>> {
+    fn instruments(&self, notes: &mut Vec<Note>) -> Option<Vec<WeakRows>> {
         let mut out = Vec::new();
         for (signals, kernel) in self.signals.iter().zip(&self.kernels) {
             let (Some(reference), Some(rate)) = (&signals.reference, &signals.rate) else {
-                notes.push("no instrumental variables: the commanded acceleration or the body rates are not recorded".into());
+                let text = "no instrumental variables: the commanded acceleration or the body rates are not recorded";
+                notes.push(Note::remark(About::Estimate, text));
                 return None;
             };
             let step_s = signals.grid.step_s;

@@ -3,6 +3,7 @@
 use super::result::{Finding, MethodResult};
 use super::theta::{NAMES, Theta};
 use super::weak::{WeakMethod, solve_weak};
+use crate::note::{About, Note};
 use crate::regression::WeakRows;
 
 /// A nominal file is wrong by less than these factors.
@@ -14,18 +15,19 @@ const FLIGHTS_SHARE: f64 = 0.02;
 
 /// Estimates that are far from what the vehicle file states.
 #[must_use]
-pub fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<String> {
+pub fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<Note> {
     [(0, MASS_FACTOR), (1, INERTIA_FACTOR), (4, INERTIA_FACTOR), (6, INERTIA_FACTOR)]
         .into_iter()
         .filter_map(|(index, most)| {
             let Finding::Determined { value, .. } = result.parameters[index].finding else { return None };
             let factor = value / nominal[index];
             (factor > most || factor < 1.0 / most).then(|| {
-                format!(
-                    "warning: {} is {factor:.2} times what the vehicle file states: another vehicle's log, a wrong unit, \
+                let text = format!(
+                    "{} is {factor:.2} times what the vehicle file states: another vehicle's log, a wrong unit, \
                      or thrust and torque coefficients that are off by as much? A weighed mass with anchor = \"mass\" sets the scale",
                     NAMES[index]
-                )
+                );
+                Note::warning(About::Estimate, text)
             })
         })
         .collect()
@@ -33,7 +35,7 @@ pub fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<String> {
 
 /// Flights whose masses contradict each other.
 #[must_use]
-pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<String> {
+pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<Note> {
     if flights.len() < 2 {
         return Vec::new();
     }
@@ -54,11 +56,12 @@ pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<String> {
             let (mass, std) = (*mass)?;
             let sigma = (mass - first).abs() / first_std.hypot(std);
             (sigma > FLIGHTS_SIGMA && (mass / first - 1.0).abs() > FLIGHTS_SHARE).then(|| {
-                format!(
-                    "warning: flight {} alone gives a mass of {mass:.4} kg, flight 1 {first:.4} kg, {sigma:.0} standard errors apart: \
+                let text = format!(
+                    "flight {} alone gives a mass of {mass:.4} kg, flight 1 {first:.4} kg, {sigma:.0} standard errors apart: \
                      two vehicles or two loads? The common estimate describes neither",
                     index + 1
-                )
+                );
+                Note::warning(About::Estimate, text)
             })
         })
         .collect()

@@ -21,13 +21,13 @@ pub struct WeakRotor {
     pub std: f64,
 }
 
-/// Thrust missing at one rotor, as a share of that rotor's, that is looked at.
+/// Range of the thrust missing at one rotor, as a share of that rotor's thrust.
 const SHARE: std::ops::RangeInclusive<f64> = 0.04..=0.6;
 /// The torque about x and y must agree with the rotor's arm within this share.
 const ARM_TOLERANCE: f64 = 0.1;
 /// The yaw torque must agree within this share: torque per thrust is known less well.
 const YAW_TOLERANCE: f64 = 0.35;
-/// And the missing thrust must be this many standard errors from none.
+/// The missing thrust must be this many standard errors from zero.
 const LEAST_SIGMA: f64 = 6.0;
 
 /// The rotor that the left-over torque points to, if it points to one. A centre of mass off the middle

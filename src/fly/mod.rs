@@ -3,7 +3,7 @@
 //! [`Flight`] is the whole flight as a state machine without I/O: frames, keys and the clock go in, messages,
 //! notes and the outcome come out. [`Streamer`] makes the setpoints from the [`Guide`] that the flight renews
 //! with every step, and stops by itself where the flight does not. Times are [`std::time::Duration`]s of the
-//! host's monotonic clock since any fixed start.
+//! host's clock since any fixed start; it goes on while the computer sleeps.
 //!
 //! ```text
 //! frames, keys, clock -> Flight -> commands, notes, outcome
@@ -47,11 +47,13 @@ pub use health::{BatteryLevel, EstimatorReport, SystemReport};
 pub use law::{FollowLaw, Motion};
 pub use lift::{Lift, Weighed};
 pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
+#[cfg(unix)]
+pub use runner::HangUp;
 pub use runner::{
     Console, Due, EVENTS, EVENTS_TARGET, PARAMETERS, Parking, Part, Record, Ride, RunError, StreamFigures,
     Supervisor, TLOG, event_layer, raise_priority, run, send_due,
 };
-pub use safety::{Feeding, Guide, Lead, SetpointBounds, Streamed, Streamer};
+pub use safety::{Feeding, FirstQuestion, Guide, Lead, SetpointBounds, Streamed, Streamer};
 pub use setpoint::{Place, Setpoint};
 pub use sortie::{Check, Origin, Settings, Sortie};
 pub use target::{MessageId, Order, OutOfRange, ParameterName, Period, TakeoffHeight, Target, heartbeat};

@@ -22,7 +22,7 @@ pub enum Cause {
     NotReached(String),
     /// the vehicle left our mode without our command: its pilot, another station, or a failsafe
     Override(String),
-    /// the autopilot's own failsafe acts
+    /// the autopilot declares a failsafe that leaves our mode as it is
     Failsafe(String),
     /// further off the reference than allowed
     Tracking(String),
@@ -68,7 +68,7 @@ impl Cause {
     #[must_use]
     pub fn response(&self) -> Response {
         match self {
-            Self::Override(_) | Self::Failsafe(_) => Response::HandsOff,
+            Self::Override(_) => Response::HandsOff,
             Self::LinkLost(_) => Response::Wait,
             Self::Estimator(_) | Self::Battery(_) | Self::NotReached(_) | Self::Refused(_) => Response::Land,
             _ => Response::Hold,

@@ -10,14 +10,14 @@ use std::time::Duration;
 use super::target::{OutOfRange, Target, within};
 use crate::frames::{World, ned_from_world, yaw_from_ned};
 
-/// MAVLink's definition names no range. Further out a 32-bit float no longer holds a millimetre, and the local frame no
-/// longer is flat to a decimetre.
+/// Greatest coordinate of a position. MAVLink's definition has no range. Further out, a 32-bit float does not resolve a
+/// millimetre, and the local frame is not flat to a decimetre.
 const POSITION_MAX_M: f32 = 1e4;
-/// No multirotor is faster.
+/// Greatest speed of a multirotor.
 const SPEED_MAX_M_S: f32 = 100.0;
-/// Nor brakes or climbs harder.
+/// Greatest acceleration of a multirotor.
 const ACCELERATION_MAX_M_S2: f32 = 100.0;
-/// PX4 takes at most 1800 deg/s for a rate.
+/// Greatest yaw rate: PX4 accepts at most 1800 deg/s.
 const YAW_RATE_MAX_RAD_S: f32 = 32.0;
 
 /// Where the vehicle is to be at one instant, and how it is to move there. World NWU, in the frame of the

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use super::course::Course;
 use super::preflight::{HOVER, ROTORS};
+use super::safety::FirstQuestion;
 use crate::vehicle::Limits;
 use crate::wire::{ComponentId, Nonce, SystemId};
 
@@ -97,6 +98,9 @@ pub struct Settings {
     pub await_word: bool,
     /// a refusal by one of these is a warning
     pub accepted: Vec<Check>,
+    /// from which the questions after the vehicle's mode are counted; drawn anew for each run, so that answers to others
+    /// are not taken for answers to us
+    pub first_question: FirstQuestion,
 }
 
 impl Default for Settings {
@@ -120,6 +124,7 @@ impl Default for Settings {
             await_clearance: false,
             await_word: false,
             accepted: Vec::new(),
+            first_question: FirstQuestion::random(),
         }
     }
 }

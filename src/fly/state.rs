@@ -35,13 +35,21 @@ pub struct FlightState {
     pub system_status: u8,
 }
 
-/// MAV_STATE values at which the autopilot itself has taken measures: critical, emergency, termination.
-const MEASURES_TAKEN: [u8; 3] = [5, 6, 8];
+/// MAV_STATE values at which a failsafe was triggered, whatever it does: critical, emergency.
+const TRIGGERED: [u8; 2] = [5, 6];
+/// And at which the motors are stopped, by a kill switch too.
+const TERMINATION: u8 = 8;
 
 impl FlightState {
-    /// The autopilot has taken measures of its own.
+    /// The autopilot declares a failsafe. It may have changed its mode for it, or do nothing.
     #[must_use]
     pub fn is_in_failsafe(&self) -> bool {
-        MEASURES_TAKEN.contains(&self.system_status)
+        TRIGGERED.contains(&self.system_status)
+    }
+
+    /// The autopilot declares that the flight is terminated.
+    #[must_use]
+    pub fn is_terminated(&self) -> bool {
+        self.system_status == TERMINATION
     }
 }

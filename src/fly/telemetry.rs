@@ -72,6 +72,8 @@ pub struct Telemetry {
     outputs: Vec<Outputs>,
     texts: VecDeque<(Duration, u8, String)>,
     order: SendingOrder,
+    /// of the last frame
+    place: i64,
     /// last ODOMETRY
     pose: Option<Pose>,
     /// place of the frame from which `state` is
@@ -106,6 +108,7 @@ impl Telemetry {
             outputs: Vec::new(),
             texts: VecDeque::new(),
             order: SendingOrder::default(),
+            place: 0,
             pose: None,
             state_place: i64::MIN,
             mode_reports: 0,
@@ -123,6 +126,7 @@ impl Telemetry {
         }
         self.heard = now;
         let place = self.order.place(header.sequence, silence);
+        self.place = place;
         let mut news = Vec::new();
         self.status(now, header.message_id, frame.payload(), place, &mut news);
         self.samples((now, silence), frame, &mut news);
@@ -307,6 +311,12 @@ impl Telemetry {
         &self.outputs
     }
 
+    /// Place of the last frame among all that the vehicle sent: greater means sent later.
+    #[must_use]
+    pub fn place(&self) -> i64 {
+        self.place
+    }
+
     /// Who it is.
     #[must_use]
     pub fn vehicle(&self) -> wire::Vehicle {
@@ -341,12 +351,6 @@ impl Telemetry {
     #[must_use]
     pub fn mode_reports(&self) -> u64 {
         self.mode_reports
-    }
-
-    /// The autopilot has taken measures of its own.
-    #[must_use]
-    pub fn is_in_failsafe(&self) -> bool {
-        self.state.is_some_and(|state| state.value.is_in_failsafe())
     }
 
     /// Warnings and errors that the vehicle said since `since`, the same only once.

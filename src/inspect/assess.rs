@@ -5,6 +5,7 @@ use super::excitation::ExcitationTally;
 use super::inspection::{Excitation, FlightSummary, OffsetSummary, Segment};
 use super::motion::Motion;
 use crate::estimate::{Estimated, WeakInformation, WeakMethod, solve_weak, theta_of};
+use crate::note::Note;
 use crate::recording::{Quantity, Recording};
 use crate::regression::{WeakMotion, weak_rows};
 use crate::signals::{ConditionSettings, Quality, Signals, SignalsError, WeakKernel, condition};
@@ -27,7 +28,7 @@ pub(super) struct Assessor<'a> {
     restarted: bool,
     information: Option<WeakInformation>,
     offsets: Vec<OffsetSum>,
-    notes: Vec<String>,
+    notes: Vec<Note>,
     refusal: Option<SignalsError>,
 }
 
@@ -48,7 +49,7 @@ pub(super) struct Assessment {
     pub expected: Option<Estimated>,
     pub offsets: Vec<OffsetSummary>,
     /// what the conditioning remarked, each once
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// why the vehicle file and the log do not go together, where no window could be conditioned
     pub refusal: Option<SignalsError>,
 }

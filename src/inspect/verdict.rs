@@ -216,6 +216,6 @@ fn remarks(evidence: &Evidence<'_>, vehicle: &VehicleSummary) -> Vec<String> {
             ));
         }
     }
-    advice.extend(evidence.assessment.notes.iter().cloned());
+    advice.extend(evidence.assessment.notes.iter().map(ToString::to_string));
     advice
 }

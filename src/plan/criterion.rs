@@ -23,6 +23,19 @@ pub enum Criterion {
     AOpt,
 }
 
+impl Criterion {
+    /// As files and arguments write it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cond => "cond",
+            Self::ScaledCond => "scaled-cond",
+            Self::DOpt => "d-opt",
+            Self::AOpt => "a-opt",
+        }
+    }
+}
+
 /// A linear function of `G` that touches one term of a criterion:
 /// `value + <slope, G' - G>` for another matrix `G'`.
 #[derive(Debug, Clone)]

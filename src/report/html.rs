@@ -1,8 +1,10 @@
-//! A report as one file of HTML: no scripts, nothing loaded from anywhere, light and dark, printable.
+//! The parts of a report: one file of HTML, no scripts, nothing loaded from anywhere, light and dark, printable.
+//!
+//! Words become text of the page by their type: only markup of this module and of the charts is taken as it is.
 
-use super::InputFile;
-use crate::text::markup;
-use std::fmt::Write;
+use crate::study::InputFile;
+use crate::text::clean_lines;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = "\
 :root{color-scheme:light dark;--ink:#1d1f23;--soft:#5b6068;--line:#d9dce1;--page:#fff;--card:#f6f7f9;--mark:#0072b2}\
@@ -27,6 +29,9 @@ td.n{white-space:nowrap}\
 code{font-size:.85rem;overflow-wrap:anywhere}\
 @media print{body{max-width:none;font-size:11pt;color:#000;background:#fff}:root{--ink:#000;--soft:#444;--line:#bbb;--page:#fff;--card:#fff}figure,table,tr{break-inside:avoid}h2{break-after:avoid}}";
 
+/// A line's end, for those who read the file.
+const BREAK: PreEscaped<&str> = PreEscaped("\n");
+
 /// A cell of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Cell {
@@ -44,98 +49,105 @@ pub(super) fn number(text: impl Into<String>) -> Cell {
     Cell::Number(text.into())
 }
 
-/// The whole file: what it is about, the answer, and everything below it.
-pub(super) struct Page {
-    title: String,
-    body: String,
+/// The whole file: what it is about, the answer, some words on it, and the sections below.
+pub(super) fn page(title: &str, answer: &str, tags: &[String], sections: &Markup) -> String {
+    let page = html! {
+        (DOCTYPE) (BREAK)
+        html lang="en" { (BREAK)
+            head { (BREAK)
+                meta charset="utf-8"; (BREAK)
+                meta name="viewport" content="width=device-width, initial-scale=1"; (BREAK)
+                title { (title) } (BREAK)
+                style { (PreEscaped(STYLE)) } (BREAK)
+            }
+            (BREAK)
+            body { (BREAK)
+                h1 { (title) } (BREAK)
+                p.answer { (answer) } (BREAK)
+                p.tags { @for tag in tags { span { (tag) } } } (BREAK)
+                (sections)
+            }
+            (BREAK)
+        }
+        (BREAK)
+    };
+    clean_lines(&page.into_string()).into_owned()
 }
 
-impl Page {
-    pub(super) fn new(title: &str, answer: &str) -> Self {
-        let body = format!("<h1>{}</h1>\n<p class=\"answer\">{}</p>\n", markup(title), markup(answer));
-        Self { title: title.to_owned(), body }
-    }
+/// What is below a heading.
+pub(super) fn section(heading: &str, content: &Markup) -> Markup {
+    html! { h2 { (heading) } (BREAK) (content) }
+}
 
-    pub(super) fn tags(&mut self, tags: &[String]) {
-        let tags: Vec<String> = tags.iter().map(|tag| format!("<span>{}</span>", markup(tag))).collect();
-        let _ = writeln!(self.body, "<p class=\"tags\">{}</p>", tags.concat());
-    }
+pub(super) fn paragraph(words: &str) -> Markup {
+    html! { p { (words) } (BREAK) }
+}
 
-    pub(super) fn heading(&mut self, words: &str) {
-        let _ = writeln!(self.body, "<h2>{}</h2>", markup(words));
-    }
+pub(super) fn note(words: &str) -> Markup {
+    html! { p.note { (words) } (BREAK) }
+}
 
-    pub(super) fn note(&mut self, words: &str) {
-        let _ = writeln!(self.body, "<p class=\"note\">{}</p>", markup(words));
-    }
+pub(super) fn warning(words: &str) -> Markup {
+    html! { p.warn { (words) } (BREAK) }
+}
 
-    pub(super) fn paragraph(&mut self, words: &str) {
-        let _ = writeln!(self.body, "<p>{}</p>", markup(words));
-    }
+/// A chart; without words below it where the caption is empty.
+pub(super) fn figure(chart: &Markup, caption: &str) -> Markup {
+    html! { figure { (chart) @if !caption.is_empty() { figcaption { (caption) } } } (BREAK) }
+}
 
-    pub(super) fn warning(&mut self, words: &str) {
-        let _ = writeln!(self.body, "<p class=\"warn\">{}</p>", markup(words));
-    }
-
-    /// `svg` is an element as the charts make it; without words below it where the caption is empty.
-    pub(super) fn figure(&mut self, svg: &str, caption: &str) {
-        let caption = match caption {
-            "" => String::new(),
-            words => format!("<figcaption>{}</figcaption>", markup(words)),
-        };
-        let _ = writeln!(self.body, "<figure>{svg}{caption}</figure>");
-    }
-
-    /// A heading that ends in `|` stands over numbers.
-    pub(super) fn table(&mut self, caption: &str, heads: &[&str], rows: &[Vec<Cell>]) {
-        if rows.is_empty() {
-            return;
+/// Nothing without rows. A heading that ends in `|` stands over numbers.
+pub(super) fn table(caption: &str, heads: &[&str], rows: &[Vec<Cell>]) -> Markup {
+    html! {
+        @if !rows.is_empty() {
+            p.cap { (caption) }
+            div.wide { table {
+                thead { tr { @for head in heads {
+                    @if let Some(head) = head.strip_suffix('|') { th.n { (head) } } @else { th { (head) } }
+                } } }
+                tbody { (BREAK) @for row in rows {
+                    tr { @for cell in row { (cell_markup(cell)) } } (BREAK)
+                } }
+            } }
+            (BREAK)
         }
-        let heads: String = heads
-            .iter()
-            .map(|head| match head.strip_suffix('|') {
-                Some(head) => format!("<th class=\"n\">{}</th>", markup(head)),
-                None => format!("<th>{}</th>", markup(head)),
-            })
-            .collect();
-        let rows: String = rows
-            .iter()
-            .map(|row| {
-                let cells: String = row
-                    .iter()
-                    .map(|cell| match cell {
-                        Cell::Text(text) => format!("<td>{}</td>", markup(text)),
-                        Cell::Number(text) => format!("<td class=\"n\">{}</td>", markup(text)),
-                    })
-                    .collect();
-                format!("<tr>{cells}</tr>\n")
-            })
-            .collect();
-        let _ = writeln!(
-            self.body,
-            "<p class=\"cap\">{}</p><div class=\"wide\"><table><thead><tr>{heads}</tr></thead><tbody>\n{rows}</tbody></table></div>",
-            markup(caption)
-        );
     }
+}
 
-    /// What went in, by hash, and what made it.
-    pub(super) fn provenance(&mut self, inputs: &[(&str, &InputFile)], settings: &[(String, String)]) {
-        self.heading("Provenance");
-        let rows: Vec<Vec<Cell>> = inputs
-            .iter()
-            .map(|(role, input)| vec![text(*role), text(input.path.as_str()), text(input.sha256.as_str())])
-            .collect();
-        self.table("Files that went in", &["role", "file", "SHA-256"], &rows);
-        let mut rows = vec![vec![text("program"), text(format!("mavid {}", env!("CARGO_PKG_VERSION")))]];
-        rows.extend(settings.iter().map(|(name, value)| vec![text(name.as_str()), text(value.as_str())]));
-        self.table("Settings", &["setting", "value"], &rows);
+fn cell_markup(cell: &Cell) -> Markup {
+    match cell {
+        Cell::Text(words) => html! { td { (words) } },
+        Cell::Number(words) => html! { td.n { (words) } },
     }
+}
 
-    pub(super) fn finish(self) -> String {
-        format!(
-            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
-            markup(&self.title),
-            self.body
-        )
+/// What went in, by hash, and what made it.
+pub(super) fn provenance(inputs: &[(&str, &InputFile)], settings: &[(&str, String)]) -> Markup {
+    let files: Vec<Vec<Cell>> = inputs
+        .iter()
+        .map(|(role, input)| vec![text(*role), text(input.path.as_str()), text(input.sha256.as_str())])
+        .collect();
+    let mut rows = vec![vec![text("program"), text(format!("mavid {}", env!("CARGO_PKG_VERSION")))]];
+    rows.extend(settings.iter().map(|(name, value)| vec![text(*name), text(value.as_str())]));
+    let content = html! {
+        (table("Files that went in", &["role", "file", "SHA-256"], &files))
+        (table("Settings", &["setting", "value"], &rows))
+    };
+    section("Provenance", &content)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_never_become_markup() {
+        let words = "<b>\u{1b}[31m&\"'";
+        let content = html! { (table(words, &[words], &[vec![text(words), number(words)]])) (note(words)) };
+        let file = page(words, words, &[words.to_owned()], &section(words, &content));
+        assert!(!file.contains("<b>") && !file.contains('\u{1b}'), "{file}");
+        assert_eq!(file.matches("&lt;b&gt;\\u{1b}[31m&amp;").count(), 10, "{file}");
+        assert!(file.starts_with("<!DOCTYPE html>\n<html lang=\"en\">") && file.ends_with("</html>\n"));
+        assert_eq!(table("c", &["h"], &[]).into_string(), "");
     }
 }

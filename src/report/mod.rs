@@ -1,26 +1,33 @@
-//! What people and other programs read: documents, tables, charts. Nothing here prints.
+//! What people and other programs read: text, JSON, HTML, charts and model files, as views of a finished study.
+//!
+//! Nothing here fits, computes a statistic, or prints.
 
 mod chart;
 mod explanation;
 mod html;
 mod identification;
+mod inspection;
 mod model_parts;
 mod number;
+mod plan;
+mod proof;
 mod quality;
-mod recorded;
+mod thrust_source;
 mod validation;
+mod vehicle;
 
 pub use chart::{Band, Bars, Line, Panel, Strip, Stroke, svg};
 pub use explanation::{
-    AxisShare, Estimate, ExplanationDocument, Field, Given, Located, Predicted, ShownOn, StateShare, Story,
-    explanation_page, for_readers,
+    ExplanationDocument, explained_model, explanation_answer, explanation_html, explanation_text,
 };
 pub use identification::{
-    IdentificationDocument, IdentificationStory, InputFile, WithEffects, history_charts, identification_page,
-    model_toml,
+    IdentificationDocument, history_charts, identification_html, identification_text, identified_model,
 };
+pub use inspection::{InspectionDocument, inspection_text};
 pub use number::{significant, spoken, with_error};
+pub use plan::{PlanDocument, plan_text};
+pub use proof::proof_text;
 pub use validation::{
-    Column, ErrorRow, ErrorTable, ValidatedFlight, closed_loop_charts, closed_loop_table, playback_table,
-    prediction_table, shortened_names, validation_report,
+    ValidationDocument, closed_loop_charts, error_table_text, validation_html, validation_text,
 };
+pub use vehicle::vehicle_text;

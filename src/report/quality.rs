@@ -1,17 +1,24 @@
 //! What a flight's signals rest on, for every report.
 
-use super::html::{Cell, Page, number, text};
+use super::html::{Cell, note, number, paragraph, section, table, text};
 use super::number::with_error;
+use super::thrust_source::thrust_name;
 use crate::signals::Quality;
+use maud::{Markup, html};
 
-/// One flight's streams, offsets and what was left out.
-pub(super) fn section(page: &mut Page, name: &str, quality: &Quality) {
-    page.paragraph(&format!(
+/// Each flight's streams, offsets and what was left out, under the name of its file.
+pub(super) fn data_quality<'a>(flights: impl Iterator<Item = (&'a str, &'a Quality)>) -> Markup {
+    let content = html! { @for (name, quality) in flights { (one(name, quality)) } };
+    section("Data quality", &content)
+}
+
+fn one(name: &str, quality: &Quality) -> Markup {
+    let used = format!(
         "{name}: {:.1} s used; thrust from {}; {}.",
         quality.usable.usable_s,
-        super::identification::thrust_name(quality.thrust_source),
+        thrust_name(quality.thrust_source),
         quality.usable.summary()
-    ));
+    );
     let rows: Vec<Vec<Cell>> = quality
         .sources
         .iter()
@@ -31,10 +38,13 @@ pub(super) fn section(page: &mut Page, name: &str, quality: &Quality) {
             ]
         })
         .collect();
-    page.table(
-        "Streams; late: against the inertial unit",
-        &["quantity", "message", "Hz|", "late (ms)|", ""],
-        &rows,
-    );
-    quality.notes.iter().for_each(|note| page.note(note));
+    html! {
+        (paragraph(&used))
+        (table(
+            "Streams; late: against the inertial unit",
+            &["quantity", "message", "Hz|", "late (ms)|", ""],
+            &rows,
+        ))
+        @for said in &quality.notes { (note(&said.to_string())) }
+    }
 }

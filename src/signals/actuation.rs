@@ -4,6 +4,7 @@ use super::actuators::{RotorThrusts, ThrustSource, thrusts_from_commands, thrust
 use super::select::{best, too_short};
 use super::sufficient::{REFUSED_HZ, flowing_rate_hz};
 use super::{Grid, SignalsError, linear_onto};
+use crate::note::{About, Note};
 use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector4;
@@ -130,7 +131,7 @@ impl Actuation {
     }
 
     /// What the user should know of where the thrusts come from.
-    pub(super) fn notes(&self, recording: &Recording, vehicle: &Vehicle) -> Vec<String> {
+    pub(super) fn notes(&self, recording: &Recording, vehicle: &Vehicle) -> Vec<Note> {
         let Self::Rotors(rotors) = self else { return Vec::new() };
         let mut notes = rotors.notes.clone();
         let needed = vehicle.rotors.len();
@@ -139,16 +140,18 @@ impl Actuation {
             streams.map(|(_, stream)| stream.width).max()
         };
         match recorded(Quantity::RotorSpeed) {
-            Some(width) if rotors.source == ThrustSource::Command && width < needed => notes.push(format!(
-                "rotor speeds of {width} rotors are recorded, the vehicle has {needed}: commands are used instead"
+            Some(width) if rotors.source == ThrustSource::Command && width < needed => notes.push(Note::remark(
+                About::Actuators,
+                format!("rotor speeds of {width} rotors are recorded, the vehicle has {needed}: commands are used instead"),
             )),
             _ => {}
         }
         let moving = recording.streams.iter().filter(|(key, _)| key.quantity == Quantity::ActuatorCommand);
         let moving = moving.map(|(_, stream)| channels_that_move(stream)).max();
         if let Some(count) = moving.filter(|count| *count > needed) {
-            notes.push(format!(
-                "the log has {count} actuator channels in use, the vehicle file {needed} rotors: is it this vehicle's?"
+            notes.push(Note::remark(
+                About::Actuators,
+                format!("the log has {count} actuator channels in use, the vehicle file {needed} rotors: is it this vehicle's?"),
             ));
         }
         notes

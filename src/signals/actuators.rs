@@ -8,6 +8,7 @@ use super::SignalsError;
 use super::grid::LARGEST_VALUE;
 use super::select::{LEAST_SAMPLES, best, is_live, too_short};
 use crate::autopilot::Outputs;
+use crate::note::{About, Note};
 use crate::recording::{Quantity, Recording, Stream, StreamKey};
 use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
 
@@ -37,7 +38,7 @@ pub struct RotorThrusts {
     /// message or column group
     pub message: &'static str,
     /// what was taken from the log's parameters, and what disagrees with the vehicle's file
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// Rotor thrusts from the commands.
@@ -158,14 +159,15 @@ fn in_unit(stream: &Stream, channels: &[usize], actuator: Actuator) -> bool {
 
 /// The vehicle file's propulsion with what the autopilot's parameters say better.
 #[must_use]
-pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propulsion, Vec<String>) {
+pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propulsion, Vec<Note>) {
     let mut propulsion = *stated;
     let mut notes = Vec::new();
+    let mut note = |text: String| notes.push(Note::remark(About::Actuators, text));
     let stated_range = match stated.actuator {
         Actuator::Pwm(Some(range)) => Some(range),
         // an autopilot sends pulse widths whatever the file calls its commands
         Actuator::Speed | Actuator::Thrust if !holds_fractions(recording) => None,
-        Actuator::Speed | Actuator::Thrust | Actuator::Pwm(None) => return (propulsion, notes),
+        Actuator::Speed | Actuator::Thrust | Actuator::Pwm(None) => return (propulsion, Vec::new()),
     };
     let parameter = |name: &str| recording.parameters.get(name).copied();
     let outputs = recording.autopilot.stack().map(|stack| &stack.outputs);
@@ -178,15 +180,15 @@ pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propu
         match stated_range {
             Some(stated) if stated == range => {}
             Some(PwmRange { min_us, max_us }) => {
-                notes.push(format!("{taken}, the vehicle file says {min_us:.0} to {max_us:.0} us"));
+                note(format!("{taken}, the vehicle file says {min_us:.0} to {max_us:.0} us"));
             }
-            None => notes.push(format!("{taken}, the vehicle file speaks of 0..1")),
+            None => note(format!("{taken}, the vehicle file speaks of 0..1")),
         }
         propulsion.actuator = Actuator::Pwm(Some(range));
     }
     if let (Some(expo), ThrustLaw::Curve { thrust_max_n, expo: stated_expo }) = (expo, stated.law) {
         if (expo - stated_expo).abs() > 1e-6 {
-            notes.push(format!(
+            note(format!(
                 "thrust curve exponent {expo} from the log's parameters, the vehicle file says {stated_expo}"
             ));
         }
@@ -206,7 +208,7 @@ fn holds_fractions(recording: &Recording) -> bool {
 
 /// Which output channel (from 0) drives each motor, by the functions of the outputs; in order where the log does not say.
 #[must_use]
-pub fn motor_channels(recording: &Recording, rotors: usize, notes: &mut Vec<String>) -> Vec<usize> {
+pub fn motor_channels(recording: &Recording, rotors: usize, notes: &mut Vec<Note>) -> Vec<usize> {
     let Some(stack) = recording.autopilot.stack() else { return (0..rotors).collect() };
     let Outputs { function, .. } = &stack.outputs;
     let find = |motor: usize| {
@@ -219,9 +221,10 @@ pub fn motor_channels(recording: &Recording, rotors: usize, notes: &mut Vec<Stri
     match mapped {
         Some(channels) => {
             if channels.iter().enumerate().any(|(motor, channel)| motor != *channel) {
-                notes.push(format!(
+                let text = format!(
                     "motors 1..{rotors} on output channels {channels:?} (from 0), from the log's parameters"
-                ));
+                );
+                notes.push(Note::remark(About::Actuators, text));
             }
             channels
         }

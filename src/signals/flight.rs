@@ -4,6 +4,7 @@ use super::actuators::ThrustSource;
 use super::align::StreamOffset;
 use super::grid::Grid;
 use super::usable::Usable;
+use crate::note::Note;
 use crate::recording::Quantity;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 
@@ -82,6 +83,6 @@ pub struct Quality {
     pub airborne_s: Vec<(f64, f64)>,
     /// how the mask came about
     pub usable: Usable,
-    /// remarks for the user
-    pub notes: Vec<String>,
+    /// what the user should know of it
+    pub notes: Vec<Note>,
 }

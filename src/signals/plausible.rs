@@ -5,6 +5,7 @@
 //! with small standard errors.
 
 use super::Signals;
+use crate::note::{About, Note};
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector, Vector3};
 
@@ -29,7 +30,7 @@ const LEAST: usize = 40;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// What is to be said of streams that contradict each other.
-pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<String> {
+pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<Note> {
     let spans = windows(signals);
     if spans.len() < LEAST {
         return Vec::new();
@@ -37,7 +38,10 @@ pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<String> {
     let mut units = rates(signals, &spans);
     units.extend(forces(signals, vehicle.gravity_m_s2, &spans));
     // torque beside rates that are none says nothing
-    if units.is_empty() { torques(signals, vehicle, &spans).into_iter().collect() } else { units }
+    if units.is_empty() {
+        units.extend(torques(signals, vehicle, &spans));
+    }
+    units.into_iter().map(|text| Note::warning(About::Sensors, text)).collect()
 }
 
 /// First and last instants of the windows that can be used, one after the other.
@@ -79,12 +83,12 @@ fn rates(signals: &Signals, spans: &[(usize, usize)]) -> Vec<String> {
         let ratio = rms(&centred(&said)) / rms(&centred(&turned));
         if !(1.0 / RATIO..=RATIO).contains(&ratio) {
             out.push(format!(
-                "warning: the body rate about {name} is {ratio:.3} times the rate at which the attitude turns: expected both in \
+                "the body rate about {name} is {ratio:.3} times the rate at which the attitude turns: expected both in \
                  rad/s (degrees for radians would be 57.3)"
             ));
         } else if alike < 0.0 {
             out.push(format!(
-                "warning: the body rate about {name} has the sign opposite to the attitude's turning: expected both about \
+                "the body rate about {name} has the sign opposite to the attitude's turning: expected both about \
                  forward, left, up"
             ));
         }
@@ -106,7 +110,7 @@ fn forces(signals: &Signals, gravity_m_s2: f64, spans: &[(usize, usize)]) -> Vec
     // sums of what flies are near the weight
     if !(1.0 / CARRIED..=CARRIED).contains(&up) {
         return vec![format!(
-            "warning: the accelerometer shows {up:.2} times gravity upwards in the mean of the flight: expected about one, in m/s^2, \
+            "the accelerometer shows {up:.2} times gravity upwards in the mean of the flight: expected about one, in m/s^2, \
              about forward, left, up, with an attitude that turns these into north, west, up"
         )];
     }
@@ -119,7 +123,7 @@ fn forces(signals: &Signals, gravity_m_s2: f64, spans: &[(usize, usize)]) -> Vec
         .filter(|(axis, _)| likeness(&column(&changed, *axis), &column(&felt, *axis)) < -ALIKE)
         .map(|(_, name)| {
             format!(
-                "warning: the velocity {name} changes against what the accelerometer feels: expected both in north, west, up once \
+                "the velocity {name} changes against what the accelerometer feels: expected both in north, west, up once \
                  the attitude has turned the accelerometer's"
             )
         })
@@ -154,7 +158,7 @@ fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Op
         wrong.then(|| {
             let sign = if alike[best] < 0.0 { "-" } else { "" };
             format!(
-                "warning: the body turns about {} as the rotors' torque about {sign}{} would have it (partial correlation {:.2}; \
+                "the body turns about {} as the rotors' torque about {sign}{} would have it (partial correlation {:.2}; \
                  {:.2} with that about {}): expected the rotors in the vehicle file's order, at its places and turning its way",
                 AXES[axis], AXES[best], alike[best].abs(), alike[axis], AXES[axis]
             )

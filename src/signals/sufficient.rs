@@ -9,6 +9,7 @@
 //! beside body rates tells from 5 Hz on; accelerometer and velocity do not tell down to that.
 
 use super::SignalsError;
+use crate::note::{About, Note};
 use crate::recording::Stream;
 use crate::stats::median;
 
@@ -61,10 +62,7 @@ pub(super) type Needed<'a> = (&'static str, &'static str, &'a Stream, f64);
 ///
 /// # Errors
 /// [`SignalsError::TooSlow`], which names each of those streams with its rate.
-pub(super) fn check(
-    needed: &[Needed<'_>],
-    airborne_s: &[(f64, f64)],
-) -> Result<Option<String>, SignalsError> {
+pub(super) fn check(needed: &[Needed<'_>], airborne_s: &[(f64, f64)]) -> Result<Option<Note>, SignalsError> {
     let in_air = needed.iter().filter_map(|(what, message, stream, least_hz)| {
         let rate_hz = flowing_rate_within_hz(stream, airborne_s)?;
         let told = format!("{what} ({message}) at {rate_hz:.1} Hz, expected {least_hz:.0} Hz at least");
@@ -76,10 +74,11 @@ pub(super) fn check(
         return Err(SignalsError::TooSlow { slow });
     }
     Ok((!slow.is_empty()).then(|| {
-        format!(
+        let text = format!(
             "sampled slowly: {slow}. Inertia may be off by several of its standard errors, and a lag cannot be told \
              from a delay; 100 Hz of each is good"
-        )
+        );
+        Note::remark(About::Sensors, text)
     }))
 }
 
@@ -120,7 +119,7 @@ mod tests {
         assert_eq!(check(&[outputs], &[]).unwrap(), None);
         // slow, but not hopeless: said
         let thin = stream(25.0, 60.0);
-        let said = check(&[needed("body rates", &thin)], &flight).unwrap().unwrap_or_default();
+        let said = check(&[needed("body rates", &thin)], &flight).unwrap().unwrap().text;
         assert!(said.contains("body rates (ATTITUDE) at 25.0 Hz, expected 38 Hz"), "{said}");
     }
 }

@@ -72,8 +72,9 @@ impl Safety {
         self.charge
     }
 
-    /// Some failsafe is active.
-    pub(super) fn is_active(&self) -> bool {
-        self.setpoints_lost || self.position_lost || self.overrides || self.charge == Charge::Critical
+    /// Some failsafe is active. ArduPilot counts a low battery among them, whatever BATT_FS_LOW_ACT makes of it.
+    pub(super) fn is_active(&self, px4: bool) -> bool {
+        let charge = if px4 { Charge::Critical } else { Charge::Low };
+        self.setpoints_lost || self.position_lost || self.overrides || self.charge >= charge
     }
 }

@@ -8,16 +8,20 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use graph::Graph;
+use proc_macro2::{TokenStream, TokenTree};
 
 /// Each stage, from the bottom, and all that it uses: no less, and no more.
 const LAYERS: &[(&str, &[&str])] = &[
     ("units", &[]),
+    ("files", &[]),
     // what others wrote, made harmless where it enters
     ("text", &[]),
     // of any series: nothing of flights, and no import
     ("stats", &[]),
     // autopilots as tables
     ("autopilot", &[]),
+    // what a stage has to say beside its result
+    ("note", &[]),
     ("frames", &[]),
     ("vehicle", &[]),
     ("trajectory", &["frames"]),
@@ -32,13 +36,14 @@ const LAYERS: &[(&str, &[&str])] = &[
     // frames over sockets and serial ports, and their recording
     ("link", &["text", "wire", "log"]),
     // vehicle: from actuator values to force
-    ("signals", &["stats", "autopilot", "vehicle", "recording"]),
+    ("signals", &["note", "stats", "autopilot", "vehicle", "recording"]),
     ("regression", &["signals"]),
-    ("estimate", &["stats", "vehicle", "physics", "signals", "regression"]),
+    ("estimate", &["note", "stats", "vehicle", "physics", "signals", "regression"]),
     (
         "inspect",
         &[
             "units",
+            "note",
             "stats",
             "autopilot",
             "vehicle",
@@ -77,10 +82,36 @@ const LAYERS: &[(&str, &[&str])] = &[
             "plan",
         ],
     ),
-    // config: a model file is a vehicle file
+    // a whole piece of work: opens files, calls the stages, collects what they say
+    (
+        "study",
+        &[
+            "note",
+            "units",
+            "text",
+            "vehicle",
+            "trajectory",
+            "physics",
+            "recording",
+            "wire",
+            "log",
+            "signals",
+            "regression",
+            "estimate",
+            "simulate",
+            "config",
+            "compare",
+            "plan",
+            "diagnose",
+        ],
+    ),
+    // config: a model file is a vehicle file. Of the stages it names what a study holds, and fits nothing
     (
         "report",
-        &["text", "vehicle", "physics", "signals", "regression", "estimate", "config", "compare", "diagnose"],
+        &[
+            "note", "text", "vehicle", "physics", "signals", "estimate", "inspect", "config", "compare",
+            "plan", "diagnose", "study",
+        ],
     ),
     ("export", &["units", "text", "vehicle", "physics"]),
     ("sitl", &["units", "autopilot", "frames", "vehicle", "fence", "physics", "wire", "link", "simulate"]),
@@ -88,6 +119,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         "fly",
         &[
             "units",
+            "files",
             "text",
             "autopilot",
             "frames",
@@ -338,6 +370,40 @@ fn imports_are_seen_however_they_are_written() {
                 #[cfg(test)]\nmod tests { use super::super::estimate; }";
     let names: Vec<String> = imports(text, 2).into_iter().collect();
     assert_eq!(names, ["estimate", "frames", "log", "units"]);
+}
+
+/// What is shown was found before: the report names nothing that fits, searches or computes a statistic.
+#[test]
+fn the_report_computes_nothing() {
+    const STAGES: [&str; 8] =
+        ["search", "fit", "Rows", "Trace", "paper_models", "Recording", "statrs", "rayon"];
+    let mut wrong = Vec::new();
+    for source in sources().iter().filter(|source| source.module == "report") {
+        let tokens: TokenStream = without_tests(&source.text).parse().unwrap();
+        let named = identifiers(tokens);
+        wrong.extend(
+            STAGES
+                .iter()
+                .filter(|stage| named.contains(**stage))
+                .map(|stage| format!("{}: {stage}", source.path)),
+        );
+    }
+    assert!(wrong.is_empty(), "the report is a view of a study, which holds this:\n{}", wrong.join("\n"));
+}
+
+/// Every identifier of the code, also inside of macros.
+fn identifiers(tokens: TokenStream) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for token in tokens {
+        match token {
+            TokenTree::Ident(name) => {
+                found.insert(name.to_string());
+            }
+            TokenTree::Group(group) => found.extend(identifiers(group.stream())),
+            TokenTree::Punct(_) | TokenTree::Literal(_) => {}
+        }
+    }
+    found
 }
 
 #[test]

@@ -111,6 +111,8 @@ class Vehicle:
                 message.command, result, 0, 0, message.get_srcSystem(), message.get_srcComponent())
         elif kind == "SET_POSITION_TARGET_LOCAL_NED":
             self.take(message)
+        elif kind == "TIMESYNC" and message.tc1 == 0:
+            self.link.mav.timesync_send(int(1e9 * self.now()) + 1, message.ts1)
         elif kind == "PARAM_REQUEST_READ":
             name = message.param_id
             if name in PARAMETERS:

@@ -11,7 +11,7 @@ use mavid::autopilot::Autopilot;
 use mavid::config::read_vehicle;
 use mavid::fly::parameters::Parameters;
 use mavid::fly::{
-    Action, Around, Cause, Course, Event, Feeding, Flight, FollowLaw, Note, Outcome, Setpoint,
+    Action, Around, Cause, Course, Event, Feeding, FirstQuestion, Flight, FollowLaw, Note, Outcome, Setpoint,
     SetpointBounds, Settings, Sortie, Streamed, Streamer,
 };
 use mavid::sitl::{Firmware, LinkId, LinkRole, Settings as VehicleSettings, Vehicle};
@@ -23,9 +23,17 @@ use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use tracing_subscriber::layer::SubscriberExt;
+use tracing_subscriber::util::SubscriberInitExt;
 
 /// Between two looks at the clock.
 const STEP: Duration = Duration::from_millis(10);
+
+/// Events of flights are written by this program's subscriber; one for all of its tests.
+pub fn write_events() {
+    static SUBSCRIBER: std::sync::Once = std::sync::Once::new();
+    SUBSCRIBER.call_once(|| tracing_subscriber::registry().with(mavid::fly::event_layer()).init());
+}
 
 /// What lies between two ends: loss, delay, and delay that differs from frame to frame.
 pub struct Way {
@@ -90,6 +98,8 @@ pub struct Flying {
     sequence: u8,
     /// of the vehicle's last frame
     pub heard_sequence: u8,
+    /// MAV_STATE of its last HEARTBEAT
+    pub system_status: u8,
 }
 
 /// A lively trajectory of a few seconds.
@@ -130,7 +140,11 @@ pub fn sortie(vehicle: &VehicleSettings) -> Sortie {
         system: None,
         may_arm: false,
         own_vehicle: vehicle.nonce,
-        settings: Settings { ready_timeout: Duration::from_secs(30), ..Settings::default() },
+        settings: Settings {
+            ready_timeout: Duration::from_secs(30),
+            first_question: FirstQuestion::of_seed(1),
+            ..Settings::default()
+        },
     }
 }
 
@@ -156,6 +170,7 @@ impl Flying {
             link,
             sequence: 0,
             heard_sequence: 0,
+            system_status: 0,
         }
     }
 
@@ -220,11 +235,23 @@ impl Flying {
             for bytes in self.down.take(self.now) {
                 let frame = Frame::at_start(&bytes).unwrap();
                 self.heard_sequence = frame.header().sequence;
+                if frame.header().message_id == 0 {
+                    self.system_status = frame.payload().u8(7);
+                }
                 self.event(Event::Frame(frame));
             }
             self.event(Event::Tick);
         }
         self.stream();
+    }
+
+    /// A message of the vehicle that somebody else asked for, and that comes down beside ours.
+    pub fn overhear(&mut self, message: &MavMessage) {
+        let mut raw = MAVLinkV2MessageRaw::new();
+        let header =
+            MavHeader { system_id: 1, component_id: 1, sequence: self.heard_sequence.wrapping_add(1) };
+        raw.serialize_message(header, message);
+        self.down.give(self.now, raw.raw_bytes().to_vec());
     }
 
     fn stream(&mut self) {

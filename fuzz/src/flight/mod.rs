@@ -12,7 +12,8 @@ use mavid::autopilot::{Autopilot, Mode};
 use mavid::config::parse_vehicle;
 use mavid::fly::parameters::Parameters;
 use mavid::fly::{
-    Action, Around, Course, Event, Flight, Key, Lift, Setpoint, Settings, Sortie, Streamed, Streamer,
+    Action, Around, Course, Event, FirstQuestion, Flight, Key, Lift, Setpoint, Settings, Sortie, Streamed,
+    Streamer,
 };
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
 use mavid::wire::Frame;
@@ -51,6 +52,7 @@ static SORTIE: LazyLock<(Sortie, Lift)> = LazyLock::new(|| {
         watch_max: Duration::from_secs(20),
         gone_after: Duration::from_secs(15),
         await_clearance: true,
+        first_question: FirstQuestion::of_seed(1),
         ..Settings::default()
     };
     let lift = Lift::new(&vehicle, &Parameters::default());
@@ -215,6 +217,12 @@ impl World {
 
     fn send(&mut self, message: &MavMessage) {
         self.laws.sent(self.now, message);
+        if let MavMessage::TIMESYNC(question) = message
+            && self.now >= self.silent[1]
+        {
+            let answer = self.vehicle.answer(question.ts1);
+            self.arrive(vec![answer]);
+        }
         let Some(command) = command_of(message) else { return };
         if command.command as u32 == SET_MODE {
             self.laws.asked_for(self.vehicle.asked_for(command));

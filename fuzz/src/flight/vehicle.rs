@@ -14,6 +14,7 @@ pub const TAKEOFF: u32 = 22;
 pub const SET_MODE: u32 = 176;
 pub const ARM: u32 = 400;
 const REQUEST_MESSAGE: u32 = 512;
+const TIMESYNC: u32 = 111;
 
 const CLIMB_M_S: f64 = 1.0;
 /// Between its messages: position and attitude, state, estimator.
@@ -126,6 +127,11 @@ impl Vehicle {
             _ => {}
         }
         answers
+    }
+
+    /// TIMESYNC that answers the question of this number.
+    pub fn answer(&mut self, number: i64) -> Vec<u8> {
+        self.say(TIMESYNC, &payload(16, &[(0, &1_i64.to_le_bytes()), (8, &number.to_le_bytes())]))
     }
 
     /// Goes on by a step and tells of itself.

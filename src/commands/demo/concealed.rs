@@ -5,11 +5,11 @@ use std::path::Path;
 use mavid::diagnose::Named;
 use mavid::physics::ActiveEffect;
 use mavid::report::with_error;
+use mavid::study::{effects_file, effects_text};
 use mavid::vehicle::Vehicle;
 use serde::Serialize;
 
 use crate::commands::CommandError;
-use crate::commands::effects::{effects_file, effects_text};
 
 /// The demo's own.
 const EFFECTS: &str = include_str!("../../../configs/demo/concealed.toml");
@@ -18,10 +18,10 @@ const ROTOR: &str = "rotor";
 
 /// What acts on the embedded vehicle: that of the file, or without one the demo's own.
 pub fn concealed(file: Option<&Path>, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
-    match file {
-        Some(file) => effects_file(file, vehicle),
-        None => effects_text(EFFECTS, "the demo's own effects", vehicle),
-    }
+    Ok(match file {
+        Some(file) => effects_file(file, vehicle)?,
+        None => effects_text(EFFECTS, "the demo's own effects", vehicle)?,
+    })
 }
 
 /// One parameter of a concealed effect beside what was found.

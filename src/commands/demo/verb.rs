@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use mavid::config::parse_vehicle;
 use mavid::fly::Ending;
+use mavid::report::explanation_answer;
 use mavid::text;
 use mavid::wire::SystemId;
 use serde::Serialize;
@@ -14,10 +15,10 @@ use super::embedded::Embedded;
 use super::progress::{self, Progress};
 use crate::cli::{CriterionName, DemoArgs, FlyArgs, OriginName, PlanArgs};
 use crate::commands::after_flight::Analysis;
-use crate::commands::explain::Explained;
 use crate::commands::live::{self, Work};
 use crate::commands::sitl::DEFAULT_VEHICLE;
 use crate::commands::standard_error::StandardError;
+use crate::commands::words::Word;
 use crate::commands::{CommandError, Outcome, fly, leftover, output, plan};
 
 /// The room, and how lively it is flown.
@@ -57,11 +58,11 @@ fn show(
     let done = story(args, &folder, (&progress, stderr, work));
     progress.end();
     let (record, analysis) = done?;
-    fly::say(&record);
+    fly::words(&record).iter().for_each(Word::say);
     // the verdict is written: only now is it read again what had been concealed
     let acting = concealed(args.effects.as_deref(), &vehicle)?;
     let explained = analysis.as_ref().and_then(|analysis| analysis.explained.as_ref().ok());
-    let rows = compare(&acting, explained.map_or(&[], Explained::named));
+    let rows = compare(&acting, explained.map_or(&[], |study| study.effects.as_slice()));
     let took_s = since.elapsed().as_secs_f64();
     if json {
         let flown = fly::Document::new(&record, &folder, analysis.as_ref());
@@ -69,12 +70,14 @@ fn show(
     } else {
         let report = analysis.as_ref().and_then(Analysis::report);
         let parts = [
-            explained.map(Explained::answer),
+            explained.map(explanation_answer),
             Some(table(&rows, &vehicle)),
             report.map(|path| format!("{took_s:.0} s; report: {}", text::path(&path))),
         ];
         output::text(&parts.into_iter().flatten().collect::<Vec<_>>().join("\n\n"))?;
     }
+    let remarks = analysis.as_ref().map(Analysis::remarks).unwrap_or_default();
+    remarks.iter().for_each(Word::say);
     fly::outcome(&record, analysis.as_ref())
 }
 
@@ -102,14 +105,15 @@ fn story(
     let watched = progress.clone();
     let record = fly::fly_it(ride, work, move |pictures, _| watched.follow(pictures));
     embedded.stop();
-    let record = record?;
+    let (record, _) = record?;
     let landed = record.outcome.ending == Ending::Landed;
     progress.stage("identifying and explaining", progress::LANDED);
-    let analysis = Analysis::of((folder, landed), &vehicle, record.system.map(|system| system.0))?;
+    let tell = &mut |word: Word| word.say();
+    let analysis = Analysis::of((folder, landed), &vehicle, record.system, tell)?;
     Ok((record, analysis))
 }
 
-/// That of the arguments, or the first that is free; made.
+/// Creates the folder of the arguments, or the first that is free.
 fn folder(args: &DemoArgs) -> Result<PathBuf, CommandError> {
     let numbered = (2_u32..).map(|number| PathBuf::from(format!("{FOLDER}-{number}")));
     let free = || std::iter::once(PathBuf::from(FOLDER)).chain(numbered).find(|path| !path.exists());

@@ -6,24 +6,15 @@ use mavid::config::{default_csv_mapping, load_csv_mapping, read_vehicle};
 use mavid::inspect::{Inspection, inspect_csv, inspect_tlog};
 use mavid::log::LoadOptions;
 use mavid::log::csv::read_csv;
+use mavid::report::{InspectionDocument, inspection_text};
 use mavid::text;
 use mavid::vehicle::Vehicle;
 use mavid::wire::SystemId;
-use serde::Serialize;
 
-use super::{page, progress};
+use super::progress;
 use crate::cli::InspectArgs;
 use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, Outcome, output};
-
-/// The JSON document.
-#[derive(Serialize)]
-struct Document<'a> {
-    schema: u32,
-    file: String,
-    #[serde(flatten)]
-    inspection: &'a Inspection,
-}
 
 /// Runs the verb.
 pub fn run(json: bool, stderr: &StandardError, args: &InspectArgs) -> Result<Outcome, CommandError> {
@@ -35,9 +26,9 @@ pub fn run(json: bool, stderr: &StandardError, args: &InspectArgs) -> Result<Out
     let inspection = inspect(stderr, args, vehicle)?;
     let file = text::path(&args.log);
     if json {
-        output::json(&Document { schema: 1, file, inspection: &inspection })?;
+        output::json(&InspectionDocument::new(&file, &inspection))?;
     } else {
-        output::text(&page::page(&file, &inspection))?;
+        output::text(&inspection_text(&file, &inspection))?;
     }
     Ok(if inspection.losses.is_empty() { Outcome::Done } else { Outcome::DoneWithLoss })
 }

@@ -54,10 +54,11 @@ impl Agreement {
     }
 }
 
-/// Certain: beyond this many standard errors.
+/// Standard errors beyond which a difference between the flights is certain.
 const SIGMAS: f64 = 8.0;
-/// And relevant: beyond this share of the mass, of a principal inertia.
+/// Least relevant difference, as a share of the mass.
 const MASS_SHARE: f64 = 0.08;
+/// Least relevant difference, as a share of a principal moment of inertia.
 const INERTIA_SHARE: f64 = 0.22;
 /// What it has of an effect that is its own, not the day's.
 const OF_THE_VEHICLE: [&str; 6] = [
@@ -74,7 +75,7 @@ const COM: &str = "com_offset.";
 const COM_M: f64 = 0.002;
 /// What even a fit of its own leaves is so many times what is left of the flights that were identified.
 const LEFT_RATIO: f64 = 4.0;
-/// And it shows: a channel's residual is this much larger than the held-out flight's own fit leaves.
+/// Least ratio of a channel's residual to the residual that the held-out flight's own fit leaves.
 const RESIDUAL_RATIO: f64 = 1.3;
 
 /// One linear step about the carried model gives the held-out flights' own values.

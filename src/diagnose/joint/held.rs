@@ -31,9 +31,9 @@ pub(super) struct Settled {
 const SAYS_NOTHING: f64 = 0.125;
 /// Share of a column that must be its own.
 const OWN: f64 = 1e-7;
-/// An effect's further parameters show only with it: standard errors from nothing.
+/// Standard errors by which an effect must stand out before its other parameters are estimated.
 const SEEN: f64 = 2.5;
-/// A drag along z that shows a wind along it, standard errors.
+/// Standard errors by which a drag along z must stand out to show a wind along z.
 const SHOWS_WIND: f64 = 4.0;
 
 /// Fits, holds what cannot be estimated, and fits again until all that is left is determined.

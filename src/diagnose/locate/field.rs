@@ -53,7 +53,7 @@ pub struct Uneven {
     pub spread: f64,
 }
 
-/// Smooth functions along one axis.
+/// Number of smooth functions along one axis.
 const HATS: usize = 7;
 /// Normal deviate of a field. Beyond that of a name: eight directions and places of six columns each are tried,
 /// and their largest on flights without a field reaches four.

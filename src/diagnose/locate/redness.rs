@@ -144,22 +144,22 @@ pub(super) fn weight_n(fitted: &Fitted) -> f64 {
     fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2
 }
 
-/// Likelihood ratio of redness.
+/// Least likelihood ratio of a red spectrum against a white one.
 pub(super) const RED_STATISTIC: f64 = 30.0;
 
-/// A red force is no force unless it is larger than this many times what the velocity's error makes.
+/// A red force must be this many times the force that the velocity's error makes.
 pub(super) const CONTRADICTED: f64 = 2.0;
 
-/// Likelihood ratio of a redness in what the force's two readings contradict each other by.
+/// Least likelihood ratio of a red spectrum in the difference of the two readings of force.
 const CONTRADICTION_STATISTIC: f64 = 10.0;
 
-/// Least rms of a red force, of the weight.
+/// Least rms of a red force, as a share of the weight.
 const RED_G: f64 = 0.002;
 
-/// Torque that forgets faster than this many of the rotors' lag is what commands did between two samples, behind the lag.
+/// Torque whose correlation time is below this many lags of the rotors comes from commands between two samples.
 const OF_JITTER: f64 = 2.0;
 
-/// Least torque of any kind, of the torque's rms.
+/// Least torque that counts, as a share of the rms of the torque.
 pub(super) const LEAST_TORQUE: f64 = 0.1;
 
 /// Correlation times that are tried, s: from the kernel's width to half a minute.

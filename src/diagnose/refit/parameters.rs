@@ -38,9 +38,9 @@ pub(super) struct Unknowns {
     slots: Vec<Slot>,
 }
 
-/// Where the latency stands among the unknowns.
+/// Index of the latency among the unknowns.
 const LATENCY: usize = THETA;
-/// And where the effects begin.
+/// Index of the first effect among the unknowns.
 const EFFECTS: usize = THETA + 1;
 
 impl Unknowns {

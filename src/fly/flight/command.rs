@@ -23,11 +23,15 @@ impl Flight {
     pub(super) fn command(&mut self, now: Duration) {
         if let Some((target, _)) = self.target() {
             let permission = self.permission();
-            let waits = self.commander.waits_for_report(now, permission);
-            if let Some(number) = self.known.asks(now, waits) {
-                let question = Order::request_message(HEARTBEAT);
+            let waits = self.commander.waits_for_report(now, permission) || self.known.is_in_doubt();
+            // before the flight it is seen that questions are answered at all
+            let tries = matches!(self.phase, Phase::Check(_)) && !self.known.has_answers();
+            if let Some(number) = self.known.asks(now, waits || tries) {
                 self.actions.push_back(Action::Send(timesync(number)));
-                self.actions.push_back(Action::Send(target.command(&question, 0)));
+                if waits {
+                    let question = Order::request_message(HEARTBEAT);
+                    self.actions.push_back(Action::Send(target.command(&question, 0)));
+                }
             }
             let (messages, answers) = self.commander.poll(now, target, permission);
             if let (Phase::Leave(leaving), Some((_, stack))) = (&mut self.phase, self.guide.target)

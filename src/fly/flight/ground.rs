@@ -26,6 +26,11 @@ const PRIME: Duration = Duration::from_millis(1500);
 const POSITION_FRESH: Duration = Duration::from_millis(500);
 /// A trajectory that starts further from the vehicle, m, is in the wrong place.
 const START_MAX_M: f64 = 5.0;
+/// A vehicle that is asked five times a second and has not answered for so long never does.
+const ANSWERS_WITHIN: Duration = Duration::from_secs(10);
+const NO_ANSWERS: &str = "expected an answer to TIMESYNC, got none within 10 s: without it, after a stall or a silence, an old \
+     report of the mode could not be told from a new one, and no abort could be ordered. PX4 and ArduPilot answer; \
+     let what lies on the way pass TIMESYNC";
 /// Where it says the release.
 const FLIGHT_SW_VERSION: usize = 16;
 /// Answers to questions come soon or not at all.
@@ -110,6 +115,12 @@ impl Flight {
         if let Some(Err(why)) = &self.clearance {
             let why = why.clone();
             self.end(now, Cause::Refused(why));
+            return;
+        }
+        if !self.known.has_answers() {
+            if now.saturating_sub(self.entered) > ANSWERS_WITHIN {
+                self.end(now, Cause::Refused(NO_ANSWERS.to_owned()));
+            }
             return;
         }
         let cleared = !self.sortie.settings.await_clearance || self.clearance.is_some();

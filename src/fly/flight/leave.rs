@@ -152,6 +152,14 @@ impl Flight {
         if self.left_by_others(now) {
             return;
         }
+        if let Phase::Leave(leaving) = &mut self.phase
+            && self.known.is_in_doubt()
+            && !leaving.is_ordered()
+        {
+            // what could not be ordered yet was not refused
+            leaving.wished = now;
+            return;
+        }
         let waited = now.saturating_sub(wished);
         let next = match wish {
             Mode::External | Mode::Hold if waited > HOLD_BY => Some(Mode::Land),

@@ -8,7 +8,7 @@ use crate::autopilot::Mode;
 use crate::fly::news::Novelty;
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::safety::Doubted;
-use crate::wire::{Check, Frame};
+use crate::wire::{Check, Frame, Payload};
 
 /// For a vehicle to fly our setpoints after its takeoff, and to say so.
 const TAKEN_OVER: Duration = Duration::from_millis(1500);
@@ -34,8 +34,9 @@ impl Flight {
         }
         let reports = contact.telemetry.mode_reports();
         let news = contact.telemetry.take(now, frame);
+        let place = contact.telemetry.place();
         if contact.telemetry.mode_reports() > reports {
-            self.known.report(now);
+            self.known.report(place);
         }
         if let (Phase::Gate, Some(lift)) = (&self.phase, &mut self.lift) {
             for outputs in contact.telemetry.outputs() {
@@ -52,7 +53,9 @@ impl Flight {
                 }
             }
             // TIMESYNC: what asks has zero in front
-            111 if frame.payload().u64(0) != 0 => self.known.answered(frame.payload().u64(8).cast_signed()),
+            111 if frame.payload().u64(0) != 0 && self.is_to_us(frame.payload(), 16) => {
+                self.known.answered(frame.payload().u64(8).cast_signed(), place);
+            }
             148 => self.version(now, frame.payload()),
             _ => {}
         }
@@ -60,6 +63,13 @@ impl Flight {
             self.learn(now, novelty);
         }
         self.check_motion(now);
+    }
+
+    /// The addressee at this offset is us, or nobody in particular: it is an extension that may be zero.
+    fn is_to_us(&self, payload: Payload<'_>, offset: usize) -> bool {
+        let (system, component) = self.sortie.settings.station;
+        let is = |byte: u8, id: u32| byte == 0 || u32::from(byte) == id;
+        is(payload.u8(offset), system.0) && is(payload.u8(offset + 1), component.0.into())
     }
 
     /// It has been heard without a break for long enough to fly what it is told.

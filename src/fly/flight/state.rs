@@ -84,6 +84,7 @@ impl Flight {
             tilt_planned_deg: deg_from_rad(sortie.course.tilt_max_rad(sortie.gravity_m_s2)),
             ..Flown::default()
         };
+        let known = ModeKnowledge::new(sortie.settings.first_question);
         Self {
             sortie,
             seeds: CrcSeeds::new(),
@@ -92,7 +93,7 @@ impl Flight {
             release: None,
             contact: None,
             commander: Commander::default(),
-            known: ModeKnowledge::default(),
+            known,
             suspected: None,
             unread: false,
             stepped: None,

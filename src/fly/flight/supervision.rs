@@ -24,8 +24,11 @@ const SOCKET_IS_READ: Duration = Duration::from_millis(500);
 const STILL_HEARD: Duration = Duration::from_millis(500);
 /// Innovation tests fail for an instant; an estimate bad for this long is bad.
 const ESTIMATOR_BAD: Duration = Duration::from_secs(1);
-/// An autopilot that declares an emergency changes its mode by itself, within this time.
-const FAILSAFE_ACTS: Duration = Duration::from_secs(1);
+/// An autopilot that declares a failsafe and leaves the mode as it is for so long has none for it that acts. Its battery's
+/// report, which may be what explains it, comes within this time.
+const FAILSAFE_ACTS: Duration = Duration::from_millis(2500);
+/// A termination (a kill switch, a parachute) that is declared for so long is none by a forged or damaged frame.
+const TERMINATES: Duration = Duration::from_secs(1);
 
 impl Flight {
     /// All rules that hold while the vehicle is ours.
@@ -119,10 +122,23 @@ impl Flight {
         if heard && now.saturating_sub(since) > POSITION_MAX {
             return Some(Cause::Estimator("no local position arrives".to_owned()));
         }
-        if self.watch.failsafe.update(now, telemetry.is_in_failsafe()) >= FAILSAFE_ACTS {
-            let said = telemetry.complaints_since(now.saturating_sub(Duration::from_secs(5))).join("; ");
+        self.check_declared(now)
+    }
+
+    /// What the autopilot declares by its system status. ArduPilot declares a failsafe whatever the failsafe does, and goes
+    /// on in our mode where it does nothing: somebody has to end the flight. A low battery has a rule of its own.
+    fn check_declared(&mut self, now: Duration) -> Option<Cause> {
+        let telemetry = &self.contact.as_ref()?.telemetry;
+        let status = telemetry.state?.value;
+        let said = || telemetry.complaints_since(now.saturating_sub(Duration::from_secs(5))).join("; ");
+        if self.watch.terminated.update(now, status.is_terminated()) >= TERMINATES {
+            return Some(Cause::Override(format!("flight termination is declared; it says \"{}\"", said())));
+        }
+        let explained = telemetry.battery_level() == BatteryLevel::Low;
+        if self.watch.failsafe.update(now, status.is_in_failsafe() && !explained) >= FAILSAFE_ACTS {
             return Some(Cause::Failsafe(format!(
-                "declared, and the mode is still ours; it says \"{said}\""
+                "declared, and the mode is still ours; it says \"{}\"",
+                said()
             )));
         }
         None
@@ -174,6 +190,12 @@ impl Flight {
             self.end(now, Cause::LinkLost(format!("{age_s:.1} s without {what} of the vehicle")));
             return;
         }
+        if let Some(unknown) = self.unanswered(now).filter(|unknown| *unknown > GIVE_UP_AFTER) {
+            let text =
+                format!("{:.1} s without an answer of the vehicle, which is heard", unknown.as_secs_f64());
+            self.end(now, Cause::LinkLost(text));
+            return;
+        }
         match (silent > PAUSE_AFTER, self.watch.paused_since) {
             (true, None) => {
                 self.watch.paused_since = Some(now);
@@ -197,12 +219,20 @@ impl Flight {
         }
     }
 
+    /// For how long a vehicle that is flown by us has been asked for its mode in vain.
+    fn unanswered(&self, now: Duration) -> Option<Duration> {
+        let resumed = self.contact.as_ref()?.telemetry.resumed;
+        let since = self.known.unknown_since().filter(|_| self.phase.is_ours())?;
+        Some(now.saturating_sub(since.max(resumed).max(self.watch.awake)))
+    }
+
     /// Nothing is heard of the vehicle: nothing is sent until it is, and then only where it is still in our mode.
     pub(super) fn lose(&mut self, now: Duration) {
         self.guide.lead = Lead::Silent;
         self.commander.clear();
         self.enter(now, Phase::Lost);
-        let text = "setpoints have ended; its own failsafe acts. If it is heard again in our mode, it is told to hold";
+        let text = "setpoints have ended; its own failsafe acts. Once it is heard and answers, and is still in our mode, it is \
+                    told to hold";
         self.note(now, Level::Warning, "link", text);
     }
 
@@ -223,6 +253,9 @@ impl Flight {
             // else it may have landed meanwhile, and the mode from before the silence need not be its mode still: it is asked
             self.note(now, Level::Warning, "link", "heard again, still in our mode: it is told to hold");
             self.begin_hold(now);
+        } else if now.saturating_sub(self.entered) > self.sortie.settings.watch_max {
+            let mode = self.mode_name();
+            self.finish(now, Ending::InTheAir(mode));
         }
     }
 

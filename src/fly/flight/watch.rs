@@ -18,6 +18,7 @@ pub(super) struct Watch {
     pub(super) masters: Masters,
     pub(super) envelope: Envelope,
     pub(super) failsafe: Sustained,
+    pub(super) terminated: Sustained,
     pub(super) unhealthy: Sustained,
     pub(super) paused_since: Option<Duration>,
     /// when this program last woke from a standstill of 0.3 s or more: what came meanwhile is not read at once
@@ -39,6 +40,7 @@ impl Watch {
             masters: Masters::new(settings.station.0, settings.station.1),
             envelope: Envelope::new(sortie.limits, settings.room_margin_m, tilt_max_rad),
             failsafe: Sustained::default(),
+            terminated: Sustained::default(),
             unhealthy: Sustained::default(),
             paused_since: None,
             awake: Duration::ZERO,

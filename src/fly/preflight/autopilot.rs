@@ -1,10 +1,10 @@
 //! The trajectory against what the autopilot makes of a setpoint. A limit that it exceeds makes the
 //! vehicle miss it, and the miss looks like physics that is not there.
 
-use super::Extremes;
 use crate::autopilot::Bounded;
 use crate::fly::finding::Finding;
 use crate::fly::parameters::Parameters;
+use crate::plan::Extremes;
 use crate::units::deg_from_rad;
 
 /// One limit: what it bounds, its parameter (older name), how many of its units make one of what is bounded, and what the

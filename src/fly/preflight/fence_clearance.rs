@@ -1,8 +1,9 @@
 //! The trajectory against the vehicle's own fence.
 
-use super::extremes::{place_and_velocity, samples};
+use super::stopping::place_and_velocity;
 use super::{Situation, Stopping};
 use crate::fly::finding::Finding;
+use crate::plan::path_samples;
 use nalgebra::Vector3;
 
 pub(super) fn findings(situation: &Situation<'_>, stopping: &Stopping) -> Vec<Finding> {
@@ -51,7 +52,7 @@ fn nearest(
     home: &Vector3<f64>,
 ) -> (Option<Nearest>, Option<Nearest>) {
     let (mut flown, mut stopped): (Option<Nearest>, Option<Nearest>) = (None, None);
-    for (time_s, entry) in samples(situation.path) {
+    for (time_s, entry) in path_samples(situation.path) {
         let (place, velocity) = place_and_velocity(&entry);
         let rest = stopping.rest(&place, &velocity);
         for (slot, place) in [(&mut flown, place), (&mut stopped, rest)] {

@@ -1,12 +1,13 @@
 //! The judgement of a flight before it begins, from all checks.
 
-use super::extremes::{Extremes, Stopping};
 use super::failsafes::failsafes;
 use super::page::Page;
 use super::situation::Situation;
+use super::stopping::Stopping;
 use super::{abandoned, autopilot, energy, fence_clearance, hover, readiness, room};
 use crate::fly::finding::Finding;
 use crate::fly::safety::Feeding;
+use crate::plan::Extremes;
 
 /// Checks everything; each finding says what was expected, what came, and what to do. The vehicle may
 /// be armed where none of them is a [`Level::Refusal`](crate::fly::finding::Level::Refusal).

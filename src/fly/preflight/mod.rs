@@ -4,7 +4,6 @@
 mod abandoned;
 mod autopilot;
 mod energy;
-mod extremes;
 mod failsafes;
 mod fence;
 mod fence_clearance;
@@ -15,9 +14,9 @@ mod page;
 mod readiness;
 mod room;
 mod situation;
+mod stopping;
 
 pub use energy::{BatteryState, SPARE_FACTOR};
-pub use extremes::{Extremes, Stopping};
 pub use fence::Fence;
 pub use fence_download::{FenceDownload, FenceOutcome};
 pub(crate) use hover::{HOVER, ROTORS};
@@ -25,3 +24,4 @@ pub use judgement::{Judged, judge, preflight};
 pub use page::Page;
 pub use readiness::{ESTIMATE_GOOD_FOR, Readiness};
 pub use situation::Situation;
+pub use stopping::Stopping;

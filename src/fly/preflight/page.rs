@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use super::extremes::samples;
+use super::Situation;
 use super::failsafes::TAKEOVER;
-use super::{Extremes, Situation};
 use crate::fly::finding::{Finding, Level};
+use crate::plan::{Extremes, path_samples};
 use crate::units::deg_from_rad;
 
 /// Columns of a drawing, and the rows of the one from above: letters are twice as high as wide.
@@ -99,7 +99,7 @@ fn drawing(situation: &Situation<'_>) -> Vec<String> {
     };
     let mut above = Canvas::new((-y, y), (-x, x), ROWS);
     let mut side = Canvas::new((-x, x), (0.0, z_max), ROWS / 2);
-    for (_, [x, y, z, _]) in samples(situation.path) {
+    for (_, [x, y, z, _]) in path_samples(situation.path) {
         above.mark((-y[0], x[0]), '.');
         side.mark((x[0], z[0]), '.');
     }

@@ -1,9 +1,9 @@
 //! The trajectory against the room and the vehicle's limits.
 
-use super::extremes::{place_and_velocity, samples};
+use super::stopping::place_and_velocity;
 use super::{Situation, Stopping};
 use crate::fly::finding::Finding;
-use crate::plan::{Dynamics, HEIGHT_ERROR_M, Margin, Quantity, bounds_of, check, floor_m};
+use crate::plan::{Dynamics, HEIGHT_ERROR_M, Margin, Quantity, bounds_of, check, floor_m, path_samples};
 use crate::vehicle::Limits;
 use nalgebra::Vector3;
 
@@ -65,7 +65,7 @@ fn walls(limits: &Limits) -> Option<Finding> {
 /// Whatever the limits say: no rotor comes near the ground along the path.
 fn floor(situation: &Situation<'_>) -> Option<Finding> {
     let floor_m = floor_m(situation.vehicle);
-    let heights = samples(situation.path).map(|(time_s, [_, _, z, _])| (z[0], time_s));
+    let heights = path_samples(situation.path).map(|(time_s, [_, _, z, _])| (z[0], time_s));
     let (lowest_m, time_s) = heights.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let expected = format!(
         "at least {floor_m:.2} m above the ground, the rotors' reach and {HEIGHT_ERROR_M} m of error in height"
@@ -123,7 +123,7 @@ fn refusal(margin: &Margin) -> Finding {
 fn braking(situation: &Situation<'_>, stopping: &Stopping) -> Option<Finding> {
     let limits = situation.limits;
     let mut worst: Option<(f64, f64, &'static str)> = None;
-    for (time_s, entry) in samples(situation.path) {
+    for (time_s, entry) in path_samples(situation.path) {
         let (place, velocity) = place_and_velocity(&entry);
         for (beyond_m, wall) in beyond(&stopping.rest(&place, &velocity), limits) {
             if beyond_m > 0.0 && worst.is_none_or(|(most, ..)| beyond_m > most) {

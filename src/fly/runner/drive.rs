@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, TrySendError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::clearance::Cleared;
+use super::clock::Clock;
 use super::estimating::Estimating;
 use super::event_layer::emit;
 use super::files::{EVENTS, PARAMETERS};
@@ -47,7 +48,7 @@ pub(super) struct Drive {
     supervisor: Supervisor,
     guide: SharedGuide,
     writer: LinkWriter,
-    clock: Instant,
+    clock: Clock,
     dir: PathBuf,
     estimating: Estimating,
     notes: Vec<Note>,
@@ -71,7 +72,7 @@ impl Drive {
         flight: Flight,
         guide: SharedGuide,
         writer: LinkWriter,
-        clock: Instant,
+        clock: Clock,
         (place, estimating): (Place, Estimating),
     ) -> Self {
         let mut model = ViewModel { title: place.vehicle.name.clone(), ..ViewModel::default() };

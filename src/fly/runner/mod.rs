@@ -10,6 +10,7 @@
 //! The live identification hears what the flight hears, on a thread of its own.
 
 mod clearance;
+mod clock;
 mod drive;
 mod error;
 mod estimating;
@@ -33,3 +34,5 @@ pub use priority::raise_priority;
 pub use ride::{Console, Record, Ride, run};
 pub use stream::{Due, StreamFigures, send_due};
 pub use supervisor::Supervisor;
+#[cfg(unix)]
+pub use termination::HangUp;

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 use std::sync::mpsc::SyncSender;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 use tokio::time::MissedTickBehavior;
 use tracing::Instrument;
 use tracing::instrument::WithSubscriber;
 
+use super::clock::Clock;
 use super::drive::{self, Drive};
 use super::error::RunError;
 use super::estimating::Estimating;
@@ -50,7 +51,7 @@ pub struct Ride {
     pub signing: Option<Signing>,
     /// an existing folder
     pub dir: PathBuf,
-    /// for tests: what stands still
+    /// for tests: what stands still or sleeps
     pub parking: Parking,
 }
 
@@ -110,12 +111,12 @@ async fn fly(ride: Ride, console: Console, subscription: Subscription) -> Result
         ..LinkOptions::default()
     };
     let (reader, writer) = Link::open(&ride.address, options).await?;
-    let clock = Instant::now();
+    let clock = Clock::start(ride.parking.clone());
     let guide = SharedGuide::new();
     let (stalled, stalls) = unbounded_channel();
     let period = ride.sortie.settings.setpoint_period;
-    let stream =
-        Stream::start(period, clock, guide.clone(), writer.clone(), stalled).map_err(make("a thread"))?;
+    let stream = Stream::start(period, clock.clone(), guide.clone(), writer.clone(), stalled)
+        .map_err(make("a thread"))?;
     let flight = Flight::new(ride.sortie);
     let (link, address) = (kind_of(&ride.address), ride.address.to_string());
     let place = drive::Place { dir: ride.dir, vehicle: ride.vehicle, link, address };

@@ -4,11 +4,12 @@ use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde::Serialize;
 use tokio::sync::mpsc::UnboundedSender;
 
+use super::clock::Clock;
 use super::priority::{cores_to_wait_on, raise_priority, stay_on};
 use crate::fly::safety::{Guide, Lead, Streamed, Streamer};
 use crate::link::{LinkStats, LinkWriter};
@@ -76,7 +77,7 @@ impl Stream {
     /// sends it.
     pub(super) fn start(
         period: Duration,
-        clock: Instant,
+        clock: Clock,
         guide: SharedGuide,
         writer: LinkWriter,
         stalled: UnboundedSender<Duration>,
@@ -133,7 +134,7 @@ impl Stream {
 struct Sender {
     turn: Mutex<Turn>,
     over: AtomicBool,
-    clock: Instant,
+    clock: Clock,
     guide: SharedGuide,
     writer: LinkWriter,
     stalled: UnboundedSender<Duration>,
@@ -170,7 +171,8 @@ impl Turn {
     fn send(&mut self, sender: &Sender, due: Duration) {
         let guide = sender.guide.get();
         let now = sender.clock.elapsed();
-        let ran = sender.writer.ran().saturating_duration_since(sender.clock);
+        // a sleep since then is seen by the guide's own time
+        let ran = now.saturating_sub(sender.writer.ran().elapsed());
         let came = send_due(&mut self.streamer, (now, ran), guide, &sender.writer);
         // the first of a stream starts the grid
         let made = matches!(came, Due::Sent | Due::Refused);

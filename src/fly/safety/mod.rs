@@ -12,7 +12,7 @@ mod tracking;
 pub use bounds::SetpointBounds;
 pub use envelope::Envelope;
 pub use feeding::Feeding;
-pub use knowledge::{Doubted, ModeKnowledge};
+pub use knowledge::{Doubted, FirstQuestion, ModeKnowledge};
 pub use masters::Masters;
 pub use stream::{Guide, Lead, Streamed, Streamer};
 pub use sustained::Sustained;

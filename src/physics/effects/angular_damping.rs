@@ -2,7 +2,7 @@
 
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `tau = -diag(bx, by, bz) w`: the inflow at each rotor changes as its hub rises and sinks.
+/// `tau = -diag(bx, by, bz) w`. The inflow at each rotor changes as its hub rises and sinks.
 #[derive(Debug, Clone, Copy)]
 pub struct AngularDamping;
 

@@ -2,9 +2,9 @@
 
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `T_i = T (V / V_full)^exponent`, reaction torque alike, because the rotors turn slower by the root of that;
-/// nothing where the voltage is not known, or the rotors' speed is. With speed in proportion to voltage the
-/// exponent is 2; with speed controlled by the ESC it is 0.
+/// `T_i = T (V / V_full)^exponent`. The reaction torque changes by the same factor, because the rotors turn slower by
+/// its square root. Nothing changes where the voltage is unknown or the rotor speeds are measured. The exponent is 2
+/// if the speed is proportional to the voltage, and 0 if the ESC controls the speed.
 #[derive(Debug, Clone, Copy)]
 pub struct BatterySag;
 

@@ -4,8 +4,9 @@ use nalgebra::{Vector2, Vector3};
 
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `M_i = (k / N) n_i e_z x (v_air + w x r_i)` at each hub, with `k` of the whole vehicle at hover. Drag that
-/// acts h above the centre of mass has the same form with `k = -h d`, so `k` may have either sign.
+/// `M_i = (k / N) n_i e_z x (v_air + w x r_i)` at each hub, where `k` is the coefficient of the whole vehicle at
+/// hover. Drag that acts at a height h above the centre of mass has the same form with `k = -h d`, so `k` may have
+/// either sign.
 ///
 /// Mahony, Kumar and Corke 2012; the form is RotorPy's `k_flap`.
 #[derive(Debug, Clone, Copy)]

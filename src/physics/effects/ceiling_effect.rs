@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// Thrust of the rotor at distance z below a ceiling at `height` over the ground times
-/// `1 / (1 - (1/a1) (R / (z + a2))^2)`.
+/// The thrust of a rotor is multiplied by `1 / (1 - (1/a1) (R / (z + a2))^2)`, where z is its distance below a
+/// ceiling at `height` over the ground.
 ///
 /// Sanchez-Cuevas et al. 2017.
 #[derive(Debug, Clone, Copy)]

@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// Every force at a hub turns about the true centre: `tau = sum (r_i - c) x F_i`, for thrust alone
-/// `-c x T e_z = (-c_y T, c_x T, 0)`. The state stays that of the true centre of mass, so nothing else moves.
-/// Its z acts only on forces across the thrust axis.
+/// Every force at a hub acts about the true centre of mass c: `tau = sum (r_i - c) x F_i`, which for thrust alone is
+/// `-c x T e_z = (-c_y T, c_x T, 0)`. The state is that of the true centre of mass, so nothing else changes. The z
+/// component acts only through forces across the thrust axis.
 #[derive(Debug, Clone, Copy)]
 pub struct ComOffset;
 

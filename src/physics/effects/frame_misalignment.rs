@@ -4,10 +4,10 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::physics::{Bounds, Effect, Hook, Measurement, Parameter, State};
 
-/// The reference's axes are turned against the world's by the rotation vector `(x, y, z)`, `p_world = R_e p`
-/// and `q_world = q_e q`: position, velocity and attitude are shown in its axes, the inertial unit is not
-/// affected. In the finer form only the share `with_attitude` of the rotation vector turns the attitude: none where
-/// the vehicle estimates its attitude by itself and takes only its position from outside.
+/// The axes of the reference are turned against those of the world by the rotation vector `(x, y, z)`:
+/// `p_world = R_e p` and `q_world = q_e q`. Position, velocity and attitude are given in its axes. The inertial unit
+/// is not affected. In the finer form, only the share `with_attitude` of the rotation vector turns the attitude. The
+/// share is zero for a vehicle that estimates its attitude alone and takes only its position from outside.
 #[derive(Debug, Clone, Copy)]
 pub struct FrameMisalignment;
 

@@ -4,13 +4,13 @@ use nalgebra::Vector3;
 
 use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// Thrust of the rotor at height z over the ground (world z = 0) times
-/// `1 / (1 - rho (R / 4z)^2) + Ca exp(-Cb z / R)`. With Ca = 0 the form of Cheeseman and Bennett 1955 (rho = 1
-/// for one rotor, more for several), with rho = 0 the exponential form; an estimate holds one of them at
-/// zero. In the finer form z is the height of the centre of mass plus `levelling` times the hub's height over it:
-/// with 1, as without it, the lower rotors of a banked vehicle are lifted more and it levels out, with 0 all are
-/// lifted alike; flow between the rotors makes it anything in between. The reaction torque stays, since the
-/// rotor's speed and drag do.
+/// The thrust of a rotor at height z over the ground (world z = 0) is multiplied by
+/// `1 / (1 - rho (R / 4z)^2) + Ca exp(-Cb z / R)`. With Ca = 0 this is the form of Cheeseman and Bennett 1955 (rho =
+/// 1 for one rotor, more for several). With rho = 0 it is the exponential form. An estimate holds one of them at
+/// zero. In the finer form, z is the height of the centre of mass plus `levelling` times the height of the hub over
+/// it. With 1, as without the finer form, the lower rotors of a banked vehicle are lifted more, and the vehicle
+/// levels out. With 0 all rotors are lifted equally. Flow between the rotors causes values in between. The reaction
+/// torque is unchanged, because speed and drag of the rotor are.
 ///
 /// Sanchez-Cuevas et al. 2017 (10.1155/2017/1823056) measured two to four times the first form.
 #[derive(Debug, Clone, Copy)]

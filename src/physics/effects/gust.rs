@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 
 use crate::physics::{Bounds, Effect, Hook, Input, Own, Parameter};
 
-/// Wind in each world axis as a sum of sines whose spectrum is that of a first-order Gauss-Markov process,
-/// `2 sigma^2 T / (1 + (w T)^2)`, so that it is smooth, repeatable by its seed and fits every integrator. A real
-/// gust does not repeat from run to run: what is estimated is `sigma` and `correlation_time`.
+/// The wind along each world axis is a sum of sines with the spectrum of a first-order Gauss-Markov process,
+/// `2 sigma^2 T / (1 + (w T)^2)`, where T is `correlation_time`. It is smooth, and the seed makes it repeatable. A
+/// real gust does not repeat, so an estimate gives `sigma` and `correlation_time` only.
 ///
 /// Dryden's longitudinal form, MIL-F-8785C.
 #[derive(Debug, Clone, Copy)]

@@ -4,8 +4,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::physics::{Bounds, Effect, Hook, Measurement, Parameter, State};
 
-/// Accelerometer and gyroscopes show body vectors turned by the rotation vector `(x, y, z)`; position and
-/// attitude do not.
+/// Accelerometer and gyroscopes measure body vectors turned by the rotation vector `(x, y, z)`. Position and attitude
+/// are not affected.
 #[derive(Debug, Clone, Copy)]
 pub struct ImuMisalignment;
 

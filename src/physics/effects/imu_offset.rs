@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::physics::{Bounds, Effect, Hook, Measurement, Parameter, State};
 
-/// `a = a_com + w' x r + w x (w x r)` for an accelerometer at `r` from the centre of mass.
+/// `a = a_com + w' x r + w x (w x r)` for an accelerometer at `r = (x, y, z)` from the centre of mass.
 #[derive(Debug, Clone, Copy)]
 pub struct ImuOffset;
 

@@ -2,9 +2,10 @@
 
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `F_i = -(kz / N) n_i (v_air + w x r_i)_z e_z` at each hub, with `kz` of the whole vehicle at hover: the blades
-/// meet the air at a smaller angle. The same term as the `dz` of rotor drag, which a report gives here.
-/// In the finer form the torque is `at_hubs` of that, 0 where a body's drag acts at the centre of mass.
+/// `F_i = -(kz / N) n_i (v_air + w x r_i)_z e_z` at each hub, where `kz` is the coefficient of the whole vehicle at
+/// hover: the airspeed along the axis reduces the angle of attack of the blades. This is the same term as `dz` of
+/// `linear_drag`. A report gives it here. In the finer form the torque is multiplied by `at_hubs`, which is 0 for the
+/// drag of a body at the centre of mass.
 ///
 /// Bangura and Mahony 2012; Svacha et al. 2017.
 #[derive(Debug, Clone, Copy)]

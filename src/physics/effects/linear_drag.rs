@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `F_i = -(D / N) n_i (v_air + w x r_i)` at hub `r_i`, with `D = diag(dx, dy, dz)` the drag of the
-/// whole vehicle at hover and `n_i` the rotor's speed over its hover speed; torque `r_i x F_i`.
-/// In the finer form the torque is `at_hubs` of that: 0 where the drag is the body's and acts at the centre of mass.
+/// `F_i = -(D / N) n_i (v_air + w x r_i)` at each hub `r_i`, where `D = diag(dx, dy, dz)` is the drag of the whole
+/// vehicle at hover and `n_i` is the rotor speed over its hover speed. The torque is `r_i x F_i`. In the finer form
+/// the torque is multiplied by `at_hubs`, which is 0 for the drag of a body at the centre of mass.
 ///
 /// Martin and Salaun 2010; Faessler et al. 2018 (arXiv 1712.02402).
 #[derive(Debug, Clone, Copy)]

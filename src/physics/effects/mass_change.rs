@@ -2,8 +2,8 @@
 
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// From `time` on the mass is `m + delta` at the same centre and inertia: all force `F` accelerates it by
-/// `F / (m + delta)`, which on the body of mass `m` is the force `-delta / (m + delta) F` beside it.
+/// From `time` on, the mass is `m + delta` with the same centre and inertia. The total force `F` then accelerates the
+/// vehicle by `F / (m + delta)`. For a body of mass `m` this is an additional force `-delta / (m + delta) F`.
 #[derive(Debug, Clone, Copy)]
 pub struct MassChange;
 

@@ -5,9 +5,9 @@ use crate::physics::{
 };
 use crate::vehicle::Propulsion;
 
-/// `Omega' = (Omega_command - Omega) / time_constant`, one state a rotor. In the finer form, with
-/// `time_constant_down`, `time_constant` is that of a rotor that speeds up and the other that of one that slows
-/// down: the motor drives it up, often only the air holds it back.
+/// `Omega' = (Omega_command - Omega) / time_constant`, with one state for each rotor. In the finer form,
+/// `time_constant` is that of a rotor that speeds up, and `time_constant_down` that of a rotor that slows down: the
+/// motor drives the rotor up, and often only the drag of the air slows it down.
 #[derive(Debug, Clone, Copy)]
 pub struct MotorLag;
 

@@ -4,8 +4,9 @@ use nalgebra::Vector3;
 
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `F = -|v_air| diag(cx, cy, cz) v_air` at the centre of mass; `c = rho CdA / 2` of a face. In the finer form
-/// `by_face` of it goes with each face's own speed, `F_i = -c_i |v_i| v_i`, as flat faces have it.
+/// `F = -|v_air| diag(cx, cy, cz) v_air` at the centre of mass, with `c = rho CdA / 2` of a face. In the finer form,
+/// the share `by_face` of the force depends on the speed along each axis alone, `F_i = -c_i |v_i| v_i`, as for flat
+/// faces.
 ///
 /// Hoerner 1965; ArduPilot's ballistic coefficients.
 #[derive(Debug, Clone, Copy)]

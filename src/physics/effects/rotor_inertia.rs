@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `tau = -(H' + w x H)` with `H = -jr sum s_i Omega_i e_z` and `s_i` the sign of the rotor's reaction torque about
-/// +z (a rotor that turns about -z pushes the body about +z): gyroscopic and spin-up torque together.
+/// `tau = -(H' + w x H)` with `H = -jr sum s_i Omega_i e_z`: gyroscopic and spin-up torque together. `s_i` is the
+/// sign of the reaction torque of the rotor about +z (a rotor that turns about -z pushes the body about +z).
 ///
 /// Bangura and Mahony 2012.
 #[derive(Debug, Clone, Copy)]

@@ -4,13 +4,13 @@ use nalgebra::Vector3;
 
 use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// A point mass on a taut massless cord of fixed length from the centre of mass. Own states: the unit
-/// vector `q` from vehicle to load and its rate, world. With `F` all force on the vehicle (world, gravity
-/// apart), the cord pulls with `T = M m / (M + m) (L |q'|^2 - q . F / M)` along `q`, and
-/// `L q'' = -(T q / m) - (F + T q) / M`.
+/// The load is a point mass on a taut massless cord of fixed length from the centre of mass. The states are the unit
+/// vector `q` from vehicle to load and its rate, in world axes. With `F` the total force on the vehicle (world,
+/// without gravity), the cord pulls with `T = M m / (M + m) (L |q'|^2 - q . F / M)` along `q`, and
+/// `L q'' = -(T q / m) - (F + T q) / M`. In the finer form the air damps the swing: `damping q'` is subtracted from
+/// `q''`.
 ///
-/// Sreenath, Lee and Kumar 2013, without torque, since the cord is at the centre of mass. In the finer form
-/// the air damps the swing: `q''` less `damping q'`.
+/// Sreenath, Lee and Kumar 2013, without torque, because the cord is at the centre of mass.
 #[derive(Debug, Clone, Copy)]
 pub struct SlungLoad;
 

@@ -4,7 +4,8 @@ use nalgebra::Vector3;
 
 use crate::physics::{Bounds, Effect, Hook, Input, Own, Parameter};
 
-/// Wind in the world frame; it acts through whatever depends on airspeed and does nothing without it.
+/// The air moves with this constant velocity in world axes. The wind acts through every effect that depends on the
+/// airspeed, and does nothing without one.
 #[derive(Debug, Clone, Copy)]
 pub struct SteadyWind;
 

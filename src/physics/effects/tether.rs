@@ -4,11 +4,11 @@ use nalgebra::Vector3;
 
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// The line that was lifted weighs `line_mass` per metre of height, and beyond `length` from the anchor at the
-/// world's origin it pulls back like a spring: `F = -line_mass z (g + carried a_z) e_z - stiffness (|p| - length)+ p / |p|`,
-/// at the centre of mass. `carried`, in the finer form and else zero, is the share of the line that goes up and down
-/// with the vehicle: a line that hangs free does, one that is paid out does not. The acceleration a_z is that which the
-/// rotors give vehicle and line.
+/// The lifted part of the line weighs `line_mass` per metre of height. Beyond `length` from its anchor at the origin
+/// of the world, the line pulls back like a spring:
+/// `F = -line_mass z (g + carried a_z) e_z - stiffness (|p| - length)+ p / |p|` at the centre of mass. `carried`, in
+/// the finer form, is the share of the line that moves up and down with the vehicle: 1 for a line that hangs free, 0
+/// (the default) for one that is paid out. a_z is the acceleration that the rotors give vehicle and line.
 #[derive(Debug, Clone, Copy)]
 pub struct Tether;
 

@@ -2,13 +2,14 @@
 
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `T_i = T + 2 T_hover s (s - 1) (c + e (s - 1))` with `s = sqrt(T / T_hover)`, the speed that the law says over that of
-/// hover: nothing at hover, where the scale is known, and a slope there of `1 + c` times that of the law; reaction
-/// torque alike. In the finer form the curve has a `bow` e of its own.
+/// `T_i = T + 2 T_hover s (s - 1) (c + e (s - 1))` with `s = sqrt(T / T_hover)`, the speed that the thrust law gives
+/// over that of hover, and c the `curvature`. Nothing changes at hover, where the scale is known. The slope there is
+/// `1 + c` times that of the law. The reaction torque changes by the same factor. In the finer form the curve has in
+/// addition a `bow` e.
 ///
 /// A thrust with a share f of the square of the command and `1 - f` of the command itself, as PX4's THR_MDL_FAC and
-/// ArduPilot's MOT_THST_EXPO have it, is `c = (f - 1) / 2` of a law with the square alone (f for commands relative to
-/// hover).
+/// ArduPilot's MOT_THST_EXPO have it, corresponds to `c = (f - 1) / 2` of a law with the square alone (f for commands
+/// relative to hover).
 #[derive(Debug, Clone, Copy)]
 pub struct ThrustCurve;
 

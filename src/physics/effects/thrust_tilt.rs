@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `F_i = T_i (b_y, -b_x, 0)` at each hub beside the thrust: the rotor plane turned by the small angles `x`, `y`
-/// about the body's axes.
+/// `F_i = T_i (b_y, -b_x, 0)` at each hub in addition to the thrust: the rotor plane is turned by the small angles
+/// `b_x` = `x` and `b_y` = `y` about the axes of the body.
 #[derive(Debug, Clone, Copy)]
 pub struct ThrustTilt;
 

@@ -2,7 +2,8 @@
 
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `F_i = (kh / N) ((v_air + w x r_i)_x^2 + (..)_y^2) e_z` at each hub, with `kh` of the whole vehicle.
+/// `F_i = (kh / N) ((v_air + w x r_i)_x^2 + (..)_y^2) e_z` at each hub, where `kh` is the coefficient of the whole
+/// vehicle.
 ///
 /// Faessler et al. 2018 (arXiv 1712.02402); Svacha et al. 2017.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,7 @@
 
 use crate::physics::{Bounds, Effect, Hook, Parameter};
 
-/// What acts now was commanded `delay` ago: `u(t - d)`, an exact shift of the commands, no filter.
+/// The commands `u(t - delay)` act at time t: an exact shift, no filter.
 #[derive(Debug, Clone, Copy)]
 pub struct TransportDelay;
 

@@ -3,12 +3,12 @@
 use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 use crate::units::AIR_DENSITY_KG_M3;
 
-/// `F_i = -loss T_i e(x) e_z` at each hub, with `x = v_z / v_h` the climb over the induced velocity of hover,
-/// `v_h = sqrt(T_i / (2 rho A))`. `e(x)` is by how much Leishman's measured induced velocity exceeds that of
-/// momentum theory, `k(x) / k(0) - (sqrt(x^2/4 + 1) - x/2)`, where it does, that is above x = -1.45, and once the
-/// ring has formed: not above x = -0.4, and smoothly from there to x = -0.6. It is 0.09 where it is largest, at
-/// x = -1.1, and fades with lateral airspeed, which carries the ring away, as `1 / (1 + (v_xy / v_h)^2)`. The
-/// fluctuation that goes with it is not modelled.
+/// `F_i = -loss T_i e(x) e_z` at each hub, where `x = v_z / v_h` is the climb rate over the induced velocity of
+/// hover, `v_h = sqrt(T_i / (2 rho A))`. `e(x)` is the excess of the induced velocity that Leishman measured over
+/// that of momentum theory, `k(x) / k(0) - (sqrt(x^2/4 + 1) - x/2)`, where it is positive (x above -1.45) and where
+/// the ring has formed: it is zero above x = -0.4 and grows smoothly from there to x = -0.6. Its largest value is
+/// 0.09, at x = -1.1. Lateral airspeed carries the ring away and reduces the effect by `1 / (1 + (v_xy / v_h)^2)`.
+/// The fluctuation of the thrust is not modelled.
 ///
 /// Leishman 2006, section 2.13.
 #[derive(Debug, Clone, Copy)]

@@ -2,8 +2,8 @@
 
 use crate::physics::{Bounds, Condition, Effect, Hook, MAX_ROTORS, Own, Parameter, Rotors, Wrench};
 
-/// `T_i = factor T` and its reaction torque for the rotor of this number, counted from 0 in the order of the
-/// vehicle's rotors.
+/// `T_i = factor T`, and the reaction torque changes by the same factor, for the rotor of this number. Rotors are
+/// counted from 0 in the order of the vehicle file.
 #[derive(Debug, Clone, Copy)]
 pub struct WeakRotor;
 

@@ -1,9 +1,9 @@
 //! Horizontal bars, several series a name.
 
 use super::colour::colour;
-use super::frame::{WIDTH, framed};
-use crate::text::markup;
-use std::fmt::Write;
+use super::frame::{WIDTH, framed, tenths};
+use crate::report::number::significant;
+use maud::{Markup, html};
 
 /// Bars from zero to the right.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -27,53 +27,41 @@ const SPACE: f64 = 8.0;
 impl Bars {
     /// An element for a page.
     #[must_use]
-    pub fn inline(&self) -> String {
+    pub fn inline(&self) -> Markup {
         let group = BAR * self.series.len() as f64 + SPACE;
         let height = TOP + group * self.names.len() as f64 + 8.0;
-        framed(height, &self.title, &mut |out| self.draw(out, group))
+        framed(height, &self.title, &self.drawing(group))
     }
 
-    fn draw(&self, out: &mut String, group: f64) {
-        let all = self.series.iter().flat_map(|(.., values)| values).filter(|value| value.is_finite());
-        let most = all.fold(f64::MIN_POSITIVE, |most, value| most.max(*value));
-        let _ = write!(out, r#"<text x="8" y="16" font-weight="bold">{}</text>"#, markup(&self.title));
-        for (place, name) in self.names.iter().enumerate() {
-            let y = TOP + group * place as f64;
-            let _ = write!(
-                out,
-                r#"<text x="{}" y="{:.1}" text-anchor="end">{}</text>"#,
-                LEFT - 8.0,
-                y + group / 2.0,
-                markup(name)
-            );
-            for (index, (_, hue, values)) in self.series.iter().enumerate() {
-                let Some(value) = values.get(place).filter(|value| value.is_finite()) else { continue };
-                let wide = (WIDTH - LEFT - RIGHT) * (value / most).max(0.0);
-                let top = y + BAR * index as f64;
-                let _ = write!(
-                    out,
-                    r#"<rect x="{LEFT}" y="{top:.1}" width="{wide:.1}" height="{}" fill="{}"/><text x="{:.1}" y="{:.1}" font-size="9">{} {}</text>"#,
-                    BAR - 1.5,
-                    colour(*hue),
-                    LEFT + wide + 4.0,
-                    top + BAR - 3.0,
-                    crate::report::number::significant(*value, 2),
-                    markup(&self.unit)
-                );
+    fn drawing(&self, group: f64) -> Markup {
+        html! {
+            text x="8" y="16" font-weight="bold" { (self.title) }
+            @for (place, name) in self.names.iter().enumerate() {
+                (self.group(place, name, TOP + group * place as f64, group))
+            }
+            @for (index, (label, hue, _)) in self.series.iter().enumerate() {
+                @let y = TOP + 4.0 + 16.0 * index as f64;
+                rect x=(WIDTH - RIGHT + 44.0) y=(y - 7.0) width="16" height="8" fill=(colour(*hue)) {}
+                text x=(WIDTH - RIGHT + 64.0) y=(y) { (label) }
             }
         }
-        for (index, (label, hue, _)) in self.series.iter().enumerate() {
-            let y = TOP + 4.0 + 16.0 * index as f64;
-            let _ = write!(
-                out,
-                r#"<rect x="{}" y="{}" width="16" height="8" fill="{}"/><text x="{}" y="{}">{}</text>"#,
-                WIDTH - RIGHT + 44.0,
-                y - 7.0,
-                colour(*hue),
-                WIDTH - RIGHT + 64.0,
-                y,
-                markup(label)
-            );
+    }
+
+    /// A name with one bar a series.
+    fn group(&self, place: usize, name: &str, y: f64, group: f64) -> Markup {
+        let all = self.series.iter().flat_map(|(.., values)| values).filter(|value| value.is_finite());
+        let most = all.fold(f64::MIN_POSITIVE, |most, value| most.max(*value));
+        let bars = self.series.iter().enumerate().filter_map(|(index, (_, hue, values))| {
+            let value = *values.get(place).filter(|value| value.is_finite())?;
+            let wide = (WIDTH - LEFT - RIGHT) * (value / most).max(0.0);
+            Some((y + BAR * index as f64, wide, *hue, format!("{} {}", significant(value, 2), self.unit)))
+        });
+        html! {
+            text x=(LEFT - 8.0) y=(tenths(y + group / 2.0)) text-anchor="end" { (name) }
+            @for (top, wide, hue, value) in bars {
+                rect x=(LEFT) y=(tenths(top)) width=(tenths(wide)) height=(BAR - 1.5) fill=(colour(hue)) {}
+                text x=(tenths(LEFT + wide + 4.0)) y=(tenths(top + BAR - 3.0)) font-size="9" { (value) }
+            }
         }
     }
 }

@@ -2,9 +2,9 @@
 
 use super::axis::Axis;
 use super::colour::colour;
-use super::frame::WIDTH;
+use super::frame::{WIDTH, tenths};
 use super::panel::{Band, Line, Panel, Stroke};
-use crate::text::markup;
+use maud::{Markup, html};
 use std::fmt::Write;
 
 /// Dots.
@@ -35,7 +35,7 @@ impl Sheet {
     }
 }
 
-pub(super) fn panel(out: &mut String, panel: &Panel) {
+pub(super) fn drawing(panel: &Panel) -> Markup {
     let xs = panel.lines.iter().flat_map(|line| &line.x).chain(panel.bands.iter().flat_map(|band| &band.x));
     let ys = panel.lines.iter().flat_map(|line| &line.y);
     let ys = ys.chain(panel.bands.iter().flat_map(|band| band.low.iter().chain(&band.high)));
@@ -43,69 +43,59 @@ pub(super) fn panel(out: &mut String, panel: &Panel) {
         x: Axis::covering(xs.copied(), 0.0, panel.log.0),
         y: Axis::covering(ys.copied(), 0.05, panel.log.1),
     };
-    words(out, panel);
-    for [from, to] in &panel.spans {
-        if let (Some(from), Some(to)) = (sheet.x_at(*from), sheet.x_at(*to)) {
-            let (from, to) = (from.max(LEFT), to.min(LEFT + Sheet::WIDE));
-            let _ = write!(
-                out,
-                r##"<rect class="span" x="{from:.1}" y="{TOP}" width="{:.1}" height="{}" fill="#e69f00" fill-opacity="0.22"/>"##,
-                (to - from).max(1.0),
-                Sheet::HIGH
-            );
+    html! {
+        (words(panel))
+        @for span in &panel.spans { (shading(&sheet, *span)) }
+        (grid(&sheet))
+        @for band in &panel.bands { (band_path(&sheet, band)) }
+        @for (index, line) in panel.lines.iter().enumerate() {
+            (line_path(&sheet, line, colour(line.colour.unwrap_or(index))))
         }
+        (legend(panel))
     }
-    grid(out, &sheet);
-    panel.bands.iter().for_each(|band| draw_band(out, &sheet, band));
-    for (index, line) in panel.lines.iter().enumerate() {
-        draw_line(out, &sheet, line, colour(line.colour.unwrap_or(index)));
-    }
-    legend(out, panel);
 }
 
-fn words(out: &mut String, panel: &Panel) {
-    let _ = write!(
-        out,
-        r#"<text x="{LEFT}" y="16" font-weight="bold">{}</text><text x="{}" y="{}" text-anchor="middle">{}</text><text transform="translate(14 {}) rotate(-90)" text-anchor="middle">{}</text>"#,
-        markup(&panel.title),
-        LEFT + Sheet::WIDE / 2.0,
-        HEIGHT - 6.0,
-        markup(&panel.x_label),
-        TOP + Sheet::HIGH / 2.0,
-        markup(&panel.y_label)
-    );
+fn words(panel: &Panel) -> Markup {
+    let (middle_x, middle_y) = (LEFT + Sheet::WIDE / 2.0, TOP + Sheet::HIGH / 2.0);
+    html! {
+        text x=(LEFT) y="16" font-weight="bold" { (panel.title) }
+        text x=(middle_x) y=(HEIGHT - 6.0) text-anchor="middle" { (panel.x_label) }
+        text transform={ "translate(14 " (middle_y) ") rotate(-90)" } text-anchor="middle" { (panel.y_label) }
+    }
 }
 
-fn grid(out: &mut String, sheet: &Sheet) {
-    for (value, text) in sheet.x.ticks() {
-        let Some(x) = sheet.x_at(value) else { continue };
-        let _ = write!(
-            out,
-            r#"<path d="M{x:.1} {TOP}v{}" stroke="currentColor" stroke-opacity="0.12"/><text x="{x:.1}" y="{}" text-anchor="middle">{text}</text>"#,
-            Sheet::HIGH,
-            TOP + Sheet::HIGH + 14.0
-        );
+/// A stretch of the abscissa.
+fn shading(sheet: &Sheet, [from, to]: [f64; 2]) -> Markup {
+    let (Some(from), Some(to)) = (sheet.x_at(from), sheet.x_at(to)) else { return Markup::default() };
+    let (from, to) = (from.max(LEFT), to.min(LEFT + Sheet::WIDE));
+    html! {
+        rect.span x=(tenths(from)) y=(TOP) width=(tenths((to - from).max(1.0))) height=(Sheet::HIGH)
+            fill="#e69f00" fill-opacity="0.22" {}
     }
-    for (value, text) in sheet.y.ticks() {
-        let Some(share) = sheet.y.share(value) else { continue };
-        let y = TOP + Sheet::HIGH * (1.0 - share);
-        let _ = write!(
-            out,
-            r#"<path d="M{LEFT} {y:.1}h{}" stroke="currentColor" stroke-opacity="0.12"/><text x="{}" y="{:.1}" text-anchor="end">{text}</text>"#,
-            Sheet::WIDE,
-            LEFT - 5.0,
-            y + 4.0
-        );
-    }
-    let _ = write!(
-        out,
-        r#"<rect x="{LEFT}" y="{TOP}" width="{}" height="{}" fill="none" stroke="currentColor" stroke-opacity="0.5"/>"#,
-        Sheet::WIDE,
-        Sheet::HIGH
-    );
 }
 
-fn draw_band(out: &mut String, sheet: &Sheet, band: &Band) {
+fn grid(sheet: &Sheet) -> Markup {
+    let upright = sheet.x.ticks().into_iter().filter_map(|(value, text)| Some((sheet.x_at(value)?, text)));
+    let level = sheet
+        .y
+        .ticks()
+        .into_iter()
+        .filter_map(|(value, text)| Some((TOP + Sheet::HIGH * (1.0 - sheet.y.share(value)?), text)));
+    html! {
+        @for (x, text) in upright {
+            path d={ "M" (tenths(x)) " " (TOP) "v" (Sheet::HIGH) } stroke="currentColor" stroke-opacity="0.12" {}
+            text x=(tenths(x)) y=(TOP + Sheet::HIGH + 14.0) text-anchor="middle" { (text) }
+        }
+        @for (y, text) in level {
+            path d={ "M" (LEFT) " " (tenths(y)) "h" (Sheet::WIDE) } stroke="currentColor" stroke-opacity="0.12" {}
+            text x=(LEFT - 5.0) y=(tenths(y + 4.0)) text-anchor="end" { (text) }
+        }
+        rect x=(LEFT) y=(TOP) width=(Sheet::WIDE) height=(Sheet::HIGH) fill="none" stroke="currentColor"
+            stroke-opacity="0.5" {}
+    }
+}
+
+fn band_path(sheet: &Sheet, band: &Band) -> Markup {
     let place = |(x, y): (&f64, &f64)| sheet.at(*x, *y);
     let up: Vec<(f64, f64)> = band.x.iter().zip(&band.high).filter_map(place).collect();
     let down: Vec<(f64, f64)> = band.x.iter().zip(&band.low).rev().filter_map(place).collect();
@@ -113,12 +103,12 @@ fn draw_band(out: &mut String, sheet: &Sheet, band: &Band) {
     for (x, y) in up.iter().chain(&down) {
         let _ = write!(path, "{}{x:.1} {y:.1}", if path.is_empty() { 'M' } else { 'L' });
     }
-    if !path.is_empty() {
-        let _ = write!(out, r#"<path d="{path}Z" fill="{}" fill-opacity="0.2"/>"#, colour(band.colour));
+    html! {
+        @if !path.is_empty() { path d={ (path) "Z" } fill=(colour(band.colour)) fill-opacity="0.2" {} }
     }
 }
 
-fn draw_line(out: &mut String, sheet: &Sheet, line: &Line, colour: &str) {
+fn line_path(sheet: &Sheet, line: &Line, colour: &str) -> Markup {
     let mut path = String::new();
     let mut broken = true;
     for (x, y) in line.x.iter().zip(&line.y) {
@@ -134,33 +124,39 @@ fn draw_line(out: &mut String, sheet: &Sheet, line: &Line, colour: &str) {
         };
         broken = false;
     }
-    let how = match line.stroke {
-        Stroke::Solid => r#"stroke-width="1.4""#,
-        Stroke::Dashed => r#"stroke-width="1.4" stroke-dasharray="5 3""#,
-        Stroke::Stems => r#"stroke-width="2""#,
-    };
-    let _ = write!(out, r#"<path d="{path}" fill="none" stroke="{colour}" {how}/>"#);
+    let width = if line.stroke == Stroke::Stems { "2" } else { "1.4" };
+    html! {
+        path d=(path) fill="none" stroke=(colour) stroke-width=(width) stroke-dasharray=[dashes(line.stroke)] {}
+    }
 }
 
-fn legend(out: &mut String, panel: &Panel) {
-    let x = LEFT + Sheet::WIDE + 8.0;
-    let mut y = TOP + 10.0;
-    let mut entry = |mark: &str, label: &str| {
-        let short: String = label.chars().take(LEGEND_LETTERS).collect();
-        let _ = write!(
-            out,
-            r#"<g transform="translate({x} {y})">{mark}<text x="20" y="4">{}</text></g>"#,
-            markup(&short)
-        );
-        y += 16.0;
-    };
-    for (index, line) in panel.lines.iter().enumerate().filter(|(_, line)| !line.label.is_empty()) {
-        let dashes = if line.stroke == Stroke::Dashed { r#" stroke-dasharray="5 3""# } else { "" };
-        let colour = colour(line.colour.unwrap_or(index));
-        entry(&format!(r#"<path d="M0 0h16" stroke="{colour}" stroke-width="2"{dashes}/>"#), &line.label);
-    }
+/// The pattern of a broken line.
+fn dashes(stroke: Stroke) -> Option<&'static str> {
+    (stroke == Stroke::Dashed).then_some("5 3")
+}
+
+fn legend(panel: &Panel) -> Markup {
+    let lines = panel.lines.iter().enumerate().filter(|(_, line)| !line.label.is_empty());
+    let mut entries: Vec<(Markup, &str)> = lines
+        .map(|(index, line)| {
+            let mark = html! {
+                path d="M0 0h16" stroke=(colour(line.colour.unwrap_or(index))) stroke-width="2"
+                    stroke-dasharray=[dashes(line.stroke)] {}
+            };
+            (mark, line.label.as_str())
+        })
+        .collect();
     if !panel.spans.is_empty() && !panel.spans_label.is_empty() {
-        let mark = r##"<rect y="-5" width="16" height="10" fill="#e69f00" fill-opacity="0.3"/>"##;
-        entry(mark, &panel.spans_label);
+        let mark = html! { rect y="-5" width="16" height="10" fill="#e69f00" fill-opacity="0.3" {} };
+        entries.push((mark, &panel.spans_label));
+    }
+    let x = LEFT + Sheet::WIDE + 8.0;
+    html! {
+        @for (index, (mark, label)) in entries.iter().enumerate() {
+            g transform={ "translate(" (x) " " (TOP + 10.0 + 16.0 * index as f64) ")" } {
+                (mark)
+                text x="20" y="4" { (label.chars().take(LEGEND_LETTERS).collect::<String>()) }
+            }
+        }
     }
 }

@@ -1,17 +1,21 @@
 //! The frame of a chart in a page: its width, and its title for those who cannot see it.
 
-use crate::text::markup;
+use maud::{Markup, html};
 
 /// Dots.
 pub(super) const WIDTH: f64 = 640.0;
 
 /// An element for a page with a title for those who cannot see it.
-pub(super) fn framed(height: f64, title: &str, draw: &mut dyn FnMut(&mut String)) -> String {
-    let mut out = format!(
-        r#"<svg viewBox="0 0 {WIDTH} {height:.0}" role="img" fill="currentColor"><title>{}</title>"#,
-        markup(title)
-    );
-    draw(&mut out);
-    out.push_str("</svg>\n");
-    out
+pub(super) fn framed(height: f64, title: &str, drawing: &Markup) -> Markup {
+    html! {
+        svg viewBox={ "0 0 " (WIDTH) " " (height.round()) } role="img" fill="currentColor" {
+            title { (title) }
+            (drawing)
+        }
+    }
+}
+
+/// A place to a tenth of a dot.
+pub(super) fn tenths(value: f64) -> String {
+    format!("{value:.1}")
 }

@@ -1,9 +1,8 @@
 //! Rows of cells along time, darker where more is.
 
 use super::axis::Axis;
-use super::frame::{WIDTH, framed};
-use crate::text::markup;
-use std::fmt::Write;
+use super::frame::{WIDTH, framed, tenths};
+use maud::{Markup, html};
 
 /// Heat along an abscissa.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -24,59 +23,48 @@ const LEFT: f64 = 130.0;
 const RIGHT: f64 = 20.0;
 const TOP: f64 = 26.0;
 const ROW: f64 = 16.0;
+/// What is fainter is not drawn.
+const LEAST_DARK: f64 = 0.02;
 
 impl Strip {
     /// An element for a page.
     #[must_use]
-    pub fn inline(&self) -> String {
+    pub fn inline(&self) -> Markup {
         let height = TOP + ROW * self.rows.len() as f64 + 40.0;
-        framed(height, &self.title, &mut |out| self.draw(out))
+        framed(height, &self.title, &self.drawing())
     }
 
-    fn draw(&self, out: &mut String) {
+    fn drawing(&self) -> Markup {
+        let wide = WIDTH - LEFT - RIGHT;
+        let cell = wide / self.x.len().max(1) as f64;
+        let high = ROW * self.rows.len() as f64;
         let axis = Axis::covering(self.x.iter().copied(), 0.0, false);
-        let cell = (WIDTH - LEFT - RIGHT) / self.x.len().max(1) as f64;
-        let bottom = TOP + ROW * self.rows.len() as f64;
-        let _ = write!(out, r#"<text x="8" y="16" font-weight="bold">{}</text>"#, markup(&self.title));
-        for (place, (name, values)) in self.rows.iter().enumerate() {
-            let y = TOP + ROW * place as f64;
-            let _ = write!(
-                out,
-                r#"<text x="{}" y="{:.1}" text-anchor="end">{}</text>"#,
-                LEFT - 8.0,
-                y + 12.0,
-                markup(name)
-            );
-            for (index, value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
-                let dark = (value / self.full).clamp(0.0, 1.0);
-                if dark > 0.02 {
-                    let _ = write!(
-                        out,
-                        r##"<rect x="{:.1}" y="{y}" width="{:.1}" height="{}" fill="#d55e00" fill-opacity="{dark:.2}"/>"##,
-                        LEFT + cell * index as f64,
-                        cell + 0.3,
-                        ROW - 2.0
-                    );
-                }
+        let ticks = axis
+            .ticks()
+            .into_iter()
+            .filter_map(|(value, text)| Some((LEFT + cell / 2.0 + (wide - cell) * axis.share(value)?, text)));
+        html! {
+            text x="8" y="16" font-weight="bold" { (self.title) }
+            @for (place, (name, values)) in self.rows.iter().enumerate() {
+                (self.row(TOP + ROW * place as f64, cell, name, values))
+            }
+            rect x=(LEFT) y=(TOP) width=(wide) height=(high) fill="none" stroke="currentColor" stroke-opacity="0.5" {}
+            text x=(LEFT + wide / 2.0) y=(TOP + high + 32.0) text-anchor="middle" { (self.x_label) }
+            @for (x, text) in ticks {
+                text x=(tenths(x)) y=(TOP + high + 14.0) text-anchor="middle" { (text) }
             }
         }
-        let _ = write!(
-            out,
-            r#"<rect x="{LEFT}" y="{TOP}" width="{}" height="{}" fill="none" stroke="currentColor" stroke-opacity="0.5"/><text x="{}" y="{}" text-anchor="middle">{}</text>"#,
-            WIDTH - LEFT - RIGHT,
-            bottom - TOP,
-            LEFT + (WIDTH - LEFT - RIGHT) / 2.0,
-            bottom + 32.0,
-            markup(&self.x_label)
-        );
-        for (value, text) in axis.ticks() {
-            if let Some(share) = axis.share(value) {
-                let x = LEFT + cell / 2.0 + (WIDTH - LEFT - RIGHT - cell) * share;
-                let _ = write!(
-                    out,
-                    r#"<text x="{x:.1}" y="{}" text-anchor="middle">{text}</text>"#,
-                    bottom + 14.0
-                );
+    }
+
+    /// A name with its cells.
+    fn row(&self, y: f64, cell: f64, name: &str, values: &[f64]) -> Markup {
+        let dark = |value: &f64| (value / self.full).clamp(0.0, 1.0);
+        let seen = values.iter().map(dark).enumerate().filter(|(_, dark)| *dark > LEAST_DARK);
+        html! {
+            text x=(LEFT - 8.0) y=(tenths(y + 12.0)) text-anchor="end" { (name) }
+            @for (index, dark) in seen {
+                rect x=(tenths(LEFT + cell * index as f64)) y=(y) width=(tenths(cell + 0.3)) height=(ROW - 2.0)
+                    fill="#d55e00" fill-opacity=(format_args!("{dark:.2}")) {}
             }
         }
     }

@@ -1,12 +1,10 @@
 //! The answer in one sentence.
 
-use super::located::Located;
-use super::prediction::{Predicted, ShownOn};
-use super::story::Story;
 use crate::diagnose::signatures::ALL;
 use crate::diagnose::wording::Words;
 use crate::diagnose::{Along, DetectionLimit, Named, Verdict, brief, called, clause, limit};
 use crate::report::number::significant;
+use crate::study::{ExplainStudy, Located, Predicted, ShownOn};
 use std::fmt::Write;
 
 /// Most effects of a sentence that come with their numbers.
@@ -16,163 +14,156 @@ const WORSE_PERCENT: f64 = 2.0;
 /// A state that explains less of the misfit is not said, percent.
 const LEAST_STATE_PERCENT: f64 = 10.0;
 
-impl Story {
-    /// The answer in one sentence.
-    #[must_use]
-    pub fn answer(&self) -> String {
-        match self.verdict() {
-            Verdict::NothingMissing => self.nothing(),
-            Verdict::Explained => format!("{}{}.{}", self.left_out(), self.gain(), self.not_told_apart()),
-            Verdict::PartlyExplained => format!(
-                "{}{}. Something else is there that no known effect accounts for: {}.{}",
-                self.left_out(),
-                self.gain(),
-                whereabouts(&Located::left(&self.explanation)),
-                self.not_told_apart()
-            ),
-            Verdict::Unexplained => self.unexplained(),
-        }
+/// The answer in one sentence.
+#[must_use]
+pub fn answer(study: &ExplainStudy) -> String {
+    match study.verdict() {
+        Verdict::NothingMissing => nothing(study),
+        Verdict::Explained => format!("{}{}.{}", left_out(study), gain(study), not_told_apart(study)),
+        Verdict::PartlyExplained => format!(
+            "{}{}. Something else is there that no known effect accounts for: {}.{}",
+            left_out(study),
+            gain(study),
+            whereabouts(&study.left_over()),
+            not_told_apart(study)
+        ),
+        Verdict::Unexplained => unexplained(study),
     }
+}
 
-    /// One effect in full; of several each with its number, beyond a few only the first.
-    fn left_out(&self) -> String {
-        let vehicle = self.vehicle();
-        if let [one] = self.effects.as_slice() {
-            return clause(one, vehicle);
-        }
-        let sized = if self.effects.len() <= SIZED { SIZED } else { SIZED - 1 };
-        let (large, small) = self.effects.split_at(sized.min(self.effects.len()));
-        let words = |effects: &[Named], with_size| -> Vec<String> {
-            effects.iter().map(|effect| brief(effect, vehicle, with_size)).collect()
-        };
-        let large = words(large, true);
-        match words(small, false).as_slice() {
-            [] => format!("Left out were {}", list(&large)),
-            small => format!("Left out were {}; and to a lesser degree {}", list(&large), list(small)),
-        }
+/// One effect in full; of several each with its number, beyond a few only the first.
+fn left_out(study: &ExplainStudy) -> String {
+    let vehicle = study.vehicle();
+    if let [one] = study.effects.as_slice() {
+        return clause(one, vehicle);
     }
-
-    /// What may stand for a name, in a sentence of its own.
-    fn not_told_apart(&self) -> String {
-        let pairs: Vec<String> = self
-            .effects
-            .iter()
-            .filter(|effect| !effect.confusable_with.is_empty())
-            .map(|effect| {
-                let others: Vec<&str> = effect.confusable_with.iter().map(|other| called(other.id)).collect();
-                format!("{} from {}", called(effect.id), others.join(" or "))
-            })
-            .collect();
-        if pairs.is_empty() {
-            return String::new();
-        }
-        format!(" This flight cannot tell {}.", pairs.join(", nor "))
+    let sized = if study.effects.len() <= SIZED { SIZED } else { SIZED - 1 };
+    let (large, small) = study.effects.split_at(sized.min(study.effects.len()));
+    let words = |effects: &[Named], with_size| -> Vec<String> {
+        effects.iter().map(|effect| brief(effect, vehicle, with_size)).collect()
+    };
+    let large = words(large, true);
+    match words(small, false).as_slice() {
+        [] => format!("Left out were {}", list(&large)),
+        small => format!("Left out were {}; and to a lesser degree {}", list(&large), list(small)),
     }
+}
 
-    /// What the model gains, on what was not used for it.
-    fn gain(&self) -> String {
-        if let Some(by) = self.other_vehicle() {
-            return format!("; {} ({by}), so nothing is shown on it", self.whose());
-        }
-        let (Some(pair), with) = (self.holdout.as_ref(), if self.effects.len() > 1 { "them" } else { "it" })
-        else {
-            return String::new();
-        };
-        let shown = self.shown_on.words();
-        let Some((name, percent)) = pair.most() else {
-            return format!("; on {shown} nothing could be predicted");
-        };
-        let worse = match pair.least() {
-            Some((name, percent)) if percent < -WORSE_PERCENT => {
-                format!(", that of {name} rises by {:.0} %", -percent)
-            }
-            _ => String::new(),
-        };
-        if percent >= 0.5 {
-            format!("; with {with} the 0.5 s {name} error on {shown} falls by {percent:.0} %{worse}")
-        } else {
-            format!("; with {with} the 0.5 s errors on {shown} do not fall{worse}")
-        }
+/// What may stand for a name, in a sentence of its own.
+fn not_told_apart(study: &ExplainStudy) -> String {
+    let pairs: Vec<String> = study
+        .effects
+        .iter()
+        .filter(|effect| !effect.confusable_with.is_empty())
+        .map(|effect| {
+            let others: Vec<&str> = effect.confusable_with.iter().map(|other| called(other.id)).collect();
+            format!("{} from {}", called(effect.id), others.join(" or "))
+        })
+        .collect();
+    if pairs.is_empty() {
+        return String::new();
     }
+    format!(" This flight cannot tell {}.", pairs.join(", nor "))
+}
 
-    fn whose(&self) -> &'static str {
-        if matches!(self.shown_on, ShownOn::HeldBack { .. }) {
-            "something changed in the part of the flight that was held back"
-        } else {
-            "the hold-out is of another vehicle"
-        }
+/// What the model gains, on what was not used for it.
+fn gain(study: &ExplainStudy) -> String {
+    if let Some(by) = study.other_vehicle() {
+        return format!("; {} ({by}), so nothing is shown on it", whose(study));
     }
-
-    fn nothing(&self) -> String {
-        let seen: Vec<String> = ranked(|words| words.told_if_absent)
-            .iter()
-            .filter_map(|id| self.limit(id))
-            .filter(|limit| limit.usual.is_none_or(|usual| limit.limit < usual))
-            .map(|of| limit(&of))
-            .take(3)
-            .collect();
-        let other = self.other_vehicle().map_or_else(String::new, |by| {
-            format!(" But {} ({by}), so nothing is shown on it.", self.whose())
-        });
-        if self.explanation.too_little_excitation {
-            let could =
-                if seen.is_empty() { String::new() } else { format!("; it could show {}", list_or(&seen)) };
-            return format!(
-                "Too little excitation: the vehicle hardly moves in this flight, so that drag, damping, ground effect and the like would stay unseen at any usual size{could}, and nothing of that is there. Fly a trajectory that moves all axes (mavid plan).{other}"
-            );
+    let (Some(pair), with) = (study.holdout.as_ref(), if study.effects.len() > 1 { "them" } else { "it" })
+    else {
+        return String::new();
+    };
+    let shown = study.shown_on.words();
+    let Some((name, percent)) = pair.most() else {
+        return format!("; on {shown} nothing could be predicted");
+    };
+    let worse = match pair.least() {
+        Some((name, percent)) if percent < -WORSE_PERCENT => {
+            format!(", that of {name} rises by {:.0} %", -percent)
         }
-        let would =
-            if seen.is_empty() { String::new() } else { format!("; it would have shown {}", list_or(&seen)) };
-        let unseen: Vec<String> = ranked(|words| words.expected_in_motion)
-            .iter()
-            .filter(|id| {
-                let limit = self.limit(id);
-                limit.is_some_and(|limit| limit.usual.is_some_and(|usual| limit.limit > usual))
-            })
-            .map(|id| called(id).to_owned())
-            .collect();
-        let would = match unseen.as_slice() {
-            [] => would,
-            unseen => format!("{would}, but not {} of usual size", list_or(unseen)),
-        };
+        _ => String::new(),
+    };
+    if percent >= 0.5 {
+        format!("; with {with} the 0.5 s {name} error on {shown} falls by {percent:.0} %{worse}")
+    } else {
+        format!("; with {with} the 0.5 s errors on {shown} do not fall{worse}")
+    }
+}
+
+fn whose(study: &ExplainStudy) -> &'static str {
+    if matches!(study.shown_on, ShownOn::HeldBack { .. }) {
+        "something changed in the part of the flight that was held back"
+    } else {
+        "the hold-out is of another vehicle"
+    }
+}
+
+fn nothing(study: &ExplainStudy) -> String {
+    let seen: Vec<String> = ranked(|words| words.told_if_absent)
+        .iter()
+        .filter_map(|id| detection_limit(study, id))
+        .filter(|limit| limit.usual.is_none_or(|usual| limit.limit < usual))
+        .map(|of| limit(&of))
+        .take(3)
+        .collect();
+    let other = study
+        .other_vehicle()
+        .map_or_else(String::new, |by| format!(" But {} ({by}), so nothing is shown on it.", whose(study)));
+    if study.explanation.too_little_excitation {
+        let could =
+            if seen.is_empty() { String::new() } else { format!("; it could show {}", list_or(&seen)) };
+        return format!(
+            "Too little excitation: the vehicle hardly moves in this flight, so that drag, damping, ground effect and the like would stay unseen at any usual size{could}, and nothing of that is there. Fly a trajectory that moves all axes (mavid plan).{other}"
+        );
+    }
+    let would =
+        if seen.is_empty() { String::new() } else { format!("; it would have shown {}", list_or(&seen)) };
+    let unseen: Vec<String> = ranked(|words| words.expected_in_motion)
+        .iter()
+        .filter(|id| {
+            let limit = detection_limit(study, id);
+            limit.is_some_and(|limit| limit.usual.is_some_and(|usual| limit.limit > usual))
+        })
+        .map(|id| called(id).to_owned())
+        .collect();
+    let would = match unseen.as_slice() {
+        [] => would,
+        unseen => format!("{would}, but not {} of usual size", list_or(unseen)),
+    };
+    format!(
+        "Nothing is missing that this flight could show: the rigid body with its rotors follows it down to the noise{would}.{other}"
+    )
+}
+
+fn unexplained(study: &ExplainStudy) -> String {
+    let closest: Vec<&str> = study.closest.iter().map(|effect| called(effect.id)).collect();
+    let closest = if closest.is_empty() {
+        String::new()
+    } else {
+        format!("; {} comes closest and does not serve", closest.join(" with "))
+    };
+    let term = study.empirical.as_ref().map_or_else(String::new, |term| {
+        let gain =
+            study.holdout.as_ref().and_then(Predicted::most).map_or_else(String::new, |(name, percent)| {
+                format!(" and lowers the 0.5 s {name} error on {} by {percent:.0} %", study.shown_on.words())
+            });
         format!(
-            "Nothing is missing that this flight could show: the rigid body with its rotors follows it down to the noise{would}.{other}"
+            "; an empirical force that follows {}, not a mechanism, stands in for it{gain}",
+            spoken_along(term.along)
         )
-    }
+    });
+    format!(
+        "Something is there that no known effect accounts for: {}{closest}{term}.",
+        whereabouts(&study.located)
+    )
+}
 
-    fn unexplained(&self) -> String {
-        let closest: Vec<&str> = self.closest.iter().map(|effect| called(effect.id)).collect();
-        let closest = if closest.is_empty() {
-            String::new()
-        } else {
-            format!("; {} comes closest and does not serve", closest.join(" with "))
-        };
-        let term = self.empirical.as_ref().map_or_else(String::new, |term| {
-            let gain = self.holdout.as_ref().and_then(Predicted::most).map_or_else(
-                String::new,
-                |(name, percent)| {
-                    format!(
-                        " and lowers the 0.5 s {name} error on {} by {percent:.0} %",
-                        self.shown_on.words()
-                    )
-                },
-            );
-            format!(
-                "; an empirical force that follows {}, not a mechanism, stands in for it{gain}",
-                spoken_along(term.along)
-            )
-        });
-        format!(
-            "Something is there that no known effect accounts for: {}{closest}{term}.",
-            whereabouts(&self.located)
-        )
-    }
-
-    /// The largest limit of an effect's parameters.
-    fn limit(&self, id: &str) -> Option<DetectionLimit> {
-        let limits = self.explanation.limits.iter().filter(|limit| limit.id == id);
-        limits.copied().max_by(|a, b| a.limit.total_cmp(&b.limit))
-    }
+/// The largest limit of an effect's parameters.
+fn detection_limit(study: &ExplainStudy, id: &str) -> Option<DetectionLimit> {
+    let limits = study.explanation.limits.iter().filter(|limit| limit.id == id);
+    limits.copied().max_by(|a, b| a.limit.total_cmp(&b.limit))
 }
 
 /// Where a misfit lives: axis, place or state, band.

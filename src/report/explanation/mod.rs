@@ -1,21 +1,16 @@
-//! What `explain` says: the sentence, a page for the terminal, JSON, the model file, the report.
+//! What `explain` says, as views of one study: the sentence, text for the terminal, JSON, the model file, HTML.
 
 mod answer;
-mod document;
 mod figures;
-mod fit;
+mod fit_json;
+mod hold_out;
 mod html;
-mod located;
+mod json;
 mod model;
-mod page;
-mod prediction;
-mod readers;
-mod show;
-mod story;
+mod text;
 
-pub use document::ExplanationDocument;
-pub use located::{AxisShare, Field, Located, StateShare};
-pub use page::explanation_page;
-pub use prediction::{Predicted, ShownOn};
-pub use readers::for_readers;
-pub use story::{Estimate, Given, Story};
+pub use answer::answer as explanation_answer;
+pub use html::explanation_html;
+pub use json::ExplanationDocument;
+pub use model::explained_model;
+pub use text::explanation_text;

@@ -1,278 +1,264 @@
-//! `report.html` of `identify`.
+//! `report.html` of `identify`: each section is one function, and one call in [`identification_html`].
 
-use super::input::InputFile;
 use super::model::history_charts;
-use super::page::verdict;
-use super::with::WithEffects;
+use super::words::verdict;
 use crate::diagnose::called;
 use crate::diagnose::joint::{EffectFound, Found};
-use crate::estimate::{Finding, Identification, NAMES, Parameter, THETA, Theta, ThrustScale, theta_of};
-use crate::report::chart::inline;
-use crate::report::html::{Cell, Page, number, text};
-use crate::report::model_parts::correlation;
+use crate::estimate::{Finding, NAMES, theta_of};
+use crate::report::chart::{Line, Panel, inline};
+use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
 use crate::report::number::{significant, spoken, with_error};
-use crate::report::recorded::recorded_and_predicted;
-use crate::signals::{FilterPair, Signals};
-use crate::vehicle::{Anchor, Vehicle};
+use crate::report::quality::data_quality;
+use crate::signals::FilterPair;
+use crate::study::{COMPONENTS, Correlation, IdentifyStudy, RotorsAndMotion};
+use crate::vehicle::Anchor;
+use maud::{Markup, html};
 
-/// Everything that the report of `identify` says.
-#[derive(Debug, Clone, Copy)]
-pub struct IdentificationStory<'a> {
-    /// what came out
-    pub identification: &'a Identification,
-    /// nominal
-    pub vehicle: &'a Vehicle,
-    /// as they were identified from
-    pub flights: &'a [Signals],
-    /// their files
-    pub inputs: &'a [InputFile],
-    /// where the mass was weighed
-    pub scale: Option<&'a ThrustScale>,
-    /// effects that were identified together with the rigid body
-    pub with: Option<&'a WithEffects>,
+/// Points of a line at most: a chart is some 440 dots wide.
+const POINTS: usize = 900;
+/// Parameters whose course along the flight is drawn: mass and the moments of inertia.
+const DRAWN: [usize; 4] = [0, 1, 4, 6];
+
+/// The answer in one sentence.
+fn answer(study: &IdentifyStudy) -> String {
+    let parameters = &study.body().parameters;
+    let nominal = theta_of(&study.vehicle.body);
+    let mut parts = Vec::new();
+    if let Finding::Determined { value, std } = parameters[0].finding {
+        let percent = 100.0 * (value / nominal[0] - 1.0);
+        let than = if percent < 0.0 { "less" } else { "more" };
+        let by = significant(percent.abs(), 2);
+        parts.push(format!("mass {} kg, {by} % {than} than the vehicle file says", with_error(value, std)));
+    }
+    let inertia: Vec<String> = [1, 4, 6]
+        .into_iter()
+        .filter_map(|index| match parameters[index].finding {
+            Finding::Determined { value, std } => {
+                Some(format!("{} {}", parameters[index].name, with_error(value, std)))
+            }
+            _ => None,
+        })
+        .collect();
+    if !inertia.is_empty() {
+        parts.push(format!("{} kg m^2", inertia.join(", ")));
+    }
+    if let Some(with) = &study.with {
+        let found = with.together.effects.iter().filter(|effect| effect.is_significant());
+        parts.extend(found.map(effect_words));
+    }
+    let good = verdict(study.body());
+    let doubtful = if study.is_doubtful() { ", but see the warnings" } else { "" };
+    let is = if good.starts_with("good") { " is" } else { "" };
+    let parts = if parts.is_empty() { String::new() } else { format!(": {}", parts.join("; ")) };
+    format!("The flight{is} {good}{doubtful}{parts}.")
 }
 
-impl IdentificationStory<'_> {
-    /// The answer in one sentence.
-    #[must_use]
-    pub fn answer(&self) -> String {
-        let parameters = self.parameters();
-        let nominal = theta_of(&self.vehicle.body);
-        let mut parts = Vec::new();
-        if let Finding::Determined { value, std } = parameters[0].finding {
-            let percent = 100.0 * (value / nominal[0] - 1.0);
-            let than = if percent < 0.0 { "less" } else { "more" };
-            let by = significant(percent.abs(), 2);
-            parts.push(format!(
-                "mass {} kg, {by} % {than} than the vehicle file says",
-                with_error(value, std)
-            ));
-        }
-        let inertia: Vec<String> = [1, 4, 6]
-            .into_iter()
-            .filter_map(|index| match parameters[index].finding {
-                Finding::Determined { value, std } => {
-                    Some(format!("{} {}", parameters[index].name, with_error(value, std)))
-                }
-                _ => None,
-            })
-            .collect();
-        if !inertia.is_empty() {
-            parts.push(format!("{} kg m^2", inertia.join(", ")));
-        }
-        if let Some(with) = self.with {
-            let found = with.together.effects.iter().filter(|effect| effect.is_significant());
-            parts.extend(found.map(effect_words));
-        }
-        let result = self.with.map_or(&self.identification.best.result, |with| &with.together.body);
-        let good = verdict(result);
-        let doubtful = if self.warned() { ", but see the warnings" } else { "" };
-        let is = if good.starts_with("good") { " is" } else { "" };
-        let parts = if parts.is_empty() { String::new() } else { format!(": {}", parts.join("; ")) };
-        format!("The flight{is} {good}{doubtful}{parts}.")
-    }
+/// The report: one file, nothing loaded from anywhere.
+#[must_use]
+pub fn identification_html(study: &IdentifyStudy) -> String {
+    let notes = &study.identification.notes;
+    let flights = study.inputs.iter().zip(&study.flights);
+    let sections = html! {
+        @for said in notes.iter().filter(|note| note.is_warning()) { (warning(&said.to_string())) }
+        (against_motion(study))
+        (along_the_flight(study))
+        (effects(study))
+        (rigid_body(study))
+        (methods(study))
+        (residual(study))
+        @for said in notes.iter().filter(|note| !note.is_warning()) { (note(&said.to_string())) }
+        (data_quality(flights.map(|(input, flight)| (input.path.as_str(), &flight.quality))))
+        (provenance(study))
+    };
+    html::page(&format!("mavid identify: {}", study.vehicle.name), &answer(study), &tags(study), &sections)
+}
 
-    /// The report: one file, nothing loaded from anywhere.
-    #[must_use]
-    pub fn report_html(&self) -> String {
-        let mut page = Page::new(&format!("mavid identify: {}", self.vehicle.name), &self.answer());
-        let method = self.identification.best.method.name();
-        let flights = self.inputs.len();
-        page.tags(&[
-            format!("method {method}"),
-            format!("{flights} flight{}", if flights == 1 { "" } else { "s" }),
-            match self.vehicle.anchor {
-                Anchor::Thrust => "thrust as stated".to_owned(),
-                Anchor::Mass => "mass as weighed".to_owned(),
-            },
-        ]);
-        let (warnings, notes): (Vec<&String>, Vec<&String>) =
-            self.identification.notes.iter().partition(|note| note.starts_with("warning"));
-        warnings.iter().for_each(|warning| page.warning(warning));
-        self.figures(&mut page);
-        self.effects_section(&mut page);
-        self.parameters_section(&mut page);
-        self.methods_section(&mut page);
-        self.residual_section(&mut page);
-        notes.iter().for_each(|note| page.note(note));
-        page.heading("Data quality");
-        for (input, signals) in self.inputs.iter().zip(self.flights) {
-            crate::report::quality::section(&mut page, &input.path, &signals.quality);
+fn tags(study: &IdentifyStudy) -> Vec<String> {
+    let flights = study.inputs.len();
+    vec![
+        format!("method {}", study.identification.best.method.name()),
+        format!("{flights} flight{}", if flights == 1 { "" } else { "s" }),
+        match study.vehicle.anchor {
+            Anchor::Thrust => "thrust as stated".to_owned(),
+            Anchor::Mass => "mass as weighed".to_owned(),
+        },
+    ]
+}
+
+fn against_motion(study: &IdentifyStudy) -> Markup {
+    let components = study.rotors_and_motion();
+    let words = if components.is_empty() {
+        "Not drawn: body rates or vertical motion are not recorded."
+    } else {
+        "What the rotors gave, and what the measured motion takes with mass and inertia of the vehicle file and with those of the rigid body identified alone; the first flight, behind the low-pass."
+    };
+    let content = html! {
+        (note(words))
+        @for of in &components { (figure(&inline(&component(of)), "")) }
+    };
+    section("Rotors against motion", &content)
+}
+
+fn component(of: &RotorsAndMotion) -> Panel {
+    let every = of.time_s.len().div_ceil(POINTS).max(1);
+    let kept = |values: &[f64]| -> Vec<f64> { values.iter().step_by(every).copied().collect() };
+    let line = |label: &str, y: &[f64], colour| Line {
+        label: label.to_owned(),
+        x: kept(&of.time_s),
+        y: kept(y),
+        colour: Some(colour),
+        ..Line::default()
+    };
+    let (name, unit) = COMPONENTS[of.component];
+    let name = name.split_once(": ").map_or(name, |(_, name)| name);
+    Panel {
+        title: format!("{name}, by the rotors and by the motion"),
+        x_label: "time (s)".to_owned(),
+        y_label: unit.to_owned(),
+        lines: vec![
+            line("vehicle file", &of.nominal, 1),
+            line("identified", &of.identified, 2),
+            line("rotors", &of.rotors, 0),
+        ],
+        ..Panel::default()
+    }
+}
+
+fn along_the_flight(study: &IdentifyStudy) -> Markup {
+    let drawn: Vec<Panel> =
+        history_charts(&study.identification).into_iter().filter(|panel| !panel.lines.is_empty()).collect();
+    let content = html! {
+        (note("The paper's four estimators after each instant of the flight (its figures 4 and 5)."))
+        @for panel in DRAWN.iter().filter_map(|index| drawn.get(*index)) { (figure(&inline(panel), "")) }
+    };
+    section("Estimates along the flight", &content)
+}
+
+fn effects(study: &IdentifyStudy) -> Markup {
+    let Some(with) = &study.with else { return Markup::default() };
+    let content = html! { @for of in &with.together.effects { (effect(of)) } };
+    section("Effects", &content)
+}
+
+fn effect(of: &EffectFound) -> Markup {
+    let there = if of.is_significant() { "" } else { ", not to be told from nothing" };
+    let rows: Vec<Vec<Cell>> = of
+        .parameters
+        .iter()
+        .map(|parameter| {
+            let (value, why) = found(&parameter.found);
+            vec![text(parameter.name), number(value), text(spoken(parameter.unit)), text(why)]
+        })
+        .collect();
+    let caption = format!("{}: {:.1} standard errors from nothing{there}", of.effect.id(), of.z);
+    html! {
+        (paragraph(of.effect.sentence()))
+        (table(&caption, &["parameter", "value|", "unit", ""], &rows))
+    }
+}
+
+fn rigid_body(study: &IdentifyStudy) -> Markup {
+    let best = &study.identification.best;
+    let nominal = theta_of(&study.vehicle.body);
+    let without = study.with.as_ref().map(|with| &with.together.body_before.parameters);
+    let rows: Vec<Vec<Cell>> = study
+        .body()
+        .parameters
+        .iter()
+        .enumerate()
+        .map(|(index, parameter)| {
+            let (value, why) = said(&parameter.finding);
+            let mut cells = vec![text(parameter.name), number(value)];
+            cells.extend(without.map(|without| number(said(&without[index].finding).0)));
+            cells.extend([number(significant(nominal[index], 4)), text(parameter.unit), text(why)]);
+            cells
+        })
+        .collect();
+    let mut heads = vec!["parameter", "value|"];
+    heads.extend(without.map(|_| "without effects|"));
+    heads.extend(["vehicle file|", "unit", ""]);
+    let scale = match &study.scale {
+        Some(scale) => {
+            let (value, why) = said(&scale.value);
+            format!("{} {value} {} {why}", scale.name, scale.unit)
         }
-        self.provenance_section(&mut page);
-        page.finish()
-    }
+        None => "The stated thrust is trusted: mass and inertia rest on it, Izz on the stated torque per thrust as well."
+            .to_owned(),
+    };
+    let content = html! {
+        (note(&format!("Method {}: {}.", best.method.name(), best.why)))
+        (table("Mass and inertia with standard errors", &heads, &rows))
+        (note(&scale))
+        (correlation_table(&study.correlation()))
+    };
+    section("Rigid body", &content)
+}
 
-    fn parameters(&self) -> &[Parameter; THETA] {
-        self.with.map_or(&self.identification.best.result.parameters, |with| &with.together.body.parameters)
-    }
-
-    fn warned(&self) -> bool {
-        self.identification.notes.iter().any(|note| note.starts_with("warning"))
-    }
-
-    fn figures(&self, page: &mut Page) {
-        page.heading("Rotors against motion");
-        let nominal = theta_of(&self.vehicle.body);
-        let best = &self.identification.best.result.parameters;
-        let theta = Theta::from_fn(|index, _| match best[index].finding {
-            Finding::Determined { value, .. } | Finding::Given { value } => value,
-            Finding::NotDetermined { .. } => nominal[index],
-        });
-        let factor = match self.scale.map(|scale| &scale.factor) {
-            Some(Finding::Determined { value, .. }) => *value,
-            _ => 1.0,
-        };
-        let settings = (self.identification.cutoff_hz, self.vehicle.gravity_m_s2, factor);
-        let models = [("vehicle file", nominal), ("identified", theta)];
-        let panels = self.flights.first().map(|flight| recorded_and_predicted(flight, settings, &models));
-        page.note(if panels.as_ref().is_none_or(Vec::is_empty) {
-            "Not drawn: body rates or vertical motion are not recorded."
-        } else {
-            "What the rotors gave, and what the measured motion takes with mass and inertia of the vehicle file and with those of the rigid body identified alone; the first flight, behind the low-pass."
-        });
-        panels.iter().flatten().for_each(|panel| page.figure(&inline(panel), ""));
-        page.heading("Estimates along the flight");
-        page.note("The paper's four estimators after each instant of the flight (its figures 4 and 5).");
-        let drawn: Vec<_> =
-            history_charts(self.identification).into_iter().filter(|panel| !panel.lines.is_empty()).collect();
-        for index in [0, 1, 4, 6] {
-            if let Some(panel) = drawn.get(index) {
-                page.figure(&inline(panel), "");
-            }
-        }
-    }
-
-    fn effects_section(&self, page: &mut Page) {
-        let Some(with) = self.with else { return };
-        page.heading("Effects");
-        for effect in &with.together.effects {
-            page.paragraph(effect.effect.sentence());
-            let there = if effect.is_significant() { "" } else { ", not to be told from nothing" };
-            let rows: Vec<Vec<Cell>> = effect
-                .parameters
-                .iter()
-                .map(|parameter| {
-                    let (value, why) = found(&parameter.found);
-                    vec![text(parameter.name), number(value), text(spoken(parameter.unit)), text(why)]
+fn methods(study: &IdentifyStudy) -> Markup {
+    let rows: Vec<Vec<Cell>> = study
+        .identification
+        .methods
+        .iter()
+        .map(|method| {
+            let mut cells = vec![text(method.method.name())];
+            cells.extend(method.parameters.iter().map(|parameter| {
+                number(match parameter.finding {
+                    Finding::Determined { value, .. } | Finding::Given { value } => significant(value, 4),
+                    Finding::NotDetermined { .. } => "-".to_owned(),
                 })
-                .collect();
-            page.table(
-                &format!("{}: {:.1} standard errors from nothing{there}", effect.effect.id(), effect.z),
-                &["parameter", "value|", "unit", ""],
-                &rows,
-            );
-        }
-    }
+            }));
+            cells
+        })
+        .collect();
+    let heads: Vec<String> =
+        std::iter::once("method".to_owned()).chain(NAMES.map(|name| format!("{name}|"))).collect();
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    section("Methods", &table("The rigid body by each method; -: not determined", &heads, &rows))
+}
 
-    fn parameters_section(&self, page: &mut Page) {
-        page.heading("Rigid body");
-        page.note(&format!(
-            "Method {}: {}.",
-            self.identification.best.method.name(),
-            self.identification.best.why
-        ));
-        let nominal = theta_of(&self.vehicle.body);
-        let without = self.with.map(|with| &with.together.body_before.parameters);
-        let rows: Vec<Vec<Cell>> = self
-            .parameters()
-            .iter()
-            .enumerate()
-            .map(|(index, parameter)| {
-                let (value, why) = said(&parameter.finding);
-                let mut cells = vec![text(parameter.name), number(value)];
-                cells.extend(without.map(|without| number(said(&without[index].finding).0)));
-                cells.extend([number(significant(nominal[index], 4)), text(parameter.unit), text(why)]);
-                cells
-            })
-            .collect();
-        let mut heads = vec!["parameter", "value|"];
-        heads.extend(without.map(|_| "without effects|"));
-        heads.extend(["vehicle file|", "unit", ""]);
-        page.table("Mass and inertia with standard errors", &heads, &rows);
-        match self.scale {
-            Some(scale) => {
-                let (value, why) = said(&scale.value);
-                page.note(&format!("{} {value} {} {why}", scale.name, scale.unit));
-            }
-            None => page.note("The stated thrust is trusted: mass and inertia rest on it, Izz on the stated torque per thrust as well."),
-        }
-        let (names, rows) = match self.with {
-            Some(with) => correlation(&with.together.after),
-            None => (
-                NAMES.map(str::to_owned).to_vec(),
-                super::correlation::correlation(&self.identification.best.result),
-            ),
-        };
-        correlation_table(page, &names, &rows);
-    }
-
-    fn methods_section(&self, page: &mut Page) {
-        page.heading("Methods");
-        let rows: Vec<Vec<Cell>> = self
-            .identification
-            .methods
-            .iter()
-            .map(|method| {
-                let mut cells = vec![text(method.method.name())];
-                cells.extend(method.parameters.iter().map(|parameter| {
-                    number(match parameter.finding {
-                        Finding::Determined { value, .. } | Finding::Given { value } => significant(value, 4),
-                        Finding::NotDetermined { .. } => "-".to_owned(),
-                    })
-                }));
-                cells
-            })
-            .collect();
-        let heads: Vec<String> =
-            std::iter::once("method".to_owned()).chain(NAMES.map(|name| format!("{name}|"))).collect();
-        let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-        page.table("The rigid body by each method; -: not determined", &heads, &rows);
-    }
-
-    fn residual_section(&self, page: &mut Page) {
-        let of = self.identification;
-        let rows: Vec<Vec<Cell>> = of
-            .residual_channels
-            .iter()
-            .zip(of.residual.iter().zip(&of.explained))
-            .map(|(channel, (residual, explained))| {
-                let unit = if channel.starts_with("torque") { "N m" } else { "N" };
-                vec![
-                    text(channel.replace('_', " ")),
-                    number(significant(*residual, 3)),
-                    text(unit),
-                    number(format!("{:.1}", 100.0 * explained)),
-                ]
-            })
-            .collect();
-        page.table(
+fn residual(study: &IdentifyStudy) -> Markup {
+    let of = &study.identification;
+    let rows: Vec<Vec<Cell>> = of
+        .residual_channels
+        .iter()
+        .zip(of.residual.iter().zip(&of.explained))
+        .map(|(channel, (residual, explained))| {
+            let unit = if channel.starts_with("torque") { "N m" } else { "N" };
+            vec![
+                text(channel.replace('_', " ")),
+                number(significant(*residual, 3)),
+                text(unit),
+                number(format!("{:.1}", 100.0 * explained)),
+            ]
+        })
+        .collect();
+    html! {
+        (table(
             "What the rigid body leaves of each equation, rms, and what it explains of its variance",
             &["equation", "residual|", "unit", "explained %|"],
             &rows,
-        );
-        if let Some(latency) = of.latency.filter(|latency| latency.total_s.is_finite()) {
-            page.note(&format!(
+        ))
+        @if let Some(latency) = of.latency.filter(|latency| latency.total_s.is_finite()) {
+            (note(&format!(
                 "From command to rotor {} ms.",
                 with_error(1e3 * latency.total_s, 1e3 * latency.std_s)
-            ));
+            )))
         }
     }
+}
 
-    fn provenance_section(&self, page: &mut Page) {
-        let of = self.identification;
-        let files: Vec<_> = self.inputs.iter().map(|input| ("identified from", input)).collect();
-        let mut settings = vec![
-            ("low-pass of LS, GD, FMLS, FMGD, Hz".to_owned(), significant(of.cutoff_hz, 3)),
-            ("lambda of the filters (37), rad/s".to_owned(), significant(FilterPair::PAPER_LAMBDA_RAD_S, 3)),
-            ("condition number, columns scaled".to_owned(), significant(of.scaled_condition_number, 3)),
-        ];
-        settings.extend(
-            of.condition_number
-                .map(|condition| ("condition number as flown".to_owned(), significant(condition, 3))),
-        );
-        page.provenance(&files, &settings);
-    }
+fn provenance(study: &IdentifyStudy) -> Markup {
+    let of = &study.identification;
+    let files: Vec<_> = study.inputs.iter().map(|input| ("identified from", input)).collect();
+    let mut settings = vec![
+        ("low-pass of LS, GD, FMLS, FMGD, Hz", significant(of.cutoff_hz, 3)),
+        ("lambda of the filters (37), rad/s", significant(FilterPair::PAPER_LAMBDA_RAD_S, 3)),
+        ("condition number, columns scaled", significant(of.scaled_condition_number, 3)),
+    ];
+    settings.extend(
+        of.condition_number.map(|condition| ("condition number as flown", significant(condition, 3))),
+    );
+    html::provenance(&files, &settings)
 }
 
 /// An effect's name with its values.
@@ -292,10 +278,11 @@ fn effect_words(effect: &EffectFound) -> String {
     format!("{} ({})", called(effect.effect.id()), values.join(", "))
 }
 
-fn correlation_table(page: &mut Page, names: &[String], rows: &[Vec<Option<f64>>]) {
-    let rows: Vec<Vec<Cell>> = names
+fn correlation_table(of: &Correlation) -> Markup {
+    let rows: Vec<Vec<Cell>> = of
+        .names
         .iter()
-        .zip(rows)
+        .zip(&of.rows)
         .map(|(name, row)| {
             let mut cells = vec![text(name.as_str())];
             cells.extend(row.iter().map(|r| number(r.map_or_else(|| "-".to_owned(), |r| format!("{r:.2}")))));
@@ -303,9 +290,9 @@ fn correlation_table(page: &mut Page, names: &[String], rows: &[Vec<Option<f64>>
         })
         .collect();
     let heads: Vec<String> =
-        std::iter::once(String::new()).chain(names.iter().map(|name| format!("{name}|"))).collect();
+        std::iter::once(String::new()).chain(of.names.iter().map(|name| format!("{name}|"))).collect();
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    page.table("Correlation of the estimates", &heads, &rows);
+    table("Correlation of the estimates", &heads, &rows)
 }
 
 /// A value with its standard error, and a reason.

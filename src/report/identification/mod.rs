@@ -1,20 +1,16 @@
-//! What `identify` says: JSON, a page for the terminal, the model file, the paper's figures 4 and 5.
+//! What `identify` says, as views of one study: text for the terminal, JSON, the model file, HTML, and the paper's
+//! figures 4 and 5.
 
-mod correlation;
-mod document;
 mod html;
-mod input;
+mod json;
 mod model;
-mod page;
-mod thrust_source;
+mod text;
 mod value;
-mod with;
+mod with_json;
+mod with_text;
+mod words;
 
-pub use document::IdentificationDocument;
-pub use html::IdentificationStory;
-pub use input::InputFile;
-pub use model::{history_charts, model_toml};
-pub use page::identification_page;
-pub use with::WithEffects;
-
-pub(super) use thrust_source::thrust_name;
+pub use html::identification_html;
+pub use json::IdentificationDocument;
+pub use model::{history_charts, identified_model};
+pub use text::identification_text;

@@ -1,48 +1,66 @@
 //! The model file, and the parameters along time.
 
+use crate::config::{ConfigError, vehicle_to_toml};
+use crate::diagnose::joint::{Found, ParameterFound};
 use crate::estimate::{
     Finding, Identification, MethodResult, NAMES, THETA, ThrustScale, UNITS, identified_vehicle,
 };
 use crate::report::chart::{Line, Panel};
+use crate::report::model_parts::{correlation_lines, effect_tables, provenance};
+use crate::study::{IdentifyStudy, WithEffects};
 use crate::text::toml_string;
-use crate::vehicle::Vehicle;
 use std::fmt::Write;
-
-use super::correlation::correlation;
-use super::input::InputFile;
 
 /// The model file: the vehicle with its identified values, and where they came from.
 ///
 /// # Errors
-/// [`crate::config::ConfigError`] where a value has no form in TOML.
-pub fn model_toml(
-    identification: &Identification,
-    vehicle: &Vehicle,
-    inputs: &[InputFile],
-    scale: Option<&ThrustScale>,
-) -> Result<String, crate::config::ConfigError> {
-    let best = &identification.best.result;
-    let mut text = crate::config::vehicle_to_toml(&identified_vehicle(vehicle, best, scale))?;
+/// [`ConfigError`] where a value has no form in TOML.
+pub fn identified_model(study: &IdentifyStudy) -> Result<String, ConfigError> {
+    if let Some(with) = &study.with {
+        return model_with(study, with);
+    }
+    let best = &study.identification.best.result;
+    let scale = study.scale.as_ref();
+    let mut text = vehicle_to_toml(&identified_vehicle(&study.vehicle, best, scale))?;
     let _ = writeln!(text, "\n[identified]\nmethod = \"{}\"", best.method.name());
     let _ = writeln!(text, "# what the flight did not determine keeps its nominal value in [body]");
     text.push_str(&identified_entries(best, scale));
-    let _ = writeln!(text, "correlation_of = {NAMES:?}");
-    let rows: Vec<String> = correlation(best)
-        .iter()
-        .map(|row| {
-            let cells: Vec<String> =
-                row.iter().map(|r| r.map_or_else(|| "nan".into(), |r| format!("{r:.4}"))).collect();
-            format!("  [{}]", cells.join(", "))
-        })
-        .collect();
-    let _ = writeln!(text, "correlation = [\n{}\n]", rows.join(",\n"));
-    text.push_str(&provenance(inputs));
-    let _ = writeln!(text, "cutoff_hz = {:.4}", identification.cutoff_hz);
+    text.push_str(&correlation_lines(&study.correlation()));
+    text.push_str(&provenance(&study.inputs));
+    let _ = writeln!(text, "cutoff_hz = {:.4}", study.identification.cutoff_hz);
+    Ok(text)
+}
+
+/// The vehicle with the effects that were identified together with it.
+fn model_with(study: &IdentifyStudy, with: &WithEffects) -> Result<String, ConfigError> {
+    let together = &with.together;
+    let mut text = vehicle_to_toml(&together.vehicle)?;
+    text.push_str(&effect_tables(&together.acting));
+    let ids: Vec<&str> = together.effects.iter().map(|effect| effect.effect.id()).collect();
+    let _ = writeln!(text, "\n[identified]\nmethod = \"WEAK\"\nwith = {ids:?}");
+    let _ = writeln!(text, "# what the flight did not determine keeps its nominal value in [body]");
+    text.push_str(&identified_entries(&together.body, together.scale.as_ref()));
+    let latency = &together.latency;
+    if latency.std_s.is_finite() {
+        let _ = writeln!(
+            text,
+            "latency = {{ value = {:e}, std = {:e}, unit = \"s\" }}",
+            latency.total_s, latency.std_s
+        );
+    }
+    text.push_str(&correlation_lines(&study.correlation()));
+    for effect in &together.effects {
+        let _ = writeln!(text, "\n[identified.effects.{}]\nz = {:e}", effect.effect.id(), effect.z);
+        for parameter in &effect.parameters {
+            let _ = writeln!(text, "{}", effect_entry(parameter));
+        }
+    }
+    text.push_str(&provenance(&study.inputs));
     Ok(text)
 }
 
 /// The rigid body's lines of `[identified]`.
-pub(super) fn identified_entries(body: &MethodResult, scale: Option<&ThrustScale>) -> String {
+fn identified_entries(body: &MethodResult, scale: Option<&ThrustScale>) -> String {
     let mut text = String::new();
     for parameter in &body.parameters {
         let _ = match &parameter.finding {
@@ -71,14 +89,24 @@ pub(super) fn identified_entries(body: &MethodResult, scale: Option<&ThrustScale
     text
 }
 
-/// Program and inputs.
-pub(super) fn provenance(inputs: &[InputFile]) -> String {
-    let files: Vec<String> = inputs
-        .iter()
-        .map(|input| format!("  {{ path = {}, sha256 = \"{}\" }}", toml_string(&input.path), input.sha256))
-        .collect();
-    let version = env!("CARGO_PKG_VERSION");
-    format!("\n[provenance]\nprogram = \"mavid {version}\"\ninputs = [\n{}\n]\n", files.join(",\n"))
+fn effect_entry(parameter: &ParameterFound) -> String {
+    let ParameterFound { name, unit, found, .. } = parameter;
+    match found {
+        Found::Determined { value, std } => {
+            format!("{name} = {{ value = {value:e}, std = {std:e}, unit = \"{unit}\" }}")
+        }
+        Found::AtBound { value, wanted, std } => format!(
+            "{name} = {{ value = {value:e}, std = {std:e}, unit = \"{unit}\", status = \"at_bound\", wanted = {wanted:e} }}"
+        ),
+        Found::Given { value, why } => {
+            format!(
+                "{name} = {{ value = {value:e}, std = 0.0, unit = \"{unit}\", status = \"given\", reason = {why:?} }}"
+            )
+        }
+        Found::NotDetermined { reason, .. } => {
+            format!("{name} = {{ status = \"not_determined\", reason = {reason:?} }}")
+        }
+    }
 }
 
 /// The paper's figures 4 and 5: mass and inertia along time, by method.

@@ -3,9 +3,13 @@
 use crate::compare::{SIGNALS, TenSignals};
 use crate::report::chart::{Line, Panel};
 
-/// Figures 6 to 9: the path over ground, then each of the ten signals along time, recorded and simulated.
+/// Figures 6 to 9: the path over ground, then each of the ten signals along time, recorded and simulated; none
+/// without flights.
 #[must_use]
-pub fn closed_loop_charts(flights: &[(String, &TenSignals)]) -> Vec<Panel> {
+pub fn closed_loop_charts(flights: &[(String, TenSignals)]) -> Vec<Panel> {
+    if flights.is_empty() {
+        return Vec::new();
+    }
     let line = |label: &str, signals: &TenSignals, x: Option<usize>, y: usize| {
         // a chart is some 440 dots wide
         let every = (signals.time_s.len() / 880).max(1);

@@ -1,127 +1,103 @@
-//! `report.html` of `validate`.
+//! `report.html` of `validate`: each section is one function, and one call in [`validation_html`].
 
-use super::error_table::ErrorTable;
-use crate::report::InputFile;
-use crate::report::chart::{Bars, Panel, inline};
-use crate::report::html::{Cell, Page, number, text};
+use super::charts::closed_loop_charts;
+use crate::report::chart::{Bars, inline};
+use crate::report::html::{self, Cell, figure, note, number, section, table, text};
 use crate::report::number::significant;
-use crate::signals::Quality;
+use crate::report::quality::data_quality;
+use crate::study::{ErrorTable, Prediction, ValidateStudy, ValidatedFlight};
+use maud::{Markup, html};
 
-/// One flight's results for the report.
-#[derive(Debug, Clone, Copy)]
-pub struct ValidatedFlight<'a> {
-    /// its file
-    pub input: &'a InputFile,
-    /// all tables
-    pub tables: &'a [ErrorTable],
-    /// flown again, recorded and simulated
-    pub charts: &'a [Panel],
-    /// where its signals come from, by the first model's thrust law
-    pub quality: &'a Quality,
-}
+/// Models that differ by less in the mean are alike, percent.
+const ALIKE_PERCENT: f64 = 0.5;
 
-/// Window of the errors that the sentence is about, s.
-const WINDOW_S: f64 = 0.5;
-
-/// The report: one file, nothing loaded from anywhere. `models` are names and files, the first is what the others
-/// are compared with; `settings` are names and values.
+/// The report: one file, nothing loaded from anywhere.
 #[must_use]
-pub fn validation_report(
-    models: &[(String, InputFile)],
-    flights: &[ValidatedFlight<'_>],
-    settings: &[(String, String)],
-) -> String {
-    let names: Vec<&str> = models.iter().map(|(name, _)| name.as_str()).collect();
-    let mut page = Page::new(&format!("mavid validate: {}", names.join(", ")), &answer(&names, flights));
+pub fn validation_html(study: &ValidateStudy) -> String {
+    let names: Vec<&str> = study.models.iter().map(|model| model.name.as_str()).collect();
     let count = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-    page.tags(&[count(models.len(), "model"), count(flights.len(), "flight")]);
-    if let Some(bars) = bars(&names, flights) {
-        page.heading("Prediction");
-        page.figure(
-            &bars.inline(),
-            "Open-loop prediction from the measured state, fed the recorded actuators, over windows of 0.5 s; all flights.",
-        );
-    }
-    for flight in flights {
-        page.heading(&flight.input.path);
-        let playback = flight.tables.iter().filter(|table| table.window_s.is_some());
-        let others = flight.tables.iter().filter(|table| table.window_s.is_none());
-        playback.chain(others).for_each(|table| error_table(&mut page, table));
-        if !flight.charts.is_empty() {
-            page.note("Recorded, and flown again in closed loop from the recorded setpoints:");
-        }
-        flight.charts.iter().for_each(|panel| page.figure(&inline(panel), ""));
-    }
-    page.heading("Data quality");
-    for flight in flights {
-        crate::report::quality::section(&mut page, &flight.input.path, flight.quality);
-    }
-    let mut files: Vec<(&str, &InputFile)> = models.iter().map(|(_, input)| ("model", input)).collect();
-    files.extend(flights.iter().map(|flight| ("compared with", flight.input)));
-    page.provenance(&files, settings);
-    page.finish()
+    let tags = [count(study.models.len(), "model"), count(study.flights.len(), "flight")];
+    let sections = html! {
+        (prediction(study))
+        @for of in &study.flights { (flight(of)) }
+        (data_quality(study.flights.iter().map(|of| (of.input.path.as_str(), &of.quality))))
+        (provenance(study))
+    };
+    html::page(&format!("mavid validate: {}", names.join(", ")), &answer(study), &tags, &sections)
 }
 
-/// Errors of all flights over windows of 0.5 s: name and unit of each quantity, and one value a model.
-fn half_second(flights: &[ValidatedFlight<'_>], models: usize) -> Vec<(String, String, Vec<Option<f64>>)> {
-    let tables: Vec<&ErrorTable> = flights
-        .iter()
-        .flat_map(|flight| flight.tables)
-        .filter(|table| table.window_s.is_some_and(|window_s| (window_s - WINDOW_S).abs() < 1e-9))
-        .collect();
-    let Some(first) = tables.first() else { return Vec::new() };
-    let mean = |row: usize, model: usize| {
-        let each: Option<Vec<f64>> =
-            tables.iter().map(|table| table.rows.get(row)?.rms.get(model).copied().flatten()).collect();
-        let each = each?;
-        let squares: f64 = each.iter().map(|rms| rms * rms).sum();
-        Some((squares / each.len() as f64).sqrt())
+fn prediction(study: &ValidateStudy) -> Markup {
+    let rows = study.half_second();
+    if rows.is_empty() {
+        return Markup::default();
+    }
+    let ratio = |row: &Prediction, model: usize| match (row.rms[0], row.rms[model]) {
+        (Some(first), Some(rms)) if first > 0.0 => rms / first,
+        _ => f64::NAN,
     };
-    first
-        .rows
-        .iter()
-        .enumerate()
-        .map(|(row, of)| {
-            (of.name.clone(), of.unit.clone(), (0..models).map(|model| mean(row, model)).collect())
-        })
-        .collect()
+    let first = study.models.first().map_or("the first", |model| model.name.as_str());
+    let models = study.models.iter().enumerate();
+    let bars = Bars {
+        title: format!("prediction error, in units of that of {first}"),
+        unit: String::new(),
+        names: rows.iter().map(|row| row.name.clone()).collect(),
+        series: models
+            .map(|(model, of)| (of.name.clone(), model, rows.iter().map(|row| ratio(row, model)).collect()))
+            .collect(),
+    };
+    let caption = "Open-loop prediction from the measured state, fed the recorded actuators, over windows of 0.5 s; all flights.";
+    section("Prediction", &figure(&bars.inline(), caption))
+}
+
+fn flight(of: &ValidatedFlight) -> Markup {
+    let playback = of.tables.iter().filter(|table| table.window_s.is_some());
+    let others = of.tables.iter().filter(|table| table.window_s.is_none());
+    let charts = closed_loop_charts(&of.flown_again);
+    let content = html! {
+        @for table in playback.chain(others) { (error_table(table)) }
+        @if !charts.is_empty() {
+            (note("Recorded, and flown again in closed loop from the recorded setpoints:"))
+        }
+        @for panel in &charts { (figure(&inline(panel), "")) }
+    };
+    section(&of.input.path, &content)
+}
+
+fn provenance(study: &ValidateStudy) -> Markup {
+    let mut files: Vec<_> = study.models.iter().map(|model| ("model", &model.input)).collect();
+    files.extend(study.flights.iter().map(|flight| ("compared with", &flight.input)));
+    let settings = [
+        ("left out at the beginning, s", significant(study.transient_s, 3)),
+        ("low-pass under the regression models, Hz", significant(study.cutoff_hz, 3)),
+    ];
+    html::provenance(&files, &settings)
 }
 
 /// Which model predicts best, in one sentence.
-fn answer(names: &[&str], flights: &[ValidatedFlight<'_>]) -> String {
-    let rows = half_second(flights, names.len());
+fn answer(study: &ValidateStudy) -> String {
+    let names: Vec<&str> = study.models.iter().map(|model| model.name.as_str()).collect();
     let list = |parts: Vec<String>| match parts.as_slice() {
         [most @ .., last] if !most.is_empty() => format!("{} and {last}", most.join(", ")),
         all => all.concat(),
     };
-    let known = |model: usize| rows.iter().any(|(.., rms)| rms[model].is_some());
-    let Some(first) = names.first().filter(|_| known(0)) else {
+    let Some(first) = names.first().filter(|_| study.is_predicted(0)) else {
         return "Nothing could be predicted over 0.5 s; the tables say why.".to_owned();
     };
-    let gain = |model: usize| -> Vec<(&str, f64)> {
-        let gains = rows.iter().filter_map(|(name, _, rms)| {
-            Some((name.as_str(), crate::compare::improvement_percent(rms[0]?, rms[model]?)))
-        });
-        gains.collect()
-    };
-    let mean = |model: usize| {
-        let gains = gain(model);
-        gains.iter().map(|(_, percent)| percent).sum::<f64>() / gains.len().max(1) as f64
-    };
-    let best = (1..names.len()).filter(|model| known(*model)).max_by(|a, b| mean(*a).total_cmp(&mean(*b)));
-    let Some(best) = best else {
-        let errors = rows
-            .iter()
-            .filter_map(|(name, unit, rms)| Some(format!("{name} to {} {unit}", significant(rms[0]?, 2))));
+    let Some(best) = study.best() else {
+        let errors = study
+            .half_second()
+            .into_iter()
+            .filter_map(|row| Some(format!("{} to {} {}", row.name, significant(row.rms[0]?, 2), row.unit)));
         return format!("Over 0.5 s {first} predicts {}, rms.", list(errors.collect()));
     };
-    let changes = gain(best).into_iter().map(|(name, percent)| {
+    let changes = study.gains(best).into_iter().map(|(name, percent)| {
         let how = if percent < 0.0 { "larger" } else { "smaller" };
         format!("{:.0} % {how} in {name}", percent.abs())
     });
-    let verdict = if mean(best) < -0.5 {
+    let mean = study.mean_gain(best);
+    let verdict = if mean < -ALIKE_PERCENT {
         format!("No model predicts better than {first}; nearest comes {}, whose", names[best])
-    } else if mean(best) < 0.5 {
+    } else if mean < ALIKE_PERCENT {
         format!("{} predicts as well as {first}: its", names[best])
     } else if names.len() > 2 {
         format!("{} predicts best of {} models: against {first} its", names[best], names.len())
@@ -131,35 +107,13 @@ fn answer(names: &[&str], flights: &[ValidatedFlight<'_>]) -> String {
     format!("{verdict} 0.5 s errors are {}.", list(changes.collect()))
 }
 
-/// Errors of every model in units of the first one's.
-fn bars(names: &[&str], flights: &[ValidatedFlight<'_>]) -> Option<Bars> {
-    let rows = half_second(flights, names.len());
-    let ratio = |row: &(String, String, Vec<Option<f64>>), model: usize| match (row.2[0], row.2[model]) {
-        (Some(first), Some(rms)) if first > 0.0 => rms / first,
-        _ => f64::NAN,
-    };
-    (!rows.is_empty()).then(|| Bars {
-        title: format!("prediction error, in units of that of {}", names.first().unwrap_or(&"the first")),
-        unit: String::new(),
-        names: rows.iter().map(|(name, ..)| name.clone()).collect(),
-        series: names
-            .iter()
-            .enumerate()
-            .map(|(model, name)| {
-                ((*name).to_owned(), model, rows.iter().map(|row| ratio(row, model)).collect())
-            })
-            .collect(),
-    })
-}
-
-fn error_table(page: &mut Page, table: &ErrorTable) {
-    let shown = table.shown();
+fn error_table(of: &ErrorTable) -> Markup {
+    let shown = of.shown();
     if shown.is_empty() {
-        page.note(&format!("{}: none. {}", table.title, table.remarks().join("; ")));
-        return;
+        return note(&format!("{}: none. {}", of.title, of.remarks().join("; ")));
     }
     let mut heads = vec!["rms error".to_owned()];
-    for (index, model) in table.models.iter().enumerate() {
+    for (index, model) in of.models.iter().enumerate() {
         heads.push(format!("{model}|"));
         if index > 0 {
             heads.push("better by %|".to_owned());
@@ -184,16 +138,15 @@ fn error_table(page: &mut Page, table: &ErrorTable) {
         })
         .collect();
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    page.table(&table.title, &heads, &rows);
-    table.remarks().into_iter().for_each(|line| page.note(line));
+    html! { (table(&of.title, &heads, &rows)) @for line in of.remarks() { (note(line)) } }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::compare::Fit;
-    use crate::report::playback_table;
-    use crate::signals::{ThrustSource, Usable};
+    use crate::signals::{Quality, ThrustSource, Usable};
+    use crate::study::{InputFile, ValidatedModel, playback_table};
 
     fn tables(second: f64) -> Vec<ErrorTable> {
         let fit = |scale: f64| Fit {
@@ -208,8 +161,7 @@ mod tests {
     }
 
     fn said(second: f64) -> String {
-        let input = InputFile { path: "l".into(), sha256: "0".into(), losses: Vec::new(), notes: Vec::new() };
-        let tables = tables(second);
+        let input = || InputFile { path: "l".into(), sha256: "0".into(), notes: Vec::new() };
         let quality = Quality {
             sources: Vec::new(),
             thrust_source: ThrustSource::Command,
@@ -218,8 +170,21 @@ mod tests {
             usable: Usable::default(),
             notes: Vec::new(),
         };
-        let flight = ValidatedFlight { input: &input, tables: &tables, charts: &[], quality: &quality };
-        answer(&["a", "b"], &[flight])
+        let flight = ValidatedFlight {
+            input: input(),
+            span_s: (0.0, 1.0),
+            tables: tables(second),
+            flown_again: Vec::new(),
+            quality,
+        };
+        let model = |name: &str| ValidatedModel { name: name.to_owned(), input: input() };
+        answer(&ValidateStudy {
+            models: vec![model("a"), model("b")],
+            flights: vec![flight],
+            transient_s: 10.0,
+            cutoff_hz: 5.0,
+            notes: Vec::new(),
+        })
     }
 
     #[test]

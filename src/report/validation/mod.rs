@@ -1,15 +1,12 @@
-//! The paper's two validations and open-loop playback as tables and charts.
+//! What `validate` says, as views of one study: text for the terminal, JSON, HTML, and the paper's figures 6 to 9.
 
 mod charts;
-mod comparisons;
-mod error_table;
 mod heads;
 mod html;
+mod json;
+mod text;
 
 pub use charts::closed_loop_charts;
-pub use comparisons::{closed_loop_table, playback_table, prediction_table};
-pub use error_table::{Column, ErrorRow, ErrorTable};
-pub use heads::shortened_names;
-pub use html::{ValidatedFlight, validation_report};
-
-pub(super) use comparisons::COMPONENTS;
+pub use html::validation_html;
+pub use json::ValidationDocument;
+pub use text::{error_table_text, validation_text};

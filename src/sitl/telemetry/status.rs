@@ -55,7 +55,7 @@ impl Telemetry {
         };
         let armed = if autopilot.is_armed() { ARMED } else { 0 };
         let flying = if self.kind.is_px4() { autopilot.is_armed() } else { !autopilot.is_landed() };
-        let status = match (autopilot.safety.is_active(), flying) {
+        let status = match (autopilot.safety.is_active(self.kind.is_px4()), flying) {
             (true, _) => CRITICAL,
             (false, true) => ACTIVE,
             (false, false) => STANDBY,

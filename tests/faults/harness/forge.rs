@@ -24,6 +24,11 @@ impl Body {
         self
     }
 
+    fn u64(mut self, value: u64) -> Self {
+        self.0.extend(value.to_le_bytes());
+        self
+    }
+
     fn f32s(mut self, values: &[f32]) -> Self {
         self.0.extend(values.iter().flat_map(|value| value.to_le_bytes()));
         self
@@ -111,7 +116,7 @@ impl Forger {
     /// A frame, and what it is.
     pub fn make(&self, random: &mut Pcg64) -> (&'static str, Vec<u8>) {
         let (seeds, px4) = (&self.seeds, self.px4);
-        match random.random_range(0..18) {
+        match random.random_range(0..19) {
             0 | 1 => ("disarmed", self.of_vehicle(random, 0, heartbeat(px4, self.ours(), false, 4))),
             2 => {
                 let mode = one(random, modes(px4));
@@ -160,6 +165,14 @@ impl Forger {
                 let mut noise = vec![MARKER_V2];
                 noise.extend((0..200).map(|_| random.random::<u8>()));
                 ("noise", noise)
+            }
+            15 => {
+                // to a question of somebody else: by the time of day, since its own start, or by any number
+                let since_start_ns = random.random_range(0..200_000_000_000_u64);
+                let asked =
+                    one(random, &[1_760_000_000_000_000_000 + since_start_ns, since_start_ns, u64::MAX / 2]);
+                let body = Body::default().u64(since_start_ns).u64(asked);
+                ("answer to another's TIMESYNC", self.of_vehicle(random, 111, body))
             }
             // any id of the dialect, any content
             _ => {

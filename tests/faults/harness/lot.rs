@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use mavid::autopilot::Mode as Ours;
 use mavid::config::read_vehicle;
-use mavid::fly::{Around, Course, Key, Origin, Settings, Sortie};
+use mavid::fly::{Around, Course, FirstQuestion, Key, Origin, Settings, Sortie};
 use mavid::sitl::{Firmware, LinkRole, Mode, Settings as VehicleSettings};
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
 use mavid::vehicle::Vehicle;
@@ -177,6 +177,7 @@ impl Lot {
             hold_then_land: s(3),
             watch_max: s(20),
             await_clearance: self.clearance,
+            first_question: FirstQuestion::of_seed(1),
             ..Settings::default()
         };
         let gravity_m_s2 = vehicle.gravity_m_s2;

@@ -1,0 +1,109 @@
+//! What a study tells while it works: its notes, and at a terminal how far it is.
+
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use mavid::note::Note;
+use mavid::study::{Progress, Stage};
+
+use super::output;
+use super::standard_error::StandardError;
+use super::words::Word;
+
+/// Between two pictures of the line.
+const TICK: Duration = Duration::from_millis(100);
+
+fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
+    match ProgressStyle::with_template(template) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+/// A line that says what is done now.
+#[derive(Debug)]
+pub struct Spinner(ProgressBar);
+
+impl Spinner {
+    /// Empty until the first stage.
+    pub fn new(stderr: &StandardError) -> Self {
+        let bar = stderr.bar(styled(ProgressBar::new_spinner(), "{spinner} {msg}"));
+        if stderr.can_draw() {
+            bar.enable_steady_tick(TICK);
+        }
+        Self(bar)
+    }
+}
+
+impl Progress for Spinner {
+    fn stage(&self, stage: Stage) {
+        self.0.set_message(stage.to_string());
+    }
+
+    fn note(&self, note: &Note) {
+        output::note(note);
+    }
+}
+
+impl Drop for Spinner {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// A bar of steps after a template; none before the first is to be done.
+#[derive(Debug)]
+pub struct Steps<'a> {
+    stderr: &'a StandardError,
+    template: &'static str,
+    bar: OnceLock<ProgressBar>,
+}
+
+impl<'a> Steps<'a> {
+    /// With indicatif's names in the template.
+    pub fn new(stderr: &'a StandardError, template: &'static str) -> Self {
+        Self { stderr, template, bar: OnceLock::new() }
+    }
+}
+
+impl Progress for Steps<'_> {
+    fn stage(&self, _: Stage) {}
+
+    fn note(&self, note: &Note) {
+        output::note(note);
+    }
+
+    fn steps(&self, count: u64) {
+        self.bar.get_or_init(|| self.stderr.bar(styled(ProgressBar::new(count), self.template)));
+    }
+
+    fn step(&self) {
+        self.bar.get().into_iter().for_each(|bar| bar.inc(1));
+    }
+}
+
+impl Drop for Steps<'_> {
+    fn drop(&mut self) {
+        self.bar.get().into_iter().for_each(ProgressBar::finish_and_clear);
+    }
+}
+
+/// Notes alone, for later: the terminal may take nothing, and the work does not wait for it.
+#[derive(Debug, Default)]
+pub struct Notes(Mutex<Vec<Word>>);
+
+impl Notes {
+    /// What there is to say.
+    pub fn words(self) -> Vec<Word> {
+        self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Progress for Notes {
+    fn stage(&self, _: Stage) {}
+
+    fn note(&self, note: &Note) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(note.into());
+    }
+}

@@ -1,0 +1,99 @@
+//! What a stage has to say beside its result: remarks, warnings and losses, each with what it is about.
+
+use std::fmt;
+
+/// How much a note matters; the order is from little to much.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// good to know
+    Remark,
+    /// the result may be wrong, or says less than was asked for
+    Warning,
+    /// a part of the data was not read or not used
+    Loss,
+}
+
+/// What a note is about.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum About {
+    /// a file that went in, by its name as given
+    File(String),
+    /// what the vehicle file states
+    Vehicle,
+    /// recorded streams of the motion
+    Sensors,
+    /// commands, rotor speeds, and the law from them to thrust
+    Actuators,
+    /// the estimate and the method that it comes from
+    Estimate,
+    /// the comparison with flights that were not used
+    HoldOut,
+}
+
+/// A sentence beside a result.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Note {
+    /// how much it matters
+    pub severity: Severity,
+    /// what it is about
+    pub about: About,
+    /// without the name of the file that it may be about
+    pub text: String,
+}
+
+impl Note {
+    /// Good to know.
+    #[must_use]
+    pub fn remark(about: About, text: impl Into<String>) -> Self {
+        Self { severity: Severity::Remark, about, text: text.into() }
+    }
+
+    /// The result may be wrong.
+    #[must_use]
+    pub fn warning(about: About, text: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, about, text: text.into() }
+    }
+
+    /// A part of the data was not used.
+    #[must_use]
+    pub fn loss(about: About, text: impl Into<String>) -> Self {
+        Self { severity: Severity::Loss, about, text: text.into() }
+    }
+
+    /// It is a warning.
+    #[must_use]
+    pub fn is_warning(&self) -> bool {
+        self.severity == Severity::Warning
+    }
+
+    /// The text after the name of the file that it is about, without its severity.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        match &self.about {
+            About::File(name) => format!("{name}: {}", self.text),
+            _ => self.text.clone(),
+        }
+    }
+}
+
+/// As it is printed: a warning says that it is one.
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mark = if self.is_warning() { "warning: " } else { "" };
+        write!(f, "{mark}{}", self.sentence())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_warning_says_what_it_is_and_what_it_is_about() {
+        let of = || About::File("a.tlog".to_owned());
+        assert_eq!(Note::warning(of(), "short").to_string(), "warning: a.tlog: short");
+        assert_eq!(Note::remark(of(), "short").to_string(), "a.tlog: short");
+        assert_eq!(Note::loss(About::Sensors, "cut").to_string(), "cut");
+        assert!(Severity::Remark < Severity::Warning && Severity::Warning < Severity::Loss);
+    }
+}

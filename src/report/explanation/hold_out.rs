@@ -1,0 +1,113 @@
+//! The section on the fit before and after, and on what was not used.
+
+use crate::compare::SIGNALS;
+use crate::diagnose::holdout::{Compared, HoldoutFit};
+use crate::diagnose::{AXES, CHANNEL_NAMES};
+use crate::report::html::{Cell, note, number, section, table, text, warning};
+use crate::report::number::{percent, significant, spoken, with_error};
+use crate::study::{ExplainStudy, Predicted, QUANTITIES, ShownOn};
+use maud::{Markup, html};
+
+const COMPARED: [&str; 6] = ["", "before|", "after|", "noise alone|", "better by|", "unit"];
+
+/// Errors before and after, on the flights that were explained and on those that were not used.
+pub(super) fn hold_out(study: &ExplainStudy) -> Markup {
+    let content = html! {
+        (note("Open-loop prediction from the measured state, fed the recorded actuators. Before: the rigid body identified on the same flights. Intervals hold 95 of 100 resamplings of blocks of the flight. Noise alone: what white noise of the sensors would leave with the model that is right."))
+        @if let Some(predicted) = &study.identify { (prediction("flights explained", predicted)) }
+        @if let Some(predicted) = &study.holdout { (prediction(&study.shown_on.heading(), predicted)) }
+        @if let ShownOn::Nothing { reason } = &study.shown_on {
+            (warning(&format!("Not shown on anything that was not used: {reason}.")))
+        }
+        @if let Some(shown) = &study.shown {
+            @if let Some(why) = &shown.no_open_loop {
+                (note(&format!("Nothing could be predicted in open loop: {why}.")))
+            }
+            (weak_form(shown))
+            (closed_loop(shown))
+            (agreement(shown))
+            @for said in &shown.notes { (note(said)) }
+        }
+    };
+    section("Fit before and after", &content)
+}
+
+fn compared_row(name: &str, unit: &str, of: &Compared) -> Vec<Cell> {
+    vec![
+        text(name),
+        number(significant(of.before.value, 3)),
+        number(significant(of.after.value, 3)),
+        number(of.floor.map_or_else(|| "-".to_owned(), |floor| significant(floor, 3))),
+        number(percent(&of.improvement_percent)),
+        text(unit),
+    ]
+}
+
+fn prediction(on: &str, predicted: &Predicted) -> Markup {
+    let mut rows = Vec::new();
+    for of in &predicted.open_loop {
+        for (compared, (name, unit)) in of.quantities().iter().zip(QUANTITIES) {
+            if let Some(compared) = compared {
+                rows.push(compared_row(&format!("{name}, {} s", of.window_s), unit, compared));
+            }
+        }
+    }
+    let mean = predicted
+        .improvement_percent
+        .map_or_else(String::new, |mean| format!("; mean at 0.5 s better by {}", percent(&mean)));
+    table(&format!("Prediction error, rms, {on}{mean}"), &COMPARED, &rows)
+}
+
+fn weak_form(shown: &HoldoutFit) -> Markup {
+    let rows: Vec<Vec<Cell>> = shown
+        .weak
+        .iter()
+        .zip(CHANNEL_NAMES)
+        .take(AXES)
+        .filter_map(|(of, name)| {
+            let unit = if name.starts_with("force") { "N" } else { "N m" };
+            Some(compared_row(&name.replace('_', " "), unit, of.as_ref()?))
+        })
+        .collect();
+    table("Residual of the weak form on the same flights, rms", &COMPARED, &rows)
+}
+
+fn closed_loop(shown: &HoldoutFit) -> Markup {
+    match &shown.closed_loop {
+        Ok(flown) => {
+            let rows: Vec<Vec<Cell>> = flown
+                .signals
+                .iter()
+                .zip(SIGNALS)
+                .filter_map(|(of, (name, unit))| Some(compared_row(name, unit, of.as_ref()?)))
+                .collect();
+            table(
+                "Flown again in closed loop from the recorded setpoints by the simulator's own controller, rms",
+                &COMPARED,
+                &rows,
+            )
+        }
+        Err(why) => note(&format!("Not flown again in closed loop: {why}.")),
+    }
+}
+
+fn agreement(shown: &HoldoutFit) -> Markup {
+    let rows: Vec<Vec<Cell>> = shown
+        .agreement
+        .iter()
+        .map(|of| {
+            vec![
+                text(of.name.as_str()),
+                number(with_error(of.identified, of.identified_std)),
+                number(with_error(of.held_out, of.held_out_std)),
+                number(format!("{:+.1}", of.sigmas())),
+                text(spoken(of.unit)),
+            ]
+        })
+        .collect();
+    table(
+        "The same parameters from these flights alone",
+        &["parameter", "identified|", "from these alone|", "apart, sigma|", "unit"],
+        &rows,
+    )
+}

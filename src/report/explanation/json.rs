@@ -1,0 +1,325 @@
+//! The JSON document of `explain`.
+
+use super::answer::answer;
+use super::fit_json::{FitValues, fit_values};
+use crate::diagnose::{Along, CHANNEL_NAMES, Named};
+use crate::note::Note;
+use crate::report::thrust_source::thrust_name;
+use crate::study::{AxisFit, BodyParameter, ExplainStudy, InputFile, Located};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The JSON document of `explain`.
+#[derive(Debug, Clone, Serialize)]
+pub struct ExplanationDocument {
+    schema: u32,
+    verdict: &'static str,
+    answer: String,
+    effects: Vec<EffectValue>,
+    closest: Vec<EffectValue>,
+    empirical: Option<EmpiricalValue>,
+    localisation: Located,
+    #[serde(rename = "fit")]
+    prediction: FitValues,
+    parameters: BTreeMap<&'static str, ParameterValue>,
+    rigid_body: BTreeMap<&'static str, Moved>,
+    latency: LatencyValue,
+    lack_of_fit: Option<LackValue>,
+    residual: BTreeMap<&'static str, ResidualValue>,
+    detection_limits: Vec<LimitValue>,
+    too_little_excitation: bool,
+    data_quality: DataQuality,
+    next_flight: Option<NextValue>,
+    warnings: Vec<String>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct EffectValue {
+    id: &'static str,
+    sentence: String,
+    parameters: Vec<ParameterOf>,
+    evidence: EvidenceValue,
+    confusable_with: Vec<&'static str>,
+    /// standard deviations by which this flight tells them apart
+    distinguishability: BTreeMap<&'static str, Option<f64>>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct ParameterOf {
+    name: &'static str,
+    value: f64,
+    std: f64,
+    unit: &'static str,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct EvidenceValue {
+    z: f64,
+    gain_percent: f64,
+    delta_bic: f64,
+    p_value: f64,
+}
+
+/// A term without a mechanism: straight lines between the knots, zero outside.
+#[derive(Debug, Clone, Serialize)]
+struct EmpiricalValue {
+    variable: &'static str,
+    unit: &'static str,
+    at: Vec<f64>,
+    force_n: Vec<[f64; 3]>,
+    frame: &'static str,
+    gain_percent: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct ParameterValue {
+    value: f64,
+    std: Option<f64>,
+    unit: &'static str,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct Moved {
+    nominal: f64,
+    before: f64,
+    after: f64,
+    unit: &'static str,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct LatencyValue {
+    total_s: f64,
+    std_s: Option<f64>,
+    delay_s: f64,
+    lag_s: f64,
+    named: bool,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct LackValue {
+    period_s: f64,
+    periods: usize,
+    p_value: f64,
+    p_value_by_axis: BTreeMap<&'static str, f64>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct ResidualValue {
+    before: f64,
+    after: f64,
+    unit: &'static str,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct LimitValue {
+    id: &'static str,
+    parameter: &'static str,
+    limit: f64,
+    /// on ordinary vehicles, of what shows only where the vehicle moves
+    usual: Option<f64>,
+    unit: &'static str,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct DataQuality {
+    inputs: Vec<InputFile>,
+    holdout: Vec<InputFile>,
+    flights: Vec<FlightValue>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct FlightValue {
+    usable_s: f64,
+    total_s: f64,
+    excluded: String,
+    thrust_from: &'static str,
+    notes: Vec<String>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct NextValue {
+    /// why there is none
+    reason: Option<String>,
+    seconds: Option<f64>,
+    /// what it tells apart, in standard deviations
+    pairs: Vec<NextPair>,
+    /// what no trajectory tells apart, and why
+    inseparable: Vec<String>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct NextPair {
+    named: &'static str,
+    /// null: how far it stands out of the noise
+    other: Option<&'static str>,
+    now: f64,
+    after: f64,
+}
+
+impl ExplanationDocument {
+    /// From the result.
+    #[must_use]
+    pub fn new(study: &ExplainStudy) -> Self {
+        Self {
+            schema: 1,
+            verdict: study.verdict().name(),
+            answer: answer(study),
+            effects: effect_values(study, &study.effects),
+            closest: effect_values(study, &study.closest),
+            empirical: empirical(study),
+            localisation: study.located.clone(),
+            prediction: fit_values(study),
+            parameters: study
+                .body()
+                .into_iter()
+                .map(|p| {
+                    let std = p.after.std.is_finite().then_some(p.after.std);
+                    (p.name, ParameterValue { value: p.after.value, std, unit: p.unit })
+                })
+                .collect(),
+            rigid_body: moved(study),
+            latency: latency(study),
+            lack_of_fit: lack(study),
+            residual: residual(study),
+            detection_limits: limits(study),
+            too_little_excitation: study.explanation.too_little_excitation,
+            data_quality: data_quality(study),
+            next_flight: next(study),
+            warnings: study.notes.iter().map(Note::sentence).collect(),
+        }
+    }
+}
+
+fn effect_values(study: &ExplainStudy, effects: &[Named]) -> Vec<EffectValue> {
+    effects
+        .iter()
+        .map(|effect| EffectValue {
+            id: effect.id,
+            sentence: format!("{}.", crate::diagnose::clause(effect, study.vehicle())),
+            parameters: effect
+                .parameters
+                .iter()
+                .map(|p| ParameterOf { name: p.name, value: p.value, std: p.std, unit: p.unit })
+                .collect(),
+            evidence: EvidenceValue {
+                z: effect.strength.z,
+                gain_percent: 100.0 * effect.strength.gain,
+                delta_bic: study.delta_bic(effect),
+                p_value: study.p_value(effect),
+            },
+            confusable_with: effect.confusable_with.iter().map(|other| other.id).collect(),
+            distinguishability: effect
+                .confusable_with
+                .iter()
+                .map(|other| (other.id, other.distinguishability))
+                .collect(),
+        })
+        .collect()
+}
+
+fn empirical(study: &ExplainStudy) -> Option<EmpiricalValue> {
+    let term = study.empirical.as_ref()?;
+    Some(EmpiricalValue {
+        variable: term.along.name(),
+        unit: term.along.unit(),
+        at: term.knots.clone(),
+        force_n: term.force_n.iter().map(|force| [force.x, force.y, force.z]).collect(),
+        frame: match term.along {
+            Along::Position(_) => "world",
+            Along::Velocity(_) => "body",
+        },
+        gain_percent: 100.0 * term.gain,
+    })
+}
+
+fn moved(study: &ExplainStudy) -> BTreeMap<&'static str, Moved> {
+    let moved = |p: BodyParameter| {
+        let value = Moved { nominal: p.nominal, before: p.before.value, after: p.after.value, unit: p.unit };
+        (p.name, value)
+    };
+    study.body().into_iter().map(moved).collect()
+}
+
+fn latency(study: &ExplainStudy) -> LatencyValue {
+    let latency = study.latency();
+    LatencyValue {
+        total_s: latency.total_s,
+        std_s: latency.std_s.is_finite().then_some(latency.std_s),
+        delay_s: latency.parts.delay_s,
+        lag_s: latency.parts.lag_s,
+        named: study.latency_named(),
+    }
+}
+
+fn lack(study: &ExplainStudy) -> Option<LackValue> {
+    let lack = study.explanation.lack_of_fit.as_ref()?;
+    Some(LackValue {
+        period_s: lack.period_s,
+        periods: lack.periods,
+        p_value: lack.p_least(),
+        p_value_by_axis: CHANNEL_NAMES.into_iter().zip(lack.p_value).collect(),
+    })
+}
+
+fn residual(study: &ExplainStudy) -> BTreeMap<&'static str, ResidualValue> {
+    let value = |of: AxisFit| ResidualValue { before: of.before, after: of.after, unit: of.unit };
+    study.residual().into_iter().map(|of| (of.name, value(of))).collect()
+}
+
+fn limits(study: &ExplainStudy) -> Vec<LimitValue> {
+    let limits = study.explanation.limits.iter();
+    limits
+        .map(|l| LimitValue {
+            id: l.id,
+            parameter: l.parameter,
+            limit: l.limit,
+            usual: l.usual,
+            unit: l.unit,
+        })
+        .collect()
+}
+
+fn next(study: &ExplainStudy) -> Option<NextValue> {
+    Some(match study.next.as_ref()? {
+        Err(why) => NextValue {
+            reason: Some(why.to_string()),
+            seconds: None,
+            pairs: Vec::new(),
+            inseparable: Vec::new(),
+        },
+        Ok(next) => NextValue {
+            reason: None,
+            seconds: Some(next.seconds),
+            inseparable: next.inseparable.iter().map(ToString::to_string).collect(),
+            pairs: next
+                .pairs
+                .iter()
+                .map(|pair| NextPair {
+                    named: pair.named,
+                    other: pair.other,
+                    now: pair.now,
+                    after: pair.after,
+                })
+                .collect(),
+        },
+    })
+}
+
+fn data_quality(study: &ExplainStudy) -> DataQuality {
+    DataQuality {
+        inputs: study.given.inputs.clone(),
+        holdout: study.held_out_inputs().to_vec(),
+        flights: study
+            .given
+            .quality
+            .iter()
+            .map(|quality| FlightValue {
+                usable_s: quality.usable.usable_s,
+                total_s: quality.usable.total_s,
+                excluded: quality.usable.summary(),
+                thrust_from: thrust_name(quality.thrust_source),
+                notes: quality.notes.iter().map(ToString::to_string).collect(),
+            })
+            .collect(),
+    }
+}

@@ -1,0 +1,178 @@
+//! The page of `explain` for the terminal.
+
+use super::answer::answer;
+use crate::diagnose::{Named, Verdict};
+use crate::diagnose::{called, clause};
+use crate::report::number::{chance, percent, significant, with_error};
+use crate::report::thrust_source::thrust_name;
+use crate::study::{AxisFit, ExplainStudy, Predicted, QUANTITIES};
+use std::fmt::Write;
+
+/// The page for the terminal: the answer first.
+#[must_use]
+pub fn explanation_text(study: &ExplainStudy) -> String {
+    let mut page = format!("{}\n\n", answer(study));
+    let _ = writeln!(page, "  verdict: {}", study.verdict().name());
+    for effect in study.effects.iter().chain(&study.closest) {
+        effect_lines(&mut page, study, effect);
+    }
+    located_lines(&mut page, study);
+    fit_lines(&mut page, study);
+    body_lines(&mut page, study);
+    limit_lines(&mut page, study);
+    match &study.next {
+        Some(Ok(next)) => drop(writeln!(page, "\n  next flight: {}", next.sentence())),
+        Some(Err(why)) => drop(writeln!(page, "\n  no next flight: {why}")),
+        None => {}
+    }
+    quality_lines(&mut page, study);
+    for note in &study.notes {
+        let _ = writeln!(page, "  {note}");
+    }
+    page.truncate(page.trim_end().len());
+    page
+}
+
+fn effect_lines(page: &mut String, study: &ExplainStudy, effect: &Named) {
+    let mark = if study.verdict() == Verdict::Unexplained { " (closest, not named)" } else { "" };
+    let _ = writeln!(page, "\n  {}{mark}: {}", effect.id, clause(effect, study.vehicle()));
+    for p in &effect.parameters {
+        let _ = writeln!(page, "    {:<16}{:>22}  {}", p.name, with_error(p.value, p.std), p.unit);
+    }
+    let strength = &effect.strength;
+    let _ = writeln!(
+        page,
+        "    evidence: z {:.1}, p {}, {} % of the residual energy",
+        strength.z,
+        chance(study.p_value(effect)),
+        significant(100.0 * strength.gain, 2)
+    );
+    for other in &effect.confusable_with {
+        let apart = other
+            .distinguishability
+            .map_or(String::new(), |apart| format!(": {apart:.1} standard deviations apart in this flight"));
+        let _ = writeln!(page, "    may be taken for {} ({}){apart}", called(other.id), other.id);
+    }
+}
+
+fn located_lines(page: &mut String, study: &ExplainStudy) {
+    let located = &study.located;
+    if located.axes.is_empty() {
+        return;
+    }
+    let axes: Vec<String> = located
+        .axes
+        .iter()
+        .take(4)
+        .map(|axis| format!("{} {:.0} %", axis.axis, axis.share_percent))
+        .collect();
+    let _ = writeln!(page, "\n  where: {}", axes.join(", "));
+    if !located.state.is_empty() {
+        let state: Vec<String> = located
+            .state
+            .iter()
+            .take(4)
+            .map(|state| format!("{} with {} {:.0} %", state.axis, state.variable, state.share_percent))
+            .collect();
+        let _ = writeln!(page, "  following: {}", state.join(", "));
+    }
+    if let Some([low, high]) = located.band_hz {
+        let _ = writeln!(page, "  between {} and {} Hz", significant(low, 2), significant(high, 2));
+    }
+}
+
+fn fit_lines(page: &mut String, study: &ExplainStudy) {
+    let _ = writeln!(
+        page,
+        "\n  open-loop prediction over 0.5 s, rms   {:>12}{:>12}{:>12}  better by",
+        "rigid body", "with it", "noise alone"
+    );
+    let shown = study.shown_on.heading();
+    for (name, of) in [("flights explained", &study.identify), (shown.as_str(), &study.holdout)] {
+        let _ = writeln!(page, "    {name}");
+        predicted_lines(page, of.as_ref());
+    }
+}
+
+fn predicted_lines(page: &mut String, predicted: Option<&Predicted>) {
+    let Some(predicted) = predicted else { return };
+    for (of, (name, unit)) in predicted.half_second().iter().zip(QUANTITIES) {
+        let Some(of) = of else { continue };
+        let _ = writeln!(
+            page,
+            "      {:<33}{:>12}{:>12}{:>12}  {}",
+            format!("{name} ({unit})"),
+            significant(of.before.value, 3),
+            significant(of.after.value, 3),
+            of.floor.map_or_else(|| "-".to_owned(), |floor| significant(floor, 3)),
+            percent(&of.improvement_percent)
+        );
+    }
+    if let Some(mean) = predicted.improvement_percent {
+        let _ = writeln!(page, "      {:<69}  {}", "mean", percent(&mean));
+    }
+}
+
+fn body_lines(page: &mut String, study: &ExplainStudy) {
+    let _ = writeln!(page, "\n  rigid body{:>13}{:>16}{:>28}", "nominal", "alone", "with the effects");
+    for of in study.body() {
+        let _ = writeln!(
+            page,
+            "    {:<6}{:>13}{:>16}{:>28}  {}",
+            of.name,
+            significant(of.nominal, 4),
+            significant(of.before.value, 4),
+            with_error(of.after.value, of.after.std),
+            of.unit
+        );
+    }
+    let latency = study.latency();
+    let _ = writeln!(
+        page,
+        "    from command to rotor {} ms",
+        with_error(1e3 * latency.total_s, 1e3 * latency.std_s)
+    );
+    let _ = writeln!(page, "\n  residual, rms{:>13}{:>12}", "alone", "after");
+    for AxisFit { name, unit, before, after } in study.residual() {
+        let _ = writeln!(
+            page,
+            "    {name:<10}{:>13}{:>12}  {unit}",
+            significant(before, 3),
+            significant(after, 3)
+        );
+    }
+}
+
+fn limit_lines(page: &mut String, study: &ExplainStudy) {
+    if study.explanation.limits.is_empty() {
+        return;
+    }
+    let _ = writeln!(page, "\n  what would have been named in this flight");
+    for limit in &study.explanation.limits {
+        let _ = writeln!(
+            page,
+            "    {:<20}{:<14} from {:>9} {}",
+            limit.id,
+            limit.parameter,
+            significant(limit.limit, 2),
+            limit.unit
+        );
+    }
+}
+
+fn quality_lines(page: &mut String, study: &ExplainStudy) {
+    page.push('\n');
+    for (input, quality) in study.given.inputs.iter().zip(&study.given.quality) {
+        let _ = writeln!(
+            page,
+            "  {}: {:.1} s used; thrust from {}; {}",
+            input.path,
+            quality.usable.usable_s,
+            thrust_name(quality.thrust_source),
+            quality.usable.summary()
+        );
+        for note in &quality.notes {
+            let _ = writeln!(page, "    {note}");
+        }
+    }
+}

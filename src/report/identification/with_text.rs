@@ -1,0 +1,114 @@
+//! The page of `identify --with` for the terminal.
+
+use crate::diagnose::joint::{EffectFound, Found, JointEstimate, ParameterFound};
+use crate::estimate::{Finding, Parameter, theta_of};
+use crate::study::{IdentifyStudy, Misfit, WithEffects};
+use std::fmt::Write;
+
+use super::words::{beyond, flight_lines, number, physical};
+
+/// Effects and rigid body, identified together.
+pub(super) fn with_text(study: &IdentifyStudy, with: &WithEffects) -> String {
+    let together = &with.together;
+    let ids: Vec<&str> = together.effects.iter().map(|effect| effect.effect.id()).collect();
+    let mut page =
+        format!("{}: {} identified together with the rigid body\n", study.vehicle.name, ids.join(", "));
+    for effect in &together.effects {
+        let _ = writeln!(page, "  {}: {}", effect.effect.id(), evidence(effect));
+    }
+    let _ = writeln!(
+        page,
+        "\n  {:<34}{:>13}{:>13}{:>15}{:>12}  unit",
+        "parameter", "value", "std error", "without them", "nominal"
+    );
+    let nominal = theta_of(&study.vehicle.body);
+    let bodies = together.body.parameters.iter().zip(&together.body_before.parameters);
+    for (index, (with, without)) in bodies.enumerate() {
+        let _ = writeln!(page, "  {}", body_line(with, without, nominal[index]));
+    }
+    for effect in &together.effects {
+        for parameter in &effect.parameters {
+            let _ = writeln!(page, "  {}", effect_line(effect, parameter));
+        }
+    }
+    page.push_str(&scale_line(together));
+    if let Some(sentence) = physical(together.physical) {
+        let _ = writeln!(page, "  {sentence}");
+    }
+    let _ = writeln!(page, "\n  {:<26}{:>13}{:>13}  unit", "misfit, rms", "without them", "with them");
+    for Misfit { name, unit, without, with } in with.misfits() {
+        let _ = writeln!(page, "  {name:<26}{:>13}{:>13}  {unit}", number(without), number(with));
+    }
+    page.push('\n');
+    let latency = &together.latency;
+    let how = if together.latency_named { "held as the kind that was named" } else { "estimated with them" };
+    let _ = writeln!(
+        page,
+        "  actuation latency {:.1} +- {:.1} ms, {how}",
+        1e3 * latency.total_s,
+        1e3 * latency.std_s
+    );
+    page.push_str(&flight_lines(with.quality.iter()));
+    page
+}
+
+/// Where the scale of the forces comes from.
+fn scale_line(together: &JointEstimate) -> String {
+    match together.scale.as_ref().map(|scale| (scale.name, &scale.value, scale.unit)) {
+        Some((name, Finding::Determined { value, std }, unit)) => {
+            format!("  {name} {value:.4e} +- {std:.1e} {unit} (identified; forces are on the scale of the weighed mass)\n")
+        }
+        Some((name, ..)) => format!("  {name} is not determined: forces are on the stated scale\n"),
+        None => "  scale: the stated thrust is trusted (anchor = \"thrust\"); masses, forces and torques rest on it\n"
+            .to_owned(),
+    }
+}
+
+/// How sure an effect is.
+fn evidence(effect: &EffectFound) -> String {
+    let tried =
+        if effect.tried > 1 { format!(" after {} forms were tried", effect.tried) } else { String::new() };
+    let there = if effect.is_significant() { "" } else { "; not to be told from nothing" };
+    format!("{} {:.1} standard errors from nothing{tried}{there}", effect.effect.sentence(), effect.z)
+}
+
+fn body_line(with: &Parameter, without: &Parameter, nominal: f64) -> String {
+    let short = |finding: &Finding| match finding {
+        Finding::Determined { value, .. } | Finding::Given { value } => number(*value),
+        Finding::NotDetermined { .. } => "-".to_owned(),
+    };
+    let (value, std) = match &with.finding {
+        Finding::Determined { value, std } => (number(*value), number(*std)),
+        Finding::Given { value } => (number(*value), "(weighed)".to_owned()),
+        Finding::NotDetermined { reason } => return format!("{:<34} not determined: {reason}", with.name),
+    };
+    format!(
+        "{:<34}{value:>13}{std:>13}{:>15}{:>12}  {}",
+        with.name,
+        short(&without.finding),
+        number(nominal),
+        with.unit
+    )
+}
+
+fn effect_line(effect: &EffectFound, parameter: &ParameterFound) -> String {
+    let name = format!("{}.{}", effect.effect.id(), parameter.name);
+    let unit = parameter.unit;
+    match &parameter.found {
+        Found::Determined { value, std } => {
+            format!("{name:<34}{:>13}{:>13}{:>15}{:>12}  {unit}", number(*value), number(*std), "", "")
+        }
+        Found::AtBound { value, wanted, std } => {
+            format!(
+                "{name:<34}{:>13}{:>13}  {unit}; {}",
+                number(*value),
+                number(*std),
+                beyond(parameter, *wanted, *std)
+            )
+        }
+        Found::Given { value, why } => {
+            format!("{name:<34}{:>13}{:>13}  {unit}; {why}", number(*value), "(set)")
+        }
+        Found::NotDetermined { reason, .. } => format!("{name:<34} not determined: {reason}"),
+    }
+}

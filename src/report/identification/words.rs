@@ -1,0 +1,85 @@
+//! Words and numbers that several views of an identification have in common.
+
+use crate::diagnose::joint::{ParameterFound, Physical};
+use crate::estimate::{Finding, MethodResult};
+use crate::report::thrust_source::thrust_name;
+use crate::signals::Quality;
+use crate::text::compact;
+use std::fmt::Write;
+
+/// What the flight is good for, in one sentence.
+pub(super) fn verdict(result: &MethodResult) -> String {
+    let (mut yes, mut no) = (Vec::new(), Vec::new());
+    for parameter in &result.parameters {
+        match parameter.finding {
+            Finding::Determined { .. } => yes.push(parameter.name),
+            Finding::NotDetermined { .. } => no.push(parameter.name),
+            Finding::Given { .. } => {}
+        }
+    }
+    match (yes.is_empty(), no.is_empty()) {
+        (false, true) => "good for all of mass and inertia".into(),
+        (false, false) => format!("good for {}; not for {}", yes.join(", "), no.join(", ")),
+        (true, _) => "determines none of the parameters".into(),
+    }
+}
+
+/// Five digits after the point where that shows the value, powers of ten where it would not.
+pub(super) fn number(value: f64) -> String {
+    if value == 0.0 || value.abs() >= 2e-4 { format!("{value:.5}") } else { format!("{value:.3e}") }
+}
+
+/// What was used of each flight.
+pub(super) fn flight_lines<'a>(flights: impl Iterator<Item = &'a Quality>) -> String {
+    let mut page = String::new();
+    for (index, quality) in flights.enumerate() {
+        let _ = writeln!(
+            page,
+            "  flight {}: {:.1} s used; thrust from {}; {}",
+            index + 1,
+            quality.usable.usable_s,
+            thrust_name(quality.thrust_source),
+            quality.usable.summary()
+        );
+        for (quantity, offset) in &quality.offsets {
+            let what = if offset.repaired { "taken out" } else { "left in: not known well enough" };
+            let _ = writeln!(
+                page,
+                "    {quantity:?} {} by {:.2} +- {:.2} ms against the inertial unit, {what}",
+                if offset.late_s < 0.0 { "early" } else { "late" },
+                1e3 * offset.late_s.abs(),
+                1e3 * offset.std_s
+            );
+        }
+        for note in &quality.notes {
+            let _ = writeln!(page, "    {note}");
+        }
+    }
+    page
+}
+
+/// What is to be said of the inertia.
+pub(super) fn physical(of: Physical) -> Option<&'static str> {
+    match of {
+        Physical::AsEstimated => None,
+        Physical::Moved => Some(
+            "the estimate was not an inertia that a body can have; moved to the nearest that is, within its error",
+        ),
+        Physical::No => Some(
+            "warning: no body has this inertia (one principal moment exceeds the sum of the others), by more than its error; left as \
+             estimated. Are arms, thrust and torque per thrust as the vehicle file states them?",
+        ),
+    }
+}
+
+/// What is asked for beyond what physics allows.
+pub(super) fn beyond(parameter: &ParameterFound, wanted: f64, std: f64) -> String {
+    let (least, most) = parameter.plausible;
+    let away = if wanted < least { least - wanted } else { wanted - most };
+    let what = if away > 3.0 * std { "that is not this effect" } else { "the bound is within the error" };
+    format!(
+        "the flight asks for {wanted:.3e} +- {std:.1e}, physics allows {} to {}: {what}",
+        compact(least),
+        compact(most)
+    )
+}

@@ -1,0 +1,7 @@
+//! What `inspect` says, as views of one inspection: text for the terminal, JSON.
+
+mod json;
+mod text;
+
+pub use json::InspectionDocument;
+pub use text::inspection_text;

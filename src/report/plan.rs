@@ -1,0 +1,148 @@
+//! What `plan` says, as views of one study: text for the terminal, JSON.
+
+use crate::plan::Criterion;
+use crate::study::{Flown, PlanStudy};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// The JSON document of `plan`.
+#[derive(Debug, Clone, Serialize)]
+pub struct PlanDocument {
+    schema: u32,
+    criterion: Criterion,
+    criterion_value: Option<f64>,
+    condition_number: f64,
+    scaled_condition_number: f64,
+    /// relative, of what the flight will determine; none where it cannot determine all seven
+    standard_errors: Option<BTreeMap<&'static str, f64>>,
+    flight_s: f64,
+    /// what is left to each bound on 2 ms samples, SI
+    margins: BTreeMap<String, f64>,
+    first_violation: Option<String>,
+    /// share of the rotor commands at a rotor's bound when it is flown in simulation; none where it cannot be flown
+    share_at_rotor_bound: Option<f64>,
+    /// from takeoff to the series and back; none where no transition keeps the limits
+    transitions: Option<Transitions>,
+    /// of the whole flight from takeoff to landing; none where no transition keeps the limits
+    flown: Option<Flown>,
+}
+
+/// What is flown before and after the series.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Transitions {
+    /// x, y, z (m), yaw (rad)
+    takeoff: [f64; 4],
+    /// the same before landing
+    landing: [f64; 4],
+    to_start_s: f64,
+    to_landing_s: f64,
+}
+
+impl PlanDocument {
+    /// From the result.
+    #[must_use]
+    pub fn new(study: &PlanStudy) -> Self {
+        let worth = &study.assessment;
+        Self {
+            schema: 1,
+            criterion: study.criterion,
+            criterion_value: study.criterion_value,
+            condition_number: worth.condition_number,
+            scaled_condition_number: worth.scaled_condition_number,
+            standard_errors: study.standard_errors().map(|errors| errors.into_iter().collect()),
+            flight_s: worth.flight_s,
+            margins: study.margins().collect(),
+            first_violation: study.first_violation.clone(),
+            share_at_rotor_bound: worth.share_at_bound,
+            transitions: study.transitions.map(|around| Transitions {
+                takeoff: around.takeoff,
+                landing: around.landing,
+                to_start_s: around.to_start_s,
+                to_landing_s: around.to_landing_s,
+            }),
+            flown: study.flown,
+        }
+    }
+}
+
+/// The page for the terminal.
+#[must_use]
+pub fn plan_text(study: &PlanStudy) -> String {
+    let worth = &study.assessment;
+    let mut page = format!(
+        "cond(W) {:.3}, with scaled columns {:.3}\n",
+        worth.condition_number, worth.scaled_condition_number
+    );
+    // writing to a String cannot fail
+    match study.standard_errors() {
+        None => {
+            let _ = writeln!(page, "this flight does not determine all seven parameters");
+        }
+        Some(errors) => {
+            let _ = writeln!(page, "expected standard errors after {} s", worth.flight_s);
+            for (name, share) in errors {
+                let _ = writeln!(page, "  {name:<5} {:.2} %{}", 100.0 * share, of_what(name));
+            }
+        }
+    }
+    let _ = writeln!(page, "left to each bound on 2 ms samples");
+    let margins: BTreeMap<String, f64> = study.margins().collect();
+    for (name, spare) in margins {
+        let (spare, name) = in_degrees(spare, &name);
+        let _ = writeln!(page, "  {name:<30} {spare:.6}");
+    }
+    if let Some(Flown { low_m, high_m, horizontal_speed_m_s, vertical_speed_m_s, tilt_deg }) = study.flown {
+        let _ = writeln!(
+            page,
+            "flown: north {:.2} to {:.2} m, west {:.2} to {:.2} m, up {:.2} to {:.2} m; at most {horizontal_speed_m_s:.2} m/s along the ground, {vertical_speed_m_s:.2} m/s up or down, {tilt_deg:.1} degrees of tilt",
+            low_m[0], high_m[0], low_m[1], high_m[1], low_m[2], high_m[2],
+        );
+    }
+    let _ = match worth.share_at_bound {
+        Some(share) => {
+            writeln!(
+                page,
+                "flown in simulation, {:.1} % of the rotors' commands are at a bound",
+                100.0 * share
+            )
+        }
+        None => writeln!(page, "the simulated controller cannot fly it"),
+    };
+    if let Some(around) = &study.transitions {
+        // no minus zero
+        let shown = |place: [f64; 4]| place.map(|value| if value.abs() < 0.005 { 0.0 } else { value });
+        let [x, y, z, _] = shown(around.takeoff);
+        let (to_start_s, to_landing_s) = (around.to_start_s, around.to_landing_s);
+        let _ = writeln!(page, "from hover at ({x:.2}, {y:.2}, {z:.2}) m to the start in {to_start_s:.2} s");
+        let [x, y, z, _] = shown(around.landing);
+        let _ = writeln!(page, "from the end to hover at ({x:.2}, {y:.2}, {z:.2}) m in {to_landing_s:.2} s");
+    }
+    match &study.first_violation {
+        Some(violation) => {
+            let _ = write!(page, "first violation: {violation}");
+        }
+        None => {
+            let _ = write!(page, "every bound is kept");
+        }
+    }
+    page
+}
+
+/// A product of inertia is small against the moments that it couples.
+fn of_what(name: &str) -> &'static str {
+    match name {
+        "ixy" => " of sqrt(ixx iyy)",
+        "ixz" => " of sqrt(ixx izz)",
+        "iyz" => " of sqrt(iyy izz)",
+        _ => "",
+    }
+}
+
+fn in_degrees(value: f64, name: &str) -> (f64, String) {
+    if name.contains("_rad") {
+        (value.to_degrees(), name.replace("_rad", "_deg"))
+    } else {
+        (value, name.to_owned())
+    }
+}

@@ -1,0 +1,91 @@
+//! Why a study has no result.
+
+use crate::config::ConfigError;
+use crate::diagnose::ExplainError;
+use crate::diagnose::joint::JointError;
+use crate::estimate::EstimateError;
+use crate::log::csv::CsvError;
+use crate::plan::PlanError;
+use crate::signals::SignalsError;
+
+/// Why a study has no result. Each is of what went in: files, flights or settings.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// a vehicle file, model or mapping
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// a CSV recording
+    #[error(transparent)]
+    Csv(#[from] CsvError),
+    /// a setting of the request
+    #[error("{name}: {why}")]
+    Setting {
+        /// as on the command line, without its hyphens
+        name: &'static str,
+        /// what was expected and what came
+        why: String,
+    },
+    /// a file that cannot be used
+    #[error("{file}: {why}")]
+    File {
+        /// its name as given
+        file: String,
+        /// what was expected and what came
+        why: String,
+    },
+    /// one recording was given twice
+    #[error("{one} and {other} are the same recording byte for byte; expected different flights")]
+    Twins {
+        /// one name
+        one: String,
+        /// the other
+        other: String,
+    },
+    /// a flight that cannot be conditioned for this vehicle
+    #[error("{flight} with {vehicle}: {source}{}", lost(.losses))]
+    Flight {
+        /// name of the log, and which flight of it
+        flight: String,
+        /// name of the vehicle's file
+        vehicle: String,
+        /// why
+        source: SignalsError,
+        /// what of the log was not read
+        losses: Vec<String>,
+    },
+    /// no flight keeps the limits, or the search cannot be asked for
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// a case that cannot be explained, or whose hold-out shows nothing
+    #[error("{0}")]
+    Case(String),
+    /// nothing can be identified
+    #[error(transparent)]
+    Identify(#[from] EstimateError),
+    /// effects cannot be identified together with the rigid body
+    #[error("{logs}: {source}")]
+    Joint {
+        /// names of the logs
+        logs: String,
+        /// why
+        source: JointError,
+    },
+    /// settings of two kinds of methods at once
+    #[error(
+        "--cutoff, --fir and --sigma are for the methods LS, GD, FMLS and FMGD; expected them without --with, which fits the \
+         weak form, where nothing is differentiated and nothing is low-passed"
+    )]
+    FilterWithEffects,
+    /// the flights cannot be explained
+    #[error("{logs}: {source}")]
+    Explain {
+        /// names of the logs
+        logs: String,
+        /// why
+        source: ExplainError,
+    },
+}
+
+fn lost(losses: &[String]) -> String {
+    if losses.is_empty() { String::new() } else { format!("; not read of the log: {}", losses.join("; ")) }
+}

@@ -1,0 +1,104 @@
+//! What the better model is shown on, and how it does there.
+
+use super::result::ExplainStudy;
+use super::shown_on::ShownOn;
+use crate::diagnose::Empirical;
+use crate::diagnose::holdout::{
+    HeldOut, HoldoutError, HoldoutSettings, Split, differing, on_holdout, on_identification,
+    split_last_periods,
+};
+use crate::note::{About, Note};
+use crate::signals::Signals;
+use crate::study::flights::{Prepared, shared};
+use crate::study::{Predicted, StudyError};
+
+/// A flight that was used, or a part of it, shows nothing as a hold-out.
+pub(super) fn refuse_shared(flights: &Prepared, held: &Prepared) -> Result<(), StudyError> {
+    for (hold_out, input) in held.recordings.iter().zip(&held.inputs) {
+        for (flight, used) in flights.recordings.iter().zip(&flights.inputs) {
+            if let Some(share) = shared(hold_out, flight) {
+                let why = format!(
+                    "expected a flight that is not explained, {:.0} % of {} are in {} as well",
+                    100.0 * share,
+                    input.path,
+                    used.path
+                );
+                return Err(StudyError::Setting { name: "holdout", why });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The end of the last flight, which is then not explained.
+pub(super) fn hold_back(flights: &mut Prepared) -> (ShownOn, Option<Signals>) {
+    let split = flights.signals.last().and_then(split_last_periods);
+    let (Some(Split { identify, holdout, from_s, .. }), Some(last)) = (split, flights.signals.last_mut())
+    else {
+        let reason = "the flight is too short to hold a part of it back; give another with --holdout";
+        return (ShownOn::Nothing { reason: reason.to_owned() }, None);
+    };
+    *last = identify;
+    let seconds = holdout.usable.iter().filter(|used| **used).count() as f64 * holdout.grid.step_s;
+    (ShownOn::HeldBack { from_s, seconds }, Some(holdout))
+}
+
+impl ExplainStudy {
+    /// Prediction errors before and after on the flights that were explained, and, of several, whether they are of one
+    /// vehicle. An empirical term stands in where no mechanism serves.
+    pub(super) fn show_explained(&mut self, flights: &Prepared) {
+        let (vehicle, settings) = (&self.given.vehicle, &self.given.settings);
+        self.empirical = match Empirical::fit(&self.explanation, &flights.signals, vehicle, settings) {
+            Ok(empirical) => empirical,
+            Err(error) => {
+                self.notes.push(Note::warning(About::Estimate, format!("no empirical term: {error}")));
+                None
+            }
+        };
+        let used = flights.held_out();
+        let settings = HoldoutSettings::default();
+        match on_identification((&self.explanation, self.empirical.as_ref()), &used, vehicle, &settings) {
+            Ok((open_loop, improvement_percent)) => {
+                self.identify = Some(Predicted { open_loop, improvement_percent });
+            }
+            Err(error) => {
+                self.notes.push(Note::warning(About::Estimate, format!("open-loop prediction: {error}")));
+            }
+        }
+        if used.len() < 2 {
+            return;
+        }
+        match differing(&self.explanation, &used, vehicle, &settings) {
+            Ok(why) => self.notes.extend(why.into_iter().map(|why| Note::warning(About::Estimate, why))),
+            Err(error) => {
+                let text = format!("whether the flights are of one vehicle: {error}");
+                self.notes.push(Note::warning(About::Estimate, text));
+            }
+        }
+    }
+
+    /// The same on flights that were not used, or on the part held back.
+    pub(super) fn show_held_out(&mut self, held: &Prepared, back: Option<&Signals>, shown_on: ShownOn) {
+        let mut flights = held.held_out();
+        flights.extend(back.map(|signals| HeldOut { name: "the part held back", signals, recording: None }));
+        if flights.is_empty() {
+            self.shown_on = shown_on;
+        } else if let Err(error) = self.shown_on(&flights, shown_on) {
+            self.notes.push(Note::warning(About::HoldOut, format!("hold-out: {error}")));
+            self.shown_on = ShownOn::Nothing { reason: error.to_string() };
+        }
+    }
+
+    fn shown_on(&mut self, flights: &[HeldOut], shown_on: ShownOn) -> Result<(), HoldoutError> {
+        let same_flight = matches!(shown_on, ShownOn::HeldBack { .. });
+        let settings = HoldoutSettings { same_flight, ..HoldoutSettings::default() };
+        let model = (&self.explanation, self.empirical.as_ref());
+        let shown = on_holdout(model, flights, &self.given.vehicle, &settings)?;
+        let other = shown.other_vehicle.iter();
+        self.notes.extend(other.map(|other| Note::warning(About::HoldOut, other.reason.clone())));
+        self.holdout = Some(Predicted::from(&shown));
+        self.shown = Some(shown);
+        self.shown_on = shown_on;
+        Ok(())
+    }
+}

@@ -1,0 +1,26 @@
+//! Which physics the model left out: from logs to names, sizes, and the gain on what was not used.
+
+mod evidence;
+mod figures;
+mod hold_out;
+mod located;
+mod next;
+mod predicted;
+mod readers;
+mod request;
+mod result;
+mod run;
+mod shown_on;
+
+pub use evidence::{Tried, TriedAs};
+pub use figures::{AxisResidual, Figures, Followed, Harmonics, Heat, LeftAlongTime, RecordedAndSimulated};
+pub use located::{AxisShare, Field, Located, StateShare};
+pub use next::stored_trajectory;
+pub use predicted::{Predicted, QUANTITIES};
+pub use readers::for_readers;
+pub use request::ExplainRequest;
+pub use result::{AxisFit, BodyParameter, Estimate, ExplainStudy, Given};
+pub use run::explain;
+pub use shown_on::ShownOn;
+
+pub(super) use request::check_transient;

@@ -1,0 +1,67 @@
+//! The errors of open-loop prediction.
+
+use crate::compare::improvement_percent;
+use crate::diagnose::holdout::{Compared, HoldoutFit, Interval, OpenLoop};
+
+/// Open-loop errors on one set of flights.
+#[derive(Debug, Clone, Default)]
+pub struct Predicted {
+    /// one a length of window
+    pub open_loop: Vec<OpenLoop>,
+    /// mean over the quantities at 0.5 s
+    pub improvement_percent: Option<Interval>,
+}
+
+impl Predicted {
+    /// Errors over windows of 0.5 s.
+    #[must_use]
+    pub fn half_second(&self) -> [Option<Compared>; 4] {
+        let half = self.open_loop.iter().find(|of| (of.window_s - 0.5).abs() < 1e-9);
+        half.map_or([None; 4], OpenLoop::quantities)
+    }
+
+    /// The quantity whose error falls most, and by how much, percent.
+    #[must_use]
+    pub fn most(&self) -> Option<(&'static str, f64)> {
+        self.half_second()
+            .into_iter()
+            .zip(QUANTITIES)
+            .filter_map(|(compared, (name, _))| Some((name, compared?.improvement_percent.value)))
+            // a model that left the flight has no error to speak of
+            .filter(|(_, percent)| percent.is_finite())
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The quantity whose error falls least, or rises, and by how much, percent.
+    #[must_use]
+    pub fn least(&self) -> Option<(&'static str, f64)> {
+        self.half_second()
+            .into_iter()
+            .zip(QUANTITIES)
+            .filter_map(|(compared, (name, _))| Some((name, compared?.improvement_percent.value)))
+            .filter(|(_, percent)| percent.is_finite())
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Mean improvement over the quantities, percent.
+    #[must_use]
+    pub fn improvement(&self) -> Option<f64> {
+        let each: Vec<f64> = self
+            .half_second()
+            .into_iter()
+            .flatten()
+            .map(|of| improvement_percent(of.before.value, of.after.value))
+            .collect();
+        (!each.is_empty()).then(|| each.iter().sum::<f64>() / each.len() as f64)
+    }
+}
+
+impl From<&HoldoutFit> for Predicted {
+    fn from(shown: &HoldoutFit) -> Self {
+        Self { open_loop: shown.open_loop.clone(), improvement_percent: shown.improvement_percent }
+    }
+}
+
+/// Names of the quantities of [`OpenLoop::quantities`] in their order.
+pub const QUANTITIES: [(&str, &str); 4] =
+    [("position", "m"), ("velocity", "m/s"), ("attitude", "rad"), ("body rate", "rad/s")];

@@ -1,0 +1,306 @@
+//! The result of explaining: what went in, what was found, and what shows it.
+
+use super::located::Located;
+use super::predicted::Predicted;
+use super::readers::for_readers;
+use super::shown_on::ShownOn;
+use crate::diagnose::experiment::{NextError, NextFlight};
+use crate::diagnose::holdout::{Difference, HoldoutFit};
+use crate::diagnose::signatures::latency_kind;
+use crate::diagnose::{
+    AXES, CHANNEL_NAMES, CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, LatencyFinding, Named,
+    Nuisance, Trace, Verdict,
+};
+use crate::note::Note;
+use crate::physics::ActiveEffect;
+use crate::signals::Quality;
+use crate::study::{Correlation, InputFile};
+use crate::text::significant;
+use crate::vehicle::{RigidBody, Vehicle};
+use statrs::distribution::{ContinuousCDF, Normal};
+
+/// What went in beside the recordings' signals.
+#[derive(Debug, Clone)]
+pub struct Given {
+    /// nominal
+    pub vehicle: Vehicle,
+    /// flights that were explained
+    pub inputs: Vec<InputFile>,
+    /// where their signals come from
+    pub quality: Vec<Quality>,
+    /// settings of the method
+    pub settings: ExplainSettings,
+    /// s left out at the beginning of each flight
+    pub transient_s: f64,
+}
+
+/// The whole answer.
+#[derive(Debug)]
+pub struct ExplainStudy {
+    /// what went in
+    pub given: Given,
+    /// what came out
+    pub explanation: Explanation,
+    /// named effects as readers want them
+    pub effects: Vec<Named>,
+    /// where nothing serves: what comes closest, likewise
+    pub closest: Vec<Named>,
+    /// errors of open-loop prediction on the flights that were explained
+    pub identify: Option<Predicted>,
+    /// and on those that were not used
+    pub holdout: Option<Predicted>,
+    /// everything that was shown on them
+    pub shown: Option<HoldoutFit>,
+    /// a term without a mechanism, where none serves
+    pub empirical: Option<Empirical>,
+    /// which flights those are
+    pub shown_on: ShownOn,
+    /// where simulation and recording differ
+    pub located: Located,
+    /// what to fly to tell apart what this flight cannot; `Err`: why there is none; `None`: not asked for
+    pub next: Option<Result<NextFlight, NextError>>,
+    /// what the user should know, all of it warnings
+    pub notes: Vec<Note>,
+    /// the flights that were explained as the weak form sees them
+    pub(super) traces: Vec<Trace>,
+}
+
+/// A parameter with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// in the parameter's unit
+    pub value: f64,
+    /// standard error; NaN where there is none
+    pub std: f64,
+}
+
+/// Mass or an entry of the inertia.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyParameter {
+    /// as in JSON
+    pub name: &'static str,
+    /// SI
+    pub unit: &'static str,
+    /// as the vehicle file states it
+    pub nominal: f64,
+    /// of the rigid body alone
+    pub before: Estimate,
+    /// of the final model
+    pub after: Estimate,
+}
+
+/// What is left of the equation of one axis, root mean square.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisFit {
+    /// as in [`CHANNEL_NAMES`]
+    pub name: &'static str,
+    /// N or N m
+    pub unit: &'static str,
+    /// by the rigid body alone
+    pub before: f64,
+    /// by the final model
+    pub after: f64,
+}
+
+impl ExplainStudy {
+    /// Puts it together, not shown on anything yet.
+    #[must_use]
+    pub fn new(given: Given, explanation: Explanation) -> Self {
+        Self {
+            effects: for_readers(&explanation.named),
+            closest: for_readers(&explanation.closest),
+            located: Located::of(&explanation),
+            next: None,
+            identify: None,
+            holdout: None,
+            shown: None,
+            empirical: None,
+            shown_on: ShownOn::Nothing { reason: "no hold-out".to_owned() },
+            notes: Vec::new(),
+            traces: Vec::new(),
+            given,
+            explanation,
+        }
+    }
+
+    /// In one word.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        self.explanation.verdict
+    }
+
+    /// The fit that the model rests on: where nothing serves, that of the rigid body alone.
+    fn fitted(&self) -> &Fitted {
+        let search = &self.explanation.search;
+        if self.verdict() == Verdict::Unexplained { &search.before } else { &search.after }
+    }
+
+    /// The vehicle as identified.
+    #[must_use]
+    pub fn vehicle(&self) -> &Vehicle {
+        &self.fitted().base.vehicle
+    }
+
+    /// Mass and inertia, nominal, alone and with the effects.
+    #[must_use]
+    pub fn body(&self) -> Vec<BodyParameter> {
+        let before = estimates(&self.explanation.search.before);
+        let after = estimates(self.fitted());
+        let nominal = body_values(&self.given.vehicle.body);
+        (0..BODY_NAMES.len())
+            .map(|index| BodyParameter {
+                name: BODY_NAMES[index],
+                unit: if index == 0 { "kg" } else { "kg m^2" },
+                nominal: nominal[index],
+                before: before[index],
+                after: after[index],
+            })
+            .collect()
+    }
+
+    /// Where what the found effects leave differs from the recording.
+    #[must_use]
+    pub fn left_over(&self) -> Located {
+        Located::left(&self.explanation)
+    }
+
+    /// From command to rotor.
+    #[must_use]
+    pub fn latency(&self) -> &LatencyFinding {
+        &self.explanation.search.latency
+    }
+
+    /// What is left of each axis.
+    #[must_use]
+    pub fn residual(&self) -> Vec<AxisFit> {
+        let search = &self.explanation.search;
+        let (before, after) = (search.before.weighted.sigma, search.after.weighted.sigma);
+        let axis = |(index, name): (usize, &'static str)| AxisFit {
+            name,
+            unit: unit_of(name),
+            before: before[index],
+            after: after[index],
+        };
+        CHANNEL_NAMES.into_iter().take(AXES).enumerate().map(axis).collect()
+    }
+
+    /// How the errors of the final model's parameters go together.
+    #[must_use]
+    pub fn correlation(&self) -> Correlation {
+        Correlation::of_fit(self.fitted())
+    }
+
+    /// What shows that the hold-out is of another vehicle; `None` where it is not.
+    #[must_use]
+    pub fn other_vehicle(&self) -> Option<String> {
+        Some(match &self.shown.as_ref()?.other_vehicle.as_ref()?.by {
+            Difference::Parameter(by) => format!(
+                "{} {} {unit} there, {} {unit} here",
+                by.name,
+                significant(by.held_out, 3),
+                significant(by.identified, 3),
+                unit = by.unit
+            ),
+            Difference::Residual { channel, ratio } => {
+                format!("even a fit of its own leaves {ratio:.1} times as much of {channel} there as here")
+            }
+        })
+    }
+
+    /// Effects for the model file: those that were found, and a latency that was named.
+    #[must_use]
+    pub fn effects_of_model(&self) -> Vec<ActiveEffect> {
+        let mut effects = Vec::new();
+        if self.verdict() == Verdict::Unexplained {
+            return effects;
+        }
+        effects.extend(self.found());
+        if self.latency_named() {
+            let latency = self.explanation.search.after.base.latency_effects();
+            effects.extend(latency.iter().filter_map(|l| ActiveEffect::new(l.effect(), &l.values).ok()));
+        }
+        effects
+    }
+
+    /// The base's own effects beyond what was given; one isotropic drag in place of its two pieces.
+    fn found(&self) -> Vec<ActiveEffect> {
+        let base = &self.explanation.search.after.base;
+        // one isotropic drag has taken the place of the part along body z
+        let merged = base.present.iter().find_map(|term| {
+            let whole = term.signature.role.axial_part_of?;
+            let entry = self.effects.iter().find(|effect| effect.id == whole.id())?;
+            Some((whole, entry.get("dz")?.value))
+        });
+        let mut out = Vec::new();
+        for present in &base.present {
+            let mut values = present.values.clone();
+            if let Some((whole, dz)) = merged {
+                if present.signature.role.axial_part_of.is_some() {
+                    continue;
+                }
+                if let Some(slot) = present.signature.role.axial.filter(|_| present.id() == whole.id()) {
+                    values[slot] = dz;
+                }
+            }
+            out.extend(ActiveEffect::new(present.effect(), &values).ok());
+        }
+        out
+    }
+
+    /// Chance of evidence this strong where the effect is absent: of the normal deviate, both sides.
+    #[must_use]
+    pub fn p_value(&self, effect: &Named) -> f64 {
+        Normal::standard().sf(effect.strength.z.abs()) * 2.0
+    }
+
+    /// Change of the Bayesian information criterion by the effect: what its parameters cost less what they
+    /// explain.
+    #[must_use]
+    pub fn delta_bic(&self, effect: &Named) -> f64 {
+        let rows = (CHANNELS * self.explanation.search.after.rows.len()) as f64;
+        effect.strength.count as f64 * rows.ln() - effect.strength.energy
+    }
+
+    /// A lag or delay is among the names.
+    #[must_use]
+    pub fn latency_named(&self) -> bool {
+        let is_latency = |named: &Named| latency_kind(named.id).is_some();
+        self.explanation.named.iter().chain(&self.explanation.closest).any(is_latency)
+    }
+
+    /// The files of the flights that were not used; none where a part of a flight was held back.
+    #[must_use]
+    pub fn held_out_inputs(&self) -> &[InputFile] {
+        if let ShownOn::Flights(inputs) = &self.shown_on { inputs } else { &[] }
+    }
+
+    /// Every recording that went in.
+    pub fn inputs(&self) -> impl Iterator<Item = &InputFile> {
+        self.given.inputs.iter().chain(self.held_out_inputs())
+    }
+}
+
+/// Unit of what is left of an axis.
+fn unit_of(channel: &str) -> &'static str {
+    if channel.starts_with("force") { "N" } else { "N m" }
+}
+
+/// Names of mass and inertia in the order of the paper's parameters.
+const BODY_NAMES: [&str; 7] = ["mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
+
+/// Mass (kg) and inertia (kg m^2) in the order of [`BODY_NAMES`].
+fn body_values(body: &RigidBody) -> [f64; 7] {
+    let j = &body.inertia_kg_m2;
+    [body.mass_kg, j[(0, 0)], j[(0, 1)], j[(0, 2)], j[(1, 1)], j[(1, 2)], j[(2, 2)]]
+}
+
+/// Mass and inertia of a fit with their standard errors.
+fn estimates(fitted: &Fitted) -> [Estimate; 7] {
+    let values = body_values(&fitted.base.vehicle.body);
+    std::array::from_fn(|index| {
+        let wanted = if index == 0 { Nuisance::Mass } else { Nuisance::Inertia(index - 1) };
+        let place = fitted.rows.nuisances.iter().position(|column| column.nuisance == wanted);
+        let std = place.map_or(f64::NAN, |at| fitted.covariance[(at, at)].max(0.0).sqrt());
+        Estimate { value: values[index], std }
+    })
+}

@@ -1,0 +1,205 @@
+//! Opens, conditions, holds out, explains, tries again, shows, and designs the next flight.
+
+use super::hold_out::{hold_back, refuse_shared};
+use super::request::ExplainRequest;
+use super::result::{ExplainStudy, Given};
+use super::shown_on::ShownOn;
+use crate::config::{LoadedVehicle, read_vehicle};
+use crate::diagnose::experiment::{NextSettings, design};
+use crate::diagnose::signatures::signature_of;
+use crate::diagnose::{ExplainSettings, Trace, Verdict};
+use crate::note::{About, Note};
+use crate::signals::{ConditionSettings, Signals, ThrustPreference};
+use crate::study::flights::{EXPLAINED, Prepared, file_notes, load_all, names, prepare, refuse_twins};
+use crate::study::{Progress, Stage, StudyError, effects_of};
+use crate::text;
+use crate::vehicle::Vehicle;
+use std::path::Path;
+
+/// Share of the flight that may be saturated without a word.
+const SATURATED: f64 = 0.3;
+/// A file is wrong by less than this in mass.
+const MASS_FACTOR: f64 = 1.6;
+/// What a recording without velocity cannot tell.
+const NO_VELOCITY: &str = "no velocity (LOCAL_POSITION_NED or similar), or no attitude, is recorded: drag, wind and other effects of the air \
+                           cannot be tried, and what is named may stand for what they do to the rotation";
+/// Why a whole flight is explained.
+const CHANGES_LATE: &str = "something changes in what would be held back, so the whole flight is explained; give another with --holdout";
+
+/// Names the physics that the vehicle's file leaves out.
+///
+/// Reads and conditions the logs, holds out flights or the end of the last one, searches effects, and shows the model
+/// with them on what was held out. Where something changes at the very end, the whole flight is explained instead.
+///
+/// # Errors
+/// [`StudyError`] where a file or a setting cannot be used, or no flight can be explained.
+pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<ExplainStudy, StudyError> {
+    request.check()?;
+    let loaded = read_vehicle(&request.vehicle)?;
+    let mut notes = of_file(&loaded, &request.vehicle)?;
+    let vehicle = loaded.vehicle;
+    let of_holdout = |why| StudyError::Setting {
+        name: "holdout",
+        why: format!("expected a flight of {}: {why}", vehicle.name),
+    };
+    progress.stage(Stage::Reading);
+    let logs = load_all(&request.logs, &request.read, &EXPLAINED)?;
+    let held = load_all(&request.holdout, &request.read, &EXPLAINED).map_err(of_holdout)?;
+    refuse_twins(logs.iter().chain(&held))?;
+    progress.stage(Stage::Conditioning);
+    let settings = ConditionSettings {
+        transient_s: Some(request.transient_s),
+        thrust: ThrustPreference::BestSampled,
+        ..ConditionSettings::default()
+    };
+    let mut flights = prepare(logs, (&vehicle, &request.vehicle), &settings)?;
+    let held = prepare(held, (&vehicle, &request.vehicle), &settings).map_err(of_holdout)?;
+    refuse_shared(&flights, &held)?;
+    let whole = flights.signals.last().cloned();
+    let (shown_on, back) =
+        if held.is_empty() { hold_back(&mut flights) } else { (ShownOn::Flights(held.inputs.clone()), None) };
+    notes.extend(of_data(&flights, &held));
+    let task = Task { request, vehicle: &vehicle, notes: &notes, progress };
+    progress.stage(Stage::Explaining);
+    let mut study = task.explained(&flights, (&held, back.as_ref(), shown_on))?;
+    // what changed in the part held back, or shortly before it, is nowhere in the part explained
+    if let Some(whole) = whole.filter(|_| held.is_empty() && changes_late(&study)) {
+        study = task.explained_again(study, &mut flights, whole)?;
+    }
+    let half_width_s = study.given.settings.half_width_s;
+    let traces =
+        flights.signals.iter().filter_map(|signals| Trace::new(signals, &vehicle, half_width_s).ok());
+    study.traces = traces.collect();
+    if request.design_next {
+        progress.stage(Stage::Designing);
+        study.next = Some(design(&study.explanation, &flights.signals, &vehicle, &NextSettings::default()));
+    }
+    Ok(study)
+}
+
+/// What every attempt has in common.
+struct Task<'a> {
+    request: &'a ExplainRequest,
+    vehicle: &'a Vehicle,
+    notes: &'a [Note],
+    progress: &'a dyn Progress,
+}
+
+impl Task<'_> {
+    /// Explains the flights and shows the better model; what is to be said of the data before comes first.
+    fn explained(
+        &self,
+        flights: &Prepared,
+        (held, back, shown_on): (&Prepared, Option<&Signals>, ShownOn),
+    ) -> Result<ExplainStudy, StudyError> {
+        let settings = ExplainSettings::default();
+        let explanation = crate::diagnose::explain(&flights.signals, self.vehicle, &settings)
+            .map_err(|source| StudyError::Explain { logs: names(&self.request.logs), source })?;
+        let given = Given {
+            vehicle: self.vehicle.clone(),
+            inputs: flights.inputs.clone(),
+            quality: flights.signals.iter().map(|signals| signals.quality.clone()).collect(),
+            settings,
+            transient_s: self.request.transient_s,
+        };
+        let mut study = ExplainStudy::new(given, explanation);
+        study.notes.extend_from_slice(self.notes);
+        study.notes.extend(mass(&study));
+        self.progress.stage(Stage::Predicting);
+        study.show_explained(flights);
+        study.show_held_out(held, back, shown_on);
+        Ok(study)
+    }
+
+    /// The whole last flight instead of its part, if that shows a change which the part does not.
+    fn explained_again(
+        &self,
+        of_part: ExplainStudy,
+        flights: &mut Prepared,
+        whole: Signals,
+    ) -> Result<ExplainStudy, StudyError> {
+        let Some(last) = flights.signals.last_mut() else { return Ok(of_part) };
+        let part = std::mem::replace(last, whole);
+        self.progress.stage(Stage::ExplainingAgain);
+        let shown_on = ShownOn::Nothing { reason: CHANGES_LATE.to_owned() };
+        let of_whole = self.explained(flights, (&Prepared::default(), None, shown_on))?;
+        if names_a_change(&of_whole) && !names_a_change(&of_part) {
+            return Ok(of_whole);
+        }
+        if let Some(last) = flights.signals.last_mut() {
+            *last = part;
+        }
+        Ok(of_part)
+    }
+}
+
+/// What is doubtful about the vehicle's file.
+fn of_file(loaded: &LoadedVehicle, file: &Path) -> Result<Vec<Note>, StudyError> {
+    let name = text::path(&file);
+    let mut notes = file_notes(file, &loaded.warnings);
+    let known = effects_of(&loaded.model.effects, &name, &loaded.vehicle)?;
+    if !known.is_empty() {
+        let ids: Vec<&str> = known.iter().map(|active| active.effect().id()).collect();
+        let text = format!("its effects ({}) are left out and looked for anew", ids.join(", "));
+        notes.push(Note::warning(About::File(name), text));
+    }
+    Ok(notes)
+}
+
+/// What is to be known of the recordings: what was lost, what is doubtful, what was left out, what is missing.
+fn of_data(flights: &Prepared, held: &Prepared) -> Vec<Note> {
+    let mut notes = Vec::new();
+    for input in flights.inputs.iter().chain(&held.inputs) {
+        let losses = input.losses();
+        if !losses.is_empty() {
+            notes.push(Note::warning(About::File(input.path.clone()), losses.join("; ")));
+        }
+    }
+    for (input, signals) in flights.each().chain(held.each()) {
+        let about = || About::File(input.path.clone());
+        let doubts = signals.quality.notes.iter().filter(|note| note.is_warning());
+        notes.extend(doubts.map(|doubt| Note::warning(about(), doubt.text.as_str())));
+        let used = &signals.quality.usable;
+        if !used.saturation_kept && used.saturated_s > SATURATED * (used.usable_s + used.saturated_s) {
+            let text = format!(
+                "rotors were at a bound of their commands for {:.0} s, which are left out, and {:.0} s are used: what was left out may \
+                 show in other places than its own; fly a gentler trajectory (mavid plan --limits)",
+                used.saturated_s, used.usable_s
+            );
+            notes.push(Note::warning(about(), text));
+        }
+    }
+    let lacks = |signals: &Signals| signals.velocity.is_none() || signals.attitude.is_none();
+    for (input, _) in flights.each().filter(|(_, signals)| lacks(signals)) {
+        notes.push(Note::warning(About::File(input.path.clone()), NO_VELOCITY));
+    }
+    notes
+}
+
+/// A mass that is far from the file's.
+fn mass(study: &ExplainStudy) -> Option<Note> {
+    let flown_kg = study.explanation.search.after.base.vehicle.body.mass_kg;
+    let factor = flown_kg / study.given.vehicle.body.mass_kg;
+    (!(1.0 / MASS_FACTOR..=MASS_FACTOR).contains(&factor)).then(|| {
+        let text = format!(
+            "the mass that flies is {factor:.2} times what the vehicle file states: another vehicle's file, or a thrust coefficient \
+             that is off by as much?"
+        );
+        Note::warning(About::Vehicle, text)
+    })
+}
+
+/// The part held back is another's, or what is left of the part explained drifts with time.
+fn changes_late(study: &ExplainStudy) -> bool {
+    let drifts =
+        study.located.state.iter().any(|state| ["time", "voltage"].contains(&state.variable.as_str()));
+    study.other_vehicle().is_some() || (study.verdict() == Verdict::Unexplained && drifts)
+}
+
+/// An effect that begins at an instant is among the names.
+fn names_a_change(study: &ExplainStudy) -> bool {
+    study
+        .effects
+        .iter()
+        .any(|named| signature_of(named.id).is_some_and(|signature| signature.role.moment.is_some()))
+}

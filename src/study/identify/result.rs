@@ -1,0 +1,110 @@
+//! The result of identifying: what went in, the estimates, and what is to be known of them.
+
+use crate::diagnose::CHANNEL_NAMES;
+use crate::diagnose::joint::JointEstimate;
+use crate::estimate::{
+    EstimateError, Identification, IdentifySettings, MethodResult, ThrustScale, apply_anchor, identify,
+};
+use crate::note::Note;
+use crate::signals::{Quality, Signals};
+use crate::study::{Correlation, InputFile};
+use crate::vehicle::Vehicle;
+
+/// The whole answer.
+#[derive(Debug)]
+pub struct IdentifyStudy {
+    /// nominal
+    pub vehicle: Vehicle,
+    /// as they were identified from
+    pub flights: Vec<Signals>,
+    /// their files
+    pub inputs: Vec<InputFile>,
+    /// the rigid body alone
+    pub identification: Identification,
+    /// where the mass was weighed
+    pub scale: Option<ThrustScale>,
+    /// effects that were identified together with the rigid body
+    pub with: Option<WithEffects>,
+    /// what is doubtful about the vehicle's file
+    pub notes: Vec<Note>,
+}
+
+/// Effects that were identified together with the rigid body.
+#[derive(Debug, Clone)]
+pub struct WithEffects {
+    /// what was found
+    pub together: JointEstimate,
+    /// where the signals come from, flight by flight
+    pub quality: Vec<Quality>,
+}
+
+/// What the equations of one channel leave, root mean square.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Misfit {
+    /// as in [`CHANNEL_NAMES`]
+    pub name: &'static str,
+    /// N or N m
+    pub unit: &'static str,
+    /// of the rigid body alone
+    pub without: f64,
+    /// with the effects
+    pub with: f64,
+}
+
+impl WithEffects {
+    /// What is left of each channel that was used.
+    #[must_use]
+    pub fn misfits(&self) -> Vec<Misfit> {
+        let channels = CHANNEL_NAMES.into_iter().zip(self.together.misfit());
+        let known = channels.filter_map(|(name, misfit)| {
+            let (without, with) = misfit?;
+            let unit = if name.starts_with("torque") { "N m" } else { "N" };
+            Some(Misfit { name, unit, without, with })
+        });
+        known.collect()
+    }
+}
+
+impl IdentifyStudy {
+    /// The rigid body from signals and the files that they came from.
+    ///
+    /// # Errors
+    /// [`EstimateError`] where no method can run.
+    pub fn of_signals(
+        flights: Vec<Signals>,
+        inputs: Vec<InputFile>,
+        vehicle: Vehicle,
+        settings: &IdentifySettings,
+    ) -> Result<Self, EstimateError> {
+        let mut identification = identify(&flights, &vehicle, settings)?;
+        let scale = apply_anchor(&mut identification, &vehicle);
+        Ok(Self { vehicle, flights, inputs, identification, scale, with: None, notes: Vec::new() })
+    }
+
+    /// The rigid body of the answer: with the effects where some were asked for, by the recommended method elsewhere.
+    #[must_use]
+    pub fn body(&self) -> &MethodResult {
+        self.with.as_ref().map_or(&self.identification.best.result, |with| &with.together.body)
+    }
+
+    /// How the errors of what was estimated go together.
+    #[must_use]
+    pub fn correlation(&self) -> Correlation {
+        match &self.with {
+            Some(with) => Correlation::of_fit(&with.together.after),
+            None => self.method_correlation(),
+        }
+    }
+
+    /// The same of the rigid body alone by the recommended method.
+    #[must_use]
+    pub fn method_correlation(&self) -> Correlation {
+        Correlation::of_method(&self.identification.best.result)
+    }
+
+    /// Something about the estimate is doubtful.
+    #[must_use]
+    pub fn is_doubtful(&self) -> bool {
+        self.identification.notes.iter().any(Note::is_warning)
+    }
+}

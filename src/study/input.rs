@@ -1,0 +1,93 @@
+//! A file that went in, as results name it.
+
+use std::path::Path;
+
+use crate::note::{Note, Severity};
+use crate::text;
+use serde::{Serialize, Serializer};
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+
+use super::StudyError;
+
+/// One file that went in, or one flight of a log that holds several.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InputFile {
+    /// file name as given, and which flight of it where it holds several
+    pub path: String,
+    /// SHA-256 of its bytes, hexadecimal
+    pub sha256: String,
+    /// what of it was lost on reading, and what else is to be known of it: whose flight it is, what is no flight
+    pub notes: Vec<Note>,
+}
+
+impl InputFile {
+    /// A file with its hash.
+    ///
+    /// # Errors
+    /// [`StudyError::File`] where it cannot be read.
+    pub fn of(path: &Path) -> Result<Self, StudyError> {
+        let sha256 = sha256_of(path)
+            .map_err(|error| StudyError::File { file: text::path(&path), why: error.to_string() })?;
+        Ok(Self { path: text::path(&path), sha256, notes: Vec::new() })
+    }
+
+    /// What of it was not read or not used: sentence by sentence.
+    #[must_use]
+    pub fn losses(&self) -> Vec<&str> {
+        self.texts(|severity| severity == Severity::Loss)
+    }
+
+    /// What else is to be known of it.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<&str> {
+        self.texts(|severity| severity != Severity::Loss)
+    }
+
+    fn texts(&self, is_wanted: impl Fn(Severity) -> bool) -> Vec<&str> {
+        self.notes.iter().filter(|note| is_wanted(note.severity)).map(|note| note.text.as_str()).collect()
+    }
+}
+
+/// `{"path", "sha256", "losses", "notes"}`, the last only where there are some.
+impl Serialize for InputFile {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Written<'a> {
+            path: &'a str,
+            sha256: &'a str,
+            losses: Vec<&'a str>,
+            #[serde(skip_serializing_if = "Vec::is_empty")]
+            notes: Vec<&'a str>,
+        }
+        let (losses, notes) = (self.losses(), self.remarks());
+        Written { path: &self.path, sha256: &self.sha256, losses, notes }.serialize(serializer)
+    }
+}
+
+fn sha256_of(path: &Path) -> std::io::Result<String> {
+    let mut hasher = Sha256::new();
+    std::io::copy(&mut std::fs::File::open(path)?, &mut hasher)?;
+    Ok(hasher.finalize().iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::note::About;
+
+    #[test]
+    fn losses_and_remarks_are_written_apart() {
+        let about = || About::File("a.tlog".to_owned());
+        let notes = vec![Note::remark(about(), "two vehicles"), Note::loss(about(), "3 bytes cut off")];
+        let input = InputFile { path: "a.tlog".to_owned(), sha256: "0".to_owned(), notes };
+        let expected =
+            r#"{"path":"a.tlog","sha256":"0","losses":["3 bytes cut off"],"notes":["two vehicles"]}"#;
+        assert_eq!(text::json_line(&input).unwrap(), expected);
+        let whole = InputFile { notes: Vec::new(), ..input };
+        assert!(text::json_line(&whole).unwrap().ends_with(r#""losses":[]}"#));
+    }
+}

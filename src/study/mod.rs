@@ -1,0 +1,45 @@
+//! A whole piece of work as one function with a typed result: what `mavid explain`, `identify` and their like do.
+//!
+//! A study reads files, calls the stages, and collects what they have to say. It prints nothing and writes nothing:
+//! [`crate::report`] shows its result, and the caller decides where that goes. What it does meanwhile it tells a
+//! [`Progress`].
+
+mod after_flight;
+mod correlation;
+mod effects;
+mod error;
+mod explain;
+mod flights;
+mod identify;
+mod input;
+mod plan;
+mod progress;
+mod prove;
+mod validate;
+mod vehicle;
+
+pub use after_flight::{AfterFlight, after_flight};
+pub use correlation::Correlation;
+pub use effects::{effects_file, effects_of, effects_text, with_further, with_stated_lag};
+pub use error::StudyError;
+pub use explain::{
+    AxisFit, AxisResidual, AxisShare, BodyParameter, Estimate, ExplainRequest, ExplainStudy, Field, Figures,
+    Followed, Given, Harmonics, Heat, LeftAlongTime, Located, Predicted, QUANTITIES, RecordedAndSimulated,
+    ShownOn, StateShare, Tried, TriedAs, explain, for_readers, stored_trajectory,
+};
+pub use flights::ReadSettings;
+pub use identify::{
+    COMPONENTS, IdentifyRequest, IdentifyStudy, Misfit, RotorsAndMotion, WithEffects, identify,
+};
+pub use input::InputFile;
+pub use plan::{Circle, Flown, PlanStudy, PlannedSeries, PlanningRequest, plan_flight};
+pub use progress::{Progress, Silent, Stage};
+pub use prove::{
+    CaseEffect, CaseParameter, CaseVerdict, Gain, Proof, ProofSummary, ScoredCase, SealedVerdicts, SizeError,
+    case_folders, prove, seal, verdict,
+};
+pub use validate::{
+    Column, ErrorRow, ErrorTable, Prediction, ValidateRequest, ValidateStudy, ValidatedFlight,
+    ValidatedModel, closed_loop_table, playback_table, prediction_table, validate,
+};
+pub use vehicle::{RotorSummary, VehicleSummary, vehicle_summary};

@@ -1,0 +1,139 @@
+//! Reads vehicle and limits, plans or assesses a series, and puts takeoff and landing around it.
+
+use super::request::{Circle, PlannedSeries, PlanningRequest};
+use super::result::{Flown, PlanStudy};
+use crate::config::{StoredTransitions, read_limits, read_trajectory, read_vehicle};
+use crate::note::Note;
+use crate::plan::{
+    Dynamics, FlightPlan, PlanError, Roomed, assess, bounds_of, flight_path, floor_m, plan, search_of,
+    with_room,
+};
+use crate::study::flights::file_notes;
+use crate::study::{Progress, StudyError};
+use crate::trajectory::{CirclePath, FlightPath, FourierTrajectory, Segment};
+use crate::vehicle::{Limits, Vehicle};
+
+/// s a turn of a circle, from and to.
+const TURN_S: [f64; 2] = [0.1, 1000.0];
+
+/// Plans an excitation trajectory for a vehicle, or assesses a given one, with the way from takeoff to landing.
+///
+/// # Errors
+/// [`StudyError`] where a file or a setting cannot be used, or no trajectory keeps the limits.
+pub fn plan_flight(request: &PlanningRequest, progress: &dyn Progress) -> Result<PlanStudy, StudyError> {
+    let loaded = read_vehicle(&request.vehicle)?;
+    let vehicle = loaded.vehicle;
+    let mut notes = file_notes(&request.vehicle, &loaded.warnings);
+    let stated = request.limits.as_deref().map_or(Ok(vehicle.limits), read_limits)?;
+    let Roomed { limits, notes: of_room } = with_room(&stated, &vehicle);
+    notes.extend(file_notes(request.limits.as_deref().unwrap_or(&request.vehicle), &of_room));
+    notes.iter().for_each(|note| progress.note(note));
+    let mut study = planned(request, (&vehicle, &limits), (notes, progress))?;
+    let flight = around(&study.series, request, study.repeats);
+    if let Some(violation) = below_floor(&flight, &vehicle) {
+        study.first_violation.get_or_insert(violation);
+    }
+    match flight_path(&study.series, &flight, &bounds_of(&limits, &vehicle), &Dynamics::new(&vehicle)) {
+        Ok(path) => {
+            study.transitions = transitions(&path, &flight);
+            study.flown = Some(Flown::of(&path, &vehicle));
+        }
+        Err(error) => {
+            study.first_violation.get_or_insert(error.to_string());
+        }
+    }
+    Ok(study)
+}
+
+/// The series and what it is worth.
+fn planned(
+    request: &PlanningRequest,
+    (vehicle, limits): (&Vehicle, &Limits),
+    (notes, progress): (Vec<Note>, &dyn Progress),
+) -> Result<PlanStudy, StudyError> {
+    let mut search = request.search.clone();
+    let bounds = bounds_of(limits, vehicle);
+    let (series, assessment, criterion_value) = match &request.series {
+        PlannedSeries::Searched => {
+            progress.steps(search_of(&search).work());
+            let plan = plan(vehicle, limits, &search, &|| progress.step())?;
+            (plan.trajectory, plan.assessment, Some(plan.criterion_value))
+        }
+        PlannedSeries::Stored(file) => {
+            let stored = read_trajectory(file)?;
+            search.repeats = stored.repeats;
+            let worth = assess(&stored.series, vehicle, &bounds, &search);
+            (stored.series, worth, None)
+        }
+        PlannedSeries::Circle(circle) => {
+            let series = turns(circle, limits)?;
+            series.check_size(search.repeats).map_err(PlanError::from)?;
+            let worth = assess(&series, vehicle, &bounds, &search);
+            (series, worth, None)
+        }
+    };
+    Ok(PlanStudy {
+        series,
+        repeats: search.repeats,
+        limits: *limits,
+        first_violation: assessment.check.first_violation.map(|violation| violation.to_string()),
+        assessment,
+        criterion: search.criterion,
+        criterion_value,
+        transitions: None,
+        flown: None,
+        notes,
+    })
+}
+
+fn turns(circle: &Circle, limits: &Limits) -> Result<FourierTrajectory, StudyError> {
+    let middle = match (limits.z_min_m, limits.z_max_m) {
+        (Some(low), Some(high)) => f64::midpoint(low, high),
+        (Some(low), None) => low + 1.0,
+        (None, Some(high)) => high - 1.0,
+        (None, None) => 1.0,
+    };
+    let Circle { radius_m, turn_s, height_m } = *circle;
+    let sound = radius_m > 0.0
+        && radius_m.is_finite()
+        && (TURN_S[0]..=TURN_S[1]).contains(&turn_s)
+        && height_m.is_none_or(f64::is_finite);
+    if !sound {
+        let mut came = vec![radius_m, turn_s];
+        came.extend(height_m);
+        let why = format!(
+            "expected a radius above 0 m, a period of 0.1 to 1000 s and a finite height, came {came:?}"
+        );
+        return Err(StudyError::Setting { name: "circle", why });
+    }
+    Ok(CirclePath { radius_m, height_m: height_m.unwrap_or(middle) }.steady_turns(turn_s))
+}
+
+/// Where the flight begins and ends: unless prescribed, at the series' mean. A series may start on a bound,
+/// and a transition to the very place would swing beyond it.
+fn around(series: &FourierTrajectory, request: &PlanningRequest, repeats: u32) -> FlightPlan {
+    let mean: [f64; 4] = std::array::from_fn(|i| series.axes[i].c);
+    let takeoff = request.takeoff.unwrap_or(mean);
+    FlightPlan { takeoff, landing: request.landing.unwrap_or(takeoff), hover_s: 0.0, repeats }
+}
+
+/// A hover before or after the series in which the rotors come near the ground.
+fn below_floor(flight: &FlightPlan, vehicle: &Vehicle) -> Option<String> {
+    let floor_m = floor_m(vehicle);
+    let places = [("takeoff", flight.takeoff[2]), ("landing", flight.landing[2])];
+    places
+        .into_iter()
+        .find(|(_, height_m)| *height_m < floor_m)
+        .map(|(name, height_m)| format!("hover of {name} is at {height_m:.2} m, the floor at {floor_m:.2} m"))
+}
+
+/// Transitions before and after the series.
+fn transitions(path: &FlightPath, flight: &FlightPlan) -> Option<StoredTransitions> {
+    let mut durations = path
+        .segments
+        .iter()
+        .filter(|(segment, _)| matches!(segment, Segment::Transition(_)))
+        .map(|(_, duration)| *duration);
+    let (to_start_s, to_landing_s) = (durations.next()?, durations.next()?);
+    Some(StoredTransitions { takeoff: flight.takeoff, landing: flight.landing, to_start_s, to_landing_s })
+}

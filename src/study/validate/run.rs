@@ -1,0 +1,33 @@
+//! Opens models and logs, and compares each flight with all models.
+
+use super::flight::{CUTOFF_HZ, flight};
+use super::model::contenders;
+use super::request::ValidateRequest;
+use super::result::{ValidateStudy, ValidatedFlight};
+use crate::study::flights::{Flight, IDENTIFIED, load_all, ready, refuse_twins};
+use crate::study::{Progress, Stage, StudyError};
+use rayon::prelude::*;
+
+/// Compares models with recorded flights: flown again in closed loop, by the output of the regression models, and
+/// played back in open loop.
+///
+/// # Errors
+/// [`StudyError`] where a file or a setting cannot be used, or a log holds nothing to compare with.
+pub fn validate(request: &ValidateRequest, progress: &dyn Progress) -> Result<ValidateStudy, StudyError> {
+    request.check()?;
+    let (models, notes) = contenders(&request.models, progress)?;
+    progress.stage(Stage::Reading);
+    let logs = load_all(&request.logs, &request.read, &IDENTIFIED)?;
+    refuse_twins(logs.iter())?;
+    progress.stage(Stage::Predicting);
+    let one = |log| ready(log, |of: &Flight| flight(of, &models, request.transient_s));
+    let done: Vec<_> = logs.into_par_iter().map(one).collect();
+    let mut flights = Vec::new();
+    for log in done {
+        // what is to be said of flights that were left out stands with the first that was not
+        flights
+            .extend(log?.into_iter().map(|(of, compared)| ValidatedFlight { input: of.input, ..compared }));
+    }
+    let models = models.into_iter().map(|model| model.of).collect();
+    Ok(ValidateStudy { models, flights, transient_s: request.transient_s, cutoff_hz: CUTOFF_HZ, notes })
+}
