@@ -71,7 +71,27 @@ const LACK_TORQUE: f64 = 0.1;
 /// Share of the energy of the effect that was taken which a rival must explain.
 const RIVAL: f64 = 0.93;
 
-/// Explains one or more flights of a vehicle.
+/// Explains one or more flights of a vehicle: names the physical effects that the rigid body lacks.
+///
+/// ```
+/// # use mavid::config::load_vehicle;
+/// # use mavid::log::{LoadOptions, load};
+/// # use mavid::signals::{ConditionSettings, condition};
+/// use mavid::diagnose::{ExplainSettings, clause, explain};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let fixtures = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
+/// # let log = load(&fixtures.join("p04_identify_10_22s.tlog"), &LoadOptions::default())?;
+/// # let vehicle = load_vehicle(&fixtures.join("p04_vehicle.toml"))?;
+/// let signals = condition(&log.recording, &vehicle, &ConditionSettings::default())?;
+/// let explanation = explain(&[signals], &vehicle, &ExplainSettings::default())?;
+/// // the rotors of this flight follow their commands with a lag of 60 ms
+/// let named: Vec<_> = explanation.named.iter().map(|named| named.id).collect();
+/// assert_eq!(named, ["motor_lag"]);
+/// println!("{}.", clause(&explanation.named[0], &vehicle));
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
 /// [`ExplainError`] where streams are missing or too little was flown.

@@ -76,6 +76,25 @@ pub struct Identification {
 
 /// Identifies the rigid body from conditioned flights of one vehicle.
 ///
+/// ```
+/// # use mavid::config::load_vehicle;
+/// # use mavid::log::{LoadOptions, load};
+/// # use mavid::signals::{ConditionSettings, condition};
+/// use mavid::estimate::{IdentifySettings, identify};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let fixtures = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
+/// # let log = load(&fixtures.join("p04_identify_10_22s.tlog"), &LoadOptions::default())?;
+/// # let vehicle = load_vehicle(&fixtures.join("p04_vehicle.toml"))?;
+/// let signals = condition(&log.recording, &vehicle, &ConditionSettings::default())?;
+/// let identification = identify(&[signals], &vehicle, &IdentifySettings::default())?;
+/// for parameter in &identification.best.result.parameters {
+///     println!("{}: {:?} {}", parameter.name, parameter.finding, parameter.unit);
+/// }
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 /// [`EstimateError`] where no method can run.
 pub fn identify(

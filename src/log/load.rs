@@ -36,6 +36,18 @@ pub struct Loaded {
 /// Reads a log into memory, all of it. The name's extension tells its format. Of several vehicles, the one that flew is
 /// read, unless `options` choose one.
 ///
+/// ```
+/// use mavid::log::{LoadOptions, load};
+/// use mavid::recording::Quantity;
+/// use std::path::Path;
+///
+/// let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/p04_identify_10_22s.tlog");
+/// let log = load(&path, &LoadOptions::default())?;
+/// let attitude = log.recording.streams.iter().find(|(key, _)| key.quantity == Quantity::Attitude);
+/// assert!(attitude.is_some_and(|(_, stream)| stream.len() > 100));
+/// # Ok::<(), mavid::log::LogError>(())
+/// ```
+///
 /// # Errors
 /// The file cannot be read, is not what its name says, holds no vehicle, or several that flew.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LogError> {

@@ -128,6 +128,20 @@ const AT_BOUND_MAX: f64 = 0.002;
 
 /// Plans a trajectory. `done` is called once a descent, [`Search::work`] times in all.
 ///
+/// ```no_run
+/// use mavid::config::load_vehicle;
+/// use mavid::plan::{Criterion, PlanRequest, plan};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let vehicle = load_vehicle("configs/qball2.toml".as_ref())?;
+/// let request = PlanRequest { criterion: Criterion::DOpt, ..PlanRequest::default() };
+/// let plan = plan(&vehicle, &vehicle.limits, &request, &|| ())?;
+/// // relative standard errors of mass and inertia after five periods
+/// println!("{:?}", plan.assessment.standard_errors);
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 /// If a number is out of range, limits conflict, or no trajectory inside the limits was found.
 pub fn plan(

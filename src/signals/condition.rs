@@ -42,7 +42,27 @@ impl Default for ConditionSettings {
     }
 }
 
-/// Conditions one flight.
+/// Conditions one flight: chooses streams, aligns them in time, and puts them on one grid. Nothing is smoothed.
+///
+/// ```
+/// use mavid::config::load_vehicle;
+/// use mavid::log::{LoadOptions, load};
+/// use mavid::signals::{ConditionSettings, condition};
+/// use std::path::Path;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
+/// let log = load(&fixtures.join("p04_identify_10_22s.tlog"), &LoadOptions::default())?;
+/// let vehicle = load_vehicle(&fixtures.join("p04_vehicle.toml"))?;
+/// let signals = condition(&log.recording, &vehicle, &ConditionSettings::default())?;
+/// // each stream with its offset in time
+/// for (quantity, offset) in &signals.quality.offsets {
+///     println!("{}: {offset:?}", quantity.name());
+/// }
+/// assert!(signals.grid.step_s > 0.0);
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
 /// [`SignalsError`] where the log has no actuators in the vehicle's unit, no streams of motion, hardly a sample of

@@ -123,6 +123,19 @@ pub struct SimulatedFlight {
 
 /// Flies `truth` along `reference` with a controller that believes `nominal`, and logs it.
 ///
+/// ```
+/// use mavid::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let pair = random_vehicle(11);
+/// let reference = Reference { trajectory: RandomTrajectory::default().draw(12)?, hover_s: 4.0, ramp_s: 2.0 };
+/// let settings = FlightSettings { duration_s: 8.0, ..FlightSettings::default() };
+/// let flight = simulate_flight(Truth::clean(pair.truth), &pair.nominal, &reference, &settings)?;
+/// assert!(flight.tracking_error_max_m < 1.0);
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 /// If a vehicle or setting is not physical, or the flight leaves all bounds.
 pub fn simulate_flight(
