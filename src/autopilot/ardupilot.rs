@@ -15,6 +15,7 @@ use super::pilot::{KillSwitch, PilotSwitches};
 use super::release::Release;
 use super::setpoints::{LastSetpoint, SetpointRules, Takeoff};
 use super::stack::Stack;
+use mavlink::dialects::ardupilotmega::MavAutopilot;
 use std::time::Duration;
 
 /// ArduCopter: setpoints are flown in GUIDED, after a takeoff by command.
@@ -23,7 +24,7 @@ pub static ARDUPILOT: Stack = Stack {
     name: "ArduPilot",
     id: "ardupilot",
     vehicles: "ArduCopter",
-    mav_autopilot: 3,
+    mav_autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
     numbering: Numbering::Whole,
     modes: &MODES,
     // LOITER holds too, and is never asked for: it is a pilot's

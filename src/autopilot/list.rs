@@ -18,7 +18,7 @@ impl Autopilot {
     /// The autopilot of a HEARTBEAT's MAV_AUTOPILOT.
     #[must_use]
     pub fn of_heartbeat(mav_autopilot: u8) -> Self {
-        let known = STACKS.into_iter().find(|stack| stack.mav_autopilot == mav_autopilot);
+        let known = STACKS.into_iter().find(|stack| stack.mav_autopilot as u32 == u32::from(mav_autopilot));
         known.map_or(Self::Other, |stack| stack.autopilot)
     }
 
@@ -44,7 +44,7 @@ impl Autopilot {
 mod tests {
     use super::*;
     use crate::autopilot::{FlownBy, Mode};
-    use mavlink::dialects::ardupilotmega::{CopterMode, MavAutopilot};
+    use mavlink::dialects::ardupilotmega::CopterMode;
 
     const WISHES: [Mode; 4] = [Mode::External, Mode::Hold, Mode::Land, Mode::Return];
 
@@ -93,10 +93,8 @@ mod tests {
 
     #[test]
     fn autopilots_have_the_numbers_of_the_message_definitions() {
-        assert_eq!(u32::from(PX4.mav_autopilot), MavAutopilot::MAV_AUTOPILOT_PX4 as u32);
-        let ardupilot = MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA as u32;
-        assert_eq!(u32::from(ARDUPILOT.mav_autopilot), ardupilot);
         assert_eq!(Autopilot::of_heartbeat(12), Autopilot::Px4);
+        assert_eq!(Autopilot::of_heartbeat(3), Autopilot::ArduPilot);
         assert_eq!(Autopilot::of_heartbeat(18), Autopilot::Other);
     }
 

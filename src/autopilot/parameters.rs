@@ -1,5 +1,7 @@
 //! Parameters: names, types, units, defaults, and what was renamed between releases.
 
+use mavlink::dialects::ardupilotmega::MavParamType;
+
 use super::release::Release;
 
 /// MAV_PARAM_TYPE of a parameter.
@@ -16,14 +18,14 @@ pub enum ParameterType {
 }
 
 impl ParameterType {
-    /// MAV_PARAM_TYPE.
+    /// In a message.
     #[must_use]
-    pub const fn mav(self) -> u8 {
+    pub const fn mav(self) -> MavParamType {
         match self {
-            Self::Int8 => 2,
-            Self::Int16 => 4,
-            Self::Int32 => 6,
-            Self::Real32 => 9,
+            Self::Int8 => MavParamType::MAV_PARAM_TYPE_INT8,
+            Self::Int16 => MavParamType::MAV_PARAM_TYPE_INT16,
+            Self::Int32 => MavParamType::MAV_PARAM_TYPE_INT32,
+            Self::Real32 => MavParamType::MAV_PARAM_TYPE_REAL32,
         }
     }
 }

@@ -13,6 +13,7 @@ use super::pilot::{KillSwitch, PilotSwitches};
 use super::release::Release;
 use super::setpoints::{LastSetpoint, SetpointRules, Takeoff};
 use super::stack::Stack;
+use mavlink::dialects::ardupilotmega::MavAutopilot;
 use std::time::Duration;
 
 /// PX4: setpoints are flown in OFFBOARD, which wants a stream of them before it is entered.
@@ -21,7 +22,7 @@ pub static PX4: Stack = Stack {
     name: "PX4",
     id: "px4",
     vehicles: "PX4 multicopter",
-    mav_autopilot: 12,
+    mav_autopilot: MavAutopilot::MAV_AUTOPILOT_PX4,
     numbering: Numbering::MainAndSub,
     modes: &MODES,
     wishes: Wishes { external: OFFBOARD, hold: LOITER, land: LAND, home: RETURN },

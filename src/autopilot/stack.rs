@@ -1,5 +1,7 @@
 //! All that is known of one autopilot.
 
+use mavlink::dialects::ardupilotmega::MavAutopilot;
+
 use super::failsafe::Failsafe;
 use super::kind::Autopilot;
 use super::limits::{Bounded, Braking};
@@ -20,8 +22,8 @@ pub struct Stack {
     pub id: &'static str,
     /// the same in words, for help
     pub vehicles: &'static str,
-    /// MAV_AUTOPILOT
-    pub mav_autopilot: u8,
+    /// in a HEARTBEAT
+    pub mav_autopilot: MavAutopilot,
     /// how a mode is written
     pub numbering: Numbering,
     /// all modes of a multirotor

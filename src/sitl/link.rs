@@ -7,7 +7,7 @@ use super::message::Message;
 use super::streams::Streams;
 use super::{Firmware, LinkId, LinkRole, Outgoing};
 use crate::link::Signing;
-use crate::wire::{CrcSeeds, Splitter};
+use crate::wire::Splitter;
 
 /// Parameters that go out in one loop period while the list is downloaded.
 const PARAMETERS_A_LOOP: usize = 2;
@@ -50,12 +50,12 @@ impl Link {
         &mut self,
         message: &Message,
         arrives: Duration,
-        (seeds, (system, component)): (&CrcSeeds, (u8, u8)),
+        (system, component): (u8, u8),
         signing: Option<(&Signing, u64)>,
     ) {
         let own = signing.map(|(signing, time)| (signing.for_link(self.number()), time));
         let own = own.as_ref().map(|(signing, time)| (signing, *time));
-        let frame = message.frame(seeds, (self.sequence, system, component), own);
+        let frame = message.frame((self.sequence, system, component), own);
         self.sequence = self.sequence.wrapping_add(1);
         self.waiting.push_back((arrives, frame));
     }

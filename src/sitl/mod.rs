@@ -33,6 +33,7 @@ mod mission;
 mod modes;
 mod outgoing;
 mod parameters;
+mod ping;
 mod request_id;
 mod requests;
 mod safety;

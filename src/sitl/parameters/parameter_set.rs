@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use mavlink::dialects::ardupilotmega::PARAM_VALUE_DATA;
+
 use super::parameter::Parameter;
 use super::pulses::Pulses;
 use super::{ardupilot, px4};
@@ -98,7 +100,7 @@ impl Parameters {
     pub(in crate::sitl) fn decode(&self, at: usize, kind: u8, payload: Payload) -> Option<f64> {
         let parameter = self.list.get(at)?;
         match self.autopilot.is_px4() {
-            true if kind != parameter.kind.mav() => None,
+            true if u32::from(kind) != parameter.kind.mav() as u32 => None,
             true if parameter.kind != ParameterType::Real32 => Some(payload.i32(0).into()),
             _ => Some(payload.f32(0)).filter(|value| value.is_finite()),
         }
@@ -107,15 +109,17 @@ impl Parameters {
     /// PARAM_VALUE. `index` as asked for: PX4 and ArduPilot give an index also where the name was asked.
     pub(in crate::sitl) fn message(&self, at: usize) -> Option<Message> {
         let parameter = self.list.get(at)?;
-        let whole_value = whole(parameter.value);
-        let message = Message::new(22);
-        let message = match (self.autopilot.is_px4(), parameter.kind) {
+        let param_value = match (self.autopilot.is_px4(), parameter.kind) {
             // the bytes of the integer in the place of the float
-            (true, ParameterType::Int32) => message.i32(whole_value),
-            _ => message.f32(parameter.value),
+            (true, ParameterType::Int32) => f32::from_le_bytes(whole(parameter.value).to_le_bytes()),
+            _ => narrow(parameter.value),
         };
-        let count = u16::try_from(self.list.len()).unwrap_or(u16::MAX);
-        let index = u16::try_from(at).unwrap_or(u16::MAX);
-        Some(message.u16(count).u16(index).text(parameter.name.as_bytes(), 16).u8(parameter.kind.mav()))
+        Some(Message::from(PARAM_VALUE_DATA {
+            param_value,
+            param_count: u16::try_from(self.list.len()).unwrap_or(u16::MAX),
+            param_index: u16::try_from(at).unwrap_or(u16::MAX),
+            param_id: parameter.name.as_str().into(),
+            param_type: parameter.kind.mav(),
+        }))
     }
 }
