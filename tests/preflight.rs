@@ -618,6 +618,42 @@ fn the_page_before_the_flight_begins_with_warnings_and_ends_with_the_room() {
     assert!(drawn >= 20 && text.contains("...") && text.contains('o'), "{text}");
 }
 
+/// Whatever of it is known: the page speaks of the battery, the fence, and both of the pilot's switches.
+#[test]
+fn battery_fence_and_switches_are_on_every_page() {
+    let batteries = [(None, None), (Some(90.0), None), (None, Some(900.0)), (Some(90.0), Some(900.0))];
+    let fences = [
+        Scene::good().fence,
+        Fence::default(),
+        Fence { unknown: vec!["2 of 4 items came".to_owned()], ..Fence::default() },
+    ];
+    let switches: [&[&str]; 4] = [&[], &["FLTMODE_CH"], &["RC7_OPTION"], &["FLTMODE_CH", "RC7_OPTION"]];
+    let mut pages = 0;
+    for (remaining_percent, endurance_s) in batteries {
+        for fence in &fences {
+            for missing in switches {
+                let mut scene = Scene::good();
+                scene.battery = BatteryState { remaining_percent, endurance_s, is_low: false };
+                scene.fence = fence.clone();
+                scene.parameters.values.retain(|name, _| !missing.contains(&name.as_str()));
+                let lines = scene.judged().page.lines(1000);
+                for (subject, word) in [
+                    ("battery", if remaining_percent.is_some() { "90 %" } else { "does not say" }),
+                    ("fence", ""),
+                    ("pilot's takeover", "mode switch"),
+                    ("pilot's takeover", "kill switch"),
+                ] {
+                    let head = format!("{subject}: ");
+                    let said = lines.iter().any(|line| line.contains(&head) && line.contains(word));
+                    assert!(said, "{subject}, {word}: {lines:#?}");
+                }
+                pages += 1;
+            }
+        }
+    }
+    assert_eq!(pages, 48);
+}
+
 #[test]
 fn low_guided_limits_are_said_with_what_to_set() {
     let mut scene = Scene::good();

@@ -135,7 +135,7 @@ impl Drive {
 
     /// Does what the supervisor wants done.
     fn act(&mut self, now: Duration) {
-        self.guide.set(self.supervisor.flight().guide());
+        self.guide.set(self.supervisor.flight().guide(), self.supervisor.seen());
         self.tell_stream();
         while let Some(action) = self.supervisor.next_action() {
             match action {

@@ -31,13 +31,16 @@ impl SharedGuide {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    pub(super) fn set(&self, guide: &Guide) {
+    /// Renews it, as of when all was known that the link had brought.
+    pub(super) fn set(&self, guide: &Guide, seen: Duration) {
+        let issued = guide.issued.min(seen);
         let mut shared = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let same = Guide { issued: shared.issued, held_back: shared.held_back, ..guide.clone() } == *shared;
         if same {
-            (shared.issued, shared.held_back) = (guide.issued, guide.held_back);
+            (shared.issued, shared.held_back) = (issued, guide.held_back);
         } else {
             shared.clone_from(guide);
+            shared.issued = issued;
         }
     }
 }
