@@ -6,6 +6,7 @@ mod effect_tables;
 mod error;
 mod kind;
 mod read;
+mod rigid_body;
 mod trajectory;
 mod vehicle;
 mod vehicle_file;

@@ -185,7 +185,7 @@ fn default(stack: &Stack, name: &str) -> f64 {
 }
 
 /// The value in its base unit; where the parameter did not answer the default.
-fn stated(parameters: &Parameters, stack: &Stack, name: &str) -> f64 {
+pub(super) fn stated(parameters: &Parameters, stack: &Stack, name: &str) -> f64 {
     parameters.in_base_unit(name).unwrap_or_else(|| default(stack, name))
 }
 

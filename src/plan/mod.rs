@@ -31,7 +31,7 @@ mod space;
 mod transition;
 
 pub use bounds::{
-    Bound, Dynamics, Instant, Quantity, ROTOR_MARGINS, RotorMargin, bounds_of, bounds_to_plan_in,
+    AHEAD_S, Bound, Dynamics, Instant, Quantity, ROTOR_MARGINS, RotorMargin, bounds_of, bounds_to_plan_in,
     parameters_of,
 };
 pub use check::{CheckReport, Margin, SAMPLE_S, Violation, check};
@@ -43,6 +43,6 @@ pub use feasible::{Conflict, StartPlace, feasible};
 pub use information::{GramSampler, Matrix7};
 pub use noise::{NoiseModel, PARAMETERS, RowMotion, RowSpacing, parameter_scale};
 pub use optimise::{Round, Search};
-pub use room::{HEIGHT_ERROR_M, Roomed, floor_m, with_room};
+pub use room::{HEIGHT_ERROR_M, Reach, Roomed, floor_m, with_room};
 pub use space::{AxisStart, SeriesSpace};
 pub use transition::{FlightPlan, TransitionError, flight_path};

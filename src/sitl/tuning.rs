@@ -132,7 +132,8 @@ fn ardupilot_fence(p: &Parameters) -> Option<FenceRules> {
     let distance_m = |bit: i32, name| (kinds & bit != 0).then(|| p.value(name));
     let (height_max_m, radius_m) = (distance_m(1, "FENCE_ALT_MAX"), distance_m(2, "FENCE_RADIUS"));
     let rules = FenceRules { radius_m, height_max_m, areas: kinds & 4 != 0, action };
-    (choice(p, "FENCE_ENABLE") != 0).then_some(rules)
+    // one that is enabled at arming or takeoff only is in force here all the time: on the ground it stops nothing
+    ["FENCE_ENABLE", "FENCE_AUTOENABLE"].into_iter().any(|name| choice(p, name) != 0).then_some(rules)
 }
 
 /// What GUIDED allows its reference.

@@ -2,6 +2,7 @@
 
 use super::Parameters;
 use super::bitmask::has_bit;
+use super::fence_switch::FenceSwitch;
 use super::sentence::{Sentence, Topic, rounded};
 use crate::fly::finding::Level::{Ok, Warning};
 
@@ -72,11 +73,17 @@ fn sticks(topic: &Topic<'_>) -> Sentence {
 }
 
 fn fence(topic: &Topic<'_>) -> Sentence {
-    match topic.parameters.get("FENCE_ENABLE") {
-        None => topic.unknown("If it leaves its fence", "FENCE_ENABLE"),
-        Some(enable) if enable < 0.5 => {
+    let leaves = "If it leaves its fence";
+    match FenceSwitch::of(topic.parameters) {
+        FenceSwitch::Unknown("FENCE_ENABLE") => topic.unknown(leaves, "FENCE_ENABLE"),
+        FenceSwitch::Unknown(name) => topic.unknown("Whether a fence is enabled in flight", name),
+        FenceSwitch::Off => {
             topic.say(Warning, "There is no fence (FENCE_ENABLE = 0): nothing stops it at a border.")
         }
-        Some(_) => topic.choose("If it leaves its fence", "FENCE_ACTION"),
+        FenceSwitch::On => topic.choose(leaves, "FENCE_ACTION"),
+        FenceSwitch::OnInFlight => {
+            let what = format!("{leaves}, enabled at arming or takeoff (FENCE_AUTOENABLE)");
+            topic.choose(&what, "FENCE_ACTION")
+        }
     }
 }

@@ -7,31 +7,26 @@ use std::time::Duration;
 use nalgebra::Vector3;
 
 use super::Situation;
-use crate::autopilot::{PX4, Reaction, Takeoff};
+use super::aftermath::{self, SUBJECT};
+use crate::autopilot::Takeoff;
 use crate::fly::course::{approach, reference_at};
 use crate::fly::finding::Finding;
 use crate::fly::law::{FollowLaw, Motion, STEP_S};
 use crate::fly::safety::{Feeding, SetpointBounds};
 use crate::fly::setpoint::Place;
-use crate::plan::{HEIGHT_ERROR_M, floor_m};
+use crate::plan::Reach;
 use crate::trajectory::FlightPath;
 
-/// Subject of the findings.
-const SUBJECT: &str = "if we die now";
 /// Steps of the model from one tried instant to the next: 0.1 s.
 const EVERY: usize = 5;
 /// How far a vehicle is from what the model makes of it, m. ArduPilot shapes its own reference and follows that; of PX4
 /// the vehicle itself is modelled, and the embedded one came to rest 0.46 m further on.
 const ARDUPILOT_OFF_M: f64 = 0.15;
 const PX4_OFF_M: f64 = 0.5;
-/// A wall of the room may be passed by so much, m: a plan may touch it, and no vehicle follows to the centimetre. Where
-/// nothing better is found, by so much and with a warning: a flight is ended only there.
-const WALL_M: f64 = 0.25;
+/// Where nothing better is found, rotors may pass walls and ceiling of the room by so much (m), with a warning.
 const WALL_AT_MOST_M: f64 = 1.25;
-/// Shares of velocity and acceleration that are tried, most first. ArduPilot flies on with whatever it was given for
-/// seconds: all or nothing.
+/// Shares of velocity and acceleration that are tried, most first.
 const SHARES: &[f64] = &[1.0, 0.75, 0.5, 0.35, 0.25, 0.15, 0.1, 0.0];
-const ALL_OR_NOTHING: &[f64] = &[1.0, 0.0];
 /// Share of the allowed distance to the reference that the setpoints themselves may cost.
 const TRACKING_SHARE: f64 = 0.9;
 /// Steps of the model in which the reference may have been where the vehicle is: half a second, as while it flies.
@@ -49,9 +44,7 @@ struct Leg<'a> {
 /// The instant at which an end would be worst.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Worst {
-    /// beyond what is allowed of the border, m; negative within
-    excess_m: f64,
-    /// beyond the border itself, m, with what a vehicle is off the model
+    /// beyond the border, m, with what a vehicle is off the model; negative within
     beyond_m: f64,
     border: &'static str,
     /// s from the beginning of the leg
@@ -71,12 +64,12 @@ struct Tried {
 }
 
 impl Tried {
-    fn excess_m(&self) -> f64 {
-        self.worst.map_or(f64::NEG_INFINITY, |worst| worst.excess_m)
+    fn beyond_m(&self) -> f64 {
+        self.worst.map_or(f64::NEG_INFINITY, |worst| worst.beyond_m)
     }
 
     fn is_safe(&self, tracking_max_m: f64, wall_m: f64) -> bool {
-        self.excess_m() <= wall_m && self.hard_m <= 0.0 && self.tracking_m <= TRACKING_SHARE * tracking_max_m
+        self.beyond_m() <= wall_m && self.hard_m <= 0.0 && self.tracking_m <= TRACKING_SHARE * tracking_max_m
     }
 }
 
@@ -100,7 +93,7 @@ pub(super) fn judge(situation: &Situation<'_>) -> (Feeding, Vec<Finding>) {
                     less likely one it may leave the reference, which ends the flight";
         Finding::warning(SUBJECT, expected, came, "fly a stable release of ArduPilot")
     }));
-    findings.extend(aftermath(situation));
+    findings.extend(aftermath::findings(situation));
     (chosen.map_or_else(|tried| tried.feeding, |tried| tried.feeding), findings)
 }
 
@@ -109,12 +102,10 @@ const EXPECTED: &str = "rest inside room and fence and clear of the ground, when
 /// The way that follows the reference best among those that are safe by each of the laws; or, as an error, the least unsafe
 /// one.
 fn choose(situation: &Situation<'_>, laws: &[FollowLaw]) -> Result<Tried, Box<Tried>> {
-    let room = SetpointBounds::room(situation.limits, &situation.origin_m);
-    let shares = match laws {
-        [FollowLaw::Px4 { .. }, ..] => SHARES,
-        _ => ALL_OR_NOTHING,
-    };
-    let ways = shares.iter().flat_map(|share| {
+    let reach = Reach::of(situation.vehicle);
+    let room = SetpointBounds::room(situation.limits, &situation.origin_m)
+        .smaller(reach.side_m + ARDUPILOT_OFF_M, reach.up_m + ARDUPILOT_OFF_M);
+    let ways = SHARES.iter().flat_map(|share| {
         let ahead = laws.iter().map(|law| Feeding::ahead(*law, *share, room));
         if *share < 1.0 { ahead.collect() } else { vec![Feeding::whole()] }
     });
@@ -126,9 +117,8 @@ fn choose(situation: &Situation<'_>, laws: &[FollowLaw]) -> Result<Tried, Box<Tr
         }
         tries.push(tried);
     }
-    tries.sort_by(|a, b| a.excess_m().total_cmp(&b.excess_m()));
-    let nearly =
-        tries.iter().find(|tried| tried.is_safe(situation.tracking_max_m, WALL_AT_MOST_M - WALL_M)).copied();
+    tries.sort_by(|a, b| a.beyond_m().total_cmp(&b.beyond_m()));
+    let nearly = tries.iter().find(|tried| tried.is_safe(situation.tracking_max_m, WALL_AT_MOST_M)).copied();
     let least = tries.first().copied();
     let none =
         Tried { feeding: Feeding::whole(), worst: None, hard_m: f64::NEG_INFINITY, tracking_m: f64::NAN };
@@ -197,15 +187,13 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
         tracking_m = tracking_m.max(distances.fold(f64::INFINITY, f64::min));
         if step.is_multiple_of(EVERY) {
             law.abandoned(&motion, &target, |place_m| {
-                for (model_m, allowed_m, border) in borders(situation, leg, place_m) {
-                    let beyond_m = model_m + off_m;
-                    let excess_m = beyond_m - allowed_m;
-                    if allowed_m <= 0.0 {
-                        tried.hard_m = tried.hard_m.max(excess_m);
+                for Border { beyond_m, is_hard, name: border } in borders(situation, leg, place_m) {
+                    let beyond_m = beyond_m + off_m;
+                    if is_hard {
+                        tried.hard_m = tried.hard_m.max(beyond_m);
                     }
-                    if tried.worst.is_none_or(|worst| excess_m > worst.excess_m) {
-                        let name = leg.name;
-                        tried.worst = Some(Worst { excess_m, beyond_m, border, time_s, leg: name });
+                    if tried.worst.is_none_or(|worst| beyond_m > worst.beyond_m) {
+                        tried.worst = Some(Worst { beyond_m, border, time_s, leg: leg.name });
                     }
                 }
             });
@@ -214,31 +202,37 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
     }
 }
 
-/// How far a place of the local frame lies beyond each border, what is allowed of it, m, and its name.
-fn borders(
-    situation: &Situation<'_>,
-    leg: &Leg<'_>,
-    place_m: &Vector3<f64>,
-) -> Vec<(f64, f64, &'static str)> {
+/// How far a vehicle is beyond a border, m, with its rotors where they could touch it; negative within.
+struct Border {
+    beyond_m: f64,
+    /// nothing of it is given away
+    is_hard: bool,
+    name: &'static str,
+}
+
+/// Of each border, for a vehicle at a place of the local frame.
+fn borders(situation: &Situation<'_>, leg: &Leg<'_>, place_m: &Vector3<f64>) -> Vec<Border> {
     let limits = situation.limits;
+    let reach = Reach::of(situation.vehicle);
     let inside = place_m - situation.origin_m;
     let mut all = Vec::with_capacity(8);
     let mut wall = |beyond_m: Option<f64>, name| {
-        if let Some(beyond_m) = beyond_m {
-            all.push((beyond_m, WALL_M, name));
-        }
+        all.extend(beyond_m.map(|beyond_m| Border { beyond_m, is_hard: false, name }));
     };
-    wall(limits.x_max_m.map(|max| inside.x.abs() - max), "the wall x_max_m");
-    wall(limits.y_max_m.map(|max| inside.y.abs() - max), "the wall y_max_m");
-    wall(limits.z_max_m.map(|max| inside.z - max), "the ceiling z_max_m");
+    wall(limits.x_max_m.map(|max| inside.x.abs() + reach.side_m - max), "the wall x_max_m");
+    wall(limits.y_max_m.map(|max| inside.y.abs() + reach.side_m - max), "the wall y_max_m");
+    wall(limits.z_max_m.map(|max| inside.z + reach.up_m - max), "the ceiling z_max_m");
     if !leg.from_ground {
         wall(limits.z_min_m.map(|min| min - inside.z), "the floor z_min_m");
-        let clear_m = floor_m(situation.vehicle) - HEIGHT_ERROR_M;
-        all.push((clear_m - inside.z, 0.0, "the ground"));
+        all.push(Border { beyond_m: reach.down_m - inside.z, is_hard: true, name: "the ground" });
     }
     if let Some(home_m) = situation.home_m {
         let fence = situation.fence.spares_m(place_m, &home_m);
-        all.extend(fence.into_iter().map(|(spare_m, name)| (-spare_m, 0.0, name)));
+        all.extend(fence.into_iter().map(|(spare_m, name)| Border {
+            beyond_m: -spare_m,
+            is_hard: true,
+            name,
+        }));
     }
     all
 }
@@ -250,8 +244,13 @@ fn in_words(tried: &Tried) -> String {
         |worst| {
             let Worst { beyond_m, border, time_s, leg, .. } = worst;
             let side = if beyond_m > 0.0 { "beyond" } else { "short of" };
-            let allowed =
-                if beyond_m > 0.0 { format!(" ({WALL_M} m of a wall are allowed)") } else { String::new() };
+            let allowed = if beyond_m > 0.0 {
+                format!(
+                    " (the rotors count; 0 is expected, more than {WALL_AT_MOST_M} m of a wall is refused)"
+                )
+            } else {
+                String::new()
+            };
             format!(
                 "{:.2} m {side} {border} at worst{allowed}, should they end at {time_s:.1} s {leg}",
                 beyond_m.abs()
@@ -295,7 +294,7 @@ fn said(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> Finding {
         manner(&tried.feeding),
         tried.tracking_m
     );
-    if tried.excess_m() > 0.0 {
+    if tried.beyond_m() > 0.0 {
         let remedy = remedy(situation, std::slice::from_ref(law), tried);
         return Finding::warning(SUBJECT, expected, came, remedy);
     }
@@ -316,11 +315,11 @@ fn refused(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> Find
 /// A slower or smaller plan first, then a value.
 fn remedy(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> String {
     let misses = tried.tracking_m > TRACKING_SHARE * situation.tracking_max_m;
-    let plan = match tried.worst.filter(|worst| worst.excess_m > 0.0 && !misses) {
+    let plan = match tried.worst.filter(|worst| worst.beyond_m > 0.0 && !misses) {
         Some(worst) => format!(
             "plan slower near {}, or {:.1} m further from it",
             worst.border,
-            (10.0 * worst.excess_m).ceil() / 10.0
+            (10.0 * worst.beyond_m).ceil() / 10.0
         ),
         None => {
             "plan a slower trajectory, or raise the limits of the autopilot that the checks name".to_owned()
@@ -338,23 +337,6 @@ fn safe_timeout_s(situation: &Situation<'_>, laws: &[FollowLaw]) -> Option<f64> 
     let longest_s = laws.iter().map(FollowLaw::timeout_s).fold(0.0, f64::max);
     tried.into_iter().filter(|seconds| *seconds < longest_s).find(|seconds| {
         let laws: Vec<FollowLaw> = laws.iter().map(|law| law.with_timeout_s(*seconds)).collect();
-        choose(situation, &laws).is_ok_and(|tried| tried.excess_m() <= 0.0)
+        choose(situation, &laws).is_ok_and(|tried| tried.beyond_m() <= 0.0)
     })
-}
-
-/// PX4's mode after the loss may not stop it, or lead it out again.
-fn aftermath(situation: &Situation<'_>) -> Option<Finding> {
-    let action = situation.parameters.get("COM_OBL_RC_ACT")?;
-    let reaction = PX4.failsafe("COM_OBL_RC_ACT")?.choice(action)?.reaction;
-    let ceiling_m = situation.limits.z_max_m?;
-    let came = if matches!(reaction, Reaction::Altitude | Reaction::Stabilized) {
-        format!("a mode that does not stop it (COM_OBL_RC_ACT = {action})")
-    } else if reaction == Reaction::Return {
-        let height_m = situation.parameters.get("RTL_RETURN_ALT").filter(|height_m| *height_m > ceiling_m)?;
-        format!("a return that climbs to {height_m:.0} m (RTL_RETURN_ALT), the room ends at {ceiling_m:.1} m")
-    } else {
-        return None;
-    };
-    let remedy = "set COM_OBL_RC_ACT to 4 (land) or 5 (hold)";
-    Some(Finding::warning(SUBJECT, "a mode that stops it and keeps it in the room", came, remedy))
 }

@@ -1,9 +1,9 @@
 //! The trajectory against what the autopilot makes of a setpoint. A limit that it exceeds makes the
 //! vehicle miss it, and the miss looks like physics that is not there.
 
-use crate::autopilot::Bounded;
+use crate::autopilot::{Autopilot, Bounded};
 use crate::fly::finding::Finding;
-use crate::fly::parameters::Parameters;
+use crate::fly::parameters::{Parameters, has_bit};
 use crate::plan::Extremes;
 use crate::units::deg_from_rad;
 
@@ -16,12 +16,15 @@ struct Limit {
     needed: f64,
 }
 
+const SUBJECT: &str = "autopilot limits";
+/// Bits of GUID_OPTIONS, and what is not stabilised then.
+const NOT_FOLLOWED: &[(u32, &str)] = &[(4, "position"), (5, "velocity")];
 /// Reserve that the controller needs above what the trajectory asks for.
 const RESERVE: f64 = 1.3;
 
 pub(super) fn findings(parameters: &Parameters, extremes: &Extremes) -> Vec<Finding> {
     let Some(stack) = parameters.autopilot.stack() else { return Vec::new() };
-    let (mut findings, mut silent) = (Vec::new(), Vec::new());
+    let (mut findings, mut silent) = (Vec::from_iter(not_followed(parameters)), Vec::new());
     for (bounded, name) in stack.limits {
         let per_base = stack.parameters.find(name).map_or(1.0, |entry| entry.unit.per_base);
         let limit = Limit { bounded: *bounded, name, per_base, needed: needed(*bounded, extremes) };
@@ -36,15 +39,15 @@ pub(super) fn findings(parameters: &Parameters, extremes: &Extremes) -> Vec<Find
     }
     if !silent.is_empty() {
         findings.push(Finding::warning(
-            "autopilot limits",
+            SUBJECT,
             "the limits that the autopilot puts on a setpoint",
             format!("no answer for {}", silent.join(", ")),
             "look them up: one that is too low makes the vehicle miss the trajectory",
         ));
     }
-    if findings.is_empty() {
+    if findings.iter().all(|finding| finding.subject != SUBJECT) {
         findings.push(Finding::ok(
-            "autopilot limits",
+            SUBJECT,
             "limits above what the trajectory asks for",
             format!("all {} are", stack.limits.len()),
         ));
@@ -52,11 +55,30 @@ pub(super) fn findings(parameters: &Parameters, extremes: &Extremes) -> Vec<Find
     findings
 }
 
+/// GUIDED follows no place or velocity while these bits of GUID_OPTIONS are set (`ModeGuided::posvelaccel_control_run`).
+fn not_followed(parameters: &Parameters) -> Option<Finding> {
+    if parameters.autopilot != Autopilot::ArduPilot {
+        return None;
+    }
+    let mask = parameters.get("GUID_OPTIONS")?;
+    let set: Vec<_> = NOT_FOLLOWED.iter().filter(|(bit, _)| has_bit(mask, *bit)).collect();
+    let without = set.iter().fold(mask, |mask, (bit, _)| mask - f64::from(1_u32 << bit));
+    let names: Vec<String> = set.iter().map(|(bit, what)| format!("{what} is not (bit {bit})")).collect();
+    (!set.is_empty()).then(|| {
+        Finding::refusal(
+            "guided options",
+            "position and velocity stabilised in GUIDED",
+            format!("{} (GUID_OPTIONS = {mask})", names.join(", ")),
+            format!("the vehicle would drift: set GUID_OPTIONS to {without}"),
+        )
+    })
+}
+
 fn too_low(parameters: &Parameters, limit: &Limit, value: f64) -> Finding {
     let name = parameters.name_of(limit.name);
     let advice = parameters.in_own_unit(limit.name, limit.per_base * limit.needed * RESERVE);
     Finding::warning(
-        "autopilot limits",
+        SUBJECT,
         format!("{} of at least {:.2} {}", limit.bounded.name(), limit.needed, limit.bounded.unit()),
         format!(
             "{:.2} {} ({name} = {:.4})",

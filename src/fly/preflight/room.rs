@@ -107,7 +107,7 @@ fn refusal(margin: &Margin) -> Finding {
         Quantity::RotorThrust(_) | Quantity::Thrust | Quantity::Torque(_) => {
             "the vehicle cannot do it: plan a gentler trajectory"
         }
-        Quantity::Path { .. } | Quantity::Roll | Quantity::Pitch => {
+        Quantity::Path { .. } | Quantity::Rest(_) | Quantity::Roll | Quantity::Pitch => {
             "plan the trajectory for these limits, or correct them"
         }
     };

@@ -5,7 +5,7 @@ use super::result::{Flown, PlanStudy};
 use crate::config::{StoredTransitions, read_limits, read_trajectory, read_vehicle};
 use crate::note::Note;
 use crate::plan::{
-    Dynamics, FlightPlan, PlanError, Roomed, assess, bounds_of, flight_path, floor_m, plan, search_of,
+    Bound, Dynamics, FlightPlan, PlanError, Roomed, assess, bounds_of, flight_path, floor_m, plan, search_of,
     with_room,
 };
 use crate::study::flights::file_notes;
@@ -28,12 +28,16 @@ pub fn plan_flight(request: &PlanningRequest, progress: &dyn Progress) -> Result
     let Roomed { limits, notes: of_room } = with_room(&stated, &vehicle);
     notes.extend(file_notes(request.limits.as_deref().unwrap_or(&request.vehicle), &of_room));
     notes.iter().for_each(|note| progress.note(note));
-    let mut study = planned(request, (&vehicle, &limits), (notes, progress))?;
+    let (mut study, rest) = planned(request, (&vehicle, &limits), (notes, progress))?;
     let flight = around(&study.series, request, study.repeats);
     if let Some(violation) = below_floor(&flight, &vehicle) {
         study.first_violation.get_or_insert(violation);
     }
-    match flight_path(&study.series, &flight, &bounds_of(&limits, &vehicle), &Dynamics::new(&vehicle)) {
+    let (bounds, dynamics) = (bounds_of(&limits, &vehicle), Dynamics::new(&vehicle));
+    let calm = [bounds.as_slice(), &rest].concat();
+    let path = flight_path(&study.series, &flight, &calm, &dynamics)
+        .or_else(|_| flight_path(&study.series, &flight, &bounds, &dynamics));
+    match path {
         Ok(path) => {
             study.transitions = transitions(&path, &flight);
             study.flown = Some(Flown::of(&path, &vehicle));
@@ -45,34 +49,35 @@ pub fn plan_flight(request: &PlanningRequest, progress: &dyn Progress) -> Result
     Ok(study)
 }
 
-/// The series and what it is worth.
+/// The series and what it is worth; and the bounds by which a vehicle that hears nothing more comes to rest inside the room,
+/// as far as the search kept them.
 fn planned(
     request: &PlanningRequest,
     (vehicle, limits): (&Vehicle, &Limits),
     (notes, progress): (Vec<Note>, &dyn Progress),
-) -> Result<PlanStudy, StudyError> {
+) -> Result<(PlanStudy, Vec<Bound>), StudyError> {
     let mut search = request.search.clone();
     let bounds = bounds_of(limits, vehicle);
-    let (series, assessment, criterion_value) = match &request.series {
+    let (series, assessment, criterion_value, rest) = match &request.series {
         PlannedSeries::Searched => {
             progress.steps(search_of(&search).work());
             let plan = plan(vehicle, limits, &search, &|| progress.step())?;
-            (plan.trajectory, plan.assessment, Some(plan.criterion_value))
+            (plan.trajectory, plan.assessment, Some(plan.criterion_value), plan.rest)
         }
         PlannedSeries::Stored(file) => {
             let stored = read_trajectory(file)?;
             search.repeats = stored.repeats;
             let worth = assess(&stored.series, vehicle, &bounds, &search);
-            (stored.series, worth, None)
+            (stored.series, worth, None, Vec::new())
         }
         PlannedSeries::Circle(circle) => {
             let series = turns(circle, limits)?;
             series.check_size(search.repeats).map_err(PlanError::from)?;
             let worth = assess(&series, vehicle, &bounds, &search);
-            (series, worth, None)
+            (series, worth, None, Vec::new())
         }
     };
-    Ok(PlanStudy {
+    let study = PlanStudy {
         series,
         repeats: search.repeats,
         limits: *limits,
@@ -83,7 +88,8 @@ fn planned(
         transitions: None,
         flown: None,
         notes,
-    })
+    };
+    Ok((study, rest))
 }
 
 fn turns(circle: &Circle, limits: &Limits) -> Result<FourierTrajectory, StudyError> {
