@@ -10,8 +10,9 @@ use mavid::fly::parameters::{Download, DownloadSettings, Parameters, failsafe_de
 use mavid::fly::preflight::{Fence, FenceDownload, FenceOutcome};
 use mavid::fly::requests::{Capacity, LinkKind, Need, RatesReport, RequestSettings, Requests, request_set};
 use mavid::frames::Geodetic;
+use mavid::recording::Event;
 use mavid::sitl::{self, Firmware, LinkId, LinkRole, Settings};
-use mavid::wire::{ComponentId, Decoder, Event, Frame, Record, SystemId, Vehicle};
+use mavid::wire::{ComponentId, Decoder, Frame, Record, SystemId, Vehicle};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use std::path::Path;

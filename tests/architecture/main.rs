@@ -33,8 +33,10 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("wire", &["units", "text", "autopilot", "frames", "recording"]),
     // files
     ("log", &["units", "text", "autopilot", "frames", "recording", "wire"]),
-    // frames over sockets and serial ports, and their recording
-    ("link", &["text", "wire", "log"]),
+    // frames over sockets and serial ports, and their recording: live links need no files
+    ("link", &["text", "wire"]),
+    // a log played as if it were a link
+    ("replay", &["text", "wire", "log", "link"]),
     // vehicle: from actuator values to force
     ("signals", &["note", "stats", "autopilot", "vehicle", "recording"]),
     ("regression", &["signals"]),
@@ -143,7 +145,7 @@ const LAYERS: &[(&str, &[&str])] = &[
 const BINARY: &[&str] = &["main", "cli", "commands"];
 
 /// Who may open a socket or name the runtime.
-const NETWORK: &[&str] = &["link", "fly", "sitl", "main", "cli", "commands"];
+const NETWORK: &[&str] = &["link", "replay", "fly", "sitl", "main", "cli", "commands"];
 
 /// Who may print.
 const PRINT: &[&str] = &["main", "commands"];

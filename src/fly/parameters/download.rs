@@ -3,7 +3,8 @@
 use super::{Parameters, RequestedParameter};
 use crate::fly::address::is_from;
 use crate::fly::target::{ParameterName, Target};
-use crate::wire::{Event, Frame, Vehicle};
+use crate::recording::Event;
+use crate::wire::{Frame, Vehicle};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use std::collections::BTreeMap;
 use std::time::Duration;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::link::error::LinkError;
+use crate::link::LinkError;
 use crate::log::LogError;
 use crate::text;
 

@@ -1,11 +1,10 @@
 //! Which of a log's systems flew.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::path::Path;
 
-use super::error::LogError;
-use super::tlog::TlogReader;
+use super::reader::TlogReader;
+use crate::log::error::LogError;
+use crate::log::input::Input;
 use crate::wire::{Record, Source, SystemId, Vehicle};
 
 /// MAV_MODE_FLAG_SAFETY_ARMED.
@@ -60,9 +59,8 @@ impl Deeds {
 ///
 /// # Errors
 /// The log cannot be read, or more than one system flew, or none did and more than one sends motion.
-pub fn who_flew(path: &Path) -> Result<SystemId, LogError> {
-    let file = File::open(path).map_err(|source| LogError::Open { path: path.to_owned(), source })?;
-    let mut reader = TlogReader::new(file);
+pub(super) fn who_flew(input: &Input<'_>) -> Result<SystemId, LogError> {
+    let mut reader = TlogReader::new(input.open()?);
     let mut deeds: BTreeMap<SystemId, Deeds> = BTreeMap::new();
     let mut vehicles = Vec::new();
     while let Some(record) = reader.next_record()? {
@@ -86,11 +84,11 @@ fn chosen(vehicles: &[SystemId], deeds: impl Fn(&SystemId) -> Deeds) -> Result<S
     let candidates = if flew.is_empty() { those(|deeds| deeds.motion > 0) } else { flew.clone() };
     match (candidates.as_slice(), vehicles) {
         ([only], _) | ([], [only, ..]) => Ok(*only),
-        ([], []) => Err(LogError::NoVehicle { systems: Vec::new() }),
-        _ => {
+        (_, []) => Err(LogError::NoVehicle { systems: Vec::new() }),
+        (_, [first, ..]) => {
             let mut systems = candidates;
             systems.sort_unstable();
-            Err(LogError::SeveralVehicles { flew: !flew.is_empty(), systems })
+            Err(LogError::SeveralVehicles { flew: !flew.is_empty(), systems, first: *first })
         }
     }
 }

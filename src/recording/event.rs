@@ -1,14 +1,17 @@
-//! What the decoder gives out.
+//! What a reader gives out: a flight, one piece after the other.
 
-use super::source::StreamId;
+use super::stream::StreamKey;
+use crate::autopilot::Autopilot;
 
-/// What the decoder gives out.
+/// One piece of a flight, in the order of the log or link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Event<'a> {
-    /// one sample of a stream, in the order of the log
+    /// which software flew, where a file says it; before the first sample
+    Autopilot(Autopilot),
+    /// one sample of a stream
     Sample {
         /// which stream
-        stream: StreamId,
+        stream: StreamKey,
         /// s of the vehicle's clock since the recording's start
         time_s: f64,
         /// SI, body FLU or world NWU; actuator channels at the end that are zero may be left out

@@ -1,24 +1,33 @@
-//! Collects decoded events into a recording.
+//! Collects events into a recording.
 
 use std::collections::BTreeMap;
 
-use super::report::StreamRepair;
-use crate::recording::{Recording, Stream, StreamKey};
-use crate::wire::{Event, Source, StreamId, Vehicle};
+use super::event::Event;
+use super::flight::Recording;
+use super::stream::{Stream, StreamKey};
 
-/// Collects decoded events into a [`Recording`].
+/// What putting a stream's samples in order took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct StreamRepair {
+    /// samples with a stamp that the stream has already, dropped
+    pub duplicates: u64,
+    /// samples that came after a later one, sorted in
+    pub out_of_order: u64,
+}
+
+/// Collects events into a [`Recording`].
 #[derive(Debug, Default)]
 pub struct RecordingBuilder {
     streams: Vec<Growing>,
-    /// for each source, where its streams are in `streams`
-    by_source: Vec<Vec<usize>>,
+    /// for each quantity, where its streams are in `streams`
+    by_quantity: Vec<Vec<usize>>,
     rest: Recording,
     numbers: usize,
 }
 
 #[derive(Debug)]
 struct Growing {
-    id: StreamId,
+    key: StreamKey,
     stream: Stream,
     repair: StreamRepair,
 }
@@ -27,12 +36,13 @@ impl RecordingBuilder {
     /// Nothing collected yet.
     #[must_use]
     pub fn new() -> Self {
-        Self { by_source: vec![Vec::new(); Source::ALL.len()], ..Self::default() }
+        Self::default()
     }
 
     /// Adds what one event says.
     pub fn add(&mut self, event: Event<'_>) {
         match event {
+            Event::Autopilot(autopilot) => self.rest.autopilot = autopilot,
             Event::Sample { stream, time_s, values } => {
                 let growing = self.stream(stream);
                 let before = growing.numbers();
@@ -57,25 +67,28 @@ impl RecordingBuilder {
 
     /// The recording, each stream in the order of time, and what putting it in order took.
     #[must_use]
-    pub fn finish(mut self, vehicle: &Vehicle) -> (Recording, BTreeMap<StreamKey, StreamRepair>) {
+    pub fn finish(mut self) -> (Recording, BTreeMap<StreamKey, StreamRepair>) {
         let mut repairs = BTreeMap::new();
         for mut growing in self.streams {
             if growing.repair.out_of_order > 0 {
                 growing.sort();
             }
-            repairs.insert(growing.id.key(), growing.repair);
-            self.rest.streams.insert(growing.id.key(), growing.stream);
+            repairs.insert(growing.key, growing.repair);
+            self.rest.streams.insert(growing.key, growing.stream);
         }
-        self.rest.autopilot = vehicle.autopilot;
         (self.rest, repairs)
     }
 
-    fn stream(&mut self, id: StreamId) -> &mut Growing {
-        let of_source = &mut self.by_source[id.source as usize];
-        let found = of_source.iter().copied().find(|&index| self.streams[index].id == id);
+    fn stream(&mut self, key: StreamKey) -> &mut Growing {
+        let quantity = key.quantity as usize;
+        if quantity >= self.by_quantity.len() {
+            self.by_quantity.resize(quantity + 1, Vec::new());
+        }
+        let of_quantity = &mut self.by_quantity[quantity];
+        let found = of_quantity.iter().copied().find(|&index| self.streams[index].key == key);
         let index = found.unwrap_or_else(|| {
-            of_source.push(self.streams.len());
-            self.streams.push(Growing { id, stream: Stream::default(), repair: StreamRepair::default() });
+            of_quantity.push(self.streams.len());
+            self.streams.push(Growing { key, stream: Stream::default(), repair: StreamRepair::default() });
             self.streams.len() - 1
         });
         &mut self.streams[index]

@@ -3,26 +3,15 @@
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use tokio::sync::mpsc;
-use tokio::time::{Instant, sleep, sleep_until};
+use tokio::time::{Instant, sleep_until};
 
 use super::counts::{HeldBack, ReplayCounts};
 use super::error::ReplayError;
 use super::telemetry::is_telemetry;
-use crate::link::clock::HostStamp;
-use crate::link::error::LinkError;
-use crate::link::event::LinkEvent;
-use crate::link::incoming::WAITING;
-use crate::link::options::LinkOptions;
-use crate::link::reader::LinkReader;
-use crate::link::received::{Received, ReceivedFrame};
-use crate::link::shared::Shared;
-use crate::link::writer::LinkWriter;
-use crate::log::{LogError, TlogReader};
+use crate::link::{HostStamp, LinkError, LinkEvent, LinkFeed, LinkReader, LinkWriter, Received};
+use crate::log::{LogError, Loss, TlogReader};
 use crate::text;
 use crate::wire::{ComponentId, CrcSeeds, Frame, Payload, SystemId};
 
@@ -35,8 +24,6 @@ const NO_AUTOPILOT: u8 = 8;
 const AUTOPILOT_AT: usize = 5;
 /// A longer pause, or a step back, is the seam of two logs: played without waiting.
 const SEAM: Duration = Duration::from_secs(3600);
-/// How long to wait for a reader that is behind.
-const BEHIND: Duration = Duration::from_millis(1);
 
 /// A recorded flight, ready to be played back.
 ///
@@ -50,7 +37,7 @@ pub struct Replay {
     frames: u64,
     duration: Duration,
     speed: f64,
-    losses: Vec<String>,
+    losses: Vec<Loss>,
 }
 
 impl Replay {
@@ -91,9 +78,9 @@ impl Replay {
         self.frames
     }
 
-    /// What of the log itself is gone, in words.
+    /// What of the log itself is gone.
     #[must_use]
-    pub fn losses(&self) -> &[String] {
+    pub fn losses(&self) -> &[Loss] {
         &self.losses
     }
 
@@ -107,26 +94,16 @@ impl Replay {
     /// stamp has the present moment and the log's time. At the end the reader says that the link has ended.
     #[must_use]
     pub fn start(self) -> LinkReader {
-        let shared = Arc::new(Shared::new(text::path(&self.path), None, &LinkOptions::default()));
-        let (to_reader, from_task) = mpsc::unbounded_channel();
-        let reader = LinkReader::new(from_task, shared.clone(), None);
+        let (feed, reader) = LinkFeed::new(text::path(&self.path));
         tokio::spawn(async move {
-            let peer = shared.name.clone();
-            let deliver = |received| {
-                shared.waiting.fetch_add(1, Ordering::Relaxed);
-                to_reader.send(received).is_ok()
-            };
-            deliver(Received::Event(LinkEvent::Connected { peer }));
+            feed.event(LinkEvent::Connected { peer: feed.name().to_owned() });
             let Ok(mut player) = self.player() else { return };
             while let Some((due, stamp_us, bytes)) = player.next() {
                 sleep_until(due).await;
-                while shared.waiting.load(Ordering::Relaxed) >= WAITING {
-                    sleep(BEHIND).await;
-                }
+                feed.ready().await;
                 let stamp = HostStamp { at: Instant::now(), utc_us: stamp_us };
                 let Some(frame) = Frame::at_start(&bytes) else { continue };
-                shared.stats().tally(&frame);
-                if !deliver(Received::Frame(ReceivedFrame::new(stamp, frame))) {
+                if !feed.frame(stamp, frame) {
                     return;
                 }
             }
