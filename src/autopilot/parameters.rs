@@ -105,7 +105,7 @@ impl Parameter {
     }
 
     /// One with a default.
-    pub(crate) const fn with_default(
+    pub(crate) const fn of_release(
         name: &'static str,
         kind: ParameterType,
         unit: Unit,

@@ -343,7 +343,7 @@ const fn numbered(before: &'static str, after: &'static str) -> Numbered {
 }
 
 const fn row(name: &'static str, kind: ParameterType, unit: Unit, default: f64) -> Parameter {
-    Parameter::with_default(name, kind, unit, default)
+    Parameter::of_release(name, kind, unit, default)
 }
 
 const fn own(name: &'static str, kind: ParameterType, unit: Unit) -> Parameter {
