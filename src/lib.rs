@@ -126,6 +126,7 @@
 //! seconds of the vehicle's own clock from the start of the recording. Quaternions are w x y z, from body to world.
 //! Files in other conventions are converted when they are read or written.
 
+pub mod autopilot;
 pub mod compare;
 pub mod config;
 pub mod diagnose;

@@ -18,14 +18,13 @@ use mavid::fly::{
     reference_at, transfer,
 };
 use mavid::plan::{Criterion, Dynamics, FlightPlan, PlanRequest, Reach, bounds_of, flight_path, plan};
-use mavid::recording::Autopilot;
-use mavid::sitl::{ArduPilotRelease, AutopilotKind, Settings as VehicleSettings};
+use mavid::sitl::{Firmware, Settings as VehicleSettings};
 use mavid::trajectory::Segment;
 use mavid::vehicle::{Limits, Vehicle};
 use nalgebra::Vector3;
 
-const COPTER: AutopilotKind = AutopilotKind::ArduPilot(ArduPilotRelease::V4_7);
-const OLDER: AutopilotKind = AutopilotKind::ArduPilot(ArduPilotRelease::V4_6);
+const COPTER: Firmware = Firmware::ARDUPILOT_4_7;
+const OLDER: Firmware = Firmware::ARDUPILOT_4_6;
 /// What ArduPilot needs for a lively trajectory; GUID_TIMEOUT stays at its 3 s.
 const LIVELY: [(&str, &str, f64); 6] = [
     ("WP_ACC", "WPNAV_ACCEL", 100.0),
@@ -64,16 +63,15 @@ fn course(vehicle: &Vehicle) -> Course {
 }
 
 /// The vehicle, and what it would say of its parameters.
-fn lively(kind: AutopilotKind) -> (VehicleSettings, Parameters) {
+fn lively(kind: Firmware) -> (VehicleSettings, Parameters) {
     let base = vehicle_settings(kind);
-    let autopilot = if kind == AutopilotKind::Px4 { Autopilot::Px4 } else { Autopilot::ArduPilot };
-    let mut parameters = Parameters { autopilot, ..Parameters::default() };
+    let mut parameters = Parameters { autopilot: kind.autopilot(), ..Parameters::default() };
     let mut own = Vec::new();
     for ((new, old, scale), value) in LIVELY.into_iter().zip(LIVELY_VALUES) {
         match kind {
-            AutopilotKind::Px4 => {}
-            AutopilotKind::ArduPilot(ArduPilotRelease::V4_7) => own.push((new.to_owned(), value)),
-            AutopilotKind::ArduPilot(ArduPilotRelease::V4_6) => own.push((old.to_owned(), value * scale)),
+            Firmware::PX4 => {}
+            Firmware::ARDUPILOT_4_7 => own.push((new.to_owned(), value)),
+            _ => own.push((old.to_owned(), value * scale)),
         }
     }
     parameters.values.extend(own.iter().cloned());
@@ -102,7 +100,7 @@ fn judged(course: &Course, parameters: &Parameters, vehicle: &Vehicle) -> Judged
 
 /// How it goes on when the uplink is cut so many seconds after a phase began: lowest place, and the farthest of its rotors
 /// beyond any wall, m.
-fn cut(kind: AutopilotKind, (phase, after_s): (&str, f64), course: &Course, feeding: Feeding) -> (f64, f64) {
+fn cut(kind: Firmware, (phase, after_s): (&str, f64), course: &Course, feeding: Feeding) -> (f64, f64) {
     let (settings, _) = lively(kind);
     let reach = Reach::of(&settings.vehicle);
     let mut flying = Flying::new(settings, |sortie| {
@@ -128,7 +126,7 @@ fn cut(kind: AutopilotKind, (phase, after_s): (&str, f64), course: &Course, feed
 }
 
 /// Over the instants, on two threads: the lowest of the lowest and the farthest of the farthest.
-fn worst(kind: AutopilotKind, course: &Course, feeding: Feeding, instants: &[f64]) -> (f64, f64) {
+fn worst(kind: Firmware, course: &Course, feeding: Feeding, instants: &[f64]) -> (f64, f64) {
     let course = Arc::new(course.clone());
     let (left, right) = instants.split_at(instants.len() / 2);
     let halves: Vec<_> = [left, right]
@@ -176,19 +174,19 @@ fn an_ardupilot_that_is_left_alone_stays_in_a_room_of_four_metres() {
 
 #[test]
 fn a_px4_that_is_left_alone_stays_in_a_room_of_four_metres() {
-    let (settings, parameters) = lively(AutopilotKind::Px4);
+    let (settings, parameters) = lively(Firmware::PX4);
     let course = course(&settings.vehicle);
     let Judged { findings, feeding, .. } = judged(&course, &parameters, &settings.vehicle);
     let said: Vec<String> = findings.iter().map(ToString::to_string).collect();
     let instants: Vec<f64> = (0..14).map(|step| 2.3 + 0.75 * f64::from(step)).collect();
-    let (_, beyond_m) = worst(AutopilotKind::Px4, &course, feeding, &instants);
+    let (_, beyond_m) = worst(Firmware::PX4, &course, feeding, &instants);
     // its last setpoint stays for a second, and then it has to brake
     assert!(beyond_m < 0.25, "{beyond_m} m; {}", said.join("\n"));
 }
 
 #[test]
 fn the_whole_trajectory_is_followed_by_what_is_sent() {
-    for kind in [COPTER, OLDER, AutopilotKind::Px4] {
+    for kind in [COPTER, OLDER, Firmware::PX4] {
         let (settings, parameters) = lively(kind);
         let course = course(&settings.vehicle);
         let Judged { feeding, .. } = judged(&course, &parameters, &settings.vehicle);
@@ -228,7 +226,7 @@ fn a_clock_that_pauses_or_resumes_leads_no_further_than_one_that_runs() {
     let place = |x| Place { position_m: Vector3::new(x, 0.0, 2.0), yaw_rad: 0.0 };
     let path = Arc::new(transfer(&place(0.0), &place(8.0), 1.0, 0.5));
     let seconds = Duration::from_secs_f64;
-    for kind in [COPTER, OLDER, AutopilotKind::Px4] {
+    for kind in [COPTER, OLDER, Firmware::PX4] {
         let (_, parameters) = lively(kind);
         let law = FollowLaw::of(&parameters, Some((4, 6))).remove(0);
         let mut paused = PathClock::start(Duration::ZERO);
@@ -255,7 +253,7 @@ fn a_clock_that_pauses_or_resumes_leads_no_further_than_one_that_runs() {
 
 #[test]
 fn a_vehicle_keeps_to_a_reference_that_pauses_and_resumes() {
-    for kind in [COPTER, AutopilotKind::Px4] {
+    for kind in [COPTER, Firmware::PX4] {
         let (settings, parameters) = lively(kind);
         let course = course(&settings.vehicle);
         let Judged { feeding, .. } = judged(&course, &parameters, &settings.vehicle);

@@ -17,7 +17,7 @@ use mavid::fly::view::{KeyCommand, ViewModel};
 use mavid::fly::{self, Cause, Console, Ending, Parking, Part, Record, Ride, RunError, TLOG};
 use mavid::link::{Link, LinkOptions, Recorder, Stop};
 use mavid::log::TlogReader;
-use mavid::sitl::{AutopilotKind, LinkRole, Pace, Vehicle, serve};
+use mavid::sitl::{Firmware, LinkRole, Pace, Vehicle, serve};
 use mavid::wire::{ComponentId, SystemId};
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 use tokio::task::JoinHandle;
@@ -75,7 +75,7 @@ struct Climbing {
 }
 
 async fn climbing(name: &str) -> Climbing {
-    let settings = flying::vehicle_settings(AutopilotKind::Px4);
+    let settings = flying::vehicle_settings(Firmware::PX4);
     flying::write_events();
     let mut sortie = flying::sortie(&settings);
     sortie.may_arm = true;

@@ -12,7 +12,8 @@ mod support;
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI, TAU};
 
-use mavid::recording::{Autopilot, Event, Quantity};
+use mavid::autopilot::Autopilot;
+use mavid::recording::{Event, Quantity};
 use mavid::wire::{Anchor, ComponentId, Decoder, Record, Stamp, SystemId, Vehicle};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage as M};
 use mavlink::types::CharArray;

@@ -9,8 +9,9 @@ mod support;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use mavid::autopilot::Autopilot;
 use mavid::log::{self, LogError, Oddity, OpenOptions};
-use mavid::recording::{Autopilot, Quantity, StreamKey, StreamTally};
+use mavid::recording::{Quantity, StreamKey, StreamTally};
 use mavid::wire::SystemId;
 use mavlink::dialects::ardupilotmega::{MavMessage, SYS_STATUS_DATA};
 use support::{Needed, START_US, attitude, ground_heartbeat, header, heartbeat, record, tlog, v2};

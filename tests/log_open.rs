@@ -7,11 +7,12 @@ mod support;
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use mavid::autopilot::Autopilot;
 use mavid::log::{
     self, Details, FORMATS, Flights, Hold, Input, LogError, Loss, OpenOptions, Opened, Position, format_of,
     open_flights,
 };
-use mavid::recording::{Autopilot, Event};
+use mavid::recording::Event;
 use mavid::wire::SystemId;
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 use support::{header, heartbeat, tlog, v2};

@@ -6,8 +6,9 @@ mod support;
 
 use std::path::{Path, PathBuf};
 
+use mavid::autopilot::Autopilot;
 use mavid::log::{self, OpenOptions, Opened};
-use mavid::recording::{Autopilot, Quantity, StreamKey, StreamStats};
+use mavid::recording::{Quantity, StreamKey, StreamStats};
 
 fn key(quantity: Quantity, source: &'static str) -> StreamKey {
     StreamKey { quantity, source, instance: 0 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
+use mavid::autopilot::Autopilot;
 use mavid::config::load_vehicle;
 use mavid::fence::{FenceItem, Zone};
 use mavid::fly::finding::{Finding, Level, worst};
@@ -11,7 +12,6 @@ use mavid::fly::requests::{
     Answer, Capacity, LinkKind, Need, RequestSettings, Requests, request_set, slow_request_set,
 };
 use mavid::frames::Geodetic;
-use mavid::recording::Autopilot;
 use mavid::trajectory::{FlightPath, FourierAxis, FourierTrajectory, Segment, Transition, at_rest};
 use mavid::vehicle::Limits;
 use mavid::wire::{ComponentId, Decoder, Frame, Record, SystemId, Vehicle};

@@ -11,10 +11,9 @@ use super::theta::{Theta, ThetaCovariance, theta_of};
 use super::weak::{Latency, WeakEstimate, WeakMethod, latency, solve_weak};
 use super::{GradientStep, History, gradient_descent, least_squares};
 use crate::note::{About, Note};
+use crate::physics::ActuationLatency;
 use crate::regression::{SampledModel, WeakMotion, WeakRows, ZeroPhase, paper_models, weak_rows};
-use crate::signals::{
-    ActuationLatency, Butterworth, Signals, ThrustSource, WeakKernel, WindowedFir, highest_harmonic_hz,
-};
+use crate::signals::{Butterworth, Signals, ThrustSource, WeakKernel, WindowedFir, highest_harmonic_hz};
 use crate::vehicle::Vehicle;
 
 /// How the identification is done.

@@ -23,7 +23,6 @@ mod health;
 mod law;
 mod lift;
 pub mod live;
-mod modes;
 mod news;
 mod order;
 mod outcome;
@@ -47,7 +46,6 @@ pub use flight::{Action, Event, Flight, Key, Status};
 pub use health::{BatteryLevel, EstimatorReport, SystemReport};
 pub use law::{FollowLaw, Motion};
 pub use lift::{Lift, Weighed};
-pub use modes::{Mode, Stack};
 pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
 #[cfg(unix)]
 pub use runner::HangUp;

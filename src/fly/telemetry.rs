@@ -9,11 +9,11 @@ use super::arming::Arming;
 use super::ground::Ground;
 use super::health::{BatteryLevel, EstimatorReport, SystemReport, battery_status, level_of_percent};
 use super::lift::Outputs;
-use super::modes::Stack;
 use super::news::Novelty;
 use super::order::SendingOrder;
 use super::reset::{Pose, Step};
 pub use super::state::{FlightState, Motion, Seen};
+use crate::autopilot::Stack;
 use crate::frames::Attitude;
 use crate::recording::{self, Quantity};
 use crate::wire::{self, Decoder, Frame, Payload, Record};
@@ -39,7 +39,7 @@ const STATUS_VALID: Duration = Duration::from_secs(3);
 #[derive(Debug)]
 pub struct Telemetry {
     decoder: Decoder,
-    stack: Stack,
+    stack: &'static Stack,
     /// last frame of its autopilot
     pub heard: Duration,
     /// when it was heard again after a silence, or first
@@ -87,7 +87,7 @@ pub struct Telemetry {
 impl Telemetry {
     /// Of the vehicle whose HEARTBEAT was heard at `now`.
     #[must_use]
-    pub fn new(vehicle: wire::Vehicle, stack: Stack, now: Duration) -> Self {
+    pub fn new(vehicle: wire::Vehicle, stack: &'static Stack, now: Duration) -> Self {
         Self {
             decoder: Decoder::new(vehicle, None, micros(now)),
             stack,
@@ -327,7 +327,7 @@ impl Telemetry {
 
     /// Which autopilot's rules it follows.
     #[must_use]
-    pub fn stack(&self) -> Stack {
+    pub fn stack(&self) -> &'static Stack {
         self.stack
     }
 

@@ -12,8 +12,9 @@ use super::streams::{StreamTallies, summary_of};
 use super::timeline::TimelineTally;
 use super::verdict::verdict;
 use super::window::{WindowRecorder, windows_of};
+use crate::autopilot::Autopilot;
 use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport, TlogReport};
-use crate::recording::{Autopilot, Event, Recording, StreamKey, StreamStats};
+use crate::recording::{Event, Recording, StreamKey, StreamStats};
 use crate::vehicle::Vehicle;
 use crate::wire::{Sender, Source, SystemId};
 
@@ -196,7 +197,7 @@ fn vehicle_of(report: &ReadReport, autopilot: Autopilot) -> VehicleSummary {
     VehicleSummary {
         system: speaker.map(|speaker| speaker.system.0),
         component: speaker.map(|speaker| speaker.component.0),
-        autopilot: autopilot_name(autopilot),
+        autopilot: autopilot.id(),
         others: report.others.iter().map(|system| system.0).collect(),
         without_heartbeat: report.telemetry().is_some_and(|telemetry| heartbeats(telemetry) == 0),
     }
@@ -262,14 +263,5 @@ impl Found {
             texts: tally.texts,
             numbers_held_max: self.numbers_held_max,
         }
-    }
-}
-
-fn autopilot_name(autopilot: Autopilot) -> &'static str {
-    match autopilot {
-        Autopilot::Px4 => "px4",
-        Autopilot::ArduPilot => "ardupilot",
-        Autopilot::Other => "other",
-        Autopilot::Unknown => "unknown",
     }
 }

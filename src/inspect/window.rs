@@ -1,6 +1,7 @@
 //! Recordings of bounded length, one after the other, so that memory does not grow with the log.
 
-use crate::recording::{Autopilot, Event, Quantity, Recording, RecordingBuilder, Stream, StreamKey};
+use crate::autopilot::Autopilot;
+use crate::recording::{Event, Quantity, Recording, RecordingBuilder, Stream, StreamKey};
 
 /// s of the vehicle's clock in one window.
 pub(super) const WINDOW_S: f64 = 120.0;

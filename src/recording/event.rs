@@ -1,7 +1,7 @@
 //! What a reader gives out: a flight, one piece after the other.
 
-use super::flight::Autopilot;
 use super::stream::StreamKey;
+use crate::autopilot::Autopilot;
 
 /// One piece of a flight, in the order of the log or link.
 #[derive(Debug, Clone, Copy, PartialEq)]

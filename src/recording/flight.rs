@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::stream::{Stream, StreamKey};
+use crate::autopilot::Autopilot;
 
 /// A flight of one vehicle.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -19,18 +20,4 @@ pub struct Recording {
     pub estimator_resets_s: Vec<f64>,
     /// what the vehicle said
     pub texts: Vec<(f64, String)>,
-}
-
-/// Which software flew.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Autopilot {
-    /// not said in the recording (CSV)
-    #[default]
-    Unknown,
-    /// PX4
-    Px4,
-    /// ArduPilot
-    ArduPilot,
-    /// another MAVLink autopilot
-    Other,
 }

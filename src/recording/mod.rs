@@ -14,7 +14,7 @@ mod stream;
 
 pub use builder::{RecordingBuilder, StreamRepair};
 pub use event::Event;
-pub use flight::{Autopilot, Recording};
+pub use flight::Recording;
 pub use overlap::shared_share;
 pub use quantity::Quantity;
 pub use statistics::{StreamStats, StreamTally};

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use super::phase::Phase;
 use super::state::Flight;
+use crate::autopilot::Mode;
 use crate::fly::health::BatteryLevel;
-use crate::fly::modes::Mode;
 use crate::fly::outcome::{Cause, Ending, Level};
 use crate::fly::safety::Lead;
 use crate::fly::target::Order;

@@ -3,57 +3,8 @@
 use super::Parameters;
 use super::bitmask::has_bit;
 use super::fence_switch::FenceSwitch;
-use super::sentence::{Choice, Sentence, Topic, rounded};
+use super::sentence::{Sentence, Topic, rounded};
 use crate::fly::finding::Level::{Ok, Warning};
-
-const GROUND_STATION_LOST: &[Choice] = &[
-    (0, "does nothing and stays in GUIDED", Warning),
-    (1, "returns to its launch place", Ok),
-    (2, "returns to its launch place", Ok),
-    (3, "returns by the way it came, or straight", Ok),
-    (4, "returns by the way it came, or lands", Ok),
-    (5, "lands where it is", Ok),
-    (6, "lands by its mission's landing sequence, or returns", Ok),
-    (7, "brakes, or lands", Ok),
-];
-
-const TRANSMITTER_LOST: &[Choice] = &[
-    (0, "does nothing", Warning),
-    (1, "returns to its launch place", Ok),
-    (2, "returns to its launch place", Ok),
-    (3, "lands where it is", Ok),
-    (4, "returns by the way it came, or straight", Ok),
-    (5, "returns by the way it came, or lands", Ok),
-    (6, "lands by its mission's landing sequence, or returns", Ok),
-    (7, "brakes, or lands", Ok),
-];
-
-const ESTIMATE_BAD: &[Choice] = &[
-    (0, "only reports", Warning),
-    (1, "lands", Ok),
-    (2, "changes to AltHold: it drifts with the wind", Warning),
-    (3, "lands", Ok),
-];
-
-const BATTERY_LOW: &[Choice] = &[
-    (0, "only warns", Warning),
-    (1, "lands where it is", Ok),
-    (2, "returns to its launch place", Ok),
-    (3, "returns by the way it came, or straight", Ok),
-    (4, "returns by the way it came, or lands", Ok),
-    (5, "stops its motors in the air", Warning),
-    (6, "lands by its mission's landing sequence, or returns", Ok),
-    (7, "brakes, or lands", Ok),
-];
-
-const FENCE: &[Choice] = &[
-    (0, "only reports", Warning),
-    (1, "returns to its launch place, or lands", Ok),
-    (2, "lands where it is", Ok),
-    (3, "returns by the way it came, or lands", Ok),
-    (4, "brakes, or lands", Ok),
-    (5, "returns by the way it came, or lands", Ok),
-];
 
 /// Bit of GUID_OPTIONS by which the yaw stick is ignored.
 const IGNORE_YAW: u32 = 2;
@@ -63,10 +14,10 @@ pub(super) fn declaration(parameters: &Parameters, own_system: u8) -> Vec<Senten
     vec![
         setpoints(&topic("setpoints stop")),
         ground_station(&topic("ground station lost"), own_system),
-        topic("transmitter lost").choose("If the transmitter is lost", "FS_THR_ENABLE", TRANSMITTER_LOST),
+        topic("transmitter lost").choose("If the transmitter is lost", "FS_THR_ENABLE"),
         sticks(&topic("pilot's sticks")),
-        topic("estimate bad").choose("If the position estimate turns bad", "FS_EKF_ACTION", ESTIMATE_BAD),
-        topic("battery low").choose("If the battery runs low", "BATT_FS_LOW_ACT", BATTERY_LOW),
+        topic("estimate bad").choose("If the position estimate turns bad", "FS_EKF_ACTION"),
+        topic("battery low").choose("If the battery runs low", "BATT_FS_LOW_ACT"),
         fence(&topic("fence")),
     ]
 }
@@ -96,7 +47,7 @@ pub(in crate::fly) fn hears_station(parameters: &Parameters, system: f64, own_sy
 /// Heartbeats count only if they come from the system that the vehicle was told.
 fn ground_station(topic: &Topic<'_>, own_system: u8) -> Sentence {
     let what = format!("If this ground station is not heard for {}", topic.number("FS_GCS_TIMEOUT", "s"));
-    let sentence = topic.choose(&what, "FS_GCS_ENABLE", GROUND_STATION_LOST);
+    let sentence = topic.choose(&what, "FS_GCS_ENABLE");
     if topic.parameters.get("FS_GCS_ENABLE").is_none_or(|enable| enable < 0.5) {
         return sentence;
     }
@@ -139,10 +90,10 @@ fn fence(topic: &Topic<'_>) -> Sentence {
         FenceSwitch::Off => {
             topic.say(Warning, "There is no fence (FENCE_ENABLE = 0): nothing stops it at a border.")
         }
-        FenceSwitch::On => topic.choose(leaves, "FENCE_ACTION", FENCE),
+        FenceSwitch::On => topic.choose(leaves, "FENCE_ACTION"),
         FenceSwitch::OnInFlight => {
             let what = format!("{leaves}, enabled at arming or takeoff (FENCE_AUTOENABLE)");
-            topic.choose(&what, "FENCE_ACTION", FENCE)
+            topic.choose(&what, "FENCE_ACTION")
         }
     }
 }

@@ -8,13 +8,13 @@ use nalgebra::Vector3;
 
 use super::Situation;
 use super::aftermath::{self, Abandoned, SUBJECT};
+use crate::autopilot::Takeoff;
 use crate::fly::course::{approach, reference_at};
 use crate::fly::finding::Finding;
 use crate::fly::law::{FollowLaw, Motion, STEP_S};
 use crate::fly::safety::{Feeding, SetpointBounds};
 use crate::fly::setpoint::Place;
 use crate::plan::Reach;
-use crate::recording::Autopilot;
 use crate::trajectory::FlightPath;
 
 /// Steps of the model from one tried instant to the next: 0.1 s.
@@ -160,8 +160,9 @@ fn attempt(situation: &Situation<'_>, laws: &[FollowLaw], feeding: Feeding) -> T
     if let Some([climb, transfer]) = &way {
         let leg = |path, from_ground, name| Leg { path, offset_m: Vector3::zeros(), from_ground, name };
         legs.push(leg(transfer, false, "of the way to the start"));
-        // ArduPilot takes off by itself, and stays above where it stood
-        if situation.parameters.autopilot == Autopilot::Px4 {
+        // what takes off by command stays above where it stood
+        let stack = situation.parameters.autopilot.stack();
+        if stack.is_some_and(|stack| stack.setpoints.takeoff == Takeoff::BySetpoints) {
             legs.push(leg(climb, true, "of the takeoff"));
         }
     }
@@ -298,17 +299,15 @@ fn manner(feeding: &Feeding) -> String {
 }
 
 fn timeout(situation: &Situation<'_>, law: &FollowLaw) -> String {
-    let name = timeout_name(law);
+    let name = timeout_name(situation);
     let seconds = law.timeout_s();
     let assumed = if situation.parameters.get(name).is_some() { "" } else { ", assumed: it did not answer" };
     format!("{name} = {seconds:.1} s{assumed}")
 }
 
-fn timeout_name(law: &FollowLaw) -> &'static str {
-    match law {
-        FollowLaw::ArduPilot { .. } => "GUID_TIMEOUT",
-        FollowLaw::Px4 { .. } => "COM_OF_LOSS_T",
-    }
+/// The parameter with the time-out.
+fn timeout_name(situation: &Situation<'_>) -> &'static str {
+    situation.parameters.autopilot.stack().map_or("its time-out", |stack| stack.setpoints.timeout)
 }
 
 fn said(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> Finding {
@@ -350,8 +349,8 @@ fn remedy(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> Strin
             "plan a slower trajectory, or raise the limits of the autopilot that the checks name".to_owned()
         }
     };
-    match laws.first().zip(safe_timeout_s(situation, laws)) {
-        Some((law, seconds)) => format!("{plan}; or set {} to {seconds:.1} or less", timeout_name(law)),
+    match safe_timeout_s(situation, laws) {
+        Some(seconds) => format!("{plan}; or set {} to {seconds:.1} or less", timeout_name(situation)),
         None => plan,
     }
 }

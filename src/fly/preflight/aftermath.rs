@@ -2,19 +2,16 @@
 //! too.
 
 use super::Situation;
+use crate::autopilot::{ARDUPILOT, Autopilot, PX4, Reaction};
 use crate::fly::finding::Finding;
+use crate::fly::law::stated;
 use crate::fly::parameters::hears_station;
-use crate::recording::Autopilot;
 
 /// Subject of the findings on the end of this program.
 pub(super) const SUBJECT: &str = "if we die now";
 
 const EXPECTED: &str = "a mode that stops it and keeps it in the room";
 const MOTORS_ON: &str = "motors that run until it has landed";
-/// Defaults, where a parameter did not answer: RTL_ALT and RTL_CLIMB_MIN, cm; RTL_CONE_SLOPE.
-const RTL_ALT_CM: f64 = 1500.0;
-const RTL_CLIMB_MIN_CM: f64 = 0.0;
-const RTL_CONE_SLOPE: f64 = 3.0;
 /// ArduPilot returns at least so high, m, and takes a lesser slope of the cone for none.
 const RTL_LEAST_M: f64 = 0.3;
 const LEAST_SLOPE: f64 = 0.5;
@@ -42,6 +39,11 @@ fn choice(situation: &Situation<'_>, name: &str) -> Option<f64> {
     situation.parameters.get(name).map(f64::round)
 }
 
+/// What PX4 does by a failsafe's parameter.
+fn px4_reaction(name: &str, value: Option<f64>) -> Option<Reaction> {
+    Some(PX4.failsafe(name)?.choice(value?)?.reaction)
+}
+
 fn is_one_of(value: Option<f64>, of: &[f64]) -> bool {
     value.is_some_and(|value| of.iter().any(|one| (value - one).abs() < 0.5))
 }
@@ -50,6 +52,8 @@ fn is_one_of(value: Option<f64>, of: &[f64]) -> bool {
 fn px4(situation: &Situation<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     let (setpoints, station) = (choice(situation, "COM_OBL_RC_ACT"), choice(situation, "NAV_DLL_ACT"));
+    let stopped = px4_reaction("COM_OBL_RC_ACT", setpoints);
+    let unheard_of = px4_reaction("NAV_DLL_ACT", station);
     let mut warn = |expected, came: String, remedy: &str| {
         findings.push(Finding::warning(SUBJECT, expected, came, remedy));
     };
@@ -62,13 +66,13 @@ fn px4(situation: &Situation<'_>) -> Vec<Finding> {
             "a return that climbs to {height_m:.0} m above home (RTL_RETURN_ALT), the ceiling allows {most_m:.1} m"
         ))
     };
-    if is_one_of(setpoints, &[6.0, 7.0]) {
+    if stopped == Some(Reaction::StopMotors) {
         let came = format!("motors that stop in the air (COM_OBL_RC_ACT = {})", value(setpoints));
         warn(MOTORS_ON, came, land);
-    } else if is_one_of(setpoints, &[1.0, 2.0]) {
+    } else if matches!(stopped, Some(Reaction::Altitude | Reaction::Stabilized)) {
         let came = format!("a mode that does not stop it (COM_OBL_RC_ACT = {})", value(setpoints));
         warn(EXPECTED, came, land);
-    } else if is_one_of(setpoints, &[3.0])
+    } else if stopped == Some(Reaction::Return)
         && let Some(came) = climbs()
     {
         warn(EXPECTED, came, land);
@@ -78,11 +82,11 @@ fn px4(situation: &Situation<'_>) -> Vec<Finding> {
         after.map_or_else(|| "COM_DL_LOSS_T".to_owned(), |seconds| format!("{seconds:.0} s (COM_DL_LOSS_T)"));
     let unheard = format!("once no ground station is heard for {after} (NAV_DLL_ACT = {})", value(station));
     let remedy = "set NAV_DLL_ACT to 3 (land), or to 1 (hold)";
-    if is_one_of(station, &[5.0, 6.0]) {
+    if unheard_of == Some(Reaction::StopMotors) {
         warn(MOTORS_ON, format!("motors that stop in the air {unheard}"), remedy);
-    } else if is_one_of(station, &[2.0])
+    } else if unheard_of == Some(Reaction::Return)
         // its landing goes before a return, and is over when the motors stop
-        && !is_one_of(setpoints, &[3.0, 4.0, 6.0, 7.0])
+        && !matches!(stopped, Some(Reaction::Return | Reaction::Land | Reaction::StopMotors))
         && let Some(came) = climbs()
     {
         warn(EXPECTED, format!("{came}, {unheard}"), remedy);
@@ -123,7 +127,7 @@ fn ardupilot(situation: &Situation<'_>, at: Abandoned) -> Option<Finding> {
             .map_or_else(|| "FS_GCS_TIMEOUT".to_owned(), |seconds| format!("{seconds:.0} s")),
     );
     let land = "set FS_GCS_ENABLE to 5 (land)";
-    let adds = parameters.get("RTL_CLIMB_MIN").unwrap_or(RTL_CLIMB_MIN_CM) > 0.0;
+    let adds = stated(parameters, &ARDUPILOT, "RTL_CLIMB_MIN") > 0.0;
     let remedy = if adds {
         land.to_owned()
     } else {
@@ -137,10 +141,10 @@ fn ardupilot(situation: &Situation<'_>, at: Abandoned) -> Option<Finding> {
 /// The greatest height (m above home) to which a return climbs from where it is when nothing more is heard
 /// (`ModeRTL::compute_return_target`).
 fn highest_return(situation: &Situation<'_>, at: Abandoned) -> f64 {
-    let stated = |name: &str, default: f64| situation.parameters.get(name).unwrap_or(default);
-    let height_m = 0.01 * stated("RTL_ALT", RTL_ALT_CM);
-    let climb_m = 0.01 * stated("RTL_CLIMB_MIN", RTL_CLIMB_MIN_CM).max(0.0);
-    let slope = stated("RTL_CONE_SLOPE", RTL_CONE_SLOPE);
+    let stated = |name: &str| stated(situation.parameters, &ARDUPILOT, name);
+    let height_m = stated("RTL_ALT");
+    let climb_m = stated("RTL_CLIMB_MIN").max(0.0);
+    let slope = stated("RTL_CONE_SLOPE");
     let least_m = (at.highest_m + climb_m).max(RTL_LEAST_M);
     let target_m = height_m.max(least_m);
     if slope < LEAST_SLOPE {

@@ -1,9 +1,9 @@
 //! The vehicle's own fence, in its local frame.
 
+use crate::autopilot::Autopilot;
 use crate::fence::{Areas, FenceItem, Zone};
 use crate::fly::parameters::{FenceSwitch, Parameters, has_bit};
 use crate::frames::Geodetic;
-use crate::recording::Autopilot;
 use nalgebra::Vector3;
 
 /// Bits of FENCE_TYPE.

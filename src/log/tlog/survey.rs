@@ -5,8 +5,8 @@ use std::io::Read;
 
 use super::reader::TlogReader;
 use super::report::TlogReport;
+use crate::autopilot::Autopilot;
 use crate::log::error::LogError;
-use crate::recording::Autopilot;
 use crate::wire::{Anchor, ComponentId, Record, Source, SystemId, Vehicle};
 
 /// The component that autopilots use, where no HEARTBEAT says otherwise.

@@ -24,7 +24,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
 
 use mavid::log::TlogReader;
-use mavid::sitl::AutopilotKind;
+use mavid::sitl::Firmware;
 
 use laws::{Broken, Law, check};
 use lot::Lot;
@@ -85,7 +85,7 @@ pub fn given(lot: &Lot) -> Given {
     let limits = lot.sortie().limits;
     let bound = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
     let room_m = [bound(limits.x_max_m), bound(limits.y_max_m), bound(limits.z_min_m), bound(limits.z_max_m)];
-    Given { px4: lot.kind == AutopilotKind::Px4, room_m, here: lot.origin == mavid::fly::Origin::Here }
+    Given { px4: lot.kind == Firmware::PX4, room_m, here: lot.origin == mavid::fly::Origin::Here }
 }
 
 /// Vehicle frames that were read and are not in the recording.

@@ -1,4 +1,9 @@
-//! Takes a known actuation latency out of the recorded force and torque.
+//! From command to rotor speed: a delay, then a first-order lag.
+//!
+//! This is the one law of both. The effect `motor_lag` integrates [`RotorLag::rate_1_s`]; along a recording
+//! [`delayed_thrusts_n`] takes its exact solution from sample to sample. [`delayed_wrench`] puts force and torque behind it
+//! instead of speeds, which is the same for small changes. Playback delays the thrusts that it interpolates and leaves
+//! the lag to the effect.
 
 use nalgebra::Vector4;
 
@@ -20,11 +25,54 @@ impl ActuationLatency {
         self.delay_s + self.lag_s
     }
 
-    /// Time constants of rising and of falling speed, s.
+    /// Time constants of rising and of falling speed.
     #[must_use]
-    pub fn rising_and_falling_s(&self) -> (f64, f64) {
+    pub fn rotor_lag(&self) -> RotorLag {
         let rising_s = 2.0 * self.lag_s / (1.0 + self.uneven.exp());
-        (rising_s, 2.0 * self.lag_s - rising_s)
+        RotorLag { rising_s, falling_s: 2.0 * self.lag_s - rising_s }
+    }
+}
+
+/// First-order lag of a rotor's speed `n` behind the commanded speed `c`: `n' = (c - n) / time constant`, of which there is
+/// one for rising and one for falling speed, both in s and above 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RotorLag {
+    /// s, while the speed is below the commanded one
+    pub rising_s: f64,
+    /// s, while it is above
+    pub falling_s: f64,
+}
+
+impl RotorLag {
+    /// Rate of a speed that misses the commanded one by `missing` (positive below it), in the unit of `missing` per s.
+    #[must_use]
+    pub fn rate_1_s(&self, missing: f64) -> f64 {
+        missing * (1.0 / if missing > 0.0 { self.rising_s } else { self.falling_s })
+    }
+
+    /// The exact solution for a command that holds over a span of time (s, above 0).
+    #[must_use]
+    pub fn over(&self, span_s: f64) -> RotorStep {
+        let [rising, falling] = [self.rising_s, self.falling_s].map(|lag_s| (-span_s / lag_s).exp());
+        RotorStep { rising, falling }
+    }
+}
+
+/// What a [`RotorLag`] makes of a command that holds over a span of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RotorStep {
+    /// share of the missing speed that is still missing at the end, while rising
+    rising: f64,
+    /// while falling
+    falling: f64,
+}
+
+impl RotorStep {
+    /// The speed at the end of the span, from that at its beginning and the commanded one.
+    #[must_use]
+    pub fn follow(&self, speed: f64, command: f64) -> f64 {
+        let kept = if command < speed { self.falling } else { self.rising };
+        kept * speed + (1.0 - kept) * command
     }
 }
 
@@ -50,17 +98,14 @@ fn delayed_speeds(speeds: &[Vector4<f64>], step_s: f64, latency: ActuationLatenc
     // instants would take half of the jitter away
     let steps = latency.delay_s / step_s - 0.5;
     let (whole, share) = (steps.floor(), steps - steps.floor());
-    let (rising_s, falling_s) = latency.rising_and_falling_s();
-    let laws = [(share, whole + 2.0), (1.0 - share, whole + 1.0)].map(|(part, back)| {
-        let kept = [rising_s, falling_s].map(|lag_s| (-part * step_s / lag_s).exp());
-        (kept, shifted(speeds, back))
-    });
+    let lag = latency.rotor_lag();
+    let laws = [(share, whole + 2.0), (1.0 - share, whole + 1.0)]
+        .map(|(part, back)| (lag.over(part * step_s), shifted(speeds, back)));
     let mut state = laws[0].1.first().copied().unwrap_or_default();
     let follow = |index: usize| {
-        for (kept, held) in &laws {
+        for (step, held) in &laws {
             for (state, held) in state.iter_mut().zip(held[index].iter()) {
-                let kept = kept[usize::from(*held < *state)];
-                *state = kept * *state + (1.0 - kept) * held;
+                *state = step.follow(*state, *held);
             }
         }
         state
@@ -144,6 +189,18 @@ mod tests {
         for steps in [2.3, 0.4, -0.4, -1.7] {
             let out = shifted(&ramp(), steps);
             assert!((out[200][0] - (200.0 - steps) * 0.01).abs() < 1e-12, "{steps}");
+        }
+    }
+
+    #[test]
+    fn the_solution_over_a_span_is_the_integral_of_the_rate() {
+        let lag = RotorLag { rising_s: 0.02, falling_s: 0.05 };
+        for (from, command) in [(0.8, 1.1), (1.3, 0.9)] {
+            let (mut speed, step_s) = (from, 1e-6);
+            for _ in 0..30_000 {
+                speed += step_s * lag.rate_1_s(command - speed);
+            }
+            assert!((lag.over(0.03).follow(from, command) - speed).abs() < 1e-5, "{speed}");
         }
     }
 
