@@ -125,6 +125,9 @@
 //! The body frame is x forward, y left, z up. The world frame is north, west, up. Units are SI and radians. Times are
 //! seconds of the vehicle's own clock from the start of the recording. Quaternions are w x y z, from body to world.
 //! Files in other conventions are converted when they are read or written.
+//!
+//! Stages and flights are [`tracing`] spans; what happens in them are events. The library installs no subscriber.
+//! [`fly::run`] needs a subscriber with [`fly::event_layer`], which writes the flight's log of events.
 
 pub mod autopilot;
 pub mod compare;

@@ -96,8 +96,8 @@ async fn fly(
     let Served { flown, behind } = serve(vehicle, links, time, stop).await;
     if behind > BEHIND {
         let behind_s = behind.as_secs_f64();
-        output::message(&format!(
-            "warning: this machine was up to {behind_s:.1} s of the vehicle's time behind the pace: expected a free core, or \
+        output::warning(&format!(
+            "this machine was up to {behind_s:.1} s of the vehicle's time behind the pace: expected a free core, or \
              a lower --speed, or --lockstep"
         ));
     }
