@@ -134,3 +134,23 @@ impl Default for Settings {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Above every frequency that is excited on purpose, Hz.
+    const EXCITED_HZ: u32 = 2;
+
+    #[test]
+    fn no_harmonic_of_the_setpoints_is_seen_as_motion_in_a_log() {
+        for log_hz in [25, 50, 100, 125, 200, 250, 400] {
+            for harmonic in 1..=4 {
+                let beyond_hz = (harmonic * SETPOINT_HZ) % log_hz;
+                let seen_hz = beyond_hz.min(log_hz - beyond_hz);
+                assert!(seen_hz > EXCITED_HZ, "harmonic {harmonic} is {seen_hz} Hz in a log of {log_hz} Hz");
+            }
+        }
+        assert_eq!(Settings::default().setpoint_period, Duration::from_secs(1) / SETPOINT_HZ);
+    }
+}
