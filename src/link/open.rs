@@ -88,6 +88,9 @@ async fn drive(
         () = left => {}
         () = run(&shared, &halt) => {}
     }
+    // what waits for its continuation is decided
+    incoming.silence(incoming.now());
+    shared.ended.notify_one();
 }
 
 /// Says every now and then that the task runs, and in a test stops it.

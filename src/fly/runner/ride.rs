@@ -139,6 +139,7 @@ async fn fly(ride: Ride, console: Console, subscription: Subscription) -> Result
     // the link may be gone by now
     let _ = tokio::time::timeout(FLUSH, writer.flush()).await;
     let link = writer.stats();
+    let _ = tokio::time::timeout(FLUSH, writer.close()).await;
     let recorder = recorder.end().await?;
     let stream = stream.on_link(&link);
     let StreamFigures { sent, late, overtaken, refused } = stream;

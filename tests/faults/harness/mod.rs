@@ -63,7 +63,7 @@ pub fn fly_lot(lot: Lot, (seed, number): (u64, u64), whole: bool) -> Report {
     if flown.is_err() {
         broken.push(Broken { law: Law::Panic, at: world.now, how: "see above".into() });
     }
-    if let Some(how) = missing(&world) {
+    if let Some(how) = missing(&mut world) {
         broken.push(Broken { law: Law::Log, at: world.now, how });
     }
     let around = Duration::from_secs(6);
@@ -89,7 +89,7 @@ pub fn given(lot: &Lot) -> Given {
 }
 
 /// Vehicle frames that were read and are not in the recording.
-fn missing(world: &World) -> Option<String> {
+fn missing(world: &mut World) -> Option<String> {
     let recorded = world.host.recorded(&world.runtime);
     let mut kept: HashMap<Vec<u8>, i32> = HashMap::new();
     let mut reader = TlogReader::new(std::io::Cursor::new(recorded));
