@@ -554,7 +554,8 @@ fn where_nothing_is_safe_to_send_it_refuses_and_says_what_would_be() {
     scene.parameters = ardupilot(&[("WP_ACC", 0.2), ("PSC_NE_JERK", 0.2)]);
     let said = scene.said(DIES);
     assert_eq!(said.level, Level::Refusal, "{said}");
-    assert!(said.came.contains("however they are sent"), "{said}");
+    assert!(said.came.starts_with("setpoints that come nearest to it cost"), "{said}");
+    assert!(said.remedy.contains("--tracking-max"), "{said}");
     assert!(said.remedy.contains("slower"), "{said}");
 }
 

@@ -332,7 +332,11 @@ fn refused(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> Find
         "setpoints that come nearest to it cost {:.2} m off the reference, of which {:.2} m end the flight",
         tried.tracking_m, situation.tracking_max_m
     );
-    let came = format!("{}, however they are sent; {costs}", in_words(tried));
+    let came = if tried.tracking_m > TRACKING_SHARE * situation.tracking_max_m {
+        format!("{costs}; with them {}", in_words(tried))
+    } else {
+        format!("{}, however they are sent; {costs}", in_words(tried))
+    };
     Finding::refusal(SUBJECT, expected, came, remedy(situation, laws, tried))
 }
 
@@ -346,7 +350,8 @@ fn remedy(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> Strin
             (10.0 * worst.beyond_m).ceil() / 10.0
         ),
         None => {
-            "plan a slower trajectory, or raise the limits of the autopilot that the checks name".to_owned()
+            "plan a slower trajectory, raise the limits of the autopilot that the checks name, or allow more (--tracking-max)"
+                .to_owned()
         }
     };
     match safe_timeout_s(situation, laws) {
