@@ -9,11 +9,10 @@ use nalgebra::Vector3;
 use super::Situation;
 use super::aftermath::{self, Abandoned, SUBJECT};
 use crate::autopilot::Takeoff;
-use crate::fly::course::{approach, reference_at};
+use crate::fly::course::reference_at;
 use crate::fly::finding::Finding;
 use crate::fly::law::{FollowLaw, Motion, STEP_S};
 use crate::fly::safety::{Feeding, SetpointBounds};
-use crate::fly::setpoint::Place;
 use crate::plan::Reach;
 use crate::trajectory::FlightPath;
 
@@ -145,11 +144,7 @@ fn choose(situation: &Situation<'_>, laws: &[FollowLaw]) -> Result<Tried, Box<Tr
 }
 
 fn attempt(situation: &Situation<'_>, laws: &[FollowLaw], feeding: Feeding) -> Tried {
-    let way = situation.stand_m.zip(situation.path.derivatives(0.0)).map(|(stand_m, start)| {
-        let [x, y, z, yaw] = start.map(|axis| axis[0]);
-        let place = |position_m, yaw_rad| Place { position_m, yaw_rad };
-        approach(&place(stand_m, yaw), &place(Vector3::new(x, y, z) + situation.origin_m, yaw))
-    });
+    let way = situation.way_to_start();
     let course = Leg {
         path: situation.path,
         offset_m: situation.origin_m,
