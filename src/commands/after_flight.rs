@@ -166,7 +166,7 @@ mod tests {
         let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
         let folder = std::env::temp_dir().join(format!("mavid-after-flight-{}", std::process::id()));
         let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(folder.join("model.toml.part")).unwrap();
+        fs::create_dir_all(folder.join("identification.txt.part")).unwrap();
         fs::create_dir_all(folder.join("explained/report.html.part")).unwrap();
         fs::copy(fixtures.join("p04_identify_10_22s.tlog"), folder.join(fly::TLOG)).unwrap();
         let vehicle = fixtures.join("p04_vehicle.toml");
