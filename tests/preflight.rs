@@ -877,8 +877,8 @@ fn what_is_not_ready_is_refused_with_its_reason() {
         assert!(!said.remedy.is_empty());
         said
     };
-    let said = refused("battery", &|scene| scene.battery.remaining_percent = Some(9.0));
-    assert!(said.came.contains("81 s"), "{said}");
+    let said = refused("battery", &|scene| scene.battery.remaining_percent = Some(7.0));
+    assert!(said.came.contains("63 s"), "{said}");
     refused("battery", &|scene| scene.battery.is_low = true);
     refused("home", &|scene| scene.readiness.home_set = false);
     refused("health", &|scene| scene.readiness.unhealthy = vec!["position control".into()]);
