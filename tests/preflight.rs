@@ -516,7 +516,7 @@ fn stopping_takes_room() {
     assert!(said.came.contains("x_max_m") && said.expected.contains("WP_ACC"), "{said}");
 }
 
-const DIES: &str = "if we die now";
+const DIES: &str = "if setpoints end";
 
 #[test]
 fn setpoints_are_sent_such_that_each_may_be_the_last() {
@@ -712,7 +712,7 @@ fn the_page_before_the_flight_begins_with_warnings_and_ends_with_the_room() {
     assert!(lines[0].starts_with("warning: "), "{}", lines[0]);
     let text = scene.judged().page.lines(400).join("\n");
     for part in [
-        "if we die now: ",
+        "if setpoints end: ",
         "m/s along the ground",
         "degrees of tilt",
         "from above",

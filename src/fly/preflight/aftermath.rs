@@ -1,5 +1,4 @@
-//! If we die now: what the vehicle does by itself after it has come to rest. Our setpoints end, and our heartbeats do
-//! too.
+//! What the vehicle does after setpoints and heartbeats have ended and it has come to rest.
 
 use super::Situation;
 use crate::autopilot::{ARDUPILOT, Autopilot, PX4, Reaction};
@@ -8,7 +7,7 @@ use crate::fly::law::stated;
 use crate::fly::parameters::hears_station;
 
 /// Subject of the findings on the end of this program.
-pub(super) const SUBJECT: &str = "if we die now";
+pub(super) const SUBJECT: &str = "if setpoints end";
 
 const EXPECTED: &str = "a mode that stops it and keeps it in the room";
 const MOTORS_ON: &str = "motors that run until it has landed";

@@ -12,7 +12,7 @@ use crate::units::deg_from_rad;
 const COLUMNS: usize = 41;
 const ROWS: usize = 15;
 /// Findings that are said also where all is well.
-const ALWAYS: [&str; 5] = ["if we die now", "battery", "fence", "room", TAKEOVER];
+const ALWAYS: [&str; 5] = ["if setpoints end", "battery", "fence", "room", TAKEOVER];
 
 /// What is shown before the vehicle is armed.
 #[derive(Debug, Clone, PartialEq, Default)]
