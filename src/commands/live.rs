@@ -82,8 +82,8 @@ pub fn run(
             Phase::Flying => continue,
             Phase::Ending if since.get_or_insert_with(Instant::now).elapsed() < GRACE => continue,
             Phase::Ending => format!(
-                "mavid: ended {} s after {name}, before all was told: standard output, standard error or a disk takes \
-                 nothing, or the flight was being analysed; what was recorded is in its file",
+                "mavid: ended {} s after {name}, before all output was written: standard output, standard error or a \
+                 disk accepts no data, or the flight was being analysed; what was recorded is in its file",
                 GRACE.as_secs()
             ),
         };

@@ -120,7 +120,8 @@ fn with_even_rotors(
     let mended = with_weak_rotor(flights, vehicle, &weak);
     let mut again = identify_evenly(&mended, vehicle, settings)?;
     let text = format!(
-        "the torque left over is that of rotor {} giving {:.3} +- {:.3} of its thrust: taken out, the other rotors set the scale",
+        "the remaining torque is that of rotor {} giving {:.3} +- {:.3} of its thrust: corrected, the other rotors \
+         set the scale",
         weak.name, weak.factor, weak.std
     );
     again.notes.push(Note::remark(About::Estimate, text));
@@ -194,8 +195,9 @@ fn identify_evenly(
 }
 
 /// What the standard errors do not hold where thrust is from commands.
-const BY_COMMANDS: &str = "thrust from commands: what they do between two samples is not in the standard errors, which leaves mass and \
-                           moments uncertain by some tenths of a percent more; measured rotor speeds (ESC_STATUS) do not have this";
+const BY_COMMANDS: &str = "thrust from commands: the standard errors do not include the commands between two samples, \
+                           so mass and moments are uncertain by some tenths of a percent more; measured rotor speeds \
+                           (ESC_STATUS) do not have this";
 
 /// Ten times the highest harmonic, as the paper's lambda is (30 rad/s over 180 deg/s); 5 Hz where the
 /// trajectory is not known; never beyond a fifth of the sample rate.

@@ -23,8 +23,9 @@ pub fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<Note> {
             let factor = value / nominal[index];
             (factor > most || factor < 1.0 / most).then(|| {
                 let text = format!(
-                    "{} is {factor:.2} times what the vehicle file states: another vehicle's log, a wrong unit, \
-                     or thrust and torque coefficients that are off by as much? A weighed mass with anchor = \"mass\" sets the scale",
+                    "{} is {factor:.2} times what the vehicle file states: is it another vehicle's log, is a unit \
+                     wrong, or are thrust and torque coefficients wrong by this factor? A weighed mass with anchor = \
+                     \"mass\" sets the scale",
                     NAMES[index]
                 );
                 Note::warning(About::Estimate, text)

@@ -115,9 +115,8 @@ impl MethodResult {
 fn by_method(method: Method, finding: Finding) -> Finding {
     match (method, finding) {
         (Method::Gd | Method::Fmgd, Finding::NotDetermined { .. }) => Finding::NotDetermined {
-            reason:
-                "gradient descent with this gain keeps following the noise; a smaller --sigma averages longer"
-                    .into(),
+            reason: "gradient descent with this gain follows the noise; a smaller --sigma averages longer"
+                .into(),
         },
         (_, finding) => finding,
     }
@@ -141,7 +140,7 @@ fn unexplained(estimated: &Estimated, index: usize) -> Option<String> {
     let shares = estimated.explained?;
     axes_of(index).iter().find(|axis| shares[**axis] < LEAST_EXPLAINED).map(|axis| {
         format!(
-            "the rigid body explains only {:.0} % of the torque about {}: noise, or physics that it leaves out",
+            "the rigid body explains only {:.0} % of the torque about {}: the rest is noise, or physics that it lacks",
             100.0 * shares[*axis].max(0.0),
             ["x", "y", "z"][*axis]
         )
@@ -174,7 +173,7 @@ pub fn finding(estimated: &Estimated, nominal: &Theta, index: usize) -> Finding 
     let moment = matches!(index, 0 | 1 | 4 | 6);
     if moment && value <= 2.0 * std {
         return Finding::NotDetermined {
-            reason: format!("estimate {value:.3e} +- {std:.1e} is not clear of zero"),
+            reason: format!("estimate {value:.3e} +- {std:.1e} is not distinguishable from zero"),
         };
     }
     Finding::Determined { value, std }

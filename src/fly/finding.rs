@@ -90,7 +90,7 @@ impl Finding {
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { level, subject, expected, came, remedy } = self;
-        write!(f, "{}: {subject}: expected {expected}, came {came}", level.name())?;
+        write!(f, "{}: {subject}: expected {expected}, got {came}", level.name())?;
         if remedy.is_empty() { Ok(()) } else { write!(f, "; {remedy}") }
     }
 }

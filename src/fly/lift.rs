@@ -138,7 +138,7 @@ impl Lift {
         let Some(Heard { source, count, sum_n, .. }) = speeds.or(most) else {
             return match self.heard.iter().find(|heard| heard.strange >= LEAST_SAMPLES) {
                 Some(heard) => Weighed::Notable(format!(
-                    "expected actuator outputs in the unit of the vehicle file, came {} in another: thrust is not \
+                    "expected actuator outputs in the unit of the vehicle file, got {} in another: thrust is not \
                      compared with weight, and nothing may be identified",
                     heard.source
                 )),

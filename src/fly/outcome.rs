@@ -93,7 +93,7 @@ impl fmt::Display for Cause {
             Self::EstimatorReset(what) => write!(f, "position estimate jumped: {what}"),
             Self::Battery(what) => write!(f, "battery: {what}"),
             Self::SecondMaster(what) => write!(f, "a second ground station commands: {what}"),
-            Self::Reboot => f.write_str("the autopilot started anew"),
+            Self::Reboot => f.write_str("the autopilot restarted"),
             Self::Stalled(what) => write!(f, "the host stalled: {what}"),
             Self::Unfit(why) => write!(f, "no setpoint can be made: {why}"),
             Self::Unresponsive(what) => write!(f, "the vehicle does not answer: {what}"),

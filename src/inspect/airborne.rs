@@ -87,7 +87,7 @@ pub(super) fn airborne(
     let streams = || recording.streams.values();
     let first = streams().filter_map(|s| s.time_s.first()).copied().fold(f64::INFINITY, f64::min);
     let last = streams().filter_map(|s| s.time_s.last()).copied().fold(f64::NEG_INFINITY, f64::max);
-    (vec![(first, last)], "nothing: taken for flight throughout")
+    (vec![(first, last)], "nothing: all of it is taken as flight")
 }
 
 fn smoothed(effort: &Stream) -> Vec<f64> {

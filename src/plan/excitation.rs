@@ -106,7 +106,7 @@ pub struct RestInside {
 #[derive(Debug, thiserror::Error)]
 pub enum PlanError {
     /// a number of the request is out of range
-    #[error("{name}: expected {expected}, came {came}")]
+    #[error("{name}: expected {expected}, got {came}")]
     Request {
         /// which
         name: &'static str,
@@ -132,7 +132,7 @@ pub enum PlanError {
         violation: Violation,
     },
     /// nothing that moves all parameters fits into the limits
-    #[error("the limits leave no motion that determines all seven parameters")]
+    #[error("no motion inside the limits determines all seven parameters")]
     NotDetermined,
 }
 

@@ -127,15 +127,15 @@ pub fn with_room(limits: &Limits, vehicle: &Vehicle) -> Roomed {
     let mut notes = Vec::new();
     if !missing.is_empty() {
         notes.push(format!(
-            "expected a room and how fast it is flown in [limits], came none or a part of it: the default is used for what is \
-             missing, {}; state your own there if it is another",
+            "expected a room and speed limits in [limits], got none or a part of them: defaults are used for what is \
+             missing, {}; state your own values there if they differ",
             missing.join(", ")
         ));
     }
     if let Some(stated_m) = roomed.z_min_m.filter(|z_min_m| *z_min_m < floor_m) {
         roomed.z_min_m = Some(floor_m);
         notes.push(format!(
-            "expected z_min_m of at least {floor_m:.2} (rotors' reach and {HEIGHT_ERROR_M} m of error in height), came \
+            "expected z_min_m of at least {floor_m:.2} (rotors' reach and {HEIGHT_ERROR_M} m of error in height), got \
              {stated_m:.2}: {floor_m:.2} is the floor of the room"
         ));
     }
@@ -172,7 +172,7 @@ mod tests {
         let limits = whole.limits;
         assert!(limits.z_min_m.unwrap() >= 1.0 && limits.z_max_m.unwrap() <= 10.0, "{limits:?}");
         assert!(
-            whole.notes[0].contains("the default is used") && whole.notes[0].contains("roll_max_deg = 15")
+            whole.notes[0].contains("defaults are used") && whole.notes[0].contains("roll_max_deg = 15")
         );
         assert_eq!(with_room(&limits, &vehicle), Roomed { limits, notes: Vec::new() });
         let fast = Limits { x_max_m: Some(5.0), speed_max_m_s: Some(3.0), ..Limits::default() };
@@ -193,6 +193,6 @@ mod tests {
         let stated = Limits { z_min_m: Some(-5.0), z_max_m: Some(4.0), ..Limits::default() };
         let roomed = with_room(&stated, &vehicle);
         assert_eq!(roomed.limits.z_min_m, Some(floor_m));
-        assert!(roomed.notes.iter().any(|note| note.contains("came -5.00")), "{:?}", roomed.notes);
+        assert!(roomed.notes.iter().any(|note| note.contains("got -5.00")), "{:?}", roomed.notes);
     }
 }

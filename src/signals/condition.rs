@@ -20,7 +20,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 pub struct ConditionSettings {
     /// s between grid instants; `None`: the period of the fastest inertial stream, 2 to 20 ms
     pub step_s: Option<f64>,
-    /// s of flight left out at the beginning; `None`: 10 s as in the paper, at most a fifth of the flight
+    /// time left out at the beginning of the flight, s; `None`: 10 s as in the paper, at most a fifth of the flight
     pub transient_s: Option<f64>,
     /// s, half width of the weak form's kernel
     pub weak_half_width_s: f64,

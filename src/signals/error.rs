@@ -58,7 +58,8 @@ pub enum SignalsError {
     },
     /// more than one flight
     #[error(
-        "motion and actuator streams go on for {span_s:.0} s or more: expected one flight, of at most {} samples; divide the log into its flights",
+        "motion and actuator streams last {span_s:.0} s or more: expected one flight, of at most {} samples; divide \
+         the log into its flights",
         Grid::LONGEST
     )]
     TooLong {

@@ -123,7 +123,8 @@ fn forces(signals: &Signals, gravity_m_s2: f64, spans: &[(usize, usize)]) -> Vec
         .filter(|(axis, _)| likeness(&column(&changed, *axis), &column(&felt, *axis)) < -ALIKE)
         .map(|(_, name)| {
             format!(
-                "the velocity {name} changes against what the accelerometer feels: expected both in north, west, up once \
+                "the velocity {name} changes in the opposite direction of the measured acceleration: expected both in \
+                 north, west, up once \
                  the attitude has turned the accelerometer's"
             )
         })
@@ -158,7 +159,7 @@ fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Op
         wrong.then(|| {
             let sign = if alike[best] < 0.0 { "-" } else { "" };
             format!(
-                "the body turns about {} as the rotors' torque about {sign}{} would have it (partial correlation {:.2}; \
+                "the body turns about {} as if by the rotors' torque about {sign}{} (partial correlation {:.2}; \
                  {:.2} with that about {}): expected the rotors in the vehicle file's order, at its places and turning its way",
                 AXES[axis], AXES[best], alike[best].abs(), alike[axis], AXES[axis]
             )

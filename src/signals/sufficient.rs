@@ -75,8 +75,8 @@ pub(super) fn check(needed: &[Needed<'_>], airborne_s: &[(f64, f64)]) -> Result<
     }
     Ok((!slow.is_empty()).then(|| {
         let text = format!(
-            "sampled slowly: {slow}. Inertia may be off by several of its standard errors, and a lag cannot be told \
-             from a delay; 100 Hz of each is good"
+            "sampled slowly: {slow}. Inertia may be off by several of its standard errors, and a lag cannot be \
+             distinguished from a delay; 100 Hz of each is good"
         );
         Note::remark(About::Sensors, text)
     }))

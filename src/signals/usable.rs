@@ -55,7 +55,7 @@ impl Usable {
             self.transient_s,
             self.idle_s,
             self.saturated_s,
-            if self.saturation_kept { " (kept: hardly anything else is left)" } else { "" },
+            if self.saturation_kept { " (kept: little else is left)" } else { "" },
             self.gap_s
         )
     }

@@ -102,7 +102,7 @@ fn traces(flights: &[Signals], vehicle: &Vehicle, settings: &NextSettings) -> Re
 
 /// Below this many standard deviations in every flight that was tried, two effects do the same.
 const SAME_SIGMA: f64 = 0.5;
-const SAME: &str = "in every flight inside the limits both do the same to the vehicle";
+const SAME: &str = "in every flight inside the limits both have the same effect on the vehicle";
 const BY_WEIGHING: &str =
     "weigh the vehicle before and after, swap the pack in between, and record the battery's voltage";
 const NOT_TRIED: &str = "what it would do in another flight is not known";

@@ -9,7 +9,8 @@ use crate::physics::PhysicsError;
 pub enum NextError {
     /// nothing to tell apart
     #[error(
-        "there is nothing to tell apart: nothing was named that could be taken for another effect, or that motion would show better"
+        "there is nothing to separate: no named effect could be confused with another one, and none would be \
+         determined better by more motion"
     )]
     NothingToTell,
     /// only by other means

@@ -39,7 +39,9 @@ impl NextFlight {
                 };
                 format!("{} from {other}: {}{better}", pair.named, after(pair))
             }
-            None => format!("nothing stands for {}, which is known to: {}", pair.named, after(pair)),
+            None => {
+                format!("{} is confused with no other effect; its significance: {}", pair.named, after(pair))
+            }
         });
         pairs.chain(self.inseparable.iter().map(ToString::to_string)).collect::<Vec<_>>().join("; ")
     }
@@ -71,11 +73,11 @@ pub struct Inseparable {
 
 impl std::fmt::Display for Inseparable {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(out, "no trajectory tells {} from {}: {}", self.named, self.other, self.why)
+        write!(out, "no trajectory separates {} from {}: {}", self.named, self.other, self.why)
     }
 }
 
 /// Below this many standard deviations two effects are not told apart.
 const ENOUGH_SIGMA: f64 = 5.0;
 
-const BY_SPEEDS: &str = " (rotor speed telemetry, or doublets of 5 Hz and more, tell them apart)";
+const BY_SPEEDS: &str = " (rotor speed telemetry, or doublets of 5 Hz and more, separate them)";

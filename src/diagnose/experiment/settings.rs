@@ -15,7 +15,7 @@ pub struct NextSettings {
     pub starts: u64,
     /// moves of each start
     pub moves: u32,
-    /// same seed, same flight
+    /// seed of the search; the same seed gives the same flight
     pub seed: u64,
     /// s, half width of the weak form's test function
     pub half_width_s: f64,

@@ -25,7 +25,7 @@ pub(super) fn flown_again(
     settings: &HoldoutSettings,
 ) -> Result<ClosedLoop, String> {
     if empirical.is_some() {
-        return Err("an empirical term is not flown in closed loop".to_owned());
+        return Err("an empirical term is not simulated in closed loop".to_owned());
     }
     let mut blocks = Blocks::new(SIGNALS.len(), settings.block_s);
     let mut floors = [0.0; SIGNALS.len()];
@@ -34,7 +34,7 @@ pub(super) fn flown_again(
         let recording = ready
             .flight
             .recording
-            .ok_or_else(|| named(&"part of a flight that was used is not flown again"))?;
+            .ok_or_else(|| named(&"part of a flight that was used is not simulated"))?;
         let recorded = TenSignals::of_signals(ready.flight.signals).map_err(|error| named(&error))?;
         let levels = noise_levels(&recorded);
         floors.iter_mut().zip(levels).for_each(|(floor, level)| *floor += level * level);

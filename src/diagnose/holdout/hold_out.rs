@@ -48,7 +48,8 @@ pub fn on_holdout(
     let another = other_vehicle.is_some();
     tracing::info!(improvement_percent = improvement, blocks, other_vehicle = another, "hold-out predicted");
     notes.push(
-        "the floor is what white noise of the sensors and of the logged commands would leave of a model that is right; noise that an autopilot's estimator has smoothed is not in it"
+        "the floor is the error that white noise of the sensors and of the logged commands would cause with the right \
+         model; noise that an autopilot's estimator has smoothed is not included"
             .to_owned(),
     );
     Ok(HoldoutFit {

@@ -1,4 +1,4 @@
-//! Open-loop prediction from the measured state, fed the recorded actuators.
+//! Open-loop prediction from the measured state with the recorded actuators.
 
 use super::bootstrap::{Blocks, Compared, Interval};
 use super::error::HoldoutError;

@@ -119,7 +119,7 @@ pub(super) fn judged(
         let parameters = parameters.join(", ");
         let channel = CHANNEL_NAMES[*channel];
         let reason = format!(
-            "{whose}: {parameters}; the residual of {channel} is {ratio:.1} times what its own fit leaves"
+            "{whose}: {parameters}; the residual of {channel} is {ratio:.1} times that of its own fit"
         );
         OtherVehicle { by: Difference::Parameter(different[0].clone()), reason }
     });
@@ -154,8 +154,8 @@ pub fn differing(
         let different: Vec<String> = pairs.filter(Agreement::differs).map(|pair| described(&pair)).collect();
         if !different.is_empty() {
             return Ok(Some(format!(
-                "{} and {} differ by more than flights of one vehicle do (another vehicle, load or battery), so what is \
-                 explained may be of neither: {}",
+                "{} and {} differ by more than flights of one vehicle do (another vehicle, load or battery), so the \
+                 explanation may be valid for neither: {}",
                 flights[0].name,
                 flight.name,
                 different.join(", ")

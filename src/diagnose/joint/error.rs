@@ -30,8 +30,9 @@ pub enum JointError {
     },
     /// irregular by nature
     #[error(
-        "gust cannot be identified as parameters: a gust is one course of the wind, not the same way twice, and force and torque \
-         are not a function of its strength and correlation time; `mavid explain` gives both, from what is left of the residual"
+        "gust cannot be identified as parameters: a gust is one random course of the wind that does not repeat, and \
+         force and torque are not a function of its strength and correlation time; `mavid explain` gives both from \
+         the remaining residual"
     )]
     Gust,
     /// wind has no force of its own

@@ -92,7 +92,7 @@ fn load_kg(form: &EffectTerm) -> Option<f64> {
 fn hold_last(settled: &mut [Settled]) -> bool {
     let last = settled.iter_mut().rev().find_map(|of| Some((of.chosen.form.free.pop()?, of)));
     let Some((slot, of)) = last else { return false };
-    let why = "in this flight it does exactly what other parameters do";
+    let why = "in this flight its effect is the same as that of other parameters";
     of.held.push((slot, Held::NotDetermined(why.to_owned())));
     true
 }
@@ -138,15 +138,16 @@ fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
         // a finer form was taken because it is the likelier one: what it adds stays in, whatever its error
         let finer = slot >= present.effect().parameters().len();
         let reason = if !amount && !seen {
-            "the effect itself does not stand out of the noise".to_owned()
+            "the effect itself is not distinguishable from noise".to_owned()
         } else {
             match own {
                 None => "nothing in this flight excites it".to_owned(),
                 Some(own) if own < OWN => {
-                    "in this flight it does what mass, inertia or another parameter does".to_owned()
+                    "in this flight its effect is the same as that of mass, inertia or another parameter"
+                        .to_owned()
                 }
                 _ if !finer && std > SAYS_NOTHING * (greatest - least) => format!(
-                    "its standard error, {std:.2e} {}, is no smaller than what is plausible at all ({} to {})",
+                    "its standard error, {std:.2e} {}, is at least as large as the plausible range ({} to {})",
                     parameter.unit,
                     compact(least),
                     compact(greatest)
@@ -200,7 +201,8 @@ fn free_vertical_wind(fitted: &Fitted, settled: &mut [Settled], (before, next): 
             next.present[before + index].free.push(UP);
             freed = true;
         } else {
-            let why = "no drag along body z stands out of the noise through which it would show";
+            let why =
+                "it acts through the drag along body z, and this drag is not distinguishable from noise";
             of.held.push((UP, Held::NotDetermined(why.to_owned())));
         }
     }

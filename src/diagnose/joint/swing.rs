@@ -46,10 +46,11 @@ pub(super) fn allow_for_noise(
         if !seen || changes {
             hidden.push(before + index);
             let why = if changes {
-                "the likeliest swing runs out of step with the motion along the flight: another cord, or something else"
+                "the most likely swing loses its phase to the motion along the flight: the cord has another length, \
+                 or the cause is something else"
             } else {
-                "either there is no load, or its swing hardly dies down and the noise of the motion that swings it hides \
-                 where it goes"
+                "either there is no load, or its swing has little damping and the noise of the measured motion hides \
+                 its phase"
             };
             let slots = 0..of.chosen.form.values.len();
             of.held = slots.map(|slot| (slot, Held::NotDetermined(why.to_owned()))).collect();

@@ -1,4 +1,4 @@
-//! How a position reference that is askew is tried, named and said.
+//! How a misaligned position reference is tried, named and said.
 
 use crate::diagnose::channels::Nuisance;
 use crate::diagnose::recorded::{Need, Recorded};
@@ -39,10 +39,11 @@ pub static SIGNATURE: Signature = Signature {
         forms: Some(|_, _| vec![SIGNATURE.term(&[0.0; 3], &[0, 1]), SIGNATURE.term(&[0.0; 4], &[0, 1, 2])]),
         whence: |_, slot, _, _| {
             Some(if slot >= WITH_ATTITUDE {
-                Whence::Given("position and velocity are turned alone: the likelier of both".to_owned())
+                Whence::Given("only position and velocity are turned: the more likely form".to_owned())
             } else {
                 Whence::NotDetermined(
-                    "position, velocity and attitude turn alike: no equation of the vehicle's own motion sees a heading",
+                    "position, velocity and attitude are turned by the same angle: no equation of the vehicle's \
+                     motion depends on a heading",
                 )
             })
         },
@@ -53,7 +54,7 @@ pub static SIGNATURE: Signature = Signature {
         &[0, 1, 2],
         Words {
             size: Size::Norm { factor: 1.0_f64.to_degrees(), unit: "deg", digits: 2 },
-            ..Words::of("a position reference that is askew")
+            ..Words::of("a misaligned position reference")
         },
     )
 };

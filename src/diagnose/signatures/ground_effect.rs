@@ -61,7 +61,7 @@ pub static SIGNATURE: Signature = Signature {
             inverse.into_iter().chain(exponential).collect()
         }),
         whence: |_, slot, _, _| {
-            (slot <= CB).then(|| Whence::Given("the other law is the likelier one".to_owned()))
+            (slot <= CB).then(|| Whence::Given("the other law is more likely".to_owned()))
         },
         ..Joint::PLAIN
     },
@@ -106,9 +106,9 @@ fn clause(named: &Named, vehicle: &Vehicle) -> String {
         format!("{} % more thrust at {} m", significant(gain_percent, 2), significant(2.0 * radius_m, 2))
     });
     let by = if ca > 0.0 {
-        format!("falling by e every {} rotor radii", significant(1.0 / cb, 2))
+        format!("decreasing by a factor e every {} rotor radii", significant(1.0 / cb, 2))
     } else {
-        format!("{} times that of Cheeseman and Bennett, fading with height", named.said("rho", 1.0))
+        format!("{} times that of Cheeseman and Bennett, decreasing with height", named.said("rho", 1.0))
     };
     let parts: Vec<String> = [by, height].into_iter().filter(|part| !part.is_empty()).collect();
     format!("Ground effect was left out: {}", parts.join(", "))
@@ -118,7 +118,7 @@ fn size(named: &Named) -> Option<String> {
     match named.get("ca") {
         Some(ca) if ca.value > 0.0 => {
             let at_two = ca.value * (-2.0 * named.value("cb")).exp();
-            Some(format!("{} % of the thrust two rotor radii up", significant(100.0 * at_two, 2)))
+            Some(format!("{} % of the thrust at a height of two rotor radii", significant(100.0 * at_two, 2)))
         }
         _ => words::said(named, "rho", 1.0, "times Cheeseman and Bennett's"),
     }

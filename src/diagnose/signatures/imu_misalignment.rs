@@ -1,4 +1,4 @@
-//! How an inertial unit that sits askew is tried, named and said.
+//! How a misaligned inertial unit is tried, named and said.
 
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, Role, Signature};
@@ -19,7 +19,7 @@ pub static SIGNATURE: Signature = Signature {
         &[0, 1, 2],
         Words {
             size: Size::Norm { factor: 1.0_f64.to_degrees(), unit: "deg", digits: 2 },
-            ..Words::of("an inertial unit that sits askew")
+            ..Words::of("a misaligned inertial unit")
         },
     )
 };

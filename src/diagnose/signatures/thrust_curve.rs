@@ -28,7 +28,8 @@ pub static SIGNATURE: Signature = Signature {
             clause: Clause::Own(|named, _| {
                 let bend = named.value("curvature");
                 format!(
-                    "The thrust curve is bent: about hover thrust changes with the command {} % {} than the vehicle file says",
+                    "The thrust curve is bent: near hover the thrust changes {} % {} with the command than in the \
+                     vehicle file",
                     named.said("curvature", 100.0 * bend.signum()),
                     if bend > 0.0 { "more" } else { "less" }
                 )

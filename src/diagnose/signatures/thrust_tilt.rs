@@ -1,4 +1,4 @@
-//! How a leaning thrust axis is tried, named and said.
+//! How a tilted thrust axis is tried, named and said.
 
 use crate::diagnose::channels::Nuisance;
 use crate::diagnose::signature::{Form, Naming, Role, Signature};
@@ -19,13 +19,14 @@ pub static SIGNATURE: Signature = Signature {
         Words {
             clause: Clause::Own(|named, _| {
                 format!(
-                    "The thrust axis leans by {} deg about body x and {} deg about body y: thrust pushes sideways, fixed in the body",
+                    "The thrust axis is tilted by {} deg about body x and {} deg about body y: the thrust has a \
+                     sideways component that is fixed in the body",
                     named.said("x", 1.0_f64.to_degrees()),
                     named.said("y", 1.0_f64.to_degrees())
                 )
             }),
             size: Size::Norm { factor: 1.0_f64.to_degrees(), unit: "deg", digits: 2 },
-            ..Words::of("a leaning thrust axis")
+            ..Words::of("a tilted thrust axis")
         },
     )
 };

@@ -17,7 +17,7 @@ pub static SIGNATURE: Signature = Signature {
             clause: Clause::OneNumber {
                 parameter: "loss",
                 factor: 1.0,
-                before: "It sank into its own wake: the loss of thrust is",
+                before: "The vehicle sank into its own wake: the loss of thrust is",
                 after: "times that of Leishman's vortex ring",
             },
             ..Words::of("the vortex ring state")

@@ -75,7 +75,7 @@ impl Flight {
                 now,
                 Level::Warning,
                 "stream",
-                "setpoints are held back until the vehicle says its mode",
+                "setpoints are held back until the vehicle reports its mode",
             );
         }
         self.guide.held_back = held_back;
@@ -126,7 +126,8 @@ impl Flight {
 /// In words.
 fn stall(gap: Duration) -> String {
     format!(
-        "this program or its computer stood still for {} ms (load, sleep, a stopped process); the vehicle's mode is asked for",
+        "this program or its computer stalled for {} ms (load, sleep, a stopped process); the vehicle is asked for \
+         its mode",
         gap.as_millis()
     )
 }

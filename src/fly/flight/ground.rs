@@ -29,8 +29,9 @@ const START_MAX_M: f64 = 5.0;
 /// A vehicle that is asked five times a second and has not answered for so long never does.
 const ANSWERS_WITHIN: Duration = Duration::from_secs(10);
 const NO_ANSWERS: &str = "expected an answer to TIMESYNC, got none within 10 s: without it, after a stall or a silence, an old \
-     report of the mode could not be told from a new one, and no abort could be ordered. PX4 and ArduPilot answer; \
-     let what lies on the way pass TIMESYNC";
+     report of the mode could not be distinguished from a new one, and no abort could be ordered. PX4 and ArduPilot \
+     answer; \
+     let routers on the way forward TIMESYNC";
 /// Where it says the release.
 const FLIGHT_SW_VERSION: usize = 16;
 /// Answers to questions come soon or not at all.
@@ -73,7 +74,7 @@ impl Flight {
                 now,
                 Level::Warning,
                 "vehicle",
-                format!("system {system} is waited for; heard: {others}"),
+                format!("waiting for system {system}; heard: {others}"),
             );
         }
     }
@@ -133,8 +134,8 @@ impl Flight {
             return;
         }
         if !own && !self.sortie.may_arm {
-            let why = "all checks passed; expected the order to arm, got none: whatever answers on a link is armed \
-                       only with --arm";
+            let why =
+                "all checks passed; expected the order to arm, got none: a vehicle is armed only with --arm";
             self.end(now, Cause::Refused(why.to_owned()));
             return;
         }

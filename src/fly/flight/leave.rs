@@ -115,7 +115,7 @@ impl Flight {
                 }
             }
             (true, Some(_)) if leaving.strayed => {
-                self.end(now, Cause::Override(format!("{} was left and entered anew", self.phase.name())));
+                self.end(now, Cause::Override(format!("{} was left and entered again", self.phase.name())));
                 return;
             }
             (true, Some(_)) => {
@@ -166,8 +166,10 @@ impl Flight {
             Mode::Land if waited > LAND_BY => Some(Mode::Return),
             Mode::Return if waited > LAND_BY => {
                 let mode = self.mode_name();
-                self.cause.get_or_insert(Cause::Unresponsive(format!("no mode is taken; it is in {mode}")));
-                self.note(now, Level::Error, "abort", "the vehicle takes no mode: hands off");
+                self.cause.get_or_insert(Cause::Unresponsive(format!(
+                    "no ordered mode is entered; it is in {mode}"
+                )));
+                self.note(now, Level::Error, "abort", "the vehicle enters no ordered mode: hands off");
                 self.hands_off(now);
                 return;
             }
@@ -229,7 +231,7 @@ impl Flight {
         let asked = leaving.disarmed.is_some_and(|at| now.saturating_sub(at) < DISARM_AGAIN);
         if wish == Mode::Hold {
             if held {
-                self.note(now, Level::Warning, "abort", "held long enough: to the ground");
+                self.note(now, Level::Warning, "abort", "held long enough: landing");
                 self.wish(now, Mode::Land);
             }
         } else if landed_for > DISARM_AFTER && !asked && !self.commander.waits_for(&disarm) {
@@ -250,7 +252,7 @@ impl Flight {
     pub(super) fn key(&mut self, now: Duration, key: Key) {
         if matches!(self.phase, Phase::Watch) {
             let text =
-                "hands off is final: the vehicle is its pilot's; use the remote control, or start anew";
+                "hands off is final: the pilot has control; use the remote control, or start mavid again";
             self.note(now, Level::Warning, "watch", text);
             return;
         }
@@ -265,7 +267,7 @@ impl Flight {
             if self.killed_in.is_some() {
                 self.give(now, Order::kill(), KILLING);
             } else {
-                let text = "the vehicle is not in our mode: its motors are its pilot's to stop";
+                let text = "the vehicle is not in our mode: only its pilot may stop the motors";
                 self.note(now, Level::Error, "abort", text);
             }
             // a stream that ends makes PX4 choose another mode, in which nothing of ours is obeyed: it ends with the order

@@ -115,7 +115,7 @@ impl Flight {
                 self.end(now, Cause::Reboot);
             }
             Novelty::Reboot => {
-                self.end(now, Cause::Refused("the autopilot started anew; expected it to stay on".into()));
+                self.end(now, Cause::Refused("the autopilot restarted; expected it to stay on".into()));
             }
             Novelty::EstimatorReset(what) if self.phase.is_airborne() => {
                 self.end(now, Cause::EstimatorReset(what));

@@ -61,7 +61,8 @@ impl Flight {
             && !std::mem::replace(&mut self.gate.told, true)
         {
             let text = format!(
-                "it hovers no nearer than it does: the start gate opens within {:.2} m and {:.2} m/s instead of {NEAR_M} m \
+                "it does not hover more precisely: the start gate opens within {:.2} m and {:.2} m/s instead of \
+                 {NEAR_M} m \
                  and {SLOW_M_S} m/s",
                 allowed.0, allowed.1
             );

@@ -91,7 +91,8 @@ impl Flight {
             telemetry.is_arming_contradicted() && !telemetry.ground.is_said()
         });
         if contradicted && !std::mem::replace(&mut self.watch.told_contradiction, contradicted) {
-            let text = "a HEARTBEAT says that it is disarmed and nothing else agrees: not believed unless it is said again";
+            let text =
+                "a HEARTBEAT says that it is disarmed and nothing else agrees: ignored unless it is repeated";
             self.note(now, Level::Warning, "vehicle", text);
         }
     }
@@ -194,8 +195,10 @@ impl Flight {
             return;
         }
         if let Some(unknown) = self.unanswered(now).filter(|unknown| *unknown > GIVE_UP_AFTER) {
-            let text =
-                format!("{:.1} s without an answer of the vehicle, which is heard", unknown.as_secs_f64());
+            let text = format!(
+                "{:.1} s without an answer of the vehicle, although its messages arrive",
+                unknown.as_secs_f64()
+            );
             self.end(now, Cause::LinkLost(text));
             return;
         }
@@ -279,7 +282,7 @@ impl Flight {
         let late = now.saturating_sub(self.entered) > KILL_BY;
         if late && self.commander.waits_for(&Order::kill()) {
             self.commander.forget(&Order::kill());
-            let text = "whether the motors are to be stopped in this mode was not learnt in time: they are its pilot's to stop";
+            let text = "the mode was not known in time, so the motors were not stopped: only the pilot may stop them";
             self.note(now, Level::Error, "abort", text);
         }
         let killing = self.commander.waits_for(&Order::kill()) && self.is_to_command();

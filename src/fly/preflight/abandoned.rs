@@ -266,13 +266,13 @@ fn in_words(tried: &Tried) -> String {
             let side = if beyond_m > 0.0 { "beyond" } else { "short of" };
             let allowed = if beyond_m > 0.0 {
                 format!(
-                    " (the rotors count; 0 is expected, more than {WALL_AT_MOST_M} m of a wall is refused)"
+                    " (rotors included; 0 is expected, more than {WALL_AT_MOST_M} m beyond a wall is refused)"
                 )
             } else {
                 String::new()
             };
             format!(
-                "{:.2} m {side} {border} at worst{allowed}, should they end at {time_s:.1} s {leg}",
+                "{:.2} m {side} {border} at worst{allowed}, if they end at {time_s:.1} s {leg}",
                 beyond_m.abs()
             )
         },
@@ -283,14 +283,14 @@ fn in_words(tried: &Tried) -> String {
 fn manner(feeding: &Feeding) -> String {
     let share = feeding.share();
     if share >= 1.0 {
-        "setpoints carry place, velocity and acceleration".to_owned()
+        "setpoints carry position, velocity and acceleration".to_owned()
     } else if share > 0.0 {
         format!(
-            "setpoints carry {:.0} % of velocity and acceleration, and places ahead for the rest",
+            "setpoints carry {:.0} % of velocity and acceleration, and positions ahead for the rest",
             100.0 * share
         )
     } else {
-        "setpoints are places ahead, without velocity and acceleration".to_owned()
+        "setpoints are positions ahead, without velocity and acceleration".to_owned()
     }
 }
 
@@ -309,7 +309,7 @@ fn timeout_name(situation: &Situation<'_>) -> &'static str {
 fn said(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> Finding {
     let expected = format!("{EXPECTED} ({})", timeout(situation, law));
     let came = format!(
-        "{}; {}, by which the autopilot asks of the vehicle up to {:.2} m off the reference (its own lag comes to that)",
+        "{}; {}, with which the autopilot commands up to {:.2} m off the reference (the vehicle's lag is added)",
         in_words(tried),
         manner(&tried.feeding),
         tried.tracking_m
@@ -325,13 +325,13 @@ fn refused(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> Find
     let stated = laws.first().map_or_else(String::new, |law| timeout(situation, law));
     let expected = format!("{EXPECTED} ({stated})");
     let costs = format!(
-        "setpoints that come nearest to it cost {:.2} m off the reference, of which {:.2} m end the flight",
+        "the setpoints nearest to it lead {:.2} m off the reference, and {:.2} m end the flight",
         tried.tracking_m, situation.tracking_max_m
     );
     let came = if tried.tracking_m > TRACKING_SHARE * situation.tracking_max_m {
         format!("{costs}; with them {}", in_words(tried))
     } else {
-        format!("{}, however they are sent; {costs}", in_words(tried))
+        format!("{}, with every kind of setpoint; {costs}", in_words(tried))
     };
     Finding::refusal(SUBJECT, expected, came, remedy(situation, laws, tried))
 }

@@ -21,7 +21,7 @@ pub(super) fn finding(battery: &BatteryState, flight_s: f64) -> Finding {
     let needed_s = SPARE_FACTOR * flight_s;
     let expected = format!("charge for {needed_s:.0} s, {SPARE_FACTOR} times the flight");
     let remaining = battery.remaining_percent.map_or_else(
-        || "a charge that the vehicle does not say".to_owned(),
+        || "a charge that the vehicle does not report".to_owned(),
         |percent| format!("{percent:.0} %"),
     );
     if battery.is_low {

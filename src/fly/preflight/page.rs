@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn lines_are_broken_between_words_and_none_is_lost() {
         let text =
-            "warning: fence: expected a fence round the place of the flight, came none in force; set one";
+            "warning: fence: expected a fence round the place of the flight, got none in force; set one";
         for columns in [20, 37, 80, 200] {
             let lines = wrapped(text, columns);
             assert!(lines.iter().all(|line| line.chars().count() <= columns), "{lines:#?}");

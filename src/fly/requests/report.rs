@@ -147,7 +147,8 @@ impl RatesReport {
             IDENTIFICATION,
             list(|need| format!("{} at {} Hz at least", need.need.name(), need.least_hz)),
             list(NeedReport::came),
-            "this recording will teach little or nothing: connect by a faster link or raise the autopilot's rates, or \
+            "little or nothing can be identified from this recording: connect by a faster link or raise the \
+             autopilot's rates, or \
              identify from the on-board log",
         )
     }

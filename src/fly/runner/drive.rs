@@ -240,7 +240,7 @@ impl Drive {
         if !unseen {
             self.unseen_since = None;
             if std::mem::take(&mut self.told_blind) {
-                self.warn("view", "the terminal takes pictures again");
+                self.warn("view", "the terminal accepts output again");
             }
             return;
         }
@@ -248,7 +248,7 @@ impl Drive {
         if now.saturating_sub(since) >= BLIND && !std::mem::replace(&mut self.told_blind, true) {
             self.warn(
                 "view",
-                &format!("the terminal takes nothing: the flight goes on, its events are in {EVENTS}"),
+                &format!("the terminal accepts no output: the flight continues, its events are in {EVENTS}"),
             );
         }
     }

@@ -29,7 +29,8 @@ pub enum RunError {
     Unheard,
     /// the program itself failed; nothing is sent any more
     #[error(
-        "the flight broke off by a fault of this program; no setpoint is sent any more, and the vehicle's own failsafe acts: {0}"
+        "the flight was ended by a fault of this program; no setpoint is sent any more, and the vehicle's own \
+         failsafe acts: {0}"
     )]
     Broken(String),
 }

@@ -83,7 +83,7 @@ impl Journal {
             Ok(Err(_)) => Some("the writer of events panicked".to_owned()),
             Err(_) => {
                 let told = format!(
-                    "the last events are missing: the disk took nothing for {} s",
+                    "the last events are missing: the disk accepted nothing for {} s",
                     PATIENCE.as_secs()
                 );
                 Some(trouble.map_or(told.clone(), |trouble| format!("{told}; {trouble}")))
@@ -285,7 +285,7 @@ mod tests {
         let told = journal.news().unwrap();
         assert!(told.contains("missing: the disk is too slow"), "{told}");
         let end = journal.finish().await.unwrap();
-        assert!(end.contains("the disk took nothing for 3 s"), "{end}");
+        assert!(end.contains("the disk accepted nothing for 3 s"), "{end}");
         drop(ticket);
     }
 }

@@ -56,7 +56,7 @@ impl Envelope {
         let lasts = self.outside.update(now, broken.is_some());
         broken.filter(|_| lasts >= PATIENCE).map(|(name, value, limit)| {
             Cause::Room(format!(
-                "|{name}| is {value:.2}, the room ends at {limit:.2} and {margin_m:.2} m more"
+                "|{name}| is {value:.2}, the room ends at {limit:.2} plus a margin of {margin_m:.2} m"
             ))
         })
     }

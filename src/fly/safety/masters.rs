@@ -121,9 +121,9 @@ impl Masters {
         (self.foreign.len() >= REPORTS).then(|| {
             let nearest_m = self.foreign.iter().map(|(_, away_m)| *away_m).fold(f64::INFINITY, f64::min);
             Cause::SecondMaster(if nearest_m.is_finite() {
-                format!("the vehicle flies to targets {nearest_m:.2} m and more from ours, again and again")
+                format!("the vehicle repeatedly reports targets {nearest_m:.2} m and more from ours")
             } else {
-                "the vehicle flies to targets that are no places, again and again; ours are".to_owned()
+                "the vehicle repeatedly reports targets that are not positions; ours are positions".to_owned()
             })
         })
     }

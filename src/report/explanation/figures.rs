@@ -55,7 +55,7 @@ pub(super) fn recorded_and_simulated(of: &RecordedAndSimulated, after: &str) -> 
 /// What is left along the same axis, before and after.
 pub(super) fn left_along_time(of: &LeftAlongTime, after: &str) -> Panel {
     Panel {
-        title: format!("what is left of {}, recorded less simulated", spoken(CHANNEL_NAMES[of.axis])),
+        title: format!("residual of {}, recorded minus simulated", spoken(CHANNEL_NAMES[of.axis])),
         x_label: "time (s)".to_owned(),
         y_label: unit(of.axis),
         lines: vec![line(ALONE, &of.time_s, &of.before, BEFORE), line(after, &of.time_s, &of.after, AFTER)],
@@ -81,7 +81,7 @@ pub(super) fn followed(of: &Followed) -> Panel {
     let state = spoken(&of.state);
     let after = of.after.as_deref();
     Panel {
-        title: format!("what is left of {} against {state}", spoken(of.axis)),
+        title: format!("residual of {} over {state}", spoken(of.axis)),
         x_label: format!("{state} ({})", of.state_unit),
         y_label: of.unit.to_owned(),
         lines: [(ALONE, Some(&*of.before), BEFORE), (FOUND, after, AFTER)]
@@ -99,7 +99,7 @@ pub(super) fn followed(of: &Followed) -> Panel {
 /// Residual of each axis before and after, over what is left in the end.
 pub(super) fn axes(of: &[AxisResidual], after: &str) -> Bars {
     Bars {
-        title: "residual of each axis, in units of what is left after".to_owned(),
+        title: "residual of each axis, relative to the residual after".to_owned(),
         unit: String::new(),
         names: of.iter().map(|of| spoken(of.axis)).collect(),
         series: vec![
@@ -118,7 +118,7 @@ pub(super) fn heat(of: &Heat) -> Strip {
     let mut rows = named(&of.before, "before");
     rows.extend(named(&of.after, "after"));
     Strip {
-        title: "residual along time, in units of what is left after".to_owned(),
+        title: "residual over time, relative to the residual after".to_owned(),
         x_label: "time (s)".to_owned(),
         x: of.time_s.clone(),
         rows,
@@ -137,7 +137,7 @@ pub(super) fn harmonics(of: &Harmonics) -> Panel {
     };
     let shift = APART / of.period_s;
     Panel {
-        title: format!("{}: power at the harmonics over that beside them", spoken(of.axis)),
+        title: format!("{}: power at the harmonics divided by the power next to them", spoken(of.axis)),
         x_label: format!("frequency (Hz); the trajectory repeats every {:.1} s", of.period_s),
         y_label: "ratio".to_owned(),
         lines: vec![line(ALONE, &of.before, BEFORE, -shift), line(FOUND, &of.after, AFTER, shift)],

@@ -30,7 +30,7 @@ pub(super) struct With {
 struct EffectValue {
     id: &'static str,
     sentence: &'static str,
-    /// standard errors from nothing, the forms that were tried allowed for
+    /// standard errors from zero, the forms that were tried allowed for
     z: f64,
     significant: bool,
     tried: usize,

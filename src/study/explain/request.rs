@@ -15,14 +15,14 @@ pub struct ExplainRequest {
     pub holdout: Vec<PathBuf>,
     /// how the recordings are read
     pub read: ReadSettings,
-    /// s of flight left out at the beginning
+    /// time left out at the beginning of the flight, s
     pub transient_s: f64,
     /// design the flight that tells best apart what these cannot
     pub design_next: bool,
 }
 
 impl ExplainRequest {
-    /// s of flight left out at the beginning unless asked otherwise.
+    /// time left out at the beginning of the flight, s unless asked otherwise.
     pub const TRANSIENT_S: f64 = 1.0;
 
     /// Checks what can be checked before a file is read.
