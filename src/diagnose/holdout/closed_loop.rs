@@ -1,4 +1,4 @@
-//! The held-out flights flown again from their setpoints, as in Table 4.
+//! Closed-loop simulation of the held-out flights from their setpoints, as in Table 4.
 
 use super::bootstrap::{Blocks, Compared};
 use super::ready::{Ready, flown};
@@ -9,15 +9,15 @@ use crate::diagnose::empirical::Empirical;
 use crate::stats::white_level_of;
 use crate::vehicle::Vehicle;
 
-/// Errors of the ten signals against the recording. The autopilot's controller is not known: the
-/// simulator's own flies both models, so their difference counts, not their size.
+/// Errors of the ten signals against the recording. The autopilot's controller is not known. The simulator's own
+/// controller flies both models, so only the difference of their errors is meaningful, not the size.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClosedLoop {
     /// in the order of [`SIGNALS`]; the floor is the recording's own white noise
     pub signals: Vec<Option<Compared>>,
 }
 
-/// Both models of every flight; an error says why it could not be done.
+/// Simulates both models for every flight; an error gives the reason if it is not possible.
 pub(super) fn flown_again(
     ready: &[Ready],
     empirical: Option<&Empirical>,
@@ -61,7 +61,7 @@ pub(super) fn flown_again(
     Ok(ClosedLoop { signals })
 }
 
-/// Standard deviation of each signal's white noise, which no model takes out of the recording.
+/// Standard deviation of each signal's white noise in the recording, which no model can explain.
 fn noise_levels(recorded: &TenSignals) -> [f64; SIGNALS.len()] {
     std::array::from_fn(|signal| {
         let series: Vec<f64> = recorded.values.iter().map(|values| values[signal]).collect();

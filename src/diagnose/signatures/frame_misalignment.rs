@@ -1,4 +1,4 @@
-//! How a misaligned position reference is tried, named and said.
+//! Signature: a misaligned position reference.
 
 use crate::diagnose::channels::Nuisance;
 use crate::diagnose::recorded::{Need, Recorded};
@@ -6,12 +6,12 @@ use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, Refinement, Ro
 use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::FrameMisalignment;
 
-/// Mountings are true to about half a degree, rad.
+/// Misalignment that ordinary vehicles have, rad: about half a degree. Chosen; not measured.
 const ORDINARY_RAD: f64 = 0.0087;
-/// Slot of the share by which the attitude is turned with its frame.
+/// Slot of the share by which the attitude is rotated with its frame.
 const WITH_ATTITUDE: usize = 3;
 
-/// A position reference, and perhaps an attitude, that is not level.
+/// A position reference that is not level or not aligned, with or without the attitude.
 pub static SIGNATURE: Signature = Signature {
     needs: &[Need::ForceTwice],
     forms: |_: &Recorded| {

@@ -1,4 +1,4 @@
-//! How the ground effect is tried, named and said.
+//! Signature: the ground effect.
 
 use crate::diagnose::named::Named;
 use crate::diagnose::recorded::Need;
@@ -9,17 +9,17 @@ use crate::physics::effects::GroundEffect;
 use crate::text::significant;
 use crate::vehicle::Vehicle;
 
-/// Slots of the values.
+/// Slots of the values, in the order of the effect's parameters.
 const RHO: usize = 0;
 const CA: usize = 1;
 const CB: usize = 2;
-/// Decays per rotor radius of the exponential form that the search tries.
+/// Decays of the exponential form that the search tries, per rotor radius. Chosen; not measured.
 const DECAYS_TRIED: [f64; 5] = [0.4, 0.7, 1.2, 2.0, 3.5];
-/// Decays that the exponential form starts from where the other one was taken, per rotor radius.
+/// Start values of the decay if the other form was accepted, per rotor radius. Chosen; not measured.
 const DECAYS: [f64; 2] = [0.7, 1.5];
-/// Decays of the exponential form that are fitted.
+/// Decays of the exponential form that `--with` fits, per rotor radius. Chosen; not measured.
 const DECAYS_FITTED: [f64; 3] = [0.4, 0.8, 1.6];
-/// Where both forms are to give the same at first, rotor radii.
+/// Height at which both forms have the same value at the start of a fit, rotor radii. Chosen; not measured.
 const ALIKE_RADII: f64 = 2.0;
 
 /// More thrust near the ground.
@@ -78,7 +78,7 @@ pub static SIGNATURE: Signature = Signature {
     )
 };
 
-/// The same size in the other form. About nothing the forms look alike; with the size that they come to they do not.
+/// The same size in the other form. For small sizes the forms are similar; for the estimated size they are not.
 fn other_forms(term: &EffectTerm) -> Vec<EffectTerm> {
     let (rho, ca, cb) = (term.values[RHO], term.values[CA], term.values[CB]);
     let beside = term.free.iter().copied().filter(|slot| ![RHO, CA, CB].contains(slot));

@@ -1,14 +1,14 @@
-//! How a misaligned inertial unit is tried, named and said.
+//! Signature: a misaligned inertial unit.
 
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, Role, Signature};
 use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::ImuMisalignment;
 
-/// Mountings are true to about half a degree, rad.
+/// Misalignment that ordinary vehicles have, rad: about half a degree. Chosen; not measured.
 const ORDINARY_RAD: f64 = 0.0087;
 
-/// An inertial unit that is turned against the body.
+/// An inertial unit that is rotated against the body.
 pub static SIGNATURE: Signature = Signature {
     needs: &[Need::Accelerometer, Need::ForceTwice],
     forms: |_| vec![SIGNATURE.form(&[0.0; 3], &[0, 1, 2])],

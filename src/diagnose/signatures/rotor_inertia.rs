@@ -1,4 +1,4 @@
-//! How the rotors' own inertia is tried, named and said.
+//! Signature: the rotors' own inertia.
 
 use crate::diagnose::signature::{Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Words};

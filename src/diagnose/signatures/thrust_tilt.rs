@@ -1,14 +1,14 @@
-//! How a tilted thrust axis is tried, named and said.
+//! Signature: a tilted thrust axis.
 
 use crate::diagnose::channels::Nuisance;
 use crate::diagnose::signature::{Form, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ThrustTilt;
 
-/// Mountings are true to about half a degree, rad.
+/// Tilt of the thrust axis that ordinary vehicles have, rad: about half a degree. Chosen; not measured.
 const ORDINARY_RAD: f64 = 0.0087;
 
-/// A thrust axis that leans.
+/// A tilted thrust axis.
 pub static SIGNATURE: Signature = Signature {
     forms: |_| vec![Form { instead_of_nuisance: true, ..SIGNATURE.form(&[0.0; 2], &[0, 1]) }],
     naming: Naming { ordinary: Some(ORDINARY_RAD), ..Naming::PLAIN },
