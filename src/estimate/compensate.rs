@@ -6,11 +6,11 @@ use crate::signals::{Signals, ThrustSource};
 use crate::vehicle::Vehicle;
 use nalgebra::{DVector, Vector4};
 
-/// A latency within this many standard errors of the stated lag agrees with it.
+/// Standard errors within which an estimated latency agrees with the stated lag. Chosen; not measured.
 const AGREES: f64 = 4.0;
-/// A latency whose kind the flight does not show agrees with the stated lag within this many standard errors.
+/// The same for a latency whose kind the flight does not determine. Chosen; not measured.
 const LEANS: f64 = 2.0;
-/// The sampling of the log adds this much to both, s.
+/// Largest contribution of the log's sampling to both, s. Chosen; not measured.
 const SAMPLED_S: f64 = 0.005;
 
 /// How a latency is shared out. A lag that agrees with the one that the vehicle's description states is as uneven as that,

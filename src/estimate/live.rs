@@ -5,7 +5,8 @@ use super::result::Estimated;
 use super::theta::{THETA, Theta};
 use nalgebra::{SMatrix, Vector4};
 
-/// Blocks kept; when all are full, neighbours are put together and blocks last twice as long.
+/// Largest number of blocks. When all are full, neighbours are merged and blocks last twice as long. Chosen; not
+/// measured.
 const BLOCKS: usize = 256;
 
 /// Sums of (40), whole and by blocks of time. The blocks hold what the scores of any estimate are made of:

@@ -6,11 +6,14 @@ use super::weak::{WeakMethod, solve_weak};
 use crate::note::{About, Note};
 use crate::regression::WeakRows;
 
-/// A nominal file is wrong by less than these factors.
+/// Largest ratio of the identified mass to that of the vehicle file, or its inverse, without a warning. Chosen; not
+/// measured.
 const MASS_FACTOR: f64 = 1.5;
+/// The same for a moment of inertia. Chosen; not measured.
 const INERTIA_FACTOR: f64 = 3.0;
-/// Flights of one vehicle agree within this many standard errors of their difference, and this share.
+/// Standard errors of the difference within which the masses of two flights of one vehicle agree. Chosen; not measured.
 const FLIGHTS_SIGMA: f64 = 6.0;
+/// Relative difference within which they agree. Chosen; not measured.
 const FLIGHTS_SHARE: f64 = 0.02;
 
 /// Estimates that are far from what the vehicle file states.

@@ -6,11 +6,12 @@ use super::result::{Estimated, Finding, MethodResult};
 use super::theta::{NAMES, Theta, scale_of};
 use super::weak::WeakEstimate;
 
-/// More rows than this held back by the robust weights: outliers, not noise.
+/// Share of the rows with reduced robust weights above which they are outliers and not noise. Chosen; not measured.
 const OUTLIER_SHARE: f64 = 0.02;
-/// Two estimates differ where they are further apart than this many standard errors of their difference.
+/// Standard errors of the difference beyond which two estimates differ (Hausman test). Chosen; not measured.
 const HAUSMAN_SIGMA: f64 = 5.0;
-/// Instruments whose standard error is more than this many times the plain one's are too weak.
+/// Largest ratio of the standard errors with and without instruments. Beyond it the instruments are too weak. Chosen;
+/// not measured.
 const WEAKEST_INSTRUMENT: f64 = 4.0;
 
 /// The recommended method's result.

@@ -6,10 +6,11 @@ use nalgebra::{Matrix4, SMatrix, Vector4};
 
 /// The paper's adaptation gain sigma of (41).
 pub const PAPER_SIGMA: f64 = 30.0;
-/// Times at which the history keeps the estimate, s apart.
+/// Time between the entries of a history, s.
 const HISTORY_STEP_S: f64 = 0.2;
-/// Length of the blocks over which scores are summed, s, and how many of them are correlated with each other.
+/// Length of the blocks over which scores are summed, s. Chosen; not measured.
 pub(super) const SCORE_BLOCK_S: f64 = 0.1;
+/// Number of blocks over which scores are correlated (1 s). Chosen; not measured.
 pub(super) const LAGS: usize = 10;
 
 /// An estimate, its covariance, and how it came about.

@@ -4,7 +4,8 @@ use super::method::Method;
 use super::theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, scale_of};
 use super::weak::WeakEstimate;
 
-/// A moment of inertia whose standard error exceeds this share of its nominal size is not determined.
+/// Largest standard error of a moment of inertia that counts as determined, as a share of its nominal size. Chosen; not
+/// measured.
 const LARGEST_RELATIVE_STD: f64 = 0.3;
 
 /// One parameter.
@@ -40,7 +41,8 @@ pub enum Finding {
     },
 }
 
-/// An inertia is not claimed from a torque that moves as the rigid body says by less than this share.
+/// Least share of a torque's variance that the rigid body must explain for its inertia to be reported. Chosen; not
+/// measured.
 pub const LEAST_EXPLAINED: f64 = 0.3;
 
 /// `Theta` with its covariance.

@@ -21,13 +21,14 @@ pub struct WeakRotor {
     pub std: f64,
 }
 
-/// Range of the thrust missing at one rotor, as a share of that rotor's thrust.
+/// Range of a rotor's missing thrust, as a share of that rotor's thrust. Chosen; not measured.
 const SHARE: std::ops::RangeInclusive<f64> = 0.04..=0.6;
-/// The torque about x and y must agree with the rotor's arm within this share.
+/// Relative tolerance between the torque about x and y and the rotor's arm. Chosen; not measured.
 const ARM_TOLERANCE: f64 = 0.1;
-/// The yaw torque must agree within this share: torque per thrust is known less well.
+/// Relative tolerance of the yaw torque, which is larger because torque per thrust is known less well. Chosen; not
+/// measured.
 const YAW_TOLERANCE: f64 = 0.35;
-/// The missing thrust must be this many standard errors from zero.
+/// Least distance of the missing thrust from zero, standard errors. Chosen; not measured.
 const LEAST_SIGMA: f64 = 6.0;
 
 /// The rotor that the left-over torque points to, if it points to one. A centre of mass off the middle

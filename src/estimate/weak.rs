@@ -20,10 +20,12 @@ const DAMPING: usize = THETA + 5;
 pub(super) const JITTER: usize = THETA + 8;
 const HEAVE: usize = THETA + 9;
 const CURVATURE: usize = THETA + 12;
-/// Drag along body z per mass, 1/s, and what a wind makes of it per mass, m/s^2: rotors have 0.3 to 0.6 1/s
-/// (inflow), and a flight in more than 5 m/s of wind is hardly an identification flight.
+/// Standard deviations of the priors of the drag along body z per mass, 1/s, and of its force by a wind per mass,
+/// m/s^2. Rotors have 0.3 to 0.6 1/s (inflow), and identification flights are rarely flown in more than 5 m/s of wind.
+/// Chosen; not measured.
 const HEAVE_STD: [f64; 3] = [1.0, 2.5, 2.5];
-/// The share of the jitter that is averaged away lies anywhere between none and all.
+/// Standard deviation of the prior of the share of the jitter that the rotors average: 1/sqrt(12), uniform between 0
+/// and 1.
 pub(super) const JITTER_STD: f64 = 0.288_675; // 1/sqrt(12)
 
 /// How the body follows the recorded command.
@@ -119,7 +121,8 @@ pub fn expected_covariance(
     known.then(|| ThetaCovariance::from_fn(|i, j| of_theta[(i, j)]))
 }
 
-/// Newton on the latency column: it depends on the inertia that it is estimated with.
+/// Newton passes on the latency column, which depends on the inertia that is estimated together with it. Chosen; not
+/// measured.
 const PASSES: usize = 4;
 
 fn solve_with(
@@ -292,6 +295,7 @@ fn dot_row(phi: &SMatrix<f64, CHANNELS, THETA>, row: usize, theta: &SVector<f64,
 
 /// Huber's weights, iterated; also the share of rows held back.
 fn huber(problem: &Problem) -> (Solution, f64) {
+    /// Huber's constant for 95 % efficiency with normal noise.
     const TUNING: f64 = 1.345;
     const ITERATIONS: usize = 6;
     let mut theta = problem.estimate(None);

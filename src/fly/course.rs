@@ -13,17 +13,20 @@ use crate::trajectory::{
 use crate::units::whole;
 use crate::vehicle::{Limits, Vehicle};
 
-/// Of the climb and of the way to the start.
+/// Speed of the climb after takeoff, m/s. Chosen; not measured.
 pub(super) const CLIMB_M_S: f64 = 0.8;
+/// Speed of the transfer to the start, m/s. Chosen; not measured.
 pub(super) const TRANSFER_M_S: f64 = 1.0;
+/// Yaw rate of the transfer, rad/s. Chosen; not measured.
 pub(super) const TURN_RAD_S: f64 = 0.5;
-/// Hover before and after the trajectory, s.
+/// Hover before and after the trajectory, s. Chosen; not measured.
 const HOVER_S: f64 = 2.0;
-/// The greatest speed of a transition of seventh degree from rest to rest over its mean speed.
+/// Ratio of greatest to mean speed of a transition of seventh degree from rest to rest.
 const PEAK_TO_MEAN_SPEED: f64 = 2.1875;
-/// Its greatest acceleration, times the square of its duration, over its length.
+/// Greatest acceleration of this transition times the square of its duration, divided by its length.
 const PEAK_ACCELERATION: f64 = 7.513;
-/// No transfer accelerates more, m/s^2: one that hears nothing more goes on with it.
+/// Largest acceleration of a transfer, m/s^2: a vehicle that receives no more setpoints continues with it. Chosen; not
+/// measured.
 const TRANSFER_M_S2: f64 = 0.5;
 
 /// What is flown around the series, as `trajectory.toml` states it.

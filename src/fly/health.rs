@@ -13,7 +13,7 @@ const HEIGHT_ABOVE_GROUND: u16 = 1 << 6;
 const CONSTANT_POSITION: u16 = 1 << 7;
 /// It could tell the position from what aids it now.
 const PREDICTED: u16 = 1 << 8 | 1 << 9;
-/// Innovation tests above this reject the measurement.
+/// Innovation test ratio above which the autopilot rejects the measurement.
 const RATIO_MAX: f64 = 1.0;
 
 /// What the estimator says of itself.

@@ -10,13 +10,14 @@ use crate::units::rad_from_deg;
 /// A motion: place, velocity, acceleration; world, SI.
 pub type Motion = Shaper;
 
-/// PX4 looks for the loss ten times a second, and changes the mode with its next control period.
+/// Time in which PX4 notices the loss, s: it checks ten times a second, and changes the mode in its next control
+/// period.
 const NOTICES_S: f64 = 0.15;
 /// PX4's own allowance for its delay and jerk in the distance to a stop, s.
 const STOPS_S: f64 = 0.6;
-/// Time constant with which a vehicle leans over for an acceleration, s: what its attitude loop takes.
+/// Time constant with which a vehicle tilts for an acceleration, s: that of its attitude loop. Chosen; not measured.
 const LEANS_S: f64 = 0.12;
-/// ArduPilot's least acceleration and jerk, so that a zero does not stop the model for ever.
+/// ArduPilot's least acceleration and jerk, so that a value of zero does not stop the model for ever.
 const LEAST: f64 = 0.1;
 
 /// How an autopilot follows setpoints.
@@ -167,9 +168,11 @@ impl FollowLaw {
     }
 }
 
-/// Step of the model, the longest time to rest after a time-out, s, and the motion that counts as rest, m/s and m/s^2.
+/// Step of the model, s. Chosen; not measured.
 pub const STEP_S: f64 = 0.02;
+/// Longest time to rest after a time-out, s. Chosen; not measured.
 const SETTLES_S: f64 = 8.0;
+/// Speed, m/s, and acceleration, m/s^2, that count as rest. Chosen; not measured.
 const RESTS_M_S: f64 = 0.02;
 
 /// A velocity (m/s) along and across the vertical within its limits.

@@ -7,14 +7,16 @@ use crate::signals::{motor_channels, propulsion_from_log};
 use crate::vehicle::{Propulsion, Vehicle};
 use std::ops::RangeInclusive;
 
-/// Normalised commands outside of this are in another unit than the file's: a hovering rotor is far from both ends.
+/// Range of normalised commands. Commands outside of it have another unit than the vehicle file's: a hovering rotor is
+/// far from both ends. Chosen; not measured.
 const IN_UNIT: RangeInclusive<f64> = -0.25..=1.25;
 /// Fewer samples of a message say nothing.
 const LEAST_SAMPLES: u32 = 5;
-/// Thrust over weight, or weight over thrust, beyond this is worth a word. Nominal files are often 20 to 30 % off, an
-/// unstated offset of the pulse range or an emptier battery as much again.
+/// Ratio of thrust to weight, or its inverse, that is reported. Nominal files are often 20 to 30 % off; an offset of
+/// the pulse range that is not stated, or a discharged battery, adds as much. Chosen; not measured.
 const NOTABLE: f64 = 1.4;
-/// Beyond this it is another vehicle, another unit or a wrong thrust curve: what is usual, twice over.
+/// Ratio from which the file is of another vehicle or unit, or has a wrong thrust curve: twice the usual error. Chosen;
+/// not measured.
 const GROSS: f64 = 2.0;
 
 /// Actuator outputs, or rotor speeds in rad/s, of one message.

@@ -9,13 +9,15 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::frames::Attitude;
 
-/// Samples further apart, s, say nothing about a step.
+/// Largest time between two samples that show a step, s. Chosen; not measured.
 const GAP_MAX_S: f64 = 0.5;
-/// Steps up to these are flown through: m, m/s, rad.
+/// Largest step of the position with which the flight continues, m. Chosen; not measured.
 const POSITION_MAX_M: f64 = 0.3;
+/// Largest step of the velocity with which the flight continues, m/s. Chosen; not measured.
 const VELOCITY_MAX_M_S: f64 = 0.5;
+/// Largest step of the attitude with which the flight continues, rad. Chosen; not measured.
 const TURN_MAX_RAD: f64 = 0.35;
-/// What a vehicle may accelerate between two samples, m/s^2.
+/// Largest acceleration of a vehicle between two samples, m/s^2. Chosen; not measured.
 const ACCELERATION_M_S2: f64 = 8.0;
 
 /// The estimate of one instant, world NWU, body FLU.

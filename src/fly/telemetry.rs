@@ -22,13 +22,14 @@ const POSITION_TARGET: u32 = 85;
 const ODOMETRY: u32 = 331;
 const LANDED_STATE_ON_GROUND: f64 = 1.0;
 const ARMED: u8 = 128;
-/// An autopilot that started anew has been on for no longer than this beyond the silence before, s.
+/// Longest time since boot, beyond the silence before, of an autopilot that has just restarted, s. Chosen; not
+/// measured.
 const STARTED_S: f64 = 20.0;
 /// Texts that are kept for reasons of a refusal.
 const TEXTS: usize = 64;
-/// A step of position beyond what velocity explains, m: the estimate was reset.
+/// A step of the position beyond what velocity explains from which the estimate was reset, m. Chosen; not measured.
 const JUMP_M: f64 = 0.7;
-/// Samples further apart, s, say nothing about jumps.
+/// Largest time between two samples that show a step, s. Chosen; not measured.
 const JUMP_GAP_S: f64 = 0.5;
 /// Positions further apart are not one stream.
 const POSITION_GAP: Duration = Duration::from_secs(1);

@@ -13,7 +13,7 @@ use crate::vehicle::Vehicle;
 
 /// Segments kept; a log with more is counted.
 const KEPT_SEGMENTS: usize = 1000;
-/// Spans that end and begin this close are one flight that a window's edge divides, s.
+/// Largest pause between two spans of one flight that the border of a window divides, s. Chosen; not measured.
 const SAME_FLIGHT_S: f64 = 0.5;
 
 /// Collects what windows of flight say.

@@ -48,7 +48,7 @@ pub struct Support {
     pub slope: Matrix7,
 }
 
-/// Eigenvalues beyond this many times the extreme one are no candidates for it.
+/// Eigenvalues beyond this many times the extreme one are not candidates for it. Chosen; not measured.
 const CANDIDATE_RATIO: f64 = 4.0;
 
 impl Criterion {

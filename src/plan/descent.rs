@@ -15,7 +15,7 @@ use super::quadratic::{QuadraticOutcome, QuadraticProgram};
 use super::space::{PathRows, SeriesSpace};
 use nalgebra::{DMatrix, DVector, SVector};
 
-/// Rows whose bound is further away than this share of its scale are left out of a step.
+/// Rows whose bound is farther away than this share of its scale are left out of a step. Chosen; not measured.
 const REACH: f64 = 0.5;
 /// Price of the largest relative violation against the logarithm of the criterion. The multipliers of
 /// the bounds add up to about one, because the criterion falls in proportion to the size of the motion.
@@ -24,8 +24,8 @@ const VIOLATION_PRICE: f64 = 2.0;
 const AUXILIARY_CURVATURE: f64 = 1e-3;
 /// Rows of a step are kept to this share of the bound's scale.
 const ROW_TOLERANCE: f64 = 1e-11;
-/// Rows that hardly depend on the unknowns, those next to a prescribed start, are left out: they would
-/// only spoil the condition of a step. What they hold is far below the tightening of the bounds.
+/// Rows that hardly depend on the unknowns, those next to a prescribed start, are left out, because they impair the
+/// condition of a step. Their contribution is far below the tightening of the bounds.
 const LEVER_MIN: f64 = 1e-6;
 /// How often supports are added within a step.
 const SUPPORT_ROUNDS: u32 = 12;

@@ -138,11 +138,13 @@ pub enum PlanError {
 
 /// How often a plan that breaks a bound is polished.
 const POLISHES: u32 = 3;
-/// By how much the criterion may grow, for a plan that is safe where the setpoints may end.
+/// Largest factor on the criterion for a plan that is safe if setpoints end. Chosen; not measured.
 const CALM_COSTS: f64 = 1.5;
-/// How far inside the room the vehicle is to come to rest then, m, in the order in which it is tried.
+/// Distances inside the room at which the vehicle is to come to rest, m, in the order of trial. The preflight check
+/// refuses more than 1.25 m outside.
 const INSIDE_M: [f64; 8] = [-1.25, -1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5];
-/// Share of the commands of a flown plan that may be at a rotor's bound: an instant of the way from hover into the series.
+/// Largest share of the commands of a simulated flight that may be at a rotor's bound: an instant of the transition
+/// from hover into the series. Chosen; not measured.
 const AT_BOUND_MAX: f64 = 0.002;
 
 /// Plans a trajectory. `done` is called once a descent, [`Search::work`] times in all.

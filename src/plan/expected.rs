@@ -24,10 +24,10 @@ pub struct FlightSpan {
     pub left_out_s: f64,
 }
 
-/// Commands nearer to a bound are at it (-).
+/// Commands nearer to a bound than this are at the bound (-). Chosen; not measured.
 const COMMAND_STEP: f64 = 1e-3;
 
-/// Change-over from hover to the series, s.
+/// Transition from hover to the series, s. Chosen; not measured.
 const RAMP_S: f64 = 0.5;
 
 /// Standard errors over repeated flights of the parameters in the order of `Theta`, relative to

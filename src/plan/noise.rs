@@ -50,7 +50,7 @@ impl Default for NoiseModel {
     }
 }
 
-/// Share of the accelerometer in the vertical motion where velocity is recorded, too.
+/// Share of the accelerometer in the vertical motion if velocity is recorded as well. Chosen; not measured.
 const ACCELEROMETER_SHARE: f64 = 0.8;
 
 impl NoiseModel {

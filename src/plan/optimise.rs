@@ -35,7 +35,7 @@ pub struct Search {
     pub margin: f64,
 }
 
-/// A step that promises less of the criterion's logarithm is not taken.
+/// Least decrease of the criterion's logarithm for a step. Chosen; not measured.
 const TOLERANCE: f64 = 1e-6;
 
 impl Search {

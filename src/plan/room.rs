@@ -4,17 +4,21 @@ use super::bounds::{Bound, Quantity};
 use crate::units::{deg_from_rad, rad_from_deg};
 use crate::vehicle::{Limits, Vehicle};
 
-/// Error of an estimated height above the place of takeoff, m: what barometers and estimators are off by within minutes.
+/// Error of an estimated height above the place of takeoff, m, which barometers and estimators reach within minutes.
+/// Chosen; not measured.
 pub const HEIGHT_ERROR_M: f64 = 0.3;
-/// Tilt at which rotors still have to be clear of the ground, degrees.
+/// Tilt at which the rotors must still be clear of the ground, degrees. Chosen; not measured.
 const TILT_DEG: f64 = 45.0;
 
-/// The room where none is stated: half its length and width, heights, m.
+/// Default room: half its length and width, m. Chosen; not measured.
 const WALL_M: f64 = 2.0;
+/// Default room: floor and ceiling, m. Chosen; not measured.
 const HEIGHTS_M: (f64, f64) = (1.0, 3.0);
-/// How lively it is flown where no limit of the motion is stated.
+/// Default limit of the speed, m/s. Chosen; not measured.
 const SPEED_M_S: f64 = 1.5;
+/// Default limit of roll and of pitch, degrees. Chosen; not measured.
 const TILT_MAX_DEG: f64 = 15.0;
+/// Default limit of the yaw rate, degrees/s. Chosen; not measured.
 const YAW_RATE_MAX_DEG_S: f64 = 60.0;
 
 /// Limits with a room, and what of it was not stated.

@@ -29,9 +29,9 @@ pub struct TransitionError {
     pub violation: Violation,
 }
 
-/// Shortest and longest transition that is tried, s.
+/// Shortest and longest transition that is tried, s. Chosen; not measured.
 const DURATION_S: (f64, f64) = (1.0, 60.0);
-/// Step from one trial to the next.
+/// Ratio of a tried duration to the one before. Chosen; not measured.
 const DURATION_RATIO: f64 = 1.15;
 
 /// Hover, transition, the series, transition, hover. The height bounds hold from the series on; a

@@ -32,7 +32,8 @@ pub enum ThrustPreference {
     BestSampled,
 }
 
-/// Shares of a rate that lost frames explain: streams this close are sampled alike.
+/// Ratio of two rates from which streams count as equally sampled: lost frames explain the difference. Chosen; not
+/// measured.
 const SAMPLED_ALIKE: f64 = 0.95;
 
 /// The rotors' thrusts by this preference.

@@ -20,9 +20,9 @@ pub struct StreamOffset {
     pub repaired: bool,
 }
 
-/// Offsets beyond this are not a skew between streams, s.
+/// Largest offset between streams that is corrected, s. Chosen; not measured.
 const LARGEST_S: f64 = 0.1;
-/// An offset known worse than this is left alone, s.
+/// Largest standard error of an offset that is corrected, s. Chosen; not measured.
 const LEAST_PRECISE_S: f64 = 0.005;
 
 /// Attitudes on the grid from a quaternion stream shifted by `shift_s`; `None` with too few samples.

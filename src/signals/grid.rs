@@ -60,7 +60,7 @@ impl Grid {
     }
 }
 
-/// No signal of a flying vehicle reaches this in SI units; what does is damage and counts as missing.
+/// Values beyond this are damage and count as missing, in SI units: no signal of a flying vehicle reaches it.
 pub const LARGEST_VALUE: f64 = 1e5;
 
 /// Natural cubic spline through a stream's samples, evaluated at the grid's instants plus `shift_s`.

@@ -9,22 +9,23 @@ use crate::note::{About, Note};
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// Over which turns and torques are compared, s.
+/// Time over which rotations and torques are compared, s. Chosen; not measured.
 const WINDOW_S: f64 = 0.1;
-/// Two series that belong together, or one with the wrong sign, are at least so much alike.
+/// Least absolute correlation of two series that belong together, or of one with the wrong sign. Chosen; not measured.
 const ALIKE: f64 = 0.6;
-/// More alike to another than to its own by this much.
+/// Difference of correlations from which a series belongs to another one. Chosen; not measured.
 const APART: f64 = 0.3;
-/// A ratio of rates further from one than this, up or down, is none of noise.
+/// Largest ratio of two rates, or its inverse, that noise can explain. Chosen; not measured.
 const RATIO: f64 = 2.0;
-/// In the mean the rotors carry the weight, within this factor.
+/// Largest ratio of mean thrust to weight, or its inverse. Chosen; not measured.
 const CARRIED: f64 = 1.5;
-/// Share of a torque's energy that must be its own, and of the change's amplitude that counts at least.
+/// Least share of a torque's energy that other columns do not explain. Chosen; not measured.
 const SEEN: f64 = 0.05;
+/// Least share of the change's amplitude that must remain. Chosen; not measured.
 const LEFT: f64 = 0.3;
-/// Rotation slower than this says nothing, rad/s rms.
+/// Least rotation for a comparison, rad/s rms. Chosen; not measured.
 const TURNING_RAD_S: f64 = 0.02;
-/// Fewer windows say nothing.
+/// Least number of windows. Chosen; not measured.
 const LEAST: usize = 40;
 
 const AXES: [&str; 3] = ["x", "y", "z"];

@@ -4,9 +4,9 @@ use super::Signals;
 use crate::stats::hann_power;
 use nalgebra::Vector3;
 
-/// Highest frequency that is looked at, Hz.
+/// Highest frequency of the search, Hz. Chosen; not measured.
 const HIGHEST_HZ: f64 = 5.0;
-/// Share of the power that must lie below the result.
+/// Share of the power below the result. Chosen; not measured.
 const SHARE: f64 = 0.98;
 
 /// The trajectory's highest harmonic, Hz: 98 % of the power of the commanded acceleration lies below

@@ -7,20 +7,22 @@ use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
-/// Thrust below this share of the nominal weight: not flying.
+/// Thrust below which a vehicle does not fly, as a share of the nominal weight. Chosen; not measured.
 const FLYING_SHARE: f64 = 0.4;
-/// Left out at both ends of an airborne span, s: lift-off and touch-down.
+/// Time left out at both ends of an airborne span for lift-off and touch-down, s. Chosen; not measured.
 const GROUND_MARGIN_S: f64 = 0.5;
-/// A hole longer than this many periods, and than [`LEAST_GAP_S`], is a gap.
+/// A pause is a gap if it is longer than this many periods and than [`LEAST_GAP_S`]. Chosen; not measured.
 const GAP_PERIODS: f64 = 5.0;
+/// Shortest gap, s. Chosen; not measured.
 const LEAST_GAP_S: f64 = 0.06;
-/// An actuator at its end stop for longer than this is saturated; a shorter touch is a known command, s.
+/// An actuator that is longer at its bound is saturated; a shorter contact is a known command, s. Chosen; not measured.
 const SATURATION_S: f64 = 0.1;
-/// Saturated stretches are kept where less than this is left without them, s.
+/// Saturated stretches are kept if less than this time would be left without them, s. Chosen; not measured.
 const LEAST_UNSATURATED_S: f64 = 8.0;
-/// Excitation is judged over windows of this length, s, against the livelier half of the flight: a bump
-/// at landing sets no standard.
+/// Windows over which excitation is assessed, s, relative to the livelier half of the flight, so that a bump at landing
+/// has no influence. Chosen; not measured.
 const EXCITATION_WINDOW_S: f64 = 4.0;
+/// Least excitation of a window relative to that half. Chosen; not measured.
 const EXCITATION_SHARE: f64 = 0.3;
 
 /// Seconds of flight that each rule left out (an instant may fall under several).

@@ -20,10 +20,11 @@ use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
 use crate::fly::target::Order;
 
-/// While it spools up the vehicle is not outrun by the climb: no further ahead than this.
+/// Largest lead of the setpoint over a vehicle whose rotors spin up, m. Chosen; not measured.
 const LEAD_MAX_M: f64 = 0.6;
-/// A climb is over so near to its height, at so little speed.
+/// Distance to its height at which a climb is complete, m. Chosen; not measured.
 const CLIMBED_M: f64 = 0.3;
+/// Largest speed of a complete climb, m/s. Chosen; not measured.
 const CLIMBED_M_S: f64 = 0.3;
 
 impl Flight {

@@ -24,7 +24,7 @@ const ESTIMATOR_GOOD: Duration = Duration::from_secs(5);
 const PRIME: Duration = Duration::from_millis(1500);
 /// A position older than this is none.
 const POSITION_FRESH: Duration = Duration::from_millis(500);
-/// A trajectory that starts further from the vehicle, m, is in the wrong place.
+/// Largest distance between vehicle and start of the trajectory, m. Chosen; not measured.
 const START_MAX_M: f64 = 5.0;
 /// A vehicle that is asked five times a second and has not answered for so long never does.
 const ANSWERS_WITHIN: Duration = Duration::from_secs(10);

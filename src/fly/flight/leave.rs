@@ -32,7 +32,7 @@ const DISARM_AFTER: Duration = Duration::from_secs(3);
 const DISARM_AGAIN: Duration = Duration::from_secs(4);
 /// A program that is told to end waits no longer for the vehicle to hold: a link that is silent may come back.
 const STOP_WITHIN: Duration = Duration::from_secs(5);
-/// How hard a vehicle that is told to hold may be expected to brake, m/s^2.
+/// Deceleration that may be expected of a vehicle after the order to hold, m/s^2. Chosen; not measured.
 const BRAKING_M_S2: f64 = 3.0;
 
 /// Motors off: ten times a second for as long as an ordinary command is repeated.

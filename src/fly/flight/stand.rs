@@ -6,7 +6,8 @@ use crate::fly::outcome::Cause;
 use crate::fly::safety::{Lead, SetpointBounds};
 use nalgebra::Vector3;
 
-/// A vehicle may stand so far outside the room's walls, m: its estimate wanders.
+/// Largest distance of a standing vehicle outside the room's walls, m, for the error of its estimate. Chosen; not
+/// measured.
 const OUTSIDE_MAX_M: f64 = 0.1;
 
 impl Flight {

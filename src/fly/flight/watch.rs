@@ -6,9 +6,11 @@ use crate::fly::safety::{Envelope, Masters, Sustained, Tracking};
 use crate::fly::sortie::Sortie;
 use crate::units::rad_from_deg;
 
-/// Beyond what is planned, degrees.
+/// Default limit of the tilt above the planned one, degrees. Chosen; not measured.
 const TILT_BEYOND_DEG: f64 = 20.0;
+/// Least default limit of the tilt, degrees. Chosen; not measured.
 const TILT_LEAST_DEG: f64 = 25.0;
+/// Greatest default limit of the tilt, degrees. Chosen; not measured.
 const TILT_MOST_DEG: f64 = 60.0;
 
 /// What the safety rules remember.

@@ -4,9 +4,9 @@ use super::track::{Track, WIDTH};
 use crate::recording::{Quantity, StreamKey};
 use crate::signals::best_rank;
 
-/// Sources are watched for so long before one is chosen, s.
+/// Time for which sources are observed before one is chosen, s. Chosen; not measured.
 const WATCH_S: f64 = 2.0;
-/// A source that was silent for so long is given up, s.
+/// Silence after which a source is given up, s. Chosen; not measured.
 const SILENT_S: f64 = 1.0;
 /// Sources of one quantity that are watched; more are not looked at.
 const WATCHED: usize = 8;

@@ -12,11 +12,12 @@ use crate::signals::{motor_channels, propulsion_from_log};
 use crate::vehicle::{Anchor, Mixer, Propulsion, Vehicle};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
-/// Between instants, s.
+/// Step between instants, s. Chosen; not measured.
 const STEP_S: f64 = 0.01;
-/// Thrust below this share of the nominal weight: not flying.
+/// Thrust below which a vehicle does not fly, as a share of the nominal weight. Chosen; not measured.
 const FLYING_SHARE: f64 = 0.4;
-/// Left out after every start and gap until the filters have settled and the ground is far, s.
+/// Time left out after every start and gap, s: the filters settle, and the vehicle leaves the ground. Chosen; not
+/// measured.
 const SETTLING_S: f64 = 2.0;
 /// Instants that may be made up for at once after a stall of the link.
 const CATCH_UP: usize = 400;

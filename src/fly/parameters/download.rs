@@ -12,7 +12,7 @@ use std::time::Duration;
 /// PARAM_ERROR, and the error that says that there is no such parameter.
 const PARAM_ERROR_ID: u32 = 345;
 const DOES_NOT_EXIST: u8 = 1;
-/// A parameter that exists is given up with this probability at most.
+/// Largest probability with which an existing parameter is given up. Chosen.
 const GIVEN_UP: f64 = 1e-4;
 /// A parameter is asked for at least and at most so many times.
 const TRIES: (u32, u32) = (3, 12);

@@ -11,8 +11,9 @@ pub(super) const SUBJECT: &str = "if setpoints end";
 
 const EXPECTED: &str = "a mode that stops it and keeps it in the room";
 const MOTORS_ON: &str = "motors that run until it has landed";
-/// ArduPilot returns at least so high, m, and takes a lesser slope of the cone for none.
+/// Least height of ArduPilot's return, m (RTL_ALT_MIN in its source).
 const RTL_LEAST_M: f64 = 0.3;
+/// Least RTL_CONE_SLOPE that ArduPilot uses; it treats a smaller one as no cone.
 const LEAST_SLOPE: f64 = 0.5;
 
 /// Where a vehicle that hears nothing more comes to be at most, m from home.

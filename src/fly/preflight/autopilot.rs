@@ -19,7 +19,7 @@ struct Limit {
 const SUBJECT: &str = "autopilot limits";
 /// Bits of GUID_OPTIONS, and what is not stabilised then.
 const NOT_FOLLOWED: &[(u32, &str)] = &[(4, "position"), (5, "velocity")];
-/// Reserve that the controller needs above what the trajectory asks for.
+/// Factor between the limit that a controller needs and the demand of the trajectory. Chosen; not measured.
 const RESERVE: f64 = 1.3;
 
 pub(super) fn findings(parameters: &Parameters, extremes: &Extremes) -> Vec<Finding> {

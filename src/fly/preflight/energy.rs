@@ -2,7 +2,7 @@
 
 use crate::fly::finding::Finding;
 
-/// Charge that is asked for, as a multiple of what the flight takes.
+/// Required charge as a multiple of that of the flight. Chosen; not measured.
 pub const SPARE_FACTOR: f64 = 1.5;
 
 /// What is known of the battery.

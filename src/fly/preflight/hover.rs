@@ -13,13 +13,17 @@ pub(crate) const HOVER: &str = "hover thrust";
 /// Where it speaks of the rotors' number and places.
 pub(crate) const ROTORS: &str = "rotors";
 
-/// An autopilot that never hovered keeps its default for the hover thrust, which fits many vehicles badly.
+/// Ratio from which the check of the hover thrust warns. An autopilot that never hovered has its default for the hover
+/// thrust, which is wrong for many vehicles. Chosen; not measured.
 const HOVER_NOTABLE: f64 = 1.8;
+/// Ratio from which the check of the hover thrust refuses. Chosen; not measured.
 const HOVER_GROSS: f64 = 3.0;
-/// Arms are often given by the class of the frame.
+/// Ratio of arm lengths from which the check of the rotors warns: arms are often stated by the class of the frame.
+/// Chosen; not measured.
 const ARM_NOTABLE: f64 = 1.6;
+/// Ratio of arm lengths from which the check of the rotors refuses. Chosen; not measured.
 const ARM_GROSS: f64 = 4.0;
-/// Where PX4's rotors are further out than this, m, their places may be ratios: 1 and -1, or -0.5 and 0.433.
+/// PX4's rotor positions beyond this distance, m, may be ratios: 1 and -1, or -0.5 and 0.433.
 const RATIOS_FROM: f64 = 0.5;
 
 pub(super) fn findings(situation: &Situation<'_>) -> Vec<Finding> {

@@ -42,9 +42,10 @@ pub struct Situation<'a> {
     pub own_system: u8,
 }
 
-/// Autopilots land so fast unless told otherwise (LAND_SPEED; MPC_LAND_SPEED is faster), m/s.
+/// Default speed of landing, m/s: ArduPilot's LAND_SPEED; that of PX4, MPC_LAND_SPEED, is larger.
 const LANDS_M_S: f64 = 0.5;
-/// With motors on, before the takeoff, at the start gate, and on the ground until they stop, s.
+/// Time with motors on before the takeoff, at the start gate, and on the ground until they stop, s. Chosen; not
+/// measured.
 const WAITS_S: f64 = 15.0;
 
 impl Situation<'_> {

@@ -17,7 +17,8 @@ pub struct Stopping {
     pub basis: String,
 }
 
-/// Where neither the vehicle file nor the autopilot says more: both autopilots' usual default, m/s^2.
+/// Assumed deceleration if neither the vehicle file nor the autopilot states one, m/s^2: the usual default of both
+/// autopilots.
 const ASSUMED_M_S2: f64 = 2.5;
 
 impl Stopping {

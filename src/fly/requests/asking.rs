@@ -15,7 +15,7 @@ const SET_MESSAGE_INTERVAL: u16 = 511;
 const ACCEPTED: u8 = 0;
 const TEMPORARILY_REJECTED: u8 = 1;
 const IN_PROGRESS: u8 = 5;
-/// A refused rate above this is asked for once more at half of it, Hz.
+/// A refused rate above this is requested once more at half of it, Hz. Chosen; not measured.
 const WORTH_HALVING_HZ: f64 = 50.0;
 
 /// How patiently.

@@ -3,15 +3,15 @@
 use super::StreamRequest;
 use crate::autopilot::Autopilot;
 
-/// Setpoints at 50 Hz take this much of a radio that carries both directions in turn, bytes a second.
+/// Share of the setpoints, at 50 Hz, of a radio that transmits both directions in turn, bytes/s.
 const SETPOINTS_BYTES_S: f64 = 50.0 * 65.0;
-/// No link is filled further than this.
+/// Largest share of a link's capacity that is used. Chosen; not measured.
 const FILL: f64 = 0.9;
 /// Bits that a byte takes on a serial line: one start bit, eight of data, one stop bit.
 const BITS_PER_BYTE: f64 = 10.0;
-/// PX4 gives its messages half of a serial line.
+/// Share of a serial line that PX4 uses for its messages.
 const PX4_SHARE: f64 = 0.5;
-/// PX4 gives a UDP link so much unless told otherwise, bytes a second.
+/// Default limit of PX4 for a UDP link, bytes/s.
 const PX4_UDP_BYTES_S: f64 = 100_000.0;
 
 /// What connects vehicle and ground station.

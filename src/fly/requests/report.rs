@@ -6,7 +6,7 @@ use crate::autopilot::Autopilot;
 use crate::fly::finding::Finding;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ};
 
-/// A stream at less than this share of what the autopilot should give is slower than asked for.
+/// Share of the requested rate below which a stream is slower than requested. Chosen; not measured.
 const SHORT_SHARE: f64 = 0.8;
 
 /// One message.

@@ -11,8 +11,8 @@ use crate::fly::setpoint::Setpoint;
 use crate::fly::target::Target;
 use crate::wire::{ComponentId, Frame, SystemId};
 
-/// A reported target this far from all of ours is not ours. PX4 reports ours to the last bit, ArduPilot what it has
-/// made of it since, some centimetres on.
+/// Distance from all of our targets beyond which a reported target is not ours, m. PX4 reports our targets exactly,
+/// ArduPilot some centimetres further on. Chosen; not measured.
 const FOREIGN_M: f64 = 0.25;
 /// Reports come later than what they report, and after a silence later by as much.
 const DELAY: Duration = Duration::from_secs(1);
