@@ -1,4 +1,4 @@
-//! Results that hardly can be: of another vehicle, of a wrong unit, of two vehicles at once.
+//! Checks of implausible results: another vehicle, a wrong unit, two vehicles at once.
 
 use super::result::{Finding, MethodResult};
 use super::theta::{NAMES, Theta};
@@ -16,7 +16,7 @@ const FLIGHTS_SIGMA: f64 = 6.0;
 /// Relative difference within which they agree. Chosen; not measured.
 const FLIGHTS_SHARE: f64 = 0.02;
 
-/// Estimates that are far from what the vehicle file states.
+/// Notes on estimates far from the vehicle file.
 #[must_use]
 pub fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<Note> {
     [(0, MASS_FACTOR), (1, INERTIA_FACTOR), (4, INERTIA_FACTOR), (6, INERTIA_FACTOR)]
@@ -37,7 +37,7 @@ pub fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<Note> {
         .collect()
 }
 
-/// Flights whose masses contradict each other.
+/// Notes on flights with contradicting masses.
 #[must_use]
 pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<Note> {
     if flights.len() < 2 {

@@ -1,4 +1,4 @@
-//! Which method to believe for this flight, and why.
+//! The recommended method for a flight, with the reason.
 
 use super::method::Method;
 use super::physical::{is_physical, nearest_physical};
@@ -17,13 +17,13 @@ const WEAKEST_INSTRUMENT: f64 = 4.0;
 /// The recommended method's result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recommendation {
-    /// which method
+    /// the method
     pub method: Method,
-    /// for the user
+    /// the reason for the user
     pub why: String,
     /// its parameters, inertia physical
     pub result: MethodResult,
-    /// the unconstrained inertia was not physical and was moved to the nearest that is
+    /// whether the unconstrained inertia was physically impossible and was replaced by the nearest possible one
     pub made_physical: bool,
 }
 
@@ -77,8 +77,8 @@ fn choose<'a>(
     (Method::Weak, plain, why)
 }
 
-/// The moment of inertia in which instruments contradict least squares most, if any does, and the
-/// instruments are strong enough to say so.
+/// The moment of inertia for which the instrumental variables contradict least squares most, if the difference is
+/// significant and the instruments are strong enough.
 fn hausman(plain: &WeakEstimate, iv: &WeakEstimate) -> Option<(usize, f64)> {
     [1, 4, 6]
         .into_iter()

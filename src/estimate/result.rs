@@ -1,4 +1,4 @@
-//! Estimates as they are handed on: a value with its standard error, or why there is none.
+//! Results of estimates: a value with its standard error, or the reason why there is none.
 
 use super::method::Method;
 use super::theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, scale_of};
@@ -15,7 +15,7 @@ pub struct Parameter {
     pub name: &'static str,
     /// as in files
     pub unit: &'static str,
-    /// what the flight says of it
+    /// the result
     pub finding: Finding,
 }
 
@@ -29,12 +29,12 @@ pub enum Finding {
         /// standard error, same unit
         std: f64,
     },
-    /// known beforehand (a weighed mass)
+    /// known in advance (a weighed mass)
     Given {
         /// in the parameter's unit
         value: f64,
     },
-    /// the flight says nothing useful
+    /// not determined by the flight
     NotDetermined {
         /// for the user
         reason: String,
@@ -52,8 +52,7 @@ pub struct Estimated {
     pub theta: Theta,
     /// same order
     pub covariance: ThetaCovariance,
-    /// share of the variance of the torques about x, y, z that the rigid body explains; `None` where that
-    /// was not judged
+    /// share of the variance of the torques about x, y, z that the rigid body explains; `None` if it was not assessed
     pub explained: Option<[f64; 3]>,
 }
 
@@ -71,7 +70,7 @@ impl Estimated {
     }
 }
 
-/// What one method says.
+/// Result of one method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MethodResult {
     /// which
@@ -83,7 +82,7 @@ pub struct MethodResult {
 }
 
 impl MethodResult {
-    /// Judges each parameter against the nominal sizes.
+    /// Assesses each parameter with the nominal sizes.
     #[must_use]
     pub fn new(method: Method, estimated: &Estimated, nominal: &Theta) -> Self {
         let parameters = std::array::from_fn(|index| Parameter {
@@ -113,7 +112,7 @@ impl MethodResult {
     }
 }
 
-/// Gradient descent with a fixed gain never stops following the noise; that is not the flight's fault.
+/// Replaces the reason for gradient descent: with a fixed gain it follows the noise, whatever the flight is.
 fn by_method(method: Method, finding: Finding) -> Finding {
     match (method, finding) {
         (Method::Gd | Method::Fmgd, Finding::NotDetermined { .. }) => Finding::NotDetermined {
@@ -124,7 +123,7 @@ fn by_method(method: Method, finding: Finding) -> Finding {
     }
 }
 
-/// The axes whose torque a moment or product of inertia is seen in.
+/// The axes whose torques determine a moment or product of inertia.
 fn axes_of(index: usize) -> &'static [usize] {
     match index {
         1 => &[0],
@@ -137,7 +136,7 @@ fn axes_of(index: usize) -> &'static [usize] {
     }
 }
 
-/// The torque of one of the parameter's axes does not move as a rigid body's would.
+/// The reason if the rigid body does not explain the torque of one of the parameter's axes.
 fn unexplained(estimated: &Estimated, index: usize) -> Option<String> {
     let shares = estimated.explained?;
     axes_of(index).iter().find(|axis| shares[**axis] < LEAST_EXPLAINED).map(|axis| {
@@ -149,7 +148,7 @@ fn unexplained(estimated: &Estimated, index: usize) -> Option<String> {
     })
 }
 
-/// Judges one parameter.
+/// Assesses one parameter.
 #[must_use]
 pub fn finding(estimated: &Estimated, nominal: &Theta, index: usize) -> Finding {
     let (value, variance) = (estimated.theta[index], estimated.covariance[(index, index)]);

@@ -35,14 +35,14 @@ pub struct Latency {
     pub total_s: f64,
     /// s, standard error
     pub std_s: f64,
-    /// what kind it is, where the flight can tell
+    /// its kind, if the flight determines it
     pub kind: LatencyKind,
 }
 
 /// A first-order lag attenuates, a pure delay does not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LatencyKind {
-    /// too short to tell
+    /// too short to be determined
     Undetermined,
     /// first-order
     Lag,
@@ -55,10 +55,10 @@ pub enum LatencyKind {
     },
 }
 
-/// A weak-form estimate.
+/// An estimate of the weak form.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeakEstimate {
-    /// `[m Ixx Ixy Ixz Iyy Iyz Izz]`; NaN where there is no column
+    /// `[m Ixx Ixy Ixz Iyy Iyz Izz]`; NaN for parameters without a column
     pub theta: Theta,
     /// allows for coloured residuals
     pub covariance: ThetaCovariance,
@@ -74,11 +74,11 @@ pub struct WeakEstimate {
     pub channels: Vec<&'static str>,
     /// share of each channel's variance that the rigid body explains, same order (-)
     pub explained: Vec<f64>,
-    /// share of rows that the robust weights held back
+    /// share of rows with reduced robust weights
     pub held_back: f64,
 }
 
-/// How the rows are weighted and what stands for the regressors.
+/// Weights of the rows, and instruments.
 #[derive(Debug, Clone, Copy)]
 pub enum WeakMethod<'a> {
     /// weighted least squares
@@ -95,9 +95,8 @@ pub fn solve_weak(flights: &[WeakRows], start: &Theta, method: WeakMethod<'_>) -
     solve_with(flights, start, method, false)
 }
 
-/// Covariance over repeated flights of `Theta` as the weak form will estimate it from such rows, beside
-/// all its nuisances, for independent noises that are known (outputs in N and N m, channels as in [`CHANNELS`]).
-/// `None` where some parameter has no column.
+/// Expected covariance of the weak form's `Theta` over repeated flights, with all nuisances, for known and independent
+/// noises (outputs in N and N m, channels as in [`CHANNELS`]). `None` if a parameter has no column.
 #[must_use]
 pub fn expected_covariance(
     flights: &[WeakRows],
@@ -184,7 +183,7 @@ pub fn latency(flights: &[WeakRows], start: &Theta) -> Option<Latency> {
     Some(Latency { total_s: c1, std_s: s1, kind })
 }
 
-/// Stacks the flights into one problem; columns are scaled by nothing (the solver does).
+/// Stacks the flights into one problem; columns are not scaled here (the solver scales them).
 fn assemble(flights: &[WeakRows], theta: &Theta, method: WeakMethod<'_>, curvature: bool) -> Problem {
     let rows: usize = flights.iter().map(|flight| flight.time_s.len()).sum();
     let columns = if curvature { CURVATURE + 1 } else { CURVATURE };
@@ -215,7 +214,7 @@ fn assemble(flights: &[WeakRows], theta: &Theta, method: WeakMethod<'_>, curvatu
     Problem { channels, runs, priors: priors(theta[0]), overlap: 8 }
 }
 
-/// What is known of the nuisances beforehand.
+/// Priors of the nuisances: column and standard deviation.
 pub(super) fn priors(mass_kg: f64) -> Vec<(usize, f64)> {
     let heave = HEAVE_STD.iter().enumerate().map(|(i, std)| (HEAVE + i, std * mass_kg));
     std::iter::once((JITTER, JITTER_STD)).chain(heave).collect()
@@ -256,12 +255,12 @@ fn design(
     x
 }
 
-/// Something is recorded that this equation needs: its row of the regressor is not empty.
+/// Whether an equation is measured: its row of the regressor is not empty.
 fn is_measured(flights: &[WeakRows], channel: usize) -> bool {
     flights.iter().any(|rows| rows.regressor[0].iter().any(|phi| phi.row(channel).norm_squared() > 0.0))
 }
 
-/// How much of each channel moves as the rigid body says: nuisances do not count as explained.
+/// Share of each channel's variance that the rigid body explains, without the part of nuisances.
 fn explained(problem: &Problem, solution: &Solution) -> Vec<f64> {
     let body: DVector<f64> = DVector::from_fn(problem.parameters(), |i, _| {
         if i < THETA && solution.theta[i].is_finite() { solution.theta[i] } else { 0.0 }
@@ -293,7 +292,7 @@ fn dot_row(phi: &SMatrix<f64, CHANNELS, THETA>, row: usize, theta: &SVector<f64,
     (0..THETA).map(|i| phi[(row, i)] * theta[i]).sum()
 }
 
-/// Huber's weights, iterated; also the share of rows held back.
+/// Robust solution with iterated Huber weights, and the share of rows with reduced weights.
 fn huber(problem: &Problem) -> (Solution, f64) {
     /// Huber's constant for 95 % efficiency with normal noise.
     const TUNING: f64 = 1.345;

@@ -1,7 +1,7 @@
-//! How far an estimate stepped when it was reset.
+//! Step of an estimate at a reset.
 //!
-//! PX4 counts every reset, of whatever size: on each takeoff it aligns its heading anew, by a few degrees,
-//! some 1.5 m above the ground. Only a step that the vehicle follows with a jerk ends a flight.
+//! PX4 counts every reset of any size: on each takeoff it aligns its heading again, by a few degrees, some 1.5 m above
+//! the ground. Only a step that the vehicle follows with a jerk ends a flight.
 
 use std::fmt;
 
@@ -35,10 +35,10 @@ pub struct Pose {
     pub rates_rad_s: Vector3<f64>,
 }
 
-/// What of a reset the motion does not explain.
+/// The part of a reset that the motion does not explain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
-    /// the samples beside it are too far apart, or there is none before it
+    /// the samples around it are too far apart, or there is none before it
     Unknown,
     /// m, m/s beyond what a vehicle accelerates, rad
     Known {
@@ -52,7 +52,7 @@ pub enum Step {
 }
 
 impl Step {
-    /// From the last estimate before a reset to the first after it.
+    /// The step from the last estimate before a reset to the first after it.
     #[must_use]
     pub fn between(before: Option<&Pose>, after: &Pose) -> Self {
         let Some(before) = before else { return Self::Unknown };
@@ -72,7 +72,7 @@ impl Step {
         }
     }
 
-    /// A vehicle can be flown on through it.
+    /// Whether it is small enough to continue the flight.
     #[must_use]
     pub fn is_small(&self) -> bool {
         match self {

@@ -21,16 +21,16 @@ const TILT_MAX_DEG: f64 = 15.0;
 /// Default limit of the yaw rate, degrees/s. Chosen; not measured.
 const YAW_RATE_MAX_DEG_S: f64 = 60.0;
 
-/// Limits with a room, and what of it was not stated.
+/// Limits with a room, and the parts of it that were not stated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Roomed {
     /// with all walls, ceiling and floor
     pub limits: Limits,
-    /// what was added or changed, a sentence each; empty where the room was stated in whole
+    /// additions and changes, a sentence each; empty if the room was stated completely
     pub notes: Vec<String>,
 }
 
-/// How far rotors reach from the place (the body's origin) of a vehicle, m.
+/// Reach of the rotors from the position (the body's origin) of a vehicle, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
     /// to each side, level
@@ -42,7 +42,7 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// Of a vehicle; of one without rotors zero.
+    /// The reach of a vehicle; zero without rotors.
     #[must_use]
     pub fn of(vehicle: &Vehicle) -> Self {
         let radius_m = vehicle.propulsion.rotor_radius_m.unwrap_or(0.0);
@@ -62,7 +62,7 @@ impl Reach {
     }
 }
 
-/// A wall of a room in which a vehicle fits nowhere: its name, where it is, and how far the rotors reach, m.
+/// A wall of a room in which the vehicle has no place: its name, its coordinate, and the reach of the rotors, m.
 #[must_use]
 pub fn too_narrow(limits: &Limits, vehicle: &Vehicle) -> Option<(&'static str, f64, f64)> {
     let side_m = Reach::of(vehicle).side_m;
@@ -79,8 +79,8 @@ pub fn floor_m(vehicle: &Vehicle) -> f64 {
     Reach::of(vehicle).down_m + HEIGHT_ERROR_M
 }
 
-/// Bounds by which a vehicle flies, and comes to rest where it hears nothing more, at least so far (m) inside: its rotors
-/// off walls and ceiling, itself off the floor; negative: outside. `None` where the room is not that large.
+/// Bounds with which a vehicle flies, and comes to rest without setpoints, at least this far (m) inside the room: its
+/// rotors from walls and ceiling, its position from the floor; negative: outside. `None` if the room is too small.
 #[must_use]
 pub(super) fn rest_bounds(limits: &Limits, vehicle: &Vehicle, inside_m: f64) -> Option<Vec<Bound>> {
     let reach = Reach::of(vehicle);
@@ -102,7 +102,7 @@ pub(super) fn rest_bounds(limits: &Limits, vehicle: &Vehicle, inside_m: f64) -> 
     Some(bounds)
 }
 
-/// The limits with a careful default for each part of the room that they do not state, and a floor that is above the
+/// The limits with a careful default for each part of the room that they do not state, and with a floor above the
 /// ground.
 #[must_use]
 pub fn with_room(limits: &Limits, vehicle: &Vehicle) -> Roomed {
@@ -146,7 +146,7 @@ pub fn with_room(limits: &Limits, vehicle: &Vehicle) -> Roomed {
     Roomed { limits: roomed, notes }
 }
 
-/// Speed, acceleration or tilt is bounded, so that somebody thought of how lively it may be flown.
+/// Whether speed, acceleration or tilt is bounded, so that the limits of the motion were considered.
 fn bounds_motion(limits: &Limits) -> bool {
     let of_motion =
         [limits.speed_max_m_s, limits.acceleration_max_m_s2, limits.roll_max_rad, limits.pitch_max_rad];
@@ -175,9 +175,7 @@ mod tests {
         let whole = with_room(&Limits::default(), &vehicle);
         let limits = whole.limits;
         assert!(limits.z_min_m.unwrap() >= 1.0 && limits.z_max_m.unwrap() <= 10.0, "{limits:?}");
-        assert!(
-            whole.notes[0].contains("defaults are used") && whole.notes[0].contains("roll_max_deg = 15")
-        );
+        assert!(whole.notes[0].contains("defaults are used") && whole.notes[0].contains("roll_max_deg = 15"));
         assert_eq!(with_room(&limits, &vehicle), Roomed { limits, notes: Vec::new() });
         let fast = Limits { x_max_m: Some(5.0), speed_max_m_s: Some(3.0), ..Limits::default() };
         let part = with_room(&fast, &vehicle);

@@ -1,4 +1,4 @@
-//! What a flight's signals rest on, for every report.
+//! Data quality of a flight, for every report.
 
 use super::html::{Cell, note, number, paragraph, section, table, text};
 use super::number::with_error;

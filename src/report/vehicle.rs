@@ -1,4 +1,4 @@
-//! What `vehicle` says for the terminal.
+//! The page of `vehicle` for the terminal.
 
 use crate::study::VehicleSummary;
 use std::fmt::Write;

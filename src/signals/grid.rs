@@ -95,7 +95,7 @@ pub fn cubic_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<f64>
     Some(out)
 }
 
-/// First-order hold: straight lines between samples. See [`cubic_onto`] for the layout.
+/// Linear interpolation between samples. See [`cubic_onto`] for the layout.
 #[must_use]
 pub fn linear_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<f64>> {
     if stream.len() < 2 {

@@ -1,8 +1,8 @@
-//! Whether the streams of a flight belong together: units, signs and the order of the rotors.
+//! Checks that the streams of a flight belong together: units, signs and the order of the rotors.
 //!
-//! Over a tenth of a second the attitude turns by what the body rates say, and the body rates change with the torque of
-//! the rotors. A log whose columns were taken for something else does neither, and what is identified from it is nonsense
-//! with small standard errors.
+//! Over a tenth of a second, the rotation of the attitude follows from the body rates, and the change of the body rates
+//! follows from the torque of the rotors. In a log with wrongly mapped columns neither is true, and an identification
+//! from it is meaningless but has small standard errors.
 
 use super::Signals;
 use crate::note::{About, Note};
@@ -30,7 +30,7 @@ const LEAST: usize = 40;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// What is to be said of streams that contradict each other.
+/// Notes on streams that contradict each other.
 pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<Note> {
     let spans = windows(signals);
     if spans.len() < LEAST {
@@ -45,7 +45,7 @@ pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<Note> {
     units.into_iter().map(|text| Note::warning(About::Sensors, text)).collect()
 }
 
-/// First and last instants of the windows that can be used, one after the other.
+/// First and last instants of the usable windows, in order.
 fn windows(signals: &Signals) -> Vec<(usize, usize)> {
     let mut length = 2;
     while (length as f64 + 0.5) * signals.grid.step_s < WINDOW_S {
@@ -132,8 +132,8 @@ fn forces(signals: &Signals, gravity_m_s2: f64, spans: &[(usize, usize)]) -> Vec
         .collect()
 }
 
-/// Torque of the rotors about each axis against the change of the body rates, beside what the air makes of velocity and
-/// rates: on a circle a hub moment stands where another axis' torque would.
+/// Torque of the rotors about each axis against the change of the body rates, with columns for the aerodynamic torques
+/// of velocity and rates. Without them, on a circle a hub moment would look like the torque of another axis.
 fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Option<String> {
     let (rate, velocity, attitude) =
         (signals.rate.as_ref()?, signals.velocity.as_ref()?, signals.attitude.as_ref()?);
@@ -168,8 +168,8 @@ fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Op
     })
 }
 
-/// Correlation of `values` with each of the first three columns when all the other columns are taken out of both; 0 for a
-/// column that the others hold all but entirely. `None` where there is nothing to solve.
+/// Partial correlation of `values` with each of the first three columns, without the part of all other columns; 0 for a
+/// column that the others explain almost completely. `None` if the system cannot be solved.
 fn alone(columns: &[DVector<f64>], values: &DVector<f64>) -> Option<[f64; 3]> {
     let mut out = [0.0; 3];
     for (index, alike) in out.iter_mut().enumerate() {
@@ -203,7 +203,7 @@ fn centred(values: &[f64]) -> Vec<f64> {
     values.iter().map(|value| value - mean).collect()
 }
 
-/// Correlation; 0 where one of them does not move.
+/// Correlation; 0 if one of them is constant.
 fn likeness(a: &[f64], b: &[f64]) -> f64 {
     let (a, b) = (centred(a), centred(b));
     let product: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();

@@ -14,7 +14,7 @@ const NEAR_M: f64 = 0.3;
 const SLOW_M_S: f64 = 0.2;
 /// Largest error of the heading, rad. Chosen; not measured.
 const TURNED_RAD: f64 = 0.15;
-/// For how long it must keep to that.
+/// Time for which it must satisfy these limits.
 const HOLDS: Duration = Duration::from_secs(1);
 /// Factor on the largest deviation in the observed hover. Chosen; the gate then opened in 68 of 68 simulated flights.
 const SPARE: f64 = 1.25;
@@ -45,7 +45,8 @@ impl Flight {
         }
     }
 
-    /// m and m/s that are allowed: what the operator says, or the usual, or what the vehicle has shown in hover.
+    /// Allowed distance (m) and speed (m/s): those of the operator, the usual ones, or those that the vehicle has shown
+    /// in hover.
     fn gate_allows(&mut self, now: Duration) -> (f64, f64) {
         let settings = &self.sortie.settings;
         let (most_m, most_m_s) = (SHARE_OF_TRACKING * settings.tracking_max_m, FAST_M_S);

@@ -1,11 +1,11 @@
-//! How a pilot takes the vehicle over: by which switch, by which sticks, and how the motors are stopped.
+//! How a pilot takes over the vehicle: the switch, the sticks, and how the motors are stopped.
 
 use super::Parameters;
 use super::sentence::Sentence;
 use crate::autopilot::{KillSwitch, POSITIONS, Stack};
 use crate::fly::finding::Level;
 
-/// What is known of the pilot's way to take over, or that it could not be told; about `mode switch` and `kill switch`.
+/// How the pilot takes over, or that it could not be determined; about `mode switch` and `kill switch`.
 #[must_use]
 pub fn takeover_declaration(parameters: &Parameters) -> Vec<Sentence> {
     let (switch, kill) = match parameters.autopilot.stack() {

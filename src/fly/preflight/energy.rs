@@ -5,7 +5,7 @@ use crate::fly::finding::Finding;
 /// Required charge as a multiple of that of the flight. Chosen; not measured.
 pub const SPARE_FACTOR: f64 = 1.5;
 
-/// What is known of the battery.
+/// State of the battery.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BatteryState {
     /// percent of a full charge
@@ -16,7 +16,7 @@ pub struct BatteryState {
     pub endurance_s: Option<f64>,
 }
 
-/// For a flight of so many s from the ground to the ground.
+/// The finding for a flight of this time (s) from ground to ground.
 pub(super) fn finding(battery: &BatteryState, flight_s: f64) -> Finding {
     let needed_s = SPARE_FACTOR * flight_s;
     let expected = format!("charge for {needed_s:.0} s, {SPARE_FACTOR} times the flight");

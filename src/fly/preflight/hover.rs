@@ -1,4 +1,4 @@
-//! Whether the vehicle file can be this vehicle's: what the autopilot hovers on, and where it has its rotors.
+//! Check whether the vehicle file is that of this vehicle, by the autopilot's hover command and its rotor positions.
 
 use super::Situation;
 use crate::fly::finding::Finding;
@@ -8,9 +8,9 @@ use crate::recording::Recording;
 use crate::signals::propulsion_from_log;
 use crate::vehicle::{Actuator, Propulsion, ThrustLaw, Vehicle};
 
-/// Where the check speaks of thrust.
+/// Subject of the check of the thrust.
 pub(crate) const HOVER: &str = "hover thrust";
-/// Where it speaks of the rotors' number and places.
+/// Subject of the check of number and positions of the rotors.
 pub(crate) const ROTORS: &str = "rotors";
 
 /// Ratio from which the check of the hover thrust warns. An autopilot that never hovered has its default for the hover
@@ -46,7 +46,7 @@ fn judged(
     }
 }
 
-/// What all rotors of the file give at the command by which the autopilot expects to hover, against the weight.
+/// Thrust of all rotors of the file at the command with which the autopilot expects to hover, against the weight.
 fn hover(vehicle: &Vehicle, parameters: &Parameters) -> Option<Finding> {
     let outputs = &parameters.autopilot.stack()?.outputs;
     let name = outputs.hover;

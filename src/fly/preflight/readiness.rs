@@ -4,15 +4,15 @@ use crate::autopilot::{Autopilot, Mode};
 use crate::fly::finding::Finding;
 use std::time::Duration;
 
-/// The estimate must have been good for so long.
+/// Time for which the estimate must have been good. Chosen; not measured.
 pub const ESTIMATE_GOOD_FOR: Duration = Duration::from_secs(5);
 
-/// What the vehicle says of itself.
+/// Readiness of the vehicle by its own reports.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Readiness {
-    /// its own pre-arm checks; `None` where it does not say
+    /// its own pre-arm checks; `None` without a report
     pub may_arm: Option<bool>,
-    /// why not, as far as it said (STATUSTEXT)
+    /// reported reasons why not (STATUSTEXT)
     pub reasons: Vec<String>,
     /// parts that are on and not healthy
     pub unhealthy: Vec<String>,

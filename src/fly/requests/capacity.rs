@@ -1,4 +1,4 @@
-//! What a link carries, and what an autopilot makes of a requested rate.
+//! Capacity of a link, and the rate that an autopilot gives for a requested one.
 
 use super::StreamRequest;
 use crate::autopilot::Autopilot;
@@ -14,7 +14,7 @@ const PX4_SHARE: f64 = 0.5;
 /// Default limit of PX4 for a UDP link, bytes/s.
 const PX4_UDP_BYTES_S: f64 = 100_000.0;
 
-/// What connects vehicle and ground station.
+/// The kind of link between vehicle and ground station.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LinkKind {
     /// network, or USB whose baud rate means nothing
@@ -46,7 +46,7 @@ impl Capacity {
         Self { bytes_s }
     }
 
-    /// Whether a set of messages has room.
+    /// Whether a set of messages fits.
     #[must_use]
     pub fn fits(&self, set: &[StreamRequest]) -> bool {
         bytes_s(set) <= FILL * self.bytes_s
@@ -62,9 +62,8 @@ pub(super) fn bytes_s(set: &[StreamRequest]) -> f64 {
         .sum()
 }
 
-/// The rate that an autopilot gives where this one is asked for, Hz; `None` where it refuses. ArduPilot
-/// takes whole milliseconds and none faster than 0.8 of its 400 Hz loop; PX4 sends from a loop of 4 ms,
-/// so that a faster stream than 250 Hz does not exist.
+/// The rate that an autopilot gives for a requested one, Hz; `None` if it refuses. ArduPilot uses whole milliseconds
+/// and nothing faster than 0.8 of its 400 Hz loop. PX4 sends from a loop of 4 ms, so no stream is faster than 250 Hz.
 #[must_use]
 pub fn granted_hz(autopilot: Autopilot, asked_hz: f64) -> Option<f64> {
     if asked_hz.is_nan() || asked_hz <= 0.0 {

@@ -7,11 +7,11 @@ use crate::report::number::significant;
 use crate::study::{ExplainStudy, Located, Predicted, ShownOn};
 use std::fmt::Write;
 
-/// Most effects of a sentence that come with their numbers.
+/// Largest number of effects that are listed with their sizes.
 const SIZED: usize = 4;
-/// An error that rises by more is said, percent.
+/// An error that increases by more than this is mentioned, percent. Chosen; not measured.
 const WORSE_PERCENT: f64 = 2.0;
-/// A state that explains less of the misfit is not said, percent.
+/// A state that explains less of the misfit is not mentioned, percent. Chosen; not measured.
 const LEAST_STATE_PERCENT: f64 = 10.0;
 
 /// The answer in one sentence.
@@ -31,7 +31,7 @@ pub fn answer(study: &ExplainStudy) -> String {
     }
 }
 
-/// One effect in full; of several each with its number, beyond a few only the first.
+/// The named effects: one effect in full, several with their sizes, the rest without.
 fn left_out(study: &ExplainStudy) -> String {
     let vehicle = study.vehicle();
     if let [one] = study.effects.as_slice() {
@@ -51,7 +51,7 @@ fn left_out(study: &ExplainStudy) -> String {
     }
 }
 
-/// What may stand for a name, in a sentence of its own.
+/// A sentence on the effects that the flight does not distinguish from a named one.
 fn not_told_apart(study: &ExplainStudy) -> String {
     let pairs: Vec<String> = study
         .effects
@@ -68,7 +68,7 @@ fn not_told_apart(study: &ExplainStudy) -> String {
     format!(" This flight cannot distinguish {}.", pairs.join(", nor "))
 }
 
-/// What the model gains, on what was not used for it.
+/// The prediction gain on data that were not used.
 fn gain(study: &ExplainStudy) -> String {
     if let Some(by) = study.other_vehicle() {
         return format!("; {} ({by}), so nothing is shown on it", whose(study));
@@ -171,7 +171,7 @@ fn detection_limit(study: &ExplainStudy, id: &str) -> Option<DetectionLimit> {
     limits.copied().max_by(|a, b| a.limit.total_cmp(&b.limit))
 }
 
-/// Where a misfit lives: axis, place or state, band.
+/// Location of a misfit: axis, place or state, band.
 fn whereabouts(located: &Located) -> String {
     let mut parts = Vec::new();
     if let Some(field) = &located.field {
@@ -200,7 +200,7 @@ fn whereabouts(located: &Located) -> String {
     if parts.is_empty() { "spread over all axes, times and states".to_owned() } else { parts.join(", ") }
 }
 
-/// A state's variable as it is said.
+/// The displayed name of a state.
 fn spoken_state(variable: &str) -> String {
     match variable {
         "rate_x" => "the roll rate".to_owned(),
@@ -237,7 +237,7 @@ fn joined(parts: &[String], word: &str) -> String {
     }
 }
 
-/// What an empirical term depends on.
+/// The quantity on which an empirical term depends, in words.
 fn spoken_along(along: Along) -> String {
     const AXES: [&str; 3] = ["x", "y", "z"];
     match along {

@@ -1,4 +1,4 @@
-//! The section on the fit before and after, and on what was not used.
+//! The section on the fit before and after, and on the hold-out.
 
 use crate::compare::SIGNALS;
 use crate::diagnose::holdout::{Compared, HoldoutFit};
@@ -10,7 +10,7 @@ use maud::{Markup, html};
 
 const COMPARED: [&str; 6] = ["", "before|", "after|", "noise alone|", "better by|", "unit"];
 
-/// Errors before and after, on the flights that were explained and on those that were not used.
+/// Errors before and after, on the explained flights and on the hold-out flights.
 pub(super) fn hold_out(study: &ExplainStudy) -> Markup {
     let content = html! {
         (note("Open-loop prediction from the measured state with the recorded actuators. Before: the rigid body \

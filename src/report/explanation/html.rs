@@ -11,7 +11,7 @@ use crate::report::quality::data_quality;
 use crate::study::{ExplainStudy, TriedAs};
 use maud::{Markup, html};
 
-/// Flights of which recorded and simulated motion is drawn.
+/// Number of flights whose recorded and simulated motion is drawn.
 const DRAWN: usize = 3;
 
 /// The report: one file, nothing loaded from anywhere.

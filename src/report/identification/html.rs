@@ -14,9 +14,9 @@ use crate::study::{COMPONENTS, Correlation, IdentifyStudy, RotorsAndMotion};
 use crate::vehicle::Anchor;
 use maud::{Markup, html};
 
-/// Points of a line at most: a chart is some 440 dots wide.
+/// Largest number of points of a line: a chart is about 440 dots wide.
 const POINTS: usize = 900;
-/// Parameters whose course along the flight is drawn: mass and the moments of inertia.
+/// Parameters whose estimates along the flight are drawn: mass and the moments of inertia.
 const DRAWN: [usize; 4] = [0, 1, 4, 6];
 
 /// The answer in one sentence.

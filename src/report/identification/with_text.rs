@@ -52,7 +52,7 @@ pub(super) fn with_text(study: &IdentifyStudy, with: &WithEffects) -> String {
     page
 }
 
-/// Where the scale of the forces comes from.
+/// The source of the scale of the forces.
 fn scale_line(together: &JointEstimate) -> String {
     match together.scale.as_ref().map(|scale| (scale.name, &scale.value, scale.unit)) {
         Some((name, Finding::Determined { value, std }, unit)) => {
@@ -65,7 +65,7 @@ fn scale_line(together: &JointEstimate) -> String {
     }
 }
 
-/// How sure an effect is.
+/// The significance of an effect.
 fn evidence(effect: &EffectFound) -> String {
     let tried =
         if effect.tried > 1 { format!(" after {} forms were tried", effect.tried) } else { String::new() };

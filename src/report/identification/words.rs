@@ -7,7 +7,7 @@ use crate::signals::Quality;
 use crate::text::compact;
 use std::fmt::Write;
 
-/// What the flight is good for, in one sentence.
+/// The identified parameters, in one sentence.
 pub(super) fn verdict(result: &MethodResult) -> String {
     let (mut yes, mut no) = (Vec::new(), Vec::new());
     for parameter in &result.parameters {
@@ -24,12 +24,12 @@ pub(super) fn verdict(result: &MethodResult) -> String {
     }
 }
 
-/// Five digits after the point where that shows the value, powers of ten where it would not.
+/// Five digits after the point if they show the value, otherwise a power of ten.
 pub(super) fn number(value: f64) -> String {
     if value == 0.0 || value.abs() >= 2e-4 { format!("{value:.5}") } else { format!("{value:.3e}") }
 }
 
-/// What was used of each flight.
+/// The used data of each flight.
 pub(super) fn flight_lines<'a>(flights: impl Iterator<Item = &'a Quality>) -> String {
     let mut page = String::new();
     for (index, quality) in flights.enumerate() {
@@ -58,7 +58,7 @@ pub(super) fn flight_lines<'a>(flights: impl Iterator<Item = &'a Quality>) -> St
     page
 }
 
-/// What is to be said of the inertia.
+/// A sentence on a physically impossible inertia.
 pub(super) fn physical(of: Physical) -> Option<&'static str> {
     match of {
         Physical::AsEstimated => None,
@@ -72,7 +72,7 @@ pub(super) fn physical(of: Physical) -> Option<&'static str> {
     }
 }
 
-/// What is asked for beyond what physics allows.
+/// A sentence on an estimate beyond its bound.
 pub(super) fn beyond(parameter: &ParameterFound, wanted: f64, std: f64) -> String {
     let (least, most) = parameter.plausible;
     let away = if wanted < least { least - wanted } else { wanted - most };

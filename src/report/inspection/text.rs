@@ -4,7 +4,7 @@ use std::fmt::{Display, Write};
 
 use crate::inspect::{Inspection, Outlook, Reading, StreamSummary, TlogReading};
 
-/// Spans, texts and segments told one by one; the JSON document has all.
+/// Largest number of spans, texts and segments that are listed; the JSON document has all.
 const TOLD: usize = 12;
 
 /// The whole page; `file` is the log's name.

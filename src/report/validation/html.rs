@@ -8,7 +8,7 @@ use crate::report::quality::data_quality;
 use crate::study::{ErrorTable, Prediction, ValidateStudy, ValidatedFlight};
 use maud::{Markup, html};
 
-/// Models that differ by less in the mean are alike, percent.
+/// Models that differ by less than this in the mean predict equally well, percent. Chosen; not measured.
 const ALIKE_PERCENT: f64 = 0.5;
 
 /// The report: one file, nothing loaded from anywhere.
