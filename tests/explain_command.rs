@@ -115,7 +115,7 @@ fn bad_input_is_refused_with_what_was_expected_and_what_came() {
         (vec![log.as_str(), "--holdout", &log], "same recording"),
         (
             vec![log.as_str(), "--holdout", part.to_str().unwrap()],
-            "expected a flight that is not explained, 100 % of",
+            "expected a flight that is not explained, but 100 % of",
         ),
         (vec![log.as_str(), "--transient", "-1"], "--transient: expected seconds from 0 on, got -1"),
         (vec![log.as_str(), "--csv-map", "map.toml"], "expected a .csv among the logs"),

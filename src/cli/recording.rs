@@ -20,7 +20,7 @@ pub struct IdentifyArgs {
     /// write the report here
     #[arg(long, value_name = "FILE.HTML")]
     pub report: Option<PathBuf>,
-    /// write the parameters along time here as a chart
+    /// write the parameters over time here as a chart
     #[arg(long, value_name = "FILE.SVG")]
     pub chart: Option<PathBuf>,
     /// how the recordings are read

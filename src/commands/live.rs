@@ -1,4 +1,4 @@
-//! Verbs that go on until they are told to end: whatever stands still, they end.
+//! Verbs that continue until they are told to end: whatever stands still, they end.
 //!
 //! Such a verb catches the signals that ask for its end, so nothing else ends it: not where a pipe that nobody reads
 //! holds up its last words, nor where it works out what was flown. Its work therefore runs on a thread of its own. Once

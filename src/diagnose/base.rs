@@ -65,7 +65,7 @@ impl Base {
             .chain(more)
             .map(|present| ActiveEffect::new(present.effect(), &present.values))
             .collect::<Result<Vec<_>, _>>()?;
-        // along a recording only force and torque are asked for; while the search goes on, the inertia may
+        // along a recording only force and torque are asked for; while the search continues, the inertia may
         // be what no body has
         let mut vehicle = self.vehicle.clone();
         vehicle.body.inertia_kg_m2 = positive(&vehicle.body.inertia_kg_m2);

@@ -45,7 +45,7 @@ pub fn confusable_with(
             }
         }
     }
-    // a rival that explained as much stays one, with its distance, even where the fit tells them apart
+    // a rival that explained as much stays one, with its distance, even where the fit distinguishes them
     for rival in rivals {
         let id = rival.candidate.id;
         let alike = beyond(&rival.candidate).filter(|left| *left < UNLIKE * signal.norm());

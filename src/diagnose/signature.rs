@@ -22,7 +22,7 @@ pub struct Signature {
     pub nothing: f64,
     /// forms that the search tries
     pub forms: fn(&Recorded) -> Vec<Form>,
-    /// how the search goes on once a form is taken
+    /// how the search continues once a form is taken
     pub refinement: Refinement,
     /// conditions of its name
     pub naming: Naming,
@@ -123,7 +123,7 @@ pub enum GridScale {
     },
 }
 
-/// How the search goes on once a form is taken.
+/// How the search continues once a form is taken.
 #[derive(Debug, Clone, Copy)]
 pub struct Refinement {
     /// a value that is tested on a grid is refined between the grid's points

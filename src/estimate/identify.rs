@@ -42,7 +42,7 @@ pub struct Identification {
     pub methods: Vec<MethodResult>,
     /// the recommended method
     pub best: Recommendation,
-    /// estimates along time of the paper's four methods
+    /// estimates over time of the paper's four methods
     pub histories: Vec<(Method, History)>,
     /// latency from command to body
     pub latency: Option<Latency>,

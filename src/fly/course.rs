@@ -291,7 +291,7 @@ fn on_path(path: &FlightPath, clock: &PathTime, offset_m: &Vector3<f64>, time: D
     let moves = if beyond { 0.0 } else { 1.0 };
     let speed = |axis: &[f64; 5]| moves * axis[1] * rate;
     let [x, y, z, yaw] = &axes;
-    // not the clock's own slope, velocity times up to 1/s: an autopilot that hears no more goes on with it for seconds, which
+    // not the clock's own slope, velocity times up to 1/s: an autopilot that hears no more continues with it for seconds, which
     // takes it metres off the path. A clock of any rate alone leads no further than one that runs
     let push = |axis: &[f64; 5]| moves * axis[2] * rate * rate;
     Some(Setpoint {

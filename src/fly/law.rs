@@ -52,7 +52,7 @@ pub enum FollowLaw {
 
 impl FollowLaw {
     /// From the vehicle's parameters, by the autopilot's defaults where one did not answer, and its release (major and minor
-    /// number): all that it may follow, the likeliest first; none for an autopilot that is not known. ArduPilot changed its law
+    /// number): all that it may follow, the most likely first; none for an autopilot that is not known. ArduPilot changed its law
     /// and its parameters' names on the way to 4.7, the law first: where it has the old names and does not say that it is
     /// older, both laws are possible.
     #[must_use]

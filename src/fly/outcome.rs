@@ -40,7 +40,7 @@ pub enum Cause {
     Battery(String),
     /// another station commands the vehicle
     SecondMaster(String),
-    /// its clock started anew
+    /// its clock restarted
     Reboot,
     /// this program or its computer stalled
     Stalled(String),

@@ -24,7 +24,7 @@ pub(super) struct Assessor<'a> {
     excitation: ExcitationTally,
     effort_max: f64,
     flown: bool,
-    /// the vehicle's clock started anew since the last segment
+    /// the vehicle's clock restarted since the last segment
     restarted: bool,
     information: Option<WeakInformation>,
     offsets: Vec<OffsetSum>,

@@ -102,7 +102,7 @@ impl ClockTally {
         *span = (span.0.min(time_s), span.1.max(time_s));
     }
 
-    /// The vehicle's clock started anew.
+    /// The vehicle's clock restarted.
     pub(super) fn reset(&mut self, time_s: f64) {
         keep(&mut self.resets_s, time_s);
         self.end_line();

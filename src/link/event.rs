@@ -65,7 +65,7 @@ pub enum LinkEvent {
     },
     /// the recording misses frames, or its file cannot be written now
     RecordingFails,
-    /// the recording goes on
+    /// the recording continues
     RecordingGoesOn,
 }
 

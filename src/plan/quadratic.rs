@@ -76,7 +76,7 @@ impl QuadraticProgram {
     }
 
     /// Solves the programme; rows are kept to `tolerance` (in the units of their limits). Wherever all
-    /// rows hold, `add_rows` may push more and return true: the method then goes on from there.
+    /// rows hold, `add_rows` may push more and return true: the method then continues from there.
     #[must_use]
     pub fn solve(
         &mut self,

@@ -85,7 +85,7 @@ pub fn condition(
     }
     let streams: Vec<&Stream> =
         chosen.list().iter().filter_map(|(_, s)| s.map(|(_, s)| s)).chain([actuation.stream()]).collect();
-    // the vehicle's clock started anew, or its estimator jumped
+    // the vehicle's clock restarted, or its estimator jumped
     let resets_s = [recording.clock_resets_s.as_slice(), &recording.estimator_resets_s].concat();
     let rate = chosen.rate.and_then(|(_, s)| vectors_onto(s, 0.0, &grid));
     let (mask, used) = usable(

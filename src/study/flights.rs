@@ -1,4 +1,4 @@
-//! Flights of logs, whatever their format: read, conditioned, and told apart.
+//! Flights of logs, whatever their format: read, conditioned, and separated.
 
 use std::path::{Path, PathBuf};
 

@@ -16,7 +16,7 @@ use crate::vehicle::{Limits, Vehicle};
 /// previous flights are kept.
 ///
 /// # Errors
-/// [`NextError`] where there is nothing to tell apart, or no room to do it in.
+/// [`NextError`] where there is nothing to distinguish, or no room to do it in.
 pub fn design(
     explanation: &Explanation,
     flights: &[Signals],

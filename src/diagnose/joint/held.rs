@@ -137,7 +137,7 @@ fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
         let Some(parameter) = present.parameter(slot) else { continue };
         let (least, greatest) = parameter.bounds.at(&fitted.base.size);
         let amount = present.is_amount(slot);
-        // a finer form was taken because it is the likelier one: what it adds stays in, whatever its error
+        // a finer form was taken because it is the more likely one: what it adds stays in, whatever its error
         let finer = slot >= present.effect().parameters().len();
         let reason = if !amount && !seen {
             "the effect itself is not distinguishable from noise".to_owned()

@@ -52,7 +52,7 @@ impl Flight {
     fn leave_to(&mut self, now: Duration, wish: Mode) {
         // a mode that is not ours is not left: whoever chose it flies
         let from = self.contact.as_ref().map(|contact| contact.telemetry.stack().number_of(Mode::External));
-        // setpoints go on until the mode is seen, but say: stop here; what stands on the ground is not steered
+        // setpoints continue until the mode is seen, but say: stop here; what stands on the ground is not steered
         if self.stand.is_none() {
             self.guide.lead = Lead::Silent;
         }

@@ -134,7 +134,7 @@ impl LiveIdentification {
                 None => self.restart(),
             }
         }
-        // too far behind for one call: begin anew at the present
+        // too far behind for one call: begin again at the present
         self.next_s = None;
         self.restart();
     }

@@ -166,7 +166,7 @@ fn attempt(situation: &Situation<'_>, laws: &[FollowLaw], feeding: Feeding) -> T
     for leg in &legs {
         for law in laws {
             let tracking_m = fly(situation, law, leg, &mut tried);
-            // by another law than the likeliest it may leave the reference, and then holds; what it does then is in the room
+            // by another law than the most likely it may leave the reference, and then holds; what it does then is in the room
             if laws.first() == Some(law) {
                 tried.tracking_m = tried.tracking_m.max(tracking_m);
             }

@@ -115,7 +115,7 @@ impl Drive {
         self.act(now);
     }
 
-    /// Time went on; whether the link has something that was not taken.
+    /// Time advanced; whether the link has something that was not taken.
     pub(super) fn tick(&mut self, waiting: usize) {
         let now = self.clock.elapsed();
         self.supervisor.tick(now, waiting);

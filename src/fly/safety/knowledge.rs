@@ -6,7 +6,7 @@
 //! that was asked after the stall or the silence. A vehicle that does not hear the question does not hear a command
 //! either, so that nothing is lost by waiting; one that never answers is not flown.
 //!
-//! The questions are numbered (TIMESYNC gives the number back), from a number on that is drawn anew for every run of
+//! The questions are numbered (TIMESYNC gives the number back), from a number on that is drawn again for every run of
 //! the program: the vehicle's answers to others, which routers pass on, are not taken for answers to us, and an older
 //! answer is not taken for the newer one's.
 

@@ -226,7 +226,7 @@ mod tests {
 
     #[test]
     fn ardupilot_moves_a_target_on_while_nothing_new_comes_and_px4_does_not() {
-        // ours are lost for half a second of each second, and the vehicle goes on along the velocity
+        // ours are lost for half a second of each second, and the vehicle continues along the velocity
         let started = |t: u64| t - t % 1000;
         let coasting = |t: u64| {
             let from = ours(started(t));

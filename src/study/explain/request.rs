@@ -9,7 +9,7 @@ use crate::study::{ReadSettings, StudyError};
 pub struct ExplainRequest {
     /// recordings of one vehicle
     pub logs: Vec<PathBuf>,
-    /// its file: a vehicle, or a model whose effects are looked for anew
+    /// its file: a vehicle, or a model whose effects are removed and searched for again
     pub vehicle: PathBuf,
     /// other flights of it, on which the improvement is shown; without them the end of the last flight is held back
     pub holdout: Vec<PathBuf>,
@@ -17,7 +17,7 @@ pub struct ExplainRequest {
     pub read: ReadSettings,
     /// time left out at the beginning of the flight, s
     pub transient_s: f64,
-    /// design the flight that tells best apart what these cannot
+    /// design the flight that distinguishes best what these cannot
     pub design_next: bool,
 }
 
