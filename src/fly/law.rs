@@ -31,9 +31,9 @@ pub enum FollowLaw {
         /// GUID_TIMEOUT, s
         timeout_s: f64,
     },
-    /// PX4 in OFFBOARD: the vehicle itself follows, `v = v_ff + P (p - p_now)` within its limits and `(1 + D) a = a_ff
-    /// + K (v - v_now)`, without the integrator of the velocity, which learns drag. The last setpoint stays for the
-    /// time-out, then another mode of PX4 brakes
+    /// PX4 in OFFBOARD: the vehicle itself follows, `v = v_ff + P (p - p_now)` within its limits and
+    /// `(1 + D) a = a_ff + K (v - v_now)`, without the integrator of the velocity, which learns drag. The last
+    /// setpoint stays for the time-out, then another mode of PX4 brakes
     Px4 {
         /// MPC_XY_P, MPC_Z_P, 1/s
         position_1_s: Vector3<f64>,
