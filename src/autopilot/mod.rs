@@ -18,6 +18,7 @@ pub(crate) mod px4;
 mod release;
 mod setpoints;
 mod stack;
+mod vehicle_kind;
 mod vehicle_type;
 
 pub use ardupilot::ARDUPILOT;
@@ -35,4 +36,5 @@ pub use px4::PX4;
 pub use release::Release;
 pub use setpoints::{LastSetpoint, SetpointRules, Takeoff};
 pub use stack::Stack;
+pub use vehicle_kind::VehicleKind;
 pub use vehicle_type::{is_multirotor, multirotor_type};
