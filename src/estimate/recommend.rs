@@ -1,9 +1,10 @@
 //! The recommended method for a flight, with the reason.
 
 use super::method::Method;
+use super::nominal::Nominal;
 use super::physical::{is_physical, nearest_physical};
 use super::result::{Estimated, Finding, MethodResult};
-use super::theta::{NAMES, Theta, scale_of};
+use super::theta::{NAMES, scale_of};
 use super::weak::WeakEstimate;
 
 /// Share of the rows with reduced robust weights above which they are outliers and not noise. Chosen; not measured.
@@ -33,7 +34,7 @@ pub fn recommend(
     plain: &WeakEstimate,
     robust: Option<&WeakEstimate>,
     instruments: Option<&WeakEstimate>,
-    nominal: &Theta,
+    nominal: &Nominal,
 ) -> Recommendation {
     let (method, chosen, why) = choose(plain, robust, instruments);
     let mut estimated = Estimated::of(chosen);
@@ -41,7 +42,8 @@ pub fn recommend(
     let as_estimated = MethodResult::new(method, &estimated, nominal);
     let determined = |i: usize| matches!(as_estimated.parameters[i].finding, Finding::Determined { .. });
     let needed = [1, 4, 6].into_iter().all(determined) && !is_physical(&estimated.theta);
-    let mended = needed.then(|| nearest_physical(&estimated.theta, &estimated.covariance, nominal)).flatten();
+    let mended =
+        needed.then(|| nearest_physical(&estimated.theta, &estimated.covariance, &nominal.theta)).flatten();
     let made_physical = mended.is_some();
     if let Some(theta) = mended {
         estimated.theta = theta;
