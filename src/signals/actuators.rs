@@ -181,7 +181,7 @@ pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propu
             Some(PwmRange { min_us, max_us }) => {
                 note(format!("{taken}, the vehicle file says {min_us:.0} to {max_us:.0} us"));
             }
-            None => note(format!("{taken}, the vehicle file speaks of 0..1")),
+            None => note(format!("{taken}, the vehicle file states 0..1")),
         }
         propulsion.actuator = Actuator::Pwm(Some(range));
     }
