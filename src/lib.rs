@@ -132,6 +132,7 @@ pub mod diagnose;
 pub mod estimate;
 pub mod export;
 pub mod fence;
+pub mod files;
 pub mod fly;
 pub mod frames;
 pub mod inspect;

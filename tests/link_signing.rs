@@ -129,11 +129,31 @@ fn the_times_of_a_key_are_for_their_owner_alone() {
         assert_eq!(std::fs::metadata(&times).unwrap().mode() & 0o777, 0o600);
         let warned = signing.warnings().join("; ");
         assert_eq!(warned.contains("read by others (mode 644, expected 600)"), mode == 0o644, "{warned}");
+        // of the times that the first of these left open
+        assert_eq!(
+            warned.contains("could be read and written by others (mode 666"),
+            mode == 0o644,
+            "{warned}"
+        );
         drop(signing);
         assert_eq!(std::fs::metadata(&times).unwrap().mode() & 0o777, 0o600);
         // as an earlier version left it
         std::fs::set_permissions(&times, std::fs::Permissions::from_mode(0o666)).unwrap();
     }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Whoever gives the key by another name is known by what was heard by the first.
+#[cfg(unix)]
+#[test]
+fn a_key_behind_a_symbolic_link_has_the_times_of_the_key() {
+    let folder = std::env::temp_dir().join(format!("mavid-key-link-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let (key, link) = (folder.join("key"), folder.join("link"));
+    std::fs::write(&key, "a passphrase\n").unwrap();
+    std::os::unix::fs::symlink("key", &link).unwrap();
+    drop(Signing::open(&link).unwrap());
+    assert!(folder.join("key.times").is_file() && !folder.join("link.times").exists());
     std::fs::remove_dir_all(&folder).unwrap();
 }
 

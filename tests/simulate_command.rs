@@ -107,7 +107,7 @@ fn bad_effects_are_refused_with_what_was_expected() {
     let (log, trajectory) = (place("flight.tlog"), config("trajectories/table2.toml"));
     for (text, expected) in [
         ("[[effect]]\nid = \"no_such\"\n", "expected one of"),
-        ("[[effect]]\nid = \"inflow\"\nkz = -3.0\n", "0 to 5"),
+        ("[[effect]]\nid = \"inflow\"\nkz = -3.0\n", "0 to 20.64 N/(m/s) for a vehicle of 2.064 kg"),
         ("[[effect]]\nid = \"inflow\"\nkz = \"much\"\n", "expected a number"),
         ("[[effect]]\nid = \"inflow\"\n", "kz"),
         (

@@ -10,7 +10,8 @@ use mavid::wire::SystemId;
 
 use super::explain::{self, REPORT};
 use super::identify::Targets;
-use super::progress::Quiet;
+use super::progress::Notes;
+use super::words::Word;
 use super::{CommandError, Outcome, output};
 
 /// Folder of the explanation in that of the flight.
@@ -20,83 +21,176 @@ const MODEL: &str = "model.toml";
 const CHART: &str = "parameters.svg";
 const PAGE: &str = "identification.txt";
 const DOCUMENT: &str = "identification.json";
+/// Exit status of a program that could not write a file of its results.
+const NOT_WRITTEN: u8 = 1;
 
-/// What a flight says; a part that it cannot say, or that could not be written, holds why.
+/// What a flight says; a part that it cannot say holds why.
 #[derive(Debug)]
 pub struct Analysis {
     /// written beside the recording
     pub identified: Result<IdentifyStudy, String>,
     /// written into a folder of its own
     pub explained: Result<ExplainStudy, String>,
+    /// what of it is in no file, why, and how it is made again: of the parameters, and of the explanation
+    pub unwritten: [Option<String>; 2],
     folder: PathBuf,
 }
 
 impl Analysis {
     /// Of the flight in this folder; none of one that did not land. Results of an earlier flight go: beside this
-    /// one's recording they would pass for its own.
+    /// one's recording they would pass for its own. Lines for the user are given to `tell`.
     pub fn of(
         (folder, landed): (&Path, bool),
         vehicle: &Path,
         system: Option<SystemId>,
+        tell: &mut impl FnMut(Word),
     ) -> Result<Option<Self>, CommandError> {
         let parameters = [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(|name| folder.join(name));
         let explanation = explain::WRITTEN.map(|name| folder.join(EXPLAINED).join(name));
         // a model that was flown by is what this flight's own are compared with
         for path in parameters.iter().chain(&explanation).filter(|path| !output::is_same(path, vehicle)) {
-            output::outdated(path)?;
+            output::outdated(path)?.map(Word::Message).into_iter().for_each(&mut *tell);
         }
-        Ok(landed.then(|| Self::made(folder, vehicle, system)))
+        Ok(landed.then(|| Self::made(folder, vehicle, system, tell)))
     }
 
-    fn made(folder: &Path, vehicle: &Path, system: Option<SystemId>) -> Self {
+    fn made(folder: &Path, vehicle: &Path, system: Option<SystemId>, tell: &mut impl FnMut(Word)) -> Self {
+        let notes = Notes::default();
         let AfterFlight { identified, explained } =
-            after_flight(&folder.join(fly::TLOG), vehicle, system, &Quiet);
-        let identified = kept("identified", identified, |study| write_parameters(study, folder));
-        let explained = kept("explained", explained, |study| explain::write(study, &folder.join(EXPLAINED)));
-        Self { identified, explained, folder: folder.to_owned() }
+            after_flight(&folder.join(fly::TLOG), vehicle, system, &notes);
+        notes.words().into_iter().for_each(&mut *tell);
+        let identified = identified.map_err(|error| CommandError::from(error).to_string());
+        let explained = explained.map_err(|error| CommandError::from(error).to_string());
+        let failures = [("identified", identified.as_ref().err()), ("explained", explained.as_ref().err())];
+        for (what, failure) in failures {
+            failure.into_iter().for_each(|failure| tell(Word::Error(format!("not {what}: {failure}"))));
+        }
+        let written = Written { folder, vehicle, system };
+        let unwritten = [
+            identified.as_ref().ok().and_then(|study| written.parameters(study)),
+            explained.as_ref().ok().and_then(|study| written.explanation(study)),
+        ];
+        unwritten.iter().flatten().for_each(|why| tell(Word::Error(why.clone())));
+        Self { identified, explained, unwritten, folder: folder.to_owned() }
     }
 
     /// Where the report lies, if there is one.
     pub fn report(&self) -> Option<PathBuf> {
-        self.explained.is_ok().then(|| self.folder.join(EXPLAINED).join(REPORT))
+        let written = self.explained.is_ok() && self.unwritten[1].is_none();
+        written.then(|| self.folder.join(EXPLAINED).join(REPORT))
     }
 
     /// For people: parameters, then the explanation's answer and where its report lies.
     pub fn page(&self) -> String {
         let mut parts: Vec<String> = self.identified.iter().map(identification_text).collect();
-        let parameters = self.folder.join(REPORT);
-        parts.extend(
-            self.identified.iter().map(|_| format!("report of the parameters: {}", text::path(&parameters))),
-        );
+        if self.identified.is_ok() && self.unwritten[0].is_none() {
+            let parameters = self.folder.join(REPORT);
+            parts.push(format!("report of the parameters: {}", text::path(&parameters)));
+        }
         parts.extend(self.explained.iter().map(explanation_answer));
         parts.extend(self.report().map(|path| format!("report: {}", text::path(&path))));
         parts.join("\n\n")
     }
 
-    /// The first part that failed, and otherwise what was lost, which it says.
+    /// What is to be known about the data, line by line.
+    pub fn remarks(&self) -> Vec<Word> {
+        self.explained.as_ref().map(explain::remarks).unwrap_or_default()
+    }
+
+    /// The first part that failed or is in no file, and otherwise whether something was lost.
     pub fn outcome(&self) -> Result<Outcome, CommandError> {
         let failed = |why: &String| CommandError::Failure(why.clone());
         self.identified.as_ref().map_err(failed)?;
-        self.explained.as_ref().map_err(failed).map(explain::tell)
+        let explained = self.explained.as_ref().map_err(failed)?;
+        // it was told with the rest
+        if self.unwritten.iter().any(Option::is_some) {
+            return Err(CommandError::Told(NOT_WRITTEN));
+        }
+        Ok(explain::outcome(explained))
     }
 }
 
-/// The study, if there is one and it was written; says what is missing and why.
-fn kept<S>(
-    what: &str,
-    study: Result<S, mavid::study::StudyError>,
-    write: impl Fn(&S) -> Result<(), CommandError>,
-) -> Result<S, String> {
-    let written = study.map_err(CommandError::from).and_then(|study| write(&study).map(|()| study));
-    written.map_err(|error| {
-        output::message(&format!("not {what}: {error}"));
-        error.to_string()
-    })
+/// Where the results of a flight are written.
+struct Written<'a> {
+    folder: &'a Path,
+    vehicle: &'a Path,
+    system: Option<SystemId>,
 }
 
-fn write_parameters(study: &IdentifyStudy, folder: &Path) -> Result<(), CommandError> {
-    let place = |name| Some(folder.join(name));
-    Targets { model: place(MODEL), report: place(REPORT), chart: place(CHART) }.write(study)?;
-    output::file(&folder.join(PAGE), &format!("{}\n", identification_text(study)))?;
-    output::file(&folder.join(DOCUMENT), &output::json_text(&IdentificationDocument::new(study))?)
+impl Written<'_> {
+    /// Writes the parameters: model, report and chart, and the page and the document beside them. What of it is in no file.
+    fn parameters(&self, study: &IdentifyStudy) -> Option<String> {
+        let place = |name| self.folder.join(name);
+        let targets =
+            Targets { model: Some(place(MODEL)), report: Some(place(REPORT)), chart: Some(place(CHART)) };
+        let written = || {
+            targets.write(study)?;
+            output::file(&place(PAGE), &format!("{}\n", identification_text(study)))?;
+            output::file(&place(DOCUMENT), &output::json_text(&IdentificationDocument::new(study))?)
+        };
+        let error = written().err()?;
+        let names = [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(place);
+        Some(self.again(&error, &names, ("identify", &place(MODEL))))
+    }
+
+    /// Writes the explanation. What of it is in no file.
+    fn explanation(&self, study: &ExplainStudy) -> Option<String> {
+        let out = self.folder.join(EXPLAINED);
+        let error = explain::write(study, &out).err()?;
+        Some(self.again(&error, &explain::WRITTEN.map(|name| out.join(name)), ("explain", &out)))
+    }
+
+    /// What of these files is missing, why, and the command that makes it again.
+    fn again(&self, error: &CommandError, files: &[PathBuf], (verb, out): (&str, &Path)) -> String {
+        let missing = files.iter().filter(|file| !file.exists()).map(text::path).collect::<Vec<_>>();
+        format!(
+            "{error}; missing: {}; to make them when there is room: mavid {verb} {} \
+             --vehicle {} --out {}{}",
+            missing.join(", "),
+            text::path(&self.folder.join(fly::TLOG)),
+            text::path(&self.vehicle),
+            text::path(&out),
+            self.system.map_or_else(String::new, |system| format!(" --system-id {system}"))
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    /// Nothing can be written where a folder stands: as little as on a full disk.
+    #[test]
+    fn what_cannot_be_written_is_named_with_the_command_that_makes_it_again() {
+        let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
+        let folder = std::env::temp_dir().join(format!("mavid-after-flight-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(folder.join("model.toml.part")).unwrap();
+        fs::create_dir_all(folder.join("explained/report.html.part")).unwrap();
+        fs::copy(fixtures.join("p04_identify_10_22s.tlog"), folder.join(fly::TLOG)).unwrap();
+        let vehicle = fixtures.join("p04_vehicle.toml");
+        let mut told = Vec::new();
+        let analysis = Analysis::of((&folder, true), &vehicle, None, &mut |line| told.push(line));
+        let analysis = analysis.unwrap().unwrap();
+        let [parameters, explanation] = analysis.unwritten.clone().map(Option::unwrap);
+        assert_eq!(told, [&parameters, &explanation].map(|why| Word::Error(why.clone())));
+        for (said, verb, names) in [
+            (parameters, "mavid identify ", &["model.toml", "identification.txt"][..]),
+            (explanation, "mavid explain ", &["report.html", "explanation.json"]),
+        ] {
+            assert!(said.contains("cannot write") && said.contains(verb), "{said}");
+            assert!(said.contains("flight.tlog --vehicle"), "{said}");
+            assert!(names.iter().all(|name| said.contains(name)), "{said}");
+        }
+        assert!(!folder.join(MODEL).exists() && !folder.join(EXPLAINED).join(REPORT).exists());
+        // it is told all the same
+        assert!(
+            analysis.page().contains("ixx") && !analysis.page().contains("report"),
+            "{}",
+            analysis.page()
+        );
+        assert!(matches!(analysis.outcome(), Err(CommandError::Told(NOT_WRITTEN))));
+        fs::remove_dir_all(folder).unwrap();
+    }
 }

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use mavid::config::trajectory_to_toml;
 use mavid::report::{ExplanationDocument, explained_model, explanation_html, explanation_text};
-use mavid::study::{ExplainRequest, ExplainStudy, explain, stored_trajectory};
+use mavid::study::{ExplainRequest, ExplainStudy, InputFile, explain, stored_trajectory};
 use mavid::text;
 
 use super::progress::Spinner;
 use super::standard_error::StandardError;
+use super::words::Word;
 use super::{CommandError, Outcome, output};
 use crate::cli::ExplainArgs;
 
@@ -43,7 +44,8 @@ pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Out
     } else {
         output::text(&explanation_text(&study))?;
     }
-    Ok(tell(&study))
+    remarks(&study).iter().for_each(Word::say);
+    Ok(outcome(&study))
 }
 
 /// Writes model, report and document into a folder, which is made.
@@ -54,12 +56,17 @@ pub fn write(study: &ExplainStudy, folder: &Path) -> Result<(), CommandError> {
     output::file(&folder.join(DOCUMENT), &output::json_text(&ExplanationDocument::new(study))?)
 }
 
-/// Says what is to be known about the data.
-pub fn tell(study: &ExplainStudy) -> Outcome {
-    study.notes.iter().for_each(output::note);
-    for input in study.inputs() {
-        input.remarks().iter().for_each(|remark| output::message(&format!("{}: {remark}", input.path)));
-    }
+/// What is to be known about the data, line by line.
+pub fn remarks(study: &ExplainStudy) -> Vec<Word> {
+    let of_input = |input: &InputFile| {
+        let said = |remark: &&str| Word::Message(format!("{}: {remark}", input.path));
+        input.remarks().iter().map(said).collect::<Vec<_>>()
+    };
+    study.notes.iter().map(Word::from).chain(study.inputs().flat_map(of_input)).collect()
+}
+
+/// Whether something of the recordings was lost.
+pub fn outcome(study: &ExplainStudy) -> Outcome {
     if study.inputs().all(|input| input.losses().is_empty()) { Outcome::Done } else { Outcome::DoneWithLoss }
 }
 
@@ -69,7 +76,8 @@ fn write_next(study: &ExplainStudy, path: &Path) -> Result<(), CommandError> {
         Some(Ok(next)) => output::file(path, &trajectory_to_toml(&stored_trajectory(next))?),
         Some(Err(why)) => {
             output::message(&format!("--next: nothing written: {why}"));
-            output::outdated(path)
+            output::outdated(path)?.iter().for_each(|note| output::message(note));
+            Ok(())
         }
         None => Ok(()),
     }

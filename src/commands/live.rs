@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::watch;
 
-use super::last_word::last_word;
+use super::last_word::{PATIENCE, last_word, within};
 use super::{CommandError, Outcome, network, output};
 
 /// From the signal, or from the end of what must be waited for, to that of the program.
@@ -59,7 +59,7 @@ pub fn run(
     let work = Work(Arc::new(told));
     let (done, outcome) = channel();
     let thread = thread::Builder::new().name("verb".into()).spawn(move || {
-        let ended = verb(&work).map_err(|error| CommandError::Told(error.report()));
+        let ended = verb(&work).map_err(report_in_time);
         // whoever started it waits, or the program is over
         let _ = done.send(ended);
     });
@@ -114,6 +114,15 @@ fn watch_signals(signals: std::sync::mpsc::Sender<String>) -> Result<(), Command
         }
     };
     thread::Builder::new().name("signals".into()).spawn(work).map(|_| ()).map_err(failed)
+}
+
+/// Says how a verb failed, and waits no longer than [`PATIENCE`] for whoever hears it.
+fn report_in_time(error: CommandError) -> CommandError {
+    let status = error.status();
+    if let Some(words) = error.words() {
+        let _ = within(PATIENCE, move || output::error(&words));
+    }
+    CommandError::Told(status)
 }
 
 /// A panic is told, but a terminal that takes nothing does not keep the panicking thread from ending: others still have

@@ -9,7 +9,6 @@ mod dispatch;
 mod error;
 mod explain;
 mod export;
-mod flight_view;
 mod fly;
 mod identify;
 mod inspect;
@@ -30,6 +29,7 @@ mod standard_error;
 mod usage;
 mod validate;
 mod vehicle;
+mod words;
 
 pub use dispatch::run;
 pub use error::CommandError;

@@ -2,6 +2,8 @@
 
 use std::future::Future;
 
+#[cfg(unix)]
+use mavid::fly::HangUp;
 use mavid::link::{Address, AddressError, Ends, Link, LinkError, LinkOptions};
 
 use super::CommandError;
@@ -42,7 +44,7 @@ pub struct Signals {
     #[cfg(unix)]
     terminate: tokio::signal::unix::Signal,
     #[cfg(unix)]
-    hang_up: tokio::signal::unix::Signal,
+    hang_up: HangUp,
 }
 
 impl Signals {
@@ -54,7 +56,7 @@ impl Signals {
             Ok(Self {
                 interrupt: signal(SignalKind::interrupt()).map_err(|error| no_signals(&error))?,
                 terminate: signal(SignalKind::terminate()).map_err(|error| no_signals(&error))?,
-                hang_up: signal(SignalKind::hangup()).map_err(|error| no_signals(&error))?,
+                hang_up: HangUp::new().map_err(|error| no_signals(&error))?,
             })
         }
         #[cfg(not(unix))]
@@ -67,7 +69,7 @@ impl Signals {
         tokio::select! {
             _ = self.interrupt.recv() => Ok("Ctrl-C"),
             _ = self.terminate.recv() => Ok("SIGTERM"),
-            _ = self.hang_up.recv() => Ok("SIGHUP"),
+            () = self.hang_up.came() => Ok("SIGHUP"),
         }
         #[cfg(not(unix))]
         tokio::signal::ctrl_c().await.map(|()| "Ctrl-C").map_err(|error| no_signals(&error))

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use mavid::files::write_whole;
 use mavid::link::Signing;
 use mavid::note::Note;
 use mavid::text;
@@ -18,7 +19,12 @@ pub fn text(text: &str) -> Result<(), CommandError> {
 
 /// A result as one JSON document.
 pub fn json(document: &impl Serialize) -> Result<(), CommandError> {
-    line(io::stdout().lock(), &json_text(document)?)
+    self::document(&json_text(document)?)
+}
+
+/// A document that is text already.
+pub fn document(text: &str) -> Result<(), CommandError> {
+    line(io::stdout().lock(), text)
 }
 
 /// A document as the text of a file.
@@ -45,13 +51,24 @@ pub fn error(text: &str) {
 impl CommandError {
     /// Says it on standard error, unless that was done, and gives the exit status.
     pub fn report(&self) -> u8 {
-        let status = match self {
+        if let Some(words) = self.words() {
+            error(&words);
+        }
+        self.status()
+    }
+
+    /// What is to be said of it, unless that was done.
+    pub fn words(&self) -> Option<String> {
+        (!matches!(self, Self::Told(_))).then(|| format!("mavid: {self}"))
+    }
+
+    /// The exit status.
+    pub fn status(&self) -> u8 {
+        match self {
             Self::Input(_) => 2,
             Self::Failure(_) => 1,
-            Self::Told(status) => return *status,
-        };
-        error(&format!("mavid: {self}"));
-        status
+            Self::Told(status) => *status,
+        }
     }
 }
 
@@ -74,23 +91,22 @@ pub fn signing_warnings(signing: Option<&Signing>) {
     }
 }
 
-/// A file of the user's choice.
+/// A file of the user's choice; where it cannot be written whole, what was there before stays.
 pub fn file(path: &Path, text: &str) -> Result<(), CommandError> {
-    std::fs::write(path, text)
+    write_whole(path, text.as_bytes())
         .map_err(|error| CommandError::Input(format!("cannot write {}: {error}", text::path(&path))))
 }
 
-/// Removes a file of an earlier run that this one has nothing to put in the place of, and says so.
-pub fn outdated(path: &Path) -> Result<(), CommandError> {
+/// Removes a file of an earlier run that this one has nothing to put in the place of; what is to be said of that.
+pub fn outdated(path: &Path) -> Result<Option<String>, CommandError> {
     match std::fs::remove_file(path) {
-        Ok(()) => message(&format!("removed {}, of an earlier run", text::path(&path))),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+        Ok(()) => Ok(Some(format!("removed {}, of an earlier run", text::path(&path)))),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => {
             let told = format!("cannot remove {}, of an earlier run: {error}", text::path(&path));
-            return Err(CommandError::Input(told));
+            Err(CommandError::Input(told))
         }
     }
-    Ok(())
 }
 
 /// A reader that has seen enough (`mavid ... | head`) is not a failure.

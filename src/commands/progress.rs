@@ -1,6 +1,6 @@
 //! What a study tells while it works: its notes, and at a terminal how far it is.
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -9,6 +9,7 @@ use mavid::study::{Progress, Stage};
 
 use super::output;
 use super::standard_error::StandardError;
+use super::words::Word;
 
 /// Between two pictures of the line.
 const TICK: Duration = Duration::from_millis(100);
@@ -88,14 +89,21 @@ impl Drop for Steps<'_> {
     }
 }
 
-/// Notes alone, where another display has the terminal.
-#[derive(Debug)]
-pub struct Quiet;
+/// Notes alone, for later: the terminal may take nothing, and the work does not wait for it.
+#[derive(Debug, Default)]
+pub struct Notes(Mutex<Vec<Word>>);
 
-impl Progress for Quiet {
+impl Notes {
+    /// What there is to say.
+    pub fn words(self) -> Vec<Word> {
+        self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Progress for Notes {
     fn stage(&self, _: Stage) {}
 
     fn note(&self, note: &Note) {
-        output::note(note);
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(note.into());
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use mavid::files::write_whole;
 use mavid::report::proof_text;
 use mavid::study::{CaseVerdict, case_folders, prove, seal, verdict};
 use mavid::text;
@@ -60,7 +61,7 @@ fn sealed(args: &ProveArgs, verdicts: &[CaseVerdict]) -> Result<String, CommandE
     std::fs::create_dir_all(&args.out).map_err(|error| failed(&args.out, error))?;
     for (name, text) in &sealed.files {
         let path = args.out.join(name);
-        std::fs::write(&path, text).map_err(|error| failed(&path, error))?;
+        write_whole(&path, text.as_bytes()).map_err(|error| failed(&path, error))?;
     }
     Ok(sealed.sha256)
 }

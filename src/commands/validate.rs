@@ -52,7 +52,7 @@ fn write_charts(folder: &Path, study: &ValidateStudy) -> Result<(), CommandError
         let path = folder.join(format!("{}-{stem}.svg", index + 1));
         let charts = closed_loop_charts(&flight.flown_again);
         if charts.is_empty() {
-            output::outdated(&path)?;
+            output::outdated(&path)?.iter().for_each(|note| output::message(note));
         } else {
             output::file(&path, &format!("{}{FIGURE}", svg(&charts)))?;
             written.push(path);
@@ -63,7 +63,7 @@ fn write_charts(folder: &Path, study: &ValidateStudy) -> Result<(), CommandError
     for entry in std::fs::read_dir(folder).map_err(unread)? {
         let path = entry.map_err(unread)?.path();
         if !written.contains(&path) && is_figure(&path) {
-            output::outdated(&path)?;
+            output::outdated(&path)?.iter().for_each(|note| output::message(note));
         }
     }
     Ok(())

@@ -49,6 +49,8 @@ pub use law::{FollowLaw, Motion};
 pub use lift::{Lift, Weighed};
 pub use modes::{Mode, Stack};
 pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
+#[cfg(unix)]
+pub use runner::HangUp;
 pub use runner::{
     Console, Due, EVENTS, EVENTS_TARGET, PARAMETERS, Parking, Part, Record, Ride, RunError, StreamFigures,
     Supervisor, TLOG, event_layer, raise_priority, run, send_due,

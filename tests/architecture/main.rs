@@ -13,6 +13,7 @@ use proc_macro2::{TokenStream, TokenTree};
 /// Each stage, from the bottom, and all that it uses: no less, and no more.
 const LAYERS: &[(&str, &[&str])] = &[
     ("units", &[]),
+    ("files", &[]),
     // what others wrote, made harmless where it enters
     ("text", &[]),
     // of any series: nothing of flights, and no import
@@ -115,6 +116,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         "fly",
         &[
             "units",
+            "files",
             "text",
             "frames",
             "vehicle",

@@ -7,6 +7,8 @@
 mod lossy;
 #[path = "../support/processes.rs"]
 mod processes;
+#[path = "../support/pty.rs"]
+mod pty;
 #[path = "../support/python.rs"]
 mod python;
 #[path = "../support/stuck.rs"]
@@ -19,3 +21,4 @@ mod loopback;
 mod peers;
 mod sitl_peers;
 mod stuck_output;
+mod terminal;

@@ -18,6 +18,7 @@ use crate::commands::after_flight::Analysis;
 use crate::commands::live::{self, Work};
 use crate::commands::sitl::DEFAULT_VEHICLE;
 use crate::commands::standard_error::StandardError;
+use crate::commands::words::Word;
 use crate::commands::{CommandError, Outcome, fly, leftover, output, plan};
 
 /// The room, and how lively it is flown.
@@ -57,7 +58,7 @@ fn show(
     let done = story(args, &folder, (&progress, stderr, work));
     progress.end();
     let (record, analysis) = done?;
-    fly::say(&record);
+    fly::words(&record).iter().for_each(Word::say);
     // the verdict is written: only now is it read again what had been concealed
     let acting = concealed(args.effects.as_deref(), &vehicle)?;
     let explained = analysis.as_ref().and_then(|analysis| analysis.explained.as_ref().ok());
@@ -75,6 +76,8 @@ fn show(
         ];
         output::text(&parts.into_iter().flatten().collect::<Vec<_>>().join("\n\n"))?;
     }
+    let remarks = analysis.as_ref().map(Analysis::remarks).unwrap_or_default();
+    remarks.iter().for_each(Word::say);
     fly::outcome(&record, analysis.as_ref())
 }
 
@@ -102,10 +105,11 @@ fn story(
     let watched = progress.clone();
     let record = fly::fly_it(ride, work, move |pictures, _| watched.follow(pictures));
     embedded.stop();
-    let record = record?;
+    let (record, _) = record?;
     let landed = record.outcome.ending == Ending::Landed;
     progress.stage("identifying and explaining", progress::LANDED);
-    let analysis = Analysis::of((folder, landed), &vehicle, record.system)?;
+    let tell = &mut |word: Word| word.say();
+    let analysis = Analysis::of((folder, landed), &vehicle, record.system, tell)?;
     Ok((record, analysis))
 }
 

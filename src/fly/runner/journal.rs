@@ -16,6 +16,7 @@ use tokio::time::timeout;
 
 use super::event_layer::Subscription;
 use super::feed::{Entry, Feed, State, locked};
+use crate::files::write_whole;
 use crate::text;
 
 /// Notes that may wait for the disk: more than a flight usually has.
@@ -106,7 +107,7 @@ fn work(mut store: impl Write, from: &Receiver<Entry>, state: &Mutex<State>) {
                 written.err().map(|error| (1, error.to_string()))
             }
             Entry::File(path, text) => {
-                let written = std::fs::write(&path, text);
+                let written = write_whole(&path, text.as_bytes());
                 written.err().map(|error| (0, format!("{}: {error}", text::path(&path))))
             }
         };

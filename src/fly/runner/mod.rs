@@ -34,3 +34,5 @@ pub use priority::raise_priority;
 pub use ride::{Console, Record, Ride, run};
 pub use stream::{Due, StreamFigures, send_due};
 pub use supervisor::Supervisor;
+#[cfg(unix)]
+pub use termination::HangUp;

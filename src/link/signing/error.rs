@@ -22,8 +22,8 @@ pub enum SigningError {
     Key {
         /// which file
         path: PathBuf,
-        /// what is in it, without telling it
-        got: &'static str,
+        /// what is in it, without telling it but for a wrong letter
+        got: String,
     },
     /// the file of times is damaged
     #[error(

@@ -4,9 +4,28 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// A warning where others than its owner may read or write a file; `None` where the system tells no such thing.
-#[cfg(unix)]
+/// A warning where others than its owner may read or write a key's file; `None` where the system tells no such thing.
 pub(super) fn exposure(path: &Path) -> Option<String> {
+    let (done, mode) = open_to_others(path)?;
+    let name = crate::text::path(path);
+    Some(format!(
+        "the signing key in {name} can be {done} by others (mode {mode:o}, expected 600): chmod 600 {name}"
+    ))
+}
+
+/// The same of the times of a key, which are taken from others as they are read.
+pub(super) fn times_exposure(path: &Path) -> Option<String> {
+    let (done, mode) = open_to_others(path)?;
+    Some(format!(
+        "the signing times in {} could be {done} by others (mode {mode:o}, expected 600): whoever changed them lets old \
+         messages be played back, or shuts the vehicle out; they are this user's alone from now on",
+        crate::text::path(path)
+    ))
+}
+
+/// What others than its owner may do to a file, and its mode.
+#[cfg(unix)]
+fn open_to_others(path: &Path) -> Option<(String, u32)> {
     use std::os::unix::fs::MetadataExt;
     const OTHERS: u32 = 0o077;
     // one that is gone meanwhile was read before
@@ -14,16 +33,13 @@ pub(super) fn exposure(path: &Path) -> Option<String> {
     let open = [(0o044, "read"), (0o022, "written")];
     let done: Vec<&str> =
         open.into_iter().filter(|(bits, _)| mode & bits != 0).map(|(_, done)| done).collect();
-    (mode & OTHERS != 0).then(|| {
-        let done = if done.is_empty() { "run".to_owned() } else { done.join(" and ") };
-        let name = crate::text::path(path);
-        format!("the signing key in {name} can be {done} by others (mode {mode:o}, expected 600): chmod 600 {name}")
-    })
+    let done = if done.is_empty() { "run".to_owned() } else { done.join(" and ") };
+    (mode & OTHERS != 0).then_some((done, mode))
 }
 
-/// A warning where others than its owner may read or write a file; `None` where the system tells no such thing.
+/// The system tells no such thing.
 #[cfg(not(unix))]
-pub(super) fn exposure(_path: &Path) -> Option<String> {
+fn open_to_others(_path: &Path) -> Option<(String, u32)> {
     None
 }
 

@@ -49,10 +49,10 @@ impl Signing {
     pub fn open(key_file: &Path) -> Result<Self, SigningError> {
         let key = SigningKey::read(key_file)?;
         let mut warnings = Vec::from_iter(owner::exposure(key_file));
-        let mut name = key_file.as_os_str().to_owned();
-        name.push(".times");
+        let at = TimesFile::beside(key_file)?;
+        warnings.extend(owner::times_exposure(&at));
         let now = now();
-        let (times, file) = TimesFile::open(name.into(), now)?;
+        let (times, file) = TimesFile::open(at, now)?;
         warnings.extend(clock_warning(times.own.saturating_sub(now)));
         Ok(Self::new(key, times, Some(file), warnings))
     }

@@ -44,6 +44,16 @@ pub(super) struct TimesFile {
 }
 
 impl TimesFile {
+    /// Where the times of a key's file lie: beside the file itself, however many symbolic links lead to it.
+    pub fn beside(key_file: &Path) -> Result<PathBuf, SigningError> {
+        let real = key_file.canonicalize();
+        let path =
+            real.map_err(|source| SigningError::File { what: "read", path: key_file.into(), source })?;
+        let mut name = path.into_os_string();
+        name.push(".times");
+        Ok(name.into())
+    }
+
     /// The times of a file, those of now where there is none, and the means to keep them.
     pub fn open(path: PathBuf, now: u64) -> Result<(Times, Self), SigningError> {
         let failed = |what| {
