@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use mavid::log::{LoadOptions, TlogReader, load, stream_tlog};
+use mavid::log::{self, OpenOptions, ReadReport, TlogReader};
 use mavid::wire::{MessageWriter, SystemId};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage as M};
 use rand::{RngExt, SeedableRng};
@@ -25,15 +25,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         None => generated_log()?,
     };
     writeln!(out, "{} ({} bytes)", path.display(), std::fs::metadata(&path)?.len())?;
-    let options = LoadOptions { system: Some(SystemId(1)) };
+    let options = OpenOptions { system: Some(SystemId(1)), ..OpenOptions::default() };
     let walk = fastest(|| {
         let mut reader = TlogReader::new(std::fs::File::open(&path)?);
         while reader.next_record()?.is_some() {}
         Ok(reader.report().frames)
     })?;
     let mut samples = 0_u64;
-    let stream = fastest(|| Ok(stream_tlog(&path, &options, &mut |_| samples += 1)?.1.frames))?;
-    let recording = fastest(|| Ok(load(&path, &options)?.report.frames))?;
+    let frames = |report: &ReadReport| report.telemetry().map_or(0, |telemetry| telemetry.frames);
+    let stream = fastest(|| Ok(frames(&log::stream(&path, &options, &mut |_, _| samples += 1)?)))?;
+    let recording = fastest(|| Ok(frames(&log::open(&path, &options)?.report)))?;
     writeln!(out, "{:<34} {walk:>12.0} frames/s", "frames and checksums")?;
     writeln!(out, "{:<34} {stream:>12.0} frames/s", "samples, streamed")?;
     writeln!(out, "{:<34} {recording:>12.0} frames/s", "whole recording in memory")?;

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use mavid::config::load_vehicle;
 use mavid::diagnose::{ExplainSettings, clause, explain};
-use mavid::log::{LoadOptions, load};
+use mavid::log::{self, OpenOptions};
 use mavid::signals::{ConditionSettings, condition};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// The verdict, and one sentence an effect.
 pub fn effects() -> Result<String, Box<dyn Error>> {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
-    let log = load(&fixtures.join("p04_identify_10_22s.tlog"), &LoadOptions::default())?;
+    let log = log::open(&fixtures.join("p04_identify_10_22s.tlog"), &OpenOptions::default())?;
     let vehicle = load_vehicle(&fixtures.join("p04_vehicle.toml"))?;
     let signals = condition(&log.recording, &vehicle, &ConditionSettings::default())?;
 

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use mavid::config::load_vehicle;
 use mavid::estimate::{Finding, IdentifySettings, identify};
-use mavid::log::{LoadOptions, load};
+use mavid::log::{self, OpenOptions};
 use mavid::signals::{ConditionSettings, condition};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// One line a parameter: value and standard error, or why there is none.
 pub fn table() -> Result<String, Box<dyn Error>> {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
-    let log = load(&fixtures.join("p01_identify_0_25s.tlog"), &LoadOptions::default())?;
+    let log = log::open(&fixtures.join("p01_identify_0_25s.tlog"), &OpenOptions::default())?;
     let vehicle = load_vehicle(&fixtures.join("p01_vehicle.toml"))?;
 
     // streams on one clock and one grid

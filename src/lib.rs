@@ -10,13 +10,13 @@
 //! ```
 //! use mavid::config::load_vehicle;
 //! use mavid::estimate::{Finding, IdentifySettings, identify};
-//! use mavid::log::{LoadOptions, load};
+//! use mavid::log::{self, OpenOptions};
 //! use mavid::signals::{ConditionSettings, condition};
 //! use std::path::Path;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
-//! let log = load(&fixtures.join("p04_identify_10_22s.tlog"), &LoadOptions::default())?;
+//! let log = log::open(&fixtures.join("p04_identify_10_22s.tlog"), &OpenOptions::default())?;
 //! let vehicle = load_vehicle(&fixtures.join("p04_vehicle.toml"))?;
 //!
 //! let signals = condition(&log.recording, &vehicle, &ConditionSettings::default())?;
@@ -125,7 +125,11 @@
 //! The body frame is x forward, y left, z up. The world frame is north, west, up. Units are SI and radians. Times are
 //! seconds of the vehicle's own clock from the start of the recording. Quaternions are w x y z, from body to world.
 //! Files in other conventions are converted when they are read or written.
+//!
+//! Stages and flights are [`tracing`] spans; what happens in them are events. The library installs no subscriber.
+//! [`fly::run`] needs a subscriber with [`fly::event_layer`], which writes the flight's log of events.
 
+pub mod autopilot;
 pub mod compare;
 pub mod config;
 pub mod diagnose;
@@ -143,6 +147,7 @@ pub mod physics;
 pub mod plan;
 pub mod recording;
 pub mod regression;
+pub mod replay;
 pub mod report;
 pub mod signals;
 pub mod simulate;

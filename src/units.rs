@@ -86,3 +86,10 @@ pub fn narrow(value: f64) -> f32 {
 pub fn whole(value: f64) -> i32 {
     value.round() as i32
 }
+
+/// Nearest whole number that is not negative; a field holds at its bounds, and nothing (not a number) is zero.
+#[must_use]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a field holds at its bounds")]
+pub fn whole_unsigned(value: f64) -> u32 {
+    value.round() as u32
+}

@@ -15,7 +15,7 @@ use maker::vehicle::Craft;
 use maker::{GRAVITY, dopri};
 use mavid::config::parse_vehicle;
 use mavid::diagnose::{ExplainSettings, Explanation, Verdict, explain};
-use mavid::log::{LoadOptions, load};
+use mavid::log::{self, OpenOptions};
 use mavid::signals::{ConditionSettings, ThrustPreference, condition};
 use nalgebra::Vector3;
 
@@ -138,7 +138,7 @@ fn explained(case: &Case) -> Explanation {
     let name = format!("mavid_blind_test_{}_{}.tlog", std::process::id(), case.expect.join("_"));
     let file = std::env::temp_dir().join(name);
     std::fs::write(&file, case.log(&flown, 0)).unwrap();
-    let loaded = load(&file, &LoadOptions::default());
+    let loaded = log::open(&file, &OpenOptions::default());
     std::fs::remove_file(&file).unwrap();
     let vehicle = parse_vehicle(&case.craft.file("blind"), "blind").unwrap().vehicle;
     let how = ConditionSettings {

@@ -8,18 +8,18 @@ mod flying;
 use std::time::Duration;
 
 use flying::{Flying, vehicle_settings};
+use mavid::autopilot::Autopilot;
 use mavid::fly::parameters::Parameters;
 use mavid::fly::{Cause, Ending, Event, Key, Lift, Origin, Outcome, Place, Setpoint, Target};
-use mavid::recording::Autopilot;
-use mavid::sitl::{ArduPilotRelease, AutopilotKind, Fault, LinkRole, Mode, Settings as VehicleSettings};
+use mavid::sitl::{Fault, Firmware, LinkRole, Mode, Settings as VehicleSettings};
 use mavid::wire::{ComponentId, Nonce, SystemId};
 use mavlink::dialects::ardupilotmega::{MavMessage, PositionTargetTypemask, TIMESYNC_DATA};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::Vector3;
 
-const PX4: AutopilotKind = AutopilotKind::Px4;
-const COPTER: AutopilotKind = AutopilotKind::ArduPilot(ArduPilotRelease::V4_7);
-const BOTH: [AutopilotKind; 2] = [PX4, COPTER];
+const PX4: Firmware = Firmware::PX4;
+const COPTER: Firmware = Firmware::ARDUPILOT_4_7;
+const BOTH: [Firmware; 2] = [PX4, COPTER];
 
 const SET_MODE: u32 = 176;
 const ARM: u32 = 400;
@@ -31,7 +31,7 @@ const BATTERY_STATUS: u32 = 147;
 const CRITICAL: u8 = 5;
 
 /// In trajectory: a fault, and how the flight ends.
-fn after(kind: AutopilotKind, fault: Fault) -> (Flying, Duration) {
+fn after(kind: Firmware, fault: Fault) -> (Flying, Duration) {
     let mut flying = Flying::of(kind);
     flying.fly_into_the_trajectory(5.0);
     let since = flying.now;
@@ -385,7 +385,7 @@ fn a_second_ground_station_with_our_ids_ends_the_flight() {
 
 /// Setpoints of another station, each 20 to 40 ms for so long, on a link of its own: its target beside the course, or a
 /// velocity alone.
-fn beside(kind: AutopilotKind, north_m: Option<f64>, lasts: Duration) -> Flying {
+fn beside(kind: Firmware, north_m: Option<f64>, lasts: Duration) -> Flying {
     let mut flying = Flying::of(kind);
     flying.fly_into_the_trajectory(2.0);
     let link = flying.vehicle.open_link(LinkRole::GroundStation);
@@ -530,7 +530,7 @@ fn stall(flying: &mut Flying, ms: u32) {
     }
 }
 
-fn watched_briefly(kind: AutopilotKind) -> Flying {
+fn watched_briefly(kind: Firmware) -> Flying {
     Flying::new(vehicle_settings(kind), |sortie| sortie.settings.watch_max = Duration::from_secs(8))
 }
 
@@ -626,7 +626,7 @@ fn one_forged_heartbeat_that_says_disarmed_ends_nothing() {
 fn a_pilots_loiter_after_an_abort_is_not_followed_by_a_landing() {
     let mut flying = watched_briefly(COPTER);
     flying.fly_into_the_trajectory(3.0);
-    flying.event(Event::Key(Key::To(mavid::fly::Mode::Hold)));
+    flying.event(Event::Key(Key::To(mavid::autopilot::Mode::Hold)));
     flying.wait(2.0);
     assert_eq!(flying.phase(), "hold");
     flying.vehicle.fault(Fault::PilotTakesOver(Mode::Hold));
@@ -799,7 +799,7 @@ fn an_abort_without_an_uplink_waits_until_it_can_be_ordered() {
         flying.up.loss = 0.0;
         flying.wait(2.0);
         assert!(flying.commands_since(SET_MODE, since) > 0, "{}", flying.story());
-        flying.event(Event::Key(Key::To(mavid::fly::Mode::Land)));
+        flying.event(Event::Key(Key::To(mavid::autopilot::Mode::Land)));
         assert_eq!(flying.finish().ending, Ending::Landed, "{}", flying.story());
     }
 }

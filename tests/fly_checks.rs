@@ -14,7 +14,7 @@ use mavid::config::load_vehicle;
 use mavid::fly::view::{KeyCommand, ViewModel};
 use mavid::fly::{self, Check, Console, Origin, Outcome, Ride};
 use mavid::link::{Link, LinkOptions, Signing, SigningKey};
-use mavid::sitl::{ArduPilotRelease, AutopilotKind, LinkRole, Pace, Settings, Vehicle, serve};
+use mavid::sitl::{Firmware, LinkRole, Pace, Settings, Vehicle, serve};
 use mavid::vehicle::Limits;
 use mavid::wire::{ComponentId, SystemId};
 use tokio::sync::mpsc::unbounded_channel;
@@ -22,7 +22,7 @@ use tokio::sync::mpsc::unbounded_channel;
 /// Flies until the checks are over; ends by word of the operator where they let it go on. The vehicle stands 40 m
 /// from the origin of its local frame.
 async fn checked(name: &str, parameters: &[(&str, f64)], keys: [Option<u8>; 2]) -> Outcome {
-    checked_as(name, flying::vehicle_settings(AutopilotKind::Px4), parameters, keys).await
+    checked_as(name, flying::vehicle_settings(Firmware::PX4), parameters, keys).await
 }
 
 async fn checked_as(
@@ -135,7 +135,7 @@ async fn a_vehicle_that_signs_is_flown_with_its_key_alone() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_vehicle_that_has_just_booted_is_waited_for() {
     // all else is checked after some 8 s, and its fence needs its home
-    let kind = AutopilotKind::ArduPilot(ArduPilotRelease::V4_7);
+    let kind = Firmware::ARDUPILOT_4_7;
     let booted = Settings { warm_up: Some(Duration::from_secs(14)), ..flying::vehicle_settings(kind) };
     let fence = [("FENCE_ENABLE", 1.0), ("FENCE_RADIUS", 10.0), ("FENCE_ALT_MAX", 10.0)];
     let outcome = checked_as("booted", booted, &fence, [None, None]).await;
@@ -146,7 +146,7 @@ async fn a_vehicle_that_has_just_booted_is_waited_for() {
 async fn the_file_of_another_vehicle_is_refused_before_it_is_armed() {
     let shipped =
         |name: &str| load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(name)).unwrap();
-    let x500 = || flying::vehicle_settings(AutopilotKind::Px4);
+    let x500 = || flying::vehicle_settings(Firmware::PX4);
     let mut light = shipped("x500.toml");
     light.body.mass_kg *= 0.2;
     let hovers_on = |share: f64| Settings { parameters: vec![("MOT_THST_HOVER".into(), share)], ..copter() };
@@ -168,5 +168,5 @@ async fn the_file_of_another_vehicle_is_refused_before_it_is_armed() {
 }
 
 fn copter() -> Settings {
-    flying::vehicle_settings(AutopilotKind::ArduPilot(ArduPilotRelease::V4_7))
+    flying::vehicle_settings(Firmware::ARDUPILOT_4_7)
 }

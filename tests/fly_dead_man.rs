@@ -1,5 +1,8 @@
-//! A part of the program stands still while the vehicle climbs: setpoints end at once, no mode is ordered, and the
-//! vehicle's own failsafe acts.
+//! A part of the program stands still or dies while the vehicle climbs: setpoints end within 0.1 s, no mode is ordered,
+//! and the vehicle's own failsafe acts.
+//!
+//! What counts is the program's own time: the setpoint's, against that at which the part last ran. A busy machine
+//! changes neither; what it adds until the setpoint is sent is measured beside them.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
 
@@ -11,10 +14,10 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 use mavid::fly::view::{KeyCommand, ViewModel};
-use mavid::fly::{self, Cause, Console, Ending, Parking, Part, Record, Ride, RunError};
-use mavid::link::{Link, LinkOptions, Recorder};
+use mavid::fly::{self, Cause, Console, Ending, Parking, Part, Record, Ride, RunError, TLOG};
+use mavid::link::{Link, LinkOptions, Recorder, Stop};
 use mavid::log::TlogReader;
-use mavid::sitl::{AutopilotKind, LinkRole, Pace, Vehicle, serve};
+use mavid::sitl::{Firmware, LinkRole, Pace, Vehicle, serve};
 use mavid::wire::{ComponentId, SystemId};
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 use tokio::task::JoinHandle;
@@ -24,18 +27,40 @@ const COMMAND_LONG: u32 = 76;
 const SET_MODE: u16 = 176;
 const ARM_DISARM: u16 = 400;
 
-/// What the vehicle heard: when (its log's clock, us), and which message or command.
-fn heard(log: &Path) -> Vec<(u64, u32, u16)> {
+const PARTS: [Part; 3] = [Part::Supervisor, Part::Telemetry, Part::Link];
+const STOPS: [Stop; 3] = [Stop::Stands, Stop::Panics, Stop::Ends];
+/// A setpoint is made at most so long after a part last ran, ms.
+const SILENT_AFTER_MS: f64 = 100.0;
+/// A setpoint says its time in whole milliseconds.
+const ROUNDING_MS: f64 = 2.0;
+/// Between the making of a setpoint and its sending the system may let others run for so long, ms. If it takes longer, this
+/// host stood still meanwhile, and the trial says nothing.
+const SCHEDULER_MS: f64 = 50.0;
+
+/// A message of the station as somebody recorded it.
+struct Said {
+    /// of the recording's clock, us
+    stamp_us: u64,
+    id: u32,
+    /// of a command
+    command: u16,
+    /// of a setpoint: its own time, ms of the flight's clock
+    time_ms: u32,
+}
+
+fn said(log: &Path) -> Vec<Said> {
     let mut reader = TlogReader::new(std::fs::File::open(log).unwrap());
-    let mut heard = Vec::new();
+    let mut said = Vec::new();
     while let Some(record) = reader.next_record().unwrap() {
-        let header = record.frame.header();
+        let (header, payload) = (record.frame.header(), record.frame.payload());
         if header.system == SystemId(255) {
-            let command = if header.message_id == COMMAND_LONG { record.frame.payload().u16(28) } else { 0 };
-            heard.push((record.stamp_us, header.message_id, command));
+            let id = header.message_id;
+            let command = if id == COMMAND_LONG { payload.u16(28) } else { 0 };
+            let time_ms = if id == SETPOINT { payload.u32(0) } else { 0 };
+            said.push(Said { stamp_us: record.stamp_us, id, command, time_ms });
         }
     }
-    heard
+    said
 }
 
 /// A flight of an embedded vehicle over a real link, two seconds into its climb.
@@ -50,7 +75,7 @@ struct Climbing {
 }
 
 async fn climbing(name: &str) -> Climbing {
-    let settings = flying::vehicle_settings(AutopilotKind::Px4);
+    let settings = flying::vehicle_settings(Firmware::PX4);
     flying::write_events();
     let mut sortie = flying::sortie(&settings);
     sortie.may_arm = true;
@@ -96,18 +121,63 @@ async fn climbing(name: &str) -> Climbing {
     Climbing { parking, flight, vehicle, recorder, log, _press: press }
 }
 
-/// Parks a part two seconds into the climb; gives the vehicle's recording and when it was parked.
-async fn parked(part: Part, name: &str) -> (PathBuf, u64) {
+/// What followed after a part had stopped.
+#[derive(Debug)]
+struct Trial {
+    /// ms from when the part last ran until the last setpoint's own time, and until it was sent
+    made_ms: f64,
+    sent_ms: f64,
+    setpoints: usize,
+    /// that change a mode, arm or disarm, and came to the vehicle
+    orders: usize,
+}
+
+/// Stops a part two seconds into the climb.
+async fn stopped(part: Part, how: Stop, name: &str) -> Trial {
     let Climbing { parking, flight, vehicle, recorder, log, _press } = climbing(name).await;
-    let at = u64::try_from(std::time::UNIX_EPOCH.elapsed().unwrap().as_micros()).unwrap();
-    parking.park(part);
-    tokio::time::sleep(Duration::from_secs(4)).await;
+    parking.stop(part, how);
+    // long enough for many setpoints more
+    tokio::time::sleep(Duration::from_millis(1500)).await;
+    let last_ran_us = parking.last_ran_us(part);
     flight.abort();
     // a task that stands still cannot be ended
     parking.release();
     vehicle.abort();
     recorder.end().await.unwrap();
-    (log, at)
+    let sent = said(&log.with_file_name(TLOG));
+    let setpoints: Vec<&Said> = sent.iter().filter(|said| said.id == SETPOINT).collect();
+    let ahead_us = |said: &Said| said.stamp_us as f64 - 1e3 * f64::from(said.time_ms);
+    let start_us = setpoints.iter().map(|said| ahead_us(said)).fold(f64::MAX, f64::min);
+    let last = setpoints.last().unwrap();
+    let later = |said: &&Said| said.stamp_us > last_ran_us && [SET_MODE, ARM_DISARM].contains(&said.command);
+    Trial {
+        made_ms: 1e-3 * (start_us + 1e3 * f64::from(last.time_ms) - last_ran_us as f64),
+        sent_ms: 1e-3 * (last.stamp_us as f64 - last_ran_us as f64),
+        setpoints: setpoints.len(),
+        orders: said(&log).iter().filter(later).count(),
+    }
+}
+
+/// Every part stops so, each in a flight of its own.
+async fn all_stopped(how: Stop, name: &str) -> Vec<(Part, Trial)> {
+    let name = |part: &str| format!("{name}_{part}");
+    let [supervisor, telemetry, link] = ["supervisor", "telemetry", "link"].map(name);
+    let trials = tokio::join!(
+        stopped(Part::Supervisor, how, &supervisor),
+        stopped(Part::Telemetry, how, &telemetry),
+        stopped(Part::Link, how, &link),
+    );
+    PARTS.into_iter().zip([trials.0, trials.1, trials.2]).collect()
+}
+
+/// Whether the laws held; that of the sending only if this host did not stand still.
+fn check(part: Part, how: Stop, trial: &Trial) {
+    let what = format!("{part:?} {how:?}: {trial:?}");
+    assert!(trial.setpoints > 50, "{what}");
+    assert!(trial.made_ms <= SILENT_AFTER_MS + ROUNDING_MS, "{what}");
+    let stood_still = trial.sent_ms - trial.made_ms > SCHEDULER_MS;
+    assert!(stood_still || trial.sent_ms <= SILENT_AFTER_MS + SCHEDULER_MS, "{what}");
+    assert_eq!(trial.orders, 0, "{what}");
 }
 
 /// Nothing but the flight's clock tells of it: every part goes on as if nothing had been.
@@ -124,20 +194,48 @@ async fn a_computer_that_slept_has_stood_still() {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 8)]
 async fn whatever_stands_still_setpoints_end_and_no_mode_is_ordered() {
-    let (supervisor, telemetry, link) = tokio::join!(
-        parked(Part::Supervisor, "supervisor"),
-        parked(Part::Telemetry, "telemetry"),
-        parked(Part::Link, "link"),
-    );
-    for (name, (log, at)) in [("supervisor", supervisor), ("telemetry", telemetry), ("link", link)] {
-        let heard = heard(&log);
-        let before = heard.iter().filter(|(t, id, _)| *t < at && *id == SETPOINT).count();
-        assert!(before > 50, "{name}: {before} setpoints before");
-        // a tenth of a second by the program's clock; the machine may be busy
-        let late = heard.iter().filter(|(t, id, _)| *t > at + 1_000_000 && *id == SETPOINT).count();
-        assert_eq!(late, 0, "{name}");
-        let orders =
-            heard.iter().filter(|(t, _, command)| *t > at && [SET_MODE, ARM_DISARM].contains(command));
-        assert_eq!(orders.count(), 0, "{name}");
+    for (part, trial) in all_stopped(Stop::Stands, "stands").await {
+        check(part, Stop::Stands, &trial);
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 8)]
+async fn whatever_dies_setpoints_end_and_no_mode_is_ordered() {
+    for (how, name) in [(Stop::Panics, "panics"), (Stop::Ends, "ends")] {
+        for (part, trial) in all_stopped(how, name).await {
+            check(part, how, &trial);
+        }
+    }
+}
+
+/// The figures of the documents; not for every day: 180 flights.
+#[ignore = "takes half an hour"]
+#[tokio::test(flavor = "multi_thread", worker_threads = 8)]
+async fn twenty_trials_of_each() {
+    for how in STOPS {
+        let mut trials = Vec::new();
+        for _ in 0..10 {
+            let (one, other) = tokio::join!(all_stopped(how, "one"), all_stopped(how, "other"));
+            trials.extend(one.into_iter().chain(other));
+        }
+        for part in PARTS {
+            let mut of_part: Vec<&Trial> = Vec::new();
+            for (of, trial) in &trials {
+                check(*of, how, trial);
+                if *of == part {
+                    of_part.push(trial);
+                }
+            }
+            let most = |of: fn(&Trial) -> f64| of_part.iter().map(|trial| of(trial)).fold(f64::MIN, f64::max);
+            let still = of_part.iter().filter(|trial| trial.sent_ms - trial.made_ms > SCHEDULER_MS).count();
+            println!(
+                "{part:?} {how:?}: {} trials, made at most {:.1} ms and sent at most {:.1} ms after it last ran, {still} with a host \
+                 that stood still, {} orders",
+                of_part.len(),
+                most(|trial| trial.made_ms),
+                most(|trial| trial.sent_ms),
+                of_part.iter().map(|trial| trial.orders).sum::<usize>()
+            );
+        }
     }
 }

@@ -4,12 +4,12 @@
 
 mod support;
 
-use mavid::config::{default_csv_mapping, load_vehicle, read_trajectory};
+use mavid::config::{load_vehicle, read_trajectory};
 use mavid::estimate::{
     Finding, Identification, IdentifySettings, LatencyKind, Method, Theta, apply_anchor, identified_vehicle,
     identify, inertia_of, is_physical, scale_of, theta_of,
 };
-use mavid::log::{LoadOptions, csv, load};
+use mavid::log::{self, OpenOptions};
 use mavid::physics::RigidBodyModel;
 use mavid::recording::{Quantity, Recording};
 use mavid::signals::{ConditionSettings, SignalsError, ThrustPreference, condition};
@@ -23,11 +23,7 @@ fn fixture(name: &str) -> PathBuf {
 }
 
 fn read(path: &Path) -> Recording {
-    if path.extension().is_some_and(|extension| extension == "csv") {
-        csv::read_csv(path, &default_csv_mapping().unwrap()).unwrap().0
-    } else {
-        load(path, &LoadOptions::default()).unwrap().recording
-    }
+    log::open(path, &OpenOptions::default()).unwrap().recording
 }
 
 fn identified(recording: &Recording, vehicle: &Vehicle, thrust: ThrustPreference) -> Identification {

@@ -286,9 +286,9 @@ fn wrong_sets_are_refused_with_what_was_expected() {
 
 /// A recording of the first fixture without some of its quantities.
 fn without(folder: &Path, gone: &[mavid::recording::Quantity]) -> String {
-    let loaded = mavid::log::load(
+    let loaded = mavid::log::open(
         Path::new(&path("fixtures/p01_identify_0_25s.tlog")),
-        &mavid::log::LoadOptions::default(),
+        &mavid::log::OpenOptions::default(),
     )
     .unwrap();
     let mut recording = loaded.recording;

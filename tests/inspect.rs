@@ -9,10 +9,9 @@ mod support;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use mavid::config::{default_csv_mapping, read_vehicle};
-use mavid::inspect::{Inspection, Reading, inspect_csv, inspect_tlog};
-use mavid::log::csv::{CsvReport, read_csv};
-use mavid::log::{LoadOptions, LogError, load};
+use mavid::config::read_vehicle;
+use mavid::inspect::{Inspection, Reading, inspect, inspect_recording};
+use mavid::log::{self, LogError, OpenOptions};
 use mavid::recording::StreamStats;
 use mavid::vehicle::Vehicle;
 use mavid::wire::SystemId;
@@ -33,7 +32,7 @@ fn x500() -> Vehicle {
 }
 
 fn inspected(path: &Path, vehicle: Option<&Vehicle>) -> Inspection {
-    inspect_tlog(path, &LoadOptions::default(), vehicle, &mut |_| ()).unwrap()
+    inspect(path, &OpenOptions::default(), vehicle, &mut |_| ()).unwrap()
 }
 
 fn mavid(arguments: &[&str]) -> Output {
@@ -46,15 +45,15 @@ fn streaming_gives_what_the_whole_recording_gives() {
     flight_log::write_flight_log(&path, 2_500_000).unwrap();
     let vehicle = x500();
     let streamed = inspected(&path, Some(&vehicle));
-    let recording = load(&path, &LoadOptions::default()).unwrap().recording;
-    let batch = inspect_csv(&recording, &CsvReport::default(), Some(&vehicle));
+    let opened = log::open(&path, &OpenOptions::default()).unwrap();
+    let batch = inspect_recording(&opened, Some(&vehicle));
     assert_eq!(streamed.streams, batch.streams);
     assert_eq!(streamed.flight, batch.flight);
     assert_eq!(streamed.excitation, batch.excitation);
     assert_eq!(streamed.identifiability, batch.identifiability);
     assert_eq!(streamed.timeline, batch.timeline);
     assert_eq!(streamed.numbers_held_max, batch.numbers_held_max);
-    for (key, stream) in &recording.streams {
+    for (key, stream) in &opened.recording.streams {
         let found = streamed
             .streams
             .iter()
@@ -137,11 +136,11 @@ fn what_is_no_log_is_status_two_with_a_message() {
     let name = |path: &Path| path.display().to_string();
     for (argument, expected) in [
         (name(&empty), "empty"),
-        (name(&text), "begins with"),
+        (name(&text), "text without a header of columns"),
         (name(&table), "empty file"),
         (folder.to_owned(), "folder"),
         ("absent.tlog".to_owned(), "absent.tlog"),
-        ("flight.bag".to_owned(), "*.tlog or *.csv"),
+        ("absent".to_owned(), "cannot open"),
     ] {
         let output = mavid(&["inspect", &argument, "--json"]);
         assert_eq!(output.status.code(), Some(2), "{argument}");
@@ -163,12 +162,12 @@ fn two_vehicles_and_none_with_a_heartbeat_are_inspected() {
     let first = inspected(&path, None);
     assert_eq!((first.vehicle.system, first.vehicle.others.as_slice()), (Some(1), [2].as_slice()));
     assert!(first.advice.iter().any(|advice| advice.contains("--system-id")));
-    let options = LoadOptions { system: Some(SystemId(2)) };
-    let second = inspect_tlog(&path, &options, None, &mut |_| ()).unwrap();
+    let options = OpenOptions { system: Some(SystemId(2)), ..OpenOptions::default() };
+    let second = inspect(&path, &options, None, &mut |_| ()).unwrap();
     assert_eq!(second.vehicle.system, Some(2));
-    let absent = LoadOptions { system: Some(SystemId(9)) };
+    let absent = OpenOptions { system: Some(SystemId(9)), ..OpenOptions::default() };
     assert!(matches!(
-        inspect_tlog(&path, &absent, None, &mut |_| ()),
+        inspect(&path, &absent, None, &mut |_| ()),
         Err(LogError::SystemAbsent { wanted: SystemId(9), .. })
     ));
 
@@ -264,7 +263,7 @@ fn every_shared_recording_of_others_gets_a_verdict_and_what_is_no_recording_is_r
     let Some(shared) = support::shared() else { return };
     for path in support::files(&shared.join("recordings/tlogs"), "tlog") {
         let name = path.file_name().unwrap().to_str().unwrap();
-        let found = inspect_tlog(&path, &LoadOptions::default(), None, &mut |_| ());
+        let found = inspect(&path, &OpenOptions::default(), None, &mut |_| ());
         if name == "not_mavlink.tlog" {
             assert!(found.is_err());
             continue;
@@ -285,9 +284,8 @@ fn every_shared_recording_of_others_gets_a_verdict_and_what_is_no_recording_is_r
 fn every_shared_table_is_inspected() {
     let Some(shared) = support::shared() else { return };
     for path in support::files(&shared.join("recordings"), "csv") {
-        let (recording, report) = read_csv(&path, &default_csv_mapping().unwrap()).unwrap();
         let vehicle = read_vehicle(&path.with_file_name("vehicle.toml")).unwrap().vehicle;
-        let inspection = inspect_csv(&recording, &report, Some(&vehicle));
+        let inspection = inspect(&path, &OpenOptions::default(), Some(&vehicle), &mut |_| ()).unwrap();
         assert!(!inspection.verdict.is_empty());
         let ixx = &inspection.identifiability[1];
         if path.display().to_string().contains("crazypad") {

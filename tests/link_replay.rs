@@ -8,7 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::time::Duration;
 
-use mavid::link::{HeldBack, Link, LinkError, LinkEvent, LinkOptions, Received, Replay, ReplayError};
+use mavid::link::{Link, LinkError, LinkEvent, LinkOptions, Received};
+use mavid::replay::{HeldBack, Replay, ReplayError};
 use mavid::wire::{CrcSeeds, checksum};
 use mavlink::MavHeader;
 use mavlink::dialects::ardupilotmega::MavMessage;

@@ -6,11 +6,10 @@ use mavid::config::load_vehicle;
 use mavid::estimate::{Finding, IdentifySettings, Method, THETA, identify};
 use mavid::fly::live::{LiveIdentification, LiveSettings};
 use mavid::fly::parameters::Parameters;
-use mavid::log::{LoadOptions, load};
-use mavid::recording::Recording;
+use mavid::log::{self, OpenOptions};
+use mavid::recording::{Event, Recording, StreamKey};
 use mavid::signals::{ConditionSettings, condition};
 use mavid::vehicle::{Anchor, Vehicle};
-use mavid::wire::{Event, Source, StreamId};
 use std::path::{Path, PathBuf};
 
 fn fixture(name: &str) -> PathBuf {
@@ -22,24 +21,22 @@ fn vehicle() -> Vehicle {
 }
 
 fn recording() -> Recording {
-    load(&fixture("p01_identify_0_25s.tlog"), &LoadOptions::default()).unwrap().recording
+    log::open(&fixture("p01_identify_0_25s.tlog"), &OpenOptions::default()).unwrap().recording
 }
 
 /// Every sample in the order of its time, `shift_s` later.
-fn samples(recording: &Recording, shift_s: f64) -> Vec<(StreamId, f64, Vec<f64>)> {
+fn samples(recording: &Recording, shift_s: f64) -> Vec<(StreamKey, f64, Vec<f64>)> {
     let mut all = Vec::new();
     for (key, stream) in &recording.streams {
-        let source = *Source::ALL.iter().find(|source| source.name() == key.source).unwrap();
-        let id = StreamId { quantity: key.quantity, source, instance: key.instance };
         for index in 0..stream.len() {
-            all.push((id, stream.time_s[index] + shift_s, stream.sample(index).to_vec()));
+            all.push((*key, stream.time_s[index] + shift_s, stream.sample(index).to_vec()));
         }
     }
     all.sort_by(|a, b| a.1.total_cmp(&b.1));
     all
 }
 
-fn feed(live: &mut LiveIdentification, samples: &[(StreamId, f64, Vec<f64>)]) {
+fn feed(live: &mut LiveIdentification, samples: &[(StreamKey, f64, Vec<f64>)]) {
     for (stream, time_s, values) in samples {
         live.take(&Event::Sample { stream: *stream, time_s: *time_s, values });
     }

@@ -7,7 +7,7 @@ mod support;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use mavid::log::{Flights, Hold, LoadOptions, LogError, LogFlight, load, load_flights, who_flew};
+use mavid::log::{self, Flights, Hold, LogError, LogFlight, OpenOptions, open_flights};
 use mavid::recording::{Quantity, Recording, Stream, StreamKey};
 use mavid::wire::{CrcSeeds, SystemId, checksum};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
@@ -266,12 +266,12 @@ fn heartbeats_of_others_do_not_hide_who_flew() {
     let others =
         [beat(2, true), beat(7, true), beat(33, false), v2(header(250, 0), &support::ground_heartbeat())];
     let log = written("foreign.tlog", &among(&others));
-    assert_eq!(who_flew(&log).unwrap(), SystemId(1));
-    let alone = load(&fixture("p01_identify_0_25s.tlog"), &LoadOptions::default()).unwrap().recording;
-    let loaded = load_flights(&log, &LoadOptions::default(), &MOST).unwrap();
+    let alone = log::open(&fixture("p01_identify_0_25s.tlog"), &OpenOptions::default()).unwrap().recording;
+    let loaded = open_flights(&log, &OpenOptions::default(), &MOST).unwrap();
     assert_eq!(loaded.flights.flights.len(), 1);
     assert_eq!(loaded.flights.flights[0].recording.streams, alone.streams);
-    assert_eq!(loaded.others, [SystemId(2), SystemId(7), SystemId(33)]);
+    assert_eq!(loaded.report.vehicle.unwrap().system, SystemId(1));
+    assert_eq!(loaded.report.others, [SystemId(2), SystemId(7), SystemId(33)]);
     for verb in ["identify", "explain", "inspect"] {
         let output = mavid(verb, &log);
         let told = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -298,10 +298,13 @@ fn of_two_vehicles_the_one_that_was_armed_and_moved_is_taken_and_of_two_that_wer
     };
     // the first that speaks stands; the second flew
     let second = written("second-flew.tlog", &log([false, true]));
-    assert_eq!(load_flights(&second, &LoadOptions::default(), &MOST).unwrap().vehicle.system, SystemId(2));
+    assert_eq!(
+        open_flights(&second, &OpenOptions::default(), &MOST).unwrap().report.vehicle.unwrap().system,
+        SystemId(2)
+    );
     for (armed, they) in [([true, true], "all flew"), ([false, false], "none of which flew")] {
         let refused =
-            load_flights(&written("both.tlog", &log(armed)), &LoadOptions::default(), &MOST).unwrap_err();
+            open_flights(&written("both.tlog", &log(armed)), &OpenOptions::default(), &MOST).unwrap_err();
         assert!(matches!(&refused, LogError::SeveralVehicles { systems, .. } if systems.len() == 2));
         let said = refused.to_string();
         assert!(said.contains(they) && said.contains("--system-id"), "{said}");

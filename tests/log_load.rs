@@ -1,6 +1,6 @@
 //! Whole logs: whose messages they hold, and what a recording of them is.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
 
 #[path = "support/python.rs"]
 mod python;
@@ -9,8 +9,9 @@ mod support;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use mavid::log::{LoadOptions, LogError, load, stream_tlog};
-use mavid::recording::{Autopilot, Quantity, StreamKey, StreamTally};
+use mavid::autopilot::Autopilot;
+use mavid::log::{self, LogError, Oddity, OpenOptions};
+use mavid::recording::{Quantity, StreamKey, StreamTally};
 use mavid::wire::SystemId;
 use mavlink::dialects::ardupilotmega::{MavMessage, SYS_STATUS_DATA};
 use support::{Needed, START_US, attitude, ground_heartbeat, header, heartbeat, record, tlog, v2};
@@ -34,8 +35,8 @@ impl Drop for Scratch {
     }
 }
 
-fn of_system(system: u32) -> LoadOptions {
-    LoadOptions { system: Some(SystemId(system)) }
+fn of_system(system: u32) -> OpenOptions {
+    OpenOptions { system: Some(SystemId(system)), ..OpenOptions::default() }
 }
 
 /// Two vehicles (1 and 2), and a ground station (255) between them.
@@ -55,40 +56,38 @@ fn two_vehicles() -> Vec<u8> {
 #[test]
 fn several_vehicles_are_named_and_one_is_chosen() {
     let log = Scratch::new("two.tlog", &two_vehicles());
-    let refused = load(&log.0, &LoadOptions::default()).unwrap_err();
+    let refused = log::open(&log.0, &OpenOptions::default()).unwrap_err();
     assert!(
         matches!(&refused, LogError::SeveralVehicles { systems, .. } if *systems == [SystemId(1), SystemId(2)])
     );
     assert!(refused.to_string().contains("1, 2"), "{refused}");
     for system in [1, 2] {
-        let recording = load(&log.0, &of_system(system)).unwrap().recording;
+        let recording = log::open(&log.0, &of_system(system)).unwrap().recording;
         assert_eq!(recording.streams[&ATTITUDE].len(), 50);
         assert_eq!(recording.streams[&ATTITUDE].time_s[49], 0.98);
         assert_eq!(recording.autopilot, Autopilot::Px4);
     }
-    let refused = load(&log.0, &of_system(3)).unwrap_err();
+    let refused = log::open(&log.0, &of_system(3)).unwrap_err();
     assert!(matches!(refused, LogError::SystemAbsent { wanted: SystemId(3), .. }), "{refused}");
 }
 
 #[test]
 fn a_log_of_a_ground_station_alone_holds_no_vehicle() {
     let log = Scratch::new("ground.tlog", &tlog(&[v2(header(255, 0), &ground_heartbeat())]));
-    let refused = load(&log.0, &LoadOptions::default()).unwrap_err();
+    let refused = log::open(&log.0, &OpenOptions::default()).unwrap_err();
     assert!(refused.to_string().contains("255"), "{refused}");
 }
 
 #[test]
 fn a_vehicle_without_a_heartbeat_is_read_when_it_is_named() {
     let log = Scratch::new("silent.tlog", &tlog(&support::attitudes(20)));
-    assert!(matches!(load(&log.0, &LoadOptions::default()), Err(LogError::NoVehicle { .. })));
-    assert_eq!(load(&log.0, &of_system(1)).unwrap().recording.streams[&ATTITUDE].len(), 20);
+    assert!(matches!(log::open(&log.0, &OpenOptions::default()), Err(LogError::NoVehicle { .. })));
+    assert_eq!(log::open(&log.0, &of_system(1)).unwrap().recording.streams[&ATTITUDE].len(), 20);
 }
 
 #[test]
-fn a_name_that_says_nothing_is_refused() {
-    let refused = load(Path::new("flight.bag"), &LoadOptions::default()).unwrap_err();
-    assert!(refused.to_string().contains("flight.bag"), "{refused}");
-    let refused = load(Path::new("absent.tlog"), &LoadOptions::default()).unwrap_err();
+fn a_log_that_is_not_there_is_named() {
+    let refused = log::open("absent.tlog", &OpenOptions::default()).unwrap_err();
     assert!(refused.to_string().contains("absent.tlog"), "{refused}");
 }
 
@@ -98,7 +97,7 @@ fn doubled_and_late_samples_are_put_in_order_and_counted() {
     let mut frames = vec![v2(header(1, 0), &heartbeat())];
     frames.extend(times_ms.map(|time_ms| v2(header(1, 0), &attitude(time_ms))));
     let log = Scratch::new("order.tlog", &tlog(&frames));
-    let loaded = load(&log.0, &LoadOptions::default()).unwrap();
+    let loaded = log::open(&log.0, &OpenOptions::default()).unwrap();
     assert_eq!(loaded.recording.streams[&ATTITUDE].time_s, [0.0, 0.02, 0.04, 0.06, 0.08]);
     let repair = loaded.report.streams[&ATTITUDE];
     assert_eq!((repair.duplicates, repair.out_of_order), (2, 2));
@@ -108,15 +107,15 @@ fn doubled_and_late_samples_are_put_in_order_and_counted() {
 fn streamed_samples_are_those_of_the_recording() {
     let log = Scratch::new("streamed.tlog", &two_vehicles());
     let mut tally = StreamTally::default();
-    stream_tlog(&log.0, &of_system(2), &mut |event| {
-        if let mavid::wire::Event::Sample { stream, time_s, values } = event
-            && stream.key() == ATTITUDE
+    log::stream(&log.0, &of_system(2), &mut |_, event| {
+        if let mavid::recording::Event::Sample { stream, time_s, values } = event
+            && stream == ATTITUDE
         {
             tally.add(time_s, values);
         }
     })
     .unwrap();
-    let recording = load(&log.0, &of_system(2)).unwrap().recording;
+    let recording = log::open(&log.0, &of_system(2)).unwrap().recording;
     assert_eq!(tally.stats(), mavid::recording::StreamStats::of(&recording.streams[&ATTITUDE]));
 }
 
@@ -164,9 +163,10 @@ fn pymavlink_counts_the_same_messages_in_recorded_flights() {
     let cases = ["cases/p01-nothing-missing/identify.tlog", "cases/p04-motor-lag/holdout.tlog"];
     for path in flights.into_iter().chain(cases).map(|name| shared.join(name)) {
         let Some(theirs) = pymavlink("--counts", &path) else { return };
-        let report = load(&path, &LoadOptions::default()).unwrap().report;
+        let report = log::open(&path, &OpenOptions::default()).unwrap().report;
         let mut counts = std::collections::BTreeMap::<u32, u64>::new();
-        for (id, count) in report.senders.iter().flat_map(|sender| sender.messages.iter()) {
+        let senders = &report.telemetry().unwrap().senders;
+        for (id, count) in senders.iter().flat_map(|sender| sender.messages.iter()) {
             *counts.entry(id).or_default() += count;
         }
         let ours: String = counts.iter().map(|(id, count)| format!("{id} {count}\n")).collect();
@@ -200,7 +200,7 @@ fn a_host_clock_that_is_set_in_flight_moves_no_sample() {
         add(host_us + 50_000, &attitude(5000 + 100 * step));
     }
     let log = Scratch::new("set.tlog", &bytes);
-    let loaded = load(&log.0, &LoadOptions::default()).unwrap();
+    let loaded = log::open(&log.0, &OpenOptions::default()).unwrap();
     let attitudes = &loaded.recording.streams[&ATTITUDE];
     assert_eq!(attitudes.len(), 400);
     for (key, stream) in &loaded.recording.streams {
@@ -212,8 +212,13 @@ fn a_host_clock_that_is_set_in_flight_moves_no_sample() {
     for (index, time_s) in power.time_s.iter().enumerate() {
         assert!((time_s - (index as f64 - 0.049)).abs() < 0.15, "{index}: {time_s}");
     }
-    assert_eq!(loaded.report.decode.host_steps, 2);
-    let told = loaded.report.oddities().join("; ");
+    assert_eq!(loaded.report.telemetry().unwrap().decode.host_steps, 2);
+    let [Oddity::BackwardStamps { count: 1, .. }, oddity @ Oddity::HostClockSet { count: 2 }] =
+        loaded.report.oddities.as_slice()
+    else {
+        panic!("{:?}", loaded.report.oddities)
+    };
+    let told = oddity.to_string();
     assert!(told.contains("clock was set 2 times while the vehicle's went on"), "{told}");
-    assert!(loaded.report.losses().is_empty());
+    assert!(loaded.report.losses.is_empty());
 }

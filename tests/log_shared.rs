@@ -6,8 +6,9 @@ mod support;
 
 use std::path::{Path, PathBuf};
 
-use mavid::log::{LoadOptions, Loaded, load};
-use mavid::recording::{Autopilot, Quantity, StreamKey, StreamStats};
+use mavid::autopilot::Autopilot;
+use mavid::log::{self, OpenOptions, Opened};
+use mavid::recording::{Quantity, StreamKey, StreamStats};
 
 fn key(quantity: Quantity, source: &'static str) -> StreamKey {
     StreamKey { quantity, source, instance: 0 }
@@ -18,12 +19,12 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-fn read(path: &Path) -> Loaded {
-    load(path, &LoadOptions::default()).unwrap()
+fn read(path: &Path) -> Opened {
+    log::open(path, &OpenOptions::default()).unwrap()
 }
 
-fn undamaged(loaded: &Loaded) {
-    let report = &loaded.report;
+fn undamaged(loaded: &Opened) {
+    let report = loaded.report.telemetry().unwrap();
     assert_eq!((report.bad_crc, report.resync_count, report.truncated_tail_bytes), (0, 0, 0));
     assert_eq!(report.decode.stale_stamps, 0);
     assert!(loaded.recording.clock_resets_s.is_empty());

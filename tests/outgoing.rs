@@ -5,11 +5,12 @@
 
 use std::time::Duration;
 
-use mavid::fly::parameters::{Download, DownloadSettings, Purpose, RequestedEffects, wanted};
+use mavid::autopilot::Autopilot;
+use mavid::autopilot::{ARDUPILOT, Mode, PX4, Purpose};
+use mavid::fly::parameters::{Download, DownloadSettings, RequestedParameter, wanted};
 use mavid::fly::preflight::FenceDownload;
 use mavid::fly::requests::{Capacity, LinkKind, Need, RequestSettings, Requests, StreamRequest};
-use mavid::fly::{MessageId, Mode, Order, ParameterName, Period, Setpoint, Stack, Target, heartbeat};
-use mavid::recording::Autopilot;
+use mavid::fly::{MessageId, Order, ParameterName, Period, Setpoint, Target, heartbeat};
 use mavid::wire::{Check, ComponentId, CrcSeeds, Frame, SystemId, Vehicle};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
@@ -107,7 +108,7 @@ fn vehicle(system: u32, autopilot: Autopilot) -> Vehicle {
 }
 
 fn order() -> impl Strategy<Value = Option<Order>> {
-    let stack = prop_oneof![Just(Stack::Px4), Just(Stack::ArduPilot)];
+    let stack = prop_oneof![Just(&PX4), Just(&ARDUPILOT)];
     let mode = prop_oneof![Just(Mode::External), Just(Mode::Hold), Just(Mode::Land), Just(Mode::Return)];
     prop_oneof![
         (stack, mode).prop_map(|(stack, mode)| Some(Order::set_mode(stack, mode))),
@@ -169,7 +170,7 @@ proptest! {
         };
         let capacity = Capacity::new(LinkKind::Wide, Autopilot::Px4);
         let mut requests = Requests::new(vehicle, vec![request], capacity, RequestSettings::default());
-        let asked = RequestedEffects { names: vec![name], purpose: Purpose::Limit };
+        let asked = RequestedParameter { names: vec![name], purpose: Purpose::Limit };
         let mut download = Download::new(vehicle, vec![asked], DownloadSettings::default());
         let mut fence = FenceDownload::new(vehicle);
         for message in [requests.poll(now), download.poll(now), fence.poll(now)].into_iter().flatten() {
@@ -218,7 +219,7 @@ fn what_is_sent_in_every_flight_is_in_range() {
 #[test]
 fn the_check_finds_what_is_out_of_range() {
     let target = Target::new(SystemId(1), ComponentId(1)).unwrap();
-    let good = target.command(&Order::set_mode(Stack::ArduPilot, Mode::Hold), 0);
+    let good = target.command(&Order::set_mode(&ARDUPILOT, Mode::Hold), 0);
     check(&good).unwrap();
     for value in [2_147_483_648.0, f32::NAN, f32::INFINITY, -1.0, 0.5] {
         for index in 0..7 {

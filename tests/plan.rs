@@ -117,7 +117,7 @@ fn conflicts_are_named() {
     };
     let heights = message(&|limits, _| limits.z_min_m = Some(2.0));
     assert!(heights.contains("z_min_m = 2") && heights.contains("z_max_m = 1.5"), "{heights}");
-    let start = message(&|_, request| request.start.x_m = 3.0);
+    let start = message(&|_, request| request.start.x_m = Some(3.0));
     assert!(start.contains("x_max_m") && start.contains("start at x = 3"), "{start}");
     let thrust = message(&|limits, _| limits.thrust_max_n = Some(10.0));
     assert!(thrust.contains("thrust_max_n = 10") && thrust.contains("weight of 17.560 N"), "{thrust}");

@@ -106,7 +106,7 @@ fn a_plan_has_a_room_above_the_ground_and_says_where_it_is_not_the_stated_one() 
         std::fs::read_to_string(format!("{}/configs/x500.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
     let body = described.split("[limits]").next().unwrap();
     let rooms = [
-        ("none", "", "default room"),
+        ("none", "", "the default is used"),
         (
             "low",
             "[limits]\nx_max_m = 2.0\ny_max_m = 2.0\nz_min_m = -5.0\nz_max_m = 4.0\nspeed_max_m_s = 1.5\n",

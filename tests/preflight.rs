@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
+use mavid::autopilot::Autopilot;
 use mavid::config::load_vehicle;
 use mavid::fence::{FenceItem, Zone};
 use mavid::fly::finding::{Finding, Level, worst};
@@ -11,7 +12,6 @@ use mavid::fly::requests::{
     Answer, Capacity, LinkKind, Need, RequestSettings, Requests, request_set, slow_request_set,
 };
 use mavid::frames::Geodetic;
-use mavid::recording::Autopilot;
 use mavid::trajectory::{FlightPath, FourierAxis, FourierTrajectory, Segment, Transition, at_rest};
 use mavid::vehicle::Limits;
 use mavid::wire::{ComponentId, Decoder, Frame, Record, SystemId, Vehicle};
@@ -450,7 +450,7 @@ fn ardupilot(changes: &[(&str, f64)]) -> Parameters {
     let values = [
         ("GUID_TIMEOUT", 3.0),
         ("GUID_OPTIONS", 0.0),
-        ("FS_GCS_ENABLE", 1.0),
+        ("FS_GCS_ENABLE", 5.0),
         ("FS_GCS_TIMEOUT", 5.0),
         ("MAV_GCS_SYSID", 255.0),
         ("FS_THR_ENABLE", 1.0),
@@ -521,13 +521,20 @@ const DIES: &str = "if we die now";
 #[test]
 fn setpoints_are_sent_such_that_each_may_be_the_last() {
     let mut scene = Scene::good();
-    (scene.limits.x_max_m, scene.limits.y_max_m) = (Some(1.2), Some(1.2));
+    // the path's 1 m, the rotors' 0.39 m, and what the vehicle is off its model
+    (scene.limits.x_max_m, scene.limits.y_max_m) = (Some(1.65), Some(1.65));
     let said = scene.said(DIES);
     assert_eq!(said.level, Level::Ok, "{said}");
-    assert!(
-        said.came.contains("places ahead, without velocity") && said.expected.contains("3.0 s"),
-        "{said}"
-    );
+    assert!(said.came.contains("places ahead") && said.expected.contains("3.0 s"), "{said}");
+    // where only the rotors pass the wall that is told, with both numbers
+    (scene.limits.x_max_m, scene.limits.y_max_m) = (Some(1.2), Some(1.2));
+    let narrow = scene.said(DIES);
+    assert_eq!(narrow.level, Level::Warning, "{narrow}");
+    assert!(narrow.came.contains("0 is expected, more than 1.25 m of a wall is refused"), "{narrow}");
+    (scene.limits.z_max_m, scene.limits.x_max_m, scene.limits.y_max_m) = (Some(2.3), Some(1.65), Some(1.65));
+    let low = scene.said(DIES);
+    assert!(low.level == Level::Warning && low.came.contains("the ceiling z_max_m"), "{low}");
+    scene.limits.z_max_m = Some(6.0);
     // at 0.8 m/s in a wide room nothing has to be kept back
     (scene.limits.x_max_m, scene.limits.y_max_m) = (Some(8.0), Some(8.0));
     let said = scene.said(DIES);
@@ -547,7 +554,8 @@ fn where_nothing_is_safe_to_send_it_refuses_and_says_what_would_be() {
     scene.parameters = ardupilot(&[("WP_ACC", 0.2), ("PSC_NE_JERK", 0.2)]);
     let said = scene.said(DIES);
     assert_eq!(said.level, Level::Refusal, "{said}");
-    assert!(said.came.contains("however they are sent"), "{said}");
+    assert!(said.came.starts_with("setpoints that come nearest to it cost"), "{said}");
+    assert!(said.remedy.contains("--tracking-max"), "{said}");
     assert!(said.remedy.contains("slower"), "{said}");
 }
 
@@ -569,6 +577,106 @@ fn what_px4_does_after_the_loss_is_held_against_the_room() {
     }
     scene.parameters = px4(4.0);
     assert_eq!(scene.said(DIES).level, Level::Ok);
+}
+
+#[test]
+fn what_follows_when_our_heartbeats_end_is_held_against_the_room() {
+    let mut scene = Scene::good();
+    scene.limits.z_max_m = Some(4.0);
+    // a return from where it comes to rest climbs by a cone of slope 6
+    let returning = |enable: f64, more: &[(&str, f64)]| {
+        let mut parameters =
+            ardupilot(&[("FS_GCS_ENABLE", enable), ("RTL_ALT_M", 15.0), ("RTL_CONE_SLOPE", 6.0)]);
+        parameters.values.extend(more.iter().map(|(name, value)| ((*name).to_owned(), *value)));
+        parameters
+    };
+    for enable in [1.0, 2.0, 3.0, 6.0] {
+        scene.parameters = returning(enable, &[]);
+        let said = scene.said(DIES);
+        assert!(
+            said.level == Level::Warning && said.came.contains("the ceiling allows 3.7 m"),
+            "{enable}: {said}"
+        );
+        assert!(
+            said.remedy.contains("FS_GCS_ENABLE to 5") && said.remedy.contains("RTL_ALT_M to 3.6 or less"),
+            "{said}"
+        );
+    }
+    // what lands or brakes, a return below the ceiling, a narrow cone, another station's heartbeats
+    for safe in [
+        returning(0.0, &[]),
+        returning(4.0, &[]),
+        returning(5.0, &[]),
+        returning(7.0, &[]),
+        returning(1.0, &[("RTL_ALT_M", 3.6)]),
+        returning(1.0, &[("RTL_CONE_SLOPE", 0.7)]),
+        returning(1.0, &[("MAV_GCS_SYSID", 254.0)]),
+    ] {
+        scene.parameters = safe;
+        assert_eq!(scene.said(DIES).level, Level::Ok, "{}", scene.said(DIES));
+    }
+    // no cone, an unanswered height, a climb in any case
+    scene.parameters = returning(1.0, &[("RTL_CONE_SLOPE", 0.0)]);
+    scene.parameters.values.remove("RTL_ALT_M");
+    let said = scene.said(DIES);
+    assert!(said.came.contains("15.0 m above home (RTL_ALT, assumed"), "{said}");
+    scene.parameters = returning(1.0, &[("RTL_ALT_M", 2.0), ("RTL_CLIMB_MIN_M", 3.0)]);
+    let said = scene.said(DIES);
+    assert!(said.came.contains("climbs to 5.") && !said.remedy.contains("RTL_ALT_M"), "{said}");
+}
+
+#[test]
+fn what_px4_does_without_a_ground_station_is_held_against_the_room() {
+    let px4 = |setpoints: f64, station: f64| {
+        let values = [
+            ("COM_OF_LOSS_T", 1.0),
+            ("COM_OBL_RC_ACT", setpoints),
+            ("NAV_DLL_ACT", station),
+            ("COM_DL_LOSS_T", 10.0),
+            ("RTL_RETURN_ALT", 60.0),
+        ];
+        Parameters {
+            autopilot: Autopilot::Px4,
+            values: values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+            ..Parameters::default()
+        }
+    };
+    let mut scene = Scene::good();
+    for (setpoints, station, word) in [
+        (
+            5.0,
+            2.0,
+            "climbs to 60 m above home (RTL_RETURN_ALT), the ceiling allows 5.7 m, once no ground station is heard for 10 s",
+        ),
+        (5.0, 5.0, "motors that stop in the air once"),
+        (4.0, 6.0, "motors that stop in the air once"),
+        (6.0, 0.0, "motors that stop in the air (COM_OBL_RC_ACT = 6)"),
+        (7.0, 0.0, "motors that stop in the air (COM_OBL_RC_ACT = 7)"),
+    ] {
+        scene.parameters = px4(setpoints, station);
+        let said = scene.said(DIES);
+        assert!(said.level == Level::Warning && said.came.contains(word), "{setpoints}, {station}: {said}");
+        assert!(said.remedy.starts_with("set "), "{said}");
+    }
+    for (setpoints, station) in [(5.0, 0.0), (5.0, 1.0), (5.0, 3.0), (4.0, 2.0)] {
+        scene.parameters = px4(setpoints, station);
+        assert_eq!(scene.said(DIES).level, Level::Ok, "{}", scene.said(DIES));
+    }
+}
+
+#[test]
+fn guided_options_that_follow_no_place_or_velocity_are_refused() {
+    let mut scene = Scene::good();
+    for (mask, part, safe) in
+        [(16.0, "position is not", "to 0"), (32.0, "velocity is not", "to 0"), (52.0, "bit 5", "to 4")]
+    {
+        scene.parameters = ardupilot(&[("GUID_OPTIONS", mask)]);
+        let said = scene.said("guided options");
+        assert!(said.level == Level::Refusal && said.came.contains(part), "{said}");
+        assert!(said.remedy.ends_with(safe), "{said}");
+    }
+    scene.parameters = ardupilot(&[("GUID_OPTIONS", 4.0 + 8.0 + 64.0)]);
+    assert!(scene.findings().iter().all(|finding| finding.subject != "guided options"));
 }
 
 #[test]
@@ -618,6 +726,42 @@ fn the_page_before_the_flight_begins_with_warnings_and_ends_with_the_room() {
     assert!(drawn >= 20 && text.contains("...") && text.contains('o'), "{text}");
 }
 
+/// Whatever of it is known: the page speaks of the battery, the fence, and both of the pilot's switches.
+#[test]
+fn battery_fence_and_switches_are_on_every_page() {
+    let batteries = [(None, None), (Some(90.0), None), (None, Some(900.0)), (Some(90.0), Some(900.0))];
+    let fences = [
+        Scene::good().fence,
+        Fence::default(),
+        Fence { unknown: vec!["2 of 4 items came".to_owned()], ..Fence::default() },
+    ];
+    let switches: [&[&str]; 4] = [&[], &["FLTMODE_CH"], &["RC7_OPTION"], &["FLTMODE_CH", "RC7_OPTION"]];
+    let mut pages = 0;
+    for (remaining_percent, endurance_s) in batteries {
+        for fence in &fences {
+            for missing in switches {
+                let mut scene = Scene::good();
+                scene.battery = BatteryState { remaining_percent, endurance_s, is_low: false };
+                scene.fence = fence.clone();
+                scene.parameters.values.retain(|name, _| !missing.contains(&name.as_str()));
+                let lines = scene.judged().page.lines(1000);
+                for (subject, word) in [
+                    ("battery", if remaining_percent.is_some() { "90 %" } else { "does not say" }),
+                    ("fence", ""),
+                    ("pilot's takeover", "mode switch"),
+                    ("pilot's takeover", "kill switch"),
+                ] {
+                    let head = format!("{subject}: ");
+                    let said = lines.iter().any(|line| line.contains(&head) && line.contains(word));
+                    assert!(said, "{subject}, {word}: {lines:#?}");
+                }
+                pages += 1;
+            }
+        }
+    }
+    assert_eq!(pages, 48);
+}
+
 #[test]
 fn low_guided_limits_are_said_with_what_to_set() {
     let mut scene = Scene::good();
@@ -662,6 +806,21 @@ fn the_fence_is_checked_with_its_margin_and_with_every_area() {
 }
 
 #[test]
+fn a_fence_that_is_enabled_in_flight_is_asked_for_and_declared() {
+    let asked: Vec<String> =
+        wanted(Autopilot::ArduPilot, 4).into_iter().flat_map(|wanted| wanted.names).collect();
+    assert!(asked.iter().any(|name| name == "FENCE_AUTOENABLE"));
+    let mut scene = Scene::good();
+    scene.parameters = ardupilot(&[("FENCE_ENABLE", 0.0), ("FENCE_AUTOENABLE", 3.0)]);
+    let said: Vec<String> = scene.findings().iter().map(ToString::to_string).collect();
+    assert!(
+        said.iter().any(|said| said.contains("enabled at arming or takeoff (FENCE_AUTOENABLE)")),
+        "{said:#?}"
+    );
+    assert!(!said.iter().any(|said| said.contains("There is no fence")), "{said:#?}");
+}
+
+#[test]
 fn a_fence_is_built_from_parameters_and_items() {
     let origin = Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594 };
     let item = |command, parameter, north: f64, east: f64| FenceItem {
@@ -689,7 +848,23 @@ fn a_fence_is_built_from_parameters_and_items() {
     // a polygon that did not arrive in whole, areas without an origin, and a fence that is off
     assert_eq!(Fence::new(&ardupilot(&[]), &items[1..4], Some(&origin)).unknown.len(), 1);
     assert_eq!(Fence::new(&ardupilot(&[]), &items, None).unknown.len(), 1);
-    assert!(Fence::new(&ardupilot(&[("FENCE_ENABLE", 0.0)]), &items, Some(&origin)).is_empty());
+    let off = |more: &[(&str, f64)]| {
+        let mut parameters = ardupilot(&[("FENCE_ENABLE", 0.0), ("FENCE_AUTOENABLE", 0.0)]);
+        parameters.values.extend(more.iter().map(|(name, value)| ((*name).to_owned(), *value)));
+        parameters
+    };
+    assert_eq!(Fence::new(&off(&[]), &items, Some(&origin)), Fence::default());
+    // enabled at takeoff or arming
+    for value in [1.0, 2.0, 3.0] {
+        let enabled = Fence::new(&off(&[("FENCE_AUTOENABLE", value)]), &items, Some(&origin));
+        assert_eq!(enabled, fence, "FENCE_AUTOENABLE = {value}");
+    }
+    // one that did not answer is told, one that the vehicle does not know is off
+    let mut silent = off(&[]);
+    silent.values.remove("FENCE_AUTOENABLE");
+    assert_eq!(Fence::new(&silent, &items, Some(&origin)).unknown, ["FENCE_AUTOENABLE did not answer"]);
+    silent.absent.push("FENCE_AUTOENABLE".into());
+    assert_eq!(Fence::new(&silent, &items, Some(&origin)), Fence::default());
 }
 
 #[test]
@@ -702,8 +877,8 @@ fn what_is_not_ready_is_refused_with_its_reason() {
         assert!(!said.remedy.is_empty());
         said
     };
-    let said = refused("battery", &|scene| scene.battery.remaining_percent = Some(9.0));
-    assert!(said.came.contains("81 s"), "{said}");
+    let said = refused("battery", &|scene| scene.battery.remaining_percent = Some(7.0));
+    assert!(said.came.contains("63 s"), "{said}");
     refused("battery", &|scene| scene.battery.is_low = true);
     refused("home", &|scene| scene.readiness.home_set = false);
     refused("health", &|scene| scene.readiness.unhealthy = vec!["position control".into()]);

@@ -10,9 +10,9 @@ use mavid::fly::parameters::{Download, DownloadSettings, Parameters, failsafe_de
 use mavid::fly::preflight::{Fence, FenceDownload, FenceOutcome};
 use mavid::fly::requests::{Capacity, LinkKind, Need, RatesReport, RequestSettings, Requests, request_set};
 use mavid::frames::Geodetic;
-use mavid::recording::Autopilot;
-use mavid::sitl::{self, ArduPilotRelease, AutopilotKind, LinkId, LinkRole, Settings};
-use mavid::wire::{ComponentId, Decoder, Event, Frame, Record, SystemId, Vehicle};
+use mavid::recording::Event;
+use mavid::sitl::{self, Firmware, LinkId, LinkRole, Settings};
+use mavid::wire::{ComponentId, Decoder, Frame, Record, SystemId, Vehicle};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use std::path::Path;
@@ -31,11 +31,11 @@ struct Peer {
 }
 
 impl Peer {
-    fn new(kind: AutopilotKind, loss: f64, latency_ms: u64) -> Self {
+    fn new(kind: Firmware, loss: f64, latency_ms: u64) -> Self {
         Self::with_fence(kind, loss, latency_ms, Vec::new())
     }
 
-    fn with_fence(kind: AutopilotKind, loss: f64, latency_ms: u64, fence: Vec<FenceItem>) -> Self {
+    fn with_fence(kind: Firmware, loss: f64, latency_ms: u64, fence: Vec<FenceItem>) -> Self {
         let description =
             load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml")).unwrap();
         let settings = Settings {
@@ -50,11 +50,8 @@ impl Peer {
         Self { vehicle, link, decoder, now: Duration::ZERO, sequence: 0, loss, seed: 11 }
     }
 
-    fn identity(kind: AutopilotKind) -> Vehicle {
-        let autopilot = match kind {
-            AutopilotKind::Px4 => Autopilot::Px4,
-            AutopilotKind::ArduPilot(_) => Autopilot::ArduPilot,
-        };
+    fn identity(kind: Firmware) -> Vehicle {
+        let autopilot = kind.autopilot();
         Vehicle { system: SystemId(1), component: ComponentId(1), autopilot }
     }
 
@@ -84,7 +81,7 @@ impl Peer {
     }
 }
 
-fn downloaded(peer: &mut Peer, kind: AutopilotKind) -> Parameters {
+fn downloaded(peer: &mut Peer, kind: Firmware) -> Parameters {
     let vehicle = Peer::identity(kind);
     let mut download = Download::new(vehicle, wanted(vehicle.autopilot, 4), DownloadSettings::default());
     while !download.is_done(peer.now) {
@@ -97,7 +94,7 @@ fn downloaded(peer: &mut Peer, kind: AutopilotKind) -> Parameters {
     download.finish()
 }
 
-fn measured(peer: &mut Peer, kind: AutopilotKind) -> RatesReport {
+fn measured(peer: &mut Peer, kind: Firmware) -> RatesReport {
     let vehicle = Peer::identity(kind);
     let capacity = Capacity::new(LinkKind::Wide, vehicle.autopilot);
     let set = request_set(vehicle.autopilot);
@@ -111,19 +108,15 @@ fn measured(peer: &mut Peer, kind: AutopilotKind) -> RatesReport {
     requests.report()
 }
 
-const KINDS: [AutopilotKind; 3] = [
-    AutopilotKind::Px4,
-    AutopilotKind::ArduPilot(ArduPilotRelease::V4_6),
-    AutopilotKind::ArduPilot(ArduPilotRelease::V4_7),
-];
+const KINDS: [Firmware; 3] = [Firmware::PX4, Firmware::ARDUPILOT_4_6, Firmware::ARDUPILOT_4_7];
 
 #[test]
 fn every_kind_gives_what_a_flight_needs() {
     for kind in KINDS {
         let parameters = downloaded(&mut Peer::new(kind, 0.0, 20), kind);
         let needed: &[&str] = match kind {
-            AutopilotKind::Px4 => &["COM_OF_LOSS_T", "COM_OBL_RC_ACT", "THR_MDL_FAC", "PWM_MAIN_MIN1"],
-            AutopilotKind::ArduPilot(_) => &[
+            Firmware::PX4 => &["COM_OF_LOSS_T", "COM_OBL_RC_ACT", "THR_MDL_FAC", "PWM_MAIN_MIN1"],
+            _ => &[
                 "MOT_THST_EXPO",
                 "MOT_PWM_MIN",
                 "MOT_SPIN_MIN",
@@ -146,11 +139,8 @@ fn every_kind_gives_what_a_flight_needs() {
 
 #[test]
 fn old_and_new_names_mean_the_same() {
-    let of = |release| {
-        let kind = AutopilotKind::ArduPilot(release);
-        downloaded(&mut Peer::new(kind, 0.0, 20), kind)
-    };
-    let (old, new) = (of(ArduPilotRelease::V4_6), of(ArduPilotRelease::V4_7));
+    let of = |kind| downloaded(&mut Peer::new(kind, 0.0, 20), kind);
+    let (old, new) = (of(Firmware::ARDUPILOT_4_6), of(Firmware::ARDUPILOT_4_7));
     for name in ["WPNAV_ACCEL", "WPNAV_SPEED", "ANGLE_MAX", "SYSID_MYGCS"] {
         let (old, new) = (old.get(name).unwrap(), new.get(name).unwrap());
         assert!((old - new).abs() < 1e-3 * old.abs(), "{name}: {old} and {new}");
@@ -197,7 +187,7 @@ fn a_lossy_link_still_gets_its_streams() {
     }
 }
 
-fn fence_of(peer: &mut Peer, kind: AutopilotKind) -> (FenceOutcome, Vec<FenceItem>) {
+fn fence_of(peer: &mut Peer, kind: Firmware) -> (FenceOutcome, Vec<FenceItem>) {
     let mut download = FenceDownload::new(Peer::identity(kind));
     while download.outcome().is_none() {
         while let Some(message) = download.poll(peer.now) {

@@ -2,7 +2,7 @@
 
 #![allow(clippy::panic, clippy::unwrap_used, reason = "a test ends where it fails")]
 
-use mavid::log::{LoadOptions, load};
+use mavid::log::{self, OpenOptions};
 use mavid::simulate::{
     FlightSettings, RandomTrajectory, Reference, TelemetrySettings, Truth, random_vehicle, simulate_flight,
 };
@@ -83,7 +83,7 @@ fn a_written_log_reads_back_as_what_was_simulated() {
     let path = folder.join("flight.tlog");
     let file = std::fs::File::create(&path).unwrap();
     write_recording(&flight.recording, file, 1_700_000_000_000_000).unwrap();
-    let read = load(&path, &LoadOptions::default()).unwrap().recording;
+    let read = log::open(&path, &OpenOptions::default()).unwrap().recording;
     for (key, sent) in &flight.recording.streams {
         let Some((_, came)) =
             read.streams.iter().find(|(k, _)| k.quantity == key.quantity && k.source == key.source)

@@ -8,8 +8,8 @@
 use std::path::PathBuf;
 
 use mavid::config::read_vehicle;
-use mavid::inspect::inspect_tlog;
-use mavid::log::LoadOptions;
+use mavid::inspect::inspect;
+use mavid::log::OpenOptions;
 use mavid::report::{
     ExplanationDocument, IdentificationDocument, InspectionDocument, ValidationDocument, explained_model,
     explanation_html, explanation_text, identification_text, identified_model, inspection_text,
@@ -115,7 +115,7 @@ fn a_validation() {
 fn an_inspection() {
     let (log, vehicle) = (fixture("px4_baseline_40_46s.tlog"), fixture("px4-sih.toml"));
     let vehicle = read_vehicle(&vehicle).unwrap().vehicle;
-    let inspection = inspect_tlog(&log, &LoadOptions::default(), Some(&vehicle), &mut |_| {}).unwrap();
+    let inspection = inspect(&log, &OpenOptions::default(), Some(&vehicle), &mut |_| {}).unwrap();
     let name = log.to_str().unwrap();
     insta::assert_snapshot!("inspection_text", inspection_text(name, &inspection));
     insta::assert_snapshot!("inspection_json", outlined(&InspectionDocument::new(name, &inspection)));

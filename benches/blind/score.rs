@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use mavid::config::parse_vehicle;
 use mavid::diagnose::{ExplainSettings, Explanation, Named, Verdict, explain};
-use mavid::log::{LoadOptions, load};
+use mavid::log::{self, OpenOptions};
 use mavid::signals::{ConditionSettings, ThrustPreference, condition};
 use rayon::prelude::*;
 use statrs::distribution::{Beta, ContinuousCDF};
@@ -31,7 +31,7 @@ pub fn answer(case: Case) -> Result<Answer, String> {
         case.truth.iter().map(|(id, ..)| *id).collect::<String>()
     ));
     std::fs::write(&file, case.log(&flown, 0)).map_err(|error| error.to_string())?;
-    let loaded = load(&file, &LoadOptions::default()).map_err(|error| error.to_string());
+    let loaded = log::open(&file, &OpenOptions::default()).map_err(|error| error.to_string());
     let _ = std::fs::remove_file(&file);
     let vehicle =
         parse_vehicle(&case.craft.file("blind"), "blind").map_err(|error| error.to_string())?.vehicle;

@@ -1,8 +1,7 @@
 //! Tables of samples.
 
-use mavid::config::default_csv_mapping;
-use mavid::log::csv::{CsvError, CsvMapping, read_csv_from};
-use mavid::recording::Quantity;
+use mavid::log::csv::{CsvError, CsvMapping, CsvReport, read_table};
+use mavid::recording::{Quantity, Recording, RecordingBuilder};
 
 use super::bytes::Bytes;
 use super::tlog::is_sound;
@@ -19,7 +18,7 @@ pub fn run(data: &[u8], seeded: bool) {
     let mut script = Bytes::new(data);
     let header = script.one_of(&HEADERS);
     let scaled = script.u8();
-    let mut mapping = default_csv_mapping().expect("the built-in mapping");
+    let mut mapping = CsvMapping::default();
     if scaled & 1 == 1 {
         mapping.time.scale = 1e-3;
     }
@@ -30,8 +29,15 @@ pub fn run(data: &[u8], seeded: bool) {
     check(&text, &mapping, seeded);
 }
 
+/// As a recording.
+pub fn read(text: &[u8], mapping: &CsvMapping) -> Result<(Recording, CsvReport), CsvError> {
+    let mut builder = RecordingBuilder::new();
+    let report = read_table(text, "table", mapping, &mut |_, event| builder.add(event))?;
+    Ok((builder.finish().0, report))
+}
+
 fn check(text: &[u8], mapping: &CsvMapping, seeded: bool) {
-    let (recording, report) = match read_csv_from(text, "table", mapping) {
+    let (recording, report) = match read(text, mapping) {
         Ok(read) => read,
         Err(CsvError::Read { .. }) => panic!("an error of reading that bytes in memory cannot have"),
         Err(error) => {
@@ -56,6 +62,6 @@ fn check(text: &[u8], mapping: &CsvMapping, seeded: bool) {
         assert!(!(seeded && overlooked), "the seeded bug: a clock that starts anew in a table of attitudes");
     }
     // what was read once is read the same again
-    let again = read_csv_from(text, "table", mapping).expect("read before");
+    let again = read(text, mapping).expect("read before");
     assert_eq!(again.1, report);
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use mavid::config::parse_vehicle;
-use mavid::log::{LoadOptions, Loaded, TlogReader, load};
+use mavid::log::{self, OpenOptions, Opened, TlogReader};
 use mavid::vehicle::Vehicle;
 
 use super::damage::Record;
@@ -68,8 +68,10 @@ impl File {
     }
 
     /// As the verbs read it, without a system named; `None` where it is refused with words.
-    pub fn load(&self) -> Option<Loaded> {
-        load(&self.0, &LoadOptions::default()).map_err(|error| assert!(!error.to_string().is_empty())).ok()
+    pub fn load(&self) -> Option<Opened> {
+        log::open(&self.0, &OpenOptions::default())
+            .map_err(|error| assert!(!error.to_string().is_empty()))
+            .ok()
     }
 }
 

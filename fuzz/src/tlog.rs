@@ -2,8 +2,8 @@
 
 use std::io::Read;
 
-use mavid::log::{LogError, ReadReport, RecordingBuilder, TlogReader};
-use mavid::recording::Recording;
+use mavid::log::{self, Input, LogError, OpenOptions, TlogReader, TlogReport};
+use mavid::recording::{Recording, RecordingBuilder};
 use mavid::wire::{Check, ComponentId, Decoder, SystemId, Vehicle};
 
 use super::bytes::Bytes;
@@ -42,7 +42,7 @@ impl Read for Trickle<'_> {
 #[derive(Debug, PartialEq)]
 struct Got {
     records: Vec<(u64, u64, Vec<u8>)>,
-    report: ReadReport,
+    report: TlogReport,
     failed: Option<String>,
 }
 
@@ -59,7 +59,7 @@ fn read(bytes: &[u8], piece: usize, seeded: bool) -> Got {
                 }
             }
             Ok(None) => break None,
-            Err(error @ (LogError::Empty | LogError::NotTlog { .. })) => break Some(error.to_string()),
+            Err(error @ (LogError::Empty | LogError::WrongContent { .. })) => break Some(error.to_string()),
             Err(error) => panic!("an error that bytes in memory cannot have: {error}"),
         }
     };
@@ -84,6 +84,15 @@ fn any_bytes(mut script: Bytes<'_>, seeded: bool) {
     }
     assert_eq!(read(bytes, piece, seeded), got, "in pieces of {piece} bytes");
     put_together(&got);
+    through_the_door(bytes);
+}
+
+/// Any bytes are a log, or refused with words.
+fn through_the_door(bytes: &[u8]) {
+    match log::open(Input::Bytes { name: "bytes", bytes }, &OpenOptions::default()) {
+        Ok(opened) => is_sound(&opened.recording),
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
 }
 
 fn account(bytes: &[u8], got: &Got) {
@@ -114,7 +123,7 @@ fn put_together(got: &Got) {
         decoder.decode(&record, &mut |event| builder.add(event));
     }
     decoder.finish(&mut |event| builder.add(event));
-    is_sound(&builder.finish(&vehicle).0);
+    is_sound(&builder.finish().0);
 }
 
 /// Streams are in order of time, of one width, and have no time that is no number.

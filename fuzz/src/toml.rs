@@ -6,11 +6,11 @@ use mavid::config::{
 };
 use mavid::fly::parameters::Parameters;
 use mavid::fly::{Course, Lift};
-use mavid::log::csv::read_csv_from;
 use mavid::physics::{ActiveEffect, Airframe, REFERENCE_SIZE};
 use mavid::vehicle::VehicleSize;
 
 use super::bytes::Bytes;
+use super::csv;
 
 /// The vehicle for which trajectories and effects are read.
 const X500: &str = include_str!("../../configs/x500.toml");
@@ -120,7 +120,7 @@ fn mapping(text: &str) {
     let header = format!("{},{}\n", mapping.time.column, names.join(","));
     let row = |time: &str| format!("{time}{}\n", ",1".repeat(names.len()));
     let table = [header, row("0"), row("1e300"), row("-1")].concat();
-    let _ = read_csv_from(table.as_bytes(), "table", &mapping);
+    let _ = csv::read(table.as_bytes(), &mapping);
 }
 
 /// Parameters are the same when they were written and read again.

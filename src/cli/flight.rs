@@ -2,6 +2,7 @@
 
 use super::address::ADDRESS;
 use clap::{Args, ValueEnum};
+use mavid::fly::SETPOINT_HZ;
 use std::path::PathBuf;
 
 /// Arguments of `mavid fly`.
@@ -33,8 +34,8 @@ pub struct FlyArgs {
     /// periods to fly, instead of the trajectory's own
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub repeats: Option<u32>,
-    /// setpoints a second
-    #[arg(long, value_name = "HZ", default_value_t = 50, value_parser = clap::value_parser!(u32).range(20..=200))]
+    /// setpoints a second; none that divides the rates of the log
+    #[arg(long, value_name = "HZ", default_value_t = SETPOINT_HZ, value_parser = clap::value_parser!(u32).range(20..=200))]
     pub setpoint_hz: u32,
     /// where the trajectory's horizontal origin lies; its heights count from the ground
     #[arg(long, value_enum, default_value = "local")]

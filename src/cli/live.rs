@@ -1,7 +1,10 @@
 //! Verbs that speak to vehicles or stand for one.
 
 use super::address::{ADDRESS, LISTEN};
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use mavid::autopilot::{Autopilot, STACKS};
+use mavid::sitl::Firmware;
 use std::path::PathBuf;
 
 /// Arguments of `mavid demo`.
@@ -30,11 +33,11 @@ pub struct SitlArgs {
     #[arg(long, value_name = "ADDRESS", help = LISTEN)]
     pub listen: Vec<String>,
     /// whose behaviour
-    #[arg(long, value_enum, default_value = "px4")]
-    pub autopilot: AutopilotName,
+    #[arg(long, value_parser = autopilots(), default_value = "px4")]
+    pub autopilot: Autopilot,
     /// whose names and units of parameters ArduPilot has [default: 4.7]
-    #[arg(long, value_enum)]
-    pub ardupilot_version: Option<ArduPilotVersion>,
+    #[arg(long, value_parser = ardupilot_versions())]
+    pub ardupilot_version: Option<Firmware>,
     /// times real time
     #[arg(long, value_name = "N", default_value_t = 1.0, allow_negative_numbers = true)]
     pub speed: f64,
@@ -76,24 +79,18 @@ pub struct SitlArgs {
     pub duration: Option<f64>,
 }
 
-/// Names of the autopilots.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum AutopilotName {
-    /// PX4 multicopter
-    Px4,
-    /// ArduCopter
-    Ardupilot,
+/// Names of the autopilots that can be simulated.
+fn autopilots() -> impl TypedValueParser<Value = Autopilot> {
+    let named = STACKS.into_iter().filter(|stack| Firmware::of(stack.autopilot).is_some());
+    let names = named.map(|stack| PossibleValue::new(stack.id).help(stack.vehicles));
+    PossibleValuesParser::new(names).map(|id| Autopilot::of_id(&id))
 }
 
 /// Releases of ArduPilot that differ in their parameters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum ArduPilotVersion {
-    /// centimetres and centidegrees
-    #[value(name = "4.6")]
-    V4_6,
-    /// metres and degrees
-    #[value(name = "4.7")]
-    V4_7,
+fn ardupilot_versions() -> impl TypedValueParser<Value = Firmware> {
+    let of = |version: &'static str, units| PossibleValue::new(version).help(units);
+    PossibleValuesParser::new([of("4.6", "centimetres and centidegrees"), of("4.7", "metres and degrees")])
+        .map(|version| if version == "4.6" { Firmware::ARDUPILOT_4_6 } else { Firmware::ARDUPILOT_4_7 })
 }
 
 /// Arguments of `mavid record`.

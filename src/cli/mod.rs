@@ -10,7 +10,7 @@ mod verb;
 mod verbosity;
 
 pub use flight::{CheckName, FlyArgs, OriginName};
-pub use live::{ArduPilotVersion, AutopilotName, DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
+pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 pub use model::{ExportArgs, ExportFormat, SimulateArgs, VehicleArgs};
 pub use plan::{CriterionName, PlanArgs};
 pub use recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ValidateArgs};

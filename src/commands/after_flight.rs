@@ -124,9 +124,9 @@ impl Written<'_> {
         let targets =
             Targets { model: Some(place(MODEL)), report: Some(place(REPORT)), chart: Some(place(CHART)) };
         let written = || {
-            targets.write(study)?;
             output::file(&place(PAGE), &format!("{}\n", identification_text(study)))?;
-            output::file(&place(DOCUMENT), &output::json_text(&IdentificationDocument::new(study))?)
+            output::file(&place(DOCUMENT), &output::json_text(&IdentificationDocument::new(study))?)?;
+            targets.write(study)
         };
         let error = written().err()?;
         let names = [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(place);
@@ -144,7 +144,7 @@ impl Written<'_> {
     fn again(&self, error: &CommandError, files: &[PathBuf], (verb, out): (&str, &Path)) -> String {
         let missing = files.iter().filter(|file| !file.exists()).map(text::path).collect::<Vec<_>>();
         format!(
-            "{error}; missing: {}; to make them when there is room: mavid {verb} {} \
+            "{error}; missing: {}; to make them once that is mended: mavid {verb} {} \
              --vehicle {} --out {}{}",
             missing.join(", "),
             text::path(&self.folder.join(fly::TLOG)),
@@ -166,7 +166,7 @@ mod tests {
         let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
         let folder = std::env::temp_dir().join(format!("mavid-after-flight-{}", std::process::id()));
         let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(folder.join("model.toml.part")).unwrap();
+        fs::create_dir_all(folder.join("identification.txt.part")).unwrap();
         fs::create_dir_all(folder.join("explained/report.html.part")).unwrap();
         fs::copy(fixtures.join("p04_identify_10_22s.tlog"), folder.join(fly::TLOG)).unwrap();
         let vehicle = fixtures.join("p04_vehicle.toml");

@@ -40,9 +40,3 @@ impl From<mavid::log::LogError> for CommandError {
         Self::Input(error.to_string())
     }
 }
-
-impl From<mavid::log::csv::CsvError> for CommandError {
-    fn from(error: mavid::log::csv::CsvError) -> Self {
-        Self::Input(error.to_string())
-    }
-}

@@ -51,9 +51,10 @@ pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Out
 /// Writes model, report and document into a folder, which is made.
 pub fn write(study: &ExplainStudy, folder: &Path) -> Result<(), CommandError> {
     output::folder(folder)?;
-    output::file(&folder.join(MODEL), &explained_model(study)?)?;
     output::file(&folder.join(REPORT), &explanation_html(study))?;
-    output::file(&folder.join(DOCUMENT), &output::json_text(&ExplanationDocument::new(study))?)
+    output::file(&folder.join(DOCUMENT), &output::json_text(&ExplanationDocument::new(study))?)?;
+    // last: it is refused where what was determined is no body's
+    output::file(&folder.join(MODEL), &explained_model(study)?)
 }
 
 /// What is to be known about the data, line by line.

@@ -37,14 +37,15 @@ impl Targets {
 
     /// Writes what there is a place for.
     pub fn write(&self, study: &IdentifyStudy) -> Result<(), CommandError> {
-        if let Some(path) = &self.model {
-            output::file(path, &identified_model(study)?)?;
-        }
         if let Some(path) = &self.report {
             output::file(path, &identification_html(study))?;
         }
         if let Some(path) = &self.chart {
             output::file(path, &svg(&history_charts(&study.identification)))?;
+        }
+        // last: it is refused where what was determined is no body's
+        if let Some(path) = &self.model {
+            output::file(path, &identified_model(study)?)?;
         }
         Ok(())
     }

@@ -57,8 +57,8 @@ fn search(args: &PlanArgs) -> Result<PlanRequest, CommandError> {
     let start = match args.start.as_deref() {
         None => StartPlace::default(),
         Some([x_m, y_m, rest @ ..]) => StartPlace {
-            x_m: *x_m,
-            y_m: *y_m,
+            x_m: Some(*x_m),
+            y_m: Some(*y_m),
             z_m: rest.first().copied(),
             yaw_rad: rest.get(1).map_or(0.0, |deg| deg.to_radians()),
         },
@@ -77,6 +77,7 @@ fn search(args: &PlanArgs) -> Result<PlanRequest, CommandError> {
         },
         seed: args.seed,
         starts: args.starts,
+        rests_inside: true,
         ..PlanRequest::default()
     })
 }

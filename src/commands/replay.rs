@@ -4,7 +4,8 @@
 //! is dropped.
 
 use indicatif::{ProgressBar, ProgressStyle};
-use mavid::link::{LinkOptions, Replay, ReplayCounts, ReplayError};
+use mavid::link::LinkOptions;
+use mavid::replay::{Replay, ReplayCounts, ReplayError};
 use mavid::text;
 use serde::Serialize;
 
@@ -94,7 +95,7 @@ async fn play(
         unsent: counts.unsent,
         discarded: counts.discarded,
         interrupted,
-        losses: replay.losses().to_vec(),
+        losses: replay.losses().iter().map(ToString::to_string).collect(),
     };
     for loss in &document.losses {
         output::warning(&format!("{}: {loss}", document.log));

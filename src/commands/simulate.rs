@@ -75,8 +75,8 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
         saturated: flight.saturated,
     };
     if flight.tracking_error_max_m > FOLLOWED_M {
-        output::message(&format!(
-            "warning: the vehicle could not follow {}: up to {:.1} m off it; a longer --period of mavid plan asks less of the rotors",
+        output::warning(&format!(
+            "the vehicle could not follow {}: up to {:.1} m off it; a longer --period of mavid plan asks less of the rotors",
             text::path(&args.trajectory),
             flight.tracking_error_max_m
         ));

@@ -5,15 +5,13 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use mavid::config::{LoadedVehicle, parse_vehicle, read_vehicle};
 use mavid::link::{Address, LinkOptions, LinkReader, SigningKey};
-use mavid::sitl::{
-    ArduPilotRelease, AutopilotKind, LinkRole, Pace, SensorSettings, Served, Settings, Vehicle, serve,
-};
+use mavid::sitl::{Firmware, LinkRole, Pace, SensorSettings, Served, Settings, Vehicle, serve};
 use mavid::study::with_further;
 use mavid::wire::{ComponentId, SystemId};
 use serde::Serialize;
 
 use super::{CommandError, Outcome, live, network, output};
-use crate::cli::{ArduPilotVersion, AutopilotName, SitlArgs};
+use crate::cli::SitlArgs;
 
 /// The vehicle that flies where none is given.
 pub const DEFAULT_VEHICLE: &str = include_str!("../../configs/x500.toml");
@@ -28,6 +26,9 @@ struct Document {
     schema: u32,
     vehicle: String,
     autopilot: &'static str,
+    /// the same in sentences
+    #[serde(skip)]
+    pilot: &'static str,
     system: u8,
     listen: Vec<String>,
     /// times real time; none in lock-step
@@ -50,7 +51,8 @@ fn simulate(json: bool, args: &SitlArgs) -> Result<Outcome, CommandError> {
     let document = Document {
         schema: 1,
         vehicle: settings.vehicle.name.clone(),
-        autopilot: if settings.autopilot == AutopilotKind::Px4 { "px4" } else { "ardupilot" },
+        autopilot: settings.autopilot.stack().id,
+        pilot: settings.autopilot.stack().name,
         system: settings.system,
         listen: Vec::new(),
         speed: if let Pace::Times(speed) = pace { Some(speed) } else { None },
@@ -94,8 +96,8 @@ async fn fly(
     let Served { flown, behind } = serve(vehicle, links, time, stop).await;
     if behind > BEHIND {
         let behind_s = behind.as_secs_f64();
-        output::message(&format!(
-            "warning: this machine was up to {behind_s:.1} s of the vehicle's time behind the pace: expected a free core, or \
+        output::warning(&format!(
+            "this machine was up to {behind_s:.1} s of the vehicle's time behind the pace: expected a free core, or \
              a lower --speed, or --lockstep"
         ));
     }
@@ -110,26 +112,29 @@ fn page(document: &Document) -> String {
     format!(
         "{} flown by {}, system {}, {pace}, on{}\nCtrl-C ends it.",
         document.vehicle,
-        if document.autopilot == "px4" { "PX4" } else { "ArduPilot" },
+        document.pilot,
         document.system,
         links.concat()
     )
 }
 
+fn firmware(args: &SitlArgs) -> Result<Firmware, CommandError> {
+    let latest = Firmware::of(args.autopilot).ok_or_else(|| {
+        CommandError::Input(format!("--autopilot: {} is not simulated", args.autopilot.id()))
+    })?;
+    match args.ardupilot_version {
+        None => Ok(latest),
+        Some(version) if version.autopilot() == args.autopilot => Ok(version),
+        Some(_) => {
+            let got = latest.stack().name;
+            let what = format!("--ardupilot-version: expected --autopilot ardupilot beside it, got {got}");
+            Err(CommandError::Input(what))
+        }
+    }
+}
+
 fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
-    let kind = match (args.autopilot, args.ardupilot_version) {
-        (AutopilotName::Px4, None) => AutopilotKind::Px4,
-        (AutopilotName::Px4, Some(_)) => {
-            let what = "--ardupilot-version: expected --autopilot ardupilot beside it, got PX4";
-            return Err(CommandError::Input(what.to_owned()));
-        }
-        (AutopilotName::Ardupilot, Some(ArduPilotVersion::V4_6)) => {
-            AutopilotKind::ArduPilot(ArduPilotRelease::V4_6)
-        }
-        (AutopilotName::Ardupilot, Some(ArduPilotVersion::V4_7) | None) => {
-            AutopilotKind::ArduPilot(ArduPilotRelease::V4_7)
-        }
-    };
+    let kind = firmware(args)?;
     let LoadedVehicle { vehicle, warnings, model } = loaded(args.vehicle.as_deref())?;
     if let Some(path) = &args.vehicle {
         output::warnings(path, &warnings);
@@ -191,10 +196,11 @@ fn pace(args: &SitlArgs) -> Result<Pace, CommandError> {
 }
 
 /// Those given, or those of the autopilot's own simulator.
-fn addresses(args: &SitlArgs, kind: AutopilotKind) -> Result<Vec<Address>, CommandError> {
-    let own: &[&str] = match kind {
-        AutopilotKind::Px4 => &["udpout:127.0.0.1:14550", "udpout:127.0.0.1:14540"],
-        AutopilotKind::ArduPilot(_) => &["tcpin:127.0.0.1:5760"],
+fn addresses(args: &SitlArgs, kind: Firmware) -> Result<Vec<Address>, CommandError> {
+    let own: &[&str] = if kind.is_px4() {
+        &["udpout:127.0.0.1:14550", "udpout:127.0.0.1:14540"]
+    } else {
+        &["tcpin:127.0.0.1:5760"]
     };
     let texts: Vec<&str> =
         if args.listen.is_empty() { own.to_vec() } else { args.listen.iter().map(String::as_str).collect() };

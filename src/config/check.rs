@@ -1,5 +1,7 @@
 //! Checks of single values, with the file and the key in every refusal.
 
+use nalgebra::Vector3;
+
 use super::ConfigError;
 use crate::text;
 
@@ -31,6 +33,14 @@ impl Check<'_> {
             // what the file says may be anything
             came: text::excerpt(&came.to_string(), CAME_CHARS),
         }
+    }
+
+    /// Three finite numbers.
+    pub fn finite_vector(&self, key: &str, values: [f64; 3]) -> Result<Vector3<f64>, ConfigError> {
+        for value in values {
+            self.finite(key, value)?;
+        }
+        Ok(Vector3::from(values))
     }
 
     /// Neither NaN nor infinite nor beyond all measure.

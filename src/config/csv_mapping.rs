@@ -12,9 +12,6 @@ use crate::log::csv::{AttitudeForm, AxisFrame, CsvMapping, CsvQuantity, CsvTime,
 use crate::recording::Quantity;
 use crate::text;
 
-/// The built-in mapping, also the documentation of its columns.
-const DEFAULT: &str = include_str!("../../configs/csv/default.toml");
-
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MappingFile {
@@ -105,14 +102,6 @@ const QUANTITIES: &[(Quantity, Units, Frames)] = &[
     (Quantity::Armed, RATIO, NO_FRAME),
     (Quantity::Mode, RATIO, NO_FRAME),
 ];
-
-/// The mapping for files with the columns that `configs/csv/default.toml` lists.
-///
-/// # Errors
-/// None in practice: a test reads it.
-pub fn default_csv_mapping() -> Result<CsvMapping, ConfigError> {
-    parse_csv_mapping(DEFAULT, "built-in CSV mapping")
-}
 
 /// The mapping of a file.
 ///
@@ -244,4 +233,15 @@ fn choose<T: Copy>(
         let came = name.map_or_else(|| "nothing".to_owned(), |name| format!("\"{name}\""));
         check.refuse(key, format!("one of {}", names.join(", ")), came)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_mapping_is_that_of_the_file_for_users() {
+        let file = include_str!("../../configs/csv/default.toml");
+        assert_eq!(parse_csv_mapping(file, "default.toml").unwrap(), CsvMapping::default());
+    }
 }

@@ -6,12 +6,13 @@ mod effect_tables;
 mod error;
 mod kind;
 mod read;
+mod rigid_body;
 mod trajectory;
 mod vehicle;
 mod vehicle_file;
 mod vehicle_writer;
 
-pub use csv_mapping::{default_csv_mapping, load_csv_mapping, parse_csv_mapping};
+pub use csv_mapping::{load_csv_mapping, parse_csv_mapping};
 pub use effect_tables::{parse_effect_tables, read_effect_tables};
 pub use error::ConfigError;
 pub use trajectory::{

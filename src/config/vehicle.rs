@@ -3,24 +3,22 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use nalgebra::{Matrix3, Vector3};
-
 use super::ConfigError;
 use super::check::Check;
 use super::kind::Kind;
 use super::read::{parse_toml, read_text};
+use super::rigid_body::rigid_body;
 use super::vehicle_file::{
-    ActuatorKind, AnchorKey, BodyTable, FORMAT, InertiaTable, LimitsTable, PropulsionTable, RotorTable,
-    SpinKey, VehicleFile,
+    ActuatorKind, AnchorKey, FORMAT, LimitsTable, PropulsionTable, RotorTable, SpinKey, VehicleFile,
 };
 use crate::text;
 use crate::units;
-use crate::vehicle::{
-    Actuator, Anchor, Limits, Propulsion, PwmRange, RigidBody, Rotor, Spin, ThrustLaw, Vehicle,
-};
+use crate::vehicle::{Actuator, Anchor, Limits, Propulsion, PwmRange, Rotor, Spin, ThrustLaw, Vehicle};
 
 /// Rotors of a vehicle: as many as MAVLink has outputs for (ACTUATOR_OUTPUT_STATUS).
 const ROTORS_MAX: usize = 32;
+/// A room is no larger to each side and upwards, m: beyond is a mistake in the unit, or no room.
+const WALL_MOST_M: f64 = 10_000.0;
 /// Characters of a vehicle's or a rotor's name.
 const NAME_CHARS: usize = 200;
 /// Characters of a format that is not known, in its refusal.
@@ -104,42 +102,6 @@ fn check_format(text: &str, origin: &str) -> Result<(), ConfigError> {
     } else {
         Err(ConfigError::Format { origin: origin.to_owned(), known: FORMAT, came: came() })
     }
-}
-
-fn rigid_body(check: &Check<'_>, table: &BodyTable) -> Result<RigidBody, ConfigError> {
-    let inertia = &table.inertia;
-    for (key, value) in [("xx", inertia.xx), ("yy", inertia.yy), ("zz", inertia.zz)] {
-        check.positive(&format!("body.inertia.{key}"), value)?;
-    }
-    for (key, value) in [("xy", inertia.xy), ("xz", inertia.xz), ("yz", inertia.yz)] {
-        check.finite(&format!("body.inertia.{key}"), value)?;
-    }
-    let tensor = inertia_tensor(inertia);
-    let smallest = tensor.symmetric_eigenvalues().min();
-    if smallest <= 0.0 {
-        let came = format!("a smallest principal moment of {smallest:.3e} kg m^2");
-        return Err(check.refuse("body.inertia", "a positive definite tensor", came));
-    }
-    Ok(RigidBody {
-        mass_kg: check.positive("body.mass", table.mass)?,
-        inertia_kg_m2: tensor,
-        center_of_mass_m: finite_vector(check, "body.center_of_mass", table.center_of_mass)?,
-    })
-}
-
-fn inertia_tensor(table: &InertiaTable) -> Matrix3<f64> {
-    Matrix3::new(
-        table.xx, table.xy, table.xz, //
-        table.xy, table.yy, table.yz, //
-        table.xz, table.yz, table.zz,
-    )
-}
-
-fn finite_vector(check: &Check<'_>, key: &str, values: [f64; 3]) -> Result<Vector3<f64>, ConfigError> {
-    for value in values {
-        check.finite(key, value)?;
-    }
-    Ok(Vector3::from(values))
 }
 
 fn propulsion(check: &Check<'_>, table: &PropulsionTable) -> Result<Propulsion, ConfigError> {
@@ -278,7 +240,7 @@ fn rotors(
             return Err(check.refuse(&format!("rotor[{index}].name"), "a name of its own", came));
         }
         rotors.push(Rotor {
-            position_m: finite_vector(check, &format!("rotor[{index}].position"), table.position)?,
+            position_m: check.finite_vector(&format!("rotor[{index}].position"), table.position)?,
             spin: match table.spin {
                 SpinKey::Cw => Spin::Cw,
                 SpinKey::Ccw => Spin::Ccw,
@@ -318,6 +280,13 @@ pub(super) fn limits(check: &Check<'_>, table: &LimitsTable) -> Result<Limits, C
         thrust_max_n: positive("thrust_max_n", table.thrust_max_n)?,
         torque_max_nm: positive("torque_max_nm", table.torque_max_nm)?,
     };
+    for (key, wall_m) in
+        [("x_max_m", limits.x_max_m), ("y_max_m", limits.y_max_m), ("z_max_m", limits.z_max_m)]
+    {
+        if let Some(came) = wall_m.filter(|wall_m| *wall_m > WALL_MOST_M) {
+            return Err(check.refuse(&format!("limits.{key}"), format!("at most {WALL_MOST_M} m"), came));
+        }
+    }
     check.ordered(("limits.z_min_m", limits.z_min_m), ("limits.z_max_m", limits.z_max_m))?;
     check.ordered(
         ("limits.vertical_acceleration_min_m_s2", limits.vertical_acceleration_min_m_s2),

@@ -1,6 +1,8 @@
 //! From the checked vehicle back to its file.
 
 use super::ConfigError;
+use super::check::Check;
+use super::rigid_body::rigid_body;
 use super::vehicle_file::{
     ActuatorKind, AnchorKey, BodyTable, FORMAT, IdentifyTable, InertiaTable, LimitsTable, PropulsionTable,
     RotorTable, SpinKey, VehicleFile,
@@ -8,10 +10,15 @@ use super::vehicle_file::{
 use crate::units;
 use crate::vehicle::{Actuator, Anchor, Limits, Propulsion, Rotor, Spin, ThrustLaw, Vehicle};
 
+/// Names what is refused. A part of an inertia that a flight determined need not fit the nominal rest.
+const WRITTEN: &str =
+    "the vehicle to be written (what the flight did not determine is as in the vehicle file)";
+
 /// The vehicle in the form of `vehicle.toml`. More tables may be appended as text: it ends in a newline.
 ///
 /// # Errors
-/// [`ConfigError::Write`] where a value has no form in TOML.
+/// [`ConfigError::Write`] where a value has no form in TOML; [`ConfigError::Invalid`] where mass and inertia are no body's, so
+/// that the file could not be read again.
 pub fn vehicle_to_toml(vehicle: &Vehicle) -> Result<String, ConfigError> {
     let inertia = &vehicle.body.inertia_kg_m2;
     let file = VehicleFile {
@@ -43,6 +50,7 @@ pub fn vehicle_to_toml(vehicle: &Vehicle) -> Result<String, ConfigError> {
         provenance: None,
         effects: Vec::new(),
     };
+    rigid_body(&Check { origin: WRITTEN }, &file.body)?;
     Ok(toml::to_string(&file)?)
 }
 

@@ -3,8 +3,7 @@
 use super::channels::Nuisance;
 use super::signature::{EffectTerm, LatencyKind};
 use super::signatures::latency_signature;
-use crate::physics::{ActiveEffect, Model, PhysicsError};
-use crate::signals::ActuationLatency;
+use crate::physics::{ActiveEffect, ActuationLatency, Model, PhysicsError, RotorLag};
 use crate::vehicle::{Vehicle, VehicleSize};
 use nalgebra::Matrix3;
 
@@ -82,7 +81,7 @@ impl Base {
             let signature = latency_signature(kind).filter(|_| values[0] > 0.0)?;
             Some(signature.term(&values, &[]))
         };
-        let (rising_s, falling_s) = self.latency.rising_and_falling_s();
+        let RotorLag { rising_s, falling_s } = self.latency.rotor_lag();
         let lags_s = if uneven == 0.0 { vec![lag_s] } else { vec![rising_s, falling_s] };
         [of(LatencyKind::Lag, lags_s), of(LatencyKind::Delay, vec![delay_s])].into_iter().flatten().collect()
     }

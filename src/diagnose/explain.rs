@@ -75,13 +75,13 @@ const RIVAL: f64 = 0.93;
 ///
 /// ```
 /// # use mavid::config::load_vehicle;
-/// # use mavid::log::{LoadOptions, load};
+/// # use mavid::log::{self, OpenOptions};
 /// # use mavid::signals::{ConditionSettings, condition};
 /// use mavid::diagnose::{ExplainSettings, clause, explain};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// # let fixtures = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
-/// # let log = load(&fixtures.join("p04_identify_10_22s.tlog"), &LoadOptions::default())?;
+/// # let log = log::open(&fixtures.join("p04_identify_10_22s.tlog"), &OpenOptions::default())?;
 /// # let vehicle = load_vehicle(&fixtures.join("p04_vehicle.toml"))?;
 /// let signals = condition(&log.recording, &vehicle, &ConditionSettings::default())?;
 /// let explanation = explain(&[signals], &vehicle, &ExplainSettings::default())?;

@@ -12,8 +12,7 @@ use super::rows::{Rows, residuals};
 use super::signature::EffectTerm;
 use super::signatures::{ALL, BENT_THRUST};
 use super::trace::Trace;
-use crate::physics::PhysicsError;
-use crate::signals::{ActuationLatency, delayed_wrench};
+use crate::physics::{ActuationLatency, PhysicsError, delayed_wrench};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector4;
 

@@ -7,7 +7,7 @@ use super::signature::LatencyKind;
 use super::signatures::latency_signature;
 use super::tested::Search;
 use super::trace::Trace;
-use crate::signals::ActuationLatency;
+use crate::physics::{ActuationLatency, RotorLag};
 use crate::vehicle::Vehicle;
 
 /// A lag or delay beyond what sampling and a fast motor make.
@@ -67,7 +67,7 @@ fn parameters_of(
     let Some(uneven_std) = uneven_std else {
         return vec![NamedParameter { name, value, std, unit: "s" }];
     };
-    let (rising_s, falling_s) = parts.rising_and_falling_s();
+    let RotorLag { rising_s, falling_s } = parts.rotor_lag();
     // both of the mean's standard error and of the logarithm's of their ratio
     let by_uneven_s = rising_s * falling_s / (2.0 * parts.lag_s) * uneven_std;
     let of = |name, value: f64| {

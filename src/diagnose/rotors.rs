@@ -1,7 +1,7 @@
 //! Thrust, speed and acceleration of each rotor along a flight.
 
-use crate::physics::{Airframe, MAX_ROTORS};
-use crate::signals::{ActuationLatency, central_difference, delayed_thrusts_n};
+use crate::physics::{ActuationLatency, Airframe, MAX_ROTORS, delayed_thrusts_n};
+use crate::signals::central_difference;
 
 /// One thrust a rotor, N; those beyond the rotor count are zero.
 pub type Thrusts = [f64; MAX_ROTORS];

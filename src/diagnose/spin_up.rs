@@ -10,8 +10,9 @@ use super::rotors::RotorMotion;
 use super::signatures::ROTOR_INERTIA;
 use super::trace::Trace;
 use crate::physics::effects::RotorInertia;
-use crate::physics::{Airframe, Condition, Effect, Input, Own, Rotors, State, Wrench};
-use crate::signals::{ActuationLatency, delayed_wrench};
+use crate::physics::{
+    ActuationLatency, Airframe, Condition, Effect, Input, Own, Rotors, State, Wrench, delayed_wrench,
+};
 use nalgebra::{Matrix3, Vector3, Vector4};
 
 /// The rotors' inertia in a base.

@@ -1,11 +1,9 @@
 //! One flight as the weak form sees it: measured states, and the rotor thrusts in two readings.
 
 use super::rotors::{RotorMotion, Thrusts, felt};
-use crate::physics::{Airframe, MAX_ROTORS, State};
+use crate::physics::{ActuationLatency, Airframe, MAX_ROTORS, State};
 use crate::recording::Quantity;
-use crate::signals::{
-    ActuationLatency, Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride,
-};
+use crate::signals::{Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride};
 use crate::stats::white_level_of;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};

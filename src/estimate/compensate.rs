@@ -1,7 +1,8 @@
 //! Takes a latency that was found out of what was commanded.
 
 use super::weak::{Latency, LatencyKind};
-use crate::signals::{ActuationLatency, Signals, ThrustSource, delayed_thrusts_n, delayed_wrench};
+use crate::physics::{ActuationLatency, delayed_thrusts_n, delayed_wrench};
+use crate::signals::{Signals, ThrustSource};
 use crate::vehicle::Vehicle;
 use nalgebra::{DVector, Vector4};
 

@@ -11,10 +11,9 @@ use super::theta::{Theta, ThetaCovariance, theta_of};
 use super::weak::{Latency, WeakEstimate, WeakMethod, latency, solve_weak};
 use super::{GradientStep, History, gradient_descent, least_squares};
 use crate::note::{About, Note};
+use crate::physics::ActuationLatency;
 use crate::regression::{SampledModel, WeakMotion, WeakRows, ZeroPhase, paper_models, weak_rows};
-use crate::signals::{
-    ActuationLatency, Butterworth, Signals, ThrustSource, WeakKernel, WindowedFir, highest_harmonic_hz,
-};
+use crate::signals::{Butterworth, Signals, ThrustSource, WeakKernel, WindowedFir, highest_harmonic_hz};
 use crate::vehicle::Vehicle;
 
 /// How the identification is done.
@@ -79,13 +78,13 @@ pub struct Identification {
 ///
 /// ```
 /// # use mavid::config::load_vehicle;
-/// # use mavid::log::{LoadOptions, load};
+/// # use mavid::log::{self, OpenOptions};
 /// # use mavid::signals::{ConditionSettings, condition};
 /// use mavid::estimate::{IdentifySettings, identify};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// # let fixtures = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
-/// # let log = load(&fixtures.join("p04_identify_10_22s.tlog"), &LoadOptions::default())?;
+/// # let log = log::open(&fixtures.join("p04_identify_10_22s.tlog"), &OpenOptions::default())?;
 /// # let vehicle = load_vehicle(&fixtures.join("p04_vehicle.toml"))?;
 /// let signals = condition(&log.recording, &vehicle, &ConditionSettings::default())?;
 /// let identification = identify(&[signals], &vehicle, &IdentifySettings::default())?;

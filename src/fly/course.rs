@@ -21,6 +21,10 @@ pub(super) const TURN_RAD_S: f64 = 0.5;
 const HOVER_S: f64 = 2.0;
 /// The greatest speed of a transition of seventh degree from rest to rest over its mean speed.
 const PEAK_TO_MEAN_SPEED: f64 = 2.1875;
+/// Its greatest acceleration, times the square of its duration, over its length.
+const PEAK_ACCELERATION: f64 = 7.513;
+/// No transfer accelerates more, m/s^2: one that hears nothing more goes on with it.
+const TRANSFER_M_S2: f64 = 0.5;
 
 /// What is flown around the series, as `trajectory.toml` states it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -161,7 +165,7 @@ pub fn approach(stand: &Place, start: &Place) -> [FlightPath; 2] {
     [transfer(stand, &top, CLIMB_M_S, TURN_RAD_S), transfer(&top, start, TRANSFER_M_S, TURN_RAD_S)]
 }
 
-/// The reference of a path at one instant of it, moved by an offset (m); `None` for a path without segments.
+/// The reference of a path at one instant of it, while its clock runs, moved by an offset (m); `None` for a path without segments.
 #[must_use]
 pub fn reference_at(
     path: &FlightPath,
@@ -173,13 +177,15 @@ pub fn reference_at(
     on_path(path, &clock, offset_m, time)
 }
 
-/// From one hover to another, no faster than `speed_m_s` and `yaw_rate_rad_s`, the shorter way round.
+/// From one hover to another, no faster than `speed_m_s` and `yaw_rate_rad_s` and without haste on a short way, the shorter
+/// way round.
 #[must_use]
 pub fn transfer(from: &Place, to: &Place, speed_m_s: f64, yaw_rate_rad_s: f64) -> FlightPath {
     let turn_rad = wrapped(to.yaw_rad - from.yaw_rad);
     let (start, end) = (from.position_m, to.position_m);
     let mean_s = ((end - start).norm() / speed_m_s).max(turn_rad.abs() / yaw_rate_rad_s);
-    let duration_s = (PEAK_TO_MEAN_SPEED * mean_s).max(1.0);
+    let gently_s = (PEAK_ACCELERATION * (end - start).norm() / TRANSFER_M_S2).sqrt();
+    let duration_s = (PEAK_TO_MEAN_SPEED * mean_s).max(gently_s).max(1.0);
     let transition = Transition::new(
         &at_rest([start.x, start.y, start.z, from.yaw_rad]),
         &at_rest([end.x, end.y, end.z, from.yaw_rad + turn_rad]),
@@ -277,13 +283,15 @@ impl Track {
 }
 
 fn on_path(path: &FlightPath, clock: &PathTime, offset_m: &Vector3<f64>, time: Duration) -> Option<Setpoint> {
-    let PathTime { along_s, rate, slope } = *clock;
+    let PathTime { along_s, rate, .. } = *clock;
     let axes = path.derivatives(along_s)?;
     let beyond = along_s > path.duration_s();
     let moves = if beyond { 0.0 } else { 1.0 };
     let speed = |axis: &[f64; 5]| moves * axis[1] * rate;
     let [x, y, z, yaw] = &axes;
-    let push = |axis: &[f64; 5]| moves * (axis[2] * rate * rate + axis[1] * slope);
+    // not the clock's own slope, velocity times up to 1/s: an autopilot that hears no more goes on with it for seconds, which
+    // takes it metres off the path. A clock of any rate alone leads no further than one that runs
+    let push = |axis: &[f64; 5]| moves * axis[2] * rate * rate;
     Some(Setpoint {
         time,
         position_m: Vector3::new(x[0], y[0], z[0]) + offset_m,
@@ -336,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn feed_forward_is_the_slope_of_what_is_sent() {
+    fn feed_forward_is_the_slope_of_what_is_sent_without_that_of_the_clock() {
         let path = Arc::new(transfer(&place(0.0, 1.0, 0.0), &place(4.0, 2.0, 1.0), 1.0, 0.5));
         let mut clock = PathClock::start(seconds(0.0));
         clock.set_running(false, seconds(2.0));
@@ -346,9 +354,11 @@ mod tests {
             let at = |t: f64| track.setpoint(seconds(t)).unwrap();
             let (before, now, after) = (at(t - h), at(t), at(t + h));
             let velocity = (after.position_m - before.position_m) / (2.0 * h);
-            let acceleration = (after.velocity_m_s - before.velocity_m_s) / (2.0 * h);
             assert!((velocity - now.velocity_m_s).norm() < 1e-5);
-            assert!((acceleration - now.acceleration_m_s2).norm() < 1e-5);
+            let PathTime { rate, slope, .. } = clock.at(seconds(t));
+            let whole = (after.velocity_m_s - before.velocity_m_s) / (2.0 * h);
+            let of_clock = now.velocity_m_s * (slope / rate);
+            assert!((whole - of_clock - now.acceleration_m_s2).norm() < 1e-5 && slope == -1.0);
         }
         let rest = track.setpoint(seconds(4.0)).unwrap();
         assert_eq!((rest.velocity_m_s.norm(), rest.acceleration_m_s2.norm()), (0.0, 0.0));

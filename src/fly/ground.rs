@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use super::state::Seen;
 
-/// "On the ground" counts while it was said within the first of these, and after it was said for the second.
+/// "On the ground" counts while it was said within the first of these, and after it was said over the second without a
+/// pause of the first.
 const VALID: (Duration, Duration) = (Duration::from_secs(2), Duration::from_secs(1));
 /// So long after its clock jumped nothing but repetition is believed: frames of long ago agree with one another.
 const CLOCK_SETTLES: Duration = Duration::from_secs(3);
@@ -25,7 +26,9 @@ impl Ground {
     /// Takes the vehicle's word.
     pub(super) fn report(&mut self, now: Duration, on_ground: bool) {
         self.takes_off &= on_ground;
-        self.since = on_ground.then(|| self.since.unwrap_or(now));
+        // a silence or a stall in between may have hidden that it said something else
+        let goes_on = self.said.is_some_and(|said| now.saturating_sub(said.at) < VALID.0);
+        self.since = on_ground.then(|| self.since.filter(|_| goes_on).unwrap_or(now));
         self.said = Some(Seen { at: now, value: on_ground });
     }
 
@@ -49,7 +52,8 @@ impl Ground {
     pub(super) fn is_landed_at(&self, now: Duration) -> bool {
         let jumped = self.jumped.is_some_and(|at| now.saturating_sub(at) < CLOCK_SETTLES);
         let fresh = self.said.is_some_and(|said| now.saturating_sub(said.at) < VALID.0);
-        let lasts = self.since.is_some_and(|since| now.saturating_sub(since) >= VALID.1);
+        let said = self.said.zip(self.since);
+        let lasts = said.is_some_and(|(said, since)| said.at.saturating_sub(since) >= VALID.1);
         !self.takes_off && !jumped && fresh && lasts
     }
 }
@@ -72,6 +76,17 @@ mod tests {
         ground.report(ms(3000), false);
         ground.report(ms(3100), true);
         assert!(!ground.is_landed_at(ms(3200)), "the second begins anew");
+    }
+
+    #[test]
+    fn time_in_which_nothing_is_heard_does_not_count() {
+        let mut ground = Ground::default();
+        ground.report(ms(0), true);
+        assert!(!ground.is_landed_at(ms(1500)), "said once");
+        ground.report(ms(3700), true);
+        assert!(!ground.is_landed_at(ms(3700)), "before and after a stall");
+        ground.report(ms(4700), true);
+        assert!(ground.is_landed_at(ms(4700)));
     }
 
     #[test]

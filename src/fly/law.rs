@@ -3,16 +3,13 @@
 use nalgebra::Vector3;
 
 use super::parameters::Parameters;
-use crate::recording::Autopilot;
+use crate::autopilot::{ARDUPILOT, Autopilot, PX4, SetpointRules, Stack};
 use crate::simulate::{GuidedTarget, Shaper, ShaperLaw, ShaperLimits, Wish, jerk_within};
 use crate::units::rad_from_deg;
 
 /// A motion: place, velocity, acceleration; world, SI.
 pub type Motion = Shaper;
 
-/// Defaults of both autopilots, where a parameter did not answer: GUID_TIMEOUT, and COM_OF_LOSS_T, s.
-const GUID_TIMEOUT_S: f64 = 3.0;
-const COM_OF_LOSS_T_S: f64 = 1.0;
 /// PX4 looks for the loss ten times a second, and changes the mode with its next control period.
 const NOTICES_S: f64 = 0.15;
 /// PX4's own allowance for its delay and jerk in the distance to a stop, s.
@@ -181,50 +178,60 @@ fn within_speeds(wanted_m_s: Vector3<f64>, [level, up, down]: &[f64; 3]) -> Vect
     Vector3::new(wanted_m_s.x * share, wanted_m_s.y * share, wanted_m_s.z.min(*up).max(-down))
 }
 
+/// The autopilot's default in its base unit.
+fn default(stack: &Stack, name: &str) -> f64 {
+    let entry = stack.parameters.find(name);
+    entry.and_then(|entry| Some(1.0 / entry.unit.per_base * entry.default?)).unwrap_or(0.0)
+}
+
+/// The value in its base unit; where the parameter did not answer the default.
+pub(super) fn stated(parameters: &Parameters, stack: &Stack, name: &str) -> f64 {
+    parameters.in_base_unit(name).unwrap_or_else(|| default(stack, name))
+}
+
+/// The same where the value is positive, and else the default: zero stands for no limit.
+fn positive(parameters: &Parameters, stack: &Stack, name: &str) -> f64 {
+    let answered = parameters.in_base_unit(name).filter(|value| *value > 0.0);
+    answered.unwrap_or_else(|| default(stack, name))
+}
+
+/// For how long the last setpoint is flown, s.
+fn timeout_s(parameters: &Parameters, rules: &SetpointRules) -> f64 {
+    parameters.get(rules.timeout).unwrap_or(rules.timeout_default.as_secs_f64())
+}
+
 fn ardupilot(parameters: &Parameters, law: ShaperLaw) -> FollowLaw {
-    let positive = |name: &str, scale: f64, default: f64| {
-        let value = parameters.get(name).map(|value| scale * value).filter(|value| *value > 0.0);
-        value.unwrap_or(default).max(LEAST)
-    };
-    let turning = |name: &str| rad_from_deg(parameters.get(name).unwrap_or(110_000.0) * 0.01);
-    let acceleration_m_s2 = positive("WPNAV_ACCEL", 0.01, 2.5);
+    let positive = |name: &str| positive(parameters, &ARDUPILOT, name).max(LEAST);
+    let turning = |name: &str| rad_from_deg(stated(parameters, &ARDUPILOT, name));
+    let acceleration_m_s2 = positive("WPNAV_ACCEL");
     let limits = ShaperLimits {
-        speed_m_s: positive("WPNAV_SPEED", 0.01, 10.0),
-        climb_m_s: positive("WPNAV_SPEED_UP", 0.01, 2.5),
-        descent_m_s: positive("WPNAV_SPEED_DN", 0.01, 1.5),
+        speed_m_s: positive("WPNAV_SPEED"),
+        climb_m_s: positive("WPNAV_SPEED_UP"),
+        descent_m_s: positive("WPNAV_SPEED_DN"),
         acceleration_m_s2,
-        vertical_acceleration_m_s2: positive("WPNAV_ACCEL_Z", 0.01, 1.0),
+        vertical_acceleration_m_s2: positive("WPNAV_ACCEL_Z"),
         jerk_m_s3: jerk_within(
-            positive("PSC_JERK_XY", 1.0, 5.0),
+            positive("PSC_JERK_XY"),
             acceleration_m_s2,
             turning("ATC_ACCEL_R_MAX").min(turning("ATC_ACCEL_P_MAX")),
         ),
-        vertical_jerk_m_s3: positive("PSC_JERK_Z", 1.0, 5.0),
+        vertical_jerk_m_s3: positive("PSC_JERK_Z"),
         law,
     };
-    let timeout_s = parameters.get("GUID_TIMEOUT").unwrap_or(GUID_TIMEOUT_S).max(0.1);
-    FollowLaw::ArduPilot { limits, timeout_s }
+    FollowLaw::ArduPilot { limits, timeout_s: timeout_s(parameters, &ARDUPILOT.setpoints).max(0.1) }
 }
 
 fn px4(parameters: &Parameters) -> FollowLaw {
-    let positive =
-        |name: &str, default: f64| parameters.get(name).filter(|value| *value > 0.0).unwrap_or(default);
-    let stated = |name: &str, default: f64| parameters.get(name).unwrap_or(default).max(0.0);
+    let positive = |name: &str| positive(parameters, &PX4, name);
+    let stated = |name: &str| stated(parameters, &PX4, name).max(0.0);
     let axes = |level: f64, upright: f64| Vector3::new(level, level, upright);
     FollowLaw::Px4 {
-        position_1_s: axes(positive("MPC_XY_P", 0.95), positive("MPC_Z_P", 1.0)),
-        velocity_1_s: axes(positive("MPC_XY_VEL_P_ACC", 1.8), positive("MPC_Z_VEL_P_ACC", 4.0)),
-        damping: axes(stated("MPC_XY_VEL_D_ACC", 0.2), stated("MPC_Z_VEL_D_ACC", 0.0)),
-        speeds_m_s: [
-            positive("MPC_XY_VEL_MAX", 12.0),
-            positive("MPC_Z_VEL_MAX_UP", 3.0),
-            positive("MPC_Z_VEL_MAX_DN", 1.5),
-        ],
-        timeout_s: parameters.get("COM_OF_LOSS_T").unwrap_or(COM_OF_LOSS_T_S).max(0.0),
-        braking: (
-            positive("MPC_ACC_HOR", 3.0).min(positive("MPC_ACC_DOWN_MAX", 3.0)),
-            positive("MPC_JERK_AUTO", 4.0),
-        ),
+        position_1_s: axes(positive("MPC_XY_P"), positive("MPC_Z_P")),
+        velocity_1_s: axes(positive("MPC_XY_VEL_P_ACC"), positive("MPC_Z_VEL_P_ACC")),
+        damping: axes(stated("MPC_XY_VEL_D_ACC"), stated("MPC_Z_VEL_D_ACC")),
+        speeds_m_s: [positive("MPC_XY_VEL_MAX"), positive("MPC_Z_VEL_MAX_UP"), positive("MPC_Z_VEL_MAX_DN")],
+        timeout_s: timeout_s(parameters, &PX4.setpoints).max(0.0),
+        braking: (positive("MPC_ACC_HOR").min(positive("MPC_ACC_DOWN_MAX")), positive("MPC_JERK_AUTO")),
     }
 }
 

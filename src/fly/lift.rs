@@ -176,7 +176,7 @@ pub(super) fn apart(came: f64, expected: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::Autopilot;
+    use crate::autopilot::Autopilot;
     use crate::simulate::random_vehicle;
     use crate::vehicle::{Actuator, PwmRange};
 

@@ -23,7 +23,6 @@ mod health;
 mod law;
 mod lift;
 pub mod live;
-mod modes;
 mod news;
 mod order;
 mod outcome;
@@ -47,7 +46,6 @@ pub use flight::{Action, Event, Flight, Key, Status};
 pub use health::{BatteryLevel, EstimatorReport, SystemReport};
 pub use law::{FollowLaw, Motion};
 pub use lift::{Lift, Weighed};
-pub use modes::{Mode, Stack};
 pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
 #[cfg(unix)]
 pub use runner::HangUp;
@@ -57,5 +55,5 @@ pub use runner::{
 };
 pub use safety::{Feeding, FirstQuestion, Guide, Lead, SetpointBounds, Streamed, Streamer};
 pub use setpoint::{Place, Setpoint};
-pub use sortie::{Check, Origin, Settings, Sortie};
+pub use sortie::{Check, Origin, SETPOINT_HZ, Settings, Sortie};
 pub use target::{MessageId, Order, OutOfRange, ParameterName, Period, TakeoffHeight, Target, heartbeat};

@@ -2,16 +2,14 @@
 
 use std::time::Duration;
 
-use super::modes::Stack;
 use super::target::Target;
+use crate::autopilot::{Stack, is_multirotor};
 use crate::wire::{self, Frame, Record, SystemId};
 
 /// After the first vehicle, others are waited for this long: each sends a HEARTBEAT a second.
 const SETTLE: Duration = Duration::from_millis(2500);
 /// One that was named is waited for this long after another was heard.
 const NAMED_WITHIN: Duration = Duration::from_secs(10);
-/// MAV_TYPE of multirotors: quadrotor, coaxial, hexa-, octo-, tri-, dodeca-, decarotor.
-const MULTIROTORS: [u8; 7] = [2, 3, 13, 14, 15, 29, 35];
 const ARMED: u8 = 128;
 
 /// A vehicle that was heard.
@@ -29,7 +27,7 @@ pub enum Choice {
     /// not yet known
     Wait,
     /// this one, by these rules
-    Vehicle(wire::Vehicle, Target, Stack),
+    Vehicle(wire::Vehicle, Target, &'static Stack),
     /// none, and why
     Refuse(String),
 }
@@ -115,13 +113,13 @@ impl Roster {
 fn admit(listed: &Listed) -> Choice {
     let vehicle = listed.vehicle;
     let system = vehicle.system;
-    let Some(stack) = Stack::of(vehicle.autopilot) else {
+    let Some(stack) = vehicle.autopilot.stack() else {
         return Choice::Refuse(format!("system {system}: expected PX4 or ArduPilot, got another autopilot"));
     };
     let Some(target) = Target::new(system, vehicle.component) else {
         return Choice::Refuse(format!("expected a system id of 1 to 255, got {system}"));
     };
-    if !MULTIROTORS.contains(&listed.mav_type) {
+    if !is_multirotor(listed.mav_type) {
         let kind = listed.mav_type;
         return Choice::Refuse(format!(
             "system {system}: expected a multirotor, got a vehicle of type {kind}"
@@ -138,6 +136,7 @@ fn admit(listed: &Listed) -> Choice {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::autopilot::PX4;
     use crate::wire::{CrcSeeds, checksum};
 
     /// A HEARTBEAT: who, MAV_TYPE, MAV_AUTOPILOT, base mode.
@@ -168,7 +167,7 @@ mod tests {
     fn the_only_vehicle_is_flown_and_ground_stations_are_none() {
         let frames = [heartbeat(255, 6, 8, 0), heartbeat(7, 2, 12, 0)];
         let Choice::Vehicle(_, target, stack) = choice(&frames, None) else { panic!() };
-        assert_eq!((target.system, stack), (SystemId(7), Stack::Px4));
+        assert_eq!((target.system, stack), (SystemId(7), &PX4));
     }
 
     #[test]

@@ -8,6 +8,12 @@ use super::safety::FirstQuestion;
 use crate::vehicle::Limits;
 use crate::wire::{ComponentId, Nonce, SystemId};
 
+/// Setpoints a second. An autopilot takes each as a step, and its motors answer each with a jolt. Logs are sampled at 50,
+/// 100 or 250 Hz: jolts at a rate that divides these fall at one and the same phase of the samples for a whole flight, and
+/// the motors' mean is logged wrong by as much as the setpoints change. At 50 Hz and a log of 100 Hz the inertia about z
+/// came out up to 4 % wrong, and damping was named that is not there. At 43 Hz what is left lies above 7 Hz.
+pub const SETPOINT_HZ: u32 = 43;
+
 /// One flight, as ordered.
 #[derive(Debug, Clone)]
 pub struct Sortie {
@@ -107,7 +113,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             station: (SystemId(255), ComponentId(190)),
-            setpoint_period: Duration::from_millis(20),
+            setpoint_period: Duration::from_secs(1) / SETPOINT_HZ,
             origin: Origin::Local,
             tracking_max_m: 1.0,
             room_margin_m: 1.0,
@@ -126,5 +132,25 @@ impl Default for Settings {
             accepted: Vec::new(),
             first_question: FirstQuestion::random(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Above every frequency that is excited on purpose, Hz.
+    const EXCITED_HZ: u32 = 2;
+
+    #[test]
+    fn no_harmonic_of_the_setpoints_is_seen_as_motion_in_a_log() {
+        for log_hz in [25, 50, 100, 125, 200, 250, 400] {
+            for harmonic in 1..=4 {
+                let beyond_hz = (harmonic * SETPOINT_HZ) % log_hz;
+                let seen_hz = beyond_hz.min(log_hz - beyond_hz);
+                assert!(seen_hz > EXCITED_HZ, "harmonic {harmonic} is {seen_hz} Hz in a log of {log_hz} Hz");
+            }
+        }
+        assert_eq!(Settings::default().setpoint_period, Duration::from_secs(1) / SETPOINT_HZ);
     }
 }

@@ -9,13 +9,13 @@ use super::arming::Arming;
 use super::ground::Ground;
 use super::health::{BatteryLevel, EstimatorReport, SystemReport, battery_status, level_of_percent};
 use super::lift::Outputs;
-use super::modes::Stack;
 use super::news::Novelty;
 use super::order::SendingOrder;
 use super::reset::{Pose, Step};
 pub use super::state::{FlightState, Motion, Seen};
+use crate::autopilot::Stack;
 use crate::frames::Attitude;
-use crate::recording::Quantity;
+use crate::recording::{self, Quantity};
 use crate::wire::{self, Decoder, Frame, Payload, Record};
 
 const POSITION_TARGET: u32 = 85;
@@ -39,7 +39,7 @@ const STATUS_VALID: Duration = Duration::from_secs(3);
 #[derive(Debug)]
 pub struct Telemetry {
     decoder: Decoder,
-    stack: Stack,
+    stack: &'static Stack,
     /// last frame of its autopilot
     pub heard: Duration,
     /// when it was heard again after a silence, or first
@@ -87,7 +87,7 @@ pub struct Telemetry {
 impl Telemetry {
     /// Of the vehicle whose HEARTBEAT was heard at `now`.
     #[must_use]
-    pub fn new(vehicle: wire::Vehicle, stack: Stack, now: Duration) -> Self {
+    pub fn new(vehicle: wire::Vehicle, stack: &'static Stack, now: Duration) -> Self {
         Self {
             decoder: Decoder::new(vehicle, None, micros(now)),
             stack,
@@ -208,7 +208,7 @@ impl Telemetry {
         let outputs = &mut self.outputs;
         outputs.clear();
         self.decoder.decode(&record, &mut |event| match event {
-            wire::Event::Sample { stream, time_s, values } => match (stream.quantity, values) {
+            recording::Event::Sample { stream, time_s, values } => match (stream.quantity, values) {
                 (Quantity::Position, &[x, y, z]) => position = Some((time_s, Vector3::new(x, y, z))),
                 (Quantity::Velocity, &[x, y, z]) => velocity = Some(Vector3::new(x, y, z)),
                 (Quantity::Attitude, &[w, x, y, z]) => {
@@ -220,7 +220,7 @@ impl Telemetry {
                     ground.report(now, (state - LANDED_STATE_ON_GROUND).abs() < 0.5);
                 }
                 (quantity @ (Quantity::ActuatorCommand | Quantity::RotorSpeed), values) => {
-                    outputs.push(Outputs { quantity, source: stream.key().source, values: values.to_vec() });
+                    outputs.push(Outputs { quantity, source: stream.source, values: values.to_vec() });
                 }
                 (Quantity::BatteryVoltage, &[value]) => *volts = Some(value),
                 (Quantity::PositionSetpoint, &[x, y, z]) if (x + y + z).is_finite() => {
@@ -228,16 +228,18 @@ impl Telemetry {
                 }
                 _ => {}
             },
-            wire::Event::Text { severity, text, .. } => news.push(Novelty::Text(severity, text.to_owned())),
+            recording::Event::Text { severity, text, .. } => {
+                news.push(Novelty::Text(severity, text.to_owned()))
+            }
             // a network that holds frames back for seconds shows old stamps, which are not those of a start
-            wire::Event::ClockReset { stamp_s, .. } => {
+            recording::Event::ClockReset { stamp_s, .. } => {
                 ground.clock_jumped(now);
                 if stamp_s < silence.as_secs_f64() + STARTED_S {
                     news.push(Novelty::Reboot);
                 }
             }
-            wire::Event::EstimatorReset { .. } => reset = true,
-            wire::Event::Parameter { .. } => {}
+            recording::Event::EstimatorReset { .. } => reset = true,
+            recording::Event::Autopilot(_) | recording::Event::Parameter { .. } => {}
         });
         if frame.header().message_id == POSITION_TARGET {
             news.push(Novelty::Target(target_m));
@@ -325,7 +327,7 @@ impl Telemetry {
 
     /// Which autopilot's rules it follows.
     #[must_use]
-    pub fn stack(&self) -> Stack {
+    pub fn stack(&self) -> &'static Stack {
         self.stack
     }
 

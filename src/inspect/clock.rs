@@ -2,8 +2,8 @@
 
 use super::inspection::ClockSummary;
 use crate::log::Place;
+use crate::recording::Event;
 use crate::units::seconds_from_us;
-use crate::wire::Event;
 
 /// Arrivals are looked at together over this long, s.
 const BLOCK_S: f64 = 1.0;
@@ -83,15 +83,15 @@ impl ClockTally {
     /// Takes what an event tells of the clocks.
     pub(super) fn add(&mut self, place: Place, event: &Event<'_>) {
         match event {
-            Event::Sample { stream, time_s, .. } => {
+            Event::Sample { time_s, .. } => {
                 self.cover(*time_s);
-                if stream.source.has_own_time() {
-                    self.arrival(place.host_us, *time_s);
+                if let Some(arrival_us) = place.arrival_us {
+                    self.arrival(arrival_us, *time_s);
                 }
             }
             Event::ClockReset { time_s, .. } => self.reset(*time_s),
             Event::EstimatorReset { time_s } => keep(&mut self.estimator_resets_s, *time_s),
-            Event::Parameter { .. } | Event::Text { .. } => {}
+            Event::Autopilot(_) | Event::Parameter { .. } | Event::Text { .. } => {}
         }
     }
 

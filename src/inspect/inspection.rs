@@ -85,6 +85,11 @@ pub enum Reading {
     Tlog(Box<TlogReading>),
     /// table
     Csv(CsvReading),
+    /// a format that has nothing to add to what all have
+    Other {
+        /// which one
+        name: &'static str,
+    },
 }
 
 /// What was met in a telemetry log.

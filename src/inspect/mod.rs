@@ -24,4 +24,4 @@ pub use inspection::{
     ParameterSummary, Reading, Segment, SenderSummary, StreamSummary, Text, TextSummary, Timeline,
     TlogReading, VehicleSummary,
 };
-pub use tally::{inspect_csv, inspect_tlog};
+pub use tally::{inspect, inspect_recording};

@@ -3,29 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::inspection::ParameterSummary;
-use crate::recording::Autopilot;
+use crate::autopilot::{Autopilot, Numbered, Outputs, STACKS};
 
 /// Parameters kept; autopilots have about 1500.
 const KEPT: usize = 10_000;
-/// Beginnings of names that tell how a command becomes thrust and how the vehicle is built.
-const RELEVANT: [&str; 15] = [
-    "MOT_",
-    "FRAME_",
-    "THR_MDL_FAC",
-    "MPC_THR_HOVER",
-    "PWM_MAIN_MIN",
-    "PWM_MAIN_MAX",
-    "PWM_MAIN_FUNC",
-    "PWM_AUX_MIN",
-    "PWM_AUX_MAX",
-    "PWM_AUX_FUNC",
-    "CA_AIRFRAME",
-    "CA_ROTOR",
-    "SYS_AUTOSTART",
-    "BAT_N_CELLS",
-    "BAT1_N_CELLS",
-];
-
 /// All that the log holds, in bounds.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Parameters {
@@ -56,12 +37,8 @@ impl Parameters {
 
     /// What of the way from command to thrust the log should hold and does not.
     pub(super) fn missing_curve(&self, autopilot: Autopilot) -> Option<&'static str> {
-        let (needed, names) = match autopilot {
-            Autopilot::ArduPilot => ("MOT_THST_EXPO", "MOT_* and SERVOn_FUNCTION"),
-            Autopilot::Px4 => ("THR_MDL_FAC", "THR_MDL_FAC and PWM_MAIN_*"),
-            Autopilot::Other | Autopilot::Unknown => return None,
-        };
-        (!self.values.contains_key(needed)).then_some(names)
+        let outputs = &autopilot.stack()?.outputs;
+        (!self.values.contains_key(outputs.expo)).then_some(outputs.recorded)
     }
 
     /// What to tell.
@@ -75,10 +52,14 @@ impl Parameters {
     }
 }
 
-/// `SERVOn_FUNCTION` matters where it is a motor (33 to 40), the rest by its name.
+/// It tells how a command becomes thrust or how the vehicle is built, of any autopilot; an output's function matters where
+/// it is a motor.
 fn is_relevant(name: &str, value: f64) -> bool {
-    let motor = name.starts_with("SERVO") && name.ends_with("_FUNCTION") && (33.0..=40.0).contains(&value);
-    motor || RELEVANT.iter().any(|beginning| name.starts_with(beginning))
+    STACKS.iter().any(|stack| {
+        let Outputs { function: Numbered { before, after }, relevant, .. } = &stack.outputs;
+        let motor = name.starts_with(before) && name.ends_with(after) && stack.outputs.is_motor(value);
+        motor || relevant.iter().any(|beginning| name.starts_with(beginning))
+    })
 }
 
 #[cfg(test)]

@@ -1,16 +1,25 @@
 //! The readers' reports as they are told.
 
-use super::inspection::{CsvReading, SenderSummary, TlogReading};
-use crate::log::ReadReport;
+use super::inspection::{CsvReading, Reading, SenderSummary, TlogReading};
 use crate::log::csv::CsvReport;
+use crate::log::{Details, ReadReport, TlogReport};
 use crate::units::seconds_from_us;
 use crate::wire::{ByteOrder, Source};
 
 /// Damaged places told one by one.
 const TOLD_RESYNCS: usize = 20;
 
+/// What was met while reading.
+pub(super) fn reading_of(report: &ReadReport) -> Reading {
+    match &report.details {
+        Details::Telemetry(telemetry) => Reading::Tlog(Box::new(tlog_reading(telemetry))),
+        Details::Table(table) => Reading::Csv(csv_reading(table)),
+        Details::None => Reading::Other { name: report.format },
+    }
+}
+
 /// A telemetry log's report.
-pub(super) fn tlog_reading(report: &ReadReport) -> TlogReading {
+fn tlog_reading(report: &TlogReport) -> TlogReading {
     let by_name = |list: &[(Source, u64)]| list.iter().map(|(source, n)| (source.name(), *n)).collect();
     let senders = report.senders.iter().map(|sender| SenderSummary {
         system: sender.system.0,
@@ -34,7 +43,7 @@ pub(super) fn tlog_reading(report: &ReadReport) -> TlogReading {
         leaping_stamps: report.leaping_stamps,
         odd_stamps: report.odd_stamps,
         host_steps: report.decode.host_steps,
-        oddities: report.oddities(),
+        oddities: report.oddities().iter().map(ToString::to_string).collect(),
         little_endian_stamps: report.byte_order == ByteOrder::Little,
         bad_crc: report.bad_crc,
         resync_count: report.resync_count,
@@ -58,7 +67,7 @@ pub(super) fn tlog_reading(report: &ReadReport) -> TlogReading {
 }
 
 /// A table's report.
-pub(super) fn csv_reading(report: &CsvReport) -> CsvReading {
+fn csv_reading(report: &CsvReport) -> CsvReading {
     CsvReading {
         rows: report.rows,
         rows_rejected: report.rows_rejected,

@@ -2,19 +2,18 @@
 
 use super::inspection::StreamSummary;
 use crate::recording::{Quantity, StreamKey, StreamStats, StreamTally};
-use crate::wire::StreamId;
 
 /// Tallies of all streams of a log.
 #[derive(Debug, Default)]
 pub(super) struct StreamTallies {
-    tallies: Vec<(StreamId, usize, StreamTally)>,
+    tallies: Vec<(StreamKey, usize, StreamTally)>,
     /// where the last sample went: messages bring their quantities in the same order again and again
     next: usize,
 }
 
 impl StreamTallies {
     /// Adds a sample.
-    pub(super) fn add(&mut self, stream: StreamId, time_s: f64, values: &[f64]) {
+    pub(super) fn add(&mut self, stream: StreamKey, time_s: f64, values: &[f64]) {
         let expected = self.tallies.get(self.next).is_some_and(|(id, ..)| *id == stream);
         let index = if expected { self.next } else { self.find(stream) };
         self.next = index + 1;
@@ -23,7 +22,7 @@ impl StreamTallies {
         tally.add(time_s, values);
     }
 
-    fn find(&mut self, stream: StreamId) -> usize {
+    fn find(&mut self, stream: StreamKey) -> usize {
         self.tallies.iter().position(|(id, ..)| *id == stream).unwrap_or_else(|| {
             self.tallies.push((stream, 0, StreamTally::default()));
             self.tallies.len() - 1
@@ -38,7 +37,7 @@ impl StreamTallies {
     /// What was collected, in the order of keys.
     pub(super) fn summary(&self) -> Vec<(StreamKey, usize, StreamStats)> {
         let mut all: Vec<_> =
-            self.tallies.iter().map(|(id, width, tally)| (id.key(), *width, tally.stats())).collect();
+            self.tallies.iter().map(|(id, width, tally)| (*id, *width, tally.stats())).collect();
         all.sort_by_key(|(key, ..)| *key);
         all
     }

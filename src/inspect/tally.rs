@@ -1,6 +1,5 @@
 //! Walks through a log once and collects everything.
 
-use std::path::Path;
 use std::sync::mpsc::sync_channel;
 
 use super::assess::{Assessment, Assessor};
@@ -8,16 +7,16 @@ use super::clock::ClockTally;
 use super::inspection::{Inspection, Reading, Text, TextSummary, VehicleSummary};
 use super::outlook::{Evidence, outlook};
 use super::parameters::Parameters;
-use super::reading::{csv_reading, tlog_reading};
+use super::reading::reading_of;
 use super::streams::{StreamTallies, summary_of};
 use super::timeline::TimelineTally;
 use super::verdict::verdict;
 use super::window::{WindowRecorder, windows_of};
-use crate::log::csv::CsvReport;
-use crate::log::{LoadOptions, LogError, Place, TlogWalk, Walk, who_flew};
-use crate::recording::{Autopilot, Recording, StreamKey, StreamStats};
+use crate::autopilot::Autopilot;
+use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport, TlogReport};
+use crate::recording::{Event, Recording, StreamKey, StreamStats};
 use crate::vehicle::Vehicle;
-use crate::wire::Event;
+use crate::wire::{Sender, Source, SystemId};
 
 /// MAV_SEVERITY_WARNING; smaller is worse.
 const WARNING: u8 = 4;
@@ -34,6 +33,7 @@ struct Tally {
     timeline: TimelineTally,
     parameters: Parameters,
     texts: TextSummary,
+    autopilot: Autopilot,
 }
 
 impl Tally {
@@ -41,6 +41,7 @@ impl Tally {
     fn add(&mut self, place: Place, event: &Event<'_>) -> bool {
         self.clock.add(place, event);
         match *event {
+            Event::Autopilot(autopilot) => self.autopilot = autopilot,
             Event::Sample { stream, time_s, values } => {
                 self.streams.add(stream, time_s, values);
                 self.timeline.add(stream.quantity, time_s, values);
@@ -67,53 +68,55 @@ impl Tally {
     }
 }
 
-/// What a telemetry log holds, in memory that does not grow with it. Without a HEARTBEAT the system with the smallest
-/// number is taken, of several vehicles the one that flew and where several did the first, unless `options` choose one.
-/// `progress` is told the bytes read so far.
+/// What a log holds, in memory that does not grow with it but for a table. Of a telemetry log without a HEARTBEAT the
+/// system with the smallest number is taken, of several vehicles the one that flew and where several did the first, unless
+/// `options` choose one. `progress` is told the bytes read so far.
 ///
 /// # Errors
-/// The log cannot be read, or the chosen system does not speak in it.
-pub fn inspect_tlog(
-    path: &Path,
-    options: &LoadOptions,
+/// The log cannot be read, is of no known format, or the chosen system does not speak in it.
+pub fn inspect<'a>(
+    log: impl Into<Input<'a>>,
+    options: &OpenOptions,
     vehicle: Option<&Vehicle>,
     progress: &mut dyn FnMut(u64),
 ) -> Result<Inspection, LogError> {
-    let mut options = *options;
-    if let Err(refusal) = TlogWalk::open(path, &options) {
-        match refusal {
-            LogError::NoVehicle { ref systems } if options.system.is_none() && !systems.is_empty() => {
-                options.system = systems.first().copied();
-            }
-            refusal => return Err(refusal),
-        }
+    let input = log.into();
+    // the rows of a table may come in any order
+    if log::format_of(input)?.takes_columns {
+        return Ok(inspect_recording(&log::open(input, options)?, vehicle));
     }
-    let mut first = Pass::run(path, &options, (vehicle, Parameters::default()), progress)?;
-    if options.system.is_none() && first.walk.vehicles.len() > 1 {
-        match who_flew(path) {
-            Ok(system) if system != first.walk.vehicle.system => {
-                options.system = Some(system);
-                first = Pass::run(path, &options, (vehicle, Parameters::default()), progress)?;
-            }
-            // the first is as good as any
-            Ok(_) | Err(LogError::SeveralVehicles { .. }) => {}
-            Err(error) => return Err(error),
-        }
+    let mut options = options.clone();
+    let mut first = Pass::run(input, &options, (vehicle, Parameters::default()), progress);
+    if let Some(system) = first.as_ref().err().and_then(instead).filter(|_| options.system.is_none()) {
+        options.system = Some(system);
+        first = Pass::run(input, &options, (vehicle, Parameters::default()), progress);
     }
+    let first = first?;
     // commands become thrust by the autopilot's parameters: windows before they came are looked at again
     let pass = if first.parameters_late && vehicle.is_some() {
-        Pass::run(path, &options, (vehicle, first.tally.parameters), progress)?
+        Pass::run(input, &options, (vehicle, first.tally.parameters), progress)?
     } else {
         first
     };
     Ok(pass.inspection(vehicle))
 }
 
-/// Once through a telemetry log.
+/// The system that is looked at where a log does not say by itself which one is meant.
+fn instead(refusal: &LogError) -> Option<SystemId> {
+    match refusal {
+        LogError::OtherFlew { system } => Some(*system),
+        LogError::NoVehicle { systems } => systems.first().copied(),
+        // the first is as good as any
+        LogError::SeveralVehicles { first, .. } => Some(*first),
+        _ => None,
+    }
+}
+
+/// Once through a log.
 struct Pass {
     tally: Tally,
     assessment: Assessment,
-    walk: Walk,
+    report: ReadReport,
     /// a parameter that matters changed after a window had been looked at
     parameters_late: bool,
     numbers_held_max: usize,
@@ -121,13 +124,12 @@ struct Pass {
 
 impl Pass {
     fn run(
-        path: &Path,
-        options: &LoadOptions,
+        input: Input<'_>,
+        options: &OpenOptions,
         (vehicle, parameters): (Option<&Vehicle>, Parameters),
         progress: &mut dyn FnMut(u64),
     ) -> Result<Self, LogError> {
-        let walk = TlogWalk::open(path, options)?;
-        let mut recorder = WindowRecorder::new(walk.vehicle());
+        let mut recorder = WindowRecorder::default();
         let mut tally = Tally { parameters, ..Tally::default() };
         let (mut parameters_late, mut windows, mut events) = (false, 0_usize, 0_u32);
         // a window is assessed while the next one is read; the channel holds none, so at most two exist
@@ -147,7 +149,7 @@ impl Pass {
                 }
                 windows
             };
-            let walked = walk.run(&mut |place, event| {
+            let read = log::stream(input, options, &mut |place, event| {
                 let changed = tally.add(place, &event);
                 let sent = send(recorder.add(event), &tally.parameters);
                 parameters_late |= changed && sent > 0;
@@ -162,7 +164,7 @@ impl Pass {
             Ok(Self {
                 tally,
                 assessment,
-                walk: walked?,
+                report: read?,
                 parameters_late,
                 numbers_held_max: recorder.numbers_max(),
             })
@@ -170,36 +172,41 @@ impl Pass {
     }
 
     fn inspection(self, vehicle: Option<&Vehicle>) -> Inspection {
-        let Walk { vehicle: speaker, vehicles, report } = self.walk;
-        let reading = tlog_reading(&report);
-        let heartbeats = report
-            .senders
-            .iter()
-            .filter(|sender| sender.system == speaker.system && sender.component == speaker.component)
-            .map(|sender| sender.messages.get(crate::wire::Source::Heartbeat.message_id()))
-            .sum::<u64>();
-        let streams = self.tally.streams.summary();
         let found = Found {
-            vehicle: VehicleSummary {
-                system: Some(speaker.system.0),
-                component: Some(speaker.component.0),
-                autopilot: autopilot_name(speaker.autopilot),
-                others: vehicles.iter().filter(|s| **s != speaker.system).map(|s| s.0).collect(),
-                without_heartbeat: heartbeats == 0,
-            },
-            autopilot: speaker.autopilot,
-            reading: Reading::Tlog(Box::new(reading)),
-            losses: report.losses(),
-            streams,
+            vehicle: vehicle_of(&self.report, self.tally.autopilot),
+            autopilot: self.tally.autopilot,
+            reading: reading_of(&self.report),
+            losses: self.report.losses.iter().map(ToString::to_string).collect(),
+            streams: self.tally.streams.summary(),
             numbers_held_max: self.numbers_held_max,
         };
         found.inspection(self.tally, self.assessment, vehicle)
     }
 }
 
+/// Whose log it is.
+fn vehicle_of(report: &ReadReport, autopilot: Autopilot) -> VehicleSummary {
+    let speaker = report.vehicle;
+    let heartbeats = |telemetry: &TlogReport| -> u64 {
+        let own = |sender: &&Sender| {
+            speaker.is_some_and(|own| own.system == sender.system && own.component == sender.component)
+        };
+        let beats = |sender: &Sender| sender.messages.get(Source::Heartbeat.message_id());
+        telemetry.senders.iter().filter(own).map(beats).sum()
+    };
+    VehicleSummary {
+        system: speaker.map(|speaker| speaker.system.0),
+        component: speaker.map(|speaker| speaker.component.0),
+        autopilot: autopilot.id(),
+        others: report.others.iter().map(|system| system.0).collect(),
+        without_heartbeat: report.telemetry().is_some_and(|telemetry| heartbeats(telemetry) == 0),
+    }
+}
+
 /// What a recording that is in memory holds.
 #[must_use]
-pub fn inspect_csv(recording: &Recording, report: &CsvReport, vehicle: Option<&Vehicle>) -> Inspection {
+pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspection {
+    let Opened { recording, report } = opened;
     let mut tally = Tally::default();
     let mut streams = Vec::new();
     for (key, stream) in &recording.streams {
@@ -213,13 +220,10 @@ pub fn inspect_csv(recording: &Recording, report: &CsvReport, vehicle: Option<&V
     let mut assessor = Assessor::new(vehicle);
     windows_of(recording).for_each(|window| assessor.window(&window));
     let found = Found {
-        vehicle: VehicleSummary {
-            autopilot: autopilot_name(recording.autopilot),
-            ..VehicleSummary::default()
-        },
+        vehicle: vehicle_of(report, recording.autopilot),
         autopilot: recording.autopilot,
-        losses: report.losses(),
-        reading: Reading::Csv(csv_reading(report)),
+        losses: report.losses.iter().map(ToString::to_string).collect(),
+        reading: reading_of(report),
         streams,
         numbers_held_max: recording.streams.values().map(|s| s.values.len() + s.len()).sum(),
     };
@@ -259,14 +263,5 @@ impl Found {
             texts: tally.texts,
             numbers_held_max: self.numbers_held_max,
         }
-    }
-}
-
-fn autopilot_name(autopilot: Autopilot) -> &'static str {
-    match autopilot {
-        Autopilot::Px4 => "px4",
-        Autopilot::ArduPilot => "ardupilot",
-        Autopilot::Other => "other",
-        Autopilot::Unknown => "unknown",
     }
 }

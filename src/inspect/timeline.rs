@@ -1,45 +1,14 @@
 //! Armed, in the air, modes: from state messages to spans.
 
 use super::inspection::{ModeChange, Timeline};
-use crate::recording::{Autopilot, Quantity};
+use crate::autopilot::Autopilot;
+use crate::recording::Quantity;
+use crate::units::whole_unsigned;
 
 /// Entries kept of each list; a log with more is counted.
 const KEPT: usize = 1000;
 /// MAV_LANDED_STATE_ON_GROUND.
 const ON_GROUND: f64 = 1.0;
-
-/// ArduCopter's custom modes.
-const ARDUCOPTER: [(u8, &str); 18] = [
-    (0, "STABILIZE"),
-    (1, "ACRO"),
-    (2, "ALT_HOLD"),
-    (3, "AUTO"),
-    (4, "GUIDED"),
-    (5, "LOITER"),
-    (6, "RTL"),
-    (7, "CIRCLE"),
-    (9, "LAND"),
-    (11, "DRIFT"),
-    (13, "SPORT"),
-    (14, "FLIP"),
-    (15, "AUTOTUNE"),
-    (16, "POSHOLD"),
-    (17, "BRAKE"),
-    (18, "THROW"),
-    (20, "GUIDED_NOGPS"),
-    (21, "SMART_RTL"),
-];
-/// PX4's main modes, the third byte of the custom mode.
-const PX4: [(u8, &str); 8] = [
-    (1, "MANUAL"),
-    (2, "ALTITUDE"),
-    (3, "POSITION"),
-    (4, "AUTO"),
-    (5, "ACRO"),
-    (6, "OFFBOARD"),
-    (7, "STABILIZED"),
-    (8, "RATTITUDE"),
-];
 
 /// Collects spans.
 #[derive(Debug, Clone, Default)]
@@ -123,12 +92,12 @@ impl TimelineTally {
 }
 
 fn mode_name(autopilot: Autopilot, number: f64) -> Option<&'static str> {
-    let (names, number): (&[(u8, &str)], f64) = match autopilot {
-        Autopilot::ArduPilot => (&ARDUCOPTER, number),
-        Autopilot::Px4 => (&PX4, (number / 65536.0).floor() % 256.0),
-        Autopilot::Unknown | Autopilot::Other => return None,
-    };
-    names.iter().find(|(known, _)| (f64::from(*known) - number).abs() < 0.5).map(|(_, name)| *name)
+    let stack = autopilot.stack()?;
+    let number = number.is_finite().then(|| whole_unsigned(number))?;
+    // a sub mode that is not known has its main mode's name
+    let (main, _) = stack.numbering.parts(number);
+    let mode = stack.mode(number).or_else(|| stack.mode(stack.numbering.number(main, 0)))?;
+    Some(mode.name)
 }
 
 #[cfg(test)]

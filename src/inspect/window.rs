@@ -1,8 +1,7 @@
 //! Recordings of bounded length, one after the other, so that memory does not grow with the log.
 
-use crate::log::RecordingBuilder;
-use crate::recording::{Quantity, Recording, Stream};
-use crate::wire::{Event, StreamId, Vehicle};
+use crate::autopilot::Autopilot;
+use crate::recording::{Event, Quantity, Recording, RecordingBuilder, Stream, StreamKey};
 
 /// s of the vehicle's clock in one window.
 pub(super) const WINDOW_S: f64 = 120.0;
@@ -10,25 +9,24 @@ pub(super) const WINDOW_S: f64 = 120.0;
 pub(super) const WINDOW_NUMBERS: usize = 1_500_000;
 
 /// Collects events into windows.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct WindowRecorder {
-    vehicle: Vehicle,
+    autopilot: Autopilot,
     builder: RecordingBuilder,
     start_s: Option<f64>,
     numbers_max: usize,
     /// last word on armed and landed: the next window begins with it
-    states: Vec<(StreamId, Vec<f64>)>,
+    states: Vec<(StreamKey, Vec<f64>)>,
 }
 
 impl WindowRecorder {
-    /// Nothing collected yet.
-    pub(super) fn new(vehicle: Vehicle) -> Self {
-        Self { vehicle, builder: RecordingBuilder::new(), start_s: None, numbers_max: 0, states: Vec::new() }
-    }
-
     /// Adds an event; gives the window before it where that is full. Parameters and texts are kept elsewhere.
     pub(super) fn add(&mut self, event: Event<'_>) -> Option<Recording> {
         match event {
+            Event::Autopilot(autopilot) => {
+                self.autopilot = autopilot;
+                None
+            }
             Event::Sample { stream, time_s, values } => self.sample(stream, time_s, values),
             Event::ClockReset { .. } => {
                 let window = self.close();
@@ -44,7 +42,7 @@ impl WindowRecorder {
         }
     }
 
-    fn sample(&mut self, stream: StreamId, time_s: f64, values: &[f64]) -> Option<Recording> {
+    fn sample(&mut self, stream: StreamKey, time_s: f64, values: &[f64]) -> Option<Recording> {
         let full = self.start_s.is_some_and(|start_s| time_s - start_s >= WINDOW_S)
             || self.builder.numbers() >= WINDOW_NUMBERS;
         let window = if full { self.close() } else { None };
@@ -68,9 +66,9 @@ impl WindowRecorder {
     /// The window so far; `None` where it is empty.
     pub(super) fn close(&mut self) -> Option<Recording> {
         self.start_s.take()?;
-        let builder = std::mem::take(&mut self.builder);
-        self.builder = RecordingBuilder::new();
-        Some(builder.finish(&self.vehicle).0)
+        let mut builder = std::mem::take(&mut self.builder);
+        builder.add(Event::Autopilot(self.autopilot));
+        Some(builder.finish().0)
     }
 
     /// Most numbers that were held at once.

@@ -85,6 +85,11 @@ impl Carrier {
         Some(frame)
     }
 
+    /// The link ends: what waits for its continuation is decided.
+    pub fn end(&mut self, stamp: HostStamp) {
+        self.incoming.silence(stamp);
+    }
+
     /// The other end is lost: what waits to be sent is forgotten.
     pub fn lost(&mut self, why: &str) {
         self.incoming.lost(why.to_owned());

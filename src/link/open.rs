@@ -1,13 +1,14 @@
 //! Opens links.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use tokio::sync::{mpsc, watch};
 
 use super::address::Address;
 use super::error::LinkError;
+use super::halt::{Halt, Stop, panic_for_test};
 use super::incoming::Incoming;
 use super::options::LinkOptions;
 use super::outgoing::Outgoing;
@@ -65,8 +66,8 @@ fn start(name: String, transport: Transport, options: &LinkOptions) -> Ends {
     let alive = Arc::new(alive);
     let incoming = Incoming::new(to_reader, shared.clone(), options);
     let outgoing = Outgoing::new(queue, shared.clone());
-    let parked = options.parked.clone();
-    tokio::spawn(drive(transport, (incoming, outgoing), gone, shared.clone(), parked));
+    let halt = options.halt.clone();
+    tokio::spawn(drive(transport, (incoming, outgoing), gone, shared.clone(), halt));
     (LinkReader::new(from_task, shared.clone(), Some(alive.clone())), LinkWriter::new(to_task, shared, alive))
 }
 
@@ -75,7 +76,7 @@ async fn drive(
     (mut incoming, mut outgoing): (Incoming, Outgoing),
     mut gone: watch::Receiver<()>,
     shared: Arc<Shared>,
-    parked: Option<Arc<AtomicBool>>,
+    halt: Halt,
 ) {
     let left = async {
         // nothing is ever sent on it: it only ends
@@ -85,17 +86,27 @@ async fn drive(
     tokio::select! {
         () = transport.serve(&mut incoming, &mut outgoing) => {}
         () = left => {}
-        () = run(&shared, parked) => {}
+        () = run(&shared, &halt) => {}
     }
+    // what waits for its continuation is decided
+    incoming.silence(incoming.now());
+    shared.ended.notify_one();
 }
 
-/// Says every now and then that the task runs, and in a test holds it up.
-async fn run(shared: &Shared, parked: Option<Arc<AtomicBool>>) {
+/// Says every now and then that the task runs, and in a test stops it.
+async fn run(shared: &Shared, halt: &Halt) {
     loop {
-        while parked.as_ref().is_some_and(|parked| parked.load(Ordering::Acquire)) {
-            std::thread::sleep(RUNS);
+        match halt.stopped() {
+            Some(Stop::Stands) => {
+                std::thread::sleep(RUNS);
+                continue;
+            }
+            Some(Stop::Panics) => panic_for_test("a test stops the link"),
+            Some(Stop::Ends) => return,
+            None => {}
         }
         shared.runs();
+        halt.runs();
         tokio::time::sleep(RUNS).await;
     }
 }

@@ -1,10 +1,9 @@
 //! How a link is to be.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use super::clock::HostClock;
+use super::halt::Halt;
 use super::recorder::Recorder;
 use super::signing::Signing;
 use crate::wire::{ComponentId, SystemId};
@@ -29,8 +28,8 @@ pub struct LinkOptions {
     pub signing: Option<Signing>,
     /// records every frame received and sent
     pub recorder: Option<Recorder>,
-    /// for tests: the link's task stands still while this is set
-    pub parked: Option<Arc<AtomicBool>>,
+    /// for tests: where the link's task is stopped
+    pub halt: Halt,
 }
 
 impl Default for LinkOptions {
@@ -43,7 +42,7 @@ impl Default for LinkOptions {
             patient: false,
             signing: None,
             recorder: None,
-            parked: None,
+            halt: Halt::default(),
         }
     }
 }

@@ -27,6 +27,8 @@ pub(super) struct Shared {
     pub filled: Notify,
     /// all writers are gone and all that they gave is sent
     pub drained: Notify,
+    /// the task is over, and all that it received is recorded
+    pub ended: Notify,
     /// when this was made, and how many ms later the link's task last ran
     made: Instant,
     ran_ms: AtomicU64,
@@ -44,6 +46,7 @@ impl Shared {
             waiting: AtomicUsize::default(),
             filled: Notify::default(),
             drained: Notify::default(),
+            ended: Notify::default(),
             made: Instant::now(),
             ran_ms: AtomicU64::default(),
             latest: Mutex::default(),

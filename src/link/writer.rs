@@ -95,6 +95,14 @@ impl LinkWriter {
         self.shared.stats().replaced += u64::from(withdrawn);
     }
 
+    /// Gives up this writer and waits until the link's task is over, which it is when every other writer and the reader are
+    /// gone. What was received until then is recorded.
+    pub async fn close(self) {
+        let shared = self.shared.clone();
+        drop(self);
+        shared.ended.notified().await;
+    }
+
     /// Waits until all that was given before is sent, or dropped by the loss of the link.
     ///
     /// # Errors

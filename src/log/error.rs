@@ -1,8 +1,9 @@
 //! Why a log cannot be read.
 
-use crate::text;
 use std::path::PathBuf;
 
+use super::csv::CsvError;
+use crate::text;
 use crate::wire::SystemId;
 
 /// Why a log cannot be read.
@@ -24,27 +25,29 @@ pub enum LogError {
         /// what the system said
         source: std::io::Error,
     },
+    /// a file of no known format
+    #[error("expected a {expected}, got {came}: {advice}")]
+    UnknownFormat {
+        /// the formats that are read
+        expected: String,
+        /// what it is
+        came: String,
+        /// what to do with it
+        advice: &'static str,
+    },
+    /// what stands in it is not of its format
+    #[error("expected a {format} ({expected}), got {came}")]
+    WrongContent {
+        /// the format
+        format: &'static str,
+        /// what stands in a file of it
+        expected: &'static str,
+        /// what stands in this one
+        came: String,
+    },
     /// nothing in it
     #[error("expected a telemetry log, got an empty file")]
     Empty,
-    /// not a telemetry log
-    #[error(
-        "expected a telemetry log (8-byte stamp in microseconds, then a MAVLink frame, repeated), got a file that \
-         begins with {first:02x?}{}",
-        if *raw_capture { ": MAVLink frames without stamps" } else { "" }
-    )]
-    NotTlog {
-        /// its first bytes
-        first: Vec<u8>,
-        /// it begins with a frame: a raw capture
-        raw_capture: bool,
-    },
-    /// the file's name does not say what it is
-    #[error("expected a log named *.tlog or *.csv, got {}", text::path(&path))]
-    UnknownFormat {
-        /// which file
-        path: PathBuf,
-    },
     /// no vehicle speaks in it
     #[error("expected a HEARTBEAT of a vehicle, got frames of system(s) {} only", list(systems))]
     NoVehicle {
@@ -62,6 +65,16 @@ pub enum LogError {
         flew: bool,
         /// the vehicles
         systems: Vec<SystemId>,
+        /// the first vehicle that speaks in the log
+        first: SystemId,
+    },
+    /// what was streamed is of another vehicle than the one that flew
+    #[error(
+        "expected the first vehicle of the log to be the one that flew, got system {system} in the air (--system-id)"
+    )]
+    OtherFlew {
+        /// the one that flew
+        system: SystemId,
     },
     /// the chosen vehicle does not speak in it
     #[error("expected frames of system {wanted}, got system(s) {}", list(systems))]
@@ -71,6 +84,9 @@ pub enum LogError {
         /// who speaks
         systems: Vec<SystemId>,
     },
+    /// a table that cannot be read
+    #[error(transparent)]
+    Table(#[from] CsvError),
 }
 
 fn list(systems: &[SystemId]) -> String {

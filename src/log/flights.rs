@@ -6,8 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::recording::{Quantity, Recording, Stream};
-use crate::wire::Event;
+use crate::recording::{Event, Quantity, Recording, Stream};
 
 /// Length of a cell, s.
 const CELL_S: f64 = 10.0;

@@ -1,24 +1,30 @@
-//! From a file to a [`Recording`](crate::recording::Recording).
+//! From a file of any known format to a [`Recording`](crate::recording::Recording).
 //!
 //! ```text
-//! TlogReader -> Decoder -> events -> RecordingBuilder -> Recording
+//! Input -> Format (told by content) -> events -> RecordingBuilder -> Recording
 //! ```
 //!
-//! [`load`] does all of it; [`stream_tlog`] gives the events to whoever wants them without keeping any.
+//! [`open`] does all of it. [`open_flights`] divides a log into flights of bounded size. [`stream`] gives the events to
+//! whoever wants them without keeping any.
 
-mod builder;
 pub mod csv;
 mod error;
 mod flights;
-mod flown;
-mod load;
+mod foreign;
+mod format;
+mod input;
+mod loss;
+mod open;
+mod options;
 mod report;
 mod tlog;
 
-pub use builder::RecordingBuilder;
 pub use error::LogError;
 pub use flights::{Flights, Hold, LogFlight};
-pub use flown::who_flew;
-pub use load::{LoadOptions, Loaded, LoadedFlights, Place, TlogWalk, Walk, load, load_flights, stream_tlog};
-pub use report::{ReadReport, Resync, StreamRepair};
-pub use tlog::TlogReader;
+pub use format::{Certainty, Format, Place, Sink};
+pub use input::Input;
+pub use loss::{Loss, Oddity, Position, RowRejection};
+pub use open::{FORMATS, Opened, OpenedFlights, format_of, open, open_flights, stream};
+pub use options::OpenOptions;
+pub use report::{Details, ReadReport};
+pub use tlog::{Resync, TlogReader, TlogReport};

@@ -1,212 +1,60 @@
-//! What was met while reading: every loss counted.
+//! What was met while reading a log.
 
 use std::collections::BTreeMap;
 
-use crate::recording::StreamKey;
-use crate::units::seconds_from_us;
-use crate::wire::{
-    ByteOrder, ComponentId, DecodeReport, Header, Record, Sender, SystemId, Version, is_wall_clock,
-};
+use super::csv::CsvReport;
+use super::loss::{Loss, Oddity};
+use super::tlog::TlogReport;
+use crate::recording::{StreamKey, StreamRepair};
+use crate::wire::{SystemId, Vehicle};
 
-/// Damaged places kept with their offsets; further ones are only counted.
-const KEPT_RESYNCS: usize = 1000;
-/// Stamps of several threads run back against each other by less, which is not odd.
-const TOLD_BACKWARD_US: u64 = 1_000_000;
-/// Host stamps further apart than an hour leap.
-const LEAP_US: u64 = 3_600_000_000;
-
-/// Bytes that had to be skipped to find the next record.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Resync {
-    /// byte offset in the file where the damage begins
-    pub offset: u64,
-    /// bytes that belong to no record
-    pub skipped_bytes: u64,
-}
-
-/// What was met while reading a log.
+/// What was met while reading a log, whatever its format.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReadReport {
-    /// bytes read
-    pub bytes: u64,
-    /// frames found, unknown ones included
-    pub frames: u64,
-    /// of these MAVLink 1
-    pub frames_v1: u64,
-    /// of these MAVLink 2
-    pub frames_v2: u64,
-    /// of these signed
-    pub signed: u64,
-    /// of these with a message id that the dialect does not have, by id
-    pub unknown_ids: BTreeMap<u32, u64>,
-    /// frames behind a stamp that another frame used already
-    pub shared_stamps: u64,
-    /// whole frames dropped for a wrong checksum
-    pub bad_crc: u64,
-    /// places where bytes were skipped, the first thousand
-    pub resyncs: Vec<Resync>,
-    /// all such places
-    pub resync_count: u64,
-    /// all bytes skipped there
-    pub skipped_bytes: u64,
-    /// bytes at the file's end: a record cut off, or zeros
-    pub truncated_tail_bytes: u64,
-    /// host stamps before their predecessor
-    pub backward_stamps: u64,
-    /// the furthest that a host stamp lies before its predecessor, microseconds
-    pub backward_most_us: u64,
-    /// host stamps equal to their predecessor, of records with a stamp of their own
-    pub doubled_stamps: u64,
-    /// host stamps more than an hour after their predecessor: a pause, the seam of two logs, or a clock that was set
-    pub leaping_stamps: u64,
-    /// host stamps of no wall clock: before 2010 or after 2100
-    pub odd_stamps: u64,
-    /// first host stamp, microseconds since 1970 UTC
-    pub first_stamp_us: Option<u64>,
-    /// last host stamp, microseconds since 1970 UTC
-    pub last_stamp_us: Option<u64>,
-    /// order of the host stamps' bytes
-    pub byte_order: ByteOrder,
-    /// who sent what
-    pub senders: Vec<Sender>,
-    /// what became of the chosen vehicle's messages
-    pub decode: DecodeReport,
-    /// what was done to put each stream's samples in order
+    /// name of the format
+    pub format: &'static str,
+    /// the vehicle that was read, where the log says whose it is
+    pub vehicle: Option<Vehicle>,
+    /// other vehicles in the log
+    pub others: Vec<SystemId>,
+    /// what of the file is not in the recording
+    pub losses: Vec<Loss>,
+    /// what is odd about it although nothing is lost by it
+    pub oddities: Vec<Oddity>,
+    /// what was done to put each stream's samples in order; empty where they were streamed
     pub streams: BTreeMap<StreamKey, StreamRepair>,
-    last_sender: usize,
+    /// what only this format has
+    pub details: Details,
 }
 
-/// What putting a stream's samples in order took.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct StreamRepair {
-    /// samples with a stamp that the stream has already, dropped
-    pub duplicates: u64,
-    /// samples that came after a later one, sorted in
-    pub out_of_order: u64,
+/// What only one format has.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Details {
+    /// nothing beyond the common
+    #[default]
+    None,
+    /// frames, stamps and senders
+    Telemetry(Box<TlogReport>),
+    /// rows and columns
+    Table(CsvReport),
 }
 
 impl ReadReport {
-    /// Frames missing by the sequence numbers, of all senders.
+    /// Frames, stamps and senders, where it is a telemetry log.
     #[must_use]
-    pub fn lost_frames(&self) -> u64 {
-        self.senders.iter().map(|sender| sender.lost).sum()
+    pub fn telemetry(&self) -> Option<&TlogReport> {
+        match &self.details {
+            Details::Telemetry(report) => Some(report),
+            _ => None,
+        }
     }
 
-    /// Frames that came twice, of all senders.
+    /// Rows and columns, where it is a table.
     #[must_use]
-    pub fn duplicates(&self) -> u64 {
-        self.senders.iter().map(|sender| sender.duplicates).sum()
-    }
-
-    /// Nothing was lost, skipped or cut off.
-    #[must_use]
-    pub fn is_undamaged(&self) -> bool {
-        self.bad_crc == 0
-            && self.resync_count == 0
-            && self.truncated_tail_bytes == 0
-            && self.lost_frames() == 0
-    }
-
-    /// What of the file itself is gone, in words. Frames that a link lost before the file was written show as
-    /// gaps in the sequence: they are no loss of the file's.
-    #[must_use]
-    pub fn losses(&self) -> Vec<String> {
-        let mut losses = Vec::new();
-        if self.bad_crc > 0 {
-            losses.push(format!("{} frames with a wrong checksum dropped", self.bad_crc));
+    pub fn table(&self) -> Option<&CsvReport> {
+        match &self.details {
+            Details::Table(report) => Some(report),
+            _ => None,
         }
-        if self.resync_count > 0 {
-            let first = self.resyncs.first().map_or(0, |resync| resync.offset);
-            losses.push(format!(
-                "{} bytes of no frame skipped in {} places, the first at byte {first}",
-                self.skipped_bytes, self.resync_count
-            ));
-        }
-        if self.truncated_tail_bytes > 0 {
-            losses.push(format!("{} bytes of a record cut off at the end", self.truncated_tail_bytes));
-        }
-        losses
-    }
-
-    /// What is odd about the host's stamps, in words; no frame is lost by it. Samples are placed by the vehicle's own
-    /// clock.
-    #[must_use]
-    pub fn oddities(&self) -> Vec<String> {
-        let mut oddities = Vec::new();
-        if self.backward_most_us > TOLD_BACKWARD_US {
-            oddities.push(format!(
-                "{} host stamps run backwards, by {:.3} s at most",
-                self.backward_stamps,
-                seconds_from_us(self.backward_most_us as f64)
-            ));
-        }
-        if self.odd_stamps > 0 {
-            oddities.push(format!(
-                "{} host stamps are of no wall clock (before 2010 or after 2100): the recording computer's clock was not \
-                 set",
-                self.odd_stamps
-            ));
-        }
-        if self.decode.host_steps > 0 {
-            oddities.push(format!(
-                "the recording computer's clock was set {} times while the vehicle's went on",
-                self.decode.host_steps
-            ));
-        }
-        oddities
-    }
-
-    fn tally_stamp(&mut self, stamp_us: u64, last_us: Option<u64>, shared_stamp: bool) {
-        self.odd_stamps += u64::from(!is_wall_clock(stamp_us));
-        let Some(last_us) = last_us else { return };
-        let back_us = last_us.saturating_sub(stamp_us);
-        self.backward_stamps += u64::from(back_us > 0);
-        self.backward_most_us = self.backward_most_us.max(back_us);
-        self.doubled_stamps += u64::from(stamp_us == last_us && !shared_stamp);
-        self.leaping_stamps += u64::from(stamp_us.saturating_sub(last_us) > LEAP_US);
-    }
-
-    pub(super) fn tally(&mut self, record: &Record<'_>, last_stamp_us: Option<u64>, shared_stamp: bool) {
-        let header = record.frame.header();
-        self.frames += 1;
-        match header.version {
-            Version::V1 => self.frames_v1 += 1,
-            Version::V2 => self.frames_v2 += 1,
-        }
-        self.signed += u64::from(header.is_signed());
-        self.shared_stamps += u64::from(shared_stamp);
-        if !record.known {
-            *self.unknown_ids.entry(header.message_id).or_default() += 1;
-        }
-        self.tally_stamp(record.stamp_us, last_stamp_us, shared_stamp);
-        self.first_stamp_us.get_or_insert(record.stamp_us);
-        self.last_stamp_us = Some(record.stamp_us);
-        self.sender(header.system, header.component).tally(&record.frame);
-    }
-
-    /// Whether a frame's sender sent others before.
-    pub(super) fn knows(&self, header: &Header) -> bool {
-        self.senders
-            .iter()
-            .any(|sender| sender.system == header.system && sender.component == header.component)
-    }
-
-    pub(super) fn note_resync(&mut self, offset: u64, skipped_bytes: u64) {
-        self.resync_count += 1;
-        self.skipped_bytes += skipped_bytes;
-        if self.resyncs.len() < KEPT_RESYNCS {
-            self.resyncs.push(Resync { offset, skipped_bytes });
-        }
-    }
-
-    fn sender(&mut self, system: SystemId, component: ComponentId) -> &mut Sender {
-        let same = |sender: &Sender| sender.system == system && sender.component == component;
-        if !self.senders.get(self.last_sender).is_some_and(same) {
-            self.last_sender = self.senders.iter().position(same).unwrap_or_else(|| {
-                self.senders.push(Sender::new(system, component));
-                self.senders.len() - 1
-            });
-        }
-        &mut self.senders[self.last_sender]
     }
 }

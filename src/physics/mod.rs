@@ -4,6 +4,7 @@
 //! inner loop of simulation and regression; each says its frame.
 
 mod active_effect;
+mod actuator;
 mod airframe;
 mod capacity;
 mod effect;
@@ -18,6 +19,7 @@ mod rigid_body;
 mod state;
 
 pub use active_effect::ActiveEffect;
+pub use actuator::{ActuationLatency, RotorLag, RotorStep, delayed_thrusts_n, delayed_wrench};
 pub use airframe::Airframe;
 pub use capacity::MAX_ROTORS;
 pub use effect::{Condition, Effect, Hook, Own, Rotors, effect_wrench};

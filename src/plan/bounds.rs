@@ -30,7 +30,15 @@ pub enum Quantity {
     Torque(usize),
     /// one rotor's thrust, N, in the order of the actuators
     RotorThrust(usize),
+    /// x, y or z (m) at which a vehicle comes to rest that hears nothing more, by [`AHEAD_S`]
+    Rest(usize),
 }
+
+/// Where a vehicle comes to rest that hears no setpoint after one of a path: its place, its velocity times the first (s)
+/// and its acceleration times the second (s^2). Of the default parameters of PX4 along the ground: its position and velocity
+/// loops follow the last setpoint for COM_OF_LOSS_T (1 s) and the 0.15 s that it takes to notice, then its mode brakes
+/// within 0.75 s of flight. Upwards PX4 is quicker, and ArduPilot is not.
+pub const AHEAD_S: [f64; 2] = [1.3, 0.65];
 
 impl Quantity {
     /// The name used in files and messages.
@@ -55,6 +63,7 @@ impl Quantity {
             Self::Thrust => "thrust_n".to_owned(),
             Self::Torque(axis) => format!("torque_{}_nm", ["x", "y", "z"][axis.min(2)]),
             Self::RotorThrust(rotor) => format!("rotor_{rotor}_thrust_n"),
+            Self::Rest(axis) => format!("{}_at_rest_m", ["x", "y", "z"][axis.min(2)]),
         }
     }
 }
@@ -145,6 +154,11 @@ impl Instant {
     pub fn value(&self, quantity: Quantity, dynamics: &Dynamics) -> f64 {
         match quantity {
             Quantity::Path { axis, order } => self.path[axis][order],
+            Quantity::Rest(axis) => {
+                let [speed_s, acceleration_s2] = AHEAD_S;
+                let [place, velocity, acceleration, ..] = self.path[axis];
+                place + speed_s * velocity + acceleration_s2 * acceleration
+            }
             Quantity::Roll => self.motion.roll[0],
             Quantity::Pitch => self.motion.pitch[0],
             Quantity::Thrust => self.wrench[0],
@@ -163,6 +177,12 @@ impl Instant {
             slope[axis][order] = 1.0;
             return slope;
         }
+        if let Quantity::Rest(axis) = quantity {
+            let mut slope = Path::default();
+            let [speed_s, acceleration_s2] = AHEAD_S;
+            [slope[axis][0], slope[axis][1], slope[axis][2]] = [1.0, speed_s, acceleration_s2];
+            return slope;
+        }
         let motion = sensitive_motion_of(&self.path, dynamics.gravity_m_s2);
         let gradient = match quantity {
             Quantity::Roll => motion.roll[0].gradient,
@@ -174,7 +194,7 @@ impl Instant {
             Quantity::RotorThrust(rotor) => {
                 self.wrench_slope(&motion, dynamics, |row| dynamics.allocation[(rotor, row)])
             }
-            Quantity::Path { .. } => [0.0; INPUTS],
+            Quantity::Path { .. } | Quantity::Rest(_) => [0.0; INPUTS],
         };
         path_slope(&gradient)
     }

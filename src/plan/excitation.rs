@@ -10,6 +10,7 @@ use super::feasible::{Conflict, StartPlace, feasible};
 use super::information::GramSampler;
 use super::noise::{NoiseModel, parameter_scale};
 use super::optimise::Search;
+use super::room::rest_bounds;
 use super::space::{AxisStart, SeriesSpace};
 use crate::trajectory::{FourierTrajectory, SizeError, check_size};
 use crate::vehicle::{Limits, Vehicle};
@@ -40,10 +41,12 @@ pub struct PlanRequest {
     pub seed: u64,
     /// number of random starts
     pub starts: u64,
+    /// a vehicle that hears nothing more is to come to rest inside the room, as far as that costs little
+    pub rests_inside: bool,
 }
 
 impl Default for PlanRequest {
-    /// The paper's series, five periods, sixteen starts.
+    /// The paper's series, five periods, sixteen starts; without regard to an end of the setpoints, as in the paper.
     fn default() -> Self {
         Self {
             period_s: 10.0,
@@ -54,6 +57,7 @@ impl Default for PlanRequest {
             noise: NoiseModel::default(),
             seed: 1,
             starts: 16,
+            rests_inside: false,
         }
     }
 }
@@ -85,6 +89,17 @@ pub struct Plan {
     pub criterion_value: f64,
     /// what it is worth
     pub assessment: Assessment,
+    /// what keeps a vehicle that hears nothing more inside the room; `None` where that was not asked for, or cost too much
+    pub rest: Option<RestInside>,
+}
+
+/// What keeps a vehicle that hears nothing more inside the room.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RestInside {
+    /// how far inside its rotors come to rest, m; negative: outside
+    pub inside_m: f64,
+    /// bounds beside those of the limits; for the ways to the series and back as well
+    pub bounds: Vec<Bound>,
 }
 
 /// Why there is no plan.
@@ -123,6 +138,10 @@ pub enum PlanError {
 
 /// How often a plan that breaks a bound is polished.
 const POLISHES: u32 = 3;
+/// By how much the criterion may grow, for a plan that is safe where the setpoints may end.
+const CALM_COSTS: f64 = 1.5;
+/// How far inside the room the vehicle is to come to rest then, m, in the order in which it is tried.
+const INSIDE_M: [f64; 8] = [-1.25, -1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5];
 /// Share of the commands of a flown plan that may be at a rotor's bound: an instant of the way from hover into the series.
 const AT_BOUND_MAX: f64 = 0.002;
 
@@ -158,6 +177,10 @@ pub fn plan(
     let search = search_of(request);
     let best = search.run(&problem, samples, done).ok_or(PlanError::NotDetermined)?;
     let mut best = settled(&search, &problem, best, (vehicle, request))?;
+    let mut rest = None;
+    if request.rests_inside {
+        (best, rest) = calmed(&search, &problem, best, (vehicle, limits, request));
+    }
     // what a controller adds to the planned thrusts is known once it is flown
     for margin in &ROTOR_MARGINS[1..] {
         let trajectory = problem.space.trajectory(&best.unknowns);
@@ -165,6 +188,7 @@ pub fn plan(
             break;
         }
         problem.bounds = bounds_to_plan_in(limits, vehicle, *margin);
+        problem.bounds.extend(rest.iter().flat_map(|rest| &rest.bounds).copied());
         let calmer = search.polish(&problem, best.unknowns.clone(), samples);
         match settled(&search, &problem, calmer, (vehicle, request)) {
             Ok(calmer) => best = calmer,
@@ -177,7 +201,34 @@ pub fn plan(
     let assessment = assess(&trajectory, vehicle, &bounds_of(limits, vehicle), request);
     let criterion_value = best.log_value.exp();
     tracing::info!(criterion = ?request.criterion, criterion_value, "trajectory planned");
-    Ok(Plan { trajectory, criterion_value, assessment })
+    Ok(Plan { trajectory, criterion_value, assessment, rest })
+}
+
+/// The plan by which a vehicle that hears nothing more stays furthest inside the room, as far as that costs little of the
+/// criterion, and the bounds that keep it there; as it was where there is none. It is led there in steps: what is best
+/// without these bounds lies far outside them.
+fn calmed(
+    search: &Search,
+    problem: &Problem,
+    best: Iterate,
+    (vehicle, limits, request): (&Vehicle, &Limits, &PlanRequest),
+) -> (Iterate, Option<RestInside>) {
+    let samples = whole((request.period_s / SAMPLE_S).ceil());
+    let worth = best.log_value + CALM_COSTS.ln();
+    let (mut calmest, mut kept) = (best, None);
+    for inside_m in INSIDE_M {
+        let Some(bounds) = rest_bounds(limits, vehicle, inside_m) else { break };
+        let mut calm = problem.clone();
+        calm.bounds.extend_from_slice(&bounds);
+        let calmer = search.polish(&calm, calmest.unknowns.clone(), samples);
+        match settled(search, &calm, calmer, (vehicle, request)) {
+            Ok(calmer) if calmer.log_value <= worth => {
+                (calmest, kept) = (calmer, Some(RestInside { inside_m, bounds }));
+            }
+            _ => break,
+        }
+    }
+    (calmest, kept)
 }
 
 /// Polishes until every bound is kept.
@@ -270,8 +321,8 @@ fn problem_of(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Prob
     }
 }
 
-/// The height is free unless prescribed. A start on a bound gets no jerk, and stands off the bound by as
-/// little as all else does.
+/// The height is free unless prescribed, and so is the place of a plan that is to rest inside. A start on a bound gets no
+/// jerk, and stands off the bound by as little as all else does.
 fn starts_of(limits: &Limits, request: &PlanRequest) -> [AxisStart; 4] {
     let margin = search_of(request).margin;
     let at = |value: f64, min: Option<f64>, max: Option<f64>| {
@@ -295,9 +346,14 @@ fn starts_of(limits: &Limits, request: &PlanRequest) -> [AxisStart; 4] {
         (None, None, Some(only)) => AxisStart::Near(only - 1.0),
         (None, None, None) => AxisStart::At(0.0),
     };
+    // where a series lies costs nothing: in the middle it is furthest from the walls
+    let level = |value: Option<f64>, max: Option<f64>| match value {
+        None if request.rests_inside => AxisStart::Near(0.0),
+        value => both(value.unwrap_or(0.0), max),
+    };
     [
-        both(start.x_m, limits.x_max_m),
-        both(start.y_m, limits.y_max_m),
+        level(start.x_m, limits.x_max_m),
+        level(start.y_m, limits.y_max_m),
         height,
         both(start.yaw_rad, limits.yaw_max_rad),
     ]
@@ -315,8 +371,8 @@ fn check_request(request: &PlanRequest) -> Result<(), PlanError> {
     if request.starts == 0 || request.starts > STARTS_MAX {
         return refuse("starts", "1 to 100000", request.starts.to_string());
     }
-    let place =
-        [request.start.x_m, request.start.y_m, request.start.z_m.unwrap_or(0.0), request.start.yaw_rad];
+    let StartPlace { x_m, y_m, z_m, yaw_rad } = request.start;
+    let place = [x_m.unwrap_or(0.0), y_m.unwrap_or(0.0), z_m.unwrap_or(0.0), yaw_rad];
     if place.iter().any(|value| !value.is_finite()) {
         return refuse("start", "finite numbers", format!("{place:?}"));
     }

@@ -18,13 +18,13 @@ fn conflict(first: String, second: String, why: &str) -> Result<(), Conflict> {
     Err(Conflict { first, second, why: why.to_owned() })
 }
 
-/// The start as asked for: x, y (m), z where it is prescribed (m), yaw (rad).
+/// The start as asked for: x, y and z where they are prescribed (m), yaw (rad).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StartPlace {
-    /// m, north
-    pub x_m: f64,
-    /// m, west
-    pub y_m: f64,
+    /// m, north; `None`: 0, or the planner's choice for a plan that is to rest inside
+    pub x_m: Option<f64>,
+    /// m, west; the same
+    pub y_m: Option<f64>,
     /// m, up; `None`: the planner chooses the height
     pub z_m: Option<f64>,
     /// rad
@@ -85,10 +85,11 @@ fn ordered(low_name: &str, low: Option<f64>, high_name: &str, high: Option<f64>)
 
 fn start_inside(limits: &Limits, start: &StartPlace) -> Result<(), Conflict> {
     let negative = |limit: Option<f64>| limit.map(|value| -value);
-    let z = start.z_m.unwrap_or(f64::NAN);
+    // nothing of a place that is not prescribed is outside
+    let [x, y, z] = [start.x_m, start.y_m, start.z_m].map(|value| value.unwrap_or(f64::NAN));
     let places = [
-        ("x", start.x_m, "x_max_m", negative(limits.x_max_m), limits.x_max_m),
-        ("y", start.y_m, "y_max_m", negative(limits.y_max_m), limits.y_max_m),
+        ("x", x, "x_max_m", negative(limits.x_max_m), limits.x_max_m),
+        ("y", y, "y_max_m", negative(limits.y_max_m), limits.y_max_m),
         ("yaw", start.yaw_rad, "yaw_max", negative(limits.yaw_max_rad), limits.yaw_max_rad),
         ("z", z, "z_min_m", limits.z_min_m, None),
         ("z", z, "z_max_m", None, limits.z_max_m),

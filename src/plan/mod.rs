@@ -31,18 +31,18 @@ mod space;
 mod transition;
 
 pub use bounds::{
-    Bound, Dynamics, Instant, Quantity, ROTOR_MARGINS, RotorMargin, bounds_of, bounds_to_plan_in,
+    AHEAD_S, Bound, Dynamics, Instant, Quantity, ROTOR_MARGINS, RotorMargin, bounds_of, bounds_to_plan_in,
     parameters_of,
 };
 pub use check::{CheckReport, Margin, SAMPLE_S, Violation, check};
 pub use criterion::{Criterion, condition_number, scaled_condition_number};
-pub use excitation::{Assessment, Plan, PlanError, PlanRequest, assess, plan, search_of};
+pub use excitation::{Assessment, Plan, PlanError, PlanRequest, RestInside, assess, plan, search_of};
 pub use expected::{FlightSpan, expected_standard_errors, share_at_bound};
 pub use extremes::{Extremes, path_samples};
 pub use feasible::{Conflict, StartPlace, feasible};
 pub use information::{GramSampler, Matrix7};
 pub use noise::{NoiseModel, PARAMETERS, RowMotion, RowSpacing, parameter_scale};
 pub use optimise::{Round, Search};
-pub use room::{HEIGHT_ERROR_M, Roomed, floor_m, with_room};
+pub use room::{HEIGHT_ERROR_M, Reach, Roomed, floor_m, with_room};
 pub use space::{AxisStart, SeriesSpace};
 pub use transition::{FlightPlan, TransitionError, flight_path};

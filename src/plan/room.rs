@@ -1,5 +1,6 @@
 //! The room that every plan and every flight has: walls, a ceiling and a floor above the ground.
 
+use super::bounds::{Bound, Quantity};
 use crate::units::{deg_from_rad, rad_from_deg};
 use crate::vehicle::{Limits, Vehicle};
 
@@ -11,7 +12,7 @@ const TILT_DEG: f64 = 45.0;
 /// The room where none is stated: half its length and width, heights, m.
 const WALL_M: f64 = 2.0;
 const HEIGHTS_M: (f64, f64) = (1.0, 3.0);
-/// How lively it is flown where no limit at all is stated.
+/// How lively it is flown where no limit of the motion is stated.
 const SPEED_M_S: f64 = 1.5;
 const TILT_MAX_DEG: f64 = 15.0;
 const YAW_RATE_MAX_DEG_S: f64 = 60.0;
@@ -25,17 +26,66 @@ pub struct Roomed {
     pub notes: Vec<String>,
 }
 
+/// How far rotors reach from the place (the body's origin) of a vehicle, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// to each side, level
+    pub side_m: f64,
+    /// up, tilted by 45 degrees
+    pub up_m: f64,
+    /// down, tilted by 45 degrees
+    pub down_m: f64,
+}
+
+impl Reach {
+    /// Of a vehicle; of one without rotors zero.
+    #[must_use]
+    pub fn of(vehicle: &Vehicle) -> Self {
+        let radius_m = vehicle.propulsion.rotor_radius_m.unwrap_or(0.0);
+        let (sin, cos) = rad_from_deg(TILT_DEG).sin_cos();
+        let greatest = |reach: &dyn Fn(f64, f64) -> f64| {
+            let reaches = vehicle.rotors.iter().map(|rotor| {
+                let place_m = rotor.position_m;
+                reach(place_m.xy().norm() + radius_m, place_m.z)
+            });
+            reaches.fold(0.0, f64::max)
+        };
+        Self {
+            side_m: greatest(&|side_m, _| side_m),
+            up_m: greatest(&|side_m, up_m| side_m * sin + (up_m * cos).max(0.0)),
+            down_m: greatest(&|side_m, up_m| side_m * sin - (up_m * cos).min(0.0)),
+        }
+    }
+}
+
 /// The least height above the ground (m) at which no rotor can touch it: the reach of the tilted rotors, and the error of
 /// the height.
 #[must_use]
 pub fn floor_m(vehicle: &Vehicle) -> f64 {
-    let radius_m = vehicle.propulsion.rotor_radius_m.unwrap_or(0.0);
-    let (sin, cos) = rad_from_deg(TILT_DEG).sin_cos();
-    let reach = |position: &nalgebra::Vector3<f64>| {
-        (position.xy().norm() + radius_m) * sin - (position.z * cos).min(0.0)
-    };
-    let reach_m = vehicle.rotors.iter().map(|rotor| reach(&rotor.position_m)).fold(0.0, f64::max);
-    reach_m + HEIGHT_ERROR_M
+    Reach::of(vehicle).down_m + HEIGHT_ERROR_M
+}
+
+/// Bounds by which a vehicle flies, and comes to rest where it hears nothing more, at least so far (m) inside: its rotors
+/// off walls and ceiling, itself off the floor; negative: outside. `None` where the room is not that large.
+#[must_use]
+pub(super) fn rest_bounds(limits: &Limits, vehicle: &Vehicle, inside_m: f64) -> Option<Vec<Bound>> {
+    let reach = Reach::of(vehicle);
+    let side = |wall_m: Option<f64>| wall_m.map(|wall_m| wall_m - reach.side_m - inside_m);
+    let (x_m, y_m) = (side(limits.x_max_m), side(limits.y_max_m));
+    let low_m = limits.z_min_m.map(|z_min_m| z_min_m + inside_m);
+    let high_m = limits.z_max_m.map(|z_max_m| z_max_m - reach.up_m - inside_m);
+    let mut bounds = Vec::new();
+    for (axis, min, max) in [(0, x_m.map(|x_m| -x_m), x_m), (1, y_m.map(|y_m| -y_m), y_m), (2, low_m, high_m)]
+    {
+        if min.zip(max).is_some_and(|(min, max)| min >= max) {
+            return None;
+        }
+        for quantity in [Quantity::Path { axis, order: 0 }, Quantity::Rest(axis)] {
+            bounds.push(Bound { quantity, min, max });
+        }
+    }
+    bounds.retain(|bound| bound.min.is_some() || bound.max.is_some());
+    Some(bounds)
 }
 
 /// The limits with a careful default for each part of the room that they do not state, and a floor that is above the
@@ -57,18 +107,18 @@ pub fn with_room(limits: &Limits, vehicle: &Vehicle) -> Roomed {
     fill(&mut roomed.z_min_m, "z_min_m", low_m);
     let above_m = roomed.z_min_m.unwrap_or(low_m).max(floor_m) + HEIGHTS_M.1 - HEIGHTS_M.0;
     fill(&mut roomed.z_max_m, "z_max_m", above_m);
-    if *limits == Limits::default() {
+    if !bounds_motion(limits) {
         fill(&mut roomed.speed_max_m_s, "speed_max_m_s", SPEED_M_S);
         roomed.roll_max_rad = Some(rad_from_deg(TILT_MAX_DEG));
         roomed.pitch_max_rad = roomed.roll_max_rad;
-        roomed.yaw_rate_max_rad_s = Some(rad_from_deg(YAW_RATE_MAX_DEG_S));
+        roomed.yaw_rate_max_rad_s.get_or_insert(rad_from_deg(YAW_RATE_MAX_DEG_S));
         missing.extend(tilt_notes(&roomed));
     }
     let mut notes = Vec::new();
     if !missing.is_empty() {
         notes.push(format!(
-            "expected a room in [limits], came none or a part of one: the default room is used for what is missing, {}; \
-             state your own there if it is another",
+            "expected a room and how fast it is flown in [limits], came none or a part of it: the default is used for what is \
+             missing, {}; state your own there if it is another",
             missing.join(", ")
         ));
     }
@@ -80,6 +130,13 @@ pub fn with_room(limits: &Limits, vehicle: &Vehicle) -> Roomed {
         ));
     }
     Roomed { limits: roomed, notes }
+}
+
+/// Speed, acceleration or tilt is bounded, so that somebody thought of how lively it may be flown.
+fn bounds_motion(limits: &Limits) -> bool {
+    let of_motion =
+        [limits.speed_max_m_s, limits.acceleration_max_m_s2, limits.roll_max_rad, limits.pitch_max_rad];
+    of_motion.iter().any(Option::is_some)
 }
 
 fn tilt_notes(limits: &Limits) -> Vec<String> {
@@ -104,10 +161,17 @@ mod tests {
         let whole = with_room(&Limits::default(), &vehicle);
         let limits = whole.limits;
         assert!(limits.z_min_m.unwrap() >= 1.0 && limits.z_max_m.unwrap() <= 10.0, "{limits:?}");
-        assert!(whole.notes[0].contains("default room") && whole.notes[0].contains("roll_max_deg = 15"));
+        assert!(
+            whole.notes[0].contains("the default is used") && whole.notes[0].contains("roll_max_deg = 15")
+        );
         assert_eq!(with_room(&limits, &vehicle), Roomed { limits, notes: Vec::new() });
-        let part = with_room(&Limits { x_max_m: Some(5.0), ..Limits::default() }, &vehicle);
-        assert_eq!((part.limits.x_max_m, part.limits.speed_max_m_s), (Some(5.0), None));
+        let fast = Limits { x_max_m: Some(5.0), speed_max_m_s: Some(3.0), ..Limits::default() };
+        let part = with_room(&fast, &vehicle);
+        assert_eq!((part.limits.x_max_m, part.limits.roll_max_rad), (Some(5.0), None));
+        // a room alone does not say how lively it may be flown
+        let calm = with_room(&Limits { speed_max_m_s: None, ..fast }, &vehicle);
+        assert_eq!(calm.limits.speed_max_m_s, Some(SPEED_M_S));
+        assert!(calm.limits.roll_max_rad.is_some() && calm.notes[0].contains("speed_max_m_s = 1.50"));
         assert!(part.notes[0].contains("y_max_m") && !part.notes[0].contains("x_max_m"), "{:?}", part.notes);
     }
 

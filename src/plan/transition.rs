@@ -70,7 +70,7 @@ pub fn flight_path(
 
 /// The lower bound of height does not hold where a flight begins and ends.
 fn without_floor(bound: &Bound) -> Bound {
-    let height = bound.quantity == Quantity::Path { axis: 2, order: 0 };
+    let height = [Quantity::Path { axis: 2, order: 0 }, Quantity::Rest(2)].contains(&bound.quantity);
     Bound { min: bound.min.filter(|_| !height), ..*bound }
 }
 

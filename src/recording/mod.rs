@@ -1,9 +1,21 @@
 //! A flight as typed streams on the vehicle's own clock, whatever it was read from.
+//!
+//! ```text
+//! reader of a log, or decoder of a link -> Event -> RecordingBuilder -> Recording
+//! ```
 
+mod builder;
+mod event;
 mod flight;
 mod overlap;
+mod quantity;
 mod statistics;
+mod stream;
 
-pub use flight::{Autopilot, Quantity, Recording, Stream, StreamKey};
+pub use builder::{RecordingBuilder, StreamRepair};
+pub use event::Event;
+pub use flight::Recording;
 pub use overlap::shared_share;
+pub use quantity::Quantity;
 pub use statistics::{StreamStats, StreamTally};
+pub use stream::{Stream, StreamKey};

@@ -1,6 +1,8 @@
 //! Whether two recordings hold the same flight, or parts of one.
 
-use super::flight::{Quantity, Recording, Stream};
+use super::flight::Recording;
+use super::quantity::Quantity;
+use super::stream::Stream;
 use std::collections::HashSet;
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};

@@ -1,6 +1,6 @@
 //! How a stream runs: rate, jitter, gaps. Fed sample by sample, in bounded memory.
 
-use super::flight::Stream;
+use super::stream::Stream;
 
 /// Periods are sorted into bins of 1/64 octave from a microsecond to 4.7 hours.
 const BINS_AN_OCTAVE: f64 = 64.0;

@@ -7,8 +7,9 @@
 use super::SignalsError;
 use super::grid::LARGEST_VALUE;
 use super::select::{LEAST_SAMPLES, best, is_live, too_short};
+use crate::autopilot::Outputs;
 use crate::note::{About, Note};
-use crate::recording::{Autopilot, Quantity, Recording, Stream, StreamKey};
+use crate::recording::{Quantity, Recording, Stream, StreamKey};
 use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
 
 /// What the thrusts rest on.
@@ -169,11 +170,10 @@ pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propu
         Actuator::Speed | Actuator::Thrust | Actuator::Pwm(None) => return (propulsion, Vec::new()),
     };
     let parameter = |name: &str| recording.parameters.get(name).copied();
-    let (range, expo) = match recording.autopilot {
-        Autopilot::ArduPilot => (ardupilot_range(&parameter), parameter("MOT_THST_EXPO")),
-        Autopilot::Px4 => (px4_range(&parameter), parameter("THR_MDL_FAC")),
-        Autopilot::Unknown | Autopilot::Other => (None, None),
-    };
+    let outputs = recording.autopilot.stack().map(|stack| &stack.outputs);
+    let range = outputs.and_then(|outputs| outputs.pulses.ends_us(parameter));
+    let range = range.map(|(min_us, max_us)| PwmRange { min_us, max_us });
+    let expo = outputs.and_then(|outputs| parameter(outputs.expo));
     if let Some(range) = range.filter(|range| range.max_us > range.min_us) {
         let (from, to) = (range.min_us, range.max_us);
         let taken = format!("pulse range {from:.0} to {to:.0} us from the log's parameters");
@@ -206,34 +206,15 @@ fn holds_fractions(recording: &Recording) -> bool {
     })
 }
 
-/// ArduPilot: u = 0 at `MOT_SPIN_MIN`, u = 1 at `MOT_SPIN_MAX` of the pulse range.
-fn ardupilot_range(parameter: &impl Fn(&str) -> Option<f64>) -> Option<PwmRange> {
-    let (low, high) = (parameter("MOT_PWM_MIN")?, parameter("MOT_PWM_MAX")?);
-    let (spin_min, spin_max) = (parameter("MOT_SPIN_MIN")?, parameter("MOT_SPIN_MAX")?);
-    let span = high - low;
-    Some(PwmRange { min_us: low + spin_min * span, max_us: low + spin_max * span })
-}
-
-/// PX4: the first motor output's pulse range.
-fn px4_range(parameter: &impl Fn(&str) -> Option<f64>) -> Option<PwmRange> {
-    let bank = |bank: &str, end: &str| parameter(&format!("PWM_{bank}_{end}1"));
-    ["MAIN", "AUX"]
-        .iter()
-        .find_map(|name| Some(PwmRange { min_us: bank(name, "MIN")?, max_us: bank(name, "MAX")? }))
-}
-
-/// Which output channel (from 0) drives each motor: `SERVOn_FUNCTION` 33..40 (ArduPilot),
-/// `PWM_MAIN_FUNCn` 101..112 (PX4); in order where the log does not say.
+/// Which output channel (from 0) drives each motor, by the functions of the outputs; in order where the log does not say.
 #[must_use]
 pub fn motor_channels(recording: &Recording, rotors: usize, notes: &mut Vec<Note>) -> Vec<usize> {
-    let (name, first): (&dyn Fn(usize) -> String, f64) = match recording.autopilot {
-        Autopilot::ArduPilot => (&|channel| format!("SERVO{channel}_FUNCTION"), 33.0),
-        Autopilot::Px4 => (&|channel| format!("PWM_MAIN_FUNC{channel}"), 101.0),
-        Autopilot::Unknown | Autopilot::Other => return (0..rotors).collect(),
-    };
+    let Some(stack) = recording.autopilot.stack() else { return (0..rotors).collect() };
+    let Outputs { function, .. } = &stack.outputs;
     let find = |motor: usize| {
         (1..=16).find(|&channel| {
-            recording.parameters.get(&name(channel)).is_some_and(|f| (f - first - motor as f64).abs() < 0.5)
+            let drives = recording.parameters.get(&function.name(channel));
+            drives.is_some_and(|drives| (drives - stack.outputs.motor(motor)).abs() < 0.5)
         })
     };
     let mapped: Option<Vec<usize>> = (0..rotors).map(|motor| find(motor).map(|c| c - 1)).collect();
@@ -254,6 +235,7 @@ pub fn motor_channels(recording: &Recording, rotors: usize, notes: &mut Vec<Note
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::autopilot::Autopilot;
     use crate::vehicle::{Anchor, Limits, RigidBody, Rotor, Spin};
     use nalgebra::{Matrix3, Vector3};
 

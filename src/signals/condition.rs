@@ -46,13 +46,13 @@ impl Default for ConditionSettings {
 ///
 /// ```
 /// use mavid::config::load_vehicle;
-/// use mavid::log::{LoadOptions, load};
+/// use mavid::log::{self, OpenOptions};
 /// use mavid::signals::{ConditionSettings, condition};
 /// use std::path::Path;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
-/// let log = load(&fixtures.join("p04_identify_10_22s.tlog"), &LoadOptions::default())?;
+/// let log = log::open(&fixtures.join("p04_identify_10_22s.tlog"), &OpenOptions::default())?;
 /// let vehicle = load_vehicle(&fixtures.join("p04_vehicle.toml"))?;
 /// let signals = condition(&log.recording, &vehicle, &ConditionSettings::default())?;
 /// // each stream with its offset in time

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
+use mavlink::dialects::ardupilotmega::{MavResult, MavSeverity};
 use nalgebra::Vector3;
 
 use super::battery::Battery;
@@ -12,34 +13,14 @@ use super::fence::Fence;
 use super::guidance::{Guidance, Leg, Task};
 use super::safety::Safety;
 use super::tuning::Tuning;
-use super::{AutopilotKind, Mode, Settings, SitlError};
+use super::{Firmware, Mode, Settings, SitlError};
 use crate::physics::{MAX_ROTORS, State};
 use crate::simulate::{AutopilotCascade, AutopilotGains, Setpoint};
 
-/// MAV_RESULT.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Answer {
-    Accepted = 0,
-    TemporarilyRejected = 1,
-    Denied = 2,
-    Unsupported = 3,
-    Failed = 4,
-}
-
-/// MAV_SEVERITY.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Severity {
-    Critical = 2,
-    Error = 3,
-    Warning = 4,
-    Notice = 5,
-    Info = 6,
-}
-
 /// What the vehicle says in words.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Text {
-    pub(super) severity: Severity,
+    pub(super) severity: MavSeverity,
     pub(super) text: String,
 }
 
@@ -55,7 +36,7 @@ const STANDING_M_S: f64 = 0.2;
 /// The autopilot.
 #[derive(Debug)]
 pub(super) struct Autopilot {
-    pub(super) kind: AutopilotKind,
+    pub(super) kind: Firmware,
     pub(super) tuning: Tuning,
     pub(super) estimator: Estimator,
     pub(super) battery: Battery,
@@ -132,7 +113,7 @@ impl Autopilot {
         self.landed_since.is_some()
     }
 
-    pub(super) fn say(&mut self, severity: Severity, text: impl Into<String>) {
+    pub(super) fn say(&mut self, severity: MavSeverity, text: impl Into<String>) {
         self.texts.push_back(Text { severity, text: text.into() });
     }
 
@@ -142,8 +123,8 @@ impl Autopilot {
         if self.home_m.is_none() && self.estimator.is_good(now) {
             self.home_m = Some(self.estimator.state.position_m);
             if !self.kind.is_px4() {
-                self.say(Severity::Info, "EKF3 IMU0 origin set");
-                self.say(Severity::Info, "EKF3 IMU0 is using GPS");
+                self.say(MavSeverity::MAV_SEVERITY_INFO, "EKF3 IMU0 origin set");
+                self.say(MavSeverity::MAV_SEVERITY_INFO, "EKF3 IMU0 is using GPS");
             }
         }
         if self.is_armed() {
@@ -166,7 +147,7 @@ impl Autopilot {
             }
             (self.landed_since, self.standing_since, self.has_flown) = (None, None, true);
             self.guidance.restart(&state);
-            self.say(Severity::Info, "Takeoff detected");
+            self.say(MavSeverity::MAV_SEVERITY_INFO, "Takeoff detected");
         }
         let home_m = self.home_m.unwrap_or_else(Vector3::zeros);
         if self.kind.is_px4() {
@@ -209,7 +190,7 @@ impl Autopilot {
             self.landed_since = Some(now);
             self.estimator.stand();
             if self.kind.is_px4() {
-                self.say(Severity::Info, "Landing detected");
+                self.say(MavSeverity::MAV_SEVERITY_INFO, "Landing detected");
             }
         }
     }
@@ -236,7 +217,7 @@ impl Autopilot {
         self.armed_since = None;
         self.landed_since.get_or_insert(Duration::ZERO);
         let text = if self.kind.is_px4() { why } else { "Disarming motors" };
-        self.say(Severity::Info, text);
+        self.say(MavSeverity::MAV_SEVERITY_INFO, text);
         if self.kind.is_px4() {
             (self.mode, self.intended) = (self.resting, self.resting);
         }
@@ -244,17 +225,21 @@ impl Autopilot {
     }
 
     /// MAV_CMD_COMPONENT_ARM_DISARM.
-    pub(super) fn arm(&mut self, forced: bool, now: Duration) -> Answer {
+    pub(super) fn arm(&mut self, forced: bool, now: Duration) -> MavResult {
         if self.is_armed() {
-            return Answer::Accepted;
+            return MavResult::MAV_RESULT_ACCEPTED;
         }
         let reasons =
             if forced || !self.tuning.arming_checks { Vec::new() } else { self.arming_refusals(now) };
         if !reasons.is_empty() {
             for reason in reasons {
-                self.say(Severity::Critical, reason);
+                self.say(MavSeverity::MAV_SEVERITY_CRITICAL, reason);
             }
-            return if self.kind.is_px4() { Answer::TemporarilyRejected } else { Answer::Failed };
+            return if self.kind.is_px4() {
+                MavResult::MAV_RESULT_TEMPORARILY_REJECTED
+            } else {
+                MavResult::MAV_RESULT_FAILED
+            };
         }
         self.armed_since = Some(now);
         self.has_flown = false;
@@ -266,34 +251,34 @@ impl Autopilot {
             self.home_m = Some(state.position_m);
         }
         self.say(
-            Severity::Info,
+            MavSeverity::MAV_SEVERITY_INFO,
             if self.kind.is_px4() { "Armed by external command" } else { "Arming motors" },
         );
         if self.mode == Mode::Takeoff && !matches!(self.guidance.task, Task::Takeoff(_)) {
             self.enter(Mode::Takeoff);
         }
-        Answer::Accepted
+        MavResult::MAV_RESULT_ACCEPTED
     }
 
     /// Disarms on the ground; in the air only if forced.
-    pub(super) fn disarm(&mut self, forced: bool) -> Answer {
+    pub(super) fn disarm(&mut self, forced: bool) -> MavResult {
         if self.is_armed() && !self.is_landed() && !forced {
             if self.kind.is_px4() {
-                self.say(Severity::Critical, "Disarming denied: not landed");
-                return Answer::TemporarilyRejected;
+                self.say(MavSeverity::MAV_SEVERITY_CRITICAL, "Disarming denied: not landed");
+                return MavResult::MAV_RESULT_TEMPORARILY_REJECTED;
             }
-            return Answer::Failed;
+            return MavResult::MAV_RESULT_FAILED;
         }
         if self.is_armed() {
             self.switch_off("Disarmed by external command");
         }
-        Answer::Accepted
+        MavResult::MAV_RESULT_ACCEPTED
     }
 
     /// A mode asked for by command or by the pilot.
-    pub(super) fn set_mode(&mut self, mode: Mode, now: Duration) -> Answer {
+    pub(super) fn set_mode(&mut self, mode: Mode, now: Duration) -> MavResult {
         if mode.custom_mode(self.kind).is_none() {
-            return Answer::Denied;
+            return MavResult::MAV_RESULT_DENIED;
         }
         let no_position = mode.needs_position() && !self.estimator.is_good(now);
         let no_signal = self.kind.is_px4() && mode == Mode::Guided && !self.has_signal(now);
@@ -301,11 +286,17 @@ impl Autopilot {
         if self.is_armed() && (no_position || no_signal) {
             let name = mode.name(self.kind);
             if self.kind.is_px4() {
-                self.say(Severity::Critical, format!("Switching to {name} is currently not available"));
-                return Answer::TemporarilyRejected;
+                self.say(
+                    MavSeverity::MAV_SEVERITY_CRITICAL,
+                    format!("Switching to {name} is currently not available"),
+                );
+                return MavResult::MAV_RESULT_TEMPORARILY_REJECTED;
             }
-            self.say(Severity::Warning, format!("Mode change to {name} failed: requires position"));
-            return Answer::Failed;
+            self.say(
+                MavSeverity::MAV_SEVERITY_WARNING,
+                format!("Mode change to {name} failed: requires position"),
+            );
+            return MavResult::MAV_RESULT_FAILED;
         }
         if self.mode != mode || self.intended != mode {
             self.intended = mode;
@@ -315,7 +306,7 @@ impl Autopilot {
             self.safety.mode_chosen();
             self.enter(mode);
         }
-        Answer::Accepted
+        MavResult::MAV_RESULT_ACCEPTED
     }
 
     /// Begins to fly a mode.
@@ -340,12 +331,12 @@ impl Autopilot {
 
     /// MAV_CMD_NAV_TAKEOFF; `height_m` as the command has it: above sea for PX4 (NaN takes the parameter),
     /// above home for ArduPilot.
-    pub(super) fn take_off(&mut self, height_m: f64, now: Duration) -> Answer {
+    pub(super) fn take_off(&mut self, height_m: f64, now: Duration) -> MavResult {
         let state = self.estimator.state;
         if self.kind.is_px4() {
             let answer = self.set_mode(Mode::Takeoff, now);
             let asked_m = height_m - self.origin_altitude_m;
-            if answer == Answer::Accepted && asked_m > state.position_m.z + 0.5 {
+            if answer == MavResult::MAV_RESULT_ACCEPTED && asked_m > state.position_m.z + 0.5 {
                 self.guidance.begin(Task::Takeoff(asked_m), &state);
             }
             return answer;
@@ -355,9 +346,9 @@ impl Autopilot {
         let target_m = home_m.z + height_m;
         let climbs = target_m > state.position_m.z + 0.5;
         if !ready || !climbs {
-            return Answer::Failed;
+            return MavResult::MAV_RESULT_FAILED;
         }
         self.guidance.begin(Task::Takeoff(target_m), &state);
-        Answer::Accepted
+        MavResult::MAV_RESULT_ACCEPTED
     }
 }

@@ -1,5 +1,7 @@
 //! A battery that falls linearly while the rotors turn.
 
+use mavlink::dialects::ardupilotmega::MavBatteryChargeState;
+
 use super::Settings;
 
 /// Share of the first voltage that is gone when the battery is empty.
@@ -17,12 +19,12 @@ pub(super) enum Charge {
 }
 
 impl Charge {
-    /// MAV_BATTERY_CHARGE_STATE.
-    pub(super) fn mav(self) -> u8 {
+    /// In BATTERY_STATUS.
+    pub(super) fn mav(self) -> MavBatteryChargeState {
         match self {
-            Self::Ok => 1,
-            Self::Low => 2,
-            Self::Critical => 3,
+            Self::Ok => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_OK,
+            Self::Low => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_LOW,
+            Self::Critical => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_CRITICAL,
         }
     }
 }

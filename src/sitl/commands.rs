@@ -2,11 +2,13 @@
 
 use std::time::Duration;
 
-use super::autopilot::{Answer, Severity};
+use mavlink::dialects::ardupilotmega::{COMMAND_ACK_DATA, MESSAGE_INTERVAL_DATA, MavResult, MavSeverity};
+
 use super::message::Message;
 use super::message_id::{AUTOPILOT_VERSION, HEARTBEAT, HOME_POSITION};
 use super::streams::IntervalRefusal;
-use super::{AutopilotKind, Mode, Vehicle};
+use super::{Mode, Vehicle};
+use crate::autopilot::Numbering;
 use crate::units::whole;
 use crate::wire::Payload;
 
@@ -28,10 +30,6 @@ mod cmd {
     pub(super) const REQUEST_CAPABILITIES: u16 = 520;
 }
 
-/// COMMAND_ACK
-const COMMAND_ACK: u32 = 77;
-/// MESSAGE_INTERVAL
-const MESSAGE_INTERVAL: u32 = 244;
 /// The parameter that forces arming and disarming.
 const FORCE: f64 = 21_196.0;
 /// MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
@@ -79,17 +77,20 @@ impl Vehicle {
         }
         let answer = self.obey(link, command, now);
         self.acknowledge(link, command.number, answer, sender);
-        if command.number == cmd::PREFLIGHT_REBOOT && answer == Answer::Accepted {
+        if command.number == cmd::PREFLIGHT_REBOOT && answer == MavResult::MAV_RESULT_ACCEPTED {
             self.reboot();
         }
     }
 
-    pub(super) fn acknowledge(&mut self, link: usize, number: u16, answer: Answer, to: (u8, u8)) {
-        let message = Message::new(COMMAND_ACK).u16(number).u8(answer as u8).u8(0).i32(0).u8(to.0).u8(to.1);
-        self.send(link, &message);
+    pub(super) fn acknowledge(&mut self, link: usize, number: u16, answer: MavResult, to: (u8, u8)) {
+        let (target_system, target_component) = to;
+        let message =
+            COMMAND_ACK_DATA { result: answer, target_system, target_component, ..COMMAND_ACK_DATA::DEFAULT };
+        // of any command, also of one that the dialect does not know
+        self.send(link, &Message::from(message).with_bytes(0, number.to_le_bytes()));
     }
 
-    fn obey(&mut self, link: usize, command: &Command, now: Duration) -> Answer {
+    fn obey(&mut self, link: usize, command: &Command, now: Duration) -> MavResult {
         let [p1, p2, p3, p4, p7] = command.params;
         match command.number {
             cmd::ARM_DISARM if p1 >= 0.5 => self.autopilot.arm(p2 == FORCE, now),
@@ -101,84 +102,95 @@ impl Vehicle {
             cmd::LOITER_UNLIMITED => self.autopilot.set_mode(Mode::Hold, now),
             cmd::DO_SET_HOME if p1 == 1.0 && self.autopilot.estimator.is_good(now) => {
                 self.autopilot.home_m = Some(self.autopilot.estimator.state.position_m);
-                Answer::Accepted
+                MavResult::MAV_RESULT_ACCEPTED
             }
             cmd::DO_FLIGHT_TERMINATION if p1 >= 0.5 => {
                 self.autopilot.switch_off("Terminated");
-                Answer::Accepted
+                MavResult::MAV_RESULT_ACCEPTED
             }
-            cmd::PREFLIGHT_REBOOT if self.autopilot.is_armed() => Answer::Denied,
-            cmd::PREFLIGHT_REBOOT => Answer::Accepted,
+            cmd::PREFLIGHT_REBOOT if self.autopilot.is_armed() => MavResult::MAV_RESULT_DENIED,
+            cmd::PREFLIGHT_REBOOT => MavResult::MAV_RESULT_ACCEPTED,
             cmd::SET_MESSAGE_INTERVAL => self.set_message_interval(link, id_of(p1), p2, [p3, p4, p7]),
             cmd::GET_MESSAGE_INTERVAL => self.get_message_interval(link, id_of(p1)),
             cmd::REQUEST_MESSAGE => self.request_message(link, id_of(p1)),
             cmd::REQUEST_CAPABILITIES => self.request_message(link, AUTOPILOT_VERSION),
             cmd::GET_HOME_POSITION => self.request_message(link, HOME_POSITION),
-            _ => Answer::Unsupported,
+            _ => MavResult::MAV_RESULT_UNSUPPORTED,
         }
     }
 
     /// PX4: main and sub mode in the second and third parameter; ArduPilot: the mode's number in the second.
-    fn do_set_mode(&mut self, [flags, main, sub]: [f64; 3], now: Duration) -> Answer {
+    fn do_set_mode(&mut self, [flags, main, sub]: [f64; 3], now: Duration) -> MavResult {
         if whole(flags) & CUSTOM_MODE == 0 {
-            return Answer::Denied;
+            return MavResult::MAV_RESULT_DENIED;
         }
-        let custom_mode = match self.settings.autopilot {
-            AutopilotKind::Px4 => (id_of(main) & 0xFF) << 16 | (id_of(sub) & 0xFF) << 24,
-            AutopilotKind::ArduPilot(_) => id_of(main),
+        let custom_mode = match self.settings.autopilot.stack().numbering {
+            Numbering::MainAndSub => (id_of(main) & 0xFF) << 16 | (id_of(sub) & 0xFF) << 24,
+            Numbering::Whole => id_of(main),
         };
         self.set_custom_mode(custom_mode, now)
     }
 
     /// A mode by its number in HEARTBEAT.
-    pub(super) fn set_custom_mode(&mut self, custom_mode: u32, now: Duration) -> Answer {
+    pub(super) fn set_custom_mode(&mut self, custom_mode: u32, now: Duration) -> MavResult {
         let kind = self.settings.autopilot;
         match Mode::from_custom_mode(kind, custom_mode) {
             Some(mode) => self.autopilot.set_mode(mode, now),
-            None if kind.is_px4() => Answer::TemporarilyRejected,
-            None => Answer::Failed,
+            None if kind.is_px4() => MavResult::MAV_RESULT_TEMPORARILY_REJECTED,
+            None => MavResult::MAV_RESULT_FAILED,
         }
     }
 
-    fn set_message_interval(&mut self, link: usize, id: u32, interval_us: f64, unused: [f64; 3]) -> Answer {
+    fn set_message_interval(
+        &mut self,
+        link: usize,
+        id: u32,
+        interval_us: f64,
+        unused: [f64; 3],
+    ) -> MavResult {
         let px4 = self.settings.autopilot.is_px4();
         // the parameters that mean nothing yet must be zero or absent; ArduPilot looks at the third alone
         let looked_at = if px4 { &unused[..] } else { &unused[..1] };
         if looked_at.iter().any(|param| *param != 0.0 && !param.is_nan()) {
-            return if px4 { Answer::Failed } else { Answer::Denied };
+            return if px4 { MavResult::MAV_RESULT_FAILED } else { MavResult::MAV_RESULT_DENIED };
         }
         if id == HEARTBEAT {
-            return if px4 { Answer::Failed } else { Answer::Denied };
+            return if px4 { MavResult::MAV_RESULT_FAILED } else { MavResult::MAV_RESULT_DENIED };
         }
         let Some(streams) = self.links.get_mut(link).map(|link| &mut link.streams) else {
-            return Answer::Failed;
+            return MavResult::MAV_RESULT_FAILED;
         };
         match streams.set_interval(id, interval_us) {
-            Ok(()) => Answer::Accepted,
-            Err(_) if px4 => Answer::Failed,
+            Ok(()) => MavResult::MAV_RESULT_ACCEPTED,
+            Err(_) if px4 => MavResult::MAV_RESULT_FAILED,
             Err(refusal) => {
                 if refusal == IntervalRefusal::UnknownMessage {
-                    self.autopilot.say(Severity::Info, format!("No ap_message for mavlink id ({id})"));
+                    self.autopilot
+                        .say(MavSeverity::MAV_SEVERITY_INFO, format!("No ap_message for mavlink id ({id})"));
                 }
-                Answer::Denied
+                MavResult::MAV_RESULT_DENIED
             }
         }
     }
 
-    fn get_message_interval(&mut self, link: usize, id: u32) -> Answer {
+    fn get_message_interval(&mut self, link: usize, id: u32) -> MavResult {
         // zero: not available
         let interval_us = self.links.get(link).and_then(|link| link.streams.interval_us(id)).unwrap_or(0);
-        let id = u16::try_from(id).unwrap_or(u16::MAX);
-        self.send(link, &Message::new(MESSAGE_INTERVAL).i32(interval_us).u16(id));
-        Answer::Accepted
+        let message_id = u16::try_from(id).unwrap_or(u16::MAX);
+        self.send(link, &Message::from(MESSAGE_INTERVAL_DATA { interval_us, message_id }));
+        MavResult::MAV_RESULT_ACCEPTED
     }
 
-    fn request_message(&mut self, link: usize, id: u32) -> Answer {
+    fn request_message(&mut self, link: usize, id: u32) -> MavResult {
         let known = self.links.get(link).is_some_and(|link| link.streams.has(id)) || id == HEARTBEAT;
         if !known {
-            return if self.settings.autopilot.is_px4() { Answer::Denied } else { Answer::Failed };
+            return if self.settings.autopilot.is_px4() {
+                MavResult::MAV_RESULT_DENIED
+            } else {
+                MavResult::MAV_RESULT_FAILED
+            };
         }
         self.send_now(link, id);
-        Answer::Accepted
+        MavResult::MAV_RESULT_ACCEPTED
     }
 }

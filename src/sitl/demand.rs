@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::AutopilotKind;
+use super::Firmware;
 use crate::frames::{
     Attitude, Body, World, attitude_from_frd_ned, body_from_frd, world_from_ned, yaw_from_ned,
 };
@@ -182,12 +182,9 @@ impl Fields {
 
 impl Demand {
     /// What the message asks of a vehicle that is in `estimate`.
-    pub(super) fn read(kind: AutopilotKind, payload: Payload, estimate: &State) -> Result<Self, Refusal> {
+    pub(super) fn read(kind: Firmware, payload: Payload, estimate: &State) -> Result<Self, Refusal> {
         let fields = Fields::read(payload);
-        match kind {
-            AutopilotKind::Px4 => px4(&fields, estimate),
-            AutopilotKind::ArduPilot(_) => ardupilot(&fields, estimate),
-        }
+        if kind.is_px4() { px4(&fields, estimate) } else { ardupilot(&fields, estimate) }
     }
 
     /// PX4 flies it: each axis has a position, velocity or acceleration, and the horizontal ones come in

@@ -2,9 +2,11 @@
 
 use std::time::Duration;
 
+use mavlink::dialects::ardupilotmega::MavSeverity;
+
 use super::Mode;
 use super::action::Action;
-use super::autopilot::{Autopilot, Severity};
+use super::autopilot::Autopilot;
 use super::battery::Charge;
 use super::fence::Breach;
 use super::guidance::Task;
@@ -23,7 +25,7 @@ impl Autopilot {
         }
         self.safety.ground_seen = Some(now);
         if std::mem::take(&mut self.safety.ground_lost) && self.kind.is_px4() {
-            self.say(Severity::Info, "Connection to ground control station regained");
+            self.say(MavSeverity::MAV_SEVERITY_INFO, "Connection to ground control station regained");
         }
     }
 
@@ -73,7 +75,7 @@ impl Autopilot {
         self.check_ground(now);
         self.check_fence(now);
         if let Some((_, mode)) = self.safety.later.take_if(|(when, _)| *when <= now) {
-            self.say(Severity::Critical, "Failsafe activated");
+            self.say(MavSeverity::MAV_SEVERITY_CRITICAL, "Failsafe activated");
             self.enter(mode);
         }
         if self.is_armed() && !self.is_landed() {
@@ -89,9 +91,9 @@ impl Autopilot {
         let lost = self.intended == Mode::Guided && !self.has_signal(now);
         let was = std::mem::replace(&mut self.safety.setpoints_lost, lost);
         if lost && !was {
-            self.say(Severity::Critical, "No offboard signal");
+            self.say(MavSeverity::MAV_SEVERITY_CRITICAL, "No offboard signal");
             if !self.safety.overrides {
-                self.say(Severity::Critical, "Failsafe activated");
+                self.say(MavSeverity::MAV_SEVERITY_CRITICAL, "Failsafe activated");
                 self.act(self.tuning.setpoint_loss);
             }
         } else if was
@@ -109,10 +111,10 @@ impl Autopilot {
         if lost && !self.safety.position_lost {
             self.safety.position_lost = true;
             if self.kind.is_px4() {
-                self.say(Severity::Critical, "Failsafe activated");
+                self.say(MavSeverity::MAV_SEVERITY_CRITICAL, "Failsafe activated");
                 self.act(Action::Descend(Mode::Land));
             } else {
-                self.say(Severity::Critical, "EKF Failsafe: changed to LAND Mode");
+                self.say(MavSeverity::MAV_SEVERITY_CRITICAL, "EKF Failsafe: changed to LAND Mode");
                 self.act(Action::Enter(Mode::Land));
             }
         } else if self.estimator.is_good(now) {
@@ -127,9 +129,9 @@ impl Autopilot {
         }
         self.safety.ground_lost = true;
         if self.kind.is_px4() {
-            self.say(Severity::Warning, "Connection to ground control station lost");
+            self.say(MavSeverity::MAV_SEVERITY_WARNING, "Connection to ground control station lost");
         } else if self.tuning.ground_loss != Action::Warn {
-            self.say(Severity::Warning, "GCS Failsafe");
+            self.say(MavSeverity::MAV_SEVERITY_WARNING, "GCS Failsafe");
         }
         if self.is_armed() {
             self.fail_over(self.tuning.ground_loss, now);
@@ -153,7 +155,7 @@ impl Autopilot {
             }
             (false, _) => (format!("Battery 1 is low {volts:.2}V used 0 mAh"), self.tuning.low_battery),
         };
-        self.say(Severity::Warning, text);
+        self.say(MavSeverity::MAV_SEVERITY_WARNING, text);
         if self.is_armed() {
             self.fail_over(action, now);
         }
@@ -169,20 +171,20 @@ impl Autopilot {
             return;
         }
         if !self.kind.is_px4() && before.is_any() && !breach.is_any() && !self.is_landed() {
-            self.say(Severity::Notice, "Fence breach cleared");
+            self.say(MavSeverity::MAV_SEVERITY_NOTICE, "Fence breach cleared");
         }
         if !new.is_any() {
             return;
         }
         if self.kind.is_px4() {
-            new.px4_names().for_each(|name| self.say(Severity::Critical, name));
+            new.px4_names().for_each(|name| self.say(MavSeverity::MAV_SEVERITY_CRITICAL, name));
             // the action lasts until a mode is chosen, however often the border is crossed meanwhile
             if !std::mem::replace(&mut self.safety.fence_acts, action != Action::Warn) {
                 self.fail_over(action, now);
             }
             return;
         }
-        self.say(Severity::Notice, format!("{} breached", new.ardupilot_name()));
+        self.say(MavSeverity::MAV_SEVERITY_NOTICE, format!("{} breached", new.ardupilot_name()));
         match action {
             Action::Warn => {}
             Action::Enter(mode) if mode == self.mode => {}
@@ -209,12 +211,12 @@ impl Autopilot {
         let delay = self.tuning.failsafe_delay;
         self.safety.overrides = true;
         if mode == Mode::Hold || delay.is_zero() {
-            self.say(Severity::Critical, "Failsafe activated");
+            self.say(MavSeverity::MAV_SEVERITY_CRITICAL, "Failsafe activated");
             self.safety.later = None;
             return self.enter(mode);
         }
         self.say(
-            Severity::Critical,
+            MavSeverity::MAV_SEVERITY_CRITICAL,
             format!("Failsafe activated: entering Hold for {} seconds", delay.as_secs()),
         );
         self.safety.later = Some((now + delay, mode));

@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use super::message::Message;
 use super::streams::Streams;
-use super::{AutopilotKind, LinkId, LinkRole, Outgoing};
+use super::{Firmware, LinkId, LinkRole, Outgoing};
 use crate::link::Signing;
-use crate::wire::{CrcSeeds, Splitter};
+use crate::wire::Splitter;
 
 /// Parameters that go out in one loop period while the list is downloaded.
 const PARAMETERS_A_LOOP: usize = 2;
@@ -26,7 +26,7 @@ pub(super) struct Link {
 }
 
 impl Link {
-    pub(super) fn new(id: LinkId, kind: AutopilotKind, role: LinkRole) -> Self {
+    pub(super) fn new(id: LinkId, kind: Firmware, role: LinkRole) -> Self {
         Self {
             id,
             streams: Streams::new(kind, role),
@@ -39,7 +39,7 @@ impl Link {
     }
 
     /// The autopilot starts anew: streams are its defaults.
-    pub(super) fn restart(&mut self, kind: AutopilotKind) {
+    pub(super) fn restart(&mut self, kind: Firmware) {
         self.streams = Streams::new(kind, self.role);
         self.next_parameter = None;
         self.sequence = 0;
@@ -50,12 +50,12 @@ impl Link {
         &mut self,
         message: &Message,
         arrives: Duration,
-        (seeds, (system, component)): (&CrcSeeds, (u8, u8)),
+        (system, component): (u8, u8),
         signing: Option<(&Signing, u64)>,
     ) {
         let own = signing.map(|(signing, time)| (signing.for_link(self.number()), time));
         let own = own.as_ref().map(|(signing, time)| (signing, *time));
-        let frame = message.frame(seeds, (self.sequence, system, component), own);
+        let frame = message.frame((self.sequence, system, component), own);
         self.sequence = self.sequence.wrapping_add(1);
         self.waiting.push_back((arrives, frame));
     }

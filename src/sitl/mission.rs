@@ -3,15 +3,19 @@
 
 use std::time::Duration;
 
+use mavlink::dialects::ardupilotmega::{
+    MISSION_ACK_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_INT_DATA, MavFrame,
+    MavMissionResult, MavMissionType, MavSeverity,
+};
+
 use super::Vehicle;
-use super::autopilot::Severity;
 use super::fence::Fence;
 use super::message::Message;
 use super::request_id as id;
 use super::upload::Upload;
 use crate::fence::{CIRCLE_INSIDE, CIRCLE_OUTSIDE, FenceItem, POLYGON_INSIDE, POLYGON_OUTSIDE};
 use crate::frames::Geodetic;
-use crate::units::whole;
+use crate::units::{narrow, whole};
 use crate::wire::Payload;
 
 /// MAV_MISSION_TYPE_FENCE
@@ -20,8 +24,6 @@ const FENCE: u8 = 1;
 const ALL: u8 = 255;
 /// MAV_FRAME of items whose places are on Earth: above sea, above home, and the same in integers.
 const ON_EARTH: [u8; 4] = [0, 3, 5, 6];
-/// MAV_FRAME_GLOBAL
-const GLOBAL: u8 = 0;
 /// Items of a polygon, and those that are a figure on their own.
 const CORNERS: [u16; 2] = [POLYGON_INSIDE, POLYGON_OUTSIDE];
 const CIRCLES: [u16; 2] = [CIRCLE_INSIDE, CIRCLE_OUTSIDE];
@@ -31,52 +33,51 @@ const CAPACITY: u16 = 64;
 const ASK_AGAIN: Duration = Duration::from_millis(250);
 const GIVE_UP: Duration = Duration::from_secs(5);
 
-/// MAV_MISSION_RESULT.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum MissionResult {
-    Accepted = 0,
-    Failed = 1,
-    UnsupportedFrame = 2,
-    Unsupported = 3,
-    NoSpace = 4,
-    Invalid = 5,
-    InvalidSequence = 13,
-    Denied = 14,
-    Cancelled = 15,
+fn count(items: usize, (target_system, target_component): (u8, u8), mission_type: u8) -> Message {
+    let count = u16::try_from(items).unwrap_or(u16::MAX);
+    let message =
+        MISSION_COUNT_DATA { count, target_system, target_component, ..MISSION_COUNT_DATA::DEFAULT };
+    // of any type, also of one that the dialect does not know
+    Message::from(message).with_bytes(4, [mission_type])
 }
 
-fn count(items: usize, (system, component): (u8, u8), mission_type: u8) -> Message {
-    let items = u16::try_from(items).unwrap_or(u16::MAX);
-    Message::new(id::MISSION_COUNT).u16(items).u8(system).u8(component).u8(mission_type).u32(0)
+fn request(sequence: usize, (target_system, target_component): (u8, u8)) -> Message {
+    Message::from(MISSION_REQUEST_INT_DATA {
+        seq: u16::try_from(sequence).unwrap_or(u16::MAX),
+        target_system,
+        target_component,
+        mission_type: MavMissionType::MAV_MISSION_TYPE_FENCE,
+    })
 }
 
-fn request(sequence: usize, (system, component): (u8, u8)) -> Message {
-    let sequence = u16::try_from(sequence).unwrap_or(u16::MAX);
-    Message::new(id::MISSION_REQUEST_INT).u16(sequence).u8(system).u8(component).u8(FENCE)
+fn item(item: &FenceItem, seq: u16, (target_system, target_component): (u8, u8)) -> Message {
+    let message = MISSION_ITEM_INT_DATA {
+        param1: narrow(item.parameter),
+        x: whole(item.place.latitude_deg * 1e7),
+        y: whole(item.place.longitude_deg * 1e7),
+        seq,
+        target_system,
+        target_component,
+        frame: MavFrame::MAV_FRAME_GLOBAL,
+        autocontinue: 1,
+        mission_type: MavMissionType::MAV_MISSION_TYPE_FENCE,
+        ..MISSION_ITEM_INT_DATA::DEFAULT
+    };
+    Message::from(message).with_bytes(30, item.command.to_le_bytes())
 }
 
-fn item(item: &FenceItem, sequence: u16, (system, component): (u8, u8)) -> Message {
-    Message::new(id::MISSION_ITEM_INT)
-        .f32s(&[item.parameter, 0.0, 0.0, 0.0])
-        .i32(whole(item.place.latitude_deg * 1e7))
-        .i32(whole(item.place.longitude_deg * 1e7))
-        .f32(0.0)
-        .u16(sequence)
-        .u16(item.command)
-        .u8(system)
-        .u8(component)
-        .u8(GLOBAL)
-        .u8(0)
-        .u8(1)
-        .u8(FENCE)
-}
-
-fn acknowledged(result: MissionResult, (system, component): (u8, u8), mission_type: u8) -> Message {
-    Message::new(id::MISSION_ACK).u8(system).u8(component).u8(result as u8).u8(mission_type).u32(0)
+fn acknowledged(
+    result: MavMissionResult,
+    (target_system, target_component): (u8, u8),
+    mission_type: u8,
+) -> Message {
+    let message =
+        MISSION_ACK_DATA { target_system, target_component, mavtype: result, ..MISSION_ACK_DATA::DEFAULT };
+    Message::from(message).with_bytes(3, [mission_type])
 }
 
 /// An item of a fence from MISSION_ITEM_INT.
-fn read(payload: Payload) -> Result<FenceItem, MissionResult> {
+fn read(payload: Payload) -> Result<FenceItem, MavMissionResult> {
     let item = FenceItem {
         command: payload.u16(30),
         parameter: payload.f32(0),
@@ -86,14 +87,14 @@ fn read(payload: Payload) -> Result<FenceItem, MissionResult> {
         },
     };
     if !ON_EARTH.contains(&payload.u8(34)) {
-        return Err(MissionResult::UnsupportedFrame);
+        return Err(MavMissionResult::MAV_MISSION_UNSUPPORTED_FRAME);
     }
     if !CORNERS.contains(&item.command) && !CIRCLES.contains(&item.command) {
-        return Err(MissionResult::Unsupported);
+        return Err(MavMissionResult::MAV_MISSION_UNSUPPORTED);
     }
     let on_earth = item.place.latitude_deg.abs() <= 90.0 && item.place.longitude_deg.abs() <= 180.0;
     if !(on_earth && item.parameter.is_finite() && item.parameter > 0.0) {
-        return Err(MissionResult::Invalid);
+        return Err(MavMissionResult::MAV_MISSION_INVALID);
     }
     Ok(item)
 }
@@ -144,14 +145,14 @@ impl Vehicle {
             id::MISSION_REQUEST_LIST => count(fence.len(), sender, kind),
             id::MISSION_REQUEST_INT => match fence.get(usize::from(payload.u16(0))) {
                 Some(stored) => item(stored, payload.u16(0), sender),
-                None => acknowledged(MissionResult::InvalidSequence, sender, kind),
+                None => acknowledged(MavMissionResult::MAV_MISSION_INVALID_SEQUENCE, sender, kind),
             },
             id::MISSION_CLEAR_ALL => {
                 if matches!(kind, FENCE | ALL) {
                     self.store_fence(Vec::new());
                 }
                 // there is never a mission nor a rally point
-                acknowledged(MissionResult::Accepted, sender, kind)
+                acknowledged(MavMissionResult::MAV_MISSION_ACCEPTED, sender, kind)
             }
             id::MISSION_COUNT if kind == FENCE => {
                 return self.begin_upload(link, usize::from(payload.u16(0)), from);
@@ -159,13 +160,13 @@ impl Vehicle {
             id::MISSION_ITEM_INT if kind == FENCE => return self.take_item(link, payload, from),
             // the ground station has all that it asked for, or gives its upload up
             id::MISSION_ACK => {
-                let given_up = payload.u8(2) != MissionResult::Accepted as u8;
+                let given_up = u32::from(payload.u8(2)) != MavMissionResult::MAV_MISSION_ACCEPTED as u32;
                 if given_up && self.upload.as_ref().is_some_and(|upload| upload.sender == sender) {
                     self.upload = None;
                 }
                 return;
             }
-            _ => acknowledged(MissionResult::Unsupported, sender, kind),
+            _ => acknowledged(MavMissionResult::MAV_MISSION_UNSUPPORTED, sender, kind),
         };
         self.send(link, &answer);
     }
@@ -173,11 +174,13 @@ impl Vehicle {
     fn begin_upload(&mut self, link: usize, count: usize, (sender, now): ((u8, u8), Duration)) {
         let busy = self.upload.as_ref().is_some_and(|upload| upload.sender != sender);
         let answer = match count {
-            _ if busy => acknowledged(MissionResult::Denied, sender, FENCE),
-            _ if count > usize::from(CAPACITY) => acknowledged(MissionResult::NoSpace, sender, FENCE),
+            _ if busy => acknowledged(MavMissionResult::MAV_MISSION_DENIED, sender, FENCE),
+            _ if count > usize::from(CAPACITY) => {
+                acknowledged(MavMissionResult::MAV_MISSION_NO_SPACE, sender, FENCE)
+            }
             0 => {
                 self.store_fence(Vec::new());
-                acknowledged(MissionResult::Accepted, sender, FENCE)
+                acknowledged(MavMissionResult::MAV_MISSION_ACCEPTED, sender, FENCE)
             }
             _ => {
                 let items = Vec::with_capacity(count);
@@ -190,7 +193,7 @@ impl Vehicle {
 
     fn take_item(&mut self, link: usize, payload: Payload, (sender, now): ((u8, u8), Duration)) {
         let Some(upload) = self.upload.as_mut().filter(|upload| upload.sender == sender) else {
-            self.send(link, &acknowledged(MissionResult::Failed, sender, FENCE));
+            self.send(link, &acknowledged(MavMissionResult::MAV_MISSION_ERROR, sender, FENCE));
             return;
         };
         upload.heard = now;
@@ -211,9 +214,9 @@ impl Vehicle {
                 if is_whole(&upload.items) {
                     let items = std::mem::take(&mut upload.items);
                     self.store_fence(items);
-                    MissionResult::Accepted
+                    MavMissionResult::MAV_MISSION_ACCEPTED
                 } else {
-                    MissionResult::Invalid
+                    MavMissionResult::MAV_MISSION_INVALID
                 }
             }
         };
@@ -233,8 +236,8 @@ impl Vehicle {
         let (link, sender) = (upload.link, upload.sender);
         if now.saturating_sub(upload.heard) >= GIVE_UP {
             self.upload = None;
-            self.autopilot.say(Severity::Warning, "Fence upload timed out");
-            self.send(link, &acknowledged(MissionResult::Cancelled, sender, FENCE));
+            self.autopilot.say(MavSeverity::MAV_SEVERITY_WARNING, "Fence upload timed out");
+            self.send(link, &acknowledged(MavMissionResult::MAV_MISSION_OPERATION_CANCELLED, sender, FENCE));
         } else if now.saturating_sub(upload.asked) >= ASK_AGAIN {
             upload.asked = now;
             let again = request(upload.items.len(), sender);

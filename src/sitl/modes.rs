@@ -1,55 +1,7 @@
-//! Both autopilots' flight modes and the numbers by which MAVLink names them.
+//! The flight modes that the vehicle can fly.
 
-use std::time::Duration;
-
-/// Whose behaviour the vehicle has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AutopilotKind {
-    /// PX4 multicopter
-    Px4,
-    /// ArduCopter
-    ArduPilot(ArduPilotRelease),
-}
-
-/// ArduPilot renamed parameters and changed their units with 4.7.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ArduPilotRelease {
-    /// 4.6: `WPNAV_SPEED` in cm/s, `ANGLE_MAX` in centidegrees, `SYSID_MYGCS`
-    V4_6,
-    /// 4.7: `WP_SPD` in m/s, `ATC_ANGLE_MAX` in degrees, `MAV_GCS_SYSID`
-    V4_7,
-}
-
-impl AutopilotKind {
-    /// MAV_AUTOPILOT.
-    pub(super) fn mav_autopilot(self) -> u8 {
-        match self {
-            Self::Px4 => 12,
-            Self::ArduPilot(_) => 3,
-        }
-    }
-
-    pub(super) fn is_px4(self) -> bool {
-        self == Self::Px4
-    }
-
-    /// Period of physics, control and message loop. ArduPilot's main loop runs at 400 Hz; PX4's simulation
-    /// and its message loop step at 250 Hz.
-    pub(super) fn loop_period(self) -> Duration {
-        match self {
-            Self::Px4 => Duration::from_micros(4000),
-            Self::ArduPilot(_) => Duration::from_micros(2500),
-        }
-    }
-
-    /// Physics steps in a loop period.
-    pub(super) fn steps_a_loop(self) -> u32 {
-        match self {
-            Self::Px4 => 2,
-            Self::ArduPilot(_) => 1,
-        }
-    }
-}
+use super::Firmware;
+use crate::autopilot::{FlightMode, FlownBy, ardupilot, px4};
 
 /// A flight mode; what both autopilots have is one mode here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,61 +38,39 @@ const ALL: [Mode; 9] = [
     Mode::Land,
 ];
 
-const PX4_AUTO: u32 = 4;
-
 impl Mode {
-    /// HEARTBEAT.custom_mode; `None` where this autopilot has no such mode. PX4: main mode in bits 16 to 23,
-    /// sub mode in 24 to 31.
+    /// The autopilot's entry; `None` where this autopilot has no such mode.
+    fn entry(self, firmware: Firmware) -> Option<&'static FlightMode> {
+        let (of_px4, of_ardupilot) = match self {
+            Self::Stabilize => (Some(&px4::STABILIZED), Some(&ardupilot::STABILIZE)),
+            Self::Altitude => (Some(&px4::ALTITUDE), Some(&ardupilot::ALT_HOLD)),
+            Self::Position => (Some(&px4::POSITION), Some(&ardupilot::POSHOLD)),
+            Self::Hold => (Some(&px4::LOITER), Some(&ardupilot::LOITER)),
+            Self::Brake => (None, Some(&ardupilot::BRAKE)),
+            Self::Guided => (Some(&px4::OFFBOARD), Some(&ardupilot::GUIDED)),
+            Self::Takeoff => (Some(&px4::TAKEOFF), None),
+            Self::Return => (Some(&px4::RETURN), Some(&ardupilot::RETURN)),
+            Self::Land => (Some(&px4::LAND), Some(&ardupilot::LAND)),
+        };
+        if firmware.is_px4() { of_px4 } else { of_ardupilot }
+    }
+
+    /// HEARTBEAT.custom_mode; `None` where this autopilot has no such mode.
     #[must_use]
-    pub fn custom_mode(self, kind: AutopilotKind) -> Option<u32> {
-        let px4 = |main: u32, sub: u32| Some(main << 16 | sub << 24);
-        match kind {
-            AutopilotKind::Px4 => match self {
-                Self::Altitude => px4(2, 0),
-                Self::Position => px4(3, 0),
-                Self::Takeoff => px4(PX4_AUTO, 2),
-                Self::Hold => px4(PX4_AUTO, 3),
-                Self::Return => px4(PX4_AUTO, 5),
-                Self::Land => px4(PX4_AUTO, 6),
-                Self::Guided => px4(6, 0),
-                Self::Stabilize => px4(7, 0),
-                Self::Brake => None,
-            },
-            AutopilotKind::ArduPilot(_) => match self {
-                Self::Stabilize => Some(0),
-                Self::Altitude => Some(2),
-                Self::Guided => Some(4),
-                Self::Hold => Some(5),
-                Self::Return => Some(6),
-                Self::Land => Some(9),
-                Self::Position => Some(16),
-                Self::Brake => Some(17),
-                Self::Takeoff => None,
-            },
-        }
+    pub fn custom_mode(self, firmware: Firmware) -> Option<u32> {
+        self.entry(firmware).map(|mode| mode.number)
     }
 
     /// The mode of that number.
     #[must_use]
-    pub fn from_custom_mode(kind: AutopilotKind, custom_mode: u32) -> Option<Self> {
-        ALL.into_iter().find(|mode| mode.custom_mode(kind) == Some(custom_mode))
+    pub fn from_custom_mode(firmware: Firmware, custom_mode: u32) -> Option<Self> {
+        ALL.into_iter().find(|mode| mode.custom_mode(firmware) == Some(custom_mode))
     }
 
     /// The autopilot's own name.
     #[must_use]
-    pub fn name(self, kind: AutopilotKind) -> &'static str {
-        let (px4, ardupilot) = match self {
-            Self::Stabilize => ("Stabilized", "STABILIZE"),
-            Self::Altitude => ("Altitude", "ALT_HOLD"),
-            Self::Position => ("Position", "POSHOLD"),
-            Self::Hold => ("Hold", "LOITER"),
-            Self::Brake => ("Hold", "BRAKE"),
-            Self::Guided => ("Offboard", "GUIDED"),
-            Self::Takeoff => ("Takeoff", "GUIDED"),
-            Self::Return => ("Return", "RTL"),
-            Self::Land => ("Land", "LAND"),
-        };
-        if kind.is_px4() { px4 } else { ardupilot }
+    pub fn name(self, firmware: Firmware) -> &'static str {
+        self.entry(firmware).map_or("", |mode| mode.title)
     }
 
     /// The mode cannot be flown without a position estimate.
@@ -148,9 +78,9 @@ impl Mode {
         !matches!(self, Self::Stabilize | Self::Altitude | Self::Land)
     }
 
-    /// A pilot's sticks move the vehicle in it.
+    /// A pilot's sticks move PX4 in it.
     pub(super) fn is_manual(self) -> bool {
-        matches!(self, Self::Stabilize | Self::Altitude | Self::Position)
+        self.entry(Firmware::PX4).is_some_and(|mode| mode.flown_by == FlownBy::Pilot)
     }
 
     /// The autopilot does not arm in it; PX4 does not stay in it when it disarms.

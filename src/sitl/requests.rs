@@ -3,10 +3,11 @@
 
 use std::time::Duration;
 
+use mavlink::dialects::ardupilotmega::MavSeverity;
+
 use super::Vehicle;
-use super::autopilot::Severity;
 use super::commands::Command;
-use super::message::Message;
+use super::ping::ping;
 use super::request_id as id;
 use super::telemetry::Telemetry;
 use crate::wire::{Frame, Payload};
@@ -59,9 +60,7 @@ impl Vehicle {
                 self.send(link, &Telemetry::timesync_answer(now, asked, sender));
             }
             id::PING if payload.u8(12) == 0 => {
-                let answer =
-                    Message::new(id::PING).u64(payload.u64(0)).u32(payload.u32(8)).u8(sender.0).u8(sender.1);
-                self.send(link, &answer);
+                self.send(link, &ping(payload.u64(0), payload.u32(8), sender));
             }
             id::MISSION_REQUEST_LIST
             | id::MISSION_REQUEST_INT
@@ -102,13 +101,14 @@ impl Vehicle {
         let px4 = self.settings.autopilot.is_px4();
         let Some(at) = self.parameters.find(&name) else {
             if px4 {
-                self.autopilot.say(Severity::Error, format!("unknown param: {name}"));
+                self.autopilot.say(MavSeverity::MAV_SEVERITY_ERROR, format!("unknown param: {name}"));
             }
             return;
         };
         let Some(value) = self.parameters.decode(at, payload.u8(22), payload) else {
             if px4 {
-                self.autopilot.say(Severity::Error, format!("param types mismatch param: {name}"));
+                self.autopilot
+                    .say(MavSeverity::MAV_SEVERITY_ERROR, format!("param types mismatch param: {name}"));
             }
             return;
         };

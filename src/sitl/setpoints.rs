@@ -2,10 +2,11 @@
 
 use std::time::Duration;
 
+use mavlink::dialects::ardupilotmega::MavSeverity;
 use nalgebra::Vector3;
 
 use super::Mode;
-use super::autopilot::{Autopilot, Severity};
+use super::autopilot::Autopilot;
 use super::demand::{AttitudeDemand, Demand, Refusal};
 use super::guidance::Task;
 use crate::wire::Payload;
@@ -44,7 +45,7 @@ impl Autopilot {
                 }
                 Err(Refusal::Frame(frame)) => {
                     let text = format!("SET_POSITION_TARGET_LOCAL_NED coordinate frame {frame} unsupported");
-                    self.say(Severity::Error, text);
+                    self.say(MavSeverity::MAV_SEVERITY_ERROR, text);
                 }
                 Err(_) => {}
             }

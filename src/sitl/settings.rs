@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{AutopilotKind, SitlError};
+use super::{Firmware, SitlError};
 use crate::fence::FenceItem;
 use crate::frames::Geodetic;
 use crate::link::SigningKey;
@@ -65,7 +65,7 @@ pub struct Settings {
     /// first-order lag of the rotors, s; 0 lets them follow at once
     pub motor_time_constant_s: f64,
     /// whose behaviour
-    pub autopilot: AutopilotKind,
+    pub autopilot: Firmware,
     /// same seed, same flight
     pub seed: u64,
     /// MAVLink system id
@@ -107,7 +107,7 @@ pub struct Settings {
 impl Settings {
     /// A vehicle with nothing concealed, at the origin, heading north.
     #[must_use]
-    pub fn new(vehicle: Description, autopilot: AutopilotKind) -> Self {
+    pub fn new(vehicle: Description, autopilot: Firmware) -> Self {
         let base = FlightSettings::default();
         let motor_time_constant_s = vehicle.propulsion.time_constant_s.unwrap_or(base.motor_time_constant_s);
         Self {

@@ -11,7 +11,7 @@ use super::message_id::{
     POSITION_TARGET_LOCAL_NED, RAW_IMU, RC_CHANNELS, RPM, SCALED_IMU2, SERVO_OUTPUT_RAW, SYS_STATUS,
     SYSTEM_TIME, TIMESYNC, VFR_HUD,
 };
-use super::{AutopilotKind, LinkRole};
+use super::{Firmware, LinkRole};
 
 /// Messages of PX4 with rates on its ground-station link and on its onboard link, Hz.
 const PX4: &[(u32, f64, f64)] = &[
@@ -117,7 +117,7 @@ struct Stream {
 /// The messages that one link carries by themselves.
 #[derive(Debug)]
 pub(super) struct Streams {
-    kind: AutopilotKind,
+    kind: Firmware,
     all: BTreeMap<u32, Stream>,
     mode_changed: bool,
 }
@@ -127,21 +127,19 @@ fn period(rate_hz: f64) -> Option<Duration> {
 }
 
 impl Streams {
-    pub(super) fn new(kind: AutopilotKind, role: LinkRole) -> Self {
+    pub(super) fn new(kind: Firmware, role: LinkRole) -> Self {
         let stream = |id: u32, rate_hz: f64| {
             let default = period(rate_hz);
             (id, Stream { id, interval: default, default, last: None })
         };
-        let all = match kind {
-            AutopilotKind::Px4 => PX4
-                .iter()
-                .map(|(id, ground_hz, onboard_hz)| {
-                    stream(*id, if role == LinkRole::Onboard { *onboard_hz } else { *ground_hz })
-                })
-                .collect(),
-            AutopilotKind::ArduPilot(_) => {
-                ARDUPILOT.iter().map(|id| stream(*id, if *id == TIMESYNC { 0.1 } else { 0.0 })).collect()
-            }
+        let all = if kind.is_px4() {
+            let rate_hz =
+                |ground_hz, onboard_hz| if role == LinkRole::Onboard { onboard_hz } else { ground_hz };
+            PX4.iter()
+                .map(|(id, ground_hz, onboard_hz)| stream(*id, rate_hz(*ground_hz, *onboard_hz)))
+                .collect()
+        } else {
+            ARDUPILOT.iter().map(|id| stream(*id, if *id == TIMESYNC { 0.1 } else { 0.0 })).collect()
         };
         Self { kind, all, mode_changed: false }
     }
@@ -164,10 +162,7 @@ impl Streams {
             return Ok(());
         }
         let asked = Duration::from_secs_f64(interval_us * 1e-6);
-        stream.interval = Some(match kind {
-            AutopilotKind::Px4 => asked,
-            AutopilotKind::ArduPilot(_) => ardupilot_interval(asked, kind)?,
-        });
+        stream.interval = Some(if kind.is_px4() { asked } else { ardupilot_interval(asked, kind)? });
         Ok(())
     }
 
@@ -202,10 +197,10 @@ impl Streams {
         let kind = self.kind;
         let mut due = Vec::new();
         for stream in self.all.values_mut() {
-            let is_due = match kind {
-                AutopilotKind::Px4 if stream.id == CURRENT_MODE => px4_mode_is_due(stream, now, news),
-                AutopilotKind::Px4 => px4_is_due(stream, now),
-                AutopilotKind::ArduPilot(_) => ardupilot_is_due(stream, now, downloading),
+            let is_due = match kind.is_px4() {
+                true if stream.id == CURRENT_MODE => px4_mode_is_due(stream, now, news),
+                true => px4_is_due(stream, now),
+                false => ardupilot_is_due(stream, now, downloading),
             };
             if is_due {
                 due.push(stream.id);
@@ -216,7 +211,7 @@ impl Streams {
 }
 
 /// Whole milliseconds from 1 to 60000.
-fn ardupilot_interval(asked: Duration, kind: AutopilotKind) -> Result<Duration, IntervalRefusal> {
+fn ardupilot_interval(asked: Duration, kind: Firmware) -> Result<Duration, IntervalRefusal> {
     let cut = Duration::from_millis(u64::try_from(asked.as_millis()).unwrap_or(u64::MAX).clamp(1, 60_000));
     if cut.mul_f64(ARDUPILOT_LOAD) < kind.loop_period() {
         return Err(IntervalRefusal::TooFast);
@@ -271,9 +266,8 @@ fn px4_mode_is_due(stream: &mut Stream, now: Duration, changed: bool) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sitl::ArduPilotRelease;
 
-    fn measured_hz(kind: AutopilotKind, id: u32, asked_hz: f64) -> Result<f64, IntervalRefusal> {
+    fn measured_hz(kind: Firmware, id: u32, asked_hz: f64) -> Result<f64, IntervalRefusal> {
         let mut streams = Streams::new(kind, LinkRole::GroundStation);
         streams.set_interval(id, 1e6 / asked_hz)?;
         let (mut now, mut count) = (Duration::ZERO, 0);
@@ -286,7 +280,7 @@ mod tests {
 
     #[test]
     fn rates_are_those_that_were_measured_of_both_autopilots() {
-        let px4 = |id, asked_hz| measured_hz(AutopilotKind::Px4, id, asked_hz);
+        let px4 = |id, asked_hz| measured_hz(Firmware::PX4, id, asked_hz);
         let near = |got: Result<f64, IntervalRefusal>, want: f64| {
             assert!((got.unwrap() - want).abs() < 0.011 * want, "{got:?} {want}");
         };
@@ -295,8 +289,7 @@ mod tests {
         near(px4(HIGHRES_IMU, 250.0), 250.0);
         near(px4(LOCAL_POSITION_NED, 250.0), 125.0);
         near(px4(CURRENT_MODE, 10.0), 2.0);
-        let ardupilot =
-            |asked_hz| measured_hz(AutopilotKind::ArduPilot(ArduPilotRelease::V4_7), ATTITUDE, asked_hz);
+        let ardupilot = |asked_hz| measured_hz(Firmware::ARDUPILOT_4_7, ATTITUDE, asked_hz);
         near(ardupilot(100.0), 100.0);
         near(ardupilot(200.0), 200.0);
         near(ardupilot(250.0), 200.0);
@@ -306,12 +299,12 @@ mod tests {
     #[test]
     fn each_autopilot_refuses_what_it_does_not_send() {
         let refused = Err(IntervalRefusal::UnknownMessage);
-        let ardupilot = AutopilotKind::ArduPilot(ArduPilotRelease::V4_6);
+        let ardupilot = Firmware::ARDUPILOT_4_6;
         for id in [ESC_STATUS, ESC_INFO, ACTUATOR_OUTPUT_STATUS, ESTIMATOR_STATUS, ODOMETRY, ALTITUDE] {
             assert_eq!(measured_hz(ardupilot, id, 10.0), refused, "{id}");
         }
         for id in [RAW_IMU, ESC_TELEMETRY_1_TO_4, EKF_STATUS_REPORT] {
-            assert_eq!(measured_hz(AutopilotKind::Px4, id, 10.0), refused, "{id}");
+            assert_eq!(measured_hz(Firmware::PX4, id, 10.0), refused, "{id}");
         }
     }
 }

@@ -2,15 +2,18 @@
 
 use std::time::Duration;
 
+use mavlink::dialects::ardupilotmega::{
+    HEARTBEAT_DATA, MavAutopilot, MavModeFlag, MavSeverity, MavState, MavType, STATUSTEXT_DATA,
+};
 use nalgebra::Vector3;
 
-use super::autopilot::{Autopilot, Severity, Text};
+use super::autopilot::{Autopilot, Text};
 use super::craft::Craft;
 use super::link::Link;
 use super::message::Message;
 use super::message_id::HEARTBEAT;
 use super::parameters::{Parameters, Pulses};
-use super::telemetry::{Snapshot, Telemetry};
+use super::telemetry::{PROTOCOL, Snapshot, Telemetry};
 use super::tuning::Tuning;
 use super::upload::Upload;
 use super::{Fault, LinkId, LinkRole, Mode, Outgoing, Settings, SitlError};
@@ -20,8 +23,7 @@ use crate::wire::{Check, CrcSeeds, Frame, Payload};
 
 /// MAV_COMP_ID_AUTOPILOT1
 const COMPONENT: u8 = 1;
-/// STATUSTEXT and its chunks.
-const STATUSTEXT: u32 = 253;
+/// Letters of one STATUSTEXT.
 const CHUNK_BYTES: usize = 50;
 /// Time between heartbeats.
 const HEARTBEAT_PERIOD: Duration = Duration::from_secs(1);
@@ -154,7 +156,7 @@ impl Vehicle {
             return;
         }
         if self.autopilot.is_armed() {
-            self.autopilot.say(Severity::Warning, "ERROR: Won't setup signing when armed");
+            self.autopilot.say(MavSeverity::MAV_SEVERITY_WARNING, "ERROR: Won't setup signing when armed");
             return;
         }
         let key: [u8; 32] = std::array::from_fn(|byte| payload.u8(10 + byte));
@@ -219,8 +221,15 @@ impl Vehicle {
             Fault::LinkSilence(duration) => self.silent_until = self.clock + duration,
             Fault::Reboot => self.reboot(),
             Fault::ForeignHeartbeat { system, component } => {
-                let message = Message::new(HEARTBEAT).u32(0).u8(6).u8(8).u8(0).u8(4).u8(3);
-                let frame = message.frame(&self.seeds, (0, system, component), None);
+                let message = Message::from(HEARTBEAT_DATA {
+                    custom_mode: 0,
+                    mavtype: MavType::MAV_TYPE_GCS,
+                    autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
+                    base_mode: MavModeFlag::empty(),
+                    system_status: MavState::MAV_STATE_ACTIVE,
+                    mavlink_version: PROTOCOL,
+                });
+                let frame = message.frame((0, system, component), None);
                 self.pass_on(&frame, None);
             }
             Fault::Push { force_n, torque_nm, duration } => {
@@ -300,7 +309,7 @@ impl Vehicle {
         }
         let arrives = self.clock + self.settings.latency;
         let signing = self.signing.as_ref().map(|signing| (signing, time));
-        link.send(message, arrives, (&self.seeds, (self.settings.system, COMPONENT)), signing);
+        link.send(message, arrives, (self.settings.system, COMPONENT), signing);
     }
 
     pub(super) fn broadcast(&mut self, message: &Message) {
@@ -328,12 +337,14 @@ impl Vehicle {
                 self.texts = self.texts.wrapping_add(1).max(1);
             }
             for (chunk, part) in bytes.chunks(CHUNK_BYTES).enumerate() {
-                let id = if is_long { self.texts } else { 0 };
-                let message = Message::new(STATUSTEXT)
-                    .u8(severity as u8)
-                    .text(part, CHUNK_BYTES)
-                    .u16(id)
-                    .u8(u8::try_from(chunk).unwrap_or(u8::MAX));
+                let mut text = [0; CHUNK_BYTES];
+                text[..part.len()].copy_from_slice(part);
+                let message = Message::from(STATUSTEXT_DATA {
+                    severity,
+                    text: text.into(),
+                    id: if is_long { self.texts } else { 0 },
+                    chunk_seq: u8::try_from(chunk).unwrap_or(u8::MAX),
+                });
                 self.broadcast(&message);
             }
         }

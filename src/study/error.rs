@@ -4,7 +4,7 @@ use crate::config::ConfigError;
 use crate::diagnose::ExplainError;
 use crate::diagnose::joint::JointError;
 use crate::estimate::EstimateError;
-use crate::log::csv::CsvError;
+use crate::log::LogError;
 use crate::plan::PlanError;
 use crate::signals::SignalsError;
 
@@ -14,9 +14,9 @@ pub enum StudyError {
     /// a vehicle file, model or mapping
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// a CSV recording
+    /// a recording
     #[error(transparent)]
-    Csv(#[from] CsvError),
+    Log(LogError),
     /// a setting of the request
     #[error("{name}: {why}")]
     Setting {

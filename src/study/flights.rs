@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::config::{default_csv_mapping, load_csv_mapping};
+use crate::config::{ConfigError, load_csv_mapping};
 use crate::diagnose::holdout::HeldOut;
-use crate::log::{Flights, Hold, LoadOptions, LoadedFlights, LogFlight, csv, load_flights};
+use crate::log::{Hold, LogError, LogFlight, OpenOptions, ReadReport, format_of, open_flights};
 use crate::note::{About, Note};
 use crate::recording::{Recording, shared_share};
 use crate::signals::{ConditionSettings, Signals, condition};
@@ -32,12 +32,22 @@ pub struct ReadSettings {
 }
 
 impl ReadSettings {
-    /// A mapping of columns needs a CSV among the logs.
+    /// What they mean for the reader.
+    ///
+    /// # Errors
+    /// The mapping of columns cannot be read.
+    pub fn open_options(&self) -> Result<OpenOptions, ConfigError> {
+        let columns = self.csv_map.as_deref().map(load_csv_mapping).transpose()?.unwrap_or_default();
+        Ok(OpenOptions { system: self.system, columns })
+    }
+
+    /// A mapping of columns needs a table among the logs. A log that cannot be read may be one: that is told later.
     ///
     /// # Errors
     /// [`StudyError::Setting`] otherwise.
     pub(super) fn check<'a>(&self, mut logs: impl Iterator<Item = &'a PathBuf>) -> Result<(), StudyError> {
-        if self.csv_map.is_some() && !logs.any(|log| is_csv(log)) {
+        let may_be_table = |log: &PathBuf| format_of(log).map_or(true, |format| format.takes_columns);
+        if self.csv_map.is_some() && !logs.any(may_be_table) {
             let why = "expected a .csv among the logs, got none".to_owned();
             return Err(StudyError::Setting { name: "csv-map", why });
         }
@@ -83,63 +93,48 @@ impl Prepared {
     }
 }
 
-/// Read by a mapping of its columns.
-pub(super) fn is_csv(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
-}
-
 /// The flights of every log, read side by side: each has at least one, and at most as much as `most`.
 pub(super) fn load_all(
     logs: &[PathBuf],
     read: &ReadSettings,
     most: &Hold,
 ) -> Result<Vec<Vec<Flight>>, StudyError> {
-    let done: Vec<_> = logs.par_iter().map(|path| load(path, read, most)).collect();
+    let options = read.open_options()?;
+    let done: Vec<_> = logs.par_iter().map(|path| load(path, &options, most)).collect();
     done.into_iter().collect()
 }
 
-fn load(path: &Path, read: &ReadSettings, most: &Hold) -> Result<Vec<Flight>, StudyError> {
-    let name = text::path(&path);
-    let named =
-        |error: &dyn std::fmt::Display| StudyError::File { file: name.clone(), why: error.to_string() };
-    let (flights, losses, remarks) = if is_csv(path) {
-        let mapping =
-            read.csv_map.as_ref().map_or_else(default_csv_mapping, |file| load_csv_mapping(file))?;
-        let (recording, report) = csv::read_csv(path, &mapping)?;
-        (Flights::of(recording, most), report.losses(), Vec::new())
-    } else {
-        let options = LoadOptions { system: read.system };
-        let loaded = load_flights(path, &options, most).map_err(|error| named(&error))?;
-        let mut remarks: Vec<String> = whose(&loaded).into_iter().collect();
-        remarks.extend(loaded.report.oddities());
-        (loaded.flights, loaded.report.losses(), remarks)
-    };
-    let about = || About::File(name.clone());
-    let losses = losses.into_iter().chain(left_out(&flights));
+fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, StudyError> {
+    let opened = open_flights(path, options, most).map_err(|error| unread(path, error))?;
+    let about = || About::File(text::path(&path));
+    let losses = opened.report.losses.iter().map(ToString::to_string);
+    let oddities = opened.report.oddities.iter().map(ToString::to_string);
     let mut input = InputFile::of(path)?;
     input.notes.extend(losses.map(|text| Note::loss(about(), text)));
-    input.notes.extend(remarks.into_iter().map(|text| Note::remark(about(), text)));
-    Ok(of_log(flights.flights, &input))
+    input
+        .notes
+        .extend(whose(&opened.report).into_iter().chain(oddities).map(|text| Note::remark(about(), text)));
+    Ok(of_log(opened.flights.flights, &input))
+}
+
+/// Why a log cannot be read, with its name.
+#[must_use]
+pub fn unread(path: &Path, error: LogError) -> StudyError {
+    match error {
+        // these name it
+        LogError::Open { .. } | LogError::Table(_) => StudyError::Log(error),
+        _ => StudyError::File { file: text::path(&path), why: error.to_string() },
+    }
 }
 
 /// Which of several vehicles it is.
-fn whose(loaded: &LoadedFlights) -> Option<String> {
-    let others: Vec<String> = loaded.others.iter().map(ToString::to_string).collect();
-    (!others.is_empty()).then(|| {
+fn whose(report: &ReadReport) -> Option<String> {
+    let others: Vec<String> = report.others.iter().map(ToString::to_string).collect();
+    report.vehicle.filter(|_| !others.is_empty()).map(|vehicle| {
         format!(
             "system {} is analysed; system(s) {} speak in the log as well (--system-id chooses another)",
-            loaded.vehicle.system,
+            vehicle.system,
             others.join(", ")
-        )
-    })
-}
-
-/// What of a log is more than is held.
-fn left_out(flights: &Flights) -> Option<String> {
-    (flights.left_out_s > 0.0).then(|| {
-        format!(
-            "{:.0} s of flight at the end are left out: the log holds more than is analysed at once; cut it to analyse the rest",
-            flights.left_out_s
         )
     })
 }

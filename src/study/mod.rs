@@ -27,7 +27,7 @@ pub use explain::{
     Followed, Given, Harmonics, Heat, LeftAlongTime, Located, Predicted, QUANTITIES, RecordedAndSimulated,
     ShownOn, StateShare, Tried, TriedAs, explain, for_readers, stored_trajectory,
 };
-pub use flights::ReadSettings;
+pub use flights::{ReadSettings, unread};
 pub use identify::{
     COMPONENTS, IdentifyRequest, IdentifyStudy, Misfit, RotorsAndMotion, WithEffects, identify,
 };

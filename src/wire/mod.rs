@@ -1,7 +1,7 @@
 //! MAVLink: bytes to frames, frames to samples, and back.
 //!
 //! ```text
-//! bytes -> Splitter -> Frame -> Decoder -> events
+//! bytes -> Splitter -> Frame -> Decoder -> recording::Event
 //! messages -> MessageWriter -> frames with the host's stamps
 //! ```
 
@@ -17,7 +17,7 @@ mod stamped;
 
 pub use self::checksum::{CrcSeeds, checksum};
 pub use clock::{Anchor, Stamp};
-pub use decode::{DecodeReport, Decoder, Event, Source, StreamId, Vehicle};
+pub use decode::{DecodeReport, Decoder, Source, Vehicle};
 pub use embedded::{EMBEDDED_UID2, Nonce};
 pub use encode::write_recording;
 pub use frame::{

@@ -18,6 +18,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("text", &[]),
     // of any series: nothing of flights, and no import
     ("stats", &[]),
+    // autopilots as tables
+    ("autopilot", &[]),
     // what a stage has to say beside its result
     ("note", &[]),
     ("frames", &[]),
@@ -26,23 +28,26 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("fence", &["frames"]),
     ("physics", &["units", "text", "vehicle"]),
     // a flight as typed streams, from wherever
-    ("recording", &[]),
+    ("recording", &["autopilot"]),
     // MAVLink's bytes, frames and messages
-    ("wire", &["units", "text", "frames", "recording"]),
+    ("wire", &["units", "text", "autopilot", "frames", "recording"]),
     // files
-    ("log", &["units", "text", "frames", "recording", "wire"]),
-    // frames over sockets and serial ports, and their recording
-    ("link", &["text", "wire", "log"]),
+    ("log", &["units", "text", "autopilot", "frames", "recording", "wire"]),
+    // frames over sockets and serial ports, and their recording: live links need no files
+    ("link", &["text", "wire"]),
+    // a log played as if it were a link
+    ("replay", &["text", "wire", "log", "link"]),
     // vehicle: from actuator values to force
-    ("signals", &["note", "stats", "vehicle", "recording"]),
+    ("signals", &["note", "stats", "autopilot", "vehicle", "recording"]),
     ("regression", &["signals"]),
-    ("estimate", &["note", "stats", "vehicle", "signals", "regression"]),
+    ("estimate", &["note", "stats", "vehicle", "physics", "signals", "regression"]),
     (
         "inspect",
         &[
             "units",
             "note",
             "stats",
+            "autopilot",
             "vehicle",
             "recording",
             "wire",
@@ -111,13 +116,14 @@ const LAYERS: &[(&str, &[&str])] = &[
         ],
     ),
     ("export", &["units", "text", "vehicle", "physics"]),
-    ("sitl", &["units", "frames", "vehicle", "fence", "physics", "wire", "link", "simulate"]),
+    ("sitl", &["units", "autopilot", "frames", "vehicle", "fence", "physics", "wire", "link", "simulate"]),
     (
         "fly",
         &[
             "units",
             "files",
             "text",
+            "autopilot",
             "frames",
             "vehicle",
             "trajectory",
@@ -139,7 +145,7 @@ const LAYERS: &[(&str, &[&str])] = &[
 const BINARY: &[&str] = &["main", "cli", "commands"];
 
 /// Who may open a socket or name the runtime.
-const NETWORK: &[&str] = &["link", "fly", "sitl", "main", "cli", "commands"];
+const NETWORK: &[&str] = &["link", "replay", "fly", "sitl", "main", "cli", "commands"];
 
 /// Who may print.
 const PRINT: &[&str] = &["main", "commands"];

@@ -12,11 +12,11 @@ mod px4;
 mod telemetry;
 
 use ground::Ground;
-use mavid::sitl::{ArduPilotRelease, AutopilotKind};
+use mavid::sitl::Firmware;
 
-const PX4: AutopilotKind = AutopilotKind::Px4;
-const COPTER: AutopilotKind = AutopilotKind::ArduPilot(ArduPilotRelease::V4_7);
-const COPTER_4_6: AutopilotKind = AutopilotKind::ArduPilot(ArduPilotRelease::V4_6);
+const PX4: Firmware = Firmware::PX4;
+const COPTER: Firmware = Firmware::ARDUPILOT_4_7;
+const COPTER_4_6: Firmware = Firmware::ARDUPILOT_4_6;
 
 /// MAV_RESULT.
 const ACCEPTED: u8 = 0;

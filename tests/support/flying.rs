@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
+use mavid::autopilot::Autopilot;
 use mavid::config::read_vehicle;
 use mavid::fly::parameters::Parameters;
 use mavid::fly::{
     Action, Around, Cause, Course, Event, Feeding, FirstQuestion, Flight, FollowLaw, Note, Outcome, Setpoint,
     SetpointBounds, Settings, Sortie, Streamed, Streamer,
 };
-use mavid::recording::Autopilot;
-use mavid::sitl::{AutopilotKind, LinkId, LinkRole, Settings as VehicleSettings, Vehicle};
+use mavid::sitl::{Firmware, LinkId, LinkRole, Settings as VehicleSettings, Vehicle};
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
 use mavid::vehicle::Limits;
 use mavid::wire::{Frame, Nonce};
@@ -118,7 +118,7 @@ pub const AROUND: Around = Around {
     to_landing_s: 3.0,
 };
 
-pub fn vehicle_settings(kind: AutopilotKind) -> VehicleSettings {
+pub fn vehicle_settings(kind: Firmware) -> VehicleSettings {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
     let vehicle = read_vehicle(&file).unwrap().vehicle;
     VehicleSettings {
@@ -143,6 +143,8 @@ pub fn sortie(vehicle: &VehicleSettings) -> Sortie {
         settings: Settings {
             ready_timeout: Duration::from_secs(30),
             first_question: FirstQuestion::of_seed(1),
+            // the steps of this clock
+            setpoint_period: Duration::from_millis(20),
             ..Settings::default()
         },
     }
@@ -183,7 +185,7 @@ impl Flying {
         self.event(Event::Feed(Feeding::ahead(law, 0.0, room)));
     }
 
-    pub fn of(kind: AutopilotKind) -> Self {
+    pub fn of(kind: Firmware) -> Self {
         Self::new(vehicle_settings(kind), |_| {})
     }
 

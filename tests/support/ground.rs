@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use mavid::config::read_vehicle;
-use mavid::sitl::{AutopilotKind, Fault, LinkId, LinkRole, Mode, Outgoing, Settings, Vehicle};
+use mavid::sitl::{Fault, Firmware, LinkId, LinkRole, Mode, Outgoing, Settings, Vehicle};
 use mavid::units::narrow;
 use mavid::wire::{ComponentId, Frame, SystemId};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
@@ -17,7 +17,7 @@ use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 pub struct Ground {
     pub vehicle: Vehicle,
     pub link: LinkId,
-    pub kind: AutopilotKind,
+    pub kind: Firmware,
     pub now: Duration,
     /// everything that came, with its time
     pub received: Vec<(Duration, u32, Vec<u8>)>,
@@ -29,7 +29,7 @@ pub struct Ground {
 }
 
 /// The settings of a vehicle file of the project, its position good after two seconds.
-pub fn settings(kind: AutopilotKind) -> Settings {
+pub fn settings(kind: Firmware) -> Settings {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
     let vehicle = read_vehicle(&file).unwrap().vehicle;
     Settings { warm_up: Some(Duration::from_secs(2)), ..Settings::new(vehicle, kind) }
@@ -53,7 +53,7 @@ impl Ground {
         }
     }
 
-    pub fn of(kind: AutopilotKind) -> Self {
+    pub fn of(kind: Firmware) -> Self {
         Self::new(settings(kind))
     }
 
@@ -169,8 +169,8 @@ impl Ground {
     pub fn set_mode(&mut self, mode: Mode) -> u8 {
         let number = mode.custom_mode(self.kind).unwrap();
         let params = match self.kind {
-            AutopilotKind::Px4 => [(number >> 16 & 0xFF) as f32, (number >> 24) as f32],
-            AutopilotKind::ArduPilot(_) => [number as f32, 0.0],
+            Firmware::PX4 => [(number >> 16 & 0xFF) as f32, (number >> 24) as f32],
+            _ => [number as f32, 0.0],
         };
         self.command(176, [1.0, params[0], params[1], 0.0, 0.0, 0.0, 0.0])
     }
@@ -260,7 +260,7 @@ impl Ground {
     /// Takes off to this height and waits until it hovers there.
     pub fn take_off(&mut self, height_m: f64) {
         self.wait(3.0);
-        if self.kind == AutopilotKind::Px4 {
+        if self.kind == Firmware::PX4 {
             let above_sea = 488.0 + narrow(height_m);
             assert_eq!(self.command(22, [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, above_sea]), 0);
             assert_eq!(self.arm(), 0, "{:?}", self.texts());

@@ -131,7 +131,7 @@ pub fn tlog(frames: &[Vec<u8>]) -> Vec<u8> {
 }
 
 /// All records of a log, and its report.
-pub fn read(bytes: &[u8]) -> (Vec<(u64, Vec<u8>)>, mavid::log::ReadReport) {
+pub fn read(bytes: &[u8]) -> (Vec<(u64, Vec<u8>)>, mavid::log::TlogReport) {
     let mut reader = TlogReader::new(bytes);
     let mut records = Vec::new();
     while let Some(record) = reader.next_record().unwrap() {

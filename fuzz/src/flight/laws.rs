@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use mavid::fly::{Setpoint, Stack};
+use mavid::autopilot::Autopilot;
+use mavid::fly::Setpoint;
 use mavid::wire::Frame;
 use mavlink::dialects::ardupilotmega::MavMessage;
 
@@ -35,11 +36,11 @@ pub struct Laws {
     killed: Option<Duration>,
     /// frames of the vehicle with an odd number are about: which report is the latest is not known
     pub out_of_order: bool,
-    stack: Stack,
+    stack: Autopilot,
 }
 
 impl Laws {
-    pub fn new(stack: Stack) -> Self {
+    pub fn new(stack: Autopilot) -> Self {
         let ours = vec![modes(stack).external];
         Self {
             ours,

@@ -8,11 +8,12 @@ use std::collections::VecDeque;
 use std::sync::LazyLock;
 use std::time::Duration;
 
+use mavid::autopilot::{Autopilot, Mode};
 use mavid::config::parse_vehicle;
 use mavid::fly::parameters::Parameters;
 use mavid::fly::{
-    Action, Around, Course, Event, FirstQuestion, Flight, Key, Lift, Mode, Setpoint, Settings, Sortie, Stack,
-    Streamed, Streamer,
+    Action, Around, Course, Event, FirstQuestion, Flight, Key, Lift, Setpoint, Settings, Sortie, Streamed,
+    Streamer,
 };
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
 use mavid::wire::Frame;
@@ -83,7 +84,7 @@ struct World {
 pub fn run(data: &[u8], seeded: bool) {
     let mut script = Bytes::new(data);
     let first = script.u8();
-    let stack = if first & 1 == 0 { Stack::Px4 } else { Stack::ArduPilot };
+    let stack = if first & 1 == 0 { Autopilot::Px4 } else { Autopilot::ArduPilot };
     let mut world = World::new(stack, seeded);
     let until = PHASES[usize::from(first >> 1) % PHASES.len()];
     while world.flight.status(world.now).phase != until && world.now < Duration::from_secs(60) {
@@ -101,7 +102,7 @@ pub fn run(data: &[u8], seeded: bool) {
 }
 
 impl World {
-    fn new(stack: Stack, seeded: bool) -> Self {
+    fn new(stack: Autopilot, seeded: bool) -> Self {
         let sortie = SORTIE.0.clone();
         Self {
             streamer: Streamer::new(sortie.settings.setpoint_period),

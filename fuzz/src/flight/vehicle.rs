@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use mavid::fly::{Setpoint, Stack};
+use mavid::autopilot::Autopilot;
+use mavid::fly::Setpoint;
 use mavlink::dialects::ardupilotmega::{COMMAND_LONG_DATA, MavMessage};
 use nalgebra::Vector3;
 
@@ -37,23 +38,23 @@ const fn px4(main: u32, sub: u32) -> u32 {
 }
 
 /// Of an autopilot, from its own documentation.
-pub fn modes(stack: Stack) -> Modes {
+pub fn modes(stack: Autopilot) -> Modes {
     match stack {
-        Stack::Px4 => Modes {
+        Autopilot::Px4 => Modes {
             external: px4(6, 0),
             hold: px4(4, 3),
             land: px4(4, 6),
             home: px4(4, 5),
             pilot: [px4(3, 0), px4(2, 0), px4(7, 0), px4(1, 0)],
         },
-        Stack::ArduPilot => Modes { external: 4, hold: 17, land: 9, home: 6, pilot: [16, 2, 0, 1] },
+        _ => Modes { external: 4, hold: 17, land: 9, home: 6, pilot: [16, 2, 0, 1] },
     }
 }
 
 /// The vehicle.
 #[derive(Debug)]
 pub struct Vehicle {
-    pub stack: Stack,
+    pub stack: Autopilot,
     pub mode: u32,
     pub armed: bool,
     pub position_m: Vector3<f64>,
@@ -70,7 +71,7 @@ pub struct Vehicle {
 }
 
 impl Vehicle {
-    pub fn new(stack: Stack) -> Self {
+    pub fn new(stack: Autopilot) -> Self {
         Self {
             stack,
             mode: modes(stack).pilot[2],
@@ -106,7 +107,7 @@ impl Vehicle {
     /// The mode that a command asks for.
     pub fn asked_for(&self, command: &COMMAND_LONG_DATA) -> u32 {
         let (main, sub) = (whole(command.param2), whole(command.param3));
-        if self.stack == Stack::Px4 { px4(main, sub) } else { main }
+        if self.stack == Autopilot::Px4 { px4(main, sub) } else { main }
     }
 
     /// Does what it is told; the answers.
@@ -187,7 +188,7 @@ impl Vehicle {
 
     fn heartbeat(&mut self) -> Vec<u8> {
         let mode = self.mode.to_le_bytes();
-        let autopilot = if self.stack == Stack::Px4 { 12 } else { 3 };
+        let autopilot = if self.stack == Autopilot::Px4 { 12 } else { 3 };
         let base = if self.armed { 0x81 } else { 1 };
         self.say(0, &payload(9, &[(0, &mode), (4, &[2, autopilot, base, 4, 3])]))
     }
@@ -196,7 +197,7 @@ impl Vehicle {
         let mode = self.mode.to_le_bytes();
         let landed = if self.position_m.z > 0.05 { 2 } else { 1 };
         let mut said = vec![self.heartbeat(), self.say(245, &[0, landed])];
-        if self.stack == Stack::Px4 {
+        if self.stack == Autopilot::Px4 {
             said.push(self.say(436, &payload(9, &[(0, &mode), (4, &mode)])));
         }
         said
@@ -209,8 +210,8 @@ impl Vehicle {
         let flags = 0x033F_u16.to_le_bytes();
         let micros = u64::try_from(now.as_micros()).unwrap_or(0).to_le_bytes();
         let estimator = match self.stack {
-            Stack::Px4 => self.say(230, &payload(42, &[(0, &micros), (40, &flags)])),
-            Stack::ArduPilot => self.say(193, &payload(22, &[(20, &flags)])),
+            Autopilot::Px4 => self.say(230, &payload(42, &[(0, &micros), (40, &flags)])),
+            _ => self.say(193, &payload(22, &[(20, &flags)])),
         };
         vec![system, estimator]
     }

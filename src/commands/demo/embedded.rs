@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use mavid::config::parse_vehicle;
 use mavid::link::{Address, Link, LinkOptions};
-use mavid::sitl::{AutopilotKind, LinkRole, Pace, Settings, Vehicle, serve};
+use mavid::sitl::{Firmware, LinkRole, Pace, Settings, Vehicle, serve};
 use mavid::wire::{ComponentId, Nonce, SystemId};
 use tokio::sync::oneshot;
 
@@ -71,7 +71,7 @@ fn run(
         warm_up: Some(WARM_UP),
         esc_telemetry: true,
         nonce: Some(nonce),
-        ..Settings::new(described, AutopilotKind::Px4)
+        ..Settings::new(described, Firmware::PX4)
     };
     let system = SystemId(settings.system.into());
     let vehicle = Vehicle::new(settings).map_err(|error| CommandError::Input(error.to_string()))?;

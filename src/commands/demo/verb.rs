@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use mavid::config::parse_vehicle;
-use mavid::fly::Ending;
+use mavid::fly::{Ending, SETPOINT_HZ};
 use mavid::report::explanation_answer;
 use mavid::text;
 use mavid::wire::SystemId;
@@ -152,7 +152,7 @@ fn fly_args(port: u16, vehicle: &Path, trajectory: &Path, folder: &Path) -> FlyA
         system_id: None,
         station_id: STATION,
         repeats: None,
-        setpoint_hz: 50,
+        setpoint_hz: SETPOINT_HZ,
         origin: OriginName::Local,
         tracking_max: 1.0,
         tilt_max: None,

@@ -1,15 +1,12 @@
 //! The run of `mavid inspect`: a log is read, and what it holds is printed.
 
-use std::path::Path;
-
-use mavid::config::{default_csv_mapping, load_csv_mapping, read_vehicle};
-use mavid::inspect::{Inspection, inspect_csv, inspect_tlog};
-use mavid::log::LoadOptions;
-use mavid::log::csv::read_csv;
+use mavid::config::read_vehicle;
+use mavid::inspect::{self, Inspection};
+use mavid::log::format_of;
 use mavid::report::{InspectionDocument, inspection_text};
+use mavid::study::unread;
 use mavid::text;
 use mavid::vehicle::Vehicle;
-use mavid::wire::SystemId;
 
 use super::progress;
 use crate::cli::InspectArgs;
@@ -39,42 +36,17 @@ fn inspect(
     vehicle: Option<&Vehicle>,
 ) -> Result<Inspection, CommandError> {
     let path = args.log.as_path();
-    if path.is_dir() {
-        let text = format!("expected a log (*.tlog, *.csv), got the folder {}", text::path(&path));
-        return Err(CommandError::Input(text));
+    let format = format_of(path).map_err(|error| unread(path, error))?;
+    let refused = [
+        ("--csv-map is for tables (.csv)", args.read.csv_map.is_some() && !format.takes_columns),
+        ("--system-id is for telemetry logs (.tlog)", args.read.system.is_some() && !format.takes_system),
+    ];
+    if let Some((option, _)) = refused.into_iter().find(|(_, is_refused)| *is_refused) {
+        return Err(CommandError::Input(format!("{option}; this one is a {}", format.name)));
     }
-    let is = |wanted: &str| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
-    if is("csv") {
-        return csv(path, args, vehicle);
-    }
-    if !is("tlog") {
-        let text = format!("expected a log named *.tlog or *.csv, got {}", text::path(&path));
-        return Err(CommandError::Input(text));
-    }
-    if args.read.csv_map.is_some() {
-        return Err(CommandError::Input("--csv-map is for *.csv logs; this one is a *.tlog".into()));
-    }
-    let options = LoadOptions { system: args.read.system.map(SystemId) };
+    let options = args.read.settings().open_options()?;
     let bar = stderr.bar(progress::of_file(path));
-    let inspection = inspect_tlog(path, &options, vehicle, &mut |bytes| bar.set_position(bytes));
+    let inspection = inspect::inspect(path, &options, vehicle, &mut |bytes| bar.set_position(bytes));
     bar.finish_and_clear();
-    inspection.map_err(|error| CommandError::Input(named(path, &error.to_string())))
-}
-
-fn csv(path: &Path, args: &InspectArgs, vehicle: Option<&Vehicle>) -> Result<Inspection, CommandError> {
-    if args.read.system.is_some() {
-        return Err(CommandError::Input("--system-id is for *.tlog logs; this one is a *.csv".into()));
-    }
-    let mapping = match &args.read.csv_map {
-        Some(file) => load_csv_mapping(file)?,
-        None => default_csv_mapping()?,
-    };
-    let (recording, report) = read_csv(path, &mapping)?;
-    Ok(inspect_csv(&recording, &report, vehicle))
-}
-
-/// The message with the file's name, where it has none.
-fn named(path: &Path, message: &str) -> String {
-    let name = text::path(&path);
-    if message.contains(&name) { message.to_owned() } else { format!("{name}: {message}") }
+    Ok(inspection.map_err(|error| unread(path, error))?)
 }

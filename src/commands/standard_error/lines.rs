@@ -91,3 +91,27 @@ impl Away {
         Some(format!("warning: {} lines are missing in {path}: {failure}", self.missing))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn while_a_picture_is_shown_lines_go_to_a_file_and_what_it_does_not_take_is_counted() {
+        let folder = std::env::temp_dir().join(format!("mavid_lines_{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&folder);
+        std::fs::create_dir_all(&folder).unwrap();
+        let (lines, path) = (Lines::default(), folder.join("log.txt"));
+        lines.go_away(path.clone());
+        assert!(!path.exists(), "no line, no file");
+        ["one", "two"].iter().for_each(|line| lines.write(line));
+        lines.draw(|_| panic!("a status would tear the picture"));
+        lines.come_back();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "one\ntwo\n");
+        let mut nowhere = Away { path: folder.join("none").join("x"), file: None, failure: None, missing: 0 };
+        ["one", "two"].iter().for_each(|line| nowhere.write(line));
+        let trouble = nowhere.trouble().unwrap();
+        assert!(trouble.contains("2 lines are missing in"), "{trouble}");
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}

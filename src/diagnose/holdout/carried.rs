@@ -10,8 +10,7 @@ use crate::diagnose::rows::Rows;
 use crate::diagnose::signature::EffectTerm;
 use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::trace::Trace;
-use crate::physics::PhysicsError;
-use crate::signals::ActuationLatency;
+use crate::physics::{ActuationLatency, PhysicsError};
 use crate::vehicle::Vehicle;
 
 /// The two models that are compared on one flight.

@@ -11,7 +11,7 @@ use crate::diagnose::latency::{LatencyFinding, held_s, stated_lag_s};
 use crate::diagnose::signature::{EffectTerm, LatencyKind, Signature, Whence};
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::trace::Trace;
-use crate::physics::{ActiveEffect, Effect};
+use crate::physics::{ActiveEffect, Effect, RotorLag};
 use crate::stats::normal_deviate;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
@@ -248,7 +248,7 @@ fn of_latency(
         Found::AtBound { value: least, wanted: value, std }
     };
     let uneven = is_lag && latency.parts.uneven != 0.0;
-    let (rising_s, falling_s) = latency.parts.rising_and_falling_s();
+    let RotorLag { rising_s, falling_s } = latency.parts.rotor_lag();
     let shares = [rising_s / latency.parts.lag_s, falling_s / latency.parts.lag_s];
     let all = effect.parameters().iter().chain(effect.finer_parameters().iter().filter(|_| uneven));
     let parameters = all

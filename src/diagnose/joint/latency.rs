@@ -7,8 +7,7 @@ use crate::diagnose::latency::{LatencyFinding, held_s, lag_column, stated_lag_s,
 use crate::diagnose::signature::LatencyKind;
 use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::trace::Trace;
-use crate::physics::{ActiveEffect, PhysicsError};
-use crate::signals::ActuationLatency;
+use crate::physics::{ActiveEffect, ActuationLatency, PhysicsError};
 use crate::vehicle::Vehicle;
 
 /// A lag does not vanish while it is estimated, s.

@@ -8,11 +8,11 @@ use nalgebra::Vector3;
 use super::gate::Gate;
 use super::phase::Phase;
 use super::state::Flight;
+use crate::autopilot::{Mode, Takeoff};
 use crate::fly::commander::Manner;
 use crate::fly::course::{CLIMB_M_S, PathClock, TRANSFER_M_S, TURN_RAD_S, Track, transfer};
 use crate::fly::health::BatteryLevel;
 use crate::fly::lift::Weighed;
-use crate::fly::modes::{Mode, Stack};
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::preflight::HOVER;
 use crate::fly::safety::{Lead, SetpointBounds};
@@ -60,12 +60,12 @@ impl Flight {
         if let Some(contact) = &mut self.contact {
             contact.telemetry.ground.expect_takeoff();
         }
-        match stack {
-            Stack::Px4 => {
+        match stack.setpoints.takeoff {
+            Takeoff::BySetpoints => {
                 let path = Arc::new(transfer(&stand, &top, CLIMB_M_S, TURN_RAD_S));
                 self.lead_along(Track { path, offset_m: Vector3::zeros(), clock: PathClock::start(now) });
             }
-            Stack::ArduPilot => {
+            Takeoff::ByCommand => {
                 let height_m = top.position_m.z - stand.position_m.z;
                 match Order::takeoff(height_m) {
                     Ok(takeoff) => self.give(now, takeoff, Manner::PATIENT),

@@ -1,6 +1,6 @@
 //! What is asked of a vehicle before the flight.
 
-use crate::fly::modes::Stack;
+use crate::autopilot::{Autopilot, Stack};
 use crate::fly::target::{Order, Period};
 
 pub(super) const AUTOPILOT_VERSION: u16 = 148;
@@ -27,10 +27,11 @@ pub(super) struct Checking {
 }
 
 impl Checking {
-    pub(super) fn new(stack: Stack) -> Self {
-        let own: &[(u16, u16)] = match stack {
-            Stack::Px4 => &PX4_STREAMS,
-            Stack::ArduPilot => &ARDUPILOT_STREAMS,
+    pub(super) fn new(stack: &'static Stack) -> Self {
+        let own: &[(u16, u16)] = match stack.autopilot {
+            Autopilot::Px4 => &PX4_STREAMS,
+            Autopilot::ArduPilot => &ARDUPILOT_STREAMS,
+            Autopilot::Other | Autopilot::Unknown => &[],
         };
         // taken from the end: the version first
         let mut wanted: Vec<Order> =

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
+use crate::autopilot::Mode;
 use crate::fly::lift::Lift;
-use crate::fly::modes::Mode;
 use crate::fly::safety::Feeding;
 use crate::wire::Frame;
 

@@ -5,9 +5,9 @@ use std::time::Duration;
 use super::checking::{AUTOPILOT_VERSION, Checking, interval};
 use super::phase::Phase;
 use super::state::{Contact, Flight};
+use crate::autopilot::{Mode, SetpointRules};
 use crate::fly::commander::{Answer, AnswerResult, Manner};
 use crate::fly::health::BatteryLevel;
-use crate::fly::modes::{Mode, Stack};
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::roster::Choice;
 use crate::fly::safety::Lead;
@@ -44,10 +44,9 @@ impl Flight {
     pub(super) fn connect(&mut self, now: Duration) {
         match self.roster.choose(now, self.sortie.system) {
             Choice::Vehicle(vehicle, target, stack) => {
-                let text =
-                    format!("system {} component {}, {}", target.system, target.component, stack.name());
+                let text = format!("system {} component {}, {}", target.system, target.component, stack.name);
                 let (system, component) = (target.system.0, target.component.0);
-                tracing::info!(system, component, autopilot = stack.name(), "vehicle found");
+                tracing::info!(system, component, autopilot = stack.name, "vehicle found");
                 self.note(now, Level::Information, "vehicle", text);
                 let telemetry = Telemetry::new(vehicle, stack, now);
                 self.contact = Some(Contact { target, telemetry });
@@ -145,13 +144,17 @@ impl Flight {
             return;
         }
         self.found = self.custom_mode();
-        match self.target() {
-            Some((_, Stack::Px4)) => {
-                self.hold_here();
-                self.enter(now, Phase::Prime);
-            }
-            _ => self.begin_engage(now),
+        if self.rules().is_some_and(|rules| rules.stream_before_mode) {
+            self.hold_here();
+            self.enter(now, Phase::Prime);
+        } else {
+            self.begin_engage(now);
         }
+    }
+
+    /// How the vehicle flies setpoints; `None` before it is known.
+    fn rules(&self) -> Option<&'static SetpointRules> {
+        self.target().map(|(_, stack)| &stack.setpoints)
     }
 
     /// All is checked, and the operator's word is waited for, for as long as he reads.
@@ -175,8 +178,7 @@ impl Flight {
         if telemetry.battery_level() > BatteryLevel::Good {
             missing.push("its battery is low".to_owned());
         }
-        // ArduPilot looks for its position only in GUIDED
-        if telemetry.stack() == Stack::Px4 {
+        if !telemetry.stack().setpoints.position_checked_in_mode {
             missing.extend(self.missing_estimate(now));
         }
         missing
@@ -300,7 +302,7 @@ impl Flight {
         }
         let manner = Manner {
             patience: self.sortie.settings.reach_timeout,
-            failed_is_temporary: self.target().is_some_and(|(_, stack)| stack == Stack::ArduPilot),
+            failed_is_temporary: self.rules().is_some_and(|rules| rules.failed_is_temporary),
             ..Manner::PATIENT
         };
         self.give(now, Order::arm(true), manner);

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::fly::modes::Mode;
+use crate::autopilot::Mode;
 use crate::fly::safety::Sustained;
 
 /// On the way out.

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::phase::Phase;
 use super::state::Flight;
-use crate::fly::modes::Mode;
+use crate::autopilot::Mode;
 use crate::fly::news::Novelty;
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::safety::Doubted;

@@ -7,10 +7,10 @@ use super::action::Action;
 use super::gate::Gate;
 use super::phase::Phase;
 use super::watch::Watch;
+use crate::autopilot::Stack;
 use crate::fly::commander::Commander;
 use crate::fly::health::BatteryLevel;
 use crate::fly::lift::Lift;
-use crate::fly::modes::Stack;
 use crate::fly::outcome::{Cause, Flown, Level, Note};
 use crate::fly::roster::Roster;
 use crate::fly::safety::{Guide, ModeKnowledge};
@@ -137,7 +137,7 @@ impl Flight {
 
     /// The vehicle, once it is found.
     #[must_use]
-    pub fn target(&self) -> Option<(Target, Stack)> {
+    pub fn target(&self) -> Option<(Target, &'static Stack)> {
         self.contact.as_ref().map(|contact| (contact.target, contact.telemetry.stack()))
     }
 

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use super::phase::Phase;
 use super::state::Flight;
+use crate::autopilot::Mode;
 use crate::fly::health::BatteryLevel;
-use crate::fly::modes::Mode;
 use crate::fly::outcome::{Cause, Ending, Level};
 use crate::fly::safety::Lead;
 use crate::fly::target::Order;
@@ -27,6 +27,9 @@ const ESTIMATOR_BAD: Duration = Duration::from_secs(1);
 /// An autopilot that declares a failsafe and leaves the mode as it is for so long has none for it that acts. Its battery's
 /// report, which may be what explains it, comes within this time.
 const FAILSAFE_ACTS: Duration = Duration::from_millis(2500);
+/// An order to stop the motors that waits for a report of the mode stands no longer, and neither do the setpoints that keep
+/// the vehicle in it.
+const KILL_BY: Duration = Duration::from_secs(7);
 /// A termination (a kill switch, a parachute) that is declared for so long is none by a forged or damaged frame.
 const TERMINATES: Duration = Duration::from_secs(1);
 
@@ -273,6 +276,12 @@ impl Flight {
     pub(super) fn watch_others(&mut self, now: Duration) {
         let Some(contact) = &self.contact else { return };
         let heard = now.saturating_sub(contact.telemetry.heard) < PAUSE_AFTER;
+        let late = now.saturating_sub(self.entered) > KILL_BY;
+        if late && self.commander.waits_for(&Order::kill()) {
+            self.commander.forget(&Order::kill());
+            let text = "whether the motors are to be stopped in this mode was not learnt in time: they are its pilot's to stop";
+            self.note(now, Level::Error, "abort", text);
+        }
         let killing = self.commander.waits_for(&Order::kill()) && self.is_to_command();
         if !killing {
             self.guide.lead = Lead::Silent;

@@ -1,9 +1,8 @@
 //! Which of several messages a quantity is taken from, chosen as they come.
 
 use super::track::{Track, WIDTH};
-use crate::recording::Quantity;
+use crate::recording::{Quantity, StreamKey};
 use crate::signals::best_rank;
-use crate::wire::StreamId;
 
 /// Sources are watched for so long before one is chosen, s.
 const WATCH_S: f64 = 2.0;
@@ -27,7 +26,7 @@ const NEEDED: [Quantity; 3] = [Quantity::AngularRate, Quantity::Attitude, Quanti
 /// A source while it is watched.
 #[derive(Debug, Clone, Copy)]
 struct Watched {
-    id: StreamId,
+    id: StreamKey,
     count: u32,
     moved: bool,
     first: f64,
@@ -40,7 +39,7 @@ struct Chosen {
     width: usize,
     watched: Vec<Watched>,
     since_s: Option<f64>,
-    source: Option<StreamId>,
+    source: Option<StreamKey>,
     track: Track,
 }
 
@@ -72,7 +71,7 @@ impl Sources {
     }
 
     /// Adds a sample.
-    pub(super) fn add(&mut self, id: StreamId, time_s: f64, values: &[f64]) {
+    pub(super) fn add(&mut self, id: StreamKey, time_s: f64, values: &[f64]) {
         if id.quantity == Quantity::LandedState {
             self.landed = values.first().is_some_and(|state| (state - ON_GROUND).abs() < 0.5);
         }
@@ -110,7 +109,7 @@ impl Sources {
 }
 
 impl Chosen {
-    fn add(&mut self, id: StreamId, time_s: f64, values: &[f64]) {
+    fn add(&mut self, id: StreamKey, time_s: f64, values: &[f64]) {
         if values.len() < self.width || values.len() > WIDTH {
             return;
         }
@@ -127,7 +126,7 @@ impl Chosen {
         }
     }
 
-    fn watch(&mut self, id: StreamId, time_s: f64, values: &[f64]) {
+    fn watch(&mut self, id: StreamKey, time_s: f64, values: &[f64]) {
         let since_s = *self.since_s.get_or_insert(time_s);
         let first = values.first().copied().unwrap_or(0.0);
         if let Some(watched) = self.watched.iter_mut().find(|watched| watched.id == id) {
@@ -144,10 +143,10 @@ impl Chosen {
     fn choose(&mut self, watched_s: f64) {
         // a frozen stream says nothing
         self.watched.retain(|watched| watched.moved);
-        self.watched.sort_by_key(|watched| watched.id.key());
+        self.watched.sort_by_key(|watched| watched.id);
         let mut rated = [("", 0.0); WATCHED];
         for (rated, watched) in rated.iter_mut().zip(&self.watched) {
-            *rated = (watched.id.source.name(), f64::from(watched.count) / watched_s);
+            *rated = (watched.id.source, f64::from(watched.count) / watched_s);
         }
         let best = best_rank(self.quantity, &rated[..self.watched.len()]);
         self.source = best.map(|index| self.watched[index].id);

@@ -7,10 +7,9 @@ use crate::estimate::{Estimated, Finding, NAMES, RecursiveEstimator, THETA, Thet
 use crate::estimate::{finding, rescaled, theta_of};
 use crate::fly::parameters::Parameters;
 use crate::physics::MAX_ROTORS;
-use crate::recording::{Quantity, Recording};
+use crate::recording::{Event, Quantity, Recording};
 use crate::signals::{motor_channels, propulsion_from_log};
 use crate::vehicle::{Anchor, Mixer, Propulsion, Vehicle};
-use crate::wire::Event;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
 /// Between instants, s.
@@ -89,7 +88,7 @@ impl LiveIdentification {
                 self.next_s = None;
             }
             Event::EstimatorReset { .. } => self.restart(),
-            Event::Parameter { .. } | Event::Text { .. } => {}
+            Event::Autopilot(_) | Event::Parameter { .. } | Event::Text { .. } => {}
         }
     }
 

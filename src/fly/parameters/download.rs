@@ -1,9 +1,10 @@
 //! Asks for parameters by name until each has answered or has had its chances.
 
-use super::{Parameters, RequestedEffects};
+use super::{Parameters, RequestedParameter};
 use crate::fly::address::is_from;
 use crate::fly::target::{ParameterName, Target};
-use crate::wire::{Event, Frame, Vehicle};
+use crate::recording::Event;
+use crate::wire::{Frame, Vehicle};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -79,7 +80,7 @@ pub struct Download {
 impl Download {
     /// Of the parameters that are wanted.
     #[must_use]
-    pub fn new(vehicle: Vehicle, wanted: Vec<RequestedEffects>, settings: DownloadSettings) -> Self {
+    pub fn new(vehicle: Vehicle, wanted: Vec<RequestedParameter>, settings: DownloadSettings) -> Self {
         let items: Vec<Item> = wanted
             .into_iter()
             .map(|wanted| Item {

@@ -2,8 +2,8 @@
 
 use super::sentence::Sentence;
 use super::{Parameters, failsafe_ardupilot, failsafe_px4};
+use crate::autopilot::Autopilot;
 use crate::fly::finding::Level;
-use crate::recording::Autopilot;
 
 /// What the vehicle will do if the link, the transmitter, the battery or the fence fails, from the
 /// parameters that it sent. `own_system` is the ground station's MAVLink system id.

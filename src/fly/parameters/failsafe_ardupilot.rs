@@ -2,57 +2,9 @@
 
 use super::Parameters;
 use super::bitmask::has_bit;
-use super::sentence::{Choice, Sentence, Topic, rounded};
+use super::fence_switch::FenceSwitch;
+use super::sentence::{Sentence, Topic, rounded};
 use crate::fly::finding::Level::{Ok, Warning};
-
-const GROUND_STATION_LOST: &[Choice] = &[
-    (0, "does nothing and stays in GUIDED", Warning),
-    (1, "returns to its launch place", Ok),
-    (2, "returns to its launch place", Ok),
-    (3, "returns by the way it came, or straight", Ok),
-    (4, "returns by the way it came, or lands", Ok),
-    (5, "lands where it is", Ok),
-    (6, "lands by its mission's landing sequence, or returns", Ok),
-    (7, "brakes, or lands", Ok),
-];
-
-const TRANSMITTER_LOST: &[Choice] = &[
-    (0, "does nothing", Warning),
-    (1, "returns to its launch place", Ok),
-    (2, "returns to its launch place", Ok),
-    (3, "lands where it is", Ok),
-    (4, "returns by the way it came, or straight", Ok),
-    (5, "returns by the way it came, or lands", Ok),
-    (6, "lands by its mission's landing sequence, or returns", Ok),
-    (7, "brakes, or lands", Ok),
-];
-
-const ESTIMATE_BAD: &[Choice] = &[
-    (0, "only reports", Warning),
-    (1, "lands", Ok),
-    (2, "changes to AltHold: it drifts with the wind", Warning),
-    (3, "lands", Ok),
-];
-
-const BATTERY_LOW: &[Choice] = &[
-    (0, "only warns", Warning),
-    (1, "lands where it is", Ok),
-    (2, "returns to its launch place", Ok),
-    (3, "returns by the way it came, or straight", Ok),
-    (4, "returns by the way it came, or lands", Ok),
-    (5, "stops its motors in the air", Warning),
-    (6, "lands by its mission's landing sequence, or returns", Ok),
-    (7, "brakes, or lands", Ok),
-];
-
-const FENCE: &[Choice] = &[
-    (0, "only reports", Warning),
-    (1, "returns to its launch place, or lands", Ok),
-    (2, "lands where it is", Ok),
-    (3, "returns by the way it came, or lands", Ok),
-    (4, "brakes, or lands", Ok),
-    (5, "returns by the way it came, or lands", Ok),
-];
 
 /// Bit of GUID_OPTIONS by which the yaw stick is ignored.
 const IGNORE_YAW: u32 = 2;
@@ -62,10 +14,10 @@ pub(super) fn declaration(parameters: &Parameters, own_system: u8) -> Vec<Senten
     vec![
         setpoints(&topic("setpoints stop")),
         ground_station(&topic("ground station lost"), own_system),
-        topic("transmitter lost").choose("If the transmitter is lost", "FS_THR_ENABLE", TRANSMITTER_LOST),
+        topic("transmitter lost").choose("If the transmitter is lost", "FS_THR_ENABLE"),
         sticks(&topic("pilot's sticks")),
-        topic("estimate bad").choose("If the position estimate turns bad", "FS_EKF_ACTION", ESTIMATE_BAD),
-        topic("battery low").choose("If the battery runs low", "BATT_FS_LOW_ACT", BATTERY_LOW),
+        topic("estimate bad").choose("If the position estimate turns bad", "FS_EKF_ACTION"),
+        topic("battery low").choose("If the battery runs low", "BATT_FS_LOW_ACT"),
         fence(&topic("fence")),
     ]
 }
@@ -85,15 +37,22 @@ fn setpoints(topic: &Topic<'_>) -> Sentence {
     }
 }
 
-/// Heartbeats count only if they come from the one system that the vehicle was told.
+/// Whether heartbeats of ours are those of its ground station: from MAV_GCS_SYSID to MAV_GCS_SYSID_HI where that is the
+/// greater, and otherwise of that one system alone.
+pub(in crate::fly) fn hears_station(parameters: &Parameters, system: f64, own_system: u8) -> bool {
+    let highest = parameters.get("MAV_GCS_SYSID_HI").filter(|highest| *highest > system).unwrap_or(system);
+    (system - 0.5..highest + 0.5).contains(&f64::from(own_system))
+}
+
+/// Heartbeats count only if they come from the system that the vehicle was told.
 fn ground_station(topic: &Topic<'_>, own_system: u8) -> Sentence {
     let what = format!("If this ground station is not heard for {}", topic.number("FS_GCS_TIMEOUT", "s"));
-    let sentence = topic.choose(&what, "FS_GCS_ENABLE", GROUND_STATION_LOST);
+    let sentence = topic.choose(&what, "FS_GCS_ENABLE");
     if topic.parameters.get("FS_GCS_ENABLE").is_none_or(|enable| enable < 0.5) {
         return sentence;
     }
     match topic.parameters.get("SYSID_MYGCS") {
-        Some(system) if (system - f64::from(own_system)).abs() < 0.5 => sentence,
+        Some(system) if hears_station(topic.parameters, system, own_system) => sentence,
         Some(system) => topic.say(
             Warning,
             format!(
@@ -121,11 +80,20 @@ fn sticks(topic: &Topic<'_>) -> Sentence {
 }
 
 fn fence(topic: &Topic<'_>) -> Sentence {
-    match topic.parameters.get("FENCE_ENABLE") {
-        None => topic.unknown("If it leaves its fence", "FENCE_ENABLE"),
-        Some(enable) if enable < 0.5 => {
+    let leaves = "If it leaves its fence";
+    match FenceSwitch::of(topic.parameters) {
+        FenceSwitch::Unknown("FENCE_ENABLE") => topic.unknown(leaves, "FENCE_ENABLE"),
+        FenceSwitch::Unknown(name) => {
+            let what = "No fence is enabled now (FENCE_ENABLE = 0). Whether one is in flight (releases from 4.6 on can)";
+            topic.unknown(what, name)
+        }
+        FenceSwitch::Off => {
             topic.say(Warning, "There is no fence (FENCE_ENABLE = 0): nothing stops it at a border.")
         }
-        Some(_) => topic.choose("If it leaves its fence", "FENCE_ACTION", FENCE),
+        FenceSwitch::On => topic.choose(leaves, "FENCE_ACTION"),
+        FenceSwitch::OnInFlight => {
+            let what = format!("{leaves}, enabled at arming or takeoff (FENCE_AUTOENABLE)");
+            topic.choose(&what, "FENCE_ACTION")
+        }
     }
 }

@@ -2,44 +2,8 @@
 
 use super::Parameters;
 use super::bitmask::has_bit;
-use super::sentence::{Choice, Sentence, Topic};
+use super::sentence::{Sentence, Topic};
 use crate::fly::finding::Level::{Ok, Warning};
-
-const OFFBOARD_LOST: &[Choice] = &[
-    (0, "changes to Position mode and, without a transmitter, descends", Warning),
-    (1, "changes to Altitude mode: it drifts with the wind", Warning),
-    (2, "changes to Stabilized mode: without a pilot it falls", Warning),
-    (3, "returns to its launch place", Ok),
-    (4, "lands where it is", Ok),
-    (5, "holds its position", Ok),
-    (6, "stops its motors in the air", Warning),
-    (7, "disarms in the air", Warning),
-];
-
-const LINK_LOST: &[Choice] = &[
-    (0, "does nothing, its other failsafes apply", Warning),
-    (1, "holds its position", Ok),
-    (2, "returns to its launch place", Ok),
-    (3, "lands where it is", Ok),
-    (5, "stops its motors in the air", Warning),
-    (6, "disarms in the air", Warning),
-];
-
-const BATTERY_LOW: &[Choice] = &[
-    (0, "only warns", Warning),
-    (1, "returns to its launch place when critical", Ok),
-    (2, "lands when critical", Ok),
-    (3, "returns when critical and lands at the emergency level", Ok),
-];
-
-const FENCE: &[Choice] = &[
-    (0, "does nothing", Warning),
-    (1, "only warns", Warning),
-    (2, "holds its position", Ok),
-    (3, "returns to its launch place", Ok),
-    (4, "stops its motors in the air", Warning),
-    (5, "lands where it is", Ok),
-];
 
 /// Bit of COM_RCL_EXCEPT and of COM_RC_OVERRIDE that means OFFBOARD.
 const EXCEPT_OFFBOARD: u32 = 2;
@@ -57,17 +21,15 @@ pub(super) fn declaration(parameters: &Parameters) -> Vec<Sentence> {
                 stop.number("COM_OF_LOSS_T", "s")
             ),
             "COM_OBL_RC_ACT",
-            OFFBOARD_LOST,
         ),
         link.choose(
             &format!("If no ground station is heard for {}", link.number("COM_DL_LOSS_T", "s")),
             "NAV_DLL_ACT",
-            LINK_LOST,
         ),
         transmitter(&topic("transmitter lost")),
         sticks(&topic("pilot's sticks")),
-        topic("battery low").choose("If the battery runs low", "COM_LOW_BAT_ACT", BATTERY_LOW),
-        fence.choose(&leaves_fence(&fence), "GF_ACTION", FENCE),
+        topic("battery low").choose("If the battery runs low", "COM_LOW_BAT_ACT"),
+        fence.choose(&leaves_fence(&fence), "GF_ACTION"),
     ]
 }
 
@@ -92,7 +54,7 @@ fn transmitter(topic: &Topic<'_>) -> Sentence {
         Some(mask) if has_bit(mask, EXCEPT_OFFBOARD) => {
             topic.say(Ok, format!("{what}: it flies on in OFFBOARD (COM_RCL_EXCEPT = {mask})."))
         }
-        Some(_) => topic.choose(what, "NAV_RCL_ACT", LINK_LOST),
+        Some(_) => topic.choose(what, "NAV_RCL_ACT"),
     }
 }
 

@@ -1,7 +1,6 @@
 //! What a vehicle said of its parameters, and the file of it.
 
-use super::names::{RENAMED, Renamed};
-use crate::recording::Autopilot;
+use crate::autopilot::{Autopilot, Renamed};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -21,7 +20,8 @@ pub struct Parameters {
 impl Parameters {
     /// The newer name that answered for this older one.
     fn answered(&self, name: &str) -> Option<&'static Renamed> {
-        RENAMED.iter().find(|renamed| renamed.old == name && self.values.contains_key(renamed.new))
+        let mut renames = self.autopilot.stack()?.parameters.renames_of(name);
+        renames.find(|renamed| self.values.contains_key(renamed.new))
     }
 
     /// The value in the unit of the older name, whichever of a renamed parameter's names answered;
@@ -32,6 +32,13 @@ impl Parameters {
             let renamed = self.answered(name)?;
             self.values.get(renamed.new).map(|value| value * renamed.scale)
         })
+    }
+
+    /// The value in its base unit (SI, but degrees for angles); `name` is the older one.
+    #[must_use]
+    pub fn in_base_unit(&self, name: &str) -> Option<f64> {
+        let entry = self.autopilot.stack()?.parameters.find(name)?;
+        self.get(name).map(|value| 1.0 / entry.unit.per_base * value)
     }
 
     /// The name by which this vehicle knows a parameter (older name given), for messages and advice.
@@ -52,7 +59,7 @@ impl Parameters {
     /// If a number cannot be written as TOML.
     pub fn to_toml(&self) -> Result<String, ParametersError> {
         let file = ParametersFile {
-            autopilot: autopilot_name(self.autopilot).to_owned(),
+            autopilot: self.autopilot.id().to_owned(),
             unanswered: self.unanswered.clone(),
             absent: self.absent.clone(),
             values: self.values.clone(),
@@ -70,12 +77,7 @@ impl Parameters {
             source: Box::new(source),
         })?;
         Ok(Self {
-            autopilot: match file.autopilot.as_str() {
-                "px4" => Autopilot::Px4,
-                "ardupilot" => Autopilot::ArduPilot,
-                "other" => Autopilot::Other,
-                _ => Autopilot::Unknown,
-            },
+            autopilot: Autopilot::of_id(&file.autopilot),
             values: file.values,
             unanswered: file.unanswered,
             absent: file.absent,
@@ -111,15 +113,6 @@ struct ParametersFile {
 
 const HEADER: &str = "# Parameters as the vehicle sent them before the flight, each in the autopilot's own unit.\n\
     # unanswered: asked for, and no answer came. absent: the vehicle has none of that name.\n";
-
-fn autopilot_name(autopilot: Autopilot) -> &'static str {
-    match autopilot {
-        Autopilot::Px4 => "px4",
-        Autopilot::ArduPilot => "ardupilot",
-        Autopilot::Other => "other",
-        Autopilot::Unknown => "unknown",
-    }
-}
 
 #[cfg(test)]
 mod tests {

@@ -1,6 +1,7 @@
 //! A sentence on what the vehicle does by itself, from parameters that may not have answered.
 
 use super::Parameters;
+use crate::autopilot::Choice;
 use crate::fly::finding::Level;
 
 /// One thing that may happen and what the vehicle then does.
@@ -35,12 +36,15 @@ impl Topic<'_> {
     }
 
     /// `what` completed by what the value of `name` means.
-    pub fn choose(&self, what: &str, name: &str, choices: &[Choice]) -> Sentence {
+    pub fn choose(&self, what: &str, name: &str) -> Sentence {
         let Some(value) = self.parameters.get(name) else { return self.unknown(what, name) };
         let shown = self.parameters.name_of(name);
-        let found = choices.iter().find(|(choice, ..)| (value - f64::from(*choice)).abs() < 0.5);
-        match found {
-            Some((_, does, level)) => self.say(*level, format!("{what}: it {does} ({shown} = {value}).")),
+        let failsafe = self.parameters.autopilot.stack().and_then(|stack| stack.failsafe(name));
+        match failsafe.and_then(|failsafe| failsafe.choice(value)) {
+            Some(Choice { does, reaction, .. }) => {
+                let level = if reaction.is_safe() { Level::Ok } else { Level::Warning };
+                self.say(level, format!("{what}: it {does} ({shown} = {value})."))
+            }
             None => self.say(
                 Level::Warning,
                 format!("{what}: unknown, because {shown} = {value} has no meaning known here."),
@@ -59,9 +63,6 @@ impl Topic<'_> {
         }
     }
 }
-
-/// A value of a parameter, what the vehicle does then, and whether that is what a flight test wants.
-pub(super) type Choice = (i32, &'static str, Level);
 
 /// Single-precision values without the digits that come from widening them.
 pub(super) fn rounded(value: f64) -> f64 {

@@ -2,37 +2,15 @@
 
 use super::Parameters;
 use super::sentence::Sentence;
+use crate::autopilot::{KillSwitch, POSITIONS, Stack};
 use crate::fly::finding::Level;
-use crate::fly::modes::Stack;
-use crate::recording::Autopilot;
-
-/// Positions of a mode switch.
-const POSITIONS: std::ops::RangeInclusive<u8> = 1..=6;
-/// COM_FLTMODEn: modes of PX4 that a pilot would choose to take over.
-const PX4_MODES: &[(i32, &str)] = &[
-    (0, "Manual"),
-    (1, "Altitude"),
-    (2, "Position"),
-    (3, "Mission"),
-    (4, "Hold"),
-    (5, "Return"),
-    (6, "Acro"),
-    (7, "Offboard"),
-    (8, "Stabilized"),
-    (10, "Takeoff"),
-    (11, "Land"),
-];
-/// RCn_OPTION of ArduCopter that stop the motors, and channels that may have one.
-const STOPS_MOTORS: [i32; 2] = [31, 165];
-const CHANNELS: std::ops::RangeInclusive<u8> = 5..=16;
 
 /// What is known of the pilot's way to take over, or that it could not be told; about `mode switch` and `kill switch`.
 #[must_use]
 pub fn takeover_declaration(parameters: &Parameters) -> Vec<Sentence> {
-    let (switch, kill) = match parameters.autopilot {
-        Autopilot::Px4 => (px4_switch(parameters), px4_kill(parameters)),
-        Autopilot::ArduPilot => (ardupilot_switch(parameters), ardupilot_kill(parameters)),
-        Autopilot::Other | Autopilot::Unknown => {
+    let (switch, kill) = match parameters.autopilot.stack() {
+        Some(stack) => (mode_switch(stack, parameters), kill_switch(stack, parameters)),
+        None => {
             let text =
                 "How a pilot takes over could not be told: this autopilot's parameters are not known here.";
             (Err(text.to_owned()), Err(text.to_owned()))
@@ -53,9 +31,32 @@ fn not_told(what: &str, names: &str) -> String {
     format!("{what} could not be told: {names} did not answer. Try it before the flight.")
 }
 
-/// The positions of a switch that have a mode, in words, each mode once.
-fn modes(named: impl Fn(u8) -> Option<String>) -> Vec<String> {
+fn mode_switch(stack: &Stack, parameters: &Parameters) -> Result<String, String> {
+    let switches = &stack.pilot;
+    if let Some((name, off)) = switches.no_transmitter
+        && whole(parameters, name) == Some(off)
+    {
+        return Err(format!("No transmitter can take over: its input is switched off ({name} = {off})."));
+    }
+    let name = switches.mode_channel;
+    let channel = whole(parameters, name).ok_or_else(|| not_told("The pilot's mode switch", name))?;
+    if channel <= 0 {
+        return Err(format!("The pilot has no mode switch ({name} = 0): a ground station alone takes over."));
+    }
+    took_over(&format!("channel {channel} ({name})"), &modes(stack, parameters), stack)
+}
+
+/// The modes to which the positions of the switch lead, in words, each mode once.
+fn modes(stack: &Stack, parameters: &Parameters) -> Vec<String> {
     let mut modes: Vec<String> = Vec::new();
+    let named = |position| {
+        let value = whole(parameters, &stack.pilot.positions.name(position))?;
+        match stack.mode_of_switch(value) {
+            Some(mode) => Some(mode.title.to_owned()),
+            None if stack.pilot.shows_unknown => Some(stack.mode_name(u32::try_from(value).ok()?)),
+            None => None,
+        }
+    };
     for mode in POSITIONS.filter_map(named) {
         if !modes.contains(&mode) {
             modes.push(mode);
@@ -64,78 +65,57 @@ fn modes(named: impl Fn(u8) -> Option<String>) -> Vec<String> {
     modes
 }
 
-fn px4_switch(parameters: &Parameters) -> Result<String, String> {
-    let input = whole(parameters, "COM_RC_IN_MODE");
-    if input == Some(4) {
-        return Err(
-            "No transmitter can take over: its input is switched off (COM_RC_IN_MODE = 4).".to_owned()
-        );
-    }
-    let channel = whole(parameters, "RC_MAP_FLTMODE")
-        .ok_or_else(|| not_told("The pilot's mode switch", "RC_MAP_FLTMODE"))?;
-    if channel <= 0 {
-        return Err("The pilot has no mode switch (RC_MAP_FLTMODE = 0): a ground station alone takes over."
-            .to_owned());
-    }
-    let modes = modes(|position| {
-        let value = whole(parameters, &format!("COM_FLTMODE{position}"))?;
-        PX4_MODES.iter().find(|(mode, _)| *mode == value).map(|(_, name)| (*name).to_owned())
-    });
-    took_over(&format!("channel {channel} (RC_MAP_FLTMODE)"), &modes, "Offboard", "COM_FLTMODE1 to 6")
-}
-
-fn ardupilot_switch(parameters: &Parameters) -> Result<String, String> {
-    let channel =
-        whole(parameters, "FLTMODE_CH").ok_or_else(|| not_told("The pilot's mode switch", "FLTMODE_CH"))?;
-    if channel <= 0 {
-        return Err(
-            "The pilot has no mode switch (FLTMODE_CH = 0): a ground station alone takes over.".to_owned()
-        );
-    }
-    let modes = modes(|position| {
-        let value = u32::try_from(whole(parameters, &format!("FLTMODE{position}"))?).ok()?;
-        Some(Stack::ArduPilot.mode_name(value))
-    });
-    took_over(&format!("channel {channel} (FLTMODE_CH)"), &modes, "GUIDED", "FLTMODE1 to 6")
-}
-
 /// By the switch on a channel, to its modes beside ours.
-fn took_over(channel: &str, modes: &[String], ours: &str, names: &str) -> Result<String, String> {
+fn took_over(channel: &str, modes: &[String], stack: &Stack) -> Result<String, String> {
+    let ours = stack.wishes.external.title;
     let others: Vec<&str> = modes.iter().map(String::as_str).filter(|mode| *mode != ours).collect();
     if others.is_empty() {
+        let (first, last) = (stack.pilot.positions.name(*POSITIONS.start()), POSITIONS.end());
         return Err(format!(
-            "The pilot's mode switch is {channel}, but where it leads could not be told ({names} say no mode but ours)."
+            "The pilot's mode switch is {channel}, but where it leads could not be told ({first} to {last} say no mode but ours)."
         ));
     }
     Ok(format!("The pilot takes over by the mode switch, {channel}: to {}.", others.join(", ")))
 }
 
-fn px4_kill(parameters: &Parameters) -> Result<String, String> {
-    match whole(parameters, "RC_MAP_KILL_SW") {
-        None => Err(not_told("The pilot's kill switch", "RC_MAP_KILL_SW")),
-        Some(channel) if channel > 0 => {
-            Ok(format!("The pilot's kill switch is channel {channel} (RC_MAP_KILL_SW)."))
+fn kill_switch(stack: &Stack, parameters: &Parameters) -> Result<String, String> {
+    match &stack.pilot.kill {
+        KillSwitch::Channel(name) => match whole(parameters, name) {
+            None => Err(not_told("The pilot's kill switch", name)),
+            Some(channel) if channel > 0 => {
+                Ok(format!("The pilot's kill switch is channel {channel} ({name})."))
+            }
+            Some(_) => Err(format!("The pilot has no kill switch ({name} = 0).")),
+        },
+        KillSwitch::Option { option, channels, stops } => {
+            let name = |channel: u8| option.name(channel.into());
+            let options: Vec<(u8, i32)> = channels
+                .clone()
+                .filter_map(|channel| Some((channel, whole(parameters, &name(channel))?)))
+                .collect();
+            match options.iter().find(|(_, option)| stops.contains(option)) {
+                Some((channel, option)) => Ok(format!(
+                    "The pilot's kill switch is channel {channel} ({} = {option}).",
+                    name(*channel)
+                )),
+                None if options.is_empty() => {
+                    let (first, last) = (name(*channels.start()), name(*channels.end()));
+                    Err(not_told("The pilot's kill switch", &format!("{first} to {last}")))
+                }
+                None => {
+                    let [one, other] = stops;
+                    let any = format!("{}x{}", option.before, option.after);
+                    Err(format!("The pilot has no kill switch (no {any} is {one} or {other})."))
+                }
+            }
         }
-        Some(_) => Err("The pilot has no kill switch (RC_MAP_KILL_SW = 0).".to_owned()),
-    }
-}
-
-fn ardupilot_kill(parameters: &Parameters) -> Result<String, String> {
-    let options: Vec<(u8, i32)> = CHANNELS
-        .filter_map(|channel| Some((channel, whole(parameters, &format!("RC{channel}_OPTION"))?)))
-        .collect();
-    match options.iter().find(|(_, option)| STOPS_MOTORS.contains(option)) {
-        Some((channel, option)) => {
-            Ok(format!("The pilot's kill switch is channel {channel} (RC{channel}_OPTION = {option})."))
-        }
-        None if options.is_empty() => Err(not_told("The pilot's kill switch", "RC5_OPTION to RC16_OPTION")),
-        None => Err("The pilot has no kill switch (no RCx_OPTION is 31 or 165).".to_owned()),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::autopilot::Autopilot;
 
     fn said(autopilot: Autopilot, values: &[(&str, f64)]) -> [(Level, String); 2] {
         let values = values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();

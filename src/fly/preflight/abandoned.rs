@@ -7,31 +7,25 @@ use std::time::Duration;
 use nalgebra::Vector3;
 
 use super::Situation;
-use crate::fly::course::{approach, reference_at};
+use super::aftermath::{self, Abandoned, SUBJECT};
+use crate::autopilot::Takeoff;
+use crate::fly::course::reference_at;
 use crate::fly::finding::Finding;
 use crate::fly::law::{FollowLaw, Motion, STEP_S};
 use crate::fly::safety::{Feeding, SetpointBounds};
-use crate::fly::setpoint::Place;
-use crate::plan::{HEIGHT_ERROR_M, floor_m};
-use crate::recording::Autopilot;
+use crate::plan::Reach;
 use crate::trajectory::FlightPath;
 
-/// Subject of the findings.
-const SUBJECT: &str = "if we die now";
 /// Steps of the model from one tried instant to the next: 0.1 s.
 const EVERY: usize = 5;
 /// How far a vehicle is from what the model makes of it, m. ArduPilot shapes its own reference and follows that; of PX4
 /// the vehicle itself is modelled, and the embedded one came to rest 0.46 m further on.
 const ARDUPILOT_OFF_M: f64 = 0.15;
 const PX4_OFF_M: f64 = 0.5;
-/// A wall of the room may be passed by so much, m: a plan may touch it, and no vehicle follows to the centimetre. Where
-/// nothing better is found, by so much and with a warning: a flight is ended only there.
-const WALL_M: f64 = 0.25;
+/// Where nothing better is found, rotors may pass walls and ceiling of the room by so much (m), with a warning.
 const WALL_AT_MOST_M: f64 = 1.25;
-/// Shares of velocity and acceleration that are tried, most first. ArduPilot flies on with whatever it was given for
-/// seconds: all or nothing.
+/// Shares of velocity and acceleration that are tried, most first.
 const SHARES: &[f64] = &[1.0, 0.75, 0.5, 0.35, 0.25, 0.15, 0.1, 0.0];
-const ALL_OR_NOTHING: &[f64] = &[1.0, 0.0];
 /// Share of the allowed distance to the reference that the setpoints themselves may cost.
 const TRACKING_SHARE: f64 = 0.9;
 /// Steps of the model in which the reference may have been where the vehicle is: half a second, as while it flies.
@@ -49,9 +43,7 @@ struct Leg<'a> {
 /// The instant at which an end would be worst.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Worst {
-    /// beyond what is allowed of the border, m; negative within
-    excess_m: f64,
-    /// beyond the border itself, m, with what a vehicle is off the model
+    /// beyond the border, m, with what a vehicle is off the model; negative within
     beyond_m: f64,
     border: &'static str,
     /// s from the beginning of the leg
@@ -64,19 +56,37 @@ struct Worst {
 struct Tried {
     feeding: Feeding,
     worst: Option<Worst>,
-    /// beyond what ground and fence allow, m; negative within: of these nothing is given away
-    hard_m: f64,
+    /// of ground and fence: of these nothing is given away
+    hard: Option<Worst>,
+    /// how far along the ground from home it comes to be, and how high above, m
+    farthest_m: f64,
+    highest_m: f64,
     /// the greatest distance of the model to the reference, m
     tracking_m: f64,
 }
 
 impl Tried {
-    fn excess_m(&self) -> f64 {
-        self.worst.map_or(f64::NEG_INFINITY, |worst| worst.excess_m)
+    fn untried(feeding: Feeding) -> Self {
+        Self { feeding, worst: None, hard: None, farthest_m: 0.0, highest_m: 0.0, tracking_m: 0.0 }
+    }
+
+    fn beyond_m(&self) -> f64 {
+        self.worst.map_or(f64::NEG_INFINITY, |worst| worst.beyond_m)
+    }
+
+    fn hard_m(&self) -> f64 {
+        self.hard.map_or(f64::NEG_INFINITY, |worst| worst.beyond_m)
+    }
+
+    /// What is to be said of it: what refuses before what warns.
+    fn told(&self) -> Option<Worst> {
+        self.hard.filter(|hard| hard.beyond_m > 0.0).or(self.worst)
     }
 
     fn is_safe(&self, tracking_max_m: f64, wall_m: f64) -> bool {
-        self.excess_m() <= wall_m && self.hard_m <= 0.0 && self.tracking_m <= TRACKING_SHARE * tracking_max_m
+        self.beyond_m() <= wall_m
+            && self.hard_m() <= 0.0
+            && self.tracking_m <= TRACKING_SHARE * tracking_max_m
     }
 }
 
@@ -100,8 +110,10 @@ pub(super) fn judge(situation: &Situation<'_>) -> (Feeding, Vec<Finding>) {
                     less likely one it may leave the reference, which ends the flight";
         Finding::warning(SUBJECT, expected, came, "fly a stable release of ArduPilot")
     }));
-    findings.extend(aftermath(situation));
-    (chosen.map_or_else(|tried| tried.feeding, |tried| tried.feeding), findings)
+    let tried = chosen.unwrap_or_else(|tried| *tried);
+    let comes_to = Abandoned { farthest_m: tried.farthest_m, highest_m: tried.highest_m };
+    findings.extend(aftermath::findings(situation, comes_to));
+    (tried.feeding, findings)
 }
 
 const EXPECTED: &str = "rest inside room and fence and clear of the ground, whenever setpoints end";
@@ -109,12 +121,10 @@ const EXPECTED: &str = "rest inside room and fence and clear of the ground, when
 /// The way that follows the reference best among those that are safe by each of the laws; or, as an error, the least unsafe
 /// one.
 fn choose(situation: &Situation<'_>, laws: &[FollowLaw]) -> Result<Tried, Box<Tried>> {
-    let room = SetpointBounds::room(situation.limits, &situation.origin_m);
-    let shares = match laws {
-        [FollowLaw::Px4 { .. }, ..] => SHARES,
-        _ => ALL_OR_NOTHING,
-    };
-    let ways = shares.iter().flat_map(|share| {
+    let reach = Reach::of(situation.vehicle);
+    let room = SetpointBounds::room(situation.limits, &situation.origin_m)
+        .smaller(reach.side_m + ARDUPILOT_OFF_M, reach.up_m + ARDUPILOT_OFF_M);
+    let ways = SHARES.iter().flat_map(|share| {
         let ahead = laws.iter().map(|law| Feeding::ahead(*law, *share, room));
         if *share < 1.0 { ahead.collect() } else { vec![Feeding::whole()] }
     });
@@ -126,21 +136,15 @@ fn choose(situation: &Situation<'_>, laws: &[FollowLaw]) -> Result<Tried, Box<Tr
         }
         tries.push(tried);
     }
-    tries.sort_by(|a, b| a.excess_m().total_cmp(&b.excess_m()));
-    let nearly =
-        tries.iter().find(|tried| tried.is_safe(situation.tracking_max_m, WALL_AT_MOST_M - WALL_M)).copied();
+    tries.sort_by(|a, b| a.beyond_m().total_cmp(&b.beyond_m()));
+    let nearly = tries.iter().find(|tried| tried.is_safe(situation.tracking_max_m, WALL_AT_MOST_M)).copied();
     let least = tries.first().copied();
-    let none =
-        Tried { feeding: Feeding::whole(), worst: None, hard_m: f64::NEG_INFINITY, tracking_m: f64::NAN };
+    let none = Tried { tracking_m: f64::NAN, ..Tried::untried(Feeding::whole()) };
     nearly.ok_or_else(|| Box::new(least.unwrap_or(none)))
 }
 
 fn attempt(situation: &Situation<'_>, laws: &[FollowLaw], feeding: Feeding) -> Tried {
-    let way = situation.stand_m.zip(situation.path.derivatives(0.0)).map(|(stand_m, start)| {
-        let [x, y, z, yaw] = start.map(|axis| axis[0]);
-        let place = |position_m, yaw_rad| Place { position_m, yaw_rad };
-        approach(&place(stand_m, yaw), &place(Vector3::new(x, y, z) + situation.origin_m, yaw))
-    });
+    let way = situation.way_to_start();
     let course = Leg {
         path: situation.path,
         offset_m: situation.origin_m,
@@ -151,12 +155,13 @@ fn attempt(situation: &Situation<'_>, laws: &[FollowLaw], feeding: Feeding) -> T
     if let Some([climb, transfer]) = &way {
         let leg = |path, from_ground, name| Leg { path, offset_m: Vector3::zeros(), from_ground, name };
         legs.push(leg(transfer, false, "of the way to the start"));
-        // ArduPilot takes off by itself, and stays above where it stood
-        if situation.parameters.autopilot == Autopilot::Px4 {
+        // what takes off by command stays above where it stood
+        let stack = situation.parameters.autopilot.stack();
+        if stack.is_some_and(|stack| stack.setpoints.takeoff == Takeoff::BySetpoints) {
             legs.push(leg(climb, true, "of the takeoff"));
         }
     }
-    let mut tried = Tried { feeding, worst: None, hard_m: f64::NEG_INFINITY, tracking_m: 0.0 };
+    let mut tried = Tried::untried(feeding);
     for leg in &legs {
         for law in laws {
             let tracking_m = fly(situation, law, leg, &mut tried);
@@ -177,6 +182,7 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
     let mut motion = Motion::at(first.position_m, first.velocity_m_s);
     motion.acceleration_m_s2 = first.acceleration_m_s2;
     let off_m = if matches!(law, FollowLaw::Px4 { .. }) { PX4_OFF_M } else { ARDUPILOT_OFF_M };
+    let home_m = situation.home();
     let (mut step, mut recent) = (0_usize, VecDeque::with_capacity(RECENT + 1));
     loop {
         let time_s = step as f64 * STEP_S;
@@ -196,15 +202,17 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
         tracking_m = tracking_m.max(distances.fold(f64::INFINITY, f64::min));
         if step.is_multiple_of(EVERY) {
             law.abandoned(&motion, &target, |place_m| {
-                for (model_m, allowed_m, border) in borders(situation, leg, place_m) {
-                    let beyond_m = model_m + off_m;
-                    let excess_m = beyond_m - allowed_m;
-                    if allowed_m <= 0.0 {
-                        tried.hard_m = tried.hard_m.max(excess_m);
+                let from_home = place_m - home_m;
+                tried.farthest_m = tried.farthest_m.max(from_home.xy().norm());
+                tried.highest_m = tried.highest_m.max(from_home.z);
+                for Border { beyond_m, is_hard, name: border } in borders(situation, leg, place_m) {
+                    let beyond_m = beyond_m + off_m;
+                    let this = Worst { beyond_m, border, time_s, leg: leg.name };
+                    if is_hard && tried.hard.is_none_or(|hard| beyond_m > hard.beyond_m) {
+                        tried.hard = Some(this);
                     }
-                    if tried.worst.is_none_or(|worst| excess_m > worst.excess_m) {
-                        let name = leg.name;
-                        tried.worst = Some(Worst { excess_m, beyond_m, border, time_s, leg: name });
+                    if tried.worst.is_none_or(|worst| beyond_m > worst.beyond_m) {
+                        tried.worst = Some(this);
                     }
                 }
             });
@@ -213,44 +221,55 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
     }
 }
 
-/// How far a place of the local frame lies beyond each border, what is allowed of it, m, and its name.
-fn borders(
-    situation: &Situation<'_>,
-    leg: &Leg<'_>,
-    place_m: &Vector3<f64>,
-) -> Vec<(f64, f64, &'static str)> {
+/// How far a vehicle is beyond a border, m, with its rotors where they could touch it; negative within.
+struct Border {
+    beyond_m: f64,
+    /// nothing of it is given away
+    is_hard: bool,
+    name: &'static str,
+}
+
+/// Of each border, for a vehicle at a place of the local frame.
+fn borders(situation: &Situation<'_>, leg: &Leg<'_>, place_m: &Vector3<f64>) -> Vec<Border> {
     let limits = situation.limits;
+    let reach = Reach::of(situation.vehicle);
     let inside = place_m - situation.origin_m;
     let mut all = Vec::with_capacity(8);
     let mut wall = |beyond_m: Option<f64>, name| {
-        if let Some(beyond_m) = beyond_m {
-            all.push((beyond_m, WALL_M, name));
-        }
+        all.extend(beyond_m.map(|beyond_m| Border { beyond_m, is_hard: false, name }));
     };
-    wall(limits.x_max_m.map(|max| inside.x.abs() - max), "the wall x_max_m");
-    wall(limits.y_max_m.map(|max| inside.y.abs() - max), "the wall y_max_m");
-    wall(limits.z_max_m.map(|max| inside.z - max), "the ceiling z_max_m");
+    wall(limits.x_max_m.map(|max| inside.x.abs() + reach.side_m - max), "the wall x_max_m");
+    wall(limits.y_max_m.map(|max| inside.y.abs() + reach.side_m - max), "the wall y_max_m");
+    wall(limits.z_max_m.map(|max| inside.z + reach.up_m - max), "the ceiling z_max_m");
     if !leg.from_ground {
         wall(limits.z_min_m.map(|min| min - inside.z), "the floor z_min_m");
-        let clear_m = floor_m(situation.vehicle) - HEIGHT_ERROR_M;
-        all.push((clear_m - inside.z, 0.0, "the ground"));
+        all.push(Border { beyond_m: reach.down_m - inside.z, is_hard: true, name: "the ground" });
     }
     if let Some(home_m) = situation.home_m {
         let fence = situation.fence.spares_m(place_m, &home_m);
-        all.extend(fence.into_iter().map(|(spare_m, name)| (-spare_m, 0.0, name)));
+        all.extend(fence.into_iter().map(|(spare_m, name)| Border {
+            beyond_m: -spare_m,
+            is_hard: true,
+            name,
+        }));
     }
     all
 }
 
 /// `0.12 m short of the wall x_max_m at worst, should they end at 3.1 s of the trajectory`.
 fn in_words(tried: &Tried) -> String {
-    tried.worst.map_or_else(
+    tried.told().map_or_else(
         || "nothing to hit".to_owned(),
         |worst| {
             let Worst { beyond_m, border, time_s, leg, .. } = worst;
             let side = if beyond_m > 0.0 { "beyond" } else { "short of" };
-            let allowed =
-                if beyond_m > 0.0 { format!(" ({WALL_M} m of a wall are allowed)") } else { String::new() };
+            let allowed = if beyond_m > 0.0 {
+                format!(
+                    " (the rotors count; 0 is expected, more than {WALL_AT_MOST_M} m of a wall is refused)"
+                )
+            } else {
+                String::new()
+            };
             format!(
                 "{:.2} m {side} {border} at worst{allowed}, should they end at {time_s:.1} s {leg}",
                 beyond_m.abs()
@@ -275,17 +294,15 @@ fn manner(feeding: &Feeding) -> String {
 }
 
 fn timeout(situation: &Situation<'_>, law: &FollowLaw) -> String {
-    let name = timeout_name(law);
+    let name = timeout_name(situation);
     let seconds = law.timeout_s();
     let assumed = if situation.parameters.get(name).is_some() { "" } else { ", assumed: it did not answer" };
     format!("{name} = {seconds:.1} s{assumed}")
 }
 
-fn timeout_name(law: &FollowLaw) -> &'static str {
-    match law {
-        FollowLaw::ArduPilot { .. } => "GUID_TIMEOUT",
-        FollowLaw::Px4 { .. } => "COM_OF_LOSS_T",
-    }
+/// The parameter with the time-out.
+fn timeout_name(situation: &Situation<'_>) -> &'static str {
+    situation.parameters.autopilot.stack().map_or("its time-out", |stack| stack.setpoints.timeout)
 }
 
 fn said(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> Finding {
@@ -296,7 +313,7 @@ fn said(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> Finding {
         manner(&tried.feeding),
         tried.tracking_m
     );
-    if tried.excess_m() > 0.0 {
+    if tried.beyond_m() > 0.0 {
         let remedy = remedy(situation, std::slice::from_ref(law), tried);
         return Finding::warning(SUBJECT, expected, came, remedy);
     }
@@ -310,25 +327,30 @@ fn refused(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> Find
         "setpoints that come nearest to it cost {:.2} m off the reference, of which {:.2} m end the flight",
         tried.tracking_m, situation.tracking_max_m
     );
-    let came = format!("{}, however they are sent; {costs}", in_words(tried));
+    let came = if tried.tracking_m > TRACKING_SHARE * situation.tracking_max_m {
+        format!("{costs}; with them {}", in_words(tried))
+    } else {
+        format!("{}, however they are sent; {costs}", in_words(tried))
+    };
     Finding::refusal(SUBJECT, expected, came, remedy(situation, laws, tried))
 }
 
 /// A slower or smaller plan first, then a value.
 fn remedy(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> String {
     let misses = tried.tracking_m > TRACKING_SHARE * situation.tracking_max_m;
-    let plan = match tried.worst.filter(|worst| worst.excess_m > 0.0 && !misses) {
+    let plan = match tried.told().filter(|worst| worst.beyond_m > 0.0 && !misses) {
         Some(worst) => format!(
             "plan slower near {}, or {:.1} m further from it",
             worst.border,
-            (10.0 * worst.excess_m).ceil() / 10.0
+            (10.0 * worst.beyond_m).ceil() / 10.0
         ),
         None => {
-            "plan a slower trajectory, or raise the limits of the autopilot that the checks name".to_owned()
+            "plan a slower trajectory, raise the limits of the autopilot that the checks name, or allow more (--tracking-max)"
+                .to_owned()
         }
     };
-    match laws.first().zip(safe_timeout_s(situation, laws)) {
-        Some((law, seconds)) => format!("{plan}; or set {} to {seconds:.1} or less", timeout_name(law)),
+    match safe_timeout_s(situation, laws) {
+        Some(seconds) => format!("{plan}; or set {} to {seconds:.1} or less", timeout_name(situation)),
         None => plan,
     }
 }
@@ -339,23 +361,6 @@ fn safe_timeout_s(situation: &Situation<'_>, laws: &[FollowLaw]) -> Option<f64> 
     let longest_s = laws.iter().map(FollowLaw::timeout_s).fold(0.0, f64::max);
     tried.into_iter().filter(|seconds| *seconds < longest_s).find(|seconds| {
         let laws: Vec<FollowLaw> = laws.iter().map(|law| law.with_timeout_s(*seconds)).collect();
-        choose(situation, &laws).is_ok_and(|tried| tried.excess_m() <= 0.0)
+        choose(situation, &laws).is_ok_and(|tried| tried.beyond_m() <= 0.0)
     })
-}
-
-/// PX4's mode after the loss may not stop it, or lead it out again.
-fn aftermath(situation: &Situation<'_>) -> Option<Finding> {
-    let action = situation.parameters.get("COM_OBL_RC_ACT")?;
-    let is = |value: f64| (action - value).abs() < 0.5;
-    let ceiling_m = situation.limits.z_max_m?;
-    let came = if is(1.0) || is(2.0) {
-        format!("a mode that does not stop it (COM_OBL_RC_ACT = {action})")
-    } else if is(3.0) {
-        let height_m = situation.parameters.get("RTL_RETURN_ALT").filter(|height_m| *height_m > ceiling_m)?;
-        format!("a return that climbs to {height_m:.0} m (RTL_RETURN_ALT), the room ends at {ceiling_m:.1} m")
-    } else {
-        return None;
-    };
-    let remedy = "set COM_OBL_RC_ACT to 4 (land) or 5 (hold)";
-    Some(Finding::warning(SUBJECT, "a mode that stops it and keeps it in the room", came, remedy))
 }

@@ -4,8 +4,6 @@ use crate::fly::finding::Finding;
 
 /// Charge that is asked for, as a multiple of what the flight takes.
 pub const SPARE_FACTOR: f64 = 1.5;
-/// Takeoff, the way to the start, landing: s beside the path.
-const AROUND_S: f64 = 30.0;
 
 /// What is known of the battery.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -18,8 +16,9 @@ pub struct BatteryState {
     pub endurance_s: Option<f64>,
 }
 
-pub(super) fn finding(battery: &BatteryState, path_s: f64) -> Finding {
-    let needed_s = SPARE_FACTOR * (path_s + AROUND_S);
+/// For a flight of so many s from the ground to the ground.
+pub(super) fn finding(battery: &BatteryState, flight_s: f64) -> Finding {
+    let needed_s = SPARE_FACTOR * flight_s;
     let expected = format!("charge for {needed_s:.0} s, {SPARE_FACTOR} times the flight");
     let remaining = battery.remaining_percent.map_or_else(
         || "a charge that the vehicle does not say".to_owned(),

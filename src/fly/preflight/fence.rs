@@ -1,9 +1,9 @@
 //! The vehicle's own fence, in its local frame.
 
+use crate::autopilot::Autopilot;
 use crate::fence::{Areas, FenceItem, Zone};
-use crate::fly::parameters::{Parameters, has_bit};
+use crate::fly::parameters::{FenceSwitch, Parameters, has_bit};
 use crate::frames::Geodetic;
-use crate::recording::Autopilot;
 use nalgebra::Vector3;
 
 /// Bits of FENCE_TYPE.
@@ -57,12 +57,14 @@ impl Fence {
 
     /// Whether areas are in force.
     fn ardupilot(&mut self, parameters: &Parameters) -> bool {
-        let Some(enable) = parameters.get("FENCE_ENABLE") else {
-            self.unknown.push("FENCE_ENABLE did not answer".into());
-            return true;
-        };
-        if enable < 0.5 {
-            return false;
+        match FenceSwitch::of(parameters) {
+            FenceSwitch::On | FenceSwitch::OnInFlight => {}
+            FenceSwitch::Off => return false,
+            FenceSwitch::Unknown(name) => {
+                self.unknown.push(format!("{name} did not answer"));
+                // that it is enabled in flight is the exception, and older releases do not know it
+                return name == "FENCE_ENABLE";
+            }
         }
         let Some(kinds) = parameters.get("FENCE_TYPE") else {
             self.unknown.push("FENCE_TYPE did not answer".into());

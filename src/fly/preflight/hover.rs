@@ -4,7 +4,7 @@ use super::Situation;
 use crate::fly::finding::Finding;
 use crate::fly::lift::apart;
 use crate::fly::parameters::Parameters;
-use crate::recording::{Autopilot, Recording};
+use crate::recording::Recording;
 use crate::signals::propulsion_from_log;
 use crate::vehicle::{Actuator, Propulsion, ThrustLaw, Vehicle};
 
@@ -44,11 +44,9 @@ fn judged(
 
 /// What all rotors of the file give at the command by which the autopilot expects to hover, against the weight.
 fn hover(vehicle: &Vehicle, parameters: &Parameters) -> Option<Finding> {
-    let (name, expo) = match parameters.autopilot {
-        Autopilot::Px4 => ("MPC_THR_HOVER", parameters.get("THR_MDL_FAC").unwrap_or(0.0)),
-        Autopilot::ArduPilot => ("MOT_THST_HOVER", parameters.get("MOT_THST_EXPO")?),
-        Autopilot::Other | Autopilot::Unknown => return None,
-    };
+    let outputs = &parameters.autopilot.stack()?.outputs;
+    let name = outputs.hover;
+    let expo = parameters.get(outputs.expo).or_else(|| outputs.linear_without_expo.then_some(0.0))?;
     let share = parameters.get(name).filter(|share| *share > 0.0)?;
     // the autopilot's own curve, from its share of the full thrust to the command
     let curve = Propulsion {

@@ -27,7 +27,7 @@ pub fn judge(situation: &Situation<'_>) -> Judged {
     findings.extend(abandoned);
     findings.extend(autopilot::findings(situation.parameters, &extremes));
     findings.extend(hover::findings(situation));
-    findings.push(energy::finding(situation.battery, situation.path.duration_s()));
+    findings.push(energy::finding(situation.battery, situation.duration_s()));
     findings.extend(readiness::findings(situation.readiness, situation.parameters.autopilot));
     findings.extend(failsafes(situation));
     let page = Page::new(situation, &findings);

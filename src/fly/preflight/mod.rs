@@ -2,6 +2,7 @@
 //! and autopilot, and whether the vehicle is ready.
 
 mod abandoned;
+mod aftermath;
 mod autopilot;
 mod energy;
 mod failsafes;

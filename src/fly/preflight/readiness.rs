@@ -1,7 +1,7 @@
 //! Whether the vehicle itself is ready.
 
+use crate::autopilot::{Autopilot, Mode};
 use crate::fly::finding::Finding;
-use crate::recording::Autopilot;
 use std::time::Duration;
 
 /// The estimate must have been good for so long.
@@ -74,12 +74,14 @@ fn pre_arm(readiness: &Readiness, autopilot: Autopilot) -> Finding {
     let expected = "the autopilot's own checks passed";
     let said =
         if readiness.reasons.is_empty() { "no reason said".to_owned() } else { readiness.reasons.join("; ") };
-    let remedy = match autopilot {
-        Autopilot::ArduPilot => {
-            "its checks depend on the mode: set GUIDED, then wait for the position estimate"
-        }
-        _ => "mend what it names",
-    };
+    let depends = autopilot.stack().filter(|stack| stack.setpoints.position_checked_in_mode);
+    let remedy = depends.map_or_else(
+        || "mend what it names".to_owned(),
+        |stack| {
+            let mode = stack.name_of(Mode::External);
+            format!("its checks depend on the mode: set {mode}, then wait for the position estimate")
+        },
+    );
     match readiness.may_arm {
         Some(true) => Finding::ok("pre-arm", expected, "passed"),
         Some(false) => Finding::refusal("pre-arm", expected, format!("failed: {said}"), remedy),

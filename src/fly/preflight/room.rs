@@ -3,7 +3,9 @@
 use super::stopping::place_and_velocity;
 use super::{Situation, Stopping};
 use crate::fly::finding::Finding;
-use crate::plan::{Dynamics, HEIGHT_ERROR_M, Margin, Quantity, bounds_of, check, floor_m, path_samples};
+use crate::plan::{
+    Dynamics, HEIGHT_ERROR_M, Margin, Quantity, Reach, bounds_of, check, floor_m, path_samples,
+};
 use crate::vehicle::Limits;
 use nalgebra::Vector3;
 
@@ -19,6 +21,7 @@ pub(super) fn findings(situation: &Situation<'_>, stopping: &Stopping) -> Vec<Fi
     findings.extend(walls(situation.limits));
     findings.extend(floor(situation));
     findings.extend(stand(situation));
+    let rotors = rotors(situation);
     if findings.is_empty() {
         let spare = margins.iter().min_by(|a, b| relative(a).total_cmp(&relative(b)));
         findings.push(match spare {
@@ -41,6 +44,7 @@ pub(super) fn findings(situation: &Situation<'_>, stopping: &Stopping) -> Vec<Fi
             ),
         });
     }
+    findings.extend(rotors);
     findings.extend(braking(situation, stopping));
     findings
 }
@@ -76,6 +80,36 @@ fn floor(situation: &Situation<'_>) -> Option<Finding> {
     })
 }
 
+/// The rotors along the path, which the bounds of the place do not know: a vehicle that fits nowhere is refused.
+fn rotors(situation: &Situation<'_>) -> Option<Finding> {
+    let reach = Reach::of(situation.vehicle);
+    let walls = [
+        (0, "x_max_m", situation.limits.x_max_m, reach.side_m),
+        (1, "y_max_m", situation.limits.y_max_m, reach.side_m),
+        (2, "z_max_m", situation.limits.z_max_m, reach.up_m),
+    ];
+    let beyond = |(axis, name, max, reach_m): (usize, &'static str, Option<f64>, f64)| {
+        let max = max?;
+        let place_m = |value: f64| if axis < 2 { value.abs() } else { value };
+        let farthest_m =
+            path_samples(situation.path).map(|(_, axes)| place_m(axes[axis][0])).fold(0.0, f64::max);
+        Some((farthest_m + reach_m - max, name, max, reach_m, axis < 2 && reach_m >= max))
+    };
+    let worst = walls.into_iter().filter_map(beyond).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (beyond_m, name, max, reach_m, fits_nowhere) = worst;
+    if beyond_m <= TOUCH {
+        return None;
+    }
+    let expected = format!("the rotors, which reach {reach_m:.2} m, inside {name} = {max:.2} m");
+    let came = format!("{beyond_m:.2} m beyond it where the path comes nearest");
+    let remedy = "leave that much room behind the wall, or plan further inside";
+    Some(if fits_nowhere {
+        Finding::refusal("room", expected, came, "the vehicle does not fit in: correct the room")
+    } else {
+        Finding::warning("room", expected, came, remedy)
+    })
+}
+
 /// It takes off where it stands: inside the room.
 fn stand(situation: &Situation<'_>) -> Option<Finding> {
     let inside = situation.stand_m? - situation.origin_m;
@@ -107,7 +141,7 @@ fn refusal(margin: &Margin) -> Finding {
         Quantity::RotorThrust(_) | Quantity::Thrust | Quantity::Torque(_) => {
             "the vehicle cannot do it: plan a gentler trajectory"
         }
-        Quantity::Path { .. } | Quantity::Roll | Quantity::Pitch => {
+        Quantity::Path { .. } | Quantity::Rest(_) | Quantity::Roll | Quantity::Pitch => {
             "plan the trajectory for these limits, or correct them"
         }
     };

@@ -3,7 +3,10 @@
 use super::energy::BatteryState;
 use super::fence::Fence;
 use super::readiness::Readiness;
+use crate::fly::course::approach;
 use crate::fly::parameters::Parameters;
+use crate::fly::setpoint::Place;
+use crate::plan::Reach;
 use crate::trajectory::FlightPath;
 use crate::vehicle::{Limits, Vehicle};
 use nalgebra::Vector3;
@@ -37,4 +40,37 @@ pub struct Situation<'a> {
     pub readiness: &'a Readiness,
     /// the ground station's MAVLink system id
     pub own_system: u8,
+}
+
+/// Autopilots land so fast unless told otherwise (LAND_SPEED; MPC_LAND_SPEED is faster), m/s.
+const LANDS_M_S: f64 = 0.5;
+/// With motors on, before the takeoff, at the start gate, and on the ground until they stop, s.
+const WAITS_S: f64 = 15.0;
+
+impl Situation<'_> {
+    /// Home (m, local frame), or what is nearest to it that is known: where it stands, the path's zero.
+    pub(super) fn home(&self) -> Vector3<f64> {
+        self.home_m.or(self.stand_m).unwrap_or(self.origin_m)
+    }
+
+    /// From where it stands straight up, and from there to the path's begin; `None` where it stands nowhere known.
+    pub(super) fn way_to_start(&self) -> Option<[FlightPath; 2]> {
+        let (stand_m, start) = self.stand_m.zip(self.path.derivatives(0.0))?;
+        let [x, y, z, yaw_rad] = start.map(|axis| axis[0]);
+        let place = |position_m| Place { position_m, yaw_rad };
+        Some(approach(&place(stand_m), &place(Vector3::new(x, y, z) + self.origin_m)))
+    }
+
+    /// s from the ground to the ground: takeoff, the way to the start, the path, landing.
+    pub(super) fn duration_s(&self) -> f64 {
+        let way_s = self.way_to_start().iter().flatten().map(FlightPath::duration_s).sum::<f64>();
+        let end_m = self.path.derivatives(self.path.duration_s()).map_or(0.0, |axes| axes[2][0]);
+        way_s + self.path.duration_s() + end_m.max(0.0) / LANDS_M_S + WAITS_S
+    }
+
+    /// How high above home it may climb with its rotors below the ceiling, m; `None` without a ceiling.
+    pub(super) fn highest_m(&self) -> Option<f64> {
+        let ceiling_m = self.limits.z_max_m? + self.origin_m.z - self.home().z;
+        Some(ceiling_m - Reach::of(self.vehicle).up_m)
+    }
 }

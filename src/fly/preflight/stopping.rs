@@ -1,7 +1,7 @@
 //! What it takes to stop.
 
+use crate::autopilot::{Braking, PX4};
 use crate::fly::parameters::Parameters;
-use crate::recording::Autopilot;
 use crate::units::rad_from_deg;
 use crate::vehicle::Limits;
 use nalgebra::Vector3;
@@ -24,25 +24,12 @@ impl Stopping {
     /// From the autopilot's own limits, no more than tilt and the vehicle file allow.
     #[must_use]
     pub fn of(parameters: &Parameters, limits: &Limits, gravity_m_s2: f64) -> Self {
-        let value = |name: &str, scale: f64| {
-            parameters.get(name).map(|value| scale * value).filter(|value| *value > 0.0)
-        };
-        let (name, horizontal, vertical, tilt_deg) = match parameters.autopilot {
-            Autopilot::ArduPilot => (
-                "WPNAV_ACCEL",
-                value("WPNAV_ACCEL", 1e-2),
-                value("WPNAV_ACCEL_Z", 1e-2),
-                value("ANGLE_MAX", 1e-2),
-            ),
-            _ => (
-                "MPC_ACC_HOR",
-                value("MPC_ACC_HOR", 1.0),
-                value("MPC_ACC_UP_MAX", 1.0)
-                    .zip(value("MPC_ACC_DOWN_MAX", 1.0))
-                    .map(|(up, down)| up.min(down)),
-                value("MPC_TILTMAX_AIR", 1.0),
-            ),
-        };
+        let value = |name: &str| parameters.in_base_unit(name).filter(|value| *value > 0.0);
+        let Braking { horizontal: name, vertical, tilt } =
+            parameters.autopilot.stack().unwrap_or(&PX4).braking;
+        let (horizontal, tilt_deg) = (value(name), value(tilt));
+        let vertical: Option<Vec<f64>> = vertical.iter().map(|name| value(name)).collect();
+        let vertical = vertical.and_then(|values| values.into_iter().reduce(f64::min));
         let basis = match horizontal {
             Some(value) => format!("braking at {value:.1} m/s^2 ({})", parameters.name_of(name)),
             None => format!(

@@ -1,7 +1,7 @@
 //! What a link carries, and what an autopilot makes of a requested rate.
 
 use super::StreamRequest;
-use crate::recording::Autopilot;
+use crate::autopilot::Autopilot;
 
 /// Setpoints at 50 Hz take this much of a radio that carries both directions in turn, bytes a second.
 const SETPOINTS_BYTES_S: f64 = 50.0 * 65.0;

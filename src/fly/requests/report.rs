@@ -2,8 +2,8 @@
 
 use super::capacity::bytes_s;
 use super::{Answer, Capacity, Need, StreamRequest, granted_hz};
+use crate::autopilot::Autopilot;
 use crate::fly::finding::Finding;
-use crate::recording::Autopilot;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ};
 
 /// A stream at less than this share of what the autopilot should give is slower than asked for.

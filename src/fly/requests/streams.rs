@@ -1,6 +1,6 @@
 //! Which messages, how often, and what for.
 
-use crate::recording::Autopilot;
+use crate::autopilot::Autopilot;
 
 /// What a message is good for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

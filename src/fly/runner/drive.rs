@@ -13,10 +13,10 @@ use super::files::{EVENTS, PARAMETERS};
 use super::journal::Journal;
 use super::stream::SharedGuide;
 use super::supervisor::Supervisor;
+use crate::autopilot::Mode;
 use crate::fly::finding;
 use crate::fly::flight::{Action, Event, Flight, Key};
 use crate::fly::live::{LiveIdentification, LiveSettings};
-use crate::fly::modes::Mode;
 use crate::fly::outcome::{Level, Note, Outcome};
 use crate::fly::parameters::Parameters;
 use crate::fly::requests::LinkKind;
@@ -135,7 +135,7 @@ impl Drive {
 
     /// Does what the supervisor wants done.
     fn act(&mut self, now: Duration) {
-        self.guide.set(self.supervisor.flight().guide());
+        self.guide.set(self.supervisor.flight().guide(), self.supervisor.seen());
         self.tell_stream();
         while let Some(action) = self.supervisor.next_action() {
             match action {

@@ -1,9 +1,11 @@
-//! Parts of the program that a test lets stand still, to see that the vehicle is then left to its own failsafe, and sleep
-//! of the whole computer.
+//! Parts of the program that a test stops, to see that the vehicle is then left to its own failsafe, and sleep of the
+//! whole computer.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
+
+use crate::link::{Halt, Stop};
 
 /// A part of the program without which nobody may steer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,26 +18,33 @@ pub enum Part {
     Link,
 }
 
-/// What stands still; nothing by itself. Clones share it.
+/// What is stopped; nothing by itself. Clones share it.
 #[derive(Debug, Clone, Default)]
 pub struct Parking {
-    supervisor: Arc<AtomicBool>,
-    telemetry: Arc<AtomicBool>,
-    link: Arc<AtomicBool>,
+    supervisor: Halt,
+    telemetry: Halt,
+    link: Halt,
     slept_ms: Arc<AtomicU64>,
 }
 
 impl Parking {
-    /// Lets a part stand still from now on.
-    pub fn park(&self, part: Part) {
-        self.flag(part).store(true, Ordering::Release);
+    /// Lets a part stop from now on.
+    pub fn stop(&self, part: Part, how: Stop) {
+        self.halt(part).stop(how);
     }
 
-    /// Lets all parts go on.
+    /// Lets all parts that stand still go on.
     pub fn release(&self) {
         for part in [Part::Supervisor, Part::Telemetry, Part::Link] {
-            self.flag(part).store(false, Ordering::Release);
+            self.halt(part).release();
         }
+    }
+
+    /// When a part last did what it is there for, us since 1970, UTC. The telemetry does so as well while nothing of the
+    /// link waits for it.
+    #[must_use]
+    pub fn last_ran_us(&self, part: Part) -> u64 {
+        self.halt(part).last_ran_us()
     }
 
     /// The computer sleeps for so long: the clock of the flight leaps, and nothing else does.
@@ -47,11 +56,7 @@ impl Parking {
         Duration::from_millis(self.slept_ms.load(Ordering::Acquire))
     }
 
-    pub(super) fn is_parked(&self, part: Part) -> bool {
-        self.flag(part).load(Ordering::Acquire)
-    }
-
-    pub(super) fn flag(&self, part: Part) -> &Arc<AtomicBool> {
+    pub(super) fn halt(&self, part: Part) -> &Halt {
         match part {
             Part::Supervisor => &self.supervisor,
             Part::Telemetry => &self.telemetry,

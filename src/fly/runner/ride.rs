@@ -25,7 +25,8 @@ use crate::fly::outcome::Outcome;
 use crate::fly::sortie::Sortie;
 use crate::fly::view::{KeyCommand, ViewModel};
 use crate::link::{
-    Address, Link, LinkOptions, LinkReader, LinkStats, Received, Recorder, RecorderStatus, Signing,
+    Address, Link, LinkOptions, LinkReader, LinkStats, Received, Recorder, RecorderStatus, Signing, Stop,
+    panic_for_test,
 };
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
@@ -107,7 +108,7 @@ async fn fly(ride: Ride, console: Console, subscription: Subscription) -> Result
         patient: true,
         signing: ride.signing,
         recorder: Some(recorder.clone()),
-        parked: Some(ride.parking.flag(Part::Link).clone()),
+        halt: ride.parking.halt(Part::Link).clone(),
         ..LinkOptions::default()
     };
     let (reader, writer) = Link::open(&ride.address, options).await?;
@@ -138,6 +139,7 @@ async fn fly(ride: Ride, console: Console, subscription: Subscription) -> Result
     // the link may be gone by now
     let _ = tokio::time::timeout(FLUSH, writer.flush()).await;
     let link = writer.stats();
+    let _ = tokio::time::timeout(FLUSH, writer.close()).await;
     let recorder = recorder.end().await?;
     let stream = stream.on_link(&link);
     let StreamFigures { sent, late, overtaken, refused } = stream;
@@ -161,19 +163,36 @@ async fn conduct(
     let mut ends = Ends::new()?;
     let (mut hears, mut keyed) = (true, true);
     loop {
-        if parking.is_parked(Part::Supervisor) {
-            std::future::pending::<()>().await;
+        match parking.halt(Part::Supervisor).stopped() {
+            Some(Stop::Stands) => std::future::pending().await,
+            Some(Stop::Panics) => panic_for_test("a test stops the supervisor"),
+            Some(Stop::Ends) => return Err(RunError::Broken("a test ends the supervisor".to_owned())),
+            None => {}
         }
+        let telemetry = parking.halt(Part::Telemetry);
+        hears &= telemetry.stopped() != Some(Stop::Ends);
         tokio::select! {
-            received = reader.receive(), if hears && !parking.is_parked(Part::Telemetry) => match received {
-                Ok(Received::Frame(frame)) => drive.frame(frame),
+            received = reader.receive(), if hears && telemetry.stopped() != Some(Stop::Stands) => match received {
+                Ok(_) if telemetry.stopped() == Some(Stop::Panics) => {
+                    panic_for_test("a test stops the telemetry")
+                }
+                Ok(Received::Frame(frame)) => {
+                    drive.frame(frame);
+                    telemetry.runs();
+                }
                 Ok(Received::Event(event)) => drive.link_event(&event),
                 Err(_) => {
                     hears = false;
                     drive.handle(Event::LinkEnded);
                 }
             },
-            _ = ticks.tick() => drive.tick(reader.waiting()),
+            _ = ticks.tick() => {
+                let waiting = reader.waiting();
+                drive.tick(waiting);
+                if waiting == 0 {
+                    telemetry.runs();
+                }
+            }
             key = console.keys.recv(), if keyed => match key {
                 Some(key) => drive.key(key),
                 None => keyed = false,
@@ -181,6 +200,7 @@ async fn conduct(
             Some(gap) = stalls.recv() => drive.handle(Event::Stalled(gap)),
             name = ends.next() => drive.handle(Event::Stop(name.to_owned())),
         }
+        parking.halt(Part::Supervisor).runs();
         drive.report(&journal, &console.show);
         if let Some(outcome) = drive.outcome() {
             return Ok((outcome, journal.finish().await));

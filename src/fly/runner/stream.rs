@@ -31,13 +31,16 @@ impl SharedGuide {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    pub(super) fn set(&self, guide: &Guide) {
+    /// Renews it, as of when all was known that the link had brought.
+    pub(super) fn set(&self, guide: &Guide, seen: Duration) {
+        let issued = guide.issued.min(seen);
         let mut shared = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let same = Guide { issued: shared.issued, held_back: shared.held_back, ..guide.clone() } == *shared;
         if same {
-            (shared.issued, shared.held_back) = (guide.issued, guide.held_back);
+            (shared.issued, shared.held_back) = (issued, guide.held_back);
         } else {
             shared.clone_from(guide);
+            shared.issued = issued;
         }
     }
 }
@@ -240,7 +243,7 @@ pub fn send_due(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fly::modes::Stack;
+    use crate::autopilot::PX4;
     use crate::fly::setpoint::Place;
     use crate::fly::target::Target;
     use crate::link::{Link, LinkOptions};
@@ -303,7 +306,7 @@ mod tests {
         let period = Duration::from_millis(20);
         let mut streamer = Streamer::new(period);
         let place = Place { position_m: Vector3::new(1.0, 0.0, 2.0), yaw_rad: 0.0 };
-        let target = Target::new(SystemId(1), ComponentId(1)).map(|target| (target, Stack::Px4));
+        let target = Target::new(SystemId(1), ComponentId(1)).map(|target| (target, &PX4));
         with_default(&subscriber, || {
             for now in (0..1000).map(|number| period * number) {
                 let guide = Guide { lead: Lead::Hold(place), target, ..Guide::silent(now) };

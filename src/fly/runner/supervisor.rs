@@ -27,6 +27,8 @@ pub struct Supervisor {
     told_waiting: bool,
     /// something of the link was taken since the last tick
     took: bool,
+    /// when something of the link was last taken, or nothing waited
+    seen: Duration,
     /// frames and events that waited at a tick before and are not taken yet
     to_read: usize,
 }
@@ -44,6 +46,7 @@ impl Supervisor {
             actions: VecDeque::new(),
             told_waiting: false,
             took: true,
+            seen: Duration::ZERO,
             to_read: 0,
         }
     }
@@ -62,7 +65,7 @@ impl Supervisor {
 
     /// Takes a frame that the link delivered, with the host's stamp of its arrival.
     pub fn frame(&mut self, now: Duration, record: &Record<'_>) {
-        self.took();
+        self.took(now);
         self.handle(now, Event::Frame(record.frame));
         let known = record.frame.check(self.flight.seeds()) == Check::Right;
         if let Some(clearance) = &mut self.clearance {
@@ -74,6 +77,9 @@ impl Supervisor {
     /// since the last tick, the way from the link stands still: a supervisor that does not see renews nothing. Commands go
     /// out once all that waited at an earlier tick is read: the next frame may say that the pilot took over.
     pub fn tick(&mut self, now: Duration, waiting: usize) {
+        if waiting == 0 {
+            self.seen = now;
+        }
         if std::mem::replace(&mut self.took, false) || waiting == 0 {
             self.flight.set_unread(self.to_read > 0 && waiting > 0);
             self.handle(now, Event::Tick);
@@ -84,8 +90,14 @@ impl Supervisor {
         self.flight.set_unread(true);
     }
 
-    fn took(&mut self) {
-        self.took = true;
+    /// Until when all is known that the link brought. What is to be sent is not renewed by anything that happens later.
+    #[must_use]
+    pub fn seen(&self) -> Duration {
+        self.seen
+    }
+
+    fn took(&mut self, now: Duration) {
+        (self.took, self.seen) = (true, now);
         self.to_read = self.to_read.saturating_sub(1);
     }
 
@@ -100,7 +112,7 @@ impl Supervisor {
 
     /// Takes what the link says of itself.
     pub fn link_event(&mut self, now: Duration, event: &LinkEvent) {
-        self.took();
+        self.took(now);
         let (up, level) = match event {
             LinkEvent::Connected { .. } => (Some(true), Level::Information),
             LinkEvent::Restored { .. } => (Some(true), Level::Warning),

@@ -23,6 +23,19 @@ impl SetpointBounds {
         Self { low_m: low + offset_m, high_m: high + offset_m }
     }
 
+    /// The same, so much smaller (m) at each wall and at the ceiling, as far as something is left of it.
+    #[must_use]
+    pub fn smaller(self, side_m: f64, up_m: f64) -> Self {
+        let middle = Vector3::from_fn(|axis, _| f64::midpoint(self.low_m[axis], self.high_m[axis]));
+        let (low, high) = (Vector3::new(side_m, side_m, 0.0), Vector3::new(side_m, side_m, up_m));
+        let Self { low_m, high_m } = self;
+        let finite = middle.map(|value| if value.is_finite() { value } else { 0.0 });
+        Self {
+            low_m: (low_m + low).inf(&finite.sup(&low_m)),
+            high_m: (high_m - high).sup(&finite.inf(&high_m)),
+        }
+    }
+
     /// The same with a place besides, such as the ground where the vehicle stands before it takes off.
     #[must_use]
     pub fn with(self, place_m: &Vector3<f64>) -> Self {

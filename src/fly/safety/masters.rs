@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use nalgebra::Vector3;
 
-use crate::fly::modes::Stack;
+use crate::autopilot::{LastSetpoint, Stack};
 use crate::fly::outcome::Cause;
 use crate::fly::setpoint::Setpoint;
 use crate::fly::target::Target;
@@ -18,10 +18,6 @@ const FOREIGN_M: f64 = 0.25;
 const DELAY: Duration = Duration::from_secs(1);
 /// Nothing of ours from before this is flown still.
 const OLDEST: Duration = Duration::from_secs(9);
-/// While ours do not arrive PX4 holds the last for COM_OF_LOSS_T, and ArduPilot moves it on by its velocity and
-/// acceleration for GUID_TIMEOUT: by their defaults.
-const PX4_HOLDS: Duration = Duration::from_secs(1);
-const ARDUPILOT_COASTS: Duration = Duration::from_secs(3);
 /// Steps in which what it has moved on by is sought.
 const STEPS: u32 = 10;
 /// How long a queue may drain that a silence has filled.
@@ -89,21 +85,27 @@ impl Masters {
     }
 
     /// Takes the target that the vehicle says it flies to, m, world; `None` for one that is no place.
-    pub fn check(&mut self, now: Duration, target_m: Option<Vector3<f64>>, stack: Stack) -> Option<Cause> {
+    pub fn check(
+        &mut self,
+        now: Duration,
+        target_m: Option<Vector3<f64>>,
+        stack: &'static Stack,
+    ) -> Option<Cause> {
         let silent = now.saturating_sub(self.reported.replace(now).unwrap_or(now));
         let before = self.silence.filter(|(_, ended)| now.saturating_sub(*ended) <= DRAINS);
         if before.is_none_or(|(lasted, _)| silent >= lasted) {
             self.silence = Some((silent, now));
         }
         let late = DELAY + self.silence.map_or(Duration::ZERO, |(lasted, _)| lasted);
-        let alone = if stack == Stack::ArduPilot { ARDUPILOT_COASTS } else { PX4_HOLDS };
+        // while ours do not arrive the last is flown for so long: by the time-out's default
+        let alone = stack.setpoints.timeout_default;
         let age = |at: Duration| now.saturating_sub(at);
         let ours = self.told.iter().filter(|(at, _)| age(*at) <= late + alone);
         let away_m = match target_m {
             Some(target_m) => {
-                let moved = |at: Duration| match stack {
-                    Stack::ArduPilot => (age(at).saturating_sub(late), age(at).min(alone)),
-                    Stack::Px4 => (Duration::ZERO, Duration::ZERO),
+                let moved = |at: Duration| match stack.setpoints.last_setpoint {
+                    LastSetpoint::MovedOn => (age(at).saturating_sub(late), age(at).min(alone)),
+                    LastSetpoint::Held => (Duration::ZERO, Duration::ZERO),
                 };
                 ours.map(|(at, setpoint)| away_m(setpoint, &target_m, moved(*at))).min_by(f64::total_cmp)?
             }
@@ -143,6 +145,7 @@ fn away_m(setpoint: &Setpoint, target_m: &Vector3<f64>, (least, most): (Duration
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::autopilot::{ARDUPILOT, PX4};
     use crate::fly::setpoint::{Place, Setpoint};
     use crate::fly::target::heartbeat;
     use mavlink::dialects::ardupilotmega::MavMessage;
@@ -184,7 +187,7 @@ mod tests {
 
     /// Our setpoints each 20 ms, and each 50 ms a report of the target that `reported` has at a time.
     fn heard_of(
-        stack: Stack,
+        stack: &'static Stack,
         (from, to): (u64, u64),
         reported: impl Fn(u64) -> Option<Vector3<f64>>,
     ) -> Option<u64> {
@@ -200,7 +203,7 @@ mod tests {
     #[test]
     fn a_target_that_is_late_is_ours_and_one_elsewhere_is_not() {
         let elsewhere = |t: u64| ours(t).position_m + Vector3::new(0.0, 0.4, 0.0);
-        for stack in [Stack::Px4, Stack::ArduPilot] {
+        for stack in [&PX4, &ARDUPILOT] {
             let late = |t: u64| Some(ours(t.max(1800) - 800).position_m);
             assert_eq!(heard_of(stack, (1000, 9000), late), None);
             assert_eq!(heard_of(stack, (1000, 9000), |t| Some(elsewhere(t))), Some(1050));
@@ -215,9 +218,9 @@ mod tests {
             Some(ours(t).position_m + Vector3::new(0.0, if foreign { 0.9 } else { 0.0 }, 0.0))
         };
         // one and a half seconds in which each third report shows the other's
-        let burst = heard_of(Stack::Px4, (1000, 9000), |t| beside(t, (4000..5500).contains(&t) && at(t)));
+        let burst = heard_of(&PX4, (1000, 9000), |t| beside(t, (4000..5500).contains(&t) && at(t)));
         assert!(burst.is_some_and(|t| t < 5000), "{burst:?}");
-        assert_eq!(heard_of(Stack::Px4, (1000, 20_000), |t| beside(t, t % 4000 == 0)), None);
+        assert_eq!(heard_of(&PX4, (1000, 20_000), |t| beside(t, t % 4000 == 0)), None);
     }
 
     #[test]
@@ -228,9 +231,9 @@ mod tests {
             let from = ours(started(t));
             Some(from.position_m + from.velocity_m_s * (1e-3 * (t % 1000) as f64) + Vector3::y() * 0.1)
         };
-        assert_eq!(heard_of(Stack::ArduPilot, (1000, 9000), coasting), None);
+        assert_eq!(heard_of(&ARDUPILOT, (1000, 9000), coasting), None);
         let ahead = |t: u64| Some(ours(t + 400).position_m);
-        assert_eq!(heard_of(Stack::Px4, (1000, 9000), ahead), Some(1050));
+        assert_eq!(heard_of(&PX4, (1000, 9000), ahead), Some(1050));
     }
 
     #[test]
@@ -239,12 +242,12 @@ mod tests {
         for t in (1000..6000).step_by(20) {
             masters.told(ms(t), ours(t));
             if t < 2000 {
-                assert!(masters.check(ms(t), Some(ours(t).position_m), Stack::Px4).is_none());
+                assert!(masters.check(ms(t), Some(ours(t).position_m), &PX4).is_none());
             }
         }
         // four seconds of reports at once
         for t in (2000..6000).step_by(50) {
-            assert!(masters.check(ms(6000), Some(ours(t).position_m), Stack::Px4).is_none());
+            assert!(masters.check(ms(6000), Some(ours(t).position_m), &PX4).is_none());
         }
     }
 }

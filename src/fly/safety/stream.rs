@@ -9,8 +9,8 @@
 use std::time::Duration;
 
 use super::{Feeding, SetpointBounds};
+use crate::autopilot::Stack;
 use crate::fly::course::Track;
-use crate::fly::modes::Stack;
 use crate::fly::setpoint::{Place, Setpoint};
 use crate::fly::target::{OutOfRange, Target};
 use mavlink::dialects::ardupilotmega::MavMessage;
@@ -39,7 +39,7 @@ pub struct Guide {
     /// the mode is not known: nothing is sent until it is
     pub held_back: bool,
     /// whom the setpoints are for, and by which rules; `None` while no vehicle is chosen
-    pub target: Option<(Target, Stack)>,
+    pub target: Option<(Target, &'static Stack)>,
     /// how setpoints are made from the reference
     pub feeding: Feeding,
     /// nothing is sent beyond; `None` while nothing is known of where the vehicle is
@@ -149,6 +149,7 @@ impl Streamer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::autopilot::PX4;
     use crate::wire::{ComponentId, SystemId};
     use nalgebra::Vector3;
     use proptest::prelude::*;
@@ -160,7 +161,7 @@ mod tests {
     fn guide(issued: Duration) -> Guide {
         let place = Place { position_m: Vector3::new(1.0, 0.0, 2.0), yaw_rad: 0.0 };
         let target = Target::new(SystemId(1), ComponentId(1)).unwrap();
-        Guide { lead: Lead::Hold(place), target: Some((target, Stack::Px4)), ..Guide::silent(issued) }
+        Guide { lead: Lead::Hold(place), target: Some((target, &PX4)), ..Guide::silent(issued) }
     }
 
     #[test]

@@ -101,13 +101,13 @@ pub fn heartbeat() -> MavMessage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fly::modes::{Mode, Stack};
+    use crate::autopilot::{Mode, PX4};
     use crate::wire::{ComponentId, SystemId};
 
     #[test]
     fn a_command_names_its_vehicle() {
         let target = Target::new(SystemId(3), ComponentId(1)).unwrap();
-        let order = Order::set_mode(Stack::Px4, Mode::Hold);
+        let order = Order::set_mode(&PX4, Mode::Hold);
         let MavMessage::COMMAND_LONG(data) = target.command(&order, 2) else { panic!() };
         assert_eq!((data.target_system, data.target_component, data.confirmation), (3, 1, 2));
         assert_eq!((data.param1, data.param2, data.param3), (1.0, 4.0, 3.0));

@@ -3,13 +3,13 @@
 use mavlink::dialects::ardupilotmega::MavCmd;
 
 use super::range::{MessageId, OutOfRange, Period, TakeoffHeight};
-use crate::fly::modes::{Mode, Stack};
+use crate::autopilot::{Mode, Stack};
 
 /// A command before it is sent. Whatever can be written here is in range: its parameters come from the variant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Order {
     /// `MAV_CMD_DO_SET_MODE`: to enter a mode
-    SetMode(Stack, Mode),
+    SetMode(&'static Stack, Mode),
     /// `MAV_CMD_COMPONENT_ARM_DISARM`: to arm, as the autopilot's own checks allow
     Arm,
     /// the same: to disarm, as the autopilot's own checks allow
@@ -32,7 +32,7 @@ const CUSTOM_MODE: f32 = 1.0;
 impl Order {
     /// To enter a mode.
     #[must_use]
-    pub fn set_mode(stack: Stack, mode: Mode) -> Self {
+    pub fn set_mode(stack: &'static Stack, mode: Mode) -> Self {
         Self::SetMode(stack, mode)
     }
 
@@ -119,11 +119,12 @@ impl Order {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::autopilot::PX4;
 
     #[test]
     fn only_a_kill_is_forced() {
         assert_eq!(Order::arm(false).parameters()[1], 0.0);
         assert_eq!(Order::kill().parameters()[..2], [0.0, 21_196.0]);
-        assert_eq!(Order::set_mode(Stack::Px4, Mode::Hold).name(), "DO_SET_MODE");
+        assert_eq!(Order::set_mode(&PX4, Mode::Hold).name(), "DO_SET_MODE");
     }
 }

@@ -95,9 +95,10 @@ impl Keys {
             (_, KeyCode::Up) if self.asks => self.turn(self.from.saturating_sub(1)),
             (_, KeyCode::PageDown) if self.asks => self.turn(self.from.saturating_add(LEAF)),
             (_, KeyCode::PageUp) if self.asks => self.turn(self.from.saturating_sub(LEAF)),
-            (None, KeyCode::Char(' ')) if self.asks => self.turn(self.from.saturating_add(LEAF)),
+            (_, KeyCode::Char(' ')) if self.asks => self.turn(self.from.saturating_add(LEAF)),
             (_, KeyCode::Esc) => self.word = None,
-            (None, KeyCode::Char(letter)) if self.asks => self.word = Some(letter.to_string()),
+            // a word begins once the page was seen whole
+            (None, KeyCode::Char(letter)) if self.asks => self.word = self.read.then(|| letter.to_string()),
             (None, KeyCode::Char(WORD_KEY)) => self.word = Some(String::new()),
             (None, KeyCode::Char('h' | 'H' | ' ')) => return Some(KeyCommand::Hold),
             (None, KeyCode::Char('l' | 'L')) => return Some(KeyCommand::Land),
@@ -185,5 +186,16 @@ mod tests {
         press(&mut keys, ":k");
         let event = KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL);
         assert_eq!(keys.press(event), Some(KeyCommand::Quit));
+    }
+
+    #[test]
+    fn a_page_that_is_not_seen_whole_takes_no_letters_and_is_turned_all_the_same() {
+        let mut keys = Keys::default();
+        keys.ask(true);
+        keys.page(63, 23);
+        assert!(press(&mut keys, "xarm\n").is_empty() && keys.typed().is_none());
+        assert!(press(&mut keys, "    ").is_empty());
+        assert_eq!(keys.from(), 40);
+        assert_eq!(press(&mut keys, "arm\n"), [KeyCommand::Arm]);
     }
 }

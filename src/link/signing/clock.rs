@@ -6,7 +6,7 @@ use crate::link::clock::utc_us;
 const EPOCH_US: u64 = 1_420_070_400_000_000;
 /// Signing times of a second.
 pub(super) const SECOND: u64 = 100_000;
-/// A stream not heard before may be this much behind: a minute.
+/// A stream not heard before in this run may be this much behind: a minute.
 pub(super) const STALE: u64 = 60 * SECOND;
 
 /// The signing time of the wall clock.

@@ -13,7 +13,7 @@ pub enum Distrust {
     Wrong,
     /// its time was heard already
     Replayed,
-    /// the first of its stream, and signed too far in the past
+    /// the first of its stream in this run, and signed too far in the past
     Old {
         /// s behind our signing time
         behind_s: u64,

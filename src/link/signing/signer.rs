@@ -1,5 +1,6 @@
 //! Signs what a link sends and checks what it receives.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -36,6 +37,8 @@ struct Shared {
 #[derive(Debug)]
 struct State {
     times: Times,
+    /// streams of which a frame was believed since this began
+    heard: BTreeSet<StreamKey>,
     /// written to the file: no own time beyond it is used before it is moved
     kept: u64,
     file: Option<TimesFile>,
@@ -77,7 +80,7 @@ impl Signing {
     }
 
     pub(super) fn new(key: SigningKey, times: Times, file: Option<TimesFile>, warnings: Vec<String>) -> Self {
-        let state = State { kept: times.own, times, file };
+        let state = State { kept: times.own, times, heard: BTreeSet::new(), file };
         Self { shared: Arc::new(Shared { key, warnings, state: Mutex::new(state) }), link_id: 0 }
     }
 
@@ -152,12 +155,14 @@ impl State {
         self.times.own = now.max(self.times.own);
         match self.times.streams.get(&stream) {
             Some(last) if time <= *last => return Err(Distrust::Replayed),
-            None if time + STALE < self.times.own => {
+            // a stream that was heard in an earlier run is as new as any: frames signed since then may be played back
+            _ if !self.heard.contains(&stream) && time + STALE < self.times.own => {
                 return Err(Distrust::Old { behind_s: (self.times.own - time) / SECOND });
             }
             None if self.times.streams.len() >= STREAMS => return Err(Distrust::Replayed),
             _ => {}
         }
+        self.heard.insert(stream);
         self.times.streams.insert(stream, time);
         self.times.own = time.max(self.times.own);
         self.keep(now);

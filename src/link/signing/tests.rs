@@ -1,11 +1,13 @@
+use std::collections::BTreeMap;
+
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 
-use super::clock::{STALE, clock_warning, now};
-use super::times::{AHEAD, Times};
+use super::clock::{SECOND, STALE, clock_warning, now};
+use super::times::{AHEAD, StreamKey, Times};
 use super::{Distrust, Signing, SigningError, SigningKey, Told};
 use crate::link::event::LinkEvent;
-use crate::wire::Frame;
+use crate::wire::{ComponentId, Frame, SystemId};
 
 const NOW: u64 = 40_000_000_000_000;
 
@@ -200,4 +202,33 @@ fn time_goes_on_over_a_restart_with_the_clock_set_back() {
     assert!(time(&signed(&Signing::open(&key).unwrap(), 0)) > time(&used));
     // the forgotten one may still be writing
     let _ = std::fs::remove_dir_all(&folder);
+}
+
+#[test]
+fn a_stream_of_an_earlier_run_is_held_to_the_minute_again() {
+    let sender = at(1, NOW);
+    let receiver = at(1, NOW);
+    let last = signed(&sender, NOW);
+    assert_eq!(verify(&receiver, &last, NOW), Ok(()));
+    // signed after our run, recorded by somebody, played back a day later to the next
+    let between = signed(&sender, NOW + 10 * SECOND);
+    let later = signed(&sender, NOW + 20 * SECOND);
+    let key = StreamKey { link: 0, system: SystemId(1), component: ComponentId(1) };
+    let streams = BTreeMap::from([(key, NOW + 1)]);
+    let day = 24 * 60 * STALE;
+    let again = |now| {
+        let times = Times { own: now, streams: streams.clone() };
+        Signing::new(SigningKey::from_bytes([1; 32]), times, None, Vec::new())
+    };
+    let next = again(NOW + day);
+    assert!(matches!(verify(&next, &between, NOW + day), Err(Distrust::Old { behind_s: 86_390 })));
+    // the vehicle itself, once its clock is set, and from then on by order alone
+    assert_eq!(verify(&next, &signed(&sender, NOW + day), NOW + day), Ok(()));
+    let slow = signed(&sender, 0);
+    assert_eq!(verify(&next, &slow, NOW + 2 * day), Ok(()), "its clock may stand still while it is heard");
+    assert_eq!(verify(&next, &later, NOW + 2 * day), Err(Distrust::Replayed));
+    // within the minute the next run takes up the stream, but not what was heard before it
+    let soon = again(NOW + 15 * SECOND);
+    assert_eq!(verify(&soon, &last, NOW + 15 * SECOND), Err(Distrust::Replayed));
+    assert_eq!(verify(&soon, &between, NOW + 15 * SECOND), Ok(()));
 }

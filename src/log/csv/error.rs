@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::report::RowRejection;
+use crate::log::loss::RowRejection;
 use crate::text;
 
 /// Characters of a column's name that an error repeats.

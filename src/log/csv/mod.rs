@@ -3,14 +3,18 @@
 //! Rows stream through; what is wrong with one is counted and told, and the rest is kept.
 
 mod bounded;
+mod columns;
 mod convert;
 mod error;
+mod format;
 mod mapping;
+mod outlet;
 mod reader;
 mod report;
 mod rows;
 
 pub use error::CsvError;
+pub(super) use format::FORMAT;
 pub use mapping::{AttitudeForm, AxisFrame, CsvMapping, CsvQuantity, CsvTime, CsvUnit, column_count};
-pub use reader::{read_csv, read_csv_from};
-pub use report::{CsvReport, RowRejection};
+pub use reader::read_table;
+pub use report::CsvReport;

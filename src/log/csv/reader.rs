@@ -1,16 +1,17 @@
-//! Reads a table row by row into streams.
+//! Reads a table row by row and gives out what each holds.
 
 use std::collections::BTreeSet;
-use std::fs::File;
-use std::io::{BufRead, BufReader, Cursor, Read};
-use std::path::Path;
+use std::io::{BufRead, Cursor, Read};
 
 use ::csv::{ByteRecord, ReaderBuilder};
 
 use super::bounded::{BUFFER, Bounded, ROW_BYTES_MAX};
+use super::outlet::Outlet;
 use super::rows::{Clock, cells_si, number};
-use super::{CsvError, CsvMapping, CsvQuantity, CsvReport, RowRejection, convert};
-use crate::recording::{Recording, Stream, StreamKey};
+use super::{CsvError, CsvMapping, CsvQuantity, CsvReport, convert};
+use crate::log::format::{Place, Sink};
+use crate::log::loss::RowRejection;
+use crate::recording::StreamKey;
 use crate::text;
 
 /// The source named in the keys of streams that came from a table.
@@ -19,24 +20,17 @@ const SOURCE: &str = "CSV";
 /// Columns of a table.
 const COLUMNS_MAX: usize = 4096;
 
-/// Reads a file with a header row.
+/// Reads a table with a header row and gives each sample to `sink` as it comes (SI, body FLU, world NWU); memory does not
+/// grow with the table. `origin` is named in errors.
 ///
 /// # Errors
-/// [`CsvError`] where the file cannot be read, lacks a column that is not optional, or has no usable row.
-pub fn read_csv(path: &Path, mapping: &CsvMapping) -> Result<(Recording, CsvReport), CsvError> {
-    let file = File::open(path).map_err(|source| CsvError::Read { path: path.to_owned(), source })?;
-    read_csv_from(BufReader::new(file), &text::path(path), mapping)
-}
-
-/// As [`read_csv`], from any reader; `origin` is named in errors.
-///
-/// # Errors
-/// As [`read_csv`].
-pub fn read_csv_from(
+/// [`CsvError`] where the table cannot be read, lacks a column that is not optional, or has no usable row.
+pub fn read_table(
     mut reader: impl BufRead,
     origin: &str,
     mapping: &CsvMapping,
-) -> Result<(Recording, CsvReport), CsvError> {
+    sink: &mut Sink<'_>,
+) -> Result<CsvReport, CsvError> {
     let table_error = |source: ::csv::Error| CsvError::Table { origin: origin.to_owned(), source };
     let mut head = Vec::new();
     let mut limited = reader.by_ref().take(ROW_BYTES_MAX as u64);
@@ -44,9 +38,7 @@ pub fn read_csv_from(
     if head.len() == ROW_BYTES_MAX && !head.ends_with(b"\n") {
         return Err(CsvError::LongHeader { origin: origin.to_owned(), max: ROW_BYTES_MAX });
     }
-    if head.starts_with(b"\xef\xbb\xbf") {
-        head.drain(..3);
-    }
+    head.drain(..head.len() - without_mark(&head).len());
     if let Some(what) = no_text(&head) {
         return Err(CsvError::NoText { origin: origin.to_owned(), what });
     }
@@ -64,7 +56,7 @@ pub fn read_csv_from(
         }
         Err(source) => return Err(table_error(source)),
     };
-    let mut reading = Reading::new(&header, origin, mapping)?;
+    let mut reading = Reading::new(&header, origin, mapping, Outlet::new(sink))?;
     let mut record = ByteRecord::new();
     loop {
         table.get_mut().next_row();
@@ -81,8 +73,13 @@ pub fn read_csv_from(
     }
 }
 
+/// Without the mark that some programs put before text in UTF-8.
+pub(super) fn without_mark(head: &[u8]) -> &[u8] {
+    head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head)
+}
+
 /// What the first line is if it is no header at all.
-fn no_text(head: &[u8]) -> Option<&'static str> {
+pub(super) fn no_text(head: &[u8]) -> Option<&'static str> {
     let is_binary = |byte: &u8| byte.is_ascii_control() && !byte.is_ascii_whitespace();
     if head.is_empty() {
         Some("an empty file")
@@ -110,22 +107,32 @@ struct Mapped {
     quantity: CsvQuantity,
     /// of its columns, in the record
     indices: Vec<usize>,
-    stream: Stream,
 }
 
-struct Reading<'a> {
+impl Mapped {
+    fn key(&self) -> StreamKey {
+        StreamKey { quantity: self.quantity.quantity, source: SOURCE, instance: self.quantity.instance }
+    }
+}
+
+struct Reading<'a, 'b> {
     origin: &'a str,
     mapping: &'a CsvMapping,
     time_index: usize,
     columns: usize,
     mapped: Vec<Mapped>,
     clock: Clock,
-    times_s: Vec<f64>,
+    outlet: Outlet<'a, 'b>,
     report: CsvReport,
 }
 
-impl<'a> Reading<'a> {
-    fn new(header: &ByteRecord, origin: &'a str, mapping: &'a CsvMapping) -> Result<Self, CsvError> {
+impl<'a, 'b> Reading<'a, 'b> {
+    fn new(
+        header: &ByteRecord,
+        origin: &'a str,
+        mapping: &'a CsvMapping,
+        outlet: Outlet<'a, 'b>,
+    ) -> Result<Self, CsvError> {
         if header.len() > COLUMNS_MAX {
             let (origin, came) = (origin.to_owned(), header.len());
             return Err(CsvError::ManyColumns { origin, max: COLUMNS_MAX, came });
@@ -167,7 +174,7 @@ impl<'a> Reading<'a> {
             columns: present.len(),
             mapped,
             clock: Clock::default(),
-            times_s: Vec::new(),
+            outlet,
             report: CsvReport { unused_columns, ..CsvReport::default() },
         })
     }
@@ -175,7 +182,7 @@ impl<'a> Reading<'a> {
     fn row(&mut self, record: &ByteRecord) {
         self.report.rows += 1;
         match self.cells(record) {
-            Ok((raw_time, cells)) => self.keep(raw_time, cells),
+            Ok((raw_time, cells)) => self.keep(record.position(), raw_time, cells),
             Err(reason) => self.reject(record.position().map_or(0, ::csv::Position::line), reason),
         }
     }
@@ -209,49 +216,42 @@ impl<'a> Reading<'a> {
         Ok((raw_time, cells.collect::<Result<_, _>>()?))
     }
 
-    fn keep(&mut self, raw_time: f64, cells: Vec<Vec<f64>>) {
-        let time_s = self.clock.time_s(&self.mapping.time, raw_time);
-        self.times_s.push(time_s);
-        for (mapped, cells) in self.mapped.iter_mut().zip(cells) {
+    fn keep(&mut self, position: Option<&::csv::Position>, raw_time: f64, cells: Vec<Vec<f64>>) {
+        let place = Place { offset: position.map_or(0, ::csv::Position::byte), arrival_us: None };
+        let line = || position.map_or(0, ::csv::Position::line);
+        let row = self.clock.row(&self.mapping.time, raw_time);
+        if row.is_repeat {
+            self.report.rows_repeating_a_time += 1;
+            self.report.first_repeat_line.get_or_insert_with(line);
+        }
+        if let Some(stamp_s) = row.reset_s {
+            self.outlet.reset(place, row.time_s, stamp_s);
+        }
+        for (mapped, cells) in self.mapped.iter().zip(cells) {
             if cells.iter().all(|cell| cell.is_nan()) {
                 continue;
             }
             match convert::to_sample(&mapped.quantity, &cells) {
-                None => self.report.invalid_attitudes += 1,
-                Some(sample) => {
-                    mapped.stream.time_s.push(time_s);
-                    mapped.stream.width = sample.len();
-                    mapped.stream.values.extend(sample);
+                None => {
+                    self.report.invalid_attitudes += 1;
+                    self.report.first_invalid_attitude_line.get_or_insert_with(line);
                 }
+                Some(sample) => self.outlet.sample(place, mapped.key(), row.time_s, sample),
             }
         }
+        self.outlet.row(row.time_s, self.clock.latest_s());
     }
 
-    fn finish(mut self) -> Result<(Recording, CsvReport), CsvError> {
-        if self.times_s.is_empty() {
+    fn finish(mut self) -> Result<CsvReport, CsvError> {
+        let Some(first_row_s) = self.clock.first_row_s(&self.mapping.time) else {
             let (origin, rows) = (self.origin.to_owned(), self.report.rows);
             let first = self.report.rejections.into_iter().next();
             return Err(CsvError::NoRows { origin, rows, first });
-        }
-        self.times_s.sort_by(f64::total_cmp);
-        let start_s = self.times_s[0];
-        let repeats = self.times_s.windows(2).filter(|pair| pair[0] == pair[1]).count();
-        self.report.rows_repeating_a_time = repeats;
-        self.report.rows_out_of_order = self.clock.out_of_order;
-        self.report.clock_resets = self.clock.resets_s.len();
-        self.report.start_time_s = self.clock.start_s(&self.mapping.time) + start_s;
-        let mut recording = Recording {
-            clock_resets_s: self.clock.resets_s.iter().map(|time_s| time_s - start_s).collect(),
-            ..Recording::default()
         };
-        for Mapped { quantity, stream, .. } in self.mapped {
-            let key = StreamKey { quantity: quantity.quantity, source: SOURCE, instance: quantity.instance };
-            let stream = in_order(stream, start_s);
-            if !stream.is_empty() {
-                recording.streams.insert(key, stream);
-            }
-        }
-        Ok((recording, self.report))
+        self.report.rows_out_of_order = self.clock.out_of_order;
+        self.report.clock_resets = self.clock.resets;
+        self.report.start_time_s = first_row_s + self.outlet.finish();
+        Ok(self.report)
     }
 }
 
@@ -275,7 +275,7 @@ fn columns_of(quantity: &CsvQuantity, present: &[String]) -> Result<Option<Mappe
     }
     let indices = columns.iter().filter_map(|column| index_of(present, column)).collect();
     let quantity = CsvQuantity { columns, ..quantity.clone() };
-    Ok(Some(Mapped { quantity, indices, stream: Stream::default() }))
+    Ok(Some(Mapped { quantity, indices }))
 }
 
 /// `motor_{n}_command` to `motor_1_command`, `motor_2_command` and so on, as far as the header goes.
@@ -284,19 +284,4 @@ fn numbered(pattern: &str, present: &[String]) -> Vec<String> {
         .map(|number| pattern.replace("{n}", &number.to_string()))
         .take_while(|column| index_of(present, column).is_some())
         .collect()
-}
-
-/// Sorted by time (equal times stay in the file's order, the first is kept), counted from `start_s`.
-fn in_order(mut stream: Stream, start_s: f64) -> Stream {
-    // first, for times that differ by a rounding error may be equal afterwards
-    stream.time_s.iter_mut().for_each(|time_s| *time_s -= start_s);
-    let mut order: Vec<usize> = (0..stream.len()).collect();
-    order.sort_by(|a, b| stream.time_s[*a].total_cmp(&stream.time_s[*b]));
-    order.dedup_by(|next, kept| stream.time_s[*next] == stream.time_s[*kept]);
-    let mut sorted = Stream { width: stream.width, ..Stream::default() };
-    for index in order {
-        sorted.time_s.push(stream.time_s[index]);
-        sorted.values.extend_from_slice(stream.sample(index));
-    }
-    sorted
 }

@@ -1,5 +1,7 @@
 //! What was read of a table and what was left out.
 
+use crate::log::loss::{Loss, RowRejection};
+
 /// What was read and what was left out.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CsvReport {
@@ -15,10 +17,14 @@ pub struct CsvReport {
     pub rows_out_of_order: usize,
     /// rows with the same time as another; of each such group the first is kept
     pub rows_repeating_a_time: usize,
+    /// line of the first of these
+    pub first_repeat_line: Option<u64>,
     /// steps in time of more than a second back or an hour ahead, taken for a clock that started anew
     pub clock_resets: usize,
     /// attitudes left out: quaternions whose norm is not near one
     pub invalid_attitudes: usize,
+    /// line of the first of these
+    pub first_invalid_attitude_line: Option<u64>,
     /// columns that the mapping does not use
     pub unused_columns: Vec<String>,
     /// what the time column says at the recording's start, s
@@ -29,26 +35,28 @@ impl CsvReport {
     /// How many rejected rows are told one by one.
     pub const REJECTIONS_KEPT: usize = 20;
 
-    /// What of the file was left out, in words.
+    /// What of the file was left out.
     #[must_use]
-    pub fn losses(&self) -> Vec<String> {
+    pub fn losses(&self) -> Vec<Loss> {
+        let count = |rows: usize| rows as u64;
+        let rejected = Loss::RowsRejected {
+            count: count(self.rows_rejected),
+            of: count(self.rows),
+            first: self.rejections.first().cloned(),
+        };
+        let repeated = Loss::RepeatedTimes {
+            count: count(self.rows_repeating_a_time),
+            first_line: self.first_repeat_line.unwrap_or(0),
+        };
+        let no_rotations = Loss::NoRotations {
+            count: count(self.invalid_attitudes),
+            first_line: self.first_invalid_attitude_line.unwrap_or(0),
+        };
         let mut losses = Vec::new();
-        if self.rows_rejected > 0 {
-            let first = self
-                .rejections
-                .first()
-                .map_or_else(String::new, |row| format!(", the first in line {}: {}", row.line, row.reason));
-            losses.push(format!("{} of {} rows rejected{first}", self.rows_rejected, self.rows));
-        }
-        if let Some(line) = self.cut_at_line {
-            losses.push(format!("nothing is read from line {line} on, whose row has no end"));
-        }
-        if self.rows_repeating_a_time > 0 {
-            losses.push(format!("{} rows repeat a time and were left out", self.rows_repeating_a_time));
-        }
-        if self.invalid_attitudes > 0 {
-            losses.push(format!("{} attitudes are no rotations and were left out", self.invalid_attitudes));
-        }
+        losses.extend((self.rows_rejected > 0).then_some(rejected));
+        losses.extend(self.cut_at_line.map(|line| Loss::EndlessRow { line }));
+        losses.extend((self.rows_repeating_a_time > 0).then_some(repeated));
+        losses.extend((self.invalid_attitudes > 0).then_some(no_rotations));
         losses
     }
 
@@ -57,13 +65,4 @@ impl CsvReport {
     pub fn has_loss(&self) -> bool {
         self.rows_rejected + self.rows_repeating_a_time + self.invalid_attitudes > 0
     }
-}
-
-/// A row that was left out.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RowRejection {
-    /// line in the file, the header being 1
-    pub line: u64,
-    /// what was expected and what came
-    pub reason: String,
 }

@@ -1,5 +1,7 @@
 //! One row at a time: its time on one clock, its cells as numbers.
 
+use std::collections::VecDeque;
+
 use ::csv::ByteRecord;
 
 use super::{CsvQuantity, CsvTime};
@@ -23,36 +25,65 @@ pub(super) struct Clock {
     offset_s: f64,
     /// largest so far
     latest_s: f64,
-    /// where the clock started anew
-    pub resets_s: Vec<f64>,
+    /// in order: times of rows that another may still repeat
+    recent_s: VecDeque<f64>,
+    /// how often it started anew
+    pub resets: usize,
     /// rows behind a row above
     pub out_of_order: usize,
+}
+
+/// A row on that clock.
+pub(super) struct RowTime {
+    /// s from the first row
+    pub time_s: f64,
+    /// what the time column says, s, where the clock starts anew here
+    pub reset_s: Option<f64>,
+    /// a row above has the same time
+    pub is_repeat: bool,
 }
 
 impl Clock {
     /// The time of a row. After a reset the clock goes on [`CLOCK_RESET_S`] after the latest time: how long the
     /// pause was is not known.
-    pub fn time_s(&mut self, time: &CsvTime, raw: f64) -> f64 {
-        let Some(first) = self.first else {
-            self.first = Some(raw);
-            return 0.0;
-        };
-        let since_first_s = time.unit.to_si((raw - first) * time.scale);
+    pub fn row(&mut self, time: &CsvTime, raw: f64) -> RowTime {
+        let since_first_s = time.unit.to_si((raw - *self.first.get_or_insert(raw)) * time.scale);
         let mut time_s = since_first_s + self.offset_s;
+        let mut reset_s = None;
         if !(-CLOCK_RESET_S..=CLOCK_LEAP_S).contains(&(time_s - self.latest_s)) {
             self.offset_s = self.latest_s + CLOCK_RESET_S - since_first_s;
             time_s = self.latest_s + CLOCK_RESET_S;
-            self.resets_s.push(time_s);
+            self.resets += 1;
+            reset_s = Some(time.unit.to_si(raw * time.scale));
         } else if time_s < self.latest_s {
             self.out_of_order += 1;
         }
         self.latest_s = self.latest_s.max(time_s);
-        time_s
+        RowTime { time_s, reset_s, is_repeat: self.is_repeat(time_s) }
     }
 
-    /// What the time column says in the first row, s.
-    pub fn start_s(&self, time: &CsvTime) -> f64 {
-        self.first.map_or(f64::NAN, |raw| time.unit.to_si(raw * time.scale))
+    /// Whether a row above has this time, which is noted.
+    fn is_repeat(&mut self, time_s: f64) -> bool {
+        // with a margin: no row lies further back than a reset
+        while self.recent_s.front().is_some_and(|first_s| *first_s < self.latest_s - 2.0 * CLOCK_RESET_S) {
+            self.recent_s.pop_front();
+        }
+        let at = self.recent_s.partition_point(|known_s| *known_s < time_s);
+        if self.recent_s.get(at) == Some(&time_s) {
+            return true;
+        }
+        self.recent_s.insert(at, time_s);
+        false
+    }
+
+    /// The latest time so far, s from the first row.
+    pub fn latest_s(&self) -> f64 {
+        self.latest_s
+    }
+
+    /// What the time column says in the first row, s; `None` before it.
+    pub fn first_row_s(&self, time: &CsvTime) -> Option<f64> {
+        self.first.map(|raw| time.unit.to_si(raw * time.scale))
     }
 }
 

@@ -2,8 +2,8 @@
 
 use std::io::Read;
 
+use super::report::TlogReport;
 use crate::log::error::LogError;
-use crate::log::report::ReadReport;
 use crate::wire::{
     ByteOrder, Check, CrcSeeds, Frame, Header, MARKER_V1, MARKER_V2, MAX_FRAME_BYTES, Record, STAMP_BYTES,
     Start, is_wall_clock,
@@ -36,7 +36,7 @@ pub struct TlogReader<R: Read> {
     base: u64,
     order: Option<ByteOrder>,
     last_stamp_us: Option<u64>,
-    report: ReadReport,
+    report: TlogReport,
 }
 
 /// What stands at the reading position.
@@ -70,7 +70,7 @@ impl<R: Read> TlogReader<R> {
             base: 0,
             order: None,
             last_stamp_us: None,
-            report: ReadReport::default(),
+            report: TlogReport::default(),
         }
     }
 
@@ -108,7 +108,7 @@ impl<R: Read> TlogReader<R> {
                     return Ok(Some((stamp_us, stamp_bytes, frame_bytes, known)));
                 }
                 Found::BadCrc { bytes } => {
-                    self.report.bad_crc += 1;
+                    self.report.note_bad_crc(self.base + self.at as u64);
                     self.at += bytes;
                 }
                 Found::CutOff => self.resynchronise(true)?,
@@ -119,13 +119,13 @@ impl<R: Read> TlogReader<R> {
 
     /// What was met so far; complete once `next_record` has returned `None`.
     #[must_use]
-    pub fn report(&self) -> &ReadReport {
+    pub fn report(&self) -> &TlogReport {
         &self.report
     }
 
     /// The report, when reading is done.
     #[must_use]
-    pub fn into_report(self) -> ReadReport {
+    pub fn into_report(self) -> TlogReport {
         self.report
     }
 
@@ -170,7 +170,12 @@ impl<R: Read> TlogReader<R> {
         let raw = self.base == 0
             && Frame::at_start(&self.buffer[..self.filled])
                 .is_some_and(|frame| frame.check(&self.seeds) == Check::Right);
-        LogError::NotTlog { first: first.to_vec(), raw_capture: raw }
+        let frames = if raw { ": MAVLink frames without stamps" } else { "" };
+        LogError::WrongContent {
+            format: "telemetry log",
+            expected: "8-byte stamp in microseconds, then a MAVLink frame, repeated",
+            came: format!("a file that begins with {first:02x?}{frames}"),
+        }
     }
 
     fn frame(&self, at: usize) -> Option<Frame<'_>> {

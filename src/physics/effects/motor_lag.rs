@@ -1,6 +1,8 @@
 //! Rotors take time to reach the commanded speed.
 
-use crate::physics::{ActiveEffect, Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors};
+use crate::physics::{
+    ActiveEffect, Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, RotorLag, Rotors,
+};
 use crate::vehicle::Propulsion;
 
 /// `Omega' = (Omega_command - Omega) / time_constant`, with one state for each rotor. In the finer form,
@@ -62,13 +64,13 @@ impl Effect for MotorLag {
     }
 
     fn rotor_speed(&self, _at: &Condition, own: &mut Own, rotors: &mut Rotors) {
-        let bandwidth = |time_constant_s: f64| 1.0 / time_constant_s.max(LEAST_TIME_CONSTANT_S);
-        let up_1_s = bandwidth(own.parameters[0]);
-        let down_1_s = own.parameters.get(1).map_or(up_1_s, |down_s| bandwidth(*down_s));
+        let at_least = |time_constant_s: f64| time_constant_s.max(LEAST_TIME_CONSTANT_S);
+        let rising_s = at_least(own.parameters[0]);
+        let falling_s = own.parameters.get(1).map_or(rising_s, |down_s| at_least(*down_s));
+        let lag = RotorLag { rising_s, falling_s };
         let turning = rotors.speed.iter_mut().zip(&mut rotors.acceleration_1_s);
         for ((speed, acceleration), (state, rate)) in turning.zip(own.states.iter().zip(&mut *own.rates)) {
-            let missing = *speed - state;
-            *rate = missing * if missing > 0.0 { up_1_s } else { down_1_s };
+            *rate = lag.rate_1_s(*speed - state);
             (*speed, *acceleration) = (*state, *rate);
         }
     }

@@ -17,6 +17,7 @@ const DRAWN: usize = 3;
 /// The report: one file, nothing loaded from anywhere.
 #[must_use]
 pub fn explanation_html(study: &ExplainStudy) -> String {
+    let _stage = tracing::info_span!("report").entered();
     let sections = html! {
         @for said in &study.notes { (warning(&said.sentence())) }
         (charts(study))

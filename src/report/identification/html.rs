@@ -56,6 +56,7 @@ fn answer(study: &IdentifyStudy) -> String {
 /// The report: one file, nothing loaded from anywhere.
 #[must_use]
 pub fn identification_html(study: &IdentifyStudy) -> String {
+    let _stage = tracing::info_span!("report").entered();
     let notes = &study.identification.notes;
     let flights = study.inputs.iter().zip(&study.flights);
     let sections = html! {

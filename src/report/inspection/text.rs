@@ -199,6 +199,7 @@ fn reading(page: &mut String, inspection: &Inspection) {
                 row(page, "unused columns", listed(reading.unused_columns.iter()));
             }
         }
+        Reading::Other { name } => row(page, "format", name),
     }
 }
 

@@ -14,6 +14,7 @@ const ALIKE_PERCENT: f64 = 0.5;
 /// The report: one file, nothing loaded from anywhere.
 #[must_use]
 pub fn validation_html(study: &ValidateStudy) -> String {
+    let _stage = tracing::info_span!("report").entered();
     let names: Vec<&str> = study.models.iter().map(|model| model.name.as_str()).collect();
     let count = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let tags = [count(study.models.len(), "model"), count(study.flights.len(), "flight")];

@@ -1,4 +1,6 @@
-//! One parameter, and the tables of defaults.
+//! One parameter, and those of a table.
+
+use crate::autopilot::{ParameterType, Release, Stack};
 
 /// One parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -8,34 +10,17 @@ pub(super) struct Parameter {
     pub(super) value: f64,
 }
 
-/// MAV_PARAM_TYPE of a parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ParameterType {
-    Int8,
-    Int16,
-    Int32,
-    Real32,
-}
-
-impl ParameterType {
-    pub(super) fn mav(self) -> u8 {
-        match self {
-            Self::Int8 => 2,
-            Self::Int16 => 4,
-            Self::Int32 => 6,
-            Self::Real32 => 9,
-        }
-    }
-}
-
-/// A row of a table of defaults.
-pub(super) type Row = (&'static str, ParameterType, f64);
-
-/// Rows of a table as parameters.
-pub(super) fn rows(table: &[Row]) -> impl Iterator<Item = Parameter> + '_ {
-    table.iter().map(|(name, kind, value)| Parameter { name: (*name).to_owned(), kind: *kind, value: *value })
-}
-
 pub(super) fn parameter(name: String, kind: ParameterType, value: f64) -> Parameter {
     Parameter { name, kind, value }
+}
+
+/// All that have a default in a release.
+pub(super) fn defaults_of(stack: &Stack, release: Release) -> Vec<Parameter> {
+    let defaults = stack.parameters.defaults(release);
+    defaults.map(|(name, kind, value)| parameter(name.to_owned(), kind, value)).collect()
+}
+
+/// One that the vehicle decides; `None` where the autopilot has none of that name.
+pub(super) fn decided(stack: &Stack, name: &str, value: f64) -> Option<Parameter> {
+    stack.parameters.find(name).map(|entry| parameter(name.to_owned(), entry.kind, value))
 }

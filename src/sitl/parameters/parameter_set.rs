@@ -2,19 +2,22 @@
 
 use std::collections::BTreeMap;
 
-use super::parameter::{Parameter, ParameterType};
+use mavlink::dialects::ardupilotmega::PARAM_VALUE_DATA;
+
+use super::parameter::Parameter;
 use super::pulses::Pulses;
 use super::{ardupilot, px4};
+use crate::autopilot::{ParameterType, Reaction};
 use crate::sitl::battery::Battery;
 use crate::sitl::message::Message;
-use crate::sitl::{AutopilotKind, Settings, SitlError};
+use crate::sitl::{Firmware, Settings, SitlError};
 use crate::units::{narrow, whole};
 use crate::wire::Payload;
 
 /// All parameters, by name.
 #[derive(Debug)]
 pub(in crate::sitl) struct Parameters {
-    autopilot: AutopilotKind,
+    autopilot: Firmware,
     list: Vec<Parameter>,
     index: BTreeMap<String, usize>,
 }
@@ -26,11 +29,11 @@ impl Parameters {
     /// If the settings name a parameter that this autopilot does not have.
     pub(in crate::sitl) fn new(settings: &Settings) -> Result<Self, SitlError> {
         let pulses = Pulses::of(&settings.vehicle, settings.autopilot);
-        let mut list = match settings.autopilot {
-            AutopilotKind::Px4 => px4::defaults(settings.believed(), &pulses, settings.system),
-            AutopilotKind::ArduPilot(release) => {
-                ardupilot::defaults(settings.believed(), &pulses, settings.system, release)
-            }
+        let (vehicle, system, release) = (settings.believed(), settings.system, settings.autopilot.release());
+        let mut list = if settings.autopilot.is_px4() {
+            px4::defaults(vehicle, &pulses, system, release)
+        } else {
+            ardupilot::defaults(vehicle, &pulses, system, release)
         };
         list.sort_by(|a, b| a.name.cmp(&b.name));
         let index = list.iter().enumerate().map(|(at, parameter)| (parameter.name.clone(), at)).collect();
@@ -64,11 +67,23 @@ impl Parameters {
         self.find(name).map_or(0.0, |at| self.list[at].value)
     }
 
-    /// The first of these names that exists, with its factor to SI.
-    pub(in crate::sitl) fn first(&self, names: &[(&str, f64)]) -> f64 {
-        let found =
-            names.iter().find_map(|(name, factor)| self.find(name).map(|at| self.list[at].value * factor));
-        found.unwrap_or(0.0)
+    /// Value in its base unit (SI, but degrees for angles) of a parameter by its older name, under whichever name it has;
+    /// zero where this autopilot has none of that name.
+    pub(in crate::sitl) fn in_base_unit(&self, name: &str) -> f64 {
+        let table = &self.autopilot.stack().parameters;
+        let Some(entry) = table.find(name) else { return 0.0 };
+        let factor = 1.0 / entry.unit.per_base;
+        match table.renames_of(name).find(|renamed| self.find(renamed.new).is_some()) {
+            Some(renamed) => self.value(renamed.new) * (renamed.scale * factor),
+            None => self.value(name) * factor,
+        }
+    }
+
+    /// What a failsafe's parameter (older name) asks for; nothing for a value without a meaning.
+    pub(in crate::sitl) fn reaction(&self, name: &str) -> Reaction {
+        let choice =
+            self.autopilot.stack().failsafe(name).and_then(|failsafe| failsafe.choice(self.value(name)));
+        choice.map_or(Reaction::Nothing, |choice| choice.reaction)
     }
 
     /// Sets a value as the parameter's type holds it; false where there is none of that name.
@@ -84,9 +99,9 @@ impl Parameters {
     /// What a PARAM_SET of this type and these bytes asks for; `None` where PX4 refuses the type.
     pub(in crate::sitl) fn decode(&self, at: usize, kind: u8, payload: Payload) -> Option<f64> {
         let parameter = self.list.get(at)?;
-        match self.autopilot {
-            AutopilotKind::Px4 if kind != parameter.kind.mav() => None,
-            AutopilotKind::Px4 if parameter.kind != ParameterType::Real32 => Some(payload.i32(0).into()),
+        match self.autopilot.is_px4() {
+            true if u32::from(kind) != parameter.kind.mav() as u32 => None,
+            true if parameter.kind != ParameterType::Real32 => Some(payload.i32(0).into()),
             _ => Some(payload.f32(0)).filter(|value| value.is_finite()),
         }
     }
@@ -94,15 +109,17 @@ impl Parameters {
     /// PARAM_VALUE. `index` as asked for: PX4 and ArduPilot give an index also where the name was asked.
     pub(in crate::sitl) fn message(&self, at: usize) -> Option<Message> {
         let parameter = self.list.get(at)?;
-        let whole_value = whole(parameter.value);
-        let message = Message::new(22);
-        let message = match (self.autopilot, parameter.kind) {
+        let param_value = match (self.autopilot.is_px4(), parameter.kind) {
             // the bytes of the integer in the place of the float
-            (AutopilotKind::Px4, ParameterType::Int32) => message.i32(whole_value),
-            _ => message.f32(parameter.value),
+            (true, ParameterType::Int32) => f32::from_le_bytes(whole(parameter.value).to_le_bytes()),
+            _ => narrow(parameter.value),
         };
-        let count = u16::try_from(self.list.len()).unwrap_or(u16::MAX);
-        let index = u16::try_from(at).unwrap_or(u16::MAX);
-        Some(message.u16(count).u16(index).text(parameter.name.as_bytes(), 16).u8(parameter.kind.mav()))
+        Some(Message::from(PARAM_VALUE_DATA {
+            param_value,
+            param_count: u16::try_from(self.list.len()).unwrap_or(u16::MAX),
+            param_index: u16::try_from(at).unwrap_or(u16::MAX),
+            param_id: parameter.name.as_str().into(),
+            param_type: parameter.kind.mav(),
+        }))
     }
 }

@@ -1,13 +1,18 @@
 //! Pulse widths that the autopilot puts out.
 
-use crate::sitl::AutopilotKind;
+use crate::autopilot::ARDUPILOT;
+use crate::sitl::Firmware;
 use crate::units::whole;
 use crate::vehicle::{Actuator, PwmRange, Vehicle as Description};
 
-/// ArduPilot's MOT_SPIN_MIN and MOT_SPIN_MAX.
-pub(super) const SPIN: (f64, f64) = (0.15, 0.95);
 /// PX4's PWM_MAIN_DISn.
 const PX4_OFF_US: f64 = 900.0;
+
+/// ArduPilot's MOT_SPIN_MIN and MOT_SPIN_MAX: shares of the pulse range at none and at full command.
+pub(super) fn spin() -> (f64, f64) {
+    let default = |name| ARDUPILOT.parameters.find(name).and_then(|entry| entry.default).unwrap_or(0.0);
+    (default("MOT_SPIN_MIN"), default("MOT_SPIN_MAX"))
+}
 
 /// Pulse widths that the autopilot puts out, microseconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,23 +27,19 @@ pub(in crate::sitl) struct Pulses {
 
 impl Pulses {
     /// Those of the vehicle's file; where it has none the autopilot's defaults.
-    pub(in crate::sitl) fn of(vehicle: &Description, autopilot: AutopilotKind) -> Self {
+    pub(in crate::sitl) fn of(vehicle: &Description, autopilot: Firmware) -> Self {
         let stated = match vehicle.propulsion.actuator {
             Actuator::Pwm(range) => range,
             Actuator::Speed | Actuator::Thrust => None,
         };
-        match autopilot {
-            AutopilotKind::Px4 => {
-                let PwmRange { min_us, max_us } =
-                    stated.unwrap_or(PwmRange { min_us: 1000.0, max_us: 2000.0 });
-                Self { min_us, max_us, off_us: PX4_OFF_US.min(min_us) }
-            }
-            AutopilotKind::ArduPilot(_) => {
-                let PwmRange { min_us, max_us } =
-                    stated.unwrap_or(PwmRange { min_us: 1150.0, max_us: 1950.0 });
-                let span_us = (max_us - min_us) / (SPIN.1 - SPIN.0);
-                Self { min_us, max_us, off_us: min_us - SPIN.0 * span_us }
-            }
+        if autopilot.is_px4() {
+            let PwmRange { min_us, max_us } = stated.unwrap_or(PwmRange { min_us: 1000.0, max_us: 2000.0 });
+            Self { min_us, max_us, off_us: PX4_OFF_US.min(min_us) }
+        } else {
+            let PwmRange { min_us, max_us } = stated.unwrap_or(PwmRange { min_us: 1150.0, max_us: 1950.0 });
+            let (none, full) = spin();
+            let span_us = (max_us - min_us) / (full - none);
+            Self { min_us, max_us, off_us: min_us - none * span_us }
         }
     }
 

@@ -11,3 +11,4 @@ mod status;
 
 pub(super) use scene::Snapshot;
 pub(super) use source::Telemetry;
+pub(super) use status::PROTOCOL;

@@ -1,21 +1,21 @@
 //! Position, velocity, targets and home.
 
+use mavlink::dialects::ardupilotmega::{
+    ALTITUDE_DATA, GLOBAL_POSITION_INT_DATA, GPS_GLOBAL_ORIGIN_DATA, GPS_RAW_INT_DATA, GpsFixType,
+    HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, MavEstimatorType, MavFrame, ODOMETRY_DATA,
+    POSITION_TARGET_LOCAL_NED_DATA, PositionTargetTypemask, VFR_HUD_DATA,
+};
 use nalgebra::Vector3;
 
 use super::super::Origin;
 use super::super::demand::{frd, ned};
 use super::super::guidance::Task;
 use super::super::message::Message;
-use super::super::message_id as ids;
 use super::field::{short, ushort};
 use super::scene::Scene;
 use super::source::Telemetry;
 use crate::frames::{Attitude, frd_ned_from_attitude, yaw_from_ned};
-use crate::units::whole;
-
-/// MAV_FRAME.
-const LOCAL_NED: u8 = 1;
-const BODY_FRD: u8 = 12;
+use crate::units::{narrow, whole};
 
 /// Degrees north and east (times 1e7) and height above sea (mm) of a place in the local frame.
 fn on_earth(origin: &Origin, position_m: &Vector3<f64>) -> [i32; 3] {
@@ -31,10 +31,10 @@ fn heading_deg(scene: &Scene) -> f64 {
 
 impl Telemetry {
     pub(super) fn local_position_ned(&self, scene: &Scene) -> Message {
-        Message::new(ids::LOCAL_POSITION_NED)
-            .u32(scene.ms(self.skew.position_s))
-            .f32s(&ned(scene.seen.position_m))
-            .f32s(&ned(scene.seen.velocity_m_s))
+        let [x, y, z] = ned(scene.seen.position_m).map(narrow);
+        let [vx, vy, vz] = ned(scene.seen.velocity_m_s).map(narrow);
+        let time_boot_ms = scene.ms(self.skew.position_s);
+        Message::from(LOCAL_POSITION_NED_DATA { time_boot_ms, x, y, z, vx, vy, vz })
     }
 
     /// Position in the local frame, velocity in the body's.
@@ -43,84 +43,121 @@ impl Telemetry {
         let variance = |level: f64| {
             let mut upper = [0.0; 21];
             for diagonal in [0, 6, 11] {
-                upper[diagonal] = level * level;
+                upper[diagonal] = narrow(level * level);
             }
             upper
         };
-        Message::new(ids::ODOMETRY)
-            .u64(scene.us(self.skew.position_s))
-            .f32s(&ned(seen.position_m))
-            .f32s(&frd_ned_from_attitude(Attitude(seen.attitude)))
-            .f32s(&frd(seen.body_velocity_m_s()))
-            .f32s(&frd(seen.rates_rad_s))
-            .f32s(&variance(self.noise.position_m))
-            .f32s(&variance(self.noise.velocity_m_s))
-            .u8(LOCAL_NED)
-            .u8(BODY_FRD)
-            .u8(scene.autopilot.estimator.reset_counter)
-            .u8(8)
-            .i8(0)
+        let [x, y, z] = ned(seen.position_m).map(narrow);
+        let [vx, vy, vz] = frd(seen.body_velocity_m_s()).map(narrow);
+        let [rollspeed, pitchspeed, yawspeed] = frd(seen.rates_rad_s).map(narrow);
+        Message::from(ODOMETRY_DATA {
+            time_usec: scene.us(self.skew.position_s),
+            x,
+            y,
+            z,
+            q: frd_ned_from_attitude(Attitude(seen.attitude)).map(narrow),
+            vx,
+            vy,
+            vz,
+            rollspeed,
+            pitchspeed,
+            yawspeed,
+            pose_covariance: variance(self.noise.position_m),
+            velocity_covariance: variance(self.noise.velocity_m_s),
+            frame_id: MavFrame::MAV_FRAME_LOCAL_NED,
+            child_frame_id: MavFrame::MAV_FRAME_BODY_FRD,
+            reset_counter: scene.autopilot.estimator.reset_counter,
+            estimator_type: MavEstimatorType::MAV_ESTIMATOR_TYPE_AUTOPILOT,
+            quality: 0,
+        })
     }
 
     pub(super) fn gps_raw_int(&self, scene: &Scene) -> Message {
-        let place = on_earth(&self.origin, &scene.seen.position_m);
-        let speed = scene.seen.velocity_m_s.xy().norm();
-        let message = Message::new(ids::GPS_RAW_INT).u64(scene.us(0.0));
-        let message = place.iter().fold(message, |message, value| message.i32(*value));
-        // GPS_FIX_TYPE_3D_FIX, dilution times 100, course not known
-        message.u16(70).u16(110).u16(ushort(1e2 * speed)).u16(u16::MAX).u8(3).u8(14)
+        let [lat, lon, alt] = on_earth(&self.origin, &scene.seen.position_m);
+        Message::from(GPS_RAW_INT_DATA {
+            time_usec: scene.us(0.0),
+            lat,
+            lon,
+            alt,
+            // dilution times 100
+            eph: 70,
+            epv: 110,
+            vel: ushort(1e2 * scene.seen.velocity_m_s.xy().norm()),
+            // not known
+            cog: u16::MAX,
+            fix_type: GpsFixType::GPS_FIX_TYPE_3D_FIX,
+            satellites_visible: 14,
+            ..GPS_RAW_INT_DATA::DEFAULT
+        })
     }
 
     pub(super) fn global_position_int(&self, scene: &Scene) -> Message {
-        let message = Message::new(ids::GLOBAL_POSITION_INT).u32(scene.ms(self.skew.position_s));
-        let place = on_earth(&self.origin, &scene.seen.position_m);
-        let message = place.iter().fold(message, |message, value| message.i32(*value));
+        let [lat, lon, alt] = on_earth(&self.origin, &scene.seen.position_m);
         let home_m = scene.autopilot.home_m.unwrap_or_else(Vector3::zeros);
-        let message = message.i32(whole(1e3 * (scene.seen.position_m.z - home_m.z)));
-        let velocity = ned(scene.seen.velocity_m_s);
-        velocity
-            .iter()
-            .fold(message, |message, value| message.i16(short(1e2 * value)))
-            .u16(ushort(1e2 * heading_deg(scene)))
+        let [vx, vy, vz] = ned(scene.seen.velocity_m_s).map(|value| short(1e2 * value));
+        Message::from(GLOBAL_POSITION_INT_DATA {
+            time_boot_ms: scene.ms(self.skew.position_s),
+            lat,
+            lon,
+            alt,
+            relative_alt: whole(1e3 * (scene.seen.position_m.z - home_m.z)),
+            vx,
+            vy,
+            vz,
+            hdg: ushort(1e2 * heading_deg(scene)),
+        })
     }
 
     pub(super) fn gps_global_origin(&self, scene: &Scene) -> Message {
-        let place = on_earth(&self.origin, &Vector3::zeros());
-        let message = Message::new(ids::GPS_GLOBAL_ORIGIN);
-        place.iter().fold(message, |message, value| message.i32(*value)).u64(scene.us(0.0))
+        let [latitude, longitude, altitude] = on_earth(&self.origin, &Vector3::zeros());
+        Message::from(GPS_GLOBAL_ORIGIN_DATA { latitude, longitude, altitude, time_usec: scene.us(0.0) })
     }
 
     pub(super) fn home_position(&self, scene: &Scene) -> Option<Message> {
         let home_m = scene.autopilot.home_m?;
-        let message = Message::new(ids::HOME_POSITION);
-        let place = on_earth(&self.origin, &home_m);
-        let message = place.iter().fold(message, |message, value| message.i32(*value));
-        Some(message.f32s(&ned(home_m)).f32s(&[1.0, 0.0, 0.0, 0.0]).f32s(&[0.0; 3]).u64(scene.us(0.0)))
+        let [latitude, longitude, altitude] = on_earth(&self.origin, &home_m);
+        let [x, y, z] = ned(home_m).map(narrow);
+        Some(Message::from(HOME_POSITION_DATA {
+            latitude,
+            longitude,
+            altitude,
+            x,
+            y,
+            z,
+            q: [1.0, 0.0, 0.0, 0.0],
+            time_usec: scene.us(0.0),
+            ..HOME_POSITION_DATA::DEFAULT
+        }))
     }
 
     pub(super) fn altitude(&self, scene: &Scene) -> Message {
         let height_m = scene.seen.position_m.z;
         let home_m = scene.autopilot.home_m.map_or(0.0, |home| home.z);
-        let above_sea_m = self.origin.altitude_m + height_m;
-        Message::new(ids::ALTITUDE).u64(scene.us(0.0)).f32s(&[
-            above_sea_m,
-            above_sea_m,
-            height_m,
-            height_m - home_m,
-            f64::NAN,
-            f64::NAN,
-        ])
+        let above_sea_m = narrow(self.origin.altitude_m + height_m);
+        Message::from(ALTITUDE_DATA {
+            time_usec: scene.us(0.0),
+            altitude_monotonic: above_sea_m,
+            altitude_amsl: above_sea_m,
+            altitude_local: narrow(height_m),
+            altitude_relative: narrow(height_m - home_m),
+            altitude_terrain: f32::NAN,
+            bottom_clearance: f32::NAN,
+        })
     }
 
     pub(super) fn vfr_hud(&self, scene: &Scene) -> Message {
         let seen = &scene.seen;
-        let speed = seen.velocity_m_s.xy().norm();
+        let speed = narrow(seen.velocity_m_s.xy().norm());
         let throttle = scene.autopilot.cascade.wanted().thrust_n / scene.autopilot.thrust_max_n;
         let throttle = if scene.autopilot.is_armed() { throttle.clamp(0.0, 1.0) } else { 0.0 };
-        Message::new(ids::VFR_HUD)
-            .f32s(&[speed, speed, self.origin.altitude_m + seen.position_m.z, seen.velocity_m_s.z])
-            .i16(short(heading_deg(scene)))
-            .u16(ushort(1e2 * throttle))
+        Message::from(VFR_HUD_DATA {
+            airspeed: speed,
+            groundspeed: speed,
+            alt: narrow(self.origin.altitude_m + seen.position_m.z),
+            climb: narrow(seen.velocity_m_s.z),
+            heading: short(heading_deg(scene)),
+            throttle: ushort(1e2 * throttle),
+        })
     }
 
     /// What was asked for, or where no setpoint is flown what the autopilot asks of itself. ArduPilot does not
@@ -146,14 +183,24 @@ impl Telemetry {
             }
         }
         mask |= u16::from(yaw.is_none()) << 10 | 1 << 11;
-        Message::new(ids::POSITION_TARGET_LOCAL_NED)
-            .u32(scene.ms(0.0))
-            .f32s(&ned(position))
-            .f32s(&ned(velocity))
-            .f32s(&ned(acceleration))
-            .f32(yaw.map_or(0.0, yaw_from_ned))
-            .f32(0.0)
-            .u16(mask)
-            .u8(LOCAL_NED)
+        let [x, y, z] = ned(position).map(narrow);
+        let [vx, vy, vz] = ned(velocity).map(narrow);
+        let [afx, afy, afz] = ned(acceleration).map(narrow);
+        Message::from(POSITION_TARGET_LOCAL_NED_DATA {
+            time_boot_ms: scene.ms(0.0),
+            x,
+            y,
+            z,
+            vx,
+            vy,
+            vz,
+            afx,
+            afy,
+            afz,
+            yaw: yaw.map_or(0.0, |yaw_rad| narrow(yaw_from_ned(yaw_rad))),
+            yaw_rate: 0.0,
+            type_mask: PositionTargetTypemask::from_bits_retain(mask),
+            coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+        })
     }
 }

@@ -1,9 +1,7 @@
 //! The message of an id as it is now.
 
-use super::field::nanoseconds;
 use super::scene::{Scene, Snapshot};
 use super::source::Telemetry;
-use super::status::timesync;
 use crate::sitl::autopilot::Autopilot;
 use crate::sitl::message::Message;
 use crate::sitl::message_id as ids;
@@ -30,9 +28,10 @@ impl Telemetry {
             ids::AUTOPILOT_VERSION => self.autopilot_version(),
             ids::EXTENDED_SYS_STATE => self.extended_sys_state(&scene),
             ids::CURRENT_MODE => self.current_mode(&scene),
-            ids::CURRENT_EVENT_SEQUENCE => Message::foreign(id, 106).u16(0).u8(0),
-            ids::TIMESYNC => timesync(0, nanoseconds(at.now)),
-            ids::ESTIMATOR_STATUS | ids::EKF_STATUS_REPORT => self.estimator_status(id, &scene),
+            ids::CURRENT_EVENT_SEQUENCE => Self::current_event_sequence(),
+            ids::TIMESYNC => Self::timesync(at.now),
+            ids::ESTIMATOR_STATUS => self.estimator_status(&scene),
+            ids::EKF_STATUS_REPORT => self.ekf_status_report(&scene),
             ids::RC_CHANNELS if autopilot.safety.has_transmitter() => self.rc_channels(&scene),
             ids::ATTITUDE => self.attitude(&scene),
             ids::ATTITUDE_QUATERNION => self.attitude_quaternion(&scene),

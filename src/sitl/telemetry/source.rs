@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::simulate::{NoiseLevels, StreamSkew};
-use crate::sitl::{AutopilotKind, Origin, Settings};
+use crate::sitl::{Firmware, Origin, Settings};
 use crate::wire::EMBEDDED_UID2;
 
 /// Keeps the telemetry's noise apart from the autopilot's.
@@ -13,7 +13,7 @@ const TELEMETRY_SEED: u64 = 0x7465_6c65_6d65_7472;
 /// Makes messages.
 #[derive(Debug)]
 pub(in crate::sitl) struct Telemetry {
-    pub(super) kind: AutopilotKind,
+    pub(super) kind: Firmware,
     pub(super) noise: NoiseLevels,
     pub(super) skew: StreamSkew,
     pub(super) rng: Pcg64Mcg,

@@ -3,15 +3,20 @@
 use super::request::{Circle, PlannedSeries, PlanningRequest};
 use super::result::{Flown, PlanStudy};
 use crate::config::{StoredTransitions, read_limits, read_trajectory, read_vehicle};
-use crate::note::Note;
+use crate::note::{About, Note};
 use crate::plan::{
-    Dynamics, FlightPlan, PlanError, Roomed, assess, bounds_of, flight_path, floor_m, plan, search_of,
-    with_room,
+    Dynamics, FlightPlan, PlanError, Reach, RestInside, Roomed, assess, bounds_of, flight_path, floor_m,
+    plan, search_of, with_room,
 };
 use crate::study::flights::file_notes;
 use crate::study::{Progress, StudyError};
 use crate::trajectory::{CirclePath, FlightPath, FourierTrajectory, Segment};
 use crate::vehicle::{Limits, Vehicle};
+
+/// Where the ways to the series and back cannot keep what the series keeps.
+const BEYOND_ON_THE_WAY: &str = "expected a vehicle that hears no more setpoints on the way to the series or back to come to \
+                                 rest inside the room, came a takeoff or a landing from which no such way leads: move it \
+                                 further inside";
 
 /// s a turn of a circle, from and to.
 const TURN_S: [f64; 2] = [0.1, 1000.0];
@@ -28,12 +33,26 @@ pub fn plan_flight(request: &PlanningRequest, progress: &dyn Progress) -> Result
     let Roomed { limits, notes: of_room } = with_room(&stated, &vehicle);
     notes.extend(file_notes(request.limits.as_deref().unwrap_or(&request.vehicle), &of_room));
     notes.iter().for_each(|note| progress.note(note));
-    let mut study = planned(request, (&vehicle, &limits), (notes, progress))?;
+    let (mut study, rest) = planned(request, (&vehicle, &limits), (notes, progress))?;
     let flight = around(&study.series, request, study.repeats);
-    if let Some(violation) = below_floor(&flight, &vehicle) {
+    if let Some(violation) = fits_nowhere(&limits, &vehicle).or_else(|| below_floor(&flight, &vehicle)) {
         study.first_violation.get_or_insert(violation);
     }
-    match flight_path(&study.series, &flight, &bounds_of(&limits, &vehicle), &Dynamics::new(&vehicle)) {
+    let mut note = |note: Note| {
+        progress.note(&note);
+        study.notes.push(note);
+    };
+    rest_note(request, rest.as_ref()).into_iter().for_each(&mut note);
+    let (bounds, dynamics) = (bounds_of(&limits, &vehicle), Dynamics::new(&vehicle));
+    let calm = rest.and_then(|rest| {
+        let calm = [bounds.as_slice(), &rest.bounds].concat();
+        let path = flight_path(&study.series, &flight, &calm, &dynamics);
+        if path.is_err() {
+            note(Note::warning(About::Vehicle, BEYOND_ON_THE_WAY));
+        }
+        path.ok()
+    });
+    match calm.map_or_else(|| flight_path(&study.series, &flight, &bounds, &dynamics), Ok) {
         Ok(path) => {
             study.transitions = transitions(&path, &flight);
             study.flown = Some(Flown::of(&path, &vehicle));
@@ -45,34 +64,56 @@ pub fn plan_flight(request: &PlanningRequest, progress: &dyn Progress) -> Result
     Ok(study)
 }
 
-/// The series and what it is worth.
+/// What is to be known where a vehicle that hears nothing more may leave the room.
+fn rest_note(request: &PlanningRequest, rest: Option<&RestInside>) -> Option<Note> {
+    if !request.search.rests_inside || request.series != PlannedSeries::Searched {
+        return None;
+    }
+    let remedy = "enlarge the room, or plan with a lower speed_max_m_s or a longer --period";
+    let text = match rest.map(|rest| rest.inside_m) {
+        Some(inside_m) if inside_m >= 0.0 => return None,
+        Some(inside_m) => format!(
+            "expected a vehicle that hears no more setpoints to come to rest inside the room, came up to {:.2} m outside \
+             (its rotors, PX4's default parameters): {remedy}",
+            -inside_m
+        ),
+        None => format!(
+            "expected a vehicle that hears no more setpoints to come to rest inside the room, came no such plan: this one \
+             disregards it; {remedy}"
+        ),
+    };
+    Some(Note::warning(About::Vehicle, text))
+}
+
+/// The series and what it is worth; and what keeps a vehicle that hears nothing more inside the room, as far as the search
+/// kept it.
 fn planned(
     request: &PlanningRequest,
     (vehicle, limits): (&Vehicle, &Limits),
     (notes, progress): (Vec<Note>, &dyn Progress),
-) -> Result<PlanStudy, StudyError> {
+) -> Result<(PlanStudy, Option<RestInside>), StudyError> {
     let mut search = request.search.clone();
     let bounds = bounds_of(limits, vehicle);
-    let (series, assessment, criterion_value) = match &request.series {
+    let (series, assessment, criterion_value, rest) = match &request.series {
         PlannedSeries::Searched => {
             progress.steps(search_of(&search).work());
             let plan = plan(vehicle, limits, &search, &|| progress.step())?;
-            (plan.trajectory, plan.assessment, Some(plan.criterion_value))
+            (plan.trajectory, plan.assessment, Some(plan.criterion_value), plan.rest)
         }
         PlannedSeries::Stored(file) => {
             let stored = read_trajectory(file)?;
             search.repeats = stored.repeats;
             let worth = assess(&stored.series, vehicle, &bounds, &search);
-            (stored.series, worth, None)
+            (stored.series, worth, None, None)
         }
         PlannedSeries::Circle(circle) => {
             let series = turns(circle, limits)?;
             series.check_size(search.repeats).map_err(PlanError::from)?;
             let worth = assess(&series, vehicle, &bounds, &search);
-            (series, worth, None)
+            (series, worth, None, None)
         }
     };
-    Ok(PlanStudy {
+    let study = PlanStudy {
         series,
         repeats: search.repeats,
         limits: *limits,
@@ -83,7 +124,8 @@ fn planned(
         transitions: None,
         flown: None,
         notes,
-    })
+    };
+    Ok((study, rest))
 }
 
 fn turns(circle: &Circle, limits: &Limits) -> Result<FourierTrajectory, StudyError> {
@@ -115,6 +157,16 @@ fn around(series: &FourierTrajectory, request: &PlanningRequest, repeats: u32) -
     let mean: [f64; 4] = std::array::from_fn(|i| series.axes[i].c);
     let takeoff = request.takeoff.unwrap_or(mean);
     FlightPlan { takeoff, landing: request.landing.unwrap_or(takeoff), hover_s: 0.0, repeats }
+}
+
+/// A room that is narrower than the vehicle.
+fn fits_nowhere(limits: &Limits, vehicle: &Vehicle) -> Option<String> {
+    let side_m = Reach::of(vehicle).side_m;
+    let walls = [("x_max_m", limits.x_max_m), ("y_max_m", limits.y_max_m)];
+    walls.into_iter().find_map(|(name, wall_m)| {
+        let wall_m = wall_m.filter(|wall_m| *wall_m <= side_m)?;
+        Some(format!("the rotors reach {side_m:.2} m to each side, the wall {name} is at {wall_m:.2} m"))
+    })
 }
 
 /// A hover before or after the series in which the rotors come near the ground.

@@ -24,6 +24,8 @@ pub(super) fn flight(
     models: &[Contender],
     transient_s: f64,
 ) -> Result<ValidatedFlight, StudyError> {
+    let path = flight.input.path.as_str();
+    let _stage = tracing::info_span!("predict", path, models = models.len()).entered();
     let settings = ConditionSettings { transient_s: Some(transient_s), ..ConditionSettings::default() };
     // each model's own thrust law turns commands into thrusts
     let conditioned = models

@@ -1,12 +1,12 @@
 //! Decodes one vehicle's messages.
 
-use super::event::Event;
 use super::report::DecodeReport;
 use super::samples::Samples;
 use super::source::Source;
 use super::text::Texts;
 use super::vehicle::Vehicle;
 use super::{motion, setpoints, status};
+use crate::recording::Event;
 use crate::wire::clock::{Anchor, Placed, VehicleClock};
 use crate::wire::frame::Payload;
 use crate::wire::stamped::Record;

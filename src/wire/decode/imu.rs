@@ -2,8 +2,9 @@
 
 use super::motion::xyz;
 use super::samples::Samples;
+use crate::autopilot::Autopilot;
 use crate::frames::body_from_frd;
-use crate::recording::{Autopilot, Quantity};
+use crate::recording::Quantity;
 use crate::units::{m_s2_from_milli_g, rad_s_from_mrad_s};
 use crate::wire::frame::Payload;
 

@@ -6,7 +6,6 @@
 mod actuators;
 mod decoder;
 mod dispatch;
-mod event;
 mod imu;
 mod motion;
 mod report;
@@ -18,7 +17,6 @@ mod text;
 mod vehicle;
 
 pub use decoder::Decoder;
-pub use event::Event;
 pub use report::DecodeReport;
-pub use source::{Source, StreamId};
+pub use source::Source;
 pub use vehicle::Vehicle;

@@ -1,10 +1,9 @@
 //! Where a message's samples go.
 
-use super::event::Event;
 use super::report::DecodeReport;
-use super::source::{Source, StreamId};
+use super::source::Source;
 use super::vehicle::Vehicle;
-use crate::recording::Quantity;
+use crate::recording::{Event, Quantity, StreamKey};
 
 /// Where a message's samples go.
 pub(super) struct Samples<'a> {
@@ -21,7 +20,7 @@ impl Samples<'_> {
     pub fn give(&mut self, quantity: Quantity, instance: u8, values: &[f64]) {
         if values.iter().any(|value| value.is_finite()) {
             self.given = true;
-            let stream = StreamId { quantity, source: self.source, instance };
+            let stream = StreamKey { quantity, source: self.source.name(), instance };
             (self.sink)(Event::Sample { stream, time_s: self.time_s, values });
         }
     }

@@ -1,27 +1,7 @@
 //! The messages that are read, and where each keeps its time.
 
-use crate::recording::{Quantity, StreamKey};
 use crate::wire::clock::Stamp;
 use crate::wire::frame::Payload;
-
-/// Which stream a sample is of; small and quick to compare.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct StreamId {
-    /// what it holds
-    pub quantity: Quantity,
-    /// from which message
-    pub source: Source,
-    /// port, index or sensor number; 0 where there is one
-    pub instance: u8,
-}
-
-impl StreamId {
-    /// The same as a recording's key.
-    #[must_use]
-    pub fn key(&self) -> StreamKey {
-        StreamKey { quantity: self.quantity, source: self.source.name(), instance: self.instance }
-    }
-}
 
 /// How a message keeps its time.
 #[derive(Clone, Copy)]

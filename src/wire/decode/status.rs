@@ -1,7 +1,8 @@
 //! Mode, arming, battery, parameters.
 
 use super::samples::Samples;
-use crate::recording::{Autopilot, Quantity};
+use crate::autopilot::Autopilot;
+use crate::recording::Quantity;
 use crate::units::{amperes_from_ca, volts_from_mv};
 use crate::wire::frame::Payload;
 

@@ -1,6 +1,6 @@
 //! STATUSTEXT: texts longer than 50 bytes come in chunks.
 
-use super::event::Event;
+use crate::recording::Event;
 use crate::text;
 use crate::wire::frame::Payload;
 

@@ -1,7 +1,7 @@
 //! The vehicle whose messages are decoded.
 
 use super::source::Source;
-use crate::recording::Autopilot;
+use crate::autopilot::Autopilot;
 use crate::wire::frame::{ComponentId, SystemId};
 use crate::wire::stamped::Record;
 
@@ -33,11 +33,7 @@ impl Vehicle {
         (autopilot != AUTOPILOT_INVALID && kind != TYPE_GCS).then_some(Self {
             system: header.system,
             component: header.component,
-            autopilot: match autopilot {
-                3 => Autopilot::ArduPilot,
-                12 => Autopilot::Px4,
-                _ => Autopilot::Other,
-            },
+            autopilot: Autopilot::of_heartbeat(autopilot),
         })
     }
 }

@@ -312,7 +312,8 @@ impl Host {
     }
 
     /// The recording, ended.
-    pub fn recorded(&self, runtime: &Runtime) -> Vec<u8> {
+    pub fn recorded(&mut self, runtime: &Runtime) -> Vec<u8> {
+        self.carrier.end(self.clock.now());
         // its thread writes in real time
         runtime.block_on(async {
             tokio::time::resume();

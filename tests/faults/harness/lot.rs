@@ -5,9 +5,10 @@ use std::path::Path;
 use std::sync::LazyLock;
 use std::time::Duration;
 
+use mavid::autopilot::Mode as Ours;
 use mavid::config::read_vehicle;
-use mavid::fly::{Around, Course, FirstQuestion, Key, Mode as RequestedEffects, Origin, Settings, Sortie};
-use mavid::sitl::{ArduPilotRelease, AutopilotKind, LinkRole, Mode, Settings as VehicleSettings};
+use mavid::fly::{Around, Course, FirstQuestion, Key, Origin, Settings, Sortie};
+use mavid::sitl::{Firmware, LinkRole, Mode, Settings as VehicleSettings};
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
 use mavid::vehicle::Vehicle;
 use rand::{RngExt, SeedableRng};
@@ -77,7 +78,7 @@ pub enum Trouble {
 /// A flight before it is flown.
 #[derive(Debug, Clone)]
 pub struct Lot {
-    pub kind: AutopilotKind,
+    pub kind: Firmware,
     pub role: LinkRole,
     /// one frame a datagram; else a stream that loses nothing
     pub datagrams: bool,
@@ -116,12 +117,8 @@ impl Lot {
     pub fn draw(seed: u64, number: u64) -> Self {
         let mut random = random(seed, number, 0);
         let random = &mut random;
-        let copter = [ArduPilotRelease::V4_6, ArduPilotRelease::V4_7, ArduPilotRelease::V4_7];
-        let kind = if chance(random, 0.5) {
-            AutopilotKind::Px4
-        } else {
-            AutopilotKind::ArduPilot(one(random, &copter))
-        };
+        let copter = [Firmware::ARDUPILOT_4_6, Firmware::ARDUPILOT_4_7, Firmware::ARDUPILOT_4_7];
+        let kind = if chance(random, 0.5) { Firmware::PX4 } else { one(random, &copter) };
         let datagrams = chance(random, 0.7);
         let phases = [
             "check",
@@ -174,6 +171,7 @@ impl Lot {
         let s = Duration::from_secs;
         let settings = Settings {
             origin: self.origin,
+            setpoint_period: Duration::from_millis(20),
             connect_timeout: s(10),
             ready_timeout: s(20),
             reach_timeout: s(15),
@@ -214,7 +212,7 @@ fn quality(random: &mut Pcg64, datagrams: bool) -> Quality {
 }
 
 /// A pilot's mode.
-fn pilots(random: &mut Pcg64, kind: AutopilotKind) -> Mode {
+fn pilots(random: &mut Pcg64, kind: Firmware) -> Mode {
     let modes = [
         Mode::Position,
         Mode::Position,
@@ -255,7 +253,7 @@ fn stall(random: &mut Pcg64) -> Vec<(Part, f64)> {
         .collect()
 }
 
-fn trouble(random: &mut Pcg64, kind: AutopilotKind) -> Trouble {
+fn trouble(random: &mut Pcg64, kind: Firmware) -> Trouble {
     match random.random_range(0..100) {
         0..20 => {
             let lasts_s = length(random, 7.0);
@@ -290,12 +288,7 @@ fn trouble(random: &mut Pcg64, kind: AutopilotKind) -> Trouble {
         88..91 => Trouble::Station { heartbeat: chance(random, 0.5), lasts_s: between(random, 0.1, 3.0) },
         91..94 => Trouble::Key(one(
             random,
-            &[
-                Key::Abort,
-                Key::To(RequestedEffects::Hold),
-                Key::To(RequestedEffects::Land),
-                Key::To(RequestedEffects::Return),
-            ],
+            &[Key::Abort, Key::To(Ours::Hold), Key::To(Ours::Land), Key::To(Ours::Return)],
         )),
         94..96 => Trouble::Stop,
         _ => Trouble::Cut(length(random, 6.0)),

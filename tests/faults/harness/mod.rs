@@ -24,7 +24,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
 
 use mavid::log::TlogReader;
-use mavid::sitl::AutopilotKind;
+use mavid::sitl::Firmware;
 
 use laws::{Broken, Law, check};
 use lot::Lot;
@@ -63,7 +63,7 @@ pub fn fly_lot(lot: Lot, (seed, number): (u64, u64), whole: bool) -> Report {
     if flown.is_err() {
         broken.push(Broken { law: Law::Panic, at: world.now, how: "see above".into() });
     }
-    if let Some(how) = missing(&world) {
+    if let Some(how) = missing(&mut world) {
         broken.push(Broken { law: Law::Log, at: world.now, how });
     }
     let around = Duration::from_secs(6);
@@ -85,11 +85,11 @@ pub fn given(lot: &Lot) -> Given {
     let limits = lot.sortie().limits;
     let bound = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
     let room_m = [bound(limits.x_max_m), bound(limits.y_max_m), bound(limits.z_min_m), bound(limits.z_max_m)];
-    Given { px4: lot.kind == AutopilotKind::Px4, room_m, here: lot.origin == mavid::fly::Origin::Here }
+    Given { px4: lot.kind == Firmware::PX4, room_m, here: lot.origin == mavid::fly::Origin::Here }
 }
 
 /// Vehicle frames that were read and are not in the recording.
-fn missing(world: &World) -> Option<String> {
+fn missing(world: &mut World) -> Option<String> {
     let recorded = world.host.recorded(&world.runtime);
     let mut kept: HashMap<Vec<u8>, i32> = HashMap::new();
     let mut reader = TlogReader::new(std::io::Cursor::new(recorded));

@@ -3,8 +3,9 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
-use mavid::fly::{Key, Mode as RequestedEffects};
-use mavid::sitl::{AutopilotKind, Beheld, Fault, LinkId, Mode, Vehicle};
+use mavid::autopilot::Mode as Ours;
+use mavid::fly::Key;
+use mavid::sitl::{Beheld, Fault, Firmware, LinkId, Mode, Vehicle};
 use mavid::wire::CrcSeeds;
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -77,7 +78,7 @@ impl World {
         let entered = runtime.enter();
         let mut vehicle = Vehicle::new(lot.vehicle()).unwrap();
         let link = vehicle.open_link(lot.role);
-        let px4 = lot.kind == AutopilotKind::Px4;
+        let px4 = lot.kind == Firmware::PX4;
         let way = |part| Way::new(random(seed, number, part), !lot.datagrams);
         let (mut up, mut down) = (way(1), way(2));
         (up.quality, down.quality) = (lot.up.times(GENTLE), lot.down.times(GENTLE));
@@ -142,7 +143,7 @@ impl World {
         for packet in self.down.take(now) {
             self.host.arrive(now, packet, &mut self.trace);
         }
-        let px4 = self.lot.kind == AutopilotKind::Px4;
+        let px4 = self.lot.kind == Firmware::PX4;
         for bytes in self.host.turn(now, &mut self.trace) {
             let left = Left::of(&self.seeds, px4, &bytes);
             self.trace.add(now, Seen::Left(left));
@@ -290,7 +291,7 @@ impl World {
                 self.host.wish(Wish::Key(key));
                 // he who took it brings it down
                 for after_s in [6.0, 30.0] {
-                    self.later(now + seconds(after_s), Act::Wish(Wish::Key(Key::To(RequestedEffects::Land))));
+                    self.later(now + seconds(after_s), Act::Wish(Wish::Key(Key::To(Ours::Land))));
                 }
             }
             Trouble::Stop => self.host.wish(Wish::Stop),

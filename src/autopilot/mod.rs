@@ -1,0 +1,34 @@
+//! Autopilots as tables: their modes, parameters, failsafes and outputs.
+//!
+//! [`Autopilot`] says which software flies. [`Autopilot::stack`] gives its [`Stack`], all that is known of it, for those
+//! that have a file here. Nothing else in the library holds a mode's number.
+
+pub(crate) mod ardupilot;
+mod failsafe;
+mod kind;
+mod limits;
+mod list;
+mod modes;
+mod outputs;
+mod parameters;
+mod pilot;
+pub(crate) mod px4;
+mod release;
+mod setpoints;
+mod stack;
+mod vehicle_type;
+
+pub use ardupilot::ARDUPILOT;
+pub use failsafe::{Choice, Failsafe, Reaction};
+pub use kind::Autopilot;
+pub use limits::{Bounded, Braking};
+pub use list::STACKS;
+pub use modes::{FlightMode, FlownBy, Mode, Numbering, Wishes};
+pub use outputs::{Numbered, NumberedGroup, Outputs, PulseRange, QUAD_X};
+pub use parameters::{Parameter, ParameterTable, ParameterType, Purpose, Renamed, Unit};
+pub use pilot::{KillSwitch, POSITIONS, PilotSwitches};
+pub use px4::PX4;
+pub use release::Release;
+pub use setpoints::{LastSetpoint, SetpointRules, Takeoff};
+pub use stack::Stack;
+pub use vehicle_type::{is_multirotor, multirotor_type};

@@ -1,0 +1,114 @@
+//! Actuator outputs: which drives which motor, and the pulse widths of none and of full thrust.
+
+/// Names of parameters that are numbered: `before`, a number, `after`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Numbered {
+    /// the number
+    pub before: &'static str,
+    /// after the number
+    pub after: &'static str,
+}
+
+impl Numbered {
+    /// The parameter of a number.
+    #[must_use]
+    pub fn name(&self, number: usize) -> String {
+        format!("{}{number}{}", self.before, self.after)
+    }
+}
+
+/// Where the pulse widths of none and of full command stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PulseRange {
+    /// lower and upper end of each output: those of the first output of the first bank that answers
+    OfOutputs(&'static [(Numbered, Numbered)]),
+    /// shares of one range of all motors
+    Shares {
+        /// lower and upper end, microseconds
+        ends: (&'static str, &'static str),
+        /// share of the range at none and at full command
+        shares: (&'static str, &'static str),
+    },
+}
+
+impl PulseRange {
+    /// Pulse widths of none and of full command, microseconds; `None` where a parameter is missing.
+    #[must_use]
+    pub fn ends_us(&self, parameter: impl Fn(&str) -> Option<f64>) -> Option<(f64, f64)> {
+        match self {
+            Self::OfOutputs(banks) => banks
+                .iter()
+                .find_map(|(low, high)| Some((parameter(&low.name(1))?, parameter(&high.name(1))?))),
+            Self::Shares { ends: (low, high), shares: (none, full) } => {
+                let (low_us, high_us) = (parameter(low)?, parameter(high)?);
+                let (none, full) = (parameter(none)?, parameter(full)?);
+                let span_us = high_us - low_us;
+                Some((low_us + none * span_us, low_us + full * span_us))
+            }
+        }
+    }
+}
+
+/// Numbered parameters that a flight asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NumberedGroup {
+    /// of each number
+    pub entries: &'static [Numbered],
+    /// the first number
+    pub first: usize,
+    /// how many numbers; `None` for one a rotor
+    pub count: Option<usize>,
+}
+
+impl NumberedGroup {
+    /// All names for a vehicle with this many rotors.
+    pub fn names(&self, rotors: usize) -> impl Iterator<Item = String> {
+        let (entries, first) = (self.entries, self.first);
+        let numbers = first..first + self.count.unwrap_or(rotors);
+        numbers.flat_map(move |number| entries.iter().map(move |entry| entry.name(number)))
+    }
+}
+
+/// The outputs of an autopilot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Outputs {
+    /// function of each output, from 1
+    pub function: Numbered,
+    /// its value for motor 1; the motors after it follow
+    pub first_motor: u8,
+    /// its value for the last motor
+    pub last_motor: u8,
+    /// pulse widths
+    pub pulses: PulseRange,
+    /// exponent of the thrust curve
+    pub expo: &'static str,
+    /// the thrust is linear in the command where [`Self::expo`] does not answer
+    pub linear_without_expo: bool,
+    /// share of full thrust at which the autopilot expects to hover
+    pub hover: &'static str,
+    /// beginnings of the names of all parameters that say how a command becomes thrust and how the vehicle is built
+    pub relevant: &'static [&'static str],
+    /// numbered parameters, most needed first
+    pub groups: &'static [NumberedGroup],
+    /// in words, which parameters a log should hold
+    pub recorded: &'static str,
+}
+
+impl Outputs {
+    /// Value of [`Self::function`] for a motor, counted from 0.
+    #[must_use]
+    pub fn motor(&self, motor: usize) -> f64 {
+        f64::from(self.first_motor) + motor as f64
+    }
+
+    /// Whether an output of this function drives a motor.
+    #[must_use]
+    pub fn is_motor(&self, function: f64) -> bool {
+        (f64::from(self.first_motor)..=f64::from(self.last_motor)).contains(&function)
+    }
+}
+
+/// Where the motors of a quadrotor X are, in the order of both autopilots: front right, rear left, front left, rear right;
+/// the first two turn counter-clockwise. Signs forward and to the left, and whether it turns counter-clockwise.
+pub const QUAD_X: [(f64, f64, bool); 4] =
+    [(1.0, -1.0, true), (-1.0, 1.0, true), (1.0, 1.0, false), (-1.0, -1.0, false)];

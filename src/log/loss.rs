@@ -1,0 +1,182 @@
+//! What of a file is not in its recording, and what is odd about it.
+
+use std::fmt;
+
+use crate::units::seconds_from_us;
+
+/// What of a file is not in its recording: how much of what, and where first. Its text is what a user is told.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Loss {
+    /// dropped for a wrong checksum
+    WrongChecksum {
+        /// what a file of this format is made of: `frame`
+        unit: &'static str,
+        /// how many
+        count: u64,
+        /// byte offset of the first
+        first_byte: u64,
+    },
+    /// bytes that had to be skipped
+    Skipped {
+        /// what they are no part of: `frame`
+        unit: &'static str,
+        /// how many
+        bytes: u64,
+        /// stretches of them
+        places: u64,
+        /// byte offset of the first
+        first_byte: u64,
+    },
+    /// the file ends within a record, or with zeros
+    CutOff {
+        /// bytes at its end
+        bytes: u64,
+        /// byte offset of the first
+        first_byte: u64,
+    },
+    /// rows of a table that cannot be used
+    RowsRejected {
+        /// how many
+        count: u64,
+        /// of how many
+        of: u64,
+        /// the first of them
+        first: Option<RowRejection>,
+    },
+    /// a row of a table has no end: nothing is read from there on
+    EndlessRow {
+        /// line in which it begins, the header being 1
+        line: u64,
+    },
+    /// rows of a table with the time of another
+    RepeatedTimes {
+        /// how many
+        count: u64,
+        /// line of the first, the header being 1
+        first_line: u64,
+    },
+    /// attitudes that are no rotations: quaternions whose norm is not near one
+    NoRotations {
+        /// how many
+        count: u64,
+        /// line of the first, the header being 1
+        first_line: u64,
+    },
+    /// the log holds more flight than is kept in memory
+    NotHeld {
+        /// time in the air that is left out, s
+        seconds: f64,
+    },
+}
+
+/// Where in a file something is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Position {
+    /// byte offset
+    Byte(u64),
+    /// line, the first being 1
+    Line(u64),
+}
+
+/// A row of a table that was left out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RowRejection {
+    /// line in the file, the header being 1
+    pub line: u64,
+    /// what was expected and what came
+    pub reason: String,
+}
+
+impl Loss {
+    /// Where it was met first; `None` where it is no place in the file.
+    #[must_use]
+    pub fn first(&self) -> Option<Position> {
+        match self {
+            Self::WrongChecksum { first_byte, .. }
+            | Self::Skipped { first_byte, .. }
+            | Self::CutOff { first_byte, .. } => Some(Position::Byte(*first_byte)),
+            Self::RowsRejected { first, .. } => first.as_ref().map(|row| Position::Line(row.line)),
+            Self::EndlessRow { line } => Some(Position::Line(*line)),
+            Self::RepeatedTimes { first_line, .. } | Self::NoRotations { first_line, .. } => {
+                Some(Position::Line(*first_line))
+            }
+            Self::NotHeld { .. } => None,
+        }
+    }
+}
+
+impl fmt::Display for Loss {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::WrongChecksum { unit, count, .. } => {
+                write!(f, "{count} {unit}s with a wrong checksum dropped")
+            }
+            Self::Skipped { unit, bytes, places, first_byte } => {
+                write!(
+                    f,
+                    "{bytes} bytes of no {unit} skipped in {places} places, the first at byte {first_byte}"
+                )
+            }
+            Self::CutOff { bytes, .. } => write!(f, "{bytes} bytes of a record cut off at the end"),
+            Self::RowsRejected { count, of, first } => {
+                write!(f, "{count} of {of} rows rejected")?;
+                first
+                    .as_ref()
+                    .map_or(Ok(()), |row| write!(f, ", the first in line {}: {}", row.line, row.reason))
+            }
+            Self::EndlessRow { line } => {
+                write!(f, "nothing is read from line {line} on, whose row has no end")
+            }
+            Self::RepeatedTimes { count, .. } => write!(f, "{count} rows repeat a time and were left out"),
+            Self::NoRotations { count, .. } => {
+                write!(f, "{count} attitudes are no rotations and were left out")
+            }
+            Self::NotHeld { seconds } => write!(
+                f,
+                "{seconds:.0} s of flight at the end are left out: the log holds more than is analysed at once; cut it to \
+                 analyse the rest"
+            ),
+        }
+    }
+}
+
+/// What is odd about a log although nothing is lost by it. Its text is what a user is told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Oddity {
+    /// host stamps before their predecessor
+    BackwardStamps {
+        /// how many
+        count: u64,
+        /// the furthest, microseconds
+        most_us: u64,
+    },
+    /// host stamps of no wall clock
+    ImplausibleStamps {
+        /// how many
+        count: u64,
+    },
+    /// the recording computer's clock was set while the vehicle's went on
+    HostClockSet {
+        /// how often
+        count: u64,
+    },
+}
+
+impl fmt::Display for Oddity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::BackwardStamps { count, most_us } => {
+                let most_s = seconds_from_us(*most_us as f64);
+                write!(f, "{count} host stamps run backwards, by {most_s:.3} s at most")
+            }
+            Self::ImplausibleStamps { count } => write!(
+                f,
+                "{count} host stamps are of no wall clock (before 2010 or after 2100): the recording computer's clock was \
+                 not set"
+            ),
+            Self::HostClockSet { count } => {
+                write!(f, "the recording computer's clock was set {count} times while the vehicle's went on")
+            }
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! Which of a log's systems flew.
+
+use std::collections::BTreeMap;
+
+use super::reader::TlogReader;
+use crate::log::error::LogError;
+use crate::log::input::Input;
+use crate::wire::{Record, Source, SystemId, Vehicle};
+
+/// MAV_MODE_FLAG_SAFETY_ARMED.
+const ARMED: u8 = 128;
+/// MAV_LANDED_STATE: unknown and on ground; all others are in the air.
+const ON_GROUND: u8 = 1;
+/// A vehicle that turns or moves faster than this does not stand, rad/s and m/s.
+const MOVES: f64 = 0.3;
+/// So many samples of it are no damage and no knock.
+const LEAST_MOVING: u64 = 20;
+
+/// What a system did, by its own messages.
+#[derive(Debug, Clone, Copy, Default)]
+struct Deeds {
+    armed: bool,
+    landed_state_told: bool,
+    in_air_armed: bool,
+    motion: u64,
+    moving_armed: u64,
+}
+
+impl Deeds {
+    fn flew(&self) -> bool {
+        if self.landed_state_told { self.in_air_armed } else { self.moving_armed >= LEAST_MOVING }
+    }
+
+    fn note(&mut self, record: &Record<'_>) {
+        let payload = record.frame.payload();
+        let length = |[x, y, z]: [f64; 3]| (x * x + y * y + z * z).sqrt();
+        let moving = match Source::from_message_id(record.frame.header().message_id) {
+            Some(Source::Heartbeat) if Vehicle::from_heartbeat(record).is_some() => {
+                self.armed = payload.u8(6) & ARMED != 0;
+                return;
+            }
+            Some(Source::ExtendedSysState) => {
+                let state = payload.u8(1);
+                self.landed_state_told |= state != 0;
+                self.in_air_armed |= self.armed && state > ON_GROUND;
+                return;
+            }
+            Some(Source::Attitude | Source::LocalPositionNed) => length(payload.f32s(16)),
+            Some(Source::AttitudeQuaternion) => length(payload.f32s(20)),
+            _ => return,
+        };
+        self.motion += 1;
+        self.moving_armed += u64::from(self.armed && moving > MOVES);
+    }
+}
+
+/// The system of a telemetry log that flew: it was armed and in the air or, where it does not tell that, in motion.
+/// Where none flew, the only one that sends motion, or the only one there is.
+///
+/// # Errors
+/// The log cannot be read, or more than one system flew, or none did and more than one sends motion.
+pub(super) fn who_flew(input: &Input<'_>) -> Result<SystemId, LogError> {
+    let mut reader = TlogReader::new(input.open()?);
+    let mut deeds: BTreeMap<SystemId, Deeds> = BTreeMap::new();
+    let mut vehicles = Vec::new();
+    while let Some(record) = reader.next_record()? {
+        if !record.known {
+            continue;
+        }
+        let system = record.frame.header().system;
+        if Vehicle::from_heartbeat(&record).is_some() && !vehicles.contains(&system) {
+            vehicles.push(system);
+        }
+        deeds.entry(system).or_default().note(&record);
+    }
+    chosen(&vehicles, |system| deeds.get(system).copied().unwrap_or_default())
+}
+
+fn chosen(vehicles: &[SystemId], deeds: impl Fn(&SystemId) -> Deeds) -> Result<SystemId, LogError> {
+    let those = |did: fn(&Deeds) -> bool| -> Vec<SystemId> {
+        vehicles.iter().copied().filter(|system| did(&deeds(system))).collect()
+    };
+    let flew = those(Deeds::flew);
+    let candidates = if flew.is_empty() { those(|deeds| deeds.motion > 0) } else { flew.clone() };
+    match (candidates.as_slice(), vehicles) {
+        ([only], _) | ([], [only, ..]) => Ok(*only),
+        (_, []) => Err(LogError::NoVehicle { systems: Vec::new() }),
+        (_, [first, ..]) => {
+            let mut systems = candidates;
+            systems.sort_unstable();
+            Err(LogError::SeveralVehicles { flew: !flew.is_empty(), systems, first: *first })
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Collects events into a recording.
+
+use std::collections::BTreeMap;
+
+use super::event::Event;
+use super::flight::Recording;
+use super::stream::{Stream, StreamKey};
+
+/// What putting a stream's samples in order took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct StreamRepair {
+    /// samples with a stamp that the stream has already, dropped
+    pub duplicates: u64,
+    /// samples that came after a later one, sorted in
+    pub out_of_order: u64,
+}
+
+/// Collects events into a [`Recording`].
+#[derive(Debug, Default)]
+pub struct RecordingBuilder {
+    streams: Vec<Growing>,
+    /// for each quantity, where its streams are in `streams`
+    by_quantity: Vec<Vec<usize>>,
+    rest: Recording,
+    numbers: usize,
+}
+
+#[derive(Debug)]
+struct Growing {
+    key: StreamKey,
+    stream: Stream,
+    repair: StreamRepair,
+}
+
+impl RecordingBuilder {
+    /// Nothing collected yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds what one event says.
+    pub fn add(&mut self, event: Event<'_>) {
+        match event {
+            Event::Autopilot(autopilot) => self.rest.autopilot = autopilot,
+            Event::Sample { stream, time_s, values } => {
+                let growing = self.stream(stream);
+                let before = growing.numbers();
+                growing.push(time_s, values);
+                let added = growing.numbers() - before;
+                self.numbers += added;
+            }
+            Event::Parameter { name, value } => {
+                self.rest.parameters.insert(name.to_owned(), value);
+            }
+            Event::Text { time_s, text, .. } => self.rest.texts.push((time_s, text.to_owned())),
+            Event::ClockReset { time_s, .. } => self.rest.clock_resets_s.push(time_s),
+            Event::EstimatorReset { time_s } => self.rest.estimator_resets_s.push(time_s),
+        }
+    }
+
+    /// Stamps and values held so far.
+    #[must_use]
+    pub fn numbers(&self) -> usize {
+        self.numbers
+    }
+
+    /// The recording, each stream in the order of time, and what putting it in order took.
+    #[must_use]
+    pub fn finish(mut self) -> (Recording, BTreeMap<StreamKey, StreamRepair>) {
+        let mut repairs = BTreeMap::new();
+        for mut growing in self.streams {
+            if growing.repair.out_of_order > 0 {
+                growing.sort();
+            }
+            repairs.insert(growing.key, growing.repair);
+            self.rest.streams.insert(growing.key, growing.stream);
+        }
+        (self.rest, repairs)
+    }
+
+    fn stream(&mut self, key: StreamKey) -> &mut Growing {
+        let quantity = key.quantity as usize;
+        if quantity >= self.by_quantity.len() {
+            self.by_quantity.resize(quantity + 1, Vec::new());
+        }
+        let of_quantity = &mut self.by_quantity[quantity];
+        let found = of_quantity.iter().copied().find(|&index| self.streams[index].key == key);
+        let index = found.unwrap_or_else(|| {
+            of_quantity.push(self.streams.len());
+            self.streams.push(Growing { key, stream: Stream::default(), repair: StreamRepair::default() });
+            self.streams.len() - 1
+        });
+        &mut self.streams[index]
+    }
+}
+
+impl Growing {
+    fn numbers(&self) -> usize {
+        self.stream.time_s.len() + self.stream.values.len()
+    }
+
+    fn push(&mut self, time_s: f64, values: &[f64]) {
+        if let Some(&last_s) = self.stream.time_s.last() {
+            if time_s == last_s {
+                self.repair.duplicates += 1;
+                return;
+            }
+            self.repair.out_of_order += u64::from(time_s < last_s);
+        }
+        if values.len() > self.stream.width {
+            self.widen(values.len());
+        }
+        self.stream.time_s.push(time_s);
+        self.stream.values.extend_from_slice(values);
+        self.stream.values.resize(self.stream.time_s.len() * self.stream.width, 0.0);
+    }
+
+    /// Makes room for channels that were zero so far.
+    fn widen(&mut self, width: usize) {
+        let stream = &mut self.stream;
+        let mut values = Vec::with_capacity(stream.len().max(64) * width);
+        for index in 0..stream.len() {
+            values.extend_from_slice(stream.sample(index));
+            values.resize((index + 1) * width, 0.0);
+        }
+        stream.values = values;
+        stream.width = width;
+    }
+
+    /// Sorts by time; of samples with the same stamp the first stays.
+    fn sort(&mut self) {
+        let stream = &mut self.stream;
+        let mut order: Vec<usize> = (0..stream.len()).collect();
+        order.sort_by(|&a, &b| stream.time_s[a].total_cmp(&stream.time_s[b]));
+        order.dedup_by(|b, a| stream.time_s[*a] == stream.time_s[*b]);
+        self.repair.duplicates += (stream.len() - order.len()) as u64;
+        let time_s = order.iter().map(|&index| stream.time_s[index]).collect();
+        let values = order.iter().flat_map(|&index| stream.sample(index).iter().copied()).collect();
+        *stream = Stream { time_s, width: stream.width, values };
+    }
+}
