@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::onboard::OnboardReading;
 use crate::signals::Usable;
 
 /// What is in a log, and what it is good for.
@@ -54,6 +55,12 @@ pub struct VehicleSummary {
     pub others: Vec<u32>,
     /// no HEARTBEAT of a vehicle is in the log
     pub without_heartbeat: bool,
+    /// what kind of vehicle it is, where a log that it wrote itself says so
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kind: Option<&'static str>,
+    /// the autopilot's software in its own words, where a log that it wrote itself says so
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub firmware: Option<String>,
 }
 
 /// The vehicle's clock against the host's.
@@ -85,6 +92,8 @@ pub enum Reading {
     Tlog(Box<TlogReading>),
     /// table
     Csv(CsvReading),
+    /// log that the vehicle wrote itself
+    Onboard(Box<OnboardReading>),
     /// a format that has nothing to add to what all have
     Other {
         /// which one

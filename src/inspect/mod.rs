@@ -10,6 +10,7 @@ mod clock;
 mod excitation;
 mod inspection;
 mod motion;
+mod onboard;
 mod outlook;
 mod parameters;
 mod reading;
@@ -24,4 +25,5 @@ pub use inspection::{
     ParameterSummary, Reading, Segment, SenderSummary, StreamSummary, Text, TextSummary, Timeline,
     TlogReading, VehicleSummary,
 };
+pub use onboard::{OnboardReading, TopicSummary};
 pub use tally::{inspect, inspect_recording};

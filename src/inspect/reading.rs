@@ -1,6 +1,7 @@
 //! The readers' reports as they are told.
 
 use super::inspection::{CsvReading, Reading, SenderSummary, TlogReading};
+use super::onboard::onboard_reading;
 use crate::log::csv::CsvReport;
 use crate::log::{Details, ReadReport, TlogReport};
 use crate::units::seconds_from_us;
@@ -14,6 +15,7 @@ pub(super) fn reading_of(report: &ReadReport) -> Reading {
     match &report.details {
         Details::Telemetry(telemetry) => Reading::Tlog(Box::new(tlog_reading(telemetry))),
         Details::Table(table) => Reading::Csv(csv_reading(table)),
+        Details::Onboard(onboard) => Reading::Onboard(Box::new(onboard_reading(report, onboard))),
         Details::None => Reading::Other { name: report.format },
     }
 }

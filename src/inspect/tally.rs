@@ -12,7 +12,7 @@ use super::streams::{StreamTallies, summary_of};
 use super::timeline::TimelineTally;
 use super::verdict::verdict;
 use super::window::{WindowRecorder, windows_of};
-use crate::autopilot::Autopilot;
+use crate::autopilot::{Autopilot, VehicleKind};
 use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport, TlogReport};
 use crate::recording::{Event, Recording, StreamKey, StreamStats};
 use crate::vehicle::Vehicle;
@@ -200,6 +200,8 @@ fn vehicle_of(report: &ReadReport, autopilot: Autopilot) -> VehicleSummary {
         autopilot: autopilot.id(),
         others: report.others.iter().map(|system| system.0).collect(),
         without_heartbeat: report.telemetry().is_some_and(|telemetry| heartbeats(telemetry) == 0),
+        kind: report.onboard().and_then(|onboard| onboard.kind).map(VehicleKind::name),
+        firmware: report.onboard().and_then(|onboard| onboard.firmware.clone()),
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::csv::CsvReport;
 use super::loss::{Loss, Oddity};
+use super::onboard::OnboardReport;
 use super::tlog::TlogReport;
 use crate::recording::{StreamKey, StreamRepair};
 use crate::wire::{SystemId, Vehicle};
@@ -37,6 +38,8 @@ pub enum Details {
     Telemetry(Box<TlogReport>),
     /// rows and columns
     Table(CsvReport),
+    /// kind of vehicle, software, and each kind of message
+    Onboard(Box<OnboardReport>),
 }
 
 impl ReadReport {
@@ -45,6 +48,15 @@ impl ReadReport {
     pub fn telemetry(&self) -> Option<&TlogReport> {
         match &self.details {
             Details::Telemetry(report) => Some(report),
+            _ => None,
+        }
+    }
+
+    /// Kind of vehicle, software and messages, where the vehicle wrote it itself.
+    #[must_use]
+    pub fn onboard(&self) -> Option<&OnboardReport> {
+        match &self.details {
+            Details::Onboard(report) => Some(report),
             _ => None,
         }
     }

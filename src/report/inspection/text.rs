@@ -2,7 +2,9 @@
 
 use std::fmt::{Display, Write};
 
-use crate::inspect::{Inspection, Outlook, Reading, StreamSummary, TlogReading};
+use crate::inspect::{
+    Inspection, OnboardReading, Outlook, Reading, StreamSummary, TlogReading, TopicSummary,
+};
 
 /// Spans, texts and segments told one by one; the JSON document has all.
 const TOLD: usize = 12;
@@ -199,7 +201,33 @@ fn reading(page: &mut String, inspection: &Inspection) {
                 row(page, "unused columns", listed(reading.unused_columns.iter()));
             }
         }
+        Reading::Onboard(reading) => onboard(page, inspection, reading),
         Reading::Other { name } => row(page, "format", name),
+    }
+}
+
+fn onboard(page: &mut String, inspection: &Inspection, reading: &OnboardReading) {
+    let vehicle = &inspection.vehicle;
+    row(page, "format", reading.name);
+    let kind = vehicle.kind.unwrap_or("of a kind that the log does not say");
+    row(page, "vehicle", format!("{kind}, autopilot {}", vehicle.autopilot));
+    if let Some(firmware) = &vehicle.firmware {
+        row(page, "software", firmware);
+    }
+    row(page, "messages", format!("{} in {} bytes", reading.messages, reading.bytes));
+    for oddity in &reading.oddities {
+        row(page, "odd", oddity.as_str());
+    }
+    let told = |topic: &TopicSummary| {
+        let instance = if topic.instance == 0 { String::new() } else { format!("[{}]", topic.instance) };
+        let rate = topic.rate_hz.map_or_else(String::new, |hz| format!(" at {hz:.1} Hz"));
+        format!("{}{instance} {}{rate}", topic.name, topic.count)
+    };
+    for (name, is_used) in [("used", true), ("not used", false)] {
+        let topics: Vec<_> = reading.topics.iter().filter(|topic| topic.is_used == is_used).collect();
+        if !topics.is_empty() {
+            row(page, name, listed(topics.into_iter().map(told)));
+        }
     }
 }
 
