@@ -146,6 +146,7 @@ pub mod log;
 pub mod note;
 pub mod physics;
 pub mod plan;
+pub mod reconstruction;
 pub mod recording;
 pub mod regression;
 pub mod replay;

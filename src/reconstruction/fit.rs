@@ -1,0 +1,270 @@
+//! Joint maximum a posteriori fit of states, parameters and noise levels.
+
+use nalgebra::{DMatrix, DVector, SVector};
+
+use super::arrow::{Normal, Reduced, Rows, STATE, State};
+use super::residuals::{Group, WIDTH};
+
+/// A parameter with what is known of it beforehand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unknown {
+    /// for reports
+    pub name: &'static str,
+    /// where the fit begins, and the mean of the prior
+    pub mean: f64,
+    /// standard deviation of the prior; infinite where nothing is known
+    pub std: f64,
+}
+
+/// States along time, residuals and parameters.
+#[derive(Debug)]
+pub struct Problem {
+    /// s, one a state
+    pub time_s: Vec<f64>,
+    /// where the fit begins
+    pub states: Vec<State>,
+    /// all residuals
+    pub groups: Vec<Group>,
+    /// all parameters; those that are not free stay at their mean
+    pub unknowns: Vec<Unknown>,
+    /// index of the group whose derivative by the second state has a determinant that goes with the parameters
+    pub process: usize,
+}
+
+/// Blocks of time over which scores are summed for standard errors.
+pub const BLOCKS: usize = 12;
+/// Rounds of Gauss-Newton at most.
+const ROUNDS: usize = 14;
+/// Round from which on noise levels stay.
+const LEARNED_UNTIL: usize = 9;
+/// A step smaller than this share of every standard error ends the fit.
+const SMALL: f64 = 0.01;
+/// Share of a standard error by which parameters are moved for the slope of the determinant.
+const PROBE: f64 = 0.3;
+/// A noise level changes by no more than this factor in its square in one round.
+const LEAPS: (f64, f64) = (0.2, 5.0);
+/// States and parameters take at most this share of the rows of a component: its level is not learned from less.
+const TAKEN_MOST: f64 = 0.98;
+
+/// The result.
+#[derive(Debug)]
+pub struct Fit {
+    /// s
+    pub time_s: Vec<f64>,
+    /// one a time
+    pub states: Vec<State>,
+    /// all parameters
+    pub theta: Vec<f64>,
+    /// indices of those that were free
+    pub free: Vec<usize>,
+    /// of the free ones, by the model
+    pub covariance: DMatrix<f64>,
+    /// of the free ones, by the scatter of the scores over blocks of time
+    pub robust: DMatrix<f64>,
+    /// sum of the squares of all residuals over their standard deviations
+    pub cost: f64,
+    /// standard deviations of the groups' components
+    pub sigma: Vec<SVector<f64, WIDTH>>,
+    unknowns: Vec<Unknown>,
+    rows: Vec<Rows>,
+    reduced: Reduced,
+}
+
+/// Why there is no fit.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum FitError {
+    /// states or parameters that nothing determines
+    #[error("expected data that determine all states and parameters, got a normal matrix that is not positive definite")]
+    Singular,
+    /// it left all numbers
+    #[error("expected a fit that converges, got numbers that are not finite")]
+    Diverged,
+}
+
+/// One linearisation.
+struct Turn {
+    rows: Vec<Rows>,
+    reduced: Reduced,
+    cost: f64,
+    /// of the free parameters
+    covariance: DMatrix<f64>,
+    step: DVector<f64>,
+}
+
+/// What is iterated.
+struct Iterate<'a> {
+    problem: &'a mut Problem,
+    free: &'a [usize],
+    theta: Vec<f64>,
+}
+
+impl Iterate<'_> {
+    fn linearised(&self) -> Result<Turn, FitError> {
+        let Problem { groups, states, unknowns, .. } = &*self.problem;
+        let rows: Vec<Rows> = groups.iter().map(|group| Rows::of(group, states, &self.theta)).collect();
+        let normal = Normal::of(groups, &rows, states.len(), unknowns.len());
+        let reduced = normal.reduced().ok_or(FitError::Singular)?;
+        let precision = |index: usize| unknowns[index].std.powi(-2);
+        let mut information = selected(&reduced.information, self.free);
+        let mut gradient = DVector::zeros(self.free.len());
+        for (at, &index) in self.free.iter().enumerate() {
+            information[(at, at)] += precision(index);
+            gradient[at] = reduced.gradient[index] + precision(index) * (self.theta[index] - unknowns[index].mean);
+        }
+        let covariance = information.try_inverse().ok_or(FitError::Singular)?;
+        let step = -(&covariance * gradient);
+        if step.iter().all(|part| part.is_finite()) {
+            Ok(Turn { rows, reduced, cost: normal.cost, covariance, step })
+        } else {
+            Err(FitError::Diverged)
+        }
+    }
+
+    fn moved(&mut self, turn: &Turn) {
+        let mut all = DVector::zeros(self.theta.len());
+        for (at, &index) in self.free.iter().enumerate() {
+            self.theta[index] += turn.step[at];
+            all[index] = turn.step[at];
+        }
+        for (at, state) in self.problem.states.iter_mut().enumerate() {
+            *state += turn.reduced.step(at, &all);
+        }
+    }
+
+    /// Noise levels by MacKay's fixed point: `sigma^2 <- sum r^2 / (rows - what states and parameters took of them)`.
+    fn learn(&mut self, turn: &Turn, round: usize) {
+        let neighbours = turn.reduced.neighbours();
+        for (group, rows) in self.problem.groups.iter_mut().zip(&turn.rows) {
+            let (first, last) = group.learned_in;
+            let Some(floor) = group.floor.filter(|_| (first..=last).contains(&round)) else { continue };
+            let mut taken = SVector::<f64, WIDTH>::zeros();
+            let mut squares = SVector::<f64, WIDTH>::zeros();
+            let count = rows.residual.len() as f64;
+            for (row, &at) in group.form.intervals().iter().enumerate() {
+                let [one, between, other] = &neighbours[at];
+                let (a, b) = (
+                    rows.by_states[row].fixed_columns::<STATE>(0).into_owned(),
+                    rows.by_states[row].fixed_columns::<STATE>(STATE).into_owned(),
+                );
+                let of_states =
+                    (a * one).component_mul(&a) + (a * between).component_mul(&b) * 2.0 + (b * other).component_mul(&b);
+                let projected = turn.reduced.projected(group.form.as_ref(), rows, row).select_columns(self.free);
+                let of_parameters = (&projected * &turn.covariance).component_mul(&projected);
+                for part in 0..WIDTH {
+                    taken[part] += of_states.row(part).sum() + of_parameters.row(part).sum();
+                    squares[part] += rows.residual[row][part].powi(2);
+                }
+            }
+            for part in 0..WIDTH {
+                let ratio = squares[part] / (count - taken[part]).max((1.0 - TAKEN_MOST) * count);
+                let factor = ratio.clamp(LEAPS.0, LEAPS.1).sqrt();
+                if group.sigma[part].is_finite() {
+                    group.sigma[part] = (group.sigma[part] * factor).max(floor[part]);
+                }
+            }
+        }
+    }
+
+    /// Half the logarithm of the determinant that the states leave behind when they are integrated out: that of their normal
+    /// matrix, less that of the process by its second state, which goes with the parameters too.
+    fn half_log_determinant(&self, turn: &Turn) -> f64 {
+        let ahead = turn.rows[self.problem.process].by_states.iter().map(|pair| {
+            pair.fixed_view::<WIDTH, WIDTH>(0, STATE).determinant().abs().ln()
+        });
+        0.5 * turn.reduced.log_determinant - ahead.sum::<f64>()
+    }
+
+    /// From the joint mode to the mode with the states integrated out, by Laplace: the slope of the determinant moves the
+    /// parameters.
+    fn marginal(&mut self) -> Result<(), FitError> {
+        let here = self.linearised()?;
+        let mut slope = DVector::zeros(self.free.len());
+        for (at, &index) in self.free.iter().enumerate() {
+            let probe = PROBE * here.covariance[(at, at)].sqrt();
+            let mut sides = [0.0; 2];
+            for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
+                let kept = self.theta[index];
+                self.theta[index] = kept + sign * probe;
+                let turn = self.linearised();
+                self.theta[index] = kept;
+                *side = self.half_log_determinant(&turn?);
+            }
+            slope[at] = (sides[0] - sides[1]) / (2.0 * probe);
+        }
+        let step = &here.step - &here.covariance * slope;
+        self.moved(&Turn { step, ..here });
+        Ok(())
+    }
+}
+
+fn selected(matrix: &DMatrix<f64>, of: &[usize]) -> DMatrix<f64> {
+    matrix.select_rows(of).select_columns(of)
+}
+
+/// Fits the states and the parameters `free` (indices), and learns the noise levels.
+///
+/// # Errors
+/// [`FitError`] where the data do not determine them.
+pub fn fit(mut problem: Problem, free: &[usize]) -> Result<Fit, FitError> {
+    let theta = problem.unknowns.iter().map(|unknown| unknown.mean).collect();
+    let mut iterate = Iterate { problem: &mut problem, free, theta };
+    for round in 0..ROUNDS {
+        let turn = iterate.linearised()?;
+        iterate.moved(&turn);
+        if round > 1 && round < LEARNED_UNTIL {
+            iterate.learn(&turn, round);
+        }
+        let is_small = |(at, step): (usize, &f64)| step.abs() < SMALL * turn.covariance[(at, at)].sqrt();
+        if round >= LEARNED_UNTIL && turn.step.iter().enumerate().all(is_small) {
+            break;
+        }
+    }
+    iterate.marginal()?;
+    let turn = iterate.linearised()?;
+    let theta = iterate.theta;
+    let Turn { rows, reduced, cost, covariance, .. } = turn;
+    let sigma = problem.groups.iter().map(|group| group.sigma).collect();
+    let robust = DMatrix::zeros(0, 0);
+    let Problem { time_s, states, groups, unknowns, .. } = problem;
+    let mut fit =
+        Fit { time_s, states, theta, free: free.to_vec(), covariance, robust, cost, sigma, unknowns, rows, reduced };
+    let scores = fit.scores(&groups, free, &DMatrix::zeros(0, 0));
+    fit.robust = &fit.covariance * scores.tr_mul(&scores) * &fit.covariance * small_sample();
+    Ok(fit)
+}
+
+/// Factor on a covariance from so few blocks (Bell and McCaffrey 2002).
+fn small_sample() -> f64 {
+    BLOCKS as f64 / (BLOCKS as f64 - 1.0)
+}
+
+impl Fit {
+    /// Value, standard error by the model and by blocks of a free parameter.
+    #[must_use]
+    pub fn value(&self, name: &str) -> Option<(f64, f64, f64)> {
+        let at = self.free.iter().position(|&index| self.unknowns[index].name == name)?;
+        let std = |covariance: &DMatrix<f64>| covariance[(at, at)].sqrt();
+        Some((self.theta[self.free[at]], std(&self.covariance), std(&self.robust)))
+    }
+
+    /// Scores of parameters with the states projected out, summed over blocks of time: one row a block.
+    fn scores(&self, groups: &[Group], of: &[usize], _held: &DMatrix<f64>) -> DMatrix<f64> {
+        let (Some(first), Some(last)) = (self.time_s.first(), self.time_s.last()) else {
+            return DMatrix::zeros(BLOCKS, of.len());
+        };
+        let block_of = |at: usize| {
+            let share = (self.time_s[at] - first) / (last - first);
+            (1..BLOCKS).take_while(|block| share * BLOCKS as f64 >= *block as f64).count()
+        };
+        let mut scores = DMatrix::zeros(BLOCKS, of.len());
+        for (group, rows) in groups.iter().zip(&self.rows) {
+            for (row, &at) in group.form.intervals().iter().enumerate() {
+                let projected = self.reduced.projected(group.form.as_ref(), rows, row).select_columns(of);
+                let part = projected.tr_mul(&rows.residual[row]);
+                let mut into = scores.row_mut(block_of(at));
+                into += part.transpose();
+            }
+        }
+        scores
+    }
+}
