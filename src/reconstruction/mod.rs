@@ -5,9 +5,14 @@
 //! filter would smooth away before the estimation stays in it.
 
 mod arrow;
+mod cells;
+mod error;
 mod fit;
+mod forces;
 mod residuals;
 
 pub use arrow::{STATE, State};
+pub use error::ReconstructionError;
 pub use fit::{BLOCKS, Fit, FitError, Problem, Unknown, fit};
+pub use forces::force_problem;
 pub use residuals::{Group, Residuals, WIDTH};
