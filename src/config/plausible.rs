@@ -31,7 +31,7 @@ fn body(vehicle: &Vehicle) -> Option<String> {
     let (largest, others) = (moments.max(), moments.sum() - moments.max());
     (largest > others * (1.0 + 1e-9)).then(|| {
         format!(
-            "body.inertia: no rigid body has these moments: the largest principal moment, {largest:.4e} kg m^2, \
+            "body.inertia: these moments are physically impossible: the largest principal moment, {largest:.4e} kg m^2, \
              is above the sum of the other two, {others:.4e}"
         )
     })
@@ -52,7 +52,7 @@ fn gyration(vehicle: &Vehicle) -> Option<String> {
 
 fn rotors(vehicle: &Vehicle) -> Option<String> {
     (vehicle.mixer().matrix.svd(false, false).rank(1e-9) < 4)
-        .then(|| "rotor: the rotors cannot set thrust and all three torques on their own".to_owned())
+        .then(|| "rotor: the rotors cannot set thrust and all three torques independently".to_owned())
 }
 
 fn thrust(vehicle: &Vehicle) -> Option<String> {

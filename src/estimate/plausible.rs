@@ -1,4 +1,4 @@
-//! Results that hardly can be: of another vehicle, of a wrong unit, of two vehicles at once.
+//! Checks of implausible results: another vehicle, a wrong unit, two vehicles at once.
 
 use super::result::{Finding, MethodResult};
 use super::theta::{NAMES, Theta};
@@ -6,11 +6,14 @@ use super::weak::{WeakMethod, solve_weak};
 use crate::note::{About, Note};
 use crate::regression::WeakRows;
 
-/// A nominal file is wrong by less than these factors.
+/// Largest ratio of the identified mass to that of the vehicle file, or its inverse, without a warning. Chosen; not
+/// measured.
 const MASS_FACTOR: f64 = 1.5;
+/// The same for a moment of inertia. Chosen; not measured.
 const INERTIA_FACTOR: f64 = 3.0;
-/// Flights of one vehicle agree within this many standard errors of their difference, and this share.
+/// Standard errors of the difference within which the masses of two flights of one vehicle agree. Chosen; not measured.
 const FLIGHTS_SIGMA: f64 = 6.0;
+/// Relative difference within which they agree. Chosen; not measured.
 const FLIGHTS_SHARE: f64 = 0.02;
 
 /// A parameter that is far from what the vehicle file states.
@@ -35,19 +38,19 @@ pub fn contradictions(result: &MethodResult, nominal: &Theta) -> Vec<Contradicti
         .collect()
 }
 
-/// The same as warnings, with what may be the cause.
+/// Notes on estimates far from the vehicle file.
 pub(super) fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<Note> {
     let warning = |Contradiction { name, factor }| {
         let text = format!(
-            "{name} is {factor:.2} times what the vehicle file states: another vehicle's log, a wrong unit, \
-             or thrust and torque coefficients that are off by as much? A weighed mass with anchor = \"mass\" sets the scale"
+            "{name} is {factor:.2} times what the vehicle file states: is it another vehicle's log, is a unit wrong, or \
+             are thrust and torque coefficients wrong by this factor? A weighed mass with anchor = \"mass\" sets the scale"
         );
         Note::warning(About::Estimate, text)
     };
     contradictions(result, nominal).into_iter().map(warning).collect()
 }
 
-/// Flights whose masses contradict each other.
+/// Notes on flights with contradicting masses.
 #[must_use]
 pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<Note> {
     if flights.len() < 2 {
