@@ -195,12 +195,12 @@ mod tests {
         let fast_s: Vec<f64> = (0..1500).map(|index| 0.02 * f64::from(index)).collect();
         let torque = fast_s.iter().flat_map(|t| asked(*t)[..3].to_vec()).collect();
         let thrust = fast_s.iter().flat_map(|t| [0.0, 0.0, asked(*t)[3]]).collect();
-        let mut recording = Recording::default();
-        recording.streams = [
+        let streams = [
             (key(Quantity::TorqueSetpoint), Stream { time_s: fast_s.clone(), width: 3, values: torque }),
             (key(Quantity::ThrustVectorSetpoint), Stream { time_s: fast_s, width: 3, values: thrust }),
         ]
         .into();
+        let recording = Recording { streams, ..Recording::default() };
         let time_s: Vec<f64> = (0..300).map(|index| 0.1 * f64::from(index)).collect();
         let thrust_n = |t: f64, rotor: usize| {
             6.0 * share(rotor, asked(t)) + disturbance_n * (37.0 * t + 2.0 * rotor as f64).sin()
