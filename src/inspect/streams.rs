@@ -82,6 +82,8 @@ fn state(quantity: Quantity, stats: &StreamStats) -> &'static str {
             | Quantity::AttitudeSetpoint
             | Quantity::AngularRateSetpoint
             | Quantity::ThrustSetpoint
+            | Quantity::TorqueSetpoint
+            | Quantity::ThrustVectorSetpoint
     );
     match stats {
         _ if may_stay => "live",

@@ -17,6 +17,10 @@ pub enum Quantity {
     Position,
     /// world, m/s (3)
     Velocity,
+    /// world, m/s, as a satellite receiver measures it: raw, not the vehicle's estimate (3)
+    GpsVelocity,
+    /// above the standard atmosphere's sea level, by air pressure, m (1)
+    BarometricHeight,
     /// actuator outputs as recorded: 0..1 or microseconds (one a channel)
     ActuatorCommand,
     /// actuator outputs before the firmware's battery correction (one a channel)
@@ -45,6 +49,10 @@ pub enum Quantity {
     AngularRateSetpoint,
     /// commanded collective thrust, 0..1 (1)
     ThrustSetpoint,
+    /// commanded torque before the mixer, body, each axis -1..1 of the autopilot's own scale (3)
+    TorqueSetpoint,
+    /// commanded force before the mixer, body, each axis -1..1 of the autopilot's own scale, positive on z in hover (3)
+    ThrustVectorSetpoint,
     /// MAV_LANDED_STATE as a number: 1 on ground, 2 in air, 3 taking off, 4 landing (1)
     LandedState,
     /// 1 armed, 0 disarmed (1)
@@ -65,6 +73,8 @@ impl Quantity {
             Self::WorldAcceleration => "world_acceleration",
             Self::Position => "position",
             Self::Velocity => "velocity",
+            Self::GpsVelocity => "gps_velocity",
+            Self::BarometricHeight => "barometric_height",
             Self::ActuatorCommand => "actuator_command",
             Self::ActuatorDemand => "actuator_demand",
             Self::Wrench => "wrench",
@@ -79,6 +89,8 @@ impl Quantity {
             Self::AttitudeSetpoint => "attitude_setpoint",
             Self::AngularRateSetpoint => "angular_rate_setpoint",
             Self::ThrustSetpoint => "thrust_setpoint",
+            Self::TorqueSetpoint => "torque_setpoint",
+            Self::ThrustVectorSetpoint => "thrust_vector_setpoint",
             Self::LandedState => "landed_state",
             Self::Armed => "armed",
             Self::Mode => "mode",

@@ -72,6 +72,9 @@ pub fn column_count(quantity: Quantity, form: AttitudeForm) -> Option<usize> {
         | Quantity::WorldAcceleration
         | Quantity::Position
         | Quantity::Velocity
+        | Quantity::GpsVelocity
+        | Quantity::TorqueSetpoint
+        | Quantity::ThrustVectorSetpoint
         | Quantity::PositionSetpoint
         | Quantity::VelocitySetpoint
         | Quantity::AngularRateSetpoint
@@ -83,6 +86,7 @@ pub fn column_count(quantity: Quantity, form: AttitudeForm) -> Option<usize> {
         | Quantity::YawSetpoint
         | Quantity::YawRateSetpoint
         | Quantity::ThrustSetpoint
+        | Quantity::BarometricHeight
         | Quantity::LandedState
         | Quantity::Armed
         | Quantity::Mode => Some(1),
