@@ -40,12 +40,15 @@ const FMT_BYTES: usize = 89;
 /// Lines of a text log among which the first definition is.
 const FIRST_LINES: usize = 64;
 
-/// A definition, padded as ArduPilot does. PX4's logs of before 2016 have spaces there.
+/// Definitions, most of them padded as ArduPilot does. PX4's logs of before 2016 have spaces there.
 fn sniff_binary(head: &[u8]) -> Option<Certainty> {
-    let is_definition = |message: &[u8]| {
-        message[..2] == MARKER && message[2] == FMT && Definition::from_message(message).is_some()
-    };
-    head.windows(FMT_BYTES).any(is_definition).then_some(Certainty::Certain)
+    let begins = |message: &&[u8]| message[..2] == MARKER && message[2] == FMT && message[5].is_ascii_graphic();
+    let (mut sound, mut others) = (0, 0);
+    for message in head.windows(FMT_BYTES).filter(begins) {
+        let is_sound = Definition::from_message(message).is_some();
+        *(if is_sound { &mut sound } else { &mut others }) += 1;
+    }
+    (sound > others).then_some(Certainty::Certain)
 }
 
 /// A line that defines a message.
