@@ -4,10 +4,14 @@
 
 mod support;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use mavid::log::{DataflashReader, DataflashTextReader, Message};
+use mavid::autopilot::VehicleKind;
+use mavid::log::{self, DataflashReader, DataflashTextReader, Message, OpenOptions};
+use mavid::recording::{Quantity, Stream, StreamKey};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 use serde_json::Value;
 
 /// What is found of the messages of one name.
@@ -125,5 +129,188 @@ fn every_line_of_text_logs_is_read() {
         let (found, unknown) = text(&path);
         compare(name, &found, &expected[name]);
         assert_eq!(unknown, expected[name]["lines_of_no_known_type"].as_u64().unwrap(), "{name}");
+    }
+}
+
+#[test]
+fn each_log_says_what_wrote_it() {
+    use VehicleKind::{Helicopter, Multirotor, Plane, Rover, Submarine};
+    let Some(shared) = support::shared() else { return };
+    for (name, kind, firmware) in [
+        ("copter_313_2014_quad.bin", Some(Multirotor), Some("ArduCopter V3.1.3 (92cdd2a3)")),
+        ("copter_33dev_2015_quad.bin", Some(Multirotor), Some("APM:Copter V3.3-dev (ed577021)")),
+        ("copter_35_2017_quad.bin", Some(Multirotor), None),
+        ("copter_436_octaquad.bin", Some(Multirotor), Some("ArduCopter V4.3.6 (0c5e999c)")),
+        ("plane_304_tiny.bin", Some(Plane), Some("ArduPlane V3.0.4-beta3 (8d7ef5df)")),
+        ("plane_382dev_piece.bin", Some(Plane), Some("ArduPlane V3.8.2-dev (8178ab40)")),
+        ("plane_45dev_sitl_esc.bin", Some(Plane), Some("ArduPlane V4.5.0-dev (fa0f089f)")),
+        ("rover_246_2014.bin", Some(Rover), Some("ArduRover v2.46beta2 (d01fa3bf)")),
+        ("sub_410.bin", Some(Submarine), Some("ArduSub V4.1.0 (89639005)")),
+        ("text_copter_301_heli_brownout.log", Some(Helicopter), Some("ArduCopter V3.0.1")),
+        ("text_copter_301_octo.log", Some(Multirotor), Some("ArduCopter V3.0.1 (5c6503e2)")),
+        ("all_types.bin", None, None),
+    ] {
+        let path = shared.join("onboard/logs").join(name);
+        let report = log::open(&path, &OpenOptions::default()).unwrap().report;
+        let onboard = report.onboard().unwrap();
+        assert_eq!((onboard.kind, onboard.firmware.as_deref()), (kind, firmware), "{name}");
+    }
+    let sdlog2 = shared.join("onboard/logs/px4_sdlog2_old.px4log");
+    let refused = log::open(&sdlog2, &OpenOptions::default()).unwrap_err().to_string();
+    assert!(refused.contains("a PX4 log of the format before ULog"), "{refused}");
+}
+
+/// All messages of a log as they stand, and how many bytes they are and were lost.
+fn messages(bytes: &[u8]) -> (Vec<&[u8]>, u64, u64) {
+    let mut reader = DataflashReader::new(bytes);
+    let mut found = Vec::new();
+    while let Some(message) = reader.next_message().unwrap() {
+        let at = usize::try_from(message.offset).unwrap();
+        found.push(&bytes[at..at + message.definition.bytes]);
+    }
+    let damage = reader.damage();
+    (found, damage.messages, damage.skipped_bytes + damage.tail_bytes)
+}
+
+/// Damage at a random place: zeros, junk put in, bytes taken out, two pieces swapped, or an end.
+fn damaged(whole: &[u8], random: &mut Pcg64) -> Vec<u8> {
+    let mut bytes = whole.to_vec();
+    let at = random.random_range(20_000..bytes.len() - 6000);
+    // without a checksum, what is overwritten within one message cannot be told
+    let length = random.random_range(256..3000);
+    match random.random_range(0..5) {
+        0 => bytes[at..at + length].fill(0),
+        1 => {
+            let junk: Vec<u8> = (0..length).map(|_| random.random()).collect();
+            bytes.splice(at..at, junk);
+        }
+        2 => {
+            bytes.drain(at..at + length);
+        }
+        3 => bytes[at..at + 2 * length].rotate_left(length),
+        _ => bytes.truncate(at),
+    }
+    bytes
+}
+
+#[test]
+fn damaged_logs_give_nothing_that_was_not_in_them() {
+    let Some(shared) = support::shared() else { return };
+    let whole = std::fs::read(shared.join("onboard/logs/copter_47dev_sitl_quad.bin")).unwrap();
+    let (original, count, _) = messages(&whole);
+    let original: HashSet<&[u8]> = original.into_iter().collect();
+    let corrupt = std::fs::read(shared.join("onboard/logs/derived_corrupt.bin")).unwrap();
+    let mut random = Pcg64::seed_from_u64(23);
+    // the front of a message and the back of another of its kind, joined where both are the same far: no one can tell
+    let mut joined = 0;
+    let copies = (0..200).map(|_| damaged(&whole, &mut random));
+    for (index, bytes) in std::iter::once(corrupt).chain(copies).enumerate() {
+        let (found, told, lost) = messages(&bytes);
+        let wrong = found.iter().filter(|message| !original.contains(*message)).count();
+        assert!(wrong <= usize::from(index > 0), "copy {index}: {wrong}");
+        joined += wrong;
+        assert_eq!(told, found.len() as u64);
+        let read: usize = found.iter().map(|message| message.len()).sum();
+        assert_eq!(read as u64 + lost, bytes.len() as u64, "copy {index}: each byte is told");
+        // what was touched costs no more than it and its neighbours
+        let touched = 3000 + whole.len().abs_diff(bytes.len()) as u64;
+        assert!(
+            told > 50 && (lost < touched + 3500),
+            "copy {index}: {told} of {count} messages, {lost} bytes lost"
+        );
+        if index % 10 == 0 {
+            let opened =
+                log::open(log::Input::Bytes { name: "copy", bytes: &bytes }, &OpenOptions::default());
+            let losses = opened.unwrap().report.losses;
+            assert!(!losses.is_empty() || lost == 0, "copy {index}: {losses:?}");
+        }
+    }
+    assert!(joined <= 2, "{joined}");
+}
+
+/// The value of one channel at a time, on a straight line between two samples.
+fn at(stream: &Stream, channel: usize, time_s: f64) -> f64 {
+    let next = stream.time_s.partition_point(|t| *t < time_s).clamp(1, stream.len() - 1);
+    let (from_s, to_s) = (stream.time_s[next - 1], stream.time_s[next]);
+    let share = ((time_s - from_s) / (to_s - from_s)).clamp(0.0, 1.0);
+    let (a, b) = (stream.sample(next - 1)[channel], stream.sample(next)[channel]);
+    a + share * (b - a)
+}
+
+/// Attitudes as the body's x and z axes in the world: a quaternion has two signs.
+fn axes(quantity: Quantity, stream: Stream) -> Stream {
+    if quantity != Quantity::Attitude {
+        return stream;
+    }
+    let axes = |q: &[f64]| {
+        let (w, x, y, z) = (q[0], q[1], q[2], q[3]);
+        [
+            1.0 - 2.0 * (y * y + z * z),
+            2.0 * (x * y + w * z),
+            2.0 * (x * z - w * y),
+            2.0 * (x * z + w * y),
+            2.0 * (y * z - w * x),
+            1.0 - 2.0 * (x * x + y * y),
+        ]
+    };
+    Stream { values: stream.values.chunks_exact(4).flat_map(axes).collect(), width: 6, time_s: stream.time_s }
+}
+
+/// Root mean square of the difference of two streams, the second `later_s` behind the first.
+fn apart(ours: &Stream, theirs: &Stream, later_s: f64, every: usize) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    let (from_s, to_s) = (ours.time_s[0] + 10.0, ours.time_s[ours.len() - 1] - 5.0);
+    for index in (0..ours.len()).step_by(every).filter(|index| (from_s..to_s).contains(&ours.time_s[*index]))
+    {
+        for channel in 0..ours.width.min(theirs.width) {
+            let difference = ours.sample(index)[channel] - at(theirs, channel, ours.time_s[index] + later_s);
+            sum += difference * difference;
+            count += 1.0;
+        }
+    }
+    f64::sqrt(sum / f64::max(count, 1.0))
+}
+
+#[test]
+fn both_logs_of_one_flight_agree() {
+    let Some(shared) = support::shared() else { return };
+    for (name, slow) in [("ap01", false), ("ap05", true), ("ap07", false), ("ap11", true)] {
+        let open = |ending: &str| {
+            let path = shared.join(format!("onboard/sitl/{name}.{ending}"));
+            log::open(&path, &OpenOptions::default()).unwrap()
+        };
+        let (onboard, telemetry) = (open("bin"), open("tlog"));
+        assert!(onboard.report.losses.is_empty(), "{name}: {:?}", onboard.report.losses);
+        let of = |opened: &'_ log::Opened, quantity, source| {
+            opened.recording.streams[&StreamKey { quantity, source, instance: 0 }].clone()
+        };
+        let velocity = of(&onboard, Quantity::Velocity, "XKF1");
+        let sent = of(&telemetry, Quantity::Velocity, "LOCAL_POSITION_NED");
+        let nearest = |from: i32, step_s: f64, about_s: f64| {
+            let lags = (-from..=from).map(|lag| about_s + f64::from(lag) * step_s);
+            lags.min_by(|a, b| apart(&velocity, &sent, *a, 10).total_cmp(&apart(&velocity, &sent, *b, 10)))
+                .unwrap()
+        };
+        let later_s = nearest(20, 0.01, nearest(500, 0.2, 50.0));
+        for (quantity, ours, theirs, most) in [
+            (Quantity::Velocity, "XKF1", "LOCAL_POSITION_NED", 0.05),
+            (Quantity::Position, "XKF1", "LOCAL_POSITION_NED", 0.1),
+            (Quantity::Attitude, "ATT", "ATTITUDE_QUATERNION", 0.01),
+            (Quantity::AngularRate, "IMU", "RAW_IMU", 0.05),
+            (Quantity::SpecificForce, "IMU", "RAW_IMU", 0.3),
+            (Quantity::ActuatorCommand, "RCOU", "SERVO_OUTPUT_RAW", if slow { 12.0 } else { 8.0 }),
+            (Quantity::BatteryVoltage, "BAT", "BATTERY_STATUS", 0.1),
+        ] {
+            let (ours, theirs) = (of(&onboard, quantity, ours), of(&telemetry, quantity, theirs));
+            let far = apart(&axes(quantity, ours), &axes(quantity, theirs), later_s, 1);
+            assert!(far < most, "{name}: {} {far}", quantity.name());
+        }
+        let force = of(&onboard, Quantity::SpecificForce, "IMU");
+        let mean = force.values.iter().skip(2).step_by(3).sum::<f64>() / force.len() as f64;
+        assert!((mean - 9.9).abs() < 0.3, "{name}: {mean} m/s^2 up");
+        assert_eq!(onboard.recording.autopilot, telemetry.recording.autopilot);
+        for parameter in ["MOT_THST_EXPO", "FRAME_CLASS", "SERVO1_FUNCTION"] {
+            assert_eq!(onboard.recording.parameters[parameter], telemetry.recording.parameters[parameter]);
+        }
     }
 }

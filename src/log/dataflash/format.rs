@@ -42,7 +42,8 @@ const FIRST_LINES: usize = 64;
 
 /// Definitions, most of them padded as ArduPilot does. PX4's logs of before 2016 have spaces there.
 fn sniff_binary(head: &[u8]) -> Option<Certainty> {
-    let begins = |message: &&[u8]| message[..2] == MARKER && message[2] == FMT && message[5].is_ascii_graphic();
+    let begins =
+        |message: &&[u8]| message[..2] == MARKER && message[2] == FMT && message[5].is_ascii_graphic();
     let (mut sound, mut others) = (0, 0);
     for message in head.windows(FMT_BYTES).filter(begins) {
         let is_sound = Definition::from_message(message).is_some();
