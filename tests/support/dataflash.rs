@@ -1,5 +1,7 @@
 //! Logs of ArduPilot, made by hand.
 
+#![allow(clippy::panic, reason = "a test ends where it fails")]
+
 use mavid::log::Letter;
 
 /// A value of a message.
