@@ -39,8 +39,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         while reader.next_message()?.is_some() {}
         Ok(())
     })?;
-    let streamed = median(|| Ok(drop(log::stream(&long, &OpenOptions::default(), &mut |_, _| ())?)))?;
-    let held = median(|| Ok(drop(log::open(&long, &OpenOptions::default())?)))?;
+    let streamed = median(|| Ok(log::stream(&long, &OpenOptions::default(), &mut |_, _| ())?))?;
+    let held = median(|| Ok(log::open(&long, &OpenOptions::default())?))?;
     for (what, seconds) in [("messages", raw), ("samples, streamed", streamed), ("whole recording", held)] {
         writeln!(out, "{what:<20} {:>8.0} MB/s", megabytes / seconds)?;
     }
@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Median seconds of a few runs, the first of which warms the cache and does not count.
-fn median(mut run: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
+fn median<T>(mut run: impl FnMut() -> Result<T, Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
     run()?;
     let mut times_s = Vec::new();
     for _ in 0..REPEATS {
