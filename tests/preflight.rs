@@ -23,7 +23,7 @@ use std::path::Path;
 use std::time::Duration;
 
 fn vehicle_of(autopilot: Autopilot) -> Vehicle {
-    Vehicle { system: SystemId(1), component: ComponentId(1), autopilot }
+    Vehicle { system: SystemId(1), component: ComponentId(1), autopilot, kind: None }
 }
 
 /// A hash in place of chance.

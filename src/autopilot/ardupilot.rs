@@ -87,6 +87,8 @@ pub static ARDUPILOT: Stack = Stack {
         recorded: "MOT_* and SERVOn_FUNCTION",
     },
     geometry: Geometry::Class { class: "FRAME_CLASS", kind: "FRAME_TYPE", former: "FRAME" },
+    // fast attitude; RC output; fast and raw IMU. Motors are at 10 Hz whatever is asked for
+    logging: "add bits 0 (fast attitude), 10 (RC output) and 18 (fast IMU) to LOG_BITMASK",
     pilot: PilotSwitches {
         mode_channel: "FLTMODE_CH",
         positions: numbered("FLTMODE", ""),

@@ -45,6 +45,8 @@ pub struct Stack {
     pub outputs: Outputs,
     /// where the rotors are
     pub geometry: Geometry,
+    /// how to make it log what identification needs, as the end of a sentence that begins with what to do
+    pub logging: &'static str,
     /// how a pilot takes over
     pub pilot: PilotSwitches,
 }

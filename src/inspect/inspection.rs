@@ -55,7 +55,7 @@ pub struct VehicleSummary {
     pub others: Vec<u32>,
     /// no HEARTBEAT of a vehicle is in the log
     pub without_heartbeat: bool,
-    /// what kind of vehicle it is, where a log that it wrote itself says so
+    /// what kind of vehicle it is, where the log says so
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kind: Option<&'static str>,
     /// the autopilot's software in its own words, where a log that it wrote itself says so

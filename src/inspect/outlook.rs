@@ -2,6 +2,7 @@
 
 use super::assess::Assessment;
 use super::inspection::Outlook;
+use crate::autopilot::VehicleKind;
 use crate::estimate::{
     Estimated, Finding, NAMES, Nominal, THETA, UNITS, finding, rescaled, scale_of, theta_of,
 };
@@ -26,6 +27,10 @@ pub(super) struct Evidence<'a> {
     pub vehicle: Option<&'a Vehicle>,
     /// parameters of the autopilot's thrust curve that the log does not hold
     pub missing_curve: Option<&'static str>,
+    /// what kind of vehicle it is of
+    pub kind: Option<VehicleKind>,
+    /// how to make the vehicle log more, where it wrote the log
+    pub logging: Option<&'static str>,
 }
 
 impl Evidence<'_> {
@@ -40,12 +45,15 @@ impl Evidence<'_> {
             .reduce(f64::max)
     }
 
-    /// Rate of what tells the thrust, Hz.
+    /// Rate of what tells the thrust, Hz. Commands that are logged seldom are rebuilt from torque and thrust setpoints.
     pub(super) fn actuator_hz(&self) -> Option<f64> {
-        [Quantity::RotorSpeed, Quantity::ActuatorCommand, Quantity::Wrench]
-            .into_iter()
-            .filter_map(|quantity| self.rate_hz(quantity))
-            .reduce(f64::max)
+        let quantities = [Quantity::RotorSpeed, Quantity::ActuatorCommand, Quantity::Wrench];
+        let logged = quantities.into_iter().filter_map(|quantity| self.rate_hz(quantity)).reduce(f64::max)?;
+        let thrust = [Quantity::ThrustVectorSetpoint, Quantity::ThrustSetpoint];
+        let thrust_hz = thrust.into_iter().filter_map(|quantity| self.rate_hz(quantity)).reduce(f64::max);
+        let rebuilt =
+            self.rate_hz(Quantity::TorqueSetpoint).zip(thrust_hz).map(|(torque, thrust)| torque.min(thrust));
+        Some(rebuilt.map_or(logged, |rebuilt| logged.max(rebuilt)))
     }
 
     /// Something tells the force along the thrust.
@@ -63,6 +71,9 @@ impl Evidence<'_> {
 
     /// Why nothing at all can be identified.
     pub(super) fn nothing(&self) -> Option<String> {
+        if let Some(kind) = self.kind.filter(|kind| *kind != VehicleKind::Multirotor) {
+            return Some(format!("it is of a {}, and a multirotor is needed", kind.name()));
+        }
         if self.actuator_hz().is_none() {
             return Some("no actuator outputs".into());
         }

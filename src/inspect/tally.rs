@@ -179,6 +179,8 @@ impl Pass {
             losses: self.report.losses.iter().map(ToString::to_string).collect(),
             streams: self.tally.streams.summary(),
             numbers_held_max: self.numbers_held_max,
+            kind: self.report.kind(),
+            logging: logging(&self.report, self.tally.autopilot),
         };
         found.inspection(self.tally, self.assessment, vehicle)
     }
@@ -200,7 +202,7 @@ fn vehicle_of(report: &ReadReport, autopilot: Autopilot) -> VehicleSummary {
         autopilot: autopilot.id(),
         others: report.others.iter().map(|system| system.0).collect(),
         without_heartbeat: report.telemetry().is_some_and(|telemetry| heartbeats(telemetry) == 0),
-        kind: report.onboard().and_then(|onboard| onboard.kind).map(VehicleKind::name),
+        kind: report.kind().map(VehicleKind::name),
         firmware: report.onboard().and_then(|onboard| onboard.firmware.clone()),
     }
 }
@@ -228,6 +230,8 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         reading: reading_of(report),
         streams,
         numbers_held_max: recording.streams.values().map(|s| s.values.len() + s.len()).sum(),
+        kind: report.kind(),
+        logging: logging(report, recording.autopilot),
     };
     found.inspection(tally, assessor.finish(), vehicle)
 }
@@ -240,6 +244,15 @@ struct Found {
     losses: Vec<String>,
     streams: Vec<(StreamKey, usize, StreamStats)>,
     numbers_held_max: usize,
+    /// what kind of vehicle
+    kind: Option<VehicleKind>,
+    /// of a log that the vehicle wrote: how to make it log more
+    logging: Option<&'static str>,
+}
+
+/// How to make the vehicle log what identification needs; `None` of a log that it did not write.
+fn logging(report: &ReadReport, autopilot: Autopilot) -> Option<&'static str> {
+    report.onboard().and(autopilot.stack()).map(|stack| stack.logging)
 }
 
 impl Found {
@@ -249,7 +262,14 @@ impl Found {
         let is_known = self.vehicle.kind.is_none_or(|kind| rotors.contains(&kind));
         let modes = if is_known { self.autopilot } else { Autopilot::Unknown };
         let missing_curve = tally.parameters.missing_curve(self.autopilot);
-        let evidence = Evidence { streams: &self.streams, assessment: &assessment, vehicle, missing_curve };
+        let evidence = Evidence {
+            streams: &self.streams,
+            assessment: &assessment,
+            vehicle,
+            missing_curve,
+            kind: self.kind,
+            logging: self.logging,
+        };
         let identifiability = outlook(&evidence);
         let (verdict, advice) = verdict(&evidence, &identifiability, &self.vehicle);
         Inspection {

@@ -2,6 +2,7 @@
 
 use super::inspection::{Outlook, VehicleSummary};
 use super::outlook::{AXIS_NAMES, Evidence, LEAST_ANGULAR_ACCELERATION};
+use crate::autopilot::VehicleKind;
 use crate::recording::Quantity;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 
@@ -35,9 +36,13 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
             .into();
     }
     if let Some(nothing) = evidence.nothing() {
+        if evidence.kind.is_some_and(|kind| kind != VehicleKind::Multirotor) {
+            return format!("Nothing can be identified from this log: {nothing}.");
+        }
         let next = match evidence.actuator_hz() {
             None => {
-                format!("Request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS at {WANTED_HZ} Hz and fly again.")
+                let how = how(evidence, "request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS");
+                format!("Next time {how}.")
             }
             Some(_) if matches!(evidence.assessment.refusal, Some(SignalsError::TooSlow { .. })) => {
                 "See the advice.".to_owned()
@@ -112,6 +117,11 @@ fn percent(share: f64) -> String {
     }
 }
 
+/// What to do to have more: another setting of the vehicle's own log, or a message over the link.
+fn how(evidence: &Evidence<'_>, request: &str) -> String {
+    evidence.logging.map_or_else(|| format!("{request} at {WANTED_HZ} Hz"), str::to_owned)
+}
+
 /// Streams that are not there, or too slow.
 fn missing(evidence: &Evidence<'_>) -> Vec<String> {
     let mut advice = Vec::new();
@@ -120,34 +130,47 @@ fn missing(evidence: &Evidence<'_>) -> Vec<String> {
     }
     match evidence.actuator_hz() {
         None => advice.push(format!(
-            "No actuator outputs: nothing can be identified. Request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS at {WANTED_HZ} Hz."
+            "No actuator outputs: nothing can be identified. To have them, {}.",
+            how(evidence, "request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS")
         )),
         Some(hz) if hz < LEAST_ACTUATOR_HZ => {
-            advice.push(format!("Actuators at {hz:.0} Hz: too slow, request {WANTED_HZ} Hz."));
+            advice.push(format!(
+                "Actuators at {hz:.0} Hz: too slow. For more, {}.",
+                how(evidence, "request them")
+            ));
         }
         Some(_) => {}
     }
     match evidence.rate_hz(Quantity::AngularRate) {
-        None => advice.push(
-            "No body rates: inertia cannot be identified. Request ATTITUDE_QUATERNION or HIGHRES_IMU (PX4), ATTITUDE or RAW_IMU (ArduPilot)."
-                .into(),
-        ),
+        None => advice.push(format!(
+            "No body rates: inertia cannot be identified. To have them, {}.",
+            how(
+                evidence,
+                "request ATTITUDE_QUATERNION or HIGHRES_IMU (PX4), ATTITUDE or RAW_IMU (ArduPilot)"
+            )
+        )),
         Some(hz) if hz < LEAST_BODY_RATE_HZ => {
-            advice.push(format!("Body rates at {hz:.0} Hz: too slow, request {WANTED_HZ} Hz."));
+            advice.push(format!(
+                "Body rates at {hz:.0} Hz: too slow. For more, {}.",
+                how(evidence, "request them")
+            ));
         }
         Some(_) => {}
     }
     if !evidence.has_vertical_motion() {
-        advice.push(
-            "No vertical motion: mass cannot be identified. Request an IMU message, or attitude, rates and LOCAL_POSITION_NED."
-                .into(),
-        );
+        advice.push(format!(
+            "No vertical motion: mass cannot be identified. To have it, {}.",
+            how(evidence, "request an IMU message, or attitude, rates and LOCAL_POSITION_NED")
+        ));
     }
     if evidence.rate_hz(Quantity::Attitude).is_none() {
         advice.push("No attitude: streams cannot be aligned, and neither drag nor wind can be told.".into());
     }
     if evidence.rate_hz(Quantity::Velocity).is_none() {
-        advice.push("No velocity: drag cannot be told. Request LOCAL_POSITION_NED.".into());
+        let how = evidence
+            .logging
+            .map_or("To have it, request LOCAL_POSITION_NED.", |_| "The vehicle had no estimate of it.");
+        advice.push(format!("No velocity: drag cannot be told. {how}"));
     }
     advice
 }

@@ -6,6 +6,7 @@ use super::csv::CsvReport;
 use super::loss::{Loss, Oddity};
 use super::onboard::OnboardReport;
 use super::tlog::TlogReport;
+use crate::autopilot::VehicleKind;
 use crate::recording::{StreamKey, StreamRepair};
 use crate::wire::{SystemId, Vehicle};
 
@@ -59,6 +60,13 @@ impl ReadReport {
             Details::Onboard(report) => Some(report),
             _ => None,
         }
+    }
+
+    /// What kind of vehicle the log is of, where it says so.
+    #[must_use]
+    pub fn kind(&self) -> Option<VehicleKind> {
+        let heard = || self.vehicle.and_then(|vehicle| vehicle.kind);
+        self.onboard().map_or_else(heard, |onboard| onboard.kind)
     }
 
     /// Rows and columns, where it is a table.

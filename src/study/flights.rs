@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::autopilot::VehicleKind;
 use crate::config::{ConfigError, load_csv_mapping};
 use crate::diagnose::holdout::HeldOut;
 use crate::log::{Hold, LogError, LogFlight, OpenOptions, ReadReport, format_of, open_flights};
@@ -106,6 +107,10 @@ pub(super) fn load_all(
 
 fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, StudyError> {
     let opened = open_flights(path, options, most).map_err(|error| unread(path, error))?;
+    if let Some(kind) = opened.report.kind().filter(|kind| *kind != VehicleKind::Multirotor) {
+        let why = format!("expected the log of a multirotor, got that of a {}", kind.name());
+        return Err(StudyError::File { file: text::path(&path), why });
+    }
     let about = || About::File(text::path(&path));
     let losses = opened.report.losses.iter().map(ToString::to_string);
     let oddities = opened.report.oddities.iter().map(ToString::to_string);

@@ -91,6 +91,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         "study",
         &[
             "note",
+            "autopilot",
             "units",
             "text",
             "vehicle",
