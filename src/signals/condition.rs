@@ -79,7 +79,7 @@ pub fn condition(
     let grid = common_grid(&chosen, actuation.stream(), step_s)?;
     let kernel = WeakKernel::new(settings.weak_half_width_s, step_s);
     let airborne_s = airborne_spans(recording, &actuation, vehicle);
-    let slow = sufficient::check(&needed(&chosen, &actuation), &airborne_s)?;
+    let slow = sufficient::check(&needed(&chosen, &actuation), &airborne_s, recording.autopilot)?;
     if grid.count >= Grid::LONGEST {
         return Err(SignalsError::TooLong { span_s: step_s * grid.count as f64 });
     }

@@ -41,14 +41,12 @@ pub enum SignalsError {
     )]
     NoMotion,
     /// sampled too slowly
-    #[error(
-        "sampled too slowly to identify from: {slow}. 100 Hz of each is good: request it on a link that carries it, \
-         or take the on-board log. If the log is faster than that, its time column is not in the unit that the mapping \
-         says"
-    )]
+    #[error("too slow to identify from: {slow}. 100 Hz of each is good: {remedy}")]
     TooSlow {
         /// each slow stream, its rate, and the rate that was expected
         slow: String,
+        /// what to do for more
+        remedy: String,
     },
     /// streams do not share a span
     #[error("motion and actuator streams overlap for {overlap_s:.2} s only; at least 1 s is needed")]

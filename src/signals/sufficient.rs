@@ -9,6 +9,7 @@
 //! beside body rates tells from 5 Hz on; accelerometer and velocity do not tell down to that.
 
 use super::SignalsError;
+use crate::autopilot::{Autopilot, Stack};
 use crate::note::{About, Note};
 use crate::recording::Stream;
 use crate::stats::median;
@@ -63,7 +64,11 @@ pub(super) type Needed<'a> = (&'static str, &'static str, &'a Stream, f64);
 ///
 /// # Errors
 /// [`SignalsError::TooSlow`], which names each of those streams with its rate.
-pub(super) fn check(needed: &[Needed<'_>], airborne_s: &[(f64, f64)]) -> Result<Option<Note>, SignalsError> {
+pub(super) fn check(
+    needed: &[Needed<'_>],
+    airborne_s: &[(f64, f64)],
+    autopilot: Autopilot,
+) -> Result<Option<Note>, SignalsError> {
     let in_air = needed.iter().filter_map(|(what, message, stream, least_hz)| {
         let rate_hz = flowing_rate_within_hz(stream, airborne_s)?;
         let told = format!("{what} ({message}) at {rate_hz:.1} Hz, expected {least_hz:.0} Hz at least");
@@ -72,7 +77,21 @@ pub(super) fn check(needed: &[Needed<'_>], airborne_s: &[(f64, f64)]) -> Result<
     let (rates_hz, slow): (Vec<f64>, Vec<String>) = in_air.unzip();
     let slow = slow.join("; ");
     if rates_hz.iter().any(|rate_hz| *rate_hz < REFUSED_HZ) {
-        return Err(SignalsError::TooSlow { slow });
+        // a table says nothing of its autopilot
+        let of_table = || {
+            "if the log is faster than that, its time column is not in the unit that the mapping says"
+                .to_owned()
+        };
+        let of_stack = |stack: &Stack| {
+            format!(
+                "for the log that the vehicle writes, {}; on a link, request them, if it carries as much",
+                stack.logging
+            )
+        };
+        return Err(SignalsError::TooSlow {
+            slow,
+            remedy: autopilot.stack().map_or_else(of_table, of_stack),
+        });
     }
     Ok((!slow.is_empty()).then(|| {
         let text = format!(
@@ -109,18 +128,20 @@ mod tests {
         let needed = |rates: &'static str, stream| (rates, "ATTITUDE", stream, LEAST_BODY_RATE_HZ);
         let outputs = ("actuator outputs", "SERVO_OUTPUT_RAW", &slow, LEAST_ACTUATOR_HZ);
         let flight = [(10.0, 50.0)];
-        let error = check(&[needed("body rates", &good), outputs], &flight).unwrap_err().to_string();
+        let error =
+            check(&[needed("body rates", &good), outputs], &flight, Autopilot::Px4).unwrap_err().to_string();
         assert!(error.contains("actuator outputs (SERVO_OUTPUT_RAW) at 9.5 Hz, expected 38 Hz"), "{error}");
         assert!(!error.contains("body rates (ATTITUDE)"), "{error}");
+        assert!(error.contains("set SDLOG_PROFILE = 25"), "{error}");
         // seldom for a minute on the ground, then as asked for
         let mut late = stream(1.0, 60.0);
         late.time_s.extend(stream(100.0, 20.0).time_s.iter().map(|time_s| 60.5 + time_s));
-        assert_eq!(check(&[needed("body rates", &late)], &[(60.5, 80.0)]).unwrap(), None);
-        assert!(check(&[needed("body rates", &late)], &[(5.0, 50.0)]).is_err());
-        assert_eq!(check(&[outputs], &[]).unwrap(), None);
+        assert_eq!(check(&[needed("body rates", &late)], &[(60.5, 80.0)], Autopilot::Unknown).unwrap(), None);
+        assert!(check(&[needed("body rates", &late)], &[(5.0, 50.0)], Autopilot::Unknown).is_err());
+        assert_eq!(check(&[outputs], &[], Autopilot::Unknown).unwrap(), None);
         // slow, but not hopeless: said
         let thin = stream(25.0, 60.0);
-        let said = check(&[needed("body rates", &thin)], &flight).unwrap().unwrap().text;
+        let said = check(&[needed("body rates", &thin)], &flight, Autopilot::Unknown).unwrap().unwrap().text;
         assert!(said.contains("body rates (ATTITUDE) at 25.0 Hz, expected 38 Hz"), "{said}");
     }
 }
