@@ -112,6 +112,11 @@ fn tlog() {
 }
 
 #[test]
+fn dataflash() {
+    twin("dataflash", 20_000);
+}
+
+#[test]
 fn csv() {
     twin("csv", 20_000);
 }

@@ -7,7 +7,9 @@ use crate::stats::median_step;
 /// Message names of one quantity, best first. A source that is not listed comes last.
 fn preference(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
-        Quantity::Attitude => &["ATTITUDE_QUATERNION", "ATTITUDE", "ODOMETRY"],
+        Quantity::Attitude => {
+            &["ATTITUDE_QUATERNION", "ATTITUDE", "ODOMETRY", "ANG", "ATT", "XKF1", "NKF1", "EKF1", "AHR2"]
+        }
         Quantity::AngularRate => &[
             "HIGHRES_IMU",
             "SCALED_IMU",
@@ -17,9 +19,28 @@ fn preference(quantity: Quantity) -> &'static [&'static str] {
             "ATTITUDE_QUATERNION",
             "ATTITUDE",
             "ODOMETRY",
+            "GYR",
+            "IMU",
+            "RATE",
+            "GYR1",
+            "IMU2",
+            "IMU3",
         ],
-        Quantity::SpecificForce => &["HIGHRES_IMU", "SCALED_IMU", "RAW_IMU", "SCALED_IMU2", "SCALED_IMU3"],
-        Quantity::Position | Quantity::Velocity => &["LOCAL_POSITION_NED", "ODOMETRY"],
+        Quantity::SpecificForce => &[
+            "HIGHRES_IMU",
+            "SCALED_IMU",
+            "RAW_IMU",
+            "SCALED_IMU2",
+            "SCALED_IMU3",
+            "ACC",
+            "IMU",
+            "ACC1",
+            "IMU2",
+            "IMU3",
+        ],
+        Quantity::Position | Quantity::Velocity => {
+            &["LOCAL_POSITION_NED", "ODOMETRY", "XKF1", "NKF1", "EKF1"]
+        }
         // what was asked for comes before the autopilot's own setpoint, into which it feeds back noise
         Quantity::PositionSetpoint
         | Quantity::VelocitySetpoint
@@ -79,6 +100,9 @@ pub(super) fn too_short(
     })
 }
 
+/// Batches of raw samples with pauses between them are for spectra: they say nothing of the motion between.
+const IN_BATCHES: &str = "ISBD";
+
 /// The best live stream of a quantity that satisfies `fits`: among those within a factor of 1.6 of
 /// the fastest, the first of its quantity's order of preference.
 #[must_use]
@@ -91,7 +115,11 @@ pub fn best(
         .streams
         .iter()
         .filter(|(key, stream)| {
-            key.quantity == quantity && stream.len() >= LEAST_SAMPLES && is_live(stream) && fits(stream)
+            key.quantity == quantity
+                && key.source != IN_BATCHES
+                && stream.len() >= LEAST_SAMPLES
+                && is_live(stream)
+                && fits(stream)
         })
         .collect();
     let rated: Vec<(&str, f64)> =
