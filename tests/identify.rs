@@ -253,7 +253,12 @@ fn a_flight_over_a_thin_link_is_refused_with_its_rates_and_one_that_suffices_is_
         other => panic!("{other:?}"),
     };
     let all = refused(&thinned(&whole, 9.5, |_| true));
-    for said in ["body rates (HIGHRES_IMU) at 9.", "(ESC_STATUS) at 9.", "38 Hz at least", "on-board log"] {
+    for said in [
+        "body rates (HIGHRES_IMU) at 9.",
+        "(ESC_STATUS) at 9.",
+        "38 Hz at least",
+        "the log that the vehicle writes",
+    ] {
         assert!(all.contains(said), "{said}: {all}");
     }
     let driven = |quantity| matches!(quantity, Quantity::RotorSpeed | Quantity::ActuatorCommand);

@@ -9,7 +9,7 @@
 //! beside body rates tells from 5 Hz on; accelerometer and velocity do not tell down to that.
 
 use super::SignalsError;
-use crate::autopilot::{Autopilot, Stack};
+use crate::autopilot::Autopilot;
 use crate::note::{About, Note};
 use crate::recording::Stream;
 use crate::stats::median;
@@ -77,21 +77,7 @@ pub(super) fn check(
     let (rates_hz, slow): (Vec<f64>, Vec<String>) = in_air.unzip();
     let slow = slow.join("; ");
     if rates_hz.iter().any(|rate_hz| *rate_hz < REFUSED_HZ) {
-        // a table says nothing of its autopilot
-        let of_table = || {
-            "if the log is faster than that, its time column is not in the unit that the mapping says"
-                .to_owned()
-        };
-        let of_stack = |stack: &Stack| {
-            format!(
-                "for the log that the vehicle writes, {}; on a link, request them, if it carries as much",
-                stack.logging
-            )
-        };
-        return Err(SignalsError::TooSlow {
-            slow,
-            remedy: autopilot.stack().map_or_else(of_table, of_stack),
-        });
+        return Err(SignalsError::TooSlow { slow, logging: autopilot.stack().map(|stack| stack.logging) });
     }
     Ok((!slow.is_empty()).then(|| {
         let text = format!(

@@ -140,14 +140,14 @@ const RPM: &[Column] = &[c(&["RPM"], RevolutionsPerMinute)];
 const ARM_STATE: &[Column] = &[c(&["ArmState"], Plain)];
 
 const OUTPUTS: &[Column] = &[
-    c(&["C1", "Ch1", "Chan1"], Microseconds),
-    c(&["C2", "Ch2", "Chan2"], Microseconds),
-    c(&["C3", "Ch3", "Chan3"], Microseconds),
-    c(&["C4", "Ch4", "Chan4"], Microseconds),
-    c(&["C5", "Ch5", "Chan5"], Microseconds),
-    c(&["C6", "Ch6", "Chan6"], Microseconds),
-    c(&["C7", "Ch7", "Chan7"], Microseconds),
-    c(&["C8", "Ch8", "Chan8"], Microseconds),
+    c(&["C1", "Ch1", "Chan1", "Mot1"], Microseconds),
+    c(&["C2", "Ch2", "Chan2", "Mot2"], Microseconds),
+    c(&["C3", "Ch3", "Chan3", "Mot3"], Microseconds),
+    c(&["C4", "Ch4", "Chan4", "Mot4"], Microseconds),
+    c(&["C5", "Ch5", "Chan5", "Mot5"], Microseconds),
+    c(&["C6", "Ch6", "Chan6", "Mot6"], Microseconds),
+    c(&["C7", "Ch7", "Chan7", "Mot7"], Microseconds),
+    c(&["C8", "Ch8", "Chan8", "Mot8"], Microseconds),
     c(&["C9", "Ch9"], Microseconds),
     c(&["C10", "Ch10"], Microseconds),
     c(&["C11", "Ch11"], Microseconds),
@@ -231,6 +231,8 @@ pub(super) const TOPICS: &[&[Topic]] = &[
         motors("RATE", TORQUE, body, TorqueSetpoint),
         motors("RATE", THRUST, as_is, ThrustSetpoint),
         Topic::new("RCOU", ActuatorCommand, OUTPUTS, channels).demands(Demand::AsManyAsThere),
+        // before 3.2
+        Topic::new("MOT", ActuatorCommand, OUTPUTS, channels).demands(Demand::AsManyAsThere),
         Topic::new("ESC", RotorSpeed, RPM, as_is).part("ESC", Part::OfInstance),
     ],
     // position controller, an axis a message
