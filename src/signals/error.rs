@@ -43,8 +43,8 @@ pub enum SignalsError {
     /// sampled too slowly
     #[error(
         "sampled too slowly to identify from: {slow}. 100 Hz of each is good: request it on a link that carries it, \
-         or take the on-board log. If the log is faster than that, its time column is not in the unit that the mapping \
-         says"
+         or let the autopilot log it at that rate and take the on-board log. If the log is faster, its time \
+         column is not in the unit that the mapping says"
     )]
     TooSlow {
         /// each slow stream, its rate, and the rate that was expected
