@@ -105,7 +105,7 @@ mod tests {
         assert_eq!(clock.place(9e9), Placed::Stray);
         assert_eq!(clock.place(41.5), Placed::At(1.5));
         // threads
-        assert_eq!(clock.place(41.4), Placed::At(1.4));
+        assert_eq!(clock.place(41.25), Placed::At(1.25));
         assert_eq!([clock.place(9000.0), clock.place(9001.0)], [Placed::Stray, Placed::At(8961.0)]);
         assert_eq!((clock.strays, clock.ran_back), (2, 0));
         assert_eq!([clock.place(50.0), clock.place(51.0)], [Placed::Stray, Placed::At(11.0)]);
