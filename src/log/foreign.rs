@@ -20,11 +20,6 @@ const TABLE: &str = "export it as a table of comma-separated values";
 /// Kinds of files by their first bytes.
 const KNOWN: &[Foreign] = &[
     Foreign {
-        signature: b"ULog\x01\x12\x35",
-        what: "a PX4 log (.ulg), which is not read yet",
-        advice: EXPORT,
-    },
-    Foreign {
         signature: b"\xa3\x95",
         what: "an ArduPilot log (.bin), which is not read yet",
         advice: EXPORT,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::units::seconds_from_us;
+use crate::units::{seconds_from_ms, seconds_from_us};
 
 /// What of a file is not in its recording: how much of what, and where first. Its text is what a user is told.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +26,22 @@ pub enum Loss {
         places: u64,
         /// byte offset of the first
         first_byte: u64,
+    },
+    /// they stand whole in the file, but what they say is not what their kind says, or their definition is gone
+    Unreadable {
+        /// what a file of this format is made of: `message`
+        unit: &'static str,
+        /// how many
+        count: u64,
+        /// byte offset of the first
+        first_byte: u64,
+    },
+    /// their stamps fit neither the vehicle's clock nor a new one
+    StaleStamps {
+        /// what a file of this format is made of: `message`
+        unit: &'static str,
+        /// how many
+        count: u64,
     },
     /// the file ends within a record, or with zeros
     CutOff {
@@ -94,13 +110,14 @@ impl Loss {
         match self {
             Self::WrongChecksum { first_byte, .. }
             | Self::Skipped { first_byte, .. }
+            | Self::Unreadable { first_byte, .. }
             | Self::CutOff { first_byte, .. } => Some(Position::Byte(*first_byte)),
             Self::RowsRejected { first, .. } => first.as_ref().map(|row| Position::Line(row.line)),
             Self::EndlessRow { line } => Some(Position::Line(*line)),
             Self::RepeatedTimes { first_line, .. } | Self::NoRotations { first_line, .. } => {
                 Some(Position::Line(*first_line))
             }
-            Self::NotHeld { .. } => None,
+            Self::StaleStamps { .. } | Self::NotHeld { .. } => None,
         }
     }
 }
@@ -116,6 +133,12 @@ impl fmt::Display for Loss {
                     f,
                     "{bytes} bytes of no {unit} skipped in {places} places, the first at byte {first_byte}"
                 )
+            }
+            Self::Unreadable { unit, count, first_byte } => {
+                write!(f, "{count} {unit}s cannot be read, the first at byte {first_byte}")
+            }
+            Self::StaleStamps { unit, count } => {
+                write!(f, "{count} {unit}s left out, whose stamps do not fit the vehicle's clock")
             }
             Self::CutOff { bytes, .. } => write!(f, "{bytes} bytes of a record cut off at the end"),
             Self::RowsRejected { count, of, first } => {
@@ -155,6 +178,13 @@ pub enum Oddity {
         /// how many
         count: u64,
     },
+    /// the vehicle could not write as fast as it measured
+    Dropouts {
+        /// how often
+        count: u64,
+        /// how long together, milliseconds
+        ms: u64,
+    },
     /// the recording computer's clock was set while the vehicle's went on
     HostClockSet {
         /// how often
@@ -174,6 +204,10 @@ impl fmt::Display for Oddity {
                 "{count} host stamps are of no wall clock (before 2010 or after 2100): the recording computer's clock was \
                  not set"
             ),
+            Self::Dropouts { count, ms } => {
+                let seconds = seconds_from_ms(*ms as f64);
+                write!(f, "the vehicle could not write fast enough {count} times: {seconds:.3} s are missing")
+            }
             Self::HostClockSet { count } => {
                 write!(f, "the recording computer's clock was set {count} times while the vehicle's went on")
             }

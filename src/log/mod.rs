@@ -13,12 +13,14 @@ mod flights;
 mod foreign;
 mod format;
 mod input;
+mod lookahead;
 mod loss;
 mod onboard;
 mod open;
 mod options;
 mod report;
 mod tlog;
+pub mod ulog;
 
 pub use error::LogError;
 pub use flights::{Flights, Hold, LogFlight};

@@ -8,11 +8,11 @@ use super::input::Input;
 use super::loss::Loss;
 use super::options::OpenOptions;
 use super::report::ReadReport;
-use super::{csv, tlog};
+use super::{csv, tlog, ulog};
 use crate::recording::{Event, Recording, RecordingBuilder};
 
 /// All formats that are read. Their order means nothing.
-pub const FORMATS: &[&Format] = &[&tlog::FORMAT, &csv::FORMAT];
+pub const FORMATS: &[&Format] = &[&tlog::FORMAT, &ulog::FORMAT, &csv::FORMAT];
 
 /// A log in memory.
 #[derive(Debug, Clone, PartialEq)]

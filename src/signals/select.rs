@@ -4,10 +4,16 @@ use super::SignalsError;
 use crate::recording::{Quantity, Recording, Stream, StreamKey};
 use crate::stats::median_step;
 
+/// Commands of the motors themselves, as shares of full thrust, in the autopilot's order of motors: before its thrust curve
+/// and its outputs.
+pub(super) const MOTORS: &str = "actuator_motors";
+
 /// Message names of one quantity, best first. A source that is not listed comes last.
 fn preference(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
-        Quantity::Attitude => &["ATTITUDE_QUATERNION", "ATTITUDE", "ODOMETRY"],
+        Quantity::Attitude => {
+            &["ATTITUDE_QUATERNION", "ATTITUDE", "ODOMETRY", "vehicle_attitude", "vehicle_odometry"]
+        }
         Quantity::AngularRate => &[
             "HIGHRES_IMU",
             "SCALED_IMU",
@@ -17,16 +23,39 @@ fn preference(quantity: Quantity) -> &'static [&'static str] {
             "ATTITUDE_QUATERNION",
             "ATTITUDE",
             "ODOMETRY",
+            // as the sensor read it; what is filtered comes late
+            "sensor_combined",
+            "vehicle_imu",
+            "vehicle_angular_velocity",
+            "vehicle_attitude",
         ],
-        Quantity::SpecificForce => &["HIGHRES_IMU", "SCALED_IMU", "RAW_IMU", "SCALED_IMU2", "SCALED_IMU3"],
-        Quantity::Position | Quantity::Velocity => &["LOCAL_POSITION_NED", "ODOMETRY"],
+        Quantity::SpecificForce => &[
+            "HIGHRES_IMU",
+            "SCALED_IMU",
+            "RAW_IMU",
+            "SCALED_IMU2",
+            "SCALED_IMU3",
+            "sensor_combined",
+            "vehicle_imu",
+            "vehicle_acceleration",
+        ],
+        Quantity::Position | Quantity::Velocity => {
+            &["LOCAL_POSITION_NED", "ODOMETRY", "vehicle_local_position", "vehicle_odometry"]
+        }
         // what was asked for comes before the autopilot's own setpoint, into which it feeds back noise
         Quantity::PositionSetpoint
         | Quantity::VelocitySetpoint
         | Quantity::AccelerationSetpoint
-        | Quantity::YawSetpoint => &["SET_POSITION_TARGET_LOCAL_NED", "POSITION_TARGET_LOCAL_NED"],
-        Quantity::ActuatorCommand => &["SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"],
-        Quantity::RotorSpeed => &["ESC_STATUS", "ESC_TELEMETRY_1_TO_4"],
+        | Quantity::YawSetpoint => &[
+            "SET_POSITION_TARGET_LOCAL_NED",
+            "POSITION_TARGET_LOCAL_NED",
+            "trajectory_setpoint",
+            "vehicle_local_position_setpoint",
+        ],
+        Quantity::ActuatorCommand => {
+            &["SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS", MOTORS, "actuator_outputs"]
+        }
+        Quantity::RotorSpeed => &["ESC_STATUS", "ESC_TELEMETRY_1_TO_4", "esc_status"],
         _ => &[],
     }
 }
@@ -67,9 +96,9 @@ pub(super) const LEAST_SAMPLES: usize = 10;
 pub(super) fn too_short(
     recording: &Recording,
     quantity: Quantity,
-    fits: impl Fn(&Stream) -> bool,
+    fits: impl Fn(&StreamKey, &Stream) -> bool,
 ) -> Option<SignalsError> {
-    let fitting = recording.streams.iter().filter(|(key, stream)| key.quantity == quantity && fits(stream));
+    let fitting = recording.streams.iter().filter(|(key, stream)| key.quantity == quantity && fits(key, stream));
     let (key, longest) = fitting.max_by_key(|(_, stream)| stream.len())?;
     (longest.len() < LEAST_SAMPLES).then(|| SignalsError::TooFewSamples {
         quantity,
@@ -87,11 +116,20 @@ pub fn best(
     quantity: Quantity,
     fits: impl Fn(&Stream) -> bool,
 ) -> Option<(&StreamKey, &Stream)> {
+    best_of(recording, quantity, |_, stream| fits(stream))
+}
+
+/// As [`best`], where it matters whose the stream is.
+pub(super) fn best_of(
+    recording: &Recording,
+    quantity: Quantity,
+    fits: impl Fn(&StreamKey, &Stream) -> bool,
+) -> Option<(&StreamKey, &Stream)> {
     let candidates: Vec<(&StreamKey, &Stream)> = recording
         .streams
         .iter()
         .filter(|(key, stream)| {
-            key.quantity == quantity && stream.len() >= LEAST_SAMPLES && is_live(stream) && fits(stream)
+            key.quantity == quantity && stream.len() >= LEAST_SAMPLES && is_live(stream) && fits(key, stream)
         })
         .collect();
     let rated: Vec<(&str, f64)> =
