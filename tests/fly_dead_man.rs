@@ -208,8 +208,8 @@ async fn whatever_dies_setpoints_end_and_no_mode_is_ordered() {
     }
 }
 
-/// The figures of the documents; not for every day: 180 flights.
-#[ignore = "takes half an hour"]
+/// The figures of the documents: 180 flights.
+#[ignore = "seven minutes: .ci/slow runs it"]
 #[tokio::test(flavor = "multi_thread", worker_threads = 8)]
 async fn twenty_trials_of_each() {
     for how in STOPS {

@@ -43,6 +43,6 @@ pub use feasible::{Conflict, StartPlace, feasible};
 pub use information::{GramSampler, Matrix7};
 pub use noise::{NoiseModel, PARAMETERS, RowMotion, RowSpacing, parameter_scale};
 pub use optimise::{Round, Search};
-pub use room::{HEIGHT_ERROR_M, Reach, Roomed, floor_m, with_room};
+pub use room::{HEIGHT_ERROR_M, Reach, Roomed, floor_m, too_narrow, with_room};
 pub use space::{AxisStart, SeriesSpace};
 pub use transition::{FlightPlan, TransitionError, flight_path};

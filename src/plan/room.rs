@@ -58,6 +58,16 @@ impl Reach {
     }
 }
 
+/// A wall of a room in which a vehicle fits nowhere: its name, where it is, and how far the rotors reach, m.
+#[must_use]
+pub fn too_narrow(limits: &Limits, vehicle: &Vehicle) -> Option<(&'static str, f64, f64)> {
+    let side_m = Reach::of(vehicle).side_m;
+    let walls = [("x_max_m", limits.x_max_m), ("y_max_m", limits.y_max_m)];
+    walls
+        .into_iter()
+        .find_map(|(name, wall_m)| Some((name, wall_m.filter(|wall_m| *wall_m <= side_m)?, side_m)))
+}
+
 /// The least height above the ground (m) at which no rotor can touch it: the reach of the tilted rotors, and the error of
 /// the height.
 #[must_use]

@@ -3,49 +3,14 @@
 
 use std::net::UdpSocket;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Command, Stdio};
 
-use crate::processes::{config, folder, planned, vehicle};
+use crate::processes::{Running, config, folder, planned, until, vehicle};
 use crate::stuck::full_pipe;
 use crate::support::{frames, header, heartbeat, read, v2};
 use serde_json::Value;
 
 const MAVID: &str = env!("CARGO_BIN_EXE_mavid");
-/// Long after everything that is waited for.
-const LONG: Duration = Duration::from_secs(120);
-
-fn until(what: &str, mut done: impl FnMut() -> bool) {
-    let deadline = Instant::now() + LONG;
-    while !done() {
-        assert!(Instant::now() < deadline, "{what}");
-        std::thread::sleep(Duration::from_millis(10));
-    }
-}
-
-/// Ends with its owner.
-struct Owned(Child);
-
-impl Drop for Owned {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-impl Owned {
-    fn terminate(&self) {
-        let id = self.0.id().to_string();
-        assert!(Command::new("kill").args(["-TERM", &id]).status().unwrap().success());
-    }
-
-    /// Its exit status; never one of a signal.
-    fn ended(&mut self, what: &str) -> i32 {
-        until(what, || self.0.try_wait().unwrap().is_some());
-        self.0.wait().unwrap().code().unwrap()
-    }
-}
-
 fn record(out: &Path, port: u16) -> Command {
     let mut command = Command::new(MAVID);
     command.args(["--json", "record", "--connect", &format!("udpin:127.0.0.1:{port}"), "--force", "--out"]);
@@ -86,7 +51,7 @@ fn a_recording_ends_on_sigterm_though_nobody_reads_what_it_says() {
             true => command.stdout(writer).stderr(Stdio::null()),
             false => command.stdout(Stdio::null()).stderr(writer),
         };
-        let mut running = Owned(command.spawn().unwrap());
+        let mut running = Running(command.spawn().unwrap());
         let mut vehicle = Beats::new(port);
         until("nothing is recorded", || {
             vehicle.beat();
@@ -104,7 +69,7 @@ fn a_recording_ends_on_sigterm_though_nobody_reads_what_it_says() {
 fn a_full_disk_is_told_and_no_frame_is_claimed_that_is_not_there() {
     let port = free_udp_port();
     let mut command = record(Path::new("/dev/full"), port);
-    let mut running = Owned(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap());
+    let mut running = Running(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap());
     let mut vehicle = Beats::new(port);
     let mut taken = 0;
     until("nobody listens", || {
@@ -160,7 +125,7 @@ fn after_a_connection_that_failed_the_same_command_begins_again() {
     for _ in 0..2 {
         // given up: there is nothing in the recording but what the station said to nobody
         let before = said();
-        let mut running = Owned(fly(&out, &silent).stderr(Stdio::null()).spawn().unwrap());
+        let mut running = Running(fly(&out, &silent).stderr(Stdio::null()).spawn().unwrap());
         // the recording of the try before is there until this one begins
         until("no heartbeat", || said() > before && held(&tlog) > 0);
         running.terminate();
@@ -184,7 +149,7 @@ fn a_flight_goes_on_though_its_terminal_takes_nothing() {
     let (trajectory, out) = (planned("stuck_plan", 1), folder("stuck_flight").join("flight"));
     let (_vehicle, listens) = vehicle("px4", "udpin:127.0.0.1:0");
     let (reader, writer) = full_pipe();
-    let mut running = Owned(
+    let mut running = Running(
         Command::new(MAVID)
             // every event becomes a log line, which nobody takes either
             .args(["-vvv", "--json", "fly", "--plain", "--arm", "--connect", &listens.replace("in:", "out:")])

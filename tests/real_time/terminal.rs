@@ -2,33 +2,11 @@
 
 use std::net::UdpSocket;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Command, Stdio};
 
-use crate::processes::{config, folder, planned, vehicle};
+use crate::processes::{LONG, Running, config, folder, planned, until, vehicle};
 use crate::pty::Person;
 use serde_json::Value;
-
-/// Long after everything that is waited for.
-const LONG: Duration = Duration::from_secs(180);
-
-fn until(what: &str, mut done: impl FnMut() -> bool) {
-    let deadline = Instant::now() + LONG;
-    while !done() {
-        assert!(Instant::now() < deadline, "{what}");
-        std::thread::sleep(Duration::from_millis(10));
-    }
-}
-
-/// Ends with its owner.
-struct Owned(Child);
-
-impl Drop for Owned {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
 
 fn fly(out: &Path, listens: &str, trajectory: &Path, further: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_mavid"));
@@ -54,7 +32,7 @@ fn a_word_for_arming_that_was_typed_before_the_page_arms_nothing() {
     let (trajectory, out) = (planned("early_plan", 1), folder("early").join("flight"));
     let (_vehicle, listens) = vehicle("px4", "udpin:127.0.0.1:0");
     let (mut person, child) = Person::starts(&mut fly(&out, &listens, &trajectory, &["--plain"]));
-    let mut running = Owned(child);
+    let mut running = Running(child);
     person.types("arm\narm\nar");
     until("nothing is said of it", || {
         person.saw().contains("typed before the page: ignored; type arm again")
@@ -80,7 +58,7 @@ fn a_terminal_that_takes_nothing_costs_no_result() {
     let (trajectory, out) = (planned("blocked_plan", 1), folder("blocked").join("flight"));
     let (_vehicle, listens) = vehicle("px4", "udpin:127.0.0.1:0");
     let (person, child) = Person::starts(&mut fly(&out, &listens, &trajectory, &["--yes"]));
-    let mut running = Owned(child);
+    let mut running = Running(child);
     until("no trajectory", || is_in_phase(&out, "trajectory"));
     person.looks_away();
     until("it does not end", || running.0.try_wait().unwrap().is_some());
@@ -110,7 +88,7 @@ fn a_vehicle_outlives_its_terminal_where_it_was_started_so() {
     drop(reader);
     let mut command = Command::new("sh");
     command.args(["-c", &script]).stdin(Stdio::null()).stdout(writer).stderr(Stdio::null());
-    let mut running = Owned(command.spawn().unwrap());
+    let mut running = Running(command.spawn().unwrap());
     let heard = |frames: u32| {
         let mut bytes = [0; 2048];
         for _ in 0..frames {

@@ -6,8 +6,12 @@ use std::io::{BufRead, BufReader};
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
+
+/// Long after everything that is waited for.
+pub const LONG: Duration = Duration::from_secs(180);
 
 const MAVID: &str = env!("CARGO_BIN_EXE_mavid");
 
@@ -16,7 +20,30 @@ const LIVELY: &[&str] =
     &["WP_ACC=10", "WP_ACC_Z=6", "WP_SPD_UP=4", "WP_SPD_DN=4", "PSC_NE_JERK=40", "PSC_D_JERK=40"];
 
 /// A process that ends with its owner.
-pub struct Running(Child);
+pub struct Running(pub Child);
+
+impl Running {
+    /// Asks it to end, by SIGTERM.
+    pub fn terminate(&self) {
+        let id = self.0.id().to_string();
+        assert!(Command::new("kill").args(["-TERM", &id]).status().unwrap().success());
+    }
+
+    /// Its exit status, once it has ended; never one of a signal.
+    pub fn ended(&mut self, what: &str) -> i32 {
+        until(what, || self.0.try_wait().unwrap().is_some());
+        self.0.wait().unwrap().code().unwrap()
+    }
+}
+
+/// Waits until it is done, and fails by saying what is not.
+pub fn until(what: &str, mut done: impl FnMut() -> bool) {
+    let deadline = Instant::now() + LONG;
+    while !done() {
+        assert!(Instant::now() < deadline, "{what}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
 
 impl Drop for Running {
     fn drop(&mut self) {

@@ -182,7 +182,7 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
     let mut motion = Motion::at(first.position_m, first.velocity_m_s);
     motion.acceleration_m_s2 = first.acceleration_m_s2;
     let off_m = if matches!(law, FollowLaw::Px4 { .. }) { PX4_OFF_M } else { ARDUPILOT_OFF_M };
-    let home_m = situation.home();
+    let (home_m, reach) = (situation.home(), Reach::of(situation.vehicle));
     let (mut step, mut recent) = (0_usize, VecDeque::with_capacity(RECENT + 1));
     loop {
         let time_s = step as f64 * STEP_S;
@@ -205,7 +205,7 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
                 let from_home = place_m - home_m;
                 tried.farthest_m = tried.farthest_m.max(from_home.xy().norm());
                 tried.highest_m = tried.highest_m.max(from_home.z);
-                for Border { beyond_m, is_hard, name: border } in borders(situation, leg, place_m) {
+                borders((situation, &reach), leg, place_m, |Border { beyond_m, is_hard, name: border }| {
                     let beyond_m = beyond_m + off_m;
                     let this = Worst { beyond_m, border, time_s, leg: leg.name };
                     if is_hard && tried.hard.is_none_or(|hard| beyond_m > hard.beyond_m) {
@@ -214,7 +214,7 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
                     if tried.worst.is_none_or(|worst| beyond_m > worst.beyond_m) {
                         tried.worst = Some(this);
                     }
-                }
+                });
             });
         }
         step += 1;
@@ -229,31 +229,32 @@ struct Border {
     name: &'static str,
 }
 
-/// Of each border, for a vehicle at a place of the local frame.
-fn borders(situation: &Situation<'_>, leg: &Leg<'_>, place_m: &Vector3<f64>) -> Vec<Border> {
+/// Each border, for a vehicle at a place of the local frame.
+fn borders(
+    (situation, reach): (&Situation<'_>, &Reach),
+    leg: &Leg<'_>,
+    place_m: &Vector3<f64>,
+    mut at: impl FnMut(Border),
+) {
     let limits = situation.limits;
-    let reach = Reach::of(situation.vehicle);
     let inside = place_m - situation.origin_m;
-    let mut all = Vec::with_capacity(8);
     let mut wall = |beyond_m: Option<f64>, name| {
-        all.extend(beyond_m.map(|beyond_m| Border { beyond_m, is_hard: false, name }));
+        if let Some(beyond_m) = beyond_m {
+            at(Border { beyond_m, is_hard: false, name });
+        }
     };
     wall(limits.x_max_m.map(|max| inside.x.abs() + reach.side_m - max), "the wall x_max_m");
     wall(limits.y_max_m.map(|max| inside.y.abs() + reach.side_m - max), "the wall y_max_m");
     wall(limits.z_max_m.map(|max| inside.z + reach.up_m - max), "the ceiling z_max_m");
     if !leg.from_ground {
         wall(limits.z_min_m.map(|min| min - inside.z), "the floor z_min_m");
-        all.push(Border { beyond_m: reach.down_m - inside.z, is_hard: true, name: "the ground" });
+        at(Border { beyond_m: reach.down_m - inside.z, is_hard: true, name: "the ground" });
     }
     if let Some(home_m) = situation.home_m {
-        let fence = situation.fence.spares_m(place_m, &home_m);
-        all.extend(fence.into_iter().map(|(spare_m, name)| Border {
-            beyond_m: -spare_m,
-            is_hard: true,
-            name,
-        }));
+        for (spare_m, name) in situation.fence.spares_m(place_m, &home_m) {
+            at(Border { beyond_m: -spare_m, is_hard: true, name });
+        }
     }
-    all
 }
 
 /// `0.12 m short of the wall x_max_m at worst, should they end at 3.1 s of the trajectory`.

@@ -118,7 +118,12 @@ impl Fence {
     }
 
     /// Distance to each border, m, positive where the vehicle may be; places in the local frame.
-    pub(super) fn spares_m(&self, place: &Vector3<f64>, home: &Vector3<f64>) -> Vec<(f64, &'static str)> {
+    pub(super) fn spares_m(
+        &self,
+        place: &Vector3<f64>,
+        home: &Vector3<f64>,
+    ) -> impl Iterator<Item = (f64, &'static str)> {
+        let place = *place;
         let from_home = place - home;
         let bounds = [
             (self.radius_m.map(|radius| radius - from_home.xy().norm()), "the fence's radius about home"),
@@ -126,7 +131,7 @@ impl Fence {
             (self.height_min_m.map(|min| from_home.z - min), "the fence's least height"),
         ];
         let bounds = bounds.into_iter().filter_map(|(spare, name)| spare.map(|spare| (spare, name)));
-        let zones = self.zones.iter().map(|zone| (zone.spare_m([place.x, place.y]), zone.name()));
-        bounds.chain(zones).collect()
+        let zones = self.zones.iter().map(move |zone| (zone.spare_m([place.x, place.y]), zone.name()));
+        bounds.chain(zones)
     }
 }

@@ -4,7 +4,7 @@ use super::stopping::place_and_velocity;
 use super::{Situation, Stopping};
 use crate::fly::finding::Finding;
 use crate::plan::{
-    Dynamics, HEIGHT_ERROR_M, Margin, Quantity, Reach, bounds_of, check, floor_m, path_samples,
+    Dynamics, HEIGHT_ERROR_M, Margin, Quantity, Reach, bounds_of, check, floor_m, path_samples, too_narrow,
 };
 use crate::vehicle::Limits;
 use nalgebra::Vector3;
@@ -80,8 +80,14 @@ fn floor(situation: &Situation<'_>) -> Option<Finding> {
     })
 }
 
-/// The rotors along the path, which the bounds of the place do not know: a vehicle that fits nowhere is refused.
+/// The rotors along the path, which the bounds of the place do not know.
 fn rotors(situation: &Situation<'_>) -> Option<Finding> {
+    let expected =
+        |reach_m, name, max| format!("the rotors, which reach {reach_m:.2} m, inside {name} = {max:.2} m");
+    if let Some((name, wall_m, reach_m)) = too_narrow(situation.limits, situation.vehicle) {
+        let came = "a room that is narrower than the vehicle";
+        return Some(Finding::refusal("room", expected(reach_m, name, wall_m), came, "correct the room"));
+    }
     let reach = Reach::of(situation.vehicle);
     let walls = [
         (0, "x_max_m", situation.limits.x_max_m, reach.side_m),
@@ -93,19 +99,12 @@ fn rotors(situation: &Situation<'_>) -> Option<Finding> {
         let place_m = |value: f64| if axis < 2 { value.abs() } else { value };
         let farthest_m =
             path_samples(situation.path).map(|(_, axes)| place_m(axes[axis][0])).fold(0.0, f64::max);
-        Some((farthest_m + reach_m - max, name, max, reach_m, axis < 2 && reach_m >= max))
+        Some((farthest_m + reach_m - max, expected(reach_m, name, max)))
     };
-    let worst = walls.into_iter().filter_map(beyond).max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let (beyond_m, name, max, reach_m, fits_nowhere) = worst;
-    if beyond_m <= TOUCH {
-        return None;
-    }
-    let expected = format!("the rotors, which reach {reach_m:.2} m, inside {name} = {max:.2} m");
-    let came = format!("{beyond_m:.2} m beyond it where the path comes nearest");
-    let remedy = "leave that much room behind the wall, or plan further inside";
-    Some(if fits_nowhere {
-        Finding::refusal("room", expected, came, "the vehicle does not fit in: correct the room")
-    } else {
+    let (beyond_m, expected) = walls.into_iter().filter_map(beyond).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (beyond_m > TOUCH).then(|| {
+        let came = format!("{beyond_m:.2} m beyond it where the path comes nearest");
+        let remedy = "leave that much room behind the wall, or plan further inside";
         Finding::warning("room", expected, came, remedy)
     })
 }

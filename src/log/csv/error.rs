@@ -1,7 +1,5 @@
 //! Why a file gave no recording.
 
-use std::path::PathBuf;
-
 use crate::log::loss::RowRejection;
 use crate::text;
 
@@ -11,14 +9,6 @@ const NAME_CHARS: usize = 64;
 /// Why a file gave no recording.
 #[derive(Debug, thiserror::Error)]
 pub enum CsvError {
-    /// the file could not be read
-    #[error("cannot read {}: {source}", text::path(path))]
-    Read {
-        /// which file
-        path: PathBuf,
-        /// what the system said
-        source: std::io::Error,
-    },
     /// reading stopped in the middle
     #[error("{origin}: {source}")]
     Table {

@@ -167,9 +167,7 @@ impl<R: Read> TlogReader<R> {
 
     fn not_a_tlog(&self) -> LogError {
         let first = &self.buffer[..self.filled.min(16)];
-        let raw = self.base == 0
-            && Frame::at_start(&self.buffer[..self.filled])
-                .is_some_and(|frame| frame.check(&self.seeds) == Check::Right);
+        let raw = self.base == 0 && self.is_checked_frame(0);
         let frames = if raw { ": MAVLink frames without stamps" } else { "" };
         LogError::WrongContent {
             format: "telemetry log",
@@ -180,6 +178,10 @@ impl<R: Read> TlogReader<R> {
 
     fn frame(&self, at: usize) -> Option<Frame<'_>> {
         Frame::at_start(self.buffer[..self.filled].get(at..)?)
+    }
+
+    fn is_checked_frame(&self, at: usize) -> bool {
+        self.frame(at).is_some_and(|frame| frame.check(&self.seeds) == Check::Right)
     }
 
     fn stamp(&self, at: usize) -> Option<u64> {
@@ -252,10 +254,9 @@ impl<R: Read> TlogReader<R> {
         if at >= self.filled {
             return at == self.filled && self.ended;
         }
-        let same_stamp = self.frame(at).is_some_and(|frame| frame.check(&self.seeds) == Check::Right);
         let stamped = self.stamp(at).is_none_or(|stamp_us| self.plausible(stamp_us))
             && self.header(at + STAMP_BYTES) != Start::NotAFrame;
-        same_stamp || stamped
+        stamped || self.is_checked_frame(at)
     }
 
     /// The log goes on at `end`, and no run of checked records begins behind `at` and reaches `end`: bytes
@@ -333,12 +334,12 @@ impl<R: Read> TlogReader<R> {
     /// A record with a right checksum, and a stamp next to another's, whatever clock both are of.
     fn is_checked_neighbour(&self, at: usize, stamp_us: u64) -> bool {
         self.stamp(at).is_some_and(|next| next.abs_diff(stamp_us) < NEIGHBOUR_US)
-            && self.frame(at + STAMP_BYTES).is_some_and(|frame| frame.check(&self.seeds) == Check::Right)
+            && self.is_checked_frame(at + STAMP_BYTES)
     }
 
     fn checked_record_at(&self, at: usize) -> bool {
         self.stamp(at).is_some_and(|stamp_us| self.plausible(stamp_us))
-            && self.frame(at + STAMP_BYTES).is_some_and(|frame| frame.check(&self.seeds) == Check::Right)
+            && self.is_checked_frame(at + STAMP_BYTES)
     }
 
     /// Tells the byte order from the stamps of the first records at `at`: little-endian only where every

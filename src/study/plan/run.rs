@@ -5,8 +5,8 @@ use super::result::{Flown, PlanStudy};
 use crate::config::{StoredTransitions, read_limits, read_trajectory, read_vehicle};
 use crate::note::{About, Note};
 use crate::plan::{
-    Dynamics, FlightPlan, PlanError, Reach, RestInside, Roomed, assess, bounds_of, flight_path, floor_m,
-    plan, search_of, with_room,
+    Dynamics, FlightPlan, PlanError, RestInside, Roomed, assess, bounds_of, flight_path, floor_m, plan,
+    search_of, too_narrow, with_room,
 };
 use crate::study::flights::file_notes;
 use crate::study::{Progress, StudyError};
@@ -35,7 +35,10 @@ pub fn plan_flight(request: &PlanningRequest, progress: &dyn Progress) -> Result
     notes.iter().for_each(|note| progress.note(note));
     let (mut study, rest) = planned(request, (&vehicle, &limits), (notes, progress))?;
     let flight = around(&study.series, request, study.repeats);
-    if let Some(violation) = fits_nowhere(&limits, &vehicle).or_else(|| below_floor(&flight, &vehicle)) {
+    let narrow = too_narrow(&limits, &vehicle).map(|(name, wall_m, reach_m)| {
+        format!("the rotors reach {reach_m:.2} m to each side, the wall {name} is at {wall_m:.2} m")
+    });
+    if let Some(violation) = narrow.or_else(|| below_floor(&flight, &vehicle)) {
         study.first_violation.get_or_insert(violation);
     }
     let mut note = |note: Note| {
@@ -157,16 +160,6 @@ fn around(series: &FourierTrajectory, request: &PlanningRequest, repeats: u32) -
     let mean: [f64; 4] = std::array::from_fn(|i| series.axes[i].c);
     let takeoff = request.takeoff.unwrap_or(mean);
     FlightPlan { takeoff, landing: request.landing.unwrap_or(takeoff), hover_s: 0.0, repeats }
-}
-
-/// A room that is narrower than the vehicle.
-fn fits_nowhere(limits: &Limits, vehicle: &Vehicle) -> Option<String> {
-    let side_m = Reach::of(vehicle).side_m;
-    let walls = [("x_max_m", limits.x_max_m), ("y_max_m", limits.y_max_m)];
-    walls.into_iter().find_map(|(name, wall_m)| {
-        let wall_m = wall_m.filter(|wall_m| *wall_m <= side_m)?;
-        Some(format!("the rotors reach {side_m:.2} m to each side, the wall {name} is at {wall_m:.2} m"))
-    })
 }
 
 /// A hover before or after the series in which the rotors come near the ground.
