@@ -115,8 +115,13 @@ fn topics_counts_stamps_and_values_are_those_of_another_reader() {
                     continue;
                 };
                 let number = |name: &str| values[name].as_f64();
-                assert_eq!(tally.not_finite, values["not_finite"].as_u64().unwrap_or(0), "{name} {key}.{field}");
-                let (Some(min), Some(max), Some(mean)) = (number("min"), number("max"), number("mean")) else {
+                assert_eq!(
+                    tally.not_finite,
+                    values["not_finite"].as_u64().unwrap_or(0),
+                    "{name} {key}.{field}"
+                );
+                let (Some(min), Some(max), Some(mean)) = (number("min"), number("max"), number("mean"))
+                else {
                     assert_eq!(tally.count, 0, "{name} {key}.{field}");
                     continue;
                 };

@@ -326,7 +326,7 @@ mod tests {
         // 1e-5 (0.5 * 1000)^2
         assert!((from_pulses_n - 2.5).abs() < 1e-12 && notes == 1);
         assert_eq!(thrust_n(&fractions), (from_pulses_n, 0));
-        let unknown = Recording { parameters: [].into(), ..pulses.clone() };
+        let unknown = Recording { parameters: [].into(), ..pulses };
         assert!(thrusts_from_commands(&unknown, &vehicle).is_err());
     }
 

@@ -98,7 +98,8 @@ pub(super) fn too_short(
     quantity: Quantity,
     fits: impl Fn(&StreamKey, &Stream) -> bool,
 ) -> Option<SignalsError> {
-    let fitting = recording.streams.iter().filter(|(key, stream)| key.quantity == quantity && fits(key, stream));
+    let fitting =
+        recording.streams.iter().filter(|(key, stream)| key.quantity == quantity && fits(key, stream));
     let (key, longest) = fitting.max_by_key(|(_, stream)| stream.len())?;
     (longest.len() < LEAST_SAMPLES).then(|| SignalsError::TooFewSamples {
         quantity,
