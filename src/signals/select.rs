@@ -138,14 +138,26 @@ pub(super) fn best_of(
     best_rank(quantity, &rated).map(|index| candidates[index])
 }
 
+/// A faster inertial sensor says no more, Hz: of several that are fast, the one that filters least is best.
+const ENOUGH_HZ: f64 = 100.0;
+
+/// What a source's rate is worth, Hz.
+fn worth_hz(quantity: Quantity, rate_hz: f64) -> f64 {
+    match quantity {
+        Quantity::AngularRate | Quantity::SpecificForce => rate_hz.min(ENOUGH_HZ),
+        _ => rate_hz,
+    }
+}
+
 /// Which of several sources of a quantity (message and samples a second, in the order of their keys) is used:
 /// among those within a factor of 1.6 of the fastest, the first of the quantity's order of preference.
 #[must_use]
 pub fn best_rank(quantity: Quantity, sources: &[(&str, f64)]) -> Option<usize> {
-    let fastest = sources.iter().map(|(_, rate_hz)| *rate_hz).fold(0.0, f64::max);
+    let worth = |rate_hz: f64| worth_hz(quantity, rate_hz);
+    let fastest = sources.iter().map(|(_, rate_hz)| worth(*rate_hz)).fold(0.0, f64::max);
     let order = preference(quantity);
     let rank = |source: &str| order.iter().position(|name| *name == source).unwrap_or(order.len());
-    let fast = sources.iter().enumerate().filter(|(_, (_, rate_hz))| rate_hz * 1.6 >= fastest);
+    let fast = sources.iter().enumerate().filter(|(_, (_, rate_hz))| worth(*rate_hz) * 1.6 >= fastest);
     fast.min_by_key(|(index, (source, _))| (rank(source), *index)).map(|(index, _)| index)
 }
 
@@ -177,5 +189,10 @@ mod tests {
         assert_eq!(pick(&slow), Some("ATTITUDE"));
         let frozen = recording([("ATTITUDE", stream(0.02, true)), ("HIGHRES_IMU", stream(0.01, false))]);
         assert_eq!(pick(&frozen), Some("ATTITUDE"));
+        let filtered = recording([
+            ("vehicle_angular_velocity", stream(0.004, true)),
+            ("sensor_combined", stream(0.008, true)),
+        ]);
+        assert_eq!(pick(&filtered), Some("sensor_combined"));
     }
 }

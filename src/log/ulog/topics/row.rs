@@ -1,12 +1,10 @@
 //! One stream of a topic: which fields become what.
 
-use super::turns::Turn;
+use super::turns::{MOST_CELLS, Turn};
 use crate::log::ulog::schema::{Cell, Layout};
 use crate::recording::{Quantity, StreamKey};
 use crate::units::seconds_from_us;
 
-/// Numbers that one sample is made of, at most: two of each of 16 channels, and what all have in common.
-pub(super) const MOST_CELLS: usize = 36;
 /// Elements of an array that are looked at: `control[*]`.
 const MOST_ELEMENTS: usize = 16;
 /// A sample that lies further from its message's stamp has no stamp of its own, microseconds.

@@ -1,9 +1,11 @@
 //! From the values of fields to a sample: frames, units, and what a field says that it is not.
 
-use super::row::MOST_CELLS;
 use crate::autopilot::{PX4, px4_mode_of_state};
 use crate::frames::{attitude_from_frd_ned, body_from_frd, world_from_ned, yaw_from_ned};
 use crate::units::{rad_s_from_rpm, seconds_from_us, whole, whole_unsigned};
+
+/// Numbers that one sample is made of, at most: two of each of 16 channels, and what all have in common.
+pub(super) const MOST_CELLS: usize = 36;
 
 /// Turns the first `count` values, in place, into a sample; how many values it has, 0 for none. There is room for four at
 /// least.
