@@ -133,6 +133,7 @@ pub mod autopilot;
 pub mod compare;
 pub mod config;
 pub mod diagnose;
+pub mod draft;
 pub mod estimate;
 pub mod export;
 pub mod fence;

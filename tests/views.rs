@@ -74,7 +74,7 @@ fn outline(page: &str) -> String {
 fn an_explanation() {
     let request = ExplainRequest {
         logs: vec![fixture("p01_identify_0_25s.tlog")],
-        vehicle: fixture("p01_vehicle.toml"),
+        vehicle: fixture("p01_vehicle.toml").into(),
         transient_s: ExplainRequest::TRANSIENT_S,
         ..ExplainRequest::default()
     };
@@ -89,7 +89,7 @@ fn an_explanation() {
 fn an_identification() {
     let request = IdentifyRequest {
         logs: vec![fixture("p04_identify_10_22s.tlog")],
-        vehicle: fixture("p04_vehicle.toml"),
+        vehicle: fixture("p04_vehicle.toml").into(),
         ..IdentifyRequest::default()
     };
     let study = identify(&request, &Silent).unwrap();

@@ -1,13 +1,13 @@
 //! The residual of one flight with an effect, before it was found and after.
 
 use super::flights::{Conditions, fly};
-use super::measured::{Chart, Picture, short};
+use super::measured::{Chart, Picture, to_digits};
 use super::ordinary::Ordinary;
 use mavid::diagnose::locate::Follow;
 use mavid::diagnose::{AXES, CHANNEL_NAMES, Explanation};
 
 /// Points of a line along time.
-const POINTS: usize = 180;
+const POINTS: usize = 120;
 
 /// The flight of a seed at usual rates and noise.
 pub fn picture(entry: &'static Ordinary, seed: u64) -> Option<Picture> {
@@ -15,6 +15,11 @@ pub fn picture(entry: &'static Ordinary, seed: u64) -> Option<Picture> {
     let explanation = fly(seed, &[entry], with)?;
     let panels = [Some(along_time(&explanation)), followed(&explanation)];
     Some(Picture { id: entry.id.to_owned(), panels: panels.into_iter().flatten().collect() })
+}
+
+/// A number as finely as a picture shows it.
+fn drawn(value: f64) -> f64 {
+    to_digits(value, 3)
 }
 
 /// The channel with the largest share of the misfit.
@@ -36,7 +41,7 @@ fn along_time(explanation: &Explanation) -> Chart {
     let axis = worst(explanation);
     let (before, after) = (&explanation.search.before.rows, &explanation.search.after.rows);
     let every = before.time_s.len().div_ceil(POINTS).max(1);
-    let thin = |values: &[f64]| values.iter().step_by(every).copied().map(short).collect();
+    let thin = |values: &[f64]| values.iter().step_by(every).copied().map(drawn).collect();
     Chart {
         title: format!("residual of the {}", name(axis)),
         x_label: "time (s)".to_owned(),
@@ -55,7 +60,7 @@ fn followed(explanation: &Explanation) -> Option<Chart> {
     let same = |follow: &&Follow| follow.channel == most.channel && follow.state == most.state;
     let after = explanation.located_after.as_ref()?.follows.iter().find(same);
     let of = |follow: &Follow, what: fn(&mavid::diagnose::locate::Bin) -> f64| -> Vec<f64> {
-        follow.bins.iter().map(|bin| short(what(bin))).collect()
+        follow.bins.iter().map(|bin| drawn(what(bin))).collect()
     };
     let state = most.state.name().replace('_', " ");
     Some(Chart {

@@ -2,6 +2,7 @@
 
 use super::FlownBy::{self, Autopilot as Itself, Companion, Pilot};
 use super::failsafe::{Choice, Failsafe, Reaction, choice};
+use super::geometry::Geometry;
 use super::kind::Autopilot;
 use super::limits::{Bounded, Braking};
 use super::modes::{FlightMode, Numbering, Wishes};
@@ -85,6 +86,7 @@ pub static ARDUPILOT: Stack = Stack {
         ],
         recorded: "MOT_* and SERVOn_FUNCTION",
     },
+    geometry: Geometry::Class { class: "FRAME_CLASS", kind: "FRAME_TYPE", former: "FRAME" },
     pilot: PilotSwitches {
         mode_channel: "FLTMODE_CH",
         positions: numbered("FLTMODE", ""),

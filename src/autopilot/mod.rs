@@ -5,6 +5,8 @@
 
 pub(crate) mod ardupilot;
 mod failsafe;
+mod frames;
+mod geometry;
 mod kind;
 mod limits;
 mod list;
@@ -22,11 +24,13 @@ mod vehicle_type;
 
 pub use ardupilot::ARDUPILOT;
 pub use failsafe::{Choice, Failsafe, Reaction};
+pub use frames::{FRAMES, Frame, FrameMotor};
+pub use geometry::{Geometry, Layout, LayoutError, LayoutUnit, RotorPlace};
 pub use kind::Autopilot;
 pub use limits::{Bounded, Braking};
 pub use list::STACKS;
 pub use modes::{FlightMode, FlownBy, Mode, Numbering, Wishes};
-pub use outputs::{Numbered, NumberedGroup, Outputs, PulseRange, QUAD_X};
+pub use outputs::{Numbered, NumberedGroup, Outputs, PulseRange};
 pub use parameters::{Parameter, ParameterTable, ParameterType, Purpose, Renamed, Unit};
 pub use pilot::{KillSwitch, POSITIONS, PilotSwitches};
 pub use px4::PX4;

@@ -107,8 +107,3 @@ impl Outputs {
         (f64::from(self.first_motor)..=f64::from(self.last_motor)).contains(&function)
     }
 }
-
-/// Where the motors of a quadrotor X are, in the order of both autopilots: front right, rear left, front left, rear right;
-/// the first two turn counter-clockwise. Signs forward and to the left, and whether it turns counter-clockwise.
-pub const QUAD_X: [(f64, f64, bool); 4] =
-    [(1.0, -1.0, true), (-1.0, 1.0, true), (1.0, 1.0, false), (-1.0, -1.0, false)];

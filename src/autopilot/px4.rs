@@ -2,6 +2,8 @@
 
 use super::FlownBy::{self, Autopilot as Itself, Companion, Pilot};
 use super::failsafe::{Choice, Failsafe, Reaction, choice};
+use super::frames::{PLUS, X, class};
+use super::geometry::Geometry;
 use super::kind::Autopilot;
 use super::limits::{Bounded, Braking};
 use super::modes::{FlightMode, Numbering, Wishes};
@@ -121,6 +123,21 @@ pub static PX4: Stack = Stack {
             },
         ],
         recorded: "THR_MDL_FAC and PWM_MAIN_*",
+    },
+    geometry: Geometry::Rotors {
+        count: "CA_ROTOR_COUNT",
+        place: [numbered("CA_ROTOR", "_PX"), numbered("CA_ROTOR", "_PY"), numbered("CA_ROTOR", "_PZ")],
+        turning: numbered("CA_ROTOR", "_KM"),
+        airframe: "SYS_AUTOSTART",
+        frames: &[
+            (4000, 4999, class::QUAD, X),
+            (5000, 5999, class::QUAD, PLUS),
+            (6000, 6999, class::HEXA, X),
+            (7000, 7999, class::HEXA, PLUS),
+            (8000, 8999, class::OCTA, X),
+            (9000, 9999, class::OCTA, PLUS),
+            (10016, 10016, class::QUAD, X),
+        ],
     },
     pilot: PilotSwitches {
         mode_channel: "RC_MAP_FLTMODE",

@@ -3,6 +3,7 @@
 use mavlink::dialects::ardupilotmega::MavAutopilot;
 
 use super::failsafe::Failsafe;
+use super::geometry::Geometry;
 use super::kind::Autopilot;
 use super::limits::{Bounded, Braking};
 use super::modes::{FlightMode, Mode, Numbering, Wishes};
@@ -42,6 +43,8 @@ pub struct Stack {
     pub braking: Braking,
     /// from commands to rotors
     pub outputs: Outputs,
+    /// where the rotors are
+    pub geometry: Geometry,
     /// how a pilot takes over
     pub pilot: PilotSwitches,
 }

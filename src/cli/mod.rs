@@ -2,6 +2,7 @@
 
 mod address;
 mod flight;
+mod given;
 mod live;
 mod model;
 mod plan;
@@ -11,7 +12,7 @@ mod verbosity;
 
 pub use flight::{CheckName, FlyArgs, OriginName};
 pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
-pub use model::{ExportArgs, ExportFormat, SimulateArgs, VehicleArgs};
+pub use model::{ExportArgs, ExportFormat, InitArgs, SimulateArgs, VehicleArgs, VehicleVerb};
 pub use plan::{CriterionName, PlanArgs};
 pub use recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ValidateArgs};
 pub use verb::{Cli, Verb};

@@ -1,13 +1,48 @@
 //! Arguments of the verbs that take a vehicle or a model alone.
 
-use clap::{Args, ValueEnum};
+use super::given::ShapeArgs;
+use super::recording::ReadArgs;
+use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Arguments of `mavid vehicle`.
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct VehicleArgs {
     /// vehicle.toml or model.toml
-    pub file: PathBuf,
+    #[arg(required = true)]
+    pub file: Option<PathBuf>,
+    /// what else to do
+    #[command(subcommand)]
+    pub verb: Option<VehicleVerb>,
+}
+
+/// What `mavid vehicle` does beside checking a file.
+#[derive(Debug, Subcommand)]
+pub enum VehicleVerb {
+    /// Write a first vehicle file from a log: rotors and thrust curve by the autopilot's parameters, thrust by the flight,
+    /// the rest by rules of thumb, marked as guesses
+    Init(InitArgs),
+}
+
+/// Arguments of `mavid vehicle init`.
+#[derive(Debug, Args)]
+pub struct InitArgs {
+    /// a log of the vehicle that holds its parameters, best one with a flight
+    #[arg(long, value_name = "LOG")]
+    pub from: PathBuf,
+    /// mass with battery, kg: weigh it
+    #[arg(long, value_name = "KG")]
+    pub mass: f64,
+    /// its shape
+    #[command(flatten)]
+    pub shape: ShapeArgs,
+    /// where to write it
+    #[arg(long, value_name = "VEHICLE.TOML")]
+    pub out: PathBuf,
+    /// how the log is read
+    #[command(flatten)]
+    pub read: ReadArgs,
 }
 
 /// Arguments of `mavid simulate`.

@@ -1,5 +1,6 @@
 //! Arguments of the verbs that read recordings of flights.
 
+use super::given::{GivenArgs, ShapeArgs};
 use clap::Args;
 use mavid::study::ReadSettings;
 use mavid::wire::SystemId;
@@ -11,9 +12,9 @@ pub struct IdentifyArgs {
     /// recordings of one vehicle: .tlog, or .csv with known columns
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
-    /// vehicle.toml, or a model
-    #[arg(long)]
-    pub vehicle: PathBuf,
+    /// the vehicle
+    #[command(flatten)]
+    pub given: GivenArgs,
     /// write the identified vehicle here, and a report beside it under the same name with .html
     #[arg(long, value_name = "MODEL.TOML")]
     pub out: Option<PathBuf>,
@@ -52,9 +53,9 @@ pub struct ExplainArgs {
     /// recordings of one vehicle: .tlog, or .csv with known columns
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
-    /// vehicle.toml, or a model
-    #[arg(long)]
-    pub vehicle: PathBuf,
+    /// the vehicle
+    #[command(flatten)]
+    pub given: GivenArgs,
     /// other flights of the same vehicle, on which the improvement is shown; without them the end of the
     /// flight is held back for it
     #[arg(long, value_name = "LOG", num_args = 1..)]
@@ -99,8 +100,14 @@ pub struct InspectArgs {
     /// flight.tlog or flight.csv
     pub log: PathBuf,
     /// vehicle.toml or model.toml: says how well each parameter can be identified
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["mass", "size", "frame"])]
     pub vehicle: Option<PathBuf>,
+    /// in place of --vehicle: mass with battery, kg
+    #[arg(long, value_name = "KG")]
+    pub mass: Option<f64>,
+    /// its shape
+    #[command(flatten)]
+    pub shape: ShapeArgs,
     /// how the recordings are read
     #[command(flatten)]
     pub read: ReadArgs,

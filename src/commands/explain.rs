@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use mavid::config::trajectory_to_toml;
 use mavid::report::{ExplanationDocument, explained_model, explanation_html, explanation_text};
-use mavid::study::{ExplainRequest, ExplainStudy, InputFile, explain, stored_trajectory};
+use mavid::study::{ExplainRequest, ExplainStudy, InputFile, draft_text, explain, stored_trajectory};
 use mavid::text;
 
 use super::progress::Spinner;
@@ -17,6 +17,8 @@ use crate::cli::ExplainArgs;
 const MODEL: &str = "model.toml";
 pub const REPORT: &str = "report.html";
 const DOCUMENT: &str = "explanation.json";
+/// The vehicle file, where it was drafted.
+const VEHICLE: &str = "vehicle.toml";
 /// All of them.
 pub const WRITTEN: [&str; 3] = [MODEL, REPORT, DOCUMENT];
 
@@ -24,7 +26,7 @@ pub const WRITTEN: [&str; 3] = [MODEL, REPORT, DOCUMENT];
 pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Outcome, CommandError> {
     let request = ExplainRequest {
         logs: args.logs.clone(),
-        vehicle: args.vehicle.clone(),
+        vehicle: args.given.given(),
         holdout: args.holdout.clone(),
         read: args.read.settings(),
         transient_s: args.transient,
@@ -53,6 +55,9 @@ pub fn write(study: &ExplainStudy, folder: &Path) -> Result<(), CommandError> {
     output::folder(folder)?;
     output::file(&folder.join(REPORT), &explanation_html(study))?;
     output::file(&folder.join(DOCUMENT), &output::json_text(&ExplanationDocument::new(study))?)?;
+    if let Some(draft) = &study.drafted {
+        output::file(&folder.join(VEHICLE), &draft_text(draft)?)?;
+    }
     // last: it is refused where what was determined is no body's
     output::file(&folder.join(MODEL), &explained_model(study)?)
 }
@@ -92,9 +97,12 @@ fn check_targets(args: &ExplainArgs) -> Result<(), CommandError> {
             text::path(&path)
         )));
     }
-    let inputs: Vec<&PathBuf> = args.logs.iter().chain(&args.holdout).chain([&args.vehicle]).collect();
+    let inputs: Vec<&PathBuf> = args.logs.iter().chain(&args.holdout).chain(&args.given.vehicle).collect();
     let written: Vec<PathBuf> =
         args.out.iter().flat_map(|folder| WRITTEN.map(|name| folder.join(name))).collect();
+    let drafted = args.given.vehicle.is_none();
+    let vehicle_file = args.out.iter().filter(|_| drafted).map(|folder| folder.join(VEHICLE));
+    let written: Vec<PathBuf> = written.into_iter().chain(vehicle_file).collect();
     output::refuse_overwriting(&inputs, &args.next.iter().chain(&written).collect::<Vec<_>>())?;
     if let Some(folder) = &args.out {
         output::folder(folder)?;

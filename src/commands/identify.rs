@@ -55,7 +55,7 @@ impl Targets {
 pub fn run(json: bool, stderr: &StandardError, args: &IdentifyArgs) -> Result<Outcome, CommandError> {
     let request = IdentifyRequest {
         logs: args.logs.clone(),
-        vehicle: args.vehicle.clone(),
+        vehicle: args.given.given(),
         read: args.read.settings(),
         transient_s: args.transient,
         cutoff_hz: args.cutoff,
@@ -65,7 +65,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &IdentifyArgs) -> Result<Ou
         with: args.with.clone(),
     };
     let targets = Targets::of(args);
-    let inputs: Vec<&PathBuf> = args.logs.iter().chain([&args.vehicle]).collect();
+    let inputs: Vec<&PathBuf> = args.logs.iter().chain(&args.given.vehicle).collect();
     output::refuse_overwriting(&inputs, &targets.all())?;
     let study = identify(&request, &Spinner::new(stderr))?;
     if json {

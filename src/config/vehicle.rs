@@ -9,11 +9,14 @@ use super::kind::Kind;
 use super::read::{parse_toml, read_text};
 use super::rigid_body::rigid_body;
 use super::vehicle_file::{
-    ActuatorKind, AnchorKey, FORMAT, LimitsTable, PropulsionTable, RotorTable, SpinKey, VehicleFile,
+    ActuatorKind, AnchorKey, FORMAT, GuessTable, LimitsTable, PropulsionTable, RotorTable, SpinKey,
+    VehicleFile,
 };
 use crate::text;
 use crate::units;
-use crate::vehicle::{Actuator, Anchor, Limits, Propulsion, PwmRange, Rotor, Spin, ThrustLaw, Vehicle};
+use crate::vehicle::{
+    Actuator, Anchor, Guess, Guessed, Limits, Propulsion, PwmRange, Rotor, Spin, ThrustLaw, Vehicle,
+};
 
 /// Rotors of a vehicle: as many as MAVLink has outputs for (ACTUATOR_OUTPUT_STATUS).
 const ROTORS_MAX: usize = 32;
@@ -84,11 +87,33 @@ pub fn parse_vehicle(text: &str, origin: &str) -> Result<LoadedVehicle, ConfigEr
         },
         name: name(&check, "name", &file.name, &mut doubts)?,
         gravity_m_s2,
+        guesses: guesses(&check, file.guesses)?,
     };
     let warnings = doubts.into_iter().chain(warnings(&vehicle)).collect();
     let model =
         ModelTables { identified: file.identified, provenance: file.provenance, effects: file.effects };
     Ok(LoadedVehicle { vehicle, warnings, model })
+}
+
+/// Largest relative standard error of a guess: beyond, not even the order of magnitude is known.
+const GUESS_MOST: f64 = 10.0;
+
+fn guesses(check: &Check<'_>, tables: Vec<GuessTable>) -> Result<Vec<Guess>, ConfigError> {
+    let guess = |table: GuessTable| {
+        let of = Guessed::ALL.into_iter().find(|of| of.name() == table.of).ok_or_else(|| {
+            check.refuse(
+                "guess.of",
+                format!("one of {}", Guessed::ALL.map(Guessed::name).join(", ")),
+                &table.of,
+            )
+        })?;
+        let relative = check.positive("guess.relative_std", table.relative_std)?;
+        if relative > GUESS_MOST {
+            return Err(check.refuse("guess.relative_std", format!("at most {GUESS_MOST}"), relative));
+        }
+        Ok(Guess { of, relative, why: text::excerpt(&table.why, NAME_CHARS) })
+    };
+    tables.into_iter().map(guess).collect()
 }
 
 /// Refuses a later form before its unknown keys are refused. What is no TOML is told elsewhere.

@@ -22,6 +22,8 @@ pub(super) struct VehicleFile {
     pub limits: LimitsTable,
     #[serde(default)]
     pub identify: IdentifyTable,
+    #[serde(default, skip_serializing_if = "Vec::is_empty", rename = "guess")]
+    pub guesses: Vec<GuessTable>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub identified: Option<toml::Table>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -180,4 +182,17 @@ pub(super) enum AnchorKey {
     #[default]
     Thrust,
     Mass,
+}
+
+/// A value that nobody measured.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GuessTable {
+    /// which value
+    pub of: String,
+    /// standard error over the value
+    pub relative_std: f64,
+    /// what it rests on
+    #[serde(default)]
+    pub why: String,
 }

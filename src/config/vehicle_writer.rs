@@ -4,11 +4,11 @@ use super::ConfigError;
 use super::check::Check;
 use super::rigid_body::rigid_body;
 use super::vehicle_file::{
-    ActuatorKind, AnchorKey, BodyTable, FORMAT, IdentifyTable, InertiaTable, LimitsTable, PropulsionTable,
-    RotorTable, SpinKey, VehicleFile,
+    ActuatorKind, AnchorKey, BodyTable, FORMAT, GuessTable, IdentifyTable, InertiaTable, LimitsTable,
+    PropulsionTable, RotorTable, SpinKey, VehicleFile,
 };
 use crate::units;
-use crate::vehicle::{Actuator, Anchor, Limits, Propulsion, Rotor, Spin, ThrustLaw, Vehicle};
+use crate::vehicle::{Actuator, Anchor, Guess, Limits, Propulsion, Rotor, Spin, ThrustLaw, Vehicle};
 
 /// Names what is refused. A part of an inertia that a flight determined need not fit the nominal rest.
 const WRITTEN: &str =
@@ -46,12 +46,17 @@ pub fn vehicle_to_toml(vehicle: &Vehicle) -> Result<String, ConfigError> {
                 Anchor::Mass => AnchorKey::Mass,
             },
         },
+        guesses: vehicle.guesses.iter().map(guess_table).collect(),
         identified: None,
         provenance: None,
         effects: Vec::new(),
     };
     rigid_body(&Check { origin: WRITTEN }, &file.body)?;
     Ok(toml::to_string(&file)?)
+}
+
+fn guess_table(guess: &Guess) -> GuessTable {
+    GuessTable { of: guess.of.name().to_owned(), relative_std: guess.relative, why: guess.why.clone() }
 }
 
 fn rotor_table(rotor: &Rotor) -> RotorTable {

@@ -1,9 +1,10 @@
 //! What sets the scale: only force per mass can come out of a flight.
 
 use super::identify::Identification;
+use super::nominal::Nominal;
 use super::result::{Estimated, Finding, MethodResult, finding};
 use super::theta::{THETA, Theta, ThetaCovariance, theta_of};
-use crate::vehicle::{Anchor, ThrustLaw, Vehicle};
+use crate::vehicle::{Anchor, Guessed, ThrustLaw, Vehicle};
 use nalgebra::SMatrix;
 
 /// How much stronger the rotors are than the vehicle file says, where the mass was weighed.
@@ -29,7 +30,7 @@ pub fn apply_anchor(identification: &mut Identification, vehicle: &Vehicle) -> O
         return None;
     }
     let weighed = vehicle.body.mass_kg;
-    let nominal = theta_of(&vehicle.body);
+    let nominal = Nominal::of(vehicle);
     let scale = thrust_scale(&identification.best.result, vehicle);
     if let Finding::Determined { value: factor, .. } = scale.factor {
         identification.trim_torque_nm.iter_mut().for_each(|torque| *torque *= factor);
@@ -77,7 +78,7 @@ pub fn thrust_scale(best: &MethodResult, vehicle: &Vehicle) -> ThrustScale {
         }
         ThrustLaw::Curve { thrust_max_n, .. } => ("thrust_max", "N", thrust_max_n),
     };
-    let nominal = theta_of(&vehicle.body);
+    let nominal = Nominal::of(vehicle);
     match finding(&best.estimated, &nominal, 0) {
         Finding::Determined { value, std } => {
             let factor = vehicle.body.mass_kg / value;
@@ -109,6 +110,7 @@ pub fn identified_vehicle(vehicle: &Vehicle, best: &MethodResult, scale: Option<
         if let ThrustLaw::Curve { thrust_max_n, .. } = &mut out.propulsion.law {
             *thrust_max_n *= factor;
         }
+        out.guesses.retain(|guess| guess.of != Guessed::ThrustMax);
     }
     out
 }

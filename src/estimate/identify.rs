@@ -3,11 +3,12 @@
 use super::compensate::{as_stated, compensation, take_out};
 use super::error::EstimateError;
 use super::method::Method;
+use super::nominal::Nominal;
 use super::plausible::{disagreeing, implausible};
 use super::recommend::{Recommendation, recommend};
 use super::result::{Estimated, MethodResult};
 use super::rotor_check::{WeakRotor, weak_rotor, with_weak_rotor};
-use super::theta::{Theta, ThetaCovariance, theta_of};
+use super::theta::{Theta, ThetaCovariance};
 use super::weak::{Latency, WeakEstimate, WeakMethod, latency, solve_weak};
 use super::{GradientStep, History, gradient_descent, least_squares};
 use crate::note::{About, Note};
@@ -134,15 +135,16 @@ fn identify_evenly(
     vehicle: &Vehicle,
     settings: &IdentifySettings,
 ) -> Result<Identification, EstimateError> {
-    let nominal = theta_of(&vehicle.body);
+    let nominal = Nominal::of(vehicle);
     let mut notes = Vec::new();
     let mut weak = WeakFlights::from(flights, vehicle, settings);
-    let (found, compensated) = weak.compensate(&nominal, vehicle);
-    let plain = solve_weak(&weak.rows, &nominal, WeakMethod::LeastSquares).ok_or(EstimateError::NoRows)?;
-    let robust = solve_weak(&weak.rows, &nominal, WeakMethod::Robust);
-    let by_instruments = weak
-        .instruments(&mut notes)
-        .and_then(|instruments| solve_weak(&weak.rows, &nominal, WeakMethod::Instruments(&instruments)));
+    let (found, compensated) = weak.compensate(&nominal.theta, vehicle);
+    let plain =
+        solve_weak(&weak.rows, &nominal.theta, WeakMethod::LeastSquares).ok_or(EstimateError::NoRows)?;
+    let robust = solve_weak(&weak.rows, &nominal.theta, WeakMethod::Robust);
+    let by_instruments = weak.instruments(&mut notes).and_then(|instruments| {
+        solve_weak(&weak.rows, &nominal.theta, WeakMethod::Instruments(&instruments))
+    });
 
     let harmonic = weak
         .signals
@@ -167,8 +169,8 @@ fn identify_evenly(
         methods.push(MethodResult::new(Method::WeakIv, &Estimated::of(iv), &nominal));
     }
     let best = recommend(&plain, robust.as_ref(), by_instruments.as_ref(), &nominal);
-    notes.extend(implausible(&best.result, &nominal));
-    notes.extend(disagreeing(&weak.rows, &nominal));
+    notes.extend(implausible(&best.result, &nominal.theta));
+    notes.extend(disagreeing(&weak.rows, &nominal.theta));
     if flights.iter().any(|signals| signals.quality.thrust_source == ThrustSource::Command) {
         notes.push(Note::remark(About::Actuators, BY_COMMANDS));
     }
@@ -323,12 +325,12 @@ fn instrument_f(plain: &WeakEstimate, iv: &WeakEstimate) -> f64 {
 struct PaperRuns {
     standard: SampledModel,
     runs: Vec<(Method, super::PaperEstimate)>,
-    nominal: Theta,
+    nominal: Nominal,
 }
 
 impl PaperRuns {
     fn from(flights: &[Signals], vehicle: &Vehicle, filter: &ZeroPhase, sigma: f64) -> Self {
-        let nominal = theta_of(&vehicle.body);
+        let nominal = Nominal::of(vehicle);
         let (mut standard, mut filtered) = (SampledModel::default(), SampledModel::default());
         for signals in flights {
             if let Some((one, other)) = paper_models(signals, vehicle.gravity_m_s2, filter) {
@@ -344,7 +346,7 @@ impl PaperRuns {
                 continue;
             }
             runs.extend(least_squares(model).map(|estimate| (by_ls, estimate)));
-            runs.push((by_gd, gradient_descent(model, &nominal, sigma, GradientStep::Implicit)));
+            runs.push((by_gd, gradient_descent(model, &nominal.theta, sigma, GradientStep::Implicit)));
         }
         runs.sort_by_key(|(method, _)| *method);
         Self { standard, runs, nominal }

@@ -1,9 +1,10 @@
 //! Which method to believe for this flight, and why.
 
 use super::method::Method;
+use super::nominal::Nominal;
 use super::physical::{is_physical, nearest_physical};
 use super::result::{Estimated, Finding, MethodResult};
-use super::theta::{NAMES, Theta, scale_of};
+use super::theta::{NAMES, scale_of};
 use super::weak::WeakEstimate;
 
 /// More rows than this held back by the robust weights: outliers, not noise.
@@ -32,7 +33,7 @@ pub fn recommend(
     plain: &WeakEstimate,
     robust: Option<&WeakEstimate>,
     instruments: Option<&WeakEstimate>,
-    nominal: &Theta,
+    nominal: &Nominal,
 ) -> Recommendation {
     let (method, chosen, why) = choose(plain, robust, instruments);
     let mut estimated = Estimated::of(chosen);
@@ -40,7 +41,8 @@ pub fn recommend(
     let as_estimated = MethodResult::new(method, &estimated, nominal);
     let determined = |i: usize| matches!(as_estimated.parameters[i].finding, Finding::Determined { .. });
     let needed = [1, 4, 6].into_iter().all(determined) && !is_physical(&estimated.theta);
-    let mended = needed.then(|| nearest_physical(&estimated.theta, &estimated.covariance, nominal)).flatten();
+    let mended =
+        needed.then(|| nearest_physical(&estimated.theta, &estimated.covariance, &nominal.theta)).flatten();
     let made_physical = mended.is_some();
     if let Some(theta) = mended {
         estimated.theta = theta;

@@ -1,6 +1,7 @@
 //! Estimates as they are handed on: a value with its standard error, or why there is none.
 
 use super::method::Method;
+use super::nominal::Nominal;
 use super::theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, scale_of};
 use super::weak::WeakEstimate;
 
@@ -83,7 +84,7 @@ pub struct MethodResult {
 impl MethodResult {
     /// Judges each parameter against the nominal sizes.
     #[must_use]
-    pub fn new(method: Method, estimated: &Estimated, nominal: &Theta) -> Self {
+    pub fn new(method: Method, estimated: &Estimated, nominal: &Nominal) -> Self {
         let parameters = std::array::from_fn(|index| Parameter {
             name: NAMES[index],
             unit: UNITS[index],
@@ -150,14 +151,14 @@ fn unexplained(estimated: &Estimated, index: usize) -> Option<String> {
 
 /// Judges one parameter.
 #[must_use]
-pub fn finding(estimated: &Estimated, nominal: &Theta, index: usize) -> Finding {
+pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Finding {
     let (value, variance) = (estimated.theta[index], estimated.covariance[(index, index)]);
     if !value.is_finite() || !variance.is_finite() {
         let missing = if index == 0 { "vertical motion" } else { "body rates" };
         return Finding::NotDetermined { reason: format!("the recording holds no {missing}") };
     }
     let std = variance.max(0.0).sqrt();
-    let size = scale_of(nominal, index).max(scale_of(&estimated.theta.map(f64::abs), index));
+    let size = scale_of(&nominal.theta, index).max(scale_of(&estimated.theta.map(f64::abs), index));
     let relative = std / size;
     if relative > LARGEST_RELATIVE_STD {
         return Finding::NotDetermined {
@@ -177,5 +178,9 @@ pub fn finding(estimated: &Estimated, nominal: &Theta, index: usize) -> Finding 
             reason: format!("estimate {value:.3e} +- {std:.1e} is not clear of zero"),
         };
     }
-    Finding::Determined { value, std }
+    let guessed = nominal.guessed(index);
+    match nominal.guesses(index) {
+        Some(why) if guessed > LARGEST_RELATIVE_STD => Finding::NotDetermined { reason: why },
+        _ => Finding::Determined { value, std: std.hypot(guessed * value) },
+    }
 }

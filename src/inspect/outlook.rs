@@ -2,7 +2,9 @@
 
 use super::assess::Assessment;
 use super::inspection::Outlook;
-use crate::estimate::{Estimated, Finding, NAMES, THETA, UNITS, finding, rescaled, scale_of, theta_of};
+use crate::estimate::{
+    Estimated, Finding, NAMES, Nominal, THETA, UNITS, finding, rescaled, scale_of, theta_of,
+};
 use crate::recording::{Quantity, StreamKey, StreamStats};
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 use crate::vehicle::{Anchor, Vehicle};
@@ -160,7 +162,7 @@ fn size_of(vehicle: &Vehicle, expected: &Estimated, index: usize) -> f64 {
 
 /// What `identify` will say, on the scale that the vehicle's anchor sets.
 fn expected_finding(vehicle: &Vehicle, expected: &Estimated, index: usize) -> Finding {
-    let nominal = theta_of(&vehicle.body);
+    let nominal = Nominal::of(vehicle);
     let of_mass = finding(expected, &nominal, 0);
     match (vehicle.anchor, of_mass) {
         (Anchor::Mass, Finding::Determined { .. }) if index > 0 => {

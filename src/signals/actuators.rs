@@ -206,7 +206,7 @@ pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propu
         let (from, to) = (range.min_us, range.max_us);
         let taken = format!("pulse range {from:.0} to {to:.0} us from the log's parameters");
         match stated_range {
-            Some(stated) if stated == range => {}
+            Some(stated) if is_same(stated, range) => {}
             Some(PwmRange { min_us, max_us }) => {
                 note(format!("{taken}, the vehicle file says {min_us:.0} to {max_us:.0} us"));
             }
@@ -225,8 +225,14 @@ pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propu
     (propulsion, notes)
 }
 
+/// Parameters are in single precision, and files are written by people.
+fn is_same(a: PwmRange, b: PwmRange) -> bool {
+    (a.min_us - b.min_us).abs() < 0.05 && (a.max_us - b.max_us).abs() < 0.05
+}
+
 /// Commands in 0..1 are among the streams.
-fn holds_fractions(recording: &Recording) -> bool {
+#[must_use]
+pub fn holds_fractions(recording: &Recording) -> bool {
     let commands = |(key, _): &(&StreamKey, &Stream)| key.quantity == Quantity::ActuatorCommand;
     recording.streams.iter().filter(commands).any(|(_, stream)| {
         let channels: Vec<usize> = (0..stream.width).collect();
@@ -297,6 +303,7 @@ mod tests {
             ],
             limits: Limits::default(),
             anchor: Anchor::Thrust,
+            guesses: Vec::new(),
             gravity_m_s2: 9.81,
         }
     }

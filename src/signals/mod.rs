@@ -21,7 +21,7 @@ mod weak;
 
 pub use actuation::ThrustPreference;
 pub use actuators::{
-    RotorThrusts, ThrustSource, motor_channels, propulsion_from_log, thrusts_from_commands,
+    RotorThrusts, ThrustSource, holds_fractions, motor_channels, propulsion_from_log, thrusts_from_commands,
     thrusts_from_speeds,
 };
 pub use align::StreamOffset;

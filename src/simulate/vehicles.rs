@@ -37,6 +37,7 @@ pub fn random_vehicle(seed: u64) -> VehiclePair {
         rotors: cross_rotors(arm_m),
         limits: Limits::default(),
         anchor: Anchor::Thrust,
+        guesses: Vec::new(),
         gravity_m_s2: GRAVITY_M_S2,
     };
     let nominal_body = nominal_body(&mut rng, &truth.body);

@@ -31,13 +31,13 @@ pub fn after_flight(
     let read = ReadSettings { csv_map: None, system };
     let to_identify = IdentifyRequest {
         logs: logs.clone(),
-        vehicle: vehicle.to_owned(),
+        vehicle: vehicle.to_owned().into(),
         read: read.clone(),
         ..IdentifyRequest::default()
     };
     let to_explain = ExplainRequest {
         logs,
-        vehicle: vehicle.to_owned(),
+        vehicle: vehicle.to_owned().into(),
         read,
         transient_s: ExplainRequest::TRANSIENT_S,
         ..ExplainRequest::default()

@@ -17,6 +17,7 @@ mod progress;
 mod prove;
 mod validate;
 mod vehicle;
+mod vehicle_given;
 
 pub use after_flight::{AfterFlight, after_flight};
 pub use correlation::Correlation;
@@ -43,3 +44,4 @@ pub use validate::{
     ValidatedModel, closed_loop_table, playback_table, prediction_table, validate,
 };
 pub use vehicle::{RotorSummary, VehicleSummary, vehicle_summary};
+pub use vehicle_given::{VehicleGiven, draft_from_log, draft_text};

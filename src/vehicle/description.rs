@@ -2,6 +2,7 @@
 
 use super::anchor::Anchor;
 use super::body::RigidBody;
+use super::guess::Guess;
 use super::limits::Limits;
 use super::propulsion::Propulsion;
 use super::rotor::{Mixer, Rotor};
@@ -23,6 +24,8 @@ pub struct Vehicle {
     pub anchor: Anchor,
     /// m/s^2
     pub gravity_m_s2: f64,
+    /// values that nobody measured
+    pub guesses: Vec<Guess>,
 }
 
 impl Vehicle {

@@ -5,6 +5,7 @@
 mod anchor;
 mod body;
 mod description;
+mod guess;
 mod limits;
 mod propulsion;
 mod rotor;
@@ -13,6 +14,7 @@ mod size;
 pub use anchor::Anchor;
 pub use body::RigidBody;
 pub use description::Vehicle;
+pub use guess::{Guess, Guessed};
 pub use limits::Limits;
 pub use propulsion::{Actuator, Propulsion, PwmRange, ThrustLaw};
 pub use rotor::{Mixer, Rotor, Spin};

@@ -39,6 +39,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("replay", &["text", "wire", "log", "link"]),
     // vehicle: from actuator values to force
     ("signals", &["note", "stats", "autopilot", "vehicle", "recording"]),
+    // a first description of a vehicle, from parameters, weight and a flight
+    ("draft", &["units", "autopilot", "vehicle", "recording", "signals"]),
     ("regression", &["signals"]),
     ("estimate", &["note", "stats", "vehicle", "physics", "signals", "regression"]),
     (
@@ -98,6 +100,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "wire",
             "log",
             "signals",
+            "draft",
             "regression",
             "estimate",
             "simulate",

@@ -103,6 +103,7 @@ impl Hummingbird {
             rotors: rotors.collect(),
             limits: Limits::default(),
             anchor: Anchor::Thrust,
+            guesses: Vec::new(),
             gravity_m_s2: GRAVITY_M_S2,
         };
         let at_hover = 4.0 * self.hover_rad_s();

@@ -4,7 +4,7 @@ use mavid::config::read_vehicle;
 use mavid::inspect::{self, Inspection};
 use mavid::log::format_of;
 use mavid::report::{InspectionDocument, inspection_text};
-use mavid::study::unread;
+use mavid::study::{draft_from_log, unread};
 use mavid::text;
 use mavid::vehicle::Vehicle;
 
@@ -19,7 +19,11 @@ pub fn run(json: bool, stderr: &StandardError, args: &InspectArgs) -> Result<Out
     if let (Some(path), Some(loaded)) = (&args.vehicle, &loaded) {
         output::warnings(path, &loaded.warnings);
     }
-    let vehicle = loaded.as_ref().map(|loaded| &loaded.vehicle);
+    let weighed = args.mass.map(|mass_kg| args.shape.given(mass_kg));
+    let draft =
+        weighed.map(|weighed| draft_from_log(&args.log, &args.read.settings(), &weighed)).transpose()?;
+    let of_file = loaded.as_ref().map(|loaded| &loaded.vehicle);
+    let vehicle = of_file.or_else(|| draft.as_ref().map(|draft| &draft.vehicle));
     let inspection = inspect(stderr, args, vehicle)?;
     let file = text::path(&args.log);
     if json {

@@ -14,8 +14,8 @@ use crate::diagnose::latency::{LatencyFinding, finding_of};
 use crate::diagnose::recorded::Recorded;
 use crate::diagnose::trace::Trace;
 use crate::estimate::{
-    Estimated, Finding, Method, MethodResult, THETA, Theta, ThetaCovariance, identified_vehicle, is_physical,
-    nearest_physical, rescaled, theta_of, thrust_scale,
+    Estimated, Finding, Method, MethodResult, Nominal, THETA, Theta, ThetaCovariance, identified_vehicle,
+    is_physical, nearest_physical, rescaled, theta_of, thrust_scale,
 };
 use crate::physics::{ActiveEffect, Airframe};
 use crate::signals::Signals;
@@ -78,9 +78,9 @@ fn put_together(
     fits: Fits,
 ) -> JointEstimate {
     let Fits { before, after, settled, split, first } = fits;
-    let nominal = theta_of(&vehicle.body);
+    let nominal = Nominal::of(vehicle);
     let (mut estimated, mut estimated_before) = (estimated(&after), estimated(&before));
-    let physical = made_physical(&mut estimated, &nominal);
+    let physical = made_physical(&mut estimated, &nominal.theta);
     let result = |estimated: &Estimated| MethodResult::new(Method::Weak, estimated, &nominal);
     let (mut body, mut body_before) = (result(&estimated), result(&estimated_before));
     let mut scale = None;

@@ -3,8 +3,8 @@
 use super::choice::Sources;
 use super::rows::{Causal, Instant};
 use super::track::{At, Sample};
-use crate::estimate::{Estimated, Finding, NAMES, RecursiveEstimator, THETA, Theta, UNITS};
-use crate::estimate::{finding, rescaled, theta_of};
+use crate::estimate::{Estimated, Finding, NAMES, Nominal, RecursiveEstimator, THETA, UNITS};
+use crate::estimate::{finding, rescaled};
 use crate::fly::parameters::Parameters;
 use crate::physics::MAX_ROTORS;
 use crate::recording::{Event, Quantity, Recording};
@@ -25,7 +25,7 @@ const CATCH_UP: usize = 400;
 #[derive(Debug)]
 pub struct LiveIdentification {
     vehicle: Vehicle,
-    nominal: Theta,
+    nominal: Nominal,
     mixer: Mixer,
     propulsion: Propulsion,
     /// output channel of each motor
@@ -55,7 +55,7 @@ impl LiveIdentification {
         let mut channels = motor_channels(&said, rotors, &mut notes);
         channels.truncate(MAX_ROTORS);
         Self {
-            nominal: theta_of(&vehicle.body),
+            nominal: Nominal::of(vehicle),
             mixer: vehicle.mixer(),
             propulsion,
             sources: Sources::new(channels.iter().max().map_or(0, |last| last + 1), rotors),

@@ -4,8 +4,11 @@ use super::parameter::{Parameter, decided, defaults_of, parameter};
 use super::pulses::{Pulses, spin};
 use super::thrust::{expo, hover_share};
 use crate::autopilot::ParameterType::{Int16 as H, Int32 as I};
-use crate::autopilot::{ARDUPILOT, QUAD_X, Release};
+use crate::autopilot::{ARDUPILOT, FRAMES, Frame, FrameMotor, Release};
 use crate::vehicle::{Rotor, Spin, Vehicle as Description};
+
+/// Cosine of the largest angle between a rotor and a frame's motor that are the same, 15 degrees.
+const SAME_BEARING: f64 = 0.966;
 
 /// Defaults for a vehicle.
 pub(super) fn defaults(
@@ -47,19 +50,17 @@ pub(super) fn defaults(
     list
 }
 
-/// FRAME_CLASS and FRAME_TYPE: quad X where the rotors are in its order, else a class by the number of rotors, or for four
-/// rotors the scripting matrix.
+/// FRAME_CLASS and FRAME_TYPE of the frame whose motors are in the rotors' order, else the scripting matrix.
 fn frame(rotors: &[Rotor]) -> (f64, f64) {
-    let is_quad_x = rotors.len() == QUAD_X.len()
-        && rotors.iter().zip(QUAD_X).all(|(rotor, (forward, left, ccw))| {
-            rotor.position_m.x * forward > 0.0
-                && rotor.position_m.y * left > 0.0
-                && (rotor.spin == Spin::Ccw) == ccw
-        });
-    match rotors.len() {
-        4 if is_quad_x => (1.0, 1.0),
-        6 => (2.0, 1.0),
-        8 => (3.0, 1.0),
-        _ => (15.0, 0.0),
-    }
+    let is_at = |(rotor, motor): (&Rotor, &FrameMotor)| {
+        let (forward, left) = motor.place();
+        let place = rotor.position_m.xy().normalize();
+        place.x * forward + place.y * left > SAME_BEARING && (rotor.spin == Spin::Ccw) == motor.ccw
+    };
+    let fits =
+        |frame: &&Frame| frame.motors.len() == rotors.len() && rotors.iter().zip(frame.motors).all(is_at);
+    let found = FRAMES.iter().find(fits);
+    found.map_or((15.0, 0.0), |frame| {
+        (f64::from(frame.class), frame.types.first().map_or(0.0, |kind| f64::from(*kind)))
+    })
 }

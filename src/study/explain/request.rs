@@ -2,15 +2,15 @@
 
 use std::path::PathBuf;
 
-use crate::study::{ReadSettings, StudyError};
+use crate::study::{ReadSettings, StudyError, VehicleGiven};
 
 /// What is to be explained, and what it is to be shown on.
 #[derive(Debug, Clone, Default)]
 pub struct ExplainRequest {
     /// recordings of one vehicle
     pub logs: Vec<PathBuf>,
-    /// its file: a vehicle, or a model whose effects are looked for anew
-    pub vehicle: PathBuf,
+    /// its file, or its mass and size, whose effects are looked for anew where it is a model
+    pub vehicle: VehicleGiven,
     /// other flights of it, on which the improvement is shown; without them the end of the last flight is held back
     pub holdout: Vec<PathBuf>,
     /// how the recordings are read

@@ -11,6 +11,7 @@ use crate::diagnose::{
     AXES, CHANNEL_NAMES, CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, LatencyFinding, Named,
     Nuisance, Trace, Verdict,
 };
+use crate::draft::Draft;
 use crate::note::Note;
 use crate::physics::ActiveEffect;
 use crate::signals::Quality;
@@ -61,6 +62,8 @@ pub struct ExplainStudy {
     pub next: Option<Result<NextFlight, NextError>>,
     /// what the user should know, all of it warnings
     pub notes: Vec<Note>,
+    /// the vehicle as it was drafted, where it came from no file
+    pub drafted: Option<Draft>,
     /// the flights that were explained as the weak form sees them
     pub(super) traces: Vec<Trace>,
 }
@@ -117,6 +120,7 @@ impl ExplainStudy {
             empirical: None,
             shown_on: ShownOn::Nothing { reason: "no hold-out".to_owned() },
             notes: Vec::new(),
+            drafted: None,
             traces: Vec::new(),
             given,
             explanation,

@@ -4,17 +4,17 @@ use super::hold_out::{hold_back, refuse_shared};
 use super::request::ExplainRequest;
 use super::result::{ExplainStudy, Given};
 use super::shown_on::ShownOn;
-use crate::config::{LoadedVehicle, read_vehicle};
+use crate::config::LoadedVehicle;
 use crate::diagnose::experiment::{NextSettings, design};
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{ExplainSettings, Trace, Verdict};
 use crate::note::{About, Note};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference};
-use crate::study::flights::{EXPLAINED, Prepared, file_notes, load_all, names, prepare, refuse_twins};
+use crate::study::flights::{EXPLAINED, Prepared, load_all, names, prepare, refuse_twins};
+use crate::study::vehicle_given::Known;
 use crate::study::{Progress, Stage, StudyError, effects_of};
 use crate::text;
 use crate::vehicle::Vehicle;
-use std::path::Path;
 
 /// Share of the flight that may be saturated without a word.
 const SATURATED: f64 = 0.3;
@@ -35,15 +35,16 @@ const CHANGES_LATE: &str = "something changes in what would be held back, so the
 /// [`StudyError`] where a file or a setting cannot be used, or no flight can be explained.
 pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<ExplainStudy, StudyError> {
     request.check()?;
-    let loaded = read_vehicle(&request.vehicle)?;
-    let mut notes = of_file(&loaded, &request.vehicle)?;
-    let vehicle = loaded.vehicle;
+    let known = request.vehicle.of_file()?;
+    progress.stage(Stage::Reading);
+    let logs = load_all(&request.logs, &request.read, &EXPLAINED)?;
+    let known = request.vehicle.of_flights(known, &logs)?;
+    let mut notes = of_vehicle(&known)?;
+    let Known { loaded: LoadedVehicle { vehicle, .. }, origin, draft } = known;
     let of_holdout = |why| StudyError::Setting {
         name: "holdout",
         why: format!("expected a flight of {}: {why}", vehicle.name),
     };
-    progress.stage(Stage::Reading);
-    let logs = load_all(&request.logs, &request.read, &EXPLAINED)?;
     let held = load_all(&request.holdout, &request.read, &EXPLAINED).map_err(of_holdout)?;
     refuse_twins(logs.iter().chain(&held))?;
     progress.stage(Stage::Conditioning);
@@ -52,8 +53,8 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
         thrust: ThrustPreference::BestSampled,
         ..ConditionSettings::default()
     };
-    let mut flights = prepare(logs, (&vehicle, &request.vehicle), &settings)?;
-    let held = prepare(held, (&vehicle, &request.vehicle), &settings).map_err(of_holdout)?;
+    let mut flights = prepare(logs, (&vehicle, &origin), &settings)?;
+    let held = prepare(held, (&vehicle, &origin), &settings).map_err(of_holdout)?;
     refuse_shared(&flights, &held)?;
     let whole = flights.signals.last().cloned();
     let (shown_on, back) =
@@ -70,6 +71,7 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let traces =
         flights.signals.iter().filter_map(|signals| Trace::new(signals, &vehicle, half_width_s).ok());
     study.traces = traces.collect();
+    study.drafted = draft;
     if request.design_next {
         progress.stage(Stage::Designing);
         study.next = Some(design(&study.explanation, &flights.signals, &vehicle, &NextSettings::default()));
@@ -134,12 +136,12 @@ impl Task<'_> {
 }
 
 /// What is doubtful about the vehicle's file.
-fn of_file(loaded: &LoadedVehicle, file: &Path) -> Result<Vec<Note>, StudyError> {
-    let name = text::path(&file);
-    let mut notes = file_notes(file, &loaded.warnings);
-    let known = effects_of(&loaded.model.effects, &name, &loaded.vehicle)?;
-    if !known.is_empty() {
-        let ids: Vec<&str> = known.iter().map(|active| active.effect().id()).collect();
+fn of_vehicle(known: &Known) -> Result<Vec<Note>, StudyError> {
+    let (loaded, name) = (&known.loaded, text::path(&known.origin));
+    let mut notes = known.notes();
+    let effects = effects_of(&loaded.model.effects, &name, &loaded.vehicle)?;
+    if !effects.is_empty() {
+        let ids: Vec<&str> = effects.iter().map(|active| active.effect().id()).collect();
         let text = format!("its effects ({}) are left out and looked for anew", ids.join(", "));
         notes.push(Note::warning(About::File(name), text));
     }

@@ -6,15 +6,15 @@ use crate::diagnose::joint::RequestedEffects;
 use crate::estimate::{IdentifySettings, PAPER_SIGMA};
 use crate::signals::{ConditionSettings, ThrustPreference};
 use crate::study::explain::check_transient;
-use crate::study::{ExplainRequest, ReadSettings, StudyError};
+use crate::study::{ExplainRequest, ReadSettings, StudyError, VehicleGiven};
 
 /// What is to be identified, and how.
 #[derive(Debug, Clone)]
 pub struct IdentifyRequest {
     /// recordings of one vehicle
     pub logs: Vec<PathBuf>,
-    /// its file: a vehicle or a model
-    pub vehicle: PathBuf,
+    /// its file, or its mass and size
+    pub vehicle: VehicleGiven,
     /// how the recordings are read
     pub read: ReadSettings,
     /// s of flight left out at the beginning; `None`: 10, at most a fifth of the flight
@@ -35,7 +35,7 @@ impl Default for IdentifyRequest {
     fn default() -> Self {
         Self {
             logs: Vec::new(),
-            vehicle: PathBuf::new(),
+            vehicle: VehicleGiven::default(),
             read: ReadSettings::default(),
             transient_s: None,
             cutoff_hz: None,

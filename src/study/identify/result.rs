@@ -2,6 +2,7 @@
 
 use crate::diagnose::CHANNEL_NAMES;
 use crate::diagnose::joint::JointEstimate;
+use crate::draft::Draft;
 use crate::estimate::{
     EstimateError, Identification, IdentifySettings, MethodResult, ThrustScale, apply_anchor, identify,
 };
@@ -25,8 +26,10 @@ pub struct IdentifyStudy {
     pub scale: Option<ThrustScale>,
     /// effects that were identified together with the rigid body
     pub with: Option<WithEffects>,
-    /// what is doubtful about the vehicle's file
+    /// what is to be known of the vehicle's file
     pub notes: Vec<Note>,
+    /// the vehicle as it was drafted, where it came from no file
+    pub drafted: Option<Draft>,
 }
 
 /// Effects that were identified together with the rigid body.
@@ -78,7 +81,16 @@ impl IdentifyStudy {
     ) -> Result<Self, EstimateError> {
         let mut identification = identify(&flights, &vehicle, settings)?;
         let scale = apply_anchor(&mut identification, &vehicle);
-        Ok(Self { vehicle, flights, inputs, identification, scale, with: None, notes: Vec::new() })
+        Ok(Self {
+            vehicle,
+            flights,
+            inputs,
+            identification,
+            scale,
+            with: None,
+            notes: Vec::new(),
+            drafted: None,
+        })
     }
 
     /// The rigid body of the answer: with the effects where some were asked for, by the recommended method elsewhere.

@@ -2,12 +2,10 @@
 
 use super::request::IdentifyRequest;
 use super::result::{IdentifyStudy, WithEffects};
-use crate::config::{LoadedVehicle, read_vehicle};
 use crate::diagnose::ExplainSettings;
 use crate::diagnose::joint::{RequestedEffects, identify_jointly};
-use crate::study::flights::{
-    Flight, IDENTIFIED, Prepared, file_notes, load_all, names, prepare, refuse_twins,
-};
+use crate::study::flights::{Flight, IDENTIFIED, Prepared, load_all, names, prepare, refuse_twins};
+use crate::study::vehicle_given::Known;
 use crate::study::{Progress, Stage, StudyError, effects_of};
 use crate::text;
 
@@ -18,37 +16,38 @@ use crate::text;
 pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<IdentifyStudy, StudyError> {
     request.check()?;
     let wanted = request.requested_effects()?;
-    let loaded = read_vehicle(&request.vehicle)?;
-    let notes = file_notes(&request.vehicle, &loaded.warnings);
-    notes.iter().for_each(|note| progress.note(note));
+    let known = request.vehicle.of_file()?;
     progress.stage(Stage::Reading);
     let logs = load_all(&request.logs, &request.read, &IDENTIFIED)?;
     refuse_twins(logs.iter())?;
+    let known = request.vehicle.of_flights(known, &logs)?;
+    let notes = known.notes();
+    notes.iter().for_each(|note| progress.note(note));
     progress.stage(Stage::Identifying);
-    let with = wanted.map(|wanted| with_effects(request, (&logs, &loaded), &wanted)).transpose()?;
-    let vehicle = (&loaded.vehicle, request.vehicle.as_path());
+    let with = wanted.map(|wanted| with_effects(request, (&logs, &known), &wanted)).transpose()?;
+    let vehicle = (&known.loaded.vehicle, known.origin.as_path());
     let Prepared { recordings, signals, inputs } = prepare(logs, vehicle, &request.conditioning())?;
     // memory for the work that begins
     drop(recordings);
-    let study = IdentifyStudy::of_signals(signals, inputs, loaded.vehicle, &request.settings())?;
-    Ok(IdentifyStudy { with, notes, ..study })
+    let study = IdentifyStudy::of_signals(signals, inputs, known.loaded.vehicle, &request.settings())?;
+    Ok(IdentifyStudy { with, notes, drafted: known.draft, ..study })
 }
 
 /// The named effects together with the rigid body, on the rows on which `explain` would find them.
 fn with_effects(
     request: &IdentifyRequest,
-    (logs, loaded): (&[Vec<Flight>], &LoadedVehicle),
+    (logs, known): (&[Vec<Flight>], &Known),
     wanted: &RequestedEffects,
 ) -> Result<WithEffects, StudyError> {
-    let vehicle = &loaded.vehicle;
-    let known = effects_of(&loaded.model.effects, &text::path(&request.vehicle), vehicle)?;
+    let vehicle = &known.loaded.vehicle;
+    let effects = effects_of(&known.loaded.model.effects, &text::path(&known.origin), vehicle)?;
     wanted
-        .check_wind(&known)
+        .check_wind(&effects)
         .map_err(|error| StudyError::Setting { name: "with", why: error.to_string() })?;
     let settings = request.conditioning_with(wanted);
     let mut flights = Vec::new();
     for log in logs {
-        let made = log.iter().map(|flight| flight.conditioned((vehicle, &request.vehicle), &settings));
+        let made = log.iter().map(|flight| flight.conditioned((vehicle, &known.origin), &settings));
         let (usable, refused): (Vec<_>, Vec<_>) = made.partition(Result::is_ok);
         if let (true, Some(Err(why))) = (usable.is_empty(), refused.into_iter().next()) {
             return Err(why);
@@ -56,7 +55,7 @@ fn with_effects(
         flights.extend(usable.into_iter().flatten());
     }
     let half_width_s = ExplainSettings::default().half_width_s;
-    let together = identify_jointly(&flights, (vehicle, &known), wanted, half_width_s)
+    let together = identify_jointly(&flights, (vehicle, &effects), wanted, half_width_s)
         .map_err(|source| StudyError::Joint { logs: names(&request.logs), source })?;
     Ok(WithEffects { together, quality: flights.into_iter().map(|signals| signals.quality).collect() })
 }

@@ -35,6 +35,7 @@ pub(super) fn vehicle() -> Vehicle {
         ],
         limits: Limits::default(),
         anchor: Anchor::Thrust,
+        guesses: Vec::new(),
         gravity_m_s2: 9.81,
     }
 }

@@ -1,0 +1,54 @@
+//! How a vehicle is given: by a file, or by its mass and shape.
+
+use clap::Args;
+use mavid::autopilot::{FRAMES, Frame};
+use mavid::draft::Given;
+use mavid::study::VehicleGiven;
+use std::path::PathBuf;
+
+/// The vehicle of a log: a file, or its mass and size.
+#[derive(Debug, Args)]
+pub struct GivenArgs {
+    /// vehicle.toml, or a model
+    #[arg(long, required_unless_present = "mass", conflicts_with_all = ["mass", "size", "frame"])]
+    pub vehicle: Option<PathBuf>,
+    /// in place of --vehicle: mass with battery, kg. The rest comes from the log's parameters, the flight and rules of thumb
+    #[arg(long, value_name = "KG")]
+    pub mass: Option<f64>,
+    /// its shape
+    #[command(flatten)]
+    pub shape: ShapeArgs,
+}
+
+/// With --mass: the shape of the vehicle.
+#[derive(Debug, Args)]
+pub struct ShapeArgs {
+    /// with --mass: distance from motor to motor across the centre, m; without it what needs the arms is not determined
+    #[arg(long, value_name = "M", requires = "mass")]
+    pub size: Option<f64>,
+    /// with --mass, where the log does not say where the motors are: quadrotor-x, quadrotor-plus, hexarotor-x, ...
+    #[arg(long, value_name = "FRAME", requires = "mass", value_parser = frame)]
+    pub frame: Option<&'static Frame>,
+}
+
+impl ShapeArgs {
+    /// With a mass, what is known of the vehicle.
+    pub fn given(&self, mass_kg: f64) -> Given {
+        Given { mass_kg, size_m: self.size, frame: self.frame }
+    }
+}
+
+fn frame(id: &str) -> Result<&'static Frame, String> {
+    let ids = || FRAMES.iter().map(Frame::id).collect::<Vec<_>>().join(", ");
+    Frame::of_id(id).ok_or_else(|| format!("expected one of {}", ids()))
+}
+
+impl GivenArgs {
+    /// How the study is told of the vehicle.
+    pub fn given(&self) -> VehicleGiven {
+        match (&self.vehicle, self.mass) {
+            (None, Some(mass_kg)) => VehicleGiven::Weighed(self.shape.given(mass_kg)),
+            (file, _) => VehicleGiven::File(file.clone().unwrap_or_default()),
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! A first description of a vehicle: from its autopilot's parameters, its mass and size, a flight, and rules of thumb.
+
+mod hover;
+mod rules;
+mod vehicle;
+
+pub use vehicle::{Draft, DraftError, Given, draft};

@@ -1,0 +1,380 @@
+//! Puts a vehicle together from what is stated, what was weighed and measured, and rules of thumb.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::hover::full_thrust;
+use super::rules::{self, Rule};
+use crate::autopilot::{Frame, Layout, LayoutError, LayoutUnit, Outputs, Stack};
+use crate::recording::Recording;
+use crate::signals::holds_fractions;
+use crate::units::GRAVITY_M_S2;
+use crate::vehicle::{
+    Actuator, Anchor, Guess, Guessed, Limits, Propulsion, PwmRange, RigidBody, Rotor, Spin, ThrustLaw,
+    Vehicle,
+};
+
+/// What a person knows of the vehicle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Given {
+    /// weighed, with battery, kg
+    pub mass_kg: f64,
+    /// from motor to motor across the centre, m: what frames are sold by
+    pub size_m: Option<f64>,
+    /// where the motors are; without it by the parameters
+    pub frame: Option<&'static Frame>,
+}
+
+/// A vehicle, and where its values come from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Draft {
+    /// complete, with its guesses; the mass is the anchor
+    pub vehicle: Vehicle,
+    /// where the other values come from, sentence by sentence
+    pub origins: Vec<String>,
+}
+
+/// Why there is no vehicle.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DraftError {
+    /// a number that no vehicle has
+    #[error("expected a {what} from {least} to {most} {unit}, got {came}")]
+    Given {
+        /// mass or size
+        what: &'static str,
+        /// least
+        least: f64,
+        /// greatest
+        most: f64,
+        /// unit
+        unit: &'static str,
+        /// what was given
+        came: f64,
+    },
+    /// an autopilot whose parameters are not known here
+    #[error("expected a log or vehicle of PX4 or ArduPilot with its parameters, got one of neither")]
+    Autopilot,
+    /// the rotors' places are not known
+    #[error("{0}; give the frame (--frame quadrotor-x)")]
+    Layout(#[from] LayoutError),
+}
+
+/// Masses of multirotors, kg.
+const MASSES_KG: (f64, f64) = (0.005, 500.0);
+/// Sizes of multirotors, m.
+const SIZES_M: (f64, f64) = (0.03, 10.0);
+/// Pulse widths of none and of full command where no parameter states them, microseconds: the usual range.
+const PULSES_US: (f64, f64) = (1000.0, 2000.0);
+/// Rotors that do not overlap have a radius of less than half the distance of their hubs.
+const CLEAR: f64 = 0.48;
+/// Standard error of a thrust curve's exponent that a parameter states, and of one that is stated as linear, which is the
+/// default of PX4. Chosen.
+const EXPO_STATED: f64 = 0.15;
+/// See [`EXPO_STATED`].
+const EXPO_LINEAR: f64 = 0.3;
+/// Relative standard error of a full thrust by the share of thrust at which the autopilot expects to hover. Chosen: many
+/// leave the default.
+const BY_HOVER_SHARE: f64 = 0.25;
+
+/// A first description of the vehicle that a recording is of. Without streams, as from a vehicle's parameters alone, the
+/// full thrust rests on the autopilot's hover parameter. `name` is the vehicle's, for reports.
+///
+/// # Errors
+/// [`DraftError`] where a given number is no vehicle's, or the parameters do not say where the rotors are.
+pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, DraftError> {
+    let within = |what, unit, (least, most): (f64, f64), came: f64| {
+        if (least..=most).contains(&came) {
+            Ok(())
+        } else {
+            Err(DraftError::Given { what, least, most, unit, came })
+        }
+    };
+    within("mass", "kg", MASSES_KG, given.mass_kg)?;
+    given.size_m.map_or(Ok(()), |size_m| within("size", "m", SIZES_M, size_m))?;
+    let stack = recording.autopilot.stack().ok_or(DraftError::Autopilot)?;
+    let parameter = |name: &str| recording.parameters.get(name).copied();
+    let layout = match given.frame {
+        Some(frame) => Layout::of(frame, "the given frame"),
+        None => stack.geometry.layout(&parameter, motors(stack, &parameter))?,
+    };
+    let mut noted = Noted::default();
+    let arm_m = noted.arm(&layout, given);
+    let rotors = rotors(&layout, arm_m / layout.radius());
+    let body = noted.body(given.mass_kg, arm_m);
+    let (actuator, expo) = noted.command(recording, &stack.outputs);
+    let radius_m = noted.rotor_radius(&rotors, arm_m);
+    let torque_per_thrust_m = noted.torque_ratio(radius_m);
+    let mut vehicle = Vehicle {
+        name: name.to_owned(),
+        body,
+        propulsion: Propulsion {
+            actuator,
+            law: ThrustLaw::Curve { thrust_max_n: 1.0, expo },
+            thrust_coefficient: None,
+            torque_per_thrust_m,
+            rotor_radius_m: Some(radius_m),
+            time_constant_s: None,
+            time_constant_down_s: None,
+        },
+        rotors,
+        limits: Limits::default(),
+        anchor: Anchor::Mass,
+        gravity_m_s2: GRAVITY_M_S2,
+        guesses: Vec::new(),
+    };
+    let thrust_max_n = noted.thrust_max(recording, &stack.outputs, &vehicle);
+    vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n, expo };
+    noted.origins.insert(0, format!("{} of {} by {}", layout.name, stack.name, layout.stated_by));
+    vehicle.guesses = noted.guesses;
+    Ok(Draft { vehicle, origins: noted.origins })
+}
+
+/// How many outputs drive motors; `None` where the parameters do not say.
+fn motors(stack: &Stack, parameter: &dyn Fn(&str) -> Option<f64>) -> Option<usize> {
+    let function = &stack.outputs.function;
+    let drives = |channel: &usize| {
+        parameter(&function.name(*channel)).is_some_and(|value| stack.outputs.is_motor(value))
+    };
+    Some((1..=16).filter(drives).count()).filter(|count| *count > 0)
+}
+
+fn rotors(layout: &Layout, scale: f64) -> Vec<Rotor> {
+    let rotor = |(index, rotor): (usize, &crate::autopilot::RotorPlace)| Rotor {
+        name: format!("motor_{}", index + 1),
+        position_m: Vector3::from(rotor.place).map(|place| rounded(place * scale)),
+        spin: if rotor.ccw { Spin::Ccw } else { Spin::Cw },
+    };
+    layout.rotors.iter().enumerate().map(rotor).collect()
+}
+
+/// To five significant digits: none of it is known better, and files are read by people.
+fn rounded(value: f64) -> f64 {
+    // without the negative zero
+    format!("{value:.4e}").parse::<f64>().unwrap_or(value) + 0.0
+}
+
+/// Values as they are decided, and why.
+#[derive(Default)]
+struct Noted {
+    guesses: Vec<Guess>,
+    origins: Vec<String>,
+}
+
+impl Noted {
+    fn guess(&mut self, of: Guessed, relative: f64, why: impl Into<String>) {
+        let relative = format!("{relative:.2}").parse().unwrap_or(relative);
+        self.guesses.push(Guess { of, relative, why: why.into() });
+    }
+
+    /// Distance of the outermost rotor from the centre, m.
+    fn arm(&mut self, layout: &Layout, given: &Given) -> f64 {
+        match (given.size_m, layout.unit) {
+            (Some(size_m), _) => {
+                self.origins.push(format!("arms from the given size of {size_m} m"));
+                0.5 * size_m
+            }
+            (None, LayoutUnit::Metres) => {
+                self.origins.push("arms as the parameters state them".to_owned());
+                layout.radius()
+            }
+            (None, LayoutUnit::Shares) => {
+                let Rule { usual, relative } = rules::arm();
+                self.guess(
+                    Guessed::Arms,
+                    relative,
+                    "usual for the mass; the parameters state ratios only, give the size",
+                );
+                usual * given.mass_kg.cbrt()
+            }
+        }
+    }
+
+    /// A body as flat as multirotors are.
+    fn body(&mut self, mass_kg: f64, arm_m: f64) -> RigidBody {
+        let (horizontal, vertical) = (rules::horizontal_inertia(), rules::vertical_inertia());
+        let unit = mass_kg * arm_m * arm_m;
+        let relative = horizontal.relative.max(vertical.relative);
+        self.guess(Guessed::Inertia, relative, "usual for mass and arms, of seven published multirotors");
+        let moments = Vector3::new(horizontal.usual, horizontal.usual, vertical.usual);
+        let moments = moments.map(|moment| rounded(moment * unit));
+        RigidBody {
+            mass_kg,
+            inertia_kg_m2: Matrix3::from_diagonal(&moments),
+            center_of_mass_m: Vector3::zeros(),
+        }
+    }
+
+    /// What a command means, and the exponent of its thrust curve.
+    fn command(&mut self, recording: &Recording, outputs: &Outputs) -> (Actuator, f64) {
+        let parameter = |name: &str| recording.parameters.get(name).copied();
+        let stated = parameter(outputs.expo).filter(|expo| (0.0..=1.0).contains(expo));
+        if holds_fractions(recording) {
+            // the autopilot takes its curve out between these commands and the pulses
+            self.origins.push("commands in 0..1, which the autopilot takes for shares of thrust".to_owned());
+            self.guess(Guessed::ThrustCurve, EXPO_LINEAR, "linear in the command, as the autopilot takes it");
+            return (Actuator::Thrust, 0.0);
+        }
+        let range = outputs.pulses.ends_us(parameter).filter(|(low_us, high_us)| high_us > low_us);
+        // parameters are in single precision
+        let (min_us, max_us) = range.map_or(PULSES_US, |(min_us, max_us)| (rounded(min_us), rounded(max_us)));
+        let from = if range.is_some() { "by its parameters" } else { "usual, stated by no parameter" };
+        self.origins.push(format!("pulses from {min_us} to {max_us} us, {from}"));
+        let linear = outputs.linear_without_expo.then_some(0.0);
+        let expo = match stated.or(linear) {
+            Some(expo) => {
+                let expo = rounded(expo);
+                let deviation = if expo > 0.0 { EXPO_STATED } else { EXPO_LINEAR };
+                self.guess(Guessed::ThrustCurve, deviation, format!("{} = {expo}", outputs.expo));
+                expo
+            }
+            None => {
+                let Rule { usual, relative } = rules::THRUST_EXPO;
+                self.guess(
+                    Guessed::ThrustCurve,
+                    relative,
+                    format!("usual; the log holds no {}", outputs.expo),
+                );
+                usual
+            }
+        };
+        (Actuator::Pwm(Some(PwmRange { min_us, max_us })), expo)
+    }
+
+    /// As large as is usual, and clear of its neighbours, m.
+    fn rotor_radius(&mut self, rotors: &[Rotor], arm_m: f64) -> f64 {
+        let Rule { usual, relative } = rules::rotor_radius();
+        self.guess(Guessed::RotorRadius, relative, "usual for the arms");
+        let apart = |a: &Rotor, b: &Rotor| (a.position_m.xy() - b.position_m.xy()).norm();
+        let pairs = rotors
+            .iter()
+            .enumerate()
+            .flat_map(|(at, one)| rotors[at + 1..].iter().map(move |other| apart(one, other)));
+        // coaxial rotors stand above each other
+        let nearest_m = pairs.filter(|distance_m| *distance_m > 0.1 * arm_m).fold(f64::INFINITY, f64::min);
+        rounded((usual * arm_m).min(CLEAR * nearest_m))
+    }
+
+    /// Torque for each thrust, m.
+    fn torque_ratio(&mut self, radius_m: f64) -> f64 {
+        let Rule { usual, relative } = rules::torque_per_thrust();
+        let relative = relative.hypot(rules::rotor_radius().relative);
+        self.guess(Guessed::TorqueRatio, relative, "usual for the rotors' radius");
+        rounded(usual * radius_m)
+    }
+
+    /// Full thrust of one rotor, N, of a vehicle whose full thrust is still 1 N.
+    fn thrust_max(&mut self, recording: &Recording, outputs: &Outputs, unit: &Vehicle) -> f64 {
+        if let Some(shown) = full_thrust(recording, unit) {
+            let by = if shown.felt { "its accelerometer" } else { "its hover" };
+            self.guess(
+                Guessed::ThrustMax,
+                shown.relative,
+                format!("from the mass, the commands of the flight and {by}"),
+            );
+            return rounded(shown.thrust_max_n);
+        }
+        let weight_n = unit.body.mass_kg * unit.gravity_m_s2 / unit.rotors.len() as f64;
+        let share =
+            recording.parameters.get(outputs.hover).copied().filter(|share| (0.05..0.95).contains(share));
+        if let Some(share) = share {
+            self.guess(
+                Guessed::ThrustMax,
+                BY_HOVER_SHARE,
+                format!("from the mass and {} = {share}", outputs.hover),
+            );
+            return rounded(weight_n / share);
+        }
+        let Rule { usual, relative } = rules::THRUST_TO_WEIGHT;
+        self.guess(Guessed::ThrustMax, relative, "usual for the weight");
+        rounded(usual * weight_n)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::autopilot::Autopilot;
+    use crate::recording::{Quantity, Stream, StreamKey};
+
+    fn given(size_m: Option<f64>) -> Given {
+        Given { mass_kg: 1.5, size_m, frame: None }
+    }
+
+    fn copter() -> Recording {
+        let stated = [
+            ("FRAME_CLASS", 1.0),
+            ("FRAME_TYPE", 1.0),
+            ("MOT_THST_EXPO", 0.6),
+            ("MOT_THST_HOVER", 0.4),
+            ("MOT_PWM_MIN", 1000.0),
+            ("MOT_PWM_MAX", 2000.0),
+            ("MOT_SPIN_MIN", 0.15),
+            ("MOT_SPIN_MAX", 0.95),
+        ];
+        let parameters = stated.map(|(name, value)| (name.to_owned(), value)).into();
+        Recording { parameters, autopilot: Autopilot::ArduPilot, ..Recording::default() }
+    }
+
+    fn relative(draft: &Draft, of: Guessed) -> Option<f64> {
+        draft.vehicle.guesses.iter().find(|guess| guess.of == of).map(|guess| guess.relative)
+    }
+
+    #[test]
+    fn parameters_mass_and_size_make_a_vehicle() {
+        let draft = draft(&copter(), &given(Some(0.5)), "drafted").unwrap();
+        let vehicle = &draft.vehicle;
+        // 0.25 m from the centre, at 45 degrees, front right
+        let side_m = 0.25 / 2.0_f64.sqrt();
+        assert!((vehicle.rotors[0].position_m - Vector3::new(side_m, -side_m, 0.0)).norm() < 1e-5);
+        assert_eq!(
+            vehicle.propulsion.actuator,
+            Actuator::Pwm(Some(PwmRange { min_us: 1150.0, max_us: 1950.0 }))
+        );
+        // hovers at 0.4 of the thrust of four rotors
+        let ThrustLaw::Curve { thrust_max_n, expo } = vehicle.propulsion.law else { panic!("a curve") };
+        assert!((thrust_max_n * 4.0 * 0.4 - 1.5 * 9.81).abs() < 1e-3 && expo == 0.6);
+        assert_eq!(relative(&draft, Guessed::ThrustMax), Some(BY_HOVER_SHARE));
+        assert_eq!(relative(&draft, Guessed::Arms), None);
+        assert!(relative(&draft, Guessed::TorqueRatio).is_some_and(|relative| relative > 0.1));
+    }
+
+    #[test]
+    fn arms_that_nobody_states_are_a_guess() {
+        let draft = draft(&copter(), &given(None), "drafted").unwrap();
+        assert!(relative(&draft, Guessed::Arms).is_some());
+    }
+
+    #[test]
+    fn the_flight_says_the_thrust() {
+        let key = |quantity, source| StreamKey { quantity, source, instance: 0 };
+        let time_s: Vec<f64> = (0..400).map(|index| 0.01 * f64::from(index)).collect();
+        // u = 0.5 and a little more in turn, on the ground before
+        let pulse = |index: usize| if index < 100 { 1000.0 } else { 1550.0 + 2.0 * (index % 2) as f64 };
+        let commands = (0..400).flat_map(|index| [pulse(index); 4]).collect();
+        let felt = (0..400).flat_map(|_| [0.0, 0.0, 9.6]).collect();
+        let mut recording = copter();
+        recording.streams = [
+            (
+                key(Quantity::ActuatorCommand, "RCOU"),
+                Stream { time_s: time_s.clone(), width: 4, values: commands },
+            ),
+            (key(Quantity::SpecificForce, "IMU"), Stream { time_s, width: 3, values: felt }),
+        ]
+        .into();
+        let draft = draft(&recording, &given(Some(0.5)), "drafted").unwrap();
+        let each_n = draft.vehicle.propulsion.thrust_from_command_n(0.501_25);
+        assert!((4.0 * each_n / 1.5 - 9.6).abs() < 0.1, "{each_n}");
+        assert!(relative(&draft, Guessed::ThrustMax).is_some_and(|relative| relative < 0.05));
+    }
+
+    #[test]
+    fn what_no_vehicle_is_is_refused() {
+        assert!(draft(&copter(), &Given { mass_kg: 0.0, ..given(None) }, "drafted").is_err());
+        assert!(draft(&copter(), &given(Some(f64::NAN)), "drafted").is_err());
+        assert_eq!(draft(&Recording::default(), &given(None), "drafted"), Err(DraftError::Autopilot));
+        let mut heli = copter();
+        heli.parameters.insert("FRAME_CLASS".to_owned(), 6.0);
+        let frame = Frame::of_id("quadrotor-plus");
+        assert!(draft(&heli, &Given { frame, ..given(None) }, "drafted").is_ok());
+        assert!(matches!(draft(&heli, &given(None), "drafted"), Err(DraftError::Layout(_))));
+    }
+}

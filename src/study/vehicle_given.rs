@@ -1,0 +1,139 @@
+//! How a study is told of the vehicle: by a file, or by its mass and size.
+
+use std::path::{Path, PathBuf};
+
+use crate::config::{ConfigError, LoadedVehicle, ModelTables, read_vehicle, vehicle_to_toml};
+use crate::draft::{Draft, Given, draft};
+use crate::log::{Hold, open_flights};
+use crate::note::{About, Note};
+use crate::recording::Recording;
+use crate::text;
+use crate::vehicle::Vehicle;
+
+use super::StudyError;
+use super::flights::{Flight, ReadSettings, file_notes, unread};
+
+/// How a study is told of the vehicle.
+#[derive(Debug, Clone, PartialEq)]
+pub enum VehicleGiven {
+    /// a vehicle file or a model
+    File(PathBuf),
+    /// what a person knows; the rest is drafted from the first log, see [`crate::draft`]
+    Weighed(Given),
+}
+
+impl Default for VehicleGiven {
+    fn default() -> Self {
+        Self::File(PathBuf::new())
+    }
+}
+
+impl From<PathBuf> for VehicleGiven {
+    fn from(file: PathBuf) -> Self {
+        Self::File(file)
+    }
+}
+
+/// What is kept of a log from which a vehicle is drafted: hover shows in minutes.
+const DRAFTED_FROM: Hold = Hold { seconds: 600.0, numbers: 4_000_000 };
+
+/// The vehicle of a study.
+#[derive(Debug)]
+pub(super) struct Known {
+    pub(super) loaded: LoadedVehicle,
+    /// what messages call it
+    pub(super) origin: PathBuf,
+    /// where it was drafted
+    pub(super) draft: Option<Draft>,
+}
+
+impl Known {
+    /// What is to be known of it.
+    pub(super) fn notes(&self) -> Vec<Note> {
+        let mut notes = file_notes(&self.origin, &self.loaded.warnings);
+        let about = || About::File(text::path(&self.origin));
+        if let Some(draft) = &self.draft {
+            notes.push(Note::remark(about(), draft.origins.join("; ")));
+        }
+        notes.extend(guesses(&self.loaded.vehicle).map(|text| Note::remark(about(), text)));
+        notes
+    }
+}
+
+/// The guesses that a vehicle rests on, in a sentence.
+fn guesses(vehicle: &Vehicle) -> Option<String> {
+    let one = |guess: &crate::vehicle::Guess| {
+        let why = if guess.why.is_empty() { String::new() } else { format!(" ({})", guess.why) };
+        format!("{} +- {:.0} %{why}", guess.of.words(), 100.0 * guess.relative)
+    };
+    let all: Vec<String> = vehicle.guesses.iter().map(one).collect();
+    (!all.is_empty()).then(|| format!("rests on guesses: {}", all.join("; ")))
+}
+
+impl VehicleGiven {
+    /// The vehicle of a file; `None` where it is to be drafted from a log.
+    pub(super) fn of_file(&self) -> Result<Option<Known>, StudyError> {
+        match self {
+            Self::File(file) => {
+                Ok(Some(Known { loaded: read_vehicle(file)?, origin: file.clone(), draft: None }))
+            }
+            Self::Weighed(_) => Ok(None),
+        }
+    }
+
+    /// The vehicle, drafted from the first flight of the logs where it is not in a file.
+    pub(super) fn of_flights(&self, known: Option<Known>, logs: &[Vec<Flight>]) -> Result<Known, StudyError> {
+        let first = logs.iter().flatten().next();
+        match (self, known, first) {
+            (_, Some(known), _) => Ok(known),
+            (Self::Weighed(given), None, Some(flight)) => {
+                let draft = drafted(&flight.recording, &flight.input.path, given)?;
+                let loaded = LoadedVehicle {
+                    vehicle: draft.vehicle.clone(),
+                    warnings: Vec::new(),
+                    model: ModelTables::default(),
+                };
+                let origin = PathBuf::from("the drafted vehicle");
+                Ok(Known { loaded, origin, draft: Some(draft) })
+            }
+            _ => Err(StudyError::Setting {
+                name: "mass",
+                why: "expected a log with a flight, got none".into(),
+            }),
+        }
+    }
+}
+
+fn drafted(recording: &Recording, log: &str, given: &Given) -> Result<Draft, StudyError> {
+    let name = Path::new(log).file_stem().map_or_else(|| "vehicle".to_owned(), text::path);
+    draft(recording, given, &name)
+        .map_err(|error| StudyError::File { file: log.to_owned(), why: error.to_string() })
+}
+
+/// A first description of the vehicle of a log.
+///
+/// # Errors
+/// The log cannot be read, or does not say enough.
+pub fn draft_from_log(log: &Path, read: &ReadSettings, given: &Given) -> Result<Draft, StudyError> {
+    let opened =
+        open_flights(log, &read.open_options()?, &DRAFTED_FROM).map_err(|error| unread(log, error))?;
+    let Some(flight) = opened.flights.flights.first() else {
+        return Err(StudyError::File { file: text::path(&log), why: "expected a flight, got none".into() });
+    };
+    drafted(&flight.recording, &text::path(&log), given)
+}
+
+/// A draft as a vehicle file, with where its values come from.
+///
+/// # Errors
+/// [`ConfigError`] where a value has no form in TOML.
+pub fn draft_text(draft: &Draft) -> Result<String, ConfigError> {
+    let mut out = String::from(
+        "# A first description of the vehicle. Every [[guess]] below was not measured: correct the value and delete the guess.\n",
+    );
+    for origin in &draft.origins {
+        out.push_str(&text::line_comment("# -", origin));
+    }
+    out.push('\n');
+    Ok(out + &vehicle_to_toml(&draft.vehicle)?)
+}

@@ -1,0 +1,61 @@
+//! A value of a vehicle that nobody measured.
+
+/// What a guess is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Guessed {
+    /// distance of the rotors from the centre
+    Arms,
+    /// moments of inertia
+    Inertia,
+    /// torque for each thrust of a rotor
+    TorqueRatio,
+    /// largest thrust of a rotor
+    ThrustMax,
+    /// shape of the thrust curve
+    ThrustCurve,
+    /// radius of a rotor
+    RotorRadius,
+}
+
+impl Guessed {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::Arms, Self::Inertia, Self::TorqueRatio, Self::ThrustMax, Self::ThrustCurve, Self::RotorRadius];
+
+    /// As files name it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Arms => "arms",
+            Self::Inertia => "inertia",
+            Self::TorqueRatio => "torque_ratio",
+            Self::ThrustMax => "thrust_max",
+            Self::ThrustCurve => "thrust_curve",
+            Self::RotorRadius => "rotor_radius",
+        }
+    }
+
+    /// In a sentence.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Arms => "the length of the arms",
+            Self::Inertia => "the nominal moments of inertia",
+            Self::TorqueRatio => "the rotors' torque per thrust",
+            Self::ThrustMax => "the rotors' largest thrust",
+            Self::ThrustCurve => "the shape of the thrust curve",
+            Self::RotorRadius => "the rotors' radius",
+        }
+    }
+}
+
+/// A value of a vehicle that nobody measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Guess {
+    /// which value
+    pub of: Guessed,
+    /// standard error over the value; of the thrust curve, of its exponent itself
+    pub relative: f64,
+    /// what it rests on
+    pub why: String,
+}

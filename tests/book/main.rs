@@ -1,0 +1,99 @@
+//! The parts of the book that are made from the code and from one output of a benchmark, `docs/measured.json`.
+//!
+//! `MAVID_WRITE_BOOK=1 cargo test --release --test book` writes them; without the variable the test compares.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
+
+mod blocks;
+mod effect_page;
+mod equation;
+mod figures;
+#[path = "../../benches/support/measured.rs"]
+mod measured;
+#[path = "../support/ordinary.rs"]
+mod ordinary;
+mod overview;
+mod picture;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use mavid::physics::effects::ALL;
+use measured::Measured;
+
+/// What makes the generated parts anew.
+const WRITE: &str = "MAVID_WRITE_BOOK=1 cargo test --release --test book";
+/// What makes the measurements anew; the command itself stands in the file.
+const MEASURED: &str = "docs/measured.json";
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn measured() -> Measured {
+    serde_json::from_str(&read(&root().join(MEASURED))).unwrap_or_else(|error| panic!("{MEASURED}: {error}"))
+}
+
+/// Every generated file with its text.
+fn generated(measured: &Measured) -> BTreeMap<PathBuf, String> {
+    let source = root().join("docs/src");
+    let mut files = BTreeMap::new();
+    for effect in ALL {
+        let page = source.join("effects").join(effect.id());
+        files.insert(page.with_extension("md"), effect_page::page(*effect, measured));
+        files.extend(picture::svg_of(effect.id(), measured).map(|svg| (page.with_extension("svg"), svg)));
+    }
+    for (name, blocks) in [
+        ("effects.md", vec![("effects", overview::table_of_effects())]),
+        ("SUMMARY.md", vec![("effects", overview::contents())]),
+        ("figures-diagnosis.md", figures::blocks(measured)),
+    ] {
+        let path = source.join(name);
+        let text = blocks::replaced(&read(&path), &blocks).unwrap_or_else(|error| panic!("{name}: {error}"));
+        files.insert(path, text);
+    }
+    files
+}
+
+#[test]
+fn the_generated_parts_are_what_code_and_measurements_give() {
+    let files = generated(&measured());
+    if std::env::var_os("MAVID_WRITE_BOOK").is_some() {
+        std::fs::create_dir_all(root().join("docs/src/effects")).unwrap();
+        files.iter().for_each(|(path, text)| std::fs::write(path, text).unwrap());
+    }
+    let stale: Vec<String> = files
+        .iter()
+        .filter(|(path, text)| std::fs::read_to_string(path).ok().as_ref() != Some(*text))
+        .map(|(path, _)| path.strip_prefix(root()).unwrap().display().to_string())
+        .collect();
+    assert!(stale.is_empty(), "not what the code and {MEASURED} give; run `{WRITE}`:\n{}", stale.join("\n"));
+    let folder = std::fs::read_dir(root().join("docs/src/effects")).unwrap();
+    let there: BTreeSet<PathBuf> = folder.map(|entry| entry.unwrap().path()).collect();
+    let unknown: Vec<_> = there.iter().filter(|path| !files.contains_key(*path)).collect();
+    assert!(unknown.is_empty(), "files of no effect, to be deleted: {unknown:?}");
+}
+
+/// A new effect has to be measured before the book can tell of it.
+#[test]
+fn every_effect_is_measured() {
+    let measured = measured();
+    let of_runs: BTreeSet<&str> = measured.effects.iter().map(|run| run.id.as_str()).collect();
+    let missing: Vec<&str> =
+        ALL.iter().map(|effect| effect.id()).filter(|id| !of_runs.contains(id)).collect();
+    assert!(missing.is_empty(), "{missing:?} not in {MEASURED}: run `{}`, then `{WRITE}`", measured.command);
+}
+
+/// The README's claim is the measured one.
+#[test]
+fn the_readme_says_what_was_measured() {
+    let clean = measured().clean;
+    let readme = read(&root().join("README.md")).replace('\n', " ");
+    let count = if clean.named == 0 { "none".to_owned() } else { clean.named.to_string() };
+    let claim = format!("{count} of {} simulated flights without a concealed effect", clean.flights);
+    assert!(readme.contains(&claim), "README.md: expected `{claim}`");
+}
