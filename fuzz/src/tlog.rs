@@ -27,9 +27,9 @@ pub fn run(data: &[u8], seeded: bool) {
 
 /// Gives a few bytes at a time, as a pipe may.
 #[derive(Debug)]
-struct Trickle<'a> {
-    left: &'a [u8],
-    piece: usize,
+pub struct Trickle<'a> {
+    pub left: &'a [u8],
+    pub piece: usize,
 }
 
 impl Read for Trickle<'_> {

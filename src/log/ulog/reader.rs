@@ -38,6 +38,8 @@ pub struct UlogReader<R: Read> {
 pub struct Entry<'a> {
     /// byte offset in the file
     pub offset: u64,
+    /// length, prefix included
+    pub bytes: usize,
     /// what it says
     pub message: Message<'a>,
 }
@@ -226,7 +228,7 @@ impl<R: Read> UlogReader<R> {
         } else {
             parse(kind, body, &self.schema).unwrap_or(Message::Other { kind })
         };
-        Some(Entry { offset: self.bytes.offset(), message })
+        Some(Entry { offset: self.bytes.offset(), bytes: self.given, message })
     }
 
     /// Skips to the next place at which two messages stand in a row, or to the end; there a message may be cut off, or
