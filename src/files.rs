@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// Writes a file: beside its place, and into it by a new name once all of it is written. Where that fails, what
 /// was there before is as it was, and nothing half-written stays.
 ///
-/// A symbolic link goes on leading to the file, and a file's permissions stay. Where the place is a device, a pipe, or in
+/// A symbolic link continues leading to the file, and a file's permissions stay. Where the place is a device, a pipe, or in
 /// a folder that takes no further file, it is written to itself.
 ///
 /// # Errors

@@ -152,7 +152,7 @@ fn an_ardupilot_that_is_left_alone_stays_in_a_room_of_four_metres() {
         let Judged { findings, feeding, .. } = judged(&course, &parameters, &settings.vehicle);
         let said: Vec<String> = findings
             .iter()
-            .filter(|finding| finding.subject == "if we die now")
+            .filter(|finding| finding.subject == "if setpoints end")
             .map(ToString::to_string)
             .collect();
         assert!(said.len() == 1 && said[0].starts_with("ok"), "{said:?}");

@@ -322,5 +322,8 @@ fn what_no_flight_tells_apart_is_said() {
     let Err(NextError::Inseparable(pairs)) = design(&found, &[flight], &vehicles.nominal, &settings) else {
         panic!("a flight was designed");
     };
-    assert!(pairs[0].to_string().starts_with("no trajectory tells inflow from linear_drag: "), "{pairs:?}");
+    assert!(
+        pairs[0].to_string().starts_with("no trajectory separates inflow from linear_drag: "),
+        "{pairs:?}"
+    );
 }

@@ -67,7 +67,7 @@ fn a_complete_rigid_body_has_nothing_missing_and_says_what_it_would_have_seen() 
     let holdout = &document["fit"]["holdout"];
     let force = &holdout["weak_residual"]["force_z"];
     assert!(force["after"].as_f64().unwrap() > 0.0 && force["unit"] == "N", "{force}");
-    assert!(holdout["no_closed_loop"].as_str().unwrap().contains("flown again"));
+    assert!(holdout["no_closed_loop"].as_str().unwrap().contains("is not simulated"));
     assert!(holdout["own_parameters"]["mass"]["own"].as_f64().unwrap() > 1.9);
     assert_eq!(document["too_little_excitation"], false);
     // the model goes where a vehicle goes
@@ -115,7 +115,7 @@ fn bad_input_is_refused_with_what_was_expected_and_what_came() {
         (vec![log.as_str(), "--holdout", &log], "same recording"),
         (
             vec![log.as_str(), "--holdout", part.to_str().unwrap()],
-            "expected a flight that is not explained, 100 % of",
+            "expected a flight that is not explained, but 100 % of",
         ),
         (vec![log.as_str(), "--transient", "-1"], "--transient: expected seconds from 0 on, got -1"),
         (vec![log.as_str(), "--csv-map", "map.toml"], "expected a .csv among the logs"),

@@ -673,7 +673,7 @@ fn a_host_that_stalls_in_the_takeoff_says_so() {
         stall(&mut flying, 1000);
         let outcome = flying.finish();
         assert!(matches!(outcome.cause, Some(Cause::Stalled(_))), "{kind:?}: {}", flying.story());
-        assert!(flying.cause().to_string().contains("stood still"), "{}", flying.cause());
+        assert!(flying.cause().to_string().contains("stalled for"), "{}", flying.cause());
         assert_eq!(outcome.ending, Ending::Landed);
     }
 }

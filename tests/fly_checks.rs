@@ -128,7 +128,7 @@ async fn a_vehicle_that_signs_is_flown_with_its_key_alone() {
         let events =
             Path::new(env!("CARGO_TARGET_TMPDIR")).join("fly_checks").join(name).join("events.jsonl");
         let events = std::fs::read_to_string(events).unwrap();
-        assert!(events.contains("is not believed") && events.contains(said), "{events}");
+        assert!(events.contains("is not accepted") && events.contains(said), "{events}");
     }
 }
 

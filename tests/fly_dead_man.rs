@@ -188,7 +188,7 @@ async fn a_computer_that_slept_has_stood_still() {
     let record = tokio::time::timeout(Duration::from_secs(120), flight).await.unwrap().unwrap().unwrap();
     vehicle.abort();
     let Some(Cause::Stalled(what)) = record.outcome.cause else { panic!("{:?}", record.outcome) };
-    assert!(what.contains("stood still for 600"), "{what}");
+    assert!(what.contains("stalled for 600"), "{what}");
     assert_eq!(record.outcome.ending, Ending::Landed);
 }
 

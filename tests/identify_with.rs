@@ -270,7 +270,7 @@ fn wrong_sets_are_refused_with_what_was_expected() {
     assert!(unknown.contains("no effect `gravity_waves`") && unknown.contains("mass_change"), "{unknown}");
     assert!(with("com_offset,com_offset").contains("com_offset is named twice"));
     assert!(with("linear_drag,").contains("no effect ``"));
-    assert!(with("gust").contains("gust cannot be identified as parameters: a gust is one course"));
+    assert!(with("gust").contains("gust cannot be identified as parameters: a gust is one random course"));
     assert!(with("inertia_products").contains("in any case"));
     let wind = with("steady_wind");
     assert!(wind.contains("forces of the air") && wind.contains("linear_drag"), "{wind}");

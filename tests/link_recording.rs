@@ -237,7 +237,7 @@ async fn a_disk_that_stands_still_is_given_up_and_what_it_did_not_take_is_lost()
     }
     let status = recorder.end().await.unwrap();
     assert_eq!((status.frames, status.dropped, status.is_whole()), (0, 5, false));
-    assert!(status.failure.unwrap().contains("took nothing for 3 s"));
+    assert!(status.failure.unwrap().contains("accepted nothing for 3 s"));
     drop(ticket);
 }
 

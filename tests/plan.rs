@@ -124,7 +124,7 @@ fn conflicts_are_named() {
     let speed = message(&|limits, _| limits.speed_max_m_s = Some(0.0));
     assert!(speed.contains("speed_max_m_s = 0"), "{speed}");
     let harmonics = message(&|_, request| request.harmonics = 2);
-    assert!(harmonics.contains("4 to 20, came 2"), "{harmonics}");
+    assert!(harmonics.contains("4 to 20, got 2"), "{harmonics}");
 }
 
 #[test]

@@ -69,8 +69,8 @@ fn a_circle_is_written_with_the_way_to_it() {
 #[test]
 fn wrong_input_is_named() {
     for (arguments, word) in [
-        (["--period", "-1"], "period: expected 0.1 to 1000 s, came -1"),
-        (["--harmonics", "0"], "harmonics: expected 4 to 20, came 0"),
+        (["--period", "-1"], "period: expected 0.1 to 1000 s, got -1"),
+        (["--harmonics", "0"], "harmonics: expected 4 to 20, got 0"),
         (["--repeats", "0"], "repeats"),
         (["--start", "9,0"], "start at x = 9"),
         (["--start", "1"], "expected X,Y[,Z[,YAW]]"),
@@ -89,7 +89,7 @@ fn wrong_input_is_named() {
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{message}");
     let expected =
-        "x500.toml: expected a file in TOML with a [limits] table and nothing else, came a vehicle file (";
+        "x500.toml: expected a file in TOML with a [limits] table and nothing else, got a vehicle file (";
     assert!(message.contains(expected), "{message}");
     let limits = temporary("conflict.toml");
     std::fs::write(&limits, "[limits]\nthrust_max_n = 10.0\n").unwrap();
@@ -106,11 +106,11 @@ fn a_plan_has_a_room_above_the_ground_and_says_where_it_is_not_the_stated_one() 
         std::fs::read_to_string(format!("{}/configs/x500.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
     let body = described.split("[limits]").next().unwrap();
     let rooms = [
-        ("none", "", "the default is used"),
+        ("none", "", "defaults are used"),
         (
             "low",
             "[limits]\nx_max_m = 2.0\ny_max_m = 2.0\nz_min_m = -5.0\nz_max_m = 4.0\nspeed_max_m_s = 1.5\n",
-            "came -5.00",
+            "got -5.00",
         ),
     ];
     for (name, limits, said) in rooms {

@@ -516,7 +516,7 @@ fn stopping_takes_room() {
     assert!(said.came.contains("x_max_m") && said.expected.contains("WP_ACC"), "{said}");
 }
 
-const DIES: &str = "if we die now";
+const DIES: &str = "if setpoints end";
 
 #[test]
 fn setpoints_are_sent_such_that_each_may_be_the_last() {
@@ -525,12 +525,12 @@ fn setpoints_are_sent_such_that_each_may_be_the_last() {
     (scene.limits.x_max_m, scene.limits.y_max_m) = (Some(1.65), Some(1.65));
     let said = scene.said(DIES);
     assert_eq!(said.level, Level::Ok, "{said}");
-    assert!(said.came.contains("places ahead") && said.expected.contains("3.0 s"), "{said}");
+    assert!(said.came.contains("positions ahead") && said.expected.contains("3.0 s"), "{said}");
     // where only the rotors pass the wall that is told, with both numbers
     (scene.limits.x_max_m, scene.limits.y_max_m) = (Some(1.2), Some(1.2));
     let narrow = scene.said(DIES);
     assert_eq!(narrow.level, Level::Warning, "{narrow}");
-    assert!(narrow.came.contains("0 is expected, more than 1.25 m of a wall is refused"), "{narrow}");
+    assert!(narrow.came.contains("0 is expected, more than 1.25 m beyond a wall is refused"), "{narrow}");
     (scene.limits.z_max_m, scene.limits.x_max_m, scene.limits.y_max_m) = (Some(2.3), Some(1.65), Some(1.65));
     let low = scene.said(DIES);
     assert!(low.level == Level::Warning && low.came.contains("the ceiling z_max_m"), "{low}");
@@ -538,12 +538,12 @@ fn setpoints_are_sent_such_that_each_may_be_the_last() {
     // at 0.8 m/s in a wide room nothing has to be kept back
     (scene.limits.x_max_m, scene.limits.y_max_m) = (Some(8.0), Some(8.0));
     let said = scene.said(DIES);
-    assert!(said.came.contains("place, velocity and acceleration"), "{said}");
+    assert!(said.came.contains("position, velocity and acceleration"), "{said}");
     // a border of the fence counts as a wall does
     scene.fence.radius_m = Some(1.6);
     scene.fence.margin_m = 0.0;
     let said = scene.said(DIES);
-    assert!(said.level == Level::Ok && said.came.contains("places ahead"), "{said}");
+    assert!(said.level == Level::Ok && said.came.contains("positions ahead"), "{said}");
 }
 
 #[test]
@@ -554,7 +554,7 @@ fn where_nothing_is_safe_to_send_it_refuses_and_says_what_would_be() {
     scene.parameters = ardupilot(&[("WP_ACC", 0.2), ("PSC_NE_JERK", 0.2)]);
     let said = scene.said(DIES);
     assert_eq!(said.level, Level::Refusal, "{said}");
-    assert!(said.came.starts_with("setpoints that come nearest to it cost"), "{said}");
+    assert!(said.came.starts_with("the setpoints nearest to it lead"), "{said}");
     assert!(said.remedy.contains("--tracking-max"), "{said}");
     assert!(said.remedy.contains("slower"), "{said}");
 }
@@ -712,7 +712,7 @@ fn the_page_before_the_flight_begins_with_warnings_and_ends_with_the_room() {
     assert!(lines[0].starts_with("warning: "), "{}", lines[0]);
     let text = scene.judged().page.lines(400).join("\n");
     for part in [
-        "if we die now: ",
+        "if setpoints end: ",
         "m/s along the ground",
         "degrees of tilt",
         "from above",
@@ -746,7 +746,7 @@ fn battery_fence_and_switches_are_on_every_page() {
                 scene.parameters.values.retain(|name, _| !missing.contains(&name.as_str()));
                 let lines = scene.judged().page.lines(1000);
                 for (subject, word) in [
-                    ("battery", if remaining_percent.is_some() { "90 %" } else { "does not say" }),
+                    ("battery", if remaining_percent.is_some() { "90 %" } else { "does not report" }),
                     ("fence", ""),
                     ("pilot's takeover", "mode switch"),
                     ("pilot's takeover", "kill switch"),

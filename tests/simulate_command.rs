@@ -65,7 +65,7 @@ fn the_model_with_the_concealed_effect_fits_better_everywhere() {
     }
     // and the table says who flew it, and how far off its setpoints the flight was itself
     let notes: Vec<_> = tables[0]["notes"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
-    assert!(notes.len() == 2 && notes[0].contains("PX4's default gains, on exact states; it believes bare"));
+    assert!(notes.len() == 2 && notes[0].contains("PX4's default gains, on exact states; it assumes bare"));
     assert!(notes[1].contains("itself was off its setpoints by 0.0"), "{notes:?}");
     let drawn = std::fs::read_to_string(Path::new(&charts).join("1-flight.svg")).unwrap();
     assert!(drawn.contains("tau_psi") && drawn.contains("draggy"));
@@ -119,7 +119,7 @@ fn bad_effects_are_refused_with_what_was_expected() {
         ("", "expected a file in TOML with [[effect]] tables and nothing else: "),
         (
             include_str!("../configs/x500.toml"),
-            "effects.toml: expected a file in TOML with [[effect]] tables and nothing else, came a vehicle file (",
+            "effects.toml: expected a file in TOML with [[effect]] tables and nothing else, got a vehicle file (",
         ),
         ("\u{0}", "expected a file in TOML with [[effect]] tables and nothing else: "),
     ] {
@@ -138,7 +138,7 @@ fn bad_effects_are_refused_with_what_was_expected() {
         mavid(&["simulate", &vehicle, "--trajectory", &trajectory, "--effects", &binary, "--out", &log]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("tables and nothing else, came a file that is no text"), "{said}");
+    assert!(said.contains("tables and nothing else, got a file that is not text"), "{said}");
 }
 
 #[test]

@@ -118,7 +118,7 @@ fn a_later_format_is_refused_with_what_to_do() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
     let text = std::fs::read_to_string(path).unwrap();
     assert!(parse_vehicle(&format!("format = 1\n{text}"), "v.toml").is_ok());
-    for (came, shown) in [("2", "came 2"), ("0", "came 0"), ("\"new\"", "came \"new\"")] {
+    for (came, shown) in [("2", "got 2"), ("0", "got 0"), ("\"new\"", "got \"new\"")] {
         // its unknown keys are not what is told
         let later = format!("format = {came}\nnew_key = 1\n{text}");
         let said = parse_vehicle(&later, "v.toml").unwrap_err().to_string();

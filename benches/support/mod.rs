@@ -39,6 +39,6 @@ impl Arguments {
 }
 
 fn refuse<T>(name: &str, expected: &str, came: &str) -> T {
-    println!("{name}: expected {expected}, came {came}");
+    println!("{name}: expected {expected}, got {came}");
     std::process::exit(2);
 }

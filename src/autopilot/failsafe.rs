@@ -3,7 +3,7 @@
 /// What a vehicle does by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reaction {
-    /// goes on, perhaps with a warning
+    /// continues, perhaps with a warning
     Nothing,
     /// stops where it is
     Hold,

@@ -28,16 +28,16 @@ pub struct FlyArgs {
     /// the vehicle's MAVLink system id; without it the only vehicle on the link
     #[arg(long, value_name = "ID", value_parser = clap::value_parser!(u32).range(1..=255))]
     pub system_id: Option<u32>,
-    /// our own MAVLink system id
+    /// MAVLink system id of mavid itself
     #[arg(long, value_name = "ID", default_value_t = 255, value_parser = clap::value_parser!(u32).range(1..=255))]
     pub station_id: u32,
     /// periods to fly, instead of the trajectory's own
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub repeats: Option<u32>,
-    /// setpoints a second; none that divides the rates of the log
+    /// setpoints per second; not a divisor of the rates of the log
     #[arg(long, value_name = "HZ", default_value_t = SETPOINT_HZ, value_parser = clap::value_parser!(u32).range(20..=200))]
     pub setpoint_hz: u32,
-    /// where the trajectory's horizontal origin lies; its heights count from the ground
+    /// the trajectory's horizontal origin; heights are above the ground
     #[arg(long, value_enum, default_value = "local")]
     pub origin: OriginName,
     /// distance to the reference at which the flight is aborted, m
@@ -46,22 +46,22 @@ pub struct FlyArgs {
     /// tilt at which the flight is aborted, degrees [default: 20 more than planned]
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub tilt_max: Option<f64>,
-    /// s that the vehicle hovers on a full battery: the flight is then refused where the charge does not last for it
+    /// time that the vehicle hovers on a full battery, s: the flight is refused if the charge does not suffice
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub hover_time: Option<f64>,
-    /// how near to its start the vehicle must hover before the trajectory begins, m [default: 0.3, or what it can do]
+    /// distance to the start within which the vehicle must hover before the trajectory, m [default: 0.3, or what it can do]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub gate_distance: Option<f64>,
-    /// how slow it must be there, m/s [default: 0.2, or what it can do]
+    /// greatest speed in this hover, m/s [default: 0.2, or what it can do]
     #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
     pub gate_speed: Option<f64>,
-    /// a check whose refusal is taken for a warning; may be given several times
+    /// a check whose refusal becomes a warning; may be given several times
     #[arg(long, value_enum, value_name = "CHECK")]
     pub accept: Vec<CheckName>,
     /// key that signs what is sent
     #[arg(long, value_name = "FILE")]
     pub signing_key_file: Option<PathBuf>,
-    /// lines instead of the terminal view
+    /// print lines instead of the terminal view
     #[arg(long)]
     pub plain: bool,
 }
@@ -69,9 +69,9 @@ pub struct FlyArgs {
 /// Checks that may be overruled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum CheckName {
-    /// that the vehicle file's thrust carries its weight by what the vehicle hovers on
+    /// the vehicle file's thrust at the autopilot's hover command against its weight
     HoverThrust,
-    /// that the vehicle file's rotors are as many and as far out as the autopilot's
+    /// number and arms of the vehicle file's rotors against those of the autopilot
     Rotors,
 }
 
@@ -80,6 +80,6 @@ pub enum CheckName {
 pub enum OriginName {
     /// at the origin of the vehicle's local position
     Local,
-    /// so that the vehicle stands below the place of its takeoff
+    /// such that the hover after takeoff is above the vehicle
     Here,
 }

@@ -16,7 +16,7 @@ pub struct DemoArgs {
     /// what to conceal instead of the demo's own: [[effect]] tables with `id` and the parameters by name
     #[arg(long, value_name = "FILE")]
     pub effects: Option<PathBuf>,
-    /// lines instead of a progress bar
+    /// print lines instead of a progress bar
     #[arg(long)]
     pub plain: bool,
 }
@@ -24,7 +24,7 @@ pub struct DemoArgs {
 /// Arguments of `mavid sitl`.
 #[derive(Debug, Clone, Args)]
 pub struct SitlArgs {
-    /// vehicle.toml or model.toml: what flies; without it a Holybro X500
+    /// vehicle.toml or model.toml of the simulated vehicle; without it a Holybro X500
     #[arg(long, value_name = "FILE")]
     pub vehicle: Option<PathBuf>,
     /// effects to conceal from whoever connects: [[effect]] tables with `id` and the parameters by name
@@ -32,19 +32,19 @@ pub struct SitlArgs {
     pub effects: Option<PathBuf>,
     #[arg(long, value_name = "ADDRESS", help = LISTEN)]
     pub listen: Vec<String>,
-    /// whose behaviour
+    /// the autopilot that is simulated
     #[arg(long, value_parser = autopilots(), default_value = "px4")]
     pub autopilot: Autopilot,
-    /// whose names and units of parameters ArduPilot has [default: 4.7]
+    /// ArduPilot release whose names and units of parameters are used [default: 4.7]
     #[arg(long, value_parser = ardupilot_versions())]
     pub ardupilot_version: Option<Firmware>,
-    /// times real time
+    /// speed, in multiples of real time
     #[arg(long, value_name = "N", default_value_t = 1.0, allow_negative_numbers = true)]
     pub speed: f64,
-    /// as fast as the ground station: time goes on by 20 ms for whatever it sends, or when it is silent
+    /// in step with the ground station: time advances by 20 ms for each message that it sends, or when it is silent
     #[arg(long, conflicts_with = "speed")]
     pub lockstep: bool,
-    /// same seed, same flight
+    /// seed of the noise; the same seed gives the same flight
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
     /// factor on the sensors' noise
@@ -53,28 +53,28 @@ pub struct SitlArgs {
     /// MAVLink system id
     #[arg(long, value_name = "ID", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..))]
     pub system: u8,
-    /// rotor speeds are telemetered
+    /// send measured rotor speeds
     #[arg(long)]
     pub esc_telemetry: bool,
-    /// a pilot's transmitter is on, its sticks centred
+    /// simulate a pilot's transmitter that is on, with centred sticks
     #[arg(long)]
     pub transmitter: bool,
-    /// s from boot until the position estimate is good [default: the autopilot's own]
+    /// time from boot until the position estimate is good, s [default: the autopilot's own]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub warm_up: Option<f64>,
     /// a parameter of the autopilot instead of its default; may be given several times
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
     pub param: Vec<(String, f64)>,
-    /// signs, and believes only what is signed: a file with 32 bytes, 64 hexadecimal digits, or a passphrase
+    /// sign, and accept only signed messages: a file with 32 bytes, 64 hexadecimal digits, or a passphrase
     #[arg(long, value_name = "FILE")]
     pub signing_key_file: Option<PathBuf>,
-    /// s that each frame takes on its way out
+    /// latency of the sent frames, s
     #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true)]
     pub latency: f64,
-    /// share of the frames that get lost on their way out
+    /// share of the sent frames that are lost, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, allow_negative_numbers = true)]
     pub loss: f64,
-    /// end after so many s of the vehicle's time
+    /// end after this time of the vehicle, s
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub duration: Option<f64>,
 }
@@ -101,14 +101,13 @@ pub struct RecordArgs {
     /// telemetry log to write
     #[arg(long, value_name = "FILE.tlog")]
     pub out: PathBuf,
-    /// s to record; without it until interrupted
+    /// time to record, s; without it until interrupted
     #[arg(long, value_name = "S", value_parser = positive)]
     pub duration: Option<f64>,
-    /// replace a file that is there already
+    /// replace an existing file
     #[arg(long)]
     pub force: bool,
-    /// speak as a ground station: send a heartbeat each second, and ask the vehicle for the messages that
-    /// identification uses
+    /// act as a ground station: send a heartbeat each second, and request the messages that identification uses
     #[arg(long)]
     pub heartbeat: bool,
     /// MAVLink 2 signing key: a file with 32 bytes, 64 hexadecimal digits, or a passphrase
@@ -123,7 +122,7 @@ pub struct ReplayArgs {
     pub log: PathBuf,
     #[arg(long, value_name = "ADDRESS", default_value = "udpout:127.0.0.1:14550", help = ADDRESS)]
     pub to: String,
-    /// how many times faster than it was; 0 is as fast as possible
+    /// speed, in multiples of the recorded rate; 0 is as fast as possible
     #[arg(long, value_name = "N", default_value_t = 1.0, allow_negative_numbers = true)]
     pub speed: f64,
 }

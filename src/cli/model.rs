@@ -48,7 +48,7 @@ pub struct InitArgs {
 /// Arguments of `mavid simulate`.
 #[derive(Debug, Args)]
 pub struct SimulateArgs {
-    /// vehicle.toml or model.toml: what flies
+    /// vehicle.toml or model.toml of the simulated vehicle
     pub vehicle: PathBuf,
     /// trajectory.toml
     #[arg(long, value_name = "FILE")]
@@ -56,13 +56,13 @@ pub struct SimulateArgs {
     /// further effects: [[effect]] tables with `id` and the parameters by name
     #[arg(long, value_name = "FILE")]
     pub effects: Option<PathBuf>,
-    /// the vehicle that the controller believes it flies; without it the one that flies
+    /// the vehicle that the controller assumes; without it the simulated one
     #[arg(long, value_name = "FILE")]
     pub nominal: Option<PathBuf>,
     /// telemetry log to write
     #[arg(long, value_name = "LOG.TLOG")]
     pub out: PathBuf,
-    /// same seed, same noise
+    /// seed of the noise; the same seed gives the same noise
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
     /// factor on the sensors' noise
@@ -75,10 +75,10 @@ pub struct SimulateArgs {
 pub struct ExportArgs {
     /// model.toml or vehicle.toml
     pub model: PathBuf,
-    /// for which simulator
+    /// the simulator
     #[arg(long, value_enum)]
     pub to: ExportFormat,
-    /// where to write it; without it standard output
+    /// file to write; without it standard output
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }

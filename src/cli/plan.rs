@@ -39,14 +39,14 @@ pub struct PlanArgs {
     #[arg(long, value_name = "TRAJECTORY", conflicts_with_all = ["out", "start"])]
     pub check: Option<PathBuf>,
     /// The circular validation path (44) instead of a plan: metres, seconds a turn, metres of height;
-    /// without HEIGHT the middle of the room's
+    /// without HEIGHT the middle of the room
     #[arg(long, value_name = "RADIUS,PERIOD[,HEIGHT]", value_delimiter = ',', allow_hyphen_values = true,
         conflicts_with_all = ["check", "start"])]
     pub circle: Option<Vec<f64>>,
-    /// Where it hovers after takeoff, metres and degrees; without it at the series' mean
+    /// Hover after takeoff, metres and degrees; without it at the mean of the series
     #[arg(long, value_name = "X,Y,Z[,YAW]", value_delimiter = ',', allow_hyphen_values = true)]
     pub takeoff: Option<Vec<f64>>,
-    /// Where it hovers before it lands; without it where it took off
+    /// Hover before landing; without it at the place of takeoff
     #[arg(long, value_name = "X,Y,Z[,YAW]", value_delimiter = ',', allow_hyphen_values = true)]
     pub landing: Option<Vec<f64>>,
 }

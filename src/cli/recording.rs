@@ -21,13 +21,13 @@ pub struct IdentifyArgs {
     /// write the report here
     #[arg(long, value_name = "FILE.HTML")]
     pub report: Option<PathBuf>,
-    /// write the parameters along time here as a chart
+    /// write the parameters over time here as a chart
     #[arg(long, value_name = "FILE.SVG")]
     pub chart: Option<PathBuf>,
     /// how the recordings are read
     #[command(flatten)]
     pub read: ReadArgs,
-    /// s of flight left out at the beginning [default: 10, at most a fifth of the flight]
+    /// time left out at the beginning of the flight, s [default: 10, at most a fifth of the flight]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub transient: Option<f64>,
     /// cut-off of the zero-phase low-pass, Hz; without it ten times the trajectory's highest harmonic
@@ -39,7 +39,7 @@ pub struct IdentifyArgs {
     /// adaptation gain of gradient descent
     #[arg(long, default_value_t = mavid::estimate::PAPER_SIGMA, allow_negative_numbers = true)]
     pub sigma: f64,
-    /// use commands even where rotor speeds are measured
+    /// use commands even if rotor speeds are measured
     #[arg(long)]
     pub commands: bool,
     /// identify these physical effects together with the rigid body, by the names that `explain` gives them
@@ -60,7 +60,7 @@ pub struct ExplainArgs {
     /// flight is held back for it
     #[arg(long, value_name = "LOG", num_args = 1..)]
     pub holdout: Vec<PathBuf>,
-    /// design the flight that best tells apart what these flights cannot, and write its trajectory here
+    /// design the flight that best separates what these flights cannot separate, and write its trajectory here
     #[arg(long, value_name = "TRAJECTORY.TOML")]
     pub next: Option<PathBuf>,
     /// write report.html, model.toml and explanation.json into this folder
@@ -69,7 +69,7 @@ pub struct ExplainArgs {
     /// how the recordings are read
     #[command(flatten)]
     pub read: ReadArgs,
-    /// s of flight left out at the beginning
+    /// time left out at the beginning of the flight, s
     #[arg(long, value_name = "S", default_value_t = mavid::study::ExplainRequest::TRANSIENT_S, allow_negative_numbers = true)]
     pub transient: f64,
 }
@@ -80,16 +80,16 @@ pub struct ValidateArgs {
     /// recordings of one vehicle: .tlog, or .csv with known columns
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
-    /// a vehicle or model file; the first is what the others are compared with
+    /// a vehicle or model file; the first is the reference for the others
     #[arg(long = "model", required = true, value_name = "FILE")]
     pub models: Vec<PathBuf>,
-    /// write report.html, and charts of each flight flown again, into this folder
+    /// write report.html, and charts of each flight simulated in closed loop, into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// how the recordings are read
     #[command(flatten)]
     pub read: ReadArgs,
-    /// s of flight left out at the beginning
+    /// time left out at the beginning of the flight, s
     #[arg(long, value_name = "S", default_value_t = 10.0, allow_negative_numbers = true)]
     pub transient: f64,
 }
@@ -99,7 +99,7 @@ pub struct ValidateArgs {
 pub struct InspectArgs {
     /// flight.tlog or flight.csv
     pub log: PathBuf,
-    /// vehicle.toml or model.toml: says how well each parameter can be identified
+    /// vehicle.toml or model.toml: adds how well each parameter can be identified
     #[arg(long, conflicts_with_all = ["mass", "size", "frame"])]
     pub vehicle: Option<PathBuf>,
     /// in place of --vehicle: mass with battery, kg

@@ -9,7 +9,7 @@ use super::plan::PlanArgs;
 use super::recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ValidateArgs};
 use super::verbosity::Verbosity;
 
-/// Learns a multirotor's parameters from a recorded flight and says which physics the model left out
+/// Identifies a multirotor's parameters from a flight and names the physical effects that the model lacks
 #[derive(Debug, Parser)]
 #[command(name = "mavid", version, arg_required_else_help = true, after_help = AFTER_HELP)]
 pub struct Cli {
@@ -29,23 +29,23 @@ const AFTER_HELP: &str = "Exit status: 0 done, 1 failure, 2 bad usage or input, 
 /// The verbs.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
-    /// Plan, fly, identify and explain a simulated vehicle with something wrong about it, in under two minutes
+    /// Plan, fly, identify and explain the flight of a simulated vehicle with a concealed fault, in under two minutes
     Demo(DemoArgs),
-    /// Check a vehicle file (or a model) and say what it means
+    /// Check a vehicle file (or a model) and print what follows from it
     Vehicle(VehicleArgs),
     /// Plan an excitation trajectory inside limits, or check one
     Plan(PlanArgs),
     /// Identify mass and inertia from recorded flights
     Identify(IdentifyArgs),
-    /// Fly a vehicle along a trajectory in simulation and write its log
+    /// Simulate the flight of a vehicle along a trajectory and write its log
     Simulate(SimulateArgs),
     /// Fly a vehicle along a trajectory, record the flight and identify the vehicle from it
     Fly(FlyArgs),
     /// Run the embedded simulated vehicle, for any ground station
     Sitl(SitlArgs),
-    /// Compare models with recorded flights: flown again, predicted, played back
+    /// Compare models with recorded flights: closed loop, output prediction, open-loop playback
     Validate(ValidateArgs),
-    /// Say what is in a log and what can be identified from it
+    /// Report what is in a log and what can be identified from it
     Inspect(InspectArgs),
     /// Record a MAVLink link until interrupted
     Record(RecordArgs),

@@ -144,7 +144,7 @@ impl Written<'_> {
     fn again(&self, error: &CommandError, files: &[PathBuf], (verb, out): (&str, &Path)) -> String {
         let missing = files.iter().filter(|file| !file.exists()).map(text::path).collect::<Vec<_>>();
         format!(
-            "{error}; missing: {}; to make them once that is mended: mavid {verb} {} \
+            "{error}; missing: {}; once this is corrected, make them by: mavid {verb} {} \
              --vehicle {} --out {}{}",
             missing.join(", "),
             text::path(&self.folder.join(fly::TLOG)),

@@ -76,7 +76,7 @@ pub fn outcome(study: &ExplainStudy) -> Outcome {
     if study.inputs().all(|input| input.losses().is_empty()) { Outcome::Done } else { Outcome::DoneWithLoss }
 }
 
-/// The trajectory of the flight that tells apart what these cannot, or why there is none.
+/// The trajectory of the flight that distinguishes what these cannot, or why there is none.
 fn write_next(study: &ExplainStudy, path: &Path) -> Result<(), CommandError> {
     match &study.next {
         Some(Ok(next)) => output::file(path, &trajectory_to_toml(&stored_trajectory(next))?),

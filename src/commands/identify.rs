@@ -19,7 +19,7 @@ pub struct Targets {
     pub model: Option<PathBuf>,
     /// the report
     pub report: Option<PathBuf>,
-    /// the parameters along time
+    /// the parameters over time
     pub chart: Option<PathBuf>,
 }
 

@@ -1,4 +1,4 @@
-//! Verbs that go on until they are told to end: whatever stands still, they end.
+//! Verbs that continue until they are told to end: whatever stands still, they end.
 //!
 //! Such a verb catches the signals that ask for its end, so nothing else ends it: not where a pipe that nobody reads
 //! holds up its last words, nor where it works out what was flown. Its work therefore runs on a thread of its own. Once
@@ -82,8 +82,8 @@ pub fn run(
             Phase::Flying => continue,
             Phase::Ending if since.get_or_insert_with(Instant::now).elapsed() < GRACE => continue,
             Phase::Ending => format!(
-                "mavid: ended {} s after {name}, before all was told: standard output, standard error or a disk takes \
-                 nothing, or the flight was being analysed; what was recorded is in its file",
+                "mavid: ended {} s after {name}, before all output was written: standard output, standard error or a \
+                 disk accepts no data, or the flight was being analysed; what was recorded is in its file",
                 GRACE.as_secs()
             ),
         };

@@ -101,5 +101,5 @@ fn place(option: &str, numbers: &[f64]) -> Result<[f64; 4], CommandError> {
 }
 
 fn came(option: &str, expected: &str, numbers: &[f64]) -> CommandError {
-    CommandError::Input(format!("{option}: expected {expected}, came {numbers:?}"))
+    CommandError::Input(format!("{option}: expected {expected}, got {numbers:?}"))
 }

@@ -291,7 +291,7 @@ fn text(document: &Document) -> String {
         lines.push(format!("warning: the system could not confirm that {count} frames are on the disk"));
     }
     if document.received_frames == 0 {
-        lines.push("warning: nothing came".into());
+        lines.push("warning: nothing was received".into());
     }
     lines.join("\n")
 }

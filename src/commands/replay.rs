@@ -66,7 +66,7 @@ async fn play(
 ) -> Result<Outcome, CommandError> {
     let (mut reader, writer) = network::open(&network::address(&args.to)?, LinkOptions::default()).await?;
     if !writer.is_connected() {
-        output::message(&format!("waiting for somebody at {}", args.to));
+        output::message(&format!("waiting for a peer at {}", args.to));
     }
     let bar = stderr.bar(bar(replay.frames()));
     let mut so_far = ReplayCounts::default();

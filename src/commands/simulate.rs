@@ -76,7 +76,8 @@ pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     };
     if flight.tracking_error_max_m > FOLLOWED_M {
         output::warning(&format!(
-            "the vehicle could not follow {}: up to {:.1} m off it; a longer --period of mavid plan asks less of the rotors",
+            "the vehicle could not follow {}: up to {:.1} m off it; plan with a longer --period, which needs less of \
+             the rotors",
             text::path(&args.trajectory),
             flight.tracking_error_max_m
         ));

@@ -31,7 +31,7 @@ struct Document {
     pilot: &'static str,
     system: u8,
     listen: Vec<String>,
-    /// times real time; none in lock-step
+    /// speed, in multiples of real time; none in lock-step
     speed: Option<f64>,
 }
 
@@ -97,8 +97,8 @@ async fn fly(
     if behind > BEHIND {
         let behind_s = behind.as_secs_f64();
         output::warning(&format!(
-            "this machine was up to {behind_s:.1} s of the vehicle's time behind the pace: expected a free core, or \
-             a lower --speed, or --lockstep"
+            "this machine was up to {behind_s:.1} s of the vehicle's time behind: expected a free core, a lower \
+             --speed, or --lockstep"
         ));
     }
     output::message(&format!("stopped after {:.1} s of the vehicle's time", flown.as_secs_f64()));

@@ -10,7 +10,7 @@ use super::output;
 /// A line for people.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Word {
-    /// what goes on
+    /// what happens
     Message(String),
     /// what the user should know
     Warning(String),

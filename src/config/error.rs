@@ -16,7 +16,7 @@ pub enum ConfigError {
         source: std::io::Error,
     },
     /// bytes that are no text
-    #[error("{}: expected {expected}, came a file that is no text", text::path(path))]
+    #[error("{}: expected {expected}, got a file that is not text", text::path(path))]
     NoText {
         /// which file
         path: PathBuf,
@@ -24,7 +24,7 @@ pub enum ConfigError {
         expected: &'static str,
     },
     /// more bytes than such a file may have
-    #[error("{}: expected {expected} of at most {max} bytes, came a larger file", text::path(path))]
+    #[error("{}: expected {expected} of at most {max} bytes, got a larger file", text::path(path))]
     TooLarge {
         /// which file
         path: PathBuf,
@@ -34,7 +34,7 @@ pub enum ConfigError {
         max: u64,
     },
     /// a file of another kind
-    #[error("{origin}: expected {expected}, came {came}")]
+    #[error("{origin}: expected {expected}, got {came}")]
     OtherKind {
         /// file name, or what the text is
         origin: String,
@@ -55,8 +55,8 @@ pub enum ConfigError {
     },
     /// a form that no version of the program up to this one has
     #[error(
-        "{origin}: `format`: expected {known} or no such key, came {came}: a later version of mavid wrote this file; read it \
-         with that version, or write it anew with this one"
+        "{origin}: `format`: expected {known} or no such key, got {came}: a later version of mavid wrote this file; read it \
+         with that version, or write it again with this one"
     )]
     Format {
         /// file name, or what the text is
@@ -67,7 +67,7 @@ pub enum ConfigError {
         came: String,
     },
     /// a value, or several together, that cannot be
-    #[error("{origin}: `{key}`: expected {expected}, came {came}")]
+    #[error("{origin}: `{key}`: expected {expected}, got {came}")]
     Invalid {
         /// file name, or what the text is
         origin: String,

@@ -332,12 +332,13 @@ fn warnings(vehicle: &Vehicle) -> Vec<String> {
     let (largest, others) = (moments.max(), moments.sum() - moments.max());
     if largest > others * (1.0 + 1e-9) {
         warnings.push(format!(
-            "body.inertia: no rigid body has these moments: the largest principal moment, {largest:.4e} kg m^2, \
+            "body.inertia: these moments are physically impossible: the largest principal moment, {largest:.4e} kg \
+             m^2, \
              is above the sum of the other two, {others:.4e}"
         ));
     }
     if vehicle.mixer().matrix.svd(false, false).rank(1e-9) < 4 {
-        warnings.push("rotor: the rotors cannot set thrust and all three torques on their own".to_owned());
+        warnings.push("rotor: the rotors cannot set thrust and all three torques independently".to_owned());
     }
     let full_n = vehicle.propulsion.thrust_from_command_n(1.0) * vehicle.rotors.len() as f64;
     let weight_n = vehicle.body.mass_kg * vehicle.gravity_m_s2;
@@ -442,19 +443,19 @@ spin = "ccw"
     fn refusals_name_file_key_and_value() {
         for (parts, needles) in [
             (vec![BODY, "mas = 2\n", SPEED, ROTORS], vec!["quad.toml", "unknown field `mas`"]),
-            (vec![&BODY.replace("1.5", "-1.5"), SPEED, ROTORS], vec!["`body.mass`", "came -1.5"]),
-            (vec![&BODY.replace("0.02,", "nan,"), SPEED, ROTORS], vec!["`body.inertia.xx`", "came NaN"]),
+            (vec![&BODY.replace("1.5", "-1.5"), SPEED, ROTORS], vec!["`body.mass`", "got -1.5"]),
+            (vec![&BODY.replace("0.02,", "nan,"), SPEED, ROTORS], vec!["`body.inertia.xx`", "got NaN"]),
             (vec![&BODY.replace("0.035 }", "0.035, xy = 0.03 }"), SPEED, ROTORS], vec!["positive definite"]),
             (
                 vec![BODY, SPEED, "time_constant_down = 0.02\n", ROTORS],
                 vec![
                     "`propulsion.time_constant`: expected a number, since time_constant_down",
-                    "came nothing",
+                    "got nothing",
                 ],
             ),
             (
                 vec![BODY, SPEED, "time_constant = 0.02\ntime_constant_down = 0\n", ROTORS],
-                vec!["`propulsion.time_constant_down`: expected a number above zero", "came 0"],
+                vec!["`propulsion.time_constant_down`: expected a number above zero", "got 0"],
             ),
             (vec![BODY, SPEED, "thrust_max = 5\n", ROTORS], vec!["speed_max = 1000 and thrust_max = 5"]),
             (
@@ -464,18 +465,18 @@ spin = "ccw"
             (vec![BODY, SPEED, "pwm_min = 1000\n", ROTORS], vec!["`propulsion.pwm_min`", "not \"pwm\""]),
             (
                 vec![BODY, &CURVE.replace("2000", "900"), ROTORS],
-                vec!["`propulsion.pwm_min`", "below `propulsion.pwm_max` = 900", "came 1000"],
+                vec!["`propulsion.pwm_min`", "below `propulsion.pwm_max` = 900", "got 1000"],
             ),
             (
                 vec![BODY, &CURVE.replace("pwm_max = 2000\n", ""), ROTORS],
                 vec!["`propulsion.pwm_max`", "nothing"],
             ),
-            (vec![BODY, &CURVE.replace("0.5", "1.5"), ROTORS], vec!["`propulsion.thrust_expo`", "came 1.5"]),
+            (vec![BODY, &CURVE.replace("0.5", "1.5"), ROTORS], vec!["`propulsion.thrust_expo`", "got 1.5"]),
             (vec![BODY, SPEED], vec!["`rotor`", "at least one"]),
             // products of such numbers overflow, and factorisations of infinities do not end
             (
                 vec![BODY, SPEED, &ROTORS.replacen("0.2", "1e200", 1)],
-                vec!["`rotor[0].position`", "of size 1e-18 to 1e12", "came 1e200"],
+                vec!["`rotor[0].position`", "of size 1e-18 to 1e12", "got 1e200"],
             ),
             (
                 vec![&BODY.replace("1.5", "1e-320"), SPEED, ROTORS],
@@ -484,7 +485,7 @@ spin = "ccw"
             (vec![BODY, SPEED, &ROTORS.replace("rear_left", "front_left")], vec!["\"front_left\" twice"]),
             (
                 vec![BODY, SPEED, ROTORS, "[limits]\nz_min_m = 2\nz_max_m = 1\n"],
-                vec!["`limits.z_min_m`", "below `limits.z_max_m` = 1", "came 2"],
+                vec!["`limits.z_min_m`", "below `limits.z_max_m` = 1", "got 2"],
             ),
             (vec![BODY, SPEED, ROTORS, "[limits]\nroll_max_deg = 95\n"], vec!["`limits.roll_max_deg`", "95"]),
         ] {
@@ -505,13 +506,13 @@ spin = "ccw"
         assert!(loaded.warnings.len() == 2 && loaded.warnings[0].starts_with("rotor[0].name: expected"));
         let long = BODY.replace("quad", &"q".repeat(1000));
         assert!(
-            refusal(&[&long, SPEED, ROTORS]).contains("`name`: expected at most 200 characters, came 1000")
+            refusal(&[&long, SPEED, ROTORS]).contains("`name`: expected at most 200 characters, got 1000")
         );
         let many: String = (0..40)
             .map(|n| format!("[[rotor]]\nname = \"{n}\"\nposition = [0.2, 0.2, 0.0]\nspin = \"cw\"\n"))
             .collect();
         assert!(
-            refusal(&[BODY, SPEED, &many]).contains("`rotor`: expected at most 32 [[rotor]] tables, came 40")
+            refusal(&[BODY, SPEED, &many]).contains("`rotor`: expected at most 32 [[rotor]] tables, got 40")
         );
     }
 

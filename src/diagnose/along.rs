@@ -1,4 +1,4 @@
-//! Force and torque of a model along a flight that was flown: recorded states, known rotor thrusts.
+//! Force and torque of a model along a recorded flight, from the measured states and given rotor thrusts.
 
 use super::base::Base;
 use super::rotors::RotorMotion;
@@ -7,8 +7,8 @@ use super::trace::Trace;
 use crate::physics::{Input, Model, Wrench};
 use nalgebra::{Vector3, Vector4};
 
-/// Weights of the last slopes, newest first, until enough of them are known. The fourth order keeps a pendulum that
-/// is pushed at its own frequency as wide as it is; the second makes it ever wider.
+/// Adams-Bashforth weights of the last slopes, newest first, by the number of slopes that are known. The fourth order
+/// keeps the amplitude of a pendulum that is excited at its own frequency; the second order increases it.
 const ADAMS_BASHFORTH: [[f64; ORDER]; ORDER] = [
     [1.0, 0.0, 0.0, 0.0],
     [1.5, -0.5, 0.0, 0.0],
@@ -17,9 +17,11 @@ const ADAMS_BASHFORTH: [[f64; ORDER]; ORDER] = [
 ];
 const ORDER: usize = 4;
 
-/// Force and torque of the model at each grid instant (body, N, N m), the effects' own states carried
-/// along. What hangs on the vehicle is swung by the motion that was measured, not by what the model makes of it, which
-/// would lose step with it. Instants that no row uses are left zero, unless states run through them.
+/// Force and torque of the model at each grid instant (body, N, N m), with the effects' own states integrated along the
+/// flight.
+///
+/// A load below the vehicle is excited by the measured motion, not by the model's motion, which would lose its phase.
+/// Instants that no row uses are zero, unless states are integrated through them.
 #[must_use]
 pub fn wrench_along(model: &Model, trace: &Trace, turning: &RotorMotion) -> Vec<Wrench> {
     let count = model.own_state_count();
@@ -60,10 +62,11 @@ pub fn wrench_along(model: &Model, trace: &Trace, turning: &RotorMotion) -> Vec<
     out
 }
 
-/// Passes over the motion's rotor thrusts, which depend on the effects that depend on them.
+/// Fixed-point passes over the rotor thrusts that belong to the motion, because these thrusts depend on the effects and
+/// the effects on them. Chosen; not measured.
 const MOTION_PASSES: usize = 2;
 
-/// The rotors by the measured motion, and what they do.
+/// Rotor motion from the measured motion, and the force and torque of the model with it.
 pub(super) fn moved_by(
     trace: &Trace,
     (base, model): (&Base, &Model),

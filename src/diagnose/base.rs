@@ -7,26 +7,26 @@ use crate::physics::{ActiveEffect, ActuationLatency, Model, PhysicsError, RotorL
 use crate::vehicle::{Vehicle, VehicleSize};
 use nalgebra::Matrix3;
 
-/// A load to start from is no more than this share of the mass.
+/// Largest share of the total mass that a slung load may have at the start of a fit. Chosen; not measured.
 const MOST_OF_MASS: f64 = 0.5;
 
-/// A load that was in the mass `all_kg` (kg) of a rigid body until now: returns the vehicle's own, kg. Its swing is that
-/// of the measured motion, whatever the load.
+/// Separates a slung load from the mass `all_kg` (kg) that a rigid body had until now. Returns the vehicle's own mass,
+/// kg.
 pub(super) fn lift_load(load: &mut EffectTerm, all_kg: f64) -> f64 {
     load.values[0] = load.values[0].min(MOST_OF_MASS * all_kg);
     all_kg - load.values[0]
 }
 
-/// What the recording is compared with.
+/// The model with which the recording is compared.
 #[derive(Debug, Clone)]
 pub struct Base {
-    /// with mass and inertia as now estimated
+    /// with the current estimates of mass and inertia
     pub vehicle: Vehicle,
-    /// as stated: what is plausible of an effect does not change while mass is estimated
+    /// size by the vehicle file: the plausible range of an effect does not change while the mass is estimated
     pub size: VehicleSize,
     /// between command and rotor
     pub latency: ActuationLatency,
-    /// beside the rigid body
+    /// effects in addition to the rigid body
     pub present: Vec<EffectTerm>,
 }
 
@@ -42,13 +42,13 @@ impl Base {
         }
     }
 
-    /// An effect for which this holds is estimated.
+    /// Whether an estimated effect satisfies `what`.
     #[must_use]
     pub fn estimates(&self, what: impl Fn(&EffectTerm) -> bool) -> bool {
         self.present.iter().any(|term| !term.free.is_empty() && what(term))
     }
 
-    /// An effect that is estimated stands for what this nuisance is the small size of.
+    /// Whether an estimated effect replaces this nuisance, which models small sizes of the same effect.
     #[must_use]
     pub fn stands_for(&self, nuisance: Nuisance) -> bool {
         self.estimates(|term| (term.signature.role.stands_for)(term, nuisance))
@@ -65,15 +65,15 @@ impl Base {
             .chain(more)
             .map(|present| ActiveEffect::new(present.effect(), &present.values))
             .collect::<Result<Vec<_>, _>>()?;
-        // along a recording only force and torque are asked for; while the search goes on, the inertia may
+        // along a recording only force and torque are asked for; while the search continues, the inertia may
         // be what no body has
         let mut vehicle = self.vehicle.clone();
         vehicle.body.inertia_kg_m2 = positive(&vehicle.body.inertia_kg_m2);
         Model::new(&vehicle, effects)
     }
 
-    /// The latency as effects, for simulations; a delay below zero, which only the log's own stamps can
-    /// make, is none.
+    /// The latency as effects, for simulations. A delay below zero, which is only an offset of the log's time stamps,
+    /// gives no effect.
     #[must_use]
     pub fn latency_effects(&self) -> Vec<EffectTerm> {
         let ActuationLatency { delay_s, lag_s, uneven } = self.latency;

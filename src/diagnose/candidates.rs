@@ -1,43 +1,43 @@
-//! What could have been left out: each effect at the values where it does nothing.
+//! Candidates: each effect at the values at which it has no influence.
 
 use super::recorded::Recorded;
 use super::signature::{EffectTerm, Form, Signature};
 use super::trace::Trace;
 use crate::vehicle::Vehicle;
 
-/// One or more effects that are tried together.
+/// One or more effects that are tested together.
 #[derive(Debug, Clone)]
 pub struct Candidate {
     /// identifier of the effect that the evidence is about
     pub id: &'static str,
-    /// with the values at which they do nothing
+    /// with the values at which they have no influence
     pub parts: Vec<EffectTerm>,
-    /// columns come through another effect at this value: wind acts through drag
+    /// the columns act through another effect at this value, as wind acts through drag
     pub through: Option<EffectTerm>,
 }
 
 impl Candidate {
-    /// One effect for itself.
+    /// A candidate of one effect.
     #[must_use]
     pub fn alone(term: EffectTerm) -> Self {
         Self { id: term.id(), parts: vec![term], through: None }
     }
 
-    /// The signature of the effect that the evidence is about: of several it is the last.
+    /// The signature of the effect that the evidence is about, the last of several.
     #[must_use]
     pub fn signature(&self) -> Option<&'static Signature> {
         self.parts.last().map(|part| part.signature)
     }
 }
 
-/// All candidates that the vehicle's description and the recordings allow, but for those that act through others and
-/// those that a nuisance stands for.
+/// All candidates that the vehicle file and the recordings allow, without those that act through other effects and
+/// those that a nuisance models.
 #[must_use]
 pub fn candidates(vehicle: &Vehicle, flights: &[Trace], signatures: &[&'static Signature]) -> Vec<Candidate> {
     forms((vehicle, flights), signatures, false)
 }
 
-/// Those that a nuisance stands for.
+/// The candidates that a nuisance models.
 #[must_use]
 pub(super) fn instead_of_nuisances(
     vehicle: &Vehicle,

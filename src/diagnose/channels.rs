@@ -1,20 +1,20 @@
-//! One value a row for each axis of force and torque, and the columns that are always in.
+//! One value a row for each axis of force and torque, and the nuisance columns that are always estimated.
 
 use super::trace::Trace;
 
 /// One value a row and channel.
 pub type Channels = [Vec<f64>; CHANNELS];
 
-/// Force on body x, y, z (N), torque about them (N m), and the force's second reading (N).
+/// Channels: force on body x, y, z (N), torque about them (N m), and the second measurement of the force (N).
 ///
-/// The first reading is the accelerometer's, the second the kinematics' (velocity and attitude); where there
-/// is but one, it is the first, and the second is zero throughout.
+/// The first measurement is the accelerometer's, the second that of the kinematics (velocity and attitude). If there is
+/// only one, it is the first, and the second is zero.
 pub const CHANNELS: usize = 9;
 
 /// Axes of force and torque: the first channels.
 pub const AXES: usize = 6;
 
-/// Where the second reading of the force begins.
+/// Index of the first channel of the second measurement of the force.
 pub const SECOND: usize = 6;
 
 /// Names of the channels, as in JSON.
@@ -30,7 +30,7 @@ pub const CHANNEL_NAMES: [&str; CHANNELS] = [
     "kinematic_force_z",
 ];
 
-/// What a nuisance column stands for.
+/// The quantity of a nuisance column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Nuisance {
     /// kg
@@ -51,20 +51,20 @@ pub enum Nuisance {
     Level(usize),
 }
 
-/// A column with what is known of its coefficient beforehand.
+/// A column with the prior of its coefficient.
 #[derive(Debug, Clone)]
 pub struct NuisanceColumn {
-    /// what it is
+    /// the quantity
     pub nuisance: Nuisance,
     /// per unit
     pub values: Channels,
     /// standard deviation of the coefficient about zero, its unit; `None`: nothing is known
     pub prior_std: Option<f64>,
-    /// per unit, in rows that shall not estimate it: its error is one of theirs
+    /// per unit, in rows that do not estimate it but contain its error (consider covariance)
     pub considered: Option<Channels>,
 }
 
-/// Force in each reading there is, and torque.
+/// Channels of the force in each available measurement (N), and of the torque (N m).
 pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
     let second = if trace.reads_force_twice() { force.clone() } else { nothing(trace) };
     let ([fx, fy, fz], [tx, ty, tz], [kx, ky, kz]) = (force, torque, second);
@@ -79,7 +79,7 @@ pub(super) fn append(to: &mut Channels, from: &Channels) {
     to.iter_mut().zip(from).for_each(|(to, from)| to.extend_from_slice(from));
 }
 
-/// By how much the residual falls.
+/// Decrease of the residual per unit of a parameter: `(down - up) / step`.
 pub(super) fn per_step(mut up: Channels, down: &Channels, step: f64) -> Channels {
     for (up, down) in up.iter_mut().zip(down) {
         up.iter_mut().zip(down).for_each(|(up, down)| *up = (down - *up) / step);

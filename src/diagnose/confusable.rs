@@ -1,4 +1,4 @@
-//! Which other effect could stand for a named one in this flight.
+//! Effects that this flight does not distinguish from a named effect.
 
 use super::base::Base;
 use super::candidates::Candidate;
@@ -12,15 +12,14 @@ use super::trace::Trace;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Effects closer than this many standard deviations are not told apart.
+/// Effects whose distance is below this many standard deviations are not distinguished. Chosen; not measured.
 pub(super) const APART: f64 = 5.0;
-/// What leaves more than this share of an effect's norm does not resemble it, however weak the effect is
-/// (a cosine below one half).
+/// An effect of which another leaves more than this share of its norm is not similar to it, however weak it is:
+/// sqrt(3)/2, a cosine of one half. Chosen; not measured.
 const UNLIKE: f64 = 0.866;
 
-/// Distance, in standard deviations, between what the effect at `place` does and the nearest that another
-/// candidate could do in its stead; those below [`APART`]. Of `rivals`, which explained as much, those that look
-/// alike.
+/// Distance, in standard deviations, between the effect at `place` and the most similar contribution of another
+/// candidate, for those below [`APART`]; and the similar ones among `rivals`, which explained as much.
 #[must_use]
 pub fn confusable_with(
     flights: &[Trace],
@@ -46,7 +45,7 @@ pub fn confusable_with(
             }
         }
     }
-    // a rival that explained as much stays one, with its distance, even where the fit tells them apart
+    // a rival that explained as much stays one, with its distance, even where the fit distinguishes them
     for rival in rivals {
         let id = rival.candidate.id;
         let alike = beyond(&rival.candidate).filter(|left| *left < UNLIKE * signal.norm());
@@ -57,7 +56,7 @@ pub fn confusable_with(
     out
 }
 
-/// What one of a base's effects does in its rows, beyond what nuisances and the other effects could do.
+/// Contribution of one of a base's effects to its rows, without the part that nuisances and the other effects explain.
 pub(super) struct Signal {
     id: &'static str,
     weighted: Weighted,
@@ -65,8 +64,8 @@ pub(super) struct Signal {
 }
 
 impl Signal {
-    /// Of the effect at `place`, in standard deviations of each channel: the rows' own, or those given (N,
-    /// N m). `None` where it cannot be told from the nuisances.
+    /// The contribution of the effect at `place`, in standard deviations of each channel: those of the rows, or the
+    /// given ones (N, N m). `None` if it cannot be distinguished from the nuisances.
     pub(super) fn new(
         rows: &Rows,
         base: &Base,
@@ -88,13 +87,13 @@ impl Signal {
         Some(Self { id: effect.id(), weighted, sum })
     }
 
-    /// How far the effect stands out, in standard deviations of rows that are independent.
+    /// Norm of the contribution, in standard deviations of independent rows.
     pub(super) fn norm(&self) -> f64 {
         self.sum.norm()
     }
 
-    /// Norm of what a candidate could not do in its stead, in standard deviations of rows that are
-    /// independent. `None` for the effect itself, and where the candidate does nothing.
+    /// Norm of the part that a candidate cannot explain, in standard deviations of independent rows. `None` for the
+    /// effect itself, and for a candidate without influence.
     pub(super) fn beyond(
         &self,
         flights: &[Trace],
@@ -125,7 +124,7 @@ impl Signal {
     }
 }
 
-/// Norm of what the columns cannot make of the signal.
+/// Norm of the part of the signal that the columns do not explain.
 fn left_over(signal: &DVector<f64>, basis: &DMatrix<f64>) -> f64 {
     let normal = basis.tr_mul(basis);
     let Some(factor) = normal.cholesky() else { return signal.norm() };

@@ -1,20 +1,20 @@
-//! Where a drag acts: at the rotors' hubs, at the centre of mass, or at both.
+//! The point at which a drag acts: the rotors' hubs, the centre of mass, or both.
 //!
-//! At the hubs it damps the rotation, too, and so a body that drags at its centre and whose rotation is damped
-//! looks like one that drags partly at the hubs. One place and damping is the simpler description.
+//! Drag at the hubs also damps the rotation. A body with drag at its centre and a damped rotation therefore resembles
+//! one with drag partly at the hubs. One point together with damping is the simpler description.
 
 use super::fit::{Fitted, Newton, fit};
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 
-/// A share at the hubs that is nearer than this to 0 or 1 counts as 0 or 1.
+/// A share at the hubs that is nearer than this to 0 or 1 counts as 0 or 1. Chosen; not measured.
 const NEAR: f64 = 0.05;
-/// A share at the hubs within this many standard errors of 0 or 1 counts as 0 or 1.
+/// A share at the hubs within this many standard errors of 0 or 1 counts as 0 or 1. Chosen; not measured.
 const NEAR_STD: f64 = 3.0;
 
-/// Puts drags that seem to act partly at the hubs to one place, where damping explains the flight as well.
-/// Returns whether anything changed.
+/// Moves drags that seem to act partly at the hubs to one point if damping explains the flight as well. Returns whether
+/// anything changed.
 ///
 /// # Errors
 /// [`PhysicsError`] where the estimate leaves what is physical.
@@ -47,7 +47,7 @@ pub(super) fn one_place(flights: &[Trace], after: &mut Fitted, price: f64) -> Re
     }
 }
 
-/// The first drag whose share at the hubs is neither none nor all: its place and the share's slot.
+/// The first drag whose share at the hubs is neither 0 nor 1: its place among the effects and the slot of the share.
 fn divided(fitted: &Fitted) -> Option<(usize, usize)> {
     let mut index = fitted.rows.nuisances.len();
     for (place, present) in fitted.base.present.iter().enumerate() {
@@ -67,7 +67,7 @@ fn is_share(present: &EffectTerm, slot: usize) -> bool {
     present.parameter(slot).is_some_and(|parameter| parameter.name == "at_hubs")
 }
 
-/// Twice the negative logarithm of the likelihood, and `price` a column.
+/// Twice the negative log-likelihood plus `price` for each column.
 pub(super) fn cost(fitted: &Fitted, price: f64) -> f64 {
     2.0 * fitted.misfit() + price * fitted.rows.effects.len() as f64
 }

@@ -1,4 +1,4 @@
-//! What a term of the model does with its values.
+//! Values of an effect as a term of the model.
 
 use super::signature::{EffectTerm, Growth, Signature};
 use crate::physics::{Effect, Parameter};
@@ -17,7 +17,7 @@ impl EffectTerm {
         self.signature.effect.id()
     }
 
-    /// The same effect.
+    /// Whether it is the effect of this signature.
     #[must_use]
     pub fn is(&self, signature: &Signature) -> bool {
         self.id() == signature.id()
@@ -46,20 +46,20 @@ impl EffectTerm {
         })
     }
 
-    /// Whether a parameter says how much of the effect there is; the others say what it is like.
+    /// Whether a parameter is an amount of the effect; the others describe its form.
     #[must_use]
     pub fn is_amount(&self, slot: usize) -> bool {
         self.signature.amounts.contains(&slot)
     }
 
-    /// Value at which a parameter's effect vanishes.
+    /// Value of a parameter at which the effect vanishes.
     #[must_use]
     pub fn nothing_at(&self, slot: usize) -> f64 {
         if self.is_amount(slot) { self.signature.nothing } else { 0.0 }
     }
 
-    /// How far a parameter is from where its effect vanishes, in its unit: what its column has to be multiplied by to
-    /// give the effect.
+    /// Distance of a parameter from the value at which its effect vanishes, in its unit: the factor of its column in
+    /// the effect.
     #[must_use]
     pub fn from_nothing(&self, slot: usize) -> f64 {
         match self.inverse_usual(slot) {
@@ -69,13 +69,13 @@ impl EffectTerm {
         }
     }
 
-    /// The same in standard errors of `std`.
+    /// This distance in standard errors of `std`.
     #[must_use]
     pub fn away_from_nothing(&self, slot: usize, std: f64) -> f64 {
         self.from_nothing(slot) / std.max(f64::MIN_POSITIVE)
     }
 
-    /// Where a coefficient of the slot's column takes the parameter.
+    /// Value of the parameter after a change of its column's coefficient by `by`.
     pub(super) fn moved_to(&self, slot: usize, by: f64) -> f64 {
         let from = self.values[slot];
         match self.inverse_usual(slot).filter(|_| from == self.nothing_at(slot)) {
@@ -88,7 +88,7 @@ impl EffectTerm {
         }
     }
 
-    /// By how much a parameter is moved to see what it does.
+    /// Step of a parameter for numerical derivatives, in its unit.
     pub(super) fn step_of(&self, slot: usize, size: &VehicleSize) -> f64 {
         let at_nothing = self.values[slot] == self.nothing_at(slot);
         if let Some(usual) = self.inverse_usual(slot).filter(|_| at_nothing) {
@@ -102,7 +102,7 @@ impl EffectTerm {
         (1e-4 * span).max(1e-3 * self.values[slot].abs())
     }
 
-    /// A usual amount where the slot is one that divides.
+    /// The usual amount of a slot whose inverse is the effect's size.
     fn inverse_usual(&self, slot: usize) -> Option<f64> {
         match self.signature.growth {
             Growth::Inverse { usual } if self.is_amount(slot) => Some(usual),

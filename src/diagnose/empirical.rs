@@ -1,6 +1,6 @@
-//! Where no mechanism serves: the residual force as a piecewise linear function of one measured quantity.
+//! The residual force as a piecewise linear function of one measured quantity, for residuals without a known mechanism.
 //!
-//! It names nothing. It holds inside what was flown and is zero outside.
+//! The term is no mechanism. It is valid inside the flown range and zero outside.
 
 use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing};
 use super::evidence::weighted;
@@ -14,7 +14,7 @@ use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 
-/// What the force depends on.
+/// The quantity on which the force depends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Along {
     /// world x, y or z of the vehicle (m): a force fixed in the room
@@ -71,32 +71,32 @@ impl Along {
 /// An empirical term, not a mechanism.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Empirical {
-    /// what it depends on
+    /// the quantity on which it depends
     pub along: Along,
     /// values of that quantity, ascending; the first and last bound what was flown
     pub knots: Vec<f64>,
-    /// N at each knot, straight lines between them: world x y z along position, body x y z along velocity
+    /// N at each knot, linear between them: world x y z over position, body x y z over velocity
     pub force_n: Vec<Vector3<f64>>,
-    /// kg that the rigid body's mass was off by while it took the term's part
+    /// change of the rigid body's mass by the term, kg
     pub mass_change_kg: f64,
-    /// share of the force residual's energy that it predicts in stretches that it was not fitted to (0..1)
+    /// share of the energy of the force residual that it predicts in parts of the flight to which it was not fitted
+    /// (0..1)
     pub gain: f64,
 }
 
-/// Knots by which the quantity is chosen, and numbers that are tried for it then.
+/// Number of knots with which the quantity is chosen. Chosen; not measured.
 const KNOTS: usize = 13;
 const OTHER_KNOTS: [usize; 2] = [7, 25];
-/// Stretches of the cross-validation.
+/// Parts of the flight in the cross-validation.
 const FOLDS: usize = 6;
-/// Less than this is not worth a term.
+/// Least share of the residual energy that a term must predict in the cross-validation. Chosen; not measured.
 const LEAST_GAIN: f64 = 0.02;
-/// Strength of the prior towards zero, of the mean information.
+/// Strength of the prior towards zero, as a share of the mean information. Chosen; not measured.
 const RIDGE: f64 = 1e-2;
 
 impl Empirical {
-    /// The best term for what the explanation leaves; `None` where everything has a name, or nothing
-    /// predicts 2 % of what is left in stretches that it was not fitted to. `flights` are those that were
-    /// explained.
+    /// The best term for the residual of an explanation. `None` if everything is explained, or if no term predicts 2 %
+    /// of the residual energy in the cross-validation. `flights` are those that were explained.
     ///
     /// # Errors
     /// [`TraceError`] where streams are missing.
@@ -140,7 +140,7 @@ impl Empirical {
         (0..3).map(|axis| self.along.axis(state, axis) * force[axis]).sum()
     }
 
-    /// For simulations: what acts beside the model.
+    /// The force as a function of time (s) and state for simulations, in addition to the model.
     pub fn push(&self) -> impl Fn(f64, &State) -> Wrench + '_ {
         |_, state| Wrench { force_n: self.force_n(state), torque_nm: Vector3::zeros() }
     }
@@ -152,7 +152,7 @@ impl Empirical {
         trace.weak_vector(0, &forces)
     }
 
-    /// What it leaves (N, N m) of a channel of the flights that it was fitted to, nuisances taken out of both.
+    /// Residual (N, N m) of a channel of the flights to which it was fitted, without the part of the nuisances.
     #[must_use]
     pub fn left_of(&self, fitted: &Fitted, traces: &[Trace], channel: usize) -> Vec<f64> {
         let mut own = Channels::default();
@@ -181,7 +181,7 @@ fn place(knots: &[f64], value: f64) -> Option<(usize, f64)> {
     Some((left, (value - knots[left]) / (knots[left + 1] - knots[left]).max(f64::MIN_POSITIVE)))
 }
 
-/// Knots with as many rows between any two.
+/// Knots with the same number of rows between neighbours.
 fn knots_of(traces: &[Trace], along: Along, count: usize) -> Option<Vec<f64>> {
     let mut values: Vec<f64> = traces
         .iter()

@@ -1,8 +1,8 @@
-//! What a column explains beyond the nuisances, and how sure that is.
+//! The part of the residual that a column explains beyond the nuisances, with its uncertainty.
 //!
-//! The variance of a coefficient comes from the flight's own residual: its autocovariance channel by
-//! channel, or the autocovariance of the scores (Newey-West), whichever is larger. Physics that nothing
-//! explains enlarges it, so the evidence turns cautious where the model is wrong.
+//! The variance of a coefficient comes from the flight's own residual: the autocovariance of each channel, or the
+//! autocovariance of the scores (Newey-West), whichever is larger. Unexplained physics enlarges it, so the evidence is
+//! conservative if the model is wrong.
 
 use super::channels::{CHANNELS, Channels};
 use super::rows::Rows;
@@ -11,13 +11,13 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Fewest rows that twelve blocks make sense of.
+/// Least number of rows for the cluster test over twelve blocks. Chosen: ten rows a block.
 pub(super) const LEAST_ROWS: usize = 120;
-/// Rows over which the kernels of neighbouring rows overlap.
+/// Number of neighbouring rows whose kernels overlap: the kernel is 0.4 s wide and rows are 0.05 s apart.
 const OVERLAP: usize = 8;
-/// Longest residual correlation allowed for, rows (6 s).
+/// Longest residual correlation that is allowed for, rows (6 s). Chosen; not measured.
 const MOST_LAGS: usize = 120;
-/// Bartlett window of the scores, rows (1 s), at least.
+/// Least width of the Bartlett window of the scores, rows (1 s). Chosen; not measured.
 const SCORE_LAGS: usize = 20;
 
 /// Rows weighted by each channel's residual, and the nuisances' projection.
@@ -31,28 +31,28 @@ pub struct Weighted {
     pub(super) nuisances: DMatrix<f64>,
     precision: DVector<f64>,
     pub(super) normal: Option<Cholesky<f64, Dyn>>,
-    /// what the nuisances leave, weighted
+    /// residual without the part of the nuisances, weighted
     pub left: DVector<f64>,
     /// residual energy in units of sigma squared
     pub energy: f64,
 }
 
-/// What the data say of a candidate's coefficients.
+/// Estimates of a candidate's coefficients, with their significance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evidence {
     /// coefficients, SI
     pub theta: Vec<f64>,
     /// covariance
     pub covariance: DMatrix<f64>,
-    /// normal deviate with the probability of the coefficients' Wald statistic
+    /// normal deviate with the p-value of the coefficients' Wald statistic
     pub z: f64,
-    /// of the cluster test over twelve blocks
+    /// p-value of the cluster test over twelve blocks
     pub p_cluster: f64,
-    /// share of the residual energy that goes
+    /// share of the residual energy that it explains (0..1)
     pub gain: f64,
-    /// energy that goes, in sigma squared
+    /// energy that it explains, in sigma squared
     pub energy: f64,
-    /// root mean square of what the nuisances leave of it, each channel, N and N m
+    /// root mean square of its contribution without the part of the nuisances, each channel, N and N m
     pub rms: [f64; CHANNELS],
 }
 
@@ -71,8 +71,8 @@ impl Evidence {
 }
 
 impl Weighted {
-    /// Partials the nuisances and the base's own effects out of the residual, each channel weighted by what
-    /// is left of it.
+    /// Removes the nuisances and the base's own effects from the residual by projection. Each channel is weighted by
+    /// its residual.
     #[must_use]
     pub fn new(rows: &Rows) -> Self {
         let mut sigma: [f64; CHANNELS] = std::array::from_fn(|channel| spread(&rows.residual[channel]));
@@ -84,7 +84,7 @@ impl Weighted {
         this
     }
 
-    /// The same at given standard deviations of the channels (N, N m), for flights that were not flown.
+    /// The same with given standard deviations of the channels (N, N m), for simulated flights.
     #[must_use]
     pub fn at(rows: &Rows, sigma: &[f64; CHANNELS]) -> Self {
         let mut columns: Vec<(&Channels, Option<f64>)> =
@@ -124,14 +124,14 @@ impl Weighted {
         this
     }
 
-    /// What is left of a channel (N, N m) when the nuisances have taken their part.
+    /// Residual of a channel (N, N m) without the part of the nuisances.
     #[must_use]
     pub fn left_of(&self, channel: usize) -> Vec<f64> {
         let part = self.left.rows(channel * self.rows, self.rows);
         part.iter().map(|value| value * self.sigma[channel]).collect()
     }
 
-    /// Standard deviations of what is left.
+    /// Standard deviations of the residual of each channel.
     fn residual_sigma(&self) -> [f64; CHANNELS] {
         std::array::from_fn(|channel| {
             let part = self.left.rows(channel * self.rows, self.rows);
@@ -140,7 +140,7 @@ impl Weighted {
         })
     }
 
-    /// By how much slow noise is larger than rows that were independent would have it: square root of the
+    /// Factor of correlated noise on standard deviations, relative to independent rows: the square root of the
     /// residual's long-run variance, mean of the channels.
     #[must_use]
     pub fn long_run_deviation(&self) -> f64 {
@@ -187,7 +187,7 @@ impl Weighted {
         (theta, covariance)
     }
 
-    /// The coefficients that the nuisances and the base's effects take of a weighted column.
+    /// Coefficients of the nuisances and of the base's effects in the projection of a weighted column.
     pub(super) fn part_in(&self, column: &DVector<f64>) -> DVector<f64> {
         let part = self.nuisances.tr_mul(column);
         self.normal.as_ref().map_or_else(|| DVector::zeros(part.len()), |normal| normal.solve(&part))
@@ -201,7 +201,7 @@ impl Weighted {
         }
     }
 
-    /// Columns weighted and partialled.
+    /// Columns after weighting and after projection.
     #[must_use]
     pub fn partialled(&self, columns: &[Channels]) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
         let plain: Vec<DVector<f64>> = columns.iter().map(|column| weighted(column, &self.sigma)).collect();
@@ -213,7 +213,7 @@ impl Weighted {
         seen.then(|| (DMatrix::from_columns(&plain), DMatrix::from_columns(&partialled)))
     }
 
-    /// Tests columns; `None` where they cannot be told from the nuisances or from each other.
+    /// Tests columns. `None` if they cannot be distinguished from the nuisances or from each other.
     #[must_use]
     pub fn test(&self, columns: &[Channels]) -> Option<Evidence> {
         let (plain, partialled) = self.partialled(columns)?;
@@ -259,7 +259,7 @@ impl Weighted {
         })
     }
 
-    /// What the spread of nuisances that are known beforehand adds to the scores' variance.
+    /// Contribution of the priors' variance to the variance of the scores.
     fn prior_part(&self, plain: &DMatrix<f64>) -> DMatrix<f64> {
         let size = plain.ncols();
         let Some(normal) = &self.normal else { return DMatrix::zeros(size, size) };
@@ -273,8 +273,8 @@ impl Weighted {
         out
     }
 
-    /// Autocovariance of each channel up to where it has died down, at least the kernels' overlap. Noise
-    /// of an estimator or of a poor accelerometer lasts for seconds.
+    /// Autocovariance of each channel up to the lag at which it has decayed, at least the kernels' overlap. Noise of an
+    /// estimator or of a poor accelerometer is correlated for seconds.
     fn gammas(&self, residual: &DVector<f64>) -> Vec<Vec<f64>> {
         (0..CHANNELS)
             .map(|channel| {
@@ -328,7 +328,7 @@ impl Weighted {
         0.5 * (&meat + meat.transpose())
     }
 
-    /// Score of each row: all channels together.
+    /// Score of each row, summed over the channels.
     fn scores(&self, columns: &DMatrix<f64>, residual: &DVector<f64>) -> DMatrix<f64> {
         let mut scores = DMatrix::<f64>::zeros(columns.ncols(), self.rows);
         for channel in 0..CHANNELS {
@@ -377,7 +377,7 @@ fn scaled_trace(covariance: &DMatrix<f64>, normal: &DMatrix<f64>) -> f64 {
     covariance.diagonal().dot(&normal.diagonal())
 }
 
-/// Channel after channel, each over its sigma.
+/// The channels one after another, each divided by its sigma.
 pub(super) fn weighted(column: &Channels, sigma: &[f64; CHANNELS]) -> DVector<f64> {
     let count = column[0].len();
     DVector::from_iterator(

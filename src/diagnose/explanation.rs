@@ -1,4 +1,4 @@
-//! What comes out of it.
+//! Result of an explanation.
 
 use super::harmonics::LackOfFit;
 use super::locate::{Aperiodic, FieldTest, Localisation};
@@ -14,7 +14,7 @@ pub enum Verdict {
     Explained,
     /// part of it has a name
     PartlyExplained,
-    /// something is there that no effect of the library accounts for
+    /// a deviation that no effect of the library explains
     Unexplained,
 }
 
@@ -32,7 +32,7 @@ impl Verdict {
 }
 
 impl Explanation {
-    /// Emits it as tracing events: each name with its evidence and sizes, what is left, and the verdict.
+    /// Emits it as tracing events: each name with its evidence and sizes, the remaining deviations, and the verdict.
     pub(super) fn emit(&self) {
         self.named.iter().for_each(|named| named.emit());
         if let Some(lack) = &self.lack_of_fit {
@@ -50,26 +50,26 @@ impl Explanation {
 /// The whole result.
 #[derive(Debug, Clone)]
 pub struct Explanation {
-    /// in one word
+    /// the answer in one word
     pub verdict: Verdict,
-    /// what was left out
+    /// effects that the rigid body lacks
     pub named: Vec<Named>,
-    /// where nothing serves: what comes closest
+    /// the effects that come closest, if none explains the residual
     pub closest: Vec<Named>,
-    /// for what was not named
+    /// detection limits of the effects without a name
     pub limits: Vec<DetectionLimit>,
-    /// nothing that shows only where the vehicle moves could have been seen at its usual size, nor was it found
+    /// no effect that appears only in motion could have been detected at its usual size, and none was found
     pub too_little_excitation: bool,
-    /// what repeats with the trajectory and is left over
+    /// residual power at the trajectory's harmonics
     pub lack_of_fit: Option<LackOfFit>,
-    /// where the rigid body's residual lives
+    /// localisation of the rigid body's residual
     pub located_before: Option<Localisation>,
-    /// where what is left lives
+    /// localisation of the final residual
     pub located_after: Option<Localisation>,
-    /// a force of the room against the named effects
+    /// test of a force that depends on the position in the room
     pub field: Option<FieldTest>,
-    /// what never repeats
+    /// tests of causes that do not repeat
     pub aperiodic: Aperiodic,
-    /// the fits and the evidence
+    /// the search with its fits and evidence
     pub search: Search,
 }

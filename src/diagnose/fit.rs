@@ -17,15 +17,15 @@ pub struct Fitted {
     pub rows: Rows,
     /// weighted, partialled
     pub weighted: Weighted,
-    /// coefficients left over (about zero after convergence), nuisances first
+    /// remaining coefficients (about zero after convergence), nuisances first
     pub coefficients: DVector<f64>,
     /// their covariance
     pub covariance: DMatrix<f64>,
 }
 
 impl Fitted {
-    /// Sum over the rows of the logarithm of each channel's standard deviation, forces as the accelerations that
-    /// were measured: minus the logarithm of the likelihood, up to a constant.
+    /// Negative log-likelihood up to a constant: the sum over the rows of the logarithm of each channel's standard
+    /// deviation, with forces as measured accelerations.
     #[must_use]
     pub fn misfit(&self) -> f64 {
         let rows = self.rows.len() as f64;
@@ -43,8 +43,7 @@ impl Fitted {
         }
     }
 
-    /// Minus the logarithm of how likely the nuisances' coefficients are by what is known of them beforehand, up to a
-    /// constant.
+    /// Negative log-density of the priors at the nuisances' coefficients, up to a constant.
     #[must_use]
     pub fn against_priors(&self) -> f64 {
         let of = |(column, value): (&NuisanceColumn, &f64)| {
@@ -54,14 +53,14 @@ impl Fitted {
     }
 }
 
-/// Whether the latency is estimated, or stays as it is and only its column is in.
+/// How the latency is treated in a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Newton {
     /// estimated
     Free,
-    /// its delay is estimated, whatever its lag
+    /// its delay is estimated, its lag is kept
     Delay,
-    /// as given
+    /// it is kept, but its column is in the regression
     Held,
 }
 
@@ -81,7 +80,7 @@ pub fn fit(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted, 
     Ok(fitted)
 }
 
-/// Rows, weights and coefficients about a base, without a step.
+/// Rows, weights and coefficients at a base, without a Gauss-Newton step.
 pub(super) fn evaluate(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsError> {
     let rows = Rows::new(flights, &base)?;
     let weighted = Weighted::new(&rows);
@@ -141,8 +140,8 @@ fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
     most
 }
 
-/// Most Gauss-Newton passes.
+/// Largest number of Gauss-Newton passes. Chosen; not measured.
 const PASSES: usize = 8;
 
-/// A coefficient that moves by less than this many standard errors has converged.
+/// A coefficient that moves by less than this many standard errors has converged. Chosen; not measured.
 const CONVERGED: f64 = 0.05;

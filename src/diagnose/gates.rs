@@ -1,4 +1,4 @@
-//! What is asked of a candidate before it is named.
+//! Conditions that a candidate must satisfy before it is named.
 
 use super::channels::SECOND;
 use super::fit::Fitted;
@@ -6,30 +6,34 @@ use super::signature::Signature;
 use super::tested::Tested;
 use crate::vehicle::VehicleSize;
 
-/// What is asked of a candidate before it is named.
+/// Conditions of a name.
+///
+/// The defaults are chosen. Together they named nothing in 300 clean flights:
+/// `cargo bench --bench explain -- --clean 300 --seed 7001`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gates {
     /// normal deviate
     pub z: f64,
-    /// family-wise chance of the cluster test, shared out to the candidates
+    /// family-wise p-value of the cluster test, divided among the candidates
     pub p_cluster: f64,
     /// share of the residual energy
     pub gain: f64,
-    /// least force that matters, of the weight, or torque, of the torque that the motion took (rms)
+    /// least relevant force, as a share of the weight, and least relevant torque, as a share of the rms of the torque
+    /// that the motion needs
     pub matters: (f64, f64),
-    /// most effects that are accepted
+    /// largest number of accepted effects
     pub steps: usize,
 }
 
 impl Gates {
-    /// Normal deviate asked of an effect.
+    /// Least normal deviate of an effect.
     #[must_use]
     pub fn deviate(&self, signature: &Signature) -> f64 {
         self.z + signature.naming.extra_z
     }
 
-    /// An effect's share of the family-wise chance, among so many candidates: a twentieth of it for what every vehicle
-    /// has, the rest for the others alike.
+    /// An effect's share of the family-wise p-value for this number of candidates: a twentieth for an effect that every
+    /// vehicle has, the rest divided equally among the others.
     fn share(&self, signature: &Signature, candidates: f64) -> f64 {
         if signature.naming.ubiquitous {
             UBIQUITOUS_SHARE * self.p_cluster
@@ -45,9 +49,11 @@ impl Default for Gates {
     }
 }
 
+/// Share of the family-wise p-value for an effect that every vehicle has. Set on flights with rotor inertia (`cargo
+/// bench --bench explain`, seed 1201), where an equal share for 58 candidates missed two flights of 12.
 const UBIQUITOUS_SHARE: f64 = 0.05;
 
-/// Significant, spread over the flight, possible, and large enough to matter.
+/// Whether a candidate is significant, distributed over the flight, physically possible, and large enough to matter.
 pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates: f64) -> bool {
     let evidence = &tested.evidence;
     let weight_n = fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2;
@@ -66,10 +72,10 @@ pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates
         && possible(tested, &fitted.base.size)
 }
 
-/// No multirotor flies in more wind, m/s.
+/// Greatest wind that a fit may contain, m/s: multirotors do not fly in more. Chosen; not measured.
 const STORM_M_S: f64 = 20.0;
 
-/// Each coefficient's sign and size is one that physics allows, within two standard errors.
+/// Whether sign and size of each coefficient are physically possible, within two standard errors.
 fn possible(tested: &Tested, size: &VehicleSize) -> bool {
     if tested.candidate.through.is_some() {
         // the wind's columns carry the drag's strength

@@ -1,5 +1,4 @@
-//! Values that candidates have on a grid, brought between the grid's points: when a mass changed, how long a
-//! cord is.
+//! Refinement of candidates' values between the points of a grid: the time of a mass change, the length of a cord.
 
 use super::candidates::Candidate;
 use super::fit::Fitted;
@@ -10,8 +9,8 @@ use super::trace::Trace;
 use crate::vehicle::VehicleSize;
 use rayon::prelude::*;
 
-/// The likeliest cord brought between the grid's lengths: a load that swings freely is out of step with its
-/// neighbours on the grid, and they explain too little of it to be taken.
+/// Refines the most likely cord length of the grid. A load that swings freely is out of phase with its neighbours on
+/// the grid, and these explain too little of it to be accepted.
 pub(super) fn between_grid(flights: &[Trace], fitted: &Fitted, tested: &[Tested]) -> Option<Tested> {
     let before = |tested: &&Tested| {
         tested.candidate.signature().is_some_and(|signature| signature.refinement.grid_before_test)
@@ -21,13 +20,13 @@ pub(super) fn between_grid(flights: &[Trace], fitted: &Fitted, tested: &[Tested]
     (most.evidence.gain > WORTH_REFINING).then(|| refined(flights, fitted, most.clone()))
 }
 
-/// Share of the residual that a cord of the grid has to explain.
+/// Share of the residual that a cord length of the grid has to explain. Chosen; not measured.
 const WORTH_REFINING: f64 = 0.01;
 
-/// Neighbours on either side that are tried first.
+/// Neighbours on either side that are tried first. Chosen; not measured.
 const NEIGHBOURS: i32 = 6;
 
-/// The candidate with the value that explains most energy, near the one it has.
+/// The candidate with the value, near its present one, that explains most energy.
 pub(super) fn refined(flights: &[Trace], fitted: &Fitted, tested: Tested) -> Tested {
     let scale = tested.candidate.signature().and_then(|signature| signature.refinement.grid);
     let Some(scale) = scale else { return tested };

@@ -1,21 +1,22 @@
-//! Lack of fit without a library: what is left at the trajectory's harmonics against the bins beside them.
+//! Lack of fit without a library of effects: residual power at the trajectory's harmonics against the power of the bins
+//! beside them.
 //!
-//! A trajectory that is flown several times puts everything that the model lacks at multiples of its
-//! frequency; noise lies between them as well. It cannot see what does not repeat.
+//! With a trajectory that is flown several times, everything that the model lacks is at multiples of its frequency;
+//! noise is also between them. The test does not see causes that do not repeat.
 
 use super::channels::{AXES, CHANNELS};
 use super::trace::Trace;
 use crate::stats::{f_tail, joint_chance, median_step, power_at};
 
-/// Highest frequency that is looked at, Hz.
+/// Highest frequency of the test, Hz: the kernel of 0.4 s passes little above. Chosen; not measured.
 const HIGHEST_HZ: f64 = 2.0;
-/// Fewest periods.
+/// Least number of periods. With fewer, a bin between two harmonics is the neighbour of both.
 const LEAST_PERIODS: usize = 3;
-/// Up to so many periods, the second bins beside two harmonics are the same bin.
+/// Number of periods up to which the second neighbours of two harmonics are the same bin.
 const LEAST_PERIODS_OF_TWO: usize = 4;
-/// Autocorrelation at one period that makes a flight periodic.
+/// Least autocorrelation at one period for a flight that counts as periodic. Chosen; not measured.
 const PERIODIC: f64 = 0.35;
-/// Shortest period that is looked for, s.
+/// Shortest period that is searched for, s. Chosen; not measured.
 const SHORTEST_S: f64 = 3.0;
 
 /// One harmonic of one channel.
@@ -23,9 +24,9 @@ const SHORTEST_S: f64 = 3.0;
 pub struct Line {
     /// Hz
     pub frequency_hz: f64,
-    /// power at it over that of its neighbours
+    /// ratio of its power to that of its neighbours
     pub ratio: f64,
-    /// energy beyond the neighbours', in sigma squared of the channel
+    /// energy above that of the neighbours, in sigma squared of the channel
     pub excess: f64,
 }
 
@@ -36,7 +37,7 @@ pub struct LackOfFit {
     pub period_s: f64,
     /// whole periods used
     pub periods: usize,
-    /// chance of as much at the harmonics where only noise is left, each channel
+    /// p-value of the power at the harmonics if the residual is noise, each channel
     pub p_value: [f64; CHANNELS],
     /// root mean square at the harmonics beyond the noise, each channel, in its sigma
     pub excess_rms: [f64; CHANNELS],
@@ -47,7 +48,7 @@ pub struct LackOfFit {
 }
 
 impl LackOfFit {
-    /// Smallest chance over the channels, times their number.
+    /// Smallest p-value of the channels, times their number (Bonferroni).
     #[must_use]
     pub fn p_least(&self) -> f64 {
         (self.p_value.iter().fold(1.0_f64, |least, p| least.min(*p)) * CHANNELS as f64).min(1.0)
@@ -108,7 +109,7 @@ pub fn period_s(time_s: &[f64], signals: &[&[f64]]) -> Option<f64> {
     Some(lags[peak].0 + shift * step_s)
 }
 
-/// The period of a flight by what is measured of its motion; its rows lie at `time_s`.
+/// The period of a flight from its measured motion, s, with rows at `time_s`.
 #[must_use]
 pub fn flown_period_s(trace: &Trace, time_s: &[f64]) -> Option<f64> {
     let series =
@@ -125,14 +126,14 @@ pub fn flown_period_s(trace: &Trace, time_s: &[f64]) -> Option<f64> {
     period_s(time_s, &motion)
 }
 
-/// The flight without its first and last sixth: the ways to the start and home do not repeat. Its span, s.
+/// Span of the flight without its first and last sixth, s: the transitions at both ends do not repeat.
 fn middle(time_s: &[f64]) -> Option<(f64, f64)> {
     let (first, last) = (*time_s.first()?, *time_s.last()?);
     let edge = (last - first) / 6.0;
     Some((first + edge, last - edge))
 }
 
-/// Mean-free, zero where nothing was measured.
+/// The signal without its mean on a grid of `count` slots, zero in slots without a measurement.
 fn onto(index: &[usize], signal: &[f64], count: usize) -> Vec<f64> {
     let mean = signal.iter().sum::<f64>() / signal.len().max(1) as f64;
     let mut out = vec![0.0; count];
@@ -177,7 +178,7 @@ pub fn lack_of_fit(time_s: &[f64], residual: [&[f64]; CHANNELS], period_s: f64) 
     Some(out)
 }
 
-/// How often a period fits into a span (both s).
+/// Number of whole periods in a span (both s).
 fn whole_periods(span_s: f64, period_s: f64) -> usize {
     let mut periods = 0;
     while (periods + 1) as f64 * period_s <= span_s {
@@ -186,7 +187,7 @@ fn whole_periods(span_s: f64, period_s: f64) -> usize {
     periods
 }
 
-/// Rows of a residual from which the power at single frequencies is taken.
+/// Rows of a residual for the power at single frequencies.
 struct Periodogram<'a> {
     time_s: &'a [f64],
     used: &'a [usize],
@@ -194,13 +195,13 @@ struct Periodogram<'a> {
 }
 
 impl Periodogram<'_> {
-    /// Of a series without its mean, at a frequency.
+    /// Power of a series without its mean at a frequency (Hz).
     fn power(&self, series: &[f64], mean: f64, frequency_hz: f64) -> f64 {
         let used = self.used.iter().map(|&row| (self.time_s[row] - self.from_s, series[row] - mean));
         power_at(used, frequency_hz)
     }
 
-    /// Each harmonic against its neighbours, which fall between harmonics, and Fisher's sum of all as a probability.
+    /// Each harmonic against its neighbours between the harmonics, and Fisher's combined p-value.
     fn harmonics(&self, series: &[f64], (period_s, periods): (f64, usize)) -> (f64, Vec<Line>) {
         // no bin is the neighbour of two harmonics: Fisher's sum takes their ratios as independent
         let neighbours: &[i32] = if periods > LEAST_PERIODS_OF_TWO { &[-2, -1, 1, 2] } else { &[-1, 1] };

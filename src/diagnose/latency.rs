@@ -1,8 +1,8 @@
-//! Between command and rotor: how much, and whether it is a lag or a delay.
+//! Latency between command and rotor: its size, and whether it is a lag or a delay.
 //!
-//! A first-order lag makes the command `M + tau M'` exactly, a pure delay `M + d M' + d^2/2 M'' ...`, where M is
-//! the torque that the motion took. So the second-order term tells them apart; the residual's size does not,
-//! because a lag also smooths noise and wins for that reason.
+//! A first-order lag gives the command `M + tau M'` exactly, a pure delay `M + d M' + d^2/2 M'' ...`, where M is the
+//! torque that the motion needs. The second-order term therefore distinguishes them. The size of the residual does not,
+//! because a lag also smooths noise and has the smaller residual for that reason.
 
 use super::base::Base;
 use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing, per_step};
@@ -23,34 +23,35 @@ pub struct LatencyFinding {
     pub total_s: f64,
     /// its standard error, s
     pub std_s: f64,
-    /// how it was shared out
+    /// its division into delay and lag
     pub parts: ActuationLatency,
-    /// standard deviations by which a pure lag misses the second-order term
+    /// standard deviations between the second-order term and that of a pure lag
     pub against_lag: f64,
-    /// by which a pure delay misses it
+    /// standard deviations between it and that of a pure delay
     pub against_delay: f64,
-    /// standard error of [`ActuationLatency::uneven`] where the flight tells rising from falling speed
+    /// standard error of [`ActuationLatency::uneven`], if the flight distinguishes rising from falling speed
     pub uneven_std: Option<f64>,
 }
 
-/// Latencies below this need no kind: sampling and a fast motor together are as long, s.
+/// The kind of a shorter latency is not determined, s: sampling and a fast motor together are as long. Chosen; not
+/// measured.
 const LEAST_S: f64 = 0.010;
-/// A command holds until the next one comes; the loop that sends it runs faster than the log. Share of the
-/// log's period by which that delays the mean command.
+/// Delay of the mean command, as a share of the log's period. A command is held until the next one, and the control
+/// loop runs faster than the log. Chosen; not measured.
 const HELD: f64 = 0.25;
-/// Gyroscopes noisier than this let no kind be told.
+/// Noise of the gyroscopes above which the kind of the latency is not determined, rad/s. Chosen; not measured.
 const NOISY_RAD_S: f64 = 0.03;
-/// A lag or delay is named beyond sampling and a fast motor, s.
+/// Latency of sampling and a fast motor, s. A lag or delay is named if it is beyond it. Chosen; not measured.
 pub(super) const FAST_MOTOR_S: f64 = 0.004;
-/// A split into delay and lag is refused where a lag alone has a logarithm of the likelihood that is greater by this much a
-/// row: something else, commands at a bound for instance, took the second-order term. Chosen: half-second rows of flights
-/// with both kinds of latency differ by less than 0.15 either way; a flight with half of its commands at a bound, by 2.2.
+/// A split into delay and lag is rejected if a lag alone has a larger log-likelihood by this much a row. Something else
+/// then caused the second-order term, for example commands at a bound. Chosen: in rows of half a second, flights with
+/// both kinds of latency differ by less than 0.15 either way, and a flight with half of its commands at a bound by 2.2.
 const SPLIT_REFUTED: f64 = 0.5;
-/// A kind is refused beyond this many standard deviations.
+/// A kind of latency is rejected beyond this many standard deviations. Chosen; not measured.
 pub(super) const REFUSED: f64 = 6.0;
 
-/// Fits the rigid body alone, with the latency that is left when what could be taken for one (damping and
-/// drag move with the derivative of force and torque, too) is allowed for.
+/// Fits the rigid body alone with its latency. Damping and drag also act through the derivative of force and torque, so
+/// their columns are in the fit as well.
 ///
 /// # Errors
 /// [`PhysicsError`] where the base is not physical.
@@ -97,7 +98,7 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
     Ok((held, finding))
 }
 
-/// The split into delay and lag, or the lag alone where it follows the flight by far better.
+/// The split into delay and lag, or the lag alone if it explains the flight far better.
 fn not_refuted(
     split: ActuationLatency,
     lag: ActuationLatency,
@@ -111,13 +112,13 @@ fn not_refuted(
     Ok(if worse > SPLIT_REFUTED * fitted.rows.len() as f64 { lag } else { split })
 }
 
-/// A lag behind what delays the recording itself.
+/// A lag after the delay of the recording itself.
 fn lag_of(flights: &[Trace], total_s: f64, uneven: f64) -> ActuationLatency {
     let delay_s = held_s(flights).min(0.5 * total_s);
     ActuationLatency { delay_s, lag_s: total_s - delay_s, uneven }
 }
 
-/// What is no vehicle's: commands that hold, and the delay of the inertial unit's filters, s.
+/// Delay that is not the vehicle's, s: held commands and the filters of the inertial unit.
 pub(super) fn held_s(flights: &[Trace]) -> f64 {
     let held = |trace: &Trace| HELD * trace.command_period_s + trace.inertial_late_s;
     flights.iter().map(held).fold(0.0, f64::max)
@@ -145,7 +146,7 @@ pub fn finding_of(fitted: &Fitted) -> LatencyFinding {
     }
 }
 
-/// What a vehicle's description says of [`ActuationLatency::uneven`].
+/// [`ActuationLatency::uneven`] by the vehicle file.
 pub(super) fn stated_uneven(vehicle: &Vehicle) -> f64 {
     vehicle.propulsion.falling_over_rising().ln()
 }
@@ -155,22 +156,25 @@ pub(super) fn stated_lag_s(vehicle: &Vehicle) -> f64 {
     vehicle.propulsion.mean_time_constant_s().unwrap_or(0.0)
 }
 
-/// The latency has no more lag than is stated: what is beyond that is a delay.
+/// Whether the latency is a delay: its lag is not larger than the stated one.
 pub(super) fn is_delay(latency: ActuationLatency, vehicle: &Vehicle) -> bool {
     latency.lag_s <= stated_lag_s(vehicle)
 }
 
-/// Standard errors from even at which rising and falling speed are told apart.
+/// Standard errors by which rising and falling time constants must differ. With it, none of 12 flights with even rotors
+/// was taken for uneven, and 8 of 12 with a ratio of 1.6 were found: `cargo bench --bench blind`, seeds 401 to 412.
 const UNEVEN: f64 = 6.0;
-/// Slowing down takes between a third and four times as long as speeding up.
+/// Least natural logarithm of the falling over the rising time constant: a third. Chosen; not measured.
 const UNEVEN_LEAST: f64 = -1.1;
+/// Greatest natural logarithm of the falling over the rising time constant: four. Chosen; not measured.
 const UNEVEN_MOST: f64 = 1.4;
-/// Passes over it, and its step.
+/// Passes over this ratio. Chosen; not measured.
 const UNEVEN_PASSES: usize = 4;
+/// Step of the ratio's logarithm. Chosen; not measured.
 const UNEVEN_STEP: f64 = 0.2;
 
-/// Tells rising from falling speed in a lag where the flight does otherwise than is stated, beyond what a bent thrust curve
-/// would do, and fits with it; its standard error.
+/// Estimates different time constants for rising and falling speed if the flight contradicts the stated ratio by more
+/// than a thrust curve would, and refits with them. Returns the standard error.
 fn uneven_lag(flights: &[Trace], fitted: &mut Fitted, stated: f64) -> Result<Option<f64>, PhysicsError> {
     let latency = fitted.base.latency;
     if latency.lag_s <= latency.delay_s || is_delay(latency, &fitted.base.vehicle) {
@@ -210,7 +214,7 @@ fn uneven_lag(flights: &[Trace], fitted: &mut Fitted, stated: f64) -> Result<Opt
     Ok(told)
 }
 
-/// Standard deviations against a lag and against a delay, and the delay if it is some of both.
+/// Standard deviations from a pure lag and from a pure delay, and the delay (s) if the latency is a sum of both.
 fn second_order(flights: &[Trace], fitted: &Fitted) -> Result<Option<(f64, f64, f64)>, PhysicsError> {
     let mut base = fitted.base.clone();
     // beyond the delay that every recording has
@@ -236,8 +240,8 @@ fn second_order(flights: &[Trace], fitted: &Fitted) -> Result<Option<(f64, f64, 
     Ok(Some(((c2 / s2).abs(), ((c2 - 0.5 * c1 * c1) / spread).abs(), delay_s)))
 }
 
-/// What more of the base's lag and less of its delay does, per s: `-K(M')` behind the lag in the torque rows, by the
-/// measured motion, and `-K(T')` behind it in the force rows, by the smoothed commands.
+/// Column of a larger lag with an equally smaller delay, per s: `-K(M')` behind the lag in the torque rows, from the
+/// measured motion, and `-K(T')` behind it in the force rows, from the smoothed commands.
 pub(super) fn lag_column(flights: &[Trace], fitted: &Fitted) -> Channels {
     let behind = ActuationLatency { delay_s: 0.0, ..fitted.base.latency };
     let mut out = Channels::default();
@@ -257,7 +261,7 @@ pub(super) fn lag_column(flights: &[Trace], fitted: &Fitted) -> Channels {
     out
 }
 
-/// Columns that have nothing in the force rows.
+/// Columns that are zero in the force rows.
 fn torque_rows(flights: &[Trace], columns: impl Fn(&Trace) -> [Vec<f64>; 3]) -> Channels {
     let mut out = Channels::default();
     for trace in flights {
@@ -266,7 +270,7 @@ fn torque_rows(flights: &[Trace], columns: impl Fn(&Trace) -> [Vec<f64>; 3]) -> 
     out
 }
 
-/// `-K` of a derivative of the torque that the measured motion took, behind a latency.
+/// `-K` of the derivative of this order of the torque that the measured motion needs, behind a latency.
 fn turning(trace: &Trace, base: &Base, order: usize, behind: ActuationLatency) -> [Vec<f64>; 3] {
     let torque = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
     let torque: Vec<Vector4<f64>> = torque.iter().map(|t| Vector4::new(t.x, t.y, t.z, 0.0)).collect();

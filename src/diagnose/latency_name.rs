@@ -1,4 +1,4 @@
-//! The name of a lag or delay that is more than any vehicle has.
+//! The name of a lag or delay that is larger than on every vehicle.
 
 use super::confusable::APART;
 use super::latency::{FAST_MOTOR_S, LatencyFinding, REFUSED, held_s, is_delay, stated_lag_s};
@@ -10,7 +10,7 @@ use super::trace::Trace;
 use crate::physics::{ActuationLatency, RotorLag};
 use crate::vehicle::Vehicle;
 
-/// A lag or delay beyond what sampling and a fast motor make.
+/// A lag or delay beyond that of sampling and a fast motor.
 pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<Named> {
     let LatencyFinding { total_s, std_s, parts, against_lag, against_delay, uneven_std } = found.latency;
     let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
@@ -58,7 +58,8 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     })
 }
 
-/// A lag by its time constants of rising and falling speed, where they are told apart; else what was found, as a whole.
+/// Parameters of a lag by its rising and falling time constants if they are distinguished, otherwise by the latency as
+/// a whole.
 fn parameters_of(
     parts: ActuationLatency,
     (name, value, std): (&'static str, f64, f64),
@@ -77,6 +78,6 @@ fn parameters_of(
     vec![of(name, rising_s), of("time_constant_down", falling_s)]
 }
 
-/// A lag is told from a delay beyond this: rotors that spin up and down in different times are neither, and look more
-/// like a delay.
+/// Standard deviations beyond which a lag is distinguished from a delay. More than for other pairs, because rotors with
+/// different rising and falling time constants are neither and resemble a delay. Chosen; not measured.
 const TOLD_APART: f64 = 15.0;

@@ -1,9 +1,8 @@
-//! What a flight could have shown: the smallest size of each effect that stands out of it, against the size that
-//! the effect has on ordinary vehicles.
+//! Detection limits: the smallest size of each effect that a flight would have shown, compared with the size on
+//! ordinary vehicles.
 //!
-//! A flight that could not have shown an effect of ordinary size says nothing about it, neither that it is there
-//! nor that it is not: in hover the air's forces, the damping and the ground's effect are below what a sensor's
-//! noise makes, and what fits them is noise.
+//! A flight that could not have shown an effect of ordinary size gives no information about it. In hover, for example,
+//! aerodynamic forces, damping and ground effect are smaller than the noise, and a fit of them is a fit to noise.
 
 use super::candidates::Candidate;
 use super::fit::Fitted;
@@ -14,9 +13,9 @@ use super::signatures::signature_of;
 use super::tested::Tested;
 use crate::vehicle::Vehicle;
 
-/// Standard errors by which an effect of its usual size must stand out.
+/// Standard errors by which an effect of its usual size must differ from zero: the z of [`Gates`](super::Gates).
 const CERTAIN: f64 = 4.0;
-/// Standard errors at which an effect stands out, whatever its usual size.
+/// Standard errors at which an effect is accepted whatever its usual size is. Chosen; not measured.
 const PLAIN: f64 = 8.0;
 
 /// The smallest coefficient that this flight would have shown, for every candidate that was not named.
@@ -51,8 +50,7 @@ pub(super) fn limits(last: &[Tested], vehicle: &Vehicle) -> Vec<DetectionLimit> 
     out
 }
 
-/// The smallest standard error that a parameter has among the candidates of the same form, which differ in the axes
-/// that are estimated: what one of them shows is named.
+/// The smallest standard error of a parameter among the candidates of the same form with different estimated axes.
 fn least_std(part: &EffectTerm, slot: usize, all: &[Tested]) -> f64 {
     let std = |tested: &Tested| {
         let [of] = tested.candidate.parts.as_slice() else { return None };
@@ -63,8 +61,8 @@ fn least_std(part: &EffectTerm, slot: usize, all: &[Tested]) -> f64 {
     all.iter().filter_map(std).fold(f64::INFINITY, f64::min)
 }
 
-/// Whether an effect of a fit, whose first free parameter has this index among the columns, is determined so badly
-/// that the flight could not have shown one of usual size.
+/// Whether an effect of a fit, whose first free parameter has the column `first`, is determined so badly that the
+/// flight could not have shown it at its usual size.
 pub(super) fn is_beyond_showing(fitted: &Fitted, present: &EffectTerm, first: usize) -> bool {
     let vehicle = &fitted.base.vehicle;
     let sizes = present.free.iter().enumerate().filter_map(|(index, &slot)| {
@@ -88,8 +86,7 @@ pub(super) fn is_beyond_showing(fitted: &Fitted, present: &EffectTerm, first: us
     any && all
 }
 
-/// Nothing that shows only where the vehicle moves could have been seen at its usual size, and nothing of it was
-/// found.
+/// Whether no effect that appears only in motion could have been detected at its usual size, and none was found.
 pub(super) fn too_little_excitation(after: &Fitted, limits: &[DetectionLimit]) -> bool {
     let vehicle = &after.base.vehicle;
     let moves = |present: &EffectTerm| {

@@ -1,5 +1,5 @@
-//! Effects whose small sizes a nuisance stands for: tried only when nothing else passes, for almost any force that does
-//! not change looks a little like a lean.
+//! Effects whose small sizes a nuisance models. They are tested only if nothing else passes, because almost any
+//! constant force resembles a small tilt.
 
 use super::candidates::instead_of_nuisances;
 use super::evidence::Weighted;
@@ -10,7 +10,7 @@ use super::tested::Tested;
 use super::trace::Trace;
 use rayon::prelude::*;
 
-/// Each that the recordings show, tested without the nuisance that stands for it.
+/// Each of these effects that the recordings can show, tested without its nuisance.
 pub(super) fn mountings(
     flights: &[Trace],
     fitted: &Fitted,

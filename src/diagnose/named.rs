@@ -8,13 +8,13 @@ use std::fmt;
 pub struct Named {
     /// which
     pub id: &'static str,
-    /// what a person reads
+    /// the effect's sentence
     pub sentence: &'static str,
     /// values
     pub parameters: Vec<NamedParameter>,
     /// evidence
     pub strength: Strength,
-    /// what it may be taken for
+    /// effects from which the flight does not distinguish it
     pub confusable_with: Vec<Confusable>,
 }
 
@@ -25,7 +25,7 @@ pub struct NamedParameter {
     pub name: &'static str,
     /// in `unit`
     pub value: f64,
-    /// standard error; 0 where it was set, not estimated
+    /// standard error; 0 if the value was set and not estimated
     pub std: f64,
     /// SI
     pub unit: &'static str,
@@ -57,12 +57,12 @@ pub struct Strength {
     pub count: usize,
 }
 
-/// Another effect that explains the same.
+/// Another effect that explains the same residual.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Confusable {
     /// which
     pub id: &'static str,
-    /// standard deviations by which this flight tells them apart, where that could be computed
+    /// distance in standard deviations in this flight, if it could be computed
     pub distinguishability: Option<f64>,
 }
 
@@ -75,7 +75,7 @@ pub struct DetectionLimit {
     pub parameter: &'static str,
     /// in `unit`
     pub limit: f64,
-    /// size on ordinary vehicles, in `unit`, of what shows only where the vehicle moves
+    /// size on ordinary vehicles, in `unit`, of an effect that appears only in motion
     pub usual: Option<f64>,
     /// SI
     pub unit: &'static str,
@@ -100,7 +100,7 @@ impl Named {
         self.get(name).map_or(0.0, |parameter| parameter.value)
     }
 
-    /// Value and standard error; `factor` brings them to the unit in which they are said.
+    /// Value and standard error as text, multiplied by `factor` for the displayed unit.
     #[must_use]
     pub fn said(&self, name: &str, factor: f64) -> String {
         self.get(name).map_or_else(|| "0".to_owned(), |p| with_error(factor * p.value, factor.abs() * p.std))

@@ -1,4 +1,4 @@
-//! Columns that are always in: what no vehicle file has exactly, and what sensors are off by.
+//! Columns that are in every fit: properties that no vehicle file states exactly, and errors of sensors.
 
 use super::base::Base;
 use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
@@ -9,13 +9,16 @@ use crate::regression::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor
 use crate::signals::central_difference;
 use nalgebra::Vector3;
 
-/// Prior of the latency of force against torque, s: filters of accelerometer and gyroscopes differ by milliseconds.
+/// Standard deviation of the prior of the latency of force against torque, s. Filters of accelerometer and gyroscopes
+/// differ by milliseconds. Chosen; not measured.
 const FORCE_LATENCY_STD_S: f64 = 0.004;
-/// Prior of the share of the jitter that acts: uniform between 0 and 1.
+/// Standard deviation of the prior of the share of the jitter that acts: 1/sqrt(12), uniform between 0 and 1.
 const JITTER_STD: f64 = 0.288_675;
-/// Prior of the level of the attitude, rad: an estimate is level to about half a degree.
+/// Standard deviation of the prior of the attitude's level, rad: attitude estimates are level to about half a degree.
+/// Chosen; not measured.
 const LEVEL_STD_RAD: f64 = 0.01;
-/// Prior of the accelerometer's bias where velocity does not determine it, m/s^2.
+/// Standard deviation of the prior of the accelerometer's bias if velocity does not determine it, m/s^2. Chosen; not
+/// measured.
 const BIAS_STD_M_S2: f64 = 0.2;
 
 /// For each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2.
@@ -98,8 +101,7 @@ pub(super) fn nuisances(
     out
 }
 
-/// The accelerometer's bias, and the level of the attitude that the kinematics rest on, unless the base has an
-/// effect for it.
+/// The accelerometer's bias, and the level of the attitude for the kinematics, unless the base has an effect for it.
 fn sensor_nuisances(trace: &Trace, mass_kg: f64, leans: bool) -> Vec<NuisanceColumn> {
     let mut out = Vec::new();
     if trace.has_accelerometer() {

@@ -1,4 +1,4 @@
-//! Effects that are written in more than one form: the one that explains more is kept.
+//! Effects with more than one form: the form that explains more is kept.
 
 use super::drag_location::cost;
 use super::fit::{Fitted, Newton, fit};
@@ -6,8 +6,8 @@ use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 
-/// Puts each effect of a fit into another form where that explains more than its columns cost (`price` a column, in
-/// squared sigmas). Returns whether it did.
+/// Changes the form of an effect if another form explains more than its columns cost (`price` a column, in squared
+/// sigmas). Returns whether a form was changed.
 ///
 /// # Errors
 /// [`PhysicsError`] where the estimate leaves what is physical.

@@ -1,4 +1,4 @@
-//! After the search: what has become superfluous goes, and the latency is estimated once more.
+//! Pruning after the search: superfluous effects are removed, and the latency is estimated again.
 
 use super::base::Base;
 use super::fit::{Fitted, Newton, fit};
@@ -6,11 +6,12 @@ use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 
-/// A latency that moves by less than this when it is estimated with the effects changes nothing, s.
+/// A latency that moves by less than this when it is estimated with the effects has not changed, s. Chosen; not
+/// measured.
 pub(super) const UNCHANGED_S: f64 = 0.001;
 
-/// Effects that the later ones have made superfluous go, and the latency is estimated with those that stay.
-/// Returns whether any went, and by how much the latency moved, s.
+/// Removes effects that later ones have made superfluous, and estimates the latency with the remaining ones. Returns
+/// whether any effect was removed, and the change of the latency, s.
 pub(super) fn prune(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64), PhysicsError> {
     let mut index = after.rows.nuisances.len();
     let mut kept: Vec<EffectTerm> = Vec::new();
@@ -42,7 +43,9 @@ pub(super) fn prune(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64)
     Ok((dropped, (after.base.latency.total_s() - before_s).abs()))
 }
 
-/// An accepted effect stays while it is this many standard deviations from zero.
+/// An accepted effect stays in the model if it is this many standard deviations from zero: the z of
+/// [`Gates`](super::Gates).
 const KEPT: f64 = 4.0;
-/// A parameter of an accepted effect is set back to zero when it is nearer than this many standard deviations to zero.
+/// A parameter of an accepted effect is set to zero if it is nearer to zero than this many standard deviations. Chosen;
+/// not measured.
 const PRUNED: f64 = 2.5;

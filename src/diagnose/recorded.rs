@@ -1,10 +1,10 @@
-//! What a signature may ask of the flights and of the vehicle's description.
+//! Requirements of a signature on the flights and on the vehicle file.
 
 use super::trace::Trace;
 use crate::physics::Airframe;
 use crate::vehicle::Vehicle;
 
-/// What a flight has to hold.
+/// A requirement on a flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Need {
     /// velocity and attitude
@@ -13,16 +13,16 @@ pub enum Need {
     Position,
     /// specific force
     Accelerometer,
-    /// accelerometer, velocity and attitude: the force in two readings
+    /// accelerometer, velocity and attitude: the force is measured twice
     ForceTwice,
     /// battery voltage
     Voltage,
-    /// a moment belongs to one flight
+    /// the effect has a time in one flight
     OneFlight,
 }
 
 impl Need {
-    /// What is needed, and why.
+    /// The needed quantity, and the reason, as text.
     #[must_use]
     pub fn words(self) -> (&'static str, &'static str) {
         match self {
@@ -42,9 +42,9 @@ impl Need {
 /// The flights of a vehicle, as a signature sees them.
 #[derive(Debug)]
 pub struct Recorded<'a> {
-    /// as its file describes it
+    /// by its vehicle file
     pub vehicle: &'a Vehicle,
-    /// rotors' geometry; `None` where the description is not that of a vehicle
+    /// geometry of the rotors; `None` if the vehicle file is not physical
     pub airframe: Option<Airframe>,
     /// one or more
     pub flights: &'a [Trace],
@@ -57,13 +57,13 @@ impl<'a> Recorded<'a> {
         Self { vehicle, airframe: Airframe::new(vehicle).ok(), flights }
     }
 
-    /// Something is so in every flight.
+    /// Whether a condition holds in every flight.
     #[must_use]
     pub fn all(&self, what: fn(&Trace) -> bool) -> bool {
         self.flights.iter().all(what)
     }
 
-    /// What the flights lack for an effect to be tried, and why that is needed.
+    /// The first requirement of an effect that the flights do not satisfy, with its words.
     #[must_use]
     pub fn lacks(&self, needs: &[Need]) -> Option<(Need, &'static str, &'static str)> {
         let unmet = needs.iter().copied().find(|need| !self.has(*need))?;

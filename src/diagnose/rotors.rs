@@ -6,19 +6,19 @@ use crate::signals::central_difference;
 /// One thrust a rotor, N; those beyond the rotor count are zero.
 pub type Thrusts = [f64; MAX_ROTORS];
 
-/// What the rotors do at each grid instant.
+/// Motion of the rotors at each grid instant.
 #[derive(Debug, Clone)]
 pub struct RotorMotion {
     /// N
     pub thrust_n: Vec<Thrusts>,
-    /// the speed that belongs to it, relative to hover
+    /// speed for this thrust, relative to hover
     pub speed: Vec<Thrusts>,
     /// rate of the speed relative to hover, 1/s
     pub acceleration_1_s: Vec<Thrusts>,
 }
 
 impl RotorMotion {
-    /// Speeds that belong to the thrusts, and their rate.
+    /// Motion for given thrusts: speeds and their rates.
     #[must_use]
     pub fn new(thrust_n: Vec<Thrusts>, airframe: &Airframe, step_s: f64) -> Self {
         let mut speed = vec![[0.0; MAX_ROTORS]; thrust_n.len()];

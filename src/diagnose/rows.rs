@@ -25,15 +25,15 @@ pub struct Rows {
     pub time_s: Vec<f64>,
     /// rows without a break between them
     pub runs: Vec<Range<usize>>,
-    /// what acts beyond the base: N, N m
+    /// force and torque that the base does not explain: N, N m
     pub residual: Channels,
-    /// always in
+    /// nuisance columns, in every fit
     pub nuisances: Vec<NuisanceColumn>,
-    /// one a free parameter of the base's effects, in order
+    /// one for each free parameter of the base's effects, in order
     pub effects: Vec<Channels>,
-    /// N m, root mean square of the torque that the motion took, about body x, y, z
+    /// N m, root mean square of the torque that the motion needs, about body x, y, z
     pub torque_rms: [f64; 3],
-    /// for more columns about the same base
+    /// data for further columns about the same base
     flights: Vec<Along>,
 }
 
@@ -94,7 +94,7 @@ impl Rows {
         Ok(rows)
     }
 
-    /// What the rotors of a flight do by their commands, after the latency and smoothed.
+    /// Rotor motion of a flight from the commands, behind the latency and smoothed.
     #[must_use]
     pub fn commanded(&self, flight: usize) -> Option<&RotorMotion> {
         self.flights.get(flight).map(|along| &along.commanded)
@@ -112,8 +112,8 @@ impl Rows {
         self.time_s.is_empty()
     }
 
-    /// Columns of the free parameters of an effect that the base does not have. Its values must be those
-    /// at which it does nothing.
+    /// Columns of the free parameters of an effect that the base does not have. Its values must be those at which it
+    /// has no influence.
     ///
     /// # Errors
     /// [`PhysicsError`] where the vehicle lacks what the effect needs.
@@ -141,7 +141,7 @@ impl Rows {
         Ok(columns)
     }
 
-    /// The same where the effect acts through others that only `base` has, not the rows' own.
+    /// The same for an effect that acts through others that only `base` has, not the rows' own base.
     ///
     /// # Errors
     /// [`PhysicsError`] where the vehicle lacks what the effect needs.
@@ -163,7 +163,7 @@ impl Rows {
         Ok(columns)
     }
 
-    /// `flights`: the true motion of what was recorded.
+    /// Columns of the free parameters of the base's effects. `flights` have the true motion of the recorded ones.
     fn present_columns(
         &self,
         (recorded, flights): (&[Trace], &[Trace]),
@@ -197,8 +197,8 @@ impl Rows {
             .collect()
     }
 
-    /// The residual with other effects on the sensors; what acts on the vehicle stays as it is, which is as much
-    /// smaller as the effects are small.
+    /// The residual with other effects on the sensors. Effects on the vehicle keep their values, an approximation that
+    /// is better the smaller the sensors' effects are.
     fn shown(&self, recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
         let model = base.model(&[])?;
         let mut out = Channels::default();
@@ -210,7 +210,7 @@ impl Rows {
         Ok(out)
     }
 
-    /// `K` of the change of force and torque per `step`, against the base or against `down`.
+    /// `K` of the change of force and torque per `step`, relative to the base or to `down`.
     fn difference(&self, flights: &[Trace], up: &Model, down: Option<&Model>, step: f64) -> Channels {
         let mut out = Channels::default();
         for (trace, along) in flights.iter().zip(&self.flights) {
@@ -234,7 +234,7 @@ impl Rows {
     }
 }
 
-/// The residual of the flights' true motion.
+/// The residual for the true motion of the flights.
 pub(super) fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
     let model = base.model(&[])?;
     let parts: Vec<Channels> =

@@ -1,4 +1,4 @@
-//! Every candidate about a fitted base: its columns, and the evidence for it.
+//! Every candidate at a fitted base: its columns and its evidence.
 
 use super::base::Base;
 use super::candidates::Candidate;
@@ -9,7 +9,7 @@ use super::tested::Tested;
 use super::trace::Trace;
 use rayon::prelude::*;
 
-/// Candidates that the base does not have yet, wind with its drag among them.
+/// Tests the candidates that the base does not have yet, and wind together with its drag.
 pub(super) fn test_all(
     flights: &[Trace],
     fitted: &Fitted,
@@ -48,7 +48,7 @@ pub(super) fn test_all(
     out
 }
 
-/// Every column of `candidate` is one of `wide`, too.
+/// Whether every column of `candidate` is also one of `wide`.
 fn covers(wide: &Candidate, candidate: &Candidate) -> bool {
     wide.parts.len() == candidate.parts.len()
         && wide.parts.iter().zip(&candidate.parts).all(|(wide, part)| {
@@ -70,7 +70,7 @@ fn chosen(columns: &[Channels], wide: &Candidate, candidate: &Candidate) -> Vec<
     out
 }
 
-/// Columns of a candidate's free parameters; `None` where the vehicle lacks what it needs.
+/// Columns of a candidate's free parameters; `None` if the vehicle file lacks a value that it needs.
 pub(super) fn columns_of(flights: &[Trace], fitted: &Fitted, candidate: &Candidate) -> Option<Vec<Channels>> {
     let mut columns = Vec::new();
     for part in &candidate.parts {
@@ -89,17 +89,17 @@ pub(super) fn is_present(base: &Base, candidate: &Candidate) -> bool {
     })
 }
 
-/// Of several of the same effect (rotors), the same one.
+/// Whether it is the same instance of an effect with several instances (rotors).
 fn is_the_same(present: &EffectTerm, part: &EffectTerm) -> bool {
     part.signature.role.which.is_none_or(|slot| present.values[slot] == part.values[slot])
 }
 
-/// Inflow and the z of drag are one term.
+/// Whether a term has drag along body z. Inflow and the z component of drag are the same term.
 fn drags_along_z(term: &EffectTerm) -> bool {
     term.signature.role.axial.is_some_and(|slot| term.free.contains(&slot))
 }
 
-/// Wind acts through drag: both together, or wind alone where drag is known already.
+/// Tests wind. It acts through drag: both are tested together, or the wind alone if a drag is in the base.
 fn test_winds(flights: &[Trace], fitted: &Fitted, signatures: &[&'static Signature]) -> Vec<Tested> {
     let present = &fitted.base.present;
     let is_wind = |term: &EffectTerm| term.signature.role.wind.is_some();
@@ -120,7 +120,7 @@ fn test_winds(flights: &[Trace], fitted: &Fitted, signatures: &[&'static Signatu
     carried.filter_map(|wind| test_carried(flights, fitted, wind)).collect()
 }
 
-/// An effect together with the one that carries it.
+/// Tests an effect together with the one through which it acts.
 fn test_carried(flights: &[Trace], fitted: &Fitted, carried: Carried) -> Option<Tested> {
     let Carried { carrier, unit, term } = carried;
     let mut with_unit = fitted.base.clone();

@@ -18,7 +18,7 @@ use super::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::vehicle::{Vehicle, VehicleSize};
 
-/// Searches.
+/// Runs the forward search.
 ///
 /// # Errors
 /// [`PhysicsError`] where the vehicle is not physical.
@@ -104,14 +104,14 @@ pub fn search(
     Ok(Search { before, after, latency, steps, last })
 }
 
-/// What explains most for its columns first, each at `price`, sigma squared.
+/// Sorts candidates by the energy that they explain less `price` (sigma squared) for each column.
 fn by_worth(mut tested: Vec<Tested>, price: f64) -> Vec<Tested> {
     let worth = |tested: &Tested| tested.evidence.energy - price * tested.evidence.theta.len() as f64;
     tested.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     tested
 }
 
-/// Fitted again with what was taken.
+/// Fits again with the accepted candidate.
 fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitted, PhysicsError> {
     let mut base = after.base.clone();
     base.present.extend(started(taken, &base.size).into_iter().map(released));
@@ -128,9 +128,9 @@ fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitte
     fit(flights, base, newton)
 }
 
-/// With the parameters that are estimated last (a ceiling's height): from values between those that were tried on,
-/// unless they run away. While effects are weighed against each other they stay where they were tried, or they would take
-/// the others' part.
+/// Fits the parameters that are estimated last (a ceiling's height), starting from the tried values, unless one reaches
+/// its bound. During the comparison of effects they stay at the tried values, because they could otherwise explain the
+/// part of other effects.
 fn with_last(flights: &[Trace], fitted: Fitted) -> Result<Fitted, PhysicsError> {
     let has_last = |term: &EffectTerm| !term.signature.refinement.freed_last.is_empty();
     if !fitted.base.present.iter().any(has_last) {
@@ -150,12 +150,13 @@ fn with_last(flights: &[Trace], fitted: Fitted) -> Result<Fitted, PhysicsError> 
     Ok(if placed.misfit() < fitted.misfit() && !bounded { placed } else { fitted })
 }
 
-/// How often effects are pruned and the search goes on after no candidate passes any more.
+/// How often effects are pruned and the search continues after no candidate passes any more. Chosen; not measured.
 const SETTLINGS: usize = 2;
-/// Energy that a column must explain to be worth a parameter, in squared standard deviations of independent rows.
+/// Energy that a column must explain to justify a parameter, in squared standard deviations of independent rows.
+/// Chosen; not measured.
 const COLUMN_PRICE: f64 = 12.0;
 
-/// The candidate's effects at the values that the evidence has.
+/// The candidate's effects with the estimates of the evidence as start values.
 fn started(tested: &Tested, size: &VehicleSize) -> Vec<EffectTerm> {
     let mut theta = tested.evidence.theta.iter();
     let mut parts = tested.candidate.parts.clone();
@@ -178,7 +179,7 @@ fn started(tested: &Tested, size: &VehicleSize) -> Vec<EffectTerm> {
     parts
 }
 
-/// The fit takes a parameter of it as far as physics allows: whatever it is, it is not that.
+/// Whether the fit moves a parameter of the candidate to its bound: the cause is then another one.
 fn at_bound(fitted: &Fitted, taken: &Tested) -> bool {
     let just_taken = &fitted.base.present[fitted.base.present.len() - taken.candidate.parts.len()..];
     just_taken.iter().any(|present| {
@@ -191,7 +192,7 @@ fn at_bound(fitted: &Fitted, taken: &Tested) -> bool {
     })
 }
 
-/// A step of the mass that a wandering force could be.
+/// Whether a step of the mass could be a force that drifts by itself.
 fn wanders(flights: &[Trace], fitted: &Fitted, taken: &Tested) -> bool {
     let moments =
         taken.candidate.parts.iter().filter_map(|part| Some(part.values[part.signature.role.moment?]));
@@ -201,10 +202,11 @@ fn wanders(flights: &[Trace], fitted: &Fitted, taken: &Tested) -> bool {
     })
 }
 
-/// A step counts beyond this many of a wandering force's standard errors.
+/// A step of the mass counts beyond this many standard errors of a force that drifts by itself: the z of
+/// [`Gates`](super::Gates).
 const WANDERED: f64 = 4.0;
 
-/// Parameters that only show once the effect is there are estimated from then on.
+/// The effect with those parameters freed that can be estimated only after it was accepted.
 fn released(mut term: EffectTerm) -> EffectTerm {
     let freed = (term.signature.refinement.freed)(&term);
     term.free.extend(freed);

@@ -1,7 +1,7 @@
-//! Effects that only the sensors see: the motion that was is what they showed, undone.
+//! Effects on the sensors: the true motion is the measured one, corrected for them.
 //!
-//! An effect says what ideal sensors show of a true motion ([`Effect::measure`]); here that is solved for the
-//! true motion, so that its equation stands in one place.
+//! An effect states what ideal sensors measure of a true motion ([`Effect::measure`]). This module solves for the true
+//! motion, so that the equation is written once.
 
 use super::base::Base;
 use super::signature::EffectTerm;
@@ -11,12 +11,12 @@ use crate::signals::central_difference;
 use nalgebra::Vector3;
 use std::borrow::Cow;
 
-/// Most passes of the fixed point: each leaves the effect's size (below 0.2) of the error before.
+/// Largest number of fixed-point passes. Each pass reduces the error by the effect's size (below 0.2).
 const PASSES: usize = 8;
-/// What agrees with what was shown to this is found, SI.
+/// Largest difference from the measurement at which the motion counts as found, SI. Far below any sensor's noise.
 const FOUND: f64 = 1e-9;
 
-/// Acts on nothing but what the sensors show.
+/// Whether an effect acts only on the measurements.
 pub(super) fn is_of_sensors(effect: &dyn Effect) -> bool {
     effect.hooks() == [Hook::Sensors]
 }
@@ -35,7 +35,7 @@ pub(super) fn true_motion<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [Tra
     Cow::Owned(flights.iter().map(moved).collect())
 }
 
-/// The same where only the readings of force and momentum are asked for.
+/// The same if only the measurements of force and momentum are needed.
 pub(super) fn true_readings<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [Trace]> {
     let faults = faults(base);
     if faults.is_empty() {
@@ -93,7 +93,7 @@ fn undone(trace: &Trace, faults: &[&EffectTerm]) -> (Vec<State>, Option<Vec<Vect
     (states, shown_force.map(|_| force))
 }
 
-/// Unfiltered, rad/s^2: the weak form smooths what is made of it.
+/// Unfiltered angular acceleration, rad/s^2; the weak form smooths it.
 fn angular_acceleration(states: &[State], step_s: f64) -> Vec<Vector3<f64>> {
     let axes: [Vec<f64>; 3] = std::array::from_fn(|axis| {
         central_difference(&states.iter().map(|state| state.rates_rad_s[axis]).collect::<Vec<_>>(), step_s)

@@ -8,7 +8,7 @@ use super::words::{norm, plain, range, said};
 use crate::text::{significant, spoken, with_error};
 use crate::vehicle::Vehicle;
 
-/// What was left out, as a clause that begins with a capital and ends without a full stop.
+/// A named effect as a clause that begins with a capital and ends without a full stop.
 #[must_use]
 pub fn clause(named: &Named, vehicle: &Vehicle) -> String {
     match signature_of(named.id).map(|signature| signature.words.clause) {
@@ -32,13 +32,13 @@ fn in_general(named: &Named) -> String {
     format!("{} ({})", named.sentence.trim_end_matches('.'), values.join(", "))
 }
 
-/// How an effect is called in a list.
+/// The name of an effect in a list.
 #[must_use]
 pub fn called(id: &str) -> &str {
     signature_of(id).map_or(id, |signature| signature.words.noun)
 }
 
-/// Name and, where `with_size` says so, size: `drag (0.41 +- 0.02 N per m/s)`.
+/// Name and, with `with_size`, size: `drag (0.41 +- 0.02 N per m/s)`.
 #[must_use]
 pub fn brief(named: &Named, vehicle: &Vehicle, with_size: bool) -> String {
     let signature = signature_of(named.id);
@@ -51,7 +51,7 @@ pub fn brief(named: &Named, vehicle: &Vehicle, with_size: bool) -> String {
     }
 }
 
-/// The number by which the effect is known, with its unit.
+/// The size of the effect with its unit, as text.
 fn size(named: &Named, signature: Option<&Signature>) -> Option<String> {
     match signature.map_or(Size::First, |signature| signature.words.size) {
         Size::Axes => Some(range(named)),

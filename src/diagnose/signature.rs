@@ -1,4 +1,4 @@
-//! What the diagnosis knows of an effect beside its equation: one value of [`Signature`] an effect.
+//! Knowledge of the diagnosis about an effect, in addition to its equation: one [`Signature`] an effect.
 
 use super::channels::Nuisance;
 use super::recorded::{Need, Recorded};
@@ -6,15 +6,15 @@ use super::wording::Words;
 use crate::physics::Effect;
 use crate::vehicle::Vehicle;
 
-/// What the diagnosis knows of an effect. Data and small functions; nothing else in the diagnosis, the report or the
-/// commands asks for an effect by its identifier.
+/// Knowledge of the diagnosis about an effect: data and small functions. Nothing else in the diagnosis, the report or
+/// the commands depends on an effect's identifier.
 #[derive(Debug)]
 pub struct Signature {
     /// the equation
     pub effect: &'static dyn Effect,
-    /// what a flight has to hold for the effect to be tried
+    /// requirements on a flight for the effect to be tested
     pub needs: &'static [Need],
-    /// slots of the values that say how much of the effect there is; the others say what it is like
+    /// slots of the values that are amounts of the effect; the others describe its form
     pub amounts: &'static [usize],
     /// how the effect grows with its amount
     pub growth: Growth,
@@ -22,20 +22,20 @@ pub struct Signature {
     pub nothing: f64,
     /// forms that the search tries
     pub forms: fn(&Recorded) -> Vec<Form>,
-    /// how the search goes on once a form is taken
+    /// how the search continues once a form is taken
     pub refinement: Refinement,
-    /// what is asked of it before it is named
+    /// conditions of its name
     pub naming: Naming,
-    /// through what it acts, and what it shares with other effects
+    /// how it acts, and its relations to other effects
     pub role: Role,
-    /// how it is fitted where the user asks for it
+    /// how it is fitted by `--with`
     pub joint: Joint,
-    /// what a person reads
+    /// its words in reports
     pub words: Words,
 }
 
 impl Signature {
-    /// A signature with nothing special: every parameter is an amount, tried from zero in one form.
+    /// A signature with the defaults: every parameter is an amount, tested from zero in one form.
     #[must_use]
     pub const fn of(effect: &'static dyn Effect, amounts: &'static [usize], words: Words) -> Self {
         Self {
@@ -71,7 +71,7 @@ impl Signature {
         Form { term: self.term(values, free), instead_of_nuisance: false }
     }
 
-    /// All parameters from zero, all estimated.
+    /// The effect with all parameters at zero and all of them estimated.
     #[must_use]
     pub fn whole(&'static self) -> EffectTerm {
         let count = self.effect.parameters().len();
@@ -79,10 +79,10 @@ impl Signature {
     }
 }
 
-/// How an effect grows with its amount.
+/// Dependence of an effect on its amount.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Growth {
-    /// in proportion
+    /// proportional to it
     Proportional,
     /// with the inverse of the amount; `usual` is an amount that was measured
     Inverse {
@@ -94,13 +94,13 @@ pub enum Growth {
 /// A form in which the search tries an effect.
 #[derive(Debug, Clone)]
 pub struct Form {
-    /// start values, and what of them is estimated
+    /// start values, and which of them are estimated
     pub term: EffectTerm,
-    /// a nuisance stands for small sizes of it: it is tested without that nuisance, and only when nothing else passes
+    /// a nuisance models small sizes of it: the effect is tested without that nuisance, and only if nothing else passes
     pub instead_of_nuisance: bool,
 }
 
-/// A value that lies on a grid, its first step and where refining ends.
+/// A value on a grid, with its first step and the last step of its refinement.
 #[derive(Debug, Clone, Copy)]
 pub enum GridScale {
     /// steps in the value's unit
@@ -123,14 +123,14 @@ pub enum GridScale {
     },
 }
 
-/// How the search goes on once a form is taken.
+/// How the search continues once a form is taken.
 #[derive(Debug, Clone, Copy)]
 pub struct Refinement {
-    /// a value that is tried on a grid is brought between the grid's points
+    /// a value that is tested on a grid is refined between the grid's points
     pub grid: Option<GridScale>,
-    /// that is done before the test: neighbours on the grid explain too little of it
+    /// the refinement precedes the test, because neighbours on the grid explain too little of the effect
     pub grid_before_test: bool,
-    /// slots that are estimated from then on
+    /// slots that are estimated after the form was accepted
     pub freed: fn(&EffectTerm) -> Vec<usize>,
     /// slots that are estimated at the end, in place of those before
     pub freed_last: &'static [usize],
@@ -156,26 +156,26 @@ pub fn first_finer(term: &EffectTerm) -> Vec<usize> {
     if term.values.len() > finer { vec![finer] } else { Vec::new() }
 }
 
-/// What is asked of an effect before it is named.
+/// Conditions of an effect's name.
 #[derive(Debug, Clone, Copy)]
 pub struct Naming {
-    /// size (norm of the amounts) up to which every vehicle has it
+    /// size (norm of the amounts) that ordinary vehicles have: up to it there is no name
     pub ordinary: Option<f64>,
-    /// size of all parameters below which it stays in the model and gets no name
+    /// norm of all parameters below which it stays in the model without a name
     pub least: f64,
-    /// whether it is like any vehicle's beside the others of the model, whatever its size
+    /// whether it is ordinary in the presence of the other effects of the model, whatever its size
     pub is_ordinary: fn(&EffectTerm, &[EffectTerm]) -> bool,
-    /// added to the normal deviate that is asked for: it is tried at many values, the likeliest of which counts
+    /// added to the least normal deviate, because the effect is tried at many values and the most likely one counts
     pub extra_z: f64,
-    /// every rotor has it: a twentieth of the family-wise chance is its share
+    /// every vehicle has it: its share of the family-wise p-value is a twentieth
     pub ubiquitous: bool,
-    /// greatest amount that is possible, where it is less than the parameter's bound
+    /// greatest possible amount, if it is less than the parameter's bound
     pub most: Option<f64>,
-    /// standard error that no flight gets below, in the amounts' unit
+    /// least standard error, in the amounts' unit
     pub least_std: f64,
-    /// size on ordinary vehicles of what shows only where the vehicle moves
+    /// size on ordinary vehicles of an effect that appears only in motion
     pub usual: fn(&str, &Vehicle) -> Option<f64>,
-    /// whether a parameter that is held belongs to what is said
+    /// whether a fixed parameter is reported
     pub says: fn(&EffectTerm, usize) -> bool,
     /// whether a form has a smallest size that would have been named
     pub has_limit: fn(&EffectTerm) -> bool,
@@ -206,42 +206,42 @@ pub enum LatencyKind {
     Delay,
 }
 
-/// Through what an effect acts, and what it shares with other effects.
+/// How an effect acts, and its relations to other effects.
 #[derive(Debug, Clone, Copy)]
 pub struct Role {
     /// acts through the latency and has no columns of its own
     pub latency: Option<LatencyKind>,
-    /// a force of the air, through which wind shows
+    /// an aerodynamic force, through which wind acts
     pub of_air: bool,
     /// N/(m/s) of lateral drag for one of the first two parameters, at a mean airspeed, m/s
     pub lateral_slope: Option<fn(f64) -> f64>,
     /// slot of the drag along body z that is linear in the airspeed
     pub axial: Option<usize>,
-    /// slot through which wind along body z shows
+    /// slot of the drag through which wind along body z acts
     pub vertical: Option<usize>,
-    /// the law along body z of this other effect: for readers one drag where both agree
+    /// it has the law of this other effect along body z: both are reported as one drag if they agree
     pub axial_part_of: Option<&'static dyn Effect>,
-    /// it is the wind, world, m/s: the forms in which it is tried together with the drag that carries it
+    /// it is the wind (world, m/s): the forms in which it is tested together with the drag through which it acts
     pub wind: Option<fn() -> Vec<Carried>>,
-    /// slot that tells apart several of the same effect (which rotor)
+    /// slot that distinguishes instances of the same effect (which rotor)
     pub which: Option<usize>,
-    /// what damps the rotation where a drag acts at the centre of mass
+    /// the effect that damps the rotation if a drag acts at the centre of mass
     pub damped_by: Option<fn() -> EffectTerm>,
-    /// columns that resemble a latency's
+    /// an effect whose columns resemble those of a latency
     pub like_latency: Option<fn() -> EffectTerm>,
     /// shortens the latency that is found without it
     pub shortens_latency: bool,
-    /// hangs below: it is no part of the vehicle's mass
+    /// it hangs below the vehicle and is not part of the vehicle's mass
     pub hangs_below: bool,
-    /// slot of the moment at which it happens, s
+    /// slot of the time at which it happens, s
     pub moment: Option<usize>,
-    /// the day's, not the vehicle's
+    /// it belongs to the day, not to the vehicle
     pub of_the_day: bool,
     /// depends on how the vehicle moves
     pub by_motion: bool,
-    /// the nuisance that stands for small sizes of it
+    /// whether a nuisance models small sizes of it
     pub stands_for: fn(&EffectTerm, Nuisance) -> bool,
-    /// the inertial unit is turned against the body
+    /// it rotates the inertial unit against the body
     pub turns_inertial_unit: bool,
 }
 
@@ -271,35 +271,35 @@ impl Role {
 /// An effect that acts through another one.
 #[derive(Debug, Clone)]
 pub struct Carried {
-    /// the other one, to be estimated with it
+    /// the other effect, estimated together with it
     pub carrier: EffectTerm,
-    /// the other one at a strength of one unit, about which the columns are
+    /// the other effect at one unit, at which the columns are computed
     pub unit: EffectTerm,
     /// the effect
     pub term: EffectTerm,
 }
 
-/// Why a parameter that was neither estimated nor held is what it is.
+/// Why a parameter that is neither estimated nor held has its value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Whence {
     /// set
     Given(String),
-    /// the flight does not say
+    /// not determined by the flight, with the reason
     NotDetermined(&'static str),
 }
 
-/// Forms of an effect for the flights, given all effects that are asked for.
+/// Forms of an effect for the flights, given all effects of `--with`.
 pub type JointForms = fn(&Recorded, &[&'static Signature]) -> Vec<EffectTerm>;
 
-/// How an effect is fitted where the user asks for it.
+/// How an effect is fitted by `--with`.
 #[derive(Debug, Clone, Copy)]
 pub struct Joint {
-    /// forms, the likeliest of which is taken; the effects are all that are asked for. `None`: one form, all
-    /// parameters from zero
+    /// forms, of which the most likely is taken, given all effects of `--with`. `None`: one form, all parameters from
+    /// zero
     pub forms: Option<JointForms>,
-    /// why a parameter is what it is
+    /// why a parameter has its value
     pub whence: fn(&EffectTerm, usize, &Vehicle, &[&'static Signature]) -> Option<Whence>,
-    /// force and torque are no function of its parameters
+    /// force and torque are not a function of its parameters
     pub is_irregular: bool,
 }
 
@@ -308,7 +308,7 @@ impl Joint {
     pub const PLAIN: Self = Self { forms: None, whence: |_, _, _, _| None, is_irregular: false };
 }
 
-/// An effect with its values, and which of them are estimated: a term of the model.
+/// A term of the model: an effect with its values, and which of them are estimated.
 #[derive(Debug, Clone)]
 pub struct EffectTerm {
     /// which effect

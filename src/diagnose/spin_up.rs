@@ -19,7 +19,7 @@ use nalgebra::{Matrix3, Vector3, Vector4};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SpinUp {
     jr_kg_m2: f64,
-    /// of yaw torque behind the motion's, s
+    /// time constant `L` of the yaw torque, s
     lag_s: f64,
 }
 
@@ -33,8 +33,8 @@ impl SpinUp {
         lag_s.is_finite().then_some(Self { jr_kg_m2, lag_s })
     }
 
-    /// Puts the torque of spinning up (N m about z) in place of the one that `effects` (`[Fz tau]` beside the
-    /// rotors' own) have of `motion`.
+    /// Replaces the spin-up torque (N m about z) in `effects` (`[Fz tau]` in addition to the rotors' own), computed
+    /// from `motion`, by the one of this lag.
     pub(super) fn share(
         &self,
         trace: &Trace,
@@ -59,7 +59,7 @@ impl SpinUp {
         }
     }
 
-    /// What the effect itself makes of the rotors' motion about z, N m.
+    /// Torque of the effect itself for the rotors' motion, about z, N m.
     fn torque_nm(&self, airframe: &Airframe, state: &State, motion: &RotorMotion, index: usize) -> f64 {
         let input = Input::from_commands(airframe, 0.0, &[]);
         let at = Condition::new(airframe, state, &input, Vector3::zeros());

@@ -1,4 +1,4 @@
-//! What a search tried, took and ended with.
+//! Candidates, steps and result of a search.
 
 use super::candidates::Candidate;
 use super::evidence::Evidence;
@@ -10,7 +10,7 @@ use super::latency::LatencyFinding;
 pub struct Tested {
     /// which
     pub candidate: Candidate,
-    /// its coefficients in order of the parts' free parameters
+    /// its coefficients in the order of the parts' free parameters
     pub evidence: Evidence,
 }
 
@@ -26,9 +26,9 @@ impl Tested {
 /// One accepted step.
 #[derive(Debug, Clone)]
 pub struct Step {
-    /// what was taken
+    /// the accepted candidate
     pub taken: Tested,
-    /// others that would have passed, with their evidence
+    /// other candidates that would have passed
     pub rivals: Vec<Tested>,
 }
 
@@ -42,17 +42,17 @@ impl Step {
     }
 }
 
-/// Where the search ended.
+/// Result of a search.
 #[derive(Debug, Clone)]
 pub struct Search {
     /// rigid body alone, with its latency
     pub before: Fitted,
-    /// with all that was accepted
+    /// with all accepted effects
     pub after: Fitted,
-    /// between command and rotor
+    /// latency between command and rotor
     pub latency: LatencyFinding,
     /// in the order in which they were taken
     pub steps: Vec<Step>,
-    /// every candidate about the final base
+    /// every candidate at the final base
     pub last: Vec<Tested>,
 }

@@ -1,4 +1,5 @@
-//! One flight as the weak form sees it: measured states, and the rotor thrusts in two readings.
+//! One flight for the weak form: measured states, and the rotor thrusts in two versions, from commands and from the
+//! motion.
 
 use super::rotors::{RotorMotion, Thrusts, felt};
 use crate::physics::{ActuationLatency, Airframe, MAX_ROTORS, State};
@@ -9,7 +10,7 @@ use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
 use std::ops::Range;
 
-/// Zero-phase low-pass of what enters regressors, Hz.
+/// Cut-off of the zero-phase low-pass of the regressors' signals, Hz. Chosen; not measured.
 const SMOOTH_HZ: f64 = 6.0;
 
 /// A flight prepared for diagnosis. Series have one entry a grid instant.
@@ -25,29 +26,30 @@ pub struct Trace {
     pub centers: Vec<usize>,
     /// rows without a break between them
     pub runs: Vec<Range<usize>>,
-    /// measured; what was not recorded is zero (attitude: level)
+    /// measured states; parts that were not recorded are zero (attitude: level)
     pub states: Vec<State>,
-    /// what is measured of the state
+    /// parts of the state that are measured
     pub known: Known,
     /// V
     pub voltage_v: Option<Vec<f64>>,
-    /// the thrusts rest on measured rotor speeds: nothing between command and speed shows
+    /// thrusts are computed from measured rotor speeds: effects between command and speed are not visible
     pub measured_speeds: bool,
     /// rad/s, white noise of the gyroscopes, largest axis
     pub gyro_noise_rad_s: f64,
     /// s between commands (or measured speeds) as logged
     pub command_period_s: f64,
-    /// s, by which the inertial unit's readings are later than attitude and velocity both: its filters' delay
+    /// s, delay of the inertial unit relative to both attitude and velocity: that of its filters
     pub inertial_late_s: f64,
-    /// s, by which attitude and velocity disagree about that, or by which the attitude alone is earlier
+    /// s, uncertainty of this delay: the difference of attitude and velocity, or the advance of the attitude alone
     pub inertial_unsure_s: f64,
     /// m/s^2, body, accelerometer
     specific_force_m_s2: Option<Vec<Vector3<f64>>>,
     /// N, as commanded (or measured), each rotor
     commanded_n: Vec<Thrusts>,
-    /// N, N m: what the commands' jitter adds if the rotors follow all of it
+    /// N, N m: contribution of the commands' jitter if the rotors follow all of it
     pub jitter: Option<Vec<Vector4<f64>>>,
-    /// zero-phase, of body rates (rad/s), their derivative (rad/s^2) and specific force z (m/s^2)
+    /// zero-phase low-pass of body rates, rad/s; the next two are their derivative, rad/s^2, and the specific force
+    /// along z, m/s^2
     smooth_rate: Vec<Vector3<f64>>,
     smooth_turning: Vec<Vector3<f64>>,
     smooth_lift: Vec<f64>,
@@ -68,7 +70,7 @@ pub struct Known {
     pub position: bool,
 }
 
-/// Why a flight cannot be diagnosed.
+/// Errors of a flight that cannot be diagnosed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TraceError {
     /// no gyroscope
@@ -91,7 +93,7 @@ pub enum TraceError {
 }
 
 impl Trace {
-    /// From conditioned signals.
+    /// Prepares a flight from conditioned signals.
     ///
     /// # Errors
     /// [`TraceError`] where rates, forces or rotor thrusts are not known.
@@ -181,12 +183,12 @@ impl Trace {
         Ok(trace)
     }
 
-    /// The same where only the readings of force and momentum are asked for: what is smoothed stays as it was.
+    /// The same if only the measurements of force and momentum are needed; smoothed series stay as they were.
     pub(super) fn reading(&self, states: Vec<State>, specific_force_m_s2: Option<Vec<Vector3<f64>>>) -> Self {
         Self { states, specific_force_m_s2, ..self.clone() }
     }
 
-    /// What the accelerometer showed, m/s^2, body; `None` where it is not recorded.
+    /// Measured specific force, m/s^2, body; `None` without an accelerometer.
     pub(super) fn specific_force_m_s2(&self) -> Option<&[Vector3<f64>]> {
         self.specific_force_m_s2.as_deref()
     }
@@ -239,14 +241,13 @@ impl Trace {
         self.specific_force_m_s2.is_some()
     }
 
-    /// By accelerometer and by kinematics.
+    /// Whether the force is measured both by accelerometer and by kinematics.
     #[must_use]
     pub fn reads_force_twice(&self) -> bool {
         self.has_accelerometer() && self.known.attitude && self.known.velocity
     }
 
-    /// `K` of the specific force that the body felt, m/s^2, body: each reading there is, the
-    /// accelerometer's first.
+    /// `K` of the specific force, m/s^2, body, for each available measurement, the accelerometer's first.
     #[must_use]
     pub fn weak_specific_force(&self) -> Vec<[Vec<f64>; 3]> {
         let measured = self.specific_force_m_s2.as_ref().map(|force| self.weak_vector(0, force));
@@ -274,7 +275,7 @@ impl Trace {
         Ok(())
     }
 
-    /// Specific force by differentiation, body, m/s^2: only for use behind the low-pass.
+    /// Specific force by differentiation, body, m/s^2; only for use behind the low-pass.
     fn kinematic_force(&self) -> Vec<Vector3<f64>> {
         let velocity: Vec<Vec<f64>> =
             (0..3).map(|axis| self.states.iter().map(|s| s.velocity_m_s[axis]).collect()).collect();
@@ -289,13 +290,13 @@ impl Trace {
             .collect()
     }
 
-    /// What the rotors gave by their commands, N, after the latency.
+    /// Rotor thrusts from the commands, N, behind the latency.
     #[must_use]
     pub fn felt_n(&self, airframe: &Airframe, latency: ActuationLatency) -> Vec<Thrusts> {
         felt(&self.commanded_n, airframe, self.grid.step_s, latency)
     }
 
-    /// What the rotors gave by their commands, N, after the latency: raw, and smoothed for regressors.
+    /// Rotor thrusts from the commands, N, behind the latency: raw, and smoothed for regressors.
     #[must_use]
     pub fn by_commands(&self, airframe: &Airframe, latency: ActuationLatency) -> (Vec<Thrusts>, RotorMotion) {
         let felt = self.felt_n(airframe, latency);
@@ -313,8 +314,8 @@ impl Trace {
         (felt, turning)
     }
 
-    /// The commanded thrusts that, with `effects` (N, N m beside the rotors' own wrench; `[Fz tau]`), give
-    /// the motion that was measured: they hold the noise of the motion, not of the commands.
+    /// Rotor thrusts that, together with `effects` (N, N m in addition to the rotors' own wrench; `[Fz tau]`), give the
+    /// measured motion. They contain the noise of the motion, not that of the commands.
     #[must_use]
     pub fn by_motion(
         &self,
@@ -345,7 +346,7 @@ impl Trace {
         out
     }
 
-    /// Torque that the measured turning takes, `J w' + w x J w`, smoothed, body, N m.
+    /// Torque that the measured rotation needs, `J w' + w x J w`, smoothed, body, N m.
     #[must_use]
     pub fn turning_torque(&self, inertia: &Matrix3<f64>) -> Vec<Vector3<f64>> {
         self.smooth_rate
@@ -362,8 +363,8 @@ fn gyro_noise_rad_s(rates: &[Vector3<f64>]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// s by which the inertial unit is late, and by which that is uncertain: what attitude and velocity have in common when
-/// both are early. Where the velocity is not, the attitude's own stamps may be to blame as well.
+/// Delay of the inertial unit and its uncertainty, s: the common part if attitude and velocity are both early. If only
+/// the attitude is early, its own time stamps may be the cause.
 fn inertial_late(signals: &Signals) -> (f64, f64) {
     let attitude_s = early_s(signals, Quantity::Attitude);
     match attitude_s.zip(early_s(signals, Quantity::Velocity)) {
@@ -374,14 +375,14 @@ fn inertial_late(signals: &Signals) -> (f64, f64) {
     }
 }
 
-/// By how much a quantity's stamps precede the inertial unit's. One that is early was not foreseen: the
-/// gyroscopes are late.
+/// Advance of a quantity's time stamps relative to the inertial unit's, s, negative if they are late; `None` if the
+/// offset was not corrected. An early quantity means that the gyroscopes are late.
 fn early_s(signals: &Signals, of: Quantity) -> Option<f64> {
     let offset = signals.quality.offsets.iter().find(|(quantity, _)| *quantity == of);
     offset.filter(|(_, offset)| offset.repaired).map(|(_, offset)| -offset.late_s)
 }
 
-/// Of the stream that the thrusts rest on.
+/// Sampling period of the stream from which the thrusts are computed, s.
 fn command_period_s(signals: &Signals) -> f64 {
     let of_thrust = |quantity: Quantity| matches!(quantity, Quantity::ActuatorCommand | Quantity::RotorSpeed);
     let rate_hz =

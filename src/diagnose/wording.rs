@@ -1,4 +1,4 @@
-//! How an effect is said.
+//! Words of an effect in reports.
 
 use super::named::Named;
 use crate::vehicle::Vehicle;
@@ -10,35 +10,35 @@ pub enum Clause {
     OneNumber {
         /// parameter
         parameter: &'static str,
-        /// brings it to the unit that is said
+        /// factor for the displayed unit
         factor: f64,
         /// words before the number
         before: &'static str,
         /// and after it
         after: &'static str,
     },
-    /// in its own words
+    /// text of its own
     Own(fn(&Named, &Vehicle) -> String),
     /// the effect's sentence with its values
     Sentence,
 }
 
-/// What a person reads.
+/// Words of an effect in reports.
 #[derive(Debug, Clone, Copy)]
 pub struct Words {
-    /// how it is called in a list
+    /// its name in a list
     pub noun: &'static str,
-    /// how one that was named is called in a list, where that says more
+    /// its name in a list once it is named, if that is more specific
     pub noun_of: Option<fn(&Named, &Vehicle) -> String>,
     /// with its numbers
     pub clause: Clause,
-    /// the number by which it is known, with its unit
+    /// its size with the unit
     pub size: Size,
     /// the smallest size (in its unit) that would have been named, in words
     pub limit: Option<fn(f64) -> String>,
-    /// place among the effects that are told first where nothing is missing
+    /// rank among the effects whose limits are reported first if nothing is missing
     pub told_if_absent: Option<usize>,
-    /// place among the effects that everybody expects of a vehicle that moves
+    /// rank among the effects that are expected of every vehicle in motion
     pub expected_in_motion: Option<usize>,
 }
 
@@ -58,7 +58,7 @@ impl Words {
     }
 }
 
-/// The number by which an effect is known.
+/// The size of an effect.
 #[derive(Debug, Clone, Copy)]
 pub enum Size {
     /// the first parameter
@@ -67,9 +67,9 @@ pub enum Size {
     Axes,
     /// norm of all parameters that have a unit, times a factor, with as many digits
     Norm {
-        /// brings it to the unit that is said
+        /// factor for the displayed unit
         factor: f64,
-        /// unit as it is said
+        /// displayed unit
         unit: &'static str,
         /// significant digits
         digits: i32,
@@ -78,11 +78,11 @@ pub enum Size {
     Of {
         /// which
         parameter: &'static str,
-        /// brings it to the unit that is said
+        /// factor for the displayed unit
         factor: f64,
-        /// unit as it is said
+        /// displayed unit
         unit: &'static str,
     },
-    /// in its own words
+    /// text of its own
     Own(fn(&Named) -> Option<String>),
 }

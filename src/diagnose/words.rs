@@ -3,8 +3,8 @@
 use super::named::{Named, NamedParameter};
 use crate::text::{significant, spoken, with_error};
 
-/// One number where the axes agree within two standard errors, else one an axis; of the parameters that `names` gives
-/// for x, y and z.
+/// One number if the axes agree within two standard errors, otherwise one for each axis, of the parameters `names` for
+/// x, y and z.
 #[must_use]
 pub fn axes(named: &Named, names: &[&str], unit: &str) -> String {
     const AXES: [&str; 3] = ["x", "y", "z"];
@@ -31,7 +31,7 @@ fn common(parameters: &[&NamedParameter]) -> Option<(f64, f64)> {
     (alike && weight.is_finite()).then(|| (mean, weight.powf(-0.5)))
 }
 
-/// One number where the axes agree within two standard errors, else the least and the greatest.
+/// One number if the axes agree within two standard errors, otherwise the least and the greatest.
 #[must_use]
 pub fn range(named: &Named) -> String {
     let Some(first) = named.parameters.first() else { return String::new() };
@@ -51,14 +51,14 @@ pub fn norm(named: &Named) -> f64 {
     named.parameters.iter().filter(|p| p.unit != "-").map(|p| p.value * p.value).sum::<f64>().sqrt()
 }
 
-/// Value and standard error where that needs no parentheses.
+/// Value and standard error without parentheses.
 #[must_use]
 pub fn plain(value: f64, std: f64) -> String {
     let text = with_error(value, std);
     if text.starts_with('(') { significant(value, 3) } else { text }
 }
 
-/// A parameter in the unit in which it is said, which `factor` brings it to.
+/// A parameter multiplied by `factor`, with the displayed unit.
 #[must_use]
 pub fn said(named: &Named, name: &str, factor: f64, unit: &str) -> Option<String> {
     let p = named.get(name)?;

@@ -1,4 +1,4 @@
-//! What sets the scale: only force per mass can come out of a flight.
+//! The scale of an estimate: a flight determines only force per mass.
 
 use super::identify::Identification;
 use super::nominal::Nominal;
@@ -7,7 +7,7 @@ use super::theta::{THETA, Theta, ThetaCovariance, theta_of};
 use crate::vehicle::{Anchor, Guessed, ThrustLaw, Vehicle};
 use nalgebra::SMatrix;
 
-/// How much stronger the rotors are than the vehicle file says, where the mass was weighed.
+/// Thrust of the rotors relative to the vehicle file, if the mass was weighed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThrustScale {
     /// factor on thrust (-), with its standard error
@@ -20,11 +20,11 @@ pub struct ThrustScale {
     pub unit: &'static str,
 }
 
-/// Puts every method's result on the scale that the vehicle's anchor sets.
+/// Brings every method's result to the scale of the vehicle's anchor.
 ///
-/// Under [`Anchor::Thrust`] nothing changes. Under [`Anchor::Mass`] the estimates, made with the stated
-/// thrust, shrink or grow by `m_weighed / m_estimated`: the mass is the weighed one, and the thrust
-/// coefficient is what was identified. Izz follows only as far as torque per thrust is known.
+/// [`Anchor::Thrust`] changes nothing. With [`Anchor::Mass`] the estimates, made with the stated thrust, are multiplied
+/// by `m_weighed / m_estimated`: the mass is the weighed one, and the thrust coefficient is identified. The scale of
+/// Izz is only as good as the stated torque per thrust.
 pub fn apply_anchor(identification: &mut Identification, vehicle: &Vehicle) -> Option<ThrustScale> {
     if vehicle.anchor == Anchor::Thrust {
         return None;
@@ -56,7 +56,7 @@ pub fn apply_anchor(identification: &mut Identification, vehicle: &Vehicle) -> O
     Some(scale)
 }
 
-/// On the scale of a weighed mass: `Theta' = Theta m_w / m`, its covariance by the chain rule.
+/// Estimate on the scale of a weighed mass: `Theta' = Theta m_w / m`, with its covariance by the chain rule.
 #[must_use]
 pub fn rescaled(estimated: &Estimated, weighed_kg: f64) -> Estimated {
     let factor = weighed_kg / estimated.theta[0];
@@ -69,7 +69,7 @@ pub fn rescaled(estimated: &Estimated, weighed_kg: f64) -> Estimated {
     Estimated { theta, covariance, explained: estimated.explained }
 }
 
-/// By how much the rotors are stronger than stated, if the mass is the vehicle's weighed one.
+/// Factor of the rotors' thrust over the stated one, with the vehicle's weighed mass.
 #[must_use]
 pub fn thrust_scale(best: &MethodResult, vehicle: &Vehicle) -> ThrustScale {
     let (name, unit, stated) = match vehicle.propulsion.law {
@@ -91,7 +91,7 @@ pub fn thrust_scale(best: &MethodResult, vehicle: &Vehicle) -> ThrustScale {
     }
 }
 
-/// The vehicle with what was determined put in; what was not keeps its nominal value.
+/// The vehicle with the determined parameters; others keep their nominal values.
 #[must_use]
 pub fn identified_vehicle(vehicle: &Vehicle, best: &MethodResult, scale: Option<&ThrustScale>) -> Vehicle {
     let mut theta = theta_of(&vehicle.body);

@@ -1,4 +1,4 @@
-//! Takes a latency that was found out of what was commanded.
+//! Compensation of the commands for an estimated latency.
 
 use super::weak::{Latency, LatencyKind};
 use crate::physics::{ActuationLatency, delayed_thrusts_n, delayed_wrench};
@@ -6,15 +6,15 @@ use crate::signals::{Signals, ThrustSource};
 use crate::vehicle::Vehicle;
 use nalgebra::{DVector, Vector4};
 
-/// A latency within this many standard errors of the stated lag agrees with it.
+/// Standard errors within which an estimated latency agrees with the stated lag. Chosen; not measured.
 const AGREES: f64 = 4.0;
-/// A latency whose kind the flight does not show agrees with the stated lag within this many standard errors.
+/// The same for a latency whose kind the flight does not determine. Chosen; not measured.
 const LEANS: f64 = 2.0;
-/// The sampling of the log adds this much to both, s.
+/// Largest contribution of the log's sampling to both, s. Chosen; not measured.
 const SAMPLED_S: f64 = 0.005;
 
-/// How a latency is shared out. A lag that agrees with the one that the vehicle's description states is as uneven as that,
-/// and of two kinds that cannot be told apart the one that is stated so.
+/// Division of a latency into delay and lag. A lag that agrees with the one of the vehicle file has its ratio of rising
+/// and falling time constants. If the two kinds cannot be distinguished, the one that the file states is taken.
 pub(super) fn compensation(found: &Latency, vehicle: &Vehicle) -> ActuationLatency {
     let none = ActuationLatency::default();
     let stated_s = vehicle.propulsion.mean_time_constant_s().unwrap_or(0.0);
@@ -32,8 +32,8 @@ pub(super) fn compensation(found: &Latency, vehicle: &Vehicle) -> ActuationLaten
     }
 }
 
-/// The lag that the vehicle's description states, where the flight is by commands and speaks neither for a latency nor
-/// against that one; none otherwise.
+/// The lag of the vehicle file, if thrust is from commands and the flight neither shows a latency nor contradicts the
+/// stated lag; none otherwise.
 pub(super) fn as_stated(found: &Latency, vehicle: &Vehicle, flights: &[Signals]) -> ActuationLatency {
     let none = ActuationLatency::default();
     let by_commands = flights.iter().all(|signals| signals.quality.thrust_source == ThrustSource::Command);
@@ -45,7 +45,7 @@ pub(super) fn as_stated(found: &Latency, vehicle: &Vehicle, flights: &[Signals])
     }
 }
 
-/// Puts what was commanded behind the latency: the wrench is then what the body felt.
+/// Delays the commands by the latency: the wrench is then that on the body.
 pub(super) fn take_out(signals: &mut Signals, vehicle: &Vehicle, latency: ActuationLatency) {
     let step_s = signals.grid.step_s;
     if let Some(jitter) = &mut signals.jitter_wrench {
@@ -55,8 +55,8 @@ pub(super) fn take_out(signals: &mut Signals, vehicle: &Vehicle, latency: Actuat
         .unwrap_or_else(|| delayed_wrench(&signals.wrench, step_s, latency));
 }
 
-/// Of rotors that slow down more slowly than they speed up, less half of the jitter's, which is behind the latency already
-/// (N, N m); `None` where they do not, or where the log holds no rotors.
+/// Wrench of rotors that slow down more slowly than they speed up, minus half of that of the jitter, which is behind
+/// the latency already (N, N m). `None` for symmetric rotors, or if the log has no rotor commands.
 fn uneven_wrench(
     signals: &Signals,
     vehicle: &Vehicle,

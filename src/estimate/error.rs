@@ -1,6 +1,6 @@
-//! Why nothing could be identified.
+//! Errors of the identification.
 
-/// Why nothing could be identified.
+/// Errors of the identification.
 #[derive(Debug, thiserror::Error)]
 pub enum EstimateError {
     /// no usable rows

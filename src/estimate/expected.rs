@@ -1,17 +1,17 @@
-//! The covariance that an estimate will have, from noises that are known before it is made.
+//! The expected covariance of an estimate, from known noises.
 
 use super::problem::{Channel, Normal, Problem};
 use nalgebra::DMatrix;
 
-/// One noise, and the equations whose rows it reaches: what reaches several makes their errors go together.
+/// A noise and the equations that it affects. A noise in several equations correlates their errors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseTerm {
     /// over row lags from 0 on, zero beyond its end; its own unit squared
     pub autocovariance: Vec<f64>,
-    /// channel, and the factor by which it comes into each of its rows, the output's unit over its own; empty where that is 1
+    /// channel, and its factor in each of the channel's rows, in units of the output over its own; empty if it is 1
     pub reaches: Vec<(usize, Vec<f64>)>,
-    /// what an offset that is estimated from the same rows adds to each of them, in parts of this noise's mean: -1 where it
-    /// takes the mean away, 0 where there is none
+    /// contribution of an offset that is estimated from the same rows, in parts of this noise's mean: -1 if the offset
+    /// removes the mean, 0 if there is none
     pub of_mean: f64,
 }
 
@@ -29,8 +29,8 @@ impl NoiseTerm {
 }
 
 impl Problem {
-    /// The covariance that the estimate will have over repeated flights, for noises that are known and independent. The rows
-    /// are those of one flight: an offset that is estimated from them is the flight's.
+    /// The expected covariance over repeated flights, for known and independent noises. The rows are those of one
+    /// flight: an offset that is estimated from them belongs to the flight.
     #[must_use]
     pub fn expected_covariance(&self, noise: &[NoiseTerm]) -> DMatrix<f64> {
         let shares: Vec<Normal> =

@@ -1,4 +1,4 @@
-//! All methods on one or several flights of a vehicle, and which of them to believe.
+//! All methods on one or several flights of a vehicle, and the recommended one.
 
 use super::compensate::{as_stated, compensation, take_out};
 use super::error::EstimateError;
@@ -17,7 +17,7 @@ use crate::regression::{SampledModel, WeakMotion, WeakRows, ZeroPhase, paper_mod
 use crate::signals::{Butterworth, Signals, ThrustSource, WeakKernel, WindowedFir, highest_harmonic_hz};
 use crate::vehicle::Vehicle;
 
-/// How the identification is done.
+/// Settings of the identification.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IdentifySettings {
     /// s, half width of the weak form's kernel
@@ -36,20 +36,20 @@ impl Default for IdentifySettings {
     }
 }
 
-/// What came out of it.
+/// Result of the identification.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identification {
-    /// one a method that could run
+    /// one result for each method that could be applied
     pub methods: Vec<MethodResult>,
-    /// which to believe
+    /// the recommended method
     pub best: Recommendation,
-    /// estimates along time of the paper's four methods
+    /// estimates over time of the paper's four methods
     pub histories: Vec<(Method, History)>,
-    /// how the body follows the command
+    /// latency from command to body
     pub latency: Option<Latency>,
-    /// s, what was taken out of the commands before the methods ran
+    /// s, latency that was corrected in the commands before the methods were applied
     pub compensated: ActuationLatency,
-    /// cut-off of the zero-phase low-pass, Hz, and what it follows from
+    /// cut-off of the zero-phase low-pass, Hz
     pub cutoff_hz: f64,
     /// the trajectory's highest harmonic, Hz, where it could be found
     pub highest_harmonic_hz: Option<f64>,
@@ -57,21 +57,21 @@ pub struct Identification {
     pub condition_number: Option<f64>,
     /// the same with columns scaled to unit length
     pub scaled_condition_number: f64,
-    /// N m, constant torque on the body about x, y, z that the rotors' nominal geometry leaves over
+    /// N m, constant torque about body x, y, z that remains with the rotors' nominal geometry
     pub trim_torque_nm: [f64; 3],
-    /// a rotor that gives less than its command says; taken out of everything else
+    /// a rotor with less thrust than commanded, corrected for all other results
     pub weak_rotor: Option<WeakRotor>,
     /// residual standard deviation of the weak form: N, N m
     pub residual: Vec<f64>,
-    /// which equation each of [`Self::residual`] belongs to
+    /// equation of each entry of [`Self::residual`]
     pub residual_channels: Vec<&'static str>,
     /// share of each of these equations' variance that the rigid body explains (-)
     pub explained: Vec<f64>,
     /// strength of the commanded trajectory as instrument: smallest first-stage F
     pub instrument_f: Option<f64>,
-    /// m/s^2, vertical accelerometer less kinematics, per flight
+    /// m/s^2, vertical specific force of the accelerometer minus that of the kinematics, for each flight
     pub accelerometer_bias: Vec<Option<f64>>,
-    /// why methods are missing, and other remarks
+    /// reasons for missing methods, and other remarks
     pub notes: Vec<Note>,
 }
 
@@ -109,7 +109,7 @@ pub fn identify(
     Ok(found)
 }
 
-/// With a rotor taken out that gives less than its command says, where there is one.
+/// Identifies with a correction for a weak rotor, if there is one.
 fn with_even_rotors(
     flights: &[Signals],
     vehicle: &Vehicle,
@@ -121,7 +121,8 @@ fn with_even_rotors(
     let mended = with_weak_rotor(flights, vehicle, &weak);
     let mut again = identify_evenly(&mended, vehicle, settings)?;
     let text = format!(
-        "the torque left over is that of rotor {} giving {:.3} +- {:.3} of its thrust: taken out, the other rotors set the scale",
+        "the remaining torque is that of rotor {} giving {:.3} +- {:.3} of its thrust: corrected, the other rotors \
+         set the scale",
         weak.name, weak.factor, weak.std
     );
     again.notes.push(Note::remark(About::Estimate, text));
@@ -129,7 +130,7 @@ fn with_even_rotors(
     Ok(again)
 }
 
-/// With every rotor as strong as its command says.
+/// Identifies with every rotor as strong as commanded.
 fn identify_evenly(
     flights: &[Signals],
     vehicle: &Vehicle,
@@ -195,12 +196,13 @@ fn identify_evenly(
     })
 }
 
-/// What the standard errors do not hold where thrust is from commands.
-const BY_COMMANDS: &str = "thrust from commands: what they do between two samples is not in the standard errors, which leaves mass and \
-                           moments uncertain by some tenths of a percent more; measured rotor speeds (ESC_STATUS) do not have this";
+/// Error that the standard errors do not include if thrust is computed from commands.
+const BY_COMMANDS: &str = "thrust from commands: the standard errors do not include the commands between two samples, \
+                           so mass and moments are uncertain by some tenths of a percent more; measured rotor speeds \
+                           (ESC_STATUS) do not have this";
 
-/// Ten times the highest harmonic, as the paper's lambda is (30 rad/s over 180 deg/s); 5 Hz where the
-/// trajectory is not known; never beyond a fifth of the sample rate.
+/// Default cut-off, Hz: ten times the highest harmonic, as in the paper (30 rad/s for 180 deg/s); 5 Hz if the
+/// trajectory is not known; at most a fifth of the sample rate.
 fn default_cutoff_hz(harmonic_hz: Option<f64>, rate_hz: f64) -> f64 {
     harmonic_hz.map_or(5.0, |f| (10.0 * f).clamp(2.0, 10.0)).min(0.2 * rate_hz)
 }
@@ -214,7 +216,7 @@ fn zero_phase(settings: &IdentifySettings, cutoff_hz: f64, rate_hz: f64) -> Resu
     filter.ok_or(EstimateError::Cutoff { cutoff_hz, rate_hz })
 }
 
-/// The weak form's view of the flights.
+/// The flights as rows of the weak form.
 struct WeakFlights {
     signals: Vec<Signals>,
     kernels: Vec<WeakKernel>,
@@ -249,8 +251,8 @@ impl WeakFlights {
             .collect();
     }
 
-    /// Estimates the latency on the untouched commands and takes it out of them, so that every method
-    /// sees the wrench that the body felt.
+    /// Estimates the latency with the original commands and corrects the commands for it, so that every method uses the
+    /// wrench on the body.
     fn compensate(&mut self, nominal: &Theta, vehicle: &Vehicle) -> (Option<Latency>, ActuationLatency) {
         let Some(found) = latency(&self.rows, nominal) else { return (None, ActuationLatency::default()) };
         let told = found.total_s.abs() > 4.0 * found.std_s && found.total_s.abs() < 0.3;
@@ -266,7 +268,7 @@ impl WeakFlights {
         (Some(found), compensation)
     }
 
-    /// Rows of the commanded trajectory; `None` (and why) where a flight has none.
+    /// Rows of the commanded trajectory; `None`, with a note, if a flight has none.
     fn instruments(&self, notes: &mut Vec<Note>) -> Option<Vec<WeakRows>> {
         let mut out = Vec::new();
         for (signals, kernel) in self.signals.iter().zip(&self.kernels) {
@@ -285,7 +287,7 @@ impl WeakFlights {
     }
 }
 
-/// The delay, in grid steps, at which the commanded rates resemble the measured ones most.
+/// The delay, in grid steps, with the largest correlation of commanded and measured rates.
 fn tracking_delay(
     rate: &[nalgebra::Vector3<f64>],
     commanded: &[nalgebra::Vector3<f64>],

@@ -1,26 +1,26 @@
-//! What windows of flight say together, when each was looked at alone and then let go.
+//! Combined information of windows of a flight that are evaluated one by one and then released.
 
 use super::result::Estimated;
 use super::theta::{THETA, Theta, ThetaCovariance};
 use super::weak::{WeakEstimate, priors};
 use nalgebra::{DMatrix, DVector};
 
-/// Information (inverse covariance) that one or several windows of one vehicle hold on all parameters of
-/// the weak form. The nuisances are shared: latency, trim and damping are taken for the same throughout.
+/// Information (inverse covariance) of one or several windows of one vehicle about all parameters of the weak form. The
+/// nuisances are common: latency, trim and damping are the same in all windows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeakInformation {
     matrix: DMatrix<f64>,
     /// matrix times estimate
     weighted: DVector<f64>,
     windows: usize,
-    /// nuisances and the standard deviations that they are known to have beforehand
+    /// nuisances with the standard deviations of their priors
     priors: Vec<(usize, f64)>,
     /// best share of each torque's variance that the rigid body explains in a window
     explained: Option<[f64; 3]>,
 }
 
 impl WeakInformation {
-    /// Of one window.
+    /// Information of one window.
     #[must_use]
     pub fn of(estimate: &WeakEstimate) -> Self {
         let covariance = &estimate.solution.covariance;
@@ -47,7 +47,7 @@ impl WeakInformation {
         Self { weighted: &matrix * theta, matrix, windows: 1, priors, explained }
     }
 
-    /// Adds another window's.
+    /// Adds the information of another window.
     pub fn add(&mut self, other: &Self) {
         self.matrix += &other.matrix;
         self.weighted += &other.weighted;
@@ -59,7 +59,7 @@ impl WeakInformation {
         };
     }
 
-    /// The windows' common estimate and its covariance; NaN where nothing is known.
+    /// The common estimate of the windows and its covariance; NaN for parameters without information.
     #[must_use]
     pub fn combined(&self) -> Estimated {
         let mut matrix = self.matrix.clone();
@@ -92,8 +92,8 @@ impl WeakInformation {
         estimated
     }
 
-    /// Each window brought a nuisance's prior along: it counts once. What is left must still hold the
-    /// prior beside all that the other parameters take.
+    /// Information about a nuisance with its prior counted once, although each window contains it. At least the prior's
+    /// information remains in addition to the part of the other parameters.
     fn without_repeats(&self, used: &[usize], at: usize, prior: f64) -> f64 {
         let parameter = used[at];
         let repeated = prior * self.windows.saturating_sub(1) as f64;

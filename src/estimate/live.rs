@@ -1,15 +1,16 @@
-//! Recursive least squares (40) whose memory does not grow, with the standard errors of the batch one.
+//! Recursive least squares (40) in bounded memory, with the standard errors of the batch method.
 
 use super::recursive::{LAGS, NormalEquations, SCORE_BLOCK_S, newey_west};
 use super::result::Estimated;
 use super::theta::{THETA, Theta};
 use nalgebra::{SMatrix, Vector4};
 
-/// Blocks kept; when all are full, neighbours are put together and blocks last twice as long.
+/// Largest number of blocks. When all are full, neighbours are merged and blocks last twice as long. Chosen; not
+/// measured.
 const BLOCKS: usize = 256;
 
-/// Sums of (40), whole and by blocks of time. The blocks hold what the scores of any estimate are made of:
-/// the covariance allows for coloured residuals as that of the batch method does.
+/// Sums of (40), in total and by blocks of time. The blocks contain the data of the scores of any estimate, so that the
+/// covariance allows for coloured residuals, as in the batch method.
 #[derive(Debug, Clone)]
 pub struct RecursiveEstimator {
     whole: NormalEquations,
@@ -24,7 +25,7 @@ pub struct RecursiveEstimator {
 }
 
 impl RecursiveEstimator {
-    /// For rows `step_s` (s) apart.
+    /// An estimator for rows with the distance `step_s` (s).
     #[must_use]
     pub fn new(step_s: f64) -> Self {
         let mut rows_a_block = 1;
@@ -58,7 +59,7 @@ impl RecursiveEstimator {
         }
     }
 
-    /// Rows so far.
+    /// Number of rows so far.
     #[must_use]
     pub fn rows(&self) -> u64 {
         self.rows

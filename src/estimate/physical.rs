@@ -1,8 +1,8 @@
-//! An inertia that a body can have.
+//! Physically possible inertias.
 //!
-//! About the centre of mass the second moments of the mass, `Sigma = tr(J)/2 I - J`, are positive
-//! definite for every real body; that is the pseudo-inertia's condition and contains the triangle
-//! inequalities. `Sigma = L L^T` with a positive diagonal of L gives nothing else.
+//! About the centre of mass, the second moments of the mass, `Sigma = tr(J)/2 I - J`, are positive definite for every
+//! real body. This is the condition of the pseudo-inertia and contains the triangle inequalities. `Sigma = L L^T` with
+//! a positive diagonal of L satisfies it always.
 
 use super::theta::{THETA, Theta, ThetaCovariance, inertia_of, scale_of};
 use nalgebra::{Matrix3, SMatrix, SVector};
@@ -13,7 +13,7 @@ pub fn second_moments(inertia: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::identity() * (0.5 * inertia.trace()) - inertia
 }
 
-/// The body's second moments are positive definite and its mass is positive.
+/// Whether the second moments are positive definite and the mass is positive.
 #[must_use]
 pub fn is_physical(theta: &Theta) -> bool {
     theta[0] > 0.0 && second_moments(&inertia_of(theta)).cholesky().is_some()

@@ -1,4 +1,4 @@
-//! Results that hardly can be: of another vehicle, of a wrong unit, of two vehicles at once.
+//! Checks of implausible results: another vehicle, a wrong unit, two vehicles at once.
 
 use super::result::{Finding, MethodResult};
 use super::theta::{NAMES, Theta};
@@ -6,14 +6,17 @@ use super::weak::{WeakMethod, solve_weak};
 use crate::note::{About, Note};
 use crate::regression::WeakRows;
 
-/// A nominal file is wrong by less than these factors.
+/// Largest ratio of the identified mass to that of the vehicle file, or its inverse, without a warning. Chosen; not
+/// measured.
 const MASS_FACTOR: f64 = 1.5;
+/// The same for a moment of inertia. Chosen; not measured.
 const INERTIA_FACTOR: f64 = 3.0;
-/// Flights of one vehicle agree within this many standard errors of their difference, and this share.
+/// Standard errors of the difference within which the masses of two flights of one vehicle agree. Chosen; not measured.
 const FLIGHTS_SIGMA: f64 = 6.0;
+/// Relative difference within which they agree. Chosen; not measured.
 const FLIGHTS_SHARE: f64 = 0.02;
 
-/// Estimates that are far from what the vehicle file states.
+/// Notes on estimates far from the vehicle file.
 #[must_use]
 pub fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<Note> {
     [(0, MASS_FACTOR), (1, INERTIA_FACTOR), (4, INERTIA_FACTOR), (6, INERTIA_FACTOR)]
@@ -23,8 +26,9 @@ pub fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<Note> {
             let factor = value / nominal[index];
             (factor > most || factor < 1.0 / most).then(|| {
                 let text = format!(
-                    "{} is {factor:.2} times what the vehicle file states: another vehicle's log, a wrong unit, \
-                     or thrust and torque coefficients that are off by as much? A weighed mass with anchor = \"mass\" sets the scale",
+                    "{} is {factor:.2} times what the vehicle file states: is it another vehicle's log, is a unit \
+                     wrong, or are thrust and torque coefficients wrong by this factor? A weighed mass with anchor = \
+                     \"mass\" sets the scale",
                     NAMES[index]
                 );
                 Note::warning(About::Estimate, text)
@@ -33,7 +37,7 @@ pub fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<Note> {
         .collect()
 }
 
-/// Flights whose masses contradict each other.
+/// Notes on flights with contradicting masses.
 #[must_use]
 pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<Note> {
     if flights.len() < 2 {

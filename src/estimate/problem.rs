@@ -1,4 +1,4 @@
-//! Weighted least squares over several channels, and standard errors that hold for coloured residuals.
+//! Weighted least squares over several channels, with standard errors for coloured residuals.
 
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
@@ -17,20 +17,20 @@ pub struct Channel {
 /// Channels that share their parameters and their rows' instants.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
-    /// one a measured equation
+    /// one for each measured equation
     pub channels: Vec<Channel>,
     /// rows without a break in time
     pub runs: Vec<Range<usize>>,
-    /// parameters that are known beforehand to lie about zero, with their standard deviation
+    /// parameters with a prior of mean zero, and its standard deviation
     pub priors: Vec<(usize, f64)>,
     /// lags (rows) over which white noise is correlated by the kernels' overlap
     pub overlap: usize,
 }
 
-/// A solution and what it rests on.
+/// A solution with its residuals and diagnostics.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
-    /// estimates; NaN where the data say nothing at all (a zero column)
+    /// estimates; NaN for parameters without data (a zero column)
     pub theta: DVector<f64>,
     /// covariance that allows for coloured residuals
     pub covariance: DMatrix<f64>,
@@ -44,9 +44,10 @@ pub struct Solution {
     pub lags: usize,
 }
 
-/// Longest correlation of the residuals that is allowed for, in rows (2 s of 0.05 s).
+/// Longest correlation of the residuals that is allowed for, rows (2 s). Chosen; not measured.
 const MOST_LAGS: usize = 40;
-/// Bartlett window of the scores, in rows (1 s).
+/// Width of the Bartlett window of the scores, rows (1 s). Chosen; the coverage of the intervals is measured by `cargo
+/// bench --bench coverage`.
 const SCORE_LAGS: usize = 20;
 
 impl Problem {
@@ -56,8 +57,8 @@ impl Problem {
         self.channels.first().map_or(0, |channel| channel.x.ncols())
     }
 
-    /// Least squares with each channel weighted by its own residual, and optional weights a row and
-    /// channel (robust estimation).
+    /// Least squares with each channel weighted by its own residual, and optional weights for each row and channel
+    /// (robust estimation).
     #[must_use]
     pub fn solve(&self, row_weights: Option<&[DVector<f64>]>) -> Solution {
         let Fit { mut theta, sigma, normal } = self.fit(row_weights);
@@ -130,8 +131,7 @@ impl Problem {
         share
     }
 
-    /// First lag at which every channel's residual autocorrelation has died down, at least the
-    /// kernels' overlap.
+    /// First lag at which the residual autocorrelation of every channel has decayed, at least the kernels' overlap.
     fn residual_lags(&self, residuals: &[DVector<f64>]) -> usize {
         let died = |lag: usize| {
             residuals.iter().all(|r| {
@@ -154,7 +154,7 @@ impl Problem {
         if count == 0 { 0.0 } else { sum / count as f64 }
     }
 
-    /// Each parameter's larger of two sandwiches: with the channels' own residual autocovariances, and
+    /// The larger of two sandwich covariances for each parameter: with the channels' own residual autocovariances, and
     /// Newey-West on the scores. `bread` is the inverse of the normal matrix.
     fn covariance(&self, bread: &DMatrix<f64>, scaled: &Scaled<'_>) -> DMatrix<f64> {
         let mut prior = DMatrix::<f64>::zeros(self.parameters(), self.parameters());
@@ -178,8 +178,8 @@ impl Problem {
         })
     }
 
-    /// Residuals of a fit are smaller than the noise: each parameter of an equation costs one independent
-    /// row, and independent rows lie an overlap apart.
+    /// Factor for the degrees of freedom, because residuals of a fit are smaller than the noise: each parameter of an
+    /// equation costs one independent row, and independent rows are an overlap apart.
     fn freedom(&self) -> f64 {
         let rows = self.runs.iter().map(Range::len).sum::<usize>() as f64;
         let most = self
@@ -254,7 +254,7 @@ impl Problem {
     }
 }
 
-/// Residuals with what scales and colours them.
+/// Residuals with their scale and their autocovariance.
 struct Scaled<'a> {
     residuals: &'a [DVector<f64>],
     sigma: &'a [f64],
@@ -269,7 +269,7 @@ pub(super) struct Normal {
     scale: DVector<f64>,
 }
 
-/// Where the alternation ended.
+/// Result of the alternation.
 struct Fit {
     theta: DVector<f64>,
     sigma: Vec<f64>,
@@ -339,8 +339,8 @@ impl Normal {
     }
 }
 
-/// The weighted normal matrix stands for the slope of the scores, which is zero for every row that is held
-/// back: it is too large by the mean weight over the share of rows with full weight (Huber 1973).
+/// Correction of the weighted normal matrix in place of the slope of the scores, which is zero for every row with
+/// reduced weight: the matrix is too large by the mean weight over the share of rows with full weight (Huber 1973).
 fn held_back_inflation(weights: &[DVector<f64>]) -> f64 {
     let all = || weights.iter().flat_map(|weights| weights.iter());
     let full = all().filter(|weight| **weight >= 1.0).count() as f64;

@@ -1,4 +1,4 @@
-//! Which method to believe for this flight, and why.
+//! The recommended method for a flight, with the reason.
 
 use super::method::Method;
 use super::nominal::Nominal;
@@ -7,23 +7,24 @@ use super::result::{Estimated, Finding, MethodResult};
 use super::theta::{NAMES, scale_of};
 use super::weak::WeakEstimate;
 
-/// More rows than this held back by the robust weights: outliers, not noise.
+/// Share of the rows with reduced robust weights above which they are outliers and not noise. Chosen; not measured.
 const OUTLIER_SHARE: f64 = 0.02;
-/// Two estimates differ where they are further apart than this many standard errors of their difference.
+/// Standard errors of the difference beyond which two estimates differ (Hausman test). Chosen; not measured.
 const HAUSMAN_SIGMA: f64 = 5.0;
-/// Instruments whose standard error is more than this many times the plain one's are too weak.
+/// Largest ratio of the standard errors with and without instruments. Beyond it the instruments are too weak. Chosen;
+/// not measured.
 const WEAKEST_INSTRUMENT: f64 = 4.0;
 
 /// The recommended method's result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recommendation {
-    /// which method
+    /// the method
     pub method: Method,
-    /// for the user
+    /// the reason for the user
     pub why: String,
     /// its parameters, inertia physical
     pub result: MethodResult,
-    /// the unconstrained inertia was not physical and was moved to the nearest that is
+    /// whether the unconstrained inertia was physically impossible and was replaced by the nearest possible one
     pub made_physical: bool,
 }
 
@@ -78,8 +79,8 @@ fn choose<'a>(
     (Method::Weak, plain, why)
 }
 
-/// The moment of inertia in which instruments contradict least squares most, if any does, and the
-/// instruments are strong enough to say so.
+/// The moment of inertia for which the instrumental variables contradict least squares most, if the difference is
+/// significant and the instruments are strong enough.
 fn hausman(plain: &WeakEstimate, iv: &WeakEstimate) -> Option<(usize, f64)> {
     [1, 4, 6]
         .into_iter()

@@ -1,4 +1,4 @@
-//! The paper's estimators along time: least squares (40) and gradient descent (41), (42).
+//! The paper's estimators over time: least squares (40) and gradient descent (41), (42).
 
 use super::theta::{THETA, Theta, ThetaCovariance, scale_of};
 use crate::regression::SampledModel;
@@ -6,13 +6,14 @@ use nalgebra::{Matrix4, SMatrix, Vector4};
 
 /// The paper's adaptation gain sigma of (41).
 pub const PAPER_SIGMA: f64 = 30.0;
-/// Times at which the history keeps the estimate, s apart.
+/// Time between the entries of a history, s.
 const HISTORY_STEP_S: f64 = 0.2;
-/// Length of the blocks over which scores are summed, s, and how many of them are correlated with each other.
+/// Length of the blocks over which scores are summed, s. Chosen; not measured.
 pub(super) const SCORE_BLOCK_S: f64 = 0.1;
+/// Number of blocks over which scores are correlated (1 s). Chosen; not measured.
 pub(super) const LAGS: usize = 10;
 
-/// An estimate, its covariance, and how it came about.
+/// Estimates over time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct History {
     /// s, vehicle clock
@@ -28,7 +29,7 @@ pub struct PaperEstimate {
     pub theta: Theta,
     /// allows for coloured residuals
     pub covariance: ThetaCovariance,
-    /// along time
+    /// estimates over time
     pub history: History,
 }
 
@@ -129,7 +130,7 @@ fn sandwich(model: &SampledModel, theta: &Theta, inverse: &SMatrix<f64, THETA, T
     inverse * meat * inverse.transpose()
 }
 
-/// How gradient descent steps.
+/// Steps of gradient descent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GradientStep {
     /// `(I + sigma T Gamma^T Gamma) theta_h = theta_(h-1) + sigma T Gamma^T Upsilon`: stable for every sigma

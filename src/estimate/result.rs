@@ -1,11 +1,12 @@
-//! Estimates as they are handed on: a value with its standard error, or why there is none.
+//! Results of estimates: a value with its standard error, or the reason why there is none.
 
 use super::method::Method;
 use super::nominal::Nominal;
 use super::theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, scale_of};
 use super::weak::WeakEstimate;
 
-/// A moment of inertia whose standard error exceeds this share of its nominal size is not determined.
+/// Largest standard error of a moment of inertia that counts as determined, as a share of its nominal size. Chosen; not
+/// measured.
 const LARGEST_RELATIVE_STD: f64 = 0.3;
 
 /// One parameter.
@@ -15,7 +16,7 @@ pub struct Parameter {
     pub name: &'static str,
     /// as in files
     pub unit: &'static str,
-    /// what the flight says of it
+    /// the result
     pub finding: Finding,
 }
 
@@ -29,19 +30,20 @@ pub enum Finding {
         /// standard error, same unit
         std: f64,
     },
-    /// known beforehand (a weighed mass)
+    /// known in advance (a weighed mass)
     Given {
         /// in the parameter's unit
         value: f64,
     },
-    /// the flight says nothing useful
+    /// not determined by the flight
     NotDetermined {
         /// for the user
         reason: String,
     },
 }
 
-/// An inertia is not claimed from a torque that moves as the rigid body says by less than this share.
+/// Least share of a torque's variance that the rigid body must explain for its inertia to be reported. Chosen; not
+/// measured.
 pub const LEAST_EXPLAINED: f64 = 0.3;
 
 /// `Theta` with its covariance.
@@ -51,8 +53,7 @@ pub struct Estimated {
     pub theta: Theta,
     /// same order
     pub covariance: ThetaCovariance,
-    /// share of the variance of the torques about x, y, z that the rigid body explains; `None` where that
-    /// was not judged
+    /// share of the variance of the torques about x, y, z that the rigid body explains; `None` if it was not assessed
     pub explained: Option<[f64; 3]>,
 }
 
@@ -70,7 +71,7 @@ impl Estimated {
     }
 }
 
-/// What one method says.
+/// Result of one method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MethodResult {
     /// which
@@ -82,7 +83,7 @@ pub struct MethodResult {
 }
 
 impl MethodResult {
-    /// Judges each parameter against the nominal sizes.
+    /// Assesses each parameter with the nominal sizes.
     #[must_use]
     pub fn new(method: Method, estimated: &Estimated, nominal: &Nominal) -> Self {
         let parameters = std::array::from_fn(|index| Parameter {
@@ -112,19 +113,18 @@ impl MethodResult {
     }
 }
 
-/// Gradient descent with a fixed gain never stops following the noise; that is not the flight's fault.
+/// Replaces the reason for gradient descent: with a fixed gain it follows the noise, whatever the flight is.
 fn by_method(method: Method, finding: Finding) -> Finding {
     match (method, finding) {
         (Method::Gd | Method::Fmgd, Finding::NotDetermined { .. }) => Finding::NotDetermined {
-            reason:
-                "gradient descent with this gain keeps following the noise; a smaller --sigma averages longer"
-                    .into(),
+            reason: "gradient descent with this gain follows the noise; a smaller --sigma averages longer"
+                .into(),
         },
         (_, finding) => finding,
     }
 }
 
-/// The axes whose torque a moment or product of inertia is seen in.
+/// The axes whose torques determine a moment or product of inertia.
 fn axes_of(index: usize) -> &'static [usize] {
     match index {
         1 => &[0],
@@ -137,19 +137,19 @@ fn axes_of(index: usize) -> &'static [usize] {
     }
 }
 
-/// The torque of one of the parameter's axes does not move as a rigid body's would.
+/// The reason if the rigid body does not explain the torque of one of the parameter's axes.
 fn unexplained(estimated: &Estimated, index: usize) -> Option<String> {
     let shares = estimated.explained?;
     axes_of(index).iter().find(|axis| shares[**axis] < LEAST_EXPLAINED).map(|axis| {
         format!(
-            "the rigid body explains only {:.0} % of the torque about {}: noise, or physics that it leaves out",
+            "the rigid body explains only {:.0} % of the torque about {}: the rest is noise, or physics that it lacks",
             100.0 * shares[*axis].max(0.0),
             ["x", "y", "z"][*axis]
         )
     })
 }
 
-/// Judges one parameter.
+/// Assesses one parameter.
 #[must_use]
 pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Finding {
     let (value, variance) = (estimated.theta[index], estimated.covariance[(index, index)]);
@@ -175,7 +175,7 @@ pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Findin
     let moment = matches!(index, 0 | 1 | 4 | 6);
     if moment && value <= 2.0 * std {
         return Finding::NotDetermined {
-            reason: format!("estimate {value:.3e} +- {std:.1e} is not clear of zero"),
+            reason: format!("estimate {value:.3e} +- {std:.1e} is not distinguishable from zero"),
         };
     }
     let guessed = nominal.guessed(index);

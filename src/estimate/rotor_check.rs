@@ -1,19 +1,19 @@
-//! One rotor that gives less thrust than its command says leaves a constant torque of its own direction.
+//! Detection of one rotor with less thrust than commanded, by the direction of the constant torque that it causes.
 //!
-//! Such a rotor also falsifies the mass, because the stated thrust sets the scale. Where the torque that
-//! is left over points, on all three axes, to one rotor, the scale is set by the others.
+//! Such a rotor also biases the mass, because the stated thrust sets the scale. If the remaining torque points, on all
+//! three axes, to one rotor, the other rotors set the scale.
 
 use super::weak::WeakEstimate;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
-/// A rotor that gives `factor` of the thrust and torque that its command promises.
+/// A rotor that gives the share `factor` of its commanded thrust and torque.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeakRotor {
     /// index in the vehicle's order
     pub index: usize,
-    /// as the vehicle file calls it
+    /// name in the vehicle file
     pub name: String,
     /// share of its thrust (-)
     pub factor: f64,
@@ -21,17 +21,18 @@ pub struct WeakRotor {
     pub std: f64,
 }
 
-/// Range of the thrust missing at one rotor, as a share of that rotor's thrust.
+/// Range of a rotor's missing thrust, as a share of that rotor's thrust. Chosen; not measured.
 const SHARE: std::ops::RangeInclusive<f64> = 0.04..=0.6;
-/// The torque about x and y must agree with the rotor's arm within this share.
+/// Relative tolerance between the torque about x and y and the rotor's arm. Chosen; not measured.
 const ARM_TOLERANCE: f64 = 0.1;
-/// The yaw torque must agree within this share: torque per thrust is known less well.
+/// Relative tolerance of the yaw torque, which is larger because torque per thrust is known less well. Chosen; not
+/// measured.
 const YAW_TOLERANCE: f64 = 0.35;
-/// The missing thrust must be this many standard errors from zero.
+/// Least distance of the missing thrust from zero, standard errors. Chosen; not measured.
 const LEAST_SIGMA: f64 = 6.0;
 
-/// The rotor that the left-over torque points to, if it points to one. A centre of mass off the middle
-/// leaves no yaw torque and is not mistaken for it.
+/// The rotor to which the remaining torque points, if there is one. A displaced centre of mass causes no yaw torque and
+/// is not confused with it.
 #[must_use]
 pub fn weak_rotor(estimate: &WeakEstimate, flights: &[Signals], vehicle: &Vehicle) -> Option<WeakRotor> {
     let mixer = vehicle.mixer().matrix;
@@ -63,7 +64,7 @@ pub fn weak_rotor(estimate: &WeakEstimate, flights: &[Signals], vehicle: &Vehicl
     })
 }
 
-/// Mean commanded thrust of each rotor over what is used, N; `None` where the log holds the wrench itself.
+/// Mean commanded thrust of each rotor over the usable instants, N; `None` if the log contains the wrench itself.
 fn mean_thrusts(flights: &[Signals], rotors: usize) -> Option<Vec<f64>> {
     let mut sums = vec![0.0; rotors];
     let mut count = 0.0;
@@ -81,7 +82,7 @@ fn mean_thrusts(flights: &[Signals], rotors: usize) -> Option<Vec<f64>> {
     Some(sums.into_iter().map(|sum| sum / count).collect())
 }
 
-/// The flights with that rotor's thrust scaled to what it gives.
+/// The flights with this rotor's thrust multiplied by its factor.
 #[must_use]
 pub fn with_weak_rotor(flights: &[Signals], vehicle: &Vehicle, weak: &WeakRotor) -> Vec<Signals> {
     let column = vehicle.mixer().matrix.column(weak.index).into_owned();

@@ -30,8 +30,8 @@ pub fn inertia_of(theta: &Theta) -> Matrix3<f64> {
     Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }
 
-/// The size against which a parameter's error is judged: the parameter itself for mass and moments,
-/// `sqrt(Iii Ijj)` for products of inertia.
+/// The size to which a parameter's error is compared: the parameter itself for mass and moments, `sqrt(Iii Ijj)` for
+/// products of inertia.
 #[must_use]
 pub fn scale_of(theta: &Theta, index: usize) -> f64 {
     let (xx, yy, zz) = (theta[1].abs(), theta[4].abs(), theta[6].abs());

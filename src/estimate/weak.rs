@@ -20,10 +20,12 @@ const DAMPING: usize = THETA + 5;
 pub(super) const JITTER: usize = THETA + 8;
 const HEAVE: usize = THETA + 9;
 const CURVATURE: usize = THETA + 12;
-/// Drag along body z per mass, 1/s, and what a wind makes of it per mass, m/s^2: rotors have 0.3 to 0.6 1/s
-/// (inflow), and a flight in more than 5 m/s of wind is hardly an identification flight.
+/// Standard deviations of the priors of the drag along body z per mass, 1/s, and of its force by a wind per mass,
+/// m/s^2. Rotors have 0.3 to 0.6 1/s (inflow), and identification flights are rarely flown in more than 5 m/s of wind.
+/// Chosen; not measured.
 const HEAVE_STD: [f64; 3] = [1.0, 2.5, 2.5];
-/// The share of the jitter that is averaged away lies anywhere between none and all.
+/// Standard deviation of the prior of the share of the jitter that the rotors average: 1/sqrt(12), uniform between 0
+/// and 1.
 pub(super) const JITTER_STD: f64 = 0.288_675; // 1/sqrt(12)
 
 /// How the body follows the recorded command.
@@ -33,14 +35,14 @@ pub struct Latency {
     pub total_s: f64,
     /// s, standard error
     pub std_s: f64,
-    /// what kind it is, where the flight can tell
+    /// its kind, if the flight determines it
     pub kind: LatencyKind,
 }
 
 /// A first-order lag attenuates, a pure delay does not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LatencyKind {
-    /// too short to tell
+    /// too short to be determined
     Undetermined,
     /// first-order
     Lag,
@@ -53,10 +55,10 @@ pub enum LatencyKind {
     },
 }
 
-/// A weak-form estimate.
+/// An estimate of the weak form.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeakEstimate {
-    /// `[m Ixx Ixy Ixz Iyy Iyz Izz]`; NaN where there is no column
+    /// `[m Ixx Ixy Ixz Iyy Iyz Izz]`; NaN for parameters without a column
     pub theta: Theta,
     /// allows for coloured residuals
     pub covariance: ThetaCovariance,
@@ -72,11 +74,11 @@ pub struct WeakEstimate {
     pub channels: Vec<&'static str>,
     /// share of each channel's variance that the rigid body explains, same order (-)
     pub explained: Vec<f64>,
-    /// share of rows that the robust weights held back
+    /// share of rows with reduced robust weights
     pub held_back: f64,
 }
 
-/// How the rows are weighted and what stands for the regressors.
+/// Weights of the rows, and instruments.
 #[derive(Debug, Clone, Copy)]
 pub enum WeakMethod<'a> {
     /// weighted least squares
@@ -93,9 +95,8 @@ pub fn solve_weak(flights: &[WeakRows], start: &Theta, method: WeakMethod<'_>) -
     solve_with(flights, start, method, false)
 }
 
-/// Covariance over repeated flights of `Theta` as the weak form will estimate it from such rows, beside
-/// all its nuisances, for independent noises that are known (outputs in N and N m, channels as in [`CHANNELS`]).
-/// `None` where some parameter has no column.
+/// Expected covariance of the weak form's `Theta` over repeated flights, with all nuisances, for known and independent
+/// noises (outputs in N and N m, channels as in [`CHANNELS`]). `None` if a parameter has no column.
 #[must_use]
 pub fn expected_covariance(
     flights: &[WeakRows],
@@ -119,7 +120,8 @@ pub fn expected_covariance(
     known.then(|| ThetaCovariance::from_fn(|i, j| of_theta[(i, j)]))
 }
 
-/// Newton on the latency column: it depends on the inertia that it is estimated with.
+/// Newton passes on the latency column, which depends on the inertia that is estimated together with it. Chosen; not
+/// measured.
 const PASSES: usize = 4;
 
 fn solve_with(
@@ -181,7 +183,7 @@ pub fn latency(flights: &[WeakRows], start: &Theta) -> Option<Latency> {
     Some(Latency { total_s: c1, std_s: s1, kind })
 }
 
-/// Stacks the flights into one problem; columns are scaled by nothing (the solver does).
+/// Stacks the flights into one problem; columns are not scaled here (the solver scales them).
 fn assemble(flights: &[WeakRows], theta: &Theta, method: WeakMethod<'_>, curvature: bool) -> Problem {
     let rows: usize = flights.iter().map(|flight| flight.time_s.len()).sum();
     let columns = if curvature { CURVATURE + 1 } else { CURVATURE };
@@ -212,7 +214,7 @@ fn assemble(flights: &[WeakRows], theta: &Theta, method: WeakMethod<'_>, curvatu
     Problem { channels, runs, priors: priors(theta[0]), overlap: 8 }
 }
 
-/// What is known of the nuisances beforehand.
+/// Priors of the nuisances: column and standard deviation.
 pub(super) fn priors(mass_kg: f64) -> Vec<(usize, f64)> {
     let heave = HEAVE_STD.iter().enumerate().map(|(i, std)| (HEAVE + i, std * mass_kg));
     std::iter::once((JITTER, JITTER_STD)).chain(heave).collect()
@@ -253,12 +255,12 @@ fn design(
     x
 }
 
-/// Something is recorded that this equation needs: its row of the regressor is not empty.
+/// Whether an equation is measured: its row of the regressor is not empty.
 fn is_measured(flights: &[WeakRows], channel: usize) -> bool {
     flights.iter().any(|rows| rows.regressor[0].iter().any(|phi| phi.row(channel).norm_squared() > 0.0))
 }
 
-/// How much of each channel moves as the rigid body says: nuisances do not count as explained.
+/// Share of each channel's variance that the rigid body explains, without the part of nuisances.
 fn explained(problem: &Problem, solution: &Solution) -> Vec<f64> {
     let body: DVector<f64> = DVector::from_fn(problem.parameters(), |i, _| {
         if i < THETA && solution.theta[i].is_finite() { solution.theta[i] } else { 0.0 }
@@ -290,8 +292,9 @@ fn dot_row(phi: &SMatrix<f64, CHANNELS, THETA>, row: usize, theta: &SVector<f64,
     (0..THETA).map(|i| phi[(row, i)] * theta[i]).sum()
 }
 
-/// Huber's weights, iterated; also the share of rows held back.
+/// Robust solution with iterated Huber weights, and the share of rows with reduced weights.
 fn huber(problem: &Problem) -> (Solution, f64) {
+    /// Huber's constant for 95 % efficiency with normal noise.
     const TUNING: f64 = 1.345;
     const ITERATIONS: usize = 6;
     let mut theta = problem.estimate(None);

@@ -53,9 +53,7 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     file.insert("moment_inertia".into(), json!(moments_kg_m2(&mut source)));
     motors(&mut file, &source, &arms);
     source.note("motors are in the model's own order; the simulator's frame must have as many, and its servo functions the same order");
-    source.note(
-        "refVoltage, refCurrent and the battery keep ArduPilot's defaults: nothing of them was identified",
-    );
+    source.note("refVoltage, refCurrent and the battery keep ArduPilot's defaults: they were not identified");
     if source.time_constant_s().is_some() {
         source.note("the simulator's rotors have no lag (slew_max limits their rate alone)");
         source.refuse("motor_lag");

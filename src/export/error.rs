@@ -6,7 +6,7 @@ use crate::physics::PhysicsError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ExportError {
     /// it needs what the model does not say
-    #[error("{format} needs {what}, and the model does not say it")]
+    #[error("{format} needs {what}, but the model does not state it")]
     Missing {
         /// simulator
         format: &'static str,

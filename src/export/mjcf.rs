@@ -20,7 +20,7 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     );
     if lag_s.is_some() {
         source.note(
-            "the lag acts on the thrust here, on the rotor speed in the model: alike for small changes",
+            "the lag acts on the thrust here and on the rotor speed in the model: the same for small changes",
         );
     }
     source.note("controls are thrusts in newtons: the law from command to thrust is the autopilot's side");

@@ -57,7 +57,7 @@ fn drag(source: &mut Source<'_>) -> f64 {
     }
     if drag[2] > 0.0 {
         source.note(format!(
-            "drag along the rotor axis has no place in the motor model: {:.4} N/(m/s)",
+            "drag along the rotor axis cannot be represented in the motor model: {:.4} N/(m/s)",
             drag[2]
         ));
     }

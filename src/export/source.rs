@@ -101,7 +101,7 @@ impl<'a> Source<'a> {
                     .zip(active.parameters())
                     .map(|(p, value)| format!("{} = {value} {}", p.name, p.unit))
                     .collect();
-                self.left_out.push(format!("{id} has no place here: {}", values.join(", ")));
+                self.left_out.push(format!("{id} cannot be represented here: {}", values.join(", ")));
             }
         }
         Exported { text: write(&self.left_out), left_out: self.left_out }

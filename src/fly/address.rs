@@ -1,8 +1,8 @@
-//! Whom a message is from.
+//! The sender of a message.
 
 use crate::wire::{Frame, Vehicle};
 
-/// The frame comes from the vehicle's autopilot.
+/// Whether the frame comes from the vehicle's autopilot.
 pub(super) fn is_from(vehicle: &Vehicle, frame: &Frame<'_>) -> bool {
     let header = frame.header();
     header.system == vehicle.system && header.component == vehicle.component

@@ -1,25 +1,26 @@
-//! Whether the motors may turn, as far as the vehicle is believed.
+//! Whether the motors may turn, by the vehicle's reports.
 
 use std::time::Duration;
 
-/// A vehicle that says "disarmed" with nothing else to agree is believed after so long and so many reports.
+/// A vehicle that reports "disarmed" without another message that agrees is accepted as disarmed after this time and
+/// this number of reports.
 const PERSISTS: Duration = Duration::from_millis(2500);
 const REPORTS: u32 = 3;
-/// Words further apart than this are not said in a row.
+/// Reports further apart than this are not consecutive.
 const APART: Duration = Duration::from_secs(2);
 
-/// Armed or not. One HEARTBEAT can be forged or damaged, and a vehicle that is wrongly taken for disarmed loses its
-/// supervision in the air. "Armed" is believed at once; "disarmed" once the vehicle says too that it stands on the
-/// ground, or once it says so again and again.
+/// Armed or not. A single HEARTBEAT can be forged or damaged, and a vehicle that is wrongly taken for disarmed loses
+/// its supervision in the air. "Armed" is accepted immediately. "Disarmed" is accepted if the vehicle also reports that
+/// it stands on the ground, or if it repeats the report.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Arming {
     armed: bool,
-    /// since when, until when, and how often in a row, "disarmed" is said of what is believed to be armed
+    /// first time, last time and number of consecutive reports of "disarmed" while the vehicle counts as armed
     contradicted: Option<(Duration, Duration, u32)>,
 }
 
 impl Arming {
-    /// Takes a HEARTBEAT's word. `on_ground`: the vehicle has said for a while that it stands on the ground.
+    /// Takes the report of a HEARTBEAT. `on_ground`: the vehicle has reported for a while that it stands on the ground.
     pub(super) fn report(&mut self, now: Duration, armed: bool, on_ground: bool) {
         if armed || !self.armed {
             (self.armed, self.contradicted) = (armed, None);
@@ -34,12 +35,12 @@ impl Arming {
         }
     }
 
-    /// The motors may turn.
+    /// Whether the motors may turn.
     pub(super) fn is_armed(&self) -> bool {
         self.armed
     }
 
-    /// The last word was "disarmed", and it is not believed yet.
+    /// Whether the last report was "disarmed" and is not accepted yet.
     pub(super) fn is_contradicted(&self) -> bool {
         self.contradicted.is_some()
     }

@@ -1,4 +1,4 @@
-//! Commands that wait for their answer: sent again until one comes, or until patience ends.
+//! Commands that wait for their answer: they are repeated until an answer arrives or their time is over.
 
 use std::time::Duration;
 
@@ -13,15 +13,15 @@ const TEMPORARILY_REJECTED: u8 = 1;
 const FAILED: u8 = 4;
 const IN_PROGRESS: u8 = 5;
 
-/// How a command is sent and what its answers mean.
+/// Repetition of a command and meaning of its answers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Manner {
-    /// until the next sending where no answer comes
+    /// time until a repetition without an answer
     pub repeat: Duration,
-    /// after this long it counts as unanswered or refused
+    /// time after which it counts as unanswered or refused
     pub patience: Duration,
-    /// `FAILED` is asked again too, as `TEMPORARILY_REJECTED` is: ArduPilot arms that way until its
-    /// estimator is ready
+    /// `FAILED` is repeated as well as `TEMPORARILY_REJECTED`: ArduPilot answers so to arming until its estimator is
+    /// ready
     pub failed_is_temporary: bool,
 }
 
@@ -43,19 +43,19 @@ impl Manner {
     };
 }
 
-/// How a command ended.
+/// The end of a command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
     /// the command
     pub order: Order,
-    /// what came of it
+    /// its result
     pub result: AnswerResult,
 }
 
-/// What came of a command.
+/// Result of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AnswerResult {
-    /// it is done, or will be
+    /// it is or will be executed
     Accepted,
     /// MAV_RESULT and the autopilot's additional number
     Refused {
@@ -64,7 +64,7 @@ pub enum AnswerResult {
         /// `result_param2`
         detail: i32,
     },
-    /// no COMMAND_ACK came
+    /// no COMMAND_ACK was received
     Unanswered,
 }
 
@@ -103,32 +103,33 @@ struct Pending {
     since: Duration,
     next: Duration,
     sent: u8,
-    /// reports of the mode that had come when it was given or last sent
+    /// number of reports of the mode when it was given or last sent
     reports: u64,
     rejection: Option<(u8, i32)>,
 }
 
-/// What the vehicle's mode permits to be sent.
+/// What may be sent in the vehicle's mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Permission {
-    /// reports of the mode that count so far
+    /// number of accepted reports of the mode
     pub reports: u64,
-    /// the last of them says that the vehicle is ours to command
+    /// by the last of them, the vehicle is in our mode
     pub ours: bool,
 }
 
-/// All commands that wait for their answer; one of a kind.
+/// All commands that wait for their answer, one of each kind.
 ///
-/// What only asks goes out when it is due. What commands (a mode, arming, disarming, takeoff) goes out, and goes out
-/// again, only on a report of the mode that came after it was given or last sent, and that says that the vehicle is ours.
+/// Requests are sent when they are due. Commands (a mode, arming, disarming, takeoff) are sent, and repeated, only
+/// after a report of the mode that is newer than the order or its last transmission, and that shows that the vehicle is
+/// in our mode.
 #[derive(Debug, Default)]
 pub struct Commander {
     pending: Vec<Pending>,
 }
 
 impl Commander {
-    /// A command to be sent by [`Commander::poll`] once it is permitted. It replaces one of its kind that waits.
-    /// `reports`: the reports of the mode that count so far.
+    /// Gives a command, which [`Commander::poll`] sends when it is permitted. It replaces a waiting one of its kind.
+    /// `reports`: number of accepted reports of the mode so far.
     pub fn give(&mut self, now: Duration, order: Order, manner: Manner, reports: u64) {
         self.pending.retain(|waiting| waiting.order.command() != order.command());
         self.pending.push(Pending {
@@ -169,7 +170,7 @@ impl Commander {
         self.pending.iter().any(|waiting| waiting.order == *order && waiting.sent > 0)
     }
 
-    /// It is done: it is not sent again.
+    /// Forgets a command, because it is done.
     pub fn forget(&mut self, order: &Order) {
         self.pending.retain(|waiting| waiting.order != *order);
     }
@@ -179,7 +180,7 @@ impl Commander {
         self.pending.clear();
     }
 
-    /// What is to be sent now, and what is given up.
+    /// Commands to be sent now, and those that are given up.
     pub fn poll(
         &mut self,
         now: Duration,
@@ -210,7 +211,7 @@ impl Commander {
         (messages, answers)
     }
 
-    /// Takes a COMMAND_ACK (its payload); gives what it ends.
+    /// Takes a COMMAND_ACK (its payload); returns the command that it ends.
     pub fn hear(&mut self, now: Duration, ack: Payload<'_>) -> Option<Answer> {
         let (command, result) = (ack.u16(0), ack.u8(2));
         let detail = ack.i32(4);

@@ -1,4 +1,4 @@
-//! What is flown: the path in the plan's frame, and the clock that carries the vehicle along it.
+//! The flown course: the path in the plan's frame, and the clock that moves the vehicle along it.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,20 +13,23 @@ use crate::trajectory::{
 use crate::units::whole;
 use crate::vehicle::{Limits, Vehicle};
 
-/// Of the climb and of the way to the start.
+/// Speed of the climb after takeoff, m/s. Chosen; not measured.
 pub(super) const CLIMB_M_S: f64 = 0.8;
+/// Speed of the transfer to the start, m/s. Chosen; not measured.
 pub(super) const TRANSFER_M_S: f64 = 1.0;
+/// Yaw rate of the transfer, rad/s. Chosen; not measured.
 pub(super) const TURN_RAD_S: f64 = 0.5;
-/// Hover before and after the trajectory, s.
+/// Hover before and after the trajectory, s. Chosen; not measured.
 const HOVER_S: f64 = 2.0;
-/// The greatest speed of a transition of seventh degree from rest to rest over its mean speed.
+/// Ratio of greatest to mean speed of a transition of seventh degree from rest to rest.
 const PEAK_TO_MEAN_SPEED: f64 = 2.1875;
-/// Its greatest acceleration, times the square of its duration, over its length.
+/// Greatest acceleration of this transition times the square of its duration, divided by its length.
 const PEAK_ACCELERATION: f64 = 7.513;
-/// No transfer accelerates more, m/s^2: one that hears nothing more goes on with it.
+/// Largest acceleration of a transfer, m/s^2: a vehicle that receives no more setpoints continues with it. Chosen; not
+/// measured.
 const TRANSFER_M_S2: f64 = 0.5;
 
-/// What is flown around the series, as `trajectory.toml` states it.
+/// Hovers and transitions around the series, by `trajectory.toml`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Around {
     /// x, y, z (m) and psi (rad) where the vehicle hovers after takeoff
@@ -50,8 +53,8 @@ pub struct Course {
 }
 
 impl Course {
-    /// With the transitions planned with the series, or where there are none with the shortest that keep
-    /// the limits, from and to a hover at the series' mean.
+    /// A course with the planned transitions. Without them, with the shortest transitions that keep the limits, from
+    /// and to a hover at the mean of the series.
     ///
     /// # Errors
     /// If there are no transitions inside the limits.
@@ -95,8 +98,8 @@ impl Course {
         self.repeats
     }
 
-    /// Which period is flown `along_s` from the path's start, counted from 1; 0 before the series and
-    /// `repeats + 1` after it.
+    /// Number of the period at `along_s` (s) from the path's start, from 1; 0 before the series and `repeats + 1` after
+    /// it.
     #[must_use]
     pub fn period_at(&self, along_s: f64) -> u32 {
         if along_s >= self.series_from_s + f64::from(self.repeats) * self.period_s {
@@ -106,8 +109,8 @@ impl Course {
         u32::try_from(whole(flown.max(0.0))).map_or(0, |count| count.min(self.repeats))
     }
 
-    /// The same course with its series ending with the period that is flown `along_s` from the start; `None`
-    /// where that is the last one, or the series is over.
+    /// The same course whose series ends with the period at `along_s` from the start; `None` if that is the last one,
+    /// or the series is over.
     #[must_use]
     pub fn ending_soon(&self, along_s: f64) -> Option<Self> {
         let repeats = self.period_at(along_s).max(1);
@@ -123,8 +126,7 @@ impl Course {
         Some(Self { path: Arc::new(path), repeats, ..self.clone() })
     }
 
-    /// The greatest angle between the body's and the world's up that the path asks for, rad, in steps of
-    /// 10 ms.
+    /// The greatest tilt of the path, rad, in steps of 10 ms.
     #[must_use]
     pub fn tilt_max_rad(&self, gravity_m_s2: f64) -> f64 {
         let mut greatest = 0.0_f64;
@@ -157,7 +159,7 @@ fn planned(series: &FourierTrajectory, repeats: u32, around: &Around) -> FlightP
     }
 }
 
-/// Straight up from where a vehicle stands to the height of its start, and from there to the start.
+/// Paths straight up from the place of a vehicle to the height of its start, and from there to the start.
 #[must_use]
 pub fn approach(stand: &Place, start: &Place) -> [FlightPath; 2] {
     let top = Vector3::new(stand.position_m.x, stand.position_m.y, start.position_m.z);
@@ -177,8 +179,8 @@ pub fn reference_at(
     on_path(path, &clock, offset_m, time)
 }
 
-/// From one hover to another, no faster than `speed_m_s` and `yaw_rate_rad_s` and without haste on a short way, the shorter
-/// way round.
+/// Path from one hover to another, no faster than `speed_m_s` and `yaw_rate_rad_s`, slower on short distances, with the
+/// shorter rotation.
 #[must_use]
 pub fn transfer(from: &Place, to: &Place, speed_m_s: f64, yaw_rate_rad_s: f64) -> FlightPath {
     let turn_rad = wrapped(to.yaw_rad - from.yaw_rad);
@@ -194,11 +196,11 @@ pub fn transfer(from: &Place, to: &Place, speed_m_s: f64, yaw_rate_rad_s: f64) -
     FlightPath { segments: vec![(Segment::Transition(transition), duration_s)] }
 }
 
-/// How a paused clock comes to rest and goes on, s.
+/// Time in which the clock of a path stops and starts, s.
 const RAMP_S: f64 = 1.0;
 
-/// Time along a path. It can be paused and resumed: its rate then goes over linearly between 0 and 1, so
-/// that the setpoints slow down and speed up along the path without a jump.
+/// Time along a path. It can be paused and resumed: its rate then changes linearly between 0 and 1, so that the
+/// setpoints slow down and speed up along the path without a jump.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathClock {
     /// when the rate was last changed
@@ -228,7 +230,7 @@ impl PathClock {
         Self { from: now, along_s: 0.0, rate: 1.0, runs: true }
     }
 
-    /// Where it is at an instant.
+    /// Time along the path at an instant.
     #[must_use]
     pub fn at(&self, now: Duration) -> PathTime {
         let passed_s = now.saturating_sub(self.from).as_secs_f64();
@@ -242,7 +244,7 @@ impl PathClock {
         PathTime { along_s, rate: goal, slope: 0.0 }
     }
 
-    /// Lets it run or come to rest, from `now` on.
+    /// Starts or stops it, from `now` on.
     pub fn set_running(&mut self, runs: bool, now: Duration) {
         if runs != self.runs {
             let PathTime { along_s, rate, .. } = self.at(now);
@@ -250,14 +252,14 @@ impl PathClock {
         }
     }
 
-    /// It runs, or is about to.
+    /// Whether it runs or starts.
     #[must_use]
     pub fn is_running(&self) -> bool {
         self.runs
     }
 }
 
-/// A path, moved to where it is flown, with its clock.
+/// A path with its offset and its clock.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
     /// what
@@ -275,7 +277,7 @@ impl Track {
         on_path(&self.path, &self.clock.at(time), &self.offset_m, time)
     }
 
-    /// The path is flown to its end.
+    /// Whether the path is flown to its end.
     #[must_use]
     pub fn is_over(&self, now: Duration) -> bool {
         self.clock.at(now).along_s >= self.path.duration_s()
@@ -289,7 +291,7 @@ fn on_path(path: &FlightPath, clock: &PathTime, offset_m: &Vector3<f64>, time: D
     let moves = if beyond { 0.0 } else { 1.0 };
     let speed = |axis: &[f64; 5]| moves * axis[1] * rate;
     let [x, y, z, yaw] = &axes;
-    // not the clock's own slope, velocity times up to 1/s: an autopilot that hears no more goes on with it for seconds, which
+    // not the clock's own slope, velocity times up to 1/s: an autopilot that hears no more continues with it for seconds, which
     // takes it metres off the path. A clock of any rate alone leads no further than one that runs
     let push = |axis: &[f64; 5]| moves * axis[2] * rate * rate;
     Some(Setpoint {

@@ -1,9 +1,9 @@
-//! What a check found: what was expected, what came, and what to do.
+//! Result of a check: what was expected, what was found, and what to do.
 
 use serde::Serialize;
 use std::fmt;
 
-/// How bad.
+/// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
@@ -30,18 +30,18 @@ impl Level {
     }
 }
 
-/// What one check found.
+/// Result of one check.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Finding {
-    /// how bad
+    /// severity
     pub level: Level,
     /// what was checked, such as `fence`
     pub subject: &'static str,
     /// what was expected
     pub expected: String,
-    /// what came
+    /// what was found
     pub came: String,
-    /// what to do; empty where nothing is to be done
+    /// what to do; empty if nothing is to be done
     pub remedy: String,
 }
 
@@ -90,7 +90,7 @@ impl Finding {
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { level, subject, expected, came, remedy } = self;
-        write!(f, "{}: {subject}: expected {expected}, came {came}", level.name())?;
+        write!(f, "{}: {subject}: expected {expected}, got {came}", level.name())?;
         if remedy.is_empty() { Ok(()) } else { write!(f, "; {remedy}") }
     }
 }

@@ -1,29 +1,30 @@
-//! Whether the vehicle stands on the ground, as far as it is believed.
+//! Whether the vehicle stands on the ground, by its reports.
 
 use std::time::Duration;
 
 use super::state::Seen;
 
-/// "On the ground" counts while it was said within the first of these, and after it was said over the second without a
+/// "On the ground" is accepted if it was reported within the first of these times, and for the second time without a
 /// pause of the first.
 const VALID: (Duration, Duration) = (Duration::from_secs(2), Duration::from_secs(1));
-/// So long after its clock jumped nothing but repetition is believed: frames of long ago agree with one another.
+/// After a jump of its clock, only repeated reports are accepted for this time, because old frames agree with one
+/// another.
 const CLOCK_SETTLES: Duration = Duration::from_secs(3);
 
-/// What EXTENDED_SYS_STATE said, and what speaks against it.
+/// Reports of EXTENDED_SYS_STATE, and reasons for doubt.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Ground {
     said: Option<Seen<bool>>,
-    /// since when it says "on the ground" without a break
+    /// since when it has reported "on the ground" without a pause
     since: Option<Duration>,
-    /// it was told to take off and has not said that it is in the air yet
+    /// it was ordered to take off and has not reported yet that it is in the air
     takes_off: bool,
-    /// when its clock last jumped: it started anew, or frames of long ago came
+    /// when its clock last jumped: it restarted, or old frames arrived
     jumped: Option<Duration>,
 }
 
 impl Ground {
-    /// Takes the vehicle's word.
+    /// Takes a report of the vehicle.
     pub(super) fn report(&mut self, now: Duration, on_ground: bool) {
         self.takes_off &= on_ground;
         // a silence or a stall in between may have hidden that it said something else
@@ -32,23 +33,24 @@ impl Ground {
         self.said = Some(Seen { at: now, value: on_ground });
     }
 
-    /// It is told to take off: that it stands on the ground says little from now on, until it said that it is in the air.
+    /// Notes the order to take off: reports of the ground have little value until it has reported that it is in the
+    /// air.
     pub(super) fn expect_takeoff(&mut self) {
         self.takes_off = true;
     }
 
-    /// The vehicle's clock jumped.
+    /// Notes that the vehicle's clock jumped.
     pub(super) fn clock_jumped(&mut self, now: Duration) {
         self.jumped = Some(now);
     }
 
-    /// Its last word is that it stands on the ground.
+    /// Whether its last report is that it stands on the ground.
     pub(super) fn is_said(&self) -> bool {
         self.said.is_some_and(|said| said.value)
     }
 
-    /// It says that it stands on the ground, said it lately, and has said nothing else for a while: single frames can be
-    /// forged or old.
+    /// Whether it reports the ground, recently and without another report for a while: single frames can be forged or
+    /// old.
     pub(super) fn is_landed_at(&self, now: Duration) -> bool {
         let jumped = self.jumped.is_some_and(|at| now.saturating_sub(at) < CLOCK_SETTLES);
         let fresh = self.said.is_some_and(|said| now.saturating_sub(said.at) < VALID.0);

@@ -11,21 +11,21 @@ const POSITION_ABSOLUTE: u16 = 1 << 4;
 const HEIGHT_ABSOLUTE: u16 = 1 << 5;
 const HEIGHT_ABOVE_GROUND: u16 = 1 << 6;
 const CONSTANT_POSITION: u16 = 1 << 7;
-/// It could tell the position from what aids it now.
+/// Its predicted position is good with the present aiding.
 const PREDICTED: u16 = 1 << 8 | 1 << 9;
-/// Innovation tests above this reject the measurement.
+/// Innovation test ratio above which the autopilot rejects the measurement.
 const RATIO_MAX: f64 = 1.0;
 
-/// What the estimator says of itself.
+/// Status of the estimator.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct EstimatorReport {
-    /// why its position cannot be flown by; empty where it can
+    /// faults of its position; empty if it is good
     pub faults: Vec<String>,
 }
 
 impl EstimatorReport {
-    /// ESTIMATOR_STATUS (PX4). Its constant position means also a vehicle that stands on the ground, whose
-    /// position is as good as ever; only without anything that aids it is the position made up.
+    /// Status from ESTIMATOR_STATUS (PX4). "Constant position" is also reported by a vehicle on the ground, whose
+    /// position is good; the position is invented only if nothing aids the estimator.
     #[must_use]
     pub fn from_estimator_status(payload: Payload<'_>) -> Self {
         let ratios = [("velocity", 8), ("horizontal position", 12), ("vertical position", 16)];
@@ -35,7 +35,7 @@ impl EstimatorReport {
         Self::new(flags, ratios.map(|(name, offset)| (name, payload.f32(offset))))
     }
 
-    /// EKF_STATUS_REPORT (ArduPilot).
+    /// Status from EKF_STATUS_REPORT (ArduPilot).
     #[must_use]
     pub fn from_ekf_status_report(payload: Payload<'_>) -> Self {
         let ratios = [("velocity", 0), ("horizontal position", 4), ("vertical position", 8)];
@@ -66,14 +66,14 @@ impl EstimatorReport {
         Self { faults }
     }
 
-    /// Its position can be flown by.
+    /// Whether its position is good.
     #[must_use]
     pub fn is_good(&self) -> bool {
         self.faults.is_empty()
     }
 }
 
-/// MAV_SYS_STATUS_SENSOR bits that a flight rests on.
+/// MAV_SYS_STATUS_SENSOR bits of the parts that a flight needs.
 const WATCHED: [(u32, &str); 4] = [
     (1 << 11, "attitude stabilization"),
     (1 << 13, "height control"),
@@ -85,9 +85,9 @@ const PRE_ARM: u32 = 1 << 28;
 /// SYS_STATUS.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct SystemReport {
-    /// what is switched on and not healthy
+    /// parts that are enabled and not healthy
     pub unhealthy: Vec<&'static str>,
-    /// the autopilot's own pre-arm checks; `None` where it does not say
+    /// the autopilot's own pre-arm checks; `None` without a report
     pub may_arm: Option<bool>,
     /// percent; `None` where not measured
     pub battery_percent: Option<i8>,
@@ -111,14 +111,14 @@ impl SystemReport {
     }
 }
 
-/// How full the battery is, as far as a flight cares.
+/// Level of the battery for a flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BatteryLevel {
     /// enough, or not known
     Good,
     /// no new trajectory
     Low,
-    /// to the ground
+    /// the vehicle must land
     Critical,
 }
 
@@ -136,7 +136,7 @@ pub fn level_of_percent(percent: i8) -> BatteryLevel {
     }
 }
 
-/// BATTERY_STATUS: its charge state, or where it has none its percentage; and the percentage.
+/// Level from BATTERY_STATUS, by its charge state or else by its percentage; and the percentage.
 #[must_use]
 pub fn battery_status(payload: Payload<'_>) -> (BatteryLevel, Option<i8>) {
     let percent = i8::from_le_bytes([payload.u8(35)]);

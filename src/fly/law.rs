@@ -1,4 +1,4 @@
-//! What an autopilot makes of setpoints, and of the last one once no more come.
+//! Response of an autopilot to setpoints, and to the last one after they end.
 
 use nalgebra::Vector3;
 
@@ -7,23 +7,24 @@ use crate::autopilot::{ARDUPILOT, Autopilot, PX4, SetpointRules, Stack};
 use crate::simulate::{GuidedTarget, Shaper, ShaperLaw, ShaperLimits, Wish, jerk_within};
 use crate::units::rad_from_deg;
 
-/// A motion: place, velocity, acceleration; world, SI.
+/// A motion: position, velocity, acceleration; world, SI.
 pub type Motion = Shaper;
 
-/// PX4 looks for the loss ten times a second, and changes the mode with its next control period.
+/// Time in which PX4 notices the loss, s: it checks ten times a second, and changes the mode in its next control
+/// period.
 const NOTICES_S: f64 = 0.15;
 /// PX4's own allowance for its delay and jerk in the distance to a stop, s.
 const STOPS_S: f64 = 0.6;
-/// Time constant with which a vehicle leans over for an acceleration, s: what its attitude loop takes.
+/// Time constant with which a vehicle tilts for an acceleration, s: that of its attitude loop. Chosen; not measured.
 const LEANS_S: f64 = 0.12;
-/// ArduPilot's least acceleration and jerk, so that a zero does not stop the model for ever.
+/// ArduPilot's least acceleration and jerk, so that a value of zero does not stop the model for ever.
 const LEAST: f64 = 0.1;
 
-/// How an autopilot follows setpoints.
+/// The control law of an autopilot for setpoints.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FollowLaw {
-    /// ArduCopter in GUIDED: a reference of its own, shaped within its limits, follows the setpoint; the setpoint is moved
-    /// on by its velocity and acceleration for the time-out, then both are zero
+    /// ArduCopter in GUIDED: an internal reference, shaped within its limits, follows the setpoint. The setpoint is
+    /// extrapolated by its velocity and acceleration for the time-out, then both are zero
     ArduPilot {
         /// of the reference
         limits: ShaperLimits,
@@ -31,8 +32,8 @@ pub enum FollowLaw {
         timeout_s: f64,
     },
     /// PX4 in OFFBOARD: the vehicle itself follows, `v = v_ff + P (p - p_now)` within its limits and
-    /// `(1 + D) a = a_ff + K (v - v_now)`, without what the velocity's integral learns of drag; the last setpoint stays for the
-    /// time-out, then a mode of its own brakes
+    /// `(1 + D) a = a_ff + K (v - v_now)`, without the integrator of the velocity, which learns drag. The last
+    /// setpoint stays for the time-out, then another mode of PX4 brakes
     Px4 {
         /// MPC_XY_P, MPC_Z_P, 1/s
         position_1_s: Vector3<f64>,
@@ -51,7 +52,7 @@ pub enum FollowLaw {
 
 impl FollowLaw {
     /// From the vehicle's parameters, by the autopilot's defaults where one did not answer, and its release (major and minor
-    /// number): all that it may follow, the likeliest first; none for an autopilot that is not known. ArduPilot changed its law
+    /// number): all that it may follow, the most likely first; none for an autopilot that is not known. ArduPilot changed its law
     /// and its parameters' names on the way to 4.7, the law first: where it has the old names and does not say that it is
     /// older, both laws are possible.
     #[must_use]
@@ -72,7 +73,7 @@ impl FollowLaw {
         }
     }
 
-    /// How long the last setpoint is flown, s.
+    /// Time for which the last setpoint is followed, s.
     #[must_use]
     pub fn timeout_s(&self) -> f64 {
         match self {
@@ -91,7 +92,7 @@ impl FollowLaw {
         }
     }
 
-    /// The place at rest (m) that makes a vehicle in this motion go on with just its acceleration.
+    /// The position at rest (m) whose setpoint gives a vehicle in this motion exactly its acceleration.
     #[must_use]
     pub fn place_ahead(&self, motion: &Motion) -> Vector3<f64> {
         match self {
@@ -127,7 +128,7 @@ impl FollowLaw {
         }
     }
 
-    /// Every place (m) through which a vehicle comes that hears no setpoint after this one, to where it rests.
+    /// Calls `at` with every position (m) of a vehicle that receives no setpoint after this one, until it rests.
     pub fn abandoned(&self, motion: &Motion, target: &GuidedTarget, mut at: impl FnMut(&Vector3<f64>)) {
         let (mut motion, mut target) = (*motion, *target);
         let mut passed_s = 0.0;
@@ -167,9 +168,11 @@ impl FollowLaw {
     }
 }
 
-/// Step of the model, the longest time to rest after a time-out, s, and the motion that counts as rest, m/s and m/s^2.
+/// Step of the model, s. Chosen; not measured.
 pub const STEP_S: f64 = 0.02;
+/// Longest time to rest after a time-out, s. Chosen; not measured.
 const SETTLES_S: f64 = 8.0;
+/// Speed, m/s, and acceleration, m/s^2, that count as rest. Chosen; not measured.
 const RESTS_M_S: f64 = 0.02;
 
 /// A velocity (m/s) along and across the vertical within its limits.
@@ -184,18 +187,18 @@ fn default(stack: &Stack, name: &str) -> f64 {
     entry.and_then(|entry| Some(1.0 / entry.unit.per_base * entry.default?)).unwrap_or(0.0)
 }
 
-/// The value in its base unit; where the parameter did not answer the default.
+/// The value in its base unit; the default if the parameter did not answer.
 pub(super) fn stated(parameters: &Parameters, stack: &Stack, name: &str) -> f64 {
     parameters.in_base_unit(name).unwrap_or_else(|| default(stack, name))
 }
 
-/// The same where the value is positive, and else the default: zero stands for no limit.
+/// The same if the value is positive, otherwise the default: zero means no limit.
 fn positive(parameters: &Parameters, stack: &Stack, name: &str) -> f64 {
     let answered = parameters.in_base_unit(name).filter(|value| *value > 0.0);
     answered.unwrap_or_else(|| default(stack, name))
 }
 
-/// For how long the last setpoint is flown, s.
+/// Time for which the last setpoint is followed, s.
 fn timeout_s(parameters: &Parameters, rules: &SetpointRules) -> f64 {
     parameters.get(rules.timeout).unwrap_or(rules.timeout_default.as_secs_f64())
 }

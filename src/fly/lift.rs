@@ -1,5 +1,5 @@
-//! What the rotors lift, as the autopilot's messages and the vehicle file together say it: a file of another vehicle,
-//! or one whose actuator unit is not the autopilot's, does not give the weight that hovers.
+//! Thrust of the rotors by the autopilot's messages and the vehicle file. If the file is of another vehicle, or if its
+//! actuator unit is not the autopilot's, the thrust in hover is not the weight.
 
 use super::parameters::Parameters;
 use crate::recording::{Quantity, Recording};
@@ -7,14 +7,16 @@ use crate::signals::{motor_channels, propulsion_from_log};
 use crate::vehicle::{Propulsion, Vehicle};
 use std::ops::RangeInclusive;
 
-/// Normalised commands outside of this are in another unit than the file's: a hovering rotor is far from both ends.
+/// Range of normalised commands. Commands outside of it have another unit than the vehicle file's: a hovering rotor is
+/// far from both ends. Chosen; not measured.
 const IN_UNIT: RangeInclusive<f64> = -0.25..=1.25;
-/// Fewer samples of a message say nothing.
+/// Least number of samples of a message.
 const LEAST_SAMPLES: u32 = 5;
-/// Thrust over weight, or weight over thrust, beyond this is worth a word. Nominal files are often 20 to 30 % off, an
-/// unstated offset of the pulse range or an emptier battery as much again.
+/// Ratio of thrust to weight, or its inverse, that is reported. Nominal files are often 20 to 30 % off; an offset of
+/// the pulse range that is not stated, or a discharged battery, adds as much. Chosen; not measured.
 const NOTABLE: f64 = 1.4;
-/// Beyond this it is another vehicle, another unit or a wrong thrust curve: what is usual, twice over.
+/// Ratio from which the file is of another vehicle or unit, or has a wrong thrust curve: twice the usual error. Chosen;
+/// not measured.
 const GROSS: f64 = 2.0;
 
 /// Actuator outputs, or rotor speeds in rad/s, of one message.
@@ -28,18 +30,18 @@ pub struct Outputs {
     pub values: Vec<f64>,
 }
 
-/// How one message's outputs become thrust, and what they were while the vehicle hovered.
+/// Conversion of one message's outputs to thrust, with the outputs in hover.
 #[derive(Debug, Clone, PartialEq)]
 struct Heard {
     source: &'static str,
     quantity: Quantity,
     count: u32,
     sum_n: f64,
-    /// samples in none of the units that the file and the parameters speak of
+    /// samples in none of the units of the file and the parameters
     strange: u32,
 }
 
-/// The outputs of a hovering vehicle, weighed.
+/// Comparison of the outputs of a hovering vehicle with its weight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lift {
     stated: Propulsion,
@@ -50,17 +52,17 @@ pub struct Lift {
     heard: Vec<Heard>,
 }
 
-/// How far thrust and weight are apart.
+/// Result of the comparison of thrust and weight.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Weighed {
-    /// as they should be, in words
+    /// they agree, with the sentence
     Alike(String),
-    /// further than usual, or not known
+    /// they differ more than usual, or are not known
     Notable(String),
 }
 
 impl Lift {
-    /// Of a vehicle file and what the autopilot says of its outputs.
+    /// The comparison for a vehicle file and the autopilot's parameters of its outputs.
     #[must_use]
     pub fn new(vehicle: &Vehicle, parameters: &Parameters) -> Self {
         let said = Recording {
@@ -80,7 +82,7 @@ impl Lift {
         }
     }
 
-    /// Forgets what was heard: it does not hover.
+    /// Forgets all samples, because the vehicle does not hover.
     pub(super) fn clear(&mut self) {
         self.heard.clear();
     }
@@ -129,7 +131,7 @@ impl Lift {
         of(&self.said).or_else(|| of(&self.stated))
     }
 
-    /// Thrust against weight, of all that was heard since it was last cleared: measured speeds before commands.
+    /// Thrust against weight from all samples since the last clear: measured speeds before commands.
     #[must_use]
     pub fn weighed(&self) -> Weighed {
         let speaks = |heard: &&Heard| heard.count >= LEAST_SAMPLES && heard.sum_n.is_finite();
@@ -138,7 +140,7 @@ impl Lift {
         let Some(Heard { source, count, sum_n, .. }) = speeds.or(most) else {
             return match self.heard.iter().find(|heard| heard.strange >= LEAST_SAMPLES) {
                 Some(heard) => Weighed::Notable(format!(
-                    "expected actuator outputs in the unit of the vehicle file, came {} in another: thrust is not \
+                    "expected actuator outputs in the unit of the vehicle file, got {} in another: thrust is not \
                      compared with weight, and nothing may be identified",
                     heard.source
                 )),
@@ -167,7 +169,7 @@ impl Lift {
     }
 }
 
-/// The greater over the smaller; infinite where one of them is not positive.
+/// The larger over the smaller; infinite if one of them is not positive.
 #[must_use]
 pub(super) fn apart(came: f64, expected: f64) -> f64 {
     if came > 0.0 && expected > 0.0 { (came / expected).max(expected / came) } else { f64::INFINITY }

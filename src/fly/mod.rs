@@ -3,7 +3,7 @@
 //! [`Flight`] is the whole flight as a state machine without I/O: frames, keys and the clock go in, messages,
 //! notes and the outcome come out. [`Streamer`] makes the setpoints from the [`Guide`] that the flight renews
 //! with every step, and stops by itself where the flight does not. Times are [`std::time::Duration`]s of the
-//! host's clock since any fixed start; it goes on while the computer sleeps.
+//! host's clock since any fixed start; it continues while the computer sleeps.
 //!
 //! ```text
 //! frames, keys, clock -> Flight -> commands, notes, outcome

@@ -1,9 +1,9 @@
-//! What a frame brings that somebody must hear of at once.
+//! News in a frame that must be reported immediately.
 
 use super::telemetry::FlightState;
 use nalgebra::Vector3;
 
-/// What a frame brought that somebody must hear of at once.
+/// News in a frame that must be reported immediately.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Novelty {
     /// mode, arming or system status changed
@@ -13,16 +13,16 @@ pub enum Novelty {
         /// now
         to: FlightState,
     },
-    /// this mode, another than the one that is known, in a frame that was sent before: late, or the order is forged
+    /// a mode other than the known one, in a frame that was sent earlier: it is late, or the order is forged
     LateMode(u32),
-    /// the vehicle said something: MAV_SEVERITY and text
+    /// a text of the vehicle, with its MAV_SEVERITY
     Text(u8, String),
-    /// its clock started anew
+    /// its clock restarted
     Reboot,
     /// its estimate jumped
     EstimatorReset(String),
-    /// its estimate was reset by so little that it can be flown through
+    /// its estimate was reset by a step that is small enough to continue
     EstimatorStep(String),
-    /// it says that it flies to this place, m, world, or to none (POSITION_TARGET_LOCAL_NED)
+    /// it reports this target, m, world, or none (POSITION_TARGET_LOCAL_NED)
     Target(Option<Vector3<f64>>),
 }

@@ -1,9 +1,9 @@
-//! In which order a vehicle's frames were sent, whatever the network made of it.
+//! The order in which a vehicle's frames were sent, by their sequence numbers.
 
 use std::time::Duration;
 
-/// After a silence of this length, half a turn of the sequence numbers at a lively rate, nothing that comes is
-/// older than what came before.
+/// After a silence of this length (half a turn of the sequence numbers at a high rate), frames that arrive are not
+/// older than earlier ones.
 const SILENCE: Duration = Duration::from_millis(150);
 /// Sequence numbers of one turn.
 const TURN: i64 = 256;

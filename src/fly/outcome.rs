@@ -1,4 +1,4 @@
-//! How a flight ends, and what is told on the way.
+//! The outcome of a flight, and its notes.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-/// Why a flight ended other than planned.
+/// The cause of an unplanned end of a flight.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(tag = "id", content = "detail", rename_all = "snake_case")]
 pub enum Cause {
@@ -14,11 +14,11 @@ pub enum Cause {
     Operator,
     /// the operator stopped the motors
     Killed,
-    /// the program was told to end: Ctrl-C, SIGTERM, SIGHUP, a panic
+    /// the program was ended: Ctrl-C, SIGTERM, SIGHUP, a panic
     Signal(String),
-    /// something before takeoff was not as it must be, or was refused
+    /// a condition before takeoff was not satisfied, or an order was refused
     Refused(String),
-    /// the vehicle did not get where it had to be in time
+    /// the vehicle did not reach a place in time
     NotReached(String),
     /// the vehicle left our mode without our command: its pilot, another station, or a failsafe
     Override(String),
@@ -30,41 +30,41 @@ pub enum Cause {
     Tilt(String),
     /// outside the room, margin included
     Room(String),
-    /// nothing was heard of the vehicle
+    /// no message of the vehicle was received
     LinkLost(String),
     /// its position estimate is not good
     Estimator(String),
     /// its position estimate jumped
     EstimatorReset(String),
-    /// battery
+    /// the battery is low
     Battery(String),
-    /// somebody else commands the vehicle
+    /// another station commands the vehicle
     SecondMaster(String),
-    /// its clock started anew
+    /// its clock restarted
     Reboot,
-    /// this program or its computer stood still
+    /// this program or its computer stalled
     Stalled(String),
     /// a setpoint that no message can carry
     Unfit(String),
-    /// it does not do what it is told
+    /// the vehicle does not execute orders
     Unresponsive(String),
 }
 
-/// What is done at once for a cause.
+/// The immediate reaction to a cause.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Response {
-    /// nothing is sent any more but heartbeats: somebody else flies
+    /// only heartbeats are sent: somebody else flies
     HandsOff,
-    /// nothing is sent until the vehicle is heard again, and then only where it is still in our mode
+    /// nothing is sent until the vehicle is heard again and is still in our mode
     Wait,
-    /// the vehicle's own hold mode, and to the ground after a while
+    /// the vehicle's own hold mode, and landing after a while
     Hold,
-    /// to the ground now
+    /// immediate landing
     Land,
 }
 
 impl Cause {
-    /// What is done at once.
+    /// The immediate reaction.
     #[must_use]
     pub fn response(&self) -> Response {
         match self {
@@ -93,7 +93,7 @@ impl fmt::Display for Cause {
             Self::EstimatorReset(what) => write!(f, "position estimate jumped: {what}"),
             Self::Battery(what) => write!(f, "battery: {what}"),
             Self::SecondMaster(what) => write!(f, "a second ground station commands: {what}"),
-            Self::Reboot => f.write_str("the autopilot started anew"),
+            Self::Reboot => f.write_str("the autopilot restarted"),
             Self::Stalled(what) => write!(f, "the host stalled: {what}"),
             Self::Unfit(why) => write!(f, "no setpoint can be made: {why}"),
             Self::Unresponsive(what) => write!(f, "the vehicle does not answer: {what}"),
@@ -101,7 +101,7 @@ impl fmt::Display for Cause {
     }
 }
 
-/// Where the vehicle was left.
+/// Where and how the vehicle was left.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(tag = "id", content = "detail", rename_all = "snake_case")]
 pub enum Ending {
@@ -126,40 +126,40 @@ pub struct Flown {
     pub tracking_max_m: f64,
     /// greatest tilt, degrees
     pub tilt_max_deg: f64,
-    /// greatest tilt that the reference asks for, degrees
+    /// greatest tilt of the reference, degrees
     pub tilt_planned_deg: f64,
     /// s for which the trajectory waited for the link
     pub paused_s: f64,
 }
 
-/// How a flight ended.
+/// Outcome of a flight.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Outcome {
-    /// why not as planned; `None` for a whole flight
+    /// cause of an unplanned end; `None` for a complete flight
     pub cause: Option<Cause>,
     /// where the vehicle is
     pub ending: Ending,
     /// what was flown
     pub flown: Flown,
-    /// what makes a whole flight less than it should be
+    /// losses of a flight, as sentences
     pub losses: Vec<String>,
 }
 
 impl Outcome {
-    /// The whole trajectory was flown and the vehicle is on the ground.
+    /// Whether the whole trajectory was flown and the vehicle is on the ground.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.cause.is_none() && self.ending == Ending::Landed
     }
 }
 
-/// How much a note matters.
+/// Severity of a note.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
-    /// goes on as planned
+    /// the flight continues as planned
     Information,
-    /// somebody should know
+    /// the operator should know
     Warning,
     /// ends the flight
     Error,
@@ -170,16 +170,16 @@ pub enum Level {
 pub struct Note {
     /// s on the flight's clock
     pub time_s: f64,
-    /// how much it matters
+    /// severity
     pub level: Level,
-    /// of what kind: `phase`, `vehicle`, `command`, `mode`, `link`, `stream`, `abort`, `end`
+    /// kind: `phase`, `vehicle`, `command`, `mode`, `link`, `stream`, `abort`, `end`
     pub kind: Cow<'static, str>,
-    /// for people
+    /// text for the operator
     pub text: String,
 }
 
 impl Note {
-    /// At `now` of the flight's clock.
+    /// A note at `now` of the flight's clock.
     #[must_use]
     pub fn new(now: Duration, level: Level, kind: &'static str, text: impl Into<String>) -> Self {
         Self { time_s: now.as_secs_f64(), level, kind: Cow::Borrowed(kind), text: text.into() }

@@ -1,7 +1,7 @@
-//! How far an estimate stepped when it was reset.
+//! Step of an estimate at a reset.
 //!
-//! PX4 counts every reset, of whatever size: on each takeoff it aligns its heading anew, by a few degrees,
-//! some 1.5 m above the ground. Only a step that the vehicle follows with a jerk ends a flight.
+//! PX4 counts every reset of any size: on each takeoff it aligns its heading again, by a few degrees, some 1.5 m above
+//! the ground. Only a step that the vehicle follows with a jerk ends a flight.
 
 use std::fmt;
 
@@ -9,13 +9,15 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::frames::Attitude;
 
-/// Samples further apart, s, say nothing about a step.
+/// Largest time between two samples that show a step, s. Chosen; not measured.
 const GAP_MAX_S: f64 = 0.5;
-/// Steps up to these are flown through: m, m/s, rad.
+/// Largest step of the position with which the flight continues, m. Chosen; not measured.
 const POSITION_MAX_M: f64 = 0.3;
+/// Largest step of the velocity with which the flight continues, m/s. Chosen; not measured.
 const VELOCITY_MAX_M_S: f64 = 0.5;
+/// Largest step of the attitude with which the flight continues, rad. Chosen; not measured.
 const TURN_MAX_RAD: f64 = 0.35;
-/// What a vehicle may accelerate between two samples, m/s^2.
+/// Largest acceleration of a vehicle between two samples, m/s^2. Chosen; not measured.
 const ACCELERATION_M_S2: f64 = 8.0;
 
 /// The estimate of one instant, world NWU, body FLU.
@@ -33,10 +35,10 @@ pub struct Pose {
     pub rates_rad_s: Vector3<f64>,
 }
 
-/// What of a reset the motion does not explain.
+/// The part of a reset that the motion does not explain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
-    /// the samples beside it are too far apart, or there is none before it
+    /// the samples around it are too far apart, or there is none before it
     Unknown,
     /// m, m/s beyond what a vehicle accelerates, rad
     Known {
@@ -50,7 +52,7 @@ pub enum Step {
 }
 
 impl Step {
-    /// From the last estimate before a reset to the first after it.
+    /// The step from the last estimate before a reset to the first after it.
     #[must_use]
     pub fn between(before: Option<&Pose>, after: &Pose) -> Self {
         let Some(before) = before else { return Self::Unknown };
@@ -70,7 +72,7 @@ impl Step {
         }
     }
 
-    /// A vehicle can be flown on through it.
+    /// Whether it is small enough to continue the flight.
     #[must_use]
     pub fn is_small(&self) -> bool {
         match self {

@@ -1,4 +1,4 @@
-//! Who is on the link, and which of them is to be flown.
+//! The vehicles on the link, and the choice of the one to fly.
 
 use std::time::Duration;
 
@@ -6,29 +6,29 @@ use super::target::Target;
 use crate::autopilot::{Stack, is_multirotor};
 use crate::wire::{self, Frame, Record, SystemId};
 
-/// After the first vehicle, others are waited for this long: each sends a HEARTBEAT a second.
+/// Time for which others are awaited after the first vehicle: each sends a HEARTBEAT a second.
 const SETTLE: Duration = Duration::from_millis(2500);
-/// One that was named is waited for this long after another was heard.
+/// Time for which a requested vehicle is awaited after another one was heard.
 const NAMED_WITHIN: Duration = Duration::from_secs(10);
 const ARMED: u8 = 128;
 
 /// A vehicle that was heard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Listed {
-    /// who
+    /// the vehicle
     pub vehicle: wire::Vehicle,
     mav_type: u8,
     armed: bool,
 }
 
-/// Which vehicle.
+/// The choice of a vehicle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Choice {
     /// not yet known
     Wait,
     /// this one, by these rules
     Vehicle(wire::Vehicle, Target, &'static Stack),
-    /// none, and why
+    /// none, with the reason
     Refuse(String),
 }
 
@@ -84,19 +84,19 @@ impl Roster {
         }
     }
 
-    /// For how long any vehicle has been heard.
+    /// Time for which any vehicle has been heard.
     fn others_for(&self, now: Duration) -> Duration {
         self.first.map_or(Duration::ZERO, |first| now.saturating_sub(first))
     }
 
-    /// Others are heard, and that of this system id is not: who, in words, once it is time to say so.
+    /// The heard vehicles, in words, if the one of this system id is not heard for some time.
     #[must_use]
     pub fn without(&self, now: Duration, system: SystemId) -> Option<String> {
         let named = self.listed.iter().any(|listed| listed.vehicle.system == system);
         (!named && self.others_for(now) >= SETTLE).then(|| self.heard())
     }
 
-    /// Who was heard, in words.
+    /// The heard vehicles, in words.
     #[must_use]
     pub fn heard(&self) -> String {
         match self.listed.as_slice() {

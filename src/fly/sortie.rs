@@ -104,7 +104,7 @@ pub struct Settings {
     pub await_word: bool,
     /// a refusal by one of these is a warning
     pub accepted: Vec<Check>,
-    /// from which the questions after the vehicle's mode are counted; drawn anew for each run, so that answers to others
+    /// from which the questions after the vehicle's mode are counted; drawn again for each run, so that answers to others
     /// are not taken for answers to us
     pub first_question: FirstQuestion,
 }

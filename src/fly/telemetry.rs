@@ -1,4 +1,4 @@
-//! What is known of the vehicle, from its messages.
+//! State of the vehicle, from its messages.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -22,20 +22,22 @@ const POSITION_TARGET: u32 = 85;
 const ODOMETRY: u32 = 331;
 const LANDED_STATE_ON_GROUND: f64 = 1.0;
 const ARMED: u8 = 128;
-/// An autopilot that started anew has been on for no longer than this beyond the silence before, s.
+/// Longest time since boot, beyond the silence before, of an autopilot that has just restarted, s. Chosen; not
+/// measured.
 const STARTED_S: f64 = 20.0;
-/// Texts that are kept for reasons of a refusal.
+/// Number of kept texts, which give reasons of a refusal.
 const TEXTS: usize = 64;
-/// A step of position beyond what velocity explains, m: the estimate was reset.
+/// A step of the position beyond what velocity explains from which the estimate was reset, m. Chosen; not measured.
 const JUMP_M: f64 = 0.7;
-/// Samples further apart, s, say nothing about jumps.
+/// Largest time between two samples that show a step, s. Chosen; not measured.
 const JUMP_GAP_S: f64 = 0.5;
-/// Positions further apart are not one stream.
+/// Positions further apart in time are not one stream.
 const POSITION_GAP: Duration = Duration::from_secs(1);
-/// The estimator's reports pass through tests that fail for an instant; faults this long count.
+/// Time for which a report of the estimator or the battery is valid. Innovation tests fail for an instant, so a fault
+/// counts only if it lasts.
 const STATUS_VALID: Duration = Duration::from_secs(3);
 
-/// What is known of the vehicle.
+/// State of the vehicle.
 #[derive(Debug)]
 pub struct Telemetry {
     decoder: Decoder,
@@ -54,17 +56,17 @@ pub struct Telemetry {
     pub attitude: Option<Seen<Attitude>>,
     /// on the ground, as EXTENDED_SYS_STATE says
     pub(super) ground: Ground,
-    /// what the estimator says
+    /// report of the estimator
     pub estimator: Option<Seen<EstimatorReport>>,
-    /// since when the estimator is good without a break
+    /// since when the estimator has been good without a pause
     pub estimator_good_since: Option<Duration>,
-    /// since when it is bad without a break
+    /// since when it has been bad without a pause
     pub estimator_bad_since: Option<Duration>,
     /// since when positions arrive without a gap of a second
     pub position_since: Option<Duration>,
     /// sensors, pre-arm checks
     pub system: Option<Seen<SystemReport>>,
-    /// fullness
+    /// level of the battery, and percent
     pub battery: Option<Seen<(BatteryLevel, Option<i8>)>>,
     /// V
     pub battery_v: Option<f64>,
@@ -85,7 +87,7 @@ pub struct Telemetry {
 }
 
 impl Telemetry {
-    /// Of the vehicle whose HEARTBEAT was heard at `now`.
+    /// The state of a vehicle whose HEARTBEAT was heard at `now`.
     #[must_use]
     pub fn new(vehicle: wire::Vehicle, stack: &'static Stack, now: Duration) -> Self {
         Self {
@@ -133,7 +135,8 @@ impl Telemetry {
         news
     }
 
-    /// What is read by byte: an unknown enumeration value elsewhere in a message must not hide the mode.
+    /// Reads status messages by byte, because an unknown enumeration value elsewhere in a message must not hide the
+    /// mode.
     fn status(&mut self, now: Duration, id: u32, payload: Payload<'_>, place: i64, news: &mut Vec<Novelty>) {
         match id {
             0 => {
@@ -170,8 +173,7 @@ impl Telemetry {
         }
     }
 
-    /// A state that was sent before the one that is known says nothing: whether this one was not. `at`: of the last that
-    /// said whether it is armed.
+    /// Takes a state of the vehicle. One that was sent before the known one is ignored.
     fn note_state(&mut self, at: Duration, state: FlightState, place: i64, news: &mut Vec<Novelty>) -> bool {
         if place < self.state_place {
             if self.state.is_some_and(|seen| seen.value.custom_mode != state.custom_mode) {
@@ -268,7 +270,7 @@ impl Telemetry {
         }
     }
 
-    /// ODOMETRY came; its counter says that something of it was `reset`.
+    /// Takes ODOMETRY; its counter shows whether something was `reset`.
     fn note_pose(&mut self, pose: Option<Pose>, reset: bool, news: &mut Vec<Novelty>) {
         let before = std::mem::replace(&mut self.pose, pose);
         if reset {
@@ -307,7 +309,7 @@ impl Telemetry {
         self.motion = Some(Seen { at: now, value: motion });
     }
 
-    /// What the last frame said of the motors.
+    /// Outputs of the motors in the last frame.
     #[must_use]
     pub fn outputs(&self) -> &[Outputs] {
         &self.outputs
@@ -319,13 +321,13 @@ impl Telemetry {
         self.place
     }
 
-    /// Who it is.
+    /// Identity of the vehicle.
     #[must_use]
     pub fn vehicle(&self) -> wire::Vehicle {
         *self.decoder.vehicle()
     }
 
-    /// Which autopilot's rules it follows.
+    /// Rules of its autopilot.
     #[must_use]
     pub fn stack(&self) -> &'static Stack {
         self.stack
@@ -337,13 +339,14 @@ impl Telemetry {
         self.velocity_m_s
     }
 
-    /// Motors may turn; `false` where nothing is known. One HEARTBEAT that says "disarmed" in the air is not believed.
+    /// Whether the motors may turn; `false` if nothing is known. A single HEARTBEAT that says "disarmed" in the air is
+    /// not accepted.
     #[must_use]
     pub fn is_armed(&self) -> bool {
         self.arming.is_armed()
     }
 
-    /// A HEARTBEAT says "disarmed" and is not believed yet.
+    /// Whether a HEARTBEAT says "disarmed" and is not accepted yet.
     #[must_use]
     pub fn is_arming_contradicted(&self) -> bool {
         self.arming.is_contradicted()
@@ -355,7 +358,7 @@ impl Telemetry {
         self.mode_reports
     }
 
-    /// Warnings and errors that the vehicle said since `since`, the same only once.
+    /// Warnings and errors of the vehicle since `since`, each only once.
     #[must_use]
     pub fn complaints_since(&self, since: Duration) -> Vec<String> {
         let mut found: Vec<String> = Vec::new();
@@ -367,13 +370,13 @@ impl Telemetry {
         found
     }
 
-    /// How full the battery is; good where it does not say.
+    /// Level of the battery; good without a report.
     #[must_use]
     pub fn battery_level(&self) -> BatteryLevel {
         self.battery.map_or(BatteryLevel::Good, |battery| battery.value.0)
     }
 
-    /// Why its position cannot be flown by now; empty where it can.
+    /// Present faults of its position; empty if it is good.
     #[must_use]
     pub fn estimator_faults(&self, now: Duration) -> Vec<String> {
         let mut faults = match &self.estimator {

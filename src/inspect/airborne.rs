@@ -3,13 +3,14 @@
 use crate::recording::{Quantity, Recording, Stream};
 use crate::signals::{best, in_air};
 
-/// A command is effort from here on: autopilots let motors idle at up to this.
+/// Command from which a motor does more than idle: autopilots let motors idle at up to this value. Chosen; not
+/// measured.
 const LEAST_COMMAND: f64 = 0.12;
-/// Share of the largest effort so far that carries a vehicle.
+/// Share of the largest actuation so far that carries a vehicle. Chosen; not measured.
 const FLYING_SHARE: f64 = 0.2;
-/// Effort is smoothed over this long, s: one sample at the end stop is no landing.
+/// Time over which actuation is smoothed, s, so that a single sample at a bound is not a landing. Chosen; not measured.
 const SMOOTHING_S: f64 = 0.3;
-/// A shorter time in the air is none, s.
+/// Shortest time in the air that counts, s. Chosen; not measured.
 const SHORTEST_S: f64 = 2.0;
 
 /// Motor outputs as fractions of full scale: the channels that move, pulse widths from 1000 to 2000 us.
@@ -87,7 +88,7 @@ pub(super) fn airborne(
     let streams = || recording.streams.values();
     let first = streams().filter_map(|s| s.time_s.first()).copied().fold(f64::INFINITY, f64::min);
     let last = streams().filter_map(|s| s.time_s.last()).copied().fold(f64::NEG_INFINITY, f64::max);
-    (vec![(first, last)], "nothing: taken for flight throughout")
+    (vec![(first, last)], "nothing: all of it is taken as flight")
 }
 
 fn smoothed(effort: &Stream) -> Vec<f64> {

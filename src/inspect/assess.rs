@@ -13,7 +13,7 @@ use crate::vehicle::Vehicle;
 
 /// Segments kept; a log with more is counted.
 const KEPT_SEGMENTS: usize = 1000;
-/// Spans that end and begin this close are one flight that a window's edge divides, s.
+/// Largest pause between two spans of one flight that the border of a window divides, s. Chosen; not measured.
 const SAME_FLIGHT_S: f64 = 0.5;
 
 /// Collects what windows of flight say.
@@ -24,7 +24,7 @@ pub(super) struct Assessor<'a> {
     excitation: ExcitationTally,
     effort_max: f64,
     flown: bool,
-    /// the vehicle's clock started anew since the last segment
+    /// the vehicle's clock restarted since the last segment
     restarted: bool,
     information: Option<WeakInformation>,
     offsets: Vec<OffsetSum>,

@@ -5,13 +5,14 @@ use crate::log::Place;
 use crate::recording::Event;
 use crate::units::seconds_from_us;
 
-/// Arrivals are looked at together over this long, s.
+/// Time over which arrivals are evaluated together, s. Chosen; not measured.
 const BLOCK_S: f64 = 1.0;
-/// A lateness that changes by more, s: the host's clock was set. No link holds a message back for so long.
+/// Change of the lateness from which the host's clock was set, s: no link delays a message for so long. Chosen; not
+/// measured.
 const HOST_STEP_S: f64 = 10.0;
 /// Restarts that are kept; a log with more is broken.
 const KEPT_RESETS: usize = 1000;
-/// A drift known worse than this is not told, in a million.
+/// Largest standard error of a drift that is reported, parts per million. Chosen; not measured.
 const VAGUEST_PPM: f64 = 1000.0;
 
 /// Collects what [`ClockSummary`] says.
@@ -101,7 +102,7 @@ impl ClockTally {
         *span = (span.0.min(time_s), span.1.max(time_s));
     }
 
-    /// The vehicle's clock started anew.
+    /// The vehicle's clock restarted.
     pub(super) fn reset(&mut self, time_s: f64) {
         keep(&mut self.resets_s, time_s);
         self.end_line();

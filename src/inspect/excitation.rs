@@ -7,18 +7,18 @@ use crate::stats::hann_power;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use nalgebra::Vector3;
 
-/// Half width of the kernel, s: the identification's own.
+/// Half width of the kernel, s: that of the identification.
 const HALF_WIDTH_S: f64 = 0.2;
-/// Spectra are added up in bins of this width, Hz.
+/// Width of the bins of spectra, Hz. Chosen; not measured.
 const BIN_HZ: f64 = 0.05;
 const BINS: usize = 100;
 /// Share of the power below the band's lower and upper end.
 const BAND: (f64, f64) = (0.05, 0.95);
-/// Spectra and periods are sought in series with this step, s.
+/// Step of the series for spectra and periods, s. Chosen; not measured.
 const SERIES_STEP_S: f64 = 0.1;
-/// A trajectory repeats itself where it resembles itself this much a period later.
+/// Least correlation with the motion one period later for a trajectory that repeats. Chosen; not measured.
 const LEAST_RESEMBLANCE: f64 = 0.8;
-/// Shorter periods are vibration, s.
+/// Shortest period, s: shorter ones are vibration. Chosen; not measured.
 const SHORTEST_PERIOD_S: f64 = 1.5;
 
 /// Sums of what [`Excitation`] says.

@@ -128,7 +128,7 @@ pub struct TlogReading {
     pub leaping_stamps: u64,
     /// host stamps of no wall clock
     pub odd_stamps: u64,
-    /// times that the recording computer's clock was set while the vehicle's went on
+    /// times that the recording computer's clock was set while the vehicle's continued
     pub host_steps: u64,
     /// what is odd about the host's stamps, in words; nothing is lost by it
     pub oddities: Vec<String>,

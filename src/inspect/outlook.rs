@@ -9,9 +9,9 @@ use crate::recording::{Quantity, StreamKey, StreamStats};
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 use crate::vehicle::{Anchor, Vehicle};
 
-/// Angular acceleration below this rms teaches no inertia, rad/s^2.
+/// Least rms of the angular acceleration for an identification of inertia, rad/s^2. Chosen; not measured.
 pub(super) const LEAST_ANGULAR_ACCELERATION: f64 = 0.1;
-/// Less flight than this is none, s.
+/// Least usable time of flight, s. Chosen; not measured.
 pub(super) const LEAST_USABLE_S: f64 = 2.0;
 /// Body axis or axes of each entry of the inertia, in `Theta`'s order from its second on.
 const AXES: [(usize, usize); THETA - 1] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];

@@ -29,7 +29,7 @@ impl StreamTallies {
         })
     }
 
-    /// The vehicle's clock started anew.
+    /// The vehicle's clock restarted.
     pub(super) fn reset(&mut self) {
         self.tallies.iter_mut().for_each(|(_, _, tally)| tally.reset());
     }

@@ -71,7 +71,7 @@ impl TimelineTally {
         }
     }
 
-    /// The vehicle started anew: no span goes across.
+    /// The vehicle restarted: no span goes across.
     pub(super) fn reset(&mut self, time_s: f64) {
         self.armed.say(time_s, false);
         self.in_air.say(time_s, false);

@@ -5,11 +5,11 @@ use super::outlook::{AXIS_NAMES, Evidence, LEAST_ANGULAR_ACCELERATION};
 use crate::recording::Quantity;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 
-/// Flight that a good identification wants, s.
+/// Time of flight that a good identification needs, s. Chosen; not measured.
 const AMPLE_S: f64 = 20.0;
-/// A share of the flight that is worth a word when it is lost.
+/// Lost share of the flight from which it is mentioned. Chosen; not measured.
 const NOTABLE_SHARE: f64 = 0.05;
-/// A standard error beyond this share of the parameter is a poor one.
+/// Standard error, as a share of the parameter, from which it is poor. Chosen; not measured.
 const POOR: f64 = 0.1;
 /// Rate to ask for, Hz.
 const WANTED_HZ: u32 = 100;

@@ -51,7 +51,7 @@ impl Link {
 }
 
 impl Carrier {
-    /// A datagram arrived. Frames do not go on in the next.
+    /// A datagram arrived. Frames do not continue in the next.
     pub fn datagram(&mut self, bytes: &[u8], stamp: HostStamp) {
         self.incoming.datagram(bytes, stamp);
     }

@@ -22,13 +22,13 @@ pub enum LinkError {
         kind: &'static str,
     },
     /// nobody is at the other end now; what was given was not sent and will not be
-    #[error("not sent: nobody at the other end of {address}")]
+    #[error("not sent: no peer at the other end of {address}")]
     NotConnected {
         /// which link
         address: String,
     },
     /// the other end takes less than it is sent; what was given was not sent
-    #[error("not sent: {queued} frames wait already on {address}")]
+    #[error("not sent: {queued} frames are already waiting on {address}")]
     QueueFull {
         /// which link
         address: String,
@@ -36,7 +36,7 @@ pub enum LinkError {
         queued: usize,
     },
     /// what was given is not one whole frame
-    #[error("expected one whole MAVLink frame, got {bytes} bytes that are none")]
+    #[error("expected one complete MAVLink frame, got {bytes} bytes that are not one")]
     NotAFrame {
         /// how many bytes were given
         bytes: usize,

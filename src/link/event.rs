@@ -65,7 +65,7 @@ pub enum LinkEvent {
     },
     /// the recording misses frames, or its file cannot be written now
     RecordingFails,
-    /// the recording goes on
+    /// the recording continues
     RecordingGoesOn,
 }
 
@@ -97,28 +97,29 @@ impl LinkEvent {
 impl fmt::Display for LinkEvent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Waiting { why } => write!(f, "nobody at the other end yet ({why}): it is tried again"),
+            Self::Waiting { why } => write!(f, "no peer yet ({why}): trying again"),
             Self::Connected { peer } => write!(f, "connected to {peer}"),
             Self::Lost { why } => write!(f, "lost: {why}"),
             Self::Restored { peer } => write!(f, "connected again to {peer}"),
-            Self::Stranger { peer } => write!(f, "{peer} sends here too; it is neither heard nor recorded"),
+            Self::Stranger { peer } => write!(f, "{peer} also sends here; it is ignored and not recorded"),
             Self::Trusted { system, component } => {
                 write!(f, "system {system} component {component} signs with the key given")
             }
             Self::Distrusted { system, component, why } => {
-                write!(f, "system {system} component {component} is not believed: {why}")
+                write!(f, "system {system} component {component} is not accepted: {why}")
             }
             Self::Unchecked { system, component } => write!(
                 f,
-                "system {system} component {component} signs its messages, and no key was given: nothing proves that \
-                 they are its own, and it may not believe what it is sent; give its key by --signing-key-file"
+                "system {system} component {component} signs its messages, but no key was given: their origin is not \
+                 verified, and the vehicle may ignore what it is sent; give its key by --signing-key-file"
             ),
             Self::ClockBehind { seconds } => write!(
                 f,
-                "what is heard is signed {seconds} s ahead of this computer's clock, expected at most 60 s: set this \
+                "received messages are signed {seconds} s ahead of this computer's clock, expected at most 60 s: set \
+                 this \
                  computer's clock, or the vehicle's"
             ),
-            Self::RecordingFails => f.write_str("the disk does not take the recording"),
+            Self::RecordingFails => f.write_str("the disk does not accept the recording"),
             Self::RecordingGoesOn => f.write_str("the recording goes on"),
         }
     }

@@ -49,7 +49,7 @@ impl Halt {
         self.0.stop.store(code, Ordering::Release);
     }
 
-    /// Lets it go on; one that is gone stays gone.
+    /// Lets it continue; one that is gone stays gone.
     pub fn release(&self) {
         self.0.stop.store(0, Ordering::Release);
     }

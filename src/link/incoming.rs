@@ -74,7 +74,7 @@ impl Incoming {
         self.take(bytes.len(), stamp);
     }
 
-    /// A datagram: frames do not go on in the next. Whether there was a HEARTBEAT in it that may be believed.
+    /// A datagram: frames do not continue in the next. Whether there was a HEARTBEAT in it that may be believed.
     pub fn datagram(&mut self, bytes: &[u8], stamp: HostStamp) -> bool {
         self.splitter.feed(bytes);
         self.splitter.flush();
@@ -120,7 +120,7 @@ impl Incoming {
         }
     }
 
-    /// Nobody is at the other end any more. Half a frame from before does not go on with what comes after.
+    /// Nobody is at the other end any more. Half a frame from before does not continue with what comes after.
     pub fn lost(&mut self, why: String) {
         self.open(false);
         let stamp = self.now();

@@ -19,7 +19,7 @@ use super::writer::LinkWriter;
 
 /// Frames that may wait to be sent.
 pub(super) const QUEUE: usize = 4096;
-/// How long a link that both halves have left goes on sending what they gave.
+/// How long a link that both halves have left continues sending what they gave.
 const LINGER: Duration = Duration::from_secs(1);
 
 /// So often the link's task says that it runs.

@@ -21,7 +21,7 @@ pub struct LinkOptions {
     /// on sending to it. Longer than the 5 s for which a flight streams setpoints into a silence: where the downlink
     /// alone is lost, the vehicle still hears them
     pub peer_timeout: Duration,
-    /// a `tcpout` link that is refused is open all the same, and goes on trying: whichever end is started first,
+    /// a `tcpout` link that is refused is open all the same, and continues trying: whichever end is started first,
     /// the other is waited for
     pub patient: bool,
     /// signs what is sent, and believes only what is signed; without it signed frames pass unchecked

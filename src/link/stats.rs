@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::signing::Distrust;
 use crate::wire::{ComponentId, Frame, Sender, SplitCounts, SystemId};
 
-/// Senders told apart; noise that looks like frames must not fill the memory.
+/// Largest number of senders that are distinguished; noise that looks like frames must not fill the memory.
 const SENDERS: usize = 256;
 
 /// What passed a link.

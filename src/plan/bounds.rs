@@ -30,14 +30,16 @@ pub enum Quantity {
     Torque(usize),
     /// one rotor's thrust, N, in the order of the actuators
     RotorThrust(usize),
-    /// x, y or z (m) at which a vehicle comes to rest that hears nothing more, by [`AHEAD_S`]
+    /// x, y or z (m) at which the vehicle comes to rest if it receives no more setpoints, by [`AHEAD_S`]
     Rest(usize),
 }
 
-/// Where a vehicle comes to rest that hears no setpoint after one of a path: its place, its velocity times the first (s)
-/// and its acceleration times the second (s^2). Of the default parameters of PX4 along the ground: its position and velocity
-/// loops follow the last setpoint for COM_OF_LOSS_T (1 s) and the 0.15 s that it takes to notice, then its mode brakes
-/// within 0.75 s of flight. Upwards PX4 is quicker, and ArduPilot is not.
+/// Time constants of the point of rest of a vehicle that receives no setpoint after one of a path. The point is its
+/// position, plus its velocity times the first constant (s), plus its acceleration times the second (s^2).
+///
+/// They follow from the default parameters of PX4 along the ground: its position and velocity loops follow the last
+/// setpoint for COM_OF_LOSS_T (1 s) and the 0.15 s until the loss is noticed. Then its mode brakes within 0.75 s of
+/// flight. Upwards PX4 is quicker; ArduPilot is not.
 pub const AHEAD_S: [f64; 2] = [1.3, 0.65];
 
 impl Quantity {
@@ -80,7 +82,7 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// The length by which a violation is measured: half the width, or the size of the only bound.
+    /// The scale of violations: half the width of the bound, or the size of the only side.
     #[must_use]
     pub fn scale(&self) -> f64 {
         let scale = match (self.min, self.max) {
@@ -169,7 +171,7 @@ impl Instant {
         }
     }
 
-    /// The slope of a quantity by each path entry.
+    /// The derivative of a quantity with respect to each path entry.
     #[must_use]
     pub fn slope(&self, quantity: Quantity, dynamics: &Dynamics) -> Path {
         if let Quantity::Path { axis, order } = quantity {
@@ -218,7 +220,7 @@ impl Instant {
     }
 }
 
-/// All bounds of a vehicle's limits. Rotor thrusts are held between nothing and full command.
+/// All bounds of a vehicle's limits. Rotor thrusts are kept between zero and full command.
 #[must_use]
 pub fn bounds_of(limits: &Limits, vehicle: &Vehicle) -> Vec<Bound> {
     let mut bounds = Vec::new();
@@ -267,17 +269,18 @@ pub fn bounds_of(limits: &Limits, vehicle: &Vehicle) -> Vec<Bound> {
     bounds
 }
 
-/// What a plan leaves free of each rotor's thrust: gusts, drag and the controller itself need it, and a rotor at its bound
-/// makes another flight than the planned one. The lesser of the two counts.
+/// Margin of each rotor's thrust in a plan. Gusts, drag and the controller need it, and a rotor at its bound leads to
+/// another flight than the planned one. The smaller of the two counts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RotorMargin {
     /// share of the full thrust
     pub of_full: f64,
-    /// share of what is left to each bound in hover
+    /// share of the distance to each bound in hover
     pub of_rest: f64,
 }
 
-/// The margins in the order in which they are tried: the first that keeps the rotors of the flown series off their bounds.
+/// The margins in the order of trial. The first one with which the rotors of the simulated flight stay off their bounds
+/// is taken.
 pub const ROTOR_MARGINS: [RotorMargin; 5] = [
     RotorMargin { of_full: 0.1, of_rest: 0.25 },
     RotorMargin { of_full: 0.2, of_rest: 0.5 },
@@ -286,7 +289,7 @@ pub const ROTOR_MARGINS: [RotorMargin; 5] = [
     RotorMargin { of_full: 0.4, of_rest: 0.88 },
 ];
 
-/// The bounds within which a flight is planned: those of [`bounds_of`], with a margin to the rotors' own.
+/// The bounds of a plan: those of [`bounds_of`], with a margin to the rotors' bounds.
 #[must_use]
 pub fn bounds_to_plan_in(limits: &Limits, vehicle: &Vehicle, margin: RotorMargin) -> Vec<Bound> {
     let weight_n = vehicle.body.mass_kg * vehicle.gravity_m_s2;

@@ -6,7 +6,7 @@ use super::space::Path;
 /// Between samples of a check, s: the step of the paper's inner loop.
 pub const SAMPLE_S: f64 = 0.002;
 
-/// How near a path comes to one side of one bound.
+/// The distance of a path to one side of one bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margin {
     /// what is bounded
@@ -17,28 +17,28 @@ pub struct Margin {
     pub upper: bool,
     /// the value nearest to the bound or furthest beyond it
     pub value: f64,
-    /// when, s from the path's start
+    /// time, s from the path's start
     pub time_s: f64,
 }
 
 impl Margin {
-    /// What is left, in the quantity's unit; negative where the bound is broken.
+    /// The distance to the bound, in the quantity's unit; negative if the bound is violated.
     #[must_use]
     pub fn spare(&self) -> f64 {
         if self.upper { self.limit - self.value } else { self.value - self.limit }
     }
 }
 
-/// The first instant at which a bound is broken.
+/// The first violation of a bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Violation {
-    /// when, s from the path's start
+    /// time, s from the path's start
     pub time_s: f64,
-    /// what
+    /// the bounded quantity
     pub quantity: Quantity,
-    /// value there
+    /// value at this time
     pub value: f64,
-    /// the bound that it breaks
+    /// the violated bound
     pub limit: f64,
 }
 
@@ -49,17 +49,17 @@ impl std::fmt::Display for Violation {
     }
 }
 
-/// What a check found.
+/// Result of a check.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CheckReport {
-    /// one a side of a bound, in the order of the bounds
+    /// one for each side of a bound, in the order of the bounds
     pub margins: Vec<Margin>,
     /// the earliest violation
     pub first_violation: Option<Violation>,
 }
 
-/// Checks `path` (seconds to x, y, z, psi with four derivatives) from 0 to `duration_s` in steps of
-/// [`SAMPLE_S`]. A value that is not a number breaks every bound.
+/// Checks `path` (seconds to x, y, z, psi with four derivatives) from 0 to `duration_s` in steps of [`SAMPLE_S`]. A
+/// value that is not a number violates every bound.
 #[must_use]
 pub fn check(
     path: impl Fn(f64) -> Path,

@@ -8,14 +8,14 @@ use super::information::Matrix7;
 use nalgebra::{SVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
-/// What an excitation trajectory is judged by.
+/// Criterion of an excitation trajectory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Criterion {
     /// Condition number of `W` (20), the paper's. It depends on the units of the parameters.
     Cond,
-    /// Condition number of `W` with its columns scaled to unit norm. It is blind to the size of the
-    /// motion: use it to compare, not to plan for accuracy.
+    /// Condition number of `W` with its columns scaled to unit norm. It does not depend on the size of the motion: use
+    /// it for comparisons, not for a plan with high accuracy.
     ScaledCond,
     /// Volume of the error ellipsoid: the seventh root of the determinant of the covariance, square root.
     DOpt,
@@ -24,7 +24,7 @@ pub enum Criterion {
 }
 
 impl Criterion {
-    /// As files and arguments write it.
+    /// The name in files and arguments.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -42,18 +42,18 @@ impl Criterion {
 pub struct Support {
     /// the criterion is the sum over terms of the largest support of each
     pub term: usize,
-    /// value of the touching function at `G`
+    /// value of the function at `G`
     pub value: f64,
     /// its slope by the entries of `G`
     pub slope: Matrix7,
 }
 
-/// Eigenvalues beyond this many times the extreme one are no candidates for it.
+/// Eigenvalues beyond this many times the extreme one are not candidates for it. Chosen; not measured.
 const CANDIDATE_RATIO: f64 = 4.0;
 
 impl Criterion {
-    /// The logarithm of the criterion. `scale` is the size against which each parameter's error is
-    /// measured (kg, kg m^2). Infinite where the matrix is singular.
+    /// The logarithm of the criterion. `scale` is the size to which each parameter's error is compared (kg, kg m^2).
+    /// Infinite for a singular matrix.
     #[must_use]
     pub fn log_value(self, gram: &Matrix7, scale: &SVector<f64, 7>) -> f64 {
         let value = match self {
@@ -70,7 +70,7 @@ impl Criterion {
         if value.is_nan() { f64::INFINITY } else { value }
     }
 
-    /// How many terms the criterion has.
+    /// Number of terms of the criterion.
     #[must_use]
     pub fn terms(self) -> usize {
         match self {
@@ -143,7 +143,7 @@ fn unit_columns(gram: &Matrix7) -> Matrix7 {
     Matrix7::from_fn(|row, column| gram[(row, column)] * scale[row] * scale[column])
 }
 
-/// A support by the entries of the scaled matrix as one by the entries of `gram`.
+/// Converts a support of the scaled matrix to one of `gram`.
 fn through_scaling(support: Support, gram: &Matrix7) -> Support {
     let scaled = unit_columns(gram);
     let diagonal = gram.diagonal();

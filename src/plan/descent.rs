@@ -15,7 +15,7 @@ use super::quadratic::{QuadraticOutcome, QuadraticProgram};
 use super::space::{PathRows, SeriesSpace};
 use nalgebra::{DMatrix, DVector, SVector};
 
-/// Rows whose bound is further away than this share of its scale are left out of a step.
+/// Rows whose bound is farther away than this share of its scale are left out of a step. Chosen; not measured.
 const REACH: f64 = 0.5;
 /// Price of the largest relative violation against the logarithm of the criterion. The multipliers of
 /// the bounds add up to about one, because the criterion falls in proportion to the size of the motion.
@@ -24,13 +24,13 @@ const VIOLATION_PRICE: f64 = 2.0;
 const AUXILIARY_CURVATURE: f64 = 1e-3;
 /// Rows of a step are kept to this share of the bound's scale.
 const ROW_TOLERANCE: f64 = 1e-11;
-/// Rows that hardly depend on the unknowns, those next to a prescribed start, are left out: they would
-/// only spoil the condition of a step. What they hold is far below the tightening of the bounds.
+/// Rows that hardly depend on the unknowns, those next to a prescribed start, are left out, because they impair the
+/// condition of a step. Their contribution is far below the tightening of the bounds.
 const LEVER_MIN: f64 = 1e-6;
 /// How often supports are added within a step.
 const SUPPORT_ROUNDS: u32 = 12;
 
-/// What is to be minimised over which series inside which bounds.
+/// The minimisation problem: series, criterion and bounds.
 #[derive(Debug, Clone)]
 pub struct Problem {
     /// series that start and end at rest
@@ -41,13 +41,13 @@ pub struct Problem {
     pub criterion: Criterion,
     /// size against which each parameter's error is measured
     pub parameter_scale: SVector<f64, 7>,
-    /// what must hold
+    /// bounds
     pub bounds: Vec<Bound>,
     /// wrench of the nominal body
     pub dynamics: Dynamics,
 }
 
-/// Instants at which the bounds are held during a descent.
+/// Instants at which the bounds are checked during a descent.
 #[derive(Debug, Clone)]
 pub struct BoundGrid {
     instants: Vec<PathRows>,
@@ -64,7 +64,7 @@ pub struct Iterate {
     pub log_value: f64,
     /// largest relative violation on the grid; negative: a margin
     pub violation: f64,
-    /// no step promises more than the tolerance
+    /// whether no step has an expected decrease above the tolerance
     pub settled: bool,
     /// proximal weight of the next step
     proximal: f64,
@@ -128,7 +128,7 @@ impl Problem {
         Iterate { unknowns, log_value, violation, settled: false, proximal: 1.0, values }
     }
 
-    /// Takes up to `steps` steps; stops where a step promises less than `tolerance` of the logarithm.
+    /// Takes up to `steps` steps; stops at an expected decrease of the logarithm below `tolerance`.
     pub fn descend(&self, iterate: &mut Iterate, grid: &BoundGrid, steps: u32, tolerance: f64) {
         for _ in 0..steps {
             if iterate.settled {
@@ -230,7 +230,7 @@ impl Problem {
 }
 
 impl Iterate {
-    /// What a step must lower.
+    /// The merit function that a step must decrease.
     #[must_use]
     pub fn merit(&self) -> f64 {
         self.log_value + VIOLATION_PRICE * self.violation.max(0.0)
@@ -251,7 +251,7 @@ struct StepModel {
     first_bound_row: usize,
 }
 
-/// What a step model proposes.
+/// The step of a step model.
 struct Step {
     change: DVector<f64>,
     /// change of the modelled criterion
@@ -360,7 +360,7 @@ impl StepModel {
         })
     }
 
-    /// The step again, with each row's excess set to what the nonlinear bound shows at `reached`.
+    /// The step again, with each row's excess set to that of the nonlinear bound at `reached`.
     fn solve_corrected(
         &mut self,
         problem: &Problem,
@@ -381,7 +381,7 @@ impl StepModel {
     }
 }
 
-/// Around every local maximum and, coarsely, everywhere: a step may raise a flank as well.
+/// Instants around every local maximum and, with coarse steps, everywhere, because a step may also raise a flank.
 fn instants_that_matter(values: &[f64], sign: f64) -> impl Iterator<Item = usize> {
     let count = values.len();
     let (near, coarse) = ((count / 50).max(1), (count / 40).max(1));

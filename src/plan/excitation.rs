@@ -1,5 +1,5 @@
-//! Plans an excitation trajectory: from limits and a criterion to coefficients, margins and the
-//! standard errors that the flight will have.
+//! Planning of an excitation trajectory: from limits and a criterion to coefficients, margins and expected standard
+//! errors.
 
 use super::bounds::{Bound, Dynamics, Quantity, ROTOR_MARGINS, bounds_of, bounds_to_plan_in};
 use super::check::{CheckReport, SAMPLE_S, Violation, check};
@@ -16,20 +16,20 @@ use crate::trajectory::{FourierTrajectory, SizeError, check_size};
 use crate::vehicle::{Limits, Vehicle};
 use nalgebra::Vector4;
 
-/// Samples a period for the information; [`GramSampler`] says why so few do.
+/// Samples a period and harmonic for the information; [`GramSampler`] says why so few are sufficient.
 const INFORMATION_SAMPLES_PER_HARMONIC: u32 = 13;
 
-/// Random starts of a search: each is held in memory.
+/// Largest number of random starts of a search: each is held in memory.
 const STARTS_MAX: u64 = 100_000;
 
-/// What is asked of the planner.
+/// Request to the planner.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanRequest {
     /// T of (18), s
     pub period_s: f64,
     /// N of (18)
     pub harmonics: u32,
-    /// how many periods are flown
+    /// number of periods
     pub repeats: u32,
     /// where the series starts and ends
     pub start: StartPlace,
@@ -41,12 +41,13 @@ pub struct PlanRequest {
     pub seed: u64,
     /// number of random starts
     pub starts: u64,
-    /// a vehicle that hears nothing more is to come to rest inside the room, as far as that costs little
+    /// whether a vehicle that receives no more setpoints is to come to rest inside the room, if the criterion permits
+    /// it
     pub rests_inside: bool,
 }
 
 impl Default for PlanRequest {
-    /// The paper's series, five periods, sixteen starts; without regard to an end of the setpoints, as in the paper.
+    /// The paper's series, five periods, sixteen starts; as in the paper, the end of setpoints is not considered.
     fn default() -> Self {
         Self {
             period_s: 10.0,
@@ -62,17 +63,17 @@ impl Default for PlanRequest {
     }
 }
 
-/// What a trajectory is worth.
+/// Assessment of a trajectory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assessment {
     /// cond(W), `W` of (20)
     pub condition_number: f64,
     /// cond(W) with columns of unit norm
     pub scaled_condition_number: f64,
-    /// of the parameters in the order of `Theta`, relative to [`parameter_scale`]; `None` where the
-    /// flight cannot determine all of them
+    /// standard errors of the parameters in the order of `Theta`, relative to [`parameter_scale`]; `None` if the flight
+    /// does not determine all of them
     pub standard_errors: Option<[f64; 7]>,
-    /// the flight time on which the standard errors rest, s
+    /// the flight time for the standard errors, s
     pub flight_s: f64,
     /// bounds over one period
     pub check: CheckReport,
@@ -87,35 +88,36 @@ pub struct Plan {
     pub trajectory: FourierTrajectory,
     /// the criterion's value: a condition number, or a relative standard error
     pub criterion_value: f64,
-    /// what it is worth
+    /// its assessment
     pub assessment: Assessment,
-    /// what keeps a vehicle that hears nothing more inside the room; `None` where that was not asked for, or cost too much
+    /// the condition that a vehicle without setpoints comes to rest inside the room; `None` if it was not requested, or
+    /// if its cost was too high
     pub rest: Option<RestInside>,
 }
 
-/// What keeps a vehicle that hears nothing more inside the room.
+/// The condition that a vehicle without setpoints comes to rest inside the room.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RestInside {
-    /// how far inside its rotors come to rest, m; negative: outside
+    /// distance of its rotors at rest inside the room, m; negative: outside
     pub inside_m: f64,
-    /// bounds beside those of the limits; for the ways to the series and back as well
+    /// bounds in addition to those of the limits; also for the transitions to the series and back
     pub bounds: Vec<Bound>,
 }
 
-/// Why there is no plan.
+/// Errors of the planner.
 #[derive(Debug, thiserror::Error)]
 pub enum PlanError {
     /// a number of the request is out of range
-    #[error("{name}: expected {expected}, came {came}")]
+    #[error("{name}: expected {expected}, got {came}")]
     Request {
         /// which
         name: &'static str,
-        /// what would do
+        /// what was expected
         expected: &'static str,
-        /// what came
+        /// what was given
         came: String,
     },
-    /// a flight beyond all measure
+    /// a flight that is too long or too large
     #[error(transparent)]
     Size(#[from] SizeError),
     /// limits that cannot be kept
@@ -126,23 +128,25 @@ pub enum PlanError {
         "no trajectory within the limits was found in {starts} starts; the best one breaks one: {violation}"
     )]
     OutsideLimits {
-        /// how many starts were tried
+        /// number of tried starts
         starts: u64,
         /// the first broken bound
         violation: Violation,
     },
-    /// nothing that moves all parameters fits into the limits
-    #[error("the limits leave no motion that determines all seven parameters")]
+    /// no motion inside the limits determines all parameters
+    #[error("no motion inside the limits determines all seven parameters")]
     NotDetermined,
 }
 
 /// How often a plan that breaks a bound is polished.
 const POLISHES: u32 = 3;
-/// By how much the criterion may grow, for a plan that is safe where the setpoints may end.
+/// Largest factor on the criterion for a plan that is safe if setpoints end. Chosen; not measured.
 const CALM_COSTS: f64 = 1.5;
-/// How far inside the room the vehicle is to come to rest then, m, in the order in which it is tried.
+/// Distances inside the room at which the vehicle is to come to rest, m, in the order of trial. The preflight check
+/// refuses more than 1.25 m outside.
 const INSIDE_M: [f64; 8] = [-1.25, -1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5];
-/// Share of the commands of a flown plan that may be at a rotor's bound: an instant of the way from hover into the series.
+/// Largest share of the commands of a simulated flight that may be at a rotor's bound: an instant of the transition
+/// from hover into the series. Chosen; not measured.
 const AT_BOUND_MAX: f64 = 0.002;
 
 /// Plans a trajectory. `done` is called once a descent, [`Search::work`] times in all.
@@ -204,9 +208,9 @@ pub fn plan(
     Ok(Plan { trajectory, criterion_value, assessment, rest })
 }
 
-/// The plan by which a vehicle that hears nothing more stays furthest inside the room, as far as that costs little of the
-/// criterion, and the bounds that keep it there; as it was where there is none. It is led there in steps: what is best
-/// without these bounds lies far outside them.
+/// The plan with which a vehicle without setpoints stays furthest inside the room, if the cost in the criterion is
+/// small, and the bounds for it; the unchanged plan if there is none. The bounds are tightened in steps, because the
+/// best plan without them is far outside of them.
 fn calmed(
     search: &Search,
     problem: &Problem,
@@ -231,7 +235,7 @@ fn calmed(
     (calmest, kept)
 }
 
-/// Polishes until every bound is kept.
+/// Polishes the plan until every bound is kept.
 fn settled(
     search: &Search,
     problem: &Problem,
@@ -258,14 +262,14 @@ fn settled(
     }
 }
 
-/// The largest share by which a peak can stand above the samples beside it. Attitude multiplies path by
-/// yaw and so holds twice the highest harmonic.
+/// The largest share by which a peak can exceed the samples beside it. Attitude multiplies path by yaw and therefore
+/// contains twice the highest harmonic.
 fn rise_between_samples(request: &PlanRequest) -> f64 {
     let highest_rad_s = 2.0 * std::f64::consts::TAU * f64::from(request.harmonics) / request.period_s;
     0.5 * (0.5 * highest_rad_s * SAMPLE_S).powi(2)
 }
 
-/// The search for a request: bounds are tightened by what a peak can rise between two samples.
+/// The search for a request. Bounds are tightened by the possible rise of a peak between two samples.
 #[must_use]
 pub fn search_of(request: &PlanRequest) -> Search {
     let mut search = Search::new(request.seed, request.starts);
@@ -273,7 +277,7 @@ pub fn search_of(request: &PlanRequest) -> Search {
     search
 }
 
-/// What a series is worth, whoever made it.
+/// Assesses any series.
 #[must_use]
 pub fn assess(
     trajectory: &FourierTrajectory,
@@ -321,8 +325,8 @@ fn problem_of(vehicle: &Vehicle, limits: &Limits, request: &PlanRequest) -> Prob
     }
 }
 
-/// The height is free unless prescribed, and so is the place of a plan that is to rest inside. A start on a bound gets no
-/// jerk, and stands off the bound by as little as all else does.
+/// Start conditions of the axes. The height is free unless it is prescribed, and so is the place of a plan that is to
+/// rest inside the room. A start on a bound has no jerk, and keeps the same distance to the bound as all other points.
 fn starts_of(limits: &Limits, request: &PlanRequest) -> [AxisStart; 4] {
     let margin = search_of(request).margin;
     let at = |value: f64, min: Option<f64>, max: Option<f64>| {

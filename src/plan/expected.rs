@@ -1,9 +1,10 @@
-//! What the flight will determine, and how well: relative standard errors before it is flown.
+//! Expected relative standard errors of a flight.
 //!
-//! The planned trajectory is flown once by the simulated controller on its usual noise, recorded without noise, and
-//! conditioned as a recording is: the jitter of the commands is a nuisance of the identification, and has to be there. A controller does not track exactly: its attitude lags behind, and the fifth harmonic may
-//! be flown larger than planned by a third. The rows of that flight are those of the identification, with
-//! all its nuisances; the noise is that of [`NoiseModel`], coloured by the kernel.
+//! The simulated controller flies the planned trajectory once with its usual noise. The flight is recorded without
+//! noise and conditioned as a recording is: the jitter of the commands is a nuisance of the identification and must be
+//! present. A controller does not track exactly: its attitude lags behind, and the fifth harmonic may be flown larger
+//! than planned by a third. The rows of that flight are those of the identification, with all its nuisances. The noise
+//! is that of [`NoiseModel`], coloured by the kernel.
 
 use super::noise::{NoiseModel, RowMotion, RowSpacing, parameter_scale};
 use crate::estimate::{expected_covariance, theta_of};
@@ -15,24 +16,24 @@ use crate::trajectory::FourierTrajectory;
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
-/// Which part of a series' flight is identified from.
+/// The part of a flight that is used for identification.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlightSpan {
-    /// s of the series that are flown
+    /// flown time of the series, s
     pub flown_s: f64,
-    /// s of it that are left out at the beginning
+    /// time left out at its beginning, s
     pub left_out_s: f64,
 }
 
-/// Commands nearer to a bound are at it (-).
+/// Commands nearer to a bound than this are at the bound (-). Chosen; not measured.
 const COMMAND_STEP: f64 = 1e-3;
 
-/// Change-over from hover to the series, s.
+/// Transition from hover to the series, s. Chosen; not measured.
 const RAMP_S: f64 = 0.5;
 
-/// Standard errors over repeated flights of the parameters in the order of `Theta`, relative to
-/// [`parameter_scale`], identified from commands. `None` where the controller cannot fly the series or
-/// the flight does not determine all of them.
+/// Standard errors over repeated flights of the parameters in the order of `Theta`, relative to [`parameter_scale`],
+/// identified from commands. `None` if the controller cannot fly the series or the flight does not determine all
+/// parameters.
 #[must_use]
 pub fn expected_standard_errors(
     series: &FourierTrajectory,
@@ -65,8 +66,8 @@ pub fn expected_standard_errors(
     Some(std::array::from_fn(|k| covariance[(k, k)].sqrt() / scale[k]))
 }
 
-/// The series as the simulated controller flies it with this share of its usual noise, recorded without noise. `None` where
-/// it cannot.
+/// The series flown by the simulated controller with this share of its usual noise, recorded without noise. `None` if
+/// it cannot be flown.
 fn flown(
     series: &FourierTrajectory,
     vehicle: &Vehicle,
@@ -81,9 +82,8 @@ fn flown(
     flown.ok().map(|flown| flown.recording)
 }
 
-/// Share (0 to 1) of the rotor commands that are at a bound of the rotor when two periods of the series are flown, by the
-/// simulated controller and without noise: what a controller adds to the planned thrusts is in it. `None` where it cannot fly
-/// the series.
+/// Share (0 to 1) of the rotor commands at a bound of the rotor in two simulated periods of the series without noise.
+/// It includes the commands that the controller adds to the plan. `None` if the series cannot be flown.
 #[must_use]
 pub fn share_at_bound(series: &FourierTrajectory, vehicle: &Vehicle) -> Option<f64> {
     let flown = flown(series, vehicle, 2.0 * series.period_s, 0.0)?;

@@ -25,7 +25,7 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Of a whole path.
+    /// The extremes of a whole path.
     #[must_use]
     pub fn of(path: &FlightPath, vehicle: &Vehicle) -> Self {
         let mut out = Self { low_m: [f64::INFINITY; 3], high_m: [f64::NEG_INFINITY; 3], ..Self::default() };

@@ -1,16 +1,16 @@
-//! Limits that contradict each other or the vehicle, said before anything is searched.
+//! Detection of limits that contradict each other or the vehicle, before the search.
 
 use crate::vehicle::{Limits, Vehicle};
 
-/// Two things that cannot both hold.
+/// A contradiction between two limits, or between a limit and the vehicle or the start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{first} and {second} cannot both hold: {why}")]
 pub struct Conflict {
     /// one limit with its value
     pub first: String,
-    /// the other, or what the vehicle or the start asks for
+    /// the other limit, or the requirement of the vehicle or of the start
     pub second: String,
-    /// in words
+    /// the reason
     pub why: String,
 }
 
@@ -18,7 +18,7 @@ fn conflict(first: String, second: String, why: &str) -> Result<(), Conflict> {
     Err(Conflict { first, second, why: why.to_owned() })
 }
 
-/// The start as asked for: x, y and z where they are prescribed (m), yaw (rad).
+/// The requested start: x, y and z if they are prescribed (m), yaw (rad).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StartPlace {
     /// m, north; `None`: 0, or the planner's choice for a plan that is to rest inside
@@ -31,7 +31,7 @@ pub struct StartPlace {
     pub yaw_rad: f64,
 }
 
-/// Refuses limits that no flight can keep. Hovering at the start keeps every limit that passes.
+/// Refuses limits that no flight can keep. If they pass, hovering at the start keeps every limit.
 ///
 /// # Errors
 /// The first conflict found.

@@ -30,7 +30,7 @@ pub struct GramSampler {
 pub struct SlopedGram {
     /// mean of `Phi^T D Phi`
     pub matrix: Matrix7,
-    /// one an unknown
+    /// one for each unknown
     pub slopes: Vec<Matrix7>,
 }
 
@@ -60,7 +60,7 @@ impl GramSampler {
         sum / f64::from(count.max(1))
     }
 
-    /// The matrix alone.
+    /// The matrix without slopes.
     #[must_use]
     pub fn matrix(&self, unknowns: &DVector<f64>) -> Matrix7 {
         let mut sum = Matrix7::zeros();

@@ -29,9 +29,9 @@ pub struct NoiseModel {
     /// the same of the torque commands that answers the noise of attitude and rates, as angular
     /// acceleration about body x, y, z, rad/s^2
     pub torque_jitter_rad_s2: [f64; 3],
-    /// the same that answers a noisy wanted tilt in hover, rad/s^2: about body x and y. The less thrust, the
-    /// more tilt a noisy wanted force makes; and where the thrust axis leans towards the heading, which is
-    /// held about the world's vertical, a noisy tilt turns the wanted attitude about body z, too
+    /// the same caused by a noisy desired tilt in hover, rad/s^2, about body x and y. Less thrust makes more tilt of a
+    /// noisy desired force. If the thrust axis leans towards the heading, which is held about the world's vertical, a
+    /// noisy tilt also rotates the desired attitude about body z
     pub tilt_jitter_rad_s2: f64,
     /// ticks of the command loop, 1/s
     pub control_rate_hz: f64,
@@ -44,19 +44,19 @@ pub struct NoiseModel {
 }
 
 impl Default for NoiseModel {
-    /// The simulated flights' own: sensors of the class of a Pixhawk, control at 250 Hz logged at 125 Hz.
+    /// The noise of the simulated flights: sensors of the class of a Pixhawk, control at 250 Hz logged at 125 Hz.
     fn default() -> Self {
         Self::of_loop(&FlightSettings::default(), 9.81)
     }
 }
 
-/// Share of the accelerometer in the vertical motion where velocity is recorded, too.
+/// Share of the accelerometer in the vertical motion if velocity is recorded as well. Chosen; not measured.
 const ACCELEROMETER_SHARE: f64 = 0.8;
 
 impl NoiseModel {
-    /// What a cascade makes of the noise that it flies on, to first order about hover. Position and
-    /// velocity become thrust along z, and along x and y a tilt, of which the attitude gain makes a
-    /// torque; attitude and rates become torques.
+    /// Command jitter of a cascaded controller from sensor noise, to first order at hover. Position and velocity cause
+    /// thrust along z, and along x and y a tilt, from which the attitude gain makes a torque; attitude and rates cause
+    /// torques.
     #[must_use]
     pub fn of_loop(settings: &FlightSettings, gravity_m_s2: f64) -> Self {
         let (gains, sensed) = (&settings.gains, settings.control_noise.scaled(settings.control_noise_scale));
@@ -83,8 +83,8 @@ impl NoiseModel {
         (1.0 / self.log_rate_hz - 1.0 / self.control_rate_hz).max(0.0)
     }
 
-    /// Densities of white noise in the four balances: of what commands and accelerometer bring (N^2 s, (N m)^2 s), and of what
-    /// the kernel's derivative acts on ((N s)^2 s, (N m s)^2 s).
+    /// Densities of white noise in the four balances: those of commands and accelerometer (N^2 s, (N m)^2 s), and those
+    /// on which the kernel's derivative acts ((N s)^2 s, (N m s)^2 s).
     fn densities(&self, vehicle: &Vehicle) -> [(f64, f64); CHANNELS] {
         let moments = vehicle.body.inertia_kg_m2.diagonal();
         std::array::from_fn(|channel| {
@@ -143,7 +143,7 @@ impl NoiseModel {
         noise
     }
 
-    /// Density of the angular acceleration that answers a noisy tilt in hover, (rad/s^2)^2 s.
+    /// Density of the angular acceleration that a noisy tilt in hover causes, (rad/s^2)^2 s.
     fn tilt_density(&self) -> f64 {
         self.tilt_jitter_rad_s2.powi(2) * self.unseen_s()
     }
@@ -166,7 +166,7 @@ impl NoiseModel {
     }
 }
 
-/// What the motion at each row makes of noise.
+/// Factors of the motion at each row on noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowMotion {
     /// what a noisy tilt in hover becomes about body x, y, z, factors: about z it is the tilt about x that turns the vehicle
@@ -175,10 +175,10 @@ pub struct RowMotion {
     pub turning_rad_s: Vec<f64>,
 }
 
-/// How rows lie in time.
+/// Spacing of the rows in time.
 #[derive(Debug, Clone, Copy)]
 pub struct RowSpacing<'a> {
-    /// what smooths the signals
+    /// the weak form's kernel
     pub kernel: &'a WeakKernel,
     /// s between samples
     pub step_s: f64,
@@ -196,8 +196,8 @@ impl RowSpacing<'_> {
     }
 }
 
-/// The size against which each parameter's error is measured (kg, kg m^2): mass and moments of inertia
-/// themselves, and for the product of two axes the geometric mean of their moments.
+/// The size to which each parameter's error is compared (kg, kg m^2): mass and moments of inertia themselves, and for
+/// the product of two axes the geometric mean of their moments.
 #[must_use]
 pub fn parameter_scale(vehicle: &Vehicle) -> Theta {
     let theta = theta_of(&vehicle.body);

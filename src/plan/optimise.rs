@@ -1,7 +1,7 @@
-//! Many random starts, narrowed down in rounds, each on a finer grid of instants.
+//! Search over many random starts in rounds, each on a finer grid of instants.
 //!
-//! A start's descent is deterministic, the draws depend on the seed and the start's number only, and
-//! selection orders by value and then by number: the result depends on the seed and on nothing else.
+//! The descent of a start is deterministic, the random numbers depend only on the seed and the start's number, and the
+//! selection orders by value and then by number. The result therefore depends only on the seed.
 
 use super::descent::{BoundGrid, Iterate, Problem};
 use nalgebra::DVector;
@@ -12,15 +12,15 @@ use rayon::prelude::*;
 /// A round: every survivor descends on one grid, then the best stay.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Round {
-    /// instants a period at which the bounds are held
+    /// instants a period at which the bounds are checked
     pub instants: u32,
-    /// at most so many steps
+    /// largest number of steps
     pub steps: u32,
-    /// how many enter the next round
+    /// number of starts that enter the next round
     pub survivors: usize,
 }
 
-/// How the search is run.
+/// Settings of the search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Search {
     /// seed of the random starts
@@ -29,13 +29,13 @@ pub struct Search {
     pub starts: u64,
     /// rounds before the last
     pub rounds: Vec<Round>,
-    /// steps of the last round, on the instants that decide
+    /// steps of the last round, on the final grid of instants
     pub final_steps: u32,
     /// every bound is kept with at least this share of its scale to spare
     pub margin: f64,
 }
 
-/// A step that promises less of the criterion's logarithm is not taken.
+/// Least decrease of the criterion's logarithm for a step. Chosen; not measured.
 const TOLERANCE: f64 = 1e-6;
 
 impl Search {
@@ -50,15 +50,15 @@ impl Search {
         Self { seed, starts, rounds, final_steps: 40, margin: 1e-7 }
     }
 
-    /// How many descents the search consists of: what a progress bar counts.
+    /// Number of descents of the search, for a progress bar.
     #[must_use]
     pub fn work(&self) -> u64 {
         let survivors = self.rounds.iter().map(|round| round.survivors as u64);
         self.starts + survivors.map(|count| count.min(self.starts)).sum::<u64>()
     }
 
-    /// The best series found, or `None` where no start could be evaluated. `final_instants` a period
-    /// decide in the last round; `done` is called once a descent.
+    /// The best series, or `None` if no start could be evaluated. The last round has `final_instants` a period; `done`
+    /// is called once a descent.
     #[must_use]
     pub fn run(&self, problem: &Problem, final_instants: u32, done: &(dyn Fn() + Sync)) -> Option<Iterate> {
         let mut points: Vec<DVector<f64>> = (0..self.starts).map(|start| self.draw(problem, start)).collect();
@@ -91,7 +91,7 @@ impl Search {
     }
 }
 
-/// All points, each descended, the best first.
+/// All points after their descents, the best first.
 fn descend_all(
     problem: &Problem,
     grid: &BoundGrid,

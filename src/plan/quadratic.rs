@@ -16,11 +16,11 @@ pub struct QuadraticProgram {
     pub slope: Vec<f64>,
     /// row-major, as wide as `slope`
     pub rows: Vec<f64>,
-    /// one a row
+    /// one for each row
     pub limits: Vec<f64>,
 }
 
-/// Where the programme ended.
+/// Result of the programme.
 #[derive(Debug, Clone, PartialEq)]
 pub enum QuadraticOutcome {
     /// The minimum.
@@ -57,7 +57,7 @@ impl QuadraticProgram {
         &self.rows[index * width..(index + 1) * width]
     }
 
-    /// How far `z` is beyond row `index`.
+    /// Violation of row `index` at `z`.
     fn excess(&self, index: usize, z: &DVector<f64>) -> f64 {
         dot(self.row(index), z.as_slice()) - self.limits[index]
     }
@@ -76,7 +76,7 @@ impl QuadraticProgram {
     }
 
     /// Solves the programme; rows are kept to `tolerance` (in the units of their limits). Wherever all
-    /// rows hold, `add_rows` may push more and return true: the method then goes on from there.
+    /// rows hold, `add_rows` may push more and return true: the method then continues from there.
     #[must_use]
     pub fn solve(
         &mut self,
@@ -108,8 +108,8 @@ impl QuadraticProgram {
         QuadraticOutcome::Stalled
     }
 
-    /// Moves to where row `index` holds with equality, dropping rows that stand in the way.
-    /// False where the row contradicts those that stay.
+    /// Moves to a point at which row `index` holds with equality, and drops active rows that prevent it. False if the
+    /// row contradicts those that stay.
     fn enforce(&self, index: usize, z: &mut DVector<f64>, active: &mut ActiveSet) -> bool {
         // the method's constraints read n' z >= b
         let normal: Vec<f64> = self.row(index).iter().map(|value| -value).collect();
@@ -251,7 +251,7 @@ impl Rotation {
     }
 }
 
-/// Eight running sums, so that the additions need not wait for each other.
+/// Inner product with eight running sums, so that additions are independent.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     let (a_chunks, b_chunks) = (a.chunks_exact(8), b.chunks_exact(8));

@@ -4,29 +4,33 @@ use super::bounds::{Bound, Quantity};
 use crate::units::{deg_from_rad, rad_from_deg};
 use crate::vehicle::{Limits, Vehicle};
 
-/// Error of an estimated height above the place of takeoff, m: what barometers and estimators are off by within minutes.
+/// Error of an estimated height above the place of takeoff, m, which barometers and estimators reach within minutes.
+/// Chosen; not measured.
 pub const HEIGHT_ERROR_M: f64 = 0.3;
-/// Tilt at which rotors still have to be clear of the ground, degrees.
+/// Tilt at which the rotors must still be clear of the ground, degrees. Chosen; not measured.
 const TILT_DEG: f64 = 45.0;
 
-/// The room where none is stated: half its length and width, heights, m.
+/// Default room: half its length and width, m. Chosen; not measured.
 const WALL_M: f64 = 2.0;
+/// Default room: floor and ceiling, m. Chosen; not measured.
 const HEIGHTS_M: (f64, f64) = (1.0, 3.0);
-/// How lively it is flown where no limit of the motion is stated.
+/// Default limit of the speed, m/s. Chosen; not measured.
 const SPEED_M_S: f64 = 1.5;
+/// Default limit of roll and of pitch, degrees. Chosen; not measured.
 const TILT_MAX_DEG: f64 = 15.0;
+/// Default limit of the yaw rate, degrees/s. Chosen; not measured.
 const YAW_RATE_MAX_DEG_S: f64 = 60.0;
 
-/// Limits with a room, and what of it was not stated.
+/// Limits with a room, and the parts of it that were not stated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Roomed {
     /// with all walls, ceiling and floor
     pub limits: Limits,
-    /// what was added or changed, a sentence each; empty where the room was stated in whole
+    /// additions and changes, a sentence each; empty if the room was stated completely
     pub notes: Vec<String>,
 }
 
-/// How far rotors reach from the place (the body's origin) of a vehicle, m.
+/// Reach of the rotors from the position (the body's origin) of a vehicle, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
     /// to each side, level
@@ -38,7 +42,7 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// Of a vehicle; of one without rotors zero.
+    /// The reach of a vehicle; zero without rotors.
     #[must_use]
     pub fn of(vehicle: &Vehicle) -> Self {
         let radius_m = vehicle.propulsion.rotor_radius_m.unwrap_or(0.0);
@@ -58,7 +62,7 @@ impl Reach {
     }
 }
 
-/// A wall of a room in which a vehicle fits nowhere: its name, where it is, and how far the rotors reach, m.
+/// A wall of a room in which the vehicle has no place: its name, its coordinate, and the reach of the rotors, m.
 #[must_use]
 pub fn too_narrow(limits: &Limits, vehicle: &Vehicle) -> Option<(&'static str, f64, f64)> {
     let side_m = Reach::of(vehicle).side_m;
@@ -75,8 +79,8 @@ pub fn floor_m(vehicle: &Vehicle) -> f64 {
     Reach::of(vehicle).down_m + HEIGHT_ERROR_M
 }
 
-/// Bounds by which a vehicle flies, and comes to rest where it hears nothing more, at least so far (m) inside: its rotors
-/// off walls and ceiling, itself off the floor; negative: outside. `None` where the room is not that large.
+/// Bounds with which a vehicle flies, and comes to rest without setpoints, at least this far (m) inside the room: its
+/// rotors from walls and ceiling, its position from the floor; negative: outside. `None` if the room is too small.
 #[must_use]
 pub(super) fn rest_bounds(limits: &Limits, vehicle: &Vehicle, inside_m: f64) -> Option<Vec<Bound>> {
     let reach = Reach::of(vehicle);
@@ -98,7 +102,7 @@ pub(super) fn rest_bounds(limits: &Limits, vehicle: &Vehicle, inside_m: f64) -> 
     Some(bounds)
 }
 
-/// The limits with a careful default for each part of the room that they do not state, and a floor that is above the
+/// The limits with a careful default for each part of the room that they do not state, and with a floor above the
 /// ground.
 #[must_use]
 pub fn with_room(limits: &Limits, vehicle: &Vehicle) -> Roomed {
@@ -127,22 +131,22 @@ pub fn with_room(limits: &Limits, vehicle: &Vehicle) -> Roomed {
     let mut notes = Vec::new();
     if !missing.is_empty() {
         notes.push(format!(
-            "expected a room and how fast it is flown in [limits], came none or a part of it: the default is used for what is \
-             missing, {}; state your own there if it is another",
+            "expected a room and speed limits in [limits], got none or a part of them: defaults are used for what is \
+             missing, {}; state your own values there if they differ",
             missing.join(", ")
         ));
     }
     if let Some(stated_m) = roomed.z_min_m.filter(|z_min_m| *z_min_m < floor_m) {
         roomed.z_min_m = Some(floor_m);
         notes.push(format!(
-            "expected z_min_m of at least {floor_m:.2} (rotors' reach and {HEIGHT_ERROR_M} m of error in height), came \
+            "expected z_min_m of at least {floor_m:.2} (rotors' reach and {HEIGHT_ERROR_M} m of error in height), got \
              {stated_m:.2}: {floor_m:.2} is the floor of the room"
         ));
     }
     Roomed { limits: roomed, notes }
 }
 
-/// Speed, acceleration or tilt is bounded, so that somebody thought of how lively it may be flown.
+/// Whether speed, acceleration or tilt is bounded, so that the limits of the motion were considered.
 fn bounds_motion(limits: &Limits) -> bool {
     let of_motion =
         [limits.speed_max_m_s, limits.acceleration_max_m_s2, limits.roll_max_rad, limits.pitch_max_rad];
@@ -171,9 +175,7 @@ mod tests {
         let whole = with_room(&Limits::default(), &vehicle);
         let limits = whole.limits;
         assert!(limits.z_min_m.unwrap() >= 1.0 && limits.z_max_m.unwrap() <= 10.0, "{limits:?}");
-        assert!(
-            whole.notes[0].contains("the default is used") && whole.notes[0].contains("roll_max_deg = 15")
-        );
+        assert!(whole.notes[0].contains("defaults are used") && whole.notes[0].contains("roll_max_deg = 15"));
         assert_eq!(with_room(&limits, &vehicle), Roomed { limits, notes: Vec::new() });
         let fast = Limits { x_max_m: Some(5.0), speed_max_m_s: Some(3.0), ..Limits::default() };
         let part = with_room(&fast, &vehicle);
@@ -193,6 +195,6 @@ mod tests {
         let stated = Limits { z_min_m: Some(-5.0), z_max_m: Some(4.0), ..Limits::default() };
         let roomed = with_room(&stated, &vehicle);
         assert_eq!(roomed.limits.z_min_m, Some(floor_m));
-        assert!(roomed.notes.iter().any(|note| note.contains("came -5.00")), "{:?}", roomed.notes);
+        assert!(roomed.notes.iter().any(|note| note.contains("got -5.00")), "{:?}", roomed.notes);
     }
 }

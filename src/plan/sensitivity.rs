@@ -1,4 +1,4 @@
-//! How the motion and the regressor of one instant change with the path.
+//! Derivatives of the motion and of the regressor of one instant with respect to the path.
 
 use super::space::Path;
 use crate::regression::{BodyKinematics, standard_regressor};

@@ -10,13 +10,13 @@ use nalgebra::{DMatrix, DVector};
 /// Path of one instant: x, y, z, psi, each with its first four derivatives.
 pub type Path = [[f64; 5]; 4];
 
-/// Where an axis starts and ends. It is at rest there in every case.
+/// Start and end of an axis. It is at rest there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AxisStart {
     /// at this value (m, rad)
     At(f64),
-    /// at this value, which is a bound that may not be crossed: the axis has no jerk there either,
-    /// because a path at rest with jerk crosses its place
+    /// at this value, which is a bound: the axis also has no jerk there, because a path at rest with jerk crosses its
+    /// position
     OnBound(f64),
     /// anywhere; the value is a first guess
     Near(f64),
@@ -51,7 +51,7 @@ pub struct SeriesSpace {
     offsets: [usize; 5],
 }
 
-/// How the path of one instant depends on the unknowns.
+/// Dependence of the path of one instant on the unknowns.
 #[derive(Debug, Clone)]
 pub struct PathRows {
     /// d q^(order) / d x, one row an order, `dimension` wide
@@ -170,7 +170,7 @@ impl PathRows {
         })
     }
 
-    /// Adds to `gradient` what a function with this slope by path entry owes to each unknown.
+    /// Adds to `gradient` the derivative, by each unknown, of a function with this slope by path entry.
     pub fn pull_back(&self, slope: &Path, gradient: &mut [f64]) {
         for (axis, by_order) in slope.iter().enumerate() {
             let free = self.offsets[axis]..self.offsets[axis + 1];

@@ -1,10 +1,10 @@
-//! From takeoff to the series' start, and from its end to the landing place, inside the limits.
+//! Transitions from takeoff to the series' start, and from its end to the landing place, inside the limits.
 
 use super::bounds::{Bound, Dynamics, Quantity};
 use super::check::{Violation, check};
 use crate::trajectory::{EndState, FlightPath, FourierTrajectory, Segment, Transition, at_rest, end_state};
 
-/// What is flown around a series.
+/// Hovers, transitions and periods of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlightPlan {
     /// x, y, z (m) and psi (rad) where the vehicle hovers after takeoff
@@ -17,7 +17,7 @@ pub struct FlightPlan {
     pub repeats: u32,
 }
 
-/// Why there is no transition.
+/// Errors of a transition.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("no transition {between} keeps the limits, the slowest tried takes {duration_s:.1} s: {violation}")]
 pub struct TransitionError {
@@ -25,17 +25,17 @@ pub struct TransitionError {
     pub between: &'static str,
     /// the longest duration tried, s
     pub duration_s: f64,
-    /// what it breaks
+    /// the violated bound
     pub violation: Violation,
 }
 
-/// Shortest and longest transition that is tried, s.
+/// Shortest and longest transition that is tried, s. Chosen; not measured.
 const DURATION_S: (f64, f64) = (1.0, 60.0);
-/// Step from one trial to the next.
+/// Ratio of a tried duration to the one before. Chosen; not measured.
 const DURATION_RATIO: f64 = 1.15;
 
-/// Hover, transition, the series, transition, hover. The height bounds hold from the series on; a
-/// transition may pass below `z_min`, where takeoff and landing are.
+/// The path of hover, transition, series, transition and hover. The bounds of height hold for the series; a transition
+/// may be below `z_min`, near takeoff and landing.
 ///
 /// # Errors
 /// If no transition inside the limits is found.

@@ -49,7 +49,7 @@ pub(super) fn number(text: impl Into<String>) -> Cell {
     Cell::Number(text.into())
 }
 
-/// The whole file: what it is about, the answer, some words on it, and the sections below.
+/// The whole file: title, answer, tags and sections.
 pub(super) fn page(title: &str, answer: &str, tags: &[String], sections: &Markup) -> String {
     let page = html! {
         (DOCTYPE) (BREAK)
@@ -74,7 +74,7 @@ pub(super) fn page(title: &str, answer: &str, tags: &[String], sections: &Markup
     clean_lines(&page.into_string()).into_owned()
 }
 
-/// What is below a heading.
+/// A section with its heading.
 pub(super) fn section(heading: &str, content: &Markup) -> Markup {
     html! { h2 { (heading) } (BREAK) (content) }
 }
@@ -91,12 +91,12 @@ pub(super) fn warning(words: &str) -> Markup {
     html! { p.warn { (words) } (BREAK) }
 }
 
-/// A chart; without words below it where the caption is empty.
+/// A chart, with a caption if it is not empty.
 pub(super) fn figure(chart: &Markup, caption: &str) -> Markup {
     html! { figure { (chart) @if !caption.is_empty() { figcaption { (caption) } } } (BREAK) }
 }
 
-/// Nothing without rows. A heading that ends in `|` stands over numbers.
+/// A table; nothing without rows. A heading that ends in `|` is above numbers.
 pub(super) fn table(caption: &str, heads: &[&str], rows: &[Vec<Cell>]) -> Markup {
     html! {
         @if !rows.is_empty() {
@@ -121,7 +121,7 @@ fn cell_markup(cell: &Cell) -> Markup {
     }
 }
 
-/// What went in, by hash, and what made it.
+/// Inputs with hashes, settings, and the program.
 pub(super) fn provenance(inputs: &[(&str, &InputFile)], settings: &[(&str, String)]) -> Markup {
     let files: Vec<Vec<Cell>> = inputs
         .iter()

@@ -1,4 +1,4 @@
-//! What people and other programs read: text, JSON, HTML, charts and model files, as views of a finished study.
+//! Outputs for people and programs: text, JSON, HTML, charts and model files, as views of a finished study.
 //!
 //! Nothing here fits, computes a statistic, or prints.
 

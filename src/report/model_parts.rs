@@ -1,4 +1,4 @@
-//! What the model files of several commands have in common.
+//! Common parts of the model files of several commands.
 
 use crate::physics::ActiveEffect;
 use crate::study::{Correlation, InputFile};
@@ -38,7 +38,7 @@ pub(super) fn files(inputs: &[InputFile]) -> String {
     format!("[\n{}\n]", files.join(",\n"))
 }
 
-/// The program that wrote the file, and what it was made from.
+/// The program that wrote the file, and its inputs.
 pub(super) fn provenance(inputs: &[InputFile]) -> String {
     let version = env!("CARGO_PKG_VERSION");
     format!("\n[provenance]\nprogram = \"mavid {version}\"\ninputs = {}\n", files(inputs))

@@ -1,4 +1,4 @@
-//! Intervals as people read them.
+//! Display of intervals.
 
 use crate::diagnose::holdout::Interval;
 use crate::text::rounded;

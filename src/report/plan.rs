@@ -1,4 +1,4 @@
-//! What `plan` says, as views of one study: text for the terminal, JSON.
+//! Views of the study of `plan`: text for the terminal, JSON.
 
 use crate::plan::Criterion;
 use crate::study::{Flown, PlanStudy};
@@ -14,21 +14,21 @@ pub struct PlanDocument {
     criterion_value: Option<f64>,
     condition_number: f64,
     scaled_condition_number: f64,
-    /// relative, of what the flight will determine; none where it cannot determine all seven
+    /// relative standard errors that the flight will have; none if it does not determine all seven parameters
     standard_errors: Option<BTreeMap<&'static str, f64>>,
     flight_s: f64,
-    /// what is left to each bound on 2 ms samples, SI
+    /// distance to each bound at samples of 2 ms, SI
     margins: BTreeMap<String, f64>,
     first_violation: Option<String>,
-    /// share of the rotor commands at a rotor's bound when it is flown in simulation; none where it cannot be flown
+    /// share of the rotor commands at a rotor's bound in a simulated flight; none if it cannot be flown
     share_at_rotor_bound: Option<f64>,
-    /// from takeoff to the series and back; none where no transition keeps the limits
+    /// from takeoff to the series and back; none if no transition keeps the limits
     transitions: Option<Transitions>,
-    /// of the whole flight from takeoff to landing; none where no transition keeps the limits
+    /// extremes of the whole flight from takeoff to landing; none if no transition keeps the limits
     flown: Option<Flown>,
 }
 
-/// What is flown before and after the series.
+/// Transitions before and after the series.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct Transitions {
     /// x, y, z (m), yaw (rad)
@@ -40,7 +40,7 @@ struct Transitions {
 }
 
 impl PlanDocument {
-    /// From the result.
+    /// The document of a study.
     #[must_use]
     pub fn new(study: &PlanStudy) -> Self {
         let worth = &study.assessment;
@@ -129,7 +129,7 @@ pub fn plan_text(study: &PlanStudy) -> String {
     page
 }
 
-/// A product of inertia is small against the moments that it couples.
+/// The reference of a relative error: products of inertia are compared with the moments that they couple.
 fn of_what(name: &str) -> &'static str {
     match name {
         "ixy" => " of sqrt(ixx iyy)",

@@ -4,7 +4,7 @@ use crate::study::{Proof, ScoredCase, SizeError};
 use crate::text;
 use std::fmt::Write;
 
-/// The page for the terminal: one line a case, its sizes below, then the counts.
+/// The page for the terminal: one line for each case, its sizes below, then the counts.
 #[must_use]
 pub fn proof_text(document: &Proof) -> String {
     let mut page = String::new();

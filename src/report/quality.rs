@@ -1,4 +1,4 @@
-//! What a flight's signals rest on, for every report.
+//! Data quality of a flight, for every report.
 
 use super::html::{Cell, note, number, paragraph, section, table, text};
 use super::number::with_error;
@@ -27,7 +27,7 @@ fn one(name: &str, quality: &Quality) -> Markup {
             let late = offset
                 .map_or_else(|| "-".to_owned(), |offset| with_error(1e3 * offset.late_s, 1e3 * offset.std_s));
             let done = offset.map_or("", |offset| {
-                if offset.repaired { "taken out" } else { "left in: not known well enough" }
+                if offset.repaired { "taken out" } else { "not corrected: not known well enough" }
             });
             vec![
                 text(quantity.name().replace('_', " ")),

@@ -1,4 +1,4 @@
-//! What `vehicle` says for the terminal.
+//! The page of `vehicle` for the terminal.
 
 use crate::study::VehicleSummary;
 use std::fmt::Write;
@@ -10,7 +10,9 @@ const WRENCH: [&str; 4] = ["force_z_n", "torque_x_nm", "torque_y_nm", "torque_z_
 #[must_use]
 pub fn vehicle_text(summary: &VehicleSummary) -> String {
     let [small, middle, large] = summary.principal_moments_kg_m2;
-    let hover = summary.hover_command.map_or("none: it cannot lift itself".to_owned(), |u| format!("{u:.4}"));
+    let hover = summary
+        .hover_command
+        .map_or("none: full thrust does not lift the weight".to_owned(), |u| format!("{u:.4}"));
     let mut page = format!(
         "{}\n  mass                {} kg, weight {:.3} N at {} m/s^2\n  principal moments   {small:.4e}, {middle:.4e}, {large:.4e} kg m^2\n",
         summary.name, summary.mass_kg, summary.weight_n, summary.gravity_m_s2

@@ -1,4 +1,4 @@
-//! What drives the body: rotors, or force and torque as the log holds them.
+//! Actuation of the body: rotors, or force and torque of the log.
 
 use super::actuators::{RotorThrusts, ThrustSource, thrusts_from_commands, thrusts_from_speeds};
 use super::select::{best, too_short};
@@ -9,8 +9,8 @@ use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector4;
 
-/// Channels of commands that do not stay at one value: a PX4 reports its whole row of outputs, those without
-/// a motor at the value of a disarmed one.
+/// Number of command channels that vary. PX4 reports its whole row of outputs; those without a motor stay at the value
+/// of a disarmed one.
 fn channels_that_move(commands: &Stream) -> usize {
     let moves = |channel: &usize| {
         let mut values = commands.values.iter().skip(*channel).step_by(commands.width.max(1));
@@ -23,16 +23,17 @@ fn channels_that_move(commands: &Stream) -> usize {
 /// Commands or measured rotor speeds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ThrustPreference {
-    /// measured speeds where they are recorded, and not too slowly to be used while commands are
+    /// measured speeds if they are recorded, unless they are too slow and the commands are not
     #[default]
     Measured,
     /// commands only
     Commands,
-    /// measured speeds where they are sampled at least as fast as the commands, else commands
+    /// measured speeds if they are sampled at least as fast as the commands, otherwise commands
     BestSampled,
 }
 
-/// Shares of a rate that lost frames explain: streams this close are sampled alike.
+/// Ratio of two rates from which streams count as equally sampled: lost frames explain the difference. Chosen; not
+/// measured.
 const SAMPLED_ALIKE: f64 = 0.95;
 
 /// The rotors' thrusts by this preference.
@@ -66,9 +67,9 @@ fn rotor_thrusts(
     }
 }
 
-/// What drives the body.
+/// Actuation of the body.
 pub(super) enum Actuation {
-    /// one thrust a rotor
+    /// one thrust for each rotor
     Rotors(RotorThrusts),
     /// force and torque as recorded
     Wrench(&'static str, Stream),
@@ -130,7 +131,7 @@ impl Actuation {
         }
     }
 
-    /// What the user should know of where the thrusts come from.
+    /// Notes on the source of the thrusts.
     pub(super) fn notes(&self, recording: &Recording, vehicle: &Vehicle) -> Vec<Note> {
         let Self::Rotors(rotors) = self else { return Vec::new() };
         let mut notes = rotors.notes.clone();
@@ -186,7 +187,7 @@ impl Actuation {
     }
 }
 
-/// What the rotors do to the body, on the grid.
+/// Force and torque of the rotors on the grid.
 pub(super) struct Felt {
     pub(super) rotor_thrust_n: Vec<f64>,
     pub(super) wrench: Vec<Vector4<f64>>,

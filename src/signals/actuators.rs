@@ -1,8 +1,8 @@
-//! From actuator outputs to one thrust a rotor, `F = [Fz tau]` before the mixer.
+//! Conversion of actuator outputs to the thrust of each rotor and to `F = [Fz tau]` before the mixer.
 //!
-//! Measured rotor speed comes before commands. Of commands, the autopilot's own parameters, where
-//! the log holds them, say which channel drives which motor and how a pulse width becomes thrust;
-//! the vehicle file says how strong a rotor is.
+//! Measured rotor speeds have priority over commands. For commands, the autopilot's own parameters, if the log contains
+//! them, state which channel drives which motor and how a pulse width becomes thrust. The vehicle file states the
+//! strength of a rotor.
 
 use super::SignalsError;
 use super::grid::LARGEST_VALUE;
@@ -12,32 +12,31 @@ use crate::note::{About, Note};
 use crate::recording::{Quantity, Recording, Stream, StreamKey};
 use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
 
-/// What the thrusts rest on.
+/// Source of the thrusts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ThrustSource {
     /// rotor speed sensors and the thrust coefficient
     MeasuredSpeed,
     /// commands sent to the motors and the thrust law
     Command,
-    /// the log holds force and torque themselves
+    /// force and torque of the log itself
     Wrench,
 }
 
-/// One thrust a rotor, N, at the stamps of the stream they came from.
+/// Thrust of each rotor, N, at the time stamps of its source stream.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RotorThrusts {
     /// width = number of rotors, N, vehicle's rotor order
     pub stream: Stream,
-    /// normalised commands at the same stamps where they were the source: for saturation
+    /// normalised commands at the same time stamps if they are the source: for saturation
     pub command: Option<Stream>,
-    /// thrust, N, that the commands' jitter adds if the rotors follow all of it; where commands are the
-    /// source
+    /// thrust, N, that the commands' jitter adds if the rotors follow all of it; only if commands are the source
     pub jitter: Option<Stream>,
-    /// where they came from
+    /// source of the thrusts
     pub source: ThrustSource,
     /// message or column group
     pub message: &'static str,
-    /// what was taken from the log's parameters, and what disagrees with the vehicle's file
+    /// notes on values from the log's parameters and on contradictions to the vehicle file
     pub notes: Vec<Note>,
 }
 
@@ -105,8 +104,8 @@ fn output_of_thrust(share: f64, expo: f64) -> f64 {
     ((linear * linear + 4.0 * expo * share.max(0.0)).sqrt() - linear) / (2.0 * expo)
 }
 
-/// Rotor thrusts from measured speeds; `None` where none, or hardly a sample with all rotors, are recorded or no
-/// coefficient is known.
+/// Rotor thrusts from measured speeds. `None` if no speeds, or hardly a sample with all rotors, are recorded, or if no
+/// thrust coefficient is known.
 #[must_use]
 pub fn thrusts_from_speeds(recording: &Recording, vehicle: &Vehicle) -> Option<RotorThrusts> {
     let coefficient = vehicle.propulsion.thrust_coefficient?;
@@ -129,9 +128,9 @@ pub fn thrusts_from_speeds(recording: &Recording, vehicle: &Vehicle) -> Option<R
     Some(RotorThrusts { stream, command: None, jitter: None, source, message, notes: Vec::new() })
 }
 
-/// A thrust curve is convex, so a command that jitters makes more thrust than its mean does:
-/// `1/2 T'' sigma^2`. A rotor averages part of the jitter away, and that part is not known. The local
-/// sigma^2 is the squared fourth difference over 70, what it is for white jitter.
+/// Thrust of the commands' jitter, N. A thrust curve is convex, so a command with jitter gives more thrust than its
+/// mean: `1/2 T'' sigma^2`. A rotor averages an unknown part of the jitter. The local sigma^2 is the squared fourth
+/// difference divided by 70, which is exact for white jitter.
 fn jitter_thrust(command: &Stream, curvature_n: f64) -> Stream {
     let width = command.width;
     let mut out = Stream { time_s: command.time_s.clone(), width, values: vec![0.0; command.values.len()] };
@@ -168,7 +167,7 @@ fn no_actuators(recording: &Recording, vehicle: &Vehicle) -> SignalsError {
     }
 }
 
-/// Values that could be in the vehicle's unit: most within the range, and not those of another one.
+/// Whether values can have the vehicle's unit: most are within its range, and not in that of another unit.
 fn in_unit(stream: &Stream, channels: &[usize], actuator: Actuator) -> bool {
     let range = match actuator {
         Actuator::Pwm(Some(range)) => {
@@ -185,7 +184,7 @@ fn in_unit(stream: &Stream, channels: &[usize], actuator: Actuator) -> bool {
     2 * inside > total
 }
 
-/// The vehicle file's propulsion with what the autopilot's parameters say better.
+/// The propulsion of the vehicle file, corrected by the autopilot's parameters, with notes.
 #[must_use]
 pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propulsion, Vec<Note>) {
     let mut propulsion = *stated;
@@ -210,7 +209,7 @@ pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propu
             Some(PwmRange { min_us, max_us }) => {
                 note(format!("{taken}, the vehicle file says {min_us:.0} to {max_us:.0} us"));
             }
-            None => note(format!("{taken}, the vehicle file speaks of 0..1")),
+            None => note(format!("{taken}, the vehicle file states 0..1")),
         }
         propulsion.actuator = Actuator::Pwm(Some(range));
     }
@@ -230,7 +229,7 @@ fn is_same(a: PwmRange, b: PwmRange) -> bool {
     (a.min_us - b.min_us).abs() < 0.05 && (a.max_us - b.max_us).abs() < 0.05
 }
 
-/// Commands in 0..1 are among the streams.
+/// Whether there is a stream of commands in 0..1.
 #[must_use]
 pub fn holds_fractions(recording: &Recording) -> bool {
     let commands = |(key, _): &(&StreamKey, &Stream)| key.quantity == Quantity::ActuatorCommand;
@@ -240,7 +239,7 @@ pub fn holds_fractions(recording: &Recording) -> bool {
     })
 }
 
-/// Which output channel (from 0) drives each motor, by the functions of the outputs; in order where the log does not say.
+/// Output channel (from 0) of each motor, by the functions of the outputs; in order if the log does not contain them.
 #[must_use]
 pub fn motor_channels(recording: &Recording, rotors: usize, notes: &mut Vec<Note>) -> Vec<usize> {
     let Some(stack) = recording.autopilot.stack() else { return (0..rotors).collect() };

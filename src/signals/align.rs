@@ -16,13 +16,13 @@ pub struct StreamOffset {
     pub late_s: f64,
     /// s, standard error
     pub std_s: f64,
-    /// the offset was taken out
+    /// whether the offset was corrected
     pub repaired: bool,
 }
 
-/// Offsets beyond this are not a skew between streams, s.
+/// Largest offset between streams that is corrected, s. Chosen; not measured.
 const LARGEST_S: f64 = 0.1;
-/// An offset known worse than this is left alone, s.
+/// Largest standard error of an offset that is corrected, s. Chosen; not measured.
 const LEAST_PRECISE_S: f64 = 0.005;
 
 /// Attitudes on the grid from a quaternion stream shifted by `shift_s`; `None` with too few samples.
@@ -36,7 +36,7 @@ pub fn attitudes_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<
     )
 }
 
-/// q and -q are one attitude: takes the sign that continues the sample before.
+/// Quaternions with continuous signs: q and -q are the same attitude.
 fn continuous_sign(stream: &Stream) -> Stream {
     let mut out = stream.clone();
     for i in 1..out.len() {
@@ -91,7 +91,7 @@ pub fn attitude_offset(
     })
 }
 
-/// Takes what the columns make out of a residual.
+/// Removes the part of a residual that the columns explain.
 fn partial_out(residual: &mut [f64], columns: &[Vec<f64>]) {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let normal = DMatrix::from_fn(columns.len(), columns.len(), |i, j| dot(&columns[i], &columns[j]));
@@ -160,10 +160,10 @@ pub fn position_offset(
     })
 }
 
-/// Where the comparison is made.
+/// Grid and kernel of the comparison.
 #[derive(Debug, Clone, Copy)]
 pub struct AlignFrame<'a> {
-    /// the inertial unit may sit askew: its angles are estimated with the offsets
+    /// the inertial unit may be misaligned: its angles are estimated together with the offsets
     pub askew: bool,
     /// common time base
     pub grid: &'a Grid,
@@ -183,7 +183,7 @@ impl AlignFrame<'_> {
         }
     }
 
-    /// Takes the mean out of each component: an accelerometer's bias is not a delay.
+    /// Subtracts the mean of each component, because an accelerometer's bias is not a delay.
     fn remove_means(&self, residual: &mut [f64]) {
         for component in residual.chunks_mut(self.centers.len().max(1)) {
             let mean = component.iter().sum::<f64>() / component.len() as f64;
@@ -192,7 +192,7 @@ impl AlignFrame<'_> {
     }
 }
 
-/// The inertial unit's signals and the repaired attitude on the grid.
+/// The inertial unit's signals and the corrected attitude on the grid.
 #[derive(Debug, Clone, Copy)]
 pub struct InertialOnGrid<'a> {
     /// body to world

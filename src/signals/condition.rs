@@ -1,4 +1,4 @@
-//! One flight conditioned: streams chosen, aligned, put on one grid, and cut to what can be used.
+//! Conditioning of one flight: streams are chosen, aligned, interpolated to one grid, and masked.
 
 use super::actuation::{Actuation, ThrustPreference};
 use super::actuators::ThrustSource;
@@ -15,18 +15,18 @@ use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// How a flight is conditioned.
+/// Settings of the conditioning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConditionSettings {
     /// s between grid instants; `None`: the period of the fastest inertial stream, 2 to 20 ms
     pub step_s: Option<f64>,
-    /// s of flight left out at the beginning; `None`: 10 s as in the paper, at most a fifth of the flight
+    /// time left out at the beginning of the flight, s; `None`: 10 s as in the paper, at most a fifth of the flight
     pub transient_s: Option<f64>,
     /// s, half width of the weak form's kernel
     pub weak_half_width_s: f64,
-    /// which thrusts are used where the log has both
+    /// source of the thrusts if the log has both
     pub thrust: ThrustPreference,
-    /// the inertial unit may sit askew in the body: offsets between streams are estimated together with its angles
+    /// the inertial unit may be misaligned in the body: offsets between streams are estimated together with its angles
     pub askew: bool,
 }
 
@@ -85,7 +85,7 @@ pub fn condition(
     }
     let streams: Vec<&Stream> =
         chosen.list().iter().filter_map(|(_, s)| s.map(|(_, s)| s)).chain([actuation.stream()]).collect();
-    // the vehicle's clock started anew, or its estimator jumped
+    // the vehicle's clock restarted, or its estimator jumped
     let resets_s = [recording.clock_resets_s.as_slice(), &recording.estimator_resets_s].concat();
     let rate = chosen.rate.and_then(|(_, s)| vectors_onto(s, 0.0, &grid));
     let (mask, used) = usable(
@@ -214,7 +214,7 @@ fn step(
     Ok(period.clamp(0.002, 0.02))
 }
 
-/// What is said where no stream of motion can be used.
+/// The error if no stream of motion can be used.
 fn no_motion(recording: &Recording) -> SignalsError {
     [(Quantity::AngularRate, 3), (Quantity::Attitude, 4), (Quantity::WorldAcceleration, 3)]
         .into_iter()
@@ -222,7 +222,7 @@ fn no_motion(recording: &Recording) -> SignalsError {
         .unwrap_or(SignalsError::NoMotion)
 }
 
-/// The streams without which nothing can be said of how a body turns, and of what turns it.
+/// The streams that are needed for the rotation of the body: its motion and its actuation.
 fn needed<'a>(chosen: &Chosen<'a>, actuation: &'a Actuation) -> Vec<Needed<'a>> {
     let body = [("body rates", chosen.rate), ("attitude", chosen.attitude)];
     let body = body.into_iter().find_map(|(what, stream)| Some((what, stream?)));
@@ -236,7 +236,7 @@ fn needed<'a>(chosen: &Chosen<'a>, actuation: &'a Actuation) -> Vec<Needed<'a>> 
     body.into_iter().chain([driven]).collect()
 }
 
-/// The span that all chosen streams share.
+/// The grid over the common span of all chosen streams.
 fn common_grid(chosen: &Chosen<'_>, actuation: &Stream, step_s: f64) -> Result<Grid, SignalsError> {
     let (mut start, mut end) = (f64::NEG_INFINITY, f64::INFINITY);
     let streams = chosen.list();
@@ -253,7 +253,7 @@ fn common_grid(chosen: &Chosen<'_>, actuation: &Stream, step_s: f64) -> Result<G
     Ok(Grid::covering(start, end, step_s))
 }
 
-/// The body's motion on the grid, offsets taken out.
+/// The body's motion on the grid, with corrected offsets.
 struct Motion {
     attitude: Option<Vec<UnitQuaternion<f64>>>,
     rate: Option<Vec<Vector3<f64>>>,
@@ -304,7 +304,7 @@ impl Motion {
     }
 }
 
-/// By straight lines between the samples that are known.
+/// Battery voltage by linear interpolation, V.
 fn battery_voltage_v(recording: &Recording, grid: &Grid) -> Option<Vec<f64>> {
     let (_, raw) = best(recording, Quantity::BatteryVoltage, |s| s.width == 1)?;
     let known = raw.time_s.iter().zip(&raw.values).filter(|(_, volts)| (0.1..1e3).contains(*volts));
@@ -312,7 +312,7 @@ fn battery_voltage_v(recording: &Recording, grid: &Grid) -> Option<Vec<f64>> {
     super::linear_onto(&Stream { time_s, width: 1, values }, 0.0, grid)
 }
 
-/// The commanded acceleration and yaw, by first-order hold; `None` where they were not recorded.
+/// The commanded acceleration and yaw, by linear interpolation; `None` if they were not recorded.
 fn reference(recording: &Recording, grid: &Grid) -> Option<Reference> {
     let (key, acceleration) = best(recording, Quantity::AccelerationSetpoint, |s| s.width == 3)?;
     let acceleration = super::cubic_onto(acceleration, 0.0, grid)?;

@@ -1,9 +1,9 @@
-//! Why a recording cannot be conditioned.
+//! Errors of the conditioning.
 
 use super::Grid;
 use crate::recording::Quantity;
 
-/// Why a recording cannot be conditioned.
+/// Errors of the conditioning.
 #[derive(Debug, thiserror::Error)]
 pub enum SignalsError {
     /// no actuator stream that fits the vehicle
@@ -19,7 +19,7 @@ pub enum SignalsError {
         /// what the recording has
         found: String,
     },
-    /// a stream that is needed is there, but hardly a sample of it
+    /// a needed stream has too few samples
     #[error(
         "{message} holds {count} usable sample{} of {}: at least {needed} are needed",
         if *count == 1 { "" } else { "s" },
@@ -32,10 +32,10 @@ pub enum SignalsError {
         message: &'static str,
         /// samples that hold a number for every channel that is used
         count: usize,
-        /// how many it takes
+        /// needed number of samples
         needed: usize,
     },
-    /// nothing that moves
+    /// no stream of motion
     #[error(
         "no stream of motion: expected body rates, attitude or acceleration; record them (over MAVLink ATTITUDE_QUATERNION and HIGHRES_IMU or RAW_IMU)"
     )]
@@ -58,7 +58,8 @@ pub enum SignalsError {
     },
     /// more than one flight
     #[error(
-        "motion and actuator streams go on for {span_s:.0} s or more: expected one flight, of at most {} samples; divide the log into its flights",
+        "motion and actuator streams last {span_s:.0} s or more: expected one flight, of at most {} samples; divide \
+         the log into its flights",
         Grid::LONGEST
     )]
     TooLong {
@@ -72,7 +73,7 @@ pub enum SignalsError {
         usable_s: f64,
         /// s needed
         needed_s: f64,
-        /// where the time went
+        /// reasons why time was left out
         reason: String,
     },
 }

@@ -20,7 +20,7 @@ impl Biquad {
         }
     }
 
-    /// Memory after an input that was always the same: with unit gain at zero frequency the output is it.
+    /// Memory of the filter after a constant input; with unit gain at zero frequency the output equals the input.
     fn steady(&self, input: f64) -> [f64; 2] {
         [input * (1.0 - self.b[0]), input * (self.b[2] - self.a[1])]
     }
@@ -70,8 +70,8 @@ impl Butterworth {
         self.pad / 2
     }
 
-    /// One way only, sample by sample: the same for every signal that passes, so that signals stay in step.
-    /// Starts from the steady state of its first sample.
+    /// Causal filter, sample by sample, with the same phase for all signals. Starts from the steady state of its first
+    /// sample.
     pub fn next(&self, memory: &mut ButterworthMemory, input: f64) -> f64 {
         let mut value = input;
         let sections = memory.0.get_or_insert_with(|| self.sections.map(|section| section.steady(input)));
@@ -96,7 +96,7 @@ impl Butterworth {
     }
 }
 
-/// What [`Butterworth::next`] remembers of one signal.
+/// State of [`Butterworth::next`] for one signal.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ButterworthMemory(Option<[[f64; 2]; 2]>);
 
@@ -235,7 +235,7 @@ impl FilterPair {
         self.rate_gain * (input - self.step(memory, input, false))
     }
 
-    /// Over the interval that ends now its first value is held, or the mean of its ends.
+    /// One step over the last interval, with its first value held, or with the mean of its ends (`midpoint`).
     fn step(&self, memory: &mut PairMemory, input: f64, midpoint: bool) -> f64 {
         if let Some(last) = memory.last.replace(input) {
             let held = if midpoint { f64::midpoint(last, input) } else { last };
@@ -245,7 +245,7 @@ impl FilterPair {
     }
 }
 
-/// What the filters of a [`FilterPair`] remember of one signal.
+/// State of the filters of a [`FilterPair`] for one signal.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PairMemory {
     state: f64,

@@ -13,7 +13,7 @@ use nalgebra::{UnitQuaternion, Vector3, Vector4};
 pub struct Signals {
     /// instants, s of the vehicle's clock
     pub grid: Grid,
-    /// airborne, exciting, not saturated, no gap in any stream that is used
+    /// airborne, sufficiently excited, not saturated, no gap in a used stream
     pub usable: Vec<bool>,
     /// body to world
     pub attitude: Option<Vec<UnitQuaternion<f64>>>,
@@ -27,19 +27,19 @@ pub struct Signals {
     pub position: Option<Vec<Vector3<f64>>>,
     /// m/s, world
     pub velocity: Option<Vec<Vector3<f64>>>,
-    /// N, one a rotor and instant, rotor after rotor; empty where the log holds the wrench itself
+    /// N, one for each rotor and instant, rotor after rotor; empty if the log contains the wrench itself
     pub rotor_thrust_n: Vec<f64>,
     /// `F = [Fz tau]`, N and N m, from the rotors through the nominal mixer, less half of
     /// [`Self::jitter_wrench`]
     pub wrench: Vec<Vector4<f64>>,
-    /// what the commands' jitter adds to the wrench if the rotors follow all of it (N, N m); they follow
-    /// a share of it between none and all
+    /// contribution of the commands' jitter to the wrench if the rotors follow all of it (N, N m); they follow a share
+    /// between none and all
     pub jitter_wrench: Option<Vec<Vector4<f64>>>,
     /// V; `None` where it is not recorded
     pub battery_voltage_v: Option<Vec<f64>>,
-    /// what was commanded
+    /// commanded trajectory
     pub reference: Option<Reference>,
-    /// where things came from and what was repaired
+    /// sources and corrections
     pub quality: Quality,
 }
 
@@ -70,19 +70,19 @@ pub struct Reference {
     pub message: &'static str,
 }
 
-/// Where the signals came from and what was done to them.
+/// Sources and corrections of the signals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quality {
     /// quantity, message, samples a second
     pub sources: Vec<(Quantity, &'static str, f64)>,
-    /// what the thrusts rest on
+    /// source of the thrusts
     pub thrust_source: ThrustSource,
     /// offsets of streams against the inertial unit
     pub offsets: Vec<(Quantity, StreamOffset)>,
     /// airborne spans, s
     pub airborne_s: Vec<(f64, f64)>,
-    /// how the mask came about
+    /// time that each rule of the mask left out
     pub usable: Usable,
-    /// what the user should know of it
+    /// notes for the user
     pub notes: Vec<Note>,
 }

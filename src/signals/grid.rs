@@ -60,7 +60,7 @@ impl Grid {
     }
 }
 
-/// No signal of a flying vehicle reaches this in SI units; what does is damage and counts as missing.
+/// Values beyond this are damage and count as missing, in SI units: no signal of a flying vehicle reaches it.
 pub const LARGEST_VALUE: f64 = 1e5;
 
 /// Natural cubic spline through a stream's samples, evaluated at the grid's instants plus `shift_s`.
@@ -95,7 +95,7 @@ pub fn cubic_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<f64>
     Some(out)
 }
 
-/// First-order hold: straight lines between samples. See [`cubic_onto`] for the layout.
+/// Linear interpolation between samples. See [`cubic_onto`] for the layout.
 #[must_use]
 pub fn linear_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<f64>> {
     if stream.len() < 2 {

@@ -1,4 +1,4 @@
-//! White noise level of a recorded stream, from the stream itself.
+//! White noise of a recorded stream, estimated from the stream itself.
 
 use crate::recording::Stream;
 use crate::stats::white_level_of;

@@ -1,35 +1,36 @@
-//! Whether the streams of a flight belong together: units, signs and the order of the rotors.
+//! Checks that the streams of a flight belong together: units, signs and the order of the rotors.
 //!
-//! Over a tenth of a second the attitude turns by what the body rates say, and the body rates change with the torque of
-//! the rotors. A log whose columns were taken for something else does neither, and what is identified from it is nonsense
-//! with small standard errors.
+//! Over a tenth of a second, the rotation of the attitude follows from the body rates, and the change of the body rates
+//! follows from the torque of the rotors. In a log with wrongly mapped columns neither is true, and an identification
+//! from it is meaningless but has small standard errors.
 
 use super::Signals;
 use crate::note::{About, Note};
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// Over which turns and torques are compared, s.
+/// Time over which rotations and torques are compared, s. Chosen; not measured.
 const WINDOW_S: f64 = 0.1;
-/// Two series that belong together, or one with the wrong sign, are at least so much alike.
+/// Least absolute correlation of two series that belong together, or of one with the wrong sign. Chosen; not measured.
 const ALIKE: f64 = 0.6;
-/// More alike to another than to its own by this much.
+/// Difference of correlations from which a series belongs to another one. Chosen; not measured.
 const APART: f64 = 0.3;
-/// A ratio of rates further from one than this, up or down, is none of noise.
+/// Largest ratio of two rates, or its inverse, that noise can explain. Chosen; not measured.
 const RATIO: f64 = 2.0;
-/// In the mean the rotors carry the weight, within this factor.
+/// Largest ratio of mean thrust to weight, or its inverse. Chosen; not measured.
 const CARRIED: f64 = 1.5;
-/// Share of a torque's energy that must be its own, and of the change's amplitude that counts at least.
+/// Least share of a torque's energy that other columns do not explain. Chosen; not measured.
 const SEEN: f64 = 0.05;
+/// Least share of the change's amplitude that must remain. Chosen; not measured.
 const LEFT: f64 = 0.3;
-/// Rotation slower than this says nothing, rad/s rms.
+/// Least rotation for a comparison, rad/s rms. Chosen; not measured.
 const TURNING_RAD_S: f64 = 0.02;
-/// Fewer windows say nothing.
+/// Least number of windows. Chosen; not measured.
 const LEAST: usize = 40;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// What is to be said of streams that contradict each other.
+/// Notes on streams that contradict each other.
 pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<Note> {
     let spans = windows(signals);
     if spans.len() < LEAST {
@@ -44,7 +45,7 @@ pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<Note> {
     units.into_iter().map(|text| Note::warning(About::Sensors, text)).collect()
 }
 
-/// First and last instants of the windows that can be used, one after the other.
+/// First and last instants of the usable windows, in order.
 fn windows(signals: &Signals) -> Vec<(usize, usize)> {
     let mut length = 2;
     while (length as f64 + 0.5) * signals.grid.step_s < WINDOW_S {
@@ -123,15 +124,16 @@ fn forces(signals: &Signals, gravity_m_s2: f64, spans: &[(usize, usize)]) -> Vec
         .filter(|(axis, _)| likeness(&column(&changed, *axis), &column(&felt, *axis)) < -ALIKE)
         .map(|(_, name)| {
             format!(
-                "the velocity {name} changes against what the accelerometer feels: expected both in north, west, up once \
+                "the velocity {name} changes in the opposite direction of the measured acceleration: expected both in \
+                 north, west, up once \
                  the attitude has turned the accelerometer's"
             )
         })
         .collect()
 }
 
-/// Torque of the rotors about each axis against the change of the body rates, beside what the air makes of velocity and
-/// rates: on a circle a hub moment stands where another axis' torque would.
+/// Torque of the rotors about each axis against the change of the body rates, with columns for the aerodynamic torques
+/// of velocity and rates. Without them, on a circle a hub moment would look like the torque of another axis.
 fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Option<String> {
     let (rate, velocity, attitude) =
         (signals.rate.as_ref()?, signals.velocity.as_ref()?, signals.attitude.as_ref()?);
@@ -158,7 +160,7 @@ fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Op
         wrong.then(|| {
             let sign = if alike[best] < 0.0 { "-" } else { "" };
             format!(
-                "the body turns about {} as the rotors' torque about {sign}{} would have it (partial correlation {:.2}; \
+                "the body turns about {} as if by the rotors' torque about {sign}{} (partial correlation {:.2}; \
                  {:.2} with that about {}): expected the rotors in the vehicle file's order, at its places and turning its way",
                 AXES[axis], AXES[best], alike[best].abs(), alike[axis], AXES[axis]
             )
@@ -166,8 +168,8 @@ fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Op
     })
 }
 
-/// Correlation of `values` with each of the first three columns when all the other columns are taken out of both; 0 for a
-/// column that the others hold all but entirely. `None` where there is nothing to solve.
+/// Partial correlation of `values` with each of the first three columns, without the part of all other columns; 0 for a
+/// column that the others explain almost completely. `None` if the system cannot be solved.
 fn alone(columns: &[DVector<f64>], values: &DVector<f64>) -> Option<[f64; 3]> {
     let mut out = [0.0; 3];
     for (index, alike) in out.iter_mut().enumerate() {
@@ -201,7 +203,7 @@ fn centred(values: &[f64]) -> Vec<f64> {
     values.iter().map(|value| value - mean).collect()
 }
 
-/// Correlation; 0 where one of them does not move.
+/// Correlation; 0 if one of them is constant.
 fn likeness(a: &[f64], b: &[f64]) -> f64 {
     let (a, b) = (centred(a), centred(b));
     let product: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();

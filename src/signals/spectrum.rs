@@ -1,16 +1,16 @@
-//! How fast a trajectory moves.
+//! Highest frequency of a trajectory.
 
 use super::Signals;
 use crate::stats::hann_power;
 use nalgebra::Vector3;
 
-/// Highest frequency that is looked at, Hz.
+/// Highest frequency of the search, Hz. Chosen; not measured.
 const HIGHEST_HZ: f64 = 5.0;
-/// Share of the power that must lie below the result.
+/// Share of the power below the result. Chosen; not measured.
 const SHARE: f64 = 0.98;
 
-/// The trajectory's highest harmonic, Hz: 98 % of the power of the commanded acceleration lies below
-/// it; where no command was recorded, of the measured velocity. `None` where neither is there.
+/// The trajectory's highest harmonic, Hz: 98 % of the power of the commanded acceleration is below it, or of the
+/// measured velocity if no command was recorded. `None` without both.
 #[must_use]
 pub fn highest_harmonic_hz(signals: &Signals) -> Option<f64> {
     let series: &[Vector3<f64>] = match (&signals.reference, &signals.velocity) {

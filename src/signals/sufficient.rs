@@ -13,26 +13,27 @@ use crate::note::{About, Note};
 use crate::recording::Stream;
 use crate::stats::median;
 
-/// Rotor speeds, commands, or force and torque at fewer samples a second than this give wrong numbers, Hz:
-/// 40 with some frames lost.
+/// Least rate of rotor speeds, commands, or force and torque without a warning, Hz: 40 Hz with some lost frames.
+/// Measured, see above; at 33 Hz `explain` named a delay in a PX4 flight whose motors have a lag.
 pub const LEAST_ACTUATOR_HZ: f64 = 38.0;
-/// Body rates, or the attitude that stands for them, at fewer samples a second than this give wrong numbers, Hz.
+/// The same for body rates, or for the attitude in their place, Hz.
 pub const LEAST_BODY_RATE_HZ: f64 = 38.0;
 
-/// Below this nothing is identified at all, Hz: what comes out is wrong by many of its standard errors.
+/// Rate below which nothing is identified, Hz: errors are many standard errors there, see above.
 pub(super) const REFUSED_HZ: f64 = 20.0;
 
-/// Intervals longer than so many median ones are gaps, or of a time before the rate was asked for.
+/// Intervals longer than this many median intervals are gaps, or belong to a time before the rate was requested.
+/// Chosen; not measured.
 const FLOWS: f64 = 5.0;
 
-/// Mean rate while the stream flows, Hz: without its gaps and without what came at a slower rate before;
-/// 0 for fewer than two samples.
+/// Mean rate of a stream, Hz, without its gaps and without an earlier time at a slower rate; 0 for fewer than two
+/// samples.
 #[must_use]
 pub(super) fn flowing_rate_hz(stream: &Stream) -> f64 {
     flowing_hz(intervals(&stream.time_s).collect())
 }
 
-/// The same inside `spans_s` alone (s); `None` where less than two samples lie in them.
+/// The same inside `spans_s` only (s); `None` if they contain less than two samples.
 fn flowing_rate_within_hz(stream: &Stream, spans_s: &[(f64, f64)]) -> Option<f64> {
     let inside = |(start, end): &(f64, f64)| {
         let from = stream.time_s.partition_point(|time_s| time_s < start);
@@ -54,11 +55,11 @@ fn flowing_hz(mut gaps_s: Vec<f64>) -> f64 {
     if total_s > 0.0 { count / total_s } else { 0.0 }
 }
 
-/// A stream that identification rests on: what it holds, its message, itself, and the least rate, Hz.
+/// A stream that the identification needs: its content, its message, the stream, and the least rate, Hz.
 pub(super) type Needed<'a> = (&'static str, &'static str, &'a Stream, f64);
 
-/// What is to be said of streams that are slower in the air than they should be; refuses a flight in which one is so slow
-/// that nothing can be identified.
+/// A note on streams that are too slow in the air. Refuses a flight with a stream that is too slow for any
+/// identification.
 ///
 /// # Errors
 /// [`SignalsError::TooSlow`], which names each of those streams with its rate.
@@ -75,8 +76,8 @@ pub(super) fn check(needed: &[Needed<'_>], airborne_s: &[(f64, f64)]) -> Result<
     }
     Ok((!slow.is_empty()).then(|| {
         let text = format!(
-            "sampled slowly: {slow}. Inertia may be off by several of its standard errors, and a lag cannot be told \
-             from a delay; 100 Hz of each is good"
+            "sampled slowly: {slow}. Inertia may be off by several of its standard errors, and a lag cannot be \
+             distinguished from a delay; 100 Hz of each is good"
         );
         Note::remark(About::Sensors, text)
     }))

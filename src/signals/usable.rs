@@ -1,4 +1,4 @@
-//! Which instants of a flight identification may use.
+//! The instants of a flight that identification may use.
 
 use super::actuation::Actuation;
 use super::select::median_period_s;
@@ -7,20 +7,22 @@ use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
-/// Thrust below this share of the nominal weight: not flying.
+/// Thrust below which a vehicle does not fly, as a share of the nominal weight. Chosen; not measured.
 const FLYING_SHARE: f64 = 0.4;
-/// Left out at both ends of an airborne span, s: lift-off and touch-down.
+/// Time left out at both ends of an airborne span for lift-off and touch-down, s. Chosen; not measured.
 const GROUND_MARGIN_S: f64 = 0.5;
-/// A hole longer than this many periods, and than [`LEAST_GAP_S`], is a gap.
+/// A pause is a gap if it is longer than this many periods and than [`LEAST_GAP_S`]. Chosen; not measured.
 const GAP_PERIODS: f64 = 5.0;
+/// Shortest gap, s. Chosen; not measured.
 const LEAST_GAP_S: f64 = 0.06;
-/// An actuator at its end stop for longer than this is saturated; a shorter touch is a known command, s.
+/// An actuator that is longer at its bound is saturated; a shorter contact is a known command, s. Chosen; not measured.
 const SATURATION_S: f64 = 0.1;
-/// Saturated stretches are kept where less than this is left without them, s.
+/// Saturated stretches are kept if less than this time would be left without them, s. Chosen; not measured.
 const LEAST_UNSATURATED_S: f64 = 8.0;
-/// Excitation is judged over windows of this length, s, against the livelier half of the flight: a bump
-/// at landing sets no standard.
+/// Windows over which excitation is assessed, s, relative to the livelier half of the flight, so that a bump at landing
+/// has no influence. Chosen; not measured.
 const EXCITATION_WINDOW_S: f64 = 4.0;
+/// Least excitation of a window relative to that half. Chosen; not measured.
 const EXCITATION_SHARE: f64 = 0.3;
 
 /// Seconds of flight that each rule left out (an instant may fall under several).
@@ -40,12 +42,12 @@ pub struct Usable {
     pub gap_s: f64,
     /// s left
     pub usable_s: f64,
-    /// saturated stretches were kept because hardly anything else was left
+    /// whether saturated stretches were kept because little else was left
     pub saturation_kept: bool,
 }
 
 impl Usable {
-    /// One line that says where the time went.
+    /// One line with the time that each rule left out.
     #[must_use]
     pub fn summary(&self) -> String {
         format!(
@@ -55,16 +57,16 @@ impl Usable {
             self.transient_s,
             self.idle_s,
             self.saturated_s,
-            if self.saturation_kept { " (kept: hardly anything else is left)" } else { "" },
+            if self.saturation_kept { " (kept: little else is left)" } else { "" },
             self.gap_s
         )
     }
 }
 
-/// What the mask is made from.
+/// The data from which the mask is computed.
 #[derive(Debug, Clone, Copy)]
 pub struct Evidence<'a> {
-    /// streams whose holes count
+    /// streams whose gaps count
     pub streams: &'a [&'a Stream],
     /// spans in the air, s
     pub airborne_s: &'a [(f64, f64)],
@@ -76,7 +78,7 @@ pub struct Evidence<'a> {
     pub rate: Option<&'a [Vector3<f64>]>,
 }
 
-/// Spans in the air: where the autopilot says so, and in any case where the rotors carry the vehicle.
+/// Spans in the air, s: those that the autopilot reports, and those in which the rotors carry the vehicle.
 pub(super) fn airborne_spans(
     recording: &Recording,
     actuation: &Actuation,
@@ -124,7 +126,8 @@ pub fn in_air(landed: &Stream, t_s: f64) -> bool {
     (state - 2.0).abs() < 0.5 || state.abs() < 0.5
 }
 
-/// The mask and what each rule took; `transient_s` is left out at the beginning of the first airborne span.
+/// The mask, and the time that each rule left out; `transient_s` is left out at the beginning of the first airborne
+/// span.
 #[must_use]
 pub fn usable(grid: &Grid, evidence: &Evidence<'_>, transient_s: Option<f64>) -> (Vec<bool>, Usable) {
     let grounded = grounded(grid, evidence);
@@ -194,7 +197,7 @@ fn transient(grid: &Grid, evidence: &Evidence<'_>, transient_s: Option<f64>) -> 
     (0..grid.count).map(|i| grid.time_s(i) < until).collect()
 }
 
-/// A command at or beyond its range, or stuck at its largest or smallest recorded value.
+/// Instants with a command at or beyond its range, or at its largest or smallest recorded value for long.
 fn saturated(grid: &Grid, command: &Stream) -> Vec<bool> {
     let (low, high) = end_stops(command);
     let stuck: Vec<f64> = (0..command.len())
@@ -211,7 +214,7 @@ fn saturated(grid: &Grid, command: &Stream) -> Vec<bool> {
     mask
 }
 
-/// The range of u, narrowed where many samples repeat the very same extreme value (a flat top).
+/// The range of u, narrowed if many samples have exactly the same extreme value (a flat top).
 fn end_stops(command: &Stream) -> (f64, f64) {
     let finite = || command.values.iter().copied().filter(|v| v.is_finite());
     let (smallest, largest) = (finite().fold(1.0, f64::min), finite().fold(0.0, f64::max));
@@ -221,7 +224,7 @@ fn end_stops(command: &Stream) -> (f64, f64) {
     (low.max(0.0), high.min(1.0))
 }
 
-/// Inside a hole of any stream, or across a restart of the vehicle's clock.
+/// Instants inside a gap of any stream, or at a restart of the vehicle's clock.
 fn gaps(grid: &Grid, evidence: &Evidence<'_>) -> Vec<bool> {
     let mut mask = vec![false; grid.count];
     let mut mark = |from: f64, to: f64| {
@@ -252,7 +255,7 @@ fn gaps(grid: &Grid, evidence: &Evidence<'_>) -> Vec<bool> {
     mask
 }
 
-/// Before the first and after the last window whose rates are lively: hover teaches no inertia.
+/// Instants before the first and after the last excited window: hover gives no information about inertia.
 fn idle(grid: &Grid, rate: &[Vector3<f64>], candidates: &[bool]) -> Vec<bool> {
     let mut window = 1;
     while (window as f64) * grid.step_s < EXCITATION_WINDOW_S {

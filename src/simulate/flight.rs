@@ -22,7 +22,7 @@ use crate::vehicle::{Actuator, Propulsion, Vehicle};
 /// practice recordings: 250 Hz control, 4 ms motors, telemetry as PX4 sends it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlightSettings {
-    /// same seed, same flight
+    /// seed of the noise; the same seed gives the same flight
     pub seed: u64,
     /// s, hover included
     pub duration_s: f64,

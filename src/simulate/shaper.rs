@@ -120,7 +120,7 @@ pub struct Shaper {
 }
 
 impl Shaper {
-    /// A reference that goes on as the vehicle moves now.
+    /// A reference that continues as the vehicle moves now.
     #[must_use]
     pub fn at(position_m: Vector3<f64>, velocity_m_s: Vector3<f64>) -> Self {
         Self { position_m, velocity_m_s, acceleration_m_s2: Vector3::zeros() }
@@ -143,7 +143,7 @@ impl Shaper {
         self.velocity_m_s += self.acceleration_m_s2 * period_s;
     }
 
-    /// The place at rest (m) towards which the reference, as it is now, would go on with just its own acceleration: what
+    /// The place at rest (m) towards which the reference, as it is now, would continue with just its own acceleration: what
     /// to ask for, beside no velocity and no acceleration, of one that is to follow a motion. An acceleration beyond
     /// the bounds counts as the bound.
     #[must_use]

@@ -6,7 +6,7 @@ use crate::autopilot::Reaction;
 /// What a failsafe does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Action {
-    /// says so and goes on
+    /// says so and continues
     Warn,
     /// changes to this mode
     Enter(Mode),

@@ -77,7 +77,7 @@ impl Estimator {
         }
     }
 
-    /// It stands on the ground: the next flight aligns anew.
+    /// It stands on the ground: the next flight aligns again.
     pub(super) fn stand(&mut self) {
         self.aligned = false;
     }

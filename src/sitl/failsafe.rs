@@ -161,7 +161,7 @@ impl Autopilot {
         }
     }
 
-    /// A border that is crossed anew. What is outside before it flies is for the checks before arming.
+    /// A border that is crossed again. What is outside before it flies is for the checks before arming.
     fn check_fence(&mut self, now: Duration) {
         let breach = self.breach_now(now);
         let before = std::mem::replace(&mut self.safety.breach, breach);

@@ -19,7 +19,7 @@ pub enum Fault {
     RotorStops(usize),
     /// nothing comes out and nothing goes in on any link
     LinkSilence(Duration),
-    /// the autopilot starts anew: its clock is zero, it is disarmed
+    /// the autopilot restarts: its clock is zero, it is disarmed
     Reboot,
     /// another ground station's heartbeat is forwarded to every link
     ForeignHeartbeat {

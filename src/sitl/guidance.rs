@@ -237,7 +237,7 @@ impl Guidance {
         (wish, limits)
     }
 
-    /// The heading goes on; returns the rate that is fed forward, rad/s.
+    /// The heading continues; returns the rate that is fed forward, rad/s.
     fn turn(&mut self, tuning: &Tuning, now: Duration, period_s: f64) -> f64 {
         let speed = self.shaper.velocity_m_s.xy();
         match self.task {

@@ -38,7 +38,7 @@ impl Link {
         }
     }
 
-    /// The autopilot starts anew: streams are its defaults.
+    /// The autopilot restarts: streams are its defaults.
     pub(super) fn restart(&mut self, kind: Firmware) {
         self.streams = Streams::new(kind, self.role);
         self.next_parameter = None;

@@ -1,7 +1,7 @@
 //! The embedded simulated vehicle: physics of [`crate::simulate`] behind an autopilot that speaks MAVLink 2
 //! as PX4 or as ArduPilot does.
 //!
-//! [`Vehicle`] does no I/O and has no clock of its own ([`serve()`] gives it both): bytes go in with [`Vehicle::receive`], time goes on with
+//! [`Vehicle`] does no I/O and has no clock of its own ([`serve()`] gives it both): bytes go in with [`Vehicle::receive`], time advances with
 //! [`Vehicle::advance`], and frames with their times come out. The same calls give the same bytes.
 //!
 //! ```text

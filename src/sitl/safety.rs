@@ -20,7 +20,7 @@ pub(super) struct Safety {
     pub(super) breach: Breach,
     /// PX4: another failsafe than that of setpoints flies, until a mode is chosen
     pub(super) overrides: bool,
-    /// PX4: the mode that a failsafe goes on to when it has held
+    /// PX4: the mode that a failsafe continues to when it has held
     pub(super) later: Option<(Duration, Mode)>,
     /// PX4: the fence's action has begun and no mode was chosen since
     pub(super) fence_acts: bool,

@@ -15,7 +15,7 @@ use crate::link::{Ends, LinkReader, LinkWriter, Received};
 pub enum Pace {
     /// this many times as fast as real time
     Times(f64),
-    /// Time goes on by [`LOCKSTEP`] whenever a ground station has sent something, or has been silent for
+    /// Time advances by [`LOCKSTEP`] whenever a ground station has sent something, or has been silent for
     /// as long in real time. One that sends a setpoint for whatever it hears is never late, however fast
     /// both are.
     Lockstep,
@@ -30,7 +30,7 @@ pub struct Served {
     pub behind: Duration,
 }
 
-/// By how much time goes on in lock-step.
+/// Step of time in lock-step.
 pub const LOCKSTEP: Duration = Duration::from_millis(20);
 
 /// Shortest sleep: timers are no finer.
@@ -41,7 +41,7 @@ const QUEUE: usize = 4096;
 /// Bytes that came in.
 type Heard = (LinkId, Box<[u8]>);
 
-/// Runs `vehicle` on these links until `stop` is ready, or for `limit` of its own time. A link that ends is left out; the others go on.
+/// Runs `vehicle` on these links until `stop` is ready, or for `limit` of its own time. A link that ends is left out; the others continue.
 pub async fn serve(
     mut vehicle: Vehicle,
     links: Vec<(LinkRole, Ends)>,

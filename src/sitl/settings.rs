@@ -64,9 +64,9 @@ pub struct Settings {
     pub effects: Vec<ActiveEffect>,
     /// first-order lag of the rotors, s; 0 lets them follow at once
     pub motor_time_constant_s: f64,
-    /// whose behaviour
+    /// the autopilot that is simulated
     pub autopilot: Firmware,
-    /// same seed, same flight
+    /// seed of the noise; the same seed gives the same flight
     pub seed: u64,
     /// MAVLink system id
     pub system: u8,
@@ -82,11 +82,11 @@ pub struct Settings {
     pub sensors: SensorSettings,
     /// time from a frame's making to its arrival
     pub latency: Duration,
-    /// share of the frames that get lost on their way out (-)
+    /// share of the sent frames that are lost, 0 to 1 (-)
     pub loss: f64,
-    /// rotor speeds are telemetered
+    /// send measured rotor speeds
     pub esc_telemetry: bool,
-    /// a pilot's transmitter is on, its sticks centred
+    /// simulate a pilot's transmitter that is on, with centred sticks
     pub transmitter: bool,
     /// V at the start
     pub battery_v: f64,

@@ -1,4 +1,4 @@
-//! What the parameters mean for the flight, in SI; read anew when one of them changes.
+//! What the parameters mean for the flight, in SI; read again when one of them changes.
 
 use std::time::Duration;
 

@@ -360,7 +360,7 @@ impl Vehicle {
         self.autopilot.tuning = Tuning::of(self.settings.autopilot, &self.parameters);
     }
 
-    /// The autopilot starts anew from the next loop period; parameters and the vehicle's motion stay.
+    /// The autopilot restarts from the next loop period; parameters and the vehicle's motion stay.
     pub(super) fn reboot(&mut self) {
         let tuning = self.autopilot.tuning;
         // what could be built once can be built again

@@ -1,4 +1,4 @@
-//! Flights of logs, whatever their format: read, conditioned, and told apart.
+//! Flights of logs, whatever their format: read, conditioned, and separated.
 
 use std::path::{Path, PathBuf};
 
@@ -132,7 +132,7 @@ fn whose(report: &ReadReport) -> Option<String> {
     let others: Vec<String> = report.others.iter().map(ToString::to_string).collect();
     report.vehicle.filter(|_| !others.is_empty()).map(|vehicle| {
         format!(
-            "system {} is analysed; system(s) {} speak in the log as well (--system-id chooses another)",
+            "system {} is analysed; the log also contains system(s) {} (--system-id chooses another)",
             vehicle.system,
             others.join(", ")
         )

@@ -5,7 +5,7 @@
 //! others are tied to it once. Messages without a stamp are placed by the host's stamp: with the difference
 //! between host and vehicle of the frame just before where both arrived in one burst, for these were sent
 //! together and share their latency, else with the median of the last differences. Both follow a vehicle
-//! whose clock runs slow or fast against the host's, and a host whose clock is set while the vehicle's goes on.
+//! whose clock runs slow or fast against the host's, and a host whose clock is set while the vehicle's continues.
 
 /// Differences that the median is taken over; odd.
 const WINDOW: usize = 31;
@@ -22,7 +22,7 @@ const HOST_LEAP_US: u64 = 3_600_000_000;
 const BACKWARD_US: i64 = 2_000_000;
 /// A leap forward beyond this must be matched by the host's clock.
 const FORWARD_US: i64 = 5_000_000;
-/// So many stamps in a row that agree with each other but not with the clock: the clock has started anew.
+/// So many stamps in a row that agree with each other but not with the clock: the clock has restarted.
 const WITNESSES: u8 = 3;
 /// Microseconds larger than this are Unix time (2001), not time since boot (31 years).
 const UNIX_FROM_US: u64 = 1_000_000_000_000_000;
@@ -86,7 +86,7 @@ impl Anchor {
 pub enum Placed {
     /// microseconds since the recording's start
     At(i64),
-    /// the same, and the vehicle's clock started anew here
+    /// the same, and the vehicle's clock restarted here
     Restarted(i64),
     /// the stamp fits neither the clock nor a new one (so far): drop the message
     Stale,
@@ -182,7 +182,7 @@ impl VehicleClock {
         }
     }
 
-    /// How often the host's clock was set while the vehicle's went on.
+    /// How often the host's clock was set while the vehicle's continued.
     #[must_use]
     pub fn host_steps(&self) -> u64 {
         self.host_steps
@@ -192,7 +192,7 @@ impl VehicleClock {
     #[must_use]
     pub fn at_host(&self, host_us: i64) -> i64 {
         if let Some(leapt_us) = self.adrift_host_us {
-            // hours may have passed, or the clock was set: time goes on from where it was until a stamp tells
+            // hours may have passed, or the clock was set: time continues from where it was until a stamp tells
             return self.last_time_us.saturating_add(host_us.saturating_sub(leapt_us).max(0));
         }
         let known = self.differences.min(WINDOW);
@@ -261,7 +261,7 @@ impl VehicleClock {
         Placed::At(time_us)
     }
 
-    /// The vehicle's clock started anew: time goes on by what passed on the host's clock.
+    /// The vehicle's clock restarted: time advances by what passed on the host's clock.
     fn restart(&mut self, base: Base, raw_us: i64, host_us: i64) -> Placed {
         let last_host_us = self.tied(base).map_or(host_us, |tied| tied.last_host_us);
         let passed_us = host_us.saturating_sub(last_host_us).max(1000);
@@ -304,7 +304,7 @@ impl Tied {
         }
     }
 
-    /// Whether a stamp goes on where the last one was: not far back, and not far ahead of what passed on
+    /// Whether a stamp continues where the last one was: not far back, and not far ahead of what passed on
     /// the host's clock.
     fn continues_with(&self, raw_us: i64, host_us: i64) -> bool {
         let passed_us = raw_us.saturating_sub(self.last_raw_us);

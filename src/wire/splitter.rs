@@ -25,7 +25,7 @@ pub struct SplitCounts {
 ///
 /// A frame of a known message with a right checksum is given out at once. A frame that proves nothing
 /// (unknown message, or wrong checksum) is one unit where it stands right behind another frame or comes from a
-/// sender of checked frames, and the stream goes on with a frame at its end. It is none where checked frames
+/// sender of checked frames, and the stream continues with a frame at its end. It is none where checked frames
 /// begin inside it and run to or across its end, as they do behind noise that looks like a header. Where
 /// neither holds, its sender is known and a checked frame lies inside, nothing of it is given out: a payload
 /// must not be able to fake a message.

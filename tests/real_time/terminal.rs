@@ -35,7 +35,7 @@ fn a_word_for_arming_that_was_typed_before_the_page_arms_nothing() {
     let mut running = Running(child);
     person.types("arm\narm\nar");
     until("nothing is said of it", || {
-        person.saw().contains("typed before the page: ignored; type arm again")
+        person.saw().contains("typed before the page was shown: ignored; type arm again")
     });
     until("no page", || person.saw().contains("type arm and return to arm and fly"));
     let page = person.saw().len();

@@ -15,7 +15,7 @@ use crate::commands::output;
 pub const KEYS: &str =
     "h, l, r and return: hold, land, return home; :kill and return: motors off; Ctrl-C: hold and end";
 /// What is said of a word for arming that came too early.
-const EARLY: &str = "typed before the page: ignored; type arm again";
+const EARLY: &str = "typed before the page was shown: ignored; type arm again";
 /// Bytes of a line of them: no one types more.
 const LINE_MAX: usize = 256;
 /// A terminal that says so often that it has ended is gone.

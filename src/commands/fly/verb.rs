@@ -28,7 +28,8 @@ pub fn run(json: bool, stderr: &StandardError, args: &FlyArgs) -> Result<Outcome
 fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> Result<Outcome, CommandError> {
     let drawn = !args.plain && is_attended();
     if stderr.is_quiet() && !drawn && asks_for_the_word(args) {
-        let expected = "--quiet: expected --yes beside --arm and --plain: nothing would ask for the word";
+        let expected =
+            "--quiet: expected --yes with --arm and --plain: with --quiet nothing asks for the word";
         return Err(CommandError::Input(expected.to_owned()));
     }
     let ride = ride(args)?;

@@ -61,7 +61,7 @@ pub fn fly_it(
     // its pictures have ended with the flight
     let view = match ended.recv_timeout(PATIENCE) {
         Err(RecvTimeoutError::Timeout) => {
-            // its keys would go on without an echo; nothing else can be done for a terminal that takes nothing
+            // its keys would continue without an echo; nothing else can be done for a terminal that takes nothing
             last_word(|| drop(terminal::disable_raw_mode()));
             View::Stuck
         }

@@ -1,4 +1,4 @@
-//! The flight that tells best apart what the flights so far cannot.
+//! Design of the flight that best separates the effects that the previous flights cannot separate.
 
 use super::envelope::flown_limits;
 use super::error::NextError;
@@ -12,11 +12,11 @@ use crate::diagnose::trace::{Trace, TraceError};
 use crate::signals::Signals;
 use crate::vehicle::{Limits, Vehicle};
 
-/// Designs the next flight for an explanation of `flights`. `vehicle` gives the limits; where it states none,
-/// those of the flights so far are kept.
+/// Designs the next flight for an explanation of `flights`. `vehicle` gives the limits. If it states none, those of the
+/// previous flights are kept.
 ///
 /// # Errors
-/// [`NextError`] where there is nothing to tell apart, or no room to do it in.
+/// [`NextError`] where there is nothing to distinguish, or no room to do it in.
 pub fn design(
     explanation: &Explanation,
     flights: &[Signals],
@@ -74,8 +74,8 @@ pub fn design(
     })
 }
 
-/// Standard deviations by which flights tell a named effect from another that could stand for it, or, with `None`,
-/// from nothing; `None` where the effect was not named or the other was not tried.
+/// Distance, in standard deviations, of a named effect from another one or, with `None`, from zero. `None` if the
+/// effect was not named or the other was not tested.
 ///
 /// # Errors
 /// [`TraceError`] where the flights lack streams.
@@ -100,15 +100,16 @@ fn traces(flights: &[Signals], vehicle: &Vehicle, settings: &NextSettings) -> Re
     flights.iter().map(|signals| Trace::new(signals, vehicle, settings.half_width_s)).collect()
 }
 
-/// Below this many standard deviations in every flight that was tried, two effects do the same.
+/// Two effects whose distance stays below this many standard deviations in every tried flight have the same effect on
+/// the vehicle. Chosen; not measured.
 const SAME_SIGMA: f64 = 0.5;
-const SAME: &str = "in every flight inside the limits both do the same to the vehicle";
+const SAME: &str = "in every flight inside the limits both have the same effect on the vehicle";
 const BY_WEIGHING: &str =
     "weigh the vehicle before and after, swap the pack in between, and record the battery's voltage";
 const NOT_TRIED: &str = "what it would do in another flight is not known";
 
-/// The pairs of all confusable sets, and of those what no trajectory tells apart; where every name is certain, the
-/// one that is known worst.
+/// The pairs of all confusable sets, and those among them that no trajectory separates. If all names are certain, the
+/// one with the smallest significance.
 fn questions(explanation: &Explanation, traces: &[Trace]) -> (Vec<Question>, Vec<Inseparable>) {
     let (mut asked, mut inseparable): (Vec<Question>, Vec<Inseparable>) = (Vec::new(), Vec::new());
     for named in &explanation.named {

@@ -1,12 +1,13 @@
-//! Limits where none are stated: what was flown was safe.
+//! Limits for a vehicle file without limits: those of the previous flights, which were safe.
 
 use crate::signals::Signals;
 use crate::vehicle::Limits;
 use nalgebra::Vector3;
 
-/// Half as much again as was flown, for speeds and accelerations; the room and the tilt as they were.
+/// Limits of speeds and accelerations over those that were flown. The room and the tilt stay as they were flown.
+/// Chosen; not measured.
 const MORE: f64 = 1.5;
-/// s over which accelerations are taken.
+/// Time over which accelerations are averaged, s. Chosen; not measured.
 const OVER_S: f64 = 0.2;
 
 /// The room, speeds, accelerations and angles of the usable parts of flights.

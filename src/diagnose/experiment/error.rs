@@ -1,18 +1,19 @@
-//! Why there is no next flight.
+//! Errors of the design of the next flight.
 
 use super::flight::Inseparable;
 use crate::diagnose::trace::TraceError;
 use crate::physics::PhysicsError;
 
-/// Why there is no next flight.
+/// Errors of the design of the next flight.
 #[derive(Debug, thiserror::Error)]
 pub enum NextError {
-    /// nothing to tell apart
+    /// nothing to separate
     #[error(
-        "there is nothing to tell apart: nothing was named that could be taken for another effect, or that motion would show better"
+        "there is nothing to separate: no named effect could be confused with another one, and none would be \
+         determined better by more motion"
     )]
     NothingToTell,
-    /// only by other means
+    /// pairs that can only be separated by other means
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     Inseparable(Vec<Inseparable>),
     /// limits without room

@@ -1,15 +1,15 @@
-//! What to fly, and what it will tell apart.
+//! The next flight and its expected results.
 
 use crate::diagnose::signatures::latency_kind;
 use crate::trajectory::FourierTrajectory;
 use crate::vehicle::Limits;
 
-/// What to fly.
+/// The next flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NextFlight {
     /// one period
     pub trajectory: FourierTrajectory,
-    /// how often
+    /// number of periods
     pub repeats: u32,
     /// s, all periods
     pub seconds: f64,
@@ -19,12 +19,12 @@ pub struct NextFlight {
     pub limits_are_flown: bool,
     /// the worst pair first
     pub pairs: Vec<Pair>,
-    /// what it cannot tell apart, nor any other
+    /// pairs that no flight separates
     pub inseparable: Vec<Inseparable>,
 }
 
 impl NextFlight {
-    /// For people: what it will bring.
+    /// The expected results as a sentence.
     #[must_use]
     pub fn sentence(&self) -> String {
         let after = |pair: &Pair| {
@@ -39,43 +39,46 @@ impl NextFlight {
                 };
                 format!("{} from {other}: {}{better}", pair.named, after(pair))
             }
-            None => format!("nothing stands for {}, which is known to: {}", pair.named, after(pair)),
+            None => {
+                format!("{} is confused with no other effect; its significance: {}", pair.named, after(pair))
+            }
         });
         pairs.chain(self.inseparable.iter().map(ToString::to_string)).collect::<Vec<_>>().join("; ")
     }
 }
 
-/// Two effects that can be taken for each other, or one and nothing.
+/// Two effects that can be confused, or one effect and zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
     /// the one that was named
     pub named: &'static str,
-    /// the other; `None` where nothing could be taken for it: how far it stands out of the noise
+    /// the other; `None` if the named effect is confused with no other: then the distances are from zero
     pub other: Option<&'static str>,
-    /// standard deviations by which the flights so far tell them apart
+    /// their distance in the previous flights, standard deviations
     pub now: f64,
-    /// and the next flight alone, if what was named is there at its size
+    /// their distance in the next flight alone, if the named effect has its estimated size
     pub after: f64,
 }
 
-/// Two effects that no trajectory tells apart.
+/// Two effects that no trajectory separates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Inseparable {
     /// the one that was named
     pub named: &'static str,
     /// the other
     pub other: &'static str,
-    /// and what does
+    /// how they can be separated
     pub why: &'static str,
 }
 
 impl std::fmt::Display for Inseparable {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(out, "no trajectory tells {} from {}: {}", self.named, self.other, self.why)
+        write!(out, "no trajectory separates {} from {}: {}", self.named, self.other, self.why)
     }
 }
 
-/// Below this many standard deviations two effects are not told apart.
+/// Effects whose distance is below this many standard deviations are not distinguished, as in the confusable sets.
+/// Chosen; not measured.
 const ENOUGH_SIGMA: f64 = 5.0;
 
-const BY_SPEEDS: &str = " (rotor speed telemetry, or doublets of 5 Hz and more, tell them apart)";
+const BY_SPEEDS: &str = " (rotor speed telemetry, or doublets of 5 Hz and more, separate them)";

@@ -1,4 +1,4 @@
-//! What a flight that was not flown would show.
+//! Prediction of the results of a flight.
 
 use super::settings::NextSettings;
 use crate::diagnose::base::Base;
@@ -18,28 +18,28 @@ use crate::simulate::Allocation;
 use crate::trajectory::{FourierTrajectory, Reference};
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 
-/// What the next flight is to show.
+/// A question to the next flight.
 #[derive(Debug, Clone)]
 pub(super) struct Question {
     pub(super) named: &'static str,
     pub(super) kind: Kind,
-    /// standard deviations in the flights so far
+    /// distance in the previous flights, standard deviations
     pub(super) now: f64,
 }
 
-/// How a flight answers it.
+/// The kind of question.
 #[derive(Debug, Clone)]
 pub(super) enum Kind {
-    /// the effect at this place of the base against a candidate that could stand for it
+    /// the effect at this place of the base against a candidate with which it can be confused
     Against(usize, Candidate),
-    /// how far it stands out of the noise
+    /// its distance from zero
     Size(usize),
-    /// the latency against the same as another kind
+    /// the latency against the same latency of the other kind
     Latency(&'static str, ActuationLatency),
 }
 
 impl Question {
-    /// What the named effect is told from; `None`: from nothing.
+    /// The effect from which the named one is separated; `None`: its distance from zero.
     pub(super) fn other(&self) -> Option<&'static str> {
         match &self.kind {
             Kind::Against(_, candidate) => Some(candidate.id),
@@ -49,8 +49,8 @@ impl Question {
     }
 }
 
-/// The pair of a named effect and an identifier in its set; of several candidates of one effect (times of a change,
-/// lengths of a cord) the nearest. `None` where nothing of that identifier was tried.
+/// The question of a named effect and an identifier in its set; of several candidates of one effect (times of a change,
+/// lengths of a cord) the nearest. `None` if no candidate of this identifier was tested.
 pub(super) fn question(
     explanation: &Explanation,
     traces: &[Trace],
@@ -80,7 +80,7 @@ pub(super) fn question(
     best
 }
 
-/// The named effect that stands out least.
+/// The named effect with the smallest significance.
 pub(super) fn least_known(explanation: &Explanation) -> Option<Question> {
     let of_motion =
         explanation.named.iter().filter(|named| signature_of(named.id).is_none_or(|of| of.role.by_motion));
@@ -88,7 +88,7 @@ pub(super) fn least_known(explanation: &Explanation) -> Option<Question> {
     each.min_by(|a, b| a.now.total_cmp(&b.now))
 }
 
-/// How far a named effect stands out; `None` for a latency.
+/// The question about the size of a named effect; `None` for a latency.
 pub(super) fn size(explanation: &Explanation, named: &'static str) -> Option<Question> {
     let fitted = &explanation.search.after;
     let inflation = fitted.weighted.long_run_deviation();
@@ -99,7 +99,7 @@ pub(super) fn size(explanation: &Explanation, named: &'static str) -> Option<Que
     each.min_by(|a, b| a.now.total_cmp(&b.now))
 }
 
-/// Where the base has an effect.
+/// Places of an effect in the base.
 fn places(explanation: &Explanation, id: &str) -> impl Iterator<Item = usize> {
     let present = explanation.search.after.base.present.iter().enumerate();
     present.filter(move |(_, present)| present.id() == id).map(|(place, _)| place)
@@ -115,7 +115,7 @@ fn turned(latency: ActuationLatency, named: &str) -> ActuationLatency {
     }
 }
 
-/// Norm of what another latency does beyond all that nuisances (a shift in time among them) could do.
+/// Norm of the part of another latency that the nuisances (a shift in time among them) do not explain.
 fn of_latency(
     traces: &[Trace],
     (rows, base): (&Rows, &Base),
@@ -130,17 +130,17 @@ fn of_latency(
     Some(weighted.partialled(&[difference]).map_or(0.0, |(_, left)| left.norm()))
 }
 
-/// Instants of the imagined flight, s: many a kernel, few a second.
+/// Step of the grid of the simulated flight, s: many instants a kernel, few a second. Chosen; not measured.
 const STEP_S: f64 = 0.02;
 
-/// Looks ahead with the model, the noise and the sensors of the flights so far.
+/// Predicts flights with the model, the noise and the sensors of the previous flights.
 pub(super) struct Foresight<'a> {
     base: &'a Base,
     questions: &'a [Question],
     sigma: [f64; CHANNELS],
     inflation: f64,
     settings: NextSettings,
-    /// whose streams the imagined flight has
+    /// flight whose streams the simulated flight has
     like: &'a Trace,
 }
 
@@ -163,13 +163,13 @@ impl<'a> Foresight<'a> {
         }
     }
 
-    /// The rigid body and effects that are flown.
+    /// The rigid body and effects of the simulated flight.
     pub(super) fn base(&self) -> &Base {
         self.base
     }
 
-    /// Distance of every pair after all periods, standard deviations; `None` where the flight cannot be
-    /// imagined (free fall, or nothing of the effect in it).
+    /// Distance of every pair after all periods, standard deviations; `None` if the flight cannot be simulated (free
+    /// fall, or none of the effect in it).
     pub(super) fn distances(&self, trajectory: &FourierTrajectory) -> Option<Vec<f64>> {
         let signals = self.imagined(trajectory)?;
         let traces = [Trace::new(&signals, &self.base.vehicle, self.settings.half_width_s).ok()?];
@@ -192,8 +192,8 @@ impl<'a> Foresight<'a> {
         self.questions.iter().map(|question| Some(left(question)? / self.inflation)).collect()
     }
 
-    /// One period as its log would be without noise: the reference is followed exactly, and the rotors do
-    /// what the rigid body needs for it.
+    /// One period as it would be logged without noise: the reference is followed exactly, with the thrusts that the
+    /// rigid body needs.
     fn imagined(&self, trajectory: &FourierTrajectory) -> Option<Signals> {
         let vehicle = &self.base.vehicle;
         let around_s = 2.0 * self.settings.half_width_s;
@@ -224,7 +224,7 @@ impl<'a> Foresight<'a> {
     }
 }
 
-/// Series of the imagined flight.
+/// Series of the simulated flight.
 #[derive(Default)]
 struct Flown {
     attitude: Vec<UnitQuaternion<f64>>,
@@ -237,7 +237,7 @@ struct Flown {
 }
 
 impl Flown {
-    /// With the streams that the flights so far had, of which `like` is the first.
+    /// Signals with the streams of the previous flights, of which `like` is the first.
     fn signals(self, grid: Grid, like: &Trace) -> Signals {
         let rate_hz = 1.0 / like.command_period_s.max(1e-3);
         let voltage = like.voltage_v.as_ref().map(|voltage| sampled(voltage, grid.count));
@@ -267,7 +267,7 @@ impl Flown {
     }
 }
 
-/// The battery runs down over one period as it did over the whole flight.
+/// A measured series over one period: the battery discharges in it as over the whole flight.
 fn sampled(series: &[f64], count: usize) -> Vec<f64> {
     let last = series.len().saturating_sub(1);
     (0..count).map(|index| series[(last * index / count.max(1)).min(last)]).collect()

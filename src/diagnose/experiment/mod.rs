@@ -1,4 +1,4 @@
-//! The next flight: the trajectory inside the vehicle's limits that tells best apart what the flights so far
+//! The next flight: the trajectory inside the vehicle's limits that distinguishes best what the flights so far
 //! cannot.
 //!
 //! For every pair (an effect that was named, another that could stand for it) the expected distance is

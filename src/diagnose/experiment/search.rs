@@ -1,4 +1,4 @@
-//! Random starts and random moves inside the limits. The distance has no slope that is cheap to have.
+//! Search with random starts and random moves inside the limits, because the gradient of the distance is expensive.
 
 use super::foresight::Foresight;
 use super::settings::NextSettings;
@@ -12,16 +12,17 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
 
-/// Instants of a period at which the bounds are held.
+/// Instants of a period at which the bounds are checked. Chosen; not measured.
 const INSTANTS: u32 = 100;
-/// Every bound is kept with this share of its scale to spare, for what lies between the instants.
+/// Share of each bound's scale that is kept free, for the times between the instants. Chosen; not measured.
 const SPARE: f64 = 0.02;
-/// As flown, this keeps the rotors off their bounds for a vehicle that lifts twice its weight.
+/// Margin to the rotors' bounds with which a simulated flight stays off them, for a thrust-to-weight ratio of 2.
 const ROTOR_MARGIN: RotorMargin = ROTOR_MARGINS[2];
 /// Halvings of a factor.
 const HALVINGS: u32 = 14;
-/// First size of a move, relative to the series; it shrinks by [`SHRINK`] when a move fails.
+/// First size of a move, relative to the series. It shrinks by [`SHRINK`] when a move fails. Chosen; not measured.
 const MOVE: f64 = 0.5;
+/// Factor on the size of a move after a failure. Chosen; not measured.
 const SHRINK: f64 = 0.97;
 
 /// The best series and the distance of every pair.
@@ -39,11 +40,11 @@ pub(super) fn best(
         .map(|(trajectory, _, distances)| (trajectory, distances))
 }
 
-/// Random flights that are looked at before one is searched.
+/// Random flights that are assessed before one is searched. Chosen; not measured.
 const PROBES: u64 = 6;
 
-/// The largest distance of every question over a few random flights that fill the room; none where no flight can
-/// be imagined.
+/// The largest distance of every question over a few random flights that fill the room; none if no flight can be
+/// simulated.
 pub(super) fn probed(
     foresight: &Foresight,
     limits: &Limits,
@@ -66,7 +67,7 @@ pub(super) fn probed(
     each.into_iter().reduce(most).unwrap_or_default()
 }
 
-/// Series that start and end at rest in the middle of the room, and what holds them.
+/// Series that start and end at rest in the middle of the room, with their bounds.
 struct Room {
     space: SeriesSpace,
     bounds: Vec<Bound>,
@@ -105,7 +106,7 @@ impl Room {
         })
     }
 
-    /// The series made as large as the bounds allow; larger motion tells more.
+    /// The series scaled as large as the bounds allow, because larger motion gives more information.
     fn filled(&self, unknowns: &DVector<f64>) -> Option<DVector<f64>> {
         let (mut low, mut high) = (0.0, 4.0);
         if self.keeps(&(unknowns * high)) {
@@ -118,7 +119,8 @@ impl Room {
         (low > 0.0).then(|| unknowns * low)
     }
 
-    /// Each axis filled alone, then all together: no axis is small because another is at its bound.
+    /// A random series with each axis scaled separately and then all together, so that no axis is small because another
+    /// is at its bound.
     fn drawn(&self, random: &mut Pcg64Mcg) -> Option<DVector<f64>> {
         let mut sum = DVector::zeros(self.space.dimension());
         for axis in 0..4 {
@@ -134,7 +136,7 @@ impl Room {
     }
 }
 
-/// One start: moves of one axis at a time are kept where the smallest distance grows.
+/// One start: moves of one axis at a time are kept if the smallest distance increases.
 fn climb(
     foresight: &Foresight,
     room: &Room,

@@ -1,13 +1,13 @@
-//! What the next flight may be.
+//! Settings of the next flight.
 
 use crate::diagnose::explain::ExplainSettings;
 
-/// What the next flight may be.
+/// Settings of the next flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NextSettings {
-    /// s
+    /// period, s
     pub period_s: f64,
-    /// of the series (18)
+    /// harmonics of the series (18)
     pub harmonics: u32,
     /// periods that will be flown; comparing periods with each other needs four
     pub repeats: u32,
@@ -15,7 +15,7 @@ pub struct NextSettings {
     pub starts: u64,
     /// moves of each start
     pub moves: u32,
-    /// same seed, same flight
+    /// seed of the search; the same seed gives the same flight
     pub seed: u64,
     /// s, half width of the weak form's test function
     pub half_width_s: f64,

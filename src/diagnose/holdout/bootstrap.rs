@@ -3,13 +3,13 @@
 use crate::compare::improvement_percent;
 use crate::stats::{percentiles_95, resamples};
 
-/// Fewer blocks than this carry no interval.
+/// Least number of blocks for an interval. Chosen; not measured.
 const LEAST_BLOCKS: usize = 5;
 
-/// A figure with the interval that holds it in 95 of 100 resamplings.
+/// A figure with its 95 % bootstrap interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// of the flight as it was
+    /// value for the flight itself
     pub value: f64,
     /// 2.5 and 97.5 percentile; `None` with fewer than five blocks
     pub range: Option<(f64, f64)>,
@@ -20,11 +20,11 @@ pub struct Interval {
 pub struct Compared {
     /// root mean square error of the rigid body alone
     pub before: Interval,
-    /// with what was added
+    /// root mean square error of the model with effects
     pub after: Interval,
-    /// what a model that is right would leave, where that can be estimated
+    /// error that the right model would have, if that can be estimated
     pub floor: Option<f64>,
-    /// `100 (1 - after/before)`, both resampled together
+    /// `100 (1 - after/before)`, with the same resampled blocks for both
     pub improvement_percent: Interval,
 }
 
@@ -38,7 +38,7 @@ struct Block {
     count: Vec<f64>,
 }
 
-/// Errors before and after of each quantity; `None` where it was nowhere measured.
+/// Errors before and after of each quantity; `None` if it was not measured.
 type Roots = Vec<Option<(f64, f64)>>;
 
 /// Squared errors of several quantities gathered into blocks.
@@ -82,8 +82,7 @@ impl Blocks {
         }
     }
 
-    /// Errors of every quantity, and the mean of their improvements; `None` for a quantity that was
-    /// nowhere measured.
+    /// Errors of every quantity, and the mean of their improvements; `None` for a quantity that was not measured.
     pub(super) fn compared(&self, draws: usize, seed: u64) -> (Vec<Option<Compared>>, Option<Interval>) {
         let whole = self.roots(0..self.blocks.len());
         let mut drawn: Vec<Roots> = Vec::new();

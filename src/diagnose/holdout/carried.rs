@@ -1,4 +1,4 @@
-//! What of the identified model carries over to another flight.
+//! Transfer of the identified model to another flight.
 
 use super::settings::{HeldOut, HoldoutSettings};
 use crate::diagnose::base::Base;
@@ -17,12 +17,12 @@ use crate::vehicle::Vehicle;
 pub(super) struct Pair {
     pub(super) before: Base,
     pub(super) after: Base,
-    /// what was not simply kept
+    /// parameters that were not kept, as sentences
     pub(super) notes: Vec<String>,
 }
 
-/// Rigid body alone, and the model with its effects. A latency that has a name is an effect: the rigid
-/// body alone has the known motor and the log's own sampling instead.
+/// The rigid body alone, and the model with its effects. A latency with a name is an effect: the rigid body alone then
+/// has the stated motor and the log's sampling instead.
 pub(super) fn pair(
     (explanation, empirical): (&Explanation, Option<&Empirical>),
     vehicle: &Vehicle,
@@ -47,7 +47,7 @@ pub(super) fn pair(
     Pair { before, after, notes: Vec::new() }
 }
 
-/// The pair for a flight that was not used: what belongs to the day or the moment is found again or said.
+/// The pair for a hold-out flight. Parameters that belong to the day or to a time are estimated again or reported.
 pub(super) fn carried_over(
     explained: (&Explanation, Option<&Empirical>),
     (flight, trace): (&HeldOut, &Trace),
@@ -88,8 +88,8 @@ pub(super) fn carried_over(
 /// A time that no flight reaches, s.
 const NEVER_S: f64 = 1e5;
 
-/// The moment from which on the changed mass explains the force along body z better than the first one;
-/// `None` where it never does.
+/// The time (s) from which the changed mass explains the force along body z better than the first one; `None` if there
+/// is none.
 fn change_time(
     after: &Base,
     (place, slot): (usize, usize),

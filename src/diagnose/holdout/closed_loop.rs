@@ -1,4 +1,4 @@
-//! The held-out flights flown again from their setpoints, as in Table 4.
+//! Closed-loop simulation of the held-out flights from their setpoints, as in Table 4.
 
 use super::bootstrap::{Blocks, Compared};
 use super::ready::{Ready, flown};
@@ -9,15 +9,15 @@ use crate::diagnose::empirical::Empirical;
 use crate::stats::white_level_of;
 use crate::vehicle::Vehicle;
 
-/// Errors of the ten signals against the recording. The autopilot's controller is not known: the
-/// simulator's own flies both models, so their difference counts, not their size.
+/// Errors of the ten signals against the recording. The autopilot's controller is not known. The simulator's own
+/// controller flies both models, so only the difference of their errors is meaningful, not the size.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClosedLoop {
     /// in the order of [`SIGNALS`]; the floor is the recording's own white noise
     pub signals: Vec<Option<Compared>>,
 }
 
-/// Both models of every flight; an error says why it could not be done.
+/// Simulates both models for every flight; an error gives the reason if it is not possible.
 pub(super) fn flown_again(
     ready: &[Ready],
     empirical: Option<&Empirical>,
@@ -25,7 +25,7 @@ pub(super) fn flown_again(
     settings: &HoldoutSettings,
 ) -> Result<ClosedLoop, String> {
     if empirical.is_some() {
-        return Err("an empirical term is not flown in closed loop".to_owned());
+        return Err("an empirical term is not simulated in closed loop".to_owned());
     }
     let mut blocks = Blocks::new(SIGNALS.len(), settings.block_s);
     let mut floors = [0.0; SIGNALS.len()];
@@ -34,7 +34,7 @@ pub(super) fn flown_again(
         let recording = ready
             .flight
             .recording
-            .ok_or_else(|| named(&"part of a flight that was used is not flown again"))?;
+            .ok_or_else(|| named(&"part of a flight that was used is not simulated"))?;
         let recorded = TenSignals::of_signals(ready.flight.signals).map_err(|error| named(&error))?;
         let levels = noise_levels(&recorded);
         floors.iter_mut().zip(levels).for_each(|(floor, level)| *floor += level * level);
@@ -61,7 +61,7 @@ pub(super) fn flown_again(
     Ok(ClosedLoop { signals })
 }
 
-/// Standard deviation of each signal's white noise, which no model takes out of the recording.
+/// Standard deviation of each signal's white noise in the recording, which no model can explain.
 fn noise_levels(recorded: &TenSignals) -> [f64; SIGNALS.len()] {
     std::array::from_fn(|signal| {
         let series: Vec<f64> = recorded.values.iter().map(|values| values[signal]).collect();

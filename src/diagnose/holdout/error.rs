@@ -1,13 +1,13 @@
-//! Why a model cannot be shown on a flight.
+//! Errors of the comparison with a hold-out flight.
 
 use crate::compare::CompareError;
 use crate::diagnose::trace::TraceError;
 use crate::physics::PhysicsError;
 
-/// Why nothing can be shown.
+/// Errors of the comparison with a hold-out flight.
 #[derive(Debug, thiserror::Error)]
 pub enum HoldoutError {
-    /// nothing to show on
+    /// no hold-out flight
     #[error("expected at least one flight to show the model on, got none")]
     NoFlight,
     /// streams are missing

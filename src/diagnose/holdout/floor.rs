@@ -7,8 +7,8 @@ use crate::signals::{Signals, ThrustSource, white_level};
 use crate::stats::median;
 use nalgebra::{SMatrix, SVector, Vector3};
 
-/// White noise of each part of the state; zero where it is not recorded. Real autopilots' estimates are
-/// smoother than white noise, so what comes of this is a lower bound there.
+/// White noise of each part of the state; zero if it is not recorded. Estimates of real autopilots are smoother than
+/// white noise, so the result is a lower bound for them.
 #[must_use]
 pub fn state_noise(signals: &Signals) -> StateNoise {
     let vectors = |series: &Option<Vec<Vector3<f64>>>, quantity: Quantity| {
@@ -30,14 +30,14 @@ pub fn state_noise(signals: &Signals) -> StateNoise {
     }
 }
 
-/// Share of the logged commands' jitter, as variance, that the rotors do otherwise: a loop twice as fast as
-/// the log gives one half; slower logs give more, up to one.
+/// Share of the variance of the logged commands' jitter that the rotors do not follow. A loop twice as fast as the log
+/// gives one half; slower logs give more, up to one.
 const OTHERWISE: f64 = 0.5;
-/// Fourth differences beyond this many medians are manoeuvres or gaps.
+/// Fourth differences beyond this many medians are manoeuvres or gaps. Chosen; not measured.
 const OUTLIER: f64 = 6.0;
 
-/// Jitter of logged commands, by the covariance of their fourth differences over the rotors; `None` where
-/// rotor speeds were measured, or there is too little of it.
+/// Jitter of logged commands, by the covariance of their fourth differences over the rotors. `None` if rotor speeds
+/// were measured, or if there is too little data.
 #[must_use]
 pub fn command_noise(signals: &Signals) -> Option<CommandNoise> {
     if signals.quality.thrust_source != ThrustSource::Command || signals.rotor_thrust_n.is_empty() {
@@ -78,7 +78,7 @@ pub fn command_noise(signals: &Signals) -> Option<CommandNoise> {
     Some(CommandNoise { factor_n, period_s: signals.grid.step_s * every as f64 })
 }
 
-/// Of every so many instants as the stream had samples: between its samples the grid is interpolated.
+/// Noise level at the rate of the stream's samples, because the grid is interpolated between them.
 fn levels(signals: &Signals, flat: Vec<f64>, width: usize, quantity: Quantity) -> Vec<f64> {
     let every = samples_apart(signals, quantity);
     let mut stream = Stream { time_s: Vec::new(), width, values: Vec::new() };

@@ -1,4 +1,4 @@
-//! The explained model and the rigid body on flights that were not used, and on those that were.
+//! The explained model and the rigid body on hold-out flights, and on those that were used.
 
 use super::bootstrap::Interval;
 use super::carried::{carried_over, pair};
@@ -12,8 +12,8 @@ use crate::diagnose::empirical::Empirical;
 use crate::diagnose::explanation::Explanation;
 use crate::vehicle::Vehicle;
 
-/// Shows the explained model on flights that were not used, against the rigid body alone. `empirical` acts
-/// beside the better model where no mechanism was found.
+/// Compares the explained model with the rigid body alone on hold-out flights. `empirical` acts in addition to the
+/// better model if no mechanism was found.
 ///
 /// # Errors
 /// [`HoldoutError`] where a flight lacks streams or is too short.
@@ -48,7 +48,8 @@ pub fn on_holdout(
     let another = other_vehicle.is_some();
     tracing::info!(improvement_percent = improvement, blocks, other_vehicle = another, "hold-out predicted");
     notes.push(
-        "the floor is what white noise of the sensors and of the logged commands would leave of a model that is right; noise that an autopilot's estimator has smoothed is not in it"
+        "the floor is the error that white noise of the sensors and of the logged commands would cause with the right \
+         model; noise that an autopilot's estimator has smoothed is not included"
             .to_owned(),
     );
     Ok(HoldoutFit {
@@ -65,7 +66,7 @@ pub fn on_holdout(
     })
 }
 
-/// The same open-loop errors on the flights that were used, so that both can stand side by side.
+/// The same open-loop errors on the flights that were used, for comparison.
 ///
 /// # Errors
 /// [`HoldoutError`] where a flight cannot be played back.

@@ -1,8 +1,8 @@
-//! The better model on flights that it has not seen.
+//! The better model on hold-out flights.
 //!
-//! Everything is frozen as it was identified, but for what belongs to a moment (when a load was dropped).
-//! `before` is the rigid body identified on the same flights without effects, so that no effect is paid
-//! for by a wrong mass. Intervals come from resampled blocks of the flight, the same for both models.
+//! All parameters are frozen as identified, except those that belong to a time (when a load was dropped). `before` is
+//! the rigid body identified on the same flights without effects, so that no effect compensates for a wrong mass.
+//! Intervals come from a bootstrap over blocks of the flight, with the same blocks for both models.
 
 mod bootstrap;
 mod carried;

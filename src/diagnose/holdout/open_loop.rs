@@ -1,4 +1,4 @@
-//! Open-loop prediction from the measured state, fed the recorded actuators.
+//! Open-loop prediction from the measured state with the recorded actuators.
 
 use super::bootstrap::{Blocks, Compared, Interval};
 use super::error::HoldoutError;
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 /// Lengths of the windows, s.
 pub const WINDOWS_S: [f64; 3] = [0.1, 0.5, 1.0];
 
-/// Errors over windows of one length. A quantity that the recording does not hold is `None`.
+/// Errors over windows of one length; `None` for a quantity that the recording does not contain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OpenLoop {
     /// s

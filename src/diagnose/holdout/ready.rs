@@ -1,4 +1,4 @@
-//! A held-out flight made ready.
+//! A held-out flight prepared for the comparison.
 
 use super::carried::Pair;
 use super::error::HoldoutError;
@@ -8,7 +8,7 @@ use crate::diagnose::trace::Trace;
 use crate::physics::{Model, PhysicsError};
 use crate::vehicle::Vehicle;
 
-/// A held-out flight made ready.
+/// A held-out flight prepared for the comparison.
 pub(super) struct Ready<'a> {
     pub(super) flight: &'a HeldOut<'a>,
     pub(super) trace: Trace,
@@ -34,5 +34,5 @@ pub(super) fn flown(base: &Base) -> Result<Model, PhysicsError> {
     base.model(&base.latency_effects())
 }
 
-/// Least flight that errors are averaged over, s.
+/// Least time of flight over which errors are averaged, s. Chosen; not measured.
 const LEAST_S: f64 = 3.0;

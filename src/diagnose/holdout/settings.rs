@@ -1,10 +1,10 @@
-//! What a model is shown on, and how.
+//! Settings and flights of the hold-out comparison.
 
 use crate::diagnose::explain::ExplainSettings;
 use crate::recording::Recording;
 use crate::signals::Signals;
 
-/// How it is shown.
+/// Settings of the hold-out comparison.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HoldoutSettings {
     /// s, half width of the weak form's test function
@@ -13,7 +13,7 @@ pub struct HoldoutSettings {
     pub block_s: f64,
     /// resamplings
     pub draws: usize,
-    /// of resamplings and noise
+    /// seed of resamplings and noise
     pub seed: u64,
     /// the held-out part belongs to the flight that was explained
     pub same_flight: bool,
@@ -34,7 +34,7 @@ impl Default for HoldoutSettings {
 /// A flight that was not used.
 #[derive(Debug, Clone, Copy)]
 pub struct HeldOut<'a> {
-    /// by which it is called in messages
+    /// its name in messages
     pub name: &'a str,
     /// conditioned with the vehicle file that the others were conditioned with
     pub signals: &'a Signals,

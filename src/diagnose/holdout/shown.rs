@@ -14,19 +14,19 @@ pub struct HoldoutFit {
     pub blocks: usize,
     /// open-loop prediction, one entry a length of window; none where `no_open_loop` says why
     pub open_loop: Vec<OpenLoop>,
-    /// why nothing could be played back
+    /// reason why nothing could be predicted
     pub no_open_loop: Option<String>,
     /// mean over the four quantities at 0.5 s of `100 (1 - after/before)`
     pub improvement_percent: Option<Interval>,
     /// residual of the weak form, N and N m, in the order of [`crate::diagnose::CHANNEL_NAMES`]
     pub weak: Vec<Option<Compared>>,
-    /// flown again from the recorded setpoints; `Err`: why not
+    /// closed-loop simulation from the recorded setpoints; `Err`: the reason why there is none
     pub closed_loop: Result<ClosedLoop, String>,
     /// the held-out flights' own values against those of the model
     pub agreement: Vec<Agreement>,
-    /// why the held-out flights cannot be of the identified vehicle
+    /// the reason why the held-out flights cannot be of the identified vehicle
     pub other_vehicle: Option<OtherVehicle>,
-    /// what was not simply kept, and what is not known
+    /// notes on parameters that were not kept or are not known
     pub notes: Vec<String>,
 }
 

@@ -1,14 +1,14 @@
-//! Without a flight to hold out: the last periods of a flight are kept aside.
+//! The split of a flight if there is no hold-out flight: its last periods are held back.
 
 use crate::diagnose::harmonics::period_s;
 use crate::signals::{Signals, stride};
 
-/// A flight cut in two. Both parts hold all instants; only the masks differ.
+/// A flight in two parts. Both contain all instants; only the masks differ.
 #[derive(Debug, Clone)]
 pub struct Split {
-    /// to explain from
+    /// the part that is explained
     pub identify: Signals,
-    /// to show on
+    /// the part that is held back
     pub holdout: Signals,
     /// s, vehicle clock, where the second part begins
     pub from_s: f64,
@@ -16,15 +16,15 @@ pub struct Split {
     pub period_s: Option<f64>,
 }
 
-/// Least time that is worth explaining from, s.
+/// Least time that must remain for the explanation, s. Chosen; not measured.
 const LEAST_S: f64 = 12.0;
-/// Left out between the parts, s: longer than the weak form's kernel and the playback's warm-up.
+/// Time left out between the parts, s: longer than the weak form's kernel (0.4 s) and the playback's warm-up.
 const BETWEEN_S: f64 = 0.5;
-/// Share of the flight that is held back.
+/// Share of the flight that is held back. Chosen; not measured.
 const SHARE: f64 = 1.0 / 3.0;
 
-/// Keeps the last whole periods aside, about a third of the flight and at least one period; without a
-/// period the last third. `None` where too little would be left on either side.
+/// Holds back the last whole periods, about a third of the flight and at least one period; without a period the last
+/// third. `None` if too little would be left on either side.
 #[must_use]
 pub fn split_last_periods(signals: &Signals) -> Option<Split> {
     let used: Vec<usize> = (0..signals.grid.count).filter(|&index| signals.usable[index]).collect();
@@ -54,7 +54,7 @@ pub fn split_last_periods(signals: &Signals) -> Option<Split> {
     })
 }
 
-/// By velocity where it is known, else by rates.
+/// Period of the flight by velocity if it is known, otherwise by body rates, s.
 fn flown_period_s(signals: &Signals, used: &[usize]) -> Option<f64> {
     let motion = signals.velocity.as_ref().or(signals.rate.as_ref())?;
     let rows: Vec<usize> = used.iter().copied().step_by(stride(signals.grid.step_s)).collect();

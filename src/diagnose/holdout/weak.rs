@@ -17,13 +17,13 @@ use rayon::prelude::*;
 pub(super) struct Weak {
     pub(super) compared: Vec<Option<Compared>>,
     pub(super) own: Vec<Fitted>,
-    /// what everything fitted to the held-out flights themselves leaves
+    /// residual if everything is fitted to the held-out flights themselves
     pub(super) own_rms: [f64; CHANNELS],
 }
 
-/// Root mean square of each channel (N, N m). What the identification found of the nuisances that are
-/// known beforehand (tilt of the frame, timing of the accelerometer, jitter) is kept like all else. The
-/// floor is what remains where everything is fitted to the held-out flight itself.
+/// Root mean square of each channel (N, N m). The identified values of nuisances that belong to the vehicle (tilt of
+/// the frame, timing of the accelerometer, jitter) are kept like all other parameters. The floor is the residual if
+/// everything is fitted to the held-out flight itself.
 pub(super) fn residuals(
     ready: &[Ready],
     explanation: &Explanation,
@@ -73,8 +73,8 @@ pub(super) fn residuals(
     Ok(Weak { own_rms: floor.map(root), compared, own: parts.into_iter().map(|(.., own)| own).collect() })
 }
 
-/// The residual less the share of each nuisance that the base does not hold: the sensors' own (a bias, the
-/// attitude's level) as the flight itself has it, the vehicle's as it was identified.
+/// The residual without the part of each nuisance: nuisances of the sensors (bias, level of the attitude) as the flight
+/// itself determines them, those of the vehicle as they were identified.
 fn without_known_nuisances(own: &Fitted, identified: &Fitted) -> Channels {
     let mut residual = own.rows.residual.clone();
     for (index, column) in own.rows.nuisances.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Which form of each effect: all are fitted, the likeliest is taken.
+//! The form of each effect: all forms are fitted, and the most likely one is taken.
 
 use super::wanted::RequestedEffects;
 use crate::diagnose::base::{Base, lift_load};
@@ -9,28 +9,29 @@ use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
 use rayon::prelude::*;
 
-/// A form of an effect that was taken.
+/// The chosen form of an effect.
 #[derive(Debug, Clone)]
 pub(super) struct Chosen {
     /// start values and what is estimated of them
     pub(super) form: EffectTerm,
     /// how many forms were tried
     pub(super) tried: usize,
-    /// of what was found by trying alone (the moment of a change): its standard error
+    /// slot and standard error of a value that was found by trying (the time of a change)
     pub(super) tried_std: Option<(usize, f64)>,
 }
 
-/// Lengths of a cord round about the likeliest that was tried: steps of so large a share to either side.
+/// Step between lengths of a cord around the most likely tried length, as a share of it. Chosen; not measured.
 const LENGTH_EVERY: f64 = 0.0025;
 const LENGTH_STEPS: i32 = 8;
-/// A swing that is damped: lengths lie farther apart, and these times the damping are tried.
+/// The same step for a damped swing, whose lengths may lie farther apart. Chosen; not measured.
 const DAMPED_EVERY: f64 = 0.01;
 const DAMPINGS: [f64; 5] = [0.4, 0.65, 1.0, 1.5, 2.2];
-/// Round about a change's moment, s: how far, and how finely.
+/// Time around the moment of a change in which moments are tried, s. Chosen; not measured.
 const ABOUT_S: f64 = 4.0;
+/// Step between these moments, s. Chosen; not measured.
 const EVERY_S: f64 = 0.25;
 
-/// One form of every effect that has columns of its own, in the order in which they were asked for.
+/// Chooses one form of every effect with columns of its own, in the requested order.
 pub(super) fn choose(
     flights: &[Trace],
     base: &Base,
@@ -66,11 +67,11 @@ pub(super) fn choose(
         .collect())
 }
 
-/// The likeliest form, with the misfits of all.
+/// The most likely form, with the misfits of all.
 struct Likeliest {
     form: EffectTerm,
     misfits: Vec<f64>,
-    /// by how much slow noise makes rows count for less
+    /// factor of correlated noise on standard deviations
     deviation: f64,
 }
 
@@ -106,7 +107,7 @@ fn likeliest(
     Ok(Likeliest { form: forms[best].clone(), misfits, deviation })
 }
 
-/// The base with what was picked, but for one place.
+/// The base with the chosen forms, except for one place.
 fn with_others(base: &Base, picked: &[Option<EffectTerm>], place: usize) -> Base {
     let mut base = base.clone();
     let others = picked.iter().enumerate().filter(|(other, _)| *other != place);
@@ -114,8 +115,8 @@ fn with_others(base: &Base, picked: &[Option<EffectTerm>], place: usize) -> Base
     base
 }
 
-/// The cord's length and the swing's damping, and the load to start from: by what a small load explains, since the
-/// pendulum keeps its phase over the whole flight for lengths that are nearly right alone.
+/// Length of the cord, damping of the swing and start value of the load, by the energy that a small load explains. The
+/// pendulum keeps its phase over the whole flight only for nearly correct lengths.
 fn length(
     flights: &[Trace],
     base: &Base,
@@ -155,7 +156,7 @@ fn length(
     Ok(found)
 }
 
-/// The same change at moments round about the one that was found.
+/// The same change at times around the one that was found.
 fn moments_about(form: &EffectTerm, flights: &[Trace]) -> Vec<EffectTerm> {
     let time_s = form.values[0];
     let flown = flights.first().and_then(|trace| {
@@ -175,7 +176,7 @@ fn moments_about(form: &EffectTerm, flights: &[Trace]) -> Vec<EffectTerm> {
     if out.is_empty() { vec![form.clone()] } else { out }
 }
 
-/// Standard error of a moment by the likelihood's fall about it, and by how finely moments were tried.
+/// Standard error of the time, s, from the decrease of the likelihood around it and from the step of the tried times.
 fn moment_std_s(best: &Likeliest, tried: &[EffectTerm]) -> f64 {
     let least = best.misfits.iter().copied().fold(f64::INFINITY, f64::min);
     let weights = best.misfits.iter().map(|misfit| (-(misfit - least) / best.deviation.powi(2)).exp());

@@ -10,7 +10,7 @@ pub enum JointError {
     /// no effect of this name
     #[error("no effect `{id}`; expected one or more of {}", wanted::names())]
     Unknown {
-        /// what came
+        /// the requested name
         id: String,
     },
     /// twice the same
@@ -19,7 +19,7 @@ pub enum JointError {
         /// which
         id: &'static str,
     },
-    /// no effect beside the rigid body
+    /// a parameter that is always identified
     #[error(
         "{id} is identified with mass and inertia in any case; name the effects beside them: {}",
         wanted::names()
@@ -28,13 +28,14 @@ pub enum JointError {
         /// which
         id: String,
     },
-    /// irregular by nature
+    /// an effect that is not a function of its parameters
     #[error(
-        "gust cannot be identified as parameters: a gust is one course of the wind, not the same way twice, and force and torque \
-         are not a function of its strength and correlation time; `mavid explain` gives both, from what is left of the residual"
+        "gust cannot be identified as parameters: a gust is one random course of the wind that does not repeat, and \
+         force and torque are not a function of its strength and correlation time; `mavid explain` gives both from \
+         the remaining residual"
     )]
     Gust,
-    /// wind has no force of its own
+    /// wind without an aerodynamic force
     #[error(
         "steady_wind shows only through forces of the air; expected it together with linear_drag, quadratic_drag, blade_flapping, \
          translational_lift, inflow or vortex_ring, by name or in the vehicle file, got none of them"
@@ -47,15 +48,15 @@ pub enum JointError {
         id: &'static str,
         /// what it needs
         what: &'static str,
-        /// what for
+        /// why it is needed
         why: &'static str,
     },
-    /// its time belongs to one flight
+    /// an effect at a time of one flight, with several flights
     #[error("effect {id} happens at a time of one flight; expected one recording, got {flights}")]
     SeveralFlights {
         /// which effect
         id: &'static str,
-        /// how many came
+        /// number of flights
         flights: usize,
     },
     /// too little flight

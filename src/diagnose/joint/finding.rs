@@ -1,4 +1,4 @@
-//! What is said of each effect.
+//! Result for each effect.
 
 use super::held::{Held, Settled};
 use super::latency::{LEAST_LAG_S, Split};
@@ -16,7 +16,7 @@ use crate::stats::normal_deviate;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
 
-/// What the flight says of a parameter.
+/// Result for a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Found {
     /// estimated
@@ -26,11 +26,11 @@ pub enum Found {
         /// standard error, same unit
         std: f64,
     },
-    /// the flight asks for a value that physics does not allow: held at the bound
+    /// the estimate is beyond the bound: the parameter is held at the bound
     AtBound {
         /// the bound, in the parameter's unit
         value: f64,
-        /// what the flight asks for
+        /// the estimate without the bound
         wanted: f64,
         /// its standard error
         std: f64,
@@ -39,12 +39,12 @@ pub enum Found {
     Given {
         /// in the parameter's unit
         value: f64,
-        /// where it comes from
+        /// origin of the value
         why: String,
     },
-    /// the flight does not say
+    /// not determined by the flight
     NotDetermined {
-        /// what it is held at in the model
+        /// its value in the model
         held: f64,
         /// why
         reason: String,
@@ -52,7 +52,7 @@ pub enum Found {
 }
 
 impl Found {
-    /// What the model has, in the parameter's unit.
+    /// Value in the model, in the parameter's unit.
     #[must_use]
     pub fn value(&self) -> f64 {
         match self {
@@ -63,7 +63,7 @@ impl Found {
         }
     }
 
-    /// The same of a share of the parameter.
+    /// The same multiplied by `share`.
     fn times(&self, share: f64) -> Self {
         match self.clone() {
             Self::Determined { value, std } => Self::Determined { value: share * value, std: share * std },
@@ -82,28 +82,28 @@ pub struct ParameterFound {
     pub name: &'static str,
     /// SI
     pub unit: &'static str,
-    /// least and greatest that is plausible
+    /// least and greatest plausible value
     pub plausible: (f64, f64),
-    /// what the flight says
+    /// the result
     pub found: Found,
 }
 
-/// An effect that was asked for.
+/// A requested effect.
 #[derive(Debug, Clone)]
 pub struct EffectFound {
     /// which
     pub effect: &'static dyn Effect,
     /// in the order of its values
     pub parameters: Vec<ParameterFound>,
-    /// normal deviate of the amounts from nothing, the number of forms that were tried allowed for; of a lag
-    /// or delay from what a fast motor makes
+    /// normal deviate of the amounts from zero, with an allowance for the number of tried forms; for a lag or delay,
+    /// from that of a fast motor
     pub z: f64,
     /// forms that were tried: rotors, moments, lengths, laws
     pub tried: usize,
 }
 
 impl EffectFound {
-    /// It stands out of the noise as far as a name needs it to.
+    /// Whether it is as significant as a name requires.
     #[must_use]
     pub fn is_significant(&self) -> bool {
         signature_of(self.effect.id()).is_some_and(|signature| self.z > Gates::default().deviate(signature))
@@ -119,7 +119,7 @@ impl EffectFound {
         }
     }
 
-    /// For a simulation; `None` where the flight determines nothing of it.
+    /// The effect for a simulation; `None` if the flight determines none of its parameters.
     #[must_use]
     pub fn acting(&self) -> Option<ActiveEffect> {
         let known = |p: &ParameterFound| matches!(p.found, Found::Determined { .. } | Found::AtBound { .. });
@@ -128,8 +128,7 @@ impl EffectFound {
     }
 }
 
-/// All effects in the order in which they were asked for. `by_mass`: factor that puts forces on the scale of a
-/// weighed mass.
+/// All effects in the requested order. `by_mass`: factor that brings forces to the scale of a weighed mass.
 pub(super) fn effects(
     (flights, vehicle): (&[Trace], &Vehicle),
     wanted: &RequestedEffects,
@@ -151,7 +150,7 @@ pub(super) fn effects(
         .collect()
 }
 
-/// An effect that has columns of its own, at `place` of the base.
+/// Result for an effect with columns of its own, at `place` of the base.
 fn of_columns(
     fitted: &Fitted,
     place: usize,
@@ -208,7 +207,7 @@ fn of_columns(
     EffectFound { effect: present.effect(), parameters, z, tried }
 }
 
-/// Why a parameter that was neither estimated nor held is what it is.
+/// Result for a parameter that was neither estimated nor held, with the reason.
 fn set(
     term: &EffectTerm,
     slot: usize,
@@ -224,7 +223,7 @@ fn set(
     }
 }
 
-/// Lag or delay, in the latency.
+/// Result for a lag or delay, from the latency.
 fn of_latency(
     signature: &'static Signature,
     flights: &[Trace],
@@ -267,7 +266,7 @@ fn fitted_std(fitted: &Fitted, column: usize) -> f64 {
     fitted.covariance[(column, column)].max(0.0).sqrt()
 }
 
-/// Forces by the scale of a weighed mass.
+/// Scale of forces by a weighed mass.
 struct Scale<'a> {
     fitted: &'a Fitted,
     by_mass: Option<f64>,
@@ -288,8 +287,8 @@ impl Scale<'_> {
     }
 }
 
-/// Normal deviate of the amounts, given as column and distance from nothing, where `bounded` further ones could have
-/// been and `tried` forms were: the chance of the likeliest of these is at most so many times that of one.
+/// Normal deviate of the amounts, given as column and distance from zero, if `bounded` further ones and `tried` forms
+/// were possible: the p-value of the most likely one is at most this many times that of a single one (Bonferroni).
 fn deviate(fitted: &Fitted, amounts: &[(usize, f64)], (bounded, tried): (usize, usize)) -> f64 {
     let size = amounts.len();
     let away = DVector::from_iterator(size, amounts.iter().map(|(_, away)| *away));
@@ -299,7 +298,7 @@ fn deviate(fitted: &Fitted, amounts: &[(usize, f64)], (bounded, tried): (usize, 
     allowed_for(z, tried)
 }
 
-/// A normal deviate, the number of forms that were tried allowed for.
+/// A normal deviate with an allowance for the number of tried forms.
 fn allowed_for(z: f64, tried: usize) -> f64 {
     (z * z - 2.0 * (tried.max(1) as f64).ln()).max(0.0).sqrt()
 }

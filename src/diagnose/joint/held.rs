@@ -1,4 +1,5 @@
-//! What a flight does not determine is held where it does nothing, what physics does not allow at its bound.
+//! Parameters that a flight does not determine are held at the value without influence, and those beyond a bound at the
+//! bound.
 
 use super::choose::Chosen;
 use crate::diagnose::base::Base;
@@ -13,30 +14,31 @@ use nalgebra::DVector;
 /// Why a parameter is not estimated.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Held {
-    /// the flight does not say; for the user
+    /// not determined, with the reason for the user
     NotDetermined(String),
-    /// what the flight asks for, with its standard error, lies beyond what physics allows
+    /// the estimate, with its standard error, is beyond the bound
     AtBound { wanted: f64, std: f64 },
 }
 
-/// A form with what became of its parameters.
+/// A form with the treatment of its parameters.
 #[derive(Debug, Clone)]
 pub(super) struct Settled {
     pub(super) chosen: Chosen,
-    /// slot, why
+    /// slot and reason
     pub(super) held: Vec<(usize, Held)>,
 }
 
-/// Share of the plausible range above which a standard error says nothing.
+/// A standard error above this share of the plausible range does not determine a parameter. Chosen; not measured.
 const SAYS_NOTHING: f64 = 0.125;
-/// Share of a column that must be its own.
+/// Least share of a column that no other column may explain. Above rounding; not measured.
 const OWN: f64 = 1e-7;
-/// Standard errors by which an effect must stand out before its other parameters are estimated.
+/// Standard errors by which an effect must differ from zero before its other parameters are estimated. Chosen; not
+/// measured.
 const SEEN: f64 = 2.5;
-/// Standard errors by which a drag along z must stand out to show a wind along z.
+/// Standard errors by which a drag along z must differ from zero to determine a wind along z. Chosen; not measured.
 const SHOWS_WIND: f64 = 4.0;
 
-/// Fits, holds what cannot be estimated, and fits again until all that is left is determined.
+/// Fits, holds the parameters that cannot be estimated, and fits again until all remaining ones are determined.
 pub(super) fn settle(
     flights: &[Trace],
     base: &Base,
@@ -88,11 +90,11 @@ fn load_kg(form: &EffectTerm) -> Option<f64> {
     form.values.first().copied().filter(|_| form.signature.role.hangs_below)
 }
 
-/// Where columns cannot be told from each other at all, the last one goes. Whether there was one.
+/// Holds the last column if columns are linearly dependent. Returns whether there was one.
 fn hold_last(settled: &mut [Settled]) -> bool {
     let last = settled.iter_mut().rev().find_map(|of| Some((of.chosen.form.free.pop()?, of)));
     let Some((slot, of)) = last else { return false };
-    let why = "in this flight it does exactly what other parameters do";
+    let why = "in this flight its effect is the same as that of other parameters";
     of.held.push((slot, Held::NotDetermined(why.to_owned())));
     true
 }
@@ -103,7 +105,7 @@ fn column(fitted: &Fitted, place: usize, nth: usize) -> usize {
     fitted.rows.nuisances.len() + before + nth
 }
 
-/// Slot, value, standard error, share of its column that is its own (`None`: the column is nothing).
+/// Slot, value, standard error, and share of its column that no other column explains (`None`: the column is zero).
 pub(super) fn estimates(fitted: &Fitted, place: usize) -> Vec<(usize, f64, f64, Option<f64>)> {
     let present = &fitted.base.present[place];
     let of = |(nth, &slot): (usize, &usize)| {
@@ -114,8 +116,8 @@ pub(super) fn estimates(fitted: &Fitted, place: usize) -> Vec<(usize, f64, f64, 
     present.free.iter().enumerate().map(of).collect()
 }
 
-/// Share of a column of the rows (nuisances first, then the base's effects) that no other column makes; `None`
-/// where it is nothing.
+/// Share of a column of the rows (nuisances first, then the base's effects) that no other column explains; `None` if it
+/// is zero.
 fn own_share(weighted: &Weighted, index: usize) -> Option<f64> {
     let plain = weighted.nuisances.column(index).norm_squared();
     let mut unit = DVector::zeros(weighted.nuisances.ncols());
@@ -135,18 +137,19 @@ fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
         let Some(parameter) = present.parameter(slot) else { continue };
         let (least, greatest) = parameter.bounds.at(&fitted.base.size);
         let amount = present.is_amount(slot);
-        // a finer form was taken because it is the likelier one: what it adds stays in, whatever its error
+        // a finer form was taken because it is the more likely one: what it adds stays in, whatever its error
         let finer = slot >= present.effect().parameters().len();
         let reason = if !amount && !seen {
-            "the effect itself does not stand out of the noise".to_owned()
+            "the effect itself is not distinguishable from noise".to_owned()
         } else {
             match own {
                 None => "nothing in this flight excites it".to_owned(),
                 Some(own) if own < OWN => {
-                    "in this flight it does what mass, inertia or another parameter does".to_owned()
+                    "in this flight its effect is the same as that of mass, inertia or another parameter"
+                        .to_owned()
                 }
                 _ if !finer && std > SAYS_NOTHING * (greatest - least) => format!(
-                    "its standard error, {std:.2e} {}, is no smaller than what is plausible at all ({} to {})",
+                    "its standard error, {std:.2e} {}, is at least as large as the plausible range ({} to {})",
                     parameter.unit,
                     compact(least),
                     compact(greatest)
@@ -181,7 +184,7 @@ fn hold_at_bounds(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
     any
 }
 
-/// Wind from below shows only through drag along z that is known to be there.
+/// Estimates the vertical wind only if there is a significant drag along z, through which it acts.
 fn free_vertical_wind(fitted: &Fitted, settled: &mut [Settled], (before, next): (usize, &mut Base)) -> bool {
     const UP: usize = 2;
     let shows = fitted.base.present.iter().enumerate().any(|(place, present)| {
@@ -200,7 +203,8 @@ fn free_vertical_wind(fitted: &Fitted, settled: &mut [Settled], (before, next): 
             next.present[before + index].free.push(UP);
             freed = true;
         } else {
-            let why = "no drag along body z stands out of the noise through which it would show";
+            let why =
+                "it acts through the drag along body z, and this drag is not distinguishable from noise";
             of.held.push((UP, Held::NotDetermined(why.to_owned())));
         }
     }

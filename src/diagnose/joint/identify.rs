@@ -22,8 +22,8 @@ use crate::signals::Signals;
 use crate::stats::normal_deviate;
 use crate::vehicle::{Anchor, Vehicle};
 
-/// Identifies the wanted effects together with the rigid body. `known` are effects that the vehicle's file has: what is
-/// among the wanted is estimated anew, the others act as they are.
+/// Identifies the requested effects together with the rigid body. `known` are the effects of the vehicle file:
+/// requested ones are estimated again, the others act as stated.
 ///
 /// # Errors
 /// [`JointError`] where the recordings or the vehicle's description lack what an effect needs.
@@ -62,7 +62,7 @@ pub fn identify_jointly(
     Ok(estimate)
 }
 
-/// What the fits gave.
+/// Results of the fits.
 struct Fits {
     before: Fitted,
     after: Fitted,
@@ -118,7 +118,7 @@ fn put_together(
     }
 }
 
-/// Moves an inertia that no body has to the nearest that is one, if that lies within its error.
+/// Replaces a physically impossible inertia by the nearest possible one, if that lies within its error.
 fn made_physical(estimated: &mut Estimated, nominal: &Theta) -> Physical {
     if is_physical(&estimated.theta) {
         return Physical::AsEstimated;
@@ -136,7 +136,7 @@ fn made_physical(estimated: &mut Estimated, nominal: &Theta) -> Physical {
     Physical::Moved
 }
 
-/// Standard errors by which an inertia may be moved.
+/// Standard errors by which an inertia may be moved to the nearest possible one. Chosen; not measured.
 const WITHIN_ERROR: f64 = 3.0;
 
 /// Mass and inertia of a fit: the first columns of its nuisances, in the same order.

@@ -1,4 +1,4 @@
-//! Lag and delay that were named: held as that kind, their sum estimated with everything else.
+//! Named lag and delay: the kind is kept, and their sum is estimated with everything else.
 
 use super::wanted::RequestedEffects;
 use crate::diagnose::base::Base;
@@ -10,17 +10,17 @@ use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, ActuationLatency, PhysicsError};
 use crate::vehicle::Vehicle;
 
-/// A lag does not vanish while it is estimated, s.
+/// Least lag while it is estimated, s, so that its column does not vanish. Chosen; not measured.
 pub(super) const LEAST_LAG_S: f64 = 1e-4;
-/// Passes over the share of the lag.
+/// Largest number of passes over the share of the lag. Chosen; not measured.
 const PASSES: usize = 8;
-/// A share that moves by less than this many standard errors has converged.
+/// A share that moves by less than this many standard errors has converged. Chosen; not measured.
 const CONVERGED: f64 = 0.05;
 
 /// Standard errors of lag and delay where both were named, s.
 pub(super) type Split = Option<(f64, f64)>;
 
-/// Where the latency starts, and what of it is estimated. A kind that was not named is as the vehicle states it.
+/// Start value of the latency, and how it is estimated. A kind that was not named has its stated value.
 pub(super) fn held_as(
     wanted: &RequestedEffects,
     flights: &[Trace],
@@ -54,7 +54,7 @@ pub(super) fn held_as(
     }
 }
 
-/// Where both kinds were named: shares the sum out by what a lag smooths and a delay does not.
+/// Divides the sum if both kinds were named, by the smoothing that only a lag causes.
 pub(super) fn split(
     flights: &[Trace],
     mut after: Fitted,

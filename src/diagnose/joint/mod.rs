@@ -3,7 +3,7 @@
 //! The base is the rigid body with the named effects present; Gauss-Newton on the weak-form rows fits mass,
 //! inertia, latency, nuisances and every free parameter of the effects at once, and the standard errors are those of
 //! the evidence. What is not smooth (which rotor, when, how long a cord, which law) is profiled: each form is fitted
-//! and the likeliest is taken. A lag or delay is held as the kind that was named and goes through the latency.
+//! and the most likely is taken. A lag or delay is kept as the named kind and goes through the latency.
 
 mod choose;
 mod error;

@@ -11,7 +11,7 @@ use crate::vehicle::Vehicle;
 /// Rigid body and effects, identified together.
 #[derive(Debug, Clone)]
 pub struct JointEstimate {
-    /// the rigid body alone, on the same rows; where a lag or delay was named, without any latency
+    /// the rigid body alone, on the same rows; without any latency if a lag or delay was named
     pub before: Fitted,
     /// rigid body and effects; forces on the scale of the stated thrust
     pub after: Fitted,
@@ -19,25 +19,25 @@ pub struct JointEstimate {
     pub body: MethodResult,
     /// and without
     pub body_before: MethodResult,
-    /// how much stronger the rotors are than stated, where the mass was weighed
+    /// factor of the rotors' thrust over the stated one, if the mass was weighed
     pub scale: Option<ThrustScale>,
-    /// the vehicle with what was determined
+    /// the vehicle with the determined parameters
     pub vehicle: Vehicle,
-    /// in the order in which they were asked for
+    /// in the requested order
     pub effects: Vec<EffectFound>,
-    /// for simulations: those, and what the vehicle's file had beside them
+    /// for simulations: these, and the other effects of the vehicle file
     pub acting: Vec<ActiveEffect>,
     /// between command and rotor
     pub latency: LatencyFinding,
-    /// it is among the named effects
+    /// whether the latency is among the named effects
     pub latency_named: bool,
-    /// whether the inertia is one that a body can have
+    /// whether the inertia is physically possible
     pub physical: Physical,
 }
 
 impl JointEstimate {
-    /// Root mean square of what is left in each channel, before and with the effects, N and N m; `None` where
-    /// the recording does not give the channel.
+    /// Root mean square of the residual of each channel, before and with the effects, N and N m; `None` if the
+    /// recording does not give the channel.
     #[must_use]
     pub fn misfit(&self) -> [Option<(f64, f64)>; CHANNELS] {
         let factor = self.factor();
@@ -47,7 +47,7 @@ impl JointEstimate {
         })
     }
 
-    /// What forces are multiplied by for the scale of a weighed mass.
+    /// Factor on forces for the scale of a weighed mass.
     #[must_use]
     pub fn factor(&self) -> f64 {
         match self.scale.as_ref().map(|scale| &scale.factor) {
@@ -57,13 +57,13 @@ impl JointEstimate {
     }
 }
 
-/// An inertia that a body can have: no principal moment exceeds the sum of the others.
+/// Whether an inertia is physically possible: no principal moment exceeds the sum of the others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Physical {
-    /// it is one
+    /// it is possible
     AsEstimated,
-    /// it was moved to the nearest that is, within its error
+    /// it was replaced by the nearest possible one, within its error
     Moved,
-    /// it is not, by more than its error: left as estimated
+    /// it is impossible by more than its error: left as estimated
     No,
 }

@@ -1,5 +1,5 @@
-//! The scale of force where the mass was weighed: the fit is on the scale of the stated thrust, what the vehicle's
-//! file has of effects on that of the weighed mass.
+//! The scale of force with a weighed mass. The fit has the scale of the stated thrust, and the effects of the vehicle
+//! file that of the weighed mass.
 
 use super::choose::Chosen;
 use super::held::{Settled, settle};
@@ -12,9 +12,9 @@ use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, PhysicsError};
 use crate::vehicle::{Anchor, Vehicle};
 
-/// Most passes over the scale.
+/// Largest number of passes over the scale. Chosen; not measured.
 const PASSES: usize = 4;
-/// A scale that moves by less than this share has converged.
+/// A scale that moves by less than this share has converged. Chosen; not measured.
 const CONVERGED: f64 = 1e-4;
 
 /// Force, mass and inertia follow the scale; lengths, angles, times and ratios do not.
@@ -22,15 +22,15 @@ pub(super) fn follows_force(unit: &str) -> bool {
     unit.starts_with('N') || unit.starts_with("kg")
 }
 
-/// Effects of the vehicle's file that act as they are.
+/// Effects of the vehicle file that act as stated.
 pub(super) struct Kept<'a> {
     pub(super) vehicle: &'a Vehicle,
     pub(super) effects: &'a [&'a ActiveEffect],
 }
 
 impl Kept<'_> {
-    /// On the stated thrust's scale, where the weighed mass is `factor` times the mass on that scale. What acts before
-    /// the rotor's speed goes through the latency.
+    /// The effects on the scale of the stated thrust, if the weighed mass is `factor` times the mass on that scale.
+    /// Effects between command and rotor speed go through the latency.
     fn present(&self, factor: f64) -> Vec<EffectTerm> {
         let one = |known: &&ActiveEffect| {
             let signature = signature_of(known.effect().id())?;
@@ -45,13 +45,13 @@ impl Kept<'_> {
         self.effects.iter().filter_map(one).collect()
     }
 
-    /// The factor that a fit has; `None` where nothing depends on it.
+    /// The factor of a fit; `None` if nothing depends on it.
     fn factor(&self, fitted: &Fitted) -> Option<f64> {
         let weighed = self.vehicle.anchor == Anchor::Mass && !self.effects.is_empty();
         weighed.then(|| self.vehicle.body.mass_kg / fitted.base.vehicle.body.mass_kg)
     }
 
-    /// The rigid body with them alone, and its latency.
+    /// Fits the rigid body with these effects only, and its latency.
     pub(super) fn fit_latency(
         &self,
         flights: &[Trace],

@@ -1,8 +1,8 @@
-//! What the noise of the measured motion, which swings a slung load, does to the estimates.
+//! Influence of the noise of the measured motion, which excites a slung load, on the estimates.
 //!
-//! A swing that hardly dies down adds noise up over the whole flight, and all rows then miss it together: the rows' own
-//! residual does not show that. So the motion is made noisier by as much as it is noisy, several times, and the estimates'
-//! scatter is added to their covariance.
+//! A swing with little damping accumulates noise over the whole flight, and all rows then have a common error that
+//! their residual does not show. Therefore the same amount of noise is added to the motion several times, and the
+//! scatter of the estimates is added to their covariance.
 
 use super::held::{Held, Settled, estimates};
 use crate::diagnose::channels::{Channels, Nuisance};
@@ -18,14 +18,15 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
 
-/// Noisier motions.
+/// Number of noisier motions. Chosen; not measured.
 const REPLICATES: u64 = 12;
-/// A swing that runs out of step with the motion's shows as a load that changes along the flight: by this share, and so
-/// many standard errors.
+/// A swing that loses its phase appears as a load that changes along the flight. This is the least change, as a share
+/// of the load. Chosen; not measured.
 const CHANGED_SHARE: f64 = 0.25;
+/// The least change in standard errors. Chosen; not measured.
 const CHANGED: f64 = 3.0;
 
-/// Adds it, where a load is estimated. A swing that the noise hides says nothing of its load.
+/// Adds this scatter if a load is estimated. A swing that the noise hides does not determine its load.
 pub(super) fn allow_for_noise(
     flights: &[Trace],
     fitted: &mut Fitted,
@@ -46,10 +47,11 @@ pub(super) fn allow_for_noise(
         if !seen || changes {
             hidden.push(before + index);
             let why = if changes {
-                "the likeliest swing runs out of step with the motion along the flight: another cord, or something else"
+                "the most likely swing loses its phase to the motion along the flight: the cord has another length, \
+                 or the cause is something else"
             } else {
-                "either there is no load, or its swing hardly dies down and the noise of the motion that swings it hides \
-                 where it goes"
+                "either there is no load, or its swing has little damping and the noise of the measured motion hides \
+                 its phase"
             };
             let slots = 0..of.chosen.form.values.len();
             of.held = slots.map(|slot| (slot, Held::NotDetermined(why.to_owned()))).collect();
@@ -69,7 +71,7 @@ pub(super) fn allow_for_noise(
     Ok(())
 }
 
-/// Whether the load at `place` of the base seems to change along the flight, its weight aside.
+/// Whether the load at `place` of the base seems to change along the flight, apart from its weight.
 fn runs_out_of_step(fitted: &Fitted, place: usize) -> bool {
     let before: usize = fitted.base.present[..place].iter().map(|present| present.free.len()).sum();
     let load = fitted.rows.effects.get(before);
@@ -121,7 +123,7 @@ fn scatter(flights: &[Trace], fitted: &mut Fitted) -> Result<(), PhysicsError> {
     Ok(())
 }
 
-/// The same flight, swung by a motion with as much white noise again.
+/// The same flight with a motion to which the same amount of white noise was added.
 fn noisier(trace: &Trace, rng: &mut Pcg64Mcg) -> Trace {
     let mut trace = trace.clone();
     let level = Vector3::from_fn(|axis, _| {

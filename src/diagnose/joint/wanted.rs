@@ -1,4 +1,4 @@
-//! What was asked for: names, what they need of the recording, and the forms in which each is tried.
+//! Requested effects: names, requirements on the recording, and the forms of each.
 
 use super::error::JointError;
 use crate::diagnose::recorded::{Need, Recorded};
@@ -6,17 +6,17 @@ use crate::diagnose::signature::{EffectTerm, LatencyKind, Signature};
 use crate::diagnose::signatures::signature_of;
 use crate::physics::{ActiveEffect, Airframe};
 
-/// Names of what is identified in any case.
+/// Names of parameters that are always identified.
 const ALWAYS: [&str; 3] = ["thrust_scale", "torque_scale", "inertia_products"];
 
-/// The effects that are to be identified, each of them once.
+/// The requested effects, each of them once.
 #[derive(Debug, Clone)]
 pub struct RequestedEffects {
     signatures: Vec<&'static Signature>,
 }
 
 impl RequestedEffects {
-    /// From names as the user gives them.
+    /// The effects of the user's names.
     ///
     /// # Errors
     /// [`JointError`] for a name that is none, is there twice, or cannot be identified as parameters.
@@ -42,31 +42,31 @@ impl RequestedEffects {
         Ok(Self { signatures })
     }
 
-    /// In the order in which they were asked for.
+    /// The signatures in the requested order.
     #[must_use]
     pub fn signatures(&self) -> &[&'static Signature] {
         &self.signatures
     }
 
-    /// Some of them act between the command and the rotor's speed: commands must be used, not measured speeds.
+    /// Whether some of them act between command and rotor speed: commands must then be used, not measured speeds.
     #[must_use]
     pub fn need_commands(&self) -> bool {
         self.signatures.iter().any(|signature| signature.effect.is_before_speed())
     }
 
-    /// Asked for.
+    /// Whether an effect was requested.
     #[must_use]
     pub fn has(&self, id: &str) -> bool {
         self.signatures.iter().any(|signature| signature.id() == id)
     }
 
-    /// A lag or a delay was asked for.
+    /// Whether a lag or a delay was requested.
     #[must_use]
     pub fn has_latency(&self, kind: LatencyKind) -> bool {
         self.signatures.iter().any(|signature| signature.role.latency == Some(kind))
     }
 
-    /// Some of them turn the inertial unit against the body.
+    /// Whether some of them rotate the inertial unit against the body.
     #[must_use]
     pub fn turns_inertial_unit(&self) -> bool {
         self.signatures.iter().any(|signature| signature.role.turns_inertial_unit)
@@ -77,7 +77,7 @@ impl RequestedEffects {
         self.signatures.iter().copied().filter(|signature| signature.role.latency.is_none())
     }
 
-    /// Wind without anything through which it acts; `known` is what the vehicle's file has.
+    /// Checks that wind has an aerodynamic force through which it acts; `known` are the effects of the vehicle file.
     ///
     /// # Errors
     /// [`JointError::WindAlone`].
@@ -88,7 +88,7 @@ impl RequestedEffects {
         if has_wind && !of_air { Err(JointError::WindAlone) } else { Ok(()) }
     }
 
-    /// What the flights must hold and the vehicle's description must state for each of them.
+    /// Checks the requirements on the flights and on the vehicle file.
     pub(super) fn check_flights(&self, recorded: &Recorded, airframe: &Airframe) -> Result<(), JointError> {
         let flights = recorded.flights;
         for signature in self.signatures.iter().copied() {
@@ -114,7 +114,7 @@ impl RequestedEffects {
         Ok(())
     }
 
-    /// The forms in which an effect is tried: start values, and what of them is estimated.
+    /// The forms of an effect: start values, and which of them are estimated.
     pub(super) fn forms(&self, signature: &'static Signature, recorded: &Recorded) -> Vec<EffectTerm> {
         match signature.joint.forms {
             Some(forms) => forms(recorded, &self.signatures),

@@ -1,5 +1,5 @@
-//! What never repeats, which the harmonic test cannot see: slow trends, noise redder than any sensor's, gusts;
-//! and a lack of fit for flights without a period.
+//! Tests of causes that do not repeat and are therefore invisible to the harmonic test: slow trends, noise with more
+//! low-frequency power than a sensor's (red noise), gusts; and lack of fit for flights without a period.
 
 use super::super::channels::{AXES, Channels, SECOND};
 use super::super::fit::Fitted;
@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 /// A slow trend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trend {
-    /// of what
+    /// quantity of the trend
     pub of: Quantity,
     /// per minute, in the quantity's unit
     pub per_min: f64,
@@ -24,22 +24,22 @@ pub struct Trend {
     pub std_per_min: f64,
     /// normal deviate
     pub z: f64,
-    /// change over the longest flight, of the weight (force, lift) or of the torque's rms
+    /// change over the longest flight, as a share of the weight (force, lift) or of the rms of the torque
     pub relative: f64,
     /// certain and large enough to matter
     pub certain: bool,
 }
 
-/// A state that the residual follows in a flight that repeats nothing.
+/// A state on which the residual depends in a flight without a period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StateLack {
     /// index in [`super::super::CHANNEL_NAMES`]
     pub channel: usize,
     /// which state
     pub state: Followed,
-    /// chance, times the number of channels and states
+    /// p-value, times the number of channels and states
     pub p_value: f64,
-    /// root mean square of what the state explains, N or N m
+    /// root mean square of the part that the state explains, N or N m
     pub rms: f64,
     /// certain and large enough to matter
     pub certain: bool,
@@ -50,16 +50,16 @@ pub struct StateLack {
 pub struct Aperiodic {
     /// the most certain trend
     pub trend: Option<Trend>,
-    /// of each quantity
+    /// the redness of each quantity
     pub redness: Vec<Redness>,
-    /// where the drag is known and both horizontal axes are red alike
+    /// the gust, if the drag is known and both horizontal axes are equally red
     pub gust: Option<GustFound>,
-    /// only where no flight repeats
+    /// only if no flight is periodic
     pub state: Option<StateLack>,
 }
 
 impl Aperiodic {
-    /// Without what was found of torques.
+    /// The results without those of torques.
     #[must_use]
     pub fn of_forces(&self) -> Self {
         let is_force = |of: Quantity| !matches!(of, Quantity::Torque(_));
@@ -72,7 +72,7 @@ impl Aperiodic {
         }
     }
 
-    /// Something certain is left that no gust accounts for.
+    /// Whether a significant result remains that is not a gust.
     #[must_use]
     pub fn is_lacking(&self) -> bool {
         let horizontal = |of: Quantity| matches!(of, Quantity::World(_));
@@ -83,20 +83,21 @@ impl Aperiodic {
     }
 }
 
-/// Normal deviate of a trend; eight are tried, and nothing is exactly constant.
+/// Least normal deviate of a trend. It is above that of a name, because eight trends are tried and nothing is exactly
+/// constant. Chosen; not measured by itself.
 const TREND_Z: f64 = 5.5;
-/// Change over a flight: of the weight.
+/// Least change over a flight, as a share of the weight. Chosen; not measured.
 const TREND_G: f64 = 0.005;
-/// Likelihood ratio beyond which a force wanders.
+/// Likelihood ratio beyond which a force drifts by itself. Chosen; not measured.
 const WANDERING: f64 = 12.0;
-/// Time about a mass change that is left out, s.
+/// Time around a mass change that is left out, s. Chosen; not measured.
 const CHANGE_S: f64 = 2.5;
-/// Chance below which a state is followed.
+/// p-value below which the residual depends on a state. Chosen; not measured by itself.
 const STATE_P: f64 = 1e-6;
-/// Least force that follows a state, of the weight.
+/// Least force that depends on a state, as a share of the weight. Chosen; not measured.
 const STATE_G: f64 = 0.002;
 
-/// Tests what the fit leaves.
+/// Tests the residual of a fit.
 #[must_use]
 pub fn aperiodic(traces: &[Trace], fitted: &Fitted, located: &Localisation) -> Aperiodic {
     let Some(mut view) = View::new(traces, fitted) else { return Aperiodic::default() };
@@ -113,8 +114,8 @@ pub fn aperiodic(traces: &[Trace], fitted: &Fitted, located: &Localisation) -> A
     }
 }
 
-/// Standard error of a step of the mass, kg, where the force along body z wanders: what noise of long
-/// correlation makes of the difference between before and after. Zero where nothing is redder than sensors.
+/// Standard error of a step of the mass, kg, if the force along body z drifts by itself: the effect of noise with long
+/// correlation on the difference between before and after. Zero if the noise is not red.
 #[must_use]
 pub fn mass_step_std_kg(traces: &[Trace], fitted: &Fitted, at_s: f64) -> f64 {
     let Some(mut view) = View::new(traces, fitted) else { return 0.0 };
@@ -136,8 +137,8 @@ pub fn mass_step_std_kg(traces: &[Trace], fitted: &Fitted, at_s: f64) -> f64 {
     (of_mean(before_s) + of_mean(after_s)).sqrt() / fitted.base.vehicle.gravity_m_s2
 }
 
-/// Leaves out the time about a mass change, which is known to some seconds only: a step at the wrong time is
-/// a large push of short duration, and not noise.
+/// Leaves out the time around a mass change, which is known only to some seconds: a step at a wrong time causes a large
+/// error of short duration that is not noise.
 fn quieten(view: &mut View, fitted: &Fitted) {
     let moment_s = |term: &EffectTerm| Some(term.values[term.signature.role.moment?]);
     for at_s in fitted.base.present.iter().filter_map(moment_s) {
@@ -178,7 +179,7 @@ fn trend(traces: &[Trace], fitted: &Fitted, view: &View) -> Option<Trend> {
         .max_by(|a, b| a.certain.cmp(&b.certain).then(a.z.total_cmp(&b.z)))
 }
 
-/// What one unit a minute does.
+/// Column of a trend of one unit a minute.
 fn trend_column(traces: &[Trace], view: &View, of: Quantity) -> Channels {
     let mut out: Channels = std::array::from_fn(|_| vec![0.0; view.len()]);
     for (trace, (rows, _)) in traces.iter().zip(&view.flights) {
@@ -209,7 +210,7 @@ fn trend_column(traces: &[Trace], view: &View, of: Quantity) -> Channels {
     out
 }
 
-/// The state that the residual follows most surely, where no flight repeats.
+/// The state on which the residual depends with the smallest p-value, if no flight is periodic.
 fn state_lack(view: &View, fitted: &Fitted, located: &Localisation) -> Option<StateLack> {
     if view.flights.iter().any(|(_, period_s)| period_s.is_some()) {
         return None;

@@ -1,7 +1,8 @@
-//! A force that belongs to the room and not to the vehicle: a smooth function of position, in world axes.
+//! A force that depends on the position in the room and not on the vehicle: a smooth function of position, in world
+//! axes.
 //!
-//! A library of vehicle effects gives such a field a wrong name sooner or later. So it is a rival of every
-//! name: tested on what the names leave, and compared with what they took.
+//! A library of vehicle effects would explain such a field by a wrong effect. The field is therefore a rival of every
+//! name: it is tested on the residual of the names, and compared with their part.
 
 use super::super::channels::{AXES, CHANNELS, Channels, channels};
 use super::super::fit::Fitted;
@@ -11,34 +12,34 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// What a force field explains.
+/// Test result of a force field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldTest {
     /// share of the residual energy left by the named effects that the field explains (0..1)
     pub gain: f64,
-    /// normal deviate of the field on what the named effects leave
+    /// normal deviate of the field on the residual of the named effects
     pub z: f64,
-    /// chance of the cluster test over twelve blocks, for display: weak with so many columns
+    /// p-value of the cluster test over twelve blocks, for display only: it has little power with so many columns
     pub p_cluster: f64,
     /// world axis of the force (0 x, 1 y, 2 z)
     pub component: usize,
     /// world axis along which it changes
     pub along: usize,
-    /// where along it, m: centre of the bump that fits best
+    /// position along it, m: centre of the bump that fits best
     pub where_m: f64,
     /// full width at half height of that bump, m
     pub extent_m: f64,
     /// its height, N, along `component`
     pub force_n: f64,
-    /// energy that the field takes of what the named effects leave, sigma squared
+    /// energy of the residual of the named effects that the field explains, sigma squared
     pub energy: f64,
-    /// energy that the field takes in the named effects' stead, in the same unit
+    /// energy that the field explains without the named effects, in the same unit
     pub energy_alone: f64,
     /// certain and large enough to matter
     pub certain: bool,
-    /// certain, and alone explains more than all named effects together
+    /// significant, and explains more alone than all named effects together
     pub beats_named: bool,
-    /// named effects that do not act alike everywhere in the room
+    /// named effects whose strength is not the same everywhere in the room
     pub uneven: Vec<Uneven>,
 }
 
@@ -47,33 +48,35 @@ pub struct FieldTest {
 pub struct Uneven {
     /// which effect
     pub id: &'static str,
-    /// normal deviate against the same strength everywhere
+    /// normal deviate from the same strength everywhere
     pub z: f64,
     /// change of the strength over one standard deviation of position, relative to it
     pub spread: f64,
 }
 
-/// Number of smooth functions along one axis.
+/// Number of piecewise functions along one axis. Chosen; not measured.
 const HATS: usize = 7;
-/// Normal deviate of a field. Beyond that of a name: eight directions and places of six columns each are tried,
-/// and their largest on flights without a field reaches four.
+/// Least normal deviate of a field. It is above that of a name, because eight directions and places of six columns each
+/// are tried, and the largest deviate reaches four on flights without a field.
 const FIELD_Z: f64 = 5.5;
-/// Stretches of the flight, and in how many of them a field must explain something. The cluster test says
-/// nothing with six columns over twelve stretches.
+/// Number of parts into which the flight is divided. The cluster test has no power with six columns over twelve parts.
 const STRETCHES: usize = 12;
+/// Number of these parts in which a field must explain something. Chosen; not measured.
 const LEAST_STRETCHES: usize = 8;
-/// Directions and places that are tried: vertical force along the height belongs to ground, ceiling, tether.
+/// Pairs of the force's axis and the axis along which it changes. A vertical force that changes with height is left
+/// out, because ground, ceiling and tether cause it.
 const TRIED: [(usize, usize); 8] = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1), (0, 2), (1, 2)];
-/// Least share of the residual energy.
+/// Least share of the residual energy. Chosen; not measured.
 const FIELD_GAIN: f64 = 0.01;
-/// Least height of the bump, of gravity.
+/// Least height of the bump, as a share of the weight. Chosen; not measured.
 const FIELD_G: f64 = 0.004;
-/// An effect is uneven beyond this normal deviate and relative change.
+/// Normal deviate beyond which the strength of an effect depends on the place. Chosen; not measured.
 const UNEVEN_Z: f64 = 5.5;
+/// Relative change of the strength beyond which it depends on the place. Chosen; not measured.
 const UNEVEN_SPREAD: f64 = 0.25;
 
-/// Tests for a force field; `None` where position or attitude are not known. `named_energy` is what the named
-/// effects took, in sigma squared of what they leave.
+/// Tests for a force field. `None` if position or attitude are not known. `named_energy` is the energy that the named
+/// effects explain, in sigma squared of their residual.
 #[must_use]
 pub fn field_test(
     traces: &[Trace],
@@ -122,7 +125,7 @@ pub fn field_test(
     })
 }
 
-/// Whether the columns explain something in most stretches of the flight, none of which gives half of it.
+/// Whether the columns explain something in most parts of the flight, and no part gives half of it.
 fn all_along(after: &Fitted, columns: &[Channels], theta: &[f64]) -> bool {
     let Some((_, partialled)) = after.weighted.partialled(columns) else { return false };
     let left = &after.weighted.left;
@@ -142,7 +145,7 @@ fn all_along(after: &Fitted, columns: &[Channels], theta: &[f64]) -> bool {
     helped >= LEAST_STRETCHES && gains.iter().all(|gain| *gain < 0.5 * total)
 }
 
-/// Range of a world axis that holds 96 of 100 rows, m.
+/// Range of a world axis that contains 96 % of the rows, m.
 fn flown(traces: &[Trace], axis: usize) -> (f64, f64) {
     let mut values: Vec<f64> = traces
         .iter()
@@ -181,8 +184,8 @@ fn force_column(
     out
 }
 
-/// Smooth hats that add up to a constant; the constant itself is wind's and tilt's, so one hat is left out and
-/// each is freed of its mean.
+/// Smooth piecewise functions (hats) whose sum is constant. A constant force belongs to wind and tilt, so one hat is
+/// left out and the mean of each is subtracted.
 fn hats(traces: &[Trace], place: (usize, usize), (low, high): (f64, f64)) -> Vec<Channels> {
     let spacing = ((high - low) / (HATS - 1) as f64).max(1e-3);
     let hat = |index: usize, at: f64| {
@@ -235,7 +238,7 @@ fn bump(
     Some((best.1, full * best.2, best.3))
 }
 
-/// Energy that the columns take from the rigid body's residual, in sigma squared of what the names leave.
+/// Energy of the rigid body's residual that the columns explain, in sigma squared of the residual of the names.
 fn taken(before: &Fitted, after: &Fitted, columns: &[Channels]) -> f64 {
     let Some((_, partialled)) = before.weighted.partialled(columns) else { return 0.0 };
     let left = &before.weighted.left;

@@ -1,4 +1,4 @@
-//! The residual over frequency: the band in which it exceeds noise, and what it moves with.
+//! The residual over frequency: the band in which it exceeds noise, and its coherence with states.
 
 use super::super::channels::AXES;
 use super::super::trace::Trace;
@@ -10,37 +10,37 @@ use rayon::prelude::*;
 /// Frequencies between which most of a channel's misfit lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
-    /// a tenth of the energy beyond noise lies below, Hz
+    /// frequency below which a tenth of the energy above noise lies, Hz
     pub low_hz: f64,
-    /// and a tenth above, Hz
+    /// frequency above which a tenth lies, Hz
     pub high_hz: f64,
-    /// share of it at the trajectory's harmonics, where the flight repeats (0..1)
+    /// share of this energy at the trajectory's harmonics, if the flight is periodic (0..1)
     pub harmonic: Option<f64>,
 }
 
-/// How much of a channel's residual moves with a state, linearly and at one frequency.
+/// Linear dependence of a channel's residual on a state, by frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coherence {
     /// index in [`super::super::CHANNEL_NAMES`]
     pub channel: usize,
-    /// with what
+    /// the state
     pub with: Followed,
     /// mean of the squared coherence to 2 Hz, weighted by the residual's power (0..1)
     pub mean: f64,
-    /// what noise alone stays below in 95 of 100 single frequencies
+    /// 95 % quantile of the squared coherence of noise at a single frequency
     pub noise: f64,
     /// Hz, where residual power times coherence is greatest
     pub frequency_hz: f64,
 }
 
-/// Length of a window, s.
+/// Length of a window, s. Chosen; not measured.
 const WINDOW_S: f64 = 8.0;
-/// Highest frequency of the mean, Hz.
+/// Highest frequency of the mean, Hz. Chosen; not measured.
 const HIGHEST_HZ: f64 = 2.0;
-/// Fewest windows that say anything.
+/// Least number of windows for a coherence. Chosen; not measured.
 const LEAST_WINDOWS: usize = 5;
 
-/// The band of one channel; `None` where nothing exceeds noise.
+/// The band of one channel; `None` if nothing exceeds noise.
 pub(super) fn band(view: &View, ordinates: &[Ordinate], noise_variance: f64) -> Option<Band> {
     let [force, _] = noise_shapes(view, ordinates);
     let total: f64 = force.iter().sum();

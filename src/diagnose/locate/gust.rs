@@ -1,4 +1,4 @@
-//! Gusts: a red horizontal force that a known drag turns into wind.
+//! Gusts: a red horizontal force that corresponds to wind by a known drag.
 
 use super::lateral_drag::lateral_drag;
 use super::redness::{CONTRADICTED, Quantity, RED_STATISTIC, Redness, beside_harmonics, red_fit, red_shape};
@@ -9,27 +9,27 @@ use crate::stats::{Whittle, whittle};
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 
-/// Gusts by their force through the drag.
+/// Gusts, computed from their force and the drag.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GustFound {
-    /// each horizontal axis, m/s
+    /// standard deviation of the wind on each horizontal axis, m/s
     pub sigma_m_s: f64,
-    /// standard error, that of the drag among it
+    /// standard error, including that of the drag
     pub sigma_std_m_s: f64,
-    /// s
+    /// correlation time, s
     pub correlation_s: f64,
     /// standard error
     pub correlation_std_s: f64,
-    /// drag that makes a force of it, N/(m/s)
+    /// drag through which it acts, N/(m/s)
     pub drag_n_s_m: f64,
     /// likelihood ratio of the red part, both axes, as in [`Redness`]
     pub statistic: f64,
 }
 
-/// Axes of a gust differ in strength by no more than this.
+/// Largest ratio of the strengths of a gust on the two horizontal axes. Chosen; not measured.
 const ALIKE: f64 = 3.0;
 
-/// Gusts: both horizontal axes red alike, and a drag through which they act.
+/// Gusts: both horizontal axes are equally red, and there is a drag through which they act.
 pub(super) fn gust(view: &View, fitted: &Fitted, redness: &[Redness]) -> Option<GustFound> {
     let axes: Vec<&Redness> = redness.iter().filter(|red| matches!(red.of, Quantity::World(_))).collect();
     let [x, y] = axes.as_slice() else { return None };
@@ -59,7 +59,7 @@ pub(super) fn gust(view: &View, fitted: &Fitted, redness: &[Redness]) -> Option<
     })
 }
 
-/// Between the times that were tried, by a search on the deviance.
+/// Correlation time between the tried ones, by a search on the deviance, s.
 fn refined(view: &View, ordinates: &[Ordinate], at_s: f64) -> Option<(f64, Whittle)> {
     let power: Vec<f64> = ordinates.iter().map(|o| o.power).collect();
     let [force, velocity] = noise_shapes(view, ordinates);

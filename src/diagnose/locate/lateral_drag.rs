@@ -1,4 +1,4 @@
-//! Force per airspeed that a fit already has, through which wind acts.
+//! Drag of a fit, through which wind acts.
 
 use super::super::fit::Fitted;
 use super::view::{Followed, View};

@@ -1,4 +1,4 @@
-//! Where a residual lives: axis, time, state, frequency.
+//! Localisation of a residual: axis, time, state, frequency.
 
 use super::super::channels::AXES;
 use super::super::fit::Fitted;
@@ -9,7 +9,7 @@ use super::states::{self, Follow};
 use super::time::{self, Change, Drift, Span};
 use super::view::View;
 
-/// Where a fit's residual lives.
+/// Localisation of a fit's residual.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Localisation {
     /// each channel's part
@@ -20,16 +20,16 @@ pub struct Localisation {
     pub drifts: Vec<Drift>,
     /// when it exceeds noise
     pub spans: Vec<Span>,
-    /// along which states; of all channels, what explains most energy first
+    /// states on which it depends, of all channels, the largest explained energy first
     pub follows: Vec<Follow>,
-    /// with what it moves, most first
+    /// coherence with states, the largest first
     pub coherences: Vec<Coherence>,
     /// at which frequencies
     pub bands: [Option<Band>; AXES],
 }
 
 impl Localisation {
-    /// The channel and state where most of it lives, if an analysis of variance is sure of any.
+    /// The channel and state with the largest explained energy, if an analysis of variance is significant.
     #[must_use]
     pub fn lives_on(&self) -> Option<&Follow> {
         self.follows.first().filter(|follow| follow.entered.is_some())
@@ -46,7 +46,7 @@ pub struct AxisShare {
     pub noise: f64,
     /// energy beyond the noise, in units of the noise's variance, over all rows; zero where it is not certain
     pub excess: f64,
-    /// its share among the channels (0..1); zero everywhere where nothing exceeds noise
+    /// its share among the channels (0..1); zero everywhere if nothing exceeds noise
     pub share: f64,
 }
 
@@ -98,5 +98,6 @@ pub fn localise(traces: &[Trace], fitted: &Fitted) -> Option<Localisation> {
     })
 }
 
-/// The noise's variance is continued from frequencies above; less than twice it is none.
+/// Residual power over noise from which an axis has a misfit. The noise is extrapolated from higher frequencies, so a
+/// smaller ratio is not certain. Chosen; not measured.
 const BEYOND_NOISE: f64 = 2.0;

@@ -1,5 +1,5 @@
-//! Where the residual lives, before any name: which axis, when, along which state, at which frequency; and
-//! tests for what no vehicle effect is: a force field of the room, and what never repeats.
+//! Localisation of the residual before any name: axis, time, state and frequency; and tests for causes that are not
+//! vehicle effects: a force field of the room, and causes that do not repeat.
 
 mod aperiodic;
 mod field;

@@ -1,18 +1,19 @@
-//! Spectra of weak-form residuals, and what white sensor noise makes of them.
+//! Spectra of weak-form residuals, and their shape for white sensor noise.
 //!
-//! White noise of a measured force arrives as the test function's own spectrum, white noise of a measured
-//! velocity as that of its derivative. What is more than a mix of both at low frequency is not the sensors'.
+//! White noise of a measured force has the spectrum of the test function, and white noise of a measured velocity that
+//! of its derivative. Power at low frequency above a mix of both is not sensor noise.
 
 use super::view::View;
 use crate::signals::WeakKernel;
 use crate::stats::{transform, whittle, without_line};
 use std::f64::consts::TAU;
 
-/// Highest frequency that the fits look at, Hz; the kernel lets little pass beyond.
+/// Highest frequency of the fits, Hz: the kernel passes little above.
 pub(super) const HIGHEST_HZ: f64 = 4.0;
-/// Of the shape of velocity noise, so that both shapes are alike at the middle of the band, s^2.
+/// Scale of the spectrum of velocity noise, s^2. With it, the spectra of force noise and velocity noise are equal at
+/// the middle of the band.
 pub(super) const VELOCITY_SCALE_S2: f64 = 1.0 / (TAU * 0.5 * HIGHEST_HZ * TAU * 0.5 * HIGHEST_HZ);
-/// Shortest stretch that is transformed, s.
+/// Shortest stretch that is transformed, s. Chosen; not measured.
 const SHORTEST_S: f64 = 10.0;
 
 /// One ordinate of a periodogram.
@@ -21,12 +22,12 @@ pub(super) struct Ordinate {
     pub(super) frequency_hz: f64,
     /// white noise of variance v has v on average
     pub(super) power: f64,
-    /// at a multiple of the trajectory's frequency
+    /// whether it is at a multiple of the trajectory's frequency
     pub(super) harmonic: bool,
 }
 
-/// Periodogram of a series of the view's rows, all runs together, each freed of its line. A run of a flight
-/// that repeats is cut to whole periods.
+/// Periodogram of a series of the view's rows, all runs together, each without its linear trend. A run of a periodic
+/// flight is cut to whole periods.
 pub(super) fn periodogram(view: &View, series: &[f64]) -> Vec<Ordinate> {
     let mut out = Vec::new();
     for run in &view.runs {
@@ -60,7 +61,7 @@ pub(super) fn periodogram(view: &View, series: &[f64]) -> Vec<Ordinate> {
     out
 }
 
-/// Power with which the kernel's order lets a frequency pass, of 1 for order 0 at zero.
+/// Power gain of the kernel of this order at a frequency, 1 for order 0 at zero.
 pub(super) fn kernel_power(
     kernel: &WeakKernel,
     (order, grid_step_s): (usize, f64),
@@ -99,7 +100,7 @@ pub(super) fn noise_variance(view: &View, ordinates: &[Ordinate]) -> Option<f64>
     Some(mean * share)
 }
 
-/// What white noise of force and of velocity look like at the ordinates.
+/// Spectra of white noise of force and of velocity at the ordinates.
 pub(super) fn noise_shapes(view: &View, ordinates: &[Ordinate]) -> [Vec<f64>; 2] {
     [(0, 1.0), (1, VELOCITY_SCALE_S2)].map(|(order, scale)| {
         ordinates

@@ -1,24 +1,24 @@
-//! What the residual follows: binned means with bands, ranked by analysis of variance, marginal confounding
-//! taken out by an additive model.
+//! Dependence of the residual on states: binned means with bands, ranked by analysis of variance. An additive model
+//! removes marginal confounding.
 
 use super::view::{Followed, View};
 use crate::stats::{f_tail, median, quantile, resamples};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Equal-count bins of a state.
+/// Number of bins of a state, each with the same number of rows. Chosen; not measured.
 const BINS: usize = 12;
-/// Resampled flights behind a band.
+/// Number of bootstrap samples of the flight behind a band. Chosen; not measured.
 const RESAMPLES: usize = 200;
-/// Knots of an additive spline.
+/// Knots of an additive spline. Chosen; not measured.
 const KNOTS: usize = 10;
-/// Most states of the additive model.
+/// Largest number of states in the additive model. Chosen; not measured.
 const MOST_STATES: usize = 4;
-/// Chance, over all states and channels, below which a state enters the additive model.
+/// p-value, over all states and channels, below which a state enters the additive model. Chosen; not measured.
 const ENTER_P: f64 = 0.01;
-/// Fewest rows of a replicate in a bin.
+/// Least number of rows of a replicate in a bin. Chosen; not measured.
 const LEAST_ROWS: usize = 3;
-/// The bootstrap is repeatable.
+/// Seed of the bootstrap, so that results are repeatable.
 const SEED: u64 = 0x6c6f_6361_7465;
 
 /// One bin.
@@ -34,30 +34,30 @@ pub struct Bin {
     pub high: f64,
 }
 
-/// How one channel's residual follows one state.
+/// Dependence of one channel's residual on one state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Follow {
     /// index in [`super::super::CHANNEL_NAMES`]
     pub channel: usize,
     /// which state
     pub state: Followed,
-    /// analysis of variance over the bins, replicates of the flight as such
+    /// F statistic of the analysis of variance over the bins, with the flight's replicates
     pub f: f64,
-    /// chance of such an F where nothing follows
+    /// p-value of F
     pub p_value: f64,
     /// share of the channel's residual energy that the bins explain beyond chance (0..1)
     pub share: f64,
-    /// the same with what the other states of the additive model explain taken away
+    /// F without the part of the other states of the additive model
     pub partial_f: f64,
-    /// chance of that
+    /// its p-value
     pub partial_p: f64,
-    /// share explained then
+    /// share of the energy that is then explained
     pub partial_share: f64,
     /// place in which it entered the additive model (0 first)
     pub entered: Option<usize>,
-    /// along the state
+    /// bins along the state
     pub bins: Vec<Bin>,
-    /// where along the state the mean residual is farthest from its median over the bins
+    /// value of the state at which the mean residual is farthest from its median over the bins
     pub peak_at: f64,
 }
 
@@ -94,7 +94,7 @@ fn cut<'a>(view: &'a View, state: Followed, values: &'a [f64]) -> Cut<'a> {
     Cut { state, values, bin, block, blocks: block.last().map_or(0, |last| last + 1), knots }
 }
 
-/// F, its chance, and the share of energy explained beyond chance.
+/// F, its p-value, and the share of energy explained beyond chance.
 fn variance_ratio(cut: &Cut, residual: &[f64]) -> (f64, f64, f64) {
     let mut sums = vec![(0.0, 0usize); cut.blocks * BINS];
     for ((&bin, &block), value) in cut.bin.iter().zip(cut.block).zip(residual) {
@@ -202,7 +202,7 @@ fn sum_but(parts: &[Vec<f64>], but: Option<usize>, rows: usize) -> Vec<f64> {
     out
 }
 
-/// Broken lines over the knots of each state, all at once; a little ridge holds what the states share.
+/// Fits piecewise linear functions of all states at once. A small ridge divides the part that states have in common.
 fn fit_together(cuts: &[Cut], entered: &[usize], residual: &[f64]) -> Option<Vec<Vec<f64>>> {
     if entered.iter().any(|&state| cuts[state].knots.len() < 2) {
         return None;
@@ -306,7 +306,7 @@ fn bins(cut: &Cut, residual: &[f64], channel: usize) -> Vec<Bin> {
         .collect()
 }
 
-/// Where the mean is farthest from the bins' median.
+/// State at which the mean is farthest from the bins' median.
 fn peak(bins: &[Bin]) -> f64 {
     let mut means: Vec<f64> = bins.iter().map(|bin| bin.mean).collect();
     let median = median(&mut means);

@@ -28,7 +28,7 @@ pub struct Change {
     pub time_s: f64,
     /// what
     pub kind: ChangeKind,
-    /// by how much, in the kind's unit
+    /// size of the change, in the kind's unit
     pub size: f64,
     /// energy that it explains, in units of the long-run variance
     pub statistic: f64,
@@ -62,17 +62,17 @@ pub struct Span {
     pub rms: f64,
 }
 
-/// Rows of one mean: the kernels' overlap, so that means are nearly independent.
+/// Rows of one mean: the overlap of the kernels, so that means are nearly independent.
 const OVERLAP: usize = 8;
-/// Distance of the differences behind the long-run variance, means (2 s).
+/// Distance of the differences from which the long-run variance is computed, in means (2 s). Chosen; not measured.
 const APART: usize = 5;
-/// Penalty of a change, times the logarithm of the number of means, in long-run variances.
+/// Penalty of a change, times the logarithm of the number of means, in long-run variances. Chosen; not measured.
 const PENALTY: f64 = 6.0;
-/// Most changes of one channel of one flight.
+/// Largest number of changes of one channel of one flight. Chosen; not measured.
 const MOST: usize = 4;
-/// Fewest means on each side of a change (2 s).
+/// Least number of means on each side of a change (2 s). Chosen; not measured.
 const SIDE: usize = 5;
-/// Window of a span, means (2 s).
+/// Window of a span, in means (2 s). Chosen; not measured.
 const WINDOW: usize = 5;
 
 /// One mean of neighbouring rows.
@@ -164,7 +164,8 @@ fn means(view: &View, channel: usize, rows: &Range<usize>) -> Vec<Mean> {
     out
 }
 
-/// Without what repeats in every period: what is left changes with time alone. Only whole periods stay.
+/// Means without the part that repeats in every period, so that only changes with time remain. Only whole periods are
+/// used.
 fn folded(means: &[Mean], period_s: f64) -> Vec<Mean> {
     let (Some(first), Some(last)) = (means.first(), means.last()) else { return Vec::new() };
     let mut from_s = last.time_s;
@@ -190,7 +191,7 @@ fn folded(means: &[Mean], period_s: f64) -> Vec<Mean> {
         .collect()
 }
 
-/// By differences over two seconds: a sudden change does not enlarge it.
+/// Long-run variance by differences over two seconds, which a sudden change does not enlarge.
 fn long_run_variance(means: &[Mean]) -> Option<f64> {
     let mut apart: Vec<f64> =
         means.iter().zip(means.get(APART..)?).map(|(a, b)| (b.value - a.value).abs()).collect();
@@ -223,7 +224,7 @@ fn segment(means: &[Mean], long_run: f64, out: &mut Vec<(f64, ChangeKind, f64, f
     segment(&means[at..], long_run, out);
 }
 
-/// Size of a change before mean `at`, and the energy that it takes from the rest.
+/// Size of a change before mean `at`, and the energy that it explains.
 fn explained(means: &[Mean], at: usize, kind: ChangeKind) -> Option<(f64, f64)> {
     let thrust_n = means.iter().map(|mean| mean.thrust_n).sum::<f64>() / means.len() as f64;
     let start_s = means[at].time_s;

@@ -1,4 +1,4 @@
-//! A fit's residual row by row, beside the states that it may follow.
+//! A fit's residual row by row, with the states on which it may depend.
 
 use super::super::channels::{AXES, CHANNELS, SECOND};
 use super::super::fit::Fitted;
@@ -9,7 +9,7 @@ use crate::stats::median_step;
 use nalgebra::Vector3;
 use std::ops::Range;
 
-/// A state that a residual may follow.
+/// A state on which a residual may depend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Followed {
     /// world z, m
@@ -22,7 +22,7 @@ pub enum Followed {
     Airspeed(usize),
     /// its norm, m/s
     Speed,
-    /// commanded, of all rotors, N
+    /// commanded thrust of all rotors, N
     Thrust,
     /// N/s
     ThrustRate,
@@ -78,15 +78,15 @@ impl Followed {
         }
     }
 
-    /// Slow: each value is met once in a flight, so periods are no replicates of it.
+    /// Whether a state is slow: each value occurs once in a flight, so periods are not replicates of it.
     pub(super) fn is_slow(self) -> bool {
         matches!(self, Self::Time | Self::Voltage)
     }
 }
 
-/// Length of a replicate where nothing repeats, s.
+/// Length of a replicate if the flight does not repeat, s. Chosen; not measured.
 const BLOCK_S: f64 = 5.0;
-/// Length of a replicate for slow states, s.
+/// Length of a replicate for slow states, s. Chosen; not measured.
 const SHORT_BLOCK_S: f64 = 1.0;
 
 /// Rows of all flights, one after the other.
@@ -100,19 +100,19 @@ pub(super) struct View {
     pub(super) flights: Vec<(Range<usize>, Option<f64>)>,
     /// rows without a break
     pub(super) runs: Vec<Range<usize>>,
-    /// replicates: whole periods where the flight repeats, else some seconds
+    /// replicates: whole periods if the flight is periodic, otherwise blocks of some seconds
     pub(super) blocks: Vec<usize>,
     /// replicates for slow states
     pub(super) short_blocks: Vec<usize>,
-    /// what acts beyond the fit: N, N m; the force by its first reading
+    /// force and torque that the fit does not explain: N, N m; the force by its first measurement
     pub(super) residual: [Vec<f64>; AXES],
-    /// the states, those that were measured and move
+    /// the states that were measured and vary
     pub(super) states: Vec<(Followed, Vec<f64>)>,
     /// thrust of all rotors, N
     pub(super) thrust_n: Vec<f64>,
     /// force on world x, y, z, N; `None` without attitude
     pub(super) world_force_n: Option<[Vec<f64>; 3]>,
-    /// first reading of the force less its second, on world x, y, z, N; `None` where there is but one
+    /// first measurement of the force minus the second, on world x, y, z, N; `None` if there is only one
     pub(super) contradiction_n: Option<[Vec<f64>; 3]>,
     /// weak form's test function
     pub(super) kernel: WeakKernel,
@@ -121,7 +121,7 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Of a fit's residual; `None` without rows.
+    /// The view of a fit's residual; `None` without rows.
     pub(super) fn new(traces: &[Trace], fitted: &Fitted) -> Option<Self> {
         let first = traces.first()?;
         let rows = fitted.rows.len();
@@ -271,7 +271,7 @@ impl View {
     }
 }
 
-/// A force that is given on body axes by axis and row, turned into the world; `None` without attitude.
+/// Rotates a force from body axes, given by axis and row, into the world; `None` without attitude.
 fn in_world(traces: &[Trace], body_n: impl Fn(usize, usize) -> f64) -> Option<[Vec<f64>; 3]> {
     if !traces.iter().all(|trace| trace.known.attitude) {
         return None;

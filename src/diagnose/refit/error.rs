@@ -1,16 +1,16 @@
-//! Why there is no refit.
+//! Errors of the refit.
 
 use crate::diagnose::trace::TraceError;
 use crate::physics::PhysicsError;
 use crate::simulate::SimulateError;
 
-/// Why there is no refit.
+/// Errors of the refit.
 #[derive(Debug, thiserror::Error)]
 pub enum RefitError {
     /// velocity, attitude and rates must be known
     #[error("multiple shooting needs velocity, attitude and body rates")]
     NotMeasured,
-    /// no initial value for them
+    /// effects with states, whose initial values are unknown
     #[error("effect {id} has states of its own, whose start no segment knows")]
     OwnStates {
         /// which
@@ -19,14 +19,14 @@ pub enum RefitError {
     /// too little flight
     #[error("only {segments} segments of {segment_s} s fit into the flights, at least {needed} are needed")]
     TooShort {
-        /// that fit
+        /// segments that fit
         segments: usize,
         /// s
         segment_s: f64,
         /// needed
         needed: usize,
     },
-    /// no mass distribution has it
+    /// physically impossible inertia
     #[error(
         "the identified inertia is that of no body (one principal moment exceeds the sum of the others): a refit that keeps to physics cannot start from it"
     )]

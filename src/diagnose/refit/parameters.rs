@@ -1,4 +1,4 @@
-//! What is estimated, as numbers that may be anything: whatever they are, the model is physical.
+//! The unknowns in a parameterisation without bounds: the model is physical for all values.
 
 use crate::diagnose::base::Base;
 use crate::diagnose::channels::Nuisance;
@@ -25,7 +25,7 @@ struct Slot {
     /// among its values
     slot: usize,
     scale: Scale,
-    /// among the free parameters of all effects
+    /// index among the free parameters of all effects
     free: usize,
 }
 
@@ -44,7 +44,7 @@ const LATENCY: usize = THETA;
 const EFFECTS: usize = THETA + 1;
 
 impl Unknowns {
-    /// About a base; `None` where its inertia is not physical.
+    /// The unknowns at a base; `None` if its inertia is not physical.
     pub(super) fn of(base: &Base) -> Option<Self> {
         let theta = theta_of(&base.vehicle.body);
         let floor = 1e-4 * second_moments(&base.vehicle.body.inertia_kg_m2).trace() / 3.0;
@@ -130,7 +130,7 @@ impl Unknowns {
         slope
     }
 
-    /// By how much an unknown is moved to see what it does.
+    /// Step of an unknown for numerical derivatives.
     pub(super) fn step(&self, index: usize) -> f64 {
         match index {
             0..=LATENCY => 1e-3,
@@ -154,7 +154,7 @@ impl Unknowns {
         out
     }
 
-    /// Column of the weak form that stands for each unknown.
+    /// Column of the weak form for each unknown.
     pub(super) fn weak_columns(&self, fitted: &Fitted) -> Vec<Option<usize>> {
         let place =
             |wanted: Nuisance| fitted.rows.nuisances.iter().position(|column| column.nuisance == wanted);

@@ -1,4 +1,4 @@
-//! Segments of the flights and what the model makes of them.
+//! Segments of the flights and their simulation by the model.
 
 use super::settings::RefitSettings;
 use crate::diagnose::base::Base;
@@ -11,7 +11,8 @@ use nalgebra::{DVector, UnitQuaternion, Vector3};
 
 use super::error::RefitError;
 
-/// Velocity, turn of the attitude, rates: what is free at a node and compared at an instant.
+/// Numbers of a state: velocity, rotation of the attitude, body rates. They are free at a node and compared at an
+/// instant.
 pub(super) const STATE: usize = 9;
 
 /// A stretch of a flight.
@@ -25,7 +26,7 @@ pub(super) struct Segment {
     pub(super) comparisons: usize,
 }
 
-/// Evenly spread over all usable stretches.
+/// Cuts segments evenly over all usable stretches.
 pub(super) fn cut(traces: &[Trace], settings: &RefitSettings) -> Vec<Segment> {
     let mut all = Vec::new();
     for (flight, trace) in traces.iter().enumerate() {
@@ -66,8 +67,8 @@ impl Shooter {
         Ok(Self { model, turning })
     }
 
-    /// The simulated states less the measured ones at the segment's instants, from a node that is moved by
-    /// `node` from the measured state.
+    /// The simulated states minus the measured ones at the segment's instants, from a node that is moved by `node` from
+    /// the measured state.
     pub(super) fn residual(
         &self,
         trace: &Trace,
@@ -91,7 +92,7 @@ impl Shooter {
         Ok(out)
     }
 
-    /// What acts from one instant to the next: the middle of both.
+    /// Input from one instant to the next: the mean of both.
     fn input(&self, trace: &Trace, turning: &RotorMotion, index: usize) -> Input {
         let airframe = &self.model.airframe;
         let next = (index + 1).min(turning.thrust_n.len() - 1);
@@ -119,7 +120,7 @@ fn moved(state: &State, by: &[f64; STATE]) -> State {
     }
 }
 
-/// Velocity, turn (body) and rates of `a` less those of `b`.
+/// Velocity, rotation (body) and rates of `a` minus those of `b`.
 fn difference(a: &State, b: &State) -> [f64; STATE] {
     let velocity = a.velocity_m_s - b.velocity_m_s;
     let turn = (b.attitude.inverse() * a.attitude).scaled_axis();

@@ -1,8 +1,8 @@
-//! How a refit is done.
+//! Settings of a refit.
 
 use crate::diagnose::explain::ExplainSettings;
 
-/// How it is done.
+/// Settings of a refit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RefitSettings {
     /// s, length of a segment

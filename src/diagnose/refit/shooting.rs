@@ -75,5 +75,5 @@ fn weak_values(fitted: &Fitted, unknowns: &Unknowns) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Fewest segments that a spread can be taken of.
+/// Least number of segments for a covariance of their scores. Chosen; not measured.
 const LEAST_SEGMENTS: usize = 12;

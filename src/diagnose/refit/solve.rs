@@ -30,9 +30,9 @@ struct Share {
     by_parameters: OMatrix<f64, Const<STATE>, Dyn>,
 }
 
-/// Steps of a node for its slopes: m/s, rad, rad/s.
+/// Steps of a node for numerical derivatives: m/s, rad, rad/s. Chosen; not measured.
 const NODE_STEP: f64 = 1e-4;
-/// A step that lowers the cost by less than this share ends the search.
+/// The search ends at a step that lowers the cost by less than this share. Chosen; not measured.
 const SETTLED: f64 = 1e-4;
 
 pub(super) fn solve(
@@ -110,8 +110,8 @@ fn residuals(
         .collect()
 }
 
-/// Precision of each entry by its place in the segment: errors grow from the node on. By the median, so
-/// that a few bad segments do not count.
+/// Precision of each entry by its place in the segment, because errors grow from the node on. The median is used, so
+/// that a few bad segments have no influence.
 fn weights(residuals: &[DVector<f64>], segments: &[Segment]) -> DVector<f64> {
     let length = segments.iter().map(|segment| STATE * segment.comparisons).max().unwrap_or(0);
     DVector::from_fn(length, |entry, _| {
@@ -183,7 +183,7 @@ fn shares(
         .collect()
 }
 
-/// Normal equations without the node.
+/// Normal equations after elimination of the node.
 fn eliminated(
     residual: &DVector<f64>,
     weights: &DVector<f64>,
@@ -213,7 +213,7 @@ fn eliminated(
     Some(Share { normal, score, own: inverse * pull, by_parameters: -(inverse * cross) })
 }
 
-/// Inverse of a normal matrix whose parameters have scales of their own.
+/// Inverse of a normal matrix of parameters with different scales.
 fn scaled_cholesky(normal: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let scale = normal.diagonal().map(|value| if value > 0.0 { value.sqrt().recip() } else { 1.0 });
     let scaled =
@@ -222,7 +222,7 @@ fn scaled_cholesky(normal: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     Some(DMatrix::from_fn(normal.nrows(), normal.ncols(), |i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }
 
-/// From the spread of the segments' scores.
+/// Covariance from the scatter of the segments' scores (sandwich).
 fn sandwich(inverse: &DMatrix<f64>, shares: &[Share]) -> DMatrix<f64> {
     let mut meat = DMatrix::zeros(inverse.nrows(), inverse.ncols());
     for share in shares {

@@ -1,4 +1,4 @@
-//! How damping of the rotation is tried, named and said.
+//! Signature: damping of the rotation.
 
 use crate::diagnose::signature::{Form, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
@@ -32,7 +32,7 @@ fn forms() -> Vec<Form> {
     vec![SIGNATURE.form(&[0.0; 3], &[0, 1, 2]), SIGNATURE.form(&[0.0; 3], &[0, 1])]
 }
 
-/// Torques scale with the inertia: 0.8 1/s.
+/// Usual size: torques scale with the inertia, 0.8 1/s.
 fn usual(parameter: &str, vehicle: &Vehicle) -> Option<f64> {
     let axis = ["bx", "by", "bz"].iter().position(|name| *name == parameter)?;
     Some(0.8 * vehicle.body.inertia_kg_m2[(axis, axis)])

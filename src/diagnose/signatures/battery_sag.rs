@@ -1,4 +1,4 @@
-//! How the battery's sag is tried, named and said.
+//! Signature: the battery's sag.
 
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{EffectTerm, Form, Joint, Role, Signature, Whence};
@@ -45,7 +45,7 @@ fn terms(recorded: &Recorded) -> Vec<EffectTerm> {
     recorded.full_voltage().into_iter().map(|full_v| SIGNATURE.term(&[0.0, full_v], &[0])).collect()
 }
 
-/// Where the rotors' speeds are measured there is nothing left of it.
+/// Forms of the search. There are none if the rotor speeds are measured, because they contain the effect.
 fn forms(recorded: &Recorded) -> Vec<Form> {
     if !recorded.all(|trace| !trace.measured_speeds) {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! How the rotors' hub moment is tried, named and said.
+//! Signature: the rotors' hub moment.
 
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Role, Signature};

@@ -1,4 +1,4 @@
-//! How a ceiling is tried, named and said.
+//! Signature: a ceiling.
 
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{
@@ -9,13 +9,15 @@ use crate::diagnose::wording::Words;
 use crate::physics::Airframe;
 use crate::physics::effects::CeilingEffect;
 
-/// Distances of a ceiling over the highest rotor that are tried, rotor radii.
+/// Distances of a ceiling above the highest rotor position that are tried, rotor radii. Chosen; not measured.
 const CEILINGS_RADII: [f64; 7] = [0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0];
-/// A ceiling's a1 that is as good as none, the parameter's bound: the thrust grows with its inverse.
+/// Value of a1 that is equivalent to no ceiling, the parameter's bound: the added thrust is proportional to its
+/// inverse.
 const NO_CEILING: f64 = 50.0;
-/// a1 of ceilings that were measured.
+/// Usual a1 of a ceiling, from measurements whose source is not recorded here.
 const USUAL: f64 = 5.0;
-/// A ceiling whose a1 is larger lifts by little more than a twentieth a rotor's radius below it: that is none.
+/// Largest a1 of a ceiling that gets a name. With it, the thrust one rotor radius below the ceiling is about 5 %
+/// larger. Chosen; not measured.
 const WEAKEST: f64 = 20.0;
 
 /// More thrust under a ceiling.
@@ -57,7 +59,7 @@ pub static SIGNATURE: Signature = Signature {
     ..Signature::of(&CeilingEffect, &[0], Words::of("ceiling effect"))
 };
 
-/// Heights that a ceiling may have over the flown ones, m.
+/// Possible heights of a ceiling above the flown heights, m.
 fn heights_m(recorded: &Recorded) -> Vec<f64> {
     recorded.airframe.as_ref().map(|airframe| over(recorded.flights, airframe)).unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! How an offset of the centre of mass is tried, named and said.
+//! Signature: an offset of the centre of mass.
 
 use crate::diagnose::named::Named;
 use crate::diagnose::signature::{Naming, Signature};
@@ -6,7 +6,7 @@ use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ComOffset;
 use crate::text::{significant, with_error};
 
-/// A centre of mass is not known better, m.
+/// Least standard error of the centre of mass, m. A position is not defined better on a vehicle. Chosen; not measured.
 const NUISANCE_M: f64 = 0.000_15;
 
 /// A centre of mass that is not where the vehicle file has it.
@@ -26,7 +26,7 @@ pub static SIGNATURE: Signature = Signature {
     )
 };
 
-/// Sides, not signs; what was not estimated is not said.
+/// A clause with sides in place of signs, without values that were not estimated.
 fn clause(named: &Named) -> String {
     let side = |name: &str, plus: &str, minus: &str| {
         let p = named.get(name).filter(|p| p.std > 0.0)?;

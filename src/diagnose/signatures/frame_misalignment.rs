@@ -1,4 +1,4 @@
-//! How a position reference that is askew is tried, named and said.
+//! Signature: a misaligned position reference.
 
 use crate::diagnose::channels::Nuisance;
 use crate::diagnose::recorded::{Need, Recorded};
@@ -6,12 +6,12 @@ use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, Refinement, Ro
 use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::FrameMisalignment;
 
-/// Mountings are true to about half a degree, rad.
+/// Misalignment that ordinary vehicles have, rad: about half a degree. Chosen; not measured.
 const ORDINARY_RAD: f64 = 0.0087;
-/// Slot of the share by which the attitude is turned with its frame.
+/// Slot of the share by which the attitude is rotated with its frame.
 const WITH_ATTITUDE: usize = 3;
 
-/// A position reference, and perhaps an attitude, that is not level.
+/// A position reference that is not level or not aligned, with or without the attitude.
 pub static SIGNATURE: Signature = Signature {
     needs: &[Need::ForceTwice],
     forms: |_: &Recorded| {
@@ -39,10 +39,11 @@ pub static SIGNATURE: Signature = Signature {
         forms: Some(|_, _| vec![SIGNATURE.term(&[0.0; 3], &[0, 1]), SIGNATURE.term(&[0.0; 4], &[0, 1, 2])]),
         whence: |_, slot, _, _| {
             Some(if slot >= WITH_ATTITUDE {
-                Whence::Given("position and velocity are turned alone: the likelier of both".to_owned())
+                Whence::Given("only position and velocity are turned: the more likely form".to_owned())
             } else {
                 Whence::NotDetermined(
-                    "position, velocity and attitude turn alike: no equation of the vehicle's own motion sees a heading",
+                    "position, velocity and attitude are turned by the same angle: no equation of the vehicle's \
+                     motion depends on a heading",
                 )
             })
         },
@@ -53,7 +54,7 @@ pub static SIGNATURE: Signature = Signature {
         &[0, 1, 2],
         Words {
             size: Size::Norm { factor: 1.0_f64.to_degrees(), unit: "deg", digits: 2 },
-            ..Words::of("a position reference that is askew")
+            ..Words::of("a misaligned position reference")
         },
     )
 };

@@ -1,4 +1,4 @@
-//! How the ground effect is tried, named and said.
+//! Signature: the ground effect.
 
 use crate::diagnose::named::Named;
 use crate::diagnose::recorded::Need;
@@ -9,17 +9,17 @@ use crate::physics::effects::GroundEffect;
 use crate::text::significant;
 use crate::vehicle::Vehicle;
 
-/// Slots of the values.
+/// Slots of the values, in the order of the effect's parameters.
 const RHO: usize = 0;
 const CA: usize = 1;
 const CB: usize = 2;
-/// Decays per rotor radius of the exponential form that the search tries.
+/// Decays of the exponential form that the search tries, per rotor radius. Chosen; not measured.
 const DECAYS_TRIED: [f64; 5] = [0.4, 0.7, 1.2, 2.0, 3.5];
-/// Decays that the exponential form starts from where the other one was taken, per rotor radius.
+/// Start values of the decay if the other form was accepted, per rotor radius. Chosen; not measured.
 const DECAYS: [f64; 2] = [0.7, 1.5];
-/// Decays of the exponential form that are fitted.
+/// Decays of the exponential form that `--with` fits, per rotor radius. Chosen; not measured.
 const DECAYS_FITTED: [f64; 3] = [0.4, 0.8, 1.6];
-/// Where both forms are to give the same at first, rotor radii.
+/// Height at which both forms have the same value at the start of a fit, rotor radii. Chosen; not measured.
 const ALIKE_RADII: f64 = 2.0;
 
 /// More thrust near the ground.
@@ -61,7 +61,7 @@ pub static SIGNATURE: Signature = Signature {
             inverse.into_iter().chain(exponential).collect()
         }),
         whence: |_, slot, _, _| {
-            (slot <= CB).then(|| Whence::Given("the other law is the likelier one".to_owned()))
+            (slot <= CB).then(|| Whence::Given("the other law is more likely".to_owned()))
         },
         ..Joint::PLAIN
     },
@@ -78,7 +78,7 @@ pub static SIGNATURE: Signature = Signature {
     )
 };
 
-/// The same size in the other form. About nothing the forms look alike; with the size that they come to they do not.
+/// The same size in the other form. For small sizes the forms are similar; for the estimated size they are not.
 fn other_forms(term: &EffectTerm) -> Vec<EffectTerm> {
     let (rho, ca, cb) = (term.values[RHO], term.values[CA], term.values[CB]);
     let beside = term.free.iter().copied().filter(|slot| ![RHO, CA, CB].contains(slot));
@@ -106,9 +106,9 @@ fn clause(named: &Named, vehicle: &Vehicle) -> String {
         format!("{} % more thrust at {} m", significant(gain_percent, 2), significant(2.0 * radius_m, 2))
     });
     let by = if ca > 0.0 {
-        format!("falling by e every {} rotor radii", significant(1.0 / cb, 2))
+        format!("decreasing by a factor e every {} rotor radii", significant(1.0 / cb, 2))
     } else {
-        format!("{} times that of Cheeseman and Bennett, fading with height", named.said("rho", 1.0))
+        format!("{} times that of Cheeseman and Bennett, decreasing with height", named.said("rho", 1.0))
     };
     let parts: Vec<String> = [by, height].into_iter().filter(|part| !part.is_empty()).collect();
     format!("Ground effect was left out: {}", parts.join(", "))
@@ -118,7 +118,7 @@ fn size(named: &Named) -> Option<String> {
     match named.get("ca") {
         Some(ca) if ca.value > 0.0 => {
             let at_two = ca.value * (-2.0 * named.value("cb")).exp();
-            Some(format!("{} % of the thrust two rotor radii up", significant(100.0 * at_two, 2)))
+            Some(format!("{} % of the thrust at a height of two rotor radii", significant(100.0 * at_two, 2)))
         }
         _ => words::said(named, "rho", 1.0, "times Cheeseman and Bennett's"),
     }

@@ -1,4 +1,4 @@
-//! How gusts are named and said: they are found in what is left, not by a column.
+//! Signature: gusts. They are found in the residual, not by a column.
 
 use crate::diagnose::signature::{Joint, Signature};
 use crate::diagnose::wording::{Size, Words};

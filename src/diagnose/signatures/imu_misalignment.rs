@@ -1,14 +1,14 @@
-//! How an inertial unit that sits askew is tried, named and said.
+//! Signature: a misaligned inertial unit.
 
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, Role, Signature};
 use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::ImuMisalignment;
 
-/// Mountings are true to about half a degree, rad.
+/// Misalignment that ordinary vehicles have, rad: about half a degree. Chosen; not measured.
 const ORDINARY_RAD: f64 = 0.0087;
 
-/// An inertial unit that is turned against the body.
+/// An inertial unit that is rotated against the body.
 pub static SIGNATURE: Signature = Signature {
     needs: &[Need::Accelerometer, Need::ForceTwice],
     forms: |_| vec![SIGNATURE.form(&[0.0; 3], &[0, 1, 2])],
@@ -19,7 +19,7 @@ pub static SIGNATURE: Signature = Signature {
         &[0, 1, 2],
         Words {
             size: Size::Norm { factor: 1.0_f64.to_degrees(), unit: "deg", digits: 2 },
-            ..Words::of("an inertial unit that sits askew")
+            ..Words::of("a misaligned inertial unit")
         },
     )
 };

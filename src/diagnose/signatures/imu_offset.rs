@@ -1,4 +1,4 @@
-//! How an accelerometer away from the centre of mass is tried, named and said.
+//! Signature: an accelerometer away from the centre of mass.
 
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, Signature};
@@ -6,7 +6,7 @@ use crate::diagnose::trace::Trace;
 use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::ImuOffset;
 
-/// No inertial unit sits at the centre of mass to better than this, m.
+/// Distance of the inertial unit from the centre of mass that ordinary vehicles have, m. Chosen; not measured.
 const ORDINARY_M: f64 = 0.005;
 
 /// An accelerometer away from the centre of mass.

@@ -1,4 +1,4 @@
-//! How thrust that falls with climb is tried, named and said.
+//! Signature: thrust that falls with climb.
 
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Joint, Naming, Role, Signature};

@@ -1,4 +1,4 @@
-//! How drag in proportion to the airspeed is tried, named and said.
+//! Signature: drag in proportion to the airspeed.
 
 use crate::diagnose::named::Named;
 use crate::diagnose::recorded::Need;
@@ -75,7 +75,7 @@ fn has_axial_part(asked: &[&'static Signature]) -> bool {
     asked.iter().any(|other| other.role.axial_part_of.is_some_and(|of| of.id() == SIGNATURE.id()))
 }
 
-/// Mean of the drag along body x and y, of those that were found.
+/// Mean of the estimated drag along body x and y, N/(m/s).
 fn mean(named: &Named) -> f64 {
     let found: Vec<f64> =
         ["dx", "dy"].iter().map(|name| named.value(name)).filter(|value| *value != 0.0).collect();

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::diagnose::signature::{LatencyKind, Signature};
 
-/// One an effect.
+/// One signature for each effect.
 pub static ALL: &[&Signature] = &[
     &thrust_curve::SIGNATURE,
     &com_offset::SIGNATURE,

@@ -1,4 +1,4 @@
-//! How a change of mass in flight is tried, named and said.
+//! Signature: a change of mass in flight.
 
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{EffectTerm, Form, GridScale, Joint, Naming, Refinement, Role, Signature};
@@ -7,7 +7,7 @@ use crate::diagnose::words;
 use crate::physics::effects::MassChange;
 use crate::text::significant;
 
-/// Moments that are tried, s apart.
+/// Step between the moments that are tried, s. Chosen; not measured.
 const EVERY_S: f64 = 4.0;
 
 /// A mass that changes at a moment of the flight.

@@ -1,4 +1,4 @@
-//! How a lag of the motors is said: it is found with the latency, not by a column.
+//! Signature: a lag of the motors. It is found with the latency, not by a column.
 
 use crate::diagnose::named::Named;
 use crate::diagnose::signature::{LatencyKind, Refinement, Role, Signature};

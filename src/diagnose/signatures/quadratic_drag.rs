@@ -1,4 +1,4 @@
-//! How drag with the square of the airspeed is tried, named and said.
+//! Signature: drag with the square of the airspeed.
 
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Joint, Naming, Role, Signature};

@@ -1,4 +1,4 @@
-//! How the rotors' own inertia is tried, named and said.
+//! Signature: the rotors' own inertia.
 
 use crate::diagnose::signature::{Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Words};
@@ -18,7 +18,8 @@ pub static SIGNATURE: Signature = Signature {
                 parameter: "jr",
                 factor: 1.0,
                 before: "The rotors' own inertia was left out:",
-                after: "kg m^2 each; spinning them up yaws the vehicle, turning it tilts them",
+                after: "kg m^2 each; a change of their speed yaws the vehicle, and a rotation of the vehicle causes \
+                        gyroscopic torques",
             },
             ..Words::of("the rotors' inertia")
         },

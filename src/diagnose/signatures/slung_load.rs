@@ -1,4 +1,4 @@
-//! How a load that swings below is tried, named and said.
+//! Signature: a load that swings below.
 
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{
@@ -7,14 +7,14 @@ use crate::diagnose::signature::{
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::SlungLoad;
 
-/// Lengths of a load's cord that are tried, m: their periods lie 20 % apart.
+/// Lengths of a load's cord that are tried, m: their periods differ by about 20 %.
 const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
-/// What the air takes of a load's swing before more is known, 1/s.
+/// Damping of the swing by the air at the start of a fit, 1/s. Chosen; not measured.
 const SWING_DAMPING_1_S: f64 = 0.2;
-/// Shortest and longest cord that is fitted, m.
+/// Shortest and longest cord that is fitted, m. Chosen; not measured.
 const CORDS_M: (f64, f64) = (0.2, 4.0);
-/// What the air takes of its swing, 1/s, with the ratio of the cords that are fitted: neighbours stay in step while the
-/// swing lasts, or are a tenth of a period apart after a minute.
+/// Dampings of the swing that are fitted, 1/s, each with the ratio of neighbouring cord lengths. Swings of neighbouring
+/// lengths stay in phase while the swing lasts, or differ by a tenth of a period after a minute.
 const SWINGS: [(f64, f64); 3] = [(0.0, 1.015), (0.1, 1.03), (0.5, 1.1)];
 
 /// A load that swings below on a cord.
@@ -64,7 +64,7 @@ pub static SIGNATURE: Signature = Signature {
     )
 };
 
-/// Above the ground where position is known and the ground is zero, else boundless, m.
+/// Highest position above the ground, m, if position is known and the ground is at zero; otherwise infinite.
 fn highest_m(recorded: &Recorded) -> f64 {
     if !recorded.all(|trace| trace.known.position) {
         return f64::INFINITY;
@@ -77,7 +77,7 @@ fn highest_m(recorded: &Recorded) -> f64 {
     if highest_m > 0.0 { highest_m } else { f64::INFINITY }
 }
 
-/// Lengths of a cord that are fitted, m, each so many times the one before.
+/// Cord lengths that are fitted, m, with this ratio between neighbours.
 fn cords_m(ratio: f64) -> Vec<f64> {
     let mut out = vec![CORDS_M.0];
     while let Some(last_m) = out.last().map(|length_m| length_m * ratio).filter(|m| *m <= CORDS_M.1) {

@@ -1,4 +1,4 @@
-//! How a steady wind is tried, named and said.
+//! Signature: a steady wind.
 
 use crate::diagnose::named::Named;
 use crate::diagnose::recorded::Need;
@@ -34,8 +34,7 @@ pub static SIGNATURE: Signature = Signature {
     )
 };
 
-/// Tried together with drag at the hubs or at the centre: its columns are those that it has through a drag of one
-/// unit.
+/// Forms together with drag at the hubs or at the centre. The columns are those of the wind with a drag of one unit.
 fn carried() -> Vec<Carried> {
     let of = |at_hubs: f64| Carried {
         carrier: linear_drag::SIGNATURE.term(&[0.0, 0.0, 0.0, at_hubs], &[0, 1]),

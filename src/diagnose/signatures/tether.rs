@@ -1,17 +1,17 @@
-//! How a tether is tried, named and said.
+//! Signature: a tether.
 
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{EffectTerm, Joint, Naming, Signature, Whence};
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::Tether;
 
-/// A length that no flight reaches, m.
+/// A length of the tether that no flight reaches, m.
 const SLACK_M: f64 = 500.0;
-/// No line that holds anything weighs less, kg/m.
+/// Least mass of a line per length, kg/m. Chosen; not measured.
 const LEAST_LINE_KG_M: f64 = 0.005;
-/// A line that is carried shows only once it weighs something, kg/m.
+/// Mass per length at which a carried line is tried, kg/m: a line without weight has no effect. Chosen; not measured.
 const LINE_KG_M: f64 = 0.01;
-/// Lengths of a tether that are fitted, of the farthest distance flown.
+/// Lengths of a tether that are fitted, as shares of the farthest distance flown. Chosen; not measured.
 const TAUT_AT: [f64; 6] = [0.4, 0.55, 0.7, 0.8, 0.9, 0.96];
 
 /// A line to the ground.
@@ -46,7 +46,7 @@ pub static SIGNATURE: Signature = Signature {
     )
 };
 
-/// Slack, with a line that the vehicle carries or not; or taut at some distance.
+/// Forms: slack, with a line that the vehicle carries or not; or taut at some distance.
 fn terms(recorded: &Recorded) -> Vec<EffectTerm> {
     let far_m = farthest_m(recorded);
     let slack = [
@@ -58,7 +58,7 @@ fn terms(recorded: &Recorded) -> Vec<EffectTerm> {
     slack.into_iter().chain(taut).collect()
 }
 
-/// From the world's origin, m.
+/// Largest distance from the world's origin, m.
 fn farthest_m(recorded: &Recorded) -> f64 {
     let flown = recorded
         .flights

@@ -1,13 +1,13 @@
-//! How a bent thrust curve is tried, named and said.
+//! Signature: a bent thrust curve.
 
 use crate::diagnose::signature::{Joint, Naming, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ThrustCurve;
 
-/// No thrust curve is known to better than this (-).
+/// Curvature up to which a thrust curve counts as known (-). Chosen; not measured.
 const ORDINARY_BEND: f64 = 0.02;
 
-/// A thrust curve that is bent otherwise than the vehicle file says.
+/// A thrust curve with another curvature than in the vehicle file.
 pub static SIGNATURE: Signature = Signature {
     forms: |_| vec![SIGNATURE.form(&[0.0; 2], &[0])],
     naming: Naming {
@@ -28,7 +28,8 @@ pub static SIGNATURE: Signature = Signature {
             clause: Clause::Own(|named, _| {
                 let bend = named.value("curvature");
                 format!(
-                    "The thrust curve is bent: about hover thrust changes with the command {} % {} than the vehicle file says",
+                    "The thrust curve is bent: near hover the thrust changes {} % {} with the command than in the \
+                     vehicle file",
                     named.said("curvature", 100.0 * bend.signum()),
                     if bend > 0.0 { "more" } else { "less" }
                 )

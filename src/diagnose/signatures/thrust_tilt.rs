@@ -1,14 +1,14 @@
-//! How a leaning thrust axis is tried, named and said.
+//! Signature: a tilted thrust axis.
 
 use crate::diagnose::channels::Nuisance;
 use crate::diagnose::signature::{Form, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ThrustTilt;
 
-/// Mountings are true to about half a degree, rad.
+/// Tilt of the thrust axis that ordinary vehicles have, rad: about half a degree. Chosen; not measured.
 const ORDINARY_RAD: f64 = 0.0087;
 
-/// A thrust axis that leans.
+/// A tilted thrust axis.
 pub static SIGNATURE: Signature = Signature {
     forms: |_| vec![Form { instead_of_nuisance: true, ..SIGNATURE.form(&[0.0; 2], &[0, 1]) }],
     naming: Naming { ordinary: Some(ORDINARY_RAD), ..Naming::PLAIN },
@@ -19,13 +19,14 @@ pub static SIGNATURE: Signature = Signature {
         Words {
             clause: Clause::Own(|named, _| {
                 format!(
-                    "The thrust axis leans by {} deg about body x and {} deg about body y: thrust pushes sideways, fixed in the body",
+                    "The thrust axis is tilted by {} deg about body x and {} deg about body y: the thrust has a \
+                     sideways component that is fixed in the body",
                     named.said("x", 1.0_f64.to_degrees()),
                     named.said("y", 1.0_f64.to_degrees())
                 )
             }),
             size: Size::Norm { factor: 1.0_f64.to_degrees(), unit: "deg", digits: 2 },
-            ..Words::of("a leaning thrust axis")
+            ..Words::of("a tilted thrust axis")
         },
     )
 };

@@ -1,4 +1,4 @@
-//! How translational lift is tried, named and said.
+//! Signature: translational lift.
 
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, Role, Signature};

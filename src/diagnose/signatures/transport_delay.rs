@@ -1,4 +1,4 @@
-//! How a delay of the commands is said: it is found with the latency, not by a column.
+//! Signature: a delay of the commands. It is found with the latency, not by a column.
 
 use crate::diagnose::signature::{LatencyKind, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};

@@ -1,11 +1,11 @@
-//! How the vortex ring state is tried, named and said.
+//! Signature: the vortex ring state.
 
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Role, Signature};
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::VortexRing;
 
-/// Loss of thrust in a descent into the own wake.
+/// Loss of thrust in a descent into the vehicle's own wake.
 pub static SIGNATURE: Signature = Signature {
     needs: &[Need::Velocity],
     forms: |_| vec![SIGNATURE.form(&[0.0], &[0])],
@@ -17,7 +17,7 @@ pub static SIGNATURE: Signature = Signature {
             clause: Clause::OneNumber {
                 parameter: "loss",
                 factor: 1.0,
-                before: "It sank into its own wake: the loss of thrust is",
+                before: "The vehicle sank into its own wake: the loss of thrust is",
                 after: "times that of Leishman's vortex ring",
             },
             ..Words::of("the vortex ring state")

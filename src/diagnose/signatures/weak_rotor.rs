@@ -1,4 +1,4 @@
-//! How a rotor that is weaker than the others is tried, named and said.
+//! Signature: a rotor that is weaker than the others.
 
 use crate::diagnose::named::Named;
 use crate::diagnose::recorded::Recorded;
@@ -9,14 +9,13 @@ use crate::physics::effects::WeakRotor;
 use crate::text::{significant, with_error};
 use crate::vehicle::Vehicle;
 
-/// Slots of the values.
+/// Slots of the values: the rotor's number and the factor on its thrust.
 const ROTOR: usize = 0;
 const FACTOR: usize = 1;
-/// Rotors of one vehicle differ by as much.
+/// Difference between rotors of one vehicle that is ordinary (-). Chosen; not measured.
 const SCATTER: f64 = 0.08;
-/// What noise leaves uncertain by a hundredth of a percent is known to this of its thrust (-) where a rotor is sampled
-/// 100 times a second and flies on between: flights of the embedded vehicle are off by 0.09 to 0.10 %, all on the same
-/// side.
+/// Least standard error of a rotor's thrust factor (-). Rotors continue to move between samples at 100 Hz: flights of
+/// the embedded vehicle are off by 0.09 to 0.10 %, all on the same side, while noise alone would give 0.01 to 0.02 %.
 const BETWEEN_SAMPLES: f64 = 0.001;
 
 /// A rotor that is weaker than the others.
@@ -66,7 +65,7 @@ fn terms(rotors: usize) -> Vec<EffectTerm> {
     (0..rotors).map(|rotor| SIGNATURE.term(&[rotor as f64, 1.0], &[FACTOR])).collect()
 }
 
-/// One that is stronger, or several that differ: the rotors' scatter.
+/// Whether it is ordinary: one rotor is stronger, or several differ, within the usual scatter of rotors.
 fn is_ordinary(term: &EffectTerm, all: &[EffectTerm]) -> bool {
     let rotors = || all.iter().filter(|other| other.is(&SIGNATURE)).map(|rotor| rotor.values[FACTOR]);
     let factor = term.values[FACTOR];

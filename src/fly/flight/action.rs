@@ -1,15 +1,15 @@
-//! What a flight wants done.
+//! Actions of a flight.
 
 use mavlink::dialects::ardupilotmega::MavMessage;
 
 use crate::fly::outcome::{Note, Outcome};
 
-/// What the flight wants done.
+/// An action of the flight.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
     /// send it, in order
     Send(MavMessage),
-    /// tell people and the log of events
+    /// report it to the operator and to the log of events
     Note(Note),
     /// the flight is over
     Finished(Outcome),

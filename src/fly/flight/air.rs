@@ -20,10 +20,11 @@ use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
 use crate::fly::target::Order;
 
-/// While it spools up the vehicle is not outrun by the climb: no further ahead than this.
+/// Largest lead of the setpoint over a vehicle whose rotors spin up, m. Chosen; not measured.
 const LEAD_MAX_M: f64 = 0.6;
-/// A climb is over so near to its height, at so little speed.
+/// Distance to its height at which a climb is complete, m. Chosen; not measured.
 const CLIMBED_M: f64 = 0.3;
+/// Largest speed of a complete climb, m/s. Chosen; not measured.
 const CLIMBED_M_S: f64 = 0.3;
 
 impl Flight {
@@ -46,7 +47,7 @@ impl Flight {
         self.stand.map(|stand| self.start_from(&stand.position_m))
     }
 
-    /// Above where it stood, at the height of the start.
+    /// The place above the point of takeoff, at the height of the start.
     fn top(&self) -> Option<Place> {
         let (stand, start) = (self.stand?, self.start()?);
         let position_m = Vector3::new(stand.position_m.x, stand.position_m.y, start.position_m.z);
@@ -117,7 +118,7 @@ impl Flight {
         }
     }
 
-    /// Once it hovers: says whether what lifts it is the vehicle file's weight.
+    /// In hover: reports whether the thrust by the vehicle file is the weight.
     pub(super) fn weigh(&mut self, now: Duration) {
         let (level, text) = match self.lift.as_ref().map(|lift| lift.weighed()) {
             Some(Weighed::Notable(text)) => (Level::Warning, text),
@@ -161,7 +162,7 @@ impl Flight {
         }
     }
 
-    /// Tells the safety rules what the vehicle is told, and pauses the path while nothing is heard.
+    /// Passes the setpoint to the safety rules, and pauses the path while nothing is received.
     pub(super) fn follow(&mut self, now: Duration) {
         let paused = self.watch.is_paused();
         if let (Phase::Transfer | Phase::Course, Lead::Along(track)) = (&self.phase, &mut self.guide.lead) {
@@ -177,7 +178,7 @@ impl Flight {
         }
     }
 
-    /// Where setpoints may be now: in the room, and on the way up from the ground as well.
+    /// The permitted region of setpoints: the room, and the way up from the ground.
     fn bounds(&self) -> Option<SetpointBounds> {
         let stand = self.stand.or_else(|| self.place_now())?;
         let room = self.room(&stand);
@@ -195,7 +196,7 @@ impl Flight {
         Some((telemetry.motion?.value.position_m, telemetry.smooth_velocity_m_s()?))
     }
 
-    /// The vehicle is in our mode; anything else while we fly it is somebody else's will.
+    /// The reason if the vehicle left our mode: somebody else decided so.
     pub(super) fn left_our_mode(&self) -> Option<String> {
         let telemetry = &self.contact.as_ref()?.telemetry;
         let state = telemetry.state?.value;

@@ -1,4 +1,4 @@
-//! What is asked of a vehicle before the flight.
+//! Requests to a vehicle before the flight.
 
 use crate::autopilot::{Autopilot, Stack};
 use crate::fly::target::{Order, Period};
@@ -7,22 +7,21 @@ pub(super) const AUTOPILOT_VERSION: u16 = 148;
 /// One in five datagrams lost: the version stays away once in three thousand flights.
 const VERSION_CHANCES: u32 = 4;
 
-/// Messages that the safety rules rest on, and how often, Hz: LOCAL_POSITION_NED, ATTITUDE_QUATERNION,
-/// SYS_STATUS, EXTENDED_SYS_STATE, BATTERY_STATUS, CURRENT_MODE, POSITION_TARGET_LOCAL_NED, and the
-/// estimator's own report.
+/// Messages that the safety rules need, with their rates, Hz: LOCAL_POSITION_NED, ATTITUDE_QUATERNION, SYS_STATUS,
+/// EXTENDED_SYS_STATE, BATTERY_STATUS, CURRENT_MODE, POSITION_TARGET_LOCAL_NED, and the estimator's own report.
 const STREAMS: [(u16, u16); 7] = [(32, 30), (31, 50), (1, 2), (245, 5), (147, 1), (436, 10), (85, 27)];
 const PX4_STREAMS: [(u16, u16); 2] = [(230, 2), (331, 30)];
 /// ArduPilot has no CURRENT_MODE: its HEARTBEAT tells of a pilot who takes over.
 const ARDUPILOT_STREAMS: [(u16, u16); 2] = [(193, 2), (0, 5)];
 
-/// What is asked before the flight.
+/// Requests before the flight.
 #[derive(Debug)]
 pub(super) struct Checking {
     pub(super) wanted: Vec<Order>,
-    /// it is the one that this program started; `None` until it says what it is
+    /// whether it is the vehicle that this program started; `None` until it has reported what it is
     pub(super) own: Option<bool>,
     pub(super) all_asked: bool,
-    /// how often the version may be asked for again
+    /// number of remaining requests for the version
     pub(super) version_chances: u32,
 }
 

@@ -1,4 +1,4 @@
-//! What is sent to the vehicle, and whether it may be: commands wait for a report of its mode.
+//! Commands to the vehicle, which wait for a report of its mode.
 
 use std::time::Duration;
 
@@ -13,13 +13,13 @@ use crate::fly::target::{Order, timesync};
 
 /// The message that tells the mode of any vehicle.
 const HEARTBEAT: u16 = 0;
-/// It is asked to go on every 10 ms. After it was not for this long, what it knows may be old.
+/// The flight is stepped every 10 ms. After a longer pause, its knowledge may be outdated.
 const STOOD_STILL: Duration = Duration::from_millis(100);
-/// After this long a flight is not gone on with, whether setpoints are streamed or not.
+/// After a longer pause, a flight is not continued, whether setpoints are sent or not.
 const STALLED: Duration = Duration::from_millis(300);
 
 impl Flight {
-    /// Asks for the mode where it is wanted, and sends the commands that it permits.
+    /// Requests the mode if it is needed, and sends the commands that it permits.
     pub(super) fn command(&mut self, now: Duration) {
         if let Some((target, _)) = self.target() {
             let permission = self.permission();
@@ -47,8 +47,8 @@ impl Flight {
         }
     }
 
-    /// Whether time went on without this flight. What it knew before may not hold any more, and what lies in the socket is
-    /// not read yet.
+    /// Detects whether the flight was not stepped for a while. Its knowledge may then be outdated, and the socket may
+    /// hold unread messages.
     pub(super) fn note_time(&mut self, now: Duration) {
         let gap = self.stepped.replace(now).map_or(Duration::ZERO, |last| now.saturating_sub(last));
         if gap <= STOOD_STILL || self.contact.is_none() {
@@ -65,8 +65,8 @@ impl Flight {
         }
     }
 
-    /// No setpoint goes out while a pilot may have taken over unheard. After a short hiccup the stream goes on: a vehicle that
-    /// its pilot flies does not follow it.
+    /// Holds setpoints back while a pilot may have taken over without notice. After a short pause the stream continues:
+    /// a vehicle that its pilot flies ignores it.
     pub(super) fn hold_back(&mut self, now: Duration) {
         let left = self.phase.is_ours() && self.left_our_mode().is_some();
         let held_back = left || self.known.is_in_doubt_for_long();
@@ -75,7 +75,7 @@ impl Flight {
                 now,
                 Level::Warning,
                 "stream",
-                "setpoints are held back until the vehicle says its mode",
+                "setpoints are held back until the vehicle reports its mode",
             );
         }
         self.guide.held_back = held_back;
@@ -96,7 +96,7 @@ impl Flight {
         Permission { reports: self.known.reports(), ours }
     }
 
-    /// The vehicle's mode is one that it is in by our doing, or for a start one that it was found in.
+    /// Whether the vehicle is in a mode that we ordered or, before the start, in the mode in which it was found.
     pub(super) fn is_to_command(&self) -> bool {
         let Some(state) = self.contact.as_ref().and_then(|contact| contact.telemetry.state) else {
             return false;
@@ -113,7 +113,7 @@ impl Flight {
         }
     }
 
-    /// A command, to be sent as soon as the vehicle's mode permits it.
+    /// Gives a command, which is sent when the vehicle's mode permits it.
     pub(super) fn give(&mut self, now: Duration, order: Order, manner: Manner) {
         match order {
             Order::SetMode(_, mode) => tracing::info!(?mode, "mode ordered"),
@@ -126,7 +126,8 @@ impl Flight {
 /// In words.
 fn stall(gap: Duration) -> String {
     format!(
-        "this program or its computer stood still for {} ms (load, sleep, a stopped process); the vehicle's mode is asked for",
+        "this program or its computer stalled for {} ms (load, sleep, a stopped process); the vehicle is asked for \
+         its mode",
         gap.as_millis()
     )
 }

@@ -10,7 +10,7 @@ use crate::fly::safety::Lead;
 use crate::units::deg_from_rad;
 
 impl Flight {
-    /// Ends the flight for a cause. The first counts, unless a later one takes our hands off.
+    /// Ends the flight for a cause. The first cause counts, unless a later one means hands off.
     pub(super) fn end(&mut self, now: Duration, cause: Cause) {
         if matches!(self.phase, Phase::Watch | Phase::Done) {
             return;

@@ -1,4 +1,4 @@
-//! What a flight hears.
+//! Inputs of a flight.
 
 use std::time::Duration;
 
@@ -7,30 +7,31 @@ use crate::fly::lift::Lift;
 use crate::fly::safety::Feeding;
 use crate::wire::Frame;
 
-/// What the flight hears.
+/// An input of the flight.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event<'a> {
     /// a frame from the link
     Frame(Frame<'a>),
-    /// time went on; wanted every 10 ms
+    /// a step of time; expected every 10 ms
     Tick,
     /// the operator
     Key(Key),
-    /// parameters, message rates and limits are checked: whether the flight may go on, and how its outputs lift it
+    /// result of the checks of parameters, message rates and limits: whether the flight may continue, and how its
+    /// outputs become thrust
     Cleared(Result<Box<Lift>, String>),
-    /// how setpoints are made from the reference, by what the vehicle does when they end
+    /// how setpoints are made from the reference, so that the vehicle is safe if they end
     Feed(Feeding),
-    /// the program is told to end, by what
+    /// the program is to end, with the cause
     Stop(String),
-    /// the stream of setpoints stood still for so long, or this flight did, and it has ended
+    /// the stream of setpoints, or this flight, stalled for this time, and the stream has ended
     Stalled(Duration),
-    /// the link is lost (`false`) or there again
+    /// the link is lost (`false`) or connected again
     Link(bool),
-    /// the link's own task has ended: nothing will be heard any more
+    /// the link's own task has ended: nothing more will be received
     LinkEnded,
 }
 
-/// What the operator wants.
+/// Orders of the operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Key {
     /// once: hold; twice: land; three times: return

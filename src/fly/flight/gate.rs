@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use crate::fly::safety::Sustained;
 
-/// A vehicle that hovers less well is watched for so long, and judged by the worst of it.
+/// A vehicle that hovers less precisely is observed for this time and assessed by its largest deviation.
 const WATCHED: Duration = Duration::from_secs(5);
 
-/// How well the vehicle hovers, and for how long the gate has been open.
+/// Precision of the hover, and the time for which the gate has been open.
 #[derive(Debug, Default)]
 pub(super) struct Gate {
     pub(super) open: Sustained,
@@ -27,7 +27,7 @@ impl Gate {
         }
     }
 
-    /// The worst distance (m) and speed (m/s) of the last seconds; `None` before there are enough.
+    /// The largest distance (m) and speed (m/s) of the last seconds; `None` before there are enough data.
     pub(super) fn worst(&self, now: Duration) -> Option<(f64, f64)> {
         self.begun.filter(|begun| now.saturating_sub(*begun) >= WATCHED)?;
         let worst = self.hover.iter().fold((0.0_f64, 0.0_f64), |(off_m, speed_m_s), (_, off, speed)| {

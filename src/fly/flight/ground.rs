@@ -1,4 +1,4 @@
-//! On the ground: find the vehicle, see that it may fly, engage our mode, arm.
+//! On the ground: find the vehicle, check that it may fly, engage our mode, arm.
 
 use std::time::Duration;
 
@@ -20,20 +20,21 @@ use mavlink::dialects::ardupilotmega::MavCmd;
 
 /// The estimate must have been good for this long.
 const ESTIMATOR_GOOD: Duration = Duration::from_secs(5);
-/// Setpoints before OFFBOARD.
+/// Time for which setpoints are sent before OFFBOARD.
 const PRIME: Duration = Duration::from_millis(1500);
-/// A position older than this is none.
+/// A position older than this counts as missing.
 const POSITION_FRESH: Duration = Duration::from_millis(500);
-/// A trajectory that starts further from the vehicle, m, is in the wrong place.
+/// Largest distance between vehicle and start of the trajectory, m. Chosen; not measured.
 const START_MAX_M: f64 = 5.0;
-/// A vehicle that is asked five times a second and has not answered for so long never does.
+/// A vehicle that has not answered five requests a second for this time never answers.
 const ANSWERS_WITHIN: Duration = Duration::from_secs(10);
 const NO_ANSWERS: &str = "expected an answer to TIMESYNC, got none within 10 s: without it, after a stall or a silence, an old \
-     report of the mode could not be told from a new one, and no abort could be ordered. PX4 and ArduPilot answer; \
-     let what lies on the way pass TIMESYNC";
+     report of the mode could not be distinguished from a new one, and no abort could be ordered. PX4 and ArduPilot \
+     answer; \
+     let routers on the way forward TIMESYNC";
 /// Where it says the release.
 const FLIGHT_SW_VERSION: usize = 16;
-/// Answers to questions come soon or not at all.
+/// Manner of requests: their answers arrive soon or not at all.
 const QUESTION: Manner = Manner {
     repeat: Duration::from_millis(400),
     patience: Duration::from_millis(1500),
@@ -64,7 +65,7 @@ impl Flight {
         }
     }
 
-    /// The vehicle that was named is not heard, and others are: said once.
+    /// Reports once that other vehicles are heard but not the requested one.
     fn tell_others(&mut self, now: Duration) {
         let Some(system) = self.sortie.system.filter(|_| !self.told_others) else { return };
         if let Some(others) = self.roster.without(now, system) {
@@ -73,13 +74,13 @@ impl Flight {
                 now,
                 Level::Warning,
                 "vehicle",
-                format!("system {system} is waited for; heard: {others}"),
+                format!("waiting for system {system}; heard: {others}"),
             );
         }
     }
 
-    /// AUTOPILOT_VERSION: the vehicle that this program started itself has the nonce that it was given. Whatever
-    /// else it says of itself, anybody could.
+    /// Takes AUTOPILOT_VERSION. The vehicle that this program started has the nonce that it was given. Other reports
+    /// about itself could come from anybody.
     pub(super) fn version(&mut self, now: Duration, payload: Payload<'_>) {
         let own = self.sortie.own_vehicle.is_some_and(|nonce| nonce.is_in(payload));
         // flight_sw_version: major, minor, patch, kind of release from its highest byte on
@@ -133,8 +134,8 @@ impl Flight {
             return;
         }
         if !own && !self.sortie.may_arm {
-            let why = "all checks passed; expected the order to arm, got none: whatever answers on a link is armed \
-                       only with --arm";
+            let why =
+                "all checks passed; expected the order to arm, got none: a vehicle is armed only with --arm";
             self.end(now, Cause::Refused(why.to_owned()));
             return;
         }
@@ -152,19 +153,19 @@ impl Flight {
         }
     }
 
-    /// How the vehicle flies setpoints; `None` before it is known.
+    /// The vehicle's rules for setpoints; `None` before it is known.
     fn rules(&self) -> Option<&'static SetpointRules> {
         self.target().map(|(_, stack)| &stack.setpoints)
     }
 
-    /// All is checked, and the operator's word is waited for, for as long as he reads.
+    /// Whether all checks are done and the operator's word is awaited, for any time.
     pub(super) fn awaits_word(&self) -> bool {
         let cleared = matches!(self.clearance, Some(Ok(()))) || !self.sortie.settings.await_clearance;
         let checking = matches!(&self.phase, Phase::Check(checking) if checking.all_asked);
         self.sortie.settings.await_word && !self.word_given && checking && cleared
     }
 
-    /// What a vehicle on the ground lacks before our mode is engaged.
+    /// Missing conditions of a vehicle on the ground for our mode.
     fn missing(&self, now: Duration) -> Vec<String> {
         let Some(contact) = &self.contact else { return Vec::new() };
         let telemetry = &contact.telemetry;
@@ -184,7 +185,7 @@ impl Flight {
         missing
     }
 
-    /// What the estimate lacks for a takeoff.
+    /// Missing conditions of the estimate for a takeoff.
     fn missing_estimate(&self, now: Duration) -> Vec<String> {
         let Some(contact) = &self.contact else { return Vec::new() };
         let telemetry = &contact.telemetry;
@@ -216,7 +217,7 @@ impl Flight {
         missing
     }
 
-    /// Ends the flight where the wait for what is `missing` was too long.
+    /// Ends the flight if the wait for the `missing` conditions was too long.
     fn give_up_waiting(&mut self, now: Duration, what: &str, missing: &[String]) {
         if now.saturating_sub(self.entered) > self.sortie.settings.ready_timeout {
             let mut reasons = missing.to_vec();
@@ -230,14 +231,14 @@ impl Flight {
         said.unwrap_or_default().into_iter().map(|text| format!("it says \"{text}\"")).collect()
     }
 
-    /// Setpoints that say: stay here.
+    /// Streams setpoints at the present place.
     fn hold_here(&mut self) {
         if let Some(place) = self.place_now() {
             self.guide.lead = Lead::Hold(place);
         }
     }
 
-    /// Where the vehicle is, with the yaw that it has.
+    /// Place and yaw of the vehicle.
     pub(super) fn place_now(&self) -> Option<Place> {
         let telemetry = &self.contact.as_ref()?.telemetry;
         let position_m = telemetry.motion?.value.position_m;
@@ -276,7 +277,7 @@ impl Flight {
         }
     }
 
-    /// Ends the start of a vehicle that somebody put into another mode than it was found in.
+    /// Ends the start if somebody changed the vehicle's mode from the one in which it was found.
     fn left_before_ours(&mut self, now: Duration) -> bool {
         if self.custom_mode() == self.found {
             return false;
@@ -352,12 +353,12 @@ impl Flight {
         }
     }
 
-    /// The mode that the vehicle said last.
+    /// The last reported mode.
     pub(super) fn custom_mode(&self) -> Option<u32> {
         Some(self.contact.as_ref()?.telemetry.state?.value.custom_mode)
     }
 
-    /// The vehicle says that it is in this mode.
+    /// Whether the vehicle reports this mode.
     pub(super) fn is_in(&self, mode: Mode) -> bool {
         self.contact.as_ref().is_some_and(|contact| {
             let telemetry = &contact.telemetry;

@@ -1,4 +1,4 @@
-//! Out of our mode: hold, land, return, by the vehicle's own modes. The planned landing is one of these.
+//! Leaving our mode: hold, land, return, by the vehicle's own modes. The planned landing is one of these.
 
 use std::time::Duration;
 
@@ -13,38 +13,38 @@ use crate::fly::safety::Lead;
 use crate::fly::setpoint::Place;
 use crate::fly::target::Order;
 
-/// A vehicle that was told to arm and does not say within this time that it is armed has not done so.
+/// If a vehicle does not report within this time after the order that it is armed, it is not armed.
 const ARMS_WITHIN: Duration = Duration::from_millis(2500);
-/// A mode that is not entered within this time is not going to be.
+/// A mode that is not entered within this time will not be entered.
 const HOLD_BY: Duration = Duration::from_secs(3);
 const LAND_BY: Duration = Duration::from_secs(5);
-/// A mode that was accepted, or not answered, is asked for again after this time.
+/// A mode that was accepted, or not answered, is ordered again after this time.
 const ASK_AGAIN: Duration = Duration::from_millis(400);
 /// An autopilot that disarms after its landing may change its mode before it is heard to stand on the ground.
 const GROUND_IS_HEARD: Duration = Duration::from_millis(1500);
 /// The same, until it is heard that it is disarmed.
 const DISARM_IS_HEARD: Duration = Duration::from_secs(3);
-/// From the order to land to the ground; a vehicle that returns first flies home.
+/// Longest time from the order to land to the ground; a vehicle that returns first flies home.
 const GROUND_BY: Duration = Duration::from_secs(180);
-/// On the ground, the autopilot disarms by itself; after this long it is told to.
+/// On the ground, the autopilot disarms by itself; after this time the order is given.
 const DISARM_AFTER: Duration = Duration::from_secs(3);
-/// A vehicle that accepted it and does not say that it is disarmed is told again.
+/// The order is repeated after this time if the vehicle accepted it and does not report that it is disarmed.
 const DISARM_AGAIN: Duration = Duration::from_secs(4);
-/// A program that is told to end waits no longer for the vehicle to hold: a link that is silent may come back.
+/// Longest time for which a program that is to end waits for the vehicle to hold: a silent link may come back.
 const STOP_WITHIN: Duration = Duration::from_secs(5);
-/// How hard a vehicle that is told to hold may be expected to brake, m/s^2.
+/// Deceleration that may be expected of a vehicle after the order to hold, m/s^2. Chosen; not measured.
 const BRAKING_M_S2: f64 = 3.0;
 
 /// Motors off: ten times a second for as long as an ordinary command is repeated.
 const KILLING: Manner = Manner { repeat: Manner::URGENT.repeat, ..Manner::PATIENT };
 
 impl Flight {
-    /// To the vehicle's hold mode.
+    /// Orders the vehicle's hold mode.
     pub(super) fn begin_hold(&mut self, now: Duration) {
         self.leave_to(now, Mode::Hold);
     }
 
-    /// To the ground.
+    /// Orders the landing.
     pub(super) fn begin_landing(&mut self, now: Duration) {
         self.leave_to(now, Mode::Land);
     }
@@ -52,7 +52,7 @@ impl Flight {
     fn leave_to(&mut self, now: Duration, wish: Mode) {
         // a mode that is not ours is not left: whoever chose it flies
         let from = self.contact.as_ref().map(|contact| contact.telemetry.stack().number_of(Mode::External));
-        // setpoints go on until the mode is seen, but say: stop here; what stands on the ground is not steered
+        // setpoints continue until the mode is seen, but say: stop here; what stands on the ground is not steered
         if self.stand.is_none() {
             self.guide.lead = Lead::Silent;
         }
@@ -69,7 +69,7 @@ impl Flight {
         self.ask(now, wish);
     }
 
-    /// Where the vehicle comes to rest if it brakes now.
+    /// The place at which the vehicle comes to rest if it brakes now.
     fn stopping_place(&self) -> Option<Place> {
         let (position_m, velocity_m_s) = self.motion_now()?;
         let yaw_rad = self.place_now()?.yaw_rad;
@@ -115,7 +115,7 @@ impl Flight {
                 }
             }
             (true, Some(_)) if leaving.strayed => {
-                self.end(now, Cause::Override(format!("{} was left and entered anew", self.phase.name())));
+                self.end(now, Cause::Override(format!("{} was left and entered again", self.phase.name())));
                 return;
             }
             (true, Some(_)) => {
@@ -147,7 +147,7 @@ impl Flight {
         self.wait_for_the_ground(now, wish, wished);
     }
 
-    /// The mode is not seen yet: ask again, then for the next one.
+    /// Repeats the order of a mode that is not reported yet, then orders the next one.
     fn insist(&mut self, now: Duration, wish: Mode, wished: Duration) {
         if self.left_by_others(now) {
             return;
@@ -166,8 +166,10 @@ impl Flight {
             Mode::Land if waited > LAND_BY => Some(Mode::Return),
             Mode::Return if waited > LAND_BY => {
                 let mode = self.mode_name();
-                self.cause.get_or_insert(Cause::Unresponsive(format!("no mode is taken; it is in {mode}")));
-                self.note(now, Level::Error, "abort", "the vehicle takes no mode: hands off");
+                self.cause.get_or_insert(Cause::Unresponsive(format!(
+                    "no ordered mode is entered; it is in {mode}"
+                )));
+                self.note(now, Level::Error, "abort", "the vehicle enters no ordered mode: hands off");
                 self.hands_off(now);
                 return;
             }
@@ -188,7 +190,8 @@ impl Flight {
         }
     }
 
-    /// In another mode than the one that it was to leave, and not by our command: somebody else's will.
+    /// Whether the vehicle is in a mode that we did not order, and not in the one that it was to leave: somebody else
+    /// decided so.
     fn left_by_others(&mut self, now: Duration) -> bool {
         let Some(shown) = self.custom_mode() else { return false };
         let Phase::Leave(leaving) = &self.phase else { return false };
@@ -229,7 +232,7 @@ impl Flight {
         let asked = leaving.disarmed.is_some_and(|at| now.saturating_sub(at) < DISARM_AGAIN);
         if wish == Mode::Hold {
             if held {
-                self.note(now, Level::Warning, "abort", "held long enough: to the ground");
+                self.note(now, Level::Warning, "abort", "held long enough: landing");
                 self.wish(now, Mode::Land);
             }
         } else if landed_for > DISARM_AFTER && !asked && !self.commander.waits_for(&disarm) {
@@ -250,7 +253,7 @@ impl Flight {
     pub(super) fn key(&mut self, now: Duration, key: Key) {
         if matches!(self.phase, Phase::Watch) {
             let text =
-                "hands off is final: the vehicle is its pilot's; use the remote control, or start anew";
+                "hands off is final: the pilot has control; use the remote control, or start mavid again";
             self.note(now, Level::Warning, "watch", text);
             return;
         }
@@ -265,7 +268,7 @@ impl Flight {
             if self.killed_in.is_some() {
                 self.give(now, Order::kill(), KILLING);
             } else {
-                let text = "the vehicle is not in our mode: its motors are its pilot's to stop";
+                let text = "the vehicle is not in our mode: only its pilot may stop the motors";
                 self.note(now, Level::Error, "abort", text);
             }
             // a stream that ends makes PX4 choose another mode, in which nothing of ours is obeyed: it ends with the order
@@ -306,7 +309,7 @@ impl Flight {
         }
     }
 
-    /// The program is told to end: the vehicle is left holding, or to what it does already.
+    /// The program is to end: the vehicle is left in hold, or in what it does already.
     pub(super) fn stop(&mut self, now: Duration, by: &str) {
         if matches!(self.phase, Phase::Watch | Phase::Lost) {
             let mode = self.mode_name();

@@ -1,32 +1,32 @@
-//! How far a vehicle is on its way out of our mode.
+//! State of a vehicle that leaves our mode.
 
 use std::time::Duration;
 
 use crate::autopilot::Mode;
 use crate::fly::safety::Sustained;
 
-/// On the way out.
+/// State while our mode is left.
 #[derive(Debug)]
 pub(super) struct Leaving {
     pub(super) wish: Mode,
-    /// the mode that it was in, by our doing, when that was wished for
+    /// the mode, ordered by us, in which it was when the new one was requested
     pub(super) from: Option<u32>,
     pub(super) wished: Duration,
-    /// the command for it left: a mode that shows before is somebody else's choice
+    /// whether the command was sent: a change of mode before was somebody else's choice
     pub(super) ordered: bool,
-    /// when it was last asked for
+    /// when it was last ordered
     pub(super) asked: Duration,
-    /// when the wished mode was first seen
+    /// when the requested mode was first reported
     pub(super) reached: Option<Duration>,
-    /// seen in another mode after that, and whether it ever was in the air
+    /// reported in another mode after that, and whether it ever was in the air
     pub(super) left: Sustained,
     pub(super) strayed: bool,
-    /// somebody decides what follows a hold
+    /// whether the operator decides what follows a hold
     pub(super) by_operator: bool,
-    /// the program ends by then
+    /// when the program ends at the latest
     pub(super) stop_by: Option<Duration>,
     pub(super) landed: Sustained,
-    /// when it was last told to disarm
+    /// when it was last ordered to disarm
     pub(super) disarmed: Option<Duration>,
 }
 
@@ -52,7 +52,7 @@ impl Leaving {
         self.wish
     }
 
-    /// The command for it left.
+    /// Notes that the command was sent.
     pub(super) fn ordered(&mut self) {
         self.ordered = true;
     }
@@ -61,13 +61,13 @@ impl Leaving {
         self.ordered
     }
 
-    /// It was seen in another mode after the one that was wished for: somebody else flies it.
+    /// Whether it was reported in another mode after the requested one: somebody else flies it.
     pub(super) fn has_strayed(&self) -> bool {
         self.strayed
     }
 
-    /// It was in this mode when it was told to leave it, and is not seen to have left it. Who shows it again afterwards is
-    /// flown by somebody else.
+    /// Whether it was in this mode when it was ordered to leave it, and is not reported to have left it. If it reports
+    /// the mode again later, somebody else flies it.
     pub(super) fn comes_from(&self, custom_mode: u32) -> bool {
         self.reached.is_none() && self.from == Some(custom_mode)
     }

@@ -1,4 +1,4 @@
-//! What the flight makes of the frames that it hears.
+//! Evaluation of the received frames.
 
 use std::time::Duration;
 
@@ -10,9 +10,9 @@ use crate::fly::outcome::{Cause, Level};
 use crate::fly::safety::Doubted;
 use crate::wire::{Check, Frame, Payload};
 
-/// For a vehicle to fly our setpoints after its takeoff, and to say so.
+/// Time for a vehicle to follow our setpoints after its takeoff, and to report it.
 const TAKEN_OVER: Duration = Duration::from_millis(1500);
-/// After a silence of this length the vehicle's mode is asked for: frames come a hundred times a second else.
+/// After a silence of this length the vehicle's mode is requested; normally frames arrive a hundred times a second.
 const SILENCE: Duration = Duration::from_millis(500);
 
 impl Flight {
@@ -65,14 +65,14 @@ impl Flight {
         self.check_motion(now);
     }
 
-    /// The addressee at this offset is us, or nobody in particular: it is an extension that may be zero.
+    /// Whether the addressee at this offset is us or nobody in particular: it is an extension that may be zero.
     fn is_to_us(&self, payload: Payload<'_>, offset: usize) -> bool {
         let (system, component) = self.sortie.settings.station;
         let is = |byte: u8, id: u32| byte == 0 || u32::from(byte) == id;
         is(payload.u8(offset), system.0) && is(payload.u8(offset + 1), component.0.into())
     }
 
-    /// It has been heard without a break for long enough to fly what it is told.
+    /// Whether it has been heard without a pause for long enough to follow our setpoints.
     fn is_settled(&self, now: Duration) -> bool {
         self.contact
             .as_ref()
@@ -115,7 +115,7 @@ impl Flight {
                 self.end(now, Cause::Reboot);
             }
             Novelty::Reboot => {
-                self.end(now, Cause::Refused("the autopilot started anew; expected it to stay on".into()));
+                self.end(now, Cause::Refused("the autopilot restarted; expected it to stay on".into()));
             }
             Novelty::EstimatorReset(what) if self.phase.is_airborne() => {
                 self.end(now, Cause::EstimatorReset(what));

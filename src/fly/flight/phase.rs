@@ -3,32 +3,32 @@
 use super::checking::Checking;
 use super::leaving::Leaving;
 
-/// Where in the flight.
+/// A phase of the flight.
 #[derive(Debug)]
 pub(super) enum Phase {
-    /// until the vehicle is found
+    /// search for the vehicle
     Connect,
-    /// until it may fly
+    /// checks before the flight
     Check(Checking),
     /// setpoints before OFFBOARD
     Prime,
-    /// our mode is asked for, of a vehicle that is in the one in which it was found
+    /// our mode is ordered; the vehicle is in the mode in which it was found
     Engage,
     /// in our mode, until the estimator is good
     Ready,
-    /// arming is asked for
+    /// arming is ordered
     Arm,
-    /// up from the ground
+    /// climb from the ground
     Climb,
-    /// to where the course begins
+    /// transfer to the begin of the course
     Transfer,
-    /// until it stands still there
+    /// until it hovers there
     Gate,
-    /// along the trajectory
+    /// the trajectory
     Course,
-    /// to hold, to the ground or home, in the vehicle's own mode
+    /// hold, landing or return, in the vehicle's own mode
     Leave(Leaving),
-    /// nothing is heard: nothing is sent until something is
+    /// nothing is received: nothing is sent until something is
     Lost,
     /// hands off
     Watch,
@@ -56,12 +56,12 @@ impl Phase {
         }
     }
 
-    /// Our mode is engaged and setpoints are ours.
+    /// Whether our mode is engaged and we send setpoints.
     pub(super) fn is_ours(&self) -> bool {
         matches!(self, Self::Ready | Self::Arm | Self::Climb | Self::Transfer | Self::Gate | Self::Course)
     }
 
-    /// The vehicle may be off the ground by our doing.
+    /// Whether the vehicle may be off the ground by our orders.
     pub(super) fn is_airborne(&self) -> bool {
         matches!(
             self,

@@ -1,4 +1,4 @@
-//! Where the vehicle stands before its takeoff: inside the room, from the checks to the climb.
+//! The vehicle's place before its takeoff, which must be inside the room from the checks to the climb.
 
 use super::phase::Phase;
 use super::state::Flight;
@@ -6,11 +6,13 @@ use crate::fly::outcome::Cause;
 use crate::fly::safety::{Lead, SetpointBounds};
 use nalgebra::Vector3;
 
-/// A vehicle may stand so far outside the room's walls, m: its estimate wanders.
+/// Largest distance of a standing vehicle outside the room's walls, m, for the error of its estimate. Chosen; not
+/// measured.
 const OUTSIDE_MAX_M: f64 = 0.1;
 
 impl Flight {
-    /// Whether it still stands in the room in which it was checked: its estimate may have jumped, or somebody have moved it.
+    /// The cause if it is no longer in the room for which it was checked: its estimate may have jumped, or somebody may
+    /// have moved it.
     pub(super) fn check_stand(&self) -> Option<Cause> {
         let told = self.guide.lead != Lead::Silent || matches!(self.phase, Phase::Arm);
         let on_ground = matches!(self.phase, Phase::Prime | Phase::Engage | Phase::Ready | Phase::Arm);
@@ -18,7 +20,7 @@ impl Flight {
         self.stands_outside(&place.position_m).map(Cause::Refused)
     }
 
-    /// That it stands beyond the walls of the room, if it does.
+    /// A message if it stands beyond the walls of the room.
     pub(super) fn stands_outside(&self, stand_m: &Vector3<f64>) -> Option<String> {
         let room = SetpointBounds::room(&self.sortie.limits, &self.offset_m(stand_m));
         let beyond_m = (stand_m - room.nearest(stand_m)).xy().norm();

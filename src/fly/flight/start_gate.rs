@@ -7,16 +7,20 @@ use crate::fly::health::BatteryLevel;
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::setpoint::wrapped;
 
-/// What is asked for at first.
+/// Largest distance to the start at first, m. Chosen; 0.3 m and 0.2 m/s stayed shut in 6 of 27 simulated flights, so
+/// the gate adapts.
 const NEAR_M: f64 = 0.3;
+/// Largest speed at first, m/s. Chosen, as above.
 const SLOW_M_S: f64 = 0.2;
+/// Largest error of the heading, rad. Chosen; not measured.
 const TURNED_RAD: f64 = 0.15;
-/// For how long it must keep to that.
+/// Time for which it must satisfy these limits.
 const HOLDS: Duration = Duration::from_secs(1);
-/// More than it did while it was watched.
+/// Factor on the largest deviation in the observed hover. Chosen; the gate then opened in 68 of 68 simulated flights.
 const SPARE: f64 = 1.25;
-/// No more than this share of the tracking limit is ever allowed, and no more than this speed.
+/// Largest share of the tracking limit that is ever allowed. Chosen; not measured.
 const SHARE_OF_TRACKING: f64 = 0.6;
+/// Largest speed that is ever allowed, m/s. Chosen; not measured.
 const FAST_M_S: f64 = 0.6;
 
 impl Flight {
@@ -41,7 +45,8 @@ impl Flight {
         }
     }
 
-    /// m and m/s that are allowed: what the operator says, or the usual, or what the vehicle has shown in hover.
+    /// Allowed distance (m) and speed (m/s): those of the operator, the usual ones, or those that the vehicle has shown
+    /// in hover.
     fn gate_allows(&mut self, now: Duration) -> (f64, f64) {
         let settings = &self.sortie.settings;
         let (most_m, most_m_s) = (SHARE_OF_TRACKING * settings.tracking_max_m, FAST_M_S);
@@ -61,7 +66,8 @@ impl Flight {
             && !std::mem::replace(&mut self.gate.told, true)
         {
             let text = format!(
-                "it hovers no nearer than it does: the start gate opens within {:.2} m and {:.2} m/s instead of {NEAR_M} m \
+                "it does not hover more precisely: the start gate opens within {:.2} m and {:.2} m/s instead of \
+                 {NEAR_M} m \
                  and {SLOW_M_S} m/s",
                 allowed.0, allowed.1
             );

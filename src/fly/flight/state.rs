@@ -1,4 +1,4 @@
-//! The state of a flight, and what is known of it.
+//! The state of a flight.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -34,20 +34,20 @@ pub struct Flight {
     pub(super) commander: Commander,
     /// whether the vehicle's mode is known well enough to command it
     pub(super) known: ModeKnowledge,
-    /// what looks like another master, and the reports of the mode that had come by then
+    /// a suspected second station, and the number of reports of the mode at that time
     pub(super) suspected: Option<(Cause, u64)>,
-    /// frames lie in the link that were not read yet: no command goes out before
+    /// the link holds unread frames: no command is sent before they are read
     pub(super) unread: bool,
-    /// when it was last asked to go on
+    /// time of the last step
     pub(super) stepped: Option<Duration>,
     pub(super) phase: Phase,
     /// when the phase was entered
     pub(super) entered: Duration,
     /// the mode in which it was found once all checks were passed
     pub(super) found: Option<u32>,
-    /// where it stood when it was armed
+    /// its place when it was armed
     pub(super) stand: Option<Place>,
-    /// what is sent came above the room's floor: from then on nothing below is sent
+    /// setpoints have been above the room's floor: from then on none below is sent
     pub(super) climbed: bool,
     pub(super) guide: Guide,
     pub(super) watch: Watch,
@@ -57,9 +57,9 @@ pub struct Flight {
     pub(super) clearance: Option<Result<(), String>>,
     /// the word for arming, after the page before the flight
     pub(super) word_given: bool,
-    /// the order to arm left, and may act later than the vehicle says so
+    /// the order to arm was sent, and may act before the vehicle reports it
     pub(super) arm_ordered: bool,
-    /// by which the vehicle is weighed once it hovers
+    /// thrust of the outputs, for the comparison with the weight in hover
     pub(super) lift: Option<Box<Lift>>,
     /// the mode in which the operator stopped the motors
     pub(super) killed_in: Option<u32>,
@@ -76,7 +76,7 @@ pub(super) struct Contact {
 }
 
 impl Flight {
-    /// A flight that begins at zero of the clock that it will be told.
+    /// A flight that begins at time zero of its clock.
     #[must_use]
     pub fn new(sortie: Sortie) -> Self {
         let watch = Watch::new(&sortie);
@@ -118,12 +118,12 @@ impl Flight {
         }
     }
 
-    /// What is to be done next; ask until `None`.
+    /// The next action; call it until it returns `None`.
     pub fn next_action(&mut self) -> Option<Action> {
         self.actions.pop_front()
     }
 
-    /// What is to be streamed. It is as old as the last [`Flight::handle`].
+    /// The setpoints to be streamed, as of the last [`Flight::handle`].
     #[must_use]
     pub fn guide(&self) -> &Guide {
         &self.guide
@@ -153,25 +153,25 @@ impl Flight {
         self.release
     }
 
-    /// What tells a known message by its checksum.
+    /// Seeds of the checksums of known messages.
     #[must_use]
     pub fn seeds(&self) -> &CrcSeeds {
         &self.seeds
     }
 
-    /// What is flown.
+    /// The sortie that is flown.
     #[must_use]
     pub fn sortie(&self) -> &Sortie {
         &self.sortie
     }
 
-    /// The flight's own message requests are done and it waits for [`Event::Cleared`](super::Event::Cleared).
+    /// Whether the flight's own message requests are done and it waits for [`Event::Cleared`](super::Event::Cleared).
     #[must_use]
     pub fn wants_clearance(&self) -> bool {
         matches!(&self.phase, Phase::Check(checking) if checking.has_asked()) && self.clearance.is_none()
     }
 
-    /// Says whether frames lie in the link that may say more: until they are read, no command goes out.
+    /// Notes whether the link holds unread frames: until they are read, no command is sent.
     pub fn set_unread(&mut self, unread: bool) {
         self.unread = unread;
     }

@@ -1,4 +1,4 @@
-//! What a display shows of a flight.
+//! Status of a flight for a display.
 
 use std::time::Duration;
 
@@ -7,18 +7,18 @@ use super::state::Flight;
 use crate::fly::health::BatteryLevel;
 use crate::fly::safety::Lead;
 
-/// What a display shows.
+/// Status for a display.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Status {
     /// name of the phase
     pub phase: &'static str,
-    /// off the ground by our doing
+    /// off the ground by our orders
     pub airborne: bool,
     /// ended before its time
     pub aborted: bool,
     /// s along the trajectory, and all of it
     pub progress_s: Option<(f64, f64)>,
-    /// the vehicle's mode in its own words
+    /// the vehicle's mode by its name
     pub mode: Option<String>,
     /// motors may turn
     pub armed: bool,
@@ -26,7 +26,7 @@ pub struct Status {
     pub period: (u32, u32),
     /// distance to the reference, m
     pub tracking_m: f64,
-    /// since the vehicle was heard, s
+    /// time since the vehicle was heard, s
     pub link_age_s: Option<f64>,
     /// low or worse by the autopilot's own judgement
     pub battery_is_low: bool,
@@ -40,11 +40,11 @@ pub struct Status {
     pub velocity_m_s: Option<[f64; 3]>,
     /// roll, pitch, yaw of the body (forward, left, up) in the world, rad
     pub euler_rad: Option<[f64; 3]>,
-    /// why the estimate cannot be flown by
+    /// faults of the estimate
     pub estimator_faults: Vec<String>,
-    /// how long the estimate has been good; `None` where nothing was said of it
+    /// time for which the estimate has been good; `None` without a report
     pub estimate_good_for: Option<Duration>,
-    /// the vehicle's own checks; `None` where it does not say
+    /// the vehicle's own checks; `None` without a report
     pub may_arm: Option<bool>,
     /// the operator's word for arming is waited for
     pub awaits_word: bool,

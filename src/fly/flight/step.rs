@@ -14,7 +14,7 @@ use crate::fly::target::heartbeat;
 const HEARTBEAT_PERIOD: Duration = Duration::from_secs(1);
 
 impl Flight {
-    /// Takes what happened at `now` and goes on.
+    /// Takes an event at `now` and continues.
     pub fn handle(&mut self, now: Duration, event: Event<'_>) {
         if matches!(self.phase, Phase::Done) {
             return;

@@ -1,4 +1,4 @@
-//! The safety rules, asked at every step.
+//! The safety rules, checked in every step.
 
 use std::time::Duration;
 
@@ -14,27 +14,27 @@ use crate::fly::target::Order;
 const PAUSE_AFTER: Duration = Duration::from_secs(2);
 /// Silence after which the flight is given up.
 const GIVE_UP_AFTER: Duration = Duration::from_secs(5);
-/// The mode is not known without a HEARTBEAT of this time; other messages may still come.
+/// Without a HEARTBEAT within this time the mode is not known; other messages may still arrive.
 const HEARTBEAT_MAX: Duration = Duration::from_secs(6);
-/// No position for this long is no estimate.
+/// Without a position for this time there is no estimate.
 const POSITION_MAX: Duration = Duration::from_secs(2);
-/// After a standstill of this program, what lies in the socket is read by then.
+/// After a stall of this program, the messages in the socket are read within this time.
 const SOCKET_IS_READ: Duration = Duration::from_millis(500);
-/// Other messages come meanwhile: what is silent is the estimate, not the link.
+/// If other messages arrive within this time, the estimate is silent and not the link.
 const STILL_HEARD: Duration = Duration::from_millis(500);
-/// Innovation tests fail for an instant; an estimate bad for this long is bad.
+/// Innovation tests fail for an instant; an estimate is bad if they fail for this time.
 const ESTIMATOR_BAD: Duration = Duration::from_secs(1);
-/// An autopilot that declares a failsafe and leaves the mode as it is for so long has none for it that acts. Its battery's
-/// report, which may be what explains it, comes within this time.
+/// If an autopilot declares a failsafe and does not change the mode within this time, its failsafe does nothing. A
+/// report of its battery, which may be the reason, arrives within this time.
 const FAILSAFE_ACTS: Duration = Duration::from_millis(2500);
-/// An order to stop the motors that waits for a report of the mode stands no longer, and neither do the setpoints that keep
-/// the vehicle in it.
+/// An order to stop the motors that waits for a report of the mode is given up after this time, together with the
+/// setpoints that keep the vehicle in the mode.
 const KILL_BY: Duration = Duration::from_secs(7);
-/// A termination (a kill switch, a parachute) that is declared for so long is none by a forged or damaged frame.
+/// A termination (a kill switch, a parachute) that is declared for this time is not a forged or damaged frame.
 const TERMINATES: Duration = Duration::from_secs(1);
 
 impl Flight {
-    /// All rules that hold while the vehicle is ours.
+    /// All rules for the time in which the vehicle is in our mode.
     pub(super) fn supervise(&mut self, now: Duration) {
         if self.contact.is_none() || matches!(self.phase, Phase::Done) {
             return;
@@ -76,14 +76,14 @@ impl Flight {
         None
     }
 
-    /// What looks like another master may be the vehicle's own failsafe or its pilot, of which a report of the mode tells a
-    /// moment later: only one who is seen while the mode stays ours is another master.
+    /// Checks a suspected second station. The cause may be the vehicle's own failsafe or its pilot, which a report of
+    /// the mode shows a moment later. It is a second station only if the mode stays ours.
     fn check_suspicion(&mut self) -> Option<Cause> {
         let confirmed = |(_, reports): &mut (Cause, u64)| self.known.reports() > *reports;
         self.suspected.take_if(confirmed).map(|(cause, _)| cause)
     }
 
-    /// A single "disarmed" in the air is not believed, and is told.
+    /// Reports a single "disarmed" in the air, which is not accepted.
     fn tell_contradiction(&mut self, now: Duration) {
         let contradicted = self.contact.as_ref().is_some_and(|contact| {
             let telemetry = &contact.telemetry;
@@ -91,12 +91,13 @@ impl Flight {
             telemetry.is_arming_contradicted() && !telemetry.ground.is_said()
         });
         if contradicted && !std::mem::replace(&mut self.watch.told_contradiction, contradicted) {
-            let text = "a HEARTBEAT says that it is disarmed and nothing else agrees: not believed unless it is said again";
+            let text =
+                "a HEARTBEAT says that it is disarmed and nothing else agrees: ignored unless it is repeated";
             self.note(now, Level::Warning, "vehicle", text);
         }
     }
 
-    /// What is streamed can be sent.
+    /// Checks that the streamed setpoint can be sent.
     fn check_setpoint(&self, now: Duration) -> Option<Cause> {
         let (target, _) = self.target()?;
         let why = self.guide.setpoint(now)?.message(target).err()?;
@@ -128,8 +129,8 @@ impl Flight {
         self.check_declared(now)
     }
 
-    /// What the autopilot declares by its system status. ArduPilot declares a failsafe whatever the failsafe does, and goes
-    /// on in our mode where it does nothing: somebody has to end the flight. A low battery has a rule of its own.
+    /// Checks the system status of the autopilot. ArduPilot declares a failsafe whatever its reaction is, and continues
+    /// in our mode if the reaction is none: mavid then has to end the flight. A low battery has a rule of its own.
     fn check_declared(&mut self, now: Duration) -> Option<Cause> {
         let telemetry = &self.contact.as_ref()?.telemetry;
         let status = telemetry.state?.value;
@@ -147,7 +148,7 @@ impl Flight {
         None
     }
 
-    /// Rules on where the vehicle is, asked when a frame of it came.
+    /// Rules on the place of the vehicle, checked at each frame of it.
     pub(super) fn check_motion(&mut self, now: Duration) {
         if !self.phase.is_ours() || !self.phase.is_airborne() {
             return;
@@ -194,8 +195,10 @@ impl Flight {
             return;
         }
         if let Some(unknown) = self.unanswered(now).filter(|unknown| *unknown > GIVE_UP_AFTER) {
-            let text =
-                format!("{:.1} s without an answer of the vehicle, which is heard", unknown.as_secs_f64());
+            let text = format!(
+                "{:.1} s without an answer of the vehicle, although its messages arrive",
+                unknown.as_secs_f64()
+            );
             self.end(now, Cause::LinkLost(text));
             return;
         }
@@ -222,14 +225,14 @@ impl Flight {
         }
     }
 
-    /// For how long a vehicle that is flown by us has been asked for its mode in vain.
+    /// Time for which a vehicle in our mode has not answered requests for its mode.
     fn unanswered(&self, now: Duration) -> Option<Duration> {
         let resumed = self.contact.as_ref()?.telemetry.resumed;
         let since = self.known.unknown_since().filter(|_| self.phase.is_ours())?;
         Some(now.saturating_sub(since.max(resumed).max(self.watch.awake)))
     }
 
-    /// Nothing is heard of the vehicle: nothing is sent until it is, and then only where it is still in our mode.
+    /// Handles the loss of the vehicle: nothing is sent until it is heard again and is still in our mode.
     pub(super) fn lose(&mut self, now: Duration) {
         self.guide.lead = Lead::Silent;
         self.commander.clear();
@@ -239,7 +242,7 @@ impl Flight {
         self.note(now, Level::Warning, "link", text);
     }
 
-    /// The link is lost, or was until now.
+    /// Waits for a report of the vehicle after a loss of the link.
     pub(super) fn wait_for_word(&mut self, now: Duration) {
         let Some(contact) = &self.contact else { return };
         let heard = now.saturating_sub(contact.telemetry.heard) < PAUSE_AFTER;
@@ -262,8 +265,8 @@ impl Flight {
         }
     }
 
-    /// Lets go for good: nothing is sent any more but heartbeats, and no mode is asked for again, whatever the vehicle
-    /// shows later.
+    /// Hands off: from now on only heartbeats are sent, and no mode is ordered again, whatever the vehicle reports
+    /// later.
     pub(super) fn hands_off(&mut self, now: Duration) {
         self.guide.lead = Lead::Silent;
         self.commander.clear();
@@ -272,14 +275,14 @@ impl Flight {
         self.note(now, Level::Information, "watch", text);
     }
 
-    /// Others fly the vehicle.
+    /// Watches a vehicle that others fly.
     pub(super) fn watch_others(&mut self, now: Duration) {
         let Some(contact) = &self.contact else { return };
         let heard = now.saturating_sub(contact.telemetry.heard) < PAUSE_AFTER;
         let late = now.saturating_sub(self.entered) > KILL_BY;
         if late && self.commander.waits_for(&Order::kill()) {
             self.commander.forget(&Order::kill());
-            let text = "whether the motors are to be stopped in this mode was not learnt in time: they are its pilot's to stop";
+            let text = "the mode was not known in time, so the motors were not stopped: only the pilot may stop them";
             self.note(now, Level::Error, "abort", text);
         }
         let killing = self.commander.waits_for(&Order::kill()) && self.is_to_command();
@@ -296,7 +299,7 @@ impl Flight {
         }
     }
 
-    /// The motors are off.
+    /// Ends the watch: the motors are off.
     fn finish_watching(&mut self, now: Duration) {
         let ending = match self.cause {
             Some(Cause::Killed) => Ending::Fell,
@@ -306,7 +309,7 @@ impl Flight {
         self.finish(now, ending);
     }
 
-    /// Ends where nothing was heard for too long.
+    /// Ends the flight if nothing was heard for too long.
     fn give_up_listening(&mut self, now: Duration) {
         let Some(contact) = &self.contact else { return };
         let silent = now.saturating_sub(contact.telemetry.heard.max(self.watch.awake));
@@ -315,7 +318,7 @@ impl Flight {
         }
     }
 
-    /// The vehicle's mode in its own words.
+    /// The name of the vehicle's mode.
     pub(super) fn mode_name(&self) -> String {
         let state = self.contact.as_ref().and_then(|contact| {
             Some(contact.telemetry.stack().mode_name(contact.telemetry.state?.value.custom_mode))

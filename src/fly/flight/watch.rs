@@ -1,4 +1,4 @@
-//! What the safety rules remember.
+//! State of the safety rules.
 
 use std::time::Duration;
 
@@ -6,12 +6,14 @@ use crate::fly::safety::{Envelope, Masters, Sustained, Tracking};
 use crate::fly::sortie::Sortie;
 use crate::units::rad_from_deg;
 
-/// Beyond what is planned, degrees.
+/// Default limit of the tilt above the planned one, degrees. Chosen; not measured.
 const TILT_BEYOND_DEG: f64 = 20.0;
+/// Least default limit of the tilt, degrees. Chosen; not measured.
 const TILT_LEAST_DEG: f64 = 25.0;
+/// Greatest default limit of the tilt, degrees. Chosen; not measured.
 const TILT_MOST_DEG: f64 = 60.0;
 
-/// What the safety rules remember.
+/// State of the safety rules.
 #[derive(Debug)]
 pub(super) struct Watch {
     pub(super) tracking: Tracking,
@@ -21,9 +23,9 @@ pub(super) struct Watch {
     pub(super) terminated: Sustained,
     pub(super) unhealthy: Sustained,
     pub(super) paused_since: Option<Duration>,
-    /// when this program last woke from a standstill of 0.3 s or more: what came meanwhile is not read at once
+    /// when this program last resumed after a stall of 0.3 s or more: messages from that time are not read immediately
     pub(super) awake: Duration,
-    /// that the vehicle calls itself disarmed and is not believed was told
+    /// whether an unaccepted report of "disarmed" was reported
     pub(super) told_contradiction: bool,
 }
 
@@ -48,7 +50,7 @@ impl Watch {
         }
     }
 
-    /// Nothing is heard: the trajectory waits.
+    /// Whether the trajectory waits because nothing is received.
     pub(super) fn is_paused(&self) -> bool {
         self.paused_since.is_some()
     }

@@ -1,14 +1,14 @@
-//! Which of several messages a quantity is taken from, chosen as they come.
+//! Choice of the message from which a quantity is taken, while messages arrive.
 
 use super::track::{Track, WIDTH};
 use crate::recording::{Quantity, StreamKey};
 use crate::signals::best_rank;
 
-/// Sources are watched for so long before one is chosen, s.
+/// Time for which sources are observed before one is chosen, s. Chosen; not measured.
 const WATCH_S: f64 = 2.0;
-/// A source that was silent for so long is given up, s.
+/// Silence after which a source is given up, s. Chosen; not measured.
 const SILENT_S: f64 = 1.0;
-/// Sources of one quantity that are watched; more are not looked at.
+/// Largest number of observed sources of one quantity; others are ignored.
 const WATCHED: usize = 8;
 /// MAV_LANDED_STATE_ON_GROUND
 const ON_GROUND: f64 = 1.0;
@@ -20,10 +20,10 @@ const QUANTITIES: [Quantity; 5] = [
     Quantity::ActuatorCommand,
     Quantity::RotorSpeed,
 ];
-/// Of which a row is made; one of actuator commands and rotor speeds suffices.
+/// Quantities of a row; in addition, either actuator commands or rotor speeds are needed.
 const NEEDED: [Quantity; 3] = [Quantity::AngularRate, Quantity::Attitude, Quantity::Velocity];
 
-/// A source while it is watched.
+/// A source while it is observed.
 #[derive(Debug, Clone, Copy)]
 struct Watched {
     id: StreamKey,
@@ -80,7 +80,7 @@ impl Sources {
         }
     }
 
-    /// The autopilot says that it stands on the ground.
+    /// Whether the autopilot reports that it stands on the ground.
     pub(super) fn is_landed(&self) -> bool {
         self.landed
     }
@@ -98,7 +98,7 @@ impl Sources {
         NEEDED.iter().try_fold(drive, |least, quantity| newest(*quantity).map(|s| least.min(s)))
     }
 
-    /// The clock started anew: no stamp means what it meant.
+    /// Forgets all samples, because the clock restarted.
     pub(super) fn clear(&mut self) {
         for chosen in &mut self.quantities {
             chosen.track.clear();

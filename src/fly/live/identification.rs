@@ -12,13 +12,14 @@ use crate::signals::{motor_channels, propulsion_from_log};
 use crate::vehicle::{Anchor, Mixer, Propulsion, Vehicle};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
-/// Between instants, s.
+/// Step between instants, s. Chosen; not measured.
 const STEP_S: f64 = 0.01;
-/// Thrust below this share of the nominal weight: not flying.
+/// Thrust below which a vehicle does not fly, as a share of the nominal weight. Chosen; not measured.
 const FLYING_SHARE: f64 = 0.4;
-/// Left out after every start and gap until the filters have settled and the ground is far, s.
+/// Time left out after every start and gap, s: the filters settle, and the vehicle leaves the ground. Chosen; not
+/// measured.
 const SETTLING_S: f64 = 2.0;
-/// Instants that may be made up for at once after a stall of the link.
+/// Largest number of instants that are caught up at once after a stall of the link.
 const CATCH_UP: usize = 400;
 
 /// Recursive identification of one flight.
@@ -36,13 +37,13 @@ pub struct LiveIdentification {
     active: bool,
     next_s: Option<f64>,
     last_row_s: f64,
-    /// since when everything has been there without a gap, and in the air, s
+    /// start of the time in the air without a gap in any stream, s
     flying_since_s: Option<f64>,
 }
 
 impl LiveIdentification {
-    /// Of a vehicle whose autopilot sent these parameters; they say how a command becomes thrust. The low-pass
-    /// is left out where its cut-off does not fit 100 Hz.
+    /// The identification of a vehicle whose autopilot sent these parameters, which state how a command becomes thrust.
+    /// There is no low-pass if its cut-off does not fit 100 Hz.
     #[must_use]
     pub fn new(vehicle: &Vehicle, parameters: &Parameters, settings: &LiveSettings) -> Self {
         let said = Recording {
@@ -70,12 +71,12 @@ impl LiveIdentification {
         }
     }
 
-    /// Whether rows count: the trajectory is being flown. Without word from the flight, whatever flies counts.
+    /// Sets whether rows count, which is while the trajectory is flown. Without this, rows of the whole flight count.
     pub fn set_active(&mut self, active: bool) {
         self.active = active;
     }
 
-    /// Takes what the decoder gave.
+    /// Takes an event of the decoder.
     pub fn take(&mut self, event: &Event<'_>) {
         match event {
             Event::Sample { stream, time_s, values } => {
@@ -92,7 +93,7 @@ impl LiveIdentification {
         }
     }
 
-    /// What the flight says so far; `None` until something can be said.
+    /// The estimate so far; `None` before there is one.
     pub fn estimate(&mut self) -> Option<LiveEstimate> {
         let raw = self.estimator.estimate()?;
         let estimated = match self.vehicle.anchor {
@@ -111,7 +112,7 @@ impl LiveIdentification {
         Some(LiveEstimate { time_s: self.last_row_s, used_s, parameters, estimated })
     }
 
-    /// Rows behind a gap do not belong to those before it.
+    /// Restarts the filters after a gap.
     fn restart(&mut self) {
         self.flying_since_s = None;
         if let Some(causal) = &mut self.causal {
@@ -133,7 +134,7 @@ impl LiveIdentification {
                 None => self.restart(),
             }
         }
-        // too far behind for one call: begin anew at the present
+        // too far behind for one call: begin again at the present
         self.next_s = None;
         self.restart();
     }
@@ -195,10 +196,10 @@ impl LiveIdentification {
     }
 }
 
-/// How the live estimate is made.
+/// Settings of the live estimate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LiveSettings {
-    /// of the causal low-pass, Hz: about ten times the trajectory's highest harmonic
+    /// cut-off of the causal low-pass, Hz: about ten times the trajectory's highest harmonic
     pub cutoff_hz: f64,
 }
 
@@ -208,23 +209,23 @@ impl Default for LiveSettings {
     }
 }
 
-/// One parameter as the flight has it so far.
+/// The present estimate of one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveParameter {
     /// as in files
     pub name: &'static str,
     /// as in files
     pub unit: &'static str,
-    /// value and standard error, or why there is none yet
+    /// value and standard error, or the reason why there is none yet
     pub finding: Finding,
 }
 
-/// What the flight says so far.
+/// The estimate so far.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveEstimate {
     /// s, vehicle clock, of the last row
     pub time_s: f64,
-    /// s of flight that it rests on
+    /// used time of flight, s
     pub used_s: f64,
     /// `[m Ixx Ixy Ixz Iyy Iyz Izz]`
     pub parameters: [LiveParameter; THETA],

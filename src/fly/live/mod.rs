@@ -1,4 +1,4 @@
-//! Identification as the flight goes on: the paper's filtered model (38), built from the live stream by causal
+//! Identification during the flight: the paper's filtered model (38), built from the live stream by causal
 //! filters, and recursive least squares (40).
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! The last moments of one stream.
+//! The last samples of one stream.
 
 use std::collections::VecDeque;
 
@@ -9,18 +9,18 @@ pub(super) type Sample = [f64; WIDTH];
 
 /// Samples kept: more than a second at 100 Hz, half a second at 250 Hz.
 const KEPT: usize = 128;
-/// A hole longer than this is a gap, s.
+/// A longer pause is a gap, s. Chosen; not measured.
 const GAP_S: f64 = 0.12;
 
 /// The value of a stream at an instant.
 pub(super) enum At {
-    /// between two samples, by a straight line
+    /// between two samples, by linear interpolation
     Value(Sample),
-    /// in a hole, or before what is kept
+    /// in a gap, or before the first kept sample
     Gap,
 }
 
-/// The last moments of one stream, in the order of its stamps.
+/// The last samples of one stream, in the order of their time stamps.
 #[derive(Debug)]
 pub(super) struct Track {
     samples: VecDeque<(f64, Sample)>,
@@ -50,7 +50,7 @@ impl Track {
         self.samples.back().map(|(time_s, _)| *time_s)
     }
 
-    /// The samples on both sides of an instant, and how far it lies between them (0..1).
+    /// The samples on both sides of an instant, and its relative position between them (0..1).
     pub(super) fn around(&self, time_s: f64) -> Option<(&Sample, &Sample, f64)> {
         let next = self.samples.partition_point(|(stamp_s, _)| *stamp_s < time_s);
         let (after_s, after) = self.samples.get(next)?;

@@ -1,4 +1,4 @@
-//! Asks for parameters by name until each has answered or has had its chances.
+//! Download of parameters by name, until each has answered or was requested often enough.
 
 use super::{Parameters, RequestedParameter};
 use crate::fly::address::is_from;
@@ -12,17 +12,17 @@ use std::time::Duration;
 /// PARAM_ERROR, and the error that says that there is no such parameter.
 const PARAM_ERROR_ID: u32 = 345;
 const DOES_NOT_EXIST: u8 = 1;
-/// A parameter that exists is given up with this probability at most.
+/// Largest probability with which an existing parameter is given up. Chosen.
 const GIVEN_UP: f64 = 1e-4;
-/// A parameter is asked for at least and at most so many times.
+/// Least and largest number of requests of a parameter.
 const TRIES: (u32, u32) = (3, 12);
 
-/// How patiently.
+/// Timing of the requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DownloadSettings {
     /// between two requests
     pub spacing: Duration,
-    /// until a request counts as lost
+    /// time until a request counts as lost
     pub timeout: Duration,
 }
 
@@ -33,10 +33,10 @@ impl Default for DownloadSettings {
     }
 }
 
-/// How far a download is.
+/// Progress of a download.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
-    /// parameters that answered, or of which the vehicle said that it has none
+    /// parameters that answered, or that the vehicle does not have
     pub settled: usize,
     /// parameters asked for
     pub total: usize,
@@ -63,8 +63,8 @@ impl Item {
     }
 }
 
-/// The download of one vehicle's parameters. Call [`Self::poll`] until it gives nothing, pass on what
-/// the decoder gives ([`Self::take`]) and each frame ([`Self::take_frame`]), and again.
+/// The download of one vehicle's parameters. Repeat: call [`Self::poll`] until it gives nothing, and pass on the
+/// decoder's events ([`Self::take`]) and each frame ([`Self::take_frame`]).
 #[derive(Debug)]
 pub struct Download {
     vehicle: Vehicle,
@@ -78,7 +78,7 @@ pub struct Download {
 }
 
 impl Download {
-    /// Of the parameters that are wanted.
+    /// A download of these parameters.
     #[must_use]
     pub fn new(vehicle: Vehicle, wanted: Vec<RequestedParameter>, settings: DownloadSettings) -> Self {
         let items: Vec<Item> = wanted
@@ -124,7 +124,7 @@ impl Download {
         Some(if self.pending.is_empty() { spaced.max(first) } else { spaced })
     }
 
-    /// Takes what the decoder gave.
+    /// Takes an event of the decoder.
     pub fn take(&mut self, event: &Event<'_>) {
         if let Event::Parameter { name, value } = event
             && let Some(&(item, name)) = self.by_name.get(*name)
@@ -133,7 +133,7 @@ impl Download {
         }
     }
 
-    /// Takes a frame: newer autopilots say of what they do not have.
+    /// Takes a frame: newer autopilots report parameters that they do not have.
     pub fn take_frame(&mut self, frame: &Frame<'_>) {
         let payload = frame.payload();
         if !is_from(&self.vehicle, frame)
@@ -147,20 +147,20 @@ impl Download {
         }
     }
 
-    /// How far it is.
+    /// Its progress.
     #[must_use]
     pub fn progress(&self) -> Progress {
         let settled = self.items.iter().filter(|item| item.settled()).count();
         Progress { settled, total: self.items.len() }
     }
 
-    /// Nothing is left to ask or to wait for.
+    /// Whether nothing is left to request or to wait for.
     #[must_use]
     pub fn is_done(&self, now: Duration) -> bool {
         self.pending.is_empty() && self.is_done_after(now)
     }
 
-    /// What came.
+    /// The received parameters.
     #[must_use]
     pub fn finish(self) -> Parameters {
         let mut out = Parameters { autopilot: self.vehicle.autopilot, ..Parameters::default() };
@@ -199,7 +199,7 @@ impl Download {
         first.or_else(|| self.pending.pop())
     }
 
-    /// Silence proves little on a bad link: as many tries as the losses seen so far ask for.
+    /// Largest number of requests, by the losses so far: on a bad link, silence proves little.
     fn tries_limit(&self) -> u32 {
         let answered = self.items.iter().filter(|item| item.value.is_some());
         let (tries, count) = answered.fold((0, 0_u32), |(t, n), item| (t + item.tries, n + 1));

@@ -1,12 +1,12 @@
-//! What the vehicle will do by itself, in sentences.
+//! The vehicle's failsafes, in sentences.
 
 use super::sentence::Sentence;
 use super::{Parameters, failsafe_ardupilot, failsafe_px4};
 use crate::autopilot::Autopilot;
 use crate::fly::finding::Level;
 
-/// What the vehicle will do if the link, the transmitter, the battery or the fence fails, from the
-/// parameters that it sent. `own_system` is the ground station's MAVLink system id.
+/// Reactions of the vehicle to a loss of the link, the transmitter, the battery or the fence, from its parameters.
+/// `own_system` is the ground station's MAVLink system id.
 #[must_use]
 pub fn failsafe_declaration(parameters: &Parameters, own_system: u8) -> Vec<Sentence> {
     match parameters.autopilot {

@@ -2,7 +2,7 @@
 
 use super::Parameters;
 
-/// What FENCE_ENABLE and FENCE_AUTOENABLE say together.
+/// State of the fence by FENCE_ENABLE and FENCE_AUTOENABLE.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::fly) enum FenceSwitch {
     /// FENCE_ENABLE

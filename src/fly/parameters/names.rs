@@ -1,8 +1,8 @@
-//! Which parameters are asked for, and by which names a vehicle may answer.
+//! Requested parameters, and the names by which a vehicle may answer.
 
 use crate::autopilot::{Autopilot, KillSwitch, Purpose, Stack};
 
-/// A parameter to ask for.
+/// A parameter to request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RequestedParameter {
     /// names by which it may answer, older first
@@ -11,7 +11,7 @@ pub struct RequestedParameter {
     pub purpose: Purpose,
 }
 
-/// What to ask a vehicle with this many rotors, most needed first; nothing for other autopilots.
+/// Parameters to request from a vehicle with this number of rotors, most important first; none for other autopilots.
 #[must_use]
 pub fn wanted(autopilot: Autopilot, rotors: usize) -> Vec<RequestedParameter> {
     let Some(stack) = autopilot.stack() else { return Vec::new() };

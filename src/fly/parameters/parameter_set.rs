@@ -1,19 +1,19 @@
-//! What a vehicle said of its parameters, and the file of it.
+//! Parameters of a vehicle, and their file.
 
 use crate::autopilot::{Autopilot, Renamed};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What a vehicle said of its parameters.
+/// Parameters of a vehicle.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Parameters {
-    /// whose names and meanings
+    /// autopilot, which defines names and meanings
     pub autopilot: Autopilot,
     /// value by the name that answered, in the autopilot's own unit
     pub values: BTreeMap<String, f64>,
-    /// asked for, and no answer came: it may or may not exist
+    /// requested without an answer: it may or may not exist
     pub unanswered: Vec<String>,
-    /// asked for, and the vehicle said that it has none of that name
+    /// requested, and the vehicle reported that it has no parameter of that name
     pub absent: Vec<String>,
 }
 
@@ -85,7 +85,7 @@ impl Parameters {
     }
 }
 
-/// Why a parameter file cannot be read or written.
+/// Errors of a parameter file.
 #[derive(Debug, thiserror::Error)]
 pub enum ParametersError {
     /// not this form of TOML

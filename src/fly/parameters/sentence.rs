@@ -1,15 +1,15 @@
-//! A sentence on what the vehicle does by itself, from parameters that may not have answered.
+//! Sentences about the vehicle's failsafes, from parameters that may not have answered.
 
 use super::Parameters;
 use crate::autopilot::Choice;
 use crate::fly::finding::Level;
 
-/// One thing that may happen and what the vehicle then does.
+/// An event and the vehicle's reaction to it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Sentence {
-    /// what may happen, such as `setpoints stop`
+    /// the event, such as `setpoints stop`
     pub about: &'static str,
-    /// [`Level::Warning`] where the outcome is unknown or not what a flight test wants
+    /// [`Level::Warning`] if the reaction is unknown or not suitable for a flight test
     pub level: Level,
     /// for the operator
     pub text: String,
@@ -27,7 +27,7 @@ impl Topic<'_> {
         Sentence { about: self.about, level, text: text.into() }
     }
 
-    /// What cannot be told, and why.
+    /// A sentence about an unknown reaction, with the reason.
     pub fn unknown(&self, what: &str, name: &str) -> Sentence {
         let name = self.parameters.name_of(name);
         let absent = self.parameters.absent.iter().any(|absent| absent == name);
@@ -35,7 +35,7 @@ impl Topic<'_> {
         self.say(Level::Warning, format!("{what}: unknown, because {why} {name}."))
     }
 
-    /// `what` completed by what the value of `name` means.
+    /// `what`, completed by the meaning of the value of `name`.
     pub fn choose(&self, what: &str, name: &str) -> Sentence {
         let Some(value) = self.parameters.get(name) else { return self.unknown(what, name) };
         let shown = self.parameters.name_of(name);

@@ -1,18 +1,18 @@
-//! How a pilot takes the vehicle over: by which switch, by which sticks, and how the motors are stopped.
+//! How a pilot takes over the vehicle: the switch, the sticks, and how the motors are stopped.
 
 use super::Parameters;
 use super::sentence::Sentence;
 use crate::autopilot::{KillSwitch, POSITIONS, Stack};
 use crate::fly::finding::Level;
 
-/// What is known of the pilot's way to take over, or that it could not be told; about `mode switch` and `kill switch`.
+/// How the pilot takes over, or that it could not be determined; about `mode switch` and `kill switch`.
 #[must_use]
 pub fn takeover_declaration(parameters: &Parameters) -> Vec<Sentence> {
     let (switch, kill) = match parameters.autopilot.stack() {
         Some(stack) => (mode_switch(stack, parameters), kill_switch(stack, parameters)),
         None => {
-            let text =
-                "How a pilot takes over could not be told: this autopilot's parameters are not known here.";
+            let text = "How a pilot takes over could not be determined: the parameters of this autopilot are not known to \
+                 mavid.";
             (Err(text.to_owned()), Err(text.to_owned()))
         }
     };
@@ -28,7 +28,7 @@ fn whole(parameters: &Parameters, name: &str) -> Option<i32> {
 }
 
 fn not_told(what: &str, names: &str) -> String {
-    format!("{what} could not be told: {names} did not answer. Try it before the flight.")
+    format!("{what} could not be determined: {names} did not answer. Try it before the flight.")
 }
 
 fn mode_switch(stack: &Stack, parameters: &Parameters) -> Result<String, String> {
@@ -72,7 +72,8 @@ fn took_over(channel: &str, modes: &[String], stack: &Stack) -> Result<String, S
     if others.is_empty() {
         let (first, last) = (stack.pilot.positions.name(*POSITIONS.start()), POSITIONS.end());
         return Err(format!(
-            "The pilot's mode switch is {channel}, but where it leads could not be told ({first} to {last} say no mode but ours)."
+            "The pilot's mode switch is {channel}, but its modes could not be determined ({first} to {last} hold no \
+             mode other than ours)."
         ));
     }
     Ok(format!("The pilot takes over by the mode switch, {channel}: to {}.", others.join(", ")))
@@ -144,7 +145,7 @@ mod tests {
     fn what_is_missing_or_not_known_is_a_warning() {
         for autopilot in [Autopilot::Px4, Autopilot::ArduPilot, Autopilot::Other] {
             for (level, text) in said(autopilot, &[]) {
-                assert!(level == Level::Warning && text.contains("could not be told"), "{text}");
+                assert!(level == Level::Warning && text.contains("could not be determined"), "{text}");
             }
         }
         let none = said(Autopilot::Px4, &[("RC_MAP_FLTMODE", 0.0), ("RC_MAP_KILL_SW", 0.0)]);
@@ -153,6 +154,6 @@ mod tests {
             "{none:?}"
         );
         let ours = said(Autopilot::Px4, &[("RC_MAP_FLTMODE", 5.0), ("COM_FLTMODE1", 7.0)]);
-        assert!(ours[0].1.contains("no mode but ours"), "{ours:?}");
+        assert!(ours[0].1.contains("no mode other than ours"), "{ours:?}");
     }
 }

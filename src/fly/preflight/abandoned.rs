@@ -1,5 +1,5 @@
-//! If we die now: where the vehicle comes to rest when no setpoint follows the one of any instant, against ground, room
-//! and fence; and which setpoints keep it inside.
+//! The check "if setpoints end": the place at which the vehicle comes to rest if the setpoint of any instant is the
+//! last, compared with ground, room and fence; and the choice of setpoints that keep it inside.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -16,26 +16,27 @@ use crate::fly::safety::{Feeding, SetpointBounds};
 use crate::plan::Reach;
 use crate::trajectory::FlightPath;
 
-/// Steps of the model from one tried instant to the next: 0.1 s.
+/// Steps of the model between two tried instants: 0.1 s.
 const EVERY: usize = 5;
-/// How far a vehicle is from what the model makes of it, m. ArduPilot shapes its own reference and follows that; of PX4
-/// the vehicle itself is modelled, and the embedded one came to rest 0.46 m further on.
+/// Error of the model of ArduPilot, m. ArduPilot shapes its own reference and follows that. Chosen; not measured.
 const ARDUPILOT_OFF_M: f64 = 0.15;
+/// Error of the model of PX4, m, which models the vehicle itself: the embedded one came to rest 0.46 m further on.
 const PX4_OFF_M: f64 = 0.5;
-/// Where nothing better is found, rotors may pass walls and ceiling of the room by so much (m), with a warning.
+/// Largest distance of the rotors beyond walls and ceiling of the room, m, if nothing better is found; a warning is
+/// given. Chosen so that the default plan of the X500 can be flown with PX4's default parameters.
 const WALL_AT_MOST_M: f64 = 1.25;
-/// Shares of velocity and acceleration that are tried, most first.
+/// Shares of velocity and acceleration in the setpoints that are tried, the largest first.
 const SHARES: &[f64] = &[1.0, 0.75, 0.5, 0.35, 0.25, 0.15, 0.1, 0.0];
-/// Share of the allowed distance to the reference that the setpoints themselves may cost.
+/// Share of the allowed distance to the reference that the setpoints themselves may use. Chosen; not measured.
 const TRACKING_SHARE: f64 = 0.9;
-/// Steps of the model in which the reference may have been where the vehicle is: half a second, as while it flies.
+/// Steps of the model over which the reference may have been at the vehicle's place: half a second, as in flight.
 const RECENT: usize = 25;
 
 /// One piece of the flight, in the local frame.
 struct Leg<'a> {
     path: &'a FlightPath,
     offset_m: Vector3<f64>,
-    /// it begins on the ground, which is no fault then
+    /// it begins on the ground, so contact with the ground is no fault there
     from_ground: bool,
     name: &'static str,
 }
@@ -43,7 +44,7 @@ struct Leg<'a> {
 /// The instant at which an end would be worst.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Worst {
-    /// beyond the border, m, with what a vehicle is off the model; negative within
+    /// distance beyond the border, m, with the error of the model; negative inside
     beyond_m: f64,
     border: &'static str,
     /// s from the beginning of the leg
@@ -51,14 +52,14 @@ struct Worst {
     leg: &'static str,
 }
 
-/// What one way of sending comes to.
+/// Result of one kind of setpoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Tried {
     feeding: Feeding,
     worst: Option<Worst>,
-    /// of ground and fence: of these nothing is given away
+    /// worst instant at ground and fence, which must not be passed
     hard: Option<Worst>,
-    /// how far along the ground from home it comes to be, and how high above, m
+    /// largest distance along the ground from home, and largest height above it, m
     farthest_m: f64,
     highest_m: f64,
     /// the greatest distance of the model to the reference, m
@@ -78,7 +79,7 @@ impl Tried {
         self.hard.map_or(f64::NEG_INFINITY, |worst| worst.beyond_m)
     }
 
-    /// What is to be said of it: what refuses before what warns.
+    /// The worst instant to be reported: a reason for a refusal before one for a warning.
     fn told(&self) -> Option<Worst> {
         self.hard.filter(|hard| hard.beyond_m > 0.0).or(self.worst)
     }
@@ -90,7 +91,7 @@ impl Tried {
     }
 }
 
-/// Chooses how setpoints are sent, and says what an end at the worst instant would come to.
+/// Chooses the kind of setpoint, and reports the result of a loss at the worst instant.
 pub(super) fn judge(situation: &Situation<'_>) -> (Feeding, Vec<Finding>) {
     let laws = FollowLaw::of(situation.parameters, situation.release);
     let Some(law) = laws.first() else {
@@ -118,8 +119,8 @@ pub(super) fn judge(situation: &Situation<'_>) -> (Feeding, Vec<Finding>) {
 
 const EXPECTED: &str = "rest inside room and fence and clear of the ground, whenever setpoints end";
 
-/// The way that follows the reference best among those that are safe by each of the laws; or, as an error, the least unsafe
-/// one.
+/// The kind of setpoint that follows the reference best among those that are safe with each of the laws; or, as an
+/// error, the least unsafe one.
 fn choose(situation: &Situation<'_>, laws: &[FollowLaw]) -> Result<Tried, Box<Tried>> {
     let reach = Reach::of(situation.vehicle);
     let room = SetpointBounds::room(situation.limits, &situation.origin_m)
@@ -165,7 +166,7 @@ fn attempt(situation: &Situation<'_>, laws: &[FollowLaw], feeding: Feeding) -> T
     for leg in &legs {
         for law in laws {
             let tracking_m = fly(situation, law, leg, &mut tried);
-            // by another law than the likeliest it may leave the reference, and then holds; what it does then is in the room
+            // by another law than the most likely it may leave the reference, and then holds; what it does then is in the room
             if laws.first() == Some(law) {
                 tried.tracking_m = tried.tracking_m.max(tracking_m);
             }
@@ -174,7 +175,7 @@ fn attempt(situation: &Situation<'_>, laws: &[FollowLaw], feeding: Feeding) -> T
     tried
 }
 
-/// Flies a leg by the model, and ends it at every instant; the greatest distance to the reference, m.
+/// Simulates a leg with the model, and a loss at every instant; returns the greatest distance to the reference, m.
 fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tried) -> f64 {
     let reference = |time_s: f64| reference_at(leg.path, time_s, &leg.offset_m, Duration::ZERO);
     let mut tracking_m = 0.0_f64;
@@ -221,15 +222,15 @@ fn fly(situation: &Situation<'_>, law: &FollowLaw, leg: &Leg<'_>, tried: &mut Tr
     }
 }
 
-/// How far a vehicle is beyond a border, m, with its rotors where they could touch it; negative within.
+/// Distance of a vehicle beyond a border, m, including its rotors if they could touch it; negative inside.
 struct Border {
     beyond_m: f64,
-    /// nothing of it is given away
+    /// it must not be passed
     is_hard: bool,
     name: &'static str,
 }
 
-/// Each border, for a vehicle at a place of the local frame.
+/// Calls `at` with each border, for a vehicle at a position of the local frame.
 fn borders(
     (situation, reach): (&Situation<'_>, &Reach),
     leg: &Leg<'_>,
@@ -257,7 +258,7 @@ fn borders(
     }
 }
 
-/// `0.12 m short of the wall x_max_m at worst, should they end at 3.1 s of the trajectory`.
+/// `0.12 m short of the wall x_max_m at worst, if they end at 3.1 s of the trajectory`.
 fn in_words(tried: &Tried) -> String {
     tried.told().map_or_else(
         || "nothing to hit".to_owned(),
@@ -266,31 +267,31 @@ fn in_words(tried: &Tried) -> String {
             let side = if beyond_m > 0.0 { "beyond" } else { "short of" };
             let allowed = if beyond_m > 0.0 {
                 format!(
-                    " (the rotors count; 0 is expected, more than {WALL_AT_MOST_M} m of a wall is refused)"
+                    " (rotors included; 0 is expected, more than {WALL_AT_MOST_M} m beyond a wall is refused)"
                 )
             } else {
                 String::new()
             };
             format!(
-                "{:.2} m {side} {border} at worst{allowed}, should they end at {time_s:.1} s {leg}",
+                "{:.2} m {side} {border} at worst{allowed}, if they end at {time_s:.1} s {leg}",
                 beyond_m.abs()
             )
         },
     )
 }
 
-/// How setpoints are sent.
+/// The kind of setpoint in words.
 fn manner(feeding: &Feeding) -> String {
     let share = feeding.share();
     if share >= 1.0 {
-        "setpoints carry place, velocity and acceleration".to_owned()
+        "setpoints carry position, velocity and acceleration".to_owned()
     } else if share > 0.0 {
         format!(
-            "setpoints carry {:.0} % of velocity and acceleration, and places ahead for the rest",
+            "setpoints carry {:.0} % of velocity and acceleration, and positions ahead for the rest",
             100.0 * share
         )
     } else {
-        "setpoints are places ahead, without velocity and acceleration".to_owned()
+        "setpoints are positions ahead, without velocity and acceleration".to_owned()
     }
 }
 
@@ -301,7 +302,7 @@ fn timeout(situation: &Situation<'_>, law: &FollowLaw) -> String {
     format!("{name} = {seconds:.1} s{assumed}")
 }
 
-/// The parameter with the time-out.
+/// Name of the parameter with the time-out.
 fn timeout_name(situation: &Situation<'_>) -> &'static str {
     situation.parameters.autopilot.stack().map_or("its time-out", |stack| stack.setpoints.timeout)
 }
@@ -309,7 +310,7 @@ fn timeout_name(situation: &Situation<'_>) -> &'static str {
 fn said(situation: &Situation<'_>, law: &FollowLaw, tried: &Tried) -> Finding {
     let expected = format!("{EXPECTED} ({})", timeout(situation, law));
     let came = format!(
-        "{}; {}, by which the autopilot asks of the vehicle up to {:.2} m off the reference (its own lag comes to that)",
+        "{}; {}, with which the autopilot commands up to {:.2} m off the reference (the vehicle's lag is added)",
         in_words(tried),
         manner(&tried.feeding),
         tried.tracking_m
@@ -325,18 +326,18 @@ fn refused(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> Find
     let stated = laws.first().map_or_else(String::new, |law| timeout(situation, law));
     let expected = format!("{EXPECTED} ({stated})");
     let costs = format!(
-        "setpoints that come nearest to it cost {:.2} m off the reference, of which {:.2} m end the flight",
+        "the setpoints nearest to it lead {:.2} m off the reference, and {:.2} m end the flight",
         tried.tracking_m, situation.tracking_max_m
     );
     let came = if tried.tracking_m > TRACKING_SHARE * situation.tracking_max_m {
         format!("{costs}; with them {}", in_words(tried))
     } else {
-        format!("{}, however they are sent; {costs}", in_words(tried))
+        format!("{}, with every kind of setpoint; {costs}", in_words(tried))
     };
     Finding::refusal(SUBJECT, expected, came, remedy(situation, laws, tried))
 }
 
-/// A slower or smaller plan first, then a value.
+/// What to do: a slower or smaller plan first, then a parameter.
 fn remedy(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> String {
     let misses = tried.tracking_m > TRACKING_SHARE * situation.tracking_max_m;
     let plan = match tried.told().filter(|worst| worst.beyond_m > 0.0 && !misses) {
@@ -356,7 +357,7 @@ fn remedy(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> Strin
     }
 }
 
-/// The longest time-out (s, in tenths) with which something safe can be sent; `None` where none helps.
+/// The longest time-out (s, in tenths) with which a kind of setpoint is safe; `None` if no time-out helps.
 fn safe_timeout_s(situation: &Situation<'_>, laws: &[FollowLaw]) -> Option<f64> {
     let tried = [2.0, 1.0, 0.5, 0.3, 0.1];
     let longest_s = laws.iter().map(FollowLaw::timeout_s).fold(0.0, f64::max);

@@ -1,5 +1,4 @@
-//! If we die now: what the vehicle does by itself after it has come to rest. Our setpoints end, and our heartbeats do
-//! too.
+//! What the vehicle does after setpoints and heartbeats have ended and it has come to rest.
 
 use super::Situation;
 use crate::autopilot::{ARDUPILOT, Autopilot, PX4, Reaction};
@@ -8,15 +7,16 @@ use crate::fly::law::stated;
 use crate::fly::parameters::hears_station;
 
 /// Subject of the findings on the end of this program.
-pub(super) const SUBJECT: &str = "if we die now";
+pub(super) const SUBJECT: &str = "if setpoints end";
 
 const EXPECTED: &str = "a mode that stops it and keeps it in the room";
 const MOTORS_ON: &str = "motors that run until it has landed";
-/// ArduPilot returns at least so high, m, and takes a lesser slope of the cone for none.
+/// Least height of ArduPilot's return, m (RTL_ALT_MIN in its source).
 const RTL_LEAST_M: f64 = 0.3;
+/// Least RTL_CONE_SLOPE that ArduPilot uses; it treats a smaller one as no cone.
 const LEAST_SLOPE: f64 = 0.5;
 
-/// Where a vehicle that hears nothing more comes to be at most, m from home.
+/// Largest distances of a vehicle that receives nothing more, m from home.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Abandoned {
     /// along the ground
@@ -25,7 +25,7 @@ pub(super) struct Abandoned {
     pub highest_m: f64,
 }
 
-/// What leads out of the room, or drops the vehicle.
+/// Findings about failsafes that lead out of the room or drop the vehicle.
 pub(super) fn findings(situation: &Situation<'_>, at: Abandoned) -> Vec<Finding> {
     match situation.parameters.autopilot {
         Autopilot::Px4 => px4(situation),
@@ -39,7 +39,7 @@ fn choice(situation: &Situation<'_>, name: &str) -> Option<f64> {
     situation.parameters.get(name).map(f64::round)
 }
 
-/// What PX4 does by a failsafe's parameter.
+/// PX4's reaction by a failsafe's parameter.
 fn px4_reaction(name: &str, value: Option<f64>) -> Option<Reaction> {
     Some(PX4.failsafe(name)?.choice(value?)?.reaction)
 }

@@ -1,5 +1,5 @@
-//! The trajectory against what the autopilot makes of a setpoint. A limit that it exceeds makes the
-//! vehicle miss it, and the miss looks like physics that is not there.
+//! The trajectory against the autopilot's limits. If it exceeds a limit, the vehicle deviates from it, and the
+//! deviation looks like missing physics.
 
 use crate::autopilot::{Autopilot, Bounded};
 use crate::fly::finding::Finding;
@@ -7,8 +7,8 @@ use crate::fly::parameters::{Parameters, has_bit};
 use crate::plan::Extremes;
 use crate::units::deg_from_rad;
 
-/// One limit: what it bounds, its parameter (older name), how many of its units make one of what is bounded, and what the
-/// path asks for.
+/// One limit: the bounded quantity, its parameter (older name), the number of its units in one unit of the quantity,
+/// and the demand of the path.
 struct Limit {
     bounded: Bounded,
     name: &'static str,
@@ -17,9 +17,9 @@ struct Limit {
 }
 
 const SUBJECT: &str = "autopilot limits";
-/// Bits of GUID_OPTIONS, and what is not stabilised then.
+/// Bits of GUID_OPTIONS, and the quantity that is not stabilised if they are set.
 const NOT_FOLLOWED: &[(u32, &str)] = &[(4, "position"), (5, "velocity")];
-/// Reserve that the controller needs above what the trajectory asks for.
+/// Factor between the limit that a controller needs and the demand of the trajectory. Chosen; not measured.
 const RESERVE: f64 = 1.3;
 
 pub(super) fn findings(parameters: &Parameters, extremes: &Extremes) -> Vec<Finding> {
@@ -93,7 +93,7 @@ fn too_low(parameters: &Parameters, limit: &Limit, value: f64) -> Finding {
     )
 }
 
-/// What the path asks for, in the unit of what is bounded.
+/// Demand of the path, in the unit of the bounded quantity.
 fn needed(bounded: Bounded, extremes: &Extremes) -> f64 {
     match bounded {
         Bounded::HorizontalSpeed => extremes.horizontal_speed_m_s,

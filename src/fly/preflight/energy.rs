@@ -2,10 +2,10 @@
 
 use crate::fly::finding::Finding;
 
-/// Charge that is asked for, as a multiple of what the flight takes.
+/// Required charge as a multiple of that of the flight. Chosen; not measured.
 pub const SPARE_FACTOR: f64 = 1.5;
 
-/// What is known of the battery.
+/// State of the battery.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BatteryState {
     /// percent of a full charge
@@ -16,12 +16,12 @@ pub struct BatteryState {
     pub endurance_s: Option<f64>,
 }
 
-/// For a flight of so many s from the ground to the ground.
+/// The finding for a flight of this time (s) from ground to ground.
 pub(super) fn finding(battery: &BatteryState, flight_s: f64) -> Finding {
     let needed_s = SPARE_FACTOR * flight_s;
     let expected = format!("charge for {needed_s:.0} s, {SPARE_FACTOR} times the flight");
     let remaining = battery.remaining_percent.map_or_else(
-        || "a charge that the vehicle does not say".to_owned(),
+        || "a charge that the vehicle does not report".to_owned(),
         |percent| format!("{percent:.0} %"),
     );
     if battery.is_low {

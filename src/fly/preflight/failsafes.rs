@@ -1,4 +1,4 @@
-//! What the vehicle does by itself, and the pilot's way to take over, as findings.
+//! The vehicle's failsafes, and how the pilot takes over, as findings.
 
 use super::situation::Situation;
 use crate::fly::finding::{Finding, Level};
@@ -29,5 +29,5 @@ pub(super) fn failsafes(situation: &Situation<'_>) -> Vec<Finding> {
     failsafes.chain(takeover).collect()
 }
 
-/// Subject of what is said of the pilot's way to take over.
+/// Subject of the findings on how the pilot takes over.
 pub(super) const TAKEOVER: &str = "pilot's takeover";

@@ -26,15 +26,15 @@ pub struct Fence {
     pub height_max_m: Option<f64>,
     /// m above home
     pub height_min_m: Option<f64>,
-    /// m that the autopilot keeps from all of these by itself
+    /// distance that the autopilot itself keeps from all of these, m
     pub margin_m: f64,
-    /// the fence could not be read in whole, and why
+    /// reasons why the fence could not be read completely
     pub unknown: Vec<String>,
 }
 
 impl Fence {
-    /// What is in force, from parameters and the items of the fence mission (in its order); `origin` is that of
-    /// the local frame, without which items cannot be placed.
+    /// The active fence, from parameters and the items of the fence mission (in its order); `origin` is that of the
+    /// local frame, without which items have no place.
     #[must_use]
     pub fn new(parameters: &Parameters, items: &[FenceItem], origin: Option<&Geodetic>) -> Self {
         let mut fence = Self::default();

@@ -124,7 +124,7 @@ impl FenceDownload {
         }
     }
 
-    /// How it ended; `None` while it goes on.
+    /// How it ended; `None` while it continues.
     #[must_use]
     pub fn outcome(&self) -> Option<&FenceOutcome> {
         self.outcome.as_ref()

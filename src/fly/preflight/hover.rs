@@ -1,4 +1,4 @@
-//! Whether the vehicle file can be this vehicle's: what the autopilot hovers on, and where it has its rotors.
+//! Check whether the vehicle file is that of this vehicle, by the autopilot's hover command and its rotor positions.
 
 use super::Situation;
 use crate::fly::finding::Finding;
@@ -8,18 +8,22 @@ use crate::recording::Recording;
 use crate::signals::propulsion_from_log;
 use crate::vehicle::{Actuator, Propulsion, ThrustLaw, Vehicle};
 
-/// Where the check speaks of thrust.
+/// Subject of the check of the thrust.
 pub(crate) const HOVER: &str = "hover thrust";
-/// Where it speaks of the rotors' number and places.
+/// Subject of the check of number and positions of the rotors.
 pub(crate) const ROTORS: &str = "rotors";
 
-/// An autopilot that never hovered keeps its default for the hover thrust, which fits many vehicles badly.
+/// Ratio from which the check of the hover thrust warns. An autopilot that never hovered has its default for the hover
+/// thrust, which is wrong for many vehicles. Chosen; not measured.
 const HOVER_NOTABLE: f64 = 1.8;
+/// Ratio from which the check of the hover thrust refuses. Chosen; not measured.
 const HOVER_GROSS: f64 = 3.0;
-/// Arms are often given by the class of the frame.
+/// Ratio of arm lengths from which the check of the rotors warns: arms are often stated by the class of the frame.
+/// Chosen; not measured.
 const ARM_NOTABLE: f64 = 1.6;
+/// Ratio of arm lengths from which the check of the rotors refuses. Chosen; not measured.
 const ARM_GROSS: f64 = 4.0;
-/// Where PX4's rotors are further out than this, m, their places may be ratios: 1 and -1, or -0.5 and 0.433.
+/// PX4's rotor positions beyond this distance, m, may be ratios: 1 and -1, or -0.5 and 0.433.
 const RATIOS_FROM: f64 = 0.5;
 
 pub(super) fn findings(situation: &Situation<'_>) -> Vec<Finding> {
@@ -42,7 +46,7 @@ fn judged(
     }
 }
 
-/// What all rotors of the file give at the command by which the autopilot expects to hover, against the weight.
+/// Thrust of all rotors of the file at the command with which the autopilot expects to hover, against the weight.
 fn hover(vehicle: &Vehicle, parameters: &Parameters) -> Option<Finding> {
     let outputs = &parameters.autopilot.stack()?.outputs;
     let name = outputs.hover;

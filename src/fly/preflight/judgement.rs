@@ -1,4 +1,4 @@
-//! The judgement of a flight before it begins, from all checks.
+//! The result of all checks before a flight.
 
 use super::failsafes::failsafes;
 use super::page::Page;
@@ -9,14 +9,14 @@ use crate::fly::finding::Finding;
 use crate::fly::safety::Feeding;
 use crate::plan::Extremes;
 
-/// Checks everything; each finding says what was expected, what came, and what to do. The vehicle may
-/// be armed where none of them is a [`Level::Refusal`](crate::fly::finding::Level::Refusal).
+/// Checks everything. Each finding says what was expected, what was found, and what to do. The vehicle may be armed if
+/// none of them is a [`Level::Refusal`](crate::fly::finding::Level::Refusal).
 #[must_use]
 pub fn preflight(situation: &Situation<'_>) -> Vec<Finding> {
     judge(situation).findings
 }
 
-/// As [`preflight`], with the way of sending setpoints that it chose.
+/// As [`preflight`], with the chosen kind of setpoint.
 #[must_use]
 pub fn judge(situation: &Situation<'_>) -> Judged {
     let extremes = Extremes::of(situation.path, situation.vehicle);
@@ -34,13 +34,13 @@ pub fn judge(situation: &Situation<'_>) -> Judged {
     Judged { findings, feeding, page }
 }
 
-/// What the checks found, and how setpoints are to be sent.
+/// Findings, and the kind of setpoint to be sent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
-    /// one a check
+    /// one for each check
     pub findings: Vec<Finding>,
-    /// safe, as far as anything is, if any setpoint is the last
+    /// the kind of setpoint, which is safe if any setpoint is the last
     pub feeding: Feeding,
-    /// for people
+    /// page for the operator
     pub page: Page,
 }

@@ -1,4 +1,4 @@
-//! The page before the flight: what to be warned of, what is flown and where, and what happens by itself.
+//! The page before the flight: warnings, the trajectory and its place, and the failsafes.
 
 use std::fmt::Write;
 
@@ -11,22 +11,22 @@ use crate::units::deg_from_rad;
 /// Columns of a drawing, and the rows of the one from above: letters are twice as high as wide.
 const COLUMNS: usize = 41;
 const ROWS: usize = 15;
-/// Findings that are said also where all is well.
-const ALWAYS: [&str; 5] = ["if we die now", "battery", "fence", "room", TAKEOVER];
+/// Subjects of findings that are shown even if they are ok.
+const ALWAYS: [&str; 5] = ["if setpoints end", "battery", "fence", "room", TAKEOVER];
 
-/// What is shown before the vehicle is armed.
+/// The page that is shown before the vehicle is armed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Page {
-    /// what to be warned of, the worst first
+    /// warnings, the worst first
     warnings: Vec<String>,
-    /// what is flown, and what happens by itself
+    /// facts about the trajectory and the failsafes
     facts: Vec<String>,
     /// the room, with the trajectory in it
     drawing: Vec<String>,
 }
 
 impl Page {
-    /// Of a situation and what was found in it.
+    /// The page of a situation and its findings.
     #[must_use]
     pub fn new(situation: &Situation<'_>, findings: &[Finding]) -> Self {
         let mut facts = flown(situation);
@@ -40,7 +40,7 @@ impl Page {
         page
     }
 
-    /// Its warnings are those of these findings, the worst first.
+    /// Replaces the warnings by those of these findings, the worst first.
     pub fn warn_of(&mut self, findings: &[Finding]) {
         let mut warned: Vec<&Finding> =
             findings.iter().filter(|finding| finding.level >= Level::Warning).collect();
@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn lines_are_broken_between_words_and_none_is_lost() {
         let text =
-            "warning: fence: expected a fence round the place of the flight, came none in force; set one";
+            "warning: fence: expected a fence round the place of the flight, got none in force; set one";
         for columns in [20, 37, 80, 200] {
             let lines = wrapped(text, columns);
             assert!(lines.iter().all(|line| line.chars().count() <= columns), "{lines:#?}");

@@ -4,15 +4,15 @@ use crate::autopilot::{Autopilot, Mode};
 use crate::fly::finding::Finding;
 use std::time::Duration;
 
-/// The estimate must have been good for so long.
+/// Time for which the estimate must have been good. Chosen; not measured.
 pub const ESTIMATE_GOOD_FOR: Duration = Duration::from_secs(5);
 
-/// What the vehicle says of itself.
+/// Readiness of the vehicle by its own reports.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Readiness {
-    /// its own pre-arm checks; `None` where it does not say
+    /// its own pre-arm checks; `None` without a report
     pub may_arm: Option<bool>,
-    /// why not, as far as it said (STATUSTEXT)
+    /// reported reasons why not (STATUSTEXT)
     pub reasons: Vec<String>,
     /// parts that are on and not healthy
     pub unhealthy: Vec<String>,
@@ -31,9 +31,9 @@ pub struct Readiness {
 pub(super) fn findings(readiness: &Readiness, autopilot: Autopilot) -> Vec<Finding> {
     let mut findings = vec![estimate(readiness), pre_arm(readiness, autopilot)];
     findings.push(if readiness.unhealthy.is_empty() {
-        Finding::ok("health", "every part healthy", "no fault said")
+        Finding::ok("health", "every part healthy", "no fault reported")
     } else {
-        let remedy = "find out why: the vehicle says it in its messages";
+        let remedy = "read the reason in the messages of the vehicle";
         Finding::refusal("health", "every part healthy", readiness.unhealthy.join(", "), remedy)
     });
     findings.push(if readiness.home_set {
@@ -59,7 +59,7 @@ fn estimate(readiness: &Readiness) -> Finding {
         _ if !readiness.estimate_faults.is_empty() => {
             Finding::refusal("estimate", expected, readiness.estimate_faults.join(", "), remedy)
         }
-        None => Finding::warning("estimate", expected, "nothing said of its health", remedy),
+        None => Finding::warning("estimate", expected, "no report of its health", remedy),
         Some(good_for) if good_for < ESTIMATE_GOOD_FOR => {
             let came = format!("good for {:.1} s", good_for.as_secs_f64());
             Finding::refusal("estimate", expected, came, "wait")
@@ -72,11 +72,14 @@ fn estimate(readiness: &Readiness) -> Finding {
 
 fn pre_arm(readiness: &Readiness, autopilot: Autopilot) -> Finding {
     let expected = "the autopilot's own checks passed";
-    let said =
-        if readiness.reasons.is_empty() { "no reason said".to_owned() } else { readiness.reasons.join("; ") };
+    let said = if readiness.reasons.is_empty() {
+        "no reason given".to_owned()
+    } else {
+        readiness.reasons.join("; ")
+    };
     let depends = autopilot.stack().filter(|stack| stack.setpoints.position_checked_in_mode);
     let remedy = depends.map_or_else(
-        || "mend what it names".to_owned(),
+        || "correct what it names".to_owned(),
         |stack| {
             let mode = stack.name_of(Mode::External);
             format!("its checks depend on the mode: set {mode}, then wait for the position estimate")

@@ -66,7 +66,7 @@ fn walls(limits: &Limits) -> Option<Finding> {
     })
 }
 
-/// Whatever the limits say: no rotor comes near the ground along the path.
+/// Checks that no rotor comes near the ground along the path, whatever the limits say.
 fn floor(situation: &Situation<'_>) -> Option<Finding> {
     let floor_m = floor_m(situation.vehicle);
     let heights = path_samples(situation.path).map(|(time_s, [_, _, z, _])| (z[0], time_s));
@@ -80,7 +80,7 @@ fn floor(situation: &Situation<'_>) -> Option<Finding> {
     })
 }
 
-/// The rotors along the path, which the bounds of the place do not know.
+/// Checks the rotors along the path, which the bounds of the position do not include.
 fn rotors(situation: &Situation<'_>) -> Option<Finding> {
     let expected =
         |reach_m, name, max| format!("the rotors, which reach {reach_m:.2} m, inside {name} = {max:.2} m");
@@ -109,7 +109,7 @@ fn rotors(situation: &Situation<'_>) -> Option<Finding> {
     })
 }
 
-/// It takes off where it stands: inside the room.
+/// Checks that the vehicle stands inside the room.
 fn stand(situation: &Situation<'_>) -> Option<Finding> {
     let inside = situation.stand_m? - situation.origin_m;
     let limits = situation.limits;
@@ -152,7 +152,7 @@ fn refusal(margin: &Margin) -> Finding {
     )
 }
 
-/// Whether the vehicle, told to stop anywhere on the path, comes to rest inside the room.
+/// Checks that the vehicle, if it is ordered to stop anywhere on the path, comes to rest inside the room.
 fn braking(situation: &Situation<'_>, stopping: &Stopping) -> Option<Finding> {
     let limits = situation.limits;
     let mut worst: Option<(f64, f64, &'static str)> = None;
@@ -177,7 +177,7 @@ fn braking(situation: &Situation<'_>, stopping: &Stopping) -> Option<Finding> {
     }
 }
 
-/// How far a place lies beyond each wall of the room, m; negative inside.
+/// Distance of a position beyond each wall of the room, m; negative inside.
 fn beyond(place_m: &Vector3<f64>, limits: &Limits) -> Vec<(f64, &'static str)> {
     [
         (limits.x_max_m.map(|max| place_m.x.abs() - max), "x_max_m"),

@@ -1,4 +1,4 @@
-//! What is known before a flight, by which it is judged.
+//! Data for the checks before a flight.
 
 use super::energy::BatteryState;
 use super::fence::Fence;
@@ -11,7 +11,7 @@ use crate::trajectory::FlightPath;
 use crate::vehicle::{Limits, Vehicle};
 use nalgebra::Vector3;
 
-/// What is known before the flight.
+/// Data for the checks before a flight.
 #[derive(Debug, Clone, Copy)]
 pub struct Situation<'a> {
     /// the whole flight from hover after takeoff to hover before landing, m and rad, NWU
@@ -22,13 +22,13 @@ pub struct Situation<'a> {
     pub stand_m: Option<Vector3<f64>>,
     /// home in the autopilot's local frame, m, NWU
     pub home_m: Option<Vector3<f64>>,
-    /// what flies
+    /// the vehicle file
     pub vehicle: &'a Vehicle,
     /// room and limits to keep, in the path's frame
     pub limits: &'a Limits,
     /// distance to the reference that is allowed, m
     pub tracking_max_m: f64,
-    /// what the vehicle said of its parameters
+    /// parameters of the vehicle
     pub parameters: &'a Parameters,
     /// major and minor number of the autopilot's release, where it said so
     pub release: Option<(u8, u8)>,
@@ -42,18 +42,20 @@ pub struct Situation<'a> {
     pub own_system: u8,
 }
 
-/// Autopilots land so fast unless told otherwise (LAND_SPEED; MPC_LAND_SPEED is faster), m/s.
+/// Default speed of landing, m/s: ArduPilot's LAND_SPEED; that of PX4, MPC_LAND_SPEED, is larger.
 const LANDS_M_S: f64 = 0.5;
-/// With motors on, before the takeoff, at the start gate, and on the ground until they stop, s.
+/// Time with motors on before the takeoff, at the start gate, and on the ground until they stop, s. Chosen; not
+/// measured.
 const WAITS_S: f64 = 15.0;
 
 impl Situation<'_> {
-    /// Home (m, local frame), or what is nearest to it that is known: where it stands, the path's zero.
+    /// Home (m, local frame); if it is not known, the place where the vehicle stands, or the path's zero.
     pub(super) fn home(&self) -> Vector3<f64> {
         self.home_m.or(self.stand_m).unwrap_or(self.origin_m)
     }
 
-    /// From where it stands straight up, and from there to the path's begin; `None` where it stands nowhere known.
+    /// Paths from the place of the vehicle straight up, and from there to the start of the path; `None` if its place is
+    /// not known.
     pub(super) fn way_to_start(&self) -> Option<[FlightPath; 2]> {
         let (stand_m, start) = self.stand_m.zip(self.path.derivatives(0.0))?;
         let [x, y, z, yaw_rad] = start.map(|axis| axis[0]);
@@ -68,7 +70,7 @@ impl Situation<'_> {
         way_s + self.path.duration_s() + end_m.max(0.0) / LANDS_M_S + WAITS_S
     }
 
-    /// How high above home it may climb with its rotors below the ceiling, m; `None` without a ceiling.
+    /// Largest height above home with the rotors below the ceiling, m; `None` without a ceiling.
     pub(super) fn highest_m(&self) -> Option<f64> {
         let ceiling_m = self.limits.z_max_m? + self.origin_m.z - self.home().z;
         Some(ceiling_m - Reach::of(self.vehicle).up_m)

@@ -1,4 +1,4 @@
-//! What it takes to stop.
+//! The distance to stop.
 
 use crate::autopilot::{Braking, PX4};
 use crate::fly::parameters::Parameters;
@@ -6,22 +6,23 @@ use crate::units::rad_from_deg;
 use crate::vehicle::Limits;
 use nalgebra::Vector3;
 
-/// How hard the vehicle brakes, m/s^2.
+/// Deceleration of the vehicle, m/s^2.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stopping {
     /// in the plane
     pub horizontal_m_s2: f64,
     /// up or down
     pub vertical_m_s2: f64,
-    /// what that rests on
+    /// source of these values
     pub basis: String,
 }
 
-/// Where neither the vehicle file nor the autopilot says more: both autopilots' usual default, m/s^2.
+/// Assumed deceleration if neither the vehicle file nor the autopilot states one, m/s^2: the usual default of both
+/// autopilots.
 const ASSUMED_M_S2: f64 = 2.5;
 
 impl Stopping {
-    /// From the autopilot's own limits, no more than tilt and the vehicle file allow.
+    /// Deceleration by the autopilot's own limits, at most that of the tilt limit and the vehicle file.
     #[must_use]
     pub fn of(parameters: &Parameters, limits: &Limits, gravity_m_s2: f64) -> Self {
         let value = |name: &str| parameters.in_base_unit(name).filter(|value| *value > 0.0);
@@ -46,7 +47,7 @@ impl Stopping {
         }
     }
 
-    /// Where the vehicle comes to rest if it begins to brake at a place with a velocity: `v^2 / 2a` on.
+    /// Position at rest if the vehicle begins to brake at a position with a velocity, by `v^2 / 2a`.
     #[must_use]
     pub fn rest(&self, place_m: &Vector3<f64>, velocity_m_s: &Vector3<f64>) -> Vector3<f64> {
         let horizontal = velocity_m_s.xy().norm() / (2.0 * self.horizontal_m_s2);

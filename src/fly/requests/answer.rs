@@ -1,9 +1,9 @@
-//! What the vehicle said to a request for a message.
+//! Answer of the vehicle to a request for a message.
 
-/// What the vehicle said to a request.
+/// Answer of the vehicle to a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answer {
-    /// not asked (yet)
+    /// not requested (yet)
     NotAsked,
     /// accepted
     Accepted,

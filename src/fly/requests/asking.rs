@@ -1,4 +1,4 @@
-//! One SET_MESSAGE_INTERVAL after the other, then a look at what arrives.
+//! Requests by SET_MESSAGE_INTERVAL, one after the other, then a measurement of the rates that arrive.
 
 use super::report::{RatesReport, StreamReport};
 use super::{Answer, Capacity, StreamRequest};
@@ -15,19 +15,19 @@ const SET_MESSAGE_INTERVAL: u16 = 511;
 const ACCEPTED: u8 = 0;
 const TEMPORARILY_REJECTED: u8 = 1;
 const IN_PROGRESS: u8 = 5;
-/// A refused rate above this is asked for once more at half of it, Hz.
+/// A refused rate above this is requested once more at half of it, Hz. Chosen; not measured.
 const WORTH_HALVING_HZ: f64 = 50.0;
 
-/// How patiently.
+/// Timing of the requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RequestSettings {
     /// until a request counts as lost
     pub timeout: Duration,
     /// requests of one message
     pub tries: u32,
-    /// until streams run at their new rates
+    /// time until streams have their new rates
     pub settle: Duration,
-    /// over which arrivals are counted
+    /// time over which arrivals are counted
     pub window: Duration,
     /// the ground station's system and component: acknowledgements for others are not ours
     pub own: (u8, u8),
@@ -54,15 +54,15 @@ struct Asked {
     tries: u32,
     halved: bool,
     count: u32,
-    /// frames that say more than zeros
+    /// frames with values other than zero
     telling: u32,
 }
 
-/// Where the values of the messages of actuators lie in their payloads; what lies beside them are stamps and indices.
+/// Ranges of the values of actuator messages in their payloads; the rest are time stamps and indices.
 const VALUES: [(u32, std::ops::Range<usize>); 4] =
     [(36, 4..20), (291, 8..56), (375, 12..140), (11_030, 0..44)];
 
-/// A message of actuators in which every value is zero: one without outputs or sensors behind it.
+/// Whether a message of actuators has only zeros: no outputs or sensors are behind it.
 fn is_blank(id: u32, frame: &Frame<'_>) -> bool {
     let values = VALUES.into_iter().find(|(of, _)| *of == id).map(|(_, values)| values);
     values.is_some_and(|mut values| values.all(|at| frame.payload().u8(at) == 0))
@@ -76,8 +76,8 @@ enum Phase {
     Done,
 }
 
-/// Asks a vehicle for a set of messages. Call [`Self::poll`] until it gives nothing, pass on each frame,
-/// and again, until [`Self::is_done`].
+/// Requests a set of messages from a vehicle. Repeat until [`Self::is_done`]: call [`Self::poll`] until it gives
+/// nothing, and pass on each frame.
 #[derive(Debug)]
 pub struct Requests {
     vehicle: Vehicle,
@@ -90,7 +90,7 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Of a set, over a link.
+    /// Requests of a set over a link.
     #[must_use]
     pub fn new(
         vehicle: Vehicle,
@@ -180,13 +180,13 @@ impl Requests {
         }
     }
 
-    /// The window is over and nothing is left to ask for.
+    /// Whether the window is over and nothing is left to request.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.phase == Phase::Done
     }
 
-    /// Counts what arrives once more, from now on.
+    /// Starts a new measurement of the rates, from now on.
     pub fn measure_again(&mut self, now: Duration) {
         self.phase = Phase::Settling { until: now + self.settings.settle };
     }
@@ -198,7 +198,7 @@ impl Requests {
         (settled, self.streams.len())
     }
 
-    /// What arrived and whether it suffices.
+    /// Report of the rates, and whether they are sufficient.
     #[must_use]
     pub fn report(&self) -> RatesReport {
         let window_s = if self.window_s > 0.0 { self.window_s } else { f64::NAN };
@@ -239,7 +239,7 @@ impl Requests {
         self.phase = Phase::Asking { index, sent: None };
     }
 
-    /// Not answered yet, and no replacement of something that runs.
+    /// Whether a request is not answered yet and is not a replacement of a message that arrives.
     fn is_wanted(&self, index: usize) -> bool {
         let stream = &self.streams[index];
         stream.answer == Answer::NotAsked
@@ -249,7 +249,8 @@ impl Requests {
             })
     }
 
-    /// Refused, or silent; before the first window nothing that was accepted is missing.
+    /// Whether a message was refused or does not arrive; before the first window, accepted ones do not count as
+    /// missing.
     fn is_missing(&self, stream: &Asked) -> bool {
         match stream.answer {
             Answer::Refused(_) | Answer::Silent | Answer::OutOfRange => true,
@@ -258,7 +259,7 @@ impl Requests {
         }
     }
 
-    /// Something that was accepted never came, and its replacement was not asked for.
+    /// The first replacement that was not requested for an accepted message that did not arrive.
     fn first_replacement(&self) -> Option<usize> {
         (0..self.streams.len()).find(|index| self.is_wanted(*index))
     }

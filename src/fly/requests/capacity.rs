@@ -1,20 +1,20 @@
-//! What a link carries, and what an autopilot makes of a requested rate.
+//! Capacity of a link, and the rate that an autopilot gives for a requested one.
 
 use super::StreamRequest;
 use crate::autopilot::Autopilot;
 
-/// Setpoints at 50 Hz take this much of a radio that carries both directions in turn, bytes a second.
+/// Share of the setpoints, at 50 Hz, of a radio that transmits both directions in turn, bytes/s.
 const SETPOINTS_BYTES_S: f64 = 50.0 * 65.0;
-/// No link is filled further than this.
+/// Largest share of a link's capacity that is used. Chosen; not measured.
 const FILL: f64 = 0.9;
 /// Bits that a byte takes on a serial line: one start bit, eight of data, one stop bit.
 const BITS_PER_BYTE: f64 = 10.0;
-/// PX4 gives its messages half of a serial line.
+/// Share of a serial line that PX4 uses for its messages.
 const PX4_SHARE: f64 = 0.5;
-/// PX4 gives a UDP link so much unless told otherwise, bytes a second.
+/// Default limit of PX4 for a UDP link, bytes/s.
 const PX4_UDP_BYTES_S: f64 = 100_000.0;
 
-/// What connects vehicle and ground station.
+/// The kind of link between vehicle and ground station.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LinkKind {
     /// network, or USB whose baud rate means nothing
@@ -46,7 +46,7 @@ impl Capacity {
         Self { bytes_s }
     }
 
-    /// Whether a set of messages has room.
+    /// Whether a set of messages fits.
     #[must_use]
     pub fn fits(&self, set: &[StreamRequest]) -> bool {
         bytes_s(set) <= FILL * self.bytes_s
@@ -62,9 +62,8 @@ pub(super) fn bytes_s(set: &[StreamRequest]) -> f64 {
         .sum()
 }
 
-/// The rate that an autopilot gives where this one is asked for, Hz; `None` where it refuses. ArduPilot
-/// takes whole milliseconds and none faster than 0.8 of its 400 Hz loop; PX4 sends from a loop of 4 ms,
-/// so that a faster stream than 250 Hz does not exist.
+/// The rate that an autopilot gives for a requested one, Hz; `None` if it refuses. ArduPilot uses whole milliseconds
+/// and nothing faster than 0.8 of its 400 Hz loop. PX4 sends from a loop of 4 ms, so no stream is faster than 250 Hz.
 #[must_use]
 pub fn granted_hz(autopilot: Autopilot, asked_hz: f64) -> Option<f64> {
     if asked_hz.is_nan() || asked_hz <= 0.0 {

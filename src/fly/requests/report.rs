@@ -1,4 +1,4 @@
-//! Whether what arrives suffices.
+//! Assessment of the rates that arrive.
 
 use super::capacity::bytes_s;
 use super::{Answer, Capacity, Need, StreamRequest, granted_hz};
@@ -6,24 +6,24 @@ use crate::autopilot::Autopilot;
 use crate::fly::finding::Finding;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ};
 
-/// A stream at less than this share of what the autopilot should give is slower than asked for.
+/// Share of the requested rate below which a stream is slower than requested. Chosen; not measured.
 const SHORT_SHARE: f64 = 0.8;
 
 /// One message.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StreamReport {
-    /// what was asked for; its rate is the one that was asked for last
+    /// the request, with the rate that was requested last
     pub request: StreamRequest,
-    /// what the vehicle said
+    /// the vehicle's answer
     pub answer: Answer,
     /// Hz over the window; NaN before there was one
     pub arrived_hz: f64,
-    /// it tells of actuators, and every value of it is zero
+    /// it is of actuators, and all its values are zero
     pub blank: bool,
 }
 
 impl StreamReport {
-    /// It comes at about the rate that the autopilot makes of the request.
+    /// Whether it arrives at about the rate that the autopilot gives for the request.
     #[must_use]
     pub fn is_as_asked(&self, autopilot: Autopilot) -> bool {
         granted_hz(autopilot, self.request.rate_hz)
@@ -45,22 +45,22 @@ impl StreamReport {
     }
 }
 
-/// One need and the best of what serves it.
+/// One need and the best message for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NeedReport {
     /// which
     pub need: Need,
     /// its fastest message
     pub best: Option<StreamReport>,
-    /// Hz below which it is not served
+    /// Hz below which it is not satisfied
     pub least_hz: f64,
-    /// Hz from which on it is served well
+    /// Hz from which it is well satisfied
     pub good_hz: f64,
-    /// without it no flight
+    /// whether the flight needs it
     pub to_fly: bool,
 }
 
-/// What was asked for, what arrived, and whether that suffices.
+/// Requests, rates that arrive, and whether they are sufficient.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RatesReport {
     /// one a message of the set
@@ -91,9 +91,9 @@ fn thresholds(need: Need) -> (f64, f64, bool) {
     }
 }
 
-/// Where the check speaks of what identification needs.
+/// Subject of the check of the needs of identification.
 const IDENTIFICATION: &str = "identification";
-/// Without these no identification.
+/// Needs of identification.
 const TO_IDENTIFY: [Need; 4] = [Need::BodyRates, Need::Attitude, Need::Position, Need::Actuators];
 
 impl RatesReport {
@@ -122,14 +122,13 @@ impl RatesReport {
         }
     }
 
-    /// Everything that identification needs arrives.
+    /// Whether everything that identification needs arrives.
     #[must_use]
     pub fn suffices_to_identify(&self) -> bool {
         TO_IDENTIFY.iter().all(|need| self.serves(*need))
     }
 
-    /// Whether the flight will teach anything: a warning where what identification needs does not arrive, which says what
-    /// is short of it.
+    /// The finding on identification: a warning with the missing needs if something does not arrive.
     #[must_use]
     pub fn identification(&self) -> Finding {
         let short: Vec<&NeedReport> = self
@@ -147,19 +146,19 @@ impl RatesReport {
             IDENTIFICATION,
             list(|need| format!("{} at {} Hz at least", need.need.name(), need.least_hz)),
             list(NeedReport::came),
-            "this recording will teach little or nothing: connect by a faster link or raise the autopilot's rates, or \
+            "little or nothing can be identified from this recording: connect by a faster link or raise the \
+             autopilot's rates, or \
              identify from the on-board log",
         )
     }
 
-    /// What this need asks for arrives at the least rate or faster.
+    /// Whether the messages for this need arrive at the least rate or faster.
     #[must_use]
     pub fn serves(&self, need: Need) -> bool {
         self.needs.iter().any(|report| report.need == need && report.is_served())
     }
 
-    /// What the operator should know: a refusal where flying needs what does not come, a warning where
-    /// identification does.
+    /// The findings: a refusal if a need of the flight is not satisfied, a warning for one of the identification.
     #[must_use]
     pub fn findings(&self) -> Vec<Finding> {
         let needs = self.needs.iter().map(NeedReport::finding);
@@ -188,13 +187,13 @@ impl RatesReport {
 }
 
 impl NeedReport {
-    /// Arrives at the least rate or faster.
+    /// Whether it arrives at the least rate or faster.
     #[must_use]
     pub fn is_served(&self) -> bool {
         self.best.is_some_and(|best| !best.blank && best.arrived_hz >= self.least_hz)
     }
 
-    /// The best of what arrives for it, in words.
+    /// The best message that arrives for it, in words.
     fn came(&self) -> String {
         self.best.map_or_else(
             || format!("nothing for {}", self.need.name()),

@@ -1,8 +1,8 @@
-//! Which messages, how often, and what for.
+//! The messages, their rates and purposes.
 
 use crate::autopilot::Autopilot;
 
-/// What a message is good for.
+/// A need of flight or identification.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Need {
     /// angular rates of the body
@@ -11,11 +11,11 @@ pub enum Need {
     Attitude,
     /// position and velocity: also to fly
     Position,
-    /// what the motors were told, or how they turn
+    /// commands or speeds of the motors
     Actuators,
-    /// acceleration, beside what velocity tells
+    /// acceleration, in addition to velocity
     Acceleration,
-    /// what the autopilot made of the setpoints
+    /// setpoints as the autopilot uses them
     Setpoints,
     /// voltage and charge: to fly
     Battery,
@@ -56,7 +56,7 @@ impl Need {
     }
 }
 
-/// One message to ask for.
+/// One message to request.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StreamRequest {
     /// MAVLink's id
@@ -69,9 +69,9 @@ pub struct StreamRequest {
     pub frame_bytes: f64,
     /// what for
     pub needs: &'static [Need],
-    /// asked for only where the message of this id is refused or does not come
+    /// requested only if the message of this id is refused or does not arrive
     pub instead_of: Option<u32>,
-    /// the rate is the greatest: the autopilot sends it when something changes, and seldom else
+    /// the rate is the largest: the autopilot sends it at changes, and rarely otherwise
     pub on_change: bool,
 }
 
@@ -166,8 +166,8 @@ const ARDUPILOT: &[StreamRequest] = &[
     GPS_GLOBAL_ORIGIN,
 ];
 
-/// The set that identification needs. What an autopilot is known to refuse is not asked of it, so that its
-/// refusals mean something.
+/// The set that identification needs, without messages that an autopilot is known to refuse, so that refusals are
+/// meaningful.
 #[must_use]
 pub fn request_set(autopilot: Autopilot) -> Vec<StreamRequest> {
     match autopilot {
@@ -181,8 +181,8 @@ pub fn request_set(autopilot: Autopilot) -> Vec<StreamRequest> {
     }
 }
 
-/// What is needed to fly, for a link on which the whole set has no room: identification then reads the
-/// on-board log.
+/// The set that the flight needs, for a link on which the whole set does not fit: identification then uses the on-board
+/// log.
 #[must_use]
 pub fn slow_request_set(autopilot: Autopilot) -> Vec<StreamRequest> {
     let estimator = match autopilot {

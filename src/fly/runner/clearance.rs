@@ -25,10 +25,10 @@ const AWAITED: [&str; 4] = ["estimate", "pre-arm", "home", "health"];
 const GPS_GLOBAL_ORIGIN: u32 = 49;
 const HOME_POSITION: u32 = 242;
 
-/// What came of it.
+/// Result of the checks.
 #[derive(Debug)]
 pub(super) struct Cleared {
-    /// that of the frames so far
+    /// the decoder of the frames so far
     pub(super) decoder: Option<Decoder>,
     pub(super) parameters: Parameters,
     pub(super) findings: Vec<Finding>,
@@ -38,7 +38,7 @@ pub(super) struct Cleared {
 }
 
 impl Cleared {
-    /// Whether the flight may go on, and why not.
+    /// Whether the flight may continue, or the reason why not.
     pub(super) fn verdict(&self) -> Result<(), String> {
         let refusals: Vec<String> = self
             .findings
@@ -60,7 +60,7 @@ enum Stage {
     Over,
 }
 
-/// One stage after the other. Parameters first: ArduPilot slows its messages while they are sent.
+/// The stages of the checks. Parameters are first, because ArduPilot slows its messages while they are sent.
 #[derive(Debug)]
 pub(super) struct Clearance {
     vehicle: wire::Vehicle,
@@ -69,11 +69,11 @@ pub(super) struct Clearance {
     decoder: Option<Decoder>,
     stage: Stage,
     fence: FenceDownload,
-    /// where the local frame lies, as GPS_GLOBAL_ORIGIN says
+    /// origin of the local frame, by GPS_GLOBAL_ORIGIN
     origin: Option<Geodetic>,
-    /// home, as HOME_POSITION says: m, world, local
+    /// home, by HOME_POSITION: m, world, local
     home_m: Option<Vector3<f64>>,
-    /// since when nothing but its position is waited for
+    /// since when only its position is awaited
     waits: Option<Duration>,
     counted_again: bool,
 }
@@ -128,7 +128,7 @@ impl Clearance {
         }
     }
 
-    /// What is to be sent now.
+    /// The next message to be sent.
     pub(super) fn poll(&mut self, now: Duration) -> Option<MavMessage> {
         let message = match &mut self.stage {
             Stage::Parameters(download) => download.poll(now),
@@ -151,12 +151,12 @@ impl Clearance {
         message
     }
 
-    /// All else is done, and the vehicle tells no position yet.
+    /// Whether all else is done and the vehicle reports no position yet.
     pub(super) fn waits_for_position(&self) -> bool {
         self.waits.is_some() && !self.counted_again && !matches!(self.stage, Stage::Over)
     }
 
-    /// What came of it, once, when it is over.
+    /// The result, once, after the end.
     pub(super) fn finished(&mut self, flight: &Flight, vehicle: &Vehicle, now: Duration) -> Option<Cleared> {
         let Stage::Rates(_, requests) = &mut self.stage else { return None };
         if !requests.is_done() {

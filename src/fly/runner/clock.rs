@@ -1,4 +1,4 @@
-//! The clock of a flight. It goes on while the computer sleeps, so that a sleep is a standstill like any other.
+//! The clock of a flight. It continues while the computer sleeps, so that a sleep is a stall like any other.
 
 use std::time::Duration;
 
@@ -29,8 +29,8 @@ struct Moment(Duration);
 
 #[cfg(unix)]
 impl Moment {
-    /// `Instant` reads a clock that stands still while the computer sleeps: CLOCK_MONOTONIC on Linux, CLOCK_UPTIME_RAW at
-    /// Apple's, whose CLOCK_MONOTONIC goes on.
+    /// `Instant` uses a clock that stops while the computer sleeps: CLOCK_MONOTONIC on Linux, CLOCK_UPTIME_RAW at
+    /// Apple's, whose CLOCK_MONOTONIC continues.
     #[cfg(any(target_os = "linux", target_os = "android"))]
     const ID: rustix::time::ClockId = rustix::time::ClockId::Boottime;
     #[cfg(not(any(target_os = "linux", target_os = "android")))]
@@ -47,7 +47,7 @@ impl Moment {
     }
 }
 
-/// Elsewhere as far as the system's own clock goes on in a sleep; on Windows it does.
+/// On other systems, the system's own clock; on Windows it continues in a sleep.
 #[cfg(not(unix))]
 #[derive(Debug, Clone, Copy)]
 struct Moment(std::time::Instant);

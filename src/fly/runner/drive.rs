@@ -1,4 +1,4 @@
-//! The flight with what belongs to it on the host: its clock, its view, the checks before it.
+//! The flight with its clock, its view and its checks on the host.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -28,12 +28,12 @@ use crate::units::deg_from_rad;
 use crate::vehicle::Vehicle;
 use crate::wire::{Frame, Record};
 
-/// A terminal that takes no picture for so long is told.
+/// A terminal that accepts no picture for this time is reported.
 const BLIND: Duration = Duration::from_secs(2);
 /// Between two pictures of the state.
 const SHOW: Duration = Duration::from_millis(200);
 
-/// Where the flight's records go and what flies.
+/// Places of the flight's records, and the vehicle.
 #[derive(Debug)]
 pub(super) struct Place {
     pub(super) dir: PathBuf,
@@ -42,7 +42,7 @@ pub(super) struct Place {
     pub(super) address: String,
 }
 
-/// A flight under way.
+/// A running flight.
 #[derive(Debug)]
 pub(super) struct Drive {
     supervisor: Supervisor,
@@ -58,9 +58,9 @@ pub(super) struct Drive {
     refused: u64,
     /// a file to be written
     to_keep: Option<(PathBuf, String)>,
-    /// since when the terminal takes no pictures
+    /// since when the terminal accepts no pictures
     unseen_since: Option<Duration>,
-    /// and it was told
+    /// whether that was reported
     told_blind: bool,
     /// setpoints go out
     streams: bool,
@@ -100,7 +100,7 @@ impl Drive {
         }
     }
 
-    /// Something that the operator should know.
+    /// Reports a warning to the operator.
     pub(super) fn warn(&mut self, kind: &'static str, text: &str) {
         self.notes.push(Note::new(self.clock.elapsed(), Level::Warning, kind, text));
     }
@@ -115,7 +115,7 @@ impl Drive {
         self.act(now);
     }
 
-    /// Time went on; whether the link has something that was not taken.
+    /// Time advanced; whether the link has something that was not taken.
     pub(super) fn tick(&mut self, waiting: usize) {
         let now = self.clock.elapsed();
         self.supervisor.tick(now, waiting);
@@ -133,7 +133,7 @@ impl Drive {
         self.estimating.frame(received);
     }
 
-    /// Does what the supervisor wants done.
+    /// Executes the actions of the supervisor.
     fn act(&mut self, now: Duration) {
         self.guide.set(self.supervisor.flight().guide(), self.supervisor.seen());
         self.tell_stream();
@@ -206,7 +206,7 @@ impl Drive {
         }
     }
 
-    /// Hands notes and pictures of the state on; waits for nobody.
+    /// Passes on notes and pictures of the state, without waiting.
     pub(super) fn report(&mut self, journal: &Journal, show: &SyncSender<ViewModel>) {
         let now = self.clock.elapsed();
         self.model.elapsed_s = now.as_secs_f64();
@@ -235,12 +235,12 @@ impl Drive {
         self.tell_view(now, unseen);
     }
 
-    /// A terminal that takes nothing for a while is told in the log of events.
+    /// Reports a terminal that accepts nothing for a while in the log of events.
     fn tell_view(&mut self, now: Duration, unseen: bool) {
         if !unseen {
             self.unseen_since = None;
             if std::mem::take(&mut self.told_blind) {
-                self.warn("view", "the terminal takes pictures again");
+                self.warn("view", "the terminal accepts output again");
             }
             return;
         }
@@ -248,7 +248,7 @@ impl Drive {
         if now.saturating_sub(since) >= BLIND && !std::mem::replace(&mut self.told_blind, true) {
             self.warn(
                 "view",
-                &format!("the terminal takes nothing: the flight goes on, its events are in {EVENTS}"),
+                &format!("the terminal accepts no output: the flight continues, its events are in {EVENTS}"),
             );
         }
     }

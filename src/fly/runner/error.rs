@@ -1,10 +1,10 @@
-//! Why there is no flight, or no end of it.
+//! Errors of a flight.
 
 use std::io;
 
 use crate::link::{LinkError, RecordError};
 
-/// Why there was no flight, or no end of it.
+/// Errors of a flight.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// the link cannot be used
@@ -18,10 +18,10 @@ pub enum RunError {
     Make {
         /// which
         what: String,
-        /// what the system said
+        /// error of the system
         source: io::Error,
     },
-    /// nobody would write down what happens on the flight
+    /// there is no writer for the log of events
     #[error(
         "no flight without its log of events: expected a tracing subscriber with the layer mavid::fly::event_layer(), \
          found one without it, or none"
@@ -29,7 +29,8 @@ pub enum RunError {
     Unheard,
     /// the program itself failed; nothing is sent any more
     #[error(
-        "the flight broke off by a fault of this program; no setpoint is sent any more, and the vehicle's own failsafe acts: {0}"
+        "the flight was ended by a fault of this program; no setpoint is sent any more, and the vehicle's own \
+         failsafe acts: {0}"
     )]
     Broken(String),
 }

@@ -1,5 +1,5 @@
-//! The live identification, on a thread of its own and of ordinary rank: what it costs, or a fault in it, never
-//! holds the flight up.
+//! The live identification in a separate thread of ordinary priority, so that its load or a fault in it never delays
+//! the flight.
 
 use std::io;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
@@ -15,10 +15,10 @@ const ESTIMATE: Duration = Duration::from_secs(1);
 /// Frames that may wait: some seconds of telemetry. One that finds no room is left out, and leaves a gap.
 const WAITING: usize = 4096;
 
-/// What the thread is told.
+/// Messages to the thread.
 #[derive(Debug)]
 enum Told {
-    /// what it is to do from now on
+    /// start of the identification
     Begin(Box<(Decoder, LiveIdentification)>),
     /// a frame of the vehicle
     Frame(ReceivedFrame),
@@ -35,7 +35,7 @@ pub(super) struct Estimating {
 }
 
 impl Estimating {
-    /// Starts its thread, which has the rank of the calling one: to be called where that is an ordinary one.
+    /// Starts its thread with the priority of the calling one, which must be an ordinary one.
     pub(super) fn start() -> io::Result<Self> {
         let (to, told) = sync_channel(WAITING);
         let (say, from) = channel();
@@ -56,7 +56,7 @@ impl Estimating {
         }
     }
 
-    /// Whether the trajectory is being flown: what else the vehicle does is not identified.
+    /// Sets whether the trajectory is flown: other motion is not identified.
     pub(super) fn set_active(&self, active: bool) {
         if self.began {
             let _ = self.to.try_send(Told::Active(active));

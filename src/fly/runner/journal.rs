@@ -1,7 +1,7 @@
-//! What a flight writes beside its recording: the log of events, one JSON object a line, and the vehicle's parameters.
+//! Files of a flight beside its recording: the log of events, one JSON object a line, and the vehicle's parameters.
 //!
-//! A thread of its own writes, so that a slow or full disk holds nothing up; what finds no room in its queue is left
-//! out and counted. After a failure it goes on trying: a full disk may be made room on.
+//! A separate thread writes, so that a slow or full disk delays nothing. Notes that find no room in its queue are left
+//! out and counted. After a failure it tries again, because space may be freed on a full disk.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
@@ -35,7 +35,7 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    /// Of the notes of a flight: goes on at the end of a file, or begins a new one.
+    /// A log of the notes of a flight: appends to a file, or creates a new one.
     pub(super) fn create(path: &Path, subscription: Subscription) -> io::Result<Self> {
         let file: File = OpenOptions::new().create(true).append(true).open(path)?;
         Ok(Self::to_store(file)?.of(subscription))
@@ -64,7 +64,7 @@ impl Journal {
         self.feed.keep(path, text);
     }
 
-    /// What goes wrong, told once: by a channel that works.
+    /// A failure, reported once.
     pub(super) fn news(&self) -> Option<String> {
         let mut state = locked(&self.state);
         let trouble = state.trouble().filter(|_| !state.told)?;
@@ -72,7 +72,7 @@ impl Journal {
         Some(trouble)
     }
 
-    /// Waits until all of it is written, or the disk takes nothing more; what is missing.
+    /// Waits until everything is written, or the disk accepts nothing more; returns what is missing.
     pub(super) async fn finish(self) -> Option<String> {
         // the thread ends with the last way to it
         drop((self.subscription, self.feed));
@@ -83,7 +83,7 @@ impl Journal {
             Ok(Err(_)) => Some("the writer of events panicked".to_owned()),
             Err(_) => {
                 let told = format!(
-                    "the last events are missing: the disk took nothing for {} s",
+                    "the last events are missing: the disk accepted nothing for {} s",
                     PATIENCE.as_secs()
                 );
                 Some(trouble.map_or(told.clone(), |trouble| format!("{told}; {trouble}")))
@@ -285,7 +285,7 @@ mod tests {
         let told = journal.news().unwrap();
         assert!(told.contains("missing: the disk is too slow"), "{told}");
         let end = journal.finish().await.unwrap();
-        assert!(end.contains("the disk took nothing for 3 s"), "{end}");
+        assert!(end.contains("the disk accepted nothing for 3 s"), "{end}");
         drop(ticket);
     }
 }

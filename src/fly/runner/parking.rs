@@ -33,7 +33,7 @@ impl Parking {
         self.halt(part).stop(how);
     }
 
-    /// Lets all parts that stand still go on.
+    /// Lets all parts that stand still continue.
     pub fn release(&self) {
         for part in [Part::Supervisor, Part::Telemetry, Part::Link] {
             self.halt(part).release();

@@ -33,13 +33,13 @@ use crate::wire::SystemId;
 
 /// Between two looks at the clock.
 const TICK: Duration = Duration::from_millis(10);
-/// How long the last words of a flight may take to leave.
+/// Longest time for the last messages of a flight to be sent.
 const FLUSH: Duration = Duration::from_secs(1);
-/// What is said where setpoints get no thread of their own rank.
+/// Warning if setpoints get no real-time thread.
 const NO_PRIORITY: &str = "the system permits no real-time threads (on Linux: CAP_SYS_NICE, or RLIMIT_RTPRIO of at \
      least 1): while every core is busy, a setpoint may go out late, over serial and TCP more than over UDP";
 
-/// What is flown, how the vehicle is reached, and where the records go.
+/// The flight, the link to the vehicle, and the place of the records.
 #[derive(Debug)]
 pub struct Ride {
     /// the flight
@@ -52,7 +52,7 @@ pub struct Ride {
     pub signing: Option<Signing>,
     /// an existing folder
     pub dir: PathBuf,
-    /// for tests: what stands still or sleeps
+    /// for tests: what stalls or sleeps
     pub parking: Parking,
 }
 
@@ -65,20 +65,20 @@ pub struct Console {
     pub keys: UnboundedReceiver<KeyCommand>,
 }
 
-/// What a flight left behind.
+/// Results of a flight.
 #[derive(Debug)]
 pub struct Record {
     /// how it ended
     pub outcome: Outcome,
-    /// how the setpoints went out
+    /// figures of the setpoints
     pub stream: StreamFigures,
-    /// whose flight it is; `None` where no vehicle was found
+    /// system id of the vehicle; `None` if no vehicle was found
     pub system: Option<SystemId>,
     /// the recording
     pub recorder: RecorderStatus,
     /// the link
     pub link: LinkStats,
-    /// the log of events could not be written in whole
+    /// reason why the log of events is incomplete
     pub events_failure: Option<String>,
 }
 

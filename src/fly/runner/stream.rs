@@ -17,7 +17,7 @@ use crate::link::{LinkStats, LinkWriter};
 /// A setpoint further from its time is late.
 const LATE: Duration = Duration::from_millis(3);
 
-/// What is to be streamed, shared with the flight.
+/// The setpoints to be streamed, shared with the flight.
 #[derive(Debug, Clone)]
 pub(super) struct SharedGuide(Arc<Mutex<Guide>>);
 
@@ -45,14 +45,14 @@ impl SharedGuide {
     }
 }
 
-/// How the setpoints went out.
+/// Figures of the sent setpoints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct StreamFigures {
-    /// setpoints that went out
+    /// sent setpoints
     pub sent: u64,
-    /// setpoints made more than 3 ms after their time
+    /// setpoints computed more than 3 ms after their time
     pub late: u64,
-    /// not sent, for the next was there already or the stream had ended
+    /// not sent, because the next one existed already or the stream had ended
     pub overtaken: u64,
     /// refused by the link, or in no message's range
     pub refused: u64,
@@ -75,9 +75,9 @@ pub(super) struct Stream {
 }
 
 impl Stream {
-    /// Starts it; a stall is told to `stalled`. One real-time thread suffices; where the system permits none, several
-    /// ordinary ones, bound to different cores, wait for each setpoint's time, and the first that the system wakes
-    /// sends it.
+    /// Starts it; a stall is reported to `stalled`. One real-time thread is sufficient. Without permission for one,
+    /// several ordinary threads, bound to different cores, wait for each setpoint's time, and the first that the system
+    /// wakes sends it.
     pub(super) fn start(
         period: Duration,
         clock: Clock,
@@ -132,7 +132,7 @@ impl Stream {
     }
 }
 
-/// What the threads of a stream share.
+/// Data of all threads of a stream.
 #[derive(Debug)]
 struct Sender {
     turn: Mutex<Turn>,
@@ -143,7 +143,7 @@ struct Sender {
     stalled: UnboundedSender<Duration>,
 }
 
-/// Whose turn it is to make the next setpoint has this.
+/// State of the thread that computes the next setpoint.
 #[derive(Debug)]
 struct Turn {
     streamer: Streamer,
@@ -194,21 +194,21 @@ impl Turn {
     }
 }
 
-/// What came of a setpoint's time.
+/// Result at a setpoint's time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Due {
     /// it was given to the link
     Sent,
-    /// the link did not take it
+    /// the link did not accept it
     Refused,
-    /// somebody stood still for so long: nothing is sent
+    /// a part stalled for this time: nothing is sent
     Stalled(Duration),
     /// there was nothing to send
     Nothing,
 }
 
-/// Makes the setpoint of `now` and gives it to the link, whose task `ran` last at that time. All times are those of the
-/// flight's clock.
+/// Computes the setpoint of `now` and passes it to the link, whose task `ran` last at that time. All times are those of
+/// the flight's clock.
 pub fn send_due(
     streamer: &mut Streamer,
     (now, ran): (Duration, Duration),

@@ -73,7 +73,7 @@ impl Supervisor {
         }
     }
 
-    /// Time went on; `waiting` frames and events of the link were not taken yet. Where there are some, and nothing was taken
+    /// Time advanced; `waiting` frames and events of the link were not taken yet. Where there are some, and nothing was taken
     /// since the last tick, the way from the link stands still: a supervisor that does not see renews nothing. Commands go
     /// out once all that waited at an earlier tick is read: the next frame may say that the pilot took over.
     pub fn tick(&mut self, now: Duration, waiting: usize) {

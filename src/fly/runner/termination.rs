@@ -40,7 +40,7 @@ impl Ends {
     }
 }
 
-/// The end of the terminal from which a program was started. Started so as to outlive it (`nohup`), the program goes on.
+/// The end of the terminal from which a program was started. Started so as to outlive it (`nohup`), the program continues.
 #[cfg(unix)]
 #[derive(Debug)]
 pub struct HangUp(Option<tokio::signal::unix::Signal>);

@@ -1,11 +1,12 @@
-//! The last door before a setpoint leaves: outside the room, below the floor, or where a number is none, nothing is sent.
+//! The last check before a setpoint is sent: nothing is sent outside the room, below the floor, or with a value that is
+//! not a number.
 
 use nalgebra::Vector3;
 
 use crate::fly::setpoint::Setpoint;
 use crate::vehicle::Limits;
 
-/// Where a setpoint may be; the vehicle's local frame, m.
+/// The permitted region of setpoints; the vehicle's local frame, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SetpointBounds {
     low_m: Vector3<f64>,
@@ -13,8 +14,8 @@ pub struct SetpointBounds {
 }
 
 impl SetpointBounds {
-    /// The room of `limits`, of which the zero lies at `offset_m`. A wall that is not stated is none; a floor that is not
-    /// stated is the ground.
+    /// The room of `limits`, whose origin is at `offset_m`. A wall that is not stated does not exist; the default floor
+    /// is the ground.
     #[must_use]
     pub fn room(limits: &Limits, offset_m: &Vector3<f64>) -> Self {
         let wall = |max: Option<f64>| max.unwrap_or(f64::INFINITY);
@@ -23,7 +24,7 @@ impl SetpointBounds {
         Self { low_m: low + offset_m, high_m: high + offset_m }
     }
 
-    /// The same, so much smaller (m) at each wall and at the ceiling, as far as something is left of it.
+    /// The region reduced by these distances (m) at each wall and at the ceiling, as long as something is left.
     #[must_use]
     pub fn smaller(self, side_m: f64, up_m: f64) -> Self {
         let middle = Vector3::from_fn(|axis, _| f64::midpoint(self.low_m[axis], self.high_m[axis]));
@@ -36,26 +37,26 @@ impl SetpointBounds {
         }
     }
 
-    /// The same with a place besides, such as the ground where the vehicle stands before it takes off.
+    /// The region extended to a place, such as the ground where the vehicle stands before it takes off.
     #[must_use]
     pub fn with(self, place_m: &Vector3<f64>) -> Self {
         Self { low_m: self.low_m.inf(place_m), high_m: self.high_m.sup(place_m) }
     }
 
-    /// The place (m) is within.
+    /// Whether the place (m) is inside.
     #[must_use]
     pub fn contains(&self, place_m: &Vector3<f64>) -> bool {
         self.nearest(place_m) == *place_m
     }
 
-    /// The nearest place within, m.
+    /// The nearest place inside, m.
     #[must_use]
     pub fn nearest(&self, place_m: &Vector3<f64>) -> Vector3<f64> {
         place_m.sup(&self.low_m).inf(&self.high_m)
     }
 
-    /// The setpoint as it may be sent: at the nearest place within, without a velocity or an acceleration that leads out
-    /// from there; `None` where a number is not finite.
+    /// The setpoint as it may be sent: at the nearest place inside, without a velocity or an acceleration that leads
+    /// out from there; `None` if a number is not finite.
     #[must_use]
     pub fn keep(&self, setpoint: &Setpoint) -> Option<Setpoint> {
         let Setpoint { position_m, velocity_m_s, acceleration_m_s2, .. } = *setpoint;

@@ -10,7 +10,7 @@ use crate::frames::Attitude;
 use crate::units::deg_from_rad;
 use crate::vehicle::Limits;
 
-/// For how long a limit may be broken: a single sample is none.
+/// Time for which a limit may be exceeded: a single sample does not count.
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// Tilt and room.
@@ -32,7 +32,7 @@ impl Envelope {
         Self { limits, margin_m, tilt_max_rad, tilted, outside, greatest_rad: 0.0 }
     }
 
-    /// Takes the attitude of now.
+    /// Checks the present attitude.
     pub fn check_tilt(&mut self, now: Duration, attitude: &Attitude) -> Option<Cause> {
         let tilt_rad = attitude.up_in_body().z.clamp(-1.0, 1.0).acos();
         self.greatest_rad = self.greatest_rad.max(tilt_rad);
@@ -42,7 +42,7 @@ impl Envelope {
         })
     }
 
-    /// Takes the place of now in the plan's frame, m. The floor is not checked: takeoff and landing are below.
+    /// Checks the present position in the plan's frame, m. The floor is not checked: takeoff and landing are below it.
     pub fn check_room(&mut self, now: Duration, place_m: &Vector3<f64>) -> Option<Cause> {
         let sides = [
             ("x_m", place_m.x.abs(), self.limits.x_max_m),
@@ -56,7 +56,7 @@ impl Envelope {
         let lasts = self.outside.update(now, broken.is_some());
         broken.filter(|_| lasts >= PATIENCE).map(|(name, value, limit)| {
             Cause::Room(format!(
-                "|{name}| is {value:.2}, the room ends at {limit:.2} and {margin_m:.2} m more"
+                "|{name}| is {value:.2}, the room ends at {limit:.2} plus a margin of {margin_m:.2} m"
             ))
         })
     }

@@ -1,5 +1,5 @@
-//! From the reference to the setpoints that are sent: such that the vehicle follows the reference, and that it comes to
-//! rest inside the room if one of them is the last that it hears.
+//! Conversion of the reference to the sent setpoints, so that the vehicle follows the reference, and comes to rest
+//! inside the room if one of them is the last that it receives.
 
 use nalgebra::Vector3;
 
@@ -26,25 +26,25 @@ impl Default for Feeding {
 }
 
 impl Feeding {
-    /// Place, velocity and acceleration of the reference.
+    /// Setpoints with position, velocity and acceleration of the reference.
     #[must_use]
     pub fn whole() -> Self {
         Self { law: None, share: 1.0, room: None }
     }
 
-    /// This share (0 to 1) of velocity and acceleration, and places ahead for the rest, in the room.
+    /// Setpoints with this share (0 to 1) of velocity and acceleration, and positions ahead for the rest, in the room.
     #[must_use]
     pub fn ahead(law: FollowLaw, share: f64, room: SetpointBounds) -> Self {
         Self { law: Some(law), share, room: Some(room) }
     }
 
-    /// Share of the reference's velocity and acceleration that is sent.
+    /// Share of the reference's velocity and acceleration in the setpoints.
     #[must_use]
     pub fn share(&self) -> f64 {
         self.share
     }
 
-    /// What is sent for a setpoint of the reference.
+    /// The sent setpoint for one of the reference.
     #[must_use]
     pub fn apply(&self, reference: &Setpoint) -> Setpoint {
         let Some(law) = self.law.filter(|_| self.share < 1.0) else { return *reference };
@@ -62,7 +62,7 @@ impl Feeding {
         }
     }
 
-    /// As the autopilot takes what is sent.
+    /// The sent setpoint as the autopilot uses it.
     #[must_use]
     pub fn target(&self, reference: &Setpoint) -> GuidedTarget {
         let Setpoint { position_m, velocity_m_s, acceleration_m_s2, .. } = self.apply(reference);

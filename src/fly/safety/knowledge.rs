@@ -6,22 +6,22 @@
 //! that was asked after the stall or the silence. A vehicle that does not hear the question does not hear a command
 //! either, so that nothing is lost by waiting; one that never answers is not flown.
 //!
-//! The questions are numbered (TIMESYNC gives the number back), from a number on that is drawn anew for every run of
+//! The questions are numbered (TIMESYNC gives the number back), from a number on that is drawn again for every run of
 //! the program: the vehicle's answers to others, which routers pass on, are not taken for answers to us, and an older
 //! answer is not taken for the newer one's.
 
 use std::hash::{BuildHasher, RandomState};
 use std::time::Duration;
 
-/// Between two questions.
+/// Time between two requests.
 const ASK_AGAIN: Duration = Duration::from_millis(200);
-/// After a shorter standstill commands wait for a report, and setpoints do not.
+/// After a shorter stall, commands wait for a report but setpoints do not.
 const SHORT: Duration = Duration::from_millis(300);
 
-/// Why the mode is not known.
+/// The reason why the mode is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Doubted {
-    /// this program stood still for so long
+    /// this program stalled for this time
     Stall(Duration),
     /// the vehicle was not heard
     Silence,
@@ -29,7 +29,7 @@ pub enum Doubted {
     Contradiction,
 }
 
-/// The number from which the questions of one run of the program are counted.
+/// The number of the first request of one run of the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FirstQuestion(i64);
 
@@ -51,7 +51,7 @@ impl FirstQuestion {
     }
 }
 
-/// What makes the mode uncertain, and what was done about it.
+/// The reason of a doubt, and the requests about it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Doubt {
     /// since when the mode is not known
@@ -63,7 +63,7 @@ struct Doubt {
     answered: Option<i64>,
 }
 
-/// How many reports of the mode count so far, and whether those that come now do.
+/// Number of accepted reports of the mode, and whether new ones are accepted.
 #[derive(Debug, Clone)]
 pub struct ModeKnowledge {
     reports: u64,
@@ -82,7 +82,7 @@ impl ModeKnowledge {
         Self { reports: 0, doubt: None, asked: None, first, next: first, ever_answered: false }
     }
 
-    /// From now on the mode is not known: this program stood still, or the vehicle was silent.
+    /// Notes that the mode is not known from now on: this program stalled, or the vehicle was silent.
     pub fn doubt(&mut self, now: Duration, why: Doubted) {
         // a hiccup on top of something worse makes it no better
         let worse = self.doubt.map(|doubt| doubt.why).filter(|before| is_long(*before));
@@ -91,7 +91,7 @@ impl ModeKnowledge {
         self.asked = None;
     }
 
-    /// The mode is not known.
+    /// Whether the mode is not known.
     #[must_use]
     pub fn is_in_doubt(&self) -> bool {
         self.doubt.is_some()
@@ -103,20 +103,20 @@ impl ModeKnowledge {
         self.doubt.map(|doubt| doubt.since)
     }
 
-    /// The mode is not known, and was not for so long that setpoints are not to go out either.
+    /// Whether the mode has been unknown for so long that no setpoints may be sent either.
     #[must_use]
     pub fn is_in_doubt_for_long(&self) -> bool {
         self.doubt.is_some_and(|doubt| is_long(doubt.why))
     }
 
-    /// The vehicle answers questions: it answered one of this run.
+    /// Whether the vehicle answers requests: it answered one of this run.
     #[must_use]
     pub fn has_answers(&self) -> bool {
         self.ever_answered
     }
 
-    /// The number of the question by which the vehicle is to be asked now: because its mode is in doubt, or because an
-    /// answer is wanted, as a command waits for a report and reports may come as seldom as once a second. Numbers grow.
+    /// The number of the request to be sent now: its mode is in doubt, or an answer is wanted because a command waits
+    /// for a report, which may come only once a second. Numbers increase.
     pub fn asks(&mut self, now: Duration, wanted: bool) -> Option<i64> {
         let wanted = wanted || self.doubt.is_some();
         if !wanted || self.asked.is_some_and(|asked| now.saturating_sub(asked) < ASK_AGAIN) {
@@ -131,8 +131,8 @@ impl ModeKnowledge {
         Some(number)
     }
 
-    /// The vehicle answered the question of this number, by a frame of this place among those that it sent. Answers to
-    /// questions of others, and to ours from before the doubt, count for nothing.
+    /// Takes the answer to the request of this number, from a frame with this place among those that the vehicle sent.
+    /// Answers to requests of others, and to ours from before the doubt, do not count.
     pub fn answered(&mut self, number: i64, place: i64) {
         self.ever_answered |= (self.first..self.next).contains(&number);
         if let Some(doubt) = &mut self.doubt
@@ -142,7 +142,7 @@ impl ModeKnowledge {
         }
     }
 
-    /// A report of the mode was read, from a frame of this place among those that the vehicle sent.
+    /// Takes a report of the mode from a frame with this place among those that the vehicle sent.
     pub fn report(&mut self, place: i64) {
         if self.doubt.is_none_or(|doubt| doubt.answered.is_some_and(|answer| place > answer)) {
             self.doubt = None;
@@ -150,7 +150,7 @@ impl ModeKnowledge {
         }
     }
 
-    /// Reports that count so far. A command may go out once this is greater than when its reason came.
+    /// Number of accepted reports. A command may be sent once it is greater than at the time of the command's reason.
     #[must_use]
     pub fn reports(&self) -> u64 {
         self.reports

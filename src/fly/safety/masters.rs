@@ -1,4 +1,4 @@
-//! Whether anybody else commands the vehicle.
+//! Detection of another station that commands the vehicle.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -11,19 +11,20 @@ use crate::fly::setpoint::Setpoint;
 use crate::fly::target::Target;
 use crate::wire::{ComponentId, Frame, SystemId};
 
-/// A reported target this far from all of ours is not ours. PX4 reports ours to the last bit, ArduPilot what it has
-/// made of it since, some centimetres on.
+/// Distance from all of our targets beyond which a reported target is not ours, m. PX4 reports our targets exactly,
+/// ArduPilot some centimetres further on. Chosen; not measured.
 const FOREIGN_M: f64 = 0.25;
-/// Reports come later than what they report, and after a silence later by as much.
+/// Largest delay of a report; after a silence it is larger by the silence.
 const DELAY: Duration = Duration::from_secs(1);
-/// Nothing of ours from before this is flown still.
+/// Longest time for which the vehicle may follow one of our setpoints.
 const OLDEST: Duration = Duration::from_secs(9);
-/// Steps in which what it has moved on by is sought.
+/// Steps in the search for the time by which a setpoint was extrapolated.
 const STEPS: u32 = 10;
-/// How long a queue may drain that a silence has filled.
+/// Longest time in which a queue that a silence has filled is emptied.
 const DRAINS: Duration = Duration::from_secs(20);
-/// So many foreign reports within this time: another's setpoints between ours are flown for an instant each, and of 30
-/// reports of a PX4 that heard 20 a second of them between 50 of ours, 3 showed them. Undisturbed, no report did.
+/// Number of foreign reports within a time for a detection. Setpoints of another station between ours are followed for
+/// an instant each: of 30 reports of a PX4 that received 20 of them a second between 50 of ours, 3 showed them. Without
+/// them, no report did.
 const REPORTS: usize = 2;
 const WINDOW: Duration = Duration::from_secs(3);
 
@@ -32,13 +33,13 @@ const HEARTBEAT: u32 = 0;
 /// their target.
 const SETPOINTS: [(u32, usize); 3] = [(82, 36), (84, 50), (86, 50)];
 
-/// Watches for a second master.
+/// Detection of a second station.
 #[derive(Debug)]
 pub struct Masters {
     own: (SystemId, ComponentId),
     told: VecDeque<(Duration, Setpoint)>,
     reported: Option<Duration>,
-    /// when, and the distance of the nearest of ours, m
+    /// time of each foreign report, and the distance of our nearest target, m
     foreign: VecDeque<(Duration, f64)>,
     /// a silence and when it ended
     silence: Option<(Duration, Duration)>,
@@ -76,7 +77,7 @@ impl Masters {
         })
     }
 
-    /// What the vehicle is told at `now`.
+    /// Notes the setpoint that is sent at `now`.
     pub fn told(&mut self, now: Duration, setpoint: Setpoint) {
         self.told.push_back((now, setpoint));
         while self.told.front().is_some_and(|(at, _)| now.saturating_sub(*at) > OLDEST) {
@@ -84,7 +85,7 @@ impl Masters {
         }
     }
 
-    /// Takes the target that the vehicle says it flies to, m, world; `None` for one that is no place.
+    /// Checks the target that the vehicle reports, m, world; `None` for one that is not a position.
     pub fn check(
         &mut self,
         now: Duration,
@@ -121,15 +122,15 @@ impl Masters {
         (self.foreign.len() >= REPORTS).then(|| {
             let nearest_m = self.foreign.iter().map(|(_, away_m)| *away_m).fold(f64::INFINITY, f64::min);
             Cause::SecondMaster(if nearest_m.is_finite() {
-                format!("the vehicle flies to targets {nearest_m:.2} m and more from ours, again and again")
+                format!("the vehicle repeatedly reports targets {nearest_m:.2} m and more from ours")
             } else {
-                "the vehicle flies to targets that are no places, again and again; ours are".to_owned()
+                "the vehicle repeatedly reports targets that are not positions; ours are positions".to_owned()
             })
         })
     }
 }
 
-/// From a target to where the setpoint is after it was moved on for some time of a span, m.
+/// Distance of a target from the setpoint after an extrapolation for some time of a span, m.
 fn away_m(setpoint: &Setpoint, target_m: &Vector3<f64>, (least, most): (Duration, Duration)) -> f64 {
     let (least_s, span_s) = (least.as_secs_f64(), most.saturating_sub(least).as_secs_f64());
     let steps = if span_s > 0.0 { STEPS } else { 0 };
@@ -225,7 +226,7 @@ mod tests {
 
     #[test]
     fn ardupilot_moves_a_target_on_while_nothing_new_comes_and_px4_does_not() {
-        // ours are lost for half a second of each second, and the vehicle goes on along the velocity
+        // ours are lost for half a second of each second, and the vehicle continues along the velocity
         let started = |t: u64| t - t % 1000;
         let coasting = |t: u64| {
             let from = ours(started(t));

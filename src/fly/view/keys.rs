@@ -1,15 +1,15 @@
-//! From keys to commands. One key for what is safe, a typed word for what is not.
+//! Conversion of keys to commands: a single key for safe commands, a typed word for others.
 
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-/// What must be typed to stop the motors in the air.
+/// Word that stops the motors in the air.
 pub const KILL_WORD: &str = "kill";
-/// What must be typed to arm.
+/// Word that arms.
 pub const ARM_WORD: &str = "arm";
 /// Opens the field for the word: its letters would otherwise be commands.
 const WORD_KEY: char = ':';
 
-/// What the operator asks for.
+/// Commands of the operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KeyCommand {
     /// stop and stay
@@ -27,7 +27,7 @@ pub enum KeyCommand {
 }
 
 impl KeyCommand {
-    /// What a typed line asks for, where there are no single keys: `h`, `l`, `r` or their words, `arm`, `:kill`.
+    /// The command of a typed line, if there are no single keys: `h`, `l`, `r` or their words, `arm`, `:kill`.
     #[must_use]
     pub fn of_line(line: &str) -> Option<Self> {
         match line.trim().to_ascii_lowercase().as_str() {
@@ -54,18 +54,18 @@ pub struct Keys {
     read: bool,
 }
 
-/// Lines that are turned over at once.
+/// Lines that are scrolled at once.
 const LEAF: usize = 10;
 
 impl Keys {
-    /// Whether the word for arming is waited for.
+    /// Sets whether the word for arming is awaited.
     pub fn ask(&mut self, asks: bool) {
         if asks != self.asks {
             (self.asks, self.word) = (asks, None);
         }
     }
 
-    /// The page before the flight has so many lines, of which so many are seen at once.
+    /// Sets the number of lines of the page before the flight, and the number that is visible at once.
     pub fn page(&mut self, lines: usize, seen: usize) {
         self.last = lines.saturating_sub(seen);
         self.turn(self.from);
@@ -119,7 +119,7 @@ impl Keys {
         None
     }
 
-    /// The word as far as it is typed; `None` while keys are commands.
+    /// The typed part of the word; `None` while keys are commands.
     #[must_use]
     pub fn typed(&self) -> Option<&str> {
         self.word.as_deref()

@@ -1,4 +1,4 @@
-//! What the view shows.
+//! Content of the view.
 
 use crate::estimate::Finding;
 use crate::fly::finding::Level;
@@ -31,7 +31,7 @@ impl Trace {
     }
 }
 
-/// How the flight stands, for the colour of its name.
+/// State of the flight, for the colour of its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Phase {
     /// before takeoff
@@ -69,7 +69,7 @@ pub struct Battery {
     pub is_low: bool,
 }
 
-/// How well the vehicle follows.
+/// Tracking of the vehicle.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tracking {
     /// m between reference and position; `None` while nothing is followed
@@ -96,7 +96,7 @@ pub struct Attitude {
 pub struct EventLine {
     /// s since the connection
     pub time_s: f64,
-    /// how bad
+    /// severity
     pub level: Level,
     /// what happened
     pub text: String,
@@ -109,7 +109,7 @@ pub struct ParameterRow {
     pub name: &'static str,
     /// as in files
     pub unit: &'static str,
-    /// `None` until the flight says something
+    /// `None` before there is an estimate
     pub value: Option<f64>,
     /// standard error, same unit; zero for what is given
     pub std: Option<f64>,
@@ -117,7 +117,7 @@ pub struct ParameterRow {
     pub history: Trace,
 }
 
-/// Everything that the view shows.
+/// Content of the view.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ViewModel {
     /// vehicle and autopilot
@@ -130,7 +130,7 @@ pub struct ViewModel {
     pub mode: String,
     /// motors may turn
     pub armed: bool,
-    /// what there is to read before the vehicle is armed
+    /// page to be read before the vehicle is armed
     pub page: Option<Arc<Page>>,
     /// the line of it from which on it is shown
     pub page_from: usize,
@@ -156,7 +156,7 @@ pub struct ViewModel {
     pub events: VecDeque<EventLine>,
     /// events that happened in all, those forgotten among them
     pub event_count: u64,
-    /// what is being typed, where a word is asked for
+    /// typed text, if a word is requested
     pub typed: Option<String>,
 }
 
@@ -176,7 +176,7 @@ impl ViewModel {
         self.tracking.history_m.push(error_m);
     }
 
-    /// Takes what the flight says of the parameters.
+    /// Takes an estimate of the parameters.
     pub fn estimate(&mut self, estimate: &LiveEstimate) {
         if self.parameters.is_empty() {
             let blank = |parameter: &crate::fly::live::LiveParameter| ParameterRow {

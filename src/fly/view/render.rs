@@ -12,8 +12,9 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Paragraph};
 
-/// A link that was silent for so long is late, s; for so long is lost.
+/// Silence after which a link is late, s.
 const LATE_S: f64 = 0.5;
+/// Silence after which a link is lost, s.
 const LOST_S: f64 = 2.0;
 /// Columns of a parameter's name, and of its value with error and unit.
 const NAME_COLUMNS: usize = 6;

@@ -1,4 +1,4 @@
-//! A line of blocks that shows how something went.
+//! A line of blocks that shows the course of a value.
 
 const BLOCKS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 

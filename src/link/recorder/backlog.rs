@@ -17,7 +17,7 @@ pub(super) struct Taken {
     pub bytes: u64,
 }
 
-/// Records that the store has not taken yet, in order. One of which it took a part goes on where it stopped.
+/// Records that the store has not taken yet, in order. One of which it took a part continues where it stopped.
 #[derive(Debug)]
 pub(super) struct Backlog<S> {
     store: S,

@@ -144,7 +144,7 @@ impl Recorder {
         self.state.over.store(true, Ordering::Release);
         let status = self.status();
         let missing = self.state.given.load(Ordering::Relaxed).saturating_sub(status.frames + status.dropped);
-        let told = format!("the disk took nothing for {} s", PATIENCE.as_secs());
+        let told = format!("the disk accepted nothing for {} s", PATIENCE.as_secs());
         RecorderStatus {
             dropped: status.dropped + missing,
             failure: Some(status.failure.map_or(told.clone(), |failure| format!("{told}; {failure}"))),

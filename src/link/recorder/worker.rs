@@ -27,7 +27,7 @@ pub(super) enum Order {
     End(oneshot::Sender<()>),
 }
 
-/// Writes until all recorders are gone, or the recording is ended. After a failure it goes on trying: a full disk may
+/// Writes until all recorders are gone, or the recording is ended. After a failure it continues trying: a full disk may
 /// be made room on.
 pub(super) fn work(store: impl Store, orders: &Receiver<Order>, state: &State) {
     let mut log = TlogWriter::new(Backlog::new(store));

@@ -24,7 +24,7 @@ pub(super) fn clock_warning(ahead: u64) -> Option<String> {
     (ahead > STALE).then(|| {
         format!(
             "this computer's clock is {} s behind the last signing time: it was set back, or another's was ahead; \
-             messages are signed from that time on, and the clock is to be set",
+             messages are signed from that time on; set the clock",
             ahead / SECOND
         )
     })

@@ -35,7 +35,8 @@ impl fmt::Display for Distrust {
                  one up on the vehicle",
             ),
             Self::Replayed => f.write_str(
-                "it sends what was heard before: somebody plays messages back, or the vehicle's signing time stands still",
+                "it sends what was received before: somebody replays messages, or the vehicle's signing time does not \
+                 advance",
             ),
             Self::Old { behind_s } => write!(
                 f,

@@ -51,7 +51,7 @@ impl SigningKey {
         let key = Self::parse(&bytes).map_err(error)?;
         // by a key of zeros SETUP_SIGNING switches signing off: a vehicle with it believes everybody
         if key.0 == [0; KEY_BYTES] {
-            Err(error("zeros, which autopilots take for no key".to_owned()))
+            Err(error("zeros, which autopilots treat as no key".to_owned()))
         } else {
             Ok(key)
         }
@@ -68,8 +68,7 @@ impl SigningKey {
         if !printable && let Ok(raw) = <[u8; KEY_BYTES]>::try_from(bytes) {
             return Ok(Self(raw));
         }
-        let text =
-            std::str::from_utf8(bytes).map_err(|_| "other bytes than 32, which are no text".to_owned())?;
+        let text = std::str::from_utf8(bytes).map_err(|_| "not 32 bytes, and not a text".to_owned())?;
         if let Some(key) = from_hex(text.trim()) {
             return Ok(Self(key));
         }
@@ -181,7 +180,7 @@ mod tests {
         for zeros in [vec![0; 32], vec![b'0'; 64]] {
             std::fs::write(&path, zeros).unwrap();
             let refused = SigningKey::read(&path).unwrap_err().to_string();
-            assert!(refused.contains("got zeros, which autopilots take for no key"), "{refused}");
+            assert!(refused.contains("got zeros, which autopilots treat as no key"), "{refused}");
         }
         std::fs::remove_file(path).unwrap();
     }

@@ -17,8 +17,8 @@ pub(super) fn exposure(path: &Path) -> Option<String> {
 pub(super) fn times_exposure(path: &Path) -> Option<String> {
     let (done, mode) = open_to_others(path)?;
     Some(format!(
-        "the signing times in {} could be {done} by others (mode {mode:o}, expected 600): whoever changed them lets old \
-         messages be played back, or shuts the vehicle out; they are this user's alone from now on",
+        "the signing times in {} could be {done} by others (mode {mode:o}, expected 600): a change of them would \
+         allow old messages to be replayed, or block the vehicle; only this user can read and write them from now on",
         crate::text::path(path)
     ))
 }

@@ -13,7 +13,7 @@ use super::signature::{SIGNATURE_BYTES, TAIL_BYTES, equal_in_constant_time};
 use super::times::{AHEAD, StreamKey, Times, TimesFile};
 use crate::wire::{Frame, Version};
 
-/// Streams told apart; further ones are refused.
+/// Largest number of streams that are distinguished; further ones are refused.
 const STREAMS: usize = 1024;
 /// A radio's own report, which no radio signs.
 const RADIO_STATUS: u32 = 109;

@@ -114,7 +114,7 @@ fn what_is_not_believed_is_told_once_with_what_to_do() {
             "signs 6000 s in the past, expected at most 60 s; set",
         ),
         (good.clone(), "signs with the key given"),
-        (good, "sends what was heard before"),
+        (good, "sends what was received before"),
     ] {
         let first = said(&bytes, &receiver);
         assert!(first.starts_with("system 1 component 1 ") && first.contains(expected), "{first}");

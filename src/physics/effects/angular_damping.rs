@@ -18,7 +18,7 @@ impl Effect for AngularDamping {
     }
 
     fn sentence(&self) -> &'static str {
-        "Turning is damped: a torque against the body rates, in proportion to them."
+        "The rotation is damped: a torque against the body rates, in proportion to them."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

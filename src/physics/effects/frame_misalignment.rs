@@ -25,7 +25,7 @@ impl Effect for FrameMisalignment {
     }
 
     fn sentence(&self) -> &'static str {
-        "The position reference is askew: what it calls level or north is not."
+        "The position reference is misaligned: its horizontal plane or its north is wrong."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

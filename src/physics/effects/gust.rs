@@ -52,7 +52,7 @@ impl Effect for Gust {
     }
 
     fn sentence(&self) -> &'static str {
-        "The wind gusts: the drag changes irregularly and not the same way twice."
+        "The wind is gusty: the drag changes irregularly and does not repeat."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -21,7 +21,7 @@ impl Effect for ImuMisalignment {
     }
 
     fn sentence(&self) -> &'static str {
-        "The inertial unit sits askew: its axes are not the body's."
+        "The inertial unit is misaligned: its axes are not those of the body."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

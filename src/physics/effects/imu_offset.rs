@@ -20,7 +20,7 @@ impl Effect for ImuOffset {
     }
 
     fn sentence(&self) -> &'static str {
-        "The accelerometer is away from the centre of mass: it feels the turning."
+        "The accelerometer is away from the centre of mass: it measures the acceleration of the rotation as well."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

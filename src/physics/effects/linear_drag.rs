@@ -31,7 +31,7 @@ impl Effect for LinearDrag {
     }
 
     fn sentence(&self) -> &'static str {
-        "The rotors drag: a force against the airspeed, in proportion to it and to the rotor speed."
+        "The rotors have drag: a force against the airspeed, in proportion to it and to the rotor speed."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -24,7 +24,7 @@ impl Effect for MassChange {
     }
 
     fn sentence(&self) -> &'static str {
-        "The mass changed in flight: from one moment on the same thrust accelerates it more, or less."
+        "The mass changed in flight: from one instant on, the same thrust accelerates it more, or less."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -32,7 +32,7 @@ impl Effect for QuadraticDrag {
     }
 
     fn sentence(&self) -> &'static str {
-        "The body drags: a force against the airspeed that grows with its square."
+        "The body has drag: a force against the airspeed that grows with its square."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

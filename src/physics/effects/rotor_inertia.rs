@@ -32,7 +32,8 @@ impl Effect for RotorInertia {
     }
 
     fn sentence(&self) -> &'static str {
-        "The rotors are flywheels: spinning them up yaws the vehicle, turning it tilts them."
+        "The rotors have inertia: a change of their speed yaws the vehicle, and a rotation of the vehicle causes \
+         gyroscopic torques."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -29,7 +29,7 @@ impl Effect for ThrustTilt {
     }
 
     fn sentence(&self) -> &'static str {
-        "The thrust axis leans: thrust pushes sideways, fixed in the body."
+        "The thrust axis is tilted: the thrust has a sideways component that is fixed in the body."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

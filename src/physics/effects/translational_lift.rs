@@ -28,7 +28,7 @@ impl Effect for TranslationalLift {
     }
 
     fn sentence(&self) -> &'static str {
-        "Flying sideways gives thrust: it grows with the square of the airspeed across the rotor axis."
+        "Sideways flight increases the thrust: it grows with the square of the airspeed across the rotor axis."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

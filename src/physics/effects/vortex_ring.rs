@@ -53,7 +53,7 @@ impl Effect for VortexRing {
     }
 
     fn sentence(&self) -> &'static str {
-        "It sinks into its own wake: the rotors lose thrust in a steep descent."
+        "The vehicle sinks into its own wake: the rotors lose thrust in a steep descent."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

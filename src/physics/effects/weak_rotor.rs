@@ -23,7 +23,7 @@ impl Effect for WeakRotor {
     }
 
     fn sentence(&self) -> &'static str {
-        "One rotor is weak: its thrust and torque fall short of the others."
+        "One rotor is weak: its thrust and torque are less than those of the others."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

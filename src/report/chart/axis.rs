@@ -1,4 +1,4 @@
-//! From values to places: linear or logarithmic, with round ticks.
+//! Conversion of values to positions: linear or logarithmic, with round ticks.
 
 /// One axis of a chart.
 #[derive(Debug, Clone, Copy)]
@@ -9,8 +9,8 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// Covers the values with `spare` of their span to spare on both sides. Of a logarithmic axis only
-    /// positive values count.
+    /// An axis over the values, with the share `spare` of their span free on both sides. A logarithmic axis covers only
+    /// positive values.
     pub(super) fn covering(values: impl Iterator<Item = f64>, spare: f64, log: bool) -> Self {
         let placed = values
             .filter(|value| value.is_finite() && (!log || *value > 0.0))
@@ -24,7 +24,7 @@ impl Axis {
         Self { low: low - pad, high: high + pad, log }
     }
 
-    /// Share of the way from the low to the high end; `None` where the value has no place.
+    /// Relative position of a value between the low and the high end; `None` for a value outside of the axis' domain.
     pub(super) fn share(&self, value: f64) -> Option<f64> {
         let placed = if self.log { (value > 0.0).then(|| value.log10())? } else { value };
         placed.is_finite().then(|| (placed - self.low) / (self.high - self.low))

@@ -1,4 +1,4 @@
-//! Horizontal bars, several series a name.
+//! Horizontal bars, with several series for each name.
 
 use super::colour::colour;
 use super::frame::{WIDTH, framed, tenths};
@@ -8,13 +8,13 @@ use maud::{Markup, html};
 /// Bars from zero to the right.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Bars {
-    /// over them
+    /// title
     pub title: String,
     /// unit of the values
     pub unit: String,
     /// name of each group
     pub names: Vec<String>,
-    /// label, which of the colours, and one value a name; what is not finite is left out
+    /// label, index of the colour, and one value for each name; values that are not finite are left out
     pub series: Vec<(String, usize, Vec<f64>)>,
 }
 
@@ -47,7 +47,7 @@ impl Bars {
         }
     }
 
-    /// A name with one bar a series.
+    /// A name with one bar for each series.
     fn group(&self, place: usize, name: &str, y: f64, group: f64) -> Markup {
         let all = self.series.iter().flat_map(|(.., values)| values).filter(|value| value.is_finite());
         let most = all.fold(f64::MIN_POSITIVE, |most, value| most.max(*value));

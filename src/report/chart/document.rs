@@ -6,7 +6,7 @@ use super::panel::Panel;
 use crate::text::clean_lines;
 use maud::{Markup, html};
 
-/// Panels one under the other as one SVG document, dark on white.
+/// Panels one below the other as one SVG document, dark on white.
 #[must_use]
 pub fn svg(panels: &[Panel]) -> String {
     let total = HEIGHT * panels.len() as f64;

@@ -16,7 +16,7 @@ const BOTTOM: f64 = 40.0;
 /// Letters of a legend's line.
 const LEGEND_LETTERS: usize = 17;
 
-/// Places on the sheet.
+/// Positions on the sheet.
 struct Sheet {
     x: Axis,
     y: Axis,
@@ -64,7 +64,7 @@ fn words(panel: &Panel) -> Markup {
     }
 }
 
-/// A stretch of the abscissa.
+/// A shaded interval of the abscissa.
 fn shading(sheet: &Sheet, [from, to]: [f64; 2]) -> Markup {
     let (Some(from), Some(to)) = (sheet.x_at(from), sheet.x_at(to)) else { return Markup::default() };
     let (from, to) = (from.max(LEFT), to.min(LEFT + Sheet::WIDE));

@@ -15,7 +15,7 @@ pub(super) fn framed(height: f64, title: &str, drawing: &Markup) -> Markup {
     }
 }
 
-/// A place to a tenth of a dot.
+/// A position rounded to a tenth of a dot.
 pub(super) fn tenths(value: f64) -> String {
     format!("{value:.1}")
 }

@@ -3,7 +3,7 @@
 /// One set of axes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Panel {
-    /// over the axes
+    /// title
     pub title: String,
     /// with its unit
     pub x_label: String,
@@ -13,7 +13,7 @@ pub struct Panel {
     pub lines: Vec<Line>,
     /// drawn below the lines
     pub bands: Vec<Band>,
-    /// shaded from one abscissa to another
+    /// shaded intervals of the abscissa
     pub spans: Vec<[f64; 2]>,
     /// words for the shading, for the legend
     pub spans_label: String,
@@ -24,15 +24,15 @@ pub struct Panel {
 /// One line of a chart.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Line {
-    /// for the legend; none where it is empty
+    /// text of the legend; none if it is empty
     pub label: String,
     /// abscissa
     pub x: Vec<f64>,
-    /// ordinate; what is not finite is left out
+    /// ordinate; values that are not finite are left out
     pub y: Vec<f64>,
-    /// how
+    /// style
     pub stroke: Stroke,
-    /// which of the colours; `None`: its place among the lines
+    /// index of the colour; `None`: the index of the line
     pub colour: Option<usize>,
 }
 
@@ -42,7 +42,7 @@ pub enum Stroke {
     /// through all points
     #[default]
     Solid,
-    /// likewise, broken
+    /// through all points, dashed
     Dashed,
     /// from the axis up to each point
     Stems,
@@ -57,6 +57,6 @@ pub struct Band {
     pub low: Vec<f64>,
     /// upper end
     pub high: Vec<f64>,
-    /// which of the colours
+    /// index of the colour
     pub colour: usize,
 }

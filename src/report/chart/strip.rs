@@ -1,19 +1,19 @@
-//! Rows of cells along time, darker where more is.
+//! Rows of cells over time; larger values are darker.
 
 use super::axis::Axis;
 use super::frame::{WIDTH, framed, tenths};
 use maud::{Markup, html};
 
-/// Heat along an abscissa.
+/// A heat map along an abscissa.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Strip {
-    /// over it
+    /// title
     pub title: String,
     /// with its unit
     pub x_label: String,
     /// centre of each cell, evenly spaced
     pub x: Vec<f64>,
-    /// name, and one value a cell; what is not finite stays empty
+    /// name, and one value for each cell; cells with values that are not finite stay empty
     pub rows: Vec<(String, Vec<f64>)>,
     /// value that is darkest
     pub full: f64,
@@ -23,7 +23,7 @@ const LEFT: f64 = 130.0;
 const RIGHT: f64 = 20.0;
 const TOP: f64 = 26.0;
 const ROW: f64 = 16.0;
-/// What is fainter is not drawn.
+/// Cells fainter than this are not drawn.
 const LEAST_DARK: f64 = 0.02;
 
 impl Strip {

@@ -7,11 +7,11 @@ use crate::report::number::significant;
 use crate::study::{ExplainStudy, Located, Predicted, ShownOn};
 use std::fmt::Write;
 
-/// Most effects of a sentence that come with their numbers.
+/// Largest number of effects that are listed with their sizes.
 const SIZED: usize = 4;
-/// An error that rises by more is said, percent.
+/// An error that increases by more than this is mentioned, percent. Chosen; not measured.
 const WORSE_PERCENT: f64 = 2.0;
-/// A state that explains less of the misfit is not said, percent.
+/// A state that explains less of the misfit is not mentioned, percent. Chosen; not measured.
 const LEAST_STATE_PERCENT: f64 = 10.0;
 
 /// The answer in one sentence.
@@ -21,7 +21,7 @@ pub fn answer(study: &ExplainStudy) -> String {
         Verdict::NothingMissing => nothing(study),
         Verdict::Explained => format!("{}{}.{}", left_out(study), gain(study), not_told_apart(study)),
         Verdict::PartlyExplained => format!(
-            "{}{}. Something else is there that no known effect accounts for: {}.{}",
+            "{}{}. There is another deviation that no known effect explains: {}.{}",
             left_out(study),
             gain(study),
             whereabouts(&study.left_over()),
@@ -31,7 +31,7 @@ pub fn answer(study: &ExplainStudy) -> String {
     }
 }
 
-/// One effect in full; of several each with its number, beyond a few only the first.
+/// The named effects: one effect in full, several with their sizes, the rest without.
 fn left_out(study: &ExplainStudy) -> String {
     let vehicle = study.vehicle();
     if let [one] = study.effects.as_slice() {
@@ -44,12 +44,14 @@ fn left_out(study: &ExplainStudy) -> String {
     };
     let large = words(large, true);
     match words(small, false).as_slice() {
-        [] => format!("Left out were {}", list(&large)),
-        small => format!("Left out were {}; and to a lesser degree {}", list(&large), list(small)),
+        [] => format!("Several effects were left out: {}", list(&large)),
+        small => {
+            format!("Several effects were left out: {}; and to a lesser degree {}", list(&large), list(small))
+        }
     }
 }
 
-/// What may stand for a name, in a sentence of its own.
+/// A sentence on the effects that the flight does not distinguish from a named one.
 fn not_told_apart(study: &ExplainStudy) -> String {
     let pairs: Vec<String> = study
         .effects
@@ -63,10 +65,10 @@ fn not_told_apart(study: &ExplainStudy) -> String {
     if pairs.is_empty() {
         return String::new();
     }
-    format!(" This flight cannot tell {}.", pairs.join(", nor "))
+    format!(" This flight cannot distinguish {}.", pairs.join(", nor "))
 }
 
-/// What the model gains, on what was not used for it.
+/// The prediction gain on data that were not used.
 fn gain(study: &ExplainStudy) -> String {
     if let Some(by) = study.other_vehicle() {
         return format!("; {} ({by}), so nothing is shown on it", whose(study));
@@ -115,7 +117,9 @@ fn nothing(study: &ExplainStudy) -> String {
         let could =
             if seen.is_empty() { String::new() } else { format!("; it could show {}", list_or(&seen)) };
         return format!(
-            "Too little excitation: the vehicle hardly moves in this flight, so that drag, damping, ground effect and the like would stay unseen at any usual size{could}, and nothing of that is there. Fly a trajectory that moves all axes (mavid plan).{other}"
+            "Too little excitation: the vehicle hardly moves in this flight, so drag, damping, ground effect and \
+             similar effects could not be detected at any usual size{could}, and none of this was found. Fly a \
+             trajectory that moves all axes (mavid plan).{other}"
         );
     }
     let would =
@@ -133,7 +137,8 @@ fn nothing(study: &ExplainStudy) -> String {
         unseen => format!("{would}, but not {} of usual size", list_or(unseen)),
     };
     format!(
-        "Nothing is missing that this flight could show: the rigid body with its rotors follows it down to the noise{would}.{other}"
+        "Nothing is missing that this flight could show: the rigid body with its rotors explains it down to the \
+         noise{would}.{other}"
     )
 }
 
@@ -142,7 +147,7 @@ fn unexplained(study: &ExplainStudy) -> String {
     let closest = if closest.is_empty() {
         String::new()
     } else {
-        format!("; {} comes closest and does not serve", closest.join(" with "))
+        format!("; {} comes closest but does not explain it", closest.join(" with "))
     };
     let term = study.empirical.as_ref().map_or_else(String::new, |term| {
         let gain =
@@ -150,12 +155,12 @@ fn unexplained(study: &ExplainStudy) -> String {
                 format!(" and lowers the 0.5 s {name} error on {} by {percent:.0} %", study.shown_on.words())
             });
         format!(
-            "; an empirical force that follows {}, not a mechanism, stands in for it{gain}",
+            "; an empirical force that depends on {}, without a mechanism, replaces it{gain}",
             spoken_along(term.along)
         )
     });
     format!(
-        "Something is there that no known effect accounts for: {}{closest}{term}.",
+        "There is a deviation that no known effect explains: {}{closest}{term}.",
         whereabouts(&study.located)
     )
 }
@@ -166,7 +171,7 @@ fn detection_limit(study: &ExplainStudy, id: &str) -> Option<DetectionLimit> {
     limits.copied().max_by(|a, b| a.limit.total_cmp(&b.limit))
 }
 
-/// Where a misfit lives: axis, place or state, band.
+/// Location of a misfit: axis, place or state, band.
 fn whereabouts(located: &Located) -> String {
     let mut parts = Vec::new();
     if let Some(field) = &located.field {
@@ -181,7 +186,7 @@ fn whereabouts(located: &Located) -> String {
     } else if let Some(axis) = located.axes.first() {
         let what =
             axis.axis.replace("force_", "a force along body ").replace("torque_", "a torque about body ");
-        let mut words = format!("mainly {what} ({:.0} % of it)", axis.share_percent);
+        let mut words = format!("mainly {what} ({:.0} %)", axis.share_percent);
         // a state that explains little of it leads nowhere
         let state = located.state.first().filter(|state| state.share_percent > LEAST_STATE_PERCENT);
         if let Some(state) = state {
@@ -192,10 +197,10 @@ fn whereabouts(located: &Located) -> String {
     if let Some([low, high]) = located.band_hz {
         parts.push(format!("between {} and {} Hz", significant(low, 2), significant(high, 2)));
     }
-    if parts.is_empty() { "spread over axes, times and states alike".to_owned() } else { parts.join(", ") }
+    if parts.is_empty() { "spread over all axes, times and states".to_owned() } else { parts.join(", ") }
 }
 
-/// A state's variable as it is said.
+/// The displayed name of a state.
 fn spoken_state(variable: &str) -> String {
     match variable {
         "rate_x" => "the roll rate".to_owned(),
@@ -232,7 +237,7 @@ fn joined(parts: &[String], word: &str) -> String {
     }
 }
 
-/// What an empirical term depends on.
+/// The quantity on which an empirical term depends, in words.
 fn spoken_along(along: Along) -> String {
     const AXES: [&str; 3] = ["x", "y", "z"];
     match along {

@@ -7,16 +7,16 @@ use crate::study::{
     AxisResidual, ExplainStudy, Followed, Harmonics, Heat, LeftAlongTime, RecordedAndSimulated,
 };
 
-/// Points of a line at most: a chart is some 440 dots wide.
+/// Largest number of points of a line: a chart is about 440 dots wide.
 const POINTS: usize = 900;
-/// Colours and words of the model before and after.
+/// Colours of the model before and after.
 const BEFORE: usize = 1;
 const AFTER: usize = 2;
 const ALONE: &str = "rigid body";
 const FOUND: &str = "model found";
-/// Residual beyond what is left after, in units of that, that is darkest.
+/// Residual with the darkest colour, beyond and relative to the residual after.
 const DARK: f64 = 4.0;
-/// Share of a harmonic's distance by which the lines before and after stand apart.
+/// Distance between the lines before and after, as a share of the harmonics' distance.
 const APART: f64 = 0.12;
 
 /// The words for the model after.
@@ -24,7 +24,7 @@ pub(super) fn model_after(study: &ExplainStudy) -> &'static str {
     if study.empirical.is_some() { "with the empirical force" } else { FOUND }
 }
 
-/// Name of an axis for people.
+/// Displayed name of an axis.
 fn spoken(axis: &str) -> String {
     axis.replace('_', " ")
 }
@@ -33,7 +33,7 @@ fn unit(axis: usize) -> String {
     if axis < 3 { "N" } else { "N m" }.to_owned()
 }
 
-/// What the body did, and what the models make of the recorded commands.
+/// Recorded motion, and its prediction by the models from the recorded commands.
 pub(super) fn recorded_and_simulated(of: &RecordedAndSimulated, after: &str) -> Panel {
     let (unit, quantity) =
         if of.axis < 3 { ("m/s^2", "specific force") } else { ("rad/s^2", "angular acceleration") };
@@ -52,10 +52,10 @@ pub(super) fn recorded_and_simulated(of: &RecordedAndSimulated, after: &str) -> 
     }
 }
 
-/// What is left along the same axis, before and after.
+/// The residual of the same axis, before and after.
 pub(super) fn left_along_time(of: &LeftAlongTime, after: &str) -> Panel {
     Panel {
-        title: format!("what is left of {}, recorded less simulated", spoken(CHANNEL_NAMES[of.axis])),
+        title: format!("residual of {}, recorded minus simulated", spoken(CHANNEL_NAMES[of.axis])),
         x_label: "time (s)".to_owned(),
         y_label: unit(of.axis),
         lines: vec![line(ALONE, &of.time_s, &of.before, BEFORE), line(after, &of.time_s, &of.after, AFTER)],
@@ -63,7 +63,7 @@ pub(super) fn left_along_time(of: &LeftAlongTime, after: &str) -> Panel {
     }
 }
 
-/// The residual against the state that it follows most, before and after, with the bands of the bins.
+/// The residual over the state on which it depends most, before and after, with the bands of the bins.
 pub(super) fn followed(of: &Followed) -> Panel {
     let line = |label: &str, bins: &[Bin], colour| Line {
         label: label.to_owned(),
@@ -81,7 +81,7 @@ pub(super) fn followed(of: &Followed) -> Panel {
     let state = spoken(&of.state);
     let after = of.after.as_deref();
     Panel {
-        title: format!("what is left of {} against {state}", spoken(of.axis)),
+        title: format!("residual of {} over {state}", spoken(of.axis)),
         x_label: format!("{state} ({})", of.state_unit),
         y_label: of.unit.to_owned(),
         lines: [(ALONE, Some(&*of.before), BEFORE), (FOUND, after, AFTER)]
@@ -96,10 +96,10 @@ pub(super) fn followed(of: &Followed) -> Panel {
     }
 }
 
-/// Residual of each axis before and after, over what is left in the end.
+/// Residual of each axis before and after, relative to the residual after.
 pub(super) fn axes(of: &[AxisResidual], after: &str) -> Bars {
     Bars {
-        title: "residual of each axis, in units of what is left after".to_owned(),
+        title: "residual of each axis, relative to the residual after".to_owned(),
         unit: String::new(),
         names: of.iter().map(|of| spoken(of.axis)).collect(),
         series: vec![
@@ -109,7 +109,7 @@ pub(super) fn axes(of: &[AxisResidual], after: &str) -> Bars {
     }
 }
 
-/// When each axis misfits, before and after.
+/// Misfit of each axis over time, before and after.
 pub(super) fn heat(of: &Heat) -> Strip {
     let named = |rows: &[Vec<f64>], when: &str| -> Vec<(String, Vec<f64>)> {
         let names = CHANNEL_NAMES.iter().map(|name| format!("{} {when}", spoken(name)));
@@ -118,7 +118,7 @@ pub(super) fn heat(of: &Heat) -> Strip {
     let mut rows = named(&of.before, "before");
     rows.extend(named(&of.after, "after"));
     Strip {
-        title: "residual along time, in units of what is left after".to_owned(),
+        title: "residual over time, relative to the residual after".to_owned(),
         x_label: "time (s)".to_owned(),
         x: of.time_s.clone(),
         rows,
@@ -126,7 +126,7 @@ pub(super) fn heat(of: &Heat) -> Strip {
     }
 }
 
-/// Power at the trajectory's harmonics over that beside them, before and after.
+/// Power at the trajectory's harmonics divided by the power next to them, before and after.
 pub(super) fn harmonics(of: &Harmonics) -> Panel {
     let line = |label: &str, lines: &[HarmonicLine], colour, shift: f64| Line {
         label: label.to_owned(),
@@ -137,7 +137,7 @@ pub(super) fn harmonics(of: &Harmonics) -> Panel {
     };
     let shift = APART / of.period_s;
     Panel {
-        title: format!("{}: power at the harmonics over that beside them", spoken(of.axis)),
+        title: format!("{}: power at the harmonics divided by the power next to them", spoken(of.axis)),
         x_label: format!("frequency (Hz); the trajectory repeats every {:.1} s", of.period_s),
         y_label: "ratio".to_owned(),
         lines: vec![line(ALONE, &of.before, BEFORE, -shift), line(FOUND, &of.after, AFTER, shift)],

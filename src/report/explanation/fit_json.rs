@@ -1,4 +1,4 @@
-//! The fit before and after as JSON: all that the report's tables show.
+//! The fit before and after as JSON, with all values of the report's tables.
 
 use crate::compare::SIGNALS;
 use crate::diagnose::holdout::{Compared, HoldoutFit, OpenLoop};
@@ -24,12 +24,12 @@ pub(super) struct FitValues {
 struct PairValue {
     before: Option<FitValue>,
     after: Option<FitValue>,
-    /// what white noise of the sensors alone would leave
+    /// error that white noise of the sensors alone would cause
     floor: Option<FitValue>,
     windows: Option<usize>,
     improvement_percent: Option<f64>,
     improvement_range_percent: Option<(f64, f64)>,
-    /// one a length of window
+    /// one for each length of window
     open_loop: Vec<WindowValue>,
     #[serde(flatten)]
     shown: Option<ShownValue>,
@@ -50,7 +50,7 @@ struct WindowValue {
     errors: BTreeMap<&'static str, ComparedValue>,
 }
 
-/// What only flights that were not used are asked.
+/// Values of hold-out flights only.
 #[derive(Debug, Clone, Serialize)]
 struct ShownValue {
     weak_residual: BTreeMap<&'static str, ComparedValue>,
@@ -58,12 +58,12 @@ struct ShownValue {
     #[serde(skip_serializing_if = "Option::is_none")]
     no_closed_loop: Option<String>,
     own_parameters: BTreeMap<String, OwnValue>,
-    /// why these cannot be flights of the vehicle that was identified
+    /// the reason why these cannot be flights of the identified vehicle
     other_vehicle: Option<String>,
     notes: Vec<String>,
 }
 
-/// Root mean square errors with intervals that hold 95 of 100 resamplings of blocks of the flight.
+/// Root mean square errors with 95 % bootstrap intervals over blocks of the flight.
 #[derive(Debug, Clone, Serialize)]
 struct ComparedValue {
     before: f64,

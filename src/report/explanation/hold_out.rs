@@ -1,4 +1,4 @@
-//! The section on the fit before and after, and on what was not used.
+//! The section on the fit before and after, and on the hold-out.
 
 use crate::compare::SIGNALS;
 use crate::diagnose::holdout::{Compared, HoldoutFit};
@@ -10,14 +10,16 @@ use maud::{Markup, html};
 
 const COMPARED: [&str; 6] = ["", "before|", "after|", "noise alone|", "better by|", "unit"];
 
-/// Errors before and after, on the flights that were explained and on those that were not used.
+/// Errors before and after, on the explained flights and on the hold-out flights.
 pub(super) fn hold_out(study: &ExplainStudy) -> Markup {
     let content = html! {
-        (note("Open-loop prediction from the measured state, fed the recorded actuators. Before: the rigid body identified on the same flights. Intervals hold 95 of 100 resamplings of blocks of the flight. Noise alone: what white noise of the sensors would leave with the model that is right."))
+        (note("Open-loop prediction from the measured state with the recorded actuators. Before: the rigid body \
+               identified on the same flights. Intervals: 95 % of a bootstrap over blocks of the flight. Noise alone: \
+               the error that white noise of the sensors would cause with the right model."))
         @if let Some(predicted) = &study.identify { (prediction("flights explained", predicted)) }
         @if let Some(predicted) = &study.holdout { (prediction(&study.shown_on.heading(), predicted)) }
         @if let ShownOn::Nothing { reason } = &study.shown_on {
-            (warning(&format!("Not shown on anything that was not used: {reason}.")))
+            (warning(&format!("Not shown on unused data: {reason}.")))
         }
         @if let Some(shown) = &study.shown {
             @if let Some(why) = &shown.no_open_loop {
@@ -82,12 +84,12 @@ fn closed_loop(shown: &HoldoutFit) -> Markup {
                 .filter_map(|(of, (name, unit))| Some(compared_row(name, unit, of.as_ref()?)))
                 .collect();
             table(
-                "Flown again in closed loop from the recorded setpoints by the simulator's own controller, rms",
+                "Simulated in closed loop from the recorded setpoints with the simulator's own controller, rms",
                 &COMPARED,
                 &rows,
             )
         }
-        Err(why) => note(&format!("Not flown again in closed loop: {why}.")),
+        Err(why) => note(&format!("Not simulated in closed loop: {why}.")),
     }
 }
 

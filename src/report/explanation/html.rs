@@ -11,7 +11,7 @@ use crate::report::quality::data_quality;
 use crate::study::{ExplainStudy, TriedAs};
 use maud::{Markup, html};
 
-/// Flights of which recorded and simulated motion is drawn.
+/// Number of flights whose recorded and simulated motion is drawn.
 const DRAWN: usize = 3;
 
 /// The report: one file, nothing loaded from anywhere.
@@ -58,28 +58,30 @@ fn charts(study: &ExplainStudy) -> Markup {
         @for of in numbers.recorded.iter().take(DRAWN) {
             (figure(
                 &inline(&figures::recorded_and_simulated(of, after)),
-                "Behind the weak form's kernel of 0.4 s. Shaded: where the rigid body alone misses by more than noise.",
+                "Weighted with the weak form's kernel of 0.4 s. Shaded: the error of the rigid body alone is larger \
+                 than noise.",
             ))
         }
         @if let Some(of) = &numbers.left {
-            (figure(&inline(&figures::left_along_time(of, after)), "The same as a difference."))
+            (figure(&inline(&figures::left_along_time(of, after)), "The difference of the two."))
         }
     };
     let differ = html! {
         @if let Some(of) = &numbers.followed {
             (figure(
                 &inline(&figures::followed(of)),
-                "Mean residual in bins of the state, with bands that hold 95 of 100 resamplings of the flight's periods.",
+                "Mean residual in bins of the state, with 95 % bands of a bootstrap over the flight's periods.",
             ))
         }
         (figure(&figures::axes(&numbers.axes, after).inline(), "Root mean square of each axis."))
         @if let Some(of) = &numbers.heat {
-            (figure(&figures::heat(of).inline(), "Dark: five times what is left after, and more."))
+            (figure(&figures::heat(of).inline(), "Dark: at least five times the residual after."))
         }
         @if let Some(of) = &numbers.harmonics {
             (figure(
                 &inline(&figures::harmonics(of)),
-                "A trajectory flown again and again puts what the model lacks at its harmonics; noise lies beside them as well. A ratio about 1 is noise.",
+                "With a periodic trajectory, everything that the model lacks is at the harmonics; noise is also \
+                 between them. A ratio of about 1 is noise.",
             ))
         }
     };
@@ -88,7 +90,7 @@ fn charts(study: &ExplainStudy) -> Markup {
 
 fn found(study: &ExplainStudy) -> Markup {
     let heading = match study.verdict() {
-        Verdict::Unexplained => "What comes closest and does not serve",
+        Verdict::Unexplained => "What comes closest but does not explain it",
         Verdict::NothingMissing => "What was left out: nothing that this flight could show",
         Verdict::Explained | Verdict::PartlyExplained => "What was left out",
     };
@@ -134,7 +136,8 @@ fn effect(study: &ExplainStudy, effect: &Named) -> Markup {
 
 fn empirical(term: &Empirical) -> Markup {
     let what = format!(
-        "An empirical term, not a mechanism: a force along {}, straight lines between the knots, none outside what was flown. It predicts {} % of the force residual in stretches that it was not fitted to.",
+        "An empirical term, not a mechanism: a force along {}, linear between the knots and zero outside of the flown \
+         range. It predicts {} % of the force residual in parts of the flight to which it was not fitted.",
         term.along.name(),
         significant(100.0 * term.gain, 2)
     );
@@ -165,7 +168,8 @@ fn rigid_body(study: &ExplainStudy) -> Markup {
     let latency = study.latency();
     let content = html! {
         (table(
-            "Before: alone. After: refitted together with the effects. Moved: in standard errors.",
+            "Before: without the effects. After: estimated together with the effects. Moved: change in standard \
+             errors.",
             &["parameter", "nominal|", "before|", "after|", "moved|", "unit"],
             &rows,
         ))
@@ -197,7 +201,8 @@ fn evidence(study: &ExplainStudy) -> Markup {
         .collect();
     let gates = &study.given.settings.gates;
     let caption = format!(
-        "A name needs z above {}, spread over the flight, {} % of the residual energy, and a size that physics allows",
+        "A name needs z above {}, distributed over the flight, {} % of the residual energy, and a physically possible \
+         size",
         gates.z,
         100.0 * gates.gain
     );

@@ -40,7 +40,7 @@ struct EffectValue {
     parameters: Vec<ParameterOf>,
     evidence: EvidenceValue,
     confusable_with: Vec<&'static str>,
-    /// standard deviations by which this flight tells them apart
+    /// their distance in this flight, standard deviations
     distinguishability: BTreeMap<&'static str, Option<f64>>,
 }
 
@@ -60,7 +60,7 @@ struct EvidenceValue {
     p_value: f64,
 }
 
-/// A term without a mechanism: straight lines between the knots, zero outside.
+/// A term without a mechanism: linear between the knots, zero outside.
 #[derive(Debug, Clone, Serialize)]
 struct EmpiricalValue {
     variable: &'static str,
@@ -115,7 +115,7 @@ struct LimitValue {
     id: &'static str,
     parameter: &'static str,
     limit: f64,
-    /// on ordinary vehicles, of what shows only where the vehicle moves
+    /// size on ordinary vehicles, for effects that appear only in motion
     usual: Option<f64>,
     unit: &'static str,
 }
@@ -138,26 +138,26 @@ struct FlightValue {
 
 #[derive(Debug, Clone, Serialize)]
 struct NextValue {
-    /// why there is none
+    /// the reason why there is none
     reason: Option<String>,
     seconds: Option<f64>,
-    /// what it tells apart, in standard deviations
+    /// pairs that it separates, in standard deviations
     pairs: Vec<NextPair>,
-    /// what no trajectory tells apart, and why
+    /// pairs that no trajectory separates, with the reason
     inseparable: Vec<String>,
 }
 
 #[derive(Debug, Clone, Serialize)]
 struct NextPair {
     named: &'static str,
-    /// null: how far it stands out of the noise
+    /// null: the distance is from zero
     other: Option<&'static str>,
     now: f64,
     after: f64,
 }
 
 impl ExplanationDocument {
-    /// From the result.
+    /// The document of a study.
     #[must_use]
     pub fn new(study: &ExplainStudy) -> Self {
         Self {

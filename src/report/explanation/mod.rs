@@ -1,4 +1,4 @@
-//! What `explain` says, as views of one study: the sentence, text for the terminal, JSON, the model file, HTML.
+//! Views of the study of `explain`: the sentence, text for the terminal, JSON, the model file, HTML.
 
 mod answer;
 mod figures;

@@ -1,4 +1,4 @@
-//! The model file of `explain`: the vehicle with its effects, and what they rest on.
+//! The model file of `explain`: the vehicle with its effects, and their provenance.
 
 use super::answer::answer;
 use crate::config::{ConfigError, vehicle_to_toml};

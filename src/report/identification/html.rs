@@ -14,9 +14,9 @@ use crate::study::{COMPONENTS, Correlation, IdentifyStudy, RotorsAndMotion};
 use crate::vehicle::Anchor;
 use maud::{Markup, html};
 
-/// Points of a line at most: a chart is some 440 dots wide.
+/// Largest number of points of a line: a chart is about 440 dots wide.
 const POINTS: usize = 900;
-/// Parameters whose course along the flight is drawn: mass and the moments of inertia.
+/// Parameters whose estimates along the flight are drawn: mass and the moments of inertia.
 const DRAWN: [usize; 4] = [0, 1, 4, 6];
 
 /// The answer in one sentence.
@@ -28,7 +28,7 @@ fn answer(study: &IdentifyStudy) -> String {
         let percent = 100.0 * (value / nominal[0] - 1.0);
         let than = if percent < 0.0 { "less" } else { "more" };
         let by = significant(percent.abs(), 2);
-        parts.push(format!("mass {} kg, {by} % {than} than the vehicle file says", with_error(value, std)));
+        parts.push(format!("mass {} kg, {by} % {than} than in the vehicle file", with_error(value, std)));
     }
     let inertia: Vec<String> = [1, 4, 6]
         .into_iter()
@@ -91,7 +91,8 @@ fn against_motion(study: &IdentifyStudy) -> Markup {
     let words = if components.is_empty() {
         "Not drawn: body rates or vertical motion are not recorded."
     } else {
-        "What the rotors gave, and what the measured motion takes with mass and inertia of the vehicle file and with those of the rigid body identified alone; the first flight, behind the low-pass."
+        "Force or torque of the rotors, and the one that the measured motion needs, with mass and inertia of the \
+         vehicle file and with those of the rigid body identified without effects; the first flight, low-pass filtered."
     };
     let content = html! {
         (note(words))
@@ -142,7 +143,7 @@ fn effects(study: &IdentifyStudy) -> Markup {
 }
 
 fn effect(of: &EffectFound) -> Markup {
-    let there = if of.is_significant() { "" } else { ", not to be told from nothing" };
+    let there = if of.is_significant() { "" } else { ", not distinguishable from zero" };
     let rows: Vec<Vec<Cell>> = of
         .parameters
         .iter()
@@ -151,7 +152,7 @@ fn effect(of: &EffectFound) -> Markup {
             vec![text(parameter.name), number(value), text(spoken(parameter.unit)), text(why)]
         })
         .collect();
-    let caption = format!("{}: {:.1} standard errors from nothing{there}", of.effect.id(), of.z);
+    let caption = format!("{}: {:.1} standard errors from zero{there}", of.effect.id(), of.z);
     html! {
         (paragraph(of.effect.sentence()))
         (table(&caption, &["parameter", "value|", "unit", ""], &rows))
@@ -235,7 +236,7 @@ fn residual(study: &IdentifyStudy) -> Markup {
         .collect();
     html! {
         (table(
-            "What the rigid body leaves of each equation, rms, and what it explains of its variance",
+            "Residual of each equation with the rigid body, rms, and the explained share of the variance",
             &["equation", "residual|", "unit", "explained %|"],
             &rows,
         ))
@@ -310,7 +311,10 @@ fn found(found: &Found) -> (String, String) {
         Found::Determined { value, std } => (with_error(*value, *std), String::new()),
         Found::AtBound { value, wanted, std } => (
             significant(*value, 4),
-            format!("at the bound of what physics allows; the flight asks for {}", with_error(*wanted, *std)),
+            format!(
+                "at the bound of what is physically possible; the estimate without the bound is {}",
+                with_error(*wanted, *std)
+            ),
         ),
         Found::Given { value, why } => (significant(*value, 4), why.clone()),
         Found::NotDetermined { reason, .. } => ("-".to_owned(), format!("not determined: {reason}")),

@@ -122,7 +122,7 @@ struct HistoryColumns {
 }
 
 impl IdentificationDocument {
-    /// Puts the results into the document's form.
+    /// The document of a study.
     #[must_use]
     pub fn new(study: &IdentifyStudy) -> Self {
         let identification = &study.identification;

@@ -1,5 +1,5 @@
-//! What `identify` says, as views of one study: text for the terminal, JSON, the model file, HTML, and the paper's
-//! figures 4 and 5.
+//! Views of the study of `identify`: text for the terminal, JSON, the model file, HTML, and the paper's figures 4 and
+//! 5.
 
 mod html;
 mod json;

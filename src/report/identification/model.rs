@@ -1,4 +1,4 @@
-//! The model file, and the parameters along time.
+//! The model file, and the parameters over time.
 
 use crate::config::{ConfigError, vehicle_to_toml};
 use crate::diagnose::joint::{Found, ParameterFound};
@@ -11,7 +11,7 @@ use crate::study::{IdentifyStudy, WithEffects};
 use crate::text::toml_string;
 use std::fmt::Write;
 
-/// The model file: the vehicle with its identified values, and where they came from.
+/// The model file: the vehicle with its identified values, and their provenance.
 ///
 /// # Errors
 /// [`ConfigError`] where a value has no form in TOML.
@@ -109,7 +109,7 @@ fn effect_entry(parameter: &ParameterFound) -> String {
     }
 }
 
-/// The paper's figures 4 and 5: mass and inertia along time, by method.
+/// The paper's figures 4 and 5: mass and inertia over time, by method.
 #[must_use]
 pub fn history_charts(identification: &Identification) -> Vec<Panel> {
     (0..THETA)

@@ -29,7 +29,7 @@ fn body_text(study: &IdentifyStudy) -> String {
     if best.made_physical {
         let _ = writeln!(
             page,
-            "  the estimate was not an inertia that a body can have; moved to the nearest that is"
+            "  the estimated inertia was physically impossible; replaced by the nearest possible one"
         );
     }
     let nominal = theta_of(&study.vehicle.body);
@@ -49,7 +49,8 @@ fn body_text(study: &IdentifyStudy) -> String {
     } else {
         let _ = writeln!(
             page,
-            "  scale: the stated thrust is trusted (anchor = \"thrust\"); a weighed mass would set it with anchor = \"mass\". Izz rests on the stated torque per thrust as well"
+            "  scale: the stated thrust is trusted (anchor = \"thrust\"); a weighed mass sets it with anchor = \
+             \"mass\". Izz also depends on the stated torque per thrust"
         );
     }
     let _ = writeln!(page, "\n  {:<12}{}", "method", NAMES.map(|name| format!("{name:>11}")).concat());
@@ -91,9 +92,9 @@ fn quality_lines(study: &IdentifyStudy) -> String {
     if let Some(latency) = identification.latency.filter(|latency| latency.total_s.is_finite()) {
         let kind = match latency.kind {
             _ if latency.total_s < 0.0 => {
-                "commands stamped later than the body's answer: a skew between streams"
+                "the time stamps of the commands are later than the response of the body: an offset between streams"
             }
-            LatencyKind::Undetermined => "lag or delay: this flight cannot tell",
+            LatencyKind::Undetermined => "lag or delay: this flight cannot distinguish them",
             LatencyKind::Lag => "a first-order lag",
             LatencyKind::Delay => "a transport delay",
             LatencyKind::Both { .. } => "lag and delay",

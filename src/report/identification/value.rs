@@ -1,10 +1,10 @@
-//! Identified values as JSON holds them.
+//! Identified values in JSON.
 
 use crate::estimate::{Finding, MethodResult, ThrustScale};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// A number with its standard error, or why there is none.
+/// A number with its standard error, or the reason why there is none.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Value {
     value: Option<f64>,

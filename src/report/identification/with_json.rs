@@ -1,4 +1,4 @@
-//! The part of the JSON document of `identify` on effects that were asked for.
+//! The part of the JSON document of `identify` on requested effects.
 
 use crate::diagnose::joint::{EffectFound, Found, ParameterFound, Physical};
 use crate::report::thrust_source::thrust_name;
@@ -30,7 +30,7 @@ pub(super) struct With {
 struct EffectValue {
     id: &'static str,
     sentence: &'static str,
-    /// standard errors from nothing, the forms that were tried allowed for
+    /// standard errors from zero, with an allowance for the number of tried forms
     z: f64,
     significant: bool,
     tried: usize,
@@ -59,7 +59,7 @@ struct Latency {
     unit: &'static str,
     delay_s: f64,
     lag_s: f64,
-    /// an effect that was asked for, or estimated beside them
+    /// whether it is one of the requested effects
     named: bool,
 }
 

@@ -41,7 +41,7 @@ pub(super) fn with_text(study: &IdentifyStudy, with: &WithEffects) -> String {
     }
     page.push('\n');
     let latency = &together.latency;
-    let how = if together.latency_named { "held as the kind that was named" } else { "estimated with them" };
+    let how = if together.latency_named { "kept as the named kind" } else { "estimated with them" };
     let _ = writeln!(
         page,
         "  actuation latency {:.1} +- {:.1} ms, {how}",
@@ -52,24 +52,25 @@ pub(super) fn with_text(study: &IdentifyStudy, with: &WithEffects) -> String {
     page
 }
 
-/// Where the scale of the forces comes from.
+/// The source of the scale of the forces.
 fn scale_line(together: &JointEstimate) -> String {
     match together.scale.as_ref().map(|scale| (scale.name, &scale.value, scale.unit)) {
         Some((name, Finding::Determined { value, std }, unit)) => {
-            format!("  {name} {value:.4e} +- {std:.1e} {unit} (identified; forces are on the scale of the weighed mass)\n")
+            format!("  {name} {value:.4e} +- {std:.1e} {unit} (identified; forces have the scale of the weighed \
+                     mass)\n")
         }
-        Some((name, ..)) => format!("  {name} is not determined: forces are on the stated scale\n"),
-        None => "  scale: the stated thrust is trusted (anchor = \"thrust\"); masses, forces and torques rest on it\n"
+        Some((name, ..)) => format!("  {name} is not determined: forces have the stated scale\n"),
+        None => "  scale: the stated thrust is trusted (anchor = \"thrust\"); masses, forces and torques depend on it\n"
             .to_owned(),
     }
 }
 
-/// How sure an effect is.
+/// The significance of an effect.
 fn evidence(effect: &EffectFound) -> String {
     let tried =
         if effect.tried > 1 { format!(" after {} forms were tried", effect.tried) } else { String::new() };
-    let there = if effect.is_significant() { "" } else { "; not to be told from nothing" };
-    format!("{} {:.1} standard errors from nothing{tried}{there}", effect.effect.sentence(), effect.z)
+    let there = if effect.is_significant() { "" } else { "; not distinguishable from zero" };
+    format!("{} {:.1} standard errors from zero{tried}{there}", effect.effect.sentence(), effect.z)
 }
 
 fn body_line(with: &Parameter, without: &Parameter, nominal: f64) -> String {

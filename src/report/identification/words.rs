@@ -7,7 +7,7 @@ use crate::signals::Quality;
 use crate::text::compact;
 use std::fmt::Write;
 
-/// What the flight is good for, in one sentence.
+/// The identified parameters, in one sentence.
 pub(super) fn verdict(result: &MethodResult) -> String {
     let (mut yes, mut no) = (Vec::new(), Vec::new());
     for parameter in &result.parameters {
@@ -24,12 +24,12 @@ pub(super) fn verdict(result: &MethodResult) -> String {
     }
 }
 
-/// Five digits after the point where that shows the value, powers of ten where it would not.
+/// Five digits after the point if they show the value, otherwise a power of ten.
 pub(super) fn number(value: f64) -> String {
     if value == 0.0 || value.abs() >= 2e-4 { format!("{value:.5}") } else { format!("{value:.3e}") }
 }
 
-/// What was used of each flight.
+/// The used data of each flight.
 pub(super) fn flight_lines<'a>(flights: impl Iterator<Item = &'a Quality>) -> String {
     let mut page = String::new();
     for (index, quality) in flights.enumerate() {
@@ -42,7 +42,7 @@ pub(super) fn flight_lines<'a>(flights: impl Iterator<Item = &'a Quality>) -> St
             quality.usable.summary()
         );
         for (quantity, offset) in &quality.offsets {
-            let what = if offset.repaired { "taken out" } else { "left in: not known well enough" };
+            let what = if offset.repaired { "taken out" } else { "not corrected: not known well enough" };
             let _ = writeln!(
                 page,
                 "    {quantity:?} {} by {:.2} +- {:.2} ms against the inertial unit, {what}",
@@ -58,27 +58,28 @@ pub(super) fn flight_lines<'a>(flights: impl Iterator<Item = &'a Quality>) -> St
     page
 }
 
-/// What is to be said of the inertia.
+/// A sentence on a physically impossible inertia.
 pub(super) fn physical(of: Physical) -> Option<&'static str> {
     match of {
         Physical::AsEstimated => None,
         Physical::Moved => Some(
-            "the estimate was not an inertia that a body can have; moved to the nearest that is, within its error",
+            "the estimated inertia was physically impossible; replaced by the nearest possible one, within its error",
         ),
         Physical::No => Some(
-            "warning: no body has this inertia (one principal moment exceeds the sum of the others), by more than its error; left as \
-             estimated. Are arms, thrust and torque per thrust as the vehicle file states them?",
+            "warning: this inertia is physically impossible (one principal moment exceeds the sum of the others) by \
+             more than its error; left as estimated. Check arms, thrust and torque per thrust in the vehicle file",
         ),
     }
 }
 
-/// What is asked for beyond what physics allows.
+/// A sentence on an estimate beyond its bound.
 pub(super) fn beyond(parameter: &ParameterFound, wanted: f64, std: f64) -> String {
     let (least, most) = parameter.plausible;
     let away = if wanted < least { least - wanted } else { wanted - most };
-    let what = if away > 3.0 * std { "that is not this effect" } else { "the bound is within the error" };
+    let what = if away > 3.0 * std { "not this effect" } else { "the bound is within the error" };
     format!(
-        "the flight asks for {wanted:.3e} +- {std:.1e}, physics allows {} to {}: {what}",
+        "without the bound {} +- {std:.1e}, possible are {} to {}: {what}",
+        number(wanted),
         compact(least),
         compact(most)
     )

@@ -14,7 +14,7 @@ pub struct InspectionDocument<'a> {
 }
 
 impl<'a> InspectionDocument<'a> {
-    /// Of the log of this name.
+    /// The document of the log of this name.
     #[must_use]
     pub fn new(file: &'a str, inspection: &'a Inspection) -> Self {
         Self { schema: 1, file, inspection }

@@ -1,4 +1,4 @@
-//! What `inspect` says, as views of one inspection: text for the terminal, JSON.
+//! Views of an inspection: text for the terminal, JSON.
 
 mod json;
 mod text;

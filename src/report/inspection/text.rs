@@ -6,7 +6,7 @@ use crate::inspect::{
     Inspection, OnboardReading, Outlook, Reading, StreamSummary, TlogReading, TopicSummary,
 };
 
-/// Spans, texts and segments told one by one; the JSON document has all.
+/// Largest number of spans, texts and segments that are listed; the JSON document has all.
 const TOLD: usize = 12;
 
 /// The whole page; `file` is the log's name.
@@ -59,7 +59,7 @@ fn expectation(outlook: &Outlook) -> String {
             format!("to {:.2} % (standard error {std:.2e}{unit})", 100.0 * relative)
         }
         (_, _, Some(reason)) => format!("no: {reason}"),
-        _ => "yes; --vehicle tells how well".to_owned(),
+        _ => "yes; --vehicle shows how well".to_owned(),
     }
 }
 
@@ -144,7 +144,7 @@ fn clock(page: &mut String, inspection: &Inspection) {
     }
     let at = |times: &[f64]| listed(times.iter().map(|time_s| format!("{time_s:.1} s")));
     if !clock.resets_s.is_empty() {
-        row(page, "started anew", at(&clock.resets_s));
+        row(page, "restarted", at(&clock.resets_s));
     }
     if !clock.estimator_resets_s.is_empty() {
         row(page, "estimator jumped", at(&clock.estimator_resets_s));

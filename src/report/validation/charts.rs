@@ -1,10 +1,10 @@
-//! The charts of flights that were flown again.
+//! The charts of flights that were simulated in closed loop.
 
 use crate::compare::{SIGNALS, TenSignals};
 use crate::report::chart::{Line, Panel};
 
-/// Figures 6 to 9: the path over ground, then each of the ten signals along time, recorded and simulated; none
-/// without flights.
+/// Figures 6 to 9: the path over ground, then each of the ten signals over time, recorded and simulated; none without
+/// flights.
 #[must_use]
 pub fn closed_loop_charts(flights: &[(String, TenSignals)]) -> Vec<Panel> {
     if flights.is_empty() {

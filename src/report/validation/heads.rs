@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-/// Letters of a column's head.
+/// Width of a column's head, letters.
 const WIDTH: usize = 14;
-/// Stands for what was left out.
+/// Mark of omitted letters.
 const CUT: char = '\u{2026}';
 
-/// One head a model, at most [`WIDTH`] letters, no two alike where the names are not: long names lose their
-/// middle, and where that makes two alike, what they have in common at their beginning; else they are numbered.
+/// One head for each model, at most [`WIDTH`] letters, different for different names. Long names lose their middle. If
+/// that makes two equal, they lose their common beginning; otherwise they are numbered.
 pub(super) fn column_heads(names: &[String]) -> Vec<String> {
     let count = |of: &[String]| of.iter().collect::<BTreeSet<_>>().len();
     let plain: Vec<String> = names.iter().map(|name| without_middle(name, WIDTH)).collect();

@@ -8,7 +8,7 @@ use crate::report::quality::data_quality;
 use crate::study::{ErrorTable, Prediction, ValidateStudy, ValidatedFlight};
 use maud::{Markup, html};
 
-/// Models that differ by less in the mean are alike, percent.
+/// Models that differ by less than this in the mean predict equally well, percent. Chosen; not measured.
 const ALIKE_PERCENT: f64 = 0.5;
 
 /// The report: one file, nothing loaded from anywhere.
@@ -39,14 +39,15 @@ fn prediction(study: &ValidateStudy) -> Markup {
     let first = study.models.first().map_or("the first", |model| model.name.as_str());
     let models = study.models.iter().enumerate();
     let bars = Bars {
-        title: format!("prediction error, in units of that of {first}"),
+        title: format!("prediction error relative to {first}"),
         unit: String::new(),
         names: rows.iter().map(|row| row.name.clone()).collect(),
         series: models
             .map(|(model, of)| (of.name.clone(), model, rows.iter().map(|row| ratio(row, model)).collect()))
             .collect(),
     };
-    let caption = "Open-loop prediction from the measured state, fed the recorded actuators, over windows of 0.5 s; all flights.";
+    let caption = "Open-loop prediction from the measured state with the recorded actuators, over windows of 0.5 s; \
+                   all flights.";
     section("Prediction", &figure(&bars.inline(), caption))
 }
 
@@ -57,7 +58,7 @@ fn flight(of: &ValidatedFlight) -> Markup {
     let content = html! {
         @for table in playback.chain(others) { (error_table(table)) }
         @if !charts.is_empty() {
-            (note("Recorded, and flown again in closed loop from the recorded setpoints:"))
+            (note("Recorded, and simulated in closed loop from the recorded setpoints:"))
         }
         @for panel in &charts { (figure(&inline(panel), "")) }
     };

@@ -20,7 +20,7 @@ struct FlightTables {
 }
 
 impl ValidationDocument {
-    /// From the result.
+    /// The document of a study.
     #[must_use]
     pub fn new(study: &ValidateStudy) -> Self {
         let flights = study.flights.iter().map(|flight| FlightTables {

@@ -1,4 +1,4 @@
-//! What `validate` says, as views of one study: text for the terminal, JSON, HTML, and the paper's figures 6 to 9.
+//! Views of the study of `validate`: text for the terminal, JSON, HTML, and the paper's figures 6 to 9.
 
 mod charts;
 mod heads;

@@ -19,7 +19,7 @@ pub fn validation_text(study: &ValidateStudy) -> String {
     page.trim_end().to_owned()
 }
 
-/// The table for people, in the form of Tables 4 to 12; where there is nothing to show, why.
+/// A table in the form of Tables 4 to 12; the reason if there is nothing to show.
 #[must_use]
 pub fn error_table_text(table: &ErrorTable) -> String {
     let rows = table.shown();

@@ -85,7 +85,7 @@ pub struct AxisResidual {
     pub before: f64,
 }
 
-/// Residual of each axis along time beyond what is left after, in units of that; NaN where there is none.
+/// Residual of each axis over time beyond what is left after, in units of that; NaN where there is none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heat {
     /// s, centres of the cells

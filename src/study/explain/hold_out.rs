@@ -18,7 +18,7 @@ pub(super) fn refuse_shared(flights: &Prepared, held: &Prepared) -> Result<(), S
         for (flight, used) in flights.recordings.iter().zip(&flights.inputs) {
             if let Some(share) = shared(hold_out, flight) {
                 let why = format!(
-                    "expected a flight that is not explained, {:.0} % of {} are in {} as well",
+                    "expected a flight that is not explained, but {:.0} % of {} are in {} as well",
                     100.0 * share,
                     input.path,
                     used.path

@@ -4,7 +4,7 @@ use crate::config::StoredTrajectory;
 use crate::diagnose::experiment::NextFlight;
 use std::collections::BTreeMap;
 
-/// The trajectory with its limits, and what the flight tells apart.
+/// The trajectory with its limits, and what the flight distinguishes.
 #[must_use]
 pub fn stored_trajectory(next: &NextFlight) -> StoredTrajectory {
     StoredTrajectory {

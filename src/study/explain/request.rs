@@ -9,20 +9,20 @@ use crate::study::{ReadSettings, StudyError, VehicleGiven};
 pub struct ExplainRequest {
     /// recordings of one vehicle
     pub logs: Vec<PathBuf>,
-    /// its file, or its mass and size, whose effects are looked for anew where it is a model
+    /// its file, or its mass and size, whose effects are removed and searched for again if it is a model
     pub vehicle: VehicleGiven,
     /// other flights of it, on which the improvement is shown; without them the end of the last flight is held back
     pub holdout: Vec<PathBuf>,
     /// how the recordings are read
     pub read: ReadSettings,
-    /// s of flight left out at the beginning
+    /// time left out at the beginning of the flight, s
     pub transient_s: f64,
-    /// design the flight that tells best apart what these cannot
+    /// design the flight that distinguishes best what these cannot
     pub design_next: bool,
 }
 
 impl ExplainRequest {
-    /// s of flight left out at the beginning unless asked otherwise.
+    /// time left out at the beginning of the flight, s unless asked otherwise.
     pub const TRANSIENT_S: f64 = 1.0;
 
     /// Checks what can be checked before a file is read.

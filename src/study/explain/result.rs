@@ -58,7 +58,7 @@ pub struct ExplainStudy {
     pub shown_on: ShownOn,
     /// where simulation and recording differ
     pub located: Located,
-    /// what to fly to tell apart what this flight cannot; `Err`: why there is none; `None`: not asked for
+    /// what to fly to distinguish what this flight cannot; `Err`: why there is none; `None`: not asked for
     pub next: Option<Result<NextFlight, NextError>>,
     /// what the user should know, all of it warnings
     pub notes: Vec<Note>,

@@ -21,10 +21,12 @@ const SATURATED: f64 = 0.3;
 /// A file is wrong by less than this in mass.
 const MASS_FACTOR: f64 = 1.6;
 /// What a recording without velocity cannot tell.
-const NO_VELOCITY: &str = "no velocity (LOCAL_POSITION_NED or similar), or no attitude, is recorded: drag, wind and other effects of the air \
-                           cannot be tried, and what is named may stand for what they do to the rotation";
+const NO_VELOCITY: &str = "no velocity (LOCAL_POSITION_NED or similar), or no attitude, is recorded: drag, wind and \
+                           other effects of the air cannot be tested, and a named effect may be a substitute for \
+                           their effect on the rotation";
 /// Why a whole flight is explained.
-const CHANGES_LATE: &str = "something changes in what would be held back, so the whole flight is explained; give another with --holdout";
+const CHANGES_LATE: &str = "something changes in the part that would be held back, so the whole flight is explained; \
+                            give another flight with --holdout";
 
 /// Names the physics that the vehicle's file leaves out.
 ///
@@ -142,7 +144,7 @@ fn of_vehicle(known: &Known) -> Result<Vec<Note>, StudyError> {
     let effects = effects_of(&loaded.model.effects, &name, &loaded.vehicle)?;
     if !effects.is_empty() {
         let ids: Vec<&str> = effects.iter().map(|active| active.effect().id()).collect();
-        let text = format!("its effects ({}) are left out and looked for anew", ids.join(", "));
+        let text = format!("its effects ({}) are removed and searched for again", ids.join(", "));
         notes.push(Note::warning(About::File(name), text));
     }
     Ok(notes)
@@ -164,8 +166,8 @@ fn of_data(flights: &Prepared, held: &Prepared) -> Vec<Note> {
         let used = &signals.quality.usable;
         if !used.saturation_kept && used.saturated_s > SATURATED * (used.usable_s + used.saturated_s) {
             let text = format!(
-                "rotors were at a bound of their commands for {:.0} s, which are left out, and {:.0} s are used: what was left out may \
-                 show in other places than its own; fly a gentler trajectory (mavid plan --limits)",
+                "rotors were at a bound of their commands for {:.0} s, which are left out, and {:.0} s are used: \
+                 missing physics may then appear under a wrong name; fly a gentler trajectory (mavid plan --limits)",
                 used.saturated_s, used.usable_s
             );
             notes.push(Note::warning(about(), text));
@@ -184,8 +186,8 @@ fn mass(study: &ExplainStudy) -> Option<Note> {
     let factor = flown_kg / study.given.vehicle.body.mass_kg;
     (!(1.0 / MASS_FACTOR..=MASS_FACTOR).contains(&factor)).then(|| {
         let text = format!(
-            "the mass that flies is {factor:.2} times what the vehicle file states: another vehicle's file, or a thrust coefficient \
-             that is off by as much?"
+            "the estimated mass is {factor:.2} times that of the vehicle file: is it another vehicle's file, or is \
+             the thrust coefficient wrong by this factor?"
         );
         Note::warning(About::Vehicle, text)
     })

@@ -41,7 +41,7 @@ impl ShownOn {
             Self::HeldBack { from_s, seconds } => {
                 format!("held back: {seconds:.0} s from {from_s:.0} s on")
             }
-            Self::Nothing { reason } => format!("nothing to show it on: {reason}"),
+            Self::Nothing { reason } => format!("no hold-out: {reason}"),
         }
     }
 }

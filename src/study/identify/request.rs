@@ -17,7 +17,7 @@ pub struct IdentifyRequest {
     pub vehicle: VehicleGiven,
     /// how the recordings are read
     pub read: ReadSettings,
-    /// s of flight left out at the beginning; `None`: 10, at most a fifth of the flight
+    /// time left out at the beginning of the flight, s; `None`: 10, at most a fifth of the flight
     pub transient_s: Option<f64>,
     /// Hz, cut-off of the zero-phase low-pass; `None`: ten times the trajectory's highest harmonic
     pub cutoff_hz: Option<f64>,

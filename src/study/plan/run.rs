@@ -14,9 +14,8 @@ use crate::trajectory::{CirclePath, FlightPath, FourierTrajectory, Segment};
 use crate::vehicle::{Limits, Vehicle};
 
 /// Where the ways to the series and back cannot keep what the series keeps.
-const BEYOND_ON_THE_WAY: &str = "expected a vehicle that hears no more setpoints on the way to the series or back to come to \
-                                 rest inside the room, came a takeoff or a landing from which no such way leads: move it \
-                                 further inside";
+const BEYOND_ON_THE_WAY: &str = "expected transitions on which the vehicle comes to rest inside the room if setpoints \
+                                 end, got a takeoff or a landing place that allows none: move it further inside";
 
 /// s a turn of a circle, from and to.
 const TURN_S: [f64; 2] = [0.1, 1000.0];
@@ -76,13 +75,13 @@ fn rest_note(request: &PlanningRequest, rest: Option<&RestInside>) -> Option<Not
     let text = match rest.map(|rest| rest.inside_m) {
         Some(inside_m) if inside_m >= 0.0 => return None,
         Some(inside_m) => format!(
-            "expected a vehicle that hears no more setpoints to come to rest inside the room, came up to {:.2} m outside \
+            "expected that the vehicle comes to rest inside the room if setpoints end, got up to {:.2} m outside \
              (its rotors, PX4's default parameters): {remedy}",
             -inside_m
         ),
         None => format!(
-            "expected a vehicle that hears no more setpoints to come to rest inside the room, came no such plan: this one \
-             disregards it; {remedy}"
+            "expected that the vehicle comes to rest inside the room if setpoints end, got no such plan: this one \
+             ignores it; {remedy}"
         ),
     };
     Some(Note::warning(About::Vehicle, text))
@@ -147,7 +146,7 @@ fn turns(circle: &Circle, limits: &Limits) -> Result<FourierTrajectory, StudyErr
         let mut came = vec![radius_m, turn_s];
         came.extend(height_m);
         let why = format!(
-            "expected a radius above 0 m, a period of 0.1 to 1000 s and a finite height, came {came:?}"
+            "expected a radius above 0 m, a period of 0.1 to 1000 s and a finite height, got {came:?}"
         );
         return Err(StudyError::Setting { name: "circle", why });
     }

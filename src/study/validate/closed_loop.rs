@@ -19,7 +19,7 @@ pub(super) fn closed_loop(
     let by_pid = signals.quality.thrust_source == ThrustSource::Wrench;
     let controller = if by_pid { "the paper's PID" } else { "an autopilot's cascade" };
     let title = format!(
-        "Flown again in closed loop by {controller} from the recorded setpoints, {:.0} to {:.0} s",
+        "Simulated in closed loop with {controller} from the recorded setpoints, {:.0} to {:.0} s",
         span_s.0, span_s.1
     );
     let flown: Vec<(String, Result<TenSignals, String>)> =
@@ -62,14 +62,16 @@ fn notes(by_pid: bool, nominal: &str, tracking_m: Option<[f64; 3]>) -> Vec<Strin
         format!("controller: the paper's PID (28) to (32) with the mass of {nominal}, on exact states")
     } else {
         format!(
-            "controller: position, velocity, attitude and rate loops with PX4's default gains, on exact states; it believes \
-             {nominal}. The autopilot's own gains and estimates are not in the log: what it did otherwise is in every \
-             column. force and torque tell models apart; position and attitude do so only as far as the controller does not hold them"
+            "controller: position, velocity, attitude and rate loops with PX4's default gains, on exact states; it \
+             assumes {nominal}. The autopilot's own gains and estimates are not in the log, so their differences \
+             affect every column. Force and torque distinguish models; position and attitude do so only as far as the \
+             controller does not hold them"
         )
     }];
     notes.extend(tracking_m.map(|[x, y, z]| {
         format!(
-            "the recorded flight itself was off its setpoints by {x:.3}, {y:.3}, {z:.3} m RMS in x, y, z, which no model mends"
+            "the recorded flight itself was off its setpoints by {x:.3}, {y:.3}, {z:.3} m RMS in x, y, z, which no \
+             model can correct"
         )
     }));
     notes

@@ -14,7 +14,7 @@ pub struct ValidateRequest {
     pub models: Vec<PathBuf>,
     /// how the recordings are read
     pub read: ReadSettings,
-    /// s of flight left out at the beginning
+    /// time left out at the beginning of the flight, s
     pub transient_s: f64,
 }
 

@@ -9,7 +9,7 @@ pub struct DecodeReport {
     pub decoded: u64,
     /// messages whose stamp fits neither the clock nor a new one
     pub stale_stamps: u64,
-    /// times that the recording computer's clock was set while the vehicle's went on
+    /// times that the recording computer's clock was set while the vehicle's continued
     pub host_steps: u64,
     /// messages of a simulator's truth and parameters SIM_*, SIH_*: never read
     pub withheld_truth: u64,
