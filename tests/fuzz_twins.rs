@@ -117,6 +117,11 @@ fn ulog() {
 }
 
 #[test]
+fn dataflash() {
+    twin("dataflash", 20_000);
+}
+
+#[test]
 fn csv() {
     twin("csv", 20_000);
 }

@@ -244,6 +244,10 @@ struct Found {
 
 impl Found {
     fn inspection(self, tally: Tally, assessment: Assessment, vehicle: Option<&Vehicle>) -> Inspection {
+        // a plane's modes have other names than a multirotor's of the same number
+        let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);
+        let is_known = self.vehicle.kind.is_none_or(|kind| rotors.contains(&kind));
+        let modes = if is_known { self.autopilot } else { Autopilot::Unknown };
         let missing_curve = tally.parameters.missing_curve(self.autopilot);
         let evidence = Evidence { streams: &self.streams, assessment: &assessment, vehicle, missing_curve };
         let identifiability = outlook(&evidence);
@@ -256,7 +260,7 @@ impl Found {
             reading: self.reading,
             losses: self.losses,
             streams: self.streams.iter().map(summary_of).collect(),
-            timeline: tally.timeline.summary(self.autopilot),
+            timeline: tally.timeline.summary(modes),
             flight: assessment.flight,
             excitation: assessment.excitation,
             stream_offsets: assessment.offsets,

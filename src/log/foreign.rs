@@ -14,20 +14,26 @@ pub(super) struct Foreign {
 }
 
 const UNPACK: &str = "unpack it first";
-const EXPORT: &str = "record telemetry with `mavid record`, or export the log as a table";
+const SDLOG2: &str =
+    "export it as a table of comma-separated values, with sdlog2_dump.py of PX4's releases until 1.6";
 const TABLE: &str = "export it as a table of comma-separated values";
 
 /// Kinds of files by their first bytes.
 const KNOWN: &[Foreign] = &[
     Foreign {
-        signature: b"\xa3\x95",
-        what: "an ArduPilot log (.bin), which is not read yet",
-        advice: EXPORT,
+        signature: b"\xa3\x95\x80\x80\x59FMT",
+        what: "the first bytes of an ArduPilot log (.bin)",
+        advice: "give the whole log",
     },
     Foreign {
-        signature: b"FMT,",
-        what: "an ArduPilot text log (.log), which is not read yet",
-        advice: EXPORT,
+        signature: b"\xa3\x95\x80",
+        what: "a PX4 log of the format before ULog (sdlog2, .px4log)",
+        advice: SDLOG2,
+    },
+    Foreign {
+        signature: b"\xa3\x95",
+        what: "a piece of an ArduPilot log (.bin) without the definitions that begin it",
+        advice: "give the whole log",
     },
     Foreign { signature: b"\x1f\x8b", what: "a gzip archive", advice: UNPACK },
     Foreign { signature: b"PK\x03\x04", what: "a zip archive", advice: UNPACK },

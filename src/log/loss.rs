@@ -36,13 +36,6 @@ pub enum Loss {
         /// byte offset of the first
         first_byte: u64,
     },
-    /// their stamps fit neither the vehicle's clock nor a new one
-    StaleStamps {
-        /// what a file of this format is made of: `message`
-        unit: &'static str,
-        /// how many
-        count: u64,
-    },
     /// the file ends within a record, or with zeros
     CutOff {
         /// bytes at its end
@@ -77,6 +70,11 @@ pub enum Loss {
         count: u64,
         /// line of the first, the header being 1
         first_line: u64,
+    },
+    /// messages with a time that fits no clock, left out
+    StrayStamps {
+        /// how many
+        count: u64,
     },
     /// the log holds more flight than is kept in memory
     NotHeld {
@@ -117,7 +115,7 @@ impl Loss {
             Self::RepeatedTimes { first_line, .. } | Self::NoRotations { first_line, .. } => {
                 Some(Position::Line(*first_line))
             }
-            Self::StaleStamps { .. } | Self::NotHeld { .. } => None,
+            Self::StrayStamps { .. } | Self::NotHeld { .. } => None,
         }
     }
 }
@@ -137,9 +135,6 @@ impl fmt::Display for Loss {
             Self::Unreadable { unit, count, first_byte } => {
                 write!(f, "{count} {unit}s cannot be read, the first at byte {first_byte}")
             }
-            Self::StaleStamps { unit, count } => {
-                write!(f, "{count} {unit}s left out, whose stamps do not fit the vehicle's clock")
-            }
             Self::CutOff { bytes, .. } => write!(f, "{bytes} bytes of a record cut off at the end"),
             Self::RowsRejected { count, of, first } => {
                 write!(f, "{count} of {of} rows rejected")?;
@@ -153,6 +148,9 @@ impl fmt::Display for Loss {
             Self::RepeatedTimes { count, .. } => write!(f, "{count} rows repeat a time and were left out"),
             Self::NoRotations { count, .. } => {
                 write!(f, "{count} attitudes are no rotations and were left out")
+            }
+            Self::StrayStamps { count } => {
+                write!(f, "{count} messages with a time that fits no clock were left out")
             }
             Self::NotHeld { seconds } => write!(
                 f,
@@ -190,6 +188,28 @@ pub enum Oddity {
         /// how often
         count: u64,
     },
+    /// stamps of the vehicle run back for good: pieces of a log in another order, or two logs in one
+    VehicleClockBack {
+        /// how often
+        count: u64,
+        /// the furthest, microseconds
+        most_us: u64,
+    },
+    /// the vehicle could not write as fast as it logged
+    DroppedByVehicle {
+        /// messages that it dropped, by its own count
+        count: u64,
+    },
+    /// samples whose messages carry no time, as those of releases of before 2014: they are not read
+    WithoutTime {
+        /// how many
+        count: u64,
+    },
+    /// samples of which the log does not say in which unit they are, and releases differ: they are not read
+    UnknownUnit {
+        /// how many
+        count: u64,
+    },
 }
 
 impl fmt::Display for Oddity {
@@ -210,6 +230,19 @@ impl fmt::Display for Oddity {
             }
             Self::HostClockSet { count } => {
                 write!(f, "the recording computer's clock was set {count} times while the vehicle's went on")
+            }
+            Self::VehicleClockBack { count, most_us } => {
+                let most_s = seconds_from_us(*most_us as f64);
+                write!(f, "the vehicle's stamps run back {count} times, by {most_s:.1} s at most")
+            }
+            Self::DroppedByVehicle { count } => {
+                write!(f, "the vehicle dropped {count} messages before it could write them")
+            }
+            Self::WithoutTime { count } => {
+                write!(f, "{count} samples carry no time of the vehicle's and are not read")
+            }
+            Self::UnknownUnit { count } => {
+                write!(f, "{count} samples are in a unit that differs between releases and are not read")
             }
         }
     }

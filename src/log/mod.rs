@@ -8,6 +8,7 @@
 //! whoever wants them without keeping any.
 
 pub mod csv;
+mod dataflash;
 mod error;
 mod flights;
 mod foreign;
@@ -22,6 +23,10 @@ mod report;
 mod tlog;
 pub mod ulog;
 
+pub use dataflash::{
+    ARRAY_VALUES, DataflashDamage, DataflashReader, DataflashTextReader, Definition, Definitions, Field,
+    Letter, Message,
+};
 pub use error::LogError;
 pub use flights::{Flights, Hold, LogFlight};
 pub use format::{Certainty, Format, Place, Sink};

@@ -11,9 +11,19 @@ pub(super) const MOTORS: &str = "actuator_motors";
 /// Message names of one quantity, best first. A source that is not listed comes last.
 fn preference(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
-        Quantity::Attitude => {
-            &["ATTITUDE_QUATERNION", "ATTITUDE", "ODOMETRY", "vehicle_attitude", "vehicle_odometry"]
-        }
+        Quantity::Attitude => &[
+            "ATTITUDE_QUATERNION",
+            "ATTITUDE",
+            "ODOMETRY",
+            "vehicle_attitude",
+            "vehicle_odometry",
+            "ANG",
+            "ATT",
+            "XKF1",
+            "NKF1",
+            "EKF1",
+            "AHR2",
+        ],
         Quantity::AngularRate => &[
             "HIGHRES_IMU",
             "SCALED_IMU",
@@ -28,6 +38,12 @@ fn preference(quantity: Quantity) -> &'static [&'static str] {
             "vehicle_imu",
             "vehicle_angular_velocity",
             "vehicle_attitude",
+            "GYR",
+            "IMU",
+            "RATE",
+            "GYR1",
+            "IMU2",
+            "IMU3",
         ],
         Quantity::SpecificForce => &[
             "HIGHRES_IMU",
@@ -38,10 +54,21 @@ fn preference(quantity: Quantity) -> &'static [&'static str] {
             "sensor_combined",
             "vehicle_imu",
             "vehicle_acceleration",
+            "ACC",
+            "IMU",
+            "ACC1",
+            "IMU2",
+            "IMU3",
         ],
-        Quantity::Position | Quantity::Velocity => {
-            &["LOCAL_POSITION_NED", "ODOMETRY", "vehicle_local_position", "vehicle_odometry"]
-        }
+        Quantity::Position | Quantity::Velocity => &[
+            "LOCAL_POSITION_NED",
+            "ODOMETRY",
+            "vehicle_local_position",
+            "vehicle_odometry",
+            "XKF1",
+            "NKF1",
+            "EKF1",
+        ],
         // what was asked for comes before the autopilot's own setpoint, into which it feeds back noise
         Quantity::PositionSetpoint
         | Quantity::VelocitySetpoint
@@ -109,6 +136,9 @@ pub(super) fn too_short(
     })
 }
 
+/// Batches of raw samples with pauses between them are for spectra: they say nothing of the motion between.
+const IN_BATCHES: &str = "ISBD";
+
 /// The best live stream of a quantity that satisfies `fits`: among those within a factor of 1.6 of
 /// the fastest, the first of its quantity's order of preference.
 #[must_use]
@@ -130,7 +160,11 @@ pub(super) fn best_of(
         .streams
         .iter()
         .filter(|(key, stream)| {
-            key.quantity == quantity && stream.len() >= LEAST_SAMPLES && is_live(stream) && fits(key, stream)
+            key.quantity == quantity
+                && key.source != IN_BATCHES
+                && stream.len() >= LEAST_SAMPLES
+                && is_live(stream)
+                && fits(key, stream)
         })
         .collect();
     let rated: Vec<(&str, f64)> =

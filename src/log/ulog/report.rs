@@ -73,7 +73,7 @@ impl UlogReport {
             first_byte: at(self.first_skip),
         });
         let cut_off = self.cut_off.map(|(bytes, first_byte)| Loss::CutOff { bytes, first_byte });
-        let stale = (stale > 0).then_some(Loss::StaleStamps { unit, count: stale });
+        let stale = (stale > 0).then_some(Loss::StrayStamps { count: stale });
         [unreadable, stale, skipped, cut_off].into_iter().flatten().collect()
     }
 
