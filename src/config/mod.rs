@@ -5,6 +5,7 @@ mod csv_mapping;
 mod effect_tables;
 mod error;
 mod kind;
+mod plausible;
 mod read;
 mod rigid_body;
 mod trajectory;

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::ConfigError;
 use super::check::Check;
 use super::kind::Kind;
+use super::plausible::warnings;
 use super::read::{parse_toml, read_text};
 use super::rigid_body::rigid_body;
 use super::vehicle_file::{
@@ -324,30 +325,6 @@ pub(super) fn limits(check: &Check<'_>, table: &LimitsTable) -> Result<Limits, C
         }
     }
     Ok(limits)
-}
-
-fn warnings(vehicle: &Vehicle) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let moments = vehicle.body.inertia_kg_m2.symmetric_eigenvalues();
-    let (largest, others) = (moments.max(), moments.sum() - moments.max());
-    if largest > others * (1.0 + 1e-9) {
-        warnings.push(format!(
-            "body.inertia: these moments are physically impossible: the largest principal moment, {largest:.4e} kg \
-             m^2, \
-             is above the sum of the other two, {others:.4e}"
-        ));
-    }
-    if vehicle.mixer().matrix.svd(false, false).rank(1e-9) < 4 {
-        warnings.push("rotor: the rotors cannot set thrust and all three torques independently".to_owned());
-    }
-    let full_n = vehicle.propulsion.thrust_from_command_n(1.0) * vehicle.rotors.len() as f64;
-    let weight_n = vehicle.body.mass_kg * vehicle.gravity_m_s2;
-    if full_n <= weight_n {
-        warnings.push(format!(
-            "propulsion: full thrust, {full_n:.3} N, does not lift the weight, {weight_n:.3} N"
-        ));
-    }
-    warnings
 }
 
 #[cfg(test)]

@@ -350,7 +350,7 @@ mod tests {
         // u = 0.5 and a little more in turn, on the ground before
         let pulse = |index: usize| if index < 100 { 1000.0 } else { 1550.0 + 2.0 * (index % 2) as f64 };
         let commands = (0..400).flat_map(|index| [pulse(index); 4]).collect();
-        let felt = (0..400).flat_map(|_| [0.0, 0.0, 9.6]).collect();
+        let felt = (0..400).flat_map(|index| [0.0, 0.0, 9.6 + 0.01 * f64::from(index % 2)]).collect();
         let mut recording = copter();
         recording.streams = [
             (

@@ -29,6 +29,7 @@ pub use method::Method;
 pub use nominal::Nominal;
 pub(crate) use physical::{LogCholesky, log_cholesky, unpack};
 pub use physical::{is_physical, nearest_physical, second_moments};
+pub use plausible::{Contradiction, contradictions};
 pub use problem::{Channel, Problem, Solution};
 pub use recommend::Recommendation;
 pub use recursive::{GradientStep, History, PAPER_SIGMA, PaperEstimate, gradient_descent, least_squares};

@@ -1,6 +1,7 @@
 //! Actuation of the body: rotors, or force and torque of the log.
 
-use super::actuators::{RotorThrusts, ThrustSource, thrusts_from_commands, thrusts_from_speeds};
+use super::actuators::{thrusts_from_commands, thrusts_from_speeds};
+use super::rotor_thrusts::{RotorThrusts, ThrustSource};
 use super::select::{best, too_short};
 use super::sufficient::{REFUSED_HZ, flowing_rate_hz};
 use super::{Grid, SignalsError, linear_onto};

@@ -6,39 +6,13 @@
 
 use super::SignalsError;
 use super::grid::LARGEST_VALUE;
+use super::rebuilt::rebuilt;
+use super::rotor_thrusts::{RotorThrusts, ThrustSource};
 use super::select::{LEAST_SAMPLES, MOTORS, best, best_of, is_live, too_short};
 use crate::autopilot::Outputs;
 use crate::note::{About, Note};
 use crate::recording::{Quantity, Recording, Stream, StreamKey};
 use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
-
-/// Source of the thrusts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ThrustSource {
-    /// rotor speed sensors and the thrust coefficient
-    MeasuredSpeed,
-    /// commands sent to the motors and the thrust law
-    Command,
-    /// force and torque of the log itself
-    Wrench,
-}
-
-/// Thrust of each rotor, N, at the time stamps of its source stream.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RotorThrusts {
-    /// width = number of rotors, N, vehicle's rotor order
-    pub stream: Stream,
-    /// normalised commands at the same time stamps if they are the source: for saturation
-    pub command: Option<Stream>,
-    /// thrust, N, that the commands' jitter adds if the rotors follow all of it; only if commands are the source
-    pub jitter: Option<Stream>,
-    /// source of the thrusts
-    pub source: ThrustSource,
-    /// message or column group
-    pub message: &'static str,
-    /// notes on values from the log's parameters and on contradictions to the vehicle file
-    pub notes: Vec<Note>,
-}
 
 /// Rotor thrusts from the commands.
 ///
@@ -86,7 +60,13 @@ pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result
     let stream = Stream { time_s: command.time_s.clone(), width: channels.len(), values };
     let jitter = Some(jitter_thrust(&command, propulsion.thrust_curvature_n()));
     let (command, source) = (Some(command), ThrustSource::Command);
-    Ok(RotorThrusts { stream, command, jitter, source, message: key.source, notes })
+    let mut thrusts = RotorThrusts { stream, command, jitter, source, message: key.source, notes };
+    match rebuilt(recording, &thrusts, &propulsion) {
+        Some(Ok(faster)) => return Ok(faster),
+        Some(Err(note)) => thrusts.notes.push(note),
+        None => {}
+    }
+    Ok(thrusts)
 }
 
 /// The exponent of the curve by which the autopilot makes outputs of thrusts; 0 where it has none.

@@ -1,12 +1,12 @@
 //! Conditioning of one flight: streams are chosen, aligned, interpolated to one grid, and masked.
 
 use super::actuation::{Actuation, ThrustPreference};
-use super::actuators::ThrustSource;
 use super::align::{
     AlignFrame, InertialOnGrid, StreamOffset, attitude_offset, attitudes_onto, position_offset, vectors_onto,
     velocity_offset,
 };
 use super::flight::{Quality, Reference, Signals};
+use super::rotor_thrusts::ThrustSource;
 use super::select::{best, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
 use super::usable::{Evidence, airborne_spans, usable};

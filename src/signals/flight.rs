@@ -1,8 +1,8 @@
 //! A flight on one clock and one grid.
 
-use super::actuators::ThrustSource;
 use super::align::StreamOffset;
 use super::grid::Grid;
+use super::rotor_thrusts::ThrustSource;
 use super::usable::Usable;
 use crate::note::Note;
 use crate::recording::Quantity;

@@ -13,6 +13,8 @@ mod flight;
 mod grid;
 mod noise;
 mod plausible;
+mod rebuilt;
+mod rotor_thrusts;
 mod select;
 mod spectrum;
 mod sufficient;
@@ -21,8 +23,7 @@ mod weak;
 
 pub use actuation::ThrustPreference;
 pub use actuators::{
-    RotorThrusts, ThrustSource, holds_fractions, motor_channels, propulsion_from_log, thrusts_from_commands,
-    thrusts_from_speeds,
+    holds_fractions, motor_channels, propulsion_from_log, thrusts_from_commands, thrusts_from_speeds,
 };
 pub use align::StreamOffset;
 pub use condition::{ConditionSettings, condition, stride};
@@ -31,6 +32,7 @@ pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, Windowe
 pub use flight::{Quality, Reference, Signals};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use noise::white_level;
+pub use rotor_thrusts::{RotorThrusts, ThrustSource};
 pub use select::{best, best_rank, is_live, mean_rate_hz, median_period_s};
 pub use spectrum::highest_harmonic_hz;
 pub use sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ};
