@@ -112,6 +112,11 @@ fn tlog() {
 }
 
 #[test]
+fn ulog() {
+    twin("ulog", 10_000);
+}
+
+#[test]
 fn dataflash() {
     twin("dataflash", 20_000);
 }

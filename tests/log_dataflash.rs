@@ -314,3 +314,56 @@ fn both_logs_of_one_flight_agree() {
         }
     }
 }
+
+#[test]
+fn mapped_streams_hold_every_sample_in_its_range() {
+    let mut compared = 0;
+    for ending in ["bin", "log"] {
+        let Some((logs, expected)) = logs(ending) else { return };
+        for path in logs {
+            let name = path.file_name().unwrap().to_str().unwrap();
+            let log::Opened { recording, report } = log::open(&path, &OpenOptions::default()).unwrap();
+            for (message, quantity, field, channel, sign) in [
+                ("IMU", Quantity::AngularRate, "GyrX", 0, 1.0),
+                ("IMU", Quantity::AngularRate, "GyrY", 1, -1.0),
+                ("IMU", Quantity::SpecificForce, "", 0, 1.0),
+                ("IMU2", Quantity::AngularRate, "GyrZ", 2, -1.0),
+                ("ATT", Quantity::Attitude, "", 0, 1.0),
+                ("XKF1", Quantity::Velocity, "", 0, 1.0),
+                ("NKF1", Quantity::Position, "", 0, 1.0),
+                ("RCOU", Quantity::ActuatorCommand, "C1", 0, 1.0),
+                ("RCOU", Quantity::ActuatorCommand, "C2", 1, 1.0),
+                ("BARO", Quantity::BarometricHeight, "Alt", 0, 1.0),
+                ("BAT", Quantity::BatteryVoltage, "Volt", 0, 1.0),
+            ] {
+                let of = |key: &&StreamKey| key.quantity == quantity && key.source == message;
+                let keys: Vec<&StreamKey> = recording.streams.keys().filter(of).collect();
+                let theirs = &expected[name]["types"][message];
+                if keys.is_empty() || name == "derived_corrupt.bin" {
+                    continue;
+                }
+                let streams = || keys.iter().map(|key| &recording.streams[*key]);
+                let doubled: u64 = keys.iter().map(|key| report.streams[*key].duplicates).sum();
+                let count = streams().map(|stream| stream.len() as u64).sum::<u64>() + doubled;
+                assert_eq!(count, theirs["count"].as_u64().unwrap(), "{name}: {message}");
+                compared += 1;
+                if theirs["fields"][field]["min"].is_null() {
+                    continue;
+                }
+                let values =
+                    streams().flat_map(|stream| stream.values.iter().skip(channel).step_by(stream.width));
+                let (least, most) = values
+                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
+                        (least.min(sign * value), most.max(sign * value))
+                    });
+                let bounds = &theirs["fields"][field];
+                assert!(
+                    near(least, &bounds["min"], most.abs()),
+                    "{name}: {message}.{field} {least} {bounds}"
+                );
+                assert!(near(most, &bounds["max"], least.abs()), "{name}: {message}.{field} {most} {bounds}");
+            }
+        }
+    }
+    assert!(compared > 60, "{compared}");
+}

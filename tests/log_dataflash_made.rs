@@ -174,6 +174,21 @@ fn a_second_log_behind_the_first_is_a_clock_that_began_anew() {
 }
 
 #[test]
+fn what_was_disarmed_was_armed_since_its_log_began() {
+    let mut log = begun();
+    for step in 0..50_u32 {
+        let us = 41e6 + 100_000.0 * f64::from(step);
+        log.add("RCOU", &[us, 1500.0, 1400.0, 1300.0, 1200.0, 0.0, 0.0].map(Value::from));
+    }
+    log.add("EV", &[46e6.into(), 11.0.into()]);
+    let twice = log.binary.repeat(2);
+    let Opened { recording, .. } = open(&twice).unwrap();
+    let armed = stream(&recording, Quantity::Armed, "EV", 0);
+    let said: Vec<(f64, f64)> = armed.time_s.iter().copied().zip(armed.values.iter().copied()).collect();
+    assert_eq!(said, [(0.0, 1.0), (6.0, 0.0), (7.0, 1.0), (13.0, 0.0)]);
+}
+
+#[test]
 fn what_is_lost_is_counted_to_the_byte() {
     let mut log = begun();
     let first = log.binary.len();

@@ -32,9 +32,14 @@ fn flight() -> Vec<u8> {
 #[test]
 fn content_tells_the_format_and_names_do_not() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    for (bytes, format) in
-        [(flight(), "telemetry log (.tlog)"), (TABLE.into(), "table of comma-separated values (.csv)")]
-    {
+    for (bytes, format) in [
+        (flight(), "telemetry log (.tlog)"),
+        (
+            std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/px4_flight.ulg")).unwrap(),
+            "PX4 log (.ulg)",
+        ),
+        (TABLE.into(), "table of comma-separated values (.csv)"),
+    ] {
         for name in ["as.tlog", "as.csv", "as.ulg", "as_nothing"] {
             let path = folder.join(format!("door-{name}"));
             std::fs::write(&path, &bytes).unwrap();
@@ -64,8 +69,7 @@ fn a_file_of_no_known_format_is_named_with_what_to_do() {
     noise.extend((0..500_u32).map(|index| (index * 97 % 251).to_le_bytes()[0]));
     let raw: Vec<u8> = support::attitudes(20).concat();
     for (bytes, came, advice) in [
-        (&b"ULog\x01\x12\x35\x01"[..], "a PX4 log (.ulg), which is not read yet", "mavid record"),
-        (b"\xa3\x95\x80\x80\x59FMT", "the first bytes of an ArduPilot log (.bin)", "the whole log"),
+        (&b"\xa3\x95\x80\x80\x59FMT"[..], "the first bytes of an ArduPilot log (.bin)", "the whole log"),
         (
             b"\xa3\x95\x80\x02\x37ATT ",
             "a PX4 log of the format before ULog (sdlog2, .px4log)",
@@ -73,6 +77,7 @@ fn a_file_of_no_known_format_is_named_with_what_to_do() {
         ),
         (b"\x1f\x8b\x08\0\0\0", "a gzip archive", "unpack"),
         (b"PK\x03\x04\x14\0", "a zip archive", "unpack"),
+        (b"ULog\x02", "binary data that begins with 55 4c 6f 67 02", "the log itself"),
         (b"#ROSBAG V2.0\n", "a ROS bag", "table"),
         (b"{\"a\": 1, \"b\": 2}", "JSON", "table"),
         (b"Dear reader\nno table here\n", "text without a header of columns", "names its columns"),

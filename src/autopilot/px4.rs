@@ -198,6 +198,11 @@ const MODES: [FlightMode; 28] = [
     mode(AUTO, 0, "AUTO", "Auto", Itself, NO_SWITCH),
 ];
 
+/// `custom_mode` of a main and a sub mode.
+pub(super) const fn number(main: u8, sub: u8) -> u32 {
+    Numbering::MainAndSub.number(main, sub)
+}
+
 const fn mode(
     main: u8,
     sub: u8,
@@ -207,7 +212,7 @@ const fn mode(
     switch: i32,
 ) -> FlightMode {
     let switch = if switch == NO_SWITCH { None } else { Some(switch) };
-    FlightMode { number: Numbering::MainAndSub.number(main, sub), name, title, flown_by, switch }
+    FlightMode { number: number(main, sub), name, title, flown_by, switch }
 }
 
 const SETPOINTS_LOST: &[Choice] = &[

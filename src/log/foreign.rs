@@ -14,18 +14,12 @@ pub(super) struct Foreign {
 }
 
 const UNPACK: &str = "unpack it first";
-const EXPORT: &str = "record telemetry with `mavid record`, or export the log as a table";
 const SDLOG2: &str =
     "export it as a table of comma-separated values, with sdlog2_dump.py of PX4's releases until 1.6";
 const TABLE: &str = "export it as a table of comma-separated values";
 
 /// Kinds of files by their first bytes.
 const KNOWN: &[Foreign] = &[
-    Foreign {
-        signature: b"ULog\x01\x12\x35",
-        what: "a PX4 log (.ulg), which is not read yet",
-        advice: EXPORT,
-    },
     Foreign {
         signature: b"\xa3\x95\x80\x80\x59FMT",
         what: "the first bytes of an ArduPilot log (.bin)",

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::units::seconds_from_us;
+use crate::units::{seconds_from_ms, seconds_from_us};
 
 /// What of a file is not in its recording: how much of what, and where first. Its text is what a user is told.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +24,15 @@ pub enum Loss {
         bytes: u64,
         /// stretches of them
         places: u64,
+        /// byte offset of the first
+        first_byte: u64,
+    },
+    /// they stand whole in the file, but what they say is not what their kind says, or their definition is gone
+    Unreadable {
+        /// what a file of this format is made of: `message`
+        unit: &'static str,
+        /// how many
+        count: u64,
         /// byte offset of the first
         first_byte: u64,
     },
@@ -99,6 +108,7 @@ impl Loss {
         match self {
             Self::WrongChecksum { first_byte, .. }
             | Self::Skipped { first_byte, .. }
+            | Self::Unreadable { first_byte, .. }
             | Self::CutOff { first_byte, .. } => Some(Position::Byte(*first_byte)),
             Self::RowsRejected { first, .. } => first.as_ref().map(|row| Position::Line(row.line)),
             Self::EndlessRow { line } => Some(Position::Line(*line)),
@@ -121,6 +131,9 @@ impl fmt::Display for Loss {
                     f,
                     "{bytes} bytes of no {unit} skipped in {places} places, the first at byte {first_byte}"
                 )
+            }
+            Self::Unreadable { unit, count, first_byte } => {
+                write!(f, "{count} {unit}s cannot be read, the first at byte {first_byte}")
             }
             Self::CutOff { bytes, .. } => write!(f, "{bytes} bytes of a record cut off at the end"),
             Self::RowsRejected { count, of, first } => {
@@ -163,6 +176,13 @@ pub enum Oddity {
         /// how many
         count: u64,
     },
+    /// the vehicle could not write as fast as it measured
+    Dropouts {
+        /// how often
+        count: u64,
+        /// how long together, milliseconds
+        ms: u64,
+    },
     /// the recording computer's clock was set while the vehicle's went on
     HostClockSet {
         /// how often
@@ -204,6 +224,10 @@ impl fmt::Display for Oddity {
                 "{count} host stamps are of no wall clock (before 2010 or after 2100): the recording computer's clock was \
                  not set"
             ),
+            Self::Dropouts { count, ms } => {
+                let seconds = seconds_from_ms(*ms as f64);
+                write!(f, "the vehicle could not write fast enough {count} times: {seconds:.3} s are missing")
+            }
             Self::HostClockSet { count } => {
                 write!(f, "the recording computer's clock was set {count} times while the vehicle's went on")
             }

@@ -14,12 +14,14 @@ mod flights;
 mod foreign;
 mod format;
 mod input;
+mod lookahead;
 mod loss;
 mod onboard;
 mod open;
 mod options;
 mod report;
 mod tlog;
+pub mod ulog;
 
 pub use dataflash::{
     ARRAY_VALUES, DataflashDamage, DataflashReader, DataflashTextReader, Definition, Definitions, Field,

@@ -8,11 +8,12 @@ use super::input::Input;
 use super::loss::Loss;
 use super::options::OpenOptions;
 use super::report::ReadReport;
-use super::{csv, dataflash, tlog};
+use super::{csv, dataflash, tlog, ulog};
 use crate::recording::{Event, Recording, RecordingBuilder};
 
 /// All formats that are read. Their order means nothing.
-pub const FORMATS: &[&Format] = &[&tlog::FORMAT, &dataflash::BINARY, &dataflash::TEXT, &csv::FORMAT];
+pub const FORMATS: &[&Format] =
+    &[&tlog::FORMAT, &ulog::FORMAT, &dataflash::BINARY, &dataflash::TEXT, &csv::FORMAT];
 
 /// A log in memory.
 #[derive(Debug, Clone, PartialEq)]

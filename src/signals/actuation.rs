@@ -86,10 +86,10 @@ impl Actuation {
             return Ok(Self::Wrench(key.source, stream.clone()));
         }
         rotor_thrusts(recording, vehicle, preference).map(Self::Rotors).map_err(|error| match error {
-            SignalsError::NoActuators { .. } => too_short(recording, Quantity::Wrench, |s| s.width == 4)
+            SignalsError::NoActuators { .. } => too_short(recording, Quantity::Wrench, |_, s| s.width == 4)
                 .or_else(|| {
                     let rotors = vehicle.rotors.len();
-                    too_short(recording, Quantity::RotorSpeed, |s| s.width >= rotors)
+                    too_short(recording, Quantity::RotorSpeed, |_, s| s.width >= rotors)
                 })
                 .unwrap_or(error),
             other => other,

@@ -8,7 +8,7 @@ use super::SignalsError;
 use super::grid::LARGEST_VALUE;
 use super::rebuilt::rebuilt;
 use super::rotor_thrusts::{RotorThrusts, ThrustSource};
-use super::select::{LEAST_SAMPLES, best, is_live, too_short};
+use super::select::{LEAST_SAMPLES, MOTORS, best, best_of, is_live, too_short};
 use crate::autopilot::Outputs;
 use crate::note::{About, Note};
 use crate::recording::{Quantity, Recording, Stream, StreamKey};
@@ -21,13 +21,26 @@ use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
 /// [`SignalsError::TooFewSamples`] where one has, but hardly a sample with a value for every rotor.
 pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result<RotorThrusts, SignalsError> {
     let (propulsion, mut notes) = propulsion_from_log(recording, &vehicle.propulsion);
-    let channels = motor_channels(recording, vehicle.rotors.len(), &mut notes);
-    let needed = channels.iter().max().map_or(0, |last| last + 1);
-    let fits = |stream: &Stream| stream.width >= needed && in_unit(stream, &channels, propulsion.actuator);
-    let (key, raw) = best(recording, Quantity::ActuatorCommand, fits).ok_or_else(|| {
+    let outputs = motor_channels(recording, vehicle.rotors.len(), &mut notes);
+    let motors: Vec<usize> = (0..vehicle.rotors.len()).collect();
+    let read_as = |key: &StreamKey| match key.source {
+        MOTORS => (&motors, Actuator::Thrust),
+        _ => (&outputs, propulsion.actuator),
+    };
+    let fits = |key: &StreamKey, stream: &Stream| {
+        let (channels, actuator) = read_as(key);
+        channels.iter().all(|channel| *channel < stream.width) && in_unit(stream, channels, actuator)
+    };
+    let (key, raw) = best_of(recording, Quantity::ActuatorCommand, fits).ok_or_else(|| {
         too_short(recording, Quantity::ActuatorCommand, fits)
             .unwrap_or_else(|| no_actuators(recording, vehicle))
     })?;
+    let (channels, _) = read_as(key);
+    let expo = thrust_model(recording);
+    let normalized = |value: f64| match key.source {
+        MOTORS => output_of_thrust(value, expo),
+        _ => propulsion.normalized(value),
+    };
     let mut command = Stream { time_s: raw.time_s.clone(), width: channels.len(), values: Vec::new() };
     command.values.reserve(raw.len() * channels.len());
     command.time_s.clear();
@@ -35,7 +48,7 @@ pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result
         let sample = raw.sample(index);
         if channels.iter().all(|&channel| sample[channel].abs() < LARGEST_VALUE) {
             command.time_s.push(raw.time_s[index]);
-            command.values.extend(channels.iter().map(|&channel| propulsion.normalized(sample[channel])));
+            command.values.extend(channels.iter().map(|&channel| normalized(sample[channel])));
         }
     }
     if command.len() < LEAST_SAMPLES {
@@ -54,6 +67,21 @@ pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result
         None => {}
     }
     Ok(thrusts)
+}
+
+/// The exponent of the curve by which the autopilot makes outputs of thrusts; 0 where it has none.
+fn thrust_model(recording: &Recording) -> f64 {
+    let expo = recording.autopilot.stack().map(|stack| stack.outputs.expo);
+    expo.and_then(|expo| recording.parameters.get(expo).copied()).unwrap_or(0.0)
+}
+
+/// The output `u`, 0..1, at which a curve `(1 - expo) u + expo u^2` gives a share of thrust.
+fn output_of_thrust(share: f64, expo: f64) -> f64 {
+    if expo.abs() < 1e-9 {
+        return share;
+    }
+    let linear = 1.0 - expo;
+    ((linear * linear + 4.0 * expo * share.max(0.0)).sqrt() - linear) / (2.0 * expo)
 }
 
 /// Rotor thrusts from measured speeds. `None` if no speeds, or hardly a sample with all rotors, are recorded, or if no
@@ -286,5 +314,25 @@ mod tests {
         assert_eq!(thrust_n(&fractions), (from_pulses_n, 0));
         let unknown = Recording { parameters: [].into(), ..pulses };
         assert!(thrusts_from_commands(&unknown, &vehicle).is_err());
+    }
+
+    #[test]
+    fn shares_of_thrust_are_thrust_whatever_the_autopilots_curve_and_outputs() {
+        let mut vehicle = vehicle();
+        vehicle.propulsion.actuator = Actuator::Pwm(Some(PwmRange { min_us: 1000.0, max_us: 2000.0 }));
+        vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 8.0, expo: 0.0 };
+        let mut recording = recording(0.25, 0.5);
+        let (_, stream) = recording.streams.pop_first().unwrap();
+        let key = StreamKey { quantity: Quantity::ActuatorCommand, source: MOTORS, instance: 0 };
+        recording.streams.insert(key, stream);
+        // the functions of the outputs say nothing of the motors' own order
+        recording.parameters.extend((1..=4).map(|n| (format!("PWM_MAIN_FUNC{n}"), f64::from(105 - n))));
+        for expo in [0.0, 0.3, 1.0] {
+            recording.parameters.insert("THR_MDL_FAC".to_owned(), expo);
+            let thrusts = thrusts_from_commands(&recording, &vehicle).unwrap();
+            assert_eq!(thrusts.message, MOTORS);
+            assert!((thrusts.stream.values[0] - 2.0).abs() < 1e-9, "{expo}");
+            assert!((thrusts.stream.values[4] - 6.0).abs() < 1e-9, "{expo}");
+        }
     }
 }

@@ -218,7 +218,7 @@ fn step(
 fn no_motion(recording: &Recording) -> SignalsError {
     [(Quantity::AngularRate, 3), (Quantity::Attitude, 4), (Quantity::WorldAcceleration, 3)]
         .into_iter()
-        .find_map(|(quantity, width)| too_short(recording, quantity, |stream| stream.width == width))
+        .find_map(|(quantity, width)| too_short(recording, quantity, |_, stream| stream.width == width))
         .unwrap_or(SignalsError::NoMotion)
 }
 

@@ -41,7 +41,7 @@ pub enum SignalsError {
     )]
     NoMotion,
     /// sampled too slowly
-    #[error("too slow to identify from: {slow}. 100 Hz of each is good: {}", faster(*logging))]
+    #[error("sampled too slowly to identify from: {slow}. 100 Hz of each is good: {}", faster(*logging))]
     TooSlow {
         /// each slow stream, its rate, and the rate that was expected
         slow: String,

@@ -59,6 +59,11 @@ impl Routes {
         }
     }
 
+    /// Samples come of it: those without a time do not.
+    pub(super) fn gives_samples(&self) -> bool {
+        self.stamp.is_some() && !self.streams.is_empty()
+    }
+
     /// The message's own time, s of the vehicle's clock.
     pub(super) fn stamp_s(&self, message: &Message<'_>) -> Option<f64> {
         let (field, unit_s) = self.stamp?;

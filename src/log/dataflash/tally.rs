@@ -40,7 +40,7 @@ impl Tally {
             if at == next {
                 self.counts.push(Count::default());
             }
-            self.counts[at].is_used |= routes.special.is_some() || !routes.streams.is_empty();
+            self.counts[at].is_used |= routes.special.is_some() || routes.gives_samples();
             routes.tallies.push((instance, at));
             at
         });

@@ -54,6 +54,7 @@ pub(super) fn walk(messages: &mut impl Messages, sink: &mut Sink<'_>) -> Result<
         join: Join::default(),
         batches: Batches::default(),
         states: States::default(),
+        began_s: 0.0,
         jumps: Vec::new(),
         rates_in_degrees: false,
         walked: Walked::default(),
@@ -73,6 +74,8 @@ struct Walk<'a, 'b> {
     join: Join,
     batches: Batches,
     states: States,
+    /// time at which the clock began, s
+    began_s: f64,
     /// by how much the estimate jumped last, by message
     jumps: Vec<(u8, f64, f64)>,
     rates_in_degrees: bool,
@@ -105,6 +108,8 @@ impl Walk<'_, '_> {
             Some((_, Placed::At(time_s))) => Some(time_s),
             Some((stamp_s, Placed::Anew(time_s))) => {
                 self.finish_samples();
+                (self.states, self.began_s) = (States::default(), time_s);
+                self.jumps.clear();
                 self.out.give(Event::ClockReset { time_s, stamp_s });
                 Some(time_s)
             }
@@ -223,7 +228,7 @@ impl Walk<'_, '_> {
     fn state(&mut self, quantity: Quantity, value: f64, time_s: f64) {
         if self.states.set(quantity, value) && quantity == Quantity::Armed && value == 0.0 {
             // what is disarmed was armed: a log may begin with it
-            self.out.sample(quantity, STATES, 0, 0.0, &[1.0]);
+            self.out.sample(quantity, STATES, 0, self.began_s, &[1.0]);
         }
         self.out.sample(quantity, STATES, 0, time_s, &[value]);
     }
