@@ -64,7 +64,7 @@ impl Craft {
     /// Its MAVLink numbers, where the log says them.
     pub(super) fn vehicle(&self, autopilot: Autopilot) -> Option<Vehicle> {
         let component = ComponentId(self.component.unwrap_or(AUTOPILOT_COMPONENT));
-        Some(Vehicle { system: SystemId(self.system?), component, autopilot })
+        Some(Vehicle { system: SystemId(self.system?), component, autopilot, kind: self.kind() })
     }
 
     /// The software: `PX4 1.15.0 (c78389a3) on CUBEPILOT_CUBEORANGE`, as far as the log says it.
