@@ -139,8 +139,8 @@ pub static PX4: Stack = Stack {
             (10016, 10016, class::QUAD, X),
         ],
     },
-    // default, system identification, high rate
-    logging: "set SDLOG_PROFILE = 25 and restart the autopilot",
+    // default and system identification
+    logging: "set SDLOG_PROFILE = 9 and restart the autopilot",
     pilot: PilotSwitches {
         mode_channel: "RC_MAP_FLTMODE",
         positions: numbered("COM_FLTMODE", ""),

@@ -118,7 +118,7 @@ mod tests {
             check(&[needed("body rates", &good), outputs], &flight, Autopilot::Px4).unwrap_err().to_string();
         assert!(error.contains("actuator outputs (SERVO_OUTPUT_RAW) at 9.5 Hz, expected 38 Hz"), "{error}");
         assert!(!error.contains("body rates (ATTITUDE)"), "{error}");
-        assert!(error.contains("set SDLOG_PROFILE = 25"), "{error}");
+        assert!(error.contains("set SDLOG_PROFILE = 9"), "{error}");
         // seldom for a minute on the ground, then as asked for
         let mut late = stream(1.0, 60.0);
         late.time_s.extend(stream(100.0, 20.0).time_s.iter().map(|time_s| 60.5 + time_s));
