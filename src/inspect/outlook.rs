@@ -51,8 +51,7 @@ impl Evidence<'_> {
         let logged = quantities.into_iter().filter_map(|quantity| self.rate_hz(quantity)).reduce(f64::max)?;
         let thrust = [Quantity::ThrustVectorSetpoint, Quantity::ThrustSetpoint];
         let thrust_hz = thrust.into_iter().filter_map(|quantity| self.rate_hz(quantity)).reduce(f64::max);
-        let rebuilt =
-            self.rate_hz(Quantity::TorqueSetpoint).zip(thrust_hz).map(|(torque, thrust)| torque.min(thrust));
+        let rebuilt = self.rate_hz(Quantity::TorqueSetpoint).filter(|_| thrust_hz.is_some());
         Some(rebuilt.map_or(logged, |rebuilt| logged.max(rebuilt)))
     }
 
