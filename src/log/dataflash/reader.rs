@@ -11,8 +11,8 @@ use super::definitions::{Definitions, Lesson};
 use super::letter::MESSAGE_BYTES;
 use super::message::Message;
 use crate::log::error::LogError;
+use crate::log::lookahead::LookAhead;
 
-const BUFFER_BYTES: usize = 1 << 18;
 /// What must lie ahead for every judgement: a message and the header that confirms it.
 const LOOKAHEAD: usize = *MESSAGE_BYTES.end() + HEADER_BYTES;
 
@@ -22,13 +22,10 @@ const LOOKAHEAD: usize = *MESSAGE_BYTES.end() + HEADER_BYTES;
 /// reading goes on at the next message that a second known one follows. All that is skipped is counted.
 #[derive(Debug)]
 pub struct DataflashReader<R: Read> {
-    from: R,
+    bytes: LookAhead<R>,
+    /// bytes of the message that was given out last
+    given: usize,
     definitions: Definitions,
-    buffer: Vec<u8>,
-    at: usize,
-    filled: usize,
-    ended: bool,
-    base: u64,
     /// where the damage begins that is being skipped
     skipping: Option<u64>,
     damage: DataflashDamage,
@@ -38,13 +35,9 @@ impl<R: Read> DataflashReader<R> {
     /// Reads from the start of `from`; no buffering of its own is needed.
     pub fn new(from: R) -> Self {
         Self {
-            from,
+            bytes: LookAhead::new(from),
+            given: 0,
             definitions: Definitions::default(),
-            buffer: vec![0; BUFFER_BYTES],
-            at: 0,
-            filled: 0,
-            ended: false,
-            base: 0,
             skipping: None,
             damage: DataflashDamage::default(),
         }
@@ -61,10 +54,10 @@ impl<R: Read> DataflashReader<R> {
     /// The next message, and what is defined up to it.
     pub(super) fn next_with_definitions(&mut self) -> Result<Option<(Message<'_>, &Definitions)>, LogError> {
         let Some((number, bytes)) = self.advance()? else { return Ok(None) };
-        let (start, offset) = (self.at, self.base + self.at as u64);
-        self.at += bytes;
+        let offset = self.bytes.offset();
+        self.given = bytes;
         self.damage.messages += 1;
-        let bytes = &self.buffer[start..self.at];
+        let bytes = &self.bytes.sight()[..bytes];
         if self.definitions.teaches(number) {
             let lesson = match self.definitions.get(number) {
                 _ if number == FMT => Definition::from_message(bytes).map(Lesson::Definition),
@@ -91,37 +84,40 @@ impl<R: Read> DataflashReader<R> {
 
     /// Moves to the next message: its number and its bytes.
     fn advance(&mut self) -> Result<Option<(u8, usize)>, LogError> {
+        self.bytes.skip(std::mem::take(&mut self.given));
         loop {
-            self.look_ahead()?;
-            let offset = self.base + self.at as u64;
-            if self.at == self.filled {
+            self.bytes.look(LOOKAHEAD)?;
+            let offset = self.bytes.offset();
+            self.damage.bytes = offset + self.bytes.sight().len() as u64;
+            if self.bytes.sight().is_empty() {
                 self.damage.tail_bytes = self.skipping.take().map_or(0, |from| offset - from);
                 return Ok(None);
             }
-            if let Some(found) = self.message_at(self.at) {
+            if let Some(found) = self.message() {
                 if let Some(from) = self.skipping.take() {
                     self.damage.skip(from, offset - from);
                 }
                 return Ok(Some(found));
             }
             self.skipping.get_or_insert(offset);
-            self.at = self.next_marker(self.at + 1);
+            self.bytes.skip(self.to_next_marker());
         }
     }
 
-    /// The whole message that begins at `at`, if another follows it.
-    fn message_at(&self, at: usize) -> Option<(u8, usize)> {
-        let number = self.number_at(at)?;
+    /// The whole message at the reading position, if another follows it.
+    fn message(&self) -> Option<(u8, usize)> {
+        let (sight, number) = (self.bytes.sight(), self.number_at(0)?);
         let bytes = self.definitions.bytes(number)?;
-        let next = at + bytes;
-        if next > self.filled || number == FMT && Definition::from_message(&self.buffer[at..next]).is_none() {
+        let whole = sight.get(..bytes)?;
+        if number == FMT && Definition::from_message(whole).is_none() {
             return None;
         }
-        let followed = match self.number_at(next) {
+        let followed = match self.number_at(bytes) {
             Some(number) => self.skipping.is_none() || self.definitions.bytes(number).is_some(),
             // the file may end within the next one
             None => {
-                self.ended && MARKER.starts_with(&self.buffer[next..self.filled.min(next + MARKER.len())])
+                let rest = &sight[bytes..];
+                self.bytes.is_all() && MARKER.starts_with(&rest[..rest.len().min(MARKER.len())])
             }
         };
         followed.then_some((number, bytes))
@@ -129,40 +125,14 @@ impl<R: Read> DataflashReader<R> {
 
     /// The number in a header; `None` where none stands.
     fn number_at(&self, at: usize) -> Option<u8> {
-        let header = self.buffer[..self.filled].get(at..at + HEADER_BYTES)?;
+        let header = self.bytes.sight().get(at..at + HEADER_BYTES)?;
         (header[..2] == MARKER).then_some(header[2])
     }
 
-    /// Where the next header may begin, from `from` on.
-    fn next_marker(&self, from: usize) -> usize {
-        let left = &self.buffer[from.min(self.filled)..self.filled];
-        let found = left.iter().position(|byte| *byte == MARKER[0]);
-        found.map_or(self.filled, |found| from + found)
-    }
-
-    /// Makes sure that enough bytes lie ahead, or all that are left.
-    fn look_ahead(&mut self) -> Result<(), LogError> {
-        if self.ended || self.filled - self.at >= LOOKAHEAD {
-            return Ok(());
-        }
-        self.buffer.copy_within(self.at..self.filled, 0);
-        self.base += self.at as u64;
-        self.filled -= self.at;
-        self.at = 0;
-        while self.filled < self.buffer.len() {
-            match self.from.read(&mut self.buffer[self.filled..]) {
-                Ok(0) => {
-                    self.ended = true;
-                    break;
-                }
-                Ok(bytes) => self.filled += bytes,
-                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
-                Err(source) => {
-                    return Err(LogError::Read { offset: self.base + self.filled as u64, source });
-                }
-            }
-        }
-        self.damage.bytes = self.base + self.filled as u64;
-        Ok(())
+    /// Bytes to the place behind the reading position at which the next header may begin.
+    fn to_next_marker(&self) -> usize {
+        let sight = self.bytes.sight();
+        let found = sight.iter().skip(1).position(|byte| *byte == MARKER[0]);
+        found.map_or(sight.len(), |found| found + 1)
     }
 }
