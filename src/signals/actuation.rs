@@ -50,7 +50,8 @@ fn rotor_thrusts(
             // a link that hardly carries them may carry the commands
             Some(speeds) if flowing_rate_hz(&speeds.stream) < LEAST_TORQUE_HZ => {
                 let speeds_hz = flowing_rate_hz(&speeds.stream);
-                let faster = commands().ok().filter(|of| flowing_rate_hz(&of.stream) > speeds_hz);
+                let faster = |of: &RotorThrusts| speeds_hz < SAMPLED_ALIKE * flowing_rate_hz(&of.stream);
+                let faster = commands().ok().filter(faster);
                 Ok(faster.unwrap_or(speeds))
             }
             Some(speeds) => Ok(speeds),
