@@ -40,6 +40,7 @@ pub mod signatures;
 mod spin_up;
 mod tested;
 mod trace;
+mod velocity_error;
 pub mod wording;
 mod words;
 

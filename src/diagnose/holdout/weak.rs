@@ -80,7 +80,9 @@ fn without_known_nuisances(own: &Fitted, identified: &Fitted) -> Channels {
     for (index, column) in own.rows.nuisances.iter().enumerate() {
         let share = match column.nuisance {
             Nuisance::Mass | Nuisance::Inertia(_) | Nuisance::Latency => continue,
-            Nuisance::AccelerometerBias(_) | Nuisance::Level(_) => own.coefficients[index],
+            Nuisance::AccelerometerBias(_) | Nuisance::Level(_) | Nuisance::VelocityError => {
+                own.coefficients[index]
+            }
             Nuisance::ForceLatency | Nuisance::Tilt(_) | Nuisance::Jitter => {
                 let columns = &identified.rows.nuisances;
                 let place = columns.iter().position(|known| known.nuisance == column.nuisance);
