@@ -28,7 +28,6 @@ mod nuisances;
 mod other_forms;
 mod pruning;
 mod recorded;
-pub mod refit;
 mod rotors;
 mod rows;
 mod score;

@@ -114,36 +114,7 @@ impl Trace {
             return Err(TraceError::NoForce);
         }
         let kernel = WeakKernel::new(half_width_s, grid.step_s);
-        let stride = stride(grid.step_s);
-        let (mut centers, mut runs) = (Vec::new(), Vec::new());
-        for run in Grid::runs(&signals.usable, 2 * kernel.half_count + 1) {
-            let first = centers.len();
-            centers.extend((run.start + kernel.half_count..run.end - kernel.half_count).step_by(stride));
-            runs.push(first..centers.len());
-        }
-        let zero = vec![Vector3::zeros(); grid.count];
-        let position = signals.position.as_ref().unwrap_or(&zero);
-        let velocity = signals.velocity.as_ref().unwrap_or(&zero);
-        let level = vec![UnitQuaternion::identity(); grid.count];
-        let attitude = signals.attitude.as_ref().unwrap_or(&level);
-        let states = (0..grid.count)
-            .map(|i| State {
-                position_m: position[i],
-                velocity_m_s: velocity[i],
-                attitude: attitude[i],
-                rates_rad_s: rates[i],
-            })
-            .collect();
-        let rotors = vehicle.rotors.len();
-        let commanded_n = signals
-            .rotor_thrust_n
-            .chunks_exact(rotors)
-            .map(|thrusts| {
-                let mut all = [0.0; MAX_ROTORS];
-                all[..rotors].copy_from_slice(thrusts);
-                all
-            })
-            .collect();
+        let (centers, runs) = centers_and_runs(signals, &kernel);
         let (inertial_late_s, inertial_unsure_s) = inertial_late(signals);
         let mut trace = Self {
             grid,
@@ -151,7 +122,7 @@ impl Trace {
             kernel,
             centers,
             runs,
-            states,
+            states: states(signals, rates),
             known,
             voltage_v: signals.battery_voltage_v.clone(),
             measured_speeds: signals.quality.thrust_source == ThrustSource::MeasuredSpeed,
@@ -160,7 +131,7 @@ impl Trace {
             inertial_late_s,
             inertial_unsure_s,
             specific_force_m_s2: measured.cloned(),
-            commanded_n,
+            commanded_n: commanded_n(signals, vehicle.rotors.len()),
             jitter: signals.jitter_wrench.clone(),
             smooth_rate: Vec::new(),
             smooth_turning: Vec::new(),
@@ -355,6 +326,43 @@ impl Trace {
             .map(|(rate, turning)| inertia * turning + rate.cross(&(inertia * rate)))
             .collect()
     }
+}
+
+/// The instants at which kernels are centred, and the rows of each run of usable instants.
+fn centers_and_runs(signals: &Signals, kernel: &WeakKernel) -> (Vec<usize>, Vec<Range<usize>>) {
+    let (half, stride) = (kernel.half_count, stride(signals.grid.step_s));
+    let (mut centers, mut runs) = (Vec::new(), Vec::new());
+    for run in Grid::runs(&signals.usable, 2 * half + 1) {
+        let first = centers.len();
+        centers.extend((run.start + half..run.end - half).step_by(stride));
+        runs.push(first..centers.len());
+    }
+    (centers, runs)
+}
+
+/// States at each grid instant; what is not known is zero or level.
+fn states(signals: &Signals, rates: &[Vector3<f64>]) -> Vec<State> {
+    let of = |series: &Option<Vec<Vector3<f64>>>, i: usize| {
+        series.as_ref().map_or_else(Vector3::zeros, |series| series[i])
+    };
+    (0..signals.grid.count)
+        .map(|i| State {
+            position_m: of(&signals.position, i),
+            velocity_m_s: of(&signals.velocity, i),
+            attitude: signals.attitude.as_ref().map_or_else(UnitQuaternion::identity, |attitude| attitude[i]),
+            rates_rad_s: rates[i],
+        })
+        .collect()
+}
+
+/// Thrust of each rotor by the commands, N.
+fn commanded_n(signals: &Signals, rotors: usize) -> Vec<Thrusts> {
+    let padded = |thrusts: &[f64]| {
+        let mut all = [0.0; MAX_ROTORS];
+        all[..rotors].copy_from_slice(thrusts);
+        all
+    };
+    signals.rotor_thrust_n.chunks_exact(rotors).map(padded).collect()
 }
 
 fn gyro_noise_rad_s(rates: &[Vector3<f64>]) -> f64 {
