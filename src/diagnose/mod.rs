@@ -38,6 +38,7 @@ pub mod signature;
 pub mod signatures;
 mod spin_up;
 mod tested;
+mod timing;
 mod trace;
 pub mod wording;
 mod words;

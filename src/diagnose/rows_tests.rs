@@ -62,6 +62,7 @@ fn turning_on_the_spot() -> Signals {
             offsets: Vec::new(),
             airborne_s: Vec::new(),
             usable: Usable::default(),
+            torques: true,
             notes: Vec::new(),
         },
     }

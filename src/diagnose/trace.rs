@@ -2,6 +2,7 @@
 //! motion.
 
 use super::rotors::{RotorMotion, Thrusts, felt};
+use super::timing::{command_period_s, inertial_late};
 use crate::physics::{ActuationLatency, Airframe, MAX_ROTORS, State};
 use crate::recording::Quantity;
 use crate::signals::{Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride};
@@ -30,6 +31,8 @@ pub struct Trace {
     pub states: Vec<State>,
     /// parts of the state that are measured
     pub known: Known,
+    /// commands and body rates are fast enough to compare torques; otherwise torque channels are zero
+    pub torques: bool,
     /// V
     pub voltage_v: Option<Vec<f64>>,
     /// thrusts are computed from measured rotor speeds: effects between command and speed are not visible
@@ -124,9 +127,10 @@ impl Trace {
             runs,
             states: states(signals, rates),
             known,
+            torques: signals.quality.torques,
             voltage_v: signals.battery_voltage_v.clone(),
             measured_speeds: signals.quality.thrust_source == ThrustSource::MeasuredSpeed,
-            gyro_noise_rad_s: gyro_noise_rad_s(rates),
+            gyro_noise_rad_s: gyro_noise_rad_s(rates, signals.samples_apart(Quantity::AngularRate)),
             command_period_s: command_period_s(signals),
             inertial_late_s,
             inertial_unsure_s,
@@ -365,35 +369,9 @@ fn commanded_n(signals: &Signals, rotors: usize) -> Vec<Thrusts> {
     signals.rotor_thrust_n.chunks_exact(rotors).map(padded).collect()
 }
 
-fn gyro_noise_rad_s(rates: &[Vector3<f64>]) -> f64 {
+fn gyro_noise_rad_s(rates: &[Vector3<f64>], samples_apart: usize) -> f64 {
+    let sampled = || rates.iter().step_by(samples_apart);
     (0..3)
-        .map(|axis| white_level_of(&rates.iter().map(|rate| rate[axis]).collect::<Vec<_>>()))
+        .map(|axis| white_level_of(&sampled().map(|rate| rate[axis]).collect::<Vec<_>>()))
         .fold(0.0, f64::max)
-}
-
-/// Delay of the inertial unit and its uncertainty, s: the common part if attitude and velocity are both early. If only
-/// the attitude is early, its own time stamps may be the cause.
-fn inertial_late(signals: &Signals) -> (f64, f64) {
-    let attitude_s = early_s(signals, Quantity::Attitude);
-    match attitude_s.zip(early_s(signals, Quantity::Velocity)) {
-        Some((attitude_s, velocity_s)) if attitude_s > 0.0 && velocity_s > 0.0 => {
-            (attitude_s.min(velocity_s), (attitude_s - velocity_s).abs())
-        }
-        _ => (0.0, attitude_s.unwrap_or(0.0).max(0.0)),
-    }
-}
-
-/// Advance of a quantity's time stamps relative to the inertial unit's, s, negative if they are late; `None` if the
-/// offset was not corrected. An early quantity means that the gyroscopes are late.
-fn early_s(signals: &Signals, of: Quantity) -> Option<f64> {
-    let offset = signals.quality.offsets.iter().find(|(quantity, _)| *quantity == of);
-    offset.filter(|(_, offset)| offset.repaired).map(|(_, offset)| -offset.late_s)
-}
-
-/// Sampling period of the stream from which the thrusts are computed, s.
-fn command_period_s(signals: &Signals) -> f64 {
-    let of_thrust = |quantity: Quantity| matches!(quantity, Quantity::ActuatorCommand | Quantity::RotorSpeed);
-    let rate_hz =
-        signals.quality.sources.iter().find(|(quantity, ..)| of_thrust(*quantity)).map(|(.., rate)| *rate);
-    rate_hz.filter(|rate_hz| *rate_hz > 0.0).map_or(signals.grid.step_s, |rate_hz| 1.0 / rate_hz)
 }
