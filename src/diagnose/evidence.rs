@@ -4,7 +4,8 @@
 //! autocovariance of the scores (Newey-West), whichever is larger. Unexplained physics enlarges it, so the evidence is
 //! conservative if the model is wrong.
 
-use super::channels::{CHANNELS, Channels, Nuisance};
+use super::channels::{CHANNELS, Channels};
+use super::priors::{OF_KERNEL, Priors, READINGS};
 use super::rows::Rows;
 use crate::stats::{chance_by_stretches, normal_deviate};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -15,11 +16,6 @@ use std::ops::Range;
 pub(super) const LEAST_ROWS: usize = 120;
 /// Number of neighbouring rows whose kernels overlap: the kernel is 0.4 s wide and rows are 0.05 s apart.
 const OVERLAP: usize = 8;
-/// Rows of white noise that count as one independent measurement of something slow: one over the rows' distance and the
-/// integral of the squared test function, 1 / (0.05 s x 4.54 1/s).
-const OF_KERNEL: f64 = 4.4;
-/// Readings of the force that share the error of the airspeed: accelerometer and kinematics.
-const READINGS: f64 = 2.0;
 /// Longest residual correlation that is allowed for, rows (6 s). Chosen; not measured.
 const MOST_LAGS: usize = 120;
 /// Least width of the Bartlett window of the scores, rows (1 s). Chosen; not measured.
@@ -101,20 +97,9 @@ impl Weighted {
         let of_nuisances = rows.nuisances.iter().map(|column| &column.values);
         let columns: Vec<DVector<f64>> =
             of_nuisances.chain(&rows.effects).map(|column| weighted(column, sigma)).collect();
-        let mut precision = DVector::zeros(columns.len());
-        let mut prior_meat = DVector::zeros(columns.len());
-        for (index, column) in rows.nuisances.iter().enumerate() {
-            let Some(std) = column.prior_std else { continue };
-            // rows that overlap, and noise that lasts, must not outvote what is known of a slow error
-            let counts = if column.nuisance == Nuisance::VelocityError { alike } else { 1.0 };
-            precision[index] = counts * std.powi(-2);
-            prior_meat[index] = counts * precision[index];
-        }
+        let priors = Priors::of(&rows.nuisances, columns.len(), alike);
         let nuisances = DMatrix::from_columns(&columns);
-        let mut normal = nuisances.tr_mul(&nuisances);
-        for (index, precision) in precision.iter().enumerate() {
-            normal[(index, index)] += precision;
-        }
+        let mut normal = nuisances.tr_mul(&nuisances) + DMatrix::from_diagonal(&priors.precision);
         // a column that is nowhere excited drops out
         let most = normal.diagonal().max();
         for index in 0..normal.nrows() {
@@ -127,7 +112,7 @@ impl Weighted {
             rows: rows.len(),
             sigma: *sigma,
             nuisances,
-            prior_meat,
+            prior_meat: priors.meat,
             normal: normal.cholesky(),
             left: DVector::zeros(0),
             energy: 0.0,

@@ -26,6 +26,7 @@ mod mounting;
 mod named;
 mod nuisances;
 mod other_forms;
+mod priors;
 mod pruning;
 mod recorded;
 mod rotors;
