@@ -359,6 +359,8 @@ const OTHERS: &[Parameter] = &[
     row("RTL_DESCEND_ALT", R, M, 30.0),
     row("RTL_LAND_DELAY", R, S, 0.0),
     row("RTL_MIN_DIST", R, M, 10.0),
+    row("SDLOG_BACKEND", I, NONE, 3.0),
+    row("SDLOG_MODE", I, NONE, 0.0),
     row("SDLOG_PROFILE", I, NONE, 1.0),
 ];
 
