@@ -35,6 +35,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("log", &["units", "text", "autopilot", "frames", "recording", "wire"]),
     // frames over sockets and serial ports, and their recording: live links need no files
     ("link", &["text", "wire"]),
+    // logs of a vehicle, over MAVLink: dialogues without I/O, and the file that they fill
+    ("fetch", &["files", "text", "autopilot", "wire"]),
     // a log played as if it were a link
     ("replay", &["text", "wire", "log", "link"]),
     // vehicle: from actuator values to force

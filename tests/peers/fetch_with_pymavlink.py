@@ -87,10 +87,12 @@ def main():
     station = Station(connection)
     fly(station, autopilot)
     ftp = mavftp.MAVFTP(station.link, 1, 1)
+    # whole messages: a busy computer loses fewer of them
+    ftp.ftp_settings.burst_read_size = 239
     path, listed = last(ftp, "/fs/microsd/log" if autopilot == "px4" else "/APM/LOGS")
     got = []
     ftp.cmd_get([path, "-"], callback=lambda file: got.append(file.read() if file else None))
-    answer = ftp.process_ftp_reply("OpenFileRO", timeout=60)
+    answer = ftp.process_ftp_reply("OpenFileRO", timeout=120)
     if not got or got[0] is None:
         raise SystemExit(f"{path} does not come: {answer.error_code}")
     log = got[0]

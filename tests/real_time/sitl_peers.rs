@@ -140,7 +140,7 @@ fn fetched(answer: &Value, begins: &str, ends: &str) {
 fn pymavlink_fetches_the_log_of_a_flight_of_px4() {
     let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let listen = format!("udpout:127.0.0.1:{port}");
-    let sitl = Sitl::start(&["--warm-up", "2", "--speed", "3", "--listen", &listen]);
+    let sitl = Sitl::start(&["--warm-up", "2", "--listen", &listen]);
     let connection = format!("udpin:127.0.0.1:{port}");
     match crate::python::ask("fetch_with_pymavlink.py", &[&connection, "px4"], &json!(null)) {
         Ok(answer) => fetched(&answer, "/fs/microsd/log/", ".ulg"),

@@ -147,7 +147,8 @@ impl FileServer {
             let found = piece(store, session.log, burst.offset, burst.size);
             burst.left -= 1;
             let is_over = found.is_err() || burst.left == 0;
-            let request = Transfer { sequence: burst.sequence, ..Transfer::request(0, operation::BURST) };
+            let Burst { sequence, offset, .. } = burst;
+            let request = Transfer { offset, ..Transfer::request(sequence, operation::BURST) };
             let found = found.map(|data| Reply::of(data.to_vec(), burst.offset));
             burst.offset += found.as_ref().map_or(0, |reply| u32::from(reply.size));
             burst.sequence = burst.sequence.wrapping_add(1);
