@@ -1,0 +1,36 @@
+//! The logs that a vehicle keeps: listed and fetched over MAVLink.
+//!
+//! Dialogues do no I/O and have no clock: [`Dialogue::poll`] gives the messages that are due, [`Dialogue::take`] takes
+//! what comes. Times are [`std::time::Duration`]s since any fixed start. Everything that a vehicle says of its files is
+//! bounded and checked here; nothing on it is changed or erased.
+//!
+//! ```text
+//! Survey -> List -> Download -> Part (a file beside its place) -> the log
+//! ```
+
+mod asked;
+mod dialogue;
+mod download;
+mod error;
+mod ftp;
+mod ftp_list;
+mod ftp_reading;
+mod list;
+mod log_list;
+mod log_reading;
+mod name;
+mod pace;
+mod part;
+mod peer;
+mod remote;
+mod survey;
+mod window;
+
+pub use dialogue::Dialogue;
+pub use download::{Download, Fetched, Sum};
+pub use error::FetchError;
+pub use list::{List, Wanted};
+pub use name::local_name;
+pub use part::{Begun, Part, PartError};
+pub use remote::{MOST_BYTES, Place, Protocol, RemoteLog};
+pub use survey::{Offer, Survey};
