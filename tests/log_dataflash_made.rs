@@ -174,7 +174,7 @@ fn a_second_log_behind_the_first_is_a_clock_that_began_anew() {
 }
 
 #[test]
-fn what_was_disarmed_was_armed_since_its_log_began() {
+fn what_was_disarmed_was_armed_since_its_first_sample() {
     let mut log = begun();
     for step in 0..50_u32 {
         let us = 41e6 + 100_000.0 * f64::from(step);
@@ -185,7 +185,7 @@ fn what_was_disarmed_was_armed_since_its_log_began() {
     let Opened { recording, .. } = open(&twice).unwrap();
     let armed = stream(&recording, Quantity::Armed, "EV", 0);
     let said: Vec<(f64, f64)> = armed.time_s.iter().copied().zip(armed.values.iter().copied()).collect();
-    assert_eq!(said, [(0.0, 1.0), (6.0, 0.0), (7.0, 1.0), (13.0, 0.0)]);
+    assert_eq!(said, [(1.0, 1.0), (6.0, 0.0), (8.0, 1.0), (13.0, 0.0)]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Looks at one window of flight after the other and keeps numbers only.
 
-use super::airborne::{airborne, normalized_commands};
+use super::airborne::{Before, airborne, normalized_commands};
 use super::excitation::ExcitationTally;
 use super::inspection::{Excitation, FlightSummary, OffsetSummary, Segment};
 use super::motion::Motion;
@@ -22,7 +22,7 @@ pub(super) struct Assessor<'a> {
     vehicle: Option<&'a Vehicle>,
     flight: FlightSummary,
     excitation: ExcitationTally,
-    effort_max: f64,
+    before: Before,
     flown: bool,
     /// the vehicle's clock restarted since the last segment
     restarted: bool,
@@ -69,20 +69,17 @@ impl<'a> Assessor<'a> {
     pub(super) fn window(&mut self, recording: &Recording) {
         self.restarted |= !recording.clock_resets_s.is_empty();
         let commands = normalized_commands(recording);
-        let (spans, from) = airborne(recording, commands.as_ref(), &mut self.effort_max);
-        self.flight.airborne_from = from;
+        let airborne = airborne(recording, commands.as_ref(), &mut self.before);
+        self.flight.airborne_from = airborne.from;
         // only the first flight begins with the take-off's transient
         let transient_s = self.flown.then_some(0.0);
         let settings = ConditionSettings { transient_s, ..ConditionSettings::default() };
         let conditioned = self.vehicle.map(|vehicle| (condition(recording, vehicle, &settings), vehicle));
-        let spans = match conditioned {
+        let motion = match conditioned {
             Some((Ok(signals), vehicle)) => {
                 self.inform(&signals, vehicle);
-                self.flight.add(&signals.quality.usable);
-                let spans = signals.quality.airborne_s.clone();
-                self.segments(&spans, &signals.usable, |i| signals.grid.time_s(i));
-                self.excitation.add(&Motion::from(signals));
-                spans
+                let used = signals.quality.usable;
+                Some((Motion::from(signals), used))
             }
             refused => {
                 if let Some((Err(refusal), _)) = refused
@@ -90,21 +87,18 @@ impl<'a> Assessor<'a> {
                 {
                     self.refusal = Some(refusal);
                 }
-                match Motion::of_recording(recording, &spans, transient_s) {
-                    Some((motion, used)) => {
-                        self.flight.add(&used);
-                        self.segments(&spans, &motion.usable, |i| motion.grid.time_s(i));
-                        self.excitation.add(&motion);
-                    }
-                    None => {
-                        self.flight.airborne_s += spans.iter().map(|(start, end)| end - start).sum::<f64>();
-                        self.segments(&spans, &[], |_| f64::NAN);
-                    }
-                }
-                spans
+                Motion::of_recording(recording, &airborne.free_s, transient_s)
             }
         };
-        self.flown |= !spans.is_empty();
+        match motion {
+            Some((motion, used)) => {
+                self.flight.add(&used);
+                self.segments(&airborne.flown_s, &motion.usable, |i| motion.grid.time_s(i));
+                self.excitation.add(&motion);
+            }
+            None => self.segments(&airborne.flown_s, &[], |_| f64::NAN),
+        }
+        self.flown |= !airborne.flown_s.is_empty();
     }
 
     /// What identification would learn from the window: its own weak form, solved.
@@ -152,7 +146,10 @@ impl<'a> Assessor<'a> {
         let step_s = if usable.len() > 1 { time_s(1) - time_s(0) } else { 0.0 };
         for &(start_s, end_s) in spans {
             let inside = |i: &usize| usable[*i] && (start_s..=end_s).contains(&time_s(*i));
-            let usable_s = (0..usable.len()).filter(inside).count() as f64 * step_s;
+            // a grid may reach half a step beyond the span
+            let usable_s = ((0..usable.len()).filter(inside).count() as f64 * step_s).min(end_s - start_s);
+            self.flight.airborne_s += end_s - start_s;
+            self.flight.usable_s += usable_s;
             let same_flight = !std::mem::take(&mut self.restarted);
             let segments = &mut self.flight.segments;
             let kept = segments.len() < KEPT_SEGMENTS;

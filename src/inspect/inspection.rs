@@ -383,11 +383,14 @@ pub struct Text {
 impl FlightSummary {
     /// Adds what a window's mask left out; what is not flight counts for nothing here.
     pub(super) fn add(&mut self, used: &Usable) {
-        self.airborne_s += (used.total_s - used.grounded_s).max(0.0);
-        self.usable_s += used.usable_s;
         self.transient_s += used.transient_s;
         self.idle_s += used.idle_s;
         self.saturated_s += used.saturated_s;
         self.gap_s += used.gap_s;
+    }
+
+    /// Of a vehicle that does not fly, whatever its motors did.
+    pub(super) fn on_the_ground() -> Self {
+        Self { airborne_from: "the kind of vehicle", ..Self::default() }
     }
 }

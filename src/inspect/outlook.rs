@@ -29,6 +29,10 @@ pub(super) struct Evidence<'a> {
     pub missing_curve: Option<&'static str>,
     /// what kind of vehicle it is of
     pub kind: Option<VehicleKind>,
+    /// whether it was ever armed, where it tells
+    pub armed: Option<bool>,
+    /// the log's messages carry times
+    pub timed: bool,
     /// how to make the vehicle log more, where it wrote the log
     pub logging: Option<&'static str>,
 }
@@ -73,10 +77,22 @@ impl Evidence<'_> {
         if let Some(kind) = self.kind.filter(|kind| *kind != VehicleKind::Multirotor) {
             return Some(format!("it is of a {}, and a multirotor is needed", kind.name()));
         }
+        if !self.timed {
+            return Some("its messages carry no time of the vehicle's".into());
+        }
+        if self.streams.is_empty() {
+            return Some("it holds no stream that is known here".into());
+        }
+        let flown = self.assessment.flight.airborne_s >= LEAST_USABLE_S;
+        match self.armed {
+            Some(false) => return Some("the vehicle was never armed".into()),
+            Some(true) if !flown => return Some("the vehicle was armed and never in the air".into()),
+            _ => {}
+        }
         if self.actuator_hz().is_none() {
             return Some("no actuator outputs".into());
         }
-        if self.assessment.flight.airborne_s < LEAST_USABLE_S {
+        if !flown {
             return Some("no flight".into());
         }
         if let Some(refusal) = &self.assessment.refusal {

@@ -4,7 +4,7 @@ use std::sync::mpsc::sync_channel;
 
 use super::assess::{Assessment, Assessor};
 use super::clock::ClockTally;
-use super::inspection::{Inspection, Reading, Text, TextSummary, VehicleSummary};
+use super::inspection::{FlightSummary, Inspection, Reading, Text, TextSummary, Timeline, VehicleSummary};
 use super::outlook::{Evidence, outlook};
 use super::parameters::Parameters;
 use super::reading::reading_of;
@@ -180,6 +180,7 @@ impl Pass {
             streams: self.tally.streams.summary(),
             numbers_held_max: self.numbers_held_max,
             kind: self.report.kind(),
+            timed: timed(&self.report),
             logging: logging(&self.report, self.tally.autopilot),
         };
         found.inspection(self.tally, self.assessment, vehicle)
@@ -231,6 +232,7 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         streams,
         numbers_held_max: recording.streams.values().map(|s| s.values.len() + s.len()).sum(),
         kind: report.kind(),
+        timed: timed(report),
         logging: logging(report, recording.autopilot),
     };
     found.inspection(tally, assessor.finish(), vehicle)
@@ -246,8 +248,17 @@ struct Found {
     numbers_held_max: usize,
     /// what kind of vehicle
     kind: Option<VehicleKind>,
+    /// messages carry times
+    timed: bool,
     /// of a log that the vehicle wrote: how to make it log more
     logging: Option<&'static str>,
+}
+
+/// A log that the vehicle wrote may carry no time at all: ArduPilot's of 2013.
+fn timed(report: &ReadReport) -> bool {
+    report
+        .onboard()
+        .is_none_or(|log| log.topics.iter().any(|topic| topic.span_s.is_some()) || log.topics.is_empty())
 }
 
 /// How to make the vehicle log what identification needs; `None` of a log that it did not write.
@@ -256,7 +267,19 @@ fn logging(report: &ReadReport, autopilot: Autopilot) -> Option<&'static str> {
 }
 
 impl Found {
-    fn inspection(self, tally: Tally, assessment: Assessment, vehicle: Option<&Vehicle>) -> Inspection {
+    fn inspection(
+        mut self,
+        tally: Tally,
+        mut assessment: Assessment,
+        vehicle: Option<&Vehicle>,
+    ) -> Inspection {
+        self.kind =
+            self.kind.map(|kind| kind.by_parameters(|name| tally.parameters.values().get(name).copied()));
+        self.vehicle.kind = self.kind.map(VehicleKind::name);
+        if self.kind.is_some_and(|kind| !kind.flies()) {
+            assessment.flight = FlightSummary::on_the_ground();
+        }
+        let armed = tally.timeline.armed_ever();
         // a plane's modes have other names than a multirotor's of the same number
         let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);
         let is_known = self.vehicle.kind.is_none_or(|kind| rotors.contains(&kind));
@@ -268,6 +291,8 @@ impl Found {
             vehicle,
             missing_curve,
             kind: self.kind,
+            armed,
+            timed: self.timed,
             logging: self.logging,
         };
         let identifiability = outlook(&evidence);
@@ -280,7 +305,7 @@ impl Found {
             reading: self.reading,
             losses: self.losses,
             streams: self.streams.iter().map(summary_of).collect(),
-            timeline: tally.timeline.summary(modes),
+            timeline: if self.timed { tally.timeline.summary(modes) } else { Timeline::default() },
             flight: assessment.flight,
             excitation: assessment.excitation,
             stream_offsets: assessment.offsets,

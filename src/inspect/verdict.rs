@@ -21,7 +21,8 @@ pub(super) fn verdict(
     outlook: &[Outlook],
     vehicle: &VehicleSummary,
 ) -> (String, Vec<String>) {
-    let mut advice = missing(evidence);
+    let known = evidence.timed && !evidence.streams.is_empty();
+    let mut advice = if known { missing(evidence) } else { Vec::new() };
     advice.extend(flying(evidence));
     advice.extend(remarks(evidence, vehicle));
     (sentence(evidence, outlook), advice)
@@ -39,7 +40,11 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
         if evidence.kind.is_some_and(|kind| kind != VehicleKind::Multirotor) {
             return format!("Nothing can be identified from this log: {nothing}.");
         }
+        let flown = evidence.armed.is_none() || evidence.assessment.flight.airborne_s > 0.0;
         let next = match evidence.actuator_hz() {
+            _ if !evidence.timed => "ArduPilot writes them since 2014.".to_owned(),
+            _ if evidence.streams.is_empty() => "What it holds is listed below.".to_owned(),
+            _ if !flown => "Fly a trajectory of `mavid plan` with it recording.".to_owned(),
             None => {
                 let how = how(evidence, "request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS");
                 format!("Next time {how}.")

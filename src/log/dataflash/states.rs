@@ -2,6 +2,10 @@
 
 use crate::recording::Quantity;
 
+/// MAV_LANDED_STATE.
+pub(super) const ON_GROUND: f64 = 1.0;
+/// See [`ON_GROUND`].
+pub(super) const IN_AIR: f64 = 2.0;
 /// A state is given again after this long, s.
 const AGAIN_S: f64 = 1.0;
 
@@ -10,8 +14,8 @@ const EVENTS: &[(f64, Meaning)] = &[
     (10.0, Meaning::State(Quantity::Armed, 1.0)),
     (11.0, Meaning::State(Quantity::Armed, 0.0)),
     // landing complete, and airborne
-    (18.0, Meaning::State(Quantity::LandedState, 1.0)),
-    (28.0, Meaning::State(Quantity::LandedState, 2.0)),
+    (18.0, Meaning::State(Quantity::LandedState, ON_GROUND)),
+    (28.0, Meaning::State(Quantity::LandedState, IN_AIR)),
     // the estimate of height and of yaw jumped
     (60.0, Meaning::Jump),
     (62.0, Meaning::Jump),

@@ -10,7 +10,7 @@ use super::units::Unit::{
 use super::values::{Convert, as_is, body, channels, course, euler, quaternion, world};
 use crate::recording::Quantity::{
     self, AccelerationSetpoint, ActuatorCommand, AngularRate, AngularRateSetpoint, Armed, Attitude,
-    AttitudeSetpoint, BarometricHeight, BatteryCurrent, BatteryVoltage, GpsVelocity, Position,
+    AttitudeSetpoint, BarometricHeight, BatteryCurrent, BatteryVoltage, GpsVelocity, LandedState, Position,
     PositionSetpoint, RotorSpeed, SpecificForce, ThrustSetpoint, TorqueSetpoint, Velocity, VelocitySetpoint,
 };
 
@@ -137,7 +137,8 @@ const THRUST: &[Column] = &[c(&["AOut"], Plain)];
 const VOLTAGE: &[Column] = &[c(&["Volt"], Volts)];
 const CURRENT: &[Column] = &[c(&["Curr"], Amperes)];
 const RPM: &[Column] = &[c(&["RPM"], RevolutionsPerMinute)];
-const ARM_STATE: &[Column] = &[c(&["ArmState"], Plain)];
+const ARM_STATE: &[Column] = &[c(&["ArmState", "Armed"], Plain)];
+const FLYING: &[Column] = &[c(&["isFlying"], Plain)];
 
 const OUTPUTS: &[Column] = &[
     c(&["C1", "Ch1", "Chan1", "Mot1"], Microseconds),
@@ -258,5 +259,8 @@ pub(super) const TOPICS: &[&[Topic]] = &[
         Topic::new("CUR2", BatteryVoltage, VOLTAGE, as_is).number(1),
         Topic::new("CUR2", BatteryCurrent, CURRENT, as_is).number(1),
         Topic::new("ARM", Armed, ARM_STATE, as_is),
+        // planes
+        Topic::new("STAT", Armed, ARM_STATE, as_is),
+        Topic::new("STAT", LandedState, FLYING, as_is),
     ],
 ];

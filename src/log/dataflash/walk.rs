@@ -10,7 +10,7 @@ use super::message::Message;
 use super::outlet::Outlet;
 use super::routes::{Route, Routes};
 use super::special::Special;
-use super::states::{Meaning, States, meaning};
+use super::states::{IN_AIR, Meaning, ON_GROUND, States, meaning};
 use super::tally::Tally;
 use super::topics::{Demand, Part};
 use crate::autopilot::{ARDUPILOT, Autopilot};
@@ -26,6 +26,8 @@ const SIMULATOR: &str = "SIM_";
 /// Parameters of Copter 3.4 and later.
 const RATES_IN_DEGREES: &str = "ATC_RAT_";
 const STATES: &str = "EV";
+/// Tells of arming when it changes; others tell it again and again.
+const CHANGES: &str = "ARM";
 const BATCHES: &str = "ISBD";
 
 /// Gives a log's messages one after the other.
@@ -54,7 +56,8 @@ pub(super) fn walk(messages: &mut impl Messages, sink: &mut Sink<'_>) -> Result<
         join: Join::default(),
         batches: Batches::default(),
         states: States::default(),
-        began_s: 0.0,
+        began_s: None,
+        armed_s: None,
         jumps: Vec::new(),
         rates_in_degrees: false,
         walked: Walked::default(),
@@ -74,8 +77,10 @@ struct Walk<'a, 'b> {
     join: Join,
     batches: Batches,
     states: States,
-    /// time at which the clock began, s
-    began_s: f64,
+    /// time of the first sample since the clock began, s: parameters may be of long before
+    began_s: Option<f64>,
+    /// time of the first arming since then, s
+    armed_s: Option<f64>,
     /// by how much the estimate jumped last, by message
     jumps: Vec<(u8, f64, f64)>,
     rates_in_degrees: bool,
@@ -108,7 +113,7 @@ impl Walk<'_, '_> {
             Some((_, Placed::At(time_s))) => Some(time_s),
             Some((stamp_s, Placed::Anew(time_s))) => {
                 self.finish_samples();
-                (self.states, self.began_s) = (States::default(), time_s);
+                (self.states, self.began_s, self.armed_s) = (States::default(), None, None);
                 self.jumps.clear();
                 self.out.give(Event::ClockReset { time_s, stamp_s });
                 Some(time_s)
@@ -138,12 +143,20 @@ impl Walk<'_, '_> {
     ) {
         let topic = route.topic;
         let mut values = route.values(message);
-        if topic.quantity == Quantity::Armed {
+        // states are kept, and told again; yes and no are those of armed, or of in the air
+        let states = match topic.quantity {
+            Quantity::Armed => Some([0.0, 1.0]),
+            Quantity::LandedState => Some([ON_GROUND, IN_AIR]),
+            _ => None,
+        };
+        if let Some([no, yes]) = states {
             if let Some(value) = values.get().first() {
-                self.state(Quantity::Armed, f64::from(u8::from(*value > 0.5)), time_s);
+                let is_change = topic.message == CHANGES;
+                self.state(topic.quantity, if *value > 0.5 { yes } else { no }, time_s, is_change);
             }
             return;
         }
+        self.began_s.get_or_insert(time_s);
         // when a sample was taken is not to be guessed
         let Some(own_s) = own_s else {
             self.walked.tally.without_time += 1;
@@ -189,7 +202,7 @@ impl Walk<'_, '_> {
                 self.out.give(Event::Text { time_s, severity: INFORMATION, text: &text });
             }
             Special::Event => match meaning(number(0)) {
-                Some(Meaning::State(quantity, value)) => self.state(quantity, value, time_s),
+                Some(Meaning::State(quantity, value)) => self.state(quantity, value, time_s, true),
                 Some(Meaning::Jump) => self.out.give(Event::EstimatorReset { time_s }),
                 None => {}
             },
@@ -197,7 +210,7 @@ impl Walk<'_, '_> {
                 let by_name = || ARDUPILOT.modes.iter().find(|mode| mode.name.eq_ignore_ascii_case(&text(0)));
                 let by_number = Some(number(0)).filter(|number| number.is_finite());
                 let mode = by_number.or_else(|| by_name().map(|mode| f64::from(mode.number)));
-                mode.into_iter().for_each(|mode| self.state(Quantity::Mode, mode, time_s));
+                mode.into_iter().for_each(|mode| self.state(Quantity::Mode, mode, time_s, false));
             }
             Special::Error if number(1) != 0.0 => {
                 let text = format!("error of subsystem {:.0}, code {:.0}", number(0), number(1));
@@ -225,10 +238,20 @@ impl Walk<'_, '_> {
         self.out.give(Event::Parameter { name, value });
     }
 
-    fn state(&mut self, quantity: Quantity, value: f64, time_s: f64) {
-        if self.states.set(quantity, value) && quantity == Quantity::Armed && value == 0.0 {
-            // what is disarmed was armed: a log may begin with it
-            self.out.sample(quantity, STATES, 0, self.began_s, &[1.0]);
+    /// Before the first `change` to a state the contrary held: what is disarmed was armed, and what took off stood on the
+    /// ground from its arming on.
+    fn state(&mut self, quantity: Quantity, value: f64, time_s: f64, change: bool) {
+        let is_first = self.states.set(quantity, value);
+        let before = match (quantity, value) {
+            (Quantity::Armed, 0.0) if change => Some((1.0, self.began_s)),
+            (Quantity::LandedState, IN_AIR) if change => Some((ON_GROUND, self.armed_s.or(self.began_s))),
+            _ => None,
+        };
+        if let Some((contrary, since_s)) = before.filter(|_| is_first) {
+            self.out.sample(quantity, STATES, 0, since_s.unwrap_or(time_s).min(time_s), &[contrary]);
+        }
+        if quantity == Quantity::Armed && value > 0.5 {
+            self.armed_s.get_or_insert(time_s);
         }
         self.out.sample(quantity, STATES, 0, time_s, &[value]);
     }
