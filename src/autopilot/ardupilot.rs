@@ -89,6 +89,7 @@ pub static ARDUPILOT: Stack = Stack {
     geometry: Geometry::Class { class: "FRAME_CLASS", kind: "FRAME_TYPE", former: "FRAME" },
     // fast attitude; RC output; fast and raw IMU. Motors are at 10 Hz whatever is asked for
     logging: "add bits 0 (fast attitude), 10 (RC output) and 18 (fast IMU) to LOG_BITMASK",
+    log_settings: super::logging::ARDUPILOT,
     pilot: PilotSwitches {
         mode_channel: "FLTMODE_CH",
         positions: numbered("FLTMODE", ""),

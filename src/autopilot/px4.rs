@@ -141,6 +141,7 @@ pub static PX4: Stack = Stack {
     },
     // default and system identification
     logging: "set SDLOG_PROFILE = 9 and restart the autopilot",
+    log_settings: super::logging::PX4,
     pilot: PilotSwitches {
         mode_channel: "RC_MAP_FLTMODE",
         positions: numbered("COM_FLTMODE", ""),

@@ -3,7 +3,7 @@
 use super::remote::MOST_BYTES;
 
 /// Why logs are not listed or fetched.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FetchError {
     /// nothing came any more
     #[error("expected {expected}, nothing came in {tries} tries over {seconds} s")]
@@ -23,6 +23,16 @@ pub enum FetchError {
         /// its reason
         why: String,
     },
+    /// a parameter stays what it was
+    #[error("expected {name} = {wanted} after setting it, the vehicle says {came}")]
+    NotSet {
+        /// which
+        name: String,
+        /// what was asked for
+        wanted: f64,
+        /// what it is
+        came: String,
+    },
     /// the file is not as long as the vehicle said
     #[error("expected a log of {stated} bytes, as the vehicle states it; it ends after {came}")]
     Short {
@@ -36,16 +46,6 @@ pub enum FetchError {
     TooLong {
         /// bytes that were stated
         stated: u64,
-    },
-    /// other bytes than the vehicle has
-    #[error(
-        "expected bytes whose checksum is {stated:#010x}, as the vehicle calculates it; those that came have {came:#010x}"
-    )]
-    Sum {
-        /// by the vehicle
-        stated: u32,
-        /// of what came
-        came: u32,
     },
     /// a vehicle that no message can name
     #[error("expected a vehicle with a system id of 1 to 255, got {0}")]

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::download::{Fetched, Sum};
 use super::name::local_name;
 use super::remote::{Place, RemoteLog};
 use crate::files::write_whole;
@@ -37,6 +38,17 @@ pub enum PartError {
         /// which file
         path: String,
     },
+    /// other bytes came than the vehicle has
+    #[error(
+        "expected bytes whose checksum is {stated:#010x}, as the vehicle calculates it; those that came have {came:#010x}: \
+         they are thrown away, and the next download begins anew"
+    )]
+    Sum {
+        /// by the vehicle
+        stated: u32,
+        /// of what came
+        came: u32,
+    },
     /// all names are taken
     #[error("expected a free name for {path}, {NUMBERS} of that name exist")]
     Taken {
@@ -55,6 +67,19 @@ struct Identity {
     log: String,
     bytes: u64,
     time_s: Option<u32>,
+}
+
+/// How a log was checked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Checked {
+    /// by its length and the vehicle's checksum
+    Sum(u32),
+    /// by its length: the vehicle calculates no checksum
+    Length,
+    /// by its length: the vehicle offers a checksum but did not answer
+    NoAnswer,
+    /// by its length: the vehicle writes on, and has so many bytes now
+    Grown(u64),
 }
 
 /// How a download begins.
@@ -180,7 +205,7 @@ impl Part {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn sum(&mut self) -> Result<u32, PartError> {
+    fn sum(&mut self) -> Result<u32, PartError> {
         self.file.seek(SeekFrom::Start(0)).map_err(failed(&self.path))?;
         let (mut sum, mut buffer) = (FileSum::default(), vec![0; 1 << 16]);
         let mut left = self.length;
@@ -196,11 +221,26 @@ impl Part {
         Ok(sum.value())
     }
 
-    /// Takes what was fetched away: it is not what the vehicle has.
-    pub fn discard(self) {
-        // one that cannot be removed is compared when it is gone on with
-        let _ = fs::remove_file(&self.path);
-        let _ = fs::remove_file(&self.beside);
+    /// Holds what came to what the vehicle says of it. What is not what the vehicle has is removed.
+    ///
+    /// # Errors
+    /// It is not, or cannot be read.
+    pub fn check(&mut self, fetched: &Fetched) -> Result<Checked, PartError> {
+        match (fetched.grown_to, fetched.sum) {
+            (Some(bytes), _) => Ok(Checked::Grown(bytes)),
+            (None, Sum::NotOffered) => Ok(Checked::Length),
+            (None, Sum::Unanswered) => Ok(Checked::NoAnswer),
+            (None, Sum::Is(stated)) => {
+                let came = self.sum()?;
+                if came == stated {
+                    return Ok(Checked::Sum(stated));
+                }
+                // one that cannot be removed is compared when it is gone on with
+                let _ = fs::remove_file(&self.path);
+                let _ = fs::remove_file(&self.beside);
+                Err(PartError::Sum { stated, came })
+            }
+        }
     }
 
     /// Whole: it gets its name, or the next one that is free. Returns where it is.

@@ -2,10 +2,11 @@
 
 use mavlink::dialects::ardupilotmega::{
     FILE_TRANSFER_PROTOCOL_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA,
-    MavMessage,
+    MavMessage, MavParamType, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
 };
 
 use super::FetchError;
+use crate::autopilot::Autopilot;
 use crate::wire::file_transfer::Transfer;
 use crate::wire::{Frame, Vehicle};
 
@@ -50,7 +51,11 @@ impl Peer {
         Ok(Self { vehicle, system })
     }
 
-    fn is_from(&self, frame: &Frame<'_>) -> bool {
+    pub(super) fn is_px4(&self) -> bool {
+        self.vehicle.autopilot == Autopilot::Px4
+    }
+
+    pub(super) fn is_from(&self, frame: &Frame<'_>) -> bool {
         let header = frame.header();
         header.system == self.vehicle.system && header.component == self.vehicle.component
     }
@@ -91,6 +96,27 @@ impl Peer {
         MavMessage::LOG_REQUEST_END(LOG_REQUEST_END_DATA {
             target_system: self.system,
             target_component: self.vehicle.component.0,
+        })
+    }
+
+    /// PARAM_REQUEST_READ by name.
+    pub(super) fn request_parameter(&self, name: &str) -> MavMessage {
+        MavMessage::PARAM_REQUEST_READ(PARAM_REQUEST_READ_DATA {
+            param_index: -1,
+            target_system: self.system,
+            target_component: self.vehicle.component.0,
+            param_id: name.into(),
+        })
+    }
+
+    /// PARAM_SET with the value as the autopilot encodes it.
+    pub(super) fn set_parameter(&self, name: &str, value: f32, of_type: MavParamType) -> MavMessage {
+        MavMessage::PARAM_SET(PARAM_SET_DATA {
+            param_value: value,
+            target_system: self.system,
+            target_component: self.vehicle.component.0,
+            param_id: name.into(),
+            param_type: of_type,
         })
     }
 

@@ -71,7 +71,7 @@ impl Dialogue for Survey {
         let target_system =
             u8::try_from(self.vehicle.system.0).map_err(|_| FetchError::NoTarget(self.vehicle.system.0))?;
         // autopilots of before 2018 know the older command alone
-        let is_old = self.asked.tries() % 3 == 0;
+        let is_old = self.asked.tries().is_multiple_of(3);
         let (command, param1) = match is_old {
             true => (MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, 1.0),
             false => (MavCmd::MAV_CMD_REQUEST_MESSAGE, 148.0),

@@ -36,6 +36,15 @@ struct Burst {
 /// An answer: on which link, to whom, and the payload.
 pub(in crate::sitl) type Answer = (usize, (u8, u8), [u8; TRANSFER_BYTES]);
 
+/// What was answered last.
+#[derive(Debug)]
+struct Answered {
+    client: Client,
+    /// number, operation and offset of the request
+    asked: (u16, u8, u32),
+    answer: [u8; TRANSFER_BYTES],
+}
+
 /// Serves files.
 #[derive(Debug)]
 pub(in crate::sitl) struct FileServer {
@@ -44,7 +53,7 @@ pub(in crate::sitl) struct FileServer {
     session: Option<Session>,
     burst: Option<Burst>,
     /// the last request but bursts, and what it was answered with: one that comes twice is not obeyed twice
-    last: Option<(Client, (u16, u8, u32), [u8; TRANSFER_BYTES])>,
+    last: Option<Answered>,
 }
 
 /// What an answer holds beyond the request's own numbers.
@@ -79,10 +88,8 @@ impl FileServer {
     ) -> Option<Answer> {
         let client = Client { link, sender };
         let asked = (request.sequence, request.operation, request.offset);
-        if let Some((known, before, answer)) = &self.last
-            && (*known, *before) == (client, asked)
-        {
-            return Some((link, sender, *answer));
+        if let Some(last) = self.last.as_ref().filter(|last| (last.client, last.asked) == (client, asked)) {
+            return Some((link, sender, last.answer));
         }
         let result = match request.operation {
             operation::TERMINATE | operation::RESET => {
@@ -102,7 +109,7 @@ impl FileServer {
             _ => Err(refusal::UNKNOWN),
         };
         let answer = answered(request, result);
-        self.last = Some((client, asked, answer));
+        self.last = Some(Answered { client, asked, answer });
         Some((link, sender, answer))
     }
 
