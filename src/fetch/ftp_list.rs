@@ -5,9 +5,8 @@ use std::time::Duration;
 use mavlink::dialects::ardupilotmega::MavMessage;
 
 use super::ftp::{Answer, Ftp, Question};
-use super::list::Wanted;
 use super::peer::Peer;
-use super::remote::{Place, RemoteLog};
+use super::remote::{Place, RemoteLog, Wanted};
 use super::{Dialogue, FetchError};
 use crate::autopilot::Autopilot;
 use crate::text;

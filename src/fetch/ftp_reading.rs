@@ -5,7 +5,7 @@ use std::time::Duration;
 use mavlink::dialects::ardupilotmega::MavMessage;
 
 use super::asked::Asked;
-use super::download::{Fetched, Sum};
+use super::fetched::{Fetched, Sum};
 use super::ftp::{Answer, Ftp, Question};
 use super::peer::Peer;
 use super::remote::MOST_BYTES;

@@ -7,18 +7,9 @@ use mavlink::dialects::ardupilotmega::MavMessage;
 use super::ftp_list::FtpList;
 use super::log_list::LogList;
 use super::peer::Peer;
-use super::remote::{Protocol, RemoteLog};
+use super::remote::{Protocol, RemoteLog, Wanted};
 use super::{Dialogue, FetchError};
 use crate::wire::{Frame, Vehicle};
-
-/// Which logs are to be listed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Wanted {
-    /// all of them
-    All,
-    /// the last one, and others only where they come with it
-    Last,
-}
 
 #[derive(Debug)]
 enum Way {

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use mavlink::dialects::ardupilotmega::MavMessage;
 
-use super::download::{Fetched, Sum};
+use super::fetched::{Fetched, Sum};
 use super::pace::Pace;
 use super::peer::{LOG_DATA_BYTES, Peer};
 use super::window::Window;

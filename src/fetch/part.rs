@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::download::{Fetched, Sum};
+use super::fetched::{Fetched, Sum};
 use super::name::local_name;
 use super::remote::{Place, RemoteLog};
 use crate::files::write_whole;

@@ -1,8 +1,9 @@
 //! The vehicle that is spoken to.
+#![expect(deprecated, reason = "older autopilots know the older command alone")]
 
 use mavlink::dialects::ardupilotmega::{
-    FILE_TRANSFER_PROTOCOL_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA,
-    MavMessage, MavParamType, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
+    COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA,
+    LOG_REQUEST_LIST_DATA, MavCmd, MavMessage, MavParamType, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
 };
 
 use super::FetchError;
@@ -14,6 +15,8 @@ use crate::wire::{Frame, Vehicle};
 const FILE_TRANSFER: u32 = 110;
 const LOG_ENTRY: u32 = 118;
 const LOG_DATA: u32 = 120;
+/// The message with what a vehicle offers, as a parameter of a command.
+const AUTOPILOT_VERSION: f32 = 148.0;
 /// Bytes of one LOG_DATA.
 pub(super) const LOG_DATA_BYTES: usize = 90;
 
@@ -96,6 +99,26 @@ impl Peer {
         MavMessage::LOG_REQUEST_END(LOG_REQUEST_END_DATA {
             target_system: self.system,
             target_component: self.vehicle.component.0,
+        })
+    }
+
+    /// A request for AUTOPILOT_VERSION.
+    pub(super) fn request_version(&self) -> MavMessage {
+        self.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, AUTOPILOT_VERSION)
+    }
+
+    /// The older one.
+    pub(super) fn request_capabilities(&self) -> MavMessage {
+        self.command(MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, 1.0)
+    }
+
+    fn command(&self, command: MavCmd, param1: f32) -> MavMessage {
+        MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+            param1,
+            command,
+            target_system: self.system,
+            target_component: self.vehicle.component.0,
+            ..Default::default()
         })
     }
 

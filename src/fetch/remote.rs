@@ -46,3 +46,12 @@ pub struct RemoteLog {
     /// seconds since 1970 at which it began or ended, where the vehicle says so
     pub time_s: Option<u32>,
 }
+
+/// Which logs are to be listed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wanted {
+    /// all of them
+    All,
+    /// the last one, and others only where they come with it
+    Last,
+}

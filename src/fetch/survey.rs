@@ -1,12 +1,12 @@
 //! What a vehicle offers, and by which number it is known.
-#![expect(deprecated, reason = "older autopilots know the older command alone")]
 
 use std::time::Duration;
 
-use mavlink::dialects::ardupilotmega::{COMMAND_LONG_DATA, MavCmd, MavMessage, MavProtocolCapability};
+use mavlink::dialects::ardupilotmega::{MavMessage, MavProtocolCapability};
 
 use super::asked::Asked;
 use super::pace::Pace;
+use super::peer::Peer;
 use super::remote::Protocol;
 use super::{Dialogue, FetchError};
 use crate::wire::{Frame, Vehicle};
@@ -68,21 +68,10 @@ impl Dialogue for Survey {
             self.offer = Some(Offer::default());
             return Ok(None);
         }
-        let target_system =
-            u8::try_from(self.vehicle.system.0).map_err(|_| FetchError::NoTarget(self.vehicle.system.0))?;
         // autopilots of before 2018 know the older command alone
         let is_old = self.asked.tries().is_multiple_of(3);
-        let (command, param1) = match is_old {
-            true => (MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, 1.0),
-            false => (MavCmd::MAV_CMD_REQUEST_MESSAGE, 148.0),
-        };
-        Ok(Some(MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
-            param1,
-            command,
-            target_system,
-            target_component: self.vehicle.component.0,
-            ..Default::default()
-        })))
+        let peer = Peer::of(self.vehicle)?;
+        Ok(Some(if is_old { peer.request_capabilities() } else { peer.request_version() }))
     }
 
     fn take(&mut self, now: Duration, frame: &Frame<'_>) {
