@@ -43,7 +43,7 @@ pub struct Session {
 impl Session {
     /// Opens the link and waits for the vehicle; one that is armed is refused.
     pub async fn open(args: &VehicleLinkArgs) -> Result<Self, CommandError> {
-        let address = network::address(&args.connect)?;
+        let address = network::address("--connect", &args.connect)?;
         let signing = args.signing_key_file.as_deref().map(Signing::open).transpose();
         let signing = signing.map_err(|error| CommandError::Input(error.to_string()))?;
         output::signing_warnings(signing.as_ref());
