@@ -21,7 +21,7 @@ pub const LEAST_ACTUATOR_HZ: f64 = 38.0;
 pub const LEAST_BODY_RATE_HZ: f64 = 38.0;
 
 /// Rate below which nothing is identified, Hz: errors are many standard errors there, see above.
-pub(super) const REFUSED_HZ: f64 = 20.0;
+pub const REFUSED_HZ: f64 = 20.0;
 
 /// Intervals longer than this many median intervals are gaps, or belong to a time before the rate was requested.
 /// Chosen; not measured.
