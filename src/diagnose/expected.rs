@@ -6,7 +6,7 @@ use super::candidates::Candidate;
 use super::evidence::{Evidence, LEAST_ROWS};
 use super::explain::ExplainError;
 use super::fit::Fitted;
-use super::latency::fit_latency;
+use super::latency::with_any_latency;
 use super::recorded::Recorded;
 use super::score::columns_of;
 use super::signature::{Carried, EffectTerm, Signature};
@@ -69,12 +69,12 @@ pub fn expected_errors(flights: &[Signals], vehicle: &Vehicle) -> Result<Vec<Exp
         let (seconds, needed_s) = (rows as f64 * 0.05, LEAST_ROWS as f64 * 0.05);
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
-    let (fitted, latency) = fit_latency(&traces, Base::rigid(vehicle))?;
+    let (fitted, latency_std_s) = with_any_latency(&traces, Base::rigid(vehicle))?;
     let flights = Flights { traces: &traces, fitted: &fitted, vehicle };
     let of = |wanted: &Wanted| ExpectedError {
         quantity: wanted.name,
         of: if wanted.signature.role.latency.is_some() {
-            flights.known(wanted, wanted.signature.effect.parameters().first(), Some(latency.std_s))
+            flights.known(wanted, wanted.signature.effect.parameters().first(), Some(latency_std_s))
         } else {
             flights.expected(wanted)
         },
