@@ -64,8 +64,9 @@ pub struct NuisanceColumn {
     pub considered: Option<Channels>,
 }
 
-/// Channels of the force in each available measurement (N), and of the torque (N m).
+/// Channels of the force in each available measurement (N), and of the torque (N m) where torques are compared.
 pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
+    let torque = if trace.torques { torque } else { nothing(trace) };
     let second = if trace.reads_force_twice() { force.clone() } else { nothing(trace) };
     let ([fx, fy, fz], [tx, ty, tz], [kx, ky, kz]) = (force, torque, second);
     [fx, fy, fz, tx, ty, tz, kx, ky, kz]

@@ -294,7 +294,7 @@ fn residual(
                 *value = base.vehicle.body.mass_kg * reading[axis][row] - *value;
             }
         }
-        for (row, value) in out[3 + axis].iter_mut().enumerate() {
+        for (row, value) in out[3 + axis].iter_mut().enumerate().filter(|_| trace.torques) {
             let turning: f64 = (0..6).map(|k| momentum[k][axis][row] * six[k]).sum();
             *value = turning - *value;
         }
@@ -370,6 +370,7 @@ pub(super) mod tests {
                 offsets: Vec::new(),
                 airborne_s: Vec::new(),
                 usable: Usable::default(),
+                torques: true,
                 notes: Vec::new(),
             },
         }

@@ -30,6 +30,8 @@ pub struct Trace {
     pub states: Vec<State>,
     /// parts of the state that are measured
     pub known: Known,
+    /// commands and body rates are fast enough to compare torques; otherwise torque channels are zero
+    pub torques: bool,
     /// V
     pub voltage_v: Option<Vec<f64>>,
     /// thrusts are computed from measured rotor speeds: effects between command and speed are not visible
@@ -153,9 +155,10 @@ impl Trace {
             runs,
             states,
             known,
+            torques: signals.quality.torques,
             voltage_v: signals.battery_voltage_v.clone(),
             measured_speeds: signals.quality.thrust_source == ThrustSource::MeasuredSpeed,
-            gyro_noise_rad_s: gyro_noise_rad_s(rates),
+            gyro_noise_rad_s: gyro_noise_rad_s(rates, signals.samples_apart(Quantity::AngularRate)),
             command_period_s: command_period_s(signals),
             inertial_late_s,
             inertial_unsure_s,
@@ -357,9 +360,10 @@ impl Trace {
     }
 }
 
-fn gyro_noise_rad_s(rates: &[Vector3<f64>]) -> f64 {
+fn gyro_noise_rad_s(rates: &[Vector3<f64>], samples_apart: usize) -> f64 {
+    let sampled = || rates.iter().step_by(samples_apart);
     (0..3)
-        .map(|axis| white_level_of(&rates.iter().map(|rate| rate[axis]).collect::<Vec<_>>()))
+        .map(|axis| white_level_of(&sampled().map(|rate| rate[axis]).collect::<Vec<_>>()))
         .fold(0.0, f64::max)
 }
 

@@ -154,8 +154,12 @@ fn unexplained(estimated: &Estimated, index: usize) -> Option<String> {
 pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Finding {
     let (value, variance) = (estimated.theta[index], estimated.covariance[(index, index)]);
     if !value.is_finite() || !variance.is_finite() {
-        let missing = if index == 0 { "vertical motion" } else { "body rates" };
-        return Finding::NotDetermined { reason: format!("the recording holds no {missing}") };
+        let reason = if index == 0 {
+            "the recording holds no vertical motion"
+        } else {
+            "no torque can be compared: body rates or commands are not recorded, or at too low a rate"
+        };
+        return Finding::NotDetermined { reason: reason.to_owned() };
     }
     let std = variance.max(0.0).sqrt();
     let size = scale_of(&nominal.theta, index).max(scale_of(&estimated.theta.map(f64::abs), index));

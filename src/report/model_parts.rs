@@ -43,3 +43,8 @@ pub(super) fn provenance(inputs: &[InputFile]) -> String {
     let version = env!("CARGO_PKG_VERSION");
     format!("\n[provenance]\nprogram = \"mavid {version}\"\ninputs = {}\n", files(inputs))
 }
+
+/// The line of a parameter that no flight determined, with the reason.
+pub(super) fn not_determined(name: &str, reason: &str) -> String {
+    format!("{name} = {{ status = \"not_determined\", reason = {} }}", toml_string(reason))
+}

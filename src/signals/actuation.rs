@@ -3,7 +3,7 @@
 use super::actuators::{thrusts_from_commands, thrusts_from_speeds};
 use super::rotor_thrusts::{RotorThrusts, ThrustSource};
 use super::select::{best, too_short};
-use super::sufficient::{REFUSED_HZ, flowing_rate_hz};
+use super::sufficient::{LEAST_TORQUE_HZ, flowing_rate_hz};
 use super::{Grid, SignalsError, linear_onto};
 use crate::note::{About, Note};
 use crate::recording::{Quantity, Recording, Stream};
@@ -48,8 +48,10 @@ fn rotor_thrusts(
     match preference {
         ThrustPreference::Measured => match speeds() {
             // a link that hardly carries them may carry the commands
-            Some(speeds) if flowing_rate_hz(&speeds.stream) < REFUSED_HZ => {
-                let faster = commands().ok().filter(|of| flowing_rate_hz(&of.stream) >= REFUSED_HZ);
+            Some(speeds) if flowing_rate_hz(&speeds.stream) < LEAST_TORQUE_HZ => {
+                let speeds_hz = flowing_rate_hz(&speeds.stream);
+                let faster = |of: &RotorThrusts| speeds_hz < SAMPLED_ALIKE * flowing_rate_hz(&of.stream);
+                let faster = commands().ok().filter(faster);
                 Ok(faster.unwrap_or(speeds))
             }
             Some(speeds) => Ok(speeds),

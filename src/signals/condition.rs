@@ -79,7 +79,7 @@ pub fn condition(
     let grid = common_grid(&chosen, actuation.stream(), step_s)?;
     let kernel = WeakKernel::new(settings.weak_half_width_s, step_s);
     let airborne_s = airborne_spans(recording, &actuation, vehicle);
-    let slow = sufficient::check(&needed(&chosen, &actuation), &airborne_s, recording.autopilot)?;
+    let sufficiency = sufficient::check(&needed(&chosen, &actuation), &airborne_s, recording.autopilot)?;
     if grid.count >= Grid::LONGEST {
         return Err(SignalsError::TooLong { span_s: step_s * grid.count as f64 });
     }
@@ -140,7 +140,8 @@ pub fn condition(
             offsets: motion.offsets,
             airborne_s,
             usable: used,
-            notes: slow.into_iter().chain(actuation.notes(recording, vehicle)).collect(),
+            torques: sufficiency.torques,
+            notes: sufficiency.note.into_iter().chain(actuation.notes(recording, vehicle)).collect(),
         },
     };
     let doubts = plausible::check(&signals, vehicle);

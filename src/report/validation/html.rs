@@ -170,6 +170,7 @@ mod tests {
             offsets: Vec::new(),
             airborne_s: Vec::new(),
             usable: Usable::default(),
+            torques: true,
             notes: Vec::new(),
         };
         let flight = ValidatedFlight {
