@@ -20,19 +20,19 @@ pub struct VehicleArgs {
 /// What `mavid vehicle` does beside checking a file.
 #[derive(Debug, Subcommand)]
 pub enum VehicleVerb {
-    /// Write a first vehicle file from a log: rotors and thrust curve by the autopilot's parameters, thrust by the flight,
-    /// the rest by rules of thumb, marked as guesses
+    /// Write a first vehicle file from a log: rotors and thrust curve from the autopilot's parameters, thrust from the
+    /// flight, the rest from rules of thumb, marked as guesses
     Init(InitArgs),
 }
 
 /// Arguments of `mavid vehicle init`.
 #[derive(Debug, Args)]
 pub struct InitArgs {
-    /// a log of the vehicle that holds its parameters, best one with a flight
+    /// a log that contains the vehicle's parameters, preferably with a flight
     #[arg(long, value_name = "LOG")]
     pub from: PathBuf,
     /// mass with battery, kg: weigh it
-    #[arg(long, value_name = "KG")]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
     pub mass: f64,
     /// its shape
     #[command(flatten)]

@@ -136,13 +136,13 @@ pub fn refuse_overwriting(inputs: &[&PathBuf], outputs: &[&PathBuf]) -> Result<(
     for (index, output) in outputs.iter().enumerate() {
         if inputs.iter().any(|input| is_same(input, output)) {
             return Err(CommandError::Input(format!(
-                "expected results in a file of their own, {} is read",
+                "expected another file for the results: {} is an input",
                 text::path(&output)
             )));
         }
         if outputs[..index].iter().any(|other| is_same(other, output)) {
             return Err(CommandError::Input(format!(
-                "expected one file a result, {} is given for two",
+                "expected a file of its own for each result: {} is given for two",
                 text::path(&output)
             )));
         }

@@ -27,7 +27,6 @@ pub use information::WeakInformation;
 pub use live::RecursiveEstimator;
 pub use method::Method;
 pub use nominal::Nominal;
-pub(crate) use physical::{LogCholesky, log_cholesky, unpack};
 pub use physical::{is_physical, nearest_physical, second_moments};
 pub use plausible::{Contradiction, contradictions};
 pub use problem::{Channel, Problem, Solution};

@@ -8,58 +8,67 @@ use crate::stats::median_step;
 /// and its outputs.
 pub(super) const MOTORS: &str = "actuator_motors";
 
+/// Message names of the attitude, best first.
+const ATTITUDE: &[&str] = &[
+    "ATTITUDE_QUATERNION",
+    "ATTITUDE",
+    "ODOMETRY",
+    "vehicle_attitude",
+    "vehicle_odometry",
+    "ANG",
+    "ATT",
+    "XKF1",
+    "NKF1",
+    "EKF1",
+    "AHR2",
+];
+
+/// Message names of the body rates, best first.
+const ANGULAR_RATE: &[&str] = &[
+    "HIGHRES_IMU",
+    "SCALED_IMU",
+    "RAW_IMU",
+    "SCALED_IMU2",
+    "SCALED_IMU3",
+    "ATTITUDE_QUATERNION",
+    "ATTITUDE",
+    "ODOMETRY",
+    // as the sensor read it; what is filtered comes late
+    "sensor_combined",
+    "vehicle_imu",
+    "vehicle_angular_velocity",
+    "vehicle_attitude",
+    "GYR",
+    "IMU",
+    "RATE",
+    "GYR1",
+    "IMU2",
+    "IMU3",
+];
+
+/// Message names of the specific force, best first.
+const SPECIFIC_FORCE: &[&str] = &[
+    "HIGHRES_IMU",
+    "SCALED_IMU",
+    "RAW_IMU",
+    "SCALED_IMU2",
+    "SCALED_IMU3",
+    "sensor_combined",
+    "vehicle_imu",
+    "vehicle_acceleration",
+    "ACC",
+    "IMU",
+    "ACC1",
+    "IMU2",
+    "IMU3",
+];
+
 /// Message names of one quantity, best first. A source that is not listed comes last.
 fn preference(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
-        Quantity::Attitude => &[
-            "ATTITUDE_QUATERNION",
-            "ATTITUDE",
-            "ODOMETRY",
-            "vehicle_attitude",
-            "vehicle_odometry",
-            "ANG",
-            "ATT",
-            "XKF1",
-            "NKF1",
-            "EKF1",
-            "AHR2",
-        ],
-        Quantity::AngularRate => &[
-            "HIGHRES_IMU",
-            "SCALED_IMU",
-            "RAW_IMU",
-            "SCALED_IMU2",
-            "SCALED_IMU3",
-            "ATTITUDE_QUATERNION",
-            "ATTITUDE",
-            "ODOMETRY",
-            // as the sensor read it; what is filtered comes late
-            "sensor_combined",
-            "vehicle_imu",
-            "vehicle_angular_velocity",
-            "vehicle_attitude",
-            "GYR",
-            "IMU",
-            "RATE",
-            "GYR1",
-            "IMU2",
-            "IMU3",
-        ],
-        Quantity::SpecificForce => &[
-            "HIGHRES_IMU",
-            "SCALED_IMU",
-            "RAW_IMU",
-            "SCALED_IMU2",
-            "SCALED_IMU3",
-            "sensor_combined",
-            "vehicle_imu",
-            "vehicle_acceleration",
-            "ACC",
-            "IMU",
-            "ACC1",
-            "IMU2",
-            "IMU3",
-        ],
+        Quantity::Attitude => ATTITUDE,
+        Quantity::AngularRate => ANGULAR_RATE,
+        Quantity::SpecificForce => SPECIFIC_FORCE,
         Quantity::Position | Quantity::Velocity => &[
             "LOCAL_POSITION_NED",
             "ODOMETRY",
