@@ -1,6 +1,6 @@
 //! What `inspect` expects of a log is what `explain` and `identify` then find.
 
-#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
 
 mod support;
 
