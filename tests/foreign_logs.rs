@@ -6,8 +6,11 @@ mod support;
 
 use std::path::Path;
 
+use mavid::config::read_vehicle;
 use mavid::inspect::{Inspection, inspect};
 use mavid::log::OpenOptions;
+use mavid::study::{IdentifyRequest, ReadSettings, Silent, VehicleGiven, identify};
+use mavid::wire::SystemId;
 use serde::Deserialize;
 
 /// What a log is.
@@ -86,6 +89,53 @@ fn differences(fact: &Fact, found: &Inspection) -> Vec<String> {
     wrong
 }
 
+/// Quantities of a log that is good for nothing are all refused, with a reason, and with what to do where a flight would help.
+fn refusals(fact: &Fact, found: &Inspection) -> Vec<String> {
+    assert_eq!(found.quantities.len(), 9, "{}", fact.file);
+    let wrong = found.quantities.iter().filter(|quantity| {
+        let is_refused = quantity.status == "no" && quantity.reason.is_some();
+        let of_kind = fact.kind.as_deref() != Some("multirotor");
+        let is_helped = of_kind || quantity.fly.is_some() || quantity.set.is_some();
+        let is_untimed = fact.why.as_deref().is_some_and(|why| why.contains("no time"));
+        fact.why.is_some() && !(is_refused && (is_helped || is_untimed))
+    });
+    wrong.map(|quantity| format!("{}: {quantity:?}", fact.file)).collect()
+}
+
+#[test]
+fn the_same_story_with_a_vehicle_and_by_identify() {
+    let Some(shared) = support::shared() else { return };
+    let vehicle = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
+    let known = read_vehicle(&vehicle).unwrap().vehicle;
+    for fact in facts().iter().filter(|fact| fact.refused.is_none()) {
+        let log = shared.join(&fact.file);
+        let inspected = |vehicle| inspect(&log, &OpenOptions::default(), vehicle, &mut |_| ()).unwrap();
+        let (without, with) = (inspected(None), inspected(Some(&known)));
+        assert_eq!(with.vehicle, without.vehicle, "{}", fact.file);
+        assert_eq!(with.timeline, without.timeline, "{}", fact.file);
+        assert_eq!(with.flight.airborne_s, without.flight.airborne_s, "{}", fact.file);
+        assert!(with.flight.usable_s <= with.flight.airborne_s + 1e-6, "{}", fact.file);
+        let Some(why) = &fact.why else { continue };
+        assert!(with.quantities.iter().all(|quantity| quantity.status == "no"), "{}", fact.file);
+        let request = IdentifyRequest {
+            vehicle: VehicleGiven::File(vehicle.clone()),
+            logs: vec![log.clone()],
+            read: ReadSettings { system: fact.system.map(SystemId), ..ReadSettings::default() },
+            ..IdentifyRequest::default()
+        };
+        let refusal = identify(&request, &Silent).err().unwrap().to_string();
+        let told = ["it is of a ", "never armed", "no time"].into_iter().find(|words| why.contains(words));
+        let words = match told {
+            Some("it is of a ") => why.trim_start_matches("it is "),
+            Some(words) => words,
+            None => continue,
+        };
+        // a quadplane says that it is a plane
+        let words = if words.contains("VTOL") && fact.file.ends_with(".tlog") { "of a plane" } else { words };
+        assert!(refusal.contains(words), "{}: {refusal}", fact.file);
+    }
+}
+
 #[test]
 fn the_truth_about_every_foreign_log() {
     let Some(shared) = support::shared() else { return };
@@ -93,7 +143,10 @@ fn the_truth_about_every_foreign_log() {
     for fact in facts() {
         let found = inspect(&shared.join(&fact.file), &OpenOptions::default(), None, &mut |_| ());
         match (found, &fact.refused) {
-            (Ok(found), None) => wrong.extend(differences(&fact, &found)),
+            (Ok(found), None) => {
+                wrong.extend(differences(&fact, &found));
+                wrong.extend(refusals(&fact, &found));
+            }
             (Err(error), Some(words)) => {
                 let error = error.to_string();
                 if !error.contains(words.as_str()) {

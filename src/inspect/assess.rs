@@ -2,13 +2,13 @@
 
 use super::airborne::{Before, airborne, normalized_commands};
 use super::excitation::ExcitationTally;
+use super::foresee::information;
 use super::inspection::{Excitation, FlightSummary, OffsetSummary, Segment};
 use super::motion::Motion;
-use crate::estimate::{Estimated, WeakInformation, WeakMethod, solve_weak, theta_of};
+use crate::estimate::{Estimated, WeakInformation};
 use crate::note::Note;
 use crate::recording::{Quantity, Recording};
-use crate::regression::{WeakMotion, weak_rows};
-use crate::signals::{ConditionSettings, Quality, Signals, SignalsError, WeakKernel, condition};
+use crate::signals::{ConditionSettings, Quality, Signals, SignalsError, Usable, condition};
 use crate::vehicle::Vehicle;
 
 /// Segments kept; a log with more is counted.
@@ -30,6 +30,8 @@ pub(super) struct Assessor<'a> {
     offsets: Vec<OffsetSum>,
     notes: Vec<Note>,
     refusal: Option<SignalsError>,
+    /// the window with the most seconds that can be used, and these
+    liveliest: Option<(f64, Recording)>,
 }
 
 /// Offsets of one quantity weighted by their precision.
@@ -52,6 +54,8 @@ pub(super) struct Assessment {
     pub notes: Vec<Note>,
     /// why the vehicle file and the log do not go together, where no window could be conditioned
     pub refusal: Option<SignalsError>,
+    /// the window with the most seconds that can be used, and these
+    pub liveliest: Option<(f64, Recording)>,
 }
 
 /// Refusals of one window that say nothing of the others, nor of the vehicle file.
@@ -90,6 +94,7 @@ impl<'a> Assessor<'a> {
                 Motion::of_recording(recording, &airborne.free_s, transient_s)
             }
         };
+        let usable_before_s = self.flight.usable_s;
         match motion {
             Some((motion, used)) => {
                 self.flight.add(&used);
@@ -98,17 +103,16 @@ impl<'a> Assessor<'a> {
             }
             None => self.segments(&airborne.flown_s, &[], |_| f64::NAN),
         }
+        let usable_s = self.flight.usable_s - usable_before_s;
+        if usable_s > self.liveliest.as_ref().map_or(0.0, |(most_s, _)| *most_s) {
+            self.liveliest = Some((usable_s, recording.clone()));
+        }
         self.flown |= !airborne.flown_s.is_empty();
     }
 
     /// What identification would learn from the window: its own weak form, solved.
     fn inform(&mut self, signals: &Signals, vehicle: &Vehicle) {
-        let kernel = WeakKernel::new(ConditionSettings::default().weak_half_width_s, signals.grid.step_s);
-        let motion = WeakMotion::measured(signals, &kernel, vehicle.gravity_m_s2);
-        let rows = weak_rows(signals, &motion, &kernel);
-        let nominal = theta_of(&vehicle.body);
-        if let Some(estimate) = solve_weak(&[rows], &nominal, WeakMethod::LeastSquares) {
-            let information = WeakInformation::of(&estimate);
+        if let Some(information) = information(signals, vehicle) {
             match &mut self.information {
                 Some(all) => all.add(&information),
                 None => self.information = Some(information),
@@ -179,6 +183,22 @@ impl<'a> Assessor<'a> {
             expected,
             offsets: self.offsets.iter().map(offset).collect(),
             notes: self.notes,
+            liveliest: self.liveliest,
         }
+    }
+}
+
+impl FlightSummary {
+    /// Adds what a window's mask left out; what is not flight counts for nothing here.
+    pub(super) fn add(&mut self, used: &Usable) {
+        self.transient_s += used.transient_s;
+        self.idle_s += used.idle_s;
+        self.saturated_s += used.saturated_s;
+        self.gap_s += used.gap_s;
+    }
+
+    /// Of a vehicle that does not fly, whatever its motors did.
+    pub(super) fn on_the_ground() -> Self {
+        Self { airborne_from: "the kind of vehicle", ..Self::default() }
     }
 }

@@ -4,9 +4,12 @@ use std::sync::mpsc::sync_channel;
 
 use super::assess::{Assessment, Assessor};
 use super::clock::ClockTally;
+use super::evidence::Evidence;
+use super::foresee::{Foreseen, foresee};
 use super::inspection::{FlightSummary, Inspection, Reading, Text, TextSummary, Timeline, VehicleSummary};
-use super::outlook::{Evidence, outlook};
+use super::outlook::outlook;
 use super::parameters::Parameters;
+use super::quantities::{Outcome, quantities};
 use super::reading::reading_of;
 use super::streams::{StreamTallies, summary_of};
 use super::timeline::TimelineTally;
@@ -15,9 +18,12 @@ use super::window::{WindowRecorder, windows_of};
 use crate::autopilot::{Autopilot, VehicleKind};
 use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport, TlogReport};
 use crate::recording::{Event, Recording, StreamKey, StreamStats};
+use crate::signals::SignalsError;
 use crate::vehicle::Vehicle;
 use crate::wire::{Sender, Source, SystemId};
 
+/// A window holds all of a flight where no more than this times its seconds can be used.
+const MOSTLY: f64 = 1.05;
 /// MAV_SEVERITY_WARNING; smaller is worse.
 const WARNING: u8 = 4;
 /// Warnings kept; further ones are counted.
@@ -180,7 +186,7 @@ impl Pass {
             streams: self.tally.streams.summary(),
             numbers_held_max: self.numbers_held_max,
             kind: self.report.kind(),
-            timed: timed(&self.report),
+            timed: self.report.is_timed(),
             logging: logging(&self.report, self.tally.autopilot),
         };
         found.inspection(self.tally, self.assessment, vehicle)
@@ -232,7 +238,7 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         streams,
         numbers_held_max: recording.streams.values().map(|s| s.values.len() + s.len()).sum(),
         kind: report.kind(),
-        timed: timed(report),
+        timed: report.is_timed(),
         logging: logging(report, recording.autopilot),
     };
     found.inspection(tally, assessor.finish(), vehicle)
@@ -254,19 +260,32 @@ struct Found {
     logging: Option<&'static str>,
 }
 
-/// A log that the vehicle wrote may carry no time at all: ArduPilot's of 2013.
-fn timed(report: &ReadReport) -> bool {
-    report
-        .onboard()
-        .is_none_or(|log| log.topics.iter().any(|topic| topic.span_s.is_some()) || log.topics.is_empty())
-}
-
 /// How to make the vehicle log what identification needs; `None` of a log that it did not write.
 fn logging(report: &ReadReport, autopilot: Autopilot) -> Option<&'static str> {
     report.onboard().and(autopilot.stack()).map(|stack| stack.logging)
 }
 
 impl Found {
+    /// What the liveliest window would tell. What refuses all of a log without a vehicle is noted as with one.
+    fn foreseen(
+        &self,
+        tally: &Tally,
+        assessment: &mut Assessment,
+        vehicle: Option<&Vehicle>,
+    ) -> Option<Foreseen> {
+        let is_multirotor = self.kind.is_none_or(|kind| kind == VehicleKind::Multirotor);
+        let (_, window) = assessment.liveliest.as_mut().filter(|_| is_multirotor)?;
+        window.parameters.clone_from(tally.parameters.values());
+        match foresee(window, vehicle) {
+            Ok(foreseen) => Some(foreseen),
+            Err(Some(slow @ SignalsError::TooSlow { .. })) if vehicle.is_none() => {
+                assessment.refusal = Some(slow);
+                None
+            }
+            Err(_) => None,
+        }
+    }
+
     fn inspection(
         mut self,
         tally: Tally,
@@ -284,18 +303,28 @@ impl Found {
         let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);
         let is_known = self.vehicle.kind.is_none_or(|kind| rotors.contains(&kind));
         let modes = if is_known { self.autopilot } else { Autopilot::Unknown };
+        let foreseen = self.foreseen(&tally, &mut assessment, vehicle);
         let missing_curve = tally.parameters.missing_curve(self.autopilot);
         let evidence = Evidence {
             streams: &self.streams,
             assessment: &assessment,
             vehicle,
+            assumed: foreseen.as_ref().and_then(Foreseen::assumed),
             missing_curve,
             kind: self.kind,
             armed,
             timed: self.timed,
             logging: self.logging,
+            own_log: self.autopilot.stack().map(|stack| stack.logging),
         };
         let identifiability = outlook(&evidence);
+        let most_s = assessment.liveliest.as_ref().map_or(0.0, |(usable_s, _)| *usable_s);
+        let quantities = quantities(&Outcome {
+            evidence: &evidence,
+            body: &identifiability,
+            foreseen: foreseen.as_ref(),
+            at_most: assessment.flight.usable_s > MOSTLY * most_s,
+        });
         let (verdict, advice) = verdict(&evidence, &identifiability, &self.vehicle);
         Inspection {
             verdict,
@@ -309,6 +338,8 @@ impl Found {
             flight: assessment.flight,
             excitation: assessment.excitation,
             stream_offsets: assessment.offsets,
+            quantities,
+            quantities_relative: foreseen.is_some_and(|foreseen| foreseen.assumed),
             identifiability,
             parameters: tally.parameters.summary(),
             texts: tally.texts,

@@ -1,7 +1,9 @@
 //! What a log is good for, in words, and what to do next.
 
+use super::evidence::Evidence;
 use super::inspection::{Outlook, VehicleSummary};
-use super::outlook::{AXIS_NAMES, Evidence, LEAST_ANGULAR_ACCELERATION};
+use super::lacking::lack;
+use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION};
 use crate::autopilot::VehicleKind;
 use crate::recording::Quantity;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
@@ -21,7 +23,7 @@ pub(super) fn verdict(
     outlook: &[Outlook],
     vehicle: &VehicleSummary,
 ) -> (String, Vec<String>) {
-    let known = evidence.timed && !evidence.streams.is_empty();
+    let known = evidence.holds_streams();
     let mut advice = if known { missing(evidence) } else { Vec::new() };
     advice.extend(flying(evidence));
     advice.extend(remarks(evidence, vehicle));
@@ -62,6 +64,12 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
     let bad: Vec<&str> =
         principal(outlook).filter(|o| o.status == "not_determined").map(|o| label(o.name)).collect();
     if good.is_empty() {
+        if let Some(lack) = lack(evidence, "mass").filter(|_| evidence.vehicle.is_none()) {
+            return format!(
+                "Nothing can be identified from this log: {}. Next time {}.",
+                lack.reason, lack.set
+            );
+        }
         return format!(
             "No parameter of the rigid body can be identified from this log, although {time}. {}",
             "Fly a trajectory of `mavid plan`."

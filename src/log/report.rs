@@ -62,6 +62,13 @@ impl ReadReport {
         }
     }
 
+    /// Messages carry times of the vehicle's: some that ArduPilot wrote until 2013 do not.
+    #[must_use]
+    pub fn is_timed(&self) -> bool {
+        let has_times = |log: &OnboardReport| log.topics.iter().any(|topic| topic.span_s.is_some());
+        self.onboard().is_none_or(|log| log.topics.is_empty() || has_times(log))
+    }
+
     /// What kind of vehicle the log is of, where it says so.
     #[must_use]
     pub fn kind(&self) -> Option<VehicleKind> {

@@ -33,6 +33,12 @@ impl<'a> Said<'a> {
         self.landed.is_some()
     }
 
+    /// It tells whether it is armed, and never was.
+    #[must_use]
+    pub fn never_armed(&self) -> bool {
+        self.armed.is_some_and(|armed| armed.values.iter().all(|armed| *armed < 0.5))
+    }
+
     /// Its words of being armed, else of having landed, whichever it tells.
     #[must_use]
     pub fn words(&self) -> Option<&'a Stream> {
@@ -103,7 +109,9 @@ mod tests {
             times_s.map(|t_s| said.may_be_off_ground(t_s)),
             [true, true, false, true, true, false, false]
         );
-        assert!(said.tells_landed());
+        assert!(said.tells_landed() && !said.never_armed());
+        let idle = recording(&[(Quantity::Armed, stream(&[0.0, 1.0], &[0.0, 0.0]))]);
+        assert!(Said::of(&idle).never_armed() && !Said::of(&Recording::default()).never_armed());
     }
 
     #[test]

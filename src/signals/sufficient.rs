@@ -22,10 +22,10 @@ pub const LEAST_BODY_RATE_HZ: f64 = 38.0;
 
 /// Rate below which torques are not compared with the motion, Hz: errors of inertia are many standard errors there, see
 /// above.
-pub(super) const LEAST_TORQUE_HZ: f64 = 20.0;
+pub const LEAST_TORQUE_HZ: f64 = 20.0;
 /// Rate below which forces are not compared either, Hz: 10 Hz with some lost frames, which puts three samples or more
 /// into the weak form's kernel. Chosen; not measured.
-const LEAST_FORCE_HZ: f64 = 8.0;
+pub const LEAST_FORCE_HZ: f64 = 8.0;
 
 /// Intervals longer than this many median intervals are gaps, or belong to a time before the rate was requested.
 /// Chosen; not measured.

@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 use crate::autopilot::VehicleKind;
 use crate::config::{ConfigError, load_csv_mapping};
 use crate::diagnose::holdout::HeldOut;
-use crate::log::{Hold, LogError, LogFlight, OpenOptions, ReadReport, format_of, open_flights};
+use crate::log::{
+    Hold, LogError, LogFlight, OpenOptions, OpenedFlights, ReadReport, format_of, open_flights,
+};
 use crate::note::{About, Note};
 use crate::recording::{Recording, shared_share};
-use crate::signals::{ConditionSettings, Signals, condition};
+use crate::signals::{ConditionSettings, Said, Signals, condition};
 use crate::text;
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
@@ -111,6 +113,7 @@ fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, 
         let why = format!("expected the log of a multirotor, got that of a {}", kind.name());
         return Err(StudyError::File { file: text::path(&path), why });
     }
+    refuse_no_flight(path, &opened)?;
     let about = || About::File(text::path(&path));
     let losses = opened.report.losses.iter().map(ToString::to_string);
     let oddities = opened.report.oddities.iter().map(ToString::to_string);
@@ -120,6 +123,19 @@ fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, 
         .notes
         .extend(whose(&opened.report).into_iter().chain(oddities).map(|text| Note::remark(about(), text)));
     Ok(of_log(opened.flights.flights, &input))
+}
+
+/// A log that says itself that nothing was flown, or that has no clock, is told so, and not that a stream is missing.
+fn refuse_no_flight(path: &Path, opened: &OpenedFlights) -> Result<(), StudyError> {
+    let mut flights = opened.flights.flights.iter();
+    let why = if !opened.report.is_timed() {
+        "expected a log with times, got one whose messages carry no time of the vehicle's"
+    } else if flights.all(|flight| Said::of(&flight.recording).never_armed()) {
+        "expected a flight, got the log of a vehicle that was never armed"
+    } else {
+        return Ok(());
+    };
+    Err(StudyError::File { file: text::path(&path), why: why.to_owned() })
 }
 
 /// Why a log cannot be read, with its name.
