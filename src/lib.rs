@@ -137,6 +137,7 @@ pub mod draft;
 pub mod estimate;
 pub mod export;
 pub mod fence;
+pub mod fetch;
 pub mod files;
 pub mod fly;
 pub mod frames;

@@ -250,6 +250,24 @@ fn a_force_fixed_in_the_room_is_predicted_without_a_name() {
     assert!(shown.closed_loop.is_err());
 }
 
+#[test]
+fn flights_with_and_without_measured_rotor_speeds_are_explained_together() {
+    let vehicles = pair();
+    let drag = || vec![effect("linear_drag", &[0.25, 0.25, 0.0])];
+    let both = (&vehicles.truth, &vehicles.nominal);
+    let (_, by_commands) = flown(both, (drag(), None), trajectory(5), (1, 34.0));
+    let (recording, _) = flown(both, (drag(), None), trajectory(6), (2, 34.0));
+    let settings = ConditionSettings { transient_s: Some(1.0), ..ConditionSettings::default() };
+    let by_speeds = condition(&recording, &vehicles.nominal, &settings).unwrap();
+    assert!(by_commands.jitter_wrench.is_some() && by_speeds.jitter_wrench.is_none());
+    let named = |flights: &[Signals]| {
+        let found = explain(flights, &vehicles.nominal, &ExplainSettings::default()).unwrap();
+        found.named.iter().map(|named| named.id).collect::<Vec<_>>()
+    };
+    assert_eq!(named(&[by_commands.clone(), by_speeds.clone()]), ["linear_drag"]);
+    assert_eq!(named(&[by_speeds, by_commands]), ["linear_drag"]);
+}
+
 /// The distance that the next flight was said to bring is the one that it brings.
 fn promise_is_kept(
     concealed: &dyn Fn() -> Vec<ActiveEffect>,

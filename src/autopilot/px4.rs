@@ -141,6 +141,7 @@ pub static PX4: Stack = Stack {
     },
     // default and system identification
     logging: "set SDLOG_PROFILE = 9 and restart the autopilot",
+    log_settings: super::logging::PX4,
     pilot: PilotSwitches {
         mode_channel: "RC_MAP_FLTMODE",
         positions: numbered("COM_FLTMODE", ""),
@@ -359,6 +360,8 @@ const OTHERS: &[Parameter] = &[
     row("RTL_DESCEND_ALT", R, M, 30.0),
     row("RTL_LAND_DELAY", R, S, 0.0),
     row("RTL_MIN_DIST", R, M, 10.0),
+    row("SDLOG_BACKEND", I, NONE, 3.0),
+    row("SDLOG_MODE", I, NONE, 0.0),
     row("SDLOG_PROFILE", I, NONE, 1.0),
 ];
 

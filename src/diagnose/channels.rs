@@ -87,3 +87,28 @@ pub(super) fn per_step(mut up: Channels, down: &Channels, step: f64) -> Channels
     }
     up
 }
+
+/// The nuisances' columns over the rows of earlier flights, continued by those of a further one. A flight that lacks a
+/// nuisance, such as the jitter of commands if rotor speeds were measured, has zeros in its column.
+pub(super) fn joined(
+    mut all: Vec<NuisanceColumn>,
+    rows_before: usize,
+    of_flight: Vec<NuisanceColumn>,
+    rows: usize,
+) -> Vec<NuisanceColumn> {
+    let zeros = |rows: usize| -> Channels { std::array::from_fn(|_| vec![0.0; rows]) };
+    for of in &of_flight {
+        if all.iter().all(|column| column.nuisance != of.nuisance) {
+            let considered = of.considered.as_ref().map(|_| zeros(rows_before));
+            all.push(NuisanceColumn { values: zeros(rows_before), considered, ..of.clone() });
+        }
+    }
+    for column in &mut all {
+        let of = of_flight.iter().find(|of| of.nuisance == column.nuisance);
+        append(&mut column.values, of.map_or(&zeros(rows), |of| &of.values));
+        if let Some(considered) = &mut column.considered {
+            append(considered, of.and_then(|of| of.considered.as_ref()).unwrap_or(&zeros(rows)));
+        }
+    }
+    all
+}

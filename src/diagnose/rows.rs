@@ -7,7 +7,7 @@
 
 use super::along::{moved_by, wrench_along};
 use super::base::Base;
-use super::channels::{Channels, NuisanceColumn, SECOND, append, channels, per_step};
+use super::channels::{Channels, NuisanceColumn, SECOND, append, channels, joined, per_step};
 use super::nuisances::{momentum_rows, nuisances};
 use super::rotors::{RotorMotion, Thrusts};
 use super::sensors::{is_of_sensors, true_motion, true_readings};
@@ -77,16 +77,7 @@ impl Rows {
             rows.time_s.extend(trace.centers.iter().map(|&center| trace.grid.time_s(center)));
             rows.runs.extend(trace.runs.iter().map(|run| run.start + before..run.end + before));
             append(&mut rows.residual, &residual);
-            if rows.nuisances.is_empty() {
-                rows.nuisances = nuisances;
-            } else {
-                for (all, of) in rows.nuisances.iter_mut().zip(&nuisances) {
-                    append(&mut all.values, &of.values);
-                    if let (Some(all), Some(of)) = (&mut all.considered, &of.considered) {
-                        append(all, of);
-                    }
-                }
-            }
+            rows.nuisances = joined(rows.nuisances, before, nuisances, trace.rows());
             rows.flights.push(along);
         }
         rows.torque_rms = std::array::from_fn(|axis| (squares[axis] / rows.len().max(1) as f64).sqrt());

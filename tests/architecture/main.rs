@@ -35,6 +35,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("log", &["units", "text", "autopilot", "frames", "recording", "wire"]),
     // frames over sockets and serial ports, and their recording: live links need no files
     ("link", &["text", "wire"]),
+    // logs of a vehicle, over MAVLink: dialogues without I/O, and the file that they fill
+    ("fetch", &["files", "text", "autopilot", "wire"]),
     // a log played as if it were a link
     ("replay", &["text", "wire", "log", "link"]),
     // vehicle: from actuator values to force
@@ -508,7 +510,14 @@ fn only_the_typed_orders_make_messages() {
     let mut wrong = Vec::new();
     for source in sources() {
         // the embedded vehicle's own messages, those of logs that tests read, and names of the dialect in patterns
-        let makes = ["fly/target/", "fly/setpoint.rs", "sitl/", "wire/encode.rs", "link/signing/tests.rs"];
+        let makes = [
+            "fly/target/",
+            "fly/setpoint.rs",
+            "fetch/peer.rs",
+            "sitl/",
+            "wire/encode.rs",
+            "link/signing/tests.rs",
+        ];
         if !makes.iter().any(|path| source.path.starts_with(path))
             && code(source.without_tests()).contains("_DATA {")
         {
@@ -517,7 +526,7 @@ fn only_the_typed_orders_make_messages() {
     }
     assert!(
         wrong.is_empty(),
-        "messages are made in fly/target and fly/setpoint.rs, not in:\n{}",
+        "messages are made in fly/target, fly/setpoint.rs and fetch/peer.rs, not in:\n{}",
         wrong.join("\n")
     );
 }

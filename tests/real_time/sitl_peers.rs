@@ -6,6 +6,9 @@ use std::net::{TcpListener, UdpSocket};
 use std::process::{Child, Command, Stdio};
 
 use crate::support::Needed;
+use mavid::log::{Input, OpenOptions};
+use mavid::recording::Quantity;
+use mavid::wire::file_transfer::FileSum;
 use serde_json::{Value, json};
 
 /// The running program; ended when the test is.
@@ -112,5 +115,50 @@ fn mavsdk_finds_px4_healthy_stores_a_fence_and_flies_offboard() {
     assert!(landed_at[1] > 3.2 && landed_at[2].abs() < 0.2, "{landed_at:?}");
     let texts = answer["texts"].to_string();
     assert!(texts.contains("Takeoff detected") && texts.contains("Disarmed by landing"), "{texts}");
+    assert_eq!(sitl.interrupt().0, Some(0));
+}
+
+/// The log of the flight: what pymavlink downloads is whole, and tells the flight.
+fn fetched(answer: &Value, begins: &str, ends: &str) {
+    let path = answer["path"].as_str().unwrap();
+    assert!(path.starts_with(begins) && path.ends_with(ends), "{path}");
+    let hex = answer["log"].as_str().unwrap();
+    let bytes: Vec<u8> =
+        (0..hex.len() / 2).map(|at| u8::from_str_radix(&hex[2 * at..2 * at + 2], 16).unwrap()).collect();
+    assert_eq!(answer["listed"], json!(bytes.len()));
+    assert_eq!(answer["sum"], json!(FileSum::of(&bytes)));
+    let input = Input::Bytes { name: path, bytes: &bytes };
+    let opened = mavid::log::open(input, &OpenOptions::default()).unwrap();
+    assert!(opened.report.losses.is_empty(), "{:?}", opened.report.losses);
+    let position = opened.recording.streams.iter().find(|(key, _)| key.quantity == Quantity::Position);
+    let (_, position) = position.unwrap();
+    let highest_m = position.values.iter().skip(2).step_by(3).copied().fold(f64::MIN, f64::max);
+    assert!(highest_m > 0.3, "{highest_m}");
+}
+
+#[test]
+fn pymavlink_fetches_the_log_of_a_flight_of_px4() {
+    let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let listen = format!("udpout:127.0.0.1:{port}");
+    let sitl = Sitl::start(&["--warm-up", "2", "--listen", &listen]);
+    let connection = format!("udpin:127.0.0.1:{port}");
+    match crate::python::ask("fetch_with_pymavlink.py", &[&connection, "px4"], &json!(null)) {
+        Ok(answer) => fetched(&answer, "/fs/microsd/log/", ".ulg"),
+        Err(why) => return crate::support::skip(Needed::Peers, &why),
+    }
+    assert_eq!(sitl.interrupt().0, Some(0));
+}
+
+#[test]
+fn pymavlink_fetches_the_log_of_a_flight_of_ardupilot() {
+    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let listen = format!("tcpin:127.0.0.1:{port}");
+    let options = ["--autopilot", "ardupilot", "--speed", "3", "--warm-up", "2", "--listen", listen.as_str()];
+    let sitl = Sitl::start(&options);
+    let connection = format!("tcp:127.0.0.1:{port}");
+    match crate::python::ask("fetch_with_pymavlink.py", &[&connection, "ardupilot"], &json!(null)) {
+        Ok(answer) => fetched(&answer, "/APM/LOGS/", ".BIN"),
+        Err(why) => return crate::support::skip(Needed::Peers, &why),
+    }
     assert_eq!(sitl.interrupt().0, Some(0));
 }

@@ -1,0 +1,8 @@
+//! `mavid log`: the logs that a vehicle keeps.
+
+mod documents;
+mod fetching;
+mod session;
+mod verb;
+
+pub use verb::run;
