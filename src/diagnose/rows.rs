@@ -56,7 +56,8 @@ impl Rows {
     pub fn new(recorded: &[Trace], base: &Base) -> Result<Self, PhysicsError> {
         let model = base.model(&[])?;
         let flights = &true_motion(recorded, base)[..];
-        let parts: Vec<Part> = flights.par_iter().map(|trace| one_flight(trace, base, &model)).collect();
+        let parts: Vec<Part> =
+            flights.par_iter().map(|trace| one_flight((trace, flights.len()), base, &model)).collect();
         let mut rows = Self {
             time_s: Vec::new(),
             runs: Vec::new(),
@@ -234,7 +235,7 @@ pub(super) fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, Phy
     let model = base.model(&[])?;
     let parts: Vec<Channels> = true_motion(recorded, base)
         .par_iter()
-        .map(|trace| one_flight(trace, base, &model).residual)
+        .map(|trace| one_flight((trace, recorded.len()), base, &model).residual)
         .collect();
     let mut out = Channels::default();
     parts.iter().for_each(|part| append(&mut out, part));
@@ -255,14 +256,14 @@ struct Part {
     own: Vec<NuisanceColumn>,
 }
 
-fn one_flight(trace: &Trace, base: &Base, model: &Model) -> Part {
+fn one_flight((trace, flights): (&Trace, usize), base: &Base, model: &Model) -> Part {
     let (felt, commanded) = trace.by_commands(&model.airframe, base.latency);
     let (by_commands, (motion, by_motion)) =
         rayon::join(|| wrench_along(model, trace, &commanded), || moved_by(trace, (base, model), &commanded));
     let (residual, (nuisances, own)) = rayon::join(
         || residual(trace, base, model, (&felt, &commanded, &motion), (&by_commands, &by_motion)),
         || {
-            let own = velocity_error(trace, (base, model), &commanded, &by_commands);
+            let own = velocity_error((trace, flights), (base, model), &commanded, &by_commands);
             (nuisances(trace, base, &commanded, &by_commands), own)
         },
     );

@@ -17,12 +17,16 @@ use nalgebra::Vector3;
 const STD_M_S: f64 = 0.15;
 /// Time between the knots of the error, s; correlation times of 2 to 3 s were measured in the same flights.
 const KNOTS_S: f64 = 3.0;
+/// Knots of all flights together, at most: each is a column of the fit, so a long recording has them further apart. Chosen; not
+/// measured.
+const MOST_KNOTS: usize = 60;
 /// Change of velocity that gives the slope of the force, m/s. Chosen; not measured.
 const STEP_M_S: f64 = 0.1;
 
-/// One column for each knot of a flight, N per m/s of vertical velocity (world); none where no force goes with airspeed.
+/// One column for each knot of one of `flights` flights, N per m/s of vertical velocity (world); none where no force goes with
+/// airspeed.
 pub(super) fn velocity_error(
-    trace: &Trace,
+    (trace, flights): (&Trace, usize),
     (base, model): (&Base, &Model),
     commanded: &RotorMotion,
     by_commands: &[Wrench],
@@ -41,7 +45,8 @@ pub(super) fn velocity_error(
         .map(|(shifted, plain)| (shifted.force_n - plain.force_n) / STEP_M_S)
         .collect();
     let (from_s, to_s) = (trace.grid.time_s(*first), trace.grid.time_s(*last));
-    let knots = ((to_s - from_s) / KNOTS_S).ceil().max(1.0);
+    let most = (MOST_KNOTS / flights.max(1)).max(2) as f64;
+    let knots = ((to_s - from_s) / KNOTS_S).ceil().clamp(1.0, most);
     let apart_s = (to_s - from_s).max(trace.grid.step_s) / knots;
     let mut out = Vec::new();
     let mut at_s = from_s;
