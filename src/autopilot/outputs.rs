@@ -106,4 +106,13 @@ impl Outputs {
     pub fn is_motor(&self, function: f64) -> bool {
         (f64::from(self.first_motor)..=f64::from(self.last_motor)).contains(&function)
     }
+
+    /// How many outputs drive motors; `None` where the parameters do not say.
+    #[must_use]
+    pub fn motors(&self, parameter: &dyn Fn(&str) -> Option<f64>) -> Option<usize> {
+        let drives = |channel: &usize| {
+            parameter(&self.function.name(*channel)).is_some_and(|value| self.is_motor(value))
+        };
+        Some((1..=16).filter(drives).count()).filter(|count| *count > 0)
+    }
 }

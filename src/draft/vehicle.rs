@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::hover::full_thrust;
 use super::rules::{self, Rule};
-use crate::autopilot::{Frame, Layout, LayoutError, LayoutUnit, Outputs, Stack};
+use crate::autopilot::{Frame, Layout, LayoutError, LayoutUnit, Outputs};
 use crate::recording::Recording;
 use crate::signals::holds_fractions;
 use crate::units::GRAVITY_M_S2;
@@ -94,7 +94,7 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
     let parameter = |name: &str| recording.parameters.get(name).copied();
     let layout = match given.frame {
         Some(frame) => Layout::of(frame, "the given frame"),
-        None => stack.geometry.layout(&parameter, motors(stack, &parameter))?,
+        None => stack.geometry.layout(&parameter, stack.outputs.motors(&parameter))?,
     };
     let mut noted = Noted::default();
     let arm_m = noted.arm(&layout, given);
@@ -126,15 +126,6 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
     noted.origins.insert(0, format!("{} of {} by {}", layout.name, stack.name, layout.stated_by));
     vehicle.guesses = noted.guesses;
     Ok(Draft { vehicle, origins: noted.origins })
-}
-
-/// How many outputs drive motors; `None` where the parameters do not say.
-fn motors(stack: &Stack, parameter: &dyn Fn(&str) -> Option<f64>) -> Option<usize> {
-    let function = &stack.outputs.function;
-    let drives = |channel: &usize| {
-        parameter(&function.name(*channel)).is_some_and(|value| stack.outputs.is_motor(value))
-    };
-    Some((1..=16).filter(drives).count()).filter(|count| *count > 0)
 }
 
 fn rotors(layout: &Layout, scale: f64) -> Vec<Rotor> {

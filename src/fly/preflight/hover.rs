@@ -5,7 +5,7 @@ use crate::fly::finding::Finding;
 use crate::fly::lift::apart;
 use crate::fly::parameters::Parameters;
 use crate::recording::Recording;
-use crate::signals::propulsion_from_log;
+use crate::signals::{Differing, RotorDifference, propulsion_from_log, rotor_difference};
 use crate::vehicle::{Actuator, Propulsion, ThrustLaw, Vehicle};
 
 /// Subject of the check of the thrust.
@@ -76,9 +76,22 @@ fn hover(vehicle: &Vehicle, parameters: &Parameters) -> Option<Finding> {
     Some(judged(HOVER, words, (apart(lifted_n, weight_n), HOVER_NOTABLE, HOVER_GROSS)))
 }
 
-/// Number of rotors and their distance from the middle, as PX4 has them.
+/// Number, order, places and turning directions of the rotors, and their distance from the middle.
 fn rotors(vehicle: &Vehicle, parameters: &Parameters) -> Option<Finding> {
     let remedy = "see that the vehicle file is this vehicle's (--accept rotors flies all the same)";
+    match rotor_difference(parameters.autopilot, &parameters.values, vehicle) {
+        Some(RotorDifference { of: Differing::Count, file, stated }) => {
+            let expected = format!("{file}, as the vehicle file has");
+            return Some(Finding::refusal(ROTORS, expected, stated, remedy));
+        }
+        Some(RotorDifference { of: Differing::Order | Differing::Place | Differing::Spin, file, stated }) => {
+            let expected = format!("the rotors as the vehicle file has them, {file}");
+            let remedy = "the flight does not need it, and what is identified from it does: put the file's rotors in the \
+                          order of the motors, at their places and turning their way";
+            return Some(Finding::warning(ROTORS, expected, stated, remedy));
+        }
+        Some(RotorDifference { of: Differing::Arms(_), .. }) | None => {}
+    }
     let wanted = vehicle.rotors.len();
     let count = parameters.get("CA_ROTOR_COUNT").filter(|count| *count > 0.0)?;
     if (count - wanted as f64).abs() > 0.5 {
