@@ -10,6 +10,7 @@ use super::result::{Estimated, MethodResult};
 use super::rotor_check::{WeakRotor, weak_rotor, with_weak_rotor};
 use super::theta::{Theta, ThetaCovariance};
 use super::weak::{Latency, WeakEstimate, WeakMethod, latency, solve_weak};
+use super::window::by_wider_window;
 use super::{GradientStep, History, gradient_descent, least_squares};
 use crate::note::{About, Note};
 use crate::physics::ActuationLatency;
@@ -161,15 +162,17 @@ fn identify_evenly(
         notes.push(Note::remark(About::Estimate, text));
     }
 
-    let mut methods = paper.results();
-    methods.push(MethodResult::new(Method::Weak, &Estimated::of(&plain), &nominal));
-    if let Some(robust) = &robust {
-        methods.push(MethodResult::new(Method::WeakRobust, &Estimated::of(robust), &nominal));
-    }
-    if let Some(iv) = &by_instruments {
-        methods.push(MethodResult::new(Method::WeakIv, &Estimated::of(iv), &nominal));
-    }
-    let best = recommend(&plain, robust.as_ref(), by_instruments.as_ref(), &nominal);
+    let wider = weak.by_wider_window(&plain, &nominal.theta, settings);
+    let mut methods = paper.results(&Estimated::of(&plain).with_wider_window(wider));
+    let weak_forms = [
+        (Method::Weak, Some(&plain)),
+        (Method::WeakRobust, robust.as_ref()),
+        (Method::WeakIv, by_instruments.as_ref()),
+    ];
+    methods.extend(weak_forms.into_iter().filter_map(|(method, found)| {
+        Some(MethodResult::new(method, &Estimated::of(found?).with_wider_window(wider), &nominal))
+    }));
+    let best = recommend((&plain, wider), robust.as_ref(), by_instruments.as_ref(), &nominal);
     notes.extend(implausible(&best.result, &nominal.theta));
     notes.extend(disagreeing(&weak.rows, &nominal.theta));
     if flights.iter().any(|signals| signals.quality.thrust_source == ThrustSource::Command) {
@@ -194,6 +197,17 @@ fn identify_evenly(
         accelerometer_bias: weak.accelerometer_bias,
         notes,
     })
+}
+
+/// Ixx, Iyy, Izz of the rigid body by a window of twice the width, as shares of those by the usual one; NaN where either has
+/// none. Far from 1 where control answers the motion that something else causes.
+#[must_use]
+pub fn inertia_by_wider_window(flights: &[Signals], vehicle: &Vehicle) -> [f64; 3] {
+    let (nominal, settings) = (Nominal::of(vehicle), IdentifySettings::default());
+    let mut weak = WeakFlights::from(flights, vehicle, &settings);
+    weak.compensate(&nominal.theta, vehicle);
+    let narrow = solve_weak(&weak.rows, &nominal.theta, WeakMethod::LeastSquares);
+    narrow.map_or([f64::NAN; 3], |narrow| weak.by_wider_window(&narrow, &nominal.theta, &settings))
 }
 
 /// Error that the standard errors do not include if thrust is computed from commands.
@@ -266,6 +280,17 @@ impl WeakFlights {
         }
         self.refresh();
         (Some(found), compensation)
+    }
+
+    /// Moments of inertia by a window of twice the width, as shares of those of `narrow`.
+    fn by_wider_window(
+        &self,
+        narrow: &WeakEstimate,
+        nominal: &Theta,
+        settings: &IdentifySettings,
+    ) -> [f64; 3] {
+        let window = (settings.weak_half_width_s, self.gravity_m_s2);
+        by_wider_window(&self.signals, (narrow, nominal), window)
     }
 
     /// Rows of the commanded trajectory; `None`, with a note, if a flight has none.
@@ -354,11 +379,17 @@ impl PaperRuns {
         Self { standard, runs, nominal }
     }
 
-    fn results(&self) -> Vec<MethodResult> {
+    /// Their results; what the flights cannot tell by `weak`, they cannot tell by these methods either.
+    fn results(&self, weak: &Estimated) -> Vec<MethodResult> {
         self.runs
             .iter()
             .map(|(method, run)| {
-                let estimated = Estimated { theta: run.theta, covariance: run.covariance, explained: None };
+                let estimated = Estimated {
+                    theta: run.theta,
+                    covariance: run.covariance,
+                    explained: weak.explained,
+                    by_wider_window: weak.by_wider_window,
+                };
                 MethodResult::new(*method, &estimated, &self.nominal)
             })
             .collect()

@@ -18,11 +18,12 @@ mod result;
 mod rotor_check;
 mod theta;
 mod weak;
+mod window;
 
 pub use anchor::{ThrustScale, apply_anchor, identified_vehicle, rescaled, thrust_scale};
 pub use error::EstimateError;
 pub use expected::NoiseTerm;
-pub use identify::{Identification, IdentifySettings, identify};
+pub use identify::{Identification, IdentifySettings, identify, inertia_by_wider_window};
 pub use information::WeakInformation;
 pub use live::RecursiveEstimator;
 pub use method::Method;
