@@ -4,17 +4,18 @@ use super::compensate::{as_stated, compensation, take_out};
 use super::error::EstimateError;
 use super::method::Method;
 use super::nominal::Nominal;
+use super::paper_runs::PaperRuns;
 use super::plausible::{disagreeing, implausible};
 use super::recommend::{Recommendation, recommend};
+use super::recursive::History;
 use super::result::{Estimated, MethodResult};
 use super::rotor_check::{WeakRotor, weak_rotor, with_weak_rotor};
-use super::theta::{Theta, ThetaCovariance};
+use super::theta::Theta;
 use super::weak::{Latency, WeakEstimate, WeakMethod, latency, solve_weak};
 use super::window::by_wider_window;
-use super::{GradientStep, History, gradient_descent, least_squares};
 use crate::note::{About, Note};
 use crate::physics::ActuationLatency;
-use crate::regression::{SampledModel, WeakMotion, WeakRows, ZeroPhase, paper_models, weak_rows};
+use crate::regression::{WeakMotion, WeakRows, ZeroPhase, weak_rows};
 use crate::signals::{Butterworth, Signals, ThrustSource, WeakKernel, WindowedFir, highest_harmonic_hz};
 use crate::vehicle::Vehicle;
 
@@ -346,66 +347,4 @@ fn instrument_f(plain: &WeakEstimate, iv: &WeakEstimate) -> f64 {
             share / (1.0 - share) * independent / 10.0
         })
         .fold(f64::INFINITY, f64::min)
-}
-
-/// The paper's four methods.
-struct PaperRuns {
-    standard: SampledModel,
-    runs: Vec<(Method, super::PaperEstimate)>,
-    nominal: Nominal,
-}
-
-impl PaperRuns {
-    fn from(flights: &[Signals], vehicle: &Vehicle, filter: &ZeroPhase, sigma: f64) -> Self {
-        let nominal = Nominal::of(vehicle);
-        let (mut standard, mut filtered) = (SampledModel::default(), SampledModel::default());
-        for signals in flights {
-            if let Some((one, other)) = paper_models(signals, vehicle.gravity_m_s2, filter) {
-                standard.extend(&one);
-                filtered.extend(&other);
-            }
-        }
-        let mut runs = Vec::new();
-        for (model, by_ls, by_gd) in
-            [(&standard, Method::Ls, Method::Gd), (&filtered, Method::Fmls, Method::Fmgd)]
-        {
-            if model.time_s.is_empty() {
-                continue;
-            }
-            runs.extend(least_squares(model).map(|estimate| (by_ls, estimate)));
-            runs.push((by_gd, gradient_descent(model, &nominal.theta, sigma, GradientStep::Implicit)));
-        }
-        runs.sort_by_key(|(method, _)| *method);
-        Self { standard, runs, nominal }
-    }
-
-    /// Their results; what the flights cannot tell by `weak`, they cannot tell by these methods either.
-    fn results(&self, weak: &Estimated) -> Vec<MethodResult> {
-        self.runs
-            .iter()
-            .map(|(method, run)| {
-                let estimated = Estimated {
-                    theta: run.theta,
-                    covariance: run.covariance,
-                    explained: weak.explained,
-                    by_wider_window: weak.by_wider_window,
-                };
-                MethodResult::new(*method, &estimated, &self.nominal)
-            })
-            .collect()
-    }
-
-    fn histories(&self) -> Vec<(Method, History)> {
-        self.runs.iter().map(|(method, run)| (*method, run.history.clone())).collect()
-    }
-
-    /// cond(W) of (20) as flown.
-    fn condition_number(&self) -> Option<f64> {
-        let mut gram = ThetaCovariance::zeros();
-        for gamma in &self.standard.gamma {
-            gram += gamma.tr_mul(gamma);
-        }
-        let values = gram.symmetric_eigenvalues();
-        (values.min() > 0.0).then(|| (values.max() / values.min()).sqrt())
-    }
 }

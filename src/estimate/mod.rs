@@ -9,6 +9,7 @@ mod information;
 mod live;
 mod method;
 mod nominal;
+mod paper_runs;
 mod physical;
 mod plausible;
 mod problem;
