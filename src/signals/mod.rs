@@ -6,6 +6,7 @@
 mod actuation;
 mod actuators;
 mod align;
+mod changed;
 mod condition;
 mod error;
 mod filter;
@@ -25,9 +26,11 @@ mod weak;
 
 pub use actuation::ThrustPreference;
 pub use actuators::{
-    holds_fractions, motor_channels, propulsion_from_log, thrusts_from_commands, thrusts_from_speeds,
+    bus_range, holds_fractions, motor_channels, propulsion_from_log, thrusts_from_commands,
+    thrusts_from_speeds,
 };
 pub use align::StreamOffset;
+pub use changed::changes_in_the_air;
 pub use condition::{ConditionSettings, condition, stride};
 pub use error::SignalsError;
 pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference};
