@@ -43,11 +43,16 @@ impl Faults {
     }
 
     fn note(&mut self, error: ConfigError) {
-        let follows =
-            matches!(&error, ConfigError::Invalid { key, .. } if is_at_or_below(&self.stands_in, key));
+        let follows = matches!(&error, ConfigError::Invalid { key, .. }
+            if is_at_or_below(&self.stands_in, key) || self.stands_in.iter().any(|path| is_part_of(path, key)));
         if !follows {
             self.errors.push(error);
         }
+    }
+
+    /// Nothing stands for the value of this key: what depends on it cannot be checked.
+    pub(super) fn stands_in(&self, key: &str) -> bool {
+        is_at_or_below(&self.stands_in, key)
     }
 
     /// How many there are so far.
@@ -59,4 +64,9 @@ impl Faults {
     pub(super) fn refuse(self, origin: &str) -> Result<(), ConfigError> {
         if self.errors.is_empty() { Ok(()) } else { Err(ConfigError::together(origin, self.errors)) }
     }
+}
+
+/// Whether a path is that of an element or a key of a value.
+fn is_part_of(path: &str, key: &str) -> bool {
+    path.strip_prefix(key).is_some_and(|rest| rest.starts_with(['.', '[']))
 }

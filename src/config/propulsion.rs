@@ -16,9 +16,10 @@ pub(super) fn propulsion(check: &Check<'_>, table: &PropulsionTable, faults: &mu
         ActuatorKind::Thrust => false,
         ActuatorKind::Pwm => table.speed_max.is_some(),
     };
-    let both = table.speed_max.is_some() && table.thrust_max.is_some();
-    let (law, thrust_coefficient, torque_per_thrust_m) = match (both, by_speed) {
-        // which of both is meant is not known, so what belongs to it is not either
+    let kind_unknown = faults.stands_in("propulsion.actuator");
+    let unknown = kind_unknown || (table.speed_max.is_some() && table.thrust_max.is_some());
+    let (law, thrust_coefficient, torque_per_thrust_m) = match (unknown, by_speed) {
+        // which law is meant is not known, so what belongs to it is not either
         (true, _) => (ThrustLaw::Speed { speed_max_rad_s: f64::NAN }, None, f64::NAN),
         (false, true) => speed_law(check, table, faults),
         (false, false) => curve_law(check, table, faults),
@@ -26,7 +27,7 @@ pub(super) fn propulsion(check: &Check<'_>, table: &PropulsionTable, faults: &mu
     let time_constant =
         table.time_constant.map(|value| check.not_negative("propulsion.time_constant", value));
     Propulsion {
-        actuator: actuator(check, table, faults),
+        actuator: if kind_unknown { Actuator::Thrust } else { actuator(check, table, faults) },
         law,
         thrust_coefficient,
         torque_per_thrust_m,

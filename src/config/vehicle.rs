@@ -76,11 +76,11 @@ pub fn parse_vehicle(text: &str, origin: &str) -> Result<LoadedVehicle, ConfigEr
     let mut doubts = Vec::new();
     let gravity = check.optional_positive("body.gravity", file.body.gravity);
     let vehicle = Vehicle {
-        name: faults.take(name(&check, "name", &file.name, &mut doubts), String::new()),
         gravity_m_s2: faults.optional(gravity).unwrap_or(units::GRAVITY_M_S2),
         body: rigid_body(&check, &file.body, &mut faults),
         propulsion: propulsion(&check, &file.propulsion, &mut faults),
         rotors: rotors(&check, file.rotors, &mut doubts, &mut faults),
+        name: faults.take(name(&check, "name", &file.name, &mut doubts), String::new()),
         limits: limits(&check, &file.limits, &mut faults),
         anchor: match file.identify.anchor {
             AnchorKey::Thrust => Anchor::Thrust,

@@ -175,7 +175,7 @@ fn all_that_is_wrong_is_told_at_once() {
     let lines = told(&[&body, &speed, &rotors, limits]);
     let expected = [
         "11 errors",
-        "line 3, column 17 (`inertia = { xx = \"thin\", yy = 0.02, zz = nan }`): invalid type: string \"thin\", expected f64",
+        "line 4, column 18 (`inertia = { xx = \"thin\", yy = 0.02, zz = nan }`): invalid type: string \"thin\", expected f64",
         "unknown field `speed_min`, expected one of `actuator`",
         "unknown variant `left`, expected `cw` or `ccw`",
         "missing field `spin` in `rotor[1]`",
@@ -222,4 +222,12 @@ fn what_is_no_toml_is_told_by_its_lines_and_a_foreign_file_has_an_end() {
     let many: String = (0..1000).map(|number| format!("key_{number} = 1\n")).collect();
     let lines = told(&[&many]);
     assert_eq!((lines.len(), lines[0].as_str()), (21, "20 or more errors"), "{lines:#?}");
+}
+
+#[test]
+fn what_follows_from_a_fault_is_not_told() {
+    let lines = told(&[BODY, &CURVE.replace("\"pwm\"", "\"pmw\""), ROTORS]);
+    assert!(lines.len() == 1 && lines[0].contains("unknown variant `pmw`"), "{lines:#?}");
+    let lines = told(&[&BODY.replace("mass = 1.5\n", ""), SPEED, ROTORS]);
+    assert!(lines.len() == 1 && lines[0].contains("missing field `mass` in `body`"), "{lines:#?}");
 }
