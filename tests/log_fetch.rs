@@ -13,10 +13,11 @@ use ground::{Ground, settings};
 use mavid::autopilot::Autopilot;
 use mavid::fetch::{
     Begun, Checked, Dialogue, Download, FetchError, Fetched, List, Part, PartError, Place, Protocol,
-    RemoteLog, Sum, Survey, Wanted,
+    ReadParameters, RemoteLog, SetParameters, Sum, Survey, Wanted,
 };
 use mavid::log::{self, Input, OpenOptions};
 use mavid::sitl::{Firmware, Settings};
+use mavid::study::better_log;
 use mavid::wire::file_transfer::{FileSum, Transfer, operation, refusal};
 use mavid::wire::{ComponentId, Frame, SystemId, Vehicle, checksum};
 use mavlink::dialects::ardupilotmega::MavMessage;
@@ -462,4 +463,56 @@ fn log_messages_that_contradict_themselves_are_held_to_the_first() {
     assert_eq!(logs, [expected]);
     let error = way.bytes(&mut Numbers, Autopilot::ArduPilot, &logs[0]).unwrap_err();
     assert_eq!(error, FetchError::Short { stated: 500, came: 200 });
+}
+
+#[test]
+fn parameters_of_logging_are_read_and_set_as_each_autopilot_encodes_them() {
+    for (kind, name, wanted) in
+        [(Firmware::PX4, "SDLOG_PROFILE", 9.0), (Firmware::ARDUPILOT_4_7, "LOG_BITMASK", 438_271.0)]
+    {
+        let autopilot = kind.autopilot();
+        let mut embedded = Embedded(Ground::of(kind));
+        embedded.0.wait(1.0);
+        let mut way = Way::new(4, 0.2, &embedded);
+        let mut read = |way: &mut Way, embedded: &mut Embedded| {
+            let mut reading = ReadParameters::new(vehicle(autopilot), &[name, "NOT_THERE"]).unwrap();
+            way.talk(&mut reading, embedded, |_| false).unwrap();
+            reading.known()
+        };
+        let known = read(&mut way, &mut embedded);
+        let plan = kind.stack().log_plan(|name| known.value(name));
+        assert_eq!((plan.changes[0].parameter, plan.changes[0].wanted), (name, wanted));
+        assert_eq!(known.value("NOT_THERE"), None);
+        let mut setting = SetParameters::new(vehicle(autopilot), &known, &[(name, wanted)]).unwrap();
+        way.talk(&mut setting, &mut embedded, |_| false).unwrap();
+        assert_eq!(read(&mut way, &mut embedded).value(name), Some(wanted));
+        // one that stays what it was
+        let mut setting = SetParameters::new(vehicle(autopilot), &known, &[(name, wanted + 1.0)]).unwrap();
+        let error = Way::of_liar().talk(&mut setting, &mut Silent, |_| false).unwrap_err();
+        assert!(error.to_string().contains(&format!("expected {name} = {}", wanted + 1.0)), "{error}");
+    }
+}
+
+#[test]
+fn the_log_with_the_higher_rates_is_taken_if_it_is_of_the_same_flight() {
+    let out = folder("better");
+    let write = |name: &str, parameters: &[(&str, f64)]| {
+        let parameters = parameters.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+        let mut embedded = Embedded::flown(Settings { parameters, ..settings(Firmware::PX4) });
+        let mut way = Way::new(1, 0.0, &embedded);
+        let log = way.list(&mut embedded, Autopilot::Px4, Protocol::Ftp).remove(0);
+        let (bytes, _) = way.bytes(&mut embedded, Autopilot::Px4, &log).unwrap();
+        let path = out.join(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    };
+    let slow = write("slow.ulg", &[]);
+    let fast = write("fast.ulg", &[("SDLOG_PROFILE", 9.0)]);
+    let better = better_log(&slow, &fast);
+    assert!(better.is_onboard && better.path == fast, "{better:?}");
+    assert!(better.why.contains("commands at 250 Hz"), "{}", better.why);
+    let worse = better_log(&fast, &slow);
+    assert!(!worse.is_onboard && worse.path == fast, "{worse:?}");
+    std::fs::write(out.join("none.ulg"), b"nothing").unwrap();
+    assert!(!better_log(&slow, &out.join("none.ulg")).is_onboard);
 }

@@ -5,6 +5,7 @@
 //! [`Progress`].
 
 mod after_flight;
+mod better_log;
 mod correlation;
 mod effects;
 mod error;
@@ -20,6 +21,7 @@ mod vehicle;
 mod vehicle_given;
 
 pub use after_flight::{AfterFlight, after_flight};
+pub use better_log::{BetterLog, better_log};
 pub use correlation::Correlation;
 pub use effects::{effects_file, effects_of, effects_text, with_further, with_stated_lag};
 pub use error::StudyError;
