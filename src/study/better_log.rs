@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::log::{self, OpenOptions};
 use crate::recording::{Quantity, Recording, Stream};
 
-/// A log that says more has so much more of both commands and rates (-).
+/// A log that says more has commands or body rates so many times as often, and neither so many times more seldom (-).
 const MORE: f64 = 1.2;
 /// Times for which the vehicle was armed in both logs of one flight differ by no more than this factor (-).
 const SAME_FLIGHT: f64 = 1.25;
@@ -87,8 +87,10 @@ pub fn better_log(radio: &Path, onboard: &Path) -> BetterLog {
         "the vehicle's own log has commands at {:.0} Hz and body rates at {:.0} Hz, the recording of the link {:.0} and {:.0}",
         own.commands_hz, own.body_rates_hz, heard.commands_hz, heard.body_rates_hz
     );
+    let shares = [own.commands_hz / heard.commands_hz, own.body_rates_hz / heard.body_rates_hz];
+    // neither comes more seldom by as much, and one of them more often
     let is_more =
-        own.commands_hz >= MORE * heard.commands_hz && own.body_rates_hz >= MORE * heard.body_rates_hz;
+        shares.iter().all(|share| *share >= 1.0 / MORE) && shares.iter().any(|share| *share >= MORE);
     if !is_more {
         return stays(rates);
     }
