@@ -136,7 +136,7 @@ fn what_is_no_log_is_status_two_with_a_message() {
     let name = |path: &Path| path.display().to_string();
     for (argument, expected) in [
         (name(&empty), "empty"),
-        (name(&text), "text without a header of columns"),
+        (name(&text), "text that is no log and has no header of columns"),
         (name(&table), "empty file"),
         (folder.to_owned(), "folder"),
         ("absent.tlog".to_owned(), "absent.tlog"),

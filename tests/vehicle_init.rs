@@ -84,5 +84,5 @@ fn what_is_missing_or_wrong_is_said() {
     let both = mavid(&["identify", &log(), "--vehicle", "v.toml", "--mass", "3"]);
     assert!(said(&both).contains("cannot be used with"), "{}", said(&both));
     let neither = mavid(&["explain", &log()]);
-    assert!(said(&neither).contains("--vehicle <VEHICLE>"), "{}", said(&neither));
+    assert!(said(&neither).contains("--vehicle <FILE>"), "{}", said(&neither));
 }

@@ -49,6 +49,8 @@ pub enum Nuisance {
     AccelerometerBias(usize),
     /// rad, of the attitude's level about world x, y
     Level(usize),
+    /// m/s, of the vertical velocity about one knot of one flight
+    VelocityError,
 }
 
 /// A column with the prior of its coefficient.
@@ -62,6 +64,18 @@ pub struct NuisanceColumn {
     pub prior_std: Option<f64>,
     /// per unit, in rows that do not estimate it but contain its error (consider covariance)
     pub considered: Option<Channels>,
+}
+
+impl NuisanceColumn {
+    /// The column of one flight among the rows of all, `count` of them, of which its own begin at `first`.
+    pub(super) fn among(self, first: usize, count: usize) -> Self {
+        let values = self.values.map(|own| {
+            let mut all = vec![0.0; count];
+            all[first..first + own.len()].copy_from_slice(&own);
+            all
+        });
+        Self { values, ..self }
+    }
 }
 
 /// Channels of the force in each available measurement (N), and of the torque (N m) where torques are compared.

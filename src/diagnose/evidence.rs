@@ -5,6 +5,7 @@
 //! conservative if the model is wrong.
 
 use super::channels::{CHANNELS, Channels};
+use super::priors::{OF_KERNEL, Priors, READINGS};
 use super::rows::Rows;
 use crate::stats::{chance_by_stretches, normal_deviate};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -29,7 +30,8 @@ pub struct Weighted {
     pub sigma: [f64; CHANNELS],
     /// nuisances and the base's own effects, weighted
     pub(super) nuisances: DMatrix<f64>,
-    precision: DVector<f64>,
+    /// variance of the scores by the priors
+    prior_meat: DVector<f64>,
     pub(super) normal: Option<Cholesky<f64, Dyn>>,
     /// residual without the part of the nuisances, weighted
     pub left: DVector<f64>,
@@ -79,7 +81,7 @@ impl Weighted {
         let mut this = Self::at(rows, &sigma);
         for _ in 0..2 {
             sigma = this.residual_sigma();
-            this = Self::at(rows, &sigma);
+            this = Self::with(rows, &sigma, READINGS * this.long_run_deviation().powi(2));
         }
         this
     }
@@ -87,20 +89,17 @@ impl Weighted {
     /// The same with given standard deviations of the channels (N, N m), for simulated flights.
     #[must_use]
     pub fn at(rows: &Rows, sigma: &[f64; CHANNELS]) -> Self {
-        let mut columns: Vec<(&Channels, Option<f64>)> =
-            rows.nuisances.iter().map(|column| (&column.values, column.prior_std)).collect();
-        columns.extend(rows.effects.iter().map(|column| (column, None)));
-        let precision = DVector::from_iterator(
-            columns.len(),
-            columns.iter().map(|(_, prior)| prior.map_or(0.0, |std| std.powi(-2))),
-        );
-        let nuisances = DMatrix::from_columns(
-            &columns.iter().map(|(column, _)| weighted(column, sigma)).collect::<Vec<_>>(),
-        );
-        let mut normal = nuisances.tr_mul(&nuisances);
-        for (index, precision) in precision.iter().enumerate() {
-            normal[(index, index)] += precision;
-        }
+        Self::with(rows, sigma, READINGS * OF_KERNEL)
+    }
+
+    /// The same if this many rows count as one independent measurement of a slow error.
+    fn with(rows: &Rows, sigma: &[f64; CHANNELS], alike: f64) -> Self {
+        let of_nuisances = rows.nuisances.iter().map(|column| &column.values);
+        let columns: Vec<DVector<f64>> =
+            of_nuisances.chain(&rows.effects).map(|column| weighted(column, sigma)).collect();
+        let priors = Priors::of(&rows.nuisances, columns.len(), alike);
+        let nuisances = DMatrix::from_columns(&columns);
+        let mut normal = nuisances.tr_mul(&nuisances) + DMatrix::from_diagonal(&priors.precision);
         // a column that is nowhere excited drops out
         let most = normal.diagonal().max();
         for index in 0..normal.nrows() {
@@ -113,7 +112,7 @@ impl Weighted {
             rows: rows.len(),
             sigma: *sigma,
             nuisances,
-            precision,
+            prior_meat: priors.meat,
             normal: normal.cholesky(),
             left: DVector::zeros(0),
             energy: 0.0,
@@ -164,7 +163,7 @@ impl Weighted {
         };
         let theta = normal.solve(&self.nuisances.tr_mul(&y));
         let bread = normal.inverse();
-        let prior = DMatrix::from_diagonal(&self.precision);
+        let prior = DMatrix::from_diagonal(&self.prior_meat);
         let gammas = self.gammas(&self.left);
         let by_residual = &bread * (self.meat_of_residual(&self.nuisances, &gammas) + &prior) * &bread;
         let by_score = &bread * (self.meat_of_scores(&self.nuisances, &self.left, &gammas) + &prior) * &bread;
@@ -266,9 +265,9 @@ impl Weighted {
         // X' M Z = X'Z A^-1 P
         let cross = normal.solve(&self.nuisances.tr_mul(plain));
         let mut out = DMatrix::zeros(size, size);
-        for (index, precision) in self.precision.iter().enumerate().filter(|(_, p)| **p > 0.0) {
+        for (index, variance) in self.prior_meat.iter().enumerate().filter(|(_, p)| **p > 0.0) {
             let row = cross.row(index);
-            out += row.transpose() * row * *precision;
+            out += row.transpose() * row * *variance;
         }
         out
     }

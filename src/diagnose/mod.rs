@@ -27,6 +27,7 @@ mod mounting;
 mod named;
 mod nuisances;
 mod other_forms;
+mod priors;
 mod pruning;
 mod recorded;
 mod rotors;
@@ -41,6 +42,7 @@ mod spin_up;
 mod tested;
 mod timing;
 mod trace;
+mod velocity_error;
 pub mod wording;
 mod words;
 

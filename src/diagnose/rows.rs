@@ -13,6 +13,7 @@ use super::rotors::{RotorMotion, Thrusts};
 use super::sensors::{is_of_sensors, true_motion, true_readings};
 use super::signature::EffectTerm;
 use super::trace::Trace;
+use super::velocity_error::velocity_error;
 use crate::physics::{Model, PhysicsError, Wrench};
 use nalgebra::{Vector3, Vector4};
 use rayon::prelude::*;
@@ -55,8 +56,8 @@ impl Rows {
     pub fn new(recorded: &[Trace], base: &Base) -> Result<Self, PhysicsError> {
         let model = base.model(&[])?;
         let flights = &true_motion(recorded, base)[..];
-        let parts: Vec<(Along, Channels, Vec<NuisanceColumn>)> =
-            flights.par_iter().map(|trace| one_flight(trace, base, &model)).collect();
+        let parts: Vec<Part> =
+            flights.par_iter().map(|trace| one_flight((trace, flights.len()), base, &model)).collect();
         let mut rows = Self {
             time_s: Vec::new(),
             runs: Vec::new(),
@@ -72,14 +73,18 @@ impl Rows {
             squares +=
                 trace.centers.iter().map(|&c| torque[c].component_mul(&torque[c])).sum::<Vector3<f64>>();
         }
-        for (trace, (along, residual, nuisances)) in flights.iter().zip(parts) {
+        let count: usize = flights.iter().map(Trace::rows).sum();
+        let mut of_one_flight = Vec::new();
+        for (trace, Part { along, residual, nuisances, own }) in flights.iter().zip(parts) {
             let before = rows.time_s.len();
+            of_one_flight.extend(own.into_iter().map(|column| column.among(before, count)));
             rows.time_s.extend(trace.centers.iter().map(|&center| trace.grid.time_s(center)));
             rows.runs.extend(trace.runs.iter().map(|run| run.start + before..run.end + before));
             append(&mut rows.residual, &residual);
             rows.nuisances = joined(rows.nuisances, before, nuisances, trace.rows());
             rows.flights.push(along);
         }
+        rows.nuisances.append(&mut of_one_flight);
         rows.torque_rms = std::array::from_fn(|axis| (squares[axis] / rows.len().max(1) as f64).sqrt());
         rows.effects = rows.present_columns((recorded, flights), base)?;
         Ok(rows)
@@ -228,8 +233,10 @@ impl Rows {
 /// The residual for the true motion of the flights.
 pub(super) fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
     let model = base.model(&[])?;
-    let parts: Vec<Channels> =
-        true_motion(recorded, base).par_iter().map(|trace| one_flight(trace, base, &model).1).collect();
+    let parts: Vec<Channels> = true_motion(recorded, base)
+        .par_iter()
+        .map(|trace| one_flight((trace, recorded.len()), base, &model).residual)
+        .collect();
     let mut out = Channels::default();
     parts.iter().for_each(|part| append(&mut out, part));
     Ok(out)
@@ -239,16 +246,28 @@ fn weak_wrench(trace: &Trace, forces: &[Vector3<f64>], torques: &[Vector3<f64>])
     channels(trace, trace.weak_vector(0, forces), trace.weak_vector(0, torques))
 }
 
-/// Residual and nuisances of one flight.
-fn one_flight(trace: &Trace, base: &Base, model: &Model) -> (Along, Channels, Vec<NuisanceColumn>) {
+/// One flight's share of the rows.
+struct Part {
+    along: Along,
+    residual: Channels,
+    /// the same ones in every flight
+    nuisances: Vec<NuisanceColumn>,
+    /// of this flight alone
+    own: Vec<NuisanceColumn>,
+}
+
+fn one_flight((trace, flights): (&Trace, usize), base: &Base, model: &Model) -> Part {
     let (felt, commanded) = trace.by_commands(&model.airframe, base.latency);
     let (by_commands, (motion, by_motion)) =
         rayon::join(|| wrench_along(model, trace, &commanded), || moved_by(trace, (base, model), &commanded));
-    let (residual, nuisances) = rayon::join(
+    let (residual, (nuisances, own)) = rayon::join(
         || residual(trace, base, model, (&felt, &commanded, &motion), (&by_commands, &by_motion)),
-        || nuisances(trace, base, &commanded, &by_commands),
+        || {
+            let own = velocity_error((trace, flights), (base, model), &commanded, &by_commands);
+            (nuisances(trace, base, &commanded, &by_commands), own)
+        },
     );
-    (Along { felt, commanded, motion, by_commands, by_motion }, residual, nuisances)
+    Part { along: Along { felt, commanded, motion, by_commands, by_motion }, residual, nuisances, own }
 }
 
 /// `m K(a) - K(F)` and `D(J w) + K(w x J w) - K(M)`, with the effects' part from the smooth thrusts.

@@ -64,7 +64,7 @@ mod tests {
             ("..", "log"),
             ("", "log"),
             ("/", "log"),
-            ("a/\u{0}\u{1b}[2Jx.bin", "__2Jx.bin"),
+            ("a/\u{0}\u{1b}[2Jx.bin", "___2Jx.bin"),
             ("..\\..\\boot.ini", "boot.ini"),
             ("/logs/.bashrc", "bashrc"),
             ("/logs/-rf.bin", "rf.bin"),

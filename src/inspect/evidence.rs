@@ -26,6 +26,8 @@ pub(super) struct Evidence<'a> {
     pub armed: Option<bool>,
     /// the log's messages carry times
     pub timed: bool,
+    /// the log ends before its first message with a time
+    pub ends_early: bool,
     /// how to make the vehicle log more, where it wrote the log
     pub logging: Option<&'static str>,
     /// how to make it log more on board, where the log is of a link
@@ -89,6 +91,9 @@ impl Evidence<'_> {
         }
         if !self.timed {
             return Some("its messages carry no time of the vehicle's".into());
+        }
+        if self.streams.is_empty() && self.ends_early {
+            return Some("it ends before its first sample".into());
         }
         if self.streams.is_empty() {
             return Some("it holds no stream that is known here".into());

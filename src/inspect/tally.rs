@@ -187,6 +187,7 @@ impl Pass {
             numbers_held_max: self.numbers_held_max,
             kind: self.report.kind(),
             timed: self.report.is_timed(),
+            ends_early: self.report.ends_early(),
             logging: logging(&self.report, self.tally.autopilot),
         };
         found.inspection(self.tally, self.assessment, vehicle)
@@ -239,6 +240,7 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         numbers_held_max: recording.streams.values().map(|s| s.values.len() + s.len()).sum(),
         kind: report.kind(),
         timed: report.is_timed(),
+        ends_early: report.ends_early(),
         logging: logging(report, recording.autopilot),
     };
     found.inspection(tally, assessor.finish(), vehicle)
@@ -256,6 +258,8 @@ struct Found {
     kind: Option<VehicleKind>,
     /// messages carry times
     timed: bool,
+    /// it ends before the first of them
+    ends_early: bool,
     /// of a log that the vehicle wrote: how to make it log more
     logging: Option<&'static str>,
 }
@@ -314,6 +318,7 @@ impl Found {
             kind: self.kind,
             armed,
             timed: self.timed,
+            ends_early: self.ends_early,
             logging: self.logging,
             own_log: self.autopilot.stack().map(|stack| stack.logging),
         };

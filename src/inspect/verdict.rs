@@ -45,6 +45,7 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
         let flown = evidence.armed.is_none() || evidence.assessment.flight.airborne_s > 0.0;
         let next = match evidence.actuator_hz() {
             _ if !evidence.timed => "ArduPilot writes them since 2014.".to_owned(),
+            _ if evidence.ends_early => "It was cut off: give the whole log.".to_owned(),
             _ if evidence.streams.is_empty() => "What it holds is listed below.".to_owned(),
             _ if !flown => "Fly a trajectory of `mavid plan` with it recording.".to_owned(),
             None => {

@@ -65,8 +65,18 @@ impl ReadReport {
     /// Messages carry times of the vehicle's: some that ArduPilot wrote until 2013 do not.
     #[must_use]
     pub fn is_timed(&self) -> bool {
-        let has_times = |log: &OnboardReport| log.topics.iter().any(|topic| topic.span_s.is_some());
-        self.onboard().is_none_or(|log| log.topics.is_empty() || has_times(log))
+        let untimed = |oddity: &Oddity| matches!(oddity, Oddity::WithoutTime { .. });
+        self.holds_times() || !self.oddities.iter().any(untimed)
+    }
+
+    /// It ends before its first message with a time, as a log that was cut off does.
+    #[must_use]
+    pub fn ends_early(&self) -> bool {
+        self.onboard().is_some() && !self.holds_times() && self.is_timed()
+    }
+
+    fn holds_times(&self) -> bool {
+        self.onboard().is_none_or(|log| log.topics.iter().any(|topic| topic.span_s.is_some()))
     }
 
     /// What kind of vehicle the log is of, where it says so.

@@ -130,6 +130,8 @@ fn refuse_no_flight(path: &Path, opened: &OpenedFlights) -> Result<(), StudyErro
     let mut flights = opened.flights.flights.iter();
     let why = if !opened.report.is_timed() {
         "expected a log with times, got one whose messages carry no time of the vehicle's"
+    } else if opened.report.ends_early() {
+        "expected a whole log, got one that ends before its first sample"
     } else if flights.all(|flight| Said::of(&flight.recording).never_armed()) {
         "expected a flight, got the log of a vehicle that was never armed"
     } else {

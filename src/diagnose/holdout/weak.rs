@@ -90,7 +90,8 @@ fn without_known_nuisances(own: &Fitted, identified: &Fitted) -> Channels {
     let mut residual = own.rows.residual.clone();
     for (index, column) in own.rows.nuisances.iter().enumerate() {
         let share = match column.nuisance {
-            Nuisance::Mass | Nuisance::Inertia(_) | Nuisance::Latency => continue,
+            // a model without drag has no column for the velocity's error: neither model is given one
+            Nuisance::Mass | Nuisance::Inertia(_) | Nuisance::Latency | Nuisance::VelocityError => continue,
             Nuisance::AccelerometerBias(_) | Nuisance::Level(_) => own.coefficients[index],
             Nuisance::ForceLatency | Nuisance::Tilt(_) | Nuisance::Jitter => {
                 let columns = &identified.rows.nuisances;

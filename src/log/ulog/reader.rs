@@ -124,7 +124,11 @@ impl<R: Read> UlogReader<R> {
             _ => Err(LogError::WrongContent {
                 format: "PX4 log",
                 expected: "the letters ULog, a version and a stamp",
-                came: format!("a file that begins with {:02x?}", &sight[..sight.len().min(HEADER_BYTES)]),
+                came: if sight.starts_with(&MAGIC) {
+                    format!("the first {} bytes of one: give the whole log", sight.len())
+                } else {
+                    format!("a file that begins with {:02x?}", &sight[..sight.len().min(HEADER_BYTES)])
+                },
             }),
         }
     }
