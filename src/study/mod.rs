@@ -5,10 +5,12 @@
 //! [`Progress`].
 
 mod after_flight;
+mod both_logs;
 mod correlation;
 mod effects;
 mod error;
 mod explain;
+mod flight;
 mod flights;
 mod identify;
 mod input;
