@@ -35,8 +35,8 @@ impl ClockOffset {
 const COARSE_S: f64 = 0.2;
 /// Step of the grid that interpolates the faster attitude, s.
 const FINE_S: f64 = 0.005;
-/// Least time that both logs must cover, s, and least share of the shorter one.
-const LEAST_OVERLAP: (f64, f64) = (10.0, 0.5);
+/// Least number of coarse steps that both logs must cover (10 s), beside half of the shorter one.
+const LEAST_STEPS: usize = 50;
 /// Largest share of the attitude's variance by which two logs of one flight differ. Measured with both logs of flights of both
 /// autopilots' simulators: at most 6e-6 for the same flight, at least 1.5e-2 for the same trajectory flown twice.
 const MOST_DIFFERENT: f64 = 5e-4;
@@ -163,12 +163,15 @@ fn mean(axes: &[Axes]) -> Axes {
 fn coarse(first: &Stream, second: &Stream) -> Option<f64> {
     let grid_of = |stream: &Stream| {
         let (from_s, to_s) = (*stream.time_s.first()?, *stream.time_s.last()?);
-        (to_s - from_s >= LEAST_OVERLAP.0).then(|| Grid::covering(from_s, to_s, COARSE_S))
+        (to_s > from_s).then(|| Grid::covering(from_s, to_s, COARSE_S))
     };
     let (of_first, of_second) = (grid_of(first)?, grid_of(second)?);
     let (a, b) = (axes(first, &of_first)?, axes(second, &of_second)?);
-    let shorter = a.len().min(b.len()) as f64;
-    let least = (LEAST_OVERLAP.0 / COARSE_S).max(LEAST_OVERLAP.1 * shorter) as usize;
+    let shorter = a.len().min(b.len());
+    let least = LEAST_STEPS.max(shorter / 2);
+    if shorter < least {
+        return None;
+    }
     // the first steps of each that the other does not have
     let b_first = (1..b.len().saturating_sub(least) + 1).map(|j| (0, j));
     let a_first = (0..a.len().saturating_sub(least) + 1).map(|i| (i, 0));
@@ -188,27 +191,27 @@ fn coarse(first: &Stream, second: &Stream) -> Option<f64> {
 
 /// An attitude between its samples.
 struct Fine {
-    grid: Grid,
+    /// s, [`FINE_S`] apart
+    time_s: Vec<f64>,
     axes: Vec<Axes>,
 }
 
 impl Fine {
     fn of(stream: &Stream) -> Option<Self> {
         let grid = Grid::covering(*stream.time_s.first()?, *stream.time_s.last()?, FINE_S);
-        Some(Self { axes: axes(stream, &grid)?, grid })
+        Some(Self {
+            axes: axes(stream, &grid)?,
+            time_s: (0..grid.count).map(|index| grid.time_s(index)).collect(),
+        })
     }
 
     /// Value and slope (1/s) at an instant, s; `None` outside.
     fn at(&self, time_s: f64) -> Option<(Axes, Axes)> {
-        let place = (time_s - self.grid.time_s(0)) / self.grid.step_s;
-        if !(0.0..self.axes.len() as f64 - 1.0).contains(&place) {
-            return None;
-        }
-        let left = place as usize;
+        let left = self.time_s.partition_point(|at_s| *at_s <= time_s).checked_sub(1)?;
         let (from, to) = (self.axes.get(left)?, self.axes.get(left + 1)?);
-        let share = place - left as f64;
+        let share = (time_s - self.time_s[left]) / FINE_S;
         let value = [0, 1].map(|axis| from[axis].lerp(&to[axis], share));
-        Some((value, [0, 1].map(|axis| (to[axis] - from[axis]) / self.grid.step_s)))
+        Some((value, [0, 1].map(|axis| (to[axis] - from[axis]) / FINE_S)))
     }
 }
 
