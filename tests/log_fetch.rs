@@ -17,7 +17,7 @@ use mavid::fetch::{
 };
 use mavid::log::{self, Input, OpenOptions};
 use mavid::sitl::{Firmware, Settings};
-use mavid::study::better_log;
+use mavid::study::FlightLogs;
 use mavid::wire::file_transfer::{FileSum, Transfer, operation, refusal};
 use mavid::wire::{ComponentId, Frame, SystemId, Vehicle, checksum};
 use mavlink::dialects::ardupilotmega::MavMessage;
@@ -474,7 +474,7 @@ fn parameters_of_logging_are_read_and_set_as_each_autopilot_encodes_them() {
         let mut embedded = Embedded(Ground::of(kind));
         embedded.0.wait(1.0);
         let mut way = Way::new(4, 0.2, &embedded);
-        let mut read = |way: &mut Way, embedded: &mut Embedded| {
+        let read = |way: &mut Way, embedded: &mut Embedded| {
             let mut reading = ReadParameters::new(vehicle(autopilot), &[name, "NOT_THERE"]).unwrap();
             way.talk(&mut reading, embedded, |_| false).unwrap();
             reading.known()
@@ -494,8 +494,8 @@ fn parameters_of_logging_are_read_and_set_as_each_autopilot_encodes_them() {
 }
 
 #[test]
-fn the_log_with_the_higher_rates_is_taken_if_it_is_of_the_same_flight() {
-    let out = folder("better");
+fn the_vehicles_own_log_is_analysed_with_the_recording_if_both_are_of_one_flight() {
+    let out = folder("flight_logs");
     let write = |name: &str, parameters: &[(&str, f64)]| {
         let parameters = parameters.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
         let mut embedded = Embedded::flown(Settings { parameters, ..settings(Firmware::PX4) });
@@ -506,13 +506,20 @@ fn the_log_with_the_higher_rates_is_taken_if_it_is_of_the_same_flight() {
         std::fs::write(&path, bytes).unwrap();
         path
     };
-    let slow = write("slow.ulg", &[]);
-    let fast = write("fast.ulg", &[("SDLOG_PROFILE", 9.0)]);
-    let better = better_log(&slow, &fast);
-    assert!(better.is_onboard && better.path == fast, "{better:?}");
-    assert!(better.why.contains("commands at 250 Hz"), "{}", better.why);
-    let worse = better_log(&fast, &slow);
-    assert!(!worse.is_onboard && worse.path == fast, "{worse:?}");
-    std::fs::write(out.join("none.ulg"), b"nothing").unwrap();
-    assert!(!better_log(&slow, &out.join("none.ulg")).is_onboard);
+    // the same flight, logged by two profiles
+    let (slow, fast) = (write("slow.ulg", &[]), write("fast.ulg", &[("SDLOG_PROFILE", 9.0)]));
+    let both = FlightLogs::of(&slow, None, Some(&fast));
+    assert_eq!(both.logs, [slow.clone(), fast]);
+    assert!(both.why.unwrap().contains("are analysed together"));
+    let other = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/px4_flight.ulg");
+    let alone = FlightLogs::of(&slow, None, Some(&other));
+    assert_eq!(alone.logs, [slow.clone()]);
+    assert!(alone.why.unwrap().contains("is not of this flight"));
+    let damaged = out.join("none.ulg");
+    std::fs::write(&damaged, b"nothing").unwrap();
+    let alone = FlightLogs::of(&slow, None, Some(&damaged));
+    assert_eq!((alone.logs, alone.why.unwrap().contains("cannot be read")), (vec![slow.clone()], true));
+    let kept = FlightLogs::of(&damaged, None, Some(&slow));
+    assert_eq!((kept.logs, kept.why.unwrap().contains("analysed alone")), (vec![slow.clone()], true));
+    assert_eq!(FlightLogs::of(&slow, None, None), FlightLogs { logs: vec![slow], why: None });
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use mavid::fly;
 use mavid::report::{IdentificationDocument, explanation_answer, identification_text};
-use mavid::study::{AfterFlight, BetterLog, ExplainStudy, IdentifyStudy, after_flight, better_log};
+use mavid::study::{AfterFlight, ExplainStudy, FlightLogs, IdentifyStudy, after_flight};
 use mavid::text;
 use mavid::wire::SystemId;
 
@@ -34,7 +34,7 @@ pub struct Analysis {
     /// what of it is in no file, why, and how it is made again: of the parameters, and of the explanation
     pub unwritten: [Option<String>; 2],
     folder: PathBuf,
-    /// the vehicle's own log, where it is what was analysed
+    /// the vehicle's own log, where it was analysed
     pub onboard: Option<PathBuf>,
 }
 
@@ -64,18 +64,9 @@ impl Analysis {
     ) -> Self {
         let notes = Notes::default();
         let radio = folder.join(fly::TLOG);
-        let better = onboard.map(|onboard| better_log(&radio, onboard));
-        if let Some(BetterLog { is_onboard, why, .. }) = &better {
-            let which = if *is_onboard { "the vehicle's own log" } else { "the recording of the link" };
-            tell(Word::Message(format!("{which} is analysed: {why}")));
-        }
-        let onboard = better.filter(|better| better.is_onboard).map(|better| better.path);
-        // a log that the vehicle wrote is of one vehicle
-        let (log, system) = match &onboard {
-            Some(log) => (log.clone(), None),
-            None => (radio, system),
-        };
-        let AfterFlight { identified, explained } = after_flight(&log, vehicle, system, &notes);
+        let FlightLogs { logs, why } = FlightLogs::of(&radio, system, onboard);
+        why.into_iter().for_each(|why| tell(Word::Message(why)));
+        let AfterFlight { identified, explained } = after_flight(&logs, vehicle, system, &notes);
         notes.words().into_iter().for_each(&mut *tell);
         let identified = identified.map_err(|error| CommandError::from(error).to_string());
         let explained = explained.map_err(|error| CommandError::from(error).to_string());
@@ -83,12 +74,13 @@ impl Analysis {
         for (what, failure) in failures {
             failure.into_iter().for_each(|failure| tell(Word::Error(format!("not {what}: {failure}"))));
         }
-        let written = Written { folder, log: &log, vehicle, system };
+        let written = Written { folder, logs: &logs, vehicle, system };
         let unwritten = [
             identified.as_ref().ok().and_then(|study| written.parameters(study)),
             explained.as_ref().ok().and_then(|study| written.explanation(study)),
         ];
         unwritten.iter().flatten().for_each(|why| tell(Word::Error(why.clone())));
+        let onboard = onboard.filter(|onboard| logs.iter().any(|log| log == onboard)).map(Path::to_owned);
         Self { identified, explained, unwritten, folder: folder.to_owned(), onboard }
     }
 
@@ -131,7 +123,7 @@ impl Analysis {
 /// Where the results of a flight are written.
 struct Written<'a> {
     folder: &'a Path,
-    log: &'a Path,
+    logs: &'a [PathBuf],
     vehicle: &'a Path,
     system: Option<SystemId>,
 }
@@ -166,7 +158,7 @@ impl Written<'_> {
             "{error}; missing: {}; once this is corrected, make them by: mavid {verb} {} \
              --vehicle {} --out {}{}",
             missing.join(", "),
-            text::path(&self.log),
+            self.logs.iter().map(|log| text::path(&log)).collect::<Vec<_>>().join(" "),
             text::path(&self.vehicle),
             text::path(&out),
             self.system.map_or_else(String::new, |system| format!(" --system-id {system}"))

@@ -219,7 +219,7 @@ impl Weighted {
         let normal = plain.tr_mul(&partialled);
         let normal = 0.5 * (&normal + normal.transpose());
         let inverse = normal.clone().cholesky()?.inverse();
-        let theta = &inverse * partialled.tr_mul(&self.left);
+        let theta = &inverse * plain.tr_mul(&self.left);
         let energy = theta.dot(&(&normal * &theta));
         let after = &self.left - &partialled * &theta;
         let prior = self.prior_part(&plain);

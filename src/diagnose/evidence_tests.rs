@@ -90,8 +90,6 @@ fn nuisances_have_the_coefficients_of_ridge_regression() {
 }
 
 #[test]
-#[ignore = "the score of a tested column is taken from its partialled column and the partialled residual, which \
-            partials twice: with something known of a nuisance theta is [0.33597, -0.39381]"]
 fn what_is_known_of_a_nuisance_counts_once() {
     let (rows, tested) = problem(Some(0.1));
     let found = Weighted::at(&rows, &SIGMA).test(&tested).unwrap();

@@ -43,7 +43,24 @@ impl Fitted {
                 *value = f64::NAN;
             }
         }
-        Estimated { theta, covariance, explained: None }
+        Estimated { theta, covariance, explained: Some(self.explained_torques()), by_wider_window: None }
+    }
+
+    /// Share of the variance of the torques about body x, y, z that the inertia explains, without the part of nuisances and
+    /// effects.
+    fn explained_torques(&self) -> [f64; 3] {
+        let theta = theta_of(&self.base.vehicle.body);
+        std::array::from_fn(|axis| {
+            let channel = 3 + axis;
+            let left = DVector::from_vec(self.weighted.left_of(channel));
+            let mut with_body = left.clone();
+            for column in &self.rows.nuisances {
+                let Nuisance::Inertia(index) = column.nuisance else { continue };
+                let along = column.values[channel].iter().map(|value| value * theta[1 + index]);
+                with_body += DVector::from_iterator(left.len(), along);
+            }
+            1.0 - left.variance() / with_body.variance().max(f64::MIN_POSITIVE)
+        })
     }
 
     /// Negative log-likelihood up to a constant: the sum over the rows of the logarithm of each channel's standard

@@ -161,6 +161,7 @@ fn fly_args(port: u16, vehicle: &Path, trajectory: &Path, folder: &Path) -> FlyA
         gate_speed: None,
         accept: Vec::new(),
         signing_key_file: None,
+        set_logging: false,
         fetch_log: false,
         no_fetch_log: true,
         plain: true,

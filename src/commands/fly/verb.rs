@@ -14,7 +14,7 @@ use crate::commands::last_word::{PATIENCE, within};
 use crate::commands::live::{self, Work};
 use crate::commands::log::{self, Fetching};
 use crate::commands::standard_error::StandardError;
-use crate::commands::words::Words;
+use crate::commands::words::{Word, Words};
 use crate::commands::{CommandError, Outcome, output};
 
 /// Messages and log lines while the view is shown, in the folder of the flight.
@@ -34,6 +34,10 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
         return Err(CommandError::Input(expected.to_owned()));
     }
     let ride = ride(args)?;
+    let mut notes = Vec::new();
+    let set = log::before_flight(args, &mut |note| notes.push(note));
+    notes.drain(..).for_each(|word: Word| word.say());
+    set?;
     let how = Watch {
         drawn: drawn.then(|| stderr.clone()),
         log: args.out.join(LOG),
@@ -46,7 +50,6 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
     said.say(words(&record));
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
     let fetching = if record.outcome.ending == Ending::Landed { Fetching::of(args) } else { Fetching::Not };
-    let mut notes = Vec::new();
     let onboard = log::after_flight(args, record.system, fetching, &mut |note| notes.push(note));
     said.say(std::mem::take(&mut notes));
     let flown = (&*args.out, landed, onboard.as_deref());

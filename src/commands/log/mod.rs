@@ -9,5 +9,5 @@ mod session;
 mod state;
 mod verb;
 
-pub use flown::{Fetching, after_flight};
+pub use flown::{Fetching, after_flight, before_flight};
 pub use verb::run;

@@ -30,6 +30,8 @@ pub struct Given {
     pub inputs: Vec<InputFile>,
     /// where their signals come from
     pub quality: Vec<Quality>,
+    /// Ixx, Iyy, Izz of the rigid body by a window of twice the width, as shares of those by the usual one
+    pub inertia_by_wider_window: [f64; 3],
     /// settings of the method
     pub settings: ExplainSettings,
     /// s left out at the beginning of each flight
@@ -155,7 +157,7 @@ impl ExplainStudy {
         let before = estimates(&self.explanation.search.before);
         let after = estimates(self.fitted());
         let nominal = Nominal::of(&self.given.vehicle);
-        let estimated = self.fitted().rigid_body();
+        let estimated = self.fitted().rigid_body().with_wider_window(self.given.inertia_by_wider_window);
         let not_determined = |index| match finding(&estimated, &nominal, index) {
             Finding::NotDetermined { reason } => Some(reason),
             Finding::Determined { .. } | Finding::Given { .. } => None,
