@@ -6,6 +6,8 @@
 #[path = "support/ground.rs"]
 mod ground;
 
+mod support;
+
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -496,30 +498,21 @@ fn parameters_of_logging_are_read_and_set_as_each_autopilot_encodes_them() {
 #[test]
 fn the_vehicles_own_log_is_analysed_with_the_recording_if_both_are_of_one_flight() {
     let out = folder("flight_logs");
-    let write = |name: &str, parameters: &[(&str, f64)]| {
-        let parameters = parameters.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
-        let mut embedded = Embedded::flown(Settings { parameters, ..settings(Firmware::PX4) });
-        let mut way = Way::new(1, 0.0, &embedded);
-        let log = way.list(&mut embedded, Autopilot::Px4, Protocol::Ftp).remove(0);
-        let (bytes, _) = way.bytes(&mut embedded, Autopilot::Px4, &log).unwrap();
-        let path = out.join(name);
-        std::fs::write(&path, bytes).unwrap();
-        path
-    };
-    // the same flight, logged by two profiles
-    let (slow, fast) = (write("slow.ulg", &[]), write("fast.ulg", &[("SDLOG_PROFILE", 9.0)]));
-    let both = FlightLogs::of(&slow, None, Some(&fast));
-    assert_eq!(both.logs, [slow.clone(), fast]);
-    assert!(both.why.unwrap().contains("are analysed together"));
+    let recording = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/p01_identify_0_25s.tlog");
     let other = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/px4_flight.ulg");
-    let alone = FlightLogs::of(&slow, None, Some(&other));
-    assert_eq!(alone.logs, [slow.clone()]);
+    let alone = FlightLogs::of(&recording, None, Some(&other));
+    assert_eq!(alone.logs, [recording.clone()]);
     assert!(alone.why.unwrap().contains("is not of this flight"));
     let damaged = out.join("none.ulg");
     std::fs::write(&damaged, b"nothing").unwrap();
-    let alone = FlightLogs::of(&slow, None, Some(&damaged));
-    assert_eq!((alone.logs, alone.why.unwrap().contains("cannot be read")), (vec![slow.clone()], true));
-    let kept = FlightLogs::of(&damaged, None, Some(&slow));
-    assert_eq!((kept.logs, kept.why.unwrap().contains("analysed alone")), (vec![slow.clone()], true));
-    assert_eq!(FlightLogs::of(&slow, None, None), FlightLogs { logs: vec![slow], why: None });
+    let alone = FlightLogs::of(&recording, None, Some(&damaged));
+    assert_eq!((alone.logs, alone.why.unwrap().contains("cannot be read")), (vec![recording.clone()], true));
+    let kept = FlightLogs::of(&damaged, None, Some(&other));
+    assert_eq!((kept.logs, kept.why.unwrap().contains("analysed alone")), (vec![other], true));
+    assert_eq!(FlightLogs::of(&recording, None, None), FlightLogs { logs: vec![recording], why: None });
+    let Some(shared) = support::shared() else { return };
+    let [link, own] = ["ap03.tlog", "ap03.bin"].map(|name| shared.join("onboard/sitl").join(name));
+    let both = FlightLogs::of(&link, None, Some(&own));
+    assert_eq!(both.logs, [link, own]);
+    assert!(both.why.unwrap().contains("are analysed together"));
 }
