@@ -501,7 +501,7 @@ fn the_vehicles_own_log_is_analysed_with_the_recording_if_both_are_of_one_flight
     let recording = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/p01_identify_0_25s.tlog");
     let other = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/px4_flight.ulg");
     let alone = FlightLogs::of(&recording, None, Some(&other));
-    assert_eq!(alone.logs, [recording.clone()]);
+    assert_eq!(alone.logs, std::slice::from_ref(&recording));
     assert!(alone.why.unwrap().contains("is not of this flight"));
     let damaged = out.join("none.ulg");
     std::fs::write(&damaged, b"nothing").unwrap();
