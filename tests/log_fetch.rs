@@ -6,6 +6,8 @@
 #[path = "support/ground.rs"]
 mod ground;
 
+mod support;
+
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -13,10 +15,11 @@ use ground::{Ground, settings};
 use mavid::autopilot::Autopilot;
 use mavid::fetch::{
     Begun, Checked, Dialogue, Download, FetchError, Fetched, List, Part, PartError, Place, Protocol,
-    RemoteLog, Sum, Survey, Wanted,
+    ReadParameters, RemoteLog, SetParameters, Sum, Survey, Wanted,
 };
 use mavid::log::{self, Input, OpenOptions};
 use mavid::sitl::{Firmware, Settings};
+use mavid::study::FlightLogs;
 use mavid::wire::file_transfer::{FileSum, Transfer, operation, refusal};
 use mavid::wire::{ComponentId, Frame, SystemId, Vehicle, checksum};
 use mavlink::dialects::ardupilotmega::MavMessage;
@@ -462,4 +465,54 @@ fn log_messages_that_contradict_themselves_are_held_to_the_first() {
     assert_eq!(logs, [expected]);
     let error = way.bytes(&mut Numbers, Autopilot::ArduPilot, &logs[0]).unwrap_err();
     assert_eq!(error, FetchError::Short { stated: 500, came: 200 });
+}
+
+#[test]
+fn parameters_of_logging_are_read_and_set_as_each_autopilot_encodes_them() {
+    for (kind, name, wanted) in
+        [(Firmware::PX4, "SDLOG_PROFILE", 9.0), (Firmware::ARDUPILOT_4_7, "LOG_BITMASK", 438_271.0)]
+    {
+        let autopilot = kind.autopilot();
+        let mut embedded = Embedded(Ground::of(kind));
+        embedded.0.wait(1.0);
+        let mut way = Way::new(4, 0.2, &embedded);
+        let read = |way: &mut Way, embedded: &mut Embedded| {
+            let mut reading = ReadParameters::new(vehicle(autopilot), &[name, "NOT_THERE"]).unwrap();
+            way.talk(&mut reading, embedded, |_| false).unwrap();
+            reading.known()
+        };
+        let known = read(&mut way, &mut embedded);
+        let plan = kind.stack().log_plan(|name| known.value(name));
+        assert_eq!((plan.changes[0].parameter, plan.changes[0].wanted), (name, wanted));
+        assert_eq!(known.value("NOT_THERE"), None);
+        let mut setting = SetParameters::new(vehicle(autopilot), &known, &[(name, wanted)]).unwrap();
+        way.talk(&mut setting, &mut embedded, |_| false).unwrap();
+        assert_eq!(read(&mut way, &mut embedded).value(name), Some(wanted));
+        // one that stays what it was
+        let mut setting = SetParameters::new(vehicle(autopilot), &known, &[(name, wanted + 1.0)]).unwrap();
+        let error = Way::of_liar().talk(&mut setting, &mut Silent, |_| false).unwrap_err();
+        assert!(error.to_string().contains(&format!("expected {name} = {}", wanted + 1.0)), "{error}");
+    }
+}
+
+#[test]
+fn the_vehicles_own_log_is_analysed_with_the_recording_if_both_are_of_one_flight() {
+    let out = folder("flight_logs");
+    let recording = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/p01_identify_0_25s.tlog");
+    let other = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/px4_flight.ulg");
+    let alone = FlightLogs::of(&recording, None, Some(&other));
+    assert_eq!(alone.logs, std::slice::from_ref(&recording));
+    assert!(alone.why.unwrap().contains("is not of this flight"));
+    let damaged = out.join("none.ulg");
+    std::fs::write(&damaged, b"nothing").unwrap();
+    let alone = FlightLogs::of(&recording, None, Some(&damaged));
+    assert_eq!((alone.logs, alone.why.unwrap().contains("cannot be read")), (vec![recording.clone()], true));
+    let kept = FlightLogs::of(&damaged, None, Some(&other));
+    assert_eq!((kept.logs, kept.why.unwrap().contains("analysed alone")), (vec![other], true));
+    assert_eq!(FlightLogs::of(&recording, None, None), FlightLogs { logs: vec![recording], why: None });
+    let Some(shared) = support::shared() else { return };
+    let [link, own] = ["ap03.tlog", "ap03.bin"].map(|name| shared.join("onboard/sitl").join(name));
+    let both = FlightLogs::of(&link, None, Some(&own));
+    assert_eq!(both.logs, [link, own]);
+    assert!(both.why.unwrap().contains("are analysed together"));
 }

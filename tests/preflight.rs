@@ -473,6 +473,9 @@ fn ardupilot(changes: &[(&str, f64)]) -> Parameters {
         ("FLTMODE_CH", 5.0),
         ("FLTMODE1", 5.0),
         ("RC7_OPTION", 31.0),
+        ("LOG_BITMASK", 263_169.0),
+        ("LOG_BACKEND_TYPE", 1.0),
+        ("LOG_FILE_RATEMAX", 0.0),
     ];
     let mut parameters = Parameters { autopilot: Autopilot::ArduPilot, ..Parameters::default() };
     for (name, value) in values.iter().chain(changes) {

@@ -14,7 +14,7 @@ mod verbosity;
 pub use flight::{CheckName, FlyArgs, OriginName};
 pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 pub use model::{ExportArgs, ExportFormat, InitArgs, SimulateArgs, VehicleArgs, VehicleVerb};
-pub use onboard::{LogArgs, LogFetchArgs, LogListArgs, LogVerb, VehicleLinkArgs};
+pub use onboard::{LogArgs, LogFetchArgs, LogListArgs, LogPrepareArgs, LogVerb, VehicleLinkArgs};
 pub use plan::{CriterionName, PlanArgs};
 pub use recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ValidateArgs};
 pub use verb::{Cli, Verb};

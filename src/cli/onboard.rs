@@ -20,6 +20,8 @@ pub enum LogVerb {
     List(LogListArgs),
     /// Fetch a log from a vehicle; nothing on it is erased
     Fetch(LogFetchArgs),
+    /// Say what a vehicle will log in flight, set what an identification needs, or put it back
+    Prepare(LogPrepareArgs),
 }
 
 /// The vehicle whose logs are meant.
@@ -44,6 +46,20 @@ pub struct LogListArgs {
     /// how; without it by file transfer where the vehicle has it
     #[arg(long, value_enum)]
     pub protocol: Option<ProtocolName>,
+}
+
+/// Arguments of `mavid log prepare`.
+#[derive(Debug, Clone, Args)]
+pub struct LogPrepareArgs {
+    /// the vehicle
+    #[command(flatten)]
+    pub link: VehicleLinkArgs,
+    /// set the parameters that an identification needs, without asking
+    #[arg(long, conflicts_with = "restore")]
+    pub set_logging: bool,
+    /// put back what an earlier run changed on this vehicle
+    #[arg(long)]
+    pub restore: bool,
 }
 
 /// Arguments of `mavid log fetch`.

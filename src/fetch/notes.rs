@@ -52,6 +52,10 @@ pub enum NotesError {
     },
 }
 
+/// Beginning and end of the name of a vehicle's file.
+const PREFIX: &str = "logging-";
+const SUFFIX: &str = ".toml";
+
 /// The notes of one vehicle.
 #[derive(Debug, Clone)]
 pub struct Notes {
@@ -63,8 +67,15 @@ impl Notes {
     /// Of this vehicle, in this folder.
     #[must_use]
     pub fn of(folder: &Path, vehicle: &str) -> Self {
-        let path = folder.join(format!("logging-{}.toml", local_name(vehicle)));
+        let path = folder.join(format!("{PREFIX}{}{SUFFIX}", local_name(vehicle)));
         Self { path, vehicle: vehicle.to_owned() }
+    }
+
+    /// Whether a file of this name holds notes.
+    #[must_use]
+    pub fn are_at(path: &Path) -> bool {
+        let name = path.file_name().and_then(|name| name.to_str());
+        name.is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX))
     }
 
     /// Where they are.

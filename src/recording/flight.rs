@@ -36,3 +36,22 @@ pub struct Recording {
     /// what the vehicle said
     pub texts: Vec<(f64, String)>,
 }
+
+impl Recording {
+    /// Adds the streams of another log of the same flight, its stamps brought to this recording's clock by `to_own_s` (s to s).
+    /// Of streams and parameters that both have, its own stay.
+    pub fn add_log(&mut self, other: Recording, to_own_s: impl Fn(f64) -> f64) {
+        for (key, mut stream) in other.streams {
+            stream.time_s.iter_mut().for_each(|time_s| *time_s = to_own_s(*time_s));
+            self.streams.entry(key).or_insert(stream);
+        }
+        for (name, value) in other.parameters {
+            self.parameters.entry(name).or_insert(value);
+        }
+        self.clock_resets_s.extend(other.clock_resets_s.into_iter().map(&to_own_s));
+        self.estimator_resets_s.extend(other.estimator_resets_s.into_iter().map(&to_own_s));
+        if self.texts.is_empty() {
+            self.texts = other.texts.into_iter().map(|(time_s, text)| (to_own_s(time_s), text)).collect();
+        }
+    }
+}

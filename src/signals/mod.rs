@@ -13,6 +13,7 @@ mod filter;
 mod flight;
 mod grid;
 mod noise;
+mod one_flight;
 mod plausible;
 mod rebuilt;
 mod rotor_thrusts;
@@ -37,6 +38,7 @@ pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, Windowe
 pub use flight::{Quality, Reference, Signals};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use noise::white_level;
+pub use one_flight::{ClockOffset, clock_offset};
 pub use rotor_thrusts::{RotorThrusts, ThrustSource};
 pub use said::Said;
 pub use select::{best, best_rank, is_live, mean_rate_hz, median_period_s};

@@ -8,11 +8,9 @@ use crate::stats::median_step;
 /// and its outputs.
 pub(super) const MOTORS: &str = "actuator_motors";
 
-/// Message names of the attitude, best first.
+/// Message names of the attitude, best first. Where both are there, what the vehicle logged comes before what it sent: its
+/// stamps are exact to the microsecond and no sample is lost.
 const ATTITUDE: &[&str] = &[
-    "ATTITUDE_QUATERNION",
-    "ATTITUDE",
-    "ODOMETRY",
     "vehicle_attitude",
     "vehicle_odometry",
     "ANG",
@@ -21,18 +19,13 @@ const ATTITUDE: &[&str] = &[
     "NKF1",
     "EKF1",
     "AHR2",
+    "ATTITUDE_QUATERNION",
+    "ATTITUDE",
+    "ODOMETRY",
 ];
 
 /// Message names of the body rates, best first.
 const ANGULAR_RATE: &[&str] = &[
-    "HIGHRES_IMU",
-    "SCALED_IMU",
-    "RAW_IMU",
-    "SCALED_IMU2",
-    "SCALED_IMU3",
-    "ATTITUDE_QUATERNION",
-    "ATTITUDE",
-    "ODOMETRY",
     // as the sensor read it; what is filtered comes late
     "sensor_combined",
     "vehicle_imu",
@@ -44,15 +37,18 @@ const ANGULAR_RATE: &[&str] = &[
     "GYR1",
     "IMU2",
     "IMU3",
-];
-
-/// Message names of the specific force, best first.
-const SPECIFIC_FORCE: &[&str] = &[
     "HIGHRES_IMU",
     "SCALED_IMU",
     "RAW_IMU",
     "SCALED_IMU2",
     "SCALED_IMU3",
+    "ATTITUDE_QUATERNION",
+    "ATTITUDE",
+    "ODOMETRY",
+];
+
+/// Message names of the specific force, best first.
+const SPECIFIC_FORCE: &[&str] = &[
     "sensor_combined",
     "vehicle_imu",
     "vehicle_acceleration",
@@ -61,6 +57,11 @@ const SPECIFIC_FORCE: &[&str] = &[
     "ACC1",
     "IMU2",
     "IMU3",
+    "HIGHRES_IMU",
+    "SCALED_IMU",
+    "RAW_IMU",
+    "SCALED_IMU2",
+    "SCALED_IMU3",
 ];
 
 /// Message names of one quantity, best first. A source that is not listed comes last.
@@ -70,13 +71,13 @@ fn preference(quantity: Quantity) -> &'static [&'static str] {
         Quantity::AngularRate => ANGULAR_RATE,
         Quantity::SpecificForce => SPECIFIC_FORCE,
         Quantity::Position | Quantity::Velocity => &[
-            "LOCAL_POSITION_NED",
-            "ODOMETRY",
             "vehicle_local_position",
             "vehicle_odometry",
             "XKF1",
             "NKF1",
             "EKF1",
+            "LOCAL_POSITION_NED",
+            "ODOMETRY",
         ],
         // what was asked for comes before the autopilot's own setpoint, into which it feeds back noise
         Quantity::PositionSetpoint
@@ -91,7 +92,7 @@ fn preference(quantity: Quantity) -> &'static [&'static str] {
         Quantity::ActuatorCommand => {
             &["SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS", MOTORS, "actuator_outputs"]
         }
-        Quantity::RotorSpeed => &["ESC_STATUS", "ESC_TELEMETRY_1_TO_4", "esc_status"],
+        Quantity::RotorSpeed => &["esc_status", "ESC", "ESC_STATUS", "ESC_TELEMETRY_1_TO_4"],
         _ => &[],
     }
 }

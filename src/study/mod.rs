@@ -5,10 +5,12 @@
 //! [`Progress`].
 
 mod after_flight;
+mod both_logs;
 mod correlation;
 mod effects;
 mod error;
 mod explain;
+mod flight;
 mod flights;
 mod identify;
 mod input;
@@ -19,7 +21,7 @@ mod validate;
 mod vehicle;
 mod vehicle_given;
 
-pub use after_flight::{AfterFlight, after_flight};
+pub use after_flight::{AfterFlight, FlightLogs, after_flight};
 pub use correlation::Correlation;
 pub use effects::{effects_file, effects_of, effects_text, with_further, with_stated_lag};
 pub use error::StudyError;

@@ -11,7 +11,8 @@ use crate::text;
 use crate::vehicle::Vehicle;
 
 use super::StudyError;
-use super::flights::{Flight, ReadSettings, file_notes, unread};
+use super::flight::Flight;
+use super::flights::{ReadSettings, file_notes, unread};
 
 /// How a study is told of the vehicle.
 #[derive(Debug, Clone, PartialEq)]

@@ -12,8 +12,9 @@ use crate::cli::FlyArgs;
 use crate::commands::after_flight::Analysis;
 use crate::commands::last_word::{PATIENCE, within};
 use crate::commands::live::{self, Work};
+use crate::commands::log::{self, Fetching};
 use crate::commands::standard_error::StandardError;
-use crate::commands::words::Words;
+use crate::commands::words::{Word, Words};
 use crate::commands::{CommandError, Outcome, output};
 
 /// Messages and log lines while the view is shown, in the folder of the flight.
@@ -33,6 +34,10 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
         return Err(CommandError::Input(expected.to_owned()));
     }
     let ride = ride(args)?;
+    let mut notes = Vec::new();
+    let set = log::before_flight(args, &mut |note| notes.push(note));
+    notes.drain(..).for_each(|word: Word| word.say());
+    set?;
     let how = Watch {
         drawn: drawn.then(|| stderr.clone()),
         log: args.out.join(LOG),
@@ -44,9 +49,11 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
     let mut said = Words::new(view == View::Stuck);
     said.say(words(&record));
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
-    let mut notes = Vec::new();
-    let analysis =
-        Analysis::of((&args.out, landed), &args.vehicle, record.system, &mut |note| notes.push(note));
+    let fetching = if record.outcome.ending == Ending::Landed { Fetching::of(args) } else { Fetching::Not };
+    let onboard = log::after_flight(args, record.system, fetching, &mut |note| notes.push(note));
+    said.say(std::mem::take(&mut notes));
+    let flown = (&*args.out, landed, onboard.as_deref());
+    let analysis = Analysis::of(flown, &args.vehicle, record.system, &mut |note| notes.push(note));
     said.say(notes);
     let analysis = analysis?;
     let heard = view == View::Ended && said.are_heard();

@@ -68,7 +68,7 @@ pub async fn fetch(
     (out, watch): (&Path, Watch<'_>),
 ) -> Result<Option<Done>, CommandError> {
     output::folder(out)?;
-    let vehicle = offer.uid.clone().unwrap_or_else(|| format!("system {}", session.vehicle.system));
+    let vehicle = session.known_as(offer);
     let mut part = Part::open(out, &vehicle, log, ending(session.vehicle.autopilot)).map_err(of_part)?;
     let resumed = match part.begun() {
         Begun::Anew => 0,

@@ -2,7 +2,12 @@
 
 mod documents;
 mod fetching;
+mod flown;
+mod prepare;
+mod preparing;
 mod session;
+mod state;
 mod verb;
 
+pub use flown::{Fetching, after_flight, before_flight};
 pub use verb::run;

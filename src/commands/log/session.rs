@@ -43,6 +43,11 @@ pub struct Session {
 impl Session {
     /// Opens the link and waits for the vehicle; one that is armed is refused.
     pub async fn open(args: &VehicleLinkArgs) -> Result<Self, CommandError> {
+        Self::open_within(args, THERE_WITHIN).await
+    }
+
+    /// The same for a vehicle that has to be heard within this time.
+    pub async fn open_within(args: &VehicleLinkArgs, patience: Duration) -> Result<Self, CommandError> {
         let address = network::address("--connect", &args.connect)?;
         let signing = args.signing_key_file.as_deref().map(Signing::open).transpose();
         let signing = signing.map_err(|error| CommandError::Input(error.to_string()))?;
@@ -73,11 +78,11 @@ impl Session {
                     return Ok(Self { reader, writer, signals, start, vehicle, stack });
                 }
                 Choice::Refuse(why) => return Err(CommandError::Input(why)),
-                Choice::Wait if start.elapsed() > THERE_WITHIN => {
+                Choice::Wait if start.elapsed() > patience => {
                     return Err(CommandError::Failure(format!(
                         "{}: expected a HEARTBEAT of a vehicle within {} s, heard {}",
                         args.connect,
-                        THERE_WITHIN.as_secs(),
+                        patience.as_secs(),
                         roster.heard()
                     )));
                 }
@@ -149,6 +154,16 @@ impl Session {
     pub async fn say(&self, message: &mavlink::dialects::ardupilotmega::MavMessage) {
         let _ = self.writer.send_message(message);
         let _ = tokio::time::timeout(Duration::from_millis(500), self.writer.flush()).await;
+    }
+
+    /// By which number the vehicle is known from one run to the next.
+    pub fn known_as(&self, offer: &Offer) -> String {
+        offer.uid.clone().unwrap_or_else(|| format!("system-{}", self.vehicle.system))
+    }
+
+    /// Its clock.
+    pub fn clock(&self) -> Instant {
+        self.start
     }
 
     /// Since the link was opened.

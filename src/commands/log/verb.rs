@@ -1,10 +1,10 @@
 //! The runs of `mavid log list` and `mavid log fetch`.
 
-use mavid::fetch::{RemoteLog, Wanted};
+use mavid::fetch::{Offer, RemoteLog, Wanted};
 
 use super::documents::{FetchDocument, ListDocument, page};
-use super::fetching;
 use super::session::{Flow, Session};
+use super::{fetching, prepare, state};
 use crate::cli::{LogArgs, LogFetchArgs, LogListArgs, LogVerb};
 use crate::commands::progress::bytes_bar;
 use crate::commands::standard_error::StandardError;
@@ -20,6 +20,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &LogArgs) -> Result<Outcome
             match &args.verb {
                 LogVerb::List(args) => list(json, args).await,
                 LogVerb::Fetch(args) => fetch(json, &stderr, args).await,
+                LogVerb::Prepare(args) => prepare::run(json, args).await,
             }
         })
     })
@@ -28,6 +29,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &LogArgs) -> Result<Outcome
 async fn list(json: bool, args: &LogListArgs) -> Result<Outcome, CommandError> {
     let mut session = Session::open(&args.link).await?;
     let offer = session.offer().await?;
+    remind(&session, &offer);
     let asked = args.protocol.map(Into::into);
     let (protocol, logs, left_out) = fetching::list(&mut session, (&offer, asked), Wanted::All).await?;
     let document = ListDocument::new(&session, protocol.id(), &logs, left_out);
@@ -42,6 +44,7 @@ async fn list(json: bool, args: &LogListArgs) -> Result<Outcome, CommandError> {
 async fn fetch(json: bool, stderr: &StandardError, args: &LogFetchArgs) -> Result<Outcome, CommandError> {
     let mut session = Session::open(&args.link).await?;
     let offer = session.offer().await?;
+    remind(&session, &offer);
     let wanted = if args.id.is_some() { Wanted::All } else { Wanted::Last };
     let asked = args.protocol.map(Into::into);
     let (protocol, logs, _) = fetching::list(&mut session, (&offer, asked), wanted).await?;
@@ -63,6 +66,17 @@ async fn fetch(json: bool, stderr: &StandardError, args: &LogFetchArgs) -> Resul
         output::text(&page(&done))?;
     }
     Ok(Outcome::Done)
+}
+
+/// Says what an earlier run changed on the vehicle and did not put back.
+fn remind(session: &Session, offer: &Offer) {
+    let noted = state::notes(&session.known_as(offer)).map(|notes| notes.read());
+    // where there is no folder for notes there are none
+    match noted {
+        Ok(Ok(noted)) if !noted.is_empty() => output::message(&prepare::earlier(&noted)),
+        Ok(Err(error)) => output::warning(&error.to_string()),
+        _ => {}
+    }
 }
 
 fn chosen(logs: &[RemoteLog], id: Option<u32>) -> Result<&RemoteLog, CommandError> {

@@ -163,7 +163,8 @@ mod tests {
     }
 
     fn said(second: f64) -> String {
-        let input = || InputFile { path: "l".into(), sha256: "0".into(), notes: Vec::new() };
+        let input =
+            || InputFile { path: "l".into(), sha256: "0".into(), other_logs: Vec::new(), notes: Vec::new() };
         let quality = Quality {
             sources: Vec::new(),
             thrust_source: ThrustSource::Command,

@@ -1,0 +1,83 @@
+//! `mavid log` as a program, against `mavid sitl`: what it lists, fetches, sets and puts back.
+
+use std::io::{BufRead, BufReader};
+use std::net::TcpListener;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+
+use serde_json::Value;
+
+const MAVID: &str = env!("CARGO_BIN_EXE_mavid");
+
+/// A vehicle that logs from its start on, and where it listens.
+struct Sitl(Child, String);
+
+impl Sitl {
+    fn start(parameters: &[&str]) -> Self {
+        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let mut child = Command::new(MAVID)
+            .args(["sitl", "--listen", &format!("tcpin:127.0.0.1:{port}")])
+            .args(parameters.iter().flat_map(|parameter| ["--param", parameter]))
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut first = String::new();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut first).unwrap();
+        Self(child, format!("tcpout:127.0.0.1:{port}"))
+    }
+
+    /// `mavid --json log ...`: the document and what was said beside it.
+    fn log(&self, state: &Path, arguments: &[&str]) -> (Value, String) {
+        let Output { status, stdout, stderr } = Command::new(MAVID)
+            .args(["--json", "log"])
+            .args(arguments)
+            .args(["--connect", &self.1])
+            .env("MAVID_STATE_DIR", state)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&stderr).into_owned();
+        assert!(status.success(), "{arguments:?}: {said}");
+        (serde_json::from_slice(&stdout).unwrap(), said)
+    }
+}
+
+impl Drop for Sitl {
+    fn drop(&mut self) {
+        // it may have ended already
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+#[test]
+fn logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("log_commands");
+    let _ = std::fs::remove_dir_all(&folder);
+    let (state, out) = (folder.join("state"), folder.join("logs"));
+    let sitl = Sitl::start(&["SDLOG_MODE=2"]);
+    let (listed, _) = sitl.log(&state, &["list"]);
+    assert_eq!((&listed["autopilot"], &listed["protocol"]), (&"px4".into(), &"ftp".into()));
+    assert_eq!(listed["logs"].as_array().unwrap().len(), 1);
+    let (fetched, _) = sitl.log(&state, &["fetch", "--last", "--out", out.to_str().unwrap()]);
+    assert_eq!(fetched["checked"], "growing");
+    let log = fetched["log"].as_str().unwrap();
+    assert_eq!(std::fs::metadata(log).unwrap().len(), fetched["bytes"].as_u64().unwrap());
+    assert!(mavid::log::open(log, &mavid::log::OpenOptions::default()).is_ok());
+    let (said, _) = sitl.log(&state, &["prepare"]);
+    assert_eq!(said["changes"][0]["parameter"], "SDLOG_PROFILE");
+    assert_eq!((&said["changes"][0]["set"], &said["notes"]), (&false.into(), &Value::Null));
+    let (set, _) = sitl.log(&state, &["prepare", "--set-logging"]);
+    assert_eq!((&set["changes"][0]["set"], &set["restart"]), (&true.into(), &true.into()));
+    let notes = std::fs::read_to_string(set["notes"].as_str().unwrap()).unwrap();
+    assert!(notes.contains("SDLOG_PROFILE") && notes.contains("found = 1.0"), "{notes}");
+    // a later run knows it, as after a crash
+    let (enough, said) = sitl.log(&state, &["prepare"]);
+    assert_eq!(enough["changes"], Value::Array(Vec::new()));
+    assert!(said.contains("an earlier run changed SDLOG_PROFILE from 1 to 9"), "{said}");
+    let (restored, _) = sitl.log(&state, &["prepare", "--restore"]);
+    assert_eq!(restored["restored"][0]["value"], 1.0);
+    let (again, said) = sitl.log(&state, &["prepare"]);
+    assert_eq!(again["changes"][0]["found"], 1.0);
+    assert!(!said.contains("earlier run"), "{said}");
+}
