@@ -4,6 +4,7 @@
 //! that have a file here. Nothing else in the library holds a mode's number.
 
 pub(crate) mod ardupilot;
+mod description;
 mod failsafe;
 mod frames;
 mod geometry;

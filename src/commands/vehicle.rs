@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use mavid::config::read_vehicle;
+use mavid::link::Address;
 use mavid::report::vehicle_text;
 use mavid::study::{draft_from_log, draft_text, vehicle_summary};
 
-use super::{CommandError, Outcome, output};
-use crate::cli::{InitArgs, VehicleArgs, VehicleVerb};
+use super::{CommandError, Outcome, log, output};
+use crate::cli::{InitArgs, VehicleArgs, VehicleLinkArgs, VehicleVerb};
 
 /// Runs the verb.
 pub fn run(json: bool, args: &VehicleArgs) -> Result<Outcome, CommandError> {
@@ -32,7 +33,19 @@ fn check(json: bool, file: &Path) -> Result<Outcome, CommandError> {
 /// Writes a first vehicle file, and says what it means.
 fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
     output::refuse_overwriting(&[&args.from], &[&args.out])?;
-    let draft = draft_from_log(&args.from, &args.read.settings(), &args.shape.given(args.mass))?;
+    let given = args.shape.given(args.mass);
+    let from = args.from.to_str().filter(|from| !args.from.exists() && from.parse::<Address>().is_ok());
+    let draft = match from {
+        Some(address) => log::drafted(
+            &VehicleLinkArgs {
+                connect: address.to_owned(),
+                system_id: args.read.system,
+                signing_key_file: args.signing_key_file.clone(),
+            },
+            &given,
+        )?,
+        None => draft_from_log(&args.from, &args.read.settings(), &given)?,
+    };
     output::file(&args.out, &draft_text(&draft)?)?;
     check(json, &args.out)
 }

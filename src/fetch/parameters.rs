@@ -15,6 +15,8 @@ use crate::wire::{Frame, Vehicle};
 /// Tries of each: a parameter that the vehicle does not have never answers.
 const READ_TRIES: u32 = 6;
 const SET_TRIES: u32 = 12;
+/// Between two requests: autopilots keep few of them.
+const SPACING: Duration = Duration::from_millis(10);
 
 /// Values by name; those that did not answer are not in it.
 #[derive(Debug, Clone, Default)]
@@ -26,6 +28,12 @@ impl Known {
     pub fn value(&self, name: &str) -> Option<f64> {
         self.0.get(name).map(|parameter| parameter.value)
     }
+
+    /// All of them.
+    #[must_use]
+    pub fn values(&self) -> BTreeMap<String, f64> {
+        self.0.iter().map(|(name, parameter)| (name.clone(), parameter.value)).collect()
+    }
 }
 
 /// Reads some parameters.
@@ -35,6 +43,7 @@ pub struct ReadParameters {
     pace: Pace,
     items: Vec<(String, Asked, bool)>,
     known: Known,
+    sent: Option<Duration>,
 }
 
 impl ReadParameters {
@@ -44,7 +53,13 @@ impl ReadParameters {
     /// No message can name the vehicle.
     pub fn new(vehicle: Vehicle, names: &[&str]) -> Result<Self, FetchError> {
         let items = names.iter().map(|name| ((*name).to_owned(), Asked::default(), false)).collect();
-        Ok(Self { peer: Peer::of(vehicle)?, pace: Pace::default(), items, known: Known::default() })
+        Ok(Self {
+            peer: Peer::of(vehicle)?,
+            pace: Pace::default(),
+            items,
+            known: Known::default(),
+            sent: None,
+        })
     }
 
     /// What came.
@@ -56,6 +71,9 @@ impl ReadParameters {
 
 impl Dialogue for ReadParameters {
     fn poll(&mut self, now: Duration) -> Result<Option<MavMessage>, FetchError> {
+        if self.sent.is_some_and(|sent| now < sent + SPACING) {
+            return Ok(None);
+        }
         for (name, asked, settled) in &mut self.items {
             if *settled || !asked.is_due(now, &self.pace) {
                 continue;
@@ -64,6 +82,7 @@ impl Dialogue for ReadParameters {
                 *settled = true;
                 continue;
             }
+            self.sent = Some(now);
             return Ok(Some(self.peer.request_parameter(name)));
         }
         Ok(None)

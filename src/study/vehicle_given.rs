@@ -1,7 +1,9 @@
 //! How a study is told of the vehicle: by a file, or by its mass and size.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::autopilot::Autopilot;
 use crate::config::{ConfigError, LoadedVehicle, ModelTables, read_vehicle, vehicle_to_toml};
 use crate::draft::{Draft, Given, draft};
 use crate::log::{Hold, open_flights};
@@ -122,6 +124,21 @@ pub fn draft_from_log(log: &Path, read: &ReadSettings, given: &Given) -> Result<
         return Err(StudyError::File { file: text::path(&log), why: "expected a flight, got none".into() });
     };
     drafted(&flight.recording, &text::path(&log), given)
+}
+
+/// A first description of a vehicle, from the parameters of its autopilot. `origin` is where they come from, for messages.
+///
+/// # Errors
+/// The parameters do not say enough.
+pub fn draft_from_parameters(
+    autopilot: Autopilot,
+    parameters: BTreeMap<String, f64>,
+    given: &Given,
+    origin: &str,
+) -> Result<Draft, StudyError> {
+    let recording = Recording { autopilot, parameters, ..Recording::default() };
+    draft(&recording, given, "vehicle")
+        .map_err(|error| StudyError::File { file: origin.to_owned(), why: error.to_string() })
 }
 
 /// A draft as a vehicle file, with where its values come from.

@@ -7,16 +7,26 @@ use std::process::{Child, Command, Output, Stdio};
 
 use serde_json::Value;
 
+use crate::processes::{config, folder, planned};
+
 const MAVID: &str = env!("CARGO_BIN_EXE_mavid");
 
 /// A vehicle that logs from its start on, and where it listens.
 struct Sitl(Child, String);
 
 impl Sitl {
-    fn start(parameters: &[&str]) -> Self {
+    fn start(autopilot: &str, parameters: &[&str]) -> Self {
         let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
         let mut child = Command::new(MAVID)
-            .args(["sitl", "--listen", &format!("tcpin:127.0.0.1:{port}")])
+            .args([
+                "sitl",
+                "--warm-up",
+                "2",
+                "--autopilot",
+                autopilot,
+                "--listen",
+                &format!("tcpin:127.0.0.1:{port}"),
+            ])
             .args(parameters.iter().flat_map(|parameter| ["--param", parameter]))
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
@@ -42,6 +52,28 @@ impl Sitl {
     }
 }
 
+impl Sitl {
+    /// `mavid fly --set-logging` without `--arm`: its status and what it said.
+    fn check(&self, folder: &Path, trajectory: &Path) -> (Option<i32>, String) {
+        let path = |path: &Path| path.display().to_string();
+        let output = Command::new(MAVID)
+            .args([
+                "fly",
+                "--plain",
+                "--set-logging",
+                "--connect",
+                &self.1,
+                "--vehicle",
+                &config("x500.toml"),
+            ])
+            .args(["--trajectory", &path(trajectory), "--out", &path(&folder.join("flight"))])
+            .env("MAVID_STATE_DIR", folder)
+            .output()
+            .unwrap();
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    }
+}
+
 impl Drop for Sitl {
     fn drop(&mut self) {
         // it may have ended already
@@ -52,10 +84,9 @@ impl Drop for Sitl {
 
 #[test]
 fn logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("log_commands");
-    let _ = std::fs::remove_dir_all(&folder);
+    let folder = folder("log_commands");
     let (state, out) = (folder.join("state"), folder.join("logs"));
-    let sitl = Sitl::start(&["SDLOG_MODE=2"]);
+    let sitl = Sitl::start("px4", &["SDLOG_MODE=2"]);
     let (listed, _) = sitl.log(&state, &["list"]);
     assert_eq!((&listed["autopilot"], &listed["protocol"]), (&"px4".into(), &"ftp".into()));
     assert_eq!(listed["logs"].as_array().unwrap().len(), 1);
@@ -80,4 +111,58 @@ fn logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back() {
     let (again, said) = sitl.log(&state, &["prepare"]);
     assert_eq!(again["changes"][0]["found"], 1.0);
     assert!(!said.contains("earlier run"), "{said}");
+}
+
+/// Neither is armed: a flight that does not come about leaves the logging as it was.
+#[test]
+fn a_flight_sets_the_logging_of_each_autopilot_and_puts_it_back() {
+    let trajectory = planned("logged_plan", 1);
+    let of = |autopilot: &str| (Sitl::start(autopilot, &[]), folder(&format!("logged_{autopilot}")));
+    let (px4, state) = of("px4");
+    let (status, said) = px4.check(&state, &trajectory);
+    assert_eq!(status, Some(1), "{said}");
+    assert!(
+        said.contains("not flown: SDLOG_PROFILE = 9 instead of 1 is set and counts after a restart"),
+        "{said}"
+    );
+    let (_, said) = px4.check(&state, &trajectory);
+    assert!(
+        said.contains(
+            "vehicle's own log: expected a log that an identification can use, got motor commands,"
+        ),
+        "{said}"
+    );
+    assert!(said.contains("logging: SDLOG_PROFILE is 1 again"), "{said}");
+    let (restored, _) = px4.log(&state, &["prepare"]);
+    assert_eq!(restored["changes"][0]["found"], 1.0);
+
+    let (ardupilot, state) = of("ardupilot");
+    let (_, said) = ardupilot.check(&state, &trajectory);
+    assert!(said.contains("logging: LOG_BITMASK = 438271 instead of 176126; it is put back"), "{said}");
+    assert!(
+        said.contains("got attitude and the outputs of the rate controller at the rate of the main loop"),
+        "{said}"
+    );
+    assert!(said.contains("logging: LOG_BITMASK is 176126 again"), "{said}");
+    let (restored, _) = ardupilot.log(&state, &["prepare"]);
+    assert_eq!(restored["changes"][0]["found"], 176_126.0);
+}
+
+#[test]
+fn a_vehicle_on_a_link_is_described_by_its_parameters() {
+    let out = folder("described");
+    for autopilot in ["px4", "ardupilot"] {
+        let sitl = Sitl::start(autopilot, &[]);
+        let file = out.join(format!("{autopilot}.toml"));
+        let output = Command::new(MAVID)
+            .args(["vehicle", "init", "--from", &sitl.1, "--mass", "2", "--size", "0.5"])
+            .args(["--out", &file.display().to_string()])
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{autopilot}: {said}");
+        let vehicle = mavid::config::read_vehicle(&file).unwrap().vehicle;
+        assert_eq!((vehicle.rotors.len(), vehicle.body.mass_kg), (4, 2.0), "{autopilot}");
+        assert!((vehicle.rotors[0].position_m.norm() - 0.25).abs() < 1e-3, "{autopilot}");
+    }
 }

@@ -162,3 +162,58 @@ fn pymavlink_fetches_the_log_of_a_flight_of_ardupilot() {
     }
     assert_eq!(sitl.interrupt().0, Some(0));
 }
+
+/// The vehicle writes on its log meanwhile: what comes later is longer.
+#[test]
+fn mavsdk_fetches_a_log_by_both_protocols() {
+    let folder = crate::processes::folder("fetched_by_mavsdk");
+    let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let listen = format!("udpout:127.0.0.1:{port}");
+    let sitl = Sitl::start(&["--warm-up", "2", "--param", "SDLOG_MODE=2", "--listen", &listen]);
+    let connection = format!("udpin://127.0.0.1:{port}");
+    let arguments = [connection.as_str(), folder.to_str().unwrap()];
+    let answer = match crate::python::ask("fetch_with_mavsdk.py", &arguments, &json!(null)) {
+        Ok(answer) => answer,
+        Err(why) => return crate::support::skip(Needed::Mavsdk, &why),
+    };
+    let read = |key: &str| std::fs::read(answer[key].as_str().unwrap()).unwrap();
+    let (by_messages, by_transfer) = (read("log"), read("ftp"));
+    assert_eq!(answer["entries"], json!([by_messages.len()]));
+    assert!(!by_messages.is_empty() && by_transfer.starts_with(&by_messages));
+    let path = answer["path"].as_str().unwrap();
+    let input = Input::Bytes { name: path, bytes: &by_transfer };
+    let opened = mavid::log::open(input, &OpenOptions::default()).unwrap();
+    assert!(opened.recording.streams.keys().any(|key| key.quantity == Quantity::AngularRate));
+    assert_eq!(sitl.interrupt().0, Some(0));
+}
+
+/// A fifth of the datagrams is lost both ways.
+#[test]
+fn a_log_that_pymavlink_serves_by_messages_is_fetched_over_a_lossy_link() {
+    let folder = crate::processes::folder("served_by_pymavlink");
+    let log = folder.join("log.bin");
+    let bytes: Vec<u8> = (0..60_000_u32).map(|at| at.wrapping_mul(2_654_435_761).to_be_bytes()[0]).collect();
+    std::fs::write(&log, &bytes).unwrap();
+    let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let (served, fetched) = std::thread::scope(|scope| {
+        let arguments = [format!("udpout:127.0.0.1:{port}"), log.display().to_string(), "0.2".to_owned()];
+        let served = scope.spawn(move || {
+            let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+            crate::python::ask("logs_with_pymavlink.py", &arguments, &json!(null))
+        });
+        let mut child = Command::new(env!("CARGO_BIN_EXE_mavid"));
+        child.args(["--json", "log", "fetch", "--connect", &format!("udpin:127.0.0.1:{port}"), "--out"]);
+        let fetched = child.arg(folder.join("out")).output().unwrap();
+        (served.join().unwrap(), fetched)
+    });
+    let served = match served {
+        Ok(served) => served,
+        Err(why) => return crate::support::skip(Needed::Peers, &why),
+    };
+    assert!(fetched.status.success(), "{}", String::from_utf8_lossy(&fetched.stderr));
+    let document: Value = serde_json::from_slice(&fetched.stdout).unwrap();
+    assert_eq!((&document["protocol"], &document["bytes"]), (&json!("log"), &json!(bytes.len())));
+    assert_eq!(std::fs::read(document["log"].as_str().unwrap()).unwrap(), bytes);
+    // gaps are asked for together: each for itself would take a hundred
+    assert!(served["requests"].as_u64().unwrap() < 60, "{served}");
+}

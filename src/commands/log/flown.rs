@@ -6,15 +6,13 @@ use std::time::Duration;
 use mavid::fetch::Wanted;
 use mavid::wire::SystemId;
 
+use super::before::{AFTER, link_of};
 use super::fetching::{self, words};
 use super::session::{Flow, Session};
-use super::{preparing, state};
 use crate::cli::{FlyArgs, VehicleLinkArgs};
 use crate::commands::words::Word;
 use crate::commands::{CommandError, network};
 
-/// A vehicle that has just flown is heard within this.
-const HEARD_WITHIN: Duration = Duration::from_secs(8);
 /// So long it is measured how fast the link is.
 const MEASURED: Duration = Duration::from_secs(2);
 /// A download that nobody asked for takes no longer.
@@ -42,98 +40,24 @@ impl Fetching {
     }
 }
 
-fn link(args: &FlyArgs, system: Option<SystemId>) -> VehicleLinkArgs {
-    VehicleLinkArgs {
-        connect: args.connect.clone(),
-        system_id: system.map_or(args.system_id, |system| Some(system.0)),
-        signing_key_file: args.signing_key_file.clone(),
-    }
-}
-
-/// Sets what the vehicle logs, if that is asked for, and says what an earlier run has not put back. A change that counts only
-/// after a restart of the autopilot ends the run: nothing restarts it unasked.
-pub fn before_flight(args: &FlyArgs, tell: &mut impl FnMut(Word)) -> Result<(), CommandError> {
-    if !args.set_logging {
-        if state::has_notes() {
-            let text = "an earlier run changed what a vehicle logs, and has not put it back: if it is this vehicle, it is put \
-                        back after the flight";
-            tell(Word::Message(text.to_owned()));
-        }
-        return Ok(());
-    }
-    network::block_on(set_logging(&link(args, None), tell))
-}
-
-async fn set_logging(link: &VehicleLinkArgs, tell: &mut impl FnMut(Word)) -> Result<(), CommandError> {
-    let mut session = Session::open(link).await?;
-    let offer = session.offer().await?;
-    let notes = state::notes(&session.known_as(&offer))?;
-    let prepared = preparing::look(&mut session).await?;
-    let changes = &prepared.plan.changes;
-    if changes.is_empty() {
-        tell(Word::Message("the vehicle logs what an identification needs".to_owned()));
-        return Ok(());
-    }
-    preparing::change(&mut session, &prepared, changes, &notes).await?;
-    let set: Vec<String> = changes
-        .iter()
-        .map(|change| format!("{} from {} to {}", change.parameter, change.found, change.wanted))
-        .collect();
-    let place = mavid::text::path(&notes.path());
-    let done =
-        format!("set for the log of this flight: {}; what was found stands in {place}", set.join(", "));
-    let names: Vec<&str> = changes.iter().map(|change| change.parameter).collect();
-    if preparing::needs_restart(&session, &names) {
-        return Err(CommandError::Failure(format!(
-            "{done}. The autopilot takes it only when it starts: restart it, then give the same command again. Nothing was armed"
-        )));
-    }
-    tell(Word::Message(done));
-    Ok(())
-}
-
-/// Fetches the log of the flight into its folder, and puts back what was changed of the logging. Nothing of it makes a
-/// flight a failure: why there is no log is told.
+/// Fetches the log of the flight into its folder. Nothing of it makes a flight a failure: why there is no log is told.
 pub fn after_flight(
     args: &FlyArgs,
     system: Option<SystemId>,
     fetching: Fetching,
     tell: &mut impl FnMut(Word),
 ) -> Option<PathBuf> {
-    let link = link(args, system);
-    let path = match fetching {
-        Fetching::Not => None,
-        _ => network::block_on(fetched(&link, &args.out, fetching, tell)).unwrap_or_else(|error| {
-            let later = later(&link);
-            tell(Word::Warning(format!("the vehicle's own log is not fetched: {error}; {later}")));
-            None
-        }),
-    };
-    if state::has_notes() {
-        network::block_on(put_back(&link, tell)).unwrap_or_else(|error| {
-            let later = format!("later: mavid log prepare --connect {} --restore", link.connect);
-            tell(Word::Warning(format!("what was changed of the logging is not put back: {error}; {later}")));
-        });
+    if fetching == Fetching::Not {
+        return None;
     }
-    path
-}
-
-/// Puts back what was changed of this vehicle's logging.
-async fn put_back(link: &VehicleLinkArgs, tell: &mut impl FnMut(Word)) -> Result<(), CommandError> {
-    let mut session = Session::open_within(link, HEARD_WITHIN).await?;
-    let offer = session.offer().await?;
-    let notes = state::notes(&session.known_as(&offer))?;
-    let noted = notes.read().map_err(|error| CommandError::Input(error.to_string()))?;
-    if noted.is_empty() {
-        return Ok(());
-    }
-    let put_back = preparing::put_back(&mut session, &notes).await?;
-    let names: Vec<&str> = put_back.done.iter().map(|noted| noted.name.as_str()).collect();
-    let restart = preparing::needs_restart(&session, &names);
-    for line in super::prepare::put_back_page(&put_back, restart).lines() {
-        tell(Word::Message(line.to_owned()));
-    }
-    Ok(())
+    let link = link_of(args, system.map(|system| system.0));
+    let station = SystemId(args.station_id);
+    let fetched = network::block_on(fetched((&link, station), &args.out, fetching, tell));
+    fetched.unwrap_or_else(|error| {
+        let why = format!("the vehicle's own log is not fetched: {error}; {}", later(&link));
+        tell(if fetching == Fetching::Always { Word::Warning(why) } else { Word::Message(why) });
+        None
+    })
 }
 
 fn later(link: &VehicleLinkArgs) -> String {
@@ -141,12 +65,12 @@ fn later(link: &VehicleLinkArgs) -> String {
 }
 
 async fn fetched(
-    link: &VehicleLinkArgs,
+    (link, station): (&VehicleLinkArgs, SystemId),
     folder: &Path,
     fetching: Fetching,
     tell: &mut impl FnMut(Word),
 ) -> Result<Option<PathBuf>, CommandError> {
-    let mut session = Session::open_within(link, HEARD_WITHIN).await?;
+    let mut session = Session::open_as(link, station, AFTER).await?;
     let offer = session.offer().await?;
     let (_, logs, _) = fetching::list(&mut session, (&offer, None), Wanted::Last).await?;
     let mut path = None;

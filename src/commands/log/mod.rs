@@ -1,5 +1,7 @@
 //! `mavid log`: the logs that a vehicle keeps.
 
+mod before;
+mod described;
 mod documents;
 mod fetching;
 mod flown;
@@ -9,5 +11,7 @@ mod session;
 mod state;
 mod verb;
 
-pub use flown::{Fetching, after_flight, before_flight};
+pub use before::{before_flight, put_back};
+pub use described::drafted;
+pub use flown::{Fetching, after_flight};
 pub use verb::run;

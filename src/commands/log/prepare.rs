@@ -69,7 +69,7 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
     if !noted.is_empty() {
         output::message(&earlier(&noted));
     }
-    let set = !changes.is_empty() && (args.set_logging || agreed(json)?);
+    let set = !changes.is_empty() && (args.set_logging || !json && agreed(YES, "set this")?);
     if set {
         preparing::change(&mut session, &prepared, changes, &notes).await?;
     }
@@ -135,6 +135,13 @@ fn says(session: &Session, logs: &[String], changes: &[LogChange], unknown: &[&s
     lines.join("\n")
 }
 
+/// What is changed, for people.
+pub fn changes_page(changes: &[LogChange]) -> String {
+    let one =
+        |change: &LogChange| format!("{} = {} instead of {}", change.parameter, change.wanted, change.found);
+    changes.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
 /// What is said where an earlier run changed something that is not put back.
 pub fn earlier(noted: &[Noted]) -> String {
     let list = noted.iter().map(|noted| format!("{} from {} to {}", noted.name, noted.found, noted.set));
@@ -144,16 +151,16 @@ pub fn earlier(noted: &[Noted]) -> String {
     )
 }
 
-/// Somebody at a terminal agrees.
-fn agreed(json: bool) -> Result<bool, CommandError> {
-    if json || !io::stdin().is_terminal() || !io::stderr().is_terminal() {
+/// Somebody at a terminal agrees by this word.
+pub fn agreed(word: &str, what: &str) -> Result<bool, CommandError> {
+    if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
         return Ok(false);
     }
-    output::message(&format!("type {YES} and return to set this, or return alone to leave it"));
+    output::message(&format!("type {word} and return to {what}, or return alone to leave it"));
     let mut line = String::new();
     let read = io::stdin().lock().read_line(&mut line);
     read.map_err(|error| CommandError::Failure(format!("cannot read standard input: {error}")))?;
-    Ok(line.trim() == YES)
+    Ok(line.trim() == word)
 }
 
 fn restored(json: bool, session: &Session, put_back: &PutBack) -> Result<Outcome, CommandError> {

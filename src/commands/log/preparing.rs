@@ -63,7 +63,7 @@ pub async fn change(
     notes.add(&changes.iter().map(noted).collect::<Vec<_>>()).map_err(failed)?;
     let wanted: Vec<(&str, f64)> = changes.iter().map(|change| (change.parameter, change.wanted)).collect();
     let mut setting = SetParameters::new(session.vehicle, &prepared.known, &wanted).map_err(failed)?;
-    session.talk(&mut setting, |_| Ok(Flow::On)).await?;
+    session.talk_disarmed(&mut setting).await?;
     Ok(())
 }
 
@@ -92,7 +92,7 @@ pub async fn put_back(session: &mut Session, notes: &Notes) -> Result<PutBack, C
         }
     }
     let mut setting = SetParameters::new(session.vehicle, &known, &wanted).map_err(failed)?;
-    session.talk(&mut setting, |_| Ok(Flow::On)).await?;
+    session.talk_disarmed(&mut setting).await?;
     notes.forget().map_err(failed)?;
     Ok(put_back)
 }

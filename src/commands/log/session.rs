@@ -5,7 +5,7 @@ use std::time::Duration;
 use mavid::autopilot::Stack;
 use mavid::fetch::{Dialogue, Offer, Survey};
 use mavid::fly::{Choice, Roster, heartbeat};
-use mavid::link::{LinkOptions, LinkReader, LinkWriter, Received, ReceivedFrame, Signing};
+use mavid::link::{LinkOptions, LinkReader, LinkWriter, Received, Signing};
 use mavid::wire::{Frame, SystemId, Vehicle};
 use tokio::time::{Instant, MissedTickBehavior, interval};
 
@@ -15,6 +15,10 @@ use crate::commands::{CommandError, network, output};
 /// Between two looks at what is due.
 const TICK: Duration = Duration::from_millis(5);
 const HEARTBEAT: Duration = Duration::from_secs(1);
+/// HEARTBEAT, where its base mode is, and the bit of an armed vehicle.
+const HEARTBEAT_ID: u32 = 0;
+const BASE_MODE: usize = 6;
+const ARMED: u8 = 128;
 /// A vehicle that is not heard within this is not there.
 const THERE_WITHIN: Duration = Duration::from_secs(30);
 
@@ -34,6 +38,10 @@ pub struct Session {
     writer: LinkWriter,
     signals: network::Signals,
     start: Instant,
+    /// as its last HEARTBEAT says
+    armed: bool,
+    /// nothing more is said to it once it is armed
+    only_disarmed: bool,
     /// the vehicle
     pub vehicle: Vehicle,
     /// its autopilot
@@ -43,16 +51,20 @@ pub struct Session {
 impl Session {
     /// Opens the link and waits for the vehicle; one that is armed is refused.
     pub async fn open(args: &VehicleLinkArgs) -> Result<Self, CommandError> {
-        Self::open_within(args, THERE_WITHIN).await
+        Self::open_as(args, LinkOptions::default().system, THERE_WITHIN).await
     }
 
-    /// The same for a vehicle that has to be heard within this time.
-    pub async fn open_within(args: &VehicleLinkArgs, patience: Duration) -> Result<Self, CommandError> {
+    /// The same by this station, for a vehicle that has to be heard within this time.
+    pub async fn open_as(
+        args: &VehicleLinkArgs,
+        station: SystemId,
+        patience: Duration,
+    ) -> Result<Self, CommandError> {
         let address = network::address("--connect", &args.connect)?;
         let signing = args.signing_key_file.as_deref().map(Signing::open).transpose();
         let signing = signing.map_err(|error| CommandError::Input(error.to_string()))?;
         output::signing_warnings(signing.as_ref());
-        let options = LinkOptions { signing, patient: true, ..LinkOptions::default() };
+        let options = LinkOptions { system: station, signing, patient: true, ..LinkOptions::default() };
         let (mut reader, writer) = network::open(&address, options).await?;
         let (start, mut signals) = (Instant::now(), network::Signals::new()?);
         let wanted = args.system_id.map(SystemId);
@@ -75,7 +87,16 @@ impl Session {
             }
             match roster.choose(start.elapsed(), wanted) {
                 Choice::Vehicle(vehicle, _, stack) => {
-                    return Ok(Self { reader, writer, signals, start, vehicle, stack });
+                    return Ok(Self {
+                        reader,
+                        writer,
+                        signals,
+                        start,
+                        armed: false,
+                        only_disarmed: false,
+                        vehicle,
+                        stack,
+                    });
                 }
                 Choice::Refuse(why) => return Err(CommandError::Input(why)),
                 Choice::Wait if start.elapsed() > patience => {
@@ -108,6 +129,12 @@ impl Session {
         ticks.set_missed_tick_behavior(MissedTickBehavior::Skip);
         let mut beat = None;
         loop {
+            if self.only_disarmed && self.armed {
+                let system = self.vehicle.system;
+                return Err(CommandError::Failure(format!(
+                    "system {system} was armed meanwhile: expected it disarmed while its parameters are set"
+                )));
+            }
             let now = self.start.elapsed();
             if beat.is_none_or(|beat| now.saturating_sub(beat) >= HEARTBEAT) {
                 beat = Some(now);
@@ -139,15 +166,23 @@ impl Session {
         }
     }
 
-    fn take(&self, dialogue: &mut impl Dialogue, received: Received) {
-        let hear = |frame: &ReceivedFrame, dialogue: &mut dyn FnMut(&Frame<'_>)| {
-            if let Some(frame) = Frame::at_start(frame.bytes()) {
-                dialogue(&frame);
-            }
-        };
-        if let Received::Frame(frame) = received {
-            hear(&frame, &mut |frame| dialogue.take(self.start.elapsed(), frame));
+    /// Talks until the dialogue is done, and no longer than the vehicle is disarmed.
+    pub async fn talk_disarmed(&mut self, dialogue: &mut impl Dialogue) -> Result<(), CommandError> {
+        self.only_disarmed = true;
+        let done = self.talk(dialogue, |_| Ok(Flow::On)).await;
+        self.only_disarmed = false;
+        done.map(|_| ())
+    }
+
+    fn take(&mut self, dialogue: &mut impl Dialogue, received: Received) {
+        let Received::Frame(received) = received else { return };
+        let Some(frame) = Frame::at_start(received.bytes()) else { return };
+        let header = frame.header();
+        let is_own = header.system == self.vehicle.system && header.component == self.vehicle.component;
+        if is_own && header.message_id == HEARTBEAT_ID {
+            self.armed = frame.payload().u8(BASE_MODE) & ARMED != 0;
         }
+        dialogue.take(self.start.elapsed(), &frame);
     }
 
     /// The last message of a conversation, which nobody answers.
