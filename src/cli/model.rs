@@ -28,8 +28,9 @@ pub enum VehicleVerb {
 /// Arguments of `mavid vehicle init`.
 #[derive(Debug, Args)]
 pub struct InitArgs {
-    /// a log that contains the vehicle's parameters, preferably with a flight
-    #[arg(long, value_name = "LOG")]
+    /// a log that contains the vehicle's parameters, preferably with a flight; or the address of a vehicle, whose parameters
+    /// are read
+    #[arg(long, value_name = "LOG|ADDRESS")]
     pub from: PathBuf,
     /// mass with battery, kg: weigh it
     #[arg(long, value_name = "KG", allow_negative_numbers = true)]

@@ -92,10 +92,7 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
     given.size_m.map_or(Ok(()), |size_m| within("size", "m", SIZES_M, size_m))?;
     let stack = recording.autopilot.stack().ok_or(DraftError::Autopilot)?;
     let parameter = |name: &str| recording.parameters.get(name).copied();
-    let layout = match given.frame {
-        Some(frame) => Layout::of(frame, "the given frame"),
-        None => stack.geometry.layout(&parameter, motors(stack, &parameter))?,
-    };
+    let layout = layout(stack, given, &parameter)?;
     let mut noted = Noted::default();
     let arm_m = noted.arm(&layout, given);
     let rotors = rotors(&layout, arm_m / layout.radius());
@@ -126,6 +123,18 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
     noted.origins.insert(0, format!("{} of {} by {}", layout.name, stack.name, layout.stated_by));
     vehicle.guesses = noted.guesses;
     Ok(Draft { vehicle, origins: noted.origins })
+}
+
+/// Where the rotors are, by what is given or by the parameters.
+pub(super) fn layout(
+    stack: &Stack,
+    given: &Given,
+    parameter: &dyn Fn(&str) -> Option<f64>,
+) -> Result<Layout, LayoutError> {
+    match given.frame {
+        Some(frame) => Ok(Layout::of(frame, "the given frame")),
+        None => stack.geometry.layout(parameter, motors(stack, parameter)),
+    }
 }
 
 /// How many outputs drive motors; `None` where the parameters do not say.

@@ -1,5 +1,7 @@
 //! How a study is told of the vehicle: by a file, or by its mass and size.
 
+use crate::autopilot::Autopilot;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::config::{ConfigError, LoadedVehicle, ModelTables, read_vehicle, vehicle_to_toml};
@@ -122,6 +124,20 @@ pub fn draft_from_log(log: &Path, read: &ReadSettings, given: &Given) -> Result<
         return Err(StudyError::File { file: text::path(&log), why: "expected a flight, got none".into() });
     };
     drafted(&flight.recording, &text::path(&log), given)
+}
+
+/// A first description of a vehicle by its parameters alone, as they came over the link at `address`.
+///
+/// # Errors
+/// They do not say enough.
+pub fn draft_from_parameters(
+    (autopilot, parameters): (Autopilot, BTreeMap<String, f64>),
+    given: &Given,
+    address: &str,
+) -> Result<Draft, StudyError> {
+    let recording = Recording { autopilot, parameters, ..Recording::default() };
+    draft(&recording, given, "vehicle")
+        .map_err(|error| StudyError::File { file: address.to_owned(), why: error.to_string() })
 }
 
 /// A draft as a vehicle file, with where its values come from.

@@ -27,6 +27,17 @@ impl Sitl {
         Self(child, format!("tcpout:127.0.0.1:{port}"))
     }
 
+    /// `mavid vehicle init --from ADDRESS`: what it wrote.
+    fn drafted(&self, out: &Path) -> String {
+        let Output { status, stderr, .. } = Command::new(MAVID)
+            .args(["vehicle", "init", "--from", &self.1, "--mass", "2", "--size", "0.5"])
+            .args(["--out", out.to_str().unwrap()])
+            .output()
+            .unwrap();
+        assert!(status.success(), "{}", String::from_utf8_lossy(&stderr));
+        std::fs::read_to_string(out).unwrap()
+    }
+
     /// `mavid --json log ...`: the document and what was said beside it.
     fn log(&self, state: &Path, arguments: &[&str]) -> (Value, String) {
         let Output { status, stdout, stderr } = Command::new(MAVID)
@@ -59,6 +70,12 @@ fn logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back() {
     let (listed, _) = sitl.log(&state, &["list"]);
     assert_eq!((&listed["autopilot"], &listed["protocol"]), (&"px4".into(), &"ftp".into()));
     assert_eq!(listed["logs"].as_array().unwrap().len(), 1);
+    let drafted = sitl.drafted(&folder.join("vehicle.toml"));
+    assert!(drafted.contains("4 rotors of PX4 by CA_ROTOR_COUNT"), "{drafted}");
+    assert!(
+        drafted.contains("arms from the given size of 0.5 m") && drafted.contains("mass = 2.0"),
+        "{drafted}"
+    );
     let (fetched, _) = sitl.log(&state, &["fetch", "--last", "--out", out.to_str().unwrap()]);
     assert_eq!(fetched["checked"], "growing");
     let log = fetched["log"].as_str().unwrap();

@@ -3,6 +3,7 @@
 mod documents;
 mod fetching;
 mod flown;
+mod parameters;
 mod prepare;
 mod preparing;
 mod session;
@@ -10,4 +11,5 @@ mod state;
 mod verb;
 
 pub use flown::{Fetching, after_flight, before_flight};
+pub use parameters::of_vehicle as parameters_of_vehicle;
 pub use verb::run;
