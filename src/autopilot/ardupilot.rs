@@ -75,10 +75,13 @@ pub static ARDUPILOT: Stack = Stack {
             ends: ("MOT_PWM_MIN", "MOT_PWM_MAX"),
             shares: ("MOT_SPIN_MIN", "MOT_SPIN_MAX"),
         },
+        // logged as pulses whatever they go over
+        bus: None,
         expo: "MOT_THST_EXPO",
         linear_without_expo: false,
         hover: "MOT_THST_HOVER",
         relevant: &["MOT_", "FRAME_"],
+        gains: &["ATC_", "PSC_"],
         groups: &[
             NumberedGroup { entries: &[FUNCTION], first: 1, count: Some(16) },
             // pulse ranges of the motors come from MOT_PWM_*; a reversed output would still turn them round

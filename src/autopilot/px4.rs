@@ -72,6 +72,8 @@ pub static PX4: Stack = Stack {
             (numbered("PWM_MAIN_MIN", ""), numbered("PWM_MAIN_MAX", "")),
             (numbered("PWM_AUX_MIN", ""), numbered("PWM_AUX_MAX", "")),
         ]),
+        // 13 bits of UAVCAN's RawCommand
+        bus: Some(8191),
         expo: "THR_MDL_FAC",
         linear_without_expo: true,
         hover: "MPC_THR_HOVER",
@@ -90,6 +92,7 @@ pub static PX4: Stack = Stack {
             "BAT_N_CELLS",
             "BAT1_N_CELLS",
         ],
+        gains: &["MC_ROLL", "MC_PITCH", "MC_YAW", "MPC_XY_", "MPC_Z_"],
         groups: &[
             NumberedGroup {
                 entries: &[

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::config::vehicle_to_toml;
+use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw};
 
 const BODY: &str = "name = \"quad\"\n[body]\nmass = 1.5\ninertia = { xx = 0.02, yy = 0.02, zz = 0.035 }\n";
 const CURVE: &str = "[propulsion]\nactuator = \"pwm\"\npwm_min = 1000\npwm_max = 2000\nthrust_max = 8.0\n\
@@ -156,4 +157,77 @@ fn what_is_hardly_meant_is_warned_of() {
     let weak = SPEED.replace("1e-5", "1e-6");
     let loaded = parse(&[BODY, &weak, ROTORS]).unwrap();
     assert!(loaded.warnings[0].contains("4.000 N, does not lift the weight, 14.715 N"));
+}
+
+/// Each of the lines that a refusal of several errors has, without the file's name.
+fn told(parts: &[&str]) -> Vec<String> {
+    let lines = parse(parts).unwrap_err().lines();
+    lines.iter().map(|line| line.trim_start_matches("quad.toml: ").to_owned()).collect()
+}
+
+#[test]
+fn all_that_is_wrong_is_told_at_once() {
+    let body =
+        BODY.replace("1.5", "-1.5").replace("xx = 0.02", "xx = \"thin\"").replace("zz = 0.035", "zz = nan");
+    let speed = SPEED.replace("speed_max = 1000\n", "speed_max = 0\nspeed_min = 1\n").replace("2e-7", "-1");
+    let rotors = ROTORS.replacen("\"cw\"", "\"left\"", 1).replacen("spin = \"ccw\"\n", "", 1);
+    let limits = "[limits]\nz_min_m = 2\nz_max_m = 1\nroll_max_deg = 95\nx_max_m = -3\n";
+    let lines = told(&[&body, &speed, &rotors, limits]);
+    let expected = [
+        "11 errors",
+        "line 4, column 18 (`inertia = { xx = \"thin\", yy = 0.02, zz = nan }`): invalid type: string \"thin\", expected f64",
+        "unknown field `speed_min`, expected one of `actuator`",
+        "unknown variant `left`, expected `cw` or `ccw`",
+        "missing field `spin` in `rotor[1]`",
+        "`body.mass`: expected a number above zero, got -1.5",
+        "`body.inertia.zz`: expected a number above zero, got NaN",
+        "`propulsion.speed_max`: expected a number above zero, got 0",
+        "`propulsion.torque_coefficient`: expected a number not below zero, got -1",
+        "`limits.x_max_m`",
+        "`limits.z_min_m`: expected a number below `limits.z_max_m` = 1, got 2",
+        "`limits.roll_max_deg`: expected an angle below 90 degrees",
+    ];
+    for needle in &expected[1..] {
+        assert!(lines.iter().any(|line| line.contains(needle)), "{needle:?} is not in {lines:#?}");
+    }
+    assert_eq!(lines.len(), expected.len(), "{lines:#?}");
+}
+
+#[test]
+fn what_is_missing_as_a_whole_is_told_once() {
+    let lines = told(&["name = \"x\"\n[body]\nmass = 1\n"]);
+    assert_eq!(lines.len(), 4, "{lines:#?}");
+    assert!(lines[1].contains("missing field `inertia` in `body`"), "{lines:#?}");
+    assert!(lines[2].contains("missing field `propulsion`"), "{lines:#?}");
+    assert!(lines[3].contains("`rotor`: expected at least one"), "{lines:#?}");
+}
+
+#[test]
+fn a_position_of_two_numbers_or_of_text_is_told_where_it_stands() {
+    let rotors = ROTORS.replacen("[0.2, 0.2, 0.0]", "[0.2, 0.2]", 1).replacen(
+        "[0.2, -0.2, 0.0]",
+        "[0.2, \"x\", 0]",
+        1,
+    );
+    let lines = told(&[BODY, SPEED, &rotors]);
+    assert_eq!(lines.len(), 3, "{lines:#?}");
+    assert!(lines[1].contains("invalid length 2, expected an array of length 3"), "{lines:#?}");
+    assert!(lines[2].contains("invalid type: string \"x\", expected f64"), "{lines:#?}");
+}
+
+#[test]
+fn what_is_no_toml_is_told_by_its_lines_and_a_foreign_file_has_an_end() {
+    let lines = told(&["name = \n[body\nmass = 1\n"]);
+    assert!(lines.len() > 1 && lines.iter().any(|line| line.contains("line 1")), "{lines:#?}");
+    let many: String = (0..1000).map(|number| format!("key_{number} = 1\n")).collect();
+    let lines = told(&[&many]);
+    assert_eq!((lines.len(), lines[0].as_str()), (21, "20 or more errors"), "{lines:#?}");
+}
+
+#[test]
+fn what_follows_from_a_fault_is_not_told() {
+    let lines = told(&[BODY, &CURVE.replace("\"pwm\"", "\"pmw\""), ROTORS]);
+    assert!(lines.len() == 1 && lines[0].contains("unknown variant `pmw`"), "{lines:#?}");
+    let lines = told(&[&BODY.replace("mass = 1.5\n", ""), SPEED, ROTORS]);
+    assert!(lines.len() == 1 && lines[0].contains("missing field `mass` in `body`"), "{lines:#?}");
 }

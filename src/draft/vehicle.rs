@@ -6,7 +6,7 @@ use super::hover::full_thrust;
 use super::rules::{self, Rule};
 use crate::autopilot::{Frame, Layout, LayoutError, LayoutUnit, Outputs, Stack};
 use crate::recording::Recording;
-use crate::signals::holds_fractions;
+use crate::signals::{bus_range, holds_fractions};
 use crate::units::GRAVITY_M_S2;
 use crate::vehicle::{
     Actuator, Anchor, Guess, Guessed, Limits, Propulsion, PwmRange, RigidBody, Rotor, Spin, ThrustLaw,
@@ -133,17 +133,8 @@ pub(super) fn layout(
 ) -> Result<Layout, LayoutError> {
     match given.frame {
         Some(frame) => Ok(Layout::of(frame, "the given frame")),
-        None => stack.geometry.layout(parameter, motors(stack, parameter)),
+        None => stack.geometry.layout(parameter, stack.outputs.motors(parameter)),
     }
-}
-
-/// How many outputs drive motors; `None` where the parameters do not say.
-fn motors(stack: &Stack, parameter: &dyn Fn(&str) -> Option<f64>) -> Option<usize> {
-    let function = &stack.outputs.function;
-    let drives = |channel: &usize| {
-        parameter(&function.name(*channel)).is_some_and(|value| stack.outputs.is_motor(value))
-    };
-    Some((1..=16).filter(drives).count()).filter(|count| *count > 0)
 }
 
 fn rotors(layout: &Layout, scale: f64) -> Vec<Rotor> {
@@ -223,10 +214,22 @@ impl Noted {
             return (Actuator::Thrust, 0.0);
         }
         let range = outputs.pulses.ends_us(parameter).filter(|(low_us, high_us)| high_us > low_us);
-        // parameters are in single precision
-        let (min_us, max_us) = range.map_or(PULSES_US, |(min_us, max_us)| (rounded(min_us), rounded(max_us)));
-        let from = if range.is_some() { "by its parameters" } else { "usual, stated by no parameter" };
-        self.origins.push(format!("pulses from {min_us} to {max_us} us, {from}"));
+        let (min_us, max_us) = match (bus_range(recording), range) {
+            (Some(PwmRange { min_us, max_us }), _) => {
+                self.origins
+                    .push(format!("outputs of a bus, from {min_us} to {max_us}, as the log holds them"));
+                (min_us, max_us)
+            }
+            (None, range) => {
+                // parameters are in single precision
+                let (min_us, max_us) =
+                    range.map_or(PULSES_US, |(min_us, max_us)| (rounded(min_us), rounded(max_us)));
+                let from =
+                    if range.is_some() { "by its parameters" } else { "usual, stated by no parameter" };
+                self.origins.push(format!("pulses from {min_us} to {max_us} us, {from}"));
+                (min_us, max_us)
+            }
+        };
         let linear = outputs.linear_without_expo.then_some(0.0);
         let expo = match stated.or(linear) {
             Some(expo) => {

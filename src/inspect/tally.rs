@@ -18,7 +18,7 @@ use super::window::{WindowRecorder, windows_of};
 use crate::autopilot::{Autopilot, VehicleKind};
 use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport, TlogReport};
 use crate::recording::{Event, Recording, StreamKey, StreamStats};
-use crate::signals::SignalsError;
+use crate::signals::{SignalsError, changes_in_the_air};
 use crate::vehicle::Vehicle;
 use crate::wire::{Sender, Source, SystemId};
 
@@ -51,6 +51,7 @@ impl Tally {
             Event::Sample { stream, time_s, values } => {
                 self.streams.add(stream, time_s, values);
                 self.timeline.add(stream.quantity, time_s, values);
+                self.parameters.at(time_s);
             }
             Event::Parameter { name, value } => return self.parameters.take(name, value),
             Event::Text { time_s, severity, text } => self.text(time_s, severity, text),
@@ -100,7 +101,7 @@ pub fn inspect<'a>(
     let first = first?;
     // commands become thrust by the autopilot's parameters: windows before they came are looked at again
     let pass = if first.parameters_late && vehicle.is_some() {
-        Pass::run(input, &options, (vehicle, first.tally.parameters), progress)?
+        Pass::run(input, &options, (vehicle, first.tally.parameters.read_again()), progress)?
     } else {
         first
     };
@@ -330,7 +331,11 @@ impl Found {
             foreseen: foreseen.as_ref(),
             at_most: assessment.flight.usable_s > MOSTLY * most_s,
         });
-        let (verdict, advice) = verdict(&evidence, &identifiability, &self.vehicle);
+        let (verdict, mut advice) = verdict(&evidence, &identifiability, &self.vehicle);
+        let flown_s: Vec<(f64, f64)> =
+            assessment.flight.segments.iter().map(|segment| (segment.start_s, segment.end_s)).collect();
+        let changed = changes_in_the_air(self.autopilot, tally.parameters.changes(), &flown_s);
+        advice.extend(changed.iter().map(ToString::to_string));
         Inspection {
             verdict,
             advice,

@@ -5,6 +5,7 @@ use super::inspection::{Outlook, VehicleSummary};
 use super::lacking::lack;
 use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION};
 use crate::autopilot::VehicleKind;
+use crate::note::About;
 use crate::recording::Quantity;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 
@@ -102,7 +103,14 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
         .map(|(word, names)| format!("{word} {}", names.join(", ")))
         .collect();
     let not = if bad.is_empty() { String::new() } else { format!("; not for {}", bad.join(", ")) };
-    format!("This log is {}{not}: {time}. Next: `mavid identify`.", parts.join("; "))
+    let parts = parts.join("; ");
+    if evidence.assessment.notes.iter().any(|note| note.is_warning() && note.about == About::Vehicle) {
+        return format!(
+            "Doubtful with this vehicle file: its rotors contradict the autopilot's parameters, see the advice. With the right \
+             file this log may be {parts}{not}: {time}."
+        );
+    }
+    format!("This log is {parts}{not}: {time}. Next: `mavid identify`.")
 }
 
 /// Mass and moments: the products follow them.

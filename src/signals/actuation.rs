@@ -3,6 +3,7 @@
 use super::actuators::{thrusts_from_commands, thrusts_from_speeds};
 use super::rotor_thrusts::{RotorThrusts, ThrustSource};
 use super::select::{best, too_short};
+use super::stated_rotors::rotor_difference;
 use super::sufficient::{LEAST_TORQUE_HZ, flowing_rate_hz};
 use super::{Grid, SignalsError, linear_onto};
 use crate::note::{About, Note};
@@ -138,6 +139,8 @@ impl Actuation {
     pub(super) fn notes(&self, recording: &Recording, vehicle: &Vehicle) -> Vec<Note> {
         let Self::Rotors(rotors) = self else { return Vec::new() };
         let mut notes = rotors.notes.clone();
+        let other = rotor_difference(recording.autopilot, &recording.parameters, vehicle);
+        notes.extend(other.map(|other| Note::warning(About::Vehicle, other.to_string())));
         let needed = vehicle.rotors.len();
         let recorded = |quantity: Quantity| {
             let streams = recording.streams.iter().filter(move |(key, _)| key.quantity == quantity);

@@ -180,6 +180,15 @@ pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propu
     let outputs = recording.autopilot.stack().map(|stack| &stack.outputs);
     let range = outputs.and_then(|outputs| outputs.pulses.ends_us(parameter));
     let range = range.map(|(min_us, max_us)| PwmRange { min_us, max_us });
+    let bus = bus_range(recording);
+    if let Some(bus) = bus {
+        if !stated_range.is_some_and(|stated| is_same(stated, bus)) {
+            let (from, to) = (bus.min_us, bus.max_us);
+            note(format!("the log's outputs are those of a bus, {from:.0} to {to:.0}, and no pulse widths"));
+        }
+        propulsion.actuator = Actuator::Pwm(Some(bus));
+    }
+    let range = range.filter(|_| bus.is_none());
     let expo = outputs.and_then(|outputs| parameter(outputs.expo));
     if let Some(range) = range.filter(|range| range.max_us > range.min_us) {
         let (from, to) = (range.min_us, range.max_us);
@@ -209,14 +218,35 @@ fn is_same(a: PwmRange, b: PwmRange) -> bool {
     (a.min_us - b.min_us).abs() < 0.05 && (a.max_us - b.max_us).abs() < 0.05
 }
 
-/// Whether there is a stream of commands in 0..1.
+/// Whether there is a stream of commands in 0..1. One that does not move is of outputs that are not used: zeros are no
+/// fractions.
 #[must_use]
 pub fn holds_fractions(recording: &Recording) -> bool {
-    let commands = |(key, _): &(&StreamKey, &Stream)| key.quantity == Quantity::ActuatorCommand;
-    recording.streams.iter().filter(commands).any(|(_, stream)| {
+    moving_commands(recording).any(|stream| {
         let channels: Vec<usize> = (0..stream.width).collect();
         in_unit(stream, &channels, Actuator::Speed)
     })
+}
+
+/// The range of outputs on a bus, where the log holds moving outputs that are no pulses by their size.
+#[must_use]
+pub fn bus_range(recording: &Recording) -> Option<PwmRange> {
+    let max_us = f64::from(recording.autopilot.stack()?.outputs.bus?);
+    let is_beyond = |stream: &Stream| {
+        // the first motor
+        let values = || stream.values.iter().step_by(stream.width.max(1)).filter(|value| value.is_finite());
+        let beyond = values().filter(|value| **value > LONGEST_PULSE_US && **value <= max_us).count();
+        5 * beyond > values().count()
+    };
+    moving_commands(recording).any(is_beyond).then_some(PwmRange { min_us: 0.0, max_us })
+}
+
+/// No output has a longer pulse, microseconds.
+const LONGEST_PULSE_US: f64 = 2500.0;
+
+fn moving_commands(recording: &Recording) -> impl Iterator<Item = &Stream> {
+    let commands = recording.streams.iter().filter(|(key, _)| key.quantity == Quantity::ActuatorCommand);
+    commands.map(|(_, stream)| stream).filter(|stream| is_live(stream))
 }
 
 /// Output channel (from 0) of each motor, by the functions of the outputs; in order if the log does not contain them.
@@ -314,6 +344,29 @@ mod tests {
         assert_eq!(thrust_n(&fractions), (from_pulses_n, 0));
         let unknown = Recording { parameters: [].into(), ..pulses };
         assert!(thrusts_from_commands(&unknown, &vehicle).is_err());
+    }
+
+    #[test]
+    fn outputs_that_rest_at_nought_are_no_fractions_and_those_of_a_bus_no_pulses() {
+        let mut recording = recording(2000.0, 4000.0);
+        let key = |instance| StreamKey {
+            quantity: Quantity::ActuatorCommand,
+            source: "actuator_outputs",
+            instance,
+        };
+        let still = Stream { time_s: vec![0.0, 1.0, 2.0], width: 1, values: vec![0.0; 3] };
+        recording.streams.insert(key(0), still);
+        assert!(!holds_fractions(&recording));
+        let bus = PwmRange { min_us: 0.0, max_us: 8191.0 };
+        assert_eq!(bus_range(&recording), Some(bus));
+        let stated = Propulsion {
+            actuator: Actuator::Pwm(Some(PwmRange { min_us: 1000.0, max_us: 2000.0 })),
+            ..vehicle().propulsion
+        };
+        let (found, notes) = propulsion_from_log(&recording, &stated);
+        assert_eq!((found.actuator, notes.len()), (Actuator::Pwm(Some(bus)), 1));
+        assert!(notes[0].text.contains("those of a bus, 0 to 8191"), "{}", notes[0].text);
+        assert_eq!(bus_range(&self::recording(1500.0, 100.0)), None);
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::align::{
     AlignFrame, InertialOnGrid, StreamOffset, attitude_offset, attitudes_onto, position_offset, vectors_onto,
     velocity_offset,
 };
+use super::changed::changes_in_the_air;
 use super::flight::{Quality, Reference, Signals};
 use super::rotor_thrusts::ThrustSource;
 use super::select::{best, median_period_s, too_short};
@@ -120,6 +121,7 @@ pub fn condition(
         actuation.message(),
         super::select::mean_rate_hz(actuation.stream()),
     ));
+    let changed = changes_in_the_air(recording.autopilot, &recording.parameter_changes, &airborne_s);
     let mut signals = Signals {
         grid,
         usable: mask,
@@ -141,7 +143,12 @@ pub fn condition(
             airborne_s,
             usable: used,
             torques: sufficiency.torques,
-            notes: sufficiency.note.into_iter().chain(actuation.notes(recording, vehicle)).collect(),
+            notes: sufficiency
+                .note
+                .into_iter()
+                .chain(actuation.notes(recording, vehicle))
+                .chain(changed)
+                .collect(),
         },
     };
     let doubts = plausible::check(&signals, vehicle);

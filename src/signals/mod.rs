@@ -6,6 +6,7 @@
 mod actuation;
 mod actuators;
 mod align;
+mod changed;
 mod condition;
 mod error;
 mod filter;
@@ -19,15 +20,18 @@ mod rotor_thrusts;
 mod said;
 mod select;
 mod spectrum;
+mod stated_rotors;
 mod sufficient;
 mod usable;
 mod weak;
 
 pub use actuation::ThrustPreference;
 pub use actuators::{
-    holds_fractions, motor_channels, propulsion_from_log, thrusts_from_commands, thrusts_from_speeds,
+    bus_range, holds_fractions, motor_channels, propulsion_from_log, thrusts_from_commands,
+    thrusts_from_speeds,
 };
 pub use align::StreamOffset;
+pub use changed::changes_in_the_air;
 pub use condition::{ConditionSettings, condition, stride};
 pub use error::SignalsError;
 pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference};
@@ -39,6 +43,7 @@ pub use rotor_thrusts::{RotorThrusts, ThrustSource};
 pub use said::Said;
 pub use select::{best, best_rank, is_live, mean_rate_hz, median_period_s};
 pub use spectrum::highest_harmonic_hz;
+pub use stated_rotors::{Differing, RotorDifference, rotor_difference};
 pub use sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, LEAST_FORCE_HZ, LEAST_TORQUE_HZ};
 pub use usable::{Evidence, Usable, usable};
 pub use weak::{MAX_ORDER, WeakKernel};

@@ -70,6 +70,7 @@ fn logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back() {
     let (listed, _) = sitl.log(&state, &["list"]);
     assert_eq!((&listed["autopilot"], &listed["protocol"]), (&"px4".into(), &"ftp".into()));
     assert_eq!(listed["logs"].as_array().unwrap().len(), 1);
+    std::fs::create_dir_all(&folder).unwrap();
     let drafted = sitl.drafted(&folder.join("vehicle.toml"));
     assert!(drafted.contains("4 rotors of PX4 by CA_ROTOR_COUNT"), "{drafted}");
     assert!(
