@@ -4,7 +4,6 @@
 //! that have a file here. Nothing else in the library holds a mode's number.
 
 pub(crate) mod ardupilot;
-mod description;
 mod failsafe;
 mod frames;
 mod geometry;

@@ -20,7 +20,7 @@ pub struct VehicleArgs {
 /// What `mavid vehicle` does beside checking a file.
 #[derive(Debug, Subcommand)]
 pub enum VehicleVerb {
-    /// Write a first vehicle file from a log or a vehicle on a link: rotors and thrust curve from the autopilot's parameters, thrust from the
+    /// Write a first vehicle file from a log: rotors and thrust curve from the autopilot's parameters, thrust from the
     /// flight, the rest from rules of thumb, marked as guesses
     Init(InitArgs),
 }
@@ -28,13 +28,10 @@ pub enum VehicleVerb {
 /// Arguments of `mavid vehicle init`.
 #[derive(Debug, Args)]
 pub struct InitArgs {
-    /// a log that contains the vehicle's parameters, preferably with a flight; or the address of a link to the vehicle, which
-    /// is asked for its parameters and told nothing else
+    /// a log that contains the vehicle's parameters, preferably with a flight; or the address of a vehicle, whose parameters
+    /// are read
     #[arg(long, value_name = "LOG|ADDRESS")]
     pub from: PathBuf,
-    /// with an address: key that signs what is sent
-    #[arg(long, value_name = "FILE")]
-    pub signing_key_file: Option<PathBuf>,
     /// mass with battery, kg: weigh it
     #[arg(long, value_name = "KG", allow_negative_numbers = true)]
     pub mass: f64,

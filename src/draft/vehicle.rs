@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::hover::full_thrust;
 use super::rules::{self, Rule};
-use crate::autopilot::{Frame, Layout, LayoutError, LayoutUnit, Outputs};
+use crate::autopilot::{Frame, Layout, LayoutError, LayoutUnit, Outputs, Stack};
 use crate::recording::Recording;
 use crate::signals::{bus_range, holds_fractions};
 use crate::units::GRAVITY_M_S2;
@@ -92,10 +92,7 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
     given.size_m.map_or(Ok(()), |size_m| within("size", "m", SIZES_M, size_m))?;
     let stack = recording.autopilot.stack().ok_or(DraftError::Autopilot)?;
     let parameter = |name: &str| recording.parameters.get(name).copied();
-    let layout = match given.frame {
-        Some(frame) => Layout::of(frame, "the given frame"),
-        None => stack.geometry.layout(&parameter, stack.outputs.motors(&parameter))?,
-    };
+    let layout = layout(stack, given, &parameter)?;
     let mut noted = Noted::default();
     let arm_m = noted.arm(&layout, given);
     let rotors = rotors(&layout, arm_m / layout.radius());
@@ -126,6 +123,18 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
     noted.origins.insert(0, format!("{} of {} by {}", layout.name, stack.name, layout.stated_by));
     vehicle.guesses = noted.guesses;
     Ok(Draft { vehicle, origins: noted.origins })
+}
+
+/// Where the rotors are, by what is given or by the parameters.
+pub(super) fn layout(
+    stack: &Stack,
+    given: &Given,
+    parameter: &dyn Fn(&str) -> Option<f64>,
+) -> Result<Layout, LayoutError> {
+    match given.frame {
+        Some(frame) => Ok(Layout::of(frame, "the given frame")),
+        None => stack.geometry.layout(parameter, stack.outputs.motors(parameter)),
+    }
 }
 
 fn rotors(layout: &Layout, scale: f64) -> Vec<Rotor> {

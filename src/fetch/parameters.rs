@@ -28,12 +28,6 @@ impl Known {
     pub fn value(&self, name: &str) -> Option<f64> {
         self.0.get(name).map(|parameter| parameter.value)
     }
-
-    /// All of them.
-    #[must_use]
-    pub fn values(&self) -> BTreeMap<String, f64> {
-        self.0.iter().map(|(name, parameter)| (name.clone(), parameter.value)).collect()
-    }
 }
 
 /// Reads some parameters.

@@ -1,9 +1,9 @@
 //! How a study is told of the vehicle: by a file, or by its mass and size.
 
+use crate::autopilot::Autopilot;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::autopilot::Autopilot;
 use crate::config::{ConfigError, LoadedVehicle, ModelTables, read_vehicle, vehicle_to_toml};
 use crate::draft::{Draft, Given, draft};
 use crate::log::{Hold, open_flights};
@@ -126,19 +126,18 @@ pub fn draft_from_log(log: &Path, read: &ReadSettings, given: &Given) -> Result<
     drafted(&flight.recording, &text::path(&log), given)
 }
 
-/// A first description of a vehicle, from the parameters of its autopilot. `origin` is where they come from, for messages.
+/// A first description of a vehicle by its parameters alone, as they came over the link at `address`.
 ///
 /// # Errors
-/// The parameters do not say enough.
+/// They do not say enough.
 pub fn draft_from_parameters(
-    autopilot: Autopilot,
-    parameters: BTreeMap<String, f64>,
+    (autopilot, parameters): (Autopilot, BTreeMap<String, f64>),
     given: &Given,
-    origin: &str,
+    address: &str,
 ) -> Result<Draft, StudyError> {
     let recording = Recording { autopilot, parameters, ..Recording::default() };
     draft(&recording, given, "vehicle")
-        .map_err(|error| StudyError::File { file: origin.to_owned(), why: error.to_string() })
+        .map_err(|error| StudyError::File { file: address.to_owned(), why: error.to_string() })
 }
 
 /// A draft as a vehicle file, with where its values come from.

@@ -1,10 +1,10 @@
 //! `mavid log`: the logs that a vehicle keeps.
 
 mod before;
-mod described;
 mod documents;
 mod fetching;
 mod flown;
+mod parameters;
 mod prepare;
 mod preparing;
 mod session;
@@ -12,6 +12,6 @@ mod state;
 mod verb;
 
 pub use before::{before_flight, put_back};
-pub use described::drafted;
 pub use flown::{Fetching, after_flight};
+pub use parameters::of_vehicle as parameters_of_vehicle;
 pub use verb::run;
