@@ -13,8 +13,8 @@ use crate::wire::Frame;
 
 /// Bytes that are asked for at once.
 const CHUNK: u64 = 512 * LOG_DATA_BYTES as u64;
-/// Messages between gaps that are asked for together before the link is known.
-const BETWEEN: f64 = 2.0;
+/// Gaps with no more between them than this are asked for together: a message costs less than a request.
+const BETWEEN: u64 = 2 * LOG_DATA_BYTES as u64;
 /// Requests in a row that bring nothing, at most.
 const BARREN: u32 = 24;
 /// Words in a row that the log ends before the stated size; one may be of an earlier request.
@@ -75,13 +75,6 @@ impl LogReading {
         self.peer.request_end()
     }
 
-    /// Gaps with no more bytes between them than this are asked for together: these take less time than another request.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-    fn between(&self) -> u64 {
-        let messages = self.pace.messages_a_request().unwrap_or(BETWEEN).max(BETWEEN);
-        (messages * LOG_DATA_BYTES as f64) as u64
-    }
-
     /// The next range that is missing.
     fn wanted(&self) -> (u64, u64) {
         let gaps = self.window.gaps();
@@ -89,9 +82,8 @@ impl LogReading {
             let begin = self.window.begin();
             return (begin, self.window.size().min(begin + CHUNK));
         };
-        let between = self.between();
         for (next, end) in &gaps[1..] {
-            if next - to > between || end - from > CHUNK {
+            if next - to > BETWEEN || end - from > CHUNK {
                 break;
             }
             to = *end;

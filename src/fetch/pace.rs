@@ -12,9 +12,6 @@ const NEW: f64 = 0.2;
 /// An answer is waited for so many times as long as answers take; a stream so many times its spacing.
 const ANSWER_FACTOR: f64 = 4.0;
 const SILENCE_FACTOR: f64 = 12.0;
-/// Another request costs this share of a silence: a way there and back, and the whole silence where its last message gets
-/// lost.
-const REQUEST_SHARE: f64 = 0.5;
 
 /// What the link has shown.
 #[derive(Debug, Clone, Copy, Default)]
@@ -48,12 +45,6 @@ impl Pace {
     pub(super) fn answer(&self, tries: u32) -> Duration {
         let first = bounded(self.answer_s, ANSWER_FACTOR, ANSWER);
         first.mul_f64(1.5_f64.powi(i32::try_from(tries.min(8)).unwrap_or(8))).min(ANSWER.1)
-    }
-
-    /// How many messages of a stream come in the time that another request costs; `None` before anything is known.
-    pub(super) fn messages_a_request(&self) -> Option<f64> {
-        let spacing_s = self.spacing_s.filter(|spacing_s| *spacing_s > 0.0)?;
-        Some(REQUEST_SHARE * self.silence(0).as_secs_f64() / spacing_s)
     }
 
     /// How long a stream may be silent that was begun `tries` times before without anything new.
