@@ -4,7 +4,7 @@ use std::path::Path;
 
 use mavid::config::read_vehicle;
 use mavid::report::vehicle_text;
-use mavid::study::{draft_from_log, draft_text, vehicle_summary};
+use mavid::study::{draft_from_log, draft_text, vehicle_summary, with_thrust_stand};
 
 use super::{CommandError, Outcome, output};
 use crate::cli::{InitArgs, VehicleArgs, VehicleVerb};
@@ -31,8 +31,12 @@ fn check(json: bool, file: &Path) -> Result<Outcome, CommandError> {
 
 /// Writes a first vehicle file, and says what it means.
 fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
-    output::refuse_overwriting(&[&args.from], &[&args.out])?;
-    let draft = draft_from_log(&args.from, &args.read.settings(), &args.shape.given(args.mass))?;
+    let inputs: Vec<_> = [&args.from].into_iter().chain(&args.thrust_stand).collect();
+    output::refuse_overwriting(&inputs, &[&args.out])?;
+    let mut draft = draft_from_log(&args.from, &args.read.settings(), &args.shape.given(args.mass))?;
+    if let Some(table) = &args.thrust_stand {
+        draft = with_thrust_stand(draft, table)?;
+    }
     output::file(&args.out, &draft_text(&draft)?)?;
     check(json, &args.out)
 }
