@@ -154,6 +154,7 @@ pub mod report;
 pub mod signals;
 pub mod simulate;
 pub mod sitl;
+pub mod stand;
 pub mod stats;
 pub mod study;
 pub mod text;

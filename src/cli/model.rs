@@ -38,6 +38,10 @@ pub struct InitArgs {
     /// its shape
     #[command(flatten)]
     pub shape: ShapeArgs,
+    /// what a thrust stand measured of one rotor, with command, thrust, torque, rotor speed and voltage by the header: in
+    /// place of guesses
+    #[arg(long, value_name = "FILE.CSV")]
+    pub thrust_stand: Option<PathBuf>,
     /// where to write it
     #[arg(long, value_name = "VEHICLE.TOML")]
     pub out: PathBuf,

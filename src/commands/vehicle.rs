@@ -6,7 +6,7 @@ use mavid::config::read_vehicle;
 use mavid::draft::parameters_of;
 use mavid::link::Address;
 use mavid::report::vehicle_text;
-use mavid::study::{draft_from_log, draft_from_parameters, draft_text, vehicle_summary};
+use mavid::study::{draft_from_log, draft_from_parameters, draft_text, vehicle_summary, with_thrust_stand};
 
 use super::log::parameters_of_vehicle;
 use super::{CommandError, Outcome, output};
@@ -42,9 +42,10 @@ fn link(args: &InitArgs) -> Option<VehicleLinkArgs> {
 
 /// Writes a first vehicle file, and says what it means.
 fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
-    output::refuse_overwriting(&[&args.from], &[&args.out])?;
+    let inputs: Vec<_> = [&args.from].into_iter().chain(&args.thrust_stand).collect();
+    output::refuse_overwriting(&inputs, &[&args.out])?;
     let given = args.shape.given(args.mass);
-    let draft = match link(args) {
+    let mut draft = match link(args) {
         Some(link) => {
             let (autopilot, parameters) =
                 parameters_of_vehicle(&link, |stack, known| parameters_of(stack, &given, known))?;
@@ -52,6 +53,9 @@ fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
         }
         None => draft_from_log(&args.from, &args.read.settings(), &given)?,
     };
+    if let Some(table) = &args.thrust_stand {
+        draft = with_thrust_stand(draft, table)?;
+    }
     output::file(&args.out, &draft_text(&draft)?)?;
     check(json, &args.out)
 }

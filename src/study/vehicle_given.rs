@@ -9,8 +9,9 @@ use crate::draft::{Draft, Given, draft};
 use crate::log::{Hold, open_flights};
 use crate::note::{About, Note};
 use crate::recording::Recording;
+use crate::stand::{StandError, measured_propulsion, read_table};
 use crate::text;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Guessed, Vehicle};
 
 use super::StudyError;
 use super::flight::Flight;
@@ -139,6 +140,44 @@ pub fn draft_from_parameters(
     draft(&recording, given, "vehicle")
         .map_err(|error| StudyError::File { file: address.to_owned(), why: error.to_string() })
 }
+
+/// A draft with what a thrust stand measured of one of its rotors in place of guesses.
+///
+/// # Errors
+/// The table cannot be read, does not say enough, or says what no rotor does.
+pub fn with_thrust_stand(mut draft: Draft, table: &Path) -> Result<Draft, StudyError> {
+    let name = text::path(&table);
+    let unusable = |error: StandError| match error {
+        StandError::Read { .. } | StandError::TooLarge { .. } => {
+            StudyError::Setting { name: "thrust-stand", why: error.to_string() }
+        }
+        _ => StudyError::File { file: name.clone(), why: error.to_string() },
+    };
+    let vehicle = &mut draft.vehicle;
+    let stand = read_table(table).and_then(|table| measured_propulsion(&table, &vehicle.propulsion));
+    let stand = stand.map_err(unusable)?;
+    let weight_n = vehicle.body.mass_kg * vehicle.gravity_m_s2 / vehicle.rotors.len() as f64;
+    let hovers = vehicle.propulsion.command_from_thrust(weight_n);
+    let by_flight = vehicle.guesses.iter().any(|guess| {
+        guess.of == Guessed::ThrustMax && guess.relative < FLOWN && stand.measured.contains(&guess.of)
+    });
+    let lifted = stand.propulsion.thrust_from_command_n(hovers) / weight_n;
+    if by_flight && !(1.0 / APART..=APART).contains(&lifted) {
+        draft.origins.push(format!(
+            "{name}: at the command at which the log's vehicle hovers, the stand's thrust is {lifted:.2} times the weight: \
+             another voltage, another rotor, or a wrong mass?"
+        ));
+    }
+    vehicle.propulsion = stand.propulsion;
+    vehicle.guesses.retain(|guess| !stand.measured.contains(&guess.of));
+    draft.origins.extend(stand.sentences.into_iter().map(|sentence| format!("{name}: {sentence}")));
+    Ok(draft)
+}
+
+/// A largest thrust that is known better than this is from a flight.
+const FLOWN: f64 = 0.1;
+/// Thrusts of a stand and of a flight that are further apart contradict each other.
+const APART: f64 = 1.25;
 
 /// A draft as a vehicle file, with where its values come from.
 ///

@@ -41,6 +41,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("replay", &["text", "wire", "log", "link"]),
     // vehicle: from actuator values to force
     ("signals", &["note", "stats", "autopilot", "vehicle", "recording"]),
+    // what a thrust stand measured of a rotor
+    ("stand", &["units", "text", "vehicle"]),
     // a first description of a vehicle, from parameters, weight and a flight
     ("draft", &["units", "autopilot", "vehicle", "recording", "signals"]),
     ("regression", &["signals"]),
@@ -105,6 +107,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "wire",
             "log",
             "signals",
+            "stand",
             "draft",
             "regression",
             "estimate",
