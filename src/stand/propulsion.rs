@@ -142,6 +142,9 @@ impl StandResult {
             let expected = format!("commands from {:.0} to {:.0} us", range.min_us, range.max_us);
             return Err(rows(expected, format!("{:.4} in the middle", median(finite(&pulses)))));
         }
+        // the law is of commands in 0..1: what a stand measures outside of the vehicle's range bends it
+        let within = |u: &f64| if (0.0..=1.0).contains(u) { *u } else { f64::NAN };
+        let commands: Vec<f64> = commands.iter().map(within).collect();
         let steps = used.steps(&[&commands, &table.thrust_n]);
         let (u, thrust) = (&steps.means[0], &steps.means[1]);
         let square: Vec<f64> = u.iter().map(|u| u * u).collect();
@@ -357,6 +360,23 @@ mod tests {
         assert_eq!(result.measured, [Guessed::ThrustMax, Guessed::ThrustCurve, Guessed::TorqueRatio]);
         assert!(result.sentences.iter().any(|said| said.starts_with("no voltage")), "{:?}", result.sentences);
         assert!(!result.sentences.iter().any(|said| said.contains("falls")), "{:?}", result.sentences);
+    }
+
+    #[test]
+    fn commands_outside_of_the_vehicles_range_do_not_bend_the_curve() {
+        // the vehicle's commands begin where the stand's rotor turns already
+        let range = PwmRange { min_us: 1150.0, max_us: 1950.0 };
+        let stated = Propulsion { actuator: Actuator::Pwm(Some(range)), ..STATED };
+        let curve = |u: f64| 10.0 * (0.4 * u + 0.6 * u * u);
+        let row = |pulse: f64| {
+            let u = (pulse - 1150.0) / 800.0;
+            format!("{pulse},{}\n", if u > 0.0 { curve(u) } else { 0.4 })
+        };
+        let rows: String = (0..100).map(|row| 1000.0 + 10.0 * f64::from(row)).map(row).collect();
+        let table = parse_table(&format!("ESC (us),Thrust (N)\n{rows}")).unwrap();
+        let result = measured_propulsion(&table, &stated).unwrap();
+        let ThrustLaw::Curve { thrust_max_n, expo } = result.propulsion.law else { panic!("a curve") };
+        assert!((thrust_max_n - 10.0).abs() < 0.02 && (expo - 0.6).abs() < 0.01, "{result:?}");
     }
 
     #[test]
