@@ -41,6 +41,28 @@ def tlog():
     yield from scripts(6, [1], 8, 200)
 
 
+def ulog():
+    log = (ROOT / "fixtures/px4_flight.ulg").read_bytes()
+    kept, at = {}, 16
+    while at + 3 <= len(log):
+        body = log[at + 3:at + 3 + int.from_bytes(log[at:at + 2], "little")]
+        kept.setdefault(chr(log[at + 2]), []).append(log[at:at + 3] + body)
+        at += 3 + len(body)
+    for topics in (b"vehicle_attitude", b"esc_status", b"vehicle_status"), (b"vehicle_local_position", b"actuator_motors"):
+        formats = [m for m in kept["F"] if m[3:].split(b":")[0] in topics + (b"esc_report",)]
+        added = [m for m in kept["A"] if m[6:] in topics]
+        data = [m for m in kept["D"] if m[3:5] in [a[4:6] for a in added]][:12]
+        yield bytes([0, 7]) + log[8:16] + b"".join(kept["B"] + kept["I"][:3] + formats + kept["P"][:3] + added + data)
+    yield from scripts(8, [1], 8, 200)
+
+
+def dataflash():
+    yield from scripts(7, [1, 3], 8, 300)
+    yield b"\x01\x09" + b"".join(bytes([0xA3, 0x95, 135]) + bytes([64, 0, 0, 3, 0, 0, 0, 0, event]) for event in (10, 28, 18, 11))
+    yield (b"\x02IMU, 1000, 0, 0.1, 0.2, 0.3, 1, 2, -9.8\nATT, 2000, 1, 2, 3, 4, 5, 6\nMSG, 3000, ArduCopter V4.5.7, again\n"
+           b"PARM, 3000, FRAME_CLASS, 1\nMODE, 4000, GUIDED, GUIDED, 1\nEV, 1e3\nnothing\nESC, 5000, 3, nan\nFMT, 135, 12, EV")
+
+
 def csv():
     yield b"\x00\x00time_s,velocity_x_m_s,velocity_y_m_s,velocity_z_m_s\n0,1,2,3\n0.1,1,,3\n\n0.2,nan,2,3\n"
     yield b"\x01\x000,1,2,3,0.5,0.5\n0.01,1,2,3,0.5,0.5\n0.01,1,2,3,0.5\n-5,1,2,3,0.5,0.5\n1e9,1,2,3,0.5,0.5\n"
@@ -89,7 +111,7 @@ def explain():
     yield from scripts(4, [0, 1, 4, 5, 6], 2, 20)
 
 
-for make in [splitter, tlog, csv, toml, signing, flight, identify, explain]:
+for make in [splitter, tlog, ulog, dataflash, csv, toml, signing, flight, identify, explain]:
     folder = HERE / "work" / make.__name__
     folder.mkdir(parents=True, exist_ok=True)
     for index, data in enumerate(make()):

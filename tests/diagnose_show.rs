@@ -1,4 +1,4 @@
-//! An explained model on flights that it has not seen; refitted another way; and the flight to fly next.
+//! An explained model on flights that it has not seen; and the flight to fly next.
 
 #![allow(clippy::panic, clippy::unwrap_used, reason = "a test ends where it fails")]
 
@@ -6,7 +6,6 @@ use mavid::diagnose::experiment::{NextError, NextFlight, NextSettings, design, t
 use mavid::diagnose::holdout::{
     HeldOut, HoldoutError, HoldoutFit, HoldoutSettings, differing, on_holdout, split_last_periods,
 };
-use mavid::diagnose::refit::{RefitSettings, refit};
 use mavid::diagnose::{Along, Empirical, ExplainSettings, Explanation, Verdict, explain};
 use mavid::physics::effects::by_id;
 use mavid::physics::{ActiveEffect, Wrench};
@@ -206,7 +205,7 @@ fn nothing_missing_changes_nothing_and_no_flight_is_refused() {
 fn the_moment_of_a_mass_change_is_found_again() {
     let vehicles = pair();
     let change = |time_s: f64| vec![effect("mass_change", &[time_s, -0.12 * vehicles.truth.body.mass_kg])];
-    let (found, _) = explained(&vehicles, change(22.0));
+    let (found, flight) = explained(&vehicles, change(22.0));
     assert_eq!(found.named.first().map(|named| named.id), Some("mass_change"));
     let both = (&vehicles.truth, &vehicles.nominal);
     let holdout = flown(both, (change(15.0), None), trajectory(6), (4, 34.0));
@@ -214,6 +213,14 @@ fn the_moment_of_a_mass_change_is_found_again() {
     assert!(shown.improvement_percent.unwrap().range.unwrap().0 > 5.0);
     let note = shown.notes.iter().find(|note| note.contains("mass change")).unwrap();
     assert!(note.contains("at 14.") || note.contains("at 15."), "{note}");
+    // after it, in the last part of the same flight, its size and the mass cannot be distinguished
+    let split = split_last_periods(&flight).unwrap();
+    let held = HeldOut { name: "end", signals: &split.holdout, recording: None };
+    let settings = HoldoutSettings { same_flight: true, ..HoldoutSettings::default() };
+    let shown = on_holdout((&found, None), &[held], &vehicles.nominal, &settings).unwrap();
+    assert!(shown.agreement.iter().all(|of| of.name != "mass_change.delta" && of.held_out_std.is_finite()));
+    let force_z = shown.weak[2].unwrap();
+    assert!(force_z.after.value < 0.5 * force_z.before.value, "{force_z:?}");
 }
 
 #[test]
@@ -244,16 +251,21 @@ fn a_force_fixed_in_the_room_is_predicted_without_a_name() {
 }
 
 #[test]
-fn shooting_agrees_with_the_weak_form() {
+fn flights_with_and_without_measured_rotor_speeds_are_explained_together() {
     let vehicles = pair();
-    let (found, flight) = explained(&vehicles, vec![effect("linear_drag", &[0.25, 0.25, 0.0])]);
-    let refit = refit(&found, &[flight], &vehicles.nominal, &RefitSettings::default()).unwrap();
-    assert!(refit.segments > 50 && refit.cost.1 <= refit.cost.0, "{:?}", refit.cost);
-    let mass = &refit.parameters[0];
-    assert!((mass.shooting / vehicles.truth.body.mass_kg - 1.0).abs() < 0.01, "{mass:?}");
-    let drag = refit.parameters.iter().find(|of| of.name == "linear_drag.dx").unwrap();
-    assert!((drag.shooting / 0.25 - 1.0).abs() < 0.15 && drag.shooting_std > 0.0, "{drag:?}");
-    assert!(drag.sigmas().abs() < 5.0, "{drag:?}");
+    let drag = || vec![effect("linear_drag", &[0.25, 0.25, 0.0])];
+    let both = (&vehicles.truth, &vehicles.nominal);
+    let (_, by_commands) = flown(both, (drag(), None), trajectory(5), (1, 34.0));
+    let (recording, _) = flown(both, (drag(), None), trajectory(6), (2, 34.0));
+    let settings = ConditionSettings { transient_s: Some(1.0), ..ConditionSettings::default() };
+    let by_speeds = condition(&recording, &vehicles.nominal, &settings).unwrap();
+    assert!(by_commands.jitter_wrench.is_some() && by_speeds.jitter_wrench.is_none());
+    let named = |flights: &[Signals]| {
+        let found = explain(flights, &vehicles.nominal, &ExplainSettings::default()).unwrap();
+        found.named.iter().map(|named| named.id).collect::<Vec<_>>()
+    };
+    assert_eq!(named(&[by_commands.clone(), by_speeds.clone()]), ["linear_drag"]);
+    assert_eq!(named(&[by_speeds, by_commands]), ["linear_drag"]);
 }
 
 /// The distance that the next flight was said to bring is the one that it brings.

@@ -122,7 +122,7 @@ fn bad_input_is_refused_with_what_was_expected_and_what_came() {
         (vec![log.as_str(), "--out", &log], "expected a folder"),
         (
             vec![log.as_str(), "--holdout", read.to_str().unwrap(), "--out", folder.to_str().unwrap()],
-            "model.toml is read",
+            "model.toml is an input",
         ),
         (vec!["no-such.tlog"], "no-such.tlog"),
         (vec![idle.to_str().unwrap()], "no actuator outputs for 4 rotors"),

@@ -112,6 +112,16 @@ fn tlog() {
 }
 
 #[test]
+fn ulog() {
+    twin("ulog", 10_000);
+}
+
+#[test]
+fn dataflash() {
+    twin("dataflash", 20_000);
+}
+
+#[test]
 fn csv() {
     twin("csv", 20_000);
 }

@@ -241,6 +241,10 @@ async fn over_udp_the_latest_is_sent_at_once_and_in_order() {
     // both know each other
     ground_out.send_message(&ground_heartbeat()).unwrap();
     frame(&mut sitl).await;
+    // the frame is given out first, then the writer is open
+    while !sitl_out.is_connected() {
+        tokio::task::yield_now().await;
+    }
     sitl_out.send_message(&heartbeat()).unwrap();
     frame(&mut ground).await;
     for (out, reader) in [(&ground_out, &mut sitl), (&sitl_out, &mut ground)] {

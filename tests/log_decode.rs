@@ -37,7 +37,7 @@ struct Rig {
 
 impl Rig {
     fn new(autopilot: Autopilot) -> Self {
-        let vehicle = Vehicle { system: SystemId(1), component: ComponentId(1), autopilot };
+        let vehicle = Vehicle { system: SystemId(1), component: ComponentId(1), autopilot, kind: None };
         let anchor = Anchor::new(Stamp::BootMs(10_000), i64::try_from(START_US).unwrap());
         Self { decoder: Decoder::new(vehicle, anchor, START_US), said: Vec::new() }
     }
@@ -293,7 +293,12 @@ fn servo_time_wraps_after_71_minutes_without_notice() {
         })
     };
     // 80 minutes since boot: the 32 bits hold 505.03 s
-    let vehicle = Vehicle { system: SystemId(1), component: ComponentId(1), autopilot: Autopilot::ArduPilot };
+    let vehicle = Vehicle {
+        system: SystemId(1),
+        component: ComponentId(1),
+        autopilot: Autopilot::ArduPilot,
+        kind: None,
+    };
     let anchor = Anchor::new(Stamp::BootMs(4_800_000), i64::try_from(START_US).unwrap());
     let mut rig = Rig { decoder: Decoder::new(vehicle, anchor, START_US), said: Vec::new() };
     let wrapped = |boot_us: u64| servo(u32::try_from(boot_us % (1 << 32)).unwrap());

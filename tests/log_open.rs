@@ -32,9 +32,14 @@ fn flight() -> Vec<u8> {
 #[test]
 fn content_tells_the_format_and_names_do_not() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    for (bytes, format) in
-        [(flight(), "telemetry log (.tlog)"), (TABLE.into(), "table of comma-separated values (.csv)")]
-    {
+    for (bytes, format) in [
+        (flight(), "telemetry log (.tlog)"),
+        (
+            std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/px4_flight.ulg")).unwrap(),
+            "PX4 log (.ulg)",
+        ),
+        (TABLE.into(), "table of comma-separated values (.csv)"),
+    ] {
         for name in ["as.tlog", "as.csv", "as.ulg", "as_nothing"] {
             let path = folder.join(format!("door-{name}"));
             std::fs::write(&path, &bytes).unwrap();
@@ -63,21 +68,40 @@ fn a_file_of_no_known_format_is_named_with_what_to_do() {
     let mut noise = vec![1_u8];
     noise.extend((0..500_u32).map(|index| (index * 97 % 251).to_le_bytes()[0]));
     let raw: Vec<u8> = support::attitudes(20).concat();
+    let tar = [&b"flight.ulg"[..], &[0; 247], b"ustar\0", &[0; 200]].concat();
     for (bytes, came, advice) in [
-        (&b"ULog\x01\x12\x35\x01"[..], "a PX4 log (.ulg), which is not read yet", "mavid record"),
-        (b"\xa3\x95\x80\x80\x59FMT", "an ArduPilot log (.bin), which is not read yet", "mavid record"),
+        (&b"\xa3\x95\x80\x80\x59FMT"[..], "the first bytes of an ArduPilot log (.bin)", "the whole log"),
         (
-            b"FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\n",
-            "an ArduPilot text log (.log), which is not read yet",
-            "mavid record",
+            b"\xa3\x95\x80\x02\x37ATT ",
+            "a PX4 log of the format before ULog (sdlog2, .px4log)",
+            "sdlog2_dump.py",
         ),
         (b"\x1f\x8b\x08\0\0\0", "a gzip archive", "unpack"),
         (b"PK\x03\x04\x14\0", "a zip archive", "unpack"),
+        (b"ULog\x02", "binary data that begins with 55 4c 6f 67 02", "the log itself"),
+        (b"PK\x05\x06\0\0\0\0", "an empty zip archive", "pack the log again"),
+        (b"7z\xbc\xaf\x27\x1c\0\x04", "a 7z archive", "unpack"),
+        (&tar, "a tar archive", "unpack"),
         (b"#ROSBAG V2.0\n", "a ROS bag", "table"),
+        (b"SQLite format 3\0", "a ROS 2 bag", "table"),
+        (b"\x89MCAP0\r\n", "an MCAP file", "table"),
+        (b"H Product:Blackbox flight data recorder", "a blackbox log", "blackbox_decode"),
+        (b"\xef\xbb\xbf\n<!DOCTYPE html><html>", "a web page (HTML)", "download the log itself"),
+        (b"version https://git-lfs.github.com/spec/v1\n", "the pointer to a file in Git LFS", "git lfs pull"),
+        (b"# Onboard parameters for Vehicle 1\n", "a file of parameters", "the log of a flight"),
+        (b"%PDF-1.4\n1 0 obj", "a PDF document", "the log itself"),
         (b"{\"a\": 1, \"b\": 2}", "JSON", "table"),
-        (b"Dear reader\nno table here\n", "text without a header of columns", "names its columns"),
-        (b"0.0,1,2,3\n0.1,1,2,3\n", "text without a header of columns", "names its columns"),
-        (b"\ntime_s,battery_V\n0,1\n", "text without a header of columns", "names its columns"),
+        (
+            b"Dear reader\nno table here\n",
+            "text that is no log and has no header of columns",
+            "names its columns",
+        ),
+        (b"0.0,1,2,3\n0.1,1,2,3\n", "text that is no log and has no header of columns", "names its columns"),
+        (
+            b"\ntime_s,battery_V\n0,1\n",
+            "text that is no log and has no header of columns",
+            "names its columns",
+        ),
         (b"", "an empty file", "nothing was recorded"),
         (&[0; 4096], "a file that begins with zeros only", "interrupted"),
         (&raw, "MAVLink frames without stamps", "mavid record"),
@@ -86,7 +110,7 @@ fn a_file_of_no_known_format_is_named_with_what_to_do() {
         let refused = open(bytes).unwrap_err();
         assert!(matches!(refused, LogError::UnknownFormat { .. }), "{refused:?}");
         let told = refused.to_string();
-        let expected = "expected a telemetry log (.tlog) or table of comma-separated values (.csv), got ";
+        let expected = "expected a telemetry log (.tlog), ";
         assert!(told.starts_with(expected) && told.contains(came) && told.contains(advice), "{told}");
     }
     let told = log::open(env!("CARGO_MANIFEST_DIR"), &OpenOptions::default()).unwrap_err().to_string();
@@ -217,4 +241,22 @@ fn a_stream_of_another_vehicle_than_the_one_that_flew_says_which_one_did() {
         (SystemId(2), vec![SystemId(1)])
     );
     assert_eq!(opened.recording.autopilot, Autopilot::Px4);
+}
+
+#[test]
+fn a_log_that_was_cut_off_before_its_first_sample_says_so() {
+    let whole = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/px4_flight.ulg")).unwrap();
+    let told = open(&whole[..12]).unwrap_err().to_string();
+    assert!(told.contains("the first 12 bytes of one: give the whole log"), "{told}");
+    let cut = open(&whole[..600]).unwrap();
+    assert!(cut.report.ends_early() && cut.report.is_timed());
+    let found = mavid::inspect::inspect_recording(&cut, None);
+    assert!(found.verdict.contains("it ends before its first sample. It was cut off"), "{}", found.verdict);
+    assert!(!open(&whole).unwrap().report.ends_early());
+}
+
+#[test]
+fn a_table_without_the_columns_says_how_to_name_them() {
+    let told = open(b"a,b,c\n1,2,3\n4,5,6\n").unwrap_err().to_string();
+    assert!(told.contains("expected column(s) time_s") && told.contains("--csv-map"), "{told}");
 }

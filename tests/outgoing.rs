@@ -104,7 +104,7 @@ fn target() -> impl Strategy<Value = Target> {
 }
 
 fn vehicle(system: u32, autopilot: Autopilot) -> Vehicle {
-    Vehicle { system: SystemId(system), component: ComponentId(1), autopilot }
+    Vehicle { system: SystemId(system), component: ComponentId(1), autopilot, kind: None }
 }
 
 fn order() -> impl Strategy<Value = Option<Order>> {

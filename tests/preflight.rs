@@ -23,7 +23,7 @@ use std::path::Path;
 use std::time::Duration;
 
 fn vehicle_of(autopilot: Autopilot) -> Vehicle {
-    Vehicle { system: SystemId(1), component: ComponentId(1), autopilot }
+    Vehicle { system: SystemId(1), component: ComponentId(1), autopilot, kind: None }
 }
 
 /// A hash in place of chance.
@@ -473,6 +473,9 @@ fn ardupilot(changes: &[(&str, f64)]) -> Parameters {
         ("FLTMODE_CH", 5.0),
         ("FLTMODE1", 5.0),
         ("RC7_OPTION", 31.0),
+        ("LOG_BITMASK", 263_169.0),
+        ("LOG_BACKEND_TYPE", 1.0),
+        ("LOG_FILE_RATEMAX", 0.0),
     ];
     let mut parameters = Parameters { autopilot: Autopilot::ArduPilot, ..Parameters::default() };
     for (name, value) in values.iter().chain(changes) {

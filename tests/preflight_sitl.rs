@@ -52,7 +52,7 @@ impl Peer {
 
     fn identity(kind: Firmware) -> Vehicle {
         let autopilot = kind.autopilot();
-        Vehicle { system: SystemId(1), component: ComponentId(1), autopilot }
+        Vehicle { system: SystemId(1), component: ComponentId(1), autopilot, kind: None }
     }
 
     fn send(&mut self, message: &MavMessage) {

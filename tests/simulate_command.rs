@@ -150,8 +150,8 @@ fn a_log_overwrites_nothing_that_is_read_and_is_a_tlog() {
     std::fs::copy(config("trajectories/table2.toml"), &trajectory).unwrap();
     let before = std::fs::read_to_string(&vehicle).unwrap();
     for (out, expected) in [
-        (vehicle.clone(), "is read"),
-        (trajectory.clone(), "is read"),
+        (vehicle.clone(), "is an input"),
+        (trajectory.clone(), "is an input"),
         (place("flight.csv"), "expected the name of a .tlog"),
     ] {
         let output = mavid(&["simulate", &vehicle, "--trajectory", &trajectory, "--out", &out]);

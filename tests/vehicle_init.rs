@@ -84,5 +84,51 @@ fn what_is_missing_or_wrong_is_said() {
     let both = mavid(&["identify", &log(), "--vehicle", "v.toml", "--mass", "3"]);
     assert!(said(&both).contains("cannot be used with"), "{}", said(&both));
     let neither = mavid(&["explain", &log()]);
-    assert!(said(&neither).contains("--vehicle <VEHICLE>"), "{}", said(&neither));
+    assert!(said(&neither).contains("--vehicle <FILE>"), "{}", said(&neither));
+}
+
+/// A table as a stand writes it: a rotor of 19 N at full command, 1.9e-5 N/(rad/s)^2, 0.012 m.
+fn stand() -> String {
+    let mut text =
+        "Time (s),ESC signal (\u{b5}s),Thrust (gf),Torque (N\u{b7}m),Voltage (V),Motor Optical Speed (RPM)\n"
+            .to_owned();
+    for row in 0..100_u32 {
+        let u = 0.05 + 0.0095 * f64::from(row);
+        let thrust_n = 19.0 * (0.35 * u + 0.65 * u * u);
+        let rpm = (thrust_n / 1.9e-5).sqrt() * 60.0 / std::f64::consts::TAU;
+        let (pulse, grams, torque) = (1000.0 + 1000.0 * u, thrust_n / 9.806_65e-3, 0.012 * thrust_n);
+        text += &format!("{row},{pulse},{grams},{torque},16.0,{rpm}\n");
+    }
+    text
+}
+
+#[test]
+fn what_a_thrust_stand_measured_is_no_guess() {
+    let (out, table) = (target("stand.toml"), target("stand.csv"));
+    std::fs::write(&table, stand()).unwrap();
+    let given = ["--mass", "3", "--size", "0.7", "--frame", "quadrotor-x", "--thrust-stand"];
+    let run = |table: &str| {
+        let tail = [table, "--out", out.to_str().unwrap()];
+        mavid(&[&["vehicle", "init", "--from", &log()], &given[..], &tail].concat())
+    };
+    let output = run(table.to_str().unwrap());
+    assert!(output.status.success(), "{}", said(&output));
+    let vehicle = read_vehicle(&out).unwrap().vehicle;
+    let propulsion = &vehicle.propulsion;
+    assert!((propulsion.thrust_coefficient.unwrap() / 1.9e-5 - 1.0).abs() < 0.01);
+    assert!((propulsion.torque_per_thrust_m - 0.012).abs() < 1e-4);
+    for measured in [Guessed::ThrustMax, Guessed::ThrustCurve, Guessed::TorqueRatio] {
+        assert!(vehicle.guesses.iter().all(|guess| guess.of != measured), "{measured:?}");
+    }
+    assert!(vehicle.guesses.iter().any(|guess| guess.of == Guessed::Inertia));
+    let text = std::fs::read_to_string(&out).unwrap();
+    assert!(text.contains("thrust coefficient 1.9") && text.contains("torque per thrust 0.012"), "{text}");
+    // what is no table of a stand is refused, and the file is not written
+    std::fs::remove_file(&out).unwrap();
+    std::fs::write(&table, "a,b\n1,2\n").unwrap();
+    let refused = run(table.to_str().unwrap());
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(said(&refused).contains("expected a header with a column of thrust"), "{}", said(&refused));
+    assert!(said(&run("no-such.csv")).contains("--thrust-stand: cannot read no-such.csv"));
+    assert!(!out.exists());
 }

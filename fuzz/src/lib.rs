@@ -7,6 +7,7 @@
 mod bytes;
 mod csv;
 mod damage;
+mod dataflash;
 mod explain;
 mod flight;
 mod frames;
@@ -16,6 +17,7 @@ mod signing;
 mod splitter;
 mod tlog;
 mod toml;
+mod ulog;
 
 /// What a target does with an input; the second argument puts the target's seeded bug in.
 pub type Run = fn(&[u8], bool);
@@ -30,9 +32,11 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 8] = [
+pub const TARGETS: [Target; 10] = [
     Target { name: "splitter", run: splitter::run },
     Target { name: "tlog", run: tlog::run },
+    Target { name: "ulog", run: ulog::run },
+    Target { name: "dataflash", run: dataflash::run },
     Target { name: "csv", run: csv::run },
     Target { name: "toml", run: toml::run },
     Target { name: "signing", run: signing::run },

@@ -27,9 +27,9 @@ pub fn run(data: &[u8], seeded: bool) {
 
 /// Gives a few bytes at a time, as a pipe may.
 #[derive(Debug)]
-struct Trickle<'a> {
-    left: &'a [u8],
-    piece: usize,
+pub struct Trickle<'a> {
+    pub left: &'a [u8],
+    pub piece: usize,
 }
 
 impl Read for Trickle<'_> {
@@ -114,7 +114,8 @@ fn account(bytes: &[u8], got: &Got) {
 fn put_together(got: &Got) {
     let Some((stamp_us, ..)) = got.records.first() else { return };
     let component = ComponentId(VEHICLE.1);
-    let vehicle = Vehicle { system: SystemId(VEHICLE.0.into()), component, autopilot: Default::default() };
+    let vehicle =
+        Vehicle { system: SystemId(VEHICLE.0.into()), component, autopilot: Default::default(), kind: None };
     let mut decoder = Decoder::new(vehicle, None, *stamp_us);
     let mut builder = RecordingBuilder::new();
     let log = as_log(got);

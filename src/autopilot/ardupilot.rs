@@ -75,10 +75,13 @@ pub static ARDUPILOT: Stack = Stack {
             ends: ("MOT_PWM_MIN", "MOT_PWM_MAX"),
             shares: ("MOT_SPIN_MIN", "MOT_SPIN_MAX"),
         },
+        // logged as pulses whatever they go over
+        bus: None,
         expo: "MOT_THST_EXPO",
         linear_without_expo: false,
         hover: "MOT_THST_HOVER",
         relevant: &["MOT_", "FRAME_"],
+        gains: &["ATC_", "PSC_"],
         groups: &[
             NumberedGroup { entries: &[FUNCTION], first: 1, count: Some(16) },
             // pulse ranges of the motors come from MOT_PWM_*; a reversed output would still turn them round
@@ -87,6 +90,9 @@ pub static ARDUPILOT: Stack = Stack {
         recorded: "MOT_* and SERVOn_FUNCTION",
     },
     geometry: Geometry::Class { class: "FRAME_CLASS", kind: "FRAME_TYPE", former: "FRAME" },
+    // fast attitude; RC output; fast and raw IMU. Motors are at 10 Hz whatever is asked for
+    logging: "add bits 0 (fast attitude), 10 (RC output) and 18 (fast IMU) to LOG_BITMASK",
+    log_settings: super::logging::ARDUPILOT,
     pilot: PilotSwitches {
         mode_channel: "FLTMODE_CH",
         positions: numbered("FLTMODE", ""),
@@ -316,7 +322,12 @@ const OTHERS: &[Parameter] = &[
     row("FENCE_TOTAL", B, NONE, 0.0),
     row("INS_ACCEL_FILTER", H, HZ, 20.0),
     row("INS_GYRO_FILTER", H, HZ, 20.0),
+    row("INS_LOG_BAT_MASK", B, NONE, 0.0),
+    row("INS_LOG_BAT_OPT", H, NONE, 0.0),
+    row("LOG_BACKEND_TYPE", B, NONE, 1.0),
     row("LOG_BITMASK", I, NONE, 176_126.0),
+    row("LOG_DISARMED", B, NONE, 0.0),
+    row("LOG_FILE_RATEMAX", R, HZ, 0.0),
     row("MOT_SLEW_DN_TIME", R, S, 0.0),
     row("MOT_SLEW_UP_TIME", R, S, 0.0),
     row("SCHED_LOOP_RATE", H, HZ, 400.0),

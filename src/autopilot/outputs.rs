@@ -80,6 +80,8 @@ pub struct Outputs {
     pub last_motor: u8,
     /// pulse widths
     pub pulses: PulseRange,
+    /// value of full command of outputs on a bus, where those are no pulses (UAVCAN); none is zero
+    pub bus: Option<u16>,
     /// exponent of the thrust curve
     pub expo: &'static str,
     /// the thrust is linear in the command where [`Self::expo`] does not answer
@@ -88,6 +90,8 @@ pub struct Outputs {
     pub hover: &'static str,
     /// beginnings of the names of all parameters that say how a command becomes thrust and how the vehicle is built
     pub relevant: &'static [&'static str],
+    /// beginnings of the names of the controllers' gains
+    pub gains: &'static [&'static str],
     /// numbered parameters, most needed first
     pub groups: &'static [NumberedGroup],
     /// in words, which parameters a log should hold
@@ -105,5 +109,29 @@ impl Outputs {
     #[must_use]
     pub fn is_motor(&self, function: f64) -> bool {
         (f64::from(self.first_motor)..=f64::from(self.last_motor)).contains(&function)
+    }
+
+    /// How many outputs drive motors; `None` where the parameters do not say.
+    #[must_use]
+    pub fn motors(&self, parameter: &dyn Fn(&str) -> Option<f64>) -> Option<usize> {
+        let drives = |channel: &usize| {
+            parameter(&self.function.name(*channel)).is_some_and(|value| self.is_motor(value))
+        };
+        Some((1..=16).filter(drives).count()).filter(|count| *count > 0)
+    }
+
+    /// Whether a parameter tells how a command becomes thrust or how the vehicle is built; an output's function does where it
+    /// is a motor.
+    #[must_use]
+    pub fn is_relevant(&self, name: &str, value: f64) -> bool {
+        let Numbered { before, after } = self.function;
+        let motor = name.starts_with(before) && name.ends_with(after) && self.is_motor(value);
+        motor || self.relevant.iter().any(|beginning| name.starts_with(beginning))
+    }
+
+    /// Whether a parameter is a gain of the controllers.
+    #[must_use]
+    pub fn is_gain(&self, name: &str) -> bool {
+        self.gains.iter().any(|beginning| name.starts_with(beginning))
     }
 }

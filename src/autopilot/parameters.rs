@@ -39,6 +39,8 @@ pub enum Purpose {
     Failsafe,
     /// what the autopilot makes of a setpoint
     Limit,
+    /// what the autopilot logs
+    Logging,
 }
 
 /// Unit of a parameter.

@@ -72,6 +72,8 @@ pub static PX4: Stack = Stack {
             (numbered("PWM_MAIN_MIN", ""), numbered("PWM_MAIN_MAX", "")),
             (numbered("PWM_AUX_MIN", ""), numbered("PWM_AUX_MAX", "")),
         ]),
+        // 13 bits of UAVCAN's RawCommand
+        bus: Some(8191),
         expo: "THR_MDL_FAC",
         linear_without_expo: true,
         hover: "MPC_THR_HOVER",
@@ -90,6 +92,7 @@ pub static PX4: Stack = Stack {
             "BAT_N_CELLS",
             "BAT1_N_CELLS",
         ],
+        gains: &["MC_ROLL", "MC_PITCH", "MC_YAW", "MPC_XY_", "MPC_Z_"],
         groups: &[
             NumberedGroup {
                 entries: &[
@@ -139,6 +142,9 @@ pub static PX4: Stack = Stack {
             (10016, 10016, class::QUAD, X),
         ],
     },
+    // default and system identification
+    logging: "set SDLOG_PROFILE = 9 and restart the autopilot",
+    log_settings: super::logging::PX4,
     pilot: PilotSwitches {
         mode_channel: "RC_MAP_FLTMODE",
         positions: numbered("COM_FLTMODE", ""),
@@ -196,6 +202,11 @@ const MODES: [FlightMode; 28] = [
     mode(AUTO, 0, "AUTO", "Auto", Itself, NO_SWITCH),
 ];
 
+/// `custom_mode` of a main and a sub mode.
+pub(super) const fn number(main: u8, sub: u8) -> u32 {
+    Numbering::MainAndSub.number(main, sub)
+}
+
 const fn mode(
     main: u8,
     sub: u8,
@@ -205,7 +216,7 @@ const fn mode(
     switch: i32,
 ) -> FlightMode {
     let switch = if switch == NO_SWITCH { None } else { Some(switch) };
-    FlightMode { number: Numbering::MainAndSub.number(main, sub), name, title, flown_by, switch }
+    FlightMode { number: number(main, sub), name, title, flown_by, switch }
 }
 
 const SETPOINTS_LOST: &[Choice] = &[
@@ -352,6 +363,8 @@ const OTHERS: &[Parameter] = &[
     row("RTL_DESCEND_ALT", R, M, 30.0),
     row("RTL_LAND_DELAY", R, S, 0.0),
     row("RTL_MIN_DIST", R, M, 10.0),
+    row("SDLOG_BACKEND", I, NONE, 3.0),
+    row("SDLOG_MODE", I, NONE, 0.0),
     row("SDLOG_PROFILE", I, NONE, 1.0),
 ];
 

@@ -6,6 +6,7 @@ use super::failsafe::Failsafe;
 use super::geometry::Geometry;
 use super::kind::Autopilot;
 use super::limits::{Bounded, Braking};
+use super::logging::Logging;
 use super::modes::{FlightMode, Mode, Numbering, Wishes};
 use super::outputs::Outputs;
 use super::parameters::ParameterTable;
@@ -45,6 +46,10 @@ pub struct Stack {
     pub outputs: Outputs,
     /// where the rotors are
     pub geometry: Geometry,
+    /// how to make it log what identification needs, as the end of a sentence that begins with what to do
+    pub logging: &'static str,
+    /// parameters of logging
+    pub log_settings: Logging,
     /// how a pilot takes over
     pub pilot: PilotSwitches,
 }

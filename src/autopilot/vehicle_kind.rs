@@ -55,6 +55,19 @@ impl VehicleKind {
         }
     }
 
+    /// The same by the autopilot's parameters: a quadplane of ArduPilot says that it is a plane.
+    #[must_use]
+    pub fn by_parameters(self, parameter: impl Fn(&str) -> Option<f64>) -> Self {
+        let has_rotors = || parameter("Q_ENABLE").is_some_and(|value| value > 0.5);
+        if self == Self::Plane && has_rotors() { Self::Vtol } else { self }
+    }
+
+    /// It leaves the ground.
+    #[must_use]
+    pub fn flies(self) -> bool {
+        !matches!(self, Self::Rover | Self::Submarine)
+    }
+
     /// In words.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -83,5 +96,10 @@ mod tests {
         assert_eq!([quad, octa, deca], [Some(VehicleKind::Multirotor); 3]);
         assert_eq!([rover, boat], [Some(VehicleKind::Rover); 2]);
         assert_eq!((submarine, vtol), (Some(VehicleKind::Submarine), Some(VehicleKind::Vtol)));
+        let with = |value| move |name: &str| (name == "Q_ENABLE").then_some(value);
+        assert_eq!(VehicleKind::Plane.by_parameters(with(1.0)), VehicleKind::Vtol);
+        assert_eq!(VehicleKind::Plane.by_parameters(with(0.0)), VehicleKind::Plane);
+        assert_eq!(VehicleKind::Multirotor.by_parameters(with(1.0)), VehicleKind::Multirotor);
+        assert_eq!([VehicleKind::Vtol, VehicleKind::Submarine].map(VehicleKind::flies), [true, false]);
     }
 }

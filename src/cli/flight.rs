@@ -61,6 +61,15 @@ pub struct FlyArgs {
     /// key that signs what is sent
     #[arg(long, value_name = "FILE")]
     pub signing_key_file: Option<PathBuf>,
+    /// before the flight, set what the autopilot logs so that an identification can use it; it is put back after the flight
+    #[arg(long)]
+    pub set_logging: bool,
+    /// after landing, fetch the log that the vehicle wrote itself, however long that takes
+    #[arg(long, conflicts_with = "no_fetch_log")]
+    pub fetch_log: bool,
+    /// do not fetch it [default: where it takes a minute at most]
+    #[arg(long)]
+    pub no_fetch_log: bool,
     /// print lines instead of the terminal view
     #[arg(long)]
     pub plain: bool,

@@ -9,11 +9,11 @@ use std::path::PathBuf;
 /// The vehicle of a log: a file, or its mass and size.
 #[derive(Debug, Args)]
 pub struct GivenArgs {
-    /// vehicle.toml, or a model
-    #[arg(long, required_unless_present = "mass", conflicts_with_all = ["mass", "size", "frame"])]
+    /// vehicle.toml or model.toml; required without --mass
+    #[arg(long, value_name = "FILE", required_unless_present = "mass", conflicts_with_all = ["mass", "size", "frame"])]
     pub vehicle: Option<PathBuf>,
     /// in place of --vehicle: mass with battery, kg. The rest comes from the log's parameters, the flight and rules of thumb
-    #[arg(long, value_name = "KG")]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
     pub mass: Option<f64>,
     /// its shape
     #[command(flatten)]
@@ -23,10 +23,10 @@ pub struct GivenArgs {
 /// With --mass: the shape of the vehicle.
 #[derive(Debug, Args)]
 pub struct ShapeArgs {
-    /// with --mass: distance from motor to motor across the centre, m; without it what needs the arms is not determined
-    #[arg(long, value_name = "M", requires = "mass")]
+    /// with --mass: distance from motor to motor across the centre, m; without it, what depends on the arms is not determined
+    #[arg(long, value_name = "M", requires = "mass", allow_negative_numbers = true)]
     pub size: Option<f64>,
-    /// with --mass, where the log does not say where the motors are: quadrotor-x, quadrotor-plus, hexarotor-x, ...
+    /// with --mass, if the log does not say where the motors are: quadrotor-x, quadrotor-plus, hexarotor-x, ...
     #[arg(long, value_name = "FRAME", requires = "mass", value_parser = frame)]
     pub frame: Option<&'static Frame>,
 }

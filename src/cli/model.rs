@@ -20,23 +20,28 @@ pub struct VehicleArgs {
 /// What `mavid vehicle` does beside checking a file.
 #[derive(Debug, Subcommand)]
 pub enum VehicleVerb {
-    /// Write a first vehicle file from a log: rotors and thrust curve by the autopilot's parameters, thrust by the flight,
-    /// the rest by rules of thumb, marked as guesses
+    /// Write a first vehicle file from a log: rotors and thrust curve from the autopilot's parameters, thrust from the
+    /// flight, the rest from rules of thumb, marked as guesses
     Init(InitArgs),
 }
 
 /// Arguments of `mavid vehicle init`.
 #[derive(Debug, Args)]
 pub struct InitArgs {
-    /// a log of the vehicle that holds its parameters, best one with a flight
-    #[arg(long, value_name = "LOG")]
+    /// a log that contains the vehicle's parameters, preferably with a flight; or the address of a vehicle, whose parameters
+    /// are read
+    #[arg(long, value_name = "LOG|ADDRESS")]
     pub from: PathBuf,
     /// mass with battery, kg: weigh it
-    #[arg(long, value_name = "KG")]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
     pub mass: f64,
     /// its shape
     #[command(flatten)]
     pub shape: ShapeArgs,
+    /// what a thrust stand measured of one rotor, with command, thrust, torque, rotor speed and voltage by the header: in
+    /// place of guesses
+    #[arg(long, value_name = "FILE.CSV")]
+    pub thrust_stand: Option<PathBuf>,
     /// where to write it
     #[arg(long, value_name = "VEHICLE.TOML")]
     pub out: PathBuf,

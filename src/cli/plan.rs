@@ -8,45 +8,45 @@ use std::path::PathBuf;
 pub struct PlanArgs {
     /// vehicle.toml or model.toml
     pub vehicle: PathBuf,
-    /// Where to write the trajectory
+    /// where to write the trajectory
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// File with a [limits] table, instead of the vehicle's
+    /// file with a [limits] table, instead of the vehicle's
     #[arg(long)]
     pub limits: Option<PathBuf>,
-    /// What is minimised
+    /// what is minimised
     #[arg(long, value_enum, default_value = "cond")]
     pub criterion: CriterionName,
-    /// Seed of the random starts
+    /// seed of the random starts
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Number of random starts
+    /// number of random starts
     #[arg(long, default_value_t = 16)]
     pub starts: u64,
-    /// Periods to fly; comparing periods with each other needs four
+    /// periods to fly; comparing periods with each other needs four
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     pub repeats: u32,
-    /// Period, s
+    /// period, s
     #[arg(long, default_value_t = 10.0, allow_negative_numbers = true)]
     pub period: f64,
-    /// Harmonics of the series
+    /// harmonics of the series
     #[arg(long, default_value_t = 5)]
     pub harmonics: u32,
-    /// Where the series starts and ends: metres and degrees; without Z the height is chosen
+    /// where the series starts and ends: metres and degrees; without Z the height is chosen
     #[arg(long, value_name = "X,Y[,Z[,YAW]]", value_delimiter = ',', allow_hyphen_values = true)]
     pub start: Option<Vec<f64>>,
-    /// Check and assess this trajectory instead of planning one
+    /// check and assess this trajectory instead of planning one
     #[arg(long, value_name = "TRAJECTORY", conflicts_with_all = ["out", "start"])]
     pub check: Option<PathBuf>,
-    /// The circular validation path (44) instead of a plan: metres, seconds a turn, metres of height;
+    /// the circular validation path (44) instead of a plan: metres, seconds a turn, metres of height;
     /// without HEIGHT the middle of the room
     #[arg(long, value_name = "RADIUS,PERIOD[,HEIGHT]", value_delimiter = ',', allow_hyphen_values = true,
         conflicts_with_all = ["check", "start"])]
     pub circle: Option<Vec<f64>>,
-    /// Hover after takeoff, metres and degrees; without it at the mean of the series
+    /// hover after takeoff, metres and degrees; without it at the mean of the series
     #[arg(long, value_name = "X,Y,Z[,YAW]", value_delimiter = ',', allow_hyphen_values = true)]
     pub takeoff: Option<Vec<f64>>,
-    /// Hover before landing; without it at the place of takeoff
+    /// hover before landing; without it at the place of takeoff
     #[arg(long, value_name = "X,Y,Z[,YAW]", value_delimiter = ',', allow_hyphen_values = true)]
     pub landing: Option<Vec<f64>>,
 }

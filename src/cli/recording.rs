@@ -9,7 +9,7 @@ use std::path::PathBuf;
 /// Arguments of `mavid identify`.
 #[derive(Debug, Args)]
 pub struct IdentifyArgs {
-    /// recordings of one vehicle: .tlog, or .csv with known columns
+    /// recordings of one vehicle: .tlog, .ulg, .bin, or .csv with known columns
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
     /// the vehicle
@@ -33,7 +33,7 @@ pub struct IdentifyArgs {
     /// cut-off of the zero-phase low-pass, Hz; without it ten times the trajectory's highest harmonic
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub cutoff: Option<f64>,
-    /// use the 31-tap windowed filter in place of the Butterworth
+    /// use the 31-tap windowed filter in place of the Butterworth filter
     #[arg(long)]
     pub fir: bool,
     /// adaptation gain of gradient descent
@@ -50,7 +50,7 @@ pub struct IdentifyArgs {
 /// Arguments of `mavid explain`.
 #[derive(Debug, Args)]
 pub struct ExplainArgs {
-    /// recordings of one vehicle: .tlog, or .csv with known columns
+    /// recordings of one vehicle: .tlog, .ulg, .bin, or .csv with known columns
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
     /// the vehicle
@@ -77,7 +77,7 @@ pub struct ExplainArgs {
 /// Arguments of `mavid validate`.
 #[derive(Debug, Args)]
 pub struct ValidateArgs {
-    /// recordings of one vehicle: .tlog, or .csv with known columns
+    /// recordings of one vehicle: .tlog, .ulg, .bin, or .csv with known columns
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
     /// a vehicle or model file; the first is the reference for the others
@@ -97,13 +97,13 @@ pub struct ValidateArgs {
 /// Arguments of `mavid inspect`.
 #[derive(Debug, Args)]
 pub struct InspectArgs {
-    /// flight.tlog or flight.csv
+    /// recording: .tlog, .ulg, .bin, or .csv with known columns
     pub log: PathBuf,
     /// vehicle.toml or model.toml: adds how well each parameter can be identified
     #[arg(long, conflicts_with_all = ["mass", "size", "frame"])]
     pub vehicle: Option<PathBuf>,
     /// in place of --vehicle: mass with battery, kg
-    #[arg(long, value_name = "KG")]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
     pub mass: Option<f64>,
     /// its shape
     #[command(flatten)]
@@ -129,10 +129,10 @@ pub struct ProveArgs {
 /// How recordings are read.
 #[derive(Debug, Default, Args)]
 pub struct ReadArgs {
-    /// what the columns of a CSV mean; without it the names in configs/csv/default.toml
+    /// meaning of the columns of a CSV file; without it the names in configs/csv/default.toml
     #[arg(long, value_name = "FILE")]
     pub csv_map: Option<PathBuf>,
-    /// MAVLink system id of the vehicle; without it the only one of the log that flew
+    /// MAVLink system id of the vehicle; without it the only vehicle in the log that flew
     #[arg(long = "system-id", alias = "system", value_name = "ID")]
     pub system: Option<u32>,
 }

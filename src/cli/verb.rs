@@ -5,6 +5,7 @@ use clap::{Parser, Subcommand};
 use super::flight::FlyArgs;
 use super::live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 use super::model::{ExportArgs, SimulateArgs, VehicleArgs};
+use super::onboard::LogArgs;
 use super::plan::PlanArgs;
 use super::recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ValidateArgs};
 use super::verbosity::Verbosity;
@@ -49,6 +50,8 @@ pub enum Verb {
     Inspect(InspectArgs),
     /// Record a MAVLink link until interrupted
     Record(RecordArgs),
+    /// List and fetch the logs that a vehicle keeps of its flights
+    Log(LogArgs),
     /// Play a recorded flight back as live traffic; nothing is commanded
     Replay(ReplayArgs),
     /// Locate the mismatch between model and recording and name the missing physical effects

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use mavid::fly;
 use mavid::report::{IdentificationDocument, explanation_answer, identification_text};
-use mavid::study::{AfterFlight, ExplainStudy, IdentifyStudy, after_flight};
+use mavid::study::{AfterFlight, ExplainStudy, FlightLogs, IdentifyStudy, after_flight};
 use mavid::text;
 use mavid::wire::SystemId;
 
@@ -34,13 +34,15 @@ pub struct Analysis {
     /// what of it is in no file, why, and how it is made again: of the parameters, and of the explanation
     pub unwritten: [Option<String>; 2],
     folder: PathBuf,
+    /// the vehicle's own log, where it was analysed
+    pub onboard: Option<PathBuf>,
 }
 
 impl Analysis {
     /// Of the flight in this folder; none of one that did not land. Results of an earlier flight go: beside this
     /// one's recording they would pass for its own. Lines for the user are given to `tell`.
     pub fn of(
-        (folder, landed): (&Path, bool),
+        (folder, landed, onboard): (&Path, bool, Option<&Path>),
         vehicle: &Path,
         system: Option<SystemId>,
         tell: &mut impl FnMut(Word),
@@ -51,13 +53,20 @@ impl Analysis {
         for path in parameters.iter().chain(&explanation).filter(|path| !output::is_same(path, vehicle)) {
             output::outdated(path)?.map(Word::Message).into_iter().for_each(&mut *tell);
         }
-        Ok(landed.then(|| Self::made(folder, vehicle, system, tell)))
+        Ok(landed.then(|| Self::made((folder, onboard), vehicle, system, tell)))
     }
 
-    fn made(folder: &Path, vehicle: &Path, system: Option<SystemId>, tell: &mut impl FnMut(Word)) -> Self {
+    fn made(
+        (folder, onboard): (&Path, Option<&Path>),
+        vehicle: &Path,
+        system: Option<SystemId>,
+        tell: &mut impl FnMut(Word),
+    ) -> Self {
         let notes = Notes::default();
-        let AfterFlight { identified, explained } =
-            after_flight(&folder.join(fly::TLOG), vehicle, system, &notes);
+        let radio = folder.join(fly::TLOG);
+        let FlightLogs { logs, why } = FlightLogs::of(&radio, system, onboard);
+        why.into_iter().for_each(|why| tell(Word::Message(why)));
+        let AfterFlight { identified, explained } = after_flight(&logs, vehicle, system, &notes);
         notes.words().into_iter().for_each(&mut *tell);
         let identified = identified.map_err(|error| CommandError::from(error).to_string());
         let explained = explained.map_err(|error| CommandError::from(error).to_string());
@@ -65,13 +74,14 @@ impl Analysis {
         for (what, failure) in failures {
             failure.into_iter().for_each(|failure| tell(Word::Error(format!("not {what}: {failure}"))));
         }
-        let written = Written { folder, vehicle, system };
+        let written = Written { folder, logs: &logs, vehicle, system };
         let unwritten = [
             identified.as_ref().ok().and_then(|study| written.parameters(study)),
             explained.as_ref().ok().and_then(|study| written.explanation(study)),
         ];
         unwritten.iter().flatten().for_each(|why| tell(Word::Error(why.clone())));
-        Self { identified, explained, unwritten, folder: folder.to_owned() }
+        let onboard = onboard.filter(|onboard| logs.iter().any(|log| log == onboard)).map(Path::to_owned);
+        Self { identified, explained, unwritten, folder: folder.to_owned(), onboard }
     }
 
     /// Where the report lies, if there is one.
@@ -113,6 +123,7 @@ impl Analysis {
 /// Where the results of a flight are written.
 struct Written<'a> {
     folder: &'a Path,
+    logs: &'a [PathBuf],
     vehicle: &'a Path,
     system: Option<SystemId>,
 }
@@ -147,7 +158,7 @@ impl Written<'_> {
             "{error}; missing: {}; once this is corrected, make them by: mavid {verb} {} \
              --vehicle {} --out {}{}",
             missing.join(", "),
-            text::path(&self.folder.join(fly::TLOG)),
+            self.logs.iter().map(|log| text::path(&log)).collect::<Vec<_>>().join(" "),
             text::path(&self.vehicle),
             text::path(&out),
             self.system.map_or_else(String::new, |system| format!(" --system-id {system}"))
@@ -171,7 +182,7 @@ mod tests {
         fs::copy(fixtures.join("p04_identify_10_22s.tlog"), folder.join(fly::TLOG)).unwrap();
         let vehicle = fixtures.join("p04_vehicle.toml");
         let mut told = Vec::new();
-        let analysis = Analysis::of((&folder, true), &vehicle, None, &mut |line| told.push(line));
+        let analysis = Analysis::of((&folder, true, None), &vehicle, None, &mut |line| told.push(line));
         let analysis = analysis.unwrap().unwrap();
         let [parameters, explanation] = analysis.unwritten.clone().map(Option::unwrap);
         assert_eq!(told, [&parameters, &explanation].map(|why| Word::Error(why.clone())));

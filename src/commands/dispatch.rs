@@ -2,7 +2,7 @@
 
 use super::standard_error::StandardError;
 use super::{
-    CommandError, Outcome, demo, explain, export, fly, identify, inspect, plan, prove, record, replay,
+    CommandError, Outcome, demo, explain, export, fly, identify, inspect, log, plan, prove, record, replay,
     simulate, sitl, validate, vehicle,
 };
 use crate::cli::{Cli, Verb};
@@ -19,6 +19,7 @@ pub fn run(cli: &Cli, stderr: &StandardError) -> Result<Outcome, CommandError> {
         Verb::Sitl(args) => sitl::run(cli.json, args),
         Verb::Validate(args) => validate::run(cli.json, stderr, args),
         Verb::Inspect(args) => inspect::run(cli.json, stderr, args),
+        Verb::Log(args) => log::run(cli.json, stderr, args),
         Verb::Record(args) => record::run(cli.json, stderr, args),
         Verb::Replay(args) => replay::run(cli.json, stderr, args),
         Verb::Explain(args) => explain::run(cli.json, stderr, args),

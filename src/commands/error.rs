@@ -8,6 +8,9 @@ pub enum CommandError {
     /// what the user gave cannot be used
     #[error("{0}")]
     Input(String),
+    /// the same, several errors at once: a line each
+    #[error("{}", .0.join("; "))]
+    Inputs(Vec<String>),
     /// the program or the machine failed
     #[error("{0}")]
     Failure(String),
@@ -18,7 +21,14 @@ pub enum CommandError {
 
 impl From<mavid::config::ConfigError> for CommandError {
     fn from(error: mavid::config::ConfigError) -> Self {
-        Self::Input(error.to_string())
+        let mut lines = error.lines();
+        match (lines.pop(), lines.is_empty()) {
+            (Some(one), true) => Self::Input(one),
+            (last, _) => {
+                lines.extend(last);
+                Self::Inputs(lines)
+            }
+        }
     }
 }
 
@@ -30,6 +40,7 @@ impl From<mavid::study::StudyError> for CommandError {
             mavid::study::StudyError::Plan(
                 why @ (PlanError::OutsideLimits { .. } | PlanError::NotDetermined),
             ) => Self::Failure(why.to_string()),
+            mavid::study::StudyError::Config(error) => error.into(),
             other => Self::Input(other.to_string()),
         }
     }

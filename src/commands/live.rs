@@ -119,8 +119,9 @@ fn watch_signals(signals: std::sync::mpsc::Sender<String>) -> Result<(), Command
 /// Says how a verb failed, and waits no longer than [`PATIENCE`] for whoever hears it.
 fn report_in_time(error: CommandError) -> CommandError {
     let status = error.status();
-    if let Some(words) = error.words() {
-        let _ = within(PATIENCE, move || output::error(&words));
+    let words = error.words();
+    if !words.is_empty() {
+        let _ = within(PATIENCE, move || words.iter().for_each(|line| output::error(line)));
     }
     CommandError::Told(status)
 }

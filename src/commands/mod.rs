@@ -15,6 +15,7 @@ mod inspect;
 mod last_word;
 mod leftover;
 mod live;
+mod log;
 mod network;
 mod outcome;
 mod output;

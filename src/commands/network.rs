@@ -18,9 +18,9 @@ pub fn block_on<T>(verb: impl Future<Output = Result<T, CommandError>>) -> Resul
     outcome
 }
 
-/// The address that the user gave.
-pub fn address(text: &str) -> Result<Address, CommandError> {
-    text.parse().map_err(|error: AddressError| CommandError::Input(error.to_string()))
+/// The address that the user gave with an option.
+pub fn address(option: &str, text: &str) -> Result<Address, CommandError> {
+    text.parse().map_err(|error: AddressError| CommandError::Input(format!("{option}: {error}")))
 }
 
 /// Opens the link that the user named.

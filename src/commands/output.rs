@@ -51,21 +51,23 @@ pub fn error(text: &str) {
 impl CommandError {
     /// Says it on standard error, unless that was done, and gives the exit status.
     pub fn report(&self) -> u8 {
-        if let Some(words) = self.words() {
-            error(&words);
-        }
+        self.words().iter().for_each(|line| error(line));
         self.status()
     }
 
-    /// What is to be said of it, unless that was done.
-    pub fn words(&self) -> Option<String> {
-        (!matches!(self, Self::Told(_))).then(|| format!("mavid: {self}"))
+    /// What is to be said of it, line by line; nothing where that was done.
+    pub fn words(&self) -> Vec<String> {
+        match self {
+            Self::Told(_) => Vec::new(),
+            Self::Inputs(lines) => lines.iter().map(|line| format!("mavid: {line}")).collect(),
+            one => vec![format!("mavid: {one}")],
+        }
     }
 
     /// The exit status.
     pub fn status(&self) -> u8 {
         match self {
-            Self::Input(_) => 2,
+            Self::Input(_) | Self::Inputs(_) => 2,
             Self::Failure(_) => 1,
             Self::Told(status) => *status,
         }
@@ -136,13 +138,13 @@ pub fn refuse_overwriting(inputs: &[&PathBuf], outputs: &[&PathBuf]) -> Result<(
     for (index, output) in outputs.iter().enumerate() {
         if inputs.iter().any(|input| is_same(input, output)) {
             return Err(CommandError::Input(format!(
-                "expected results in a file of their own, {} is read",
+                "expected another file for the results: {} is an input",
                 text::path(&output)
             )));
         }
         if outputs[..index].iter().any(|other| is_same(other, output)) {
             return Err(CommandError::Input(format!(
-                "expected one file a result, {} is given for two",
+                "expected a file of its own for each result: {} is given for two",
                 text::path(&output)
             )));
         }

@@ -101,5 +101,6 @@ fn place(option: &str, numbers: &[f64]) -> Result<[f64; 4], CommandError> {
 }
 
 fn came(option: &str, expected: &str, numbers: &[f64]) -> CommandError {
-    CommandError::Input(format!("{option}: expected {expected}, got {numbers:?}"))
+    let got: Vec<String> = numbers.iter().map(ToString::to_string).collect();
+    CommandError::Input(format!("{option}: expected {expected}, got `{}`", got.join(",")))
 }

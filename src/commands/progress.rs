@@ -21,6 +21,12 @@ fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
     }
 }
 
+/// A bar of bytes that come over a link, with the time that is left.
+pub fn bytes_bar(of: u64) -> ProgressBar {
+    let template = "{bar:30} {bytes} of {total_bytes}, {bytes_per_sec}, {eta} left";
+    styled(ProgressBar::new(of), template)
+}
+
 /// A line that says what is done now.
 #[derive(Debug)]
 pub struct Spinner(ProgressBar);

@@ -100,7 +100,7 @@ async fn record(
     args: &RecordArgs,
     signing: Option<Signing>,
 ) -> Result<Outcome, CommandError> {
-    let address = network::address(&args.connect)?;
+    let address = network::address("--connect", &args.connect)?;
     let recorder = Recorder::create(&args.out, args.force).map_err(|error| refused(&error))?;
     let options = LinkOptions { recorder: Some(recorder.clone()), signing, ..LinkOptions::default() };
     let opened = network::open(&address, options).await;

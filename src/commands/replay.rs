@@ -42,6 +42,26 @@ struct Document {
     losses: Vec<String>,
 }
 
+impl Document {
+    /// For the terminal.
+    fn line(&self) -> String {
+        format!(
+            "{} to {}: {} frames played, {} held back ({} that a vehicle may act upon, {} of unknown messages, {} that no \
+             autopilot sent), {} unsent; {} frames from the other end dropped{}",
+            self.log,
+            self.to,
+            self.frames,
+            self.left_out,
+            self.not_telemetry,
+            self.unknown_messages,
+            self.not_of_an_autopilot,
+            self.unsent,
+            self.discarded,
+            if self.interrupted { "; interrupted" } else { "" }
+        )
+    }
+}
+
 /// Runs the verb.
 pub fn run(json: bool, stderr: &StandardError, args: &ReplayArgs) -> Result<Outcome, CommandError> {
     let (args, stderr) = (args.clone(), stderr.clone());
@@ -64,7 +84,8 @@ async fn play(
     args: &ReplayArgs,
     replay: &Replay,
 ) -> Result<Outcome, CommandError> {
-    let (mut reader, writer) = network::open(&network::address(&args.to)?, LinkOptions::default()).await?;
+    let (mut reader, writer) =
+        network::open(&network::address("--to", &args.to)?, LinkOptions::default()).await?;
     if !writer.is_connected() {
         output::message(&format!("waiting for a peer at {}", args.to));
     }
@@ -103,20 +124,7 @@ async fn play(
     if json {
         output::json(&document)?;
     } else {
-        output::text(&format!(
-            "{} to {}: {} frames played, {} held back ({} that a vehicle may act upon, {} of unknown messages, {} that no \
-             autopilot sent), {} unsent; {} frames from the other end dropped{}",
-            document.log,
-            document.to,
-            document.frames,
-            document.left_out,
-            document.not_telemetry,
-            document.unknown_messages,
-            document.not_of_an_autopilot,
-            document.unsent,
-            document.discarded,
-            if interrupted { "; interrupted" } else { "" }
-        ))?;
+        output::text(&document.line())?;
     }
     Ok(if document.unsent > 0 || !document.losses.is_empty() { Outcome::DoneWithLoss } else { Outcome::Done })
 }

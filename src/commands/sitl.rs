@@ -204,8 +204,7 @@ fn addresses(args: &SitlArgs, kind: Firmware) -> Result<Vec<Address>, CommandErr
     };
     let texts: Vec<&str> =
         if args.listen.is_empty() { own.to_vec() } else { args.listen.iter().map(String::as_str).collect() };
-    let parse = |text: &&str| text.parse().map_err(|error| CommandError::Input(format!("--listen: {error}")));
-    texts.iter().map(parse).collect()
+    texts.iter().map(|text| network::address("--listen", text)).collect()
 }
 
 /// With the port that the system chose, where the address left it open.

@@ -3,11 +3,14 @@
 use std::path::Path;
 
 use mavid::config::read_vehicle;
+use mavid::draft::parameters_of;
+use mavid::link::Address;
 use mavid::report::vehicle_text;
-use mavid::study::{draft_from_log, draft_text, vehicle_summary};
+use mavid::study::{draft_from_log, draft_from_parameters, draft_text, vehicle_summary, with_thrust_stand};
 
+use super::log::parameters_of_vehicle;
 use super::{CommandError, Outcome, output};
-use crate::cli::{InitArgs, VehicleArgs, VehicleVerb};
+use crate::cli::{InitArgs, VehicleArgs, VehicleLinkArgs, VehicleVerb};
 
 /// Runs the verb.
 pub fn run(json: bool, args: &VehicleArgs) -> Result<Outcome, CommandError> {
@@ -29,10 +32,30 @@ fn check(json: bool, file: &Path) -> Result<Outcome, CommandError> {
     Ok(Outcome::Done)
 }
 
+/// The vehicle's address, if the vehicle is to come from a link and not from a log.
+fn link(args: &InitArgs) -> Option<VehicleLinkArgs> {
+    let connect = args.from.to_str().filter(|_| !args.from.exists())?;
+    connect.parse::<Address>().ok()?;
+    let system_id = args.read.settings().system.map(|system| system.0);
+    Some(VehicleLinkArgs { connect: connect.to_owned(), system_id, signing_key_file: None })
+}
+
 /// Writes a first vehicle file, and says what it means.
 fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
-    output::refuse_overwriting(&[&args.from], &[&args.out])?;
-    let draft = draft_from_log(&args.from, &args.read.settings(), &args.shape.given(args.mass))?;
+    let inputs: Vec<_> = [&args.from].into_iter().chain(&args.thrust_stand).collect();
+    output::refuse_overwriting(&inputs, &[&args.out])?;
+    let given = args.shape.given(args.mass);
+    let mut draft = match link(args) {
+        Some(link) => {
+            let (autopilot, parameters) =
+                parameters_of_vehicle(&link, |stack, known| parameters_of(stack, &given, known))?;
+            draft_from_parameters((autopilot, parameters), &given, &link.connect)?
+        }
+        None => draft_from_log(&args.from, &args.read.settings(), &given)?,
+    };
+    if let Some(table) = &args.thrust_stand {
+        draft = with_thrust_stand(draft, table)?;
+    }
     output::file(&args.out, &draft_text(&draft)?)?;
     check(json, &args.out)
 }

@@ -5,8 +5,9 @@ use nalgebra::Vector3;
 use super::ConfigError;
 use crate::text;
 
-/// Sizes (SI) beyond these are no vehicle's, and their products would overflow or vanish.
+/// Smallest size (SI) above zero that is read: smaller ones are no vehicle's, and their products would vanish. Chosen.
 const SMALLEST: f64 = 1e-18;
+/// Largest size (SI) that is read: larger ones are no vehicle's, and their products would overflow. Chosen.
 const LARGEST: f64 = 1e12;
 
 /// Characters of a value that a refusal repeats.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::form::MOST_FAULTS;
 use crate::text;
 
 /// Why a configuration file was refused.
@@ -78,7 +79,50 @@ pub enum ConfigError {
         /// what the file says
         came: String,
     },
+    /// more than one of these in one file, as far as they are looked for
+    #[error("{origin}: {}: {}", errors_are(.errors.len()), joined(.errors))]
+    Several {
+        /// file name, or what the text is
+        origin: String,
+        /// each names the file again
+        errors: Vec<ConfigError>,
+    },
     /// a value that cannot be written as TOML
     #[error("cannot write as TOML: {0}")]
     Write(#[from] toml::ser::Error),
+}
+
+impl ConfigError {
+    /// All of a file's as one; of one error that itself.
+    pub(super) fn together(origin: &str, mut errors: Vec<Self>) -> Self {
+        match errors.pop() {
+            Some(one) if errors.is_empty() => one,
+            last => {
+                errors.extend(last);
+                Self::Several { origin: origin.to_owned(), errors }
+            }
+        }
+    }
+
+    /// As lines: for each error one, and before several how many there are.
+    #[must_use]
+    pub fn lines(&self) -> Vec<String> {
+        match self {
+            Self::Several { origin, errors } => {
+                std::iter::once(format!("{origin}: {}", errors_are(errors.len())))
+                    .chain(errors.iter().map(ToString::to_string))
+                    .collect()
+            }
+            one => vec![one.to_string()],
+        }
+    }
+}
+
+fn errors_are(count: usize) -> String {
+    let more = if count >= MOST_FAULTS { " or more" } else { "" };
+    format!("{count}{more} errors")
+}
+
+fn joined(errors: &[ConfigError]) -> String {
+    errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
 }

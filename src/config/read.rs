@@ -1,10 +1,12 @@
 //! From a file to the form of its kind: no larger than it may be, and with what is wrong named on one line.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::Read as _;
 use std::path::Path;
 
 use super::ConfigError;
+use super::faults::Faults;
+use super::form::{Fault, Read, read_form};
 use super::kind::Kind;
 use crate::text;
 
@@ -31,26 +33,64 @@ pub(super) fn read_text(path: &Path, kind: Kind) -> Result<String, ConfigError> 
         .map_err(|_| ConfigError::NoText { path: path.to_owned(), expected: kind.expected() })
 }
 
-/// TOML text to the form `T` of a file of this kind, with `origin` named in the error.
+/// TOML text to the form `T` of a file of this kind, with `origin` named in the error, which tells all that is wrong.
 pub(super) fn parse_toml<T: serde::de::DeserializeOwned>(
     text: &str,
     origin: &str,
     kind: Kind,
 ) -> Result<T, ConfigError> {
-    toml::from_str(text).map_err(|source| {
-        let (origin, expected) = (origin.to_owned(), kind.expected());
-        match kind.other(text) {
-            Some(came) => ConfigError::OtherKind { origin, expected, came },
-            None => ConfigError::Parse { origin, expected, reason: reason(&source, text) },
+    let (form, faults) = parse_toml_on(text, origin, kind)?;
+    faults.refuse(origin)?;
+    Ok(form)
+}
+
+/// The same past what is wrong, so that checks of the values can go on. What is refused at once is no TOML, a file of another
+/// kind, or has very many faults.
+pub(super) fn parse_toml_on<T: serde::de::DeserializeOwned>(
+    text: &str,
+    origin: &str,
+    kind: Kind,
+) -> Result<(T, Faults), ConfigError> {
+    let told = |faults: &[Fault]| -> Vec<ConfigError> {
+        let one = |fault: &Fault| ConfigError::Parse {
+            origin: origin.to_owned(),
+            expected: kind.expected(),
+            reason: reason(fault, text),
+        };
+        faults.iter().map(one).collect()
+    };
+    let other = |faults: &[Fault]| match kind.other(text).filter(|_| !faults.is_empty()) {
+        Some(came) => {
+            Err(ConfigError::OtherKind { origin: origin.to_owned(), expected: kind.expected(), came })
         }
-    })
+        None => Ok(()),
+    };
+    match read_form(text) {
+        Ok(Read { form, faults, stands_in }) => {
+            other(&faults)?;
+            Ok((form, Faults::new(told(&faults), stands_in)))
+        }
+        Err(faults) => {
+            other(&faults)?;
+            Err(ConfigError::together(origin, told(&faults)))
+        }
+    }
 }
 
 /// Where, what stands there, and what is wrong with it.
-fn reason(error: &toml::de::Error, text: &str) -> String {
-    let message = error.message().lines().map(str::trim_end).collect::<Vec<_>>().join(", ");
-    let message = text::excerpt(&message, REASON_CHARS);
-    let Some(before) = error.span().and_then(|span| text.get(..span.start)) else { return message };
+fn reason(fault: &Fault, text: &str) -> String {
+    let message = fault.message.lines().map(str::trim_end).collect::<Vec<_>>().join(", ");
+    let table = fault.path.rsplit_once('.').map_or("", |(table, _)| table);
+    let within = if table.is_empty() || message.contains(table) {
+        String::new()
+    } else {
+        format!(" in `{}`", text::excerpt(table, LINE_CHARS))
+    };
+    let message = text::excerpt(&message, REASON_CHARS) + &within;
+    let before = fault.span.as_ref().and_then(|span| text.get(..span.start));
+    let Some(before) = before.filter(|before| !(before.is_empty() && message.starts_with("missing"))) else {
+        return message;
+    };
     let begin = before.rfind('\n').map_or(0, |end| end + 1);
     let (line, column) = (before.matches('\n').count() + 1, before[begin..].chars().count() + 1);
     let there = text[begin..].lines().next().unwrap_or_default().trim();
@@ -97,11 +137,7 @@ mod tests {
             format!("name = {long}\n"),
         ] {
             let said = refusal(&text);
-            assert!(
-                said.starts_with("v.toml: expected") && said.len() < 1000,
-                "{} bytes: {said:.200}",
-                said.len()
-            );
+            assert!(said.starts_with("v.toml: ") && said.len() < 2000, "{} bytes: {said:.200}", said.len());
         }
     }
 }

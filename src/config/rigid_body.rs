@@ -1,32 +1,34 @@
 //! Mass and inertia as a body has them.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
-use super::ConfigError;
 use super::check::Check;
+use super::faults::Faults;
 use super::vehicle_file::{BodyTable, InertiaTable};
 use crate::vehicle::RigidBody;
 
 /// The body of a vehicle file, read or to be written.
-pub(super) fn rigid_body(check: &Check<'_>, table: &BodyTable) -> Result<RigidBody, ConfigError> {
-    let inertia = &table.inertia;
+pub(super) fn rigid_body(check: &Check<'_>, table: &BodyTable, faults: &mut Faults) -> RigidBody {
+    let mass_kg = faults.number(check.positive("body.mass", table.mass));
+    let center = check.finite_vector("body.center_of_mass", table.center_of_mass);
+    let center_of_mass_m = faults.take(center, Vector3::zeros());
+    let (inertia, before) = (&table.inertia, faults.count());
     for (key, value) in [("xx", inertia.xx), ("yy", inertia.yy), ("zz", inertia.zz)] {
-        check.positive(&format!("body.inertia.{key}"), value)?;
+        faults.number(check.positive(&format!("body.inertia.{key}"), value));
     }
     for (key, value) in [("xy", inertia.xy), ("xz", inertia.xz), ("yz", inertia.yz)] {
-        check.finite(&format!("body.inertia.{key}"), value)?;
+        faults.number(check.finite(&format!("body.inertia.{key}"), value));
     }
     let tensor = inertia_tensor(inertia);
-    let smallest = tensor.symmetric_eigenvalues().min();
-    if smallest <= 0.0 {
-        let came = format!("a smallest principal moment of {smallest:.3e} kg m^2");
-        return Err(check.refuse("body.inertia", "a positive definite tensor", came));
+    // factorisations of infinities and of NaN do not end
+    if faults.count() == before && tensor.iter().all(|entry| entry.is_finite()) {
+        let smallest = tensor.symmetric_eigenvalues().min();
+        if smallest <= 0.0 {
+            let came = format!("a smallest principal moment of {smallest:.3e} kg m^2");
+            faults.check(Err(check.refuse("body.inertia", "a positive definite tensor", came)));
+        }
     }
-    Ok(RigidBody {
-        mass_kg: check.positive("body.mass", table.mass)?,
-        inertia_kg_m2: tensor,
-        center_of_mass_m: check.finite_vector("body.center_of_mass", table.center_of_mass)?,
-    })
+    RigidBody { mass_kg, inertia_kg_m2: tensor, center_of_mass_m }
 }
 
 fn inertia_tensor(table: &InertiaTable) -> Matrix3<f64> {

@@ -4,7 +4,7 @@ use super::ConfigError;
 use super::check::Check;
 use super::kind::Kind;
 use super::read::{parse_toml, read_text};
-use super::vehicle::limits;
+use super::vehicle::limits_alone;
 use super::vehicle_file::LimitsTable;
 use super::vehicle_writer::limits_table;
 use crate::text;
@@ -185,7 +185,7 @@ pub fn parse_trajectory(text: &str, origin: &str) -> Result<StoredTrajectory, Co
             ],
         },
         repeats: file.repeats,
-        limits: limits(&check, &file.limits)?,
+        limits: limits_alone(&check, &file.limits)?,
         criterion: file.criterion.map(|table| (text::excerpt(&table.name, NAME_CHARS), table.value)),
         margins: file.margins_on_2_ms_samples,
         standard_errors: file.relative_standard_errors,
@@ -235,7 +235,7 @@ pub fn read_limits(path: &Path) -> Result<Limits, ConfigError> {
 /// If the text is not TOML, has unknown keys, or a limit is out of range.
 pub fn parse_limits(text: &str, origin: &str) -> Result<Limits, ConfigError> {
     let file: LimitsFile = parse_toml(text, origin, Kind::Limits)?;
-    limits(&Check { origin }, &file.limits)
+    limits_alone(&Check { origin }, &file.limits)
 }
 
 #[cfg(test)]

@@ -3,20 +3,20 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use nalgebra::Vector3;
+
 use super::ConfigError;
 use super::check::Check;
+use super::faults::Faults;
 use super::kind::Kind;
-use super::read::{parse_toml, read_text};
+use super::plausible::warnings;
+use super::propulsion::propulsion;
+use super::read::{parse_toml_on, read_text};
 use super::rigid_body::rigid_body;
-use super::vehicle_file::{
-    ActuatorKind, AnchorKey, FORMAT, GuessTable, LimitsTable, PropulsionTable, RotorTable, SpinKey,
-    VehicleFile,
-};
+use super::vehicle_file::{AnchorKey, FORMAT, GuessTable, LimitsTable, RotorTable, SpinKey, VehicleFile};
 use crate::text;
 use crate::units;
-use crate::vehicle::{
-    Actuator, Anchor, Guess, Guessed, Limits, Propulsion, PwmRange, Rotor, Spin, ThrustLaw, Vehicle,
-};
+use crate::vehicle::{Anchor, Guess, Guessed, Limits, Rotor, Spin, Vehicle};
 
 /// Rotors of a vehicle: as many as MAVLink has outputs for (ACTUATOR_OUTPUT_STATUS).
 const ROTORS_MAX: usize = 32;
@@ -52,7 +52,7 @@ pub struct ModelTables {
 /// The vehicle of a `vehicle.toml` or `model.toml`.
 ///
 /// # Errors
-/// [`ConfigError`] where the file cannot be read, has an unknown or missing key, or says what cannot be.
+/// [`ConfigError`] where the file cannot be read, has an unknown or missing key, or says what cannot be: all of it at once.
 pub fn load_vehicle(path: &Path) -> Result<Vehicle, ConfigError> {
     read_vehicle(path).map(|loaded| loaded.vehicle)
 }
@@ -71,24 +71,24 @@ pub fn read_vehicle(path: &Path) -> Result<LoadedVehicle, ConfigError> {
 /// As [`load_vehicle`].
 pub fn parse_vehicle(text: &str, origin: &str) -> Result<LoadedVehicle, ConfigError> {
     check_format(text, origin)?;
-    let file: VehicleFile = parse_toml(text, origin, Kind::Vehicle)?;
+    let (file, mut faults): (VehicleFile, Faults) = parse_toml_on(text, origin, Kind::Vehicle)?;
     let check = Check { origin };
     let mut doubts = Vec::new();
-    let gravity_m_s2 =
-        check.optional_positive("body.gravity", file.body.gravity)?.unwrap_or(units::GRAVITY_M_S2);
+    let gravity = check.optional_positive("body.gravity", file.body.gravity);
     let vehicle = Vehicle {
-        body: rigid_body(&check, &file.body)?,
-        propulsion: propulsion(&check, &file.propulsion)?,
-        rotors: rotors(&check, file.rotors, &mut doubts)?,
-        limits: limits(&check, &file.limits)?,
+        gravity_m_s2: faults.optional(gravity).unwrap_or(units::GRAVITY_M_S2),
+        body: rigid_body(&check, &file.body, &mut faults),
+        propulsion: propulsion(&check, &file.propulsion, &mut faults),
+        rotors: rotors(&check, file.rotors, &mut doubts, &mut faults),
+        name: faults.take(name(&check, "name", &file.name, &mut doubts), String::new()),
+        limits: limits(&check, &file.limits, &mut faults),
         anchor: match file.identify.anchor {
             AnchorKey::Thrust => Anchor::Thrust,
             AnchorKey::Mass => Anchor::Mass,
         },
-        name: name(&check, "name", &file.name, &mut doubts)?,
-        gravity_m_s2,
-        guesses: guesses(&check, file.guesses)?,
+        guesses: guesses(&check, file.guesses, &mut faults),
     };
+    faults.refuse(origin)?;
     let warnings = doubts.into_iter().chain(warnings(&vehicle)).collect();
     let model =
         ModelTables { identified: file.identified, provenance: file.provenance, effects: file.effects };
@@ -98,22 +98,21 @@ pub fn parse_vehicle(text: &str, origin: &str) -> Result<LoadedVehicle, ConfigEr
 /// Largest relative standard error of a guess: beyond, not even the order of magnitude is known.
 const GUESS_MOST: f64 = 10.0;
 
-fn guesses(check: &Check<'_>, tables: Vec<GuessTable>) -> Result<Vec<Guess>, ConfigError> {
-    let guess = |table: GuessTable| {
+fn guesses(check: &Check<'_>, tables: Vec<GuessTable>, faults: &mut Faults) -> Vec<Guess> {
+    let guess = |(index, table): (usize, GuessTable)| {
+        let key = format!("guess[{index}].of");
         let of = Guessed::ALL.into_iter().find(|of| of.name() == table.of).ok_or_else(|| {
-            check.refuse(
-                "guess.of",
-                format!("one of {}", Guessed::ALL.map(Guessed::name).join(", ")),
-                &table.of,
-            )
-        })?;
-        let relative = check.positive("guess.relative_std", table.relative_std)?;
+            check.refuse(&key, format!("one of {}", Guessed::ALL.map(Guessed::name).join(", ")), &table.of)
+        });
+        let of = faults.optional(of.map(Some));
+        let key = format!("guess[{index}].relative_std");
+        let relative = faults.number(check.positive(&key, table.relative_std));
         if relative > GUESS_MOST {
-            return Err(check.refuse("guess.relative_std", format!("at most {GUESS_MOST}"), relative));
+            faults.check(Err(check.refuse(&key, format!("at most {GUESS_MOST}"), relative)));
         }
-        Ok(Guess { of, relative, why: text::excerpt(&table.why, NAME_CHARS) })
+        Some(Guess { of: of?, relative, why: text::excerpt(&table.why, NAME_CHARS) })
     };
-    tables.into_iter().map(guess).collect()
+    tables.into_iter().enumerate().filter_map(guess).collect()
 }
 
 /// Refuses a later form before its unknown keys are refused. What is no TOML is told elsewhere.
@@ -127,109 +126,6 @@ fn check_format(text: &str, origin: &str) -> Result<(), ConfigError> {
     } else {
         Err(ConfigError::Format { origin: origin.to_owned(), known: FORMAT, came: came() })
     }
-}
-
-fn propulsion(check: &Check<'_>, table: &PropulsionTable) -> Result<Propulsion, ConfigError> {
-    if let (Some(speed), Some(thrust)) = (table.speed_max, table.thrust_max) {
-        let expected = "either speed_max (with thrust_coefficient) or thrust_max (with thrust_expo)";
-        return Err(check.refuse(
-            "propulsion",
-            expected,
-            format!("speed_max = {speed} and thrust_max = {thrust}"),
-        ));
-    }
-    let by_speed = match table.actuator {
-        ActuatorKind::Speed => true,
-        ActuatorKind::Thrust => false,
-        ActuatorKind::Pwm => table.speed_max.is_some(),
-    };
-    let (law, thrust_coefficient, torque_per_thrust_m) =
-        if by_speed { speed_law(check, table)? } else { curve_law(check, table)? };
-    Ok(Propulsion {
-        actuator: actuator(check, table)?,
-        law,
-        thrust_coefficient,
-        torque_per_thrust_m,
-        rotor_radius_m: check.optional_positive("propulsion.rotor_radius", table.rotor_radius)?,
-        time_constant_s: table
-            .time_constant
-            .map(|value| check.not_negative("propulsion.time_constant", value))
-            .transpose()?,
-        time_constant_down_s: falling_time_constant(check, table)?,
-    })
-}
-
-/// The time constant of rotors that slow down, s. It needs that of rotors that speed up.
-fn falling_time_constant(check: &Check<'_>, table: &PropulsionTable) -> Result<Option<f64>, ConfigError> {
-    let because = "time_constant_down is that of falling speed beside that of rising speed";
-    if table.time_constant_down.is_some() {
-        check.required("propulsion.time_constant", table.time_constant, because)?;
-    }
-    check.optional_positive("propulsion.time_constant_down", table.time_constant_down)
-}
-
-/// Law, thrust coefficient, torque per thrust.
-type Law = (ThrustLaw, Option<f64>, f64);
-
-fn speed_law(check: &Check<'_>, table: &PropulsionTable) -> Result<Law, ConfigError> {
-    let because = "the thrust is thrust_coefficient * (u * speed_max)^2";
-    let positive = |key: &str, value| check.positive(key, check.required(key, value, because)?);
-    let speed_max_rad_s = positive("propulsion.speed_max", table.speed_max)?;
-    let coefficient = positive("propulsion.thrust_coefficient", table.thrust_coefficient)?;
-    let key = "propulsion.torque_coefficient";
-    let torque = check.not_negative(key, check.required(key, table.torque_coefficient, because)?)?;
-    for (key, value) in [
-        ("propulsion.thrust_max", table.thrust_max),
-        ("propulsion.thrust_expo", table.thrust_expo),
-        ("propulsion.torque_ratio", table.torque_ratio),
-    ] {
-        check.absent(key, value, because)?;
-    }
-    Ok((ThrustLaw::Speed { speed_max_rad_s }, Some(coefficient), torque / coefficient))
-}
-
-fn curve_law(check: &Check<'_>, table: &PropulsionTable) -> Result<Law, ConfigError> {
-    let because = "the thrust is thrust_max * ((1 - thrust_expo) * u + thrust_expo * u^2)";
-    check.absent("propulsion.speed_max", table.speed_max, because)?;
-    check.absent("propulsion.torque_coefficient", table.torque_coefficient, because)?;
-    let required = |key: &str, value| check.required(key, value, because);
-    let key = "propulsion.thrust_max";
-    let thrust_max_n = check.positive(key, required(key, table.thrust_max)?)?;
-    let key = "propulsion.thrust_expo";
-    let expo = check.finite(key, required(key, table.thrust_expo)?)?;
-    if !(0.0..=1.0).contains(&expo) {
-        return Err(check.refuse(key, "a number from 0 (linear) to 1 (quadratic)", expo));
-    }
-    let key = "propulsion.torque_ratio";
-    let torque_ratio_m = check.not_negative(key, required(key, table.torque_ratio)?)?;
-    let coefficient = check.optional_positive("propulsion.thrust_coefficient", table.thrust_coefficient)?;
-    Ok((ThrustLaw::Curve { thrust_max_n, expo }, coefficient, torque_ratio_m))
-}
-
-fn actuator(check: &Check<'_>, table: &PropulsionTable) -> Result<Actuator, ConfigError> {
-    let (min_key, max_key) = ("propulsion.pwm_min", "propulsion.pwm_max");
-    let other = match table.actuator {
-        ActuatorKind::Speed => Actuator::Speed,
-        ActuatorKind::Thrust => Actuator::Thrust,
-        ActuatorKind::Pwm => return pwm(check, table, (min_key, max_key)),
-    };
-    let because = "`propulsion.actuator` is not \"pwm\"";
-    check.absent(min_key, table.pwm_min, because)?;
-    check.absent(max_key, table.pwm_max, because)?;
-    Ok(other)
-}
-
-/// Without a range the recorded values are fractions of full scale, which only the speed law may leave out:
-/// with the curve law, fractions are `actuator = "thrust"`.
-fn pwm(check: &Check<'_>, table: &PropulsionTable, keys: (&str, &str)) -> Result<Actuator, ConfigError> {
-    if table.pwm_min.is_none() && table.pwm_max.is_none() && table.speed_max.is_some() {
-        return Ok(Actuator::Pwm(None));
-    }
-    let because = "pulse widths need both ends of their range (for values 0..1 use actuator = \"thrust\")";
-    let min_us = check.finite(keys.0, check.required(keys.0, table.pwm_min, because)?)?;
-    let max_us = check.finite(keys.1, check.required(keys.1, table.pwm_max, because)?)?;
-    check.ordered((keys.0, Some(min_us)), (keys.1, Some(max_us)))?;
-    Ok(Actuator::Pwm(Some(PwmRange { min_us, max_us })))
 }
 
 /// A name as it is shown everywhere: what would command a terminal or break a line is escaped, and told.
@@ -249,23 +145,29 @@ fn rotors(
     check: &Check<'_>,
     tables: Vec<RotorTable>,
     doubts: &mut Vec<String>,
-) -> Result<Vec<Rotor>, ConfigError> {
-    if tables.is_empty() {
-        return Err(check.refuse("rotor", "at least one [[rotor]] table", "none"));
-    }
-    if tables.len() > ROTORS_MAX {
-        return Err(check.refuse("rotor", format!("at most {ROTORS_MAX} [[rotor]] tables"), tables.len()));
+    faults: &mut Faults,
+) -> Vec<Rotor> {
+    let few = (1..=ROTORS_MAX).contains(&tables.len());
+    if !few {
+        let (expected, came) = match tables.len() {
+            0 => ("at least one [[rotor]] table".to_owned(), "none".to_owned()),
+            count => (format!("at most {ROTORS_MAX} [[rotor]] tables"), count.to_string()),
+        };
+        faults.check(Err(check.refuse("rotor", expected, came)));
+        return Vec::new();
     }
     let mut names = BTreeSet::new();
     let mut rotors = Vec::with_capacity(tables.len());
     for (index, table) in tables.into_iter().enumerate() {
-        let name = name(check, &format!("rotor[{index}].name"), &table.name, doubts)?;
+        let key = format!("rotor[{index}].name");
+        let name = faults.take(name(check, &key, &table.name, doubts), String::new());
         if !names.insert(name.clone()) {
             let came = format!("\"{name}\" twice");
-            return Err(check.refuse(&format!("rotor[{index}].name"), "a name of its own", came));
+            faults.check(Err(check.refuse(&key, "a name of its own", came)));
         }
+        let position = check.finite_vector(&format!("rotor[{index}].position"), table.position);
         rotors.push(Rotor {
-            position_m: check.finite_vector(&format!("rotor[{index}].position"), table.position)?,
+            position_m: faults.take(position, Vector3::zeros()),
             spin: match table.spin {
                 SpinKey::Cw => Spin::Cw,
                 SpinKey::Ccw => Spin::Ccw,
@@ -273,257 +175,80 @@ fn rotors(
             name,
         });
     }
-    Ok(rotors)
+    rotors
 }
 
-pub(super) fn limits(check: &Check<'_>, table: &LimitsTable) -> Result<Limits, ConfigError> {
-    let positive = |key: &str, value| check.optional_positive(&format!("limits.{key}"), value);
-    let finite = |key: &str, value| check.optional_finite(&format!("limits.{key}"), value);
-    let angle = |key: &str, deg| -> Result<Option<f64>, ConfigError> {
-        Ok(positive(key, deg)?.map(units::rad_from_deg))
-    };
-    let limits = Limits {
-        roll_max_rad: angle("roll_max_deg", table.roll_max_deg)?,
-        pitch_max_rad: angle("pitch_max_deg", table.pitch_max_deg)?,
-        yaw_max_rad: angle("yaw_max_deg", table.yaw_max_deg)?,
-        yaw_rate_max_rad_s: angle("yaw_rate_max_deg_s", table.yaw_rate_max_deg_s)?,
-        yaw_acceleration_max_rad_s2: angle("yaw_acceleration_max_deg_s2", table.yaw_acceleration_max_deg_s2)?,
-        x_max_m: positive("x_max_m", table.x_max_m)?,
-        y_max_m: positive("y_max_m", table.y_max_m)?,
-        z_min_m: finite("z_min_m", table.z_min_m)?,
-        z_max_m: finite("z_max_m", table.z_max_m)?,
-        speed_max_m_s: positive("speed_max_m_s", table.speed_max_m_s)?,
-        acceleration_max_m_s2: positive("acceleration_max_m_s2", table.acceleration_max_m_s2)?,
-        vertical_acceleration_min_m_s2: finite(
-            "vertical_acceleration_min_m_s2",
-            table.vertical_acceleration_min_m_s2,
-        )?,
-        vertical_acceleration_max_m_s2: finite(
-            "vertical_acceleration_max_m_s2",
-            table.vertical_acceleration_max_m_s2,
-        )?,
-        thrust_max_n: positive("thrust_max_n", table.thrust_max_n)?,
-        torque_max_nm: positive("torque_max_nm", table.torque_max_nm)?,
-    };
-    for (key, wall_m) in
-        [("x_max_m", limits.x_max_m), ("y_max_m", limits.y_max_m), ("z_max_m", limits.z_max_m)]
-    {
+/// The limits of another file.
+pub(super) fn limits_alone(check: &Check<'_>, table: &LimitsTable) -> Result<Limits, ConfigError> {
+    let mut faults = Faults::default();
+    let limits = limits(check, table, &mut faults);
+    faults.refuse(check.origin).map(|()| limits)
+}
+
+fn limits(check: &Check<'_>, table: &LimitsTable, faults: &mut Faults) -> Limits {
+    let known = |key: &str| format!("limits.{key}");
+    let mut positive = |key: &str, value| faults.optional(check.optional_positive(&known(key), value));
+    let mut angle = |key: &str, deg| positive(key, deg).map(units::rad_from_deg);
+    let [roll_max_rad, pitch_max_rad, yaw_max_rad, yaw_rate_max_rad_s, yaw_acceleration_max_rad_s2] = [
+        ("roll_max_deg", table.roll_max_deg),
+        ("pitch_max_deg", table.pitch_max_deg),
+        ("yaw_max_deg", table.yaw_max_deg),
+        ("yaw_rate_max_deg_s", table.yaw_rate_max_deg_s),
+        ("yaw_acceleration_max_deg_s2", table.yaw_acceleration_max_deg_s2),
+    ]
+    .map(|(key, deg)| angle(key, deg));
+    let [x_max_m, y_max_m, speed_max_m_s, acceleration_max_m_s2, thrust_max_n, torque_max_nm] = [
+        ("x_max_m", table.x_max_m),
+        ("y_max_m", table.y_max_m),
+        ("speed_max_m_s", table.speed_max_m_s),
+        ("acceleration_max_m_s2", table.acceleration_max_m_s2),
+        ("thrust_max_n", table.thrust_max_n),
+        ("torque_max_nm", table.torque_max_nm),
+    ]
+    .map(|(key, value)| positive(key, value));
+    let (low, high) = ("vertical_acceleration_min_m_s2", "vertical_acceleration_max_m_s2");
+    let [z_min_m, z_max_m, vertical_acceleration_min_m_s2, vertical_acceleration_max_m_s2] = [
+        ("z_min_m", table.z_min_m),
+        ("z_max_m", table.z_max_m),
+        (low, table.vertical_acceleration_min_m_s2),
+        (high, table.vertical_acceleration_max_m_s2),
+    ]
+    .map(|(key, value)| faults.optional(check.optional_finite(&known(key), value)));
+    for (key, wall_m) in [("x_max_m", x_max_m), ("y_max_m", y_max_m), ("z_max_m", z_max_m)] {
         if let Some(came) = wall_m.filter(|wall_m| *wall_m > WALL_MOST_M) {
-            return Err(check.refuse(&format!("limits.{key}"), format!("at most {WALL_MOST_M} m"), came));
+            faults.check(Err(check.refuse(&known(key), format!("at most {WALL_MOST_M} m"), came)));
         }
     }
-    check.ordered(("limits.z_min_m", limits.z_min_m), ("limits.z_max_m", limits.z_max_m))?;
-    check.ordered(
-        ("limits.vertical_acceleration_min_m_s2", limits.vertical_acceleration_min_m_s2),
-        ("limits.vertical_acceleration_max_m_s2", limits.vertical_acceleration_max_m_s2),
-    )?;
-    for (key, angle) in [("roll_max_deg", limits.roll_max_rad), ("pitch_max_deg", limits.pitch_max_rad)] {
+    faults.check(check.ordered(("limits.z_min_m", z_min_m), ("limits.z_max_m", z_max_m)));
+    faults.check(check.ordered(
+        (&known(low), vertical_acceleration_min_m_s2),
+        (&known(high), vertical_acceleration_max_m_s2),
+    ));
+    for (key, angle) in [("roll_max_deg", roll_max_rad), ("pitch_max_deg", pitch_max_rad)] {
         if let Some(rad) = angle.filter(|rad| *rad >= std::f64::consts::FRAC_PI_2) {
             let came = units::deg_from_rad(rad);
-            return Err(check.refuse(&format!("limits.{key}"), "an angle below 90 degrees", came));
+            faults.check(Err(check.refuse(&known(key), "an angle below 90 degrees", came)));
         }
     }
-    Ok(limits)
-}
-
-fn warnings(vehicle: &Vehicle) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let moments = vehicle.body.inertia_kg_m2.symmetric_eigenvalues();
-    let (largest, others) = (moments.max(), moments.sum() - moments.max());
-    if largest > others * (1.0 + 1e-9) {
-        warnings.push(format!(
-            "body.inertia: these moments are physically impossible: the largest principal moment, {largest:.4e} kg \
-             m^2, \
-             is above the sum of the other two, {others:.4e}"
-        ));
+    Limits {
+        roll_max_rad,
+        pitch_max_rad,
+        yaw_max_rad,
+        yaw_rate_max_rad_s,
+        yaw_acceleration_max_rad_s2,
+        x_max_m,
+        y_max_m,
+        z_min_m,
+        z_max_m,
+        speed_max_m_s,
+        acceleration_max_m_s2,
+        vertical_acceleration_min_m_s2,
+        vertical_acceleration_max_m_s2,
+        thrust_max_n,
+        torque_max_nm,
     }
-    if vehicle.mixer().matrix.svd(false, false).rank(1e-9) < 4 {
-        warnings.push("rotor: the rotors cannot set thrust and all three torques independently".to_owned());
-    }
-    let full_n = vehicle.propulsion.thrust_from_command_n(1.0) * vehicle.rotors.len() as f64;
-    let weight_n = vehicle.body.mass_kg * vehicle.gravity_m_s2;
-    if full_n <= weight_n {
-        warnings.push(format!(
-            "propulsion: full thrust, {full_n:.3} N, does not lift the weight, {weight_n:.3} N"
-        ));
-    }
-    warnings
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::config::vehicle_to_toml;
-
-    const BODY: &str =
-        "name = \"quad\"\n[body]\nmass = 1.5\ninertia = { xx = 0.02, yy = 0.02, zz = 0.035 }\n";
-    const CURVE: &str = "[propulsion]\nactuator = \"pwm\"\npwm_min = 1000\npwm_max = 2000\nthrust_max = 8.0\n\
-                         thrust_expo = 0.5\ntorque_ratio = 0.02\n";
-    const SPEED: &str = "[propulsion]\nactuator = \"speed\"\nspeed_max = 1000\nthrust_coefficient = 1e-5\n\
-                         torque_coefficient = 2e-7\n";
-    const ROTORS: &str = r#"
-[[rotor]]
-name = "front_left"
-position = [0.2, 0.2, 0.0]
-spin = "cw"
-[[rotor]]
-name = "front_right"
-position = [0.2, -0.2, 0.0]
-spin = "ccw"
-[[rotor]]
-name = "rear_right"
-position = [-0.2, -0.2, 0.0]
-spin = "cw"
-[[rotor]]
-name = "rear_left"
-position = [-0.2, 0.2, 0.0]
-spin = "ccw"
-"#;
-
-    fn parse(parts: &[&str]) -> Result<LoadedVehicle, ConfigError> {
-        parse_vehicle(&parts.concat(), "quad.toml")
-    }
-
-    fn refusal(parts: &[&str]) -> String {
-        parse(parts).unwrap_err().to_string()
-    }
-
-    #[test]
-    fn units_become_si() {
-        let limits =
-            "[limits]\nroll_max_deg = 5.73\nyaw_rate_max_deg_s = 180\nz_min_m = 0.7\nz_max_m = 1.5\n";
-        let loaded = parse(&[BODY, SPEED, ROTORS, limits, "[identify]\nanchor = \"mass\"\n"]).unwrap();
-        let vehicle = loaded.vehicle;
-        assert_eq!(loaded.warnings, Vec::<String>::new());
-        assert!((vehicle.propulsion.torque_per_thrust_m - 0.02).abs() < 1e-15);
-        assert!((vehicle.limits.roll_max_rad.unwrap() - 0.100_007_366).abs() < 1e-8);
-        assert!((vehicle.limits.yaw_rate_max_rad_s.unwrap() - std::f64::consts::PI).abs() < 1e-12);
-        assert_eq!(vehicle.anchor, Anchor::Mass);
-        assert_eq!(vehicle.gravity_m_s2, units::GRAVITY_M_S2);
-    }
-
-    #[test]
-    fn pulse_widths_with_a_range_and_fractions_without() {
-        let vehicle = parse(&[BODY, CURVE, ROTORS]).unwrap().vehicle;
-        let range = PwmRange { min_us: 1000.0, max_us: 2000.0 };
-        assert_eq!(vehicle.propulsion.actuator, Actuator::Pwm(Some(range)));
-        let fractions = SPEED.replace("\"speed\"", "\"pwm\"");
-        let vehicle = parse(&[BODY, &fractions, ROTORS]).unwrap().vehicle;
-        assert_eq!(vehicle.propulsion.actuator, Actuator::Pwm(None));
-        assert_eq!(vehicle.propulsion.law, ThrustLaw::Speed { speed_max_rad_s: 1000.0 });
-    }
-
-    #[test]
-    fn written_and_read_again_it_is_the_same() {
-        let lagging = format!("{SPEED}time_constant = 0.0125\ntime_constant_down = 0.025\n");
-        for propulsion in [CURVE, SPEED, &lagging] {
-            let limits = "[limits]\nyaw_max_deg = 180.0\nthrust_max_n = 34.4\n";
-            let vehicle = parse(&[BODY, propulsion, ROTORS, limits]).unwrap().vehicle;
-            let mut text = vehicle_to_toml(&vehicle).unwrap();
-            text.push_str(
-                "[identified]\nmass = 1.5\n[provenance]\nversion = \"0\"\n[[effect]]\nid = \"x\"\n",
-            );
-            let again = parse_vehicle(&text, "model.toml").unwrap();
-            let ratio = again.vehicle.propulsion.torque_per_thrust_m;
-            assert!((ratio / vehicle.propulsion.torque_per_thrust_m - 1.0).abs() < 1e-12);
-            let same = Vehicle {
-                propulsion: Propulsion {
-                    torque_per_thrust_m: vehicle.propulsion.torque_per_thrust_m,
-                    ..again.vehicle.propulsion
-                },
-                ..again.vehicle
-            };
-            assert_eq!(same, vehicle);
-            assert_eq!(again.model.effects.len(), 1);
-            assert!(again.model.identified.is_some() && again.model.provenance.is_some());
-        }
-    }
-
-    #[test]
-    fn refusals_name_file_key_and_value() {
-        for (parts, needles) in [
-            (vec![BODY, "mas = 2\n", SPEED, ROTORS], vec!["quad.toml", "unknown field `mas`"]),
-            (vec![&BODY.replace("1.5", "-1.5"), SPEED, ROTORS], vec!["`body.mass`", "got -1.5"]),
-            (vec![&BODY.replace("0.02,", "nan,"), SPEED, ROTORS], vec!["`body.inertia.xx`", "got NaN"]),
-            (vec![&BODY.replace("0.035 }", "0.035, xy = 0.03 }"), SPEED, ROTORS], vec!["positive definite"]),
-            (
-                vec![BODY, SPEED, "time_constant_down = 0.02\n", ROTORS],
-                vec![
-                    "`propulsion.time_constant`: expected a number, since time_constant_down",
-                    "got nothing",
-                ],
-            ),
-            (
-                vec![BODY, SPEED, "time_constant = 0.02\ntime_constant_down = 0\n", ROTORS],
-                vec!["`propulsion.time_constant_down`: expected a number above zero", "got 0"],
-            ),
-            (vec![BODY, SPEED, "thrust_max = 5\n", ROTORS], vec!["speed_max = 1000 and thrust_max = 5"]),
-            (
-                vec![BODY, SPEED, "torque_ratio = 0.02\n", ROTORS],
-                vec!["`propulsion.torque_ratio`: expected no such key, since", "u * speed_max"],
-            ),
-            (vec![BODY, SPEED, "pwm_min = 1000\n", ROTORS], vec!["`propulsion.pwm_min`", "not \"pwm\""]),
-            (
-                vec![BODY, &CURVE.replace("2000", "900"), ROTORS],
-                vec!["`propulsion.pwm_min`", "below `propulsion.pwm_max` = 900", "got 1000"],
-            ),
-            (
-                vec![BODY, &CURVE.replace("pwm_max = 2000\n", ""), ROTORS],
-                vec!["`propulsion.pwm_max`", "nothing"],
-            ),
-            (vec![BODY, &CURVE.replace("0.5", "1.5"), ROTORS], vec!["`propulsion.thrust_expo`", "got 1.5"]),
-            (vec![BODY, SPEED], vec!["`rotor`", "at least one"]),
-            // products of such numbers overflow, and factorisations of infinities do not end
-            (
-                vec![BODY, SPEED, &ROTORS.replacen("0.2", "1e200", 1)],
-                vec!["`rotor[0].position`", "of size 1e-18 to 1e12", "got 1e200"],
-            ),
-            (
-                vec![&BODY.replace("1.5", "1e-320"), SPEED, ROTORS],
-                vec!["`body.mass`", "of size 1e-18 to 1e12"],
-            ),
-            (vec![BODY, SPEED, &ROTORS.replace("rear_left", "front_left")], vec!["\"front_left\" twice"]),
-            (
-                vec![BODY, SPEED, ROTORS, "[limits]\nz_min_m = 2\nz_max_m = 1\n"],
-                vec!["`limits.z_min_m`", "below `limits.z_max_m` = 1", "got 2"],
-            ),
-            (vec![BODY, SPEED, ROTORS, "[limits]\nroll_max_deg = 95\n"], vec!["`limits.roll_max_deg`", "95"]),
-        ] {
-            let message = refusal(&parts);
-            for needle in needles {
-                assert!(message.contains(needle), "{needle:?} is not in {message:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn names_command_nothing_and_have_an_end() {
-        let evil = BODY.replace("\"quad\"", "\"x\\u001b[31m\\nall is well\"");
-        let rotors = ROTORS.replacen("front_left", "front\\u009bleft", 1);
-        let loaded = parse(&[&evil, SPEED, &rotors]).unwrap();
-        assert_eq!(loaded.vehicle.name, "x\\u{1b}[31m\\nall is well");
-        assert_eq!(loaded.vehicle.rotors[0].name, "front\\u{9b}left");
-        assert!(loaded.warnings.len() == 2 && loaded.warnings[0].starts_with("rotor[0].name: expected"));
-        let long = BODY.replace("quad", &"q".repeat(1000));
-        assert!(
-            refusal(&[&long, SPEED, ROTORS]).contains("`name`: expected at most 200 characters, got 1000")
-        );
-        let many: String = (0..40)
-            .map(|n| format!("[[rotor]]\nname = \"{n}\"\nposition = [0.2, 0.2, 0.0]\nspin = \"cw\"\n"))
-            .collect();
-        assert!(
-            refusal(&[BODY, SPEED, &many]).contains("`rotor`: expected at most 32 [[rotor]] tables, got 40")
-        );
-    }
-
-    #[test]
-    fn what_is_hardly_meant_is_warned_of() {
-        let slender = BODY.replace("0.035", "0.05");
-        let two = ROTORS.split("[[rotor]]\nname = \"rear_right\"").next().unwrap();
-        let loaded = parse(&[&slender, SPEED, two]).unwrap();
-        assert_eq!(loaded.warnings.len(), 2, "{:?}", loaded.warnings);
-        let weak = SPEED.replace("1e-5", "1e-6");
-        let loaded = parse(&[BODY, &weak, ROTORS]).unwrap();
-        assert!(loaded.warnings[0].contains("4.000 N, does not lift the weight, 14.715 N"));
-    }
-}
+#[path = "vehicle_tests.rs"]
+mod tests;

@@ -2,6 +2,7 @@
 
 use super::ConfigError;
 use super::check::Check;
+use super::faults::Faults;
 use super::rigid_body::rigid_body;
 use super::vehicle_file::{
     ActuatorKind, AnchorKey, BodyTable, FORMAT, GuessTable, IdentifyTable, InertiaTable, LimitsTable,
@@ -51,7 +52,9 @@ pub fn vehicle_to_toml(vehicle: &Vehicle) -> Result<String, ConfigError> {
         provenance: None,
         effects: Vec::new(),
     };
-    rigid_body(&Check { origin: WRITTEN }, &file.body)?;
+    let mut faults = Faults::default();
+    rigid_body(&Check { origin: WRITTEN }, &file.body, &mut faults);
+    faults.refuse(WRITTEN)?;
     Ok(toml::to_string(&file)?)
 }
 

@@ -49,6 +49,8 @@ pub enum Nuisance {
     AccelerometerBias(usize),
     /// rad, of the attitude's level about world x, y
     Level(usize),
+    /// m/s, of the vertical velocity about one knot of one flight
+    VelocityError,
 }
 
 /// A column with the prior of its coefficient.
@@ -64,8 +66,21 @@ pub struct NuisanceColumn {
     pub considered: Option<Channels>,
 }
 
-/// Channels of the force in each available measurement (N), and of the torque (N m).
+impl NuisanceColumn {
+    /// The column of one flight among the rows of all, `count` of them, of which its own begin at `first`.
+    pub(super) fn among(self, first: usize, count: usize) -> Self {
+        let values = self.values.map(|own| {
+            let mut all = vec![0.0; count];
+            all[first..first + own.len()].copy_from_slice(&own);
+            all
+        });
+        Self { values, ..self }
+    }
+}
+
+/// Channels of the force in each available measurement (N), and of the torque (N m) where torques are compared.
 pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
+    let torque = if trace.torques { torque } else { nothing(trace) };
     let second = if trace.reads_force_twice() { force.clone() } else { nothing(trace) };
     let ([fx, fy, fz], [tx, ty, tz], [kx, ky, kz]) = (force, torque, second);
     [fx, fy, fz, tx, ty, tz, kx, ky, kz]
@@ -85,4 +100,29 @@ pub(super) fn per_step(mut up: Channels, down: &Channels, step: f64) -> Channels
         up.iter_mut().zip(down).for_each(|(up, down)| *up = (down - *up) / step);
     }
     up
+}
+
+/// The nuisances' columns over the rows of earlier flights, continued by those of a further one. A flight that lacks a
+/// nuisance, such as the jitter of commands if rotor speeds were measured, has zeros in its column.
+pub(super) fn joined(
+    mut all: Vec<NuisanceColumn>,
+    rows_before: usize,
+    of_flight: Vec<NuisanceColumn>,
+    rows: usize,
+) -> Vec<NuisanceColumn> {
+    let zeros = |rows: usize| -> Channels { std::array::from_fn(|_| vec![0.0; rows]) };
+    for of in &of_flight {
+        if all.iter().all(|column| column.nuisance != of.nuisance) {
+            let considered = of.considered.as_ref().map(|_| zeros(rows_before));
+            all.push(NuisanceColumn { values: zeros(rows_before), considered, ..of.clone() });
+        }
+    }
+    for column in &mut all {
+        let of = of_flight.iter().find(|of| of.nuisance == column.nuisance);
+        append(&mut column.values, of.map_or(&zeros(rows), |of| &of.values));
+        if let Some(considered) = &mut column.considered {
+            append(considered, of.and_then(|of| of.considered.as_ref()).unwrap_or(&zeros(rows)));
+        }
+    }
+    all
 }

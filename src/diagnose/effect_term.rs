@@ -110,6 +110,12 @@ impl EffectTerm {
         }
     }
 
+    /// Whether it is a change at one moment, and was before this time, s.
+    pub(super) fn is_before(&self, time_s: Option<f64>) -> bool {
+        let moment_s = self.signature.role.moment.map(|slot| self.values[slot]);
+        moment_s.zip(time_s).is_some_and(|(moment_s, time_s)| moment_s <= time_s)
+    }
+
     /// Norm of the amounts that are estimated.
     #[must_use]
     pub fn size(&self) -> f64 {

@@ -5,6 +5,7 @@
 //! conservative if the model is wrong.
 
 use super::channels::{CHANNELS, Channels};
+use super::priors::{OF_KERNEL, Priors, READINGS};
 use super::rows::Rows;
 use crate::stats::{chance_by_stretches, normal_deviate};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -29,7 +30,8 @@ pub struct Weighted {
     pub sigma: [f64; CHANNELS],
     /// nuisances and the base's own effects, weighted
     pub(super) nuisances: DMatrix<f64>,
-    precision: DVector<f64>,
+    /// variance of the scores by the priors
+    prior_meat: DVector<f64>,
     pub(super) normal: Option<Cholesky<f64, Dyn>>,
     /// residual without the part of the nuisances, weighted
     pub left: DVector<f64>,
@@ -79,7 +81,7 @@ impl Weighted {
         let mut this = Self::at(rows, &sigma);
         for _ in 0..2 {
             sigma = this.residual_sigma();
-            this = Self::at(rows, &sigma);
+            this = Self::with(rows, &sigma, READINGS * this.long_run_deviation().powi(2));
         }
         this
     }
@@ -87,20 +89,17 @@ impl Weighted {
     /// The same with given standard deviations of the channels (N, N m), for simulated flights.
     #[must_use]
     pub fn at(rows: &Rows, sigma: &[f64; CHANNELS]) -> Self {
-        let mut columns: Vec<(&Channels, Option<f64>)> =
-            rows.nuisances.iter().map(|column| (&column.values, column.prior_std)).collect();
-        columns.extend(rows.effects.iter().map(|column| (column, None)));
-        let precision = DVector::from_iterator(
-            columns.len(),
-            columns.iter().map(|(_, prior)| prior.map_or(0.0, |std| std.powi(-2))),
-        );
-        let nuisances = DMatrix::from_columns(
-            &columns.iter().map(|(column, _)| weighted(column, sigma)).collect::<Vec<_>>(),
-        );
-        let mut normal = nuisances.tr_mul(&nuisances);
-        for (index, precision) in precision.iter().enumerate() {
-            normal[(index, index)] += precision;
-        }
+        Self::with(rows, sigma, READINGS * OF_KERNEL)
+    }
+
+    /// The same if this many rows count as one independent measurement of a slow error.
+    fn with(rows: &Rows, sigma: &[f64; CHANNELS], alike: f64) -> Self {
+        let of_nuisances = rows.nuisances.iter().map(|column| &column.values);
+        let columns: Vec<DVector<f64>> =
+            of_nuisances.chain(&rows.effects).map(|column| weighted(column, sigma)).collect();
+        let priors = Priors::of(&rows.nuisances, columns.len(), alike);
+        let nuisances = DMatrix::from_columns(&columns);
+        let mut normal = nuisances.tr_mul(&nuisances) + DMatrix::from_diagonal(&priors.precision);
         // a column that is nowhere excited drops out
         let most = normal.diagonal().max();
         for index in 0..normal.nrows() {
@@ -113,7 +112,7 @@ impl Weighted {
             rows: rows.len(),
             sigma: *sigma,
             nuisances,
-            precision,
+            prior_meat: priors.meat,
             normal: normal.cholesky(),
             left: DVector::zeros(0),
             energy: 0.0,
@@ -164,7 +163,7 @@ impl Weighted {
         };
         let theta = normal.solve(&self.nuisances.tr_mul(&y));
         let bread = normal.inverse();
-        let prior = DMatrix::from_diagonal(&self.precision);
+        let prior = DMatrix::from_diagonal(&self.prior_meat);
         let gammas = self.gammas(&self.left);
         let by_residual = &bread * (self.meat_of_residual(&self.nuisances, &gammas) + &prior) * &bread;
         let by_score = &bread * (self.meat_of_scores(&self.nuisances, &self.left, &gammas) + &prior) * &bread;
@@ -220,7 +219,7 @@ impl Weighted {
         let normal = plain.tr_mul(&partialled);
         let normal = 0.5 * (&normal + normal.transpose());
         let inverse = normal.clone().cholesky()?.inverse();
-        let theta = &inverse * partialled.tr_mul(&self.left);
+        let theta = &inverse * plain.tr_mul(&self.left);
         let energy = theta.dot(&(&normal * &theta));
         let after = &self.left - &partialled * &theta;
         let prior = self.prior_part(&plain);
@@ -266,9 +265,9 @@ impl Weighted {
         // X' M Z = X'Z A^-1 P
         let cross = normal.solve(&self.nuisances.tr_mul(plain));
         let mut out = DMatrix::zeros(size, size);
-        for (index, precision) in self.precision.iter().enumerate().filter(|(_, p)| **p > 0.0) {
+        for (index, variance) in self.prior_meat.iter().enumerate().filter(|(_, p)| **p > 0.0) {
             let row = cross.row(index);
-            out += row.transpose() * row * *precision;
+            out += row.transpose() * row * *variance;
         }
         out
     }
@@ -396,109 +395,5 @@ fn spread(values: &[f64]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    //! Expected numbers are those of NumPy and SciPy: `python3 tests/peers/evidence_numbers.py`, with `0.1` after it where
-    //! something is known beforehand.
-
-    use super::super::channels::{Nuisance, NuisanceColumn};
-    use super::super::rows::tests::rows_of;
-    use super::*;
-
-    const ROWS: i32 = 240;
-    const SIGMA: [f64; CHANNELS] = [0.5, 1.0, 1.0, 0.1, 1.0, 1.0, 1.0, 1.0, 1.0];
-
-    /// Numbers without order in -0.5..0.5.
-    fn chance(k: i32, row: i32) -> f64 {
-        let j = row + 1;
-        f64::from((j * j * (17 * k + 23) + j * (101 * k + 59)) % 1009) / 1009.0 - 0.5
-    }
-
-    fn noise(k: i32, row: i32) -> f64 {
-        chance(k, row) + if row > 0 { 0.6 * chance(k, row - 1) } else { 0.0 }
-    }
-
-    /// One of the force on body x and one of the torque about it; nothing in the other channels.
-    fn column(force: impl Fn(i32) -> f64, torque: impl Fn(i32) -> f64) -> Channels {
-        let mut out: Channels = std::array::from_fn(|_| (0..ROWS).map(|_| 0.0).collect());
-        out[0] = (0..ROWS).map(force).collect();
-        out[3] = (0..ROWS).map(torque).collect();
-        out
-    }
-
-    /// Rows with two nuisances, of which a spread of the second may be known, and one effect; and two tested columns.
-    fn problem(prior_std: Option<f64>) -> (Rows, [Channels; 2]) {
-        let a = column(|i| (0.11 * f64::from(i)).sin(), |i| 0.1 * (0.05 * f64::from(i)).cos());
-        let b = column(|i| (0.031 * f64::from(i)).cos(), |i| 0.1 * chance(7, i));
-        let bias = column(|_| 1.0, |_| 0.0);
-        let lean = column(|i| (0.11 * f64::from(i) + 1.0).sin(), |_| 0.02);
-        let present = column(|_| 0.0, |i| 0.1 * (0.02 * f64::from(i)).sin());
-        let shares = [(&a, 0.3), (&b, -0.4), (&bias, 0.2), (&lean, 0.5), (&present, 0.7)];
-        let mut residual = column(|i| 0.4 * noise(1, i), |i| 0.08 * noise(2, i));
-        for (of, share) in shares {
-            for (to, from) in residual.iter_mut().zip(of) {
-                to.iter_mut().zip(from).for_each(|(to, from)| *to += share * from);
-            }
-        }
-        let nuisance = |values, prior_std| NuisanceColumn {
-            nuisance: Nuisance::Mass,
-            values,
-            prior_std,
-            considered: None,
-        };
-        let nuisances = vec![nuisance(bias, None), nuisance(lean, prior_std)];
-        (rows_of(vec![0..150, 150..240], residual, nuisances, vec![present]), [a, b])
-    }
-
-    fn all_near(found: &[f64], expected: &[f64]) {
-        assert_eq!(found.len(), expected.len());
-        for (found, expected) in found.iter().zip(expected) {
-            assert!((found - expected).abs() < 1e-7 * expected.abs(), "{found}, not {expected}");
-        }
-    }
-
-    #[test]
-    fn coefficients_deviate_and_chances_are_those_of_one_least_squares_problem() {
-        let (rows, tested) = problem(None);
-        let found = Weighted::at(&rows, &SIGMA).test(&tested).unwrap();
-        all_near(&found.theta, &[0.341_521_197_258_292_2, -0.393_563_212_976_975_6]);
-        let (variances, across) =
-            ([2.728_810_634_747_147_5e-4, 2.276_016_559_031_640_5e-4], -5.313_336_503_872_927e-6);
-        all_near(found.covariance.as_slice(), &[variances[0], across, across, variances[1]]);
-        all_near(&[found.z, found.p_cluster], &[32.833_312_842_234_356, 4.330_111_096_967_485e-13]);
-        all_near(&[found.energy, found.gain], &[128.381_582_285_327_26, 0.787_420_808_059_761_6]);
-        all_near(&[found.rms[0], found.rms[3]], &[0.340_320_098_773_846_67, 0.026_767_925_023_138_652]);
-        assert!((0..CHANNELS).all(|channel| [0, 3].contains(&channel) || found.rms[channel] == 0.0));
-    }
-
-    #[test]
-    fn nuisances_have_the_coefficients_of_ridge_regression() {
-        let known = [
-            (
-                None,
-                163.040_627_033_548_87,
-                [0.141_338_590_528_405_58, 0.634_696_038_234_631_4, 0.714_971_685_058_907],
-            ),
-            (
-                Some(0.1),
-                196.658_886_284_414_9,
-                [0.146_051_443_283_149_87, 0.529_674_950_301_773, 0.722_932_956_455_108_7],
-            ),
-        ];
-        for (prior_std, energy, theta) in known {
-            let (rows, _) = problem(prior_std);
-            let weighted = Weighted::at(&rows, &SIGMA);
-            all_near(weighted.coefficients(&rows).0.as_slice(), &theta);
-            all_near(&[weighted.energy], &[energy]);
-        }
-    }
-
-    #[test]
-    #[ignore = "the score of a tested column is taken from its partialled column and the partialled residual, which \
-                partials twice: with something known of a nuisance theta is [0.33597, -0.39381]"]
-    fn what_is_known_of_a_nuisance_counts_once() {
-        let (rows, tested) = problem(Some(0.1));
-        let found = Weighted::at(&rows, &SIGMA).test(&tested).unwrap();
-        all_near(&found.theta, &[0.385_276_648_962_127_43, -0.391_595_481_738_795_1]);
-        all_near(&[found.energy, found.gain], &[144.469_871_519_824_04, 0.734_621_629_611_421_2]);
-    }
-}
+#[path = "evidence_tests.rs"]
+mod tests;

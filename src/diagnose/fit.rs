@@ -5,6 +5,7 @@ use super::channels::{AXES, CHANNELS, Nuisance, NuisanceColumn};
 use super::evidence::Weighted;
 use super::rows::Rows;
 use super::trace::Trace;
+use crate::estimate::{Estimated, THETA, ThetaCovariance, theta_of};
 use crate::physics::PhysicsError;
 use nalgebra::{DMatrix, DVector};
 
@@ -24,6 +25,44 @@ pub struct Fitted {
 }
 
 impl Fitted {
+    /// Mass and inertia with their covariance; NaN where no row bears on a parameter.
+    #[must_use]
+    pub fn rigid_body(&self) -> Estimated {
+        let place = |index: usize| {
+            let wanted = if index == 0 { Nuisance::Mass } else { Nuisance::Inertia(index - 1) };
+            self.rows.nuisances.iter().position(|column| column.nuisance == wanted)
+        };
+        let places: [Option<usize>; THETA] = std::array::from_fn(place);
+        let covariance = ThetaCovariance::from_fn(|i, j| match (places[i], places[j]) {
+            (Some(i), Some(j)) => self.covariance[(i, j)],
+            _ => 0.0,
+        });
+        let mut theta = theta_of(&self.base.vehicle.body);
+        for (index, value) in theta.iter_mut().enumerate() {
+            if covariance[(index, index)] <= 0.0 {
+                *value = f64::NAN;
+            }
+        }
+        Estimated { theta, covariance, explained: Some(self.explained_torques()), by_wider_window: None }
+    }
+
+    /// Share of the variance of the torques about body x, y, z that the inertia explains, without the part of nuisances and
+    /// effects.
+    fn explained_torques(&self) -> [f64; 3] {
+        let theta = theta_of(&self.base.vehicle.body);
+        std::array::from_fn(|axis| {
+            let channel = 3 + axis;
+            let left = DVector::from_vec(self.weighted.left_of(channel));
+            let mut with_body = left.clone();
+            for column in &self.rows.nuisances {
+                let Nuisance::Inertia(index) = column.nuisance else { continue };
+                let along = column.values[channel].iter().map(|value| value * theta[1 + index]);
+                with_body += DVector::from_iterator(left.len(), along);
+            }
+            1.0 - left.variance() / with_body.variance().max(f64::MIN_POSITIVE)
+        })
+    }
+
     /// Negative log-likelihood up to a constant: the sum over the rows of the logarithm of each channel's standard
     /// deviation, with forces as measured accelerations.
     #[must_use]

@@ -7,7 +7,7 @@
 use super::base::Base;
 use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing, per_step};
 use super::evidence::Weighted;
-use super::fit::{Fitted, Newton, fit};
+use super::fit::{Fitted, Newton, evaluate, fit};
 use super::rows::{Rows, residuals};
 use super::signature::EffectTerm;
 use super::signatures::{ALL, BENT_THRUST};
@@ -96,6 +96,20 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
     }
     let held = fit(flights, Base { latency, ..base }, Newton::Held)?;
     Ok((held, finding))
+}
+
+/// The rigid body with the latency that it is found to have, whatever its kind, and the latency's standard error, s: what
+/// [`fit_latency`] begins with.
+///
+/// # Errors
+/// [`PhysicsError`] where the base is not physical.
+pub(super) fn with_any_latency(flights: &[Trace], base: Base) -> Result<(Fitted, f64), PhysicsError> {
+    let mut allowed = base.clone();
+    allowed.present = look_alikes(flights);
+    let fitted = fit(flights, allowed, Newton::Free)?;
+    let std_s = finding_of(&fitted).std_s;
+    let Base { vehicle, latency, .. } = fitted.base;
+    Ok((evaluate(flights, Base { vehicle, latency, ..base })?, std_s))
 }
 
 /// The split into delay and lag, or the lag alone if it explains the flight far better.

@@ -10,8 +10,12 @@ use super::trace::Trace;
 use crate::physics::{ActuationLatency, RotorLag};
 use crate::vehicle::Vehicle;
 
-/// A lag or delay beyond that of sampling and a fast motor.
+/// A lag or delay beyond that of sampling and a fast motor; `None` too where torques are not compared, because the commands
+/// are then logged too seldom to tell.
 pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<Named> {
+    if !traces.iter().any(|trace| trace.torques) {
+        return None;
+    }
     let LatencyFinding { total_s, std_s, parts, against_lag, against_delay, uneven_std } = found.latency;
     let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
     let motor_s = stated_lag_s(vehicle);

@@ -7,12 +7,13 @@
 
 use super::along::{moved_by, wrench_along};
 use super::base::Base;
-use super::channels::{Channels, NuisanceColumn, SECOND, append, channels, per_step};
+use super::channels::{Channels, NuisanceColumn, SECOND, append, channels, joined, per_step};
 use super::nuisances::{momentum_rows, nuisances};
 use super::rotors::{RotorMotion, Thrusts};
 use super::sensors::{is_of_sensors, true_motion, true_readings};
 use super::signature::EffectTerm;
 use super::trace::Trace;
+use super::velocity_error::velocity_error;
 use crate::physics::{Model, PhysicsError, Wrench};
 use nalgebra::{Vector3, Vector4};
 use rayon::prelude::*;
@@ -55,8 +56,8 @@ impl Rows {
     pub fn new(recorded: &[Trace], base: &Base) -> Result<Self, PhysicsError> {
         let model = base.model(&[])?;
         let flights = &true_motion(recorded, base)[..];
-        let parts: Vec<(Along, Channels, Vec<NuisanceColumn>)> =
-            flights.par_iter().map(|trace| one_flight(trace, base, &model)).collect();
+        let parts: Vec<Part> =
+            flights.par_iter().map(|trace| one_flight((trace, flights.len()), base, &model)).collect();
         let mut rows = Self {
             time_s: Vec::new(),
             runs: Vec::new(),
@@ -72,23 +73,18 @@ impl Rows {
             squares +=
                 trace.centers.iter().map(|&c| torque[c].component_mul(&torque[c])).sum::<Vector3<f64>>();
         }
-        for (trace, (along, residual, nuisances)) in flights.iter().zip(parts) {
+        let count: usize = flights.iter().map(Trace::rows).sum();
+        let mut of_one_flight = Vec::new();
+        for (trace, Part { along, residual, nuisances, own }) in flights.iter().zip(parts) {
             let before = rows.time_s.len();
+            of_one_flight.extend(own.into_iter().map(|column| column.among(before, count)));
             rows.time_s.extend(trace.centers.iter().map(|&center| trace.grid.time_s(center)));
             rows.runs.extend(trace.runs.iter().map(|run| run.start + before..run.end + before));
             append(&mut rows.residual, &residual);
-            if rows.nuisances.is_empty() {
-                rows.nuisances = nuisances;
-            } else {
-                for (all, of) in rows.nuisances.iter_mut().zip(&nuisances) {
-                    append(&mut all.values, &of.values);
-                    if let (Some(all), Some(of)) = (&mut all.considered, &of.considered) {
-                        append(all, of);
-                    }
-                }
-            }
+            rows.nuisances = joined(rows.nuisances, before, nuisances, trace.rows());
             rows.flights.push(along);
         }
+        rows.nuisances.append(&mut of_one_flight);
         rows.torque_rms = std::array::from_fn(|axis| (squares[axis] / rows.len().max(1) as f64).sqrt());
         rows.effects = rows.present_columns((recorded, flights), base)?;
         Ok(rows)
@@ -237,8 +233,10 @@ impl Rows {
 /// The residual for the true motion of the flights.
 pub(super) fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
     let model = base.model(&[])?;
-    let parts: Vec<Channels> =
-        true_motion(recorded, base).par_iter().map(|trace| one_flight(trace, base, &model).1).collect();
+    let parts: Vec<Channels> = true_motion(recorded, base)
+        .par_iter()
+        .map(|trace| one_flight((trace, recorded.len()), base, &model).residual)
+        .collect();
     let mut out = Channels::default();
     parts.iter().for_each(|part| append(&mut out, part));
     Ok(out)
@@ -248,16 +246,28 @@ fn weak_wrench(trace: &Trace, forces: &[Vector3<f64>], torques: &[Vector3<f64>])
     channels(trace, trace.weak_vector(0, forces), trace.weak_vector(0, torques))
 }
 
-/// Residual and nuisances of one flight.
-fn one_flight(trace: &Trace, base: &Base, model: &Model) -> (Along, Channels, Vec<NuisanceColumn>) {
+/// One flight's share of the rows.
+struct Part {
+    along: Along,
+    residual: Channels,
+    /// the same ones in every flight
+    nuisances: Vec<NuisanceColumn>,
+    /// of this flight alone
+    own: Vec<NuisanceColumn>,
+}
+
+fn one_flight((trace, flights): (&Trace, usize), base: &Base, model: &Model) -> Part {
     let (felt, commanded) = trace.by_commands(&model.airframe, base.latency);
     let (by_commands, (motion, by_motion)) =
         rayon::join(|| wrench_along(model, trace, &commanded), || moved_by(trace, (base, model), &commanded));
-    let (residual, nuisances) = rayon::join(
+    let (residual, (nuisances, own)) = rayon::join(
         || residual(trace, base, model, (&felt, &commanded, &motion), (&by_commands, &by_motion)),
-        || nuisances(trace, base, &commanded, &by_commands),
+        || {
+            let own = velocity_error((trace, flights), (base, model), &commanded, &by_commands);
+            (nuisances(trace, base, &commanded, &by_commands), own)
+        },
     );
-    (Along { felt, commanded, motion, by_commands, by_motion }, residual, nuisances)
+    Part { along: Along { felt, commanded, motion, by_commands, by_motion }, residual, nuisances, own }
 }
 
 /// `m K(a) - K(F)` and `D(J w) + K(w x J w) - K(M)`, with the effects' part from the smooth thrusts.
@@ -294,7 +304,7 @@ fn residual(
                 *value = base.vehicle.body.mass_kg * reading[axis][row] - *value;
             }
         }
-        for (row, value) in out[3 + axis].iter_mut().enumerate() {
+        for (row, value) in out[3 + axis].iter_mut().enumerate().filter(|_| trace.torques) {
             let turning: f64 = (0..6).map(|k| momentum[k][axis][row] * six[k]).sum();
             *value = turning - *value;
         }
@@ -303,108 +313,5 @@ fn residual(
 }
 
 #[cfg(test)]
-pub(super) mod tests {
-    use super::*;
-    use crate::recording::Quantity;
-    use crate::signals::{Grid, Quality, Signals, ThrustSource, Usable};
-    use crate::simulate::random_vehicle;
-    use crate::vehicle::{RigidBody, Rotor, Spin, Vehicle};
-    use nalgebra::{Matrix3, UnitQuaternion};
-
-    /// Rows that no flight made, 0.05 s apart.
-    pub(in super::super) fn rows_of(
-        runs: Vec<Range<usize>>,
-        residual: Channels,
-        nuisances: Vec<NuisanceColumn>,
-        effects: Vec<Channels>,
-    ) -> Rows {
-        let time_s = (0..residual[0].len()).map(|row| 0.05 * row as f64).collect();
-        Rows { time_s, runs, residual, nuisances, effects, torque_rms: [1.0; 3], flights: Vec::new() }
-    }
-
-    const STEP_S: f64 = 0.01;
-    const RATE_RAD_S: [f64; 3] = [0.8, -0.5, 1.1];
-    const FELT_M_S2: [f64; 3] = [0.3, -0.2, 11.0];
-    const THRUSTS_N: [f64; 4] = [4.0, 5.0, 6.0, 3.5];
-
-    /// 1.6 kg, with products of inertia, on hubs at 0.2 m and 0.15 m.
-    fn vehicle() -> Vehicle {
-        let inertia_kg_m2 = Matrix3::new(0.02, 0.001, -0.002, 0.001, 0.03, 0.0015, -0.002, 0.0015, 0.045);
-        let hubs = [
-            (0.2, 0.15, Spin::Cw),
-            (0.2, -0.15, Spin::Ccw),
-            (-0.2, -0.15, Spin::Cw),
-            (-0.2, 0.15, Spin::Ccw),
-        ];
-        let rotor = |(x, y, spin)| Rotor { name: String::new(), position_m: Vector3::new(x, y, 0.0), spin };
-        let mut vehicle = random_vehicle(1).nominal;
-        vehicle.body = RigidBody { mass_kg: 1.6, inertia_kg_m2, center_of_mass_m: Vector3::zeros() };
-        vehicle.rotors = hubs.map(rotor).to_vec();
-        vehicle.propulsion.torque_per_thrust_m = 0.02;
-        vehicle.gravity_m_s2 = 9.81;
-        vehicle
-    }
-
-    /// 5 s at a constant rate on the spot, with constant thrusts and a constant reading of the accelerometer.
-    fn turning_on_the_spot() -> Signals {
-        let count = 500;
-        let rate = Vector3::from(RATE_RAD_S);
-        let turned = |i: usize| UnitQuaternion::from_scaled_axis(rate * (STEP_S * i as f64));
-        Signals {
-            grid: Grid { start_s: 0.0, step_s: STEP_S, count },
-            usable: vec![true; count],
-            attitude: Some((0..count).map(turned).collect()),
-            rate: Some(vec![rate; count]),
-            specific_force: Some(vec![Vector3::from(FELT_M_S2); count]),
-            world_acceleration: None,
-            position: None,
-            velocity: Some(vec![Vector3::zeros(); count]),
-            rotor_thrust_n: THRUSTS_N.repeat(count),
-            wrench: vec![Vector4::zeros(); count],
-            jitter_wrench: None,
-            battery_voltage_v: None,
-            reference: None,
-            quality: Quality {
-                sources: vec![(Quantity::ActuatorCommand, "by hand", 1.0 / STEP_S)],
-                thrust_source: ThrustSource::Command,
-                offsets: Vec::new(),
-                airborne_s: Vec::new(),
-                usable: Usable::default(),
-                notes: Vec::new(),
-            },
-        }
-    }
-
-    /// By hand: the thrusts make 18.5 N and (0.15 (4 - 5 - 6 + 3.5), -0.2 (4 + 5 - 6 - 3.5), 0.02 (4 - 5 + 6 - 3.5)) N m; a
-    /// constant rate w takes `w x J w`, which is (-0.00977, -0.02309, -0.00339) N m (NumPy: `numpy.cross(w, J @ w)`). On the
-    /// spot the kinematics show gravity alone, which turns about w: its part along w is constant, that across it is lowered
-    /// by the test function to `gamma(5.5) (2 / x)^4.5 J_4.5(x)` for x the angle turned in half its width (SciPy:
-    /// `gamma(5.5) * (2 / x) ** 4.5 * jv(4.5, x)` at x = 0.21 sqrt(2.1)).
-    #[test]
-    fn rows_of_a_body_that_turns_at_a_constant_rate_are_known() {
-        let vehicle = vehicle();
-        let trace = Trace::new(&turning_on_the_spot(), &vehicle, 0.2).unwrap();
-        assert_eq!(trace.kernel.half_count, 20);
-        let rows = Rows::new(std::slice::from_ref(&trace), &Base::rigid(&vehicle)).unwrap();
-        assert!(rows.len() > 80);
-        let first = [0.48, -0.32, 17.6 - 18.5, 0.515_23, -0.123_09, -0.033_39];
-        let (rate, lowered) = (Vector3::from(RATE_RAD_S), 0.995_797_943_874_802_5);
-        let axis = rate.normalize();
-        let along = axis * axis.z;
-        let across = Vector3::z() - along;
-        for row in 0..rows.len() {
-            for (channel, expected) in first.iter().enumerate() {
-                let found = rows.residual[channel][row];
-                assert!((found - expected).abs() < 1e-9, "channel {channel}: {found}, not {expected}");
-            }
-            let (s, c) = (rate.norm() * rows.time_s[row]).sin_cos();
-            let up = along + lowered * (across * c - axis.cross(&across) * s);
-            let expected = 1.6 * 9.81 * up - Vector3::new(0.0, 0.0, 18.5);
-            let found = Vector3::from_fn(|axis, _| rows.residual[SECOND + axis][row]);
-            assert!((found - expected).norm() < 1e-5, "row {row}: {found}, not {expected}");
-        }
-        for (found, expected) in rows.torque_rms.iter().zip([0.009_77, 0.023_09, 0.003_39]) {
-            assert!((found - expected).abs() < 1e-9, "{found}, not {expected}");
-        }
-    }
-}
+#[path = "rows_tests.rs"]
+pub(super) mod tests;

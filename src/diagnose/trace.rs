@@ -2,6 +2,7 @@
 //! motion.
 
 use super::rotors::{RotorMotion, Thrusts, felt};
+use super::timing::{command_period_s, inertial_late};
 use crate::physics::{ActuationLatency, Airframe, MAX_ROTORS, State};
 use crate::recording::Quantity;
 use crate::signals::{Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride};
@@ -30,6 +31,8 @@ pub struct Trace {
     pub states: Vec<State>,
     /// parts of the state that are measured
     pub known: Known,
+    /// commands and body rates are fast enough to compare torques; otherwise torque channels are zero
+    pub torques: bool,
     /// V
     pub voltage_v: Option<Vec<f64>>,
     /// thrusts are computed from measured rotor speeds: effects between command and speed are not visible
@@ -114,36 +117,7 @@ impl Trace {
             return Err(TraceError::NoForce);
         }
         let kernel = WeakKernel::new(half_width_s, grid.step_s);
-        let stride = stride(grid.step_s);
-        let (mut centers, mut runs) = (Vec::new(), Vec::new());
-        for run in Grid::runs(&signals.usable, 2 * kernel.half_count + 1) {
-            let first = centers.len();
-            centers.extend((run.start + kernel.half_count..run.end - kernel.half_count).step_by(stride));
-            runs.push(first..centers.len());
-        }
-        let zero = vec![Vector3::zeros(); grid.count];
-        let position = signals.position.as_ref().unwrap_or(&zero);
-        let velocity = signals.velocity.as_ref().unwrap_or(&zero);
-        let level = vec![UnitQuaternion::identity(); grid.count];
-        let attitude = signals.attitude.as_ref().unwrap_or(&level);
-        let states = (0..grid.count)
-            .map(|i| State {
-                position_m: position[i],
-                velocity_m_s: velocity[i],
-                attitude: attitude[i],
-                rates_rad_s: rates[i],
-            })
-            .collect();
-        let rotors = vehicle.rotors.len();
-        let commanded_n = signals
-            .rotor_thrust_n
-            .chunks_exact(rotors)
-            .map(|thrusts| {
-                let mut all = [0.0; MAX_ROTORS];
-                all[..rotors].copy_from_slice(thrusts);
-                all
-            })
-            .collect();
+        let (centers, runs) = centers_and_runs(signals, &kernel);
         let (inertial_late_s, inertial_unsure_s) = inertial_late(signals);
         let mut trace = Self {
             grid,
@@ -151,16 +125,17 @@ impl Trace {
             kernel,
             centers,
             runs,
-            states,
+            states: states(signals, rates),
             known,
+            torques: signals.quality.torques,
             voltage_v: signals.battery_voltage_v.clone(),
             measured_speeds: signals.quality.thrust_source == ThrustSource::MeasuredSpeed,
-            gyro_noise_rad_s: gyro_noise_rad_s(rates),
+            gyro_noise_rad_s: gyro_noise_rad_s(rates, signals.samples_apart(Quantity::AngularRate)),
             command_period_s: command_period_s(signals),
             inertial_late_s,
             inertial_unsure_s,
             specific_force_m_s2: measured.cloned(),
-            commanded_n,
+            commanded_n: commanded_n(signals, vehicle.rotors.len()),
             jitter: signals.jitter_wrench.clone(),
             smooth_rate: Vec::new(),
             smooth_turning: Vec::new(),
@@ -357,35 +332,46 @@ impl Trace {
     }
 }
 
-fn gyro_noise_rad_s(rates: &[Vector3<f64>]) -> f64 {
-    (0..3)
-        .map(|axis| white_level_of(&rates.iter().map(|rate| rate[axis]).collect::<Vec<_>>()))
-        .fold(0.0, f64::max)
-}
-
-/// Delay of the inertial unit and its uncertainty, s: the common part if attitude and velocity are both early. If only
-/// the attitude is early, its own time stamps may be the cause.
-fn inertial_late(signals: &Signals) -> (f64, f64) {
-    let attitude_s = early_s(signals, Quantity::Attitude);
-    match attitude_s.zip(early_s(signals, Quantity::Velocity)) {
-        Some((attitude_s, velocity_s)) if attitude_s > 0.0 && velocity_s > 0.0 => {
-            (attitude_s.min(velocity_s), (attitude_s - velocity_s).abs())
-        }
-        _ => (0.0, attitude_s.unwrap_or(0.0).max(0.0)),
+/// The instants at which kernels are centred, and the rows of each run of usable instants.
+fn centers_and_runs(signals: &Signals, kernel: &WeakKernel) -> (Vec<usize>, Vec<Range<usize>>) {
+    let (half, stride) = (kernel.half_count, stride(signals.grid.step_s));
+    let (mut centers, mut runs) = (Vec::new(), Vec::new());
+    for run in Grid::runs(&signals.usable, 2 * half + 1) {
+        let first = centers.len();
+        centers.extend((run.start + half..run.end - half).step_by(stride));
+        runs.push(first..centers.len());
     }
+    (centers, runs)
 }
 
-/// Advance of a quantity's time stamps relative to the inertial unit's, s, negative if they are late; `None` if the
-/// offset was not corrected. An early quantity means that the gyroscopes are late.
-fn early_s(signals: &Signals, of: Quantity) -> Option<f64> {
-    let offset = signals.quality.offsets.iter().find(|(quantity, _)| *quantity == of);
-    offset.filter(|(_, offset)| offset.repaired).map(|(_, offset)| -offset.late_s)
+/// States at each grid instant; what is not known is zero or level.
+fn states(signals: &Signals, rates: &[Vector3<f64>]) -> Vec<State> {
+    let of = |series: &Option<Vec<Vector3<f64>>>, i: usize| {
+        series.as_ref().map_or_else(Vector3::zeros, |series| series[i])
+    };
+    (0..signals.grid.count)
+        .map(|i| State {
+            position_m: of(&signals.position, i),
+            velocity_m_s: of(&signals.velocity, i),
+            attitude: signals.attitude.as_ref().map_or_else(UnitQuaternion::identity, |attitude| attitude[i]),
+            rates_rad_s: rates[i],
+        })
+        .collect()
 }
 
-/// Sampling period of the stream from which the thrusts are computed, s.
-fn command_period_s(signals: &Signals) -> f64 {
-    let of_thrust = |quantity: Quantity| matches!(quantity, Quantity::ActuatorCommand | Quantity::RotorSpeed);
-    let rate_hz =
-        signals.quality.sources.iter().find(|(quantity, ..)| of_thrust(*quantity)).map(|(.., rate)| *rate);
-    rate_hz.filter(|rate_hz| *rate_hz > 0.0).map_or(signals.grid.step_s, |rate_hz| 1.0 / rate_hz)
+/// Thrust of each rotor by the commands, N.
+fn commanded_n(signals: &Signals, rotors: usize) -> Vec<Thrusts> {
+    let padded = |thrusts: &[f64]| {
+        let mut all = [0.0; MAX_ROTORS];
+        all[..rotors].copy_from_slice(thrusts);
+        all
+    };
+    signals.rotor_thrust_n.chunks_exact(rotors).map(padded).collect()
+}
+
+fn gyro_noise_rad_s(rates: &[Vector3<f64>], samples_apart: usize) -> f64 {
+    let sampled = || rates.iter().step_by(samples_apart);
+    (0..3)
+        .map(|axis| white_level_of(&sampled().map(|rate| rate[axis]).collect::<Vec<_>>()))
+        .fold(0.0, f64::max)
 }

@@ -2,6 +2,8 @@
 
 mod hover;
 mod rules;
+mod stated;
 mod vehicle;
 
+pub use stated::parameters_of;
 pub use vehicle::{Draft, DraftError, Given, draft};

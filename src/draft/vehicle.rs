@@ -6,7 +6,7 @@ use super::hover::full_thrust;
 use super::rules::{self, Rule};
 use crate::autopilot::{Frame, Layout, LayoutError, LayoutUnit, Outputs, Stack};
 use crate::recording::Recording;
-use crate::signals::holds_fractions;
+use crate::signals::{bus_range, holds_fractions};
 use crate::units::GRAVITY_M_S2;
 use crate::vehicle::{
     Actuator, Anchor, Guess, Guessed, Limits, Propulsion, PwmRange, RigidBody, Rotor, Spin, ThrustLaw,
@@ -92,10 +92,7 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
     given.size_m.map_or(Ok(()), |size_m| within("size", "m", SIZES_M, size_m))?;
     let stack = recording.autopilot.stack().ok_or(DraftError::Autopilot)?;
     let parameter = |name: &str| recording.parameters.get(name).copied();
-    let layout = match given.frame {
-        Some(frame) => Layout::of(frame, "the given frame"),
-        None => stack.geometry.layout(&parameter, motors(stack, &parameter))?,
-    };
+    let layout = layout(stack, given, &parameter)?;
     let mut noted = Noted::default();
     let arm_m = noted.arm(&layout, given);
     let rotors = rotors(&layout, arm_m / layout.radius());
@@ -128,13 +125,16 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
     Ok(Draft { vehicle, origins: noted.origins })
 }
 
-/// How many outputs drive motors; `None` where the parameters do not say.
-fn motors(stack: &Stack, parameter: &dyn Fn(&str) -> Option<f64>) -> Option<usize> {
-    let function = &stack.outputs.function;
-    let drives = |channel: &usize| {
-        parameter(&function.name(*channel)).is_some_and(|value| stack.outputs.is_motor(value))
-    };
-    Some((1..=16).filter(drives).count()).filter(|count| *count > 0)
+/// Where the rotors are, by what is given or by the parameters.
+pub(super) fn layout(
+    stack: &Stack,
+    given: &Given,
+    parameter: &dyn Fn(&str) -> Option<f64>,
+) -> Result<Layout, LayoutError> {
+    match given.frame {
+        Some(frame) => Ok(Layout::of(frame, "the given frame")),
+        None => stack.geometry.layout(parameter, stack.outputs.motors(parameter)),
+    }
 }
 
 fn rotors(layout: &Layout, scale: f64) -> Vec<Rotor> {
@@ -214,10 +214,22 @@ impl Noted {
             return (Actuator::Thrust, 0.0);
         }
         let range = outputs.pulses.ends_us(parameter).filter(|(low_us, high_us)| high_us > low_us);
-        // parameters are in single precision
-        let (min_us, max_us) = range.map_or(PULSES_US, |(min_us, max_us)| (rounded(min_us), rounded(max_us)));
-        let from = if range.is_some() { "by its parameters" } else { "usual, stated by no parameter" };
-        self.origins.push(format!("pulses from {min_us} to {max_us} us, {from}"));
+        let (min_us, max_us) = match (bus_range(recording), range) {
+            (Some(PwmRange { min_us, max_us }), _) => {
+                self.origins
+                    .push(format!("outputs of a bus, from {min_us} to {max_us}, as the log holds them"));
+                (min_us, max_us)
+            }
+            (None, range) => {
+                // parameters are in single precision
+                let (min_us, max_us) =
+                    range.map_or(PULSES_US, |(min_us, max_us)| (rounded(min_us), rounded(max_us)));
+                let from =
+                    if range.is_some() { "by its parameters" } else { "usual, stated by no parameter" };
+                self.origins.push(format!("pulses from {min_us} to {max_us} us, {from}"));
+                (min_us, max_us)
+            }
+        };
         let linear = outputs.linear_without_expo.then_some(0.0);
         let expo = match stated.or(linear) {
             Some(expo) => {
@@ -350,7 +362,7 @@ mod tests {
         // u = 0.5 and a little more in turn, on the ground before
         let pulse = |index: usize| if index < 100 { 1000.0 } else { 1550.0 + 2.0 * (index % 2) as f64 };
         let commands = (0..400).flat_map(|index| [pulse(index); 4]).collect();
-        let felt = (0..400).flat_map(|_| [0.0, 0.0, 9.6]).collect();
+        let felt = (0..400).flat_map(|index| [0.0, 0.0, 9.6 + 0.01 * f64::from(index % 2)]).collect();
         let mut recording = copter();
         recording.streams = [
             (

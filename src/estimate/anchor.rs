@@ -66,7 +66,7 @@ pub fn rescaled(estimated: &Estimated, weighed_kg: f64) -> Estimated {
         jacobian[(row, 0)] -= theta[row] / estimated.theta[0];
     }
     let covariance: ThetaCovariance = jacobian * estimated.covariance * jacobian.transpose();
-    Estimated { theta, covariance, explained: estimated.explained }
+    Estimated { theta, covariance, ..estimated.clone() }
 }
 
 /// Factor of the rotors' thrust over the stated one, with the vehicle's weighed mass.
@@ -125,7 +125,7 @@ mod tests {
         let theta = SVector::from([2.0, 0.02, 0.0, 0.0, 0.03, 0.0, 0.05]);
         let mut covariance = ThetaCovariance::zeros();
         covariance[(0, 0)] = 0.02_f64.powi(2); // 1 % of the mass
-        let out = rescaled(&Estimated { theta, covariance, explained: None }, 2.2);
+        let out = rescaled(&Estimated { theta, covariance, explained: None, by_wider_window: None }, 2.2);
         assert!((out.theta[0] - 2.2).abs() < 1e-12);
         assert!((out.theta[1] - 0.022).abs() < 1e-12);
         assert!(out.covariance[(0, 0)].abs() < 1e-15); // weighed: no error left

@@ -4,16 +4,18 @@ use super::compensate::{as_stated, compensation, take_out};
 use super::error::EstimateError;
 use super::method::Method;
 use super::nominal::Nominal;
+use super::paper_runs::PaperRuns;
 use super::plausible::{disagreeing, implausible};
 use super::recommend::{Recommendation, recommend};
+use super::recursive::History;
 use super::result::{Estimated, MethodResult};
 use super::rotor_check::{WeakRotor, weak_rotor, with_weak_rotor};
-use super::theta::{Theta, ThetaCovariance};
+use super::theta::Theta;
 use super::weak::{Latency, WeakEstimate, WeakMethod, latency, solve_weak};
-use super::{GradientStep, History, gradient_descent, least_squares};
+use super::window::by_wider_window;
 use crate::note::{About, Note};
 use crate::physics::ActuationLatency;
-use crate::regression::{SampledModel, WeakMotion, WeakRows, ZeroPhase, paper_models, weak_rows};
+use crate::regression::{WeakMotion, WeakRows, ZeroPhase, weak_rows};
 use crate::signals::{Butterworth, Signals, ThrustSource, WeakKernel, WindowedFir, highest_harmonic_hz};
 use crate::vehicle::Vehicle;
 
@@ -161,15 +163,17 @@ fn identify_evenly(
         notes.push(Note::remark(About::Estimate, text));
     }
 
-    let mut methods = paper.results();
-    methods.push(MethodResult::new(Method::Weak, &Estimated::of(&plain), &nominal));
-    if let Some(robust) = &robust {
-        methods.push(MethodResult::new(Method::WeakRobust, &Estimated::of(robust), &nominal));
-    }
-    if let Some(iv) = &by_instruments {
-        methods.push(MethodResult::new(Method::WeakIv, &Estimated::of(iv), &nominal));
-    }
-    let best = recommend(&plain, robust.as_ref(), by_instruments.as_ref(), &nominal);
+    let wider = weak.by_wider_window(&plain, &nominal.theta, settings);
+    let mut methods = paper.results(&Estimated::of(&plain).with_wider_window(wider));
+    let weak_forms = [
+        (Method::Weak, Some(&plain)),
+        (Method::WeakRobust, robust.as_ref()),
+        (Method::WeakIv, by_instruments.as_ref()),
+    ];
+    methods.extend(weak_forms.into_iter().filter_map(|(method, found)| {
+        Some(MethodResult::new(method, &Estimated::of(found?).with_wider_window(wider), &nominal))
+    }));
+    let best = recommend((&plain, wider), robust.as_ref(), by_instruments.as_ref(), &nominal);
     notes.extend(implausible(&best.result, &nominal.theta));
     notes.extend(disagreeing(&weak.rows, &nominal.theta));
     if flights.iter().any(|signals| signals.quality.thrust_source == ThrustSource::Command) {
@@ -194,6 +198,17 @@ fn identify_evenly(
         accelerometer_bias: weak.accelerometer_bias,
         notes,
     })
+}
+
+/// Ixx, Iyy, Izz of the rigid body by a window of twice the width, as shares of those by the usual one; NaN where either has
+/// none. Far from 1 where control answers the motion that something else causes.
+#[must_use]
+pub fn inertia_by_wider_window(flights: &[Signals], vehicle: &Vehicle) -> [f64; 3] {
+    let (nominal, settings) = (Nominal::of(vehicle), IdentifySettings::default());
+    let mut weak = WeakFlights::from(flights, vehicle, &settings);
+    weak.compensate(&nominal.theta, vehicle);
+    let narrow = solve_weak(&weak.rows, &nominal.theta, WeakMethod::LeastSquares);
+    narrow.map_or([f64::NAN; 3], |narrow| weak.by_wider_window(&narrow, &nominal.theta, &settings))
 }
 
 /// Error that the standard errors do not include if thrust is computed from commands.
@@ -268,6 +283,17 @@ impl WeakFlights {
         (Some(found), compensation)
     }
 
+    /// Moments of inertia by a window of twice the width, as shares of those of `narrow`.
+    fn by_wider_window(
+        &self,
+        narrow: &WeakEstimate,
+        nominal: &Theta,
+        settings: &IdentifySettings,
+    ) -> [f64; 3] {
+        let window = (settings.weak_half_width_s, self.gravity_m_s2);
+        by_wider_window(&self.signals, (narrow, nominal), window)
+    }
+
     /// Rows of the commanded trajectory; `None`, with a note, if a flight has none.
     fn instruments(&self, notes: &mut Vec<Note>) -> Option<Vec<WeakRows>> {
         let mut out = Vec::new();
@@ -321,60 +347,4 @@ fn instrument_f(plain: &WeakEstimate, iv: &WeakEstimate) -> f64 {
             share / (1.0 - share) * independent / 10.0
         })
         .fold(f64::INFINITY, f64::min)
-}
-
-/// The paper's four methods.
-struct PaperRuns {
-    standard: SampledModel,
-    runs: Vec<(Method, super::PaperEstimate)>,
-    nominal: Nominal,
-}
-
-impl PaperRuns {
-    fn from(flights: &[Signals], vehicle: &Vehicle, filter: &ZeroPhase, sigma: f64) -> Self {
-        let nominal = Nominal::of(vehicle);
-        let (mut standard, mut filtered) = (SampledModel::default(), SampledModel::default());
-        for signals in flights {
-            if let Some((one, other)) = paper_models(signals, vehicle.gravity_m_s2, filter) {
-                standard.extend(&one);
-                filtered.extend(&other);
-            }
-        }
-        let mut runs = Vec::new();
-        for (model, by_ls, by_gd) in
-            [(&standard, Method::Ls, Method::Gd), (&filtered, Method::Fmls, Method::Fmgd)]
-        {
-            if model.time_s.is_empty() {
-                continue;
-            }
-            runs.extend(least_squares(model).map(|estimate| (by_ls, estimate)));
-            runs.push((by_gd, gradient_descent(model, &nominal.theta, sigma, GradientStep::Implicit)));
-        }
-        runs.sort_by_key(|(method, _)| *method);
-        Self { standard, runs, nominal }
-    }
-
-    fn results(&self) -> Vec<MethodResult> {
-        self.runs
-            .iter()
-            .map(|(method, run)| {
-                let estimated = Estimated { theta: run.theta, covariance: run.covariance, explained: None };
-                MethodResult::new(*method, &estimated, &self.nominal)
-            })
-            .collect()
-    }
-
-    fn histories(&self) -> Vec<(Method, History)> {
-        self.runs.iter().map(|(method, run)| (*method, run.history.clone())).collect()
-    }
-
-    /// cond(W) of (20) as flown.
-    fn condition_number(&self) -> Option<f64> {
-        let mut gram = ThetaCovariance::zeros();
-        for gamma in &self.standard.gamma {
-            gram += gamma.tr_mul(gamma);
-        }
-        let values = gram.symmetric_eigenvalues();
-        (values.min() > 0.0).then(|| (values.max() / values.min()).sqrt())
-    }
 }

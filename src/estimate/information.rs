@@ -78,6 +78,7 @@ impl WeakInformation {
             theta: Theta::from_element(f64::NAN),
             covariance: ThetaCovariance::from_element(f64::NAN),
             explained: self.explained,
+            by_wider_window: None,
         };
         let Some(inverse) = inverse else { return estimated };
         let of_theta = used.iter().enumerate().filter(|(_, parameter)| **parameter < THETA);

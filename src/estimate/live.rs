@@ -72,7 +72,8 @@ impl RecursiveEstimator {
         self.scores.clear();
         self.scores.extend(self.blocks.iter().map(|block| block.right - block.information * theta));
         let meat = newey_west(&self.scores, self.lags);
-        Some(Estimated { theta, covariance: inverse * meat * inverse.transpose(), explained: None })
+        let covariance = inverse * meat * inverse.transpose();
+        Some(Estimated { theta, covariance, explained: None, by_wider_window: None })
     }
 
     fn put_neighbours_together(&mut self) {

@@ -63,9 +63,9 @@ pub fn nearest_physical(theta: &Theta, covariance: &ThetaCovariance, nominal: &T
 }
 
 /// ln m, ln L11, ln L22, ln L33, L21, L31, L32; the off-diagonals in units of the root of the trace.
-pub(crate) type LogCholesky = SVector<f64, THETA>;
+type LogCholesky = SVector<f64, THETA>;
 
-pub(crate) fn log_cholesky(theta: &Theta, floor: f64) -> Option<LogCholesky> {
+fn log_cholesky(theta: &Theta, floor: f64) -> Option<LogCholesky> {
     let l = (second_moments(&inertia_of(theta)) - Matrix3::identity() * floor).cholesky()?.l();
     (theta[0] > 0.0).then(|| {
         SVector::from([
@@ -80,7 +80,7 @@ pub(crate) fn log_cholesky(theta: &Theta, floor: f64) -> Option<LogCholesky> {
     })
 }
 
-pub(crate) fn unpack(q: &LogCholesky, floor: f64) -> Theta {
+fn unpack(q: &LogCholesky, floor: f64) -> Theta {
     let diagonal = [q[1].exp(), q[2].exp(), q[3].exp()];
     let l = Matrix3::new(
         diagonal[0],

@@ -16,25 +16,38 @@ const FLIGHTS_SIGMA: f64 = 6.0;
 /// Relative difference within which they agree. Chosen; not measured.
 const FLIGHTS_SHARE: f64 = 0.02;
 
-/// Notes on estimates far from the vehicle file.
+/// A parameter that is far from what the vehicle file states.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contradiction {
+    /// as in files
+    pub name: &'static str,
+    /// estimate over stated value
+    pub factor: f64,
+}
+
+/// Estimates that are far from what the vehicle file states: a mass by a factor of 1.5, a moment of inertia by 3.
 #[must_use]
-pub fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<Note> {
+pub fn contradictions(result: &MethodResult, nominal: &Theta) -> Vec<Contradiction> {
     [(0, MASS_FACTOR), (1, INERTIA_FACTOR), (4, INERTIA_FACTOR), (6, INERTIA_FACTOR)]
         .into_iter()
         .filter_map(|(index, most)| {
             let Finding::Determined { value, .. } = result.parameters[index].finding else { return None };
             let factor = value / nominal[index];
-            (factor > most || factor < 1.0 / most).then(|| {
-                let text = format!(
-                    "{} is {factor:.2} times what the vehicle file states: is it another vehicle's log, is a unit \
-                     wrong, or are thrust and torque coefficients wrong by this factor? A weighed mass with anchor = \
-                     \"mass\" sets the scale",
-                    NAMES[index]
-                );
-                Note::warning(About::Estimate, text)
-            })
+            (factor > most || factor < 1.0 / most).then_some(Contradiction { name: NAMES[index], factor })
         })
         .collect()
+}
+
+/// Notes on estimates far from the vehicle file.
+pub(super) fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<Note> {
+    let warning = |Contradiction { name, factor }| {
+        let text = format!(
+            "{name} is {factor:.2} times what the vehicle file states: is it another vehicle's log, is a unit wrong, or \
+             are thrust and torque coefficients wrong by this factor? A weighed mass with anchor = \"mass\" sets the scale"
+        );
+        Note::warning(About::Estimate, text)
+    };
+    contradictions(result, nominal).into_iter().map(warning).collect()
 }
 
 /// Notes on flights with contradicting masses.

@@ -28,16 +28,16 @@ pub struct Recommendation {
     pub made_physical: bool,
 }
 
-/// Chooses between the weak form's variants.
+/// Chooses between the weak form's variants. `wider`: moments of inertia by a window of twice the width, as shares.
 #[must_use]
 pub fn recommend(
-    plain: &WeakEstimate,
+    (plain, wider): (&WeakEstimate, [f64; 3]),
     robust: Option<&WeakEstimate>,
     instruments: Option<&WeakEstimate>,
     nominal: &Nominal,
 ) -> Recommendation {
     let (method, chosen, why) = choose(plain, robust, instruments);
-    let mut estimated = Estimated::of(chosen);
+    let mut estimated = Estimated::of(chosen).with_wider_window(wider);
     // an inertia that is not determined needs no repair
     let as_estimated = MethodResult::new(method, &estimated, nominal);
     let determined = |i: usize| matches!(as_estimated.parameters[i].finding, Finding::Determined { .. });

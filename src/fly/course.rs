@@ -251,12 +251,6 @@ impl PathClock {
             *self = Self { from: now, along_s, rate, runs };
         }
     }
-
-    /// Whether it runs or starts.
-    #[must_use]
-    pub fn is_running(&self) -> bool {
-        self.runs
-    }
 }
 
 /// A path with its offset and its clock.

@@ -47,6 +47,7 @@ pub use health::{BatteryLevel, EstimatorReport, SystemReport};
 pub use law::{FollowLaw, Motion};
 pub use lift::{Lift, Weighed};
 pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
+pub use roster::{Choice, Listed, Roster};
 #[cfg(unix)]
 pub use runner::HangUp;
 pub use runner::{

@@ -1,7 +1,8 @@
 //! When a vehicle that nothing is known of was in the air.
 
+use crate::autopilot::Autopilot;
 use crate::recording::{Quantity, Recording, Stream};
-use crate::signals::{best, in_air};
+use crate::signals::{Said, best};
 
 /// Command from which a motor does more than idle: autopilots let motors idle at up to this value. Chosen; not
 /// measured.
@@ -12,6 +13,10 @@ const FLYING_SHARE: f64 = 0.2;
 const SMOOTHING_S: f64 = 0.3;
 /// Shortest time in the air that counts, s. Chosen; not measured.
 const SHORTEST_S: f64 = 2.0;
+/// A vehicle that turns or moves faster than this does not stand, rad/s and m/s. Chosen; not measured.
+const MOVES: f64 = 0.3;
+/// So many samples of it are no knock. Chosen; not measured.
+const LEAST_MOVING: usize = 5;
 
 /// Motor outputs as fractions of full scale: the channels that move, pulse widths from 1000 to 2000 us.
 pub(super) fn normalized_commands(recording: &Recording) -> Option<Stream> {
@@ -56,39 +61,106 @@ fn effort(recording: &Recording, commands: Option<&Stream>) -> Option<(Stream, f
     Some((Stream { time_s: wrench.time_s.clone(), width: 1, values }, 0.0, "the recorded thrust"))
 }
 
-/// Spans in the air, s, and what tells them. `effort_max` is the largest effort of the windows before.
-pub(super) fn airborne(
-    recording: &Recording,
-    commands: Option<&Stream>,
-    effort_max: &mut f64,
-) -> (Vec<(f64, f64)>, &'static str) {
-    let of = |quantity| {
-        recording
-            .streams
-            .iter()
-            .find(|(key, stream)| key.quantity == quantity && !stream.is_empty())
-            .map(|(_, stream)| stream)
+/// When a vehicle was in the air.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Airborne {
+    /// spans off the ground, s
+    pub flown_s: Vec<(f64, f64)>,
+    /// the same without taking off and landing: what identification may use
+    pub free_s: Vec<(f64, f64)>,
+    /// what tells them
+    pub from: &'static str,
+}
+
+/// What the windows before have shown.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Before {
+    /// largest effort of the rotors
+    effort_max: f64,
+    /// the window before ended in the air
+    in_air: bool,
+}
+
+/// When the vehicle of a recording was in the air: its rotors carry it, and neither does the autopilot say that it is disarmed
+/// or has landed nor, where it does not tell of landing, does the vehicle stand still.
+pub(super) fn airborne(recording: &Recording, commands: Option<&Stream>, before: &mut Before) -> Airborne {
+    let said = Said::of(recording);
+    let found = match (effort(recording, commands), said.words()) {
+        (Some((effort, idle, from)), _) => {
+            let flown = smoothed(&effort);
+            before.effort_max = flown.iter().copied().fold(before.effort_max, f64::max);
+            let needed = (FLYING_SHARE * before.effort_max).max(idle);
+            let from = if said.tells_landed() { "landed state and actuators" } else { from };
+            Airborne::when(&effort.time_s, &said, from, |i| flown[i] > needed)
+        }
+        (None, Some(words)) => {
+            let from = if said.tells_landed() { "landed state" } else { "armed and moving" };
+            Airborne::when(&words.time_s, &said, from, |_| true)
+        }
+        (None, None) => {
+            let streams = || recording.streams.values();
+            let first = streams().filter_map(|s| s.time_s.first()).copied().fold(f64::INFINITY, f64::min);
+            let last = streams().filter_map(|s| s.time_s.last()).copied().fold(f64::NEG_INFINITY, f64::max);
+            let from = if recording.autopilot == Autopilot::Unknown {
+                "nothing: all of it is taken as flight"
+            } else {
+                "moving"
+            };
+            Airborne::when(&[first, last], &said, from, |_| true)
+        }
     };
-    let landed = of(Quantity::LandedState);
-    let said = |t_s: f64| landed.is_none_or(|landed| in_air(landed, t_s));
-    if let Some((effort, idle, from)) = effort(recording, commands) {
-        let flown = smoothed(&effort);
-        *effort_max = flown.iter().copied().fold(*effort_max, f64::max);
-        let needed = (FLYING_SHARE * *effort_max).max(idle);
-        let flies = |i: usize| flown[i] > needed && said(effort.time_s[i]);
-        let from = if landed.is_some() { "landed state and actuators" } else { from };
-        return (spans(&effort.time_s, flies), from);
-    }
-    if let Some(landed) = landed {
-        return (spans(&landed.time_s, |i| said(landed.time_s[i])), "landed state");
-    }
-    if let Some(armed) = of(Quantity::Armed) {
-        return (spans(&armed.time_s, |i| armed.values[i] > 0.5), "armed");
-    }
+    // a table's maker says that it is a flight, and an autopilot that it has not landed
+    let found = if said.tells_landed() || recording.autopilot == Autopilot::Unknown {
+        found
+    } else {
+        found.moving(recording, before.in_air)
+    };
+    let end_s = found.flown_s.last().map(|(_, end_s)| *end_s);
     let streams = || recording.streams.values();
-    let first = streams().filter_map(|s| s.time_s.first()).copied().fold(f64::INFINITY, f64::min);
-    let last = streams().filter_map(|s| s.time_s.last()).copied().fold(f64::NEG_INFINITY, f64::max);
-    (vec![(first, last)], "nothing: all of it is taken as flight")
+    let last_s = streams().filter_map(|s| s.time_s.last()).copied().fold(f64::NEG_INFINITY, f64::max);
+    before.in_air = end_s.is_some_and(|end_s| last_s - end_s < SHORTEST_S);
+    found
+}
+
+impl Airborne {
+    fn when(time_s: &[f64], said: &Said<'_>, from: &'static str, carries: impl Fn(usize) -> bool) -> Self {
+        Self {
+            flown_s: spans(time_s, |i| carries(i) && said.may_be_off_ground(time_s[i])),
+            free_s: spans(time_s, |i| carries(i) && said.may_fly(time_s[i])),
+            from,
+        }
+    }
+
+    /// Only spans during which the vehicle moved. One that began in the window before has moved there.
+    fn moving(mut self, recording: &Recording, began_before: bool) -> Self {
+        let moved = |quantity| {
+            best(recording, quantity, |stream| stream.width == 3).map(|(_, stream)| moving_times(stream))
+        };
+        let known: Vec<Vec<f64>> =
+            [Quantity::AngularRate, Quantity::Velocity].into_iter().filter_map(moved).collect();
+        if known.is_empty() {
+            return self;
+        }
+        let first_s = self.flown_s.first().map(|(start_s, _)| *start_s);
+        let is_flight = |(start_s, end_s): &(f64, f64)| {
+            let inside = |times_s: &Vec<f64>| {
+                times_s.iter().filter(|time_s| (*start_s..=*end_s).contains(time_s)).count() >= LEAST_MOVING
+            };
+            known.iter().any(inside) || began_before && first_s == Some(*start_s)
+        };
+        self.flown_s.retain(is_flight);
+        let flown_s = &self.flown_s;
+        self.free_s.retain(|(start_s, end_s)| {
+            flown_s.iter().any(|(from_s, to_s)| from_s <= start_s && end_s <= to_s)
+        });
+        self
+    }
+}
+
+/// When a rate or velocity is more than that of a vehicle that stands.
+fn moving_times(stream: &Stream) -> Vec<f64> {
+    let size = |index: usize| stream.sample(index).iter().map(|value| value * value).sum::<f64>().sqrt();
+    (0..stream.len()).filter(|index| size(*index) > MOVES).map(|index| stream.time_s[index]).collect()
 }
 
 fn smoothed(effort: &Stream) -> Vec<f64> {

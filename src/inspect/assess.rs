@@ -1,14 +1,14 @@
 //! Looks at one window of flight after the other and keeps numbers only.
 
-use super::airborne::{airborne, normalized_commands};
+use super::airborne::{Before, airborne, normalized_commands};
 use super::excitation::ExcitationTally;
+use super::foresee::information;
 use super::inspection::{Excitation, FlightSummary, OffsetSummary, Segment};
 use super::motion::Motion;
-use crate::estimate::{Estimated, WeakInformation, WeakMethod, solve_weak, theta_of};
+use crate::estimate::{Estimated, WeakInformation};
 use crate::note::Note;
 use crate::recording::{Quantity, Recording};
-use crate::regression::{WeakMotion, weak_rows};
-use crate::signals::{ConditionSettings, Quality, Signals, SignalsError, WeakKernel, condition};
+use crate::signals::{ConditionSettings, Quality, Signals, SignalsError, Usable, condition};
 use crate::vehicle::Vehicle;
 
 /// Segments kept; a log with more is counted.
@@ -22,7 +22,7 @@ pub(super) struct Assessor<'a> {
     vehicle: Option<&'a Vehicle>,
     flight: FlightSummary,
     excitation: ExcitationTally,
-    effort_max: f64,
+    before: Before,
     flown: bool,
     /// the vehicle's clock restarted since the last segment
     restarted: bool,
@@ -30,6 +30,8 @@ pub(super) struct Assessor<'a> {
     offsets: Vec<OffsetSum>,
     notes: Vec<Note>,
     refusal: Option<SignalsError>,
+    /// the window with the most seconds that can be used, and these
+    liveliest: Option<(f64, Recording)>,
 }
 
 /// Offsets of one quantity weighted by their precision.
@@ -52,6 +54,8 @@ pub(super) struct Assessment {
     pub notes: Vec<Note>,
     /// why the vehicle file and the log do not go together, where no window could be conditioned
     pub refusal: Option<SignalsError>,
+    /// the window with the most seconds that can be used, and these
+    pub liveliest: Option<(f64, Recording)>,
 }
 
 /// Refusals of one window that say nothing of the others, nor of the vehicle file.
@@ -69,20 +73,17 @@ impl<'a> Assessor<'a> {
     pub(super) fn window(&mut self, recording: &Recording) {
         self.restarted |= !recording.clock_resets_s.is_empty();
         let commands = normalized_commands(recording);
-        let (spans, from) = airborne(recording, commands.as_ref(), &mut self.effort_max);
-        self.flight.airborne_from = from;
+        let airborne = airborne(recording, commands.as_ref(), &mut self.before);
+        self.flight.airborne_from = airborne.from;
         // only the first flight begins with the take-off's transient
         let transient_s = self.flown.then_some(0.0);
         let settings = ConditionSettings { transient_s, ..ConditionSettings::default() };
         let conditioned = self.vehicle.map(|vehicle| (condition(recording, vehicle, &settings), vehicle));
-        let spans = match conditioned {
+        let motion = match conditioned {
             Some((Ok(signals), vehicle)) => {
                 self.inform(&signals, vehicle);
-                self.flight.add(&signals.quality.usable);
-                let spans = signals.quality.airborne_s.clone();
-                self.segments(&spans, &signals.usable, |i| signals.grid.time_s(i));
-                self.excitation.add(&Motion::from(signals));
-                spans
+                let used = signals.quality.usable;
+                Some((Motion::from(signals), used))
             }
             refused => {
                 if let Some((Err(refusal), _)) = refused
@@ -90,31 +91,28 @@ impl<'a> Assessor<'a> {
                 {
                     self.refusal = Some(refusal);
                 }
-                match Motion::of_recording(recording, &spans, transient_s) {
-                    Some((motion, used)) => {
-                        self.flight.add(&used);
-                        self.segments(&spans, &motion.usable, |i| motion.grid.time_s(i));
-                        self.excitation.add(&motion);
-                    }
-                    None => {
-                        self.flight.airborne_s += spans.iter().map(|(start, end)| end - start).sum::<f64>();
-                        self.segments(&spans, &[], |_| f64::NAN);
-                    }
-                }
-                spans
+                Motion::of_recording(recording, &airborne.free_s, transient_s)
             }
         };
-        self.flown |= !spans.is_empty();
+        let usable_before_s = self.flight.usable_s;
+        match motion {
+            Some((motion, used)) => {
+                self.flight.add(&used);
+                self.segments(&airborne.flown_s, &motion.usable, |i| motion.grid.time_s(i));
+                self.excitation.add(&motion);
+            }
+            None => self.segments(&airborne.flown_s, &[], |_| f64::NAN),
+        }
+        let usable_s = self.flight.usable_s - usable_before_s;
+        if usable_s > self.liveliest.as_ref().map_or(0.0, |(most_s, _)| *most_s) {
+            self.liveliest = Some((usable_s, recording.clone()));
+        }
+        self.flown |= !airborne.flown_s.is_empty();
     }
 
     /// What identification would learn from the window: its own weak form, solved.
     fn inform(&mut self, signals: &Signals, vehicle: &Vehicle) {
-        let kernel = WeakKernel::new(ConditionSettings::default().weak_half_width_s, signals.grid.step_s);
-        let motion = WeakMotion::measured(signals, &kernel, vehicle.gravity_m_s2);
-        let rows = weak_rows(signals, &motion, &kernel);
-        let nominal = theta_of(&vehicle.body);
-        if let Some(estimate) = solve_weak(&[rows], &nominal, WeakMethod::LeastSquares) {
-            let information = WeakInformation::of(&estimate);
+        if let Some(information) = information(signals, vehicle) {
             match &mut self.information {
                 Some(all) => all.add(&information),
                 None => self.information = Some(information),
@@ -152,7 +150,10 @@ impl<'a> Assessor<'a> {
         let step_s = if usable.len() > 1 { time_s(1) - time_s(0) } else { 0.0 };
         for &(start_s, end_s) in spans {
             let inside = |i: &usize| usable[*i] && (start_s..=end_s).contains(&time_s(*i));
-            let usable_s = (0..usable.len()).filter(inside).count() as f64 * step_s;
+            // a grid may reach half a step beyond the span
+            let usable_s = ((0..usable.len()).filter(inside).count() as f64 * step_s).min(end_s - start_s);
+            self.flight.airborne_s += end_s - start_s;
+            self.flight.usable_s += usable_s;
             let same_flight = !std::mem::take(&mut self.restarted);
             let segments = &mut self.flight.segments;
             let kept = segments.len() < KEPT_SEGMENTS;
@@ -182,6 +183,22 @@ impl<'a> Assessor<'a> {
             expected,
             offsets: self.offsets.iter().map(offset).collect(),
             notes: self.notes,
+            liveliest: self.liveliest,
         }
+    }
+}
+
+impl FlightSummary {
+    /// Adds what a window's mask left out; what is not flight counts for nothing here.
+    pub(super) fn add(&mut self, used: &Usable) {
+        self.transient_s += used.transient_s;
+        self.idle_s += used.idle_s;
+        self.saturated_s += used.saturated_s;
+        self.gap_s += used.gap_s;
+    }
+
+    /// Of a vehicle that does not fly, whatever its motors did.
+    pub(super) fn on_the_ground() -> Self {
+        Self { airborne_from: "the kind of vehicle", ..Self::default() }
     }
 }

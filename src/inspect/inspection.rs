@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::onboard::OnboardReading;
-use crate::signals::Usable;
+use super::quantity::QuantitySummary;
 
 /// What is in a log, and what it is good for.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -32,6 +32,10 @@ pub struct Inspection {
     pub excitation: Option<Excitation>,
     /// offsets between streams, from kinematics; only with a vehicle
     pub stream_offsets: Vec<OffsetSummary>,
+    /// what one may want to know, and how well the log will tell it
+    pub quantities: Vec<QuantitySummary>,
+    /// mass and size are assumed: errors of quantities are relative
+    pub quantities_relative: bool,
     /// what each parameter can be identified to
     pub identifiability: Vec<Outlook>,
     /// the vehicle's parameters
@@ -55,7 +59,7 @@ pub struct VehicleSummary {
     pub others: Vec<u32>,
     /// no HEARTBEAT of a vehicle is in the log
     pub without_heartbeat: bool,
-    /// what kind of vehicle it is, where a log that it wrote itself says so
+    /// what kind of vehicle it is, where the log says so
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kind: Option<&'static str>,
     /// the autopilot's software in its own words, where a log that it wrote itself says so
@@ -378,16 +382,4 @@ pub struct Text {
     pub severity: u8,
     /// what
     pub text: String,
-}
-
-impl FlightSummary {
-    /// Adds what a window's mask left out; what is not flight counts for nothing here.
-    pub(super) fn add(&mut self, used: &Usable) {
-        self.airborne_s += (used.total_s - used.grounded_s).max(0.0);
-        self.usable_s += used.usable_s;
-        self.transient_s += used.transient_s;
-        self.idle_s += used.idle_s;
-        self.saturated_s += used.saturated_s;
-        self.gap_s += used.gap_s;
-    }
 }

@@ -7,12 +7,17 @@
 mod airborne;
 mod assess;
 mod clock;
+mod evidence;
 mod excitation;
+mod foresee;
 mod inspection;
+mod lacking;
 mod motion;
 mod onboard;
 mod outlook;
 mod parameters;
+mod quantities;
+mod quantity;
 mod reading;
 mod streams;
 mod tally;
@@ -26,4 +31,5 @@ pub use inspection::{
     TlogReading, VehicleSummary,
 };
 pub use onboard::{OnboardReading, TopicSummary};
+pub use quantity::{ExpectedParameter, QuantitySummary};
 pub use tally::{inspect, inspect_recording};

@@ -1,111 +1,34 @@
 //! Which parameter can be identified, how well, and what is missing for it.
 
-use super::assess::Assessment;
+use super::evidence::Evidence;
 use super::inspection::Outlook;
+use super::lacking::lack;
 use crate::estimate::{
     Estimated, Finding, NAMES, Nominal, THETA, UNITS, finding, rescaled, scale_of, theta_of,
 };
-use crate::recording::{Quantity, StreamKey, StreamStats};
-use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 use crate::vehicle::{Anchor, Vehicle};
 
 /// Least rms of the angular acceleration for an identification of inertia, rad/s^2. Chosen; not measured.
 pub(super) const LEAST_ANGULAR_ACCELERATION: f64 = 0.1;
-/// Least usable time of flight, s. Chosen; not measured.
-pub(super) const LEAST_USABLE_S: f64 = 2.0;
 /// Body axis or axes of each entry of the inertia, in `Theta`'s order from its second on.
 const AXES: [(usize, usize); THETA - 1] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 /// Names of the body axes.
 pub(super) const AXIS_NAMES: [&str; 3] = ["roll", "pitch", "yaw"];
 
-/// What the judgement rests on.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Evidence<'a> {
-    pub streams: &'a [(StreamKey, usize, StreamStats)],
-    pub assessment: &'a Assessment,
-    pub vehicle: Option<&'a Vehicle>,
-    /// parameters of the autopilot's thrust curve that the log does not hold
-    pub missing_curve: Option<&'static str>,
-}
-
-impl Evidence<'_> {
-    /// Rate of the fastest stream of a quantity that moves, Hz.
-    pub(super) fn rate_hz(&self, quantity: Quantity) -> Option<f64> {
-        self.streams
-            .iter()
-            .filter(|(key, _, stats)| {
-                key.quantity == quantity && stats.count >= 10 && !stats.all_zero && !stats.is_constant()
-            })
-            .map(|(_, _, stats)| stats.rate_hz)
-            .reduce(f64::max)
+/// Why a parameter cannot be identified, as far as streams and motion tell.
+fn obstacle(evidence: &Evidence<'_>, index: usize) -> Option<String> {
+    if let Some(nothing) = evidence.nothing() {
+        return Some(nothing);
     }
-
-    /// Rate of what tells the thrust, Hz.
-    pub(super) fn actuator_hz(&self) -> Option<f64> {
-        [Quantity::RotorSpeed, Quantity::ActuatorCommand, Quantity::Wrench]
-            .into_iter()
-            .filter_map(|quantity| self.rate_hz(quantity))
-            .reduce(f64::max)
+    let quantity = if index == 0 { "mass" } else { "inertia" };
+    if let Some(lack) = lack(evidence, quantity) {
+        return Some(lack.reason);
     }
-
-    /// Something tells the force along the thrust.
-    pub(super) fn has_vertical_motion(&self) -> bool {
-        let has = |quantity| self.rate_hz(quantity).is_some();
-        has(Quantity::SpecificForce)
-            || has(Quantity::WorldAcceleration)
-            || (has(Quantity::Attitude) && has(Quantity::AngularRate) && has(Quantity::Velocity))
-    }
-
-    /// rms about an axis, rad/s^2.
-    pub(super) fn angular_acceleration(&self, axis: usize) -> Option<f64> {
-        self.assessment.excitation.as_ref()?.angular_acceleration_rms_rad_s2.map(|rms| rms[axis])
-    }
-
-    /// Why nothing at all can be identified.
-    pub(super) fn nothing(&self) -> Option<String> {
-        if self.actuator_hz().is_none() {
-            return Some("no actuator outputs".into());
-        }
-        if self.assessment.flight.airborne_s < LEAST_USABLE_S {
-            return Some("no flight".into());
-        }
-        if let Some(refusal) = &self.assessment.refusal {
-            return Some(match refusal {
-                // which of them, and how fast, is in the advice
-                SignalsError::TooSlow { .. } => "streams are sampled too slowly".to_owned(),
-                other => other.to_string(),
-            });
-        }
-        (self.assessment.flight.usable_s < LEAST_USABLE_S).then(|| "no stretch of flight can be used".into())
-    }
-
-    /// Why a parameter cannot be identified, as far as streams and motion tell.
-    fn obstacle(&self, index: usize) -> Option<String> {
-        if let Some(nothing) = self.nothing() {
-            return Some(nothing);
-        }
-        if index == 0 {
-            let missing = !self.has_vertical_motion();
-            return missing.then(|| {
-                "no vertical motion: neither accelerometer nor attitude, rates and velocity".into()
-            });
-        }
-        let Some(rate_hz) = self.rate_hz(Quantity::AngularRate) else { return Some("no body rates".into()) };
-        let slowest = [
-            ("body rates", Some(rate_hz), LEAST_BODY_RATE_HZ),
-            ("actuators", self.actuator_hz(), LEAST_ACTUATOR_HZ),
-        ];
-        for (what, hz, least_hz) in slowest {
-            if let Some(hz) = hz.filter(|hz| *hz < least_hz) {
-                return Some(format!("{what} at {hz:.0} Hz: too slow"));
-            }
-        }
-        let (first, second) = AXES[index - 1];
-        [first, second].into_iter().find_map(|axis| {
-            let rms = self.angular_acceleration(axis).filter(|rms| *rms < LEAST_ANGULAR_ACCELERATION)?;
-            Some(format!("angular acceleration in {} only {rms:.2} rad/s^2 rms", AXIS_NAMES[axis]))
-        })
-    }
+    let (first, second) = AXES[index.checked_sub(1)?];
+    [first, second].into_iter().find_map(|axis| {
+        let rms = evidence.angular_acceleration(axis).filter(|rms| *rms < LEAST_ANGULAR_ACCELERATION)?;
+        Some(format!("angular acceleration in {} only {rms:.2} rad/s^2 rms", AXIS_NAMES[axis]))
+    })
 }
 
 /// One entry a parameter, in `Theta`'s order.
@@ -114,39 +37,44 @@ pub(super) fn outlook(evidence: &Evidence<'_>) -> Vec<Outlook> {
 }
 
 fn of(evidence: &Evidence<'_>, index: usize) -> Outlook {
-    let blank = |name, unit| Outlook {
-        name,
-        status: "not_determined",
-        std: None,
-        unit,
-        std_relative: None,
-        reason: None,
-    };
-    let none = blank(NAMES[index], UNITS[index]);
     if let (Some(vehicle), Some(expected)) = (evidence.vehicle, &evidence.assessment.expected) {
-        let weighed = vehicle.anchor == Anchor::Mass;
-        // a weighed vehicle's thrust has the mass' place: only their ratio comes out of a flight
-        let none = if weighed && index == 0 { blank("thrust_scale", "1") } else { none };
-        return match expected_finding(vehicle, expected, index) {
-            Finding::Determined { value, std } if weighed && index == 0 => Outlook {
-                status: "determined",
-                std: Some(vehicle.body.mass_kg / value * (std / value)),
-                std_relative: Some(std / value),
-                ..none
-            },
-            Finding::Determined { std, .. } => Outlook {
-                status: "determined",
-                std: Some(std),
-                std_relative: Some(std / size_of(vehicle, expected, index)),
-                ..none
-            },
-            Finding::NotDetermined { reason } => Outlook { reason: Some(reason), ..none },
-            Finding::Given { .. } => Outlook { reason: Some("known beforehand".into()), ..none },
-        };
+        return judged(vehicle, expected, index);
     }
-    match evidence.obstacle(index) {
+    let none = blank(NAMES[index], UNITS[index]);
+    // by a vehicle of assumed mass and size, what is not determined is not determined by any
+    let tried = evidence.assumed.and_then(|(vehicle, body)| judged(vehicle, body, index).reason);
+    match obstacle(evidence, index).or(tried) {
         Some(reason) => Outlook { reason: Some(reason), ..none },
         None => Outlook { status: "possible", ..none },
+    }
+}
+
+fn blank(name: &'static str, unit: &'static str) -> Outlook {
+    Outlook { name, status: "not_determined", std: None, unit, std_relative: None, reason: None }
+}
+
+/// What identification will say of a parameter.
+pub(super) fn judged(vehicle: &Vehicle, expected: &Estimated, index: usize) -> Outlook {
+    let weighed = vehicle.anchor == Anchor::Mass;
+    // a weighed vehicle's thrust has the mass' place: only their ratio comes out of a flight
+    let (name, unit) =
+        if weighed && index == 0 { ("thrust_scale", "1") } else { (NAMES[index], UNITS[index]) };
+    let none = blank(name, unit);
+    match expected_finding(vehicle, expected, index) {
+        Finding::Determined { value, std } if weighed && index == 0 => Outlook {
+            status: "determined",
+            std: Some(vehicle.body.mass_kg / value * (std / value)),
+            std_relative: Some(std / value),
+            ..none
+        },
+        Finding::Determined { std, .. } => Outlook {
+            status: "determined",
+            std: Some(std),
+            std_relative: Some(std / size_of(vehicle, expected, index)),
+            ..none
+        },
+        Finding::NotDetermined { reason } => Outlook { reason: Some(reason), ..none },
+        Finding::Given { .. } => Outlook { reason: Some("known beforehand".into()), ..none },
     }
 }
 

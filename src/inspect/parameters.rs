@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::inspection::ParameterSummary;
-use crate::autopilot::{Autopilot, Numbered, Outputs, STACKS};
+use crate::autopilot::{Autopilot, STACKS};
+use crate::recording::ParameterChange;
 
 /// Parameters kept; autopilots have about 1500.
 const KEPT: usize = 10_000;
@@ -12,14 +13,42 @@ const KEPT: usize = 10_000;
 pub(super) struct Parameters {
     values: BTreeMap<String, f64>,
     dropped: u64,
+    /// those that matter, while samples came
+    changes: Vec<ParameterChange>,
+    /// time of the last sample, s
+    now_s: Option<f64>,
 }
 
+/// Changes kept.
+const KEPT_CHANGES: usize = 1000;
+
 impl Parameters {
+    /// A sample of this time came, s.
+    pub(super) fn at(&mut self, time_s: f64) {
+        self.now_s = Some(time_s);
+    }
+
+    /// Those of an earlier reading of the same log.
+    pub(super) fn read_again(self) -> Self {
+        Self { changes: Vec::new(), now_s: None, ..self }
+    }
+
+    /// What changed while samples came, as far as it may matter.
+    pub(super) fn changes(&self) -> &[ParameterChange] {
+        &self.changes
+    }
+
     /// Takes one; says whether it changes what identification reads.
     pub(super) fn take(&mut self, name: &str, value: f64) -> bool {
         if let Some(known) = self.values.get_mut(name) {
-            let changed = known.to_bits() != value.to_bits();
-            *known = value;
+            let before = std::mem::replace(known, value);
+            let changed = before.to_bits() != value.to_bits();
+            let is_gain = || STACKS.iter().any(|stack| stack.outputs.is_gain(name));
+            if let Some(time_s) = self.now_s.filter(|_| changed && self.changes.len() < KEPT_CHANGES)
+                && (is_relevant(name, before) || is_relevant(name, value) || is_gain())
+            {
+                self.changes.push(ParameterChange { time_s, name: name.to_owned(), before, after: value });
+            }
             return changed && is_relevant(name, value);
         }
         if self.values.len() >= KEPT {
@@ -52,14 +81,9 @@ impl Parameters {
     }
 }
 
-/// It tells how a command becomes thrust or how the vehicle is built, of any autopilot; an output's function matters where
-/// it is a motor.
+/// It tells how a command becomes thrust or how the vehicle is built, of any autopilot.
 fn is_relevant(name: &str, value: f64) -> bool {
-    STACKS.iter().any(|stack| {
-        let Outputs { function: Numbered { before, after }, relevant, .. } = &stack.outputs;
-        let motor = name.starts_with(before) && name.ends_with(after) && stack.outputs.is_motor(value);
-        motor || relevant.iter().any(|beginning| name.starts_with(beginning))
-    })
+    STACKS.iter().any(|stack| stack.outputs.is_relevant(name, value))
 }
 
 #[cfg(test)]

@@ -4,9 +4,12 @@ use std::sync::mpsc::sync_channel;
 
 use super::assess::{Assessment, Assessor};
 use super::clock::ClockTally;
-use super::inspection::{Inspection, Reading, Text, TextSummary, VehicleSummary};
-use super::outlook::{Evidence, outlook};
+use super::evidence::Evidence;
+use super::foresee::{Foreseen, foresee};
+use super::inspection::{FlightSummary, Inspection, Reading, Text, TextSummary, Timeline, VehicleSummary};
+use super::outlook::outlook;
 use super::parameters::Parameters;
+use super::quantities::{Outcome, quantities};
 use super::reading::reading_of;
 use super::streams::{StreamTallies, summary_of};
 use super::timeline::TimelineTally;
@@ -15,9 +18,12 @@ use super::window::{WindowRecorder, windows_of};
 use crate::autopilot::{Autopilot, VehicleKind};
 use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport, TlogReport};
 use crate::recording::{Event, Recording, StreamKey, StreamStats};
+use crate::signals::{SignalsError, changes_in_the_air};
 use crate::vehicle::Vehicle;
 use crate::wire::{Sender, Source, SystemId};
 
+/// A window holds all of a flight where no more than this times its seconds can be used.
+const MOSTLY: f64 = 1.05;
 /// MAV_SEVERITY_WARNING; smaller is worse.
 const WARNING: u8 = 4;
 /// Warnings kept; further ones are counted.
@@ -45,6 +51,7 @@ impl Tally {
             Event::Sample { stream, time_s, values } => {
                 self.streams.add(stream, time_s, values);
                 self.timeline.add(stream.quantity, time_s, values);
+                self.parameters.at(time_s);
             }
             Event::Parameter { name, value } => return self.parameters.take(name, value),
             Event::Text { time_s, severity, text } => self.text(time_s, severity, text),
@@ -94,7 +101,7 @@ pub fn inspect<'a>(
     let first = first?;
     // commands become thrust by the autopilot's parameters: windows before they came are looked at again
     let pass = if first.parameters_late && vehicle.is_some() {
-        Pass::run(input, &options, (vehicle, first.tally.parameters), progress)?
+        Pass::run(input, &options, (vehicle, first.tally.parameters.read_again()), progress)?
     } else {
         first
     };
@@ -179,6 +186,10 @@ impl Pass {
             losses: self.report.losses.iter().map(ToString::to_string).collect(),
             streams: self.tally.streams.summary(),
             numbers_held_max: self.numbers_held_max,
+            kind: self.report.kind(),
+            timed: self.report.is_timed(),
+            ends_early: self.report.ends_early(),
+            logging: logging(&self.report, self.tally.autopilot),
         };
         found.inspection(self.tally, self.assessment, vehicle)
     }
@@ -200,7 +211,7 @@ fn vehicle_of(report: &ReadReport, autopilot: Autopilot) -> VehicleSummary {
         autopilot: autopilot.id(),
         others: report.others.iter().map(|system| system.0).collect(),
         without_heartbeat: report.telemetry().is_some_and(|telemetry| heartbeats(telemetry) == 0),
-        kind: report.onboard().and_then(|onboard| onboard.kind).map(VehicleKind::name),
+        kind: report.kind().map(VehicleKind::name),
         firmware: report.onboard().and_then(|onboard| onboard.firmware.clone()),
     }
 }
@@ -228,6 +239,10 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         reading: reading_of(report),
         streams,
         numbers_held_max: recording.streams.values().map(|s| s.values.len() + s.len()).sum(),
+        kind: report.kind(),
+        timed: report.is_timed(),
+        ends_early: report.ends_early(),
+        logging: logging(report, recording.autopilot),
     };
     found.inspection(tally, assessor.finish(), vehicle)
 }
@@ -240,14 +255,87 @@ struct Found {
     losses: Vec<String>,
     streams: Vec<(StreamKey, usize, StreamStats)>,
     numbers_held_max: usize,
+    /// what kind of vehicle
+    kind: Option<VehicleKind>,
+    /// messages carry times
+    timed: bool,
+    /// it ends before the first of them
+    ends_early: bool,
+    /// of a log that the vehicle wrote: how to make it log more
+    logging: Option<&'static str>,
+}
+
+/// How to make the vehicle log what identification needs; `None` of a log that it did not write.
+fn logging(report: &ReadReport, autopilot: Autopilot) -> Option<&'static str> {
+    report.onboard().and(autopilot.stack()).map(|stack| stack.logging)
 }
 
 impl Found {
-    fn inspection(self, tally: Tally, assessment: Assessment, vehicle: Option<&Vehicle>) -> Inspection {
+    /// What the liveliest window would tell. What refuses all of a log without a vehicle is noted as with one.
+    fn foreseen(
+        &self,
+        tally: &Tally,
+        assessment: &mut Assessment,
+        vehicle: Option<&Vehicle>,
+    ) -> Option<Foreseen> {
+        let is_multirotor = self.kind.is_none_or(|kind| kind == VehicleKind::Multirotor);
+        let (_, window) = assessment.liveliest.as_mut().filter(|_| is_multirotor)?;
+        window.parameters.clone_from(tally.parameters.values());
+        match foresee(window, vehicle) {
+            Ok(foreseen) => Some(foreseen),
+            Err(Some(slow @ SignalsError::TooSlow { .. })) if vehicle.is_none() => {
+                assessment.refusal = Some(slow);
+                None
+            }
+            Err(_) => None,
+        }
+    }
+
+    fn inspection(
+        mut self,
+        tally: Tally,
+        mut assessment: Assessment,
+        vehicle: Option<&Vehicle>,
+    ) -> Inspection {
+        self.kind =
+            self.kind.map(|kind| kind.by_parameters(|name| tally.parameters.values().get(name).copied()));
+        self.vehicle.kind = self.kind.map(VehicleKind::name);
+        if self.kind.is_some_and(|kind| !kind.flies()) {
+            assessment.flight = FlightSummary::on_the_ground();
+        }
+        let armed = tally.timeline.armed_ever();
+        // a plane's modes have other names than a multirotor's of the same number
+        let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);
+        let is_known = self.vehicle.kind.is_none_or(|kind| rotors.contains(&kind));
+        let modes = if is_known { self.autopilot } else { Autopilot::Unknown };
+        let foreseen = self.foreseen(&tally, &mut assessment, vehicle);
         let missing_curve = tally.parameters.missing_curve(self.autopilot);
-        let evidence = Evidence { streams: &self.streams, assessment: &assessment, vehicle, missing_curve };
+        let evidence = Evidence {
+            streams: &self.streams,
+            assessment: &assessment,
+            vehicle,
+            assumed: foreseen.as_ref().and_then(Foreseen::assumed),
+            missing_curve,
+            kind: self.kind,
+            armed,
+            timed: self.timed,
+            ends_early: self.ends_early,
+            logging: self.logging,
+            own_log: self.autopilot.stack().map(|stack| stack.logging),
+        };
         let identifiability = outlook(&evidence);
-        let (verdict, advice) = verdict(&evidence, &identifiability, &self.vehicle);
+        let most_s = assessment.liveliest.as_ref().map_or(0.0, |(usable_s, _)| *usable_s);
+        let quantities = quantities(&Outcome {
+            evidence: &evidence,
+            body: &identifiability,
+            foreseen: foreseen.as_ref(),
+            at_most: assessment.flight.usable_s > MOSTLY * most_s,
+        });
+        let (verdict, mut advice) = verdict(&evidence, &identifiability, &self.vehicle);
+        let flown_s: Vec<(f64, f64)> =
+            assessment.flight.segments.iter().map(|segment| (segment.start_s, segment.end_s)).collect();
+        let changed = changes_in_the_air(self.autopilot, tally.parameters.changes(), &flown_s);
+        advice.extend(changed.iter().map(ToString::to_string));
         Inspection {
             verdict,
             advice,
@@ -256,10 +344,12 @@ impl Found {
             reading: self.reading,
             losses: self.losses,
             streams: self.streams.iter().map(summary_of).collect(),
-            timeline: tally.timeline.summary(self.autopilot),
+            timeline: if self.timed { tally.timeline.summary(modes) } else { Timeline::default() },
             flight: assessment.flight,
             excitation: assessment.excitation,
             stream_offsets: assessment.offsets,
+            quantities,
+            quantities_relative: foreseen.is_some_and(|foreseen| foreseen.assumed),
             identifiability,
             parameters: tally.parameters.summary(),
             texts: tally.texts,

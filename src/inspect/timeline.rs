@@ -17,6 +17,8 @@ pub(super) struct TimelineTally {
     in_air: Spans,
     modes: Vec<(f64, f64)>,
     dropped: u64,
+    /// whether it was ever armed, where it tells
+    armed_ever: Option<bool>,
 }
 
 /// Spans in which a state holds.
@@ -58,7 +60,10 @@ impl TimelineTally {
     pub(super) fn add(&mut self, quantity: Quantity, time_s: f64, values: &[f64]) {
         let Some(&value) = values.first() else { return };
         match quantity {
-            Quantity::Armed => self.armed.say(time_s, value > 0.5),
+            Quantity::Armed => {
+                self.armed_ever = Some(self.armed_ever.unwrap_or(false) || value > 0.5);
+                self.armed.say(time_s, value > 0.5);
+            }
             Quantity::LandedState => self.in_air.say(time_s, value > ON_GROUND),
             Quantity::Mode if self.modes.last().is_none_or(|(_, last)| last.to_bits() != value.to_bits()) => {
                 if self.modes.len() < KEPT {
@@ -75,6 +80,11 @@ impl TimelineTally {
     pub(super) fn reset(&mut self, time_s: f64) {
         self.armed.say(time_s, false);
         self.in_air.say(time_s, false);
+    }
+
+    /// Whether it was ever armed; `None` where it does not tell.
+    pub(super) fn armed_ever(&self) -> Option<bool> {
+        self.armed_ever
     }
 
     /// What was collected.

@@ -1,7 +1,11 @@
 //! What a log is good for, in words, and what to do next.
 
+use super::evidence::Evidence;
 use super::inspection::{Outlook, VehicleSummary};
-use super::outlook::{AXIS_NAMES, Evidence, LEAST_ANGULAR_ACCELERATION};
+use super::lacking::lack;
+use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION};
+use crate::autopilot::VehicleKind;
+use crate::note::About;
 use crate::recording::Quantity;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 
@@ -20,7 +24,8 @@ pub(super) fn verdict(
     outlook: &[Outlook],
     vehicle: &VehicleSummary,
 ) -> (String, Vec<String>) {
-    let mut advice = missing(evidence);
+    let known = evidence.holds_streams();
+    let mut advice = if known { missing(evidence) } else { Vec::new() };
     advice.extend(flying(evidence));
     advice.extend(remarks(evidence, vehicle));
     (sentence(evidence, outlook), advice)
@@ -35,9 +40,18 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
             .into();
     }
     if let Some(nothing) = evidence.nothing() {
+        if evidence.kind.is_some_and(|kind| kind != VehicleKind::Multirotor) {
+            return format!("Nothing can be identified from this log: {nothing}.");
+        }
+        let flown = evidence.armed.is_none() || evidence.assessment.flight.airborne_s > 0.0;
         let next = match evidence.actuator_hz() {
+            _ if !evidence.timed => "ArduPilot writes them since 2014.".to_owned(),
+            _ if evidence.ends_early => "It was cut off: give the whole log.".to_owned(),
+            _ if evidence.streams.is_empty() => "What it holds is listed below.".to_owned(),
+            _ if !flown => "Fly a trajectory of `mavid plan` with it recording.".to_owned(),
             None => {
-                format!("Request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS at {WANTED_HZ} Hz and fly again.")
+                let how = how(evidence, "request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS");
+                format!("Next time {how}.")
             }
             Some(_) if matches!(evidence.assessment.refusal, Some(SignalsError::TooSlow { .. })) => {
                 "See the advice.".to_owned()
@@ -52,6 +66,12 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
     let bad: Vec<&str> =
         principal(outlook).filter(|o| o.status == "not_determined").map(|o| label(o.name)).collect();
     if good.is_empty() {
+        if let Some(lack) = lack(evidence, "mass").filter(|_| evidence.vehicle.is_none()) {
+            return format!(
+                "Nothing can be identified from this log: {}. Next time {}.",
+                lack.reason, lack.set
+            );
+        }
         return format!(
             "No parameter of the rigid body can be identified from this log, although {time}. {}",
             "Fly a trajectory of `mavid plan`."
@@ -83,7 +103,14 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
         .map(|(word, names)| format!("{word} {}", names.join(", ")))
         .collect();
     let not = if bad.is_empty() { String::new() } else { format!("; not for {}", bad.join(", ")) };
-    format!("This log is {}{not}: {time}. Next: `mavid identify`.", parts.join("; "))
+    let parts = parts.join("; ");
+    if evidence.assessment.notes.iter().any(|note| note.is_warning() && note.about == About::Vehicle) {
+        return format!(
+            "Doubtful with this vehicle file: its rotors contradict the autopilot's parameters, see the advice. With the right \
+             file this log may be {parts}{not}: {time}."
+        );
+    }
+    format!("This log is {parts}{not}: {time}. Next: `mavid identify`.")
 }
 
 /// Mass and moments: the products follow them.
@@ -112,6 +139,11 @@ fn percent(share: f64) -> String {
     }
 }
 
+/// What to do to have more: another setting of the vehicle's own log, or a message over the link.
+fn how(evidence: &Evidence<'_>, request: &str) -> String {
+    evidence.logging.map_or_else(|| format!("{request} at {WANTED_HZ} Hz"), str::to_owned)
+}
+
 /// Streams that are not there, or too slow.
 fn missing(evidence: &Evidence<'_>) -> Vec<String> {
     let mut advice = Vec::new();
@@ -120,34 +152,47 @@ fn missing(evidence: &Evidence<'_>) -> Vec<String> {
     }
     match evidence.actuator_hz() {
         None => advice.push(format!(
-            "No actuator outputs: nothing can be identified. Request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS at {WANTED_HZ} Hz."
+            "No actuator outputs: nothing can be identified. To have them, {}.",
+            how(evidence, "request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS")
         )),
         Some(hz) if hz < LEAST_ACTUATOR_HZ => {
-            advice.push(format!("Actuators at {hz:.0} Hz: too slow, request {WANTED_HZ} Hz."));
+            advice.push(format!(
+                "Actuators at {hz:.0} Hz: too slow. For more, {}.",
+                how(evidence, "request them")
+            ));
         }
         Some(_) => {}
     }
     match evidence.rate_hz(Quantity::AngularRate) {
-        None => advice.push(
-            "No body rates: inertia cannot be identified. Request ATTITUDE_QUATERNION or HIGHRES_IMU (PX4), ATTITUDE or RAW_IMU (ArduPilot)."
-                .into(),
-        ),
+        None => advice.push(format!(
+            "No body rates: inertia cannot be identified. To have them, {}.",
+            how(
+                evidence,
+                "request ATTITUDE_QUATERNION or HIGHRES_IMU (PX4), ATTITUDE or RAW_IMU (ArduPilot)"
+            )
+        )),
         Some(hz) if hz < LEAST_BODY_RATE_HZ => {
-            advice.push(format!("Body rates at {hz:.0} Hz: too slow, request {WANTED_HZ} Hz."));
+            advice.push(format!(
+                "Body rates at {hz:.0} Hz: too slow. For more, {}.",
+                how(evidence, "request them")
+            ));
         }
         Some(_) => {}
     }
     if !evidence.has_vertical_motion() {
-        advice.push(
-            "No vertical motion: mass cannot be identified. Request an IMU message, or attitude, rates and LOCAL_POSITION_NED."
-                .into(),
-        );
+        advice.push(format!(
+            "No vertical motion: mass cannot be identified. To have it, {}.",
+            how(evidence, "request an IMU message, or attitude, rates and LOCAL_POSITION_NED")
+        ));
     }
     if evidence.rate_hz(Quantity::Attitude).is_none() {
         advice.push("No attitude: streams cannot be aligned, and neither drag nor wind can be told.".into());
     }
     if evidence.rate_hz(Quantity::Velocity).is_none() {
-        advice.push("No velocity: drag cannot be told. Request LOCAL_POSITION_NED.".into());
+        let how = evidence
+            .logging
+            .map_or("To have it, request LOCAL_POSITION_NED.", |_| "The vehicle had no estimate of it.");
+        advice.push(format!("No velocity: drag cannot be told. {how}"));
     }
     advice
 }

@@ -118,6 +118,8 @@ fn cut(recording: &Recording, from_s: f64, to_s: f64) -> Recording {
     Recording {
         streams: recording.streams.iter().map(|(key, stream)| (*key, piece(stream))).collect(),
         parameters: recording.parameters.clone(),
+        // told of the whole log
+        parameter_changes: Vec::new(),
         autopilot: recording.autopilot,
         clock_resets_s: recording.clock_resets_s.iter().copied().filter(inside).collect(),
         estimator_resets_s: recording.estimator_resets_s.iter().copied().filter(inside).collect(),

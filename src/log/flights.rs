@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::recording::{Event, Quantity, Recording, Stream};
+use crate::recording::{Event, ParameterChange, Quantity, Recording, Stream};
 
 /// Length of a cell, s.
 const CELL_S: f64 = 10.0;
@@ -294,9 +294,13 @@ fn cut(recording: &Recording, (from_s, to_s): (f64, f64)) -> Option<LogFlight> {
     let inside = |time_s: &&f64| (from_s..to_s).contains(*time_s);
     let events = |times_s: &[f64]| times_s.iter().filter(inside).map(|time_s| time_s - start_s).collect();
     let texts = recording.texts.iter().filter(|(time_s, _)| (from_s..to_s).contains(time_s));
+    let changes = recording.parameter_changes.iter().filter(|change| inside(&&change.time_s));
     let recording = Recording {
         streams: pieces.filter(|(_, stream)| !stream.is_empty()).collect(),
         parameters: recording.parameters.clone(),
+        parameter_changes: changes
+            .map(|change| ParameterChange { time_s: change.time_s - start_s, ..change.clone() })
+            .collect(),
         autopilot: recording.autopilot,
         clock_resets_s: events(&recording.clock_resets_s),
         estimator_resets_s: events(&recording.estimator_resets_s),

@@ -5,7 +5,9 @@ use crate::wire::{Check, CrcSeeds, Frame};
 /// A kind of file that is not read.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Foreign {
-    /// its first bytes
+    /// where its signature stands
+    at: usize,
+    /// bytes that tell it
     signature: &'static [u8],
     /// in words
     pub what: &'static str,
@@ -14,41 +16,59 @@ pub(super) struct Foreign {
 }
 
 const UNPACK: &str = "unpack it first";
-const EXPORT: &str = "record telemetry with `mavid record`, or export the log as a table";
+const SDLOG2: &str =
+    "export it as a table of comma-separated values, with sdlog2_dump.py of PX4's releases until 1.6";
 const TABLE: &str = "export it as a table of comma-separated values";
+const BAG: &str =
+    "export its topics as one table of comma-separated values, or give the log of the autopilot";
+const BLACKBOX: &str =
+    "export it as a table of comma-separated values with blackbox_decode, and give --csv-map";
+const PAGE: &str = "download the log itself: a page of the site came in its place";
+const NO_LOG: &str = "give the log itself";
+
+const fn begins(signature: &'static [u8], what: &'static str, advice: &'static str) -> Foreign {
+    Foreign { at: 0, signature, what, advice }
+}
 
 /// Kinds of files by their first bytes.
 const KNOWN: &[Foreign] = &[
-    Foreign {
-        signature: b"ULog\x01\x12\x35",
-        what: "a PX4 log (.ulg), which is not read yet",
-        advice: EXPORT,
-    },
-    Foreign {
-        signature: b"\xa3\x95",
-        what: "an ArduPilot log (.bin), which is not read yet",
-        advice: EXPORT,
-    },
-    Foreign {
-        signature: b"FMT,",
-        what: "an ArduPilot text log (.log), which is not read yet",
-        advice: EXPORT,
-    },
-    Foreign { signature: b"\x1f\x8b", what: "a gzip archive", advice: UNPACK },
-    Foreign { signature: b"PK\x03\x04", what: "a zip archive", advice: UNPACK },
-    Foreign { signature: b"\xfd7zXZ\0", what: "an xz archive", advice: UNPACK },
-    Foreign { signature: b"\x28\xb5\x2f\xfd", what: "a zstd archive", advice: UNPACK },
-    Foreign { signature: b"BZh", what: "a bzip2 archive", advice: UNPACK },
-    Foreign { signature: b"7z\xbc\xaf\x27\x1c", what: "a 7z archive", advice: UNPACK },
-    Foreign { signature: b"#ROSBAG", what: "a ROS bag", advice: TABLE },
-    Foreign { signature: b"\x89MCAP", what: "an MCAP file", advice: TABLE },
-    Foreign { signature: b"SQLite format 3\0", what: "an SQLite database (a ROS 2 bag?)", advice: TABLE },
-    Foreign { signature: b"\x89HDF", what: "an HDF5 file", advice: TABLE },
-    Foreign { signature: b"MATLAB 5.0", what: "a MATLAB file", advice: TABLE },
-    Foreign { signature: b"{", what: "JSON", advice: TABLE },
-    Foreign { signature: b"<", what: "XML or HTML", advice: "download the log itself" },
-    Foreign { signature: b"\xff\xfe", what: "text in UTF-16", advice: "save it as UTF-8" },
-    Foreign { signature: b"\xfe\xff", what: "text in UTF-16", advice: "save it as UTF-8" },
+    begins(b"\xa3\x95\x80\x80\x59FMT", "the first bytes of an ArduPilot log (.bin)", "give the whole log"),
+    begins(b"\xa3\x95\x80", "a PX4 log of the format before ULog (sdlog2, .px4log)", SDLOG2),
+    begins(
+        b"\xa3\x95",
+        "a piece of an ArduPilot log (.bin) without the definitions that begin it",
+        "give the whole log",
+    ),
+    begins(b"\x1f\x8b", "a gzip archive", UNPACK),
+    begins(b"PK\x03\x04", "a zip archive", UNPACK),
+    begins(b"PK\x05\x06", "an empty zip archive", "pack the log again: nothing is in it"),
+    begins(b"\xfd7zXZ\0", "an xz archive", UNPACK),
+    begins(b"\x28\xb5\x2f\xfd", "a zstd archive", UNPACK),
+    begins(b"BZh", "a bzip2 archive", UNPACK),
+    begins(b"7z\xbc\xaf\x27\x1c", "a 7z archive", UNPACK),
+    begins(b"Rar!\x1a\x07", "a rar archive", UNPACK),
+    Foreign { at: 257, signature: b"ustar", what: "a tar archive", advice: UNPACK },
+    begins(b"#ROSBAG", "a ROS bag", BAG),
+    begins(b"SQLite format 3\0", "an SQLite database (a ROS 2 bag?)", BAG),
+    begins(b"\x89MCAP", "an MCAP file (a ROS 2 bag?)", BAG),
+    begins(b"H Product:Blackbox", "a blackbox log of Betaflight or INAV", BLACKBOX),
+    begins(b"\x89HDF", "an HDF5 file", TABLE),
+    begins(b"MATLAB 5.0", "a MATLAB file", TABLE),
+    begins(b"PAR1", "a Parquet file", TABLE),
+    begins(b"{", "JSON", TABLE),
+    begins(b"<?xml", "XML", NO_LOG),
+    begins(b"<", "a web page (HTML)", PAGE),
+    begins(
+        b"version https://git-lfs.github.com",
+        "the pointer to a file in Git LFS",
+        "fetch the file itself: git lfs pull",
+    ),
+    begins(b"# Onboard parameters", "a file of parameters", "give the log of a flight"),
+    begins(b"\x89PNG", "an image (PNG)", NO_LOG),
+    begins(b"\xff\xd8\xff", "an image (JPEG)", NO_LOG),
+    begins(b"%PDF", "a PDF document", NO_LOG),
+    begins(b"\xff\xfe", "text in UTF-16", "save it as UTF-8"),
+    begins(b"\xfe\xff", "text in UTF-16", "save it as UTF-8"),
 ];
 
 /// Bytes that are told of what nobody knows.
@@ -56,7 +76,12 @@ const TOLD_BYTES: usize = 8;
 
 /// The kind of file that begins with these bytes, if its signature is known.
 pub(super) fn foreign(head: &[u8]) -> Option<&'static Foreign> {
-    KNOWN.iter().find(|kind| head.starts_with(kind.signature))
+    let plain = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
+    let is = |kind: &&Foreign| {
+        let bytes = if kind.signature.is_ascii() && kind.at == 0 { plain } else { head };
+        bytes.get(kind.at..).is_some_and(|bytes| bytes.starts_with(kind.signature))
+    };
+    KNOWN.iter().find(is)
 }
 
 /// What a file of no known signature is, by its first bytes, and what to do with it.
@@ -73,13 +98,18 @@ pub(super) fn otherwise(head: &[u8]) -> (String, &'static str) {
         )
     } else if is_frame(head) {
         ("MAVLink frames without stamps".to_owned(), "record the link with `mavid record`")
-    } else if head.iter().any(is_binary) {
+    } else if head.iter().any(is_binary) || !is_text(head) {
         let first: Vec<String> = head.iter().take(TOLD_BYTES).map(|byte| format!("{byte:02x}")).collect();
         (format!("binary data that begins with {}", first.join(" ")), "give the log itself")
     } else {
         (
-            "text without a header of columns".to_owned(),
+            "text that is no log and has no header of columns".to_owned(),
             "the first line of a table names its columns, as configs/csv/default.toml lists them",
         )
     }
+}
+
+/// UTF-8, but for a letter that the head's end cuts.
+fn is_text(head: &[u8]) -> bool {
+    std::str::from_utf8(head).map_or_else(|error| error.error_len().is_none(), |_| true)
 }

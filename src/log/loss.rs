@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::units::seconds_from_us;
+use crate::units::{seconds_from_ms, seconds_from_us};
 
 /// What of a file is not in its recording: how much of what, and where first. Its text is what a user is told.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +24,15 @@ pub enum Loss {
         bytes: u64,
         /// stretches of them
         places: u64,
+        /// byte offset of the first
+        first_byte: u64,
+    },
+    /// they stand whole in the file, but what they say is not what their kind says, or their definition is gone
+    Unreadable {
+        /// what a file of this format is made of: `message`
+        unit: &'static str,
+        /// how many
+        count: u64,
         /// byte offset of the first
         first_byte: u64,
     },
@@ -62,6 +71,11 @@ pub enum Loss {
         /// line of the first, the header being 1
         first_line: u64,
     },
+    /// messages with a time that fits no clock, left out
+    StrayStamps {
+        /// how many
+        count: u64,
+    },
     /// the log holds more flight than is kept in memory
     NotHeld {
         /// time in the air that is left out, s
@@ -94,13 +108,14 @@ impl Loss {
         match self {
             Self::WrongChecksum { first_byte, .. }
             | Self::Skipped { first_byte, .. }
+            | Self::Unreadable { first_byte, .. }
             | Self::CutOff { first_byte, .. } => Some(Position::Byte(*first_byte)),
             Self::RowsRejected { first, .. } => first.as_ref().map(|row| Position::Line(row.line)),
             Self::EndlessRow { line } => Some(Position::Line(*line)),
             Self::RepeatedTimes { first_line, .. } | Self::NoRotations { first_line, .. } => {
                 Some(Position::Line(*first_line))
             }
-            Self::NotHeld { .. } => None,
+            Self::StrayStamps { .. } | Self::NotHeld { .. } => None,
         }
     }
 }
@@ -117,6 +132,9 @@ impl fmt::Display for Loss {
                     "{bytes} bytes of no {unit} skipped in {places} places, the first at byte {first_byte}"
                 )
             }
+            Self::Unreadable { unit, count, first_byte } => {
+                write!(f, "{count} {unit}s cannot be read, the first at byte {first_byte}")
+            }
             Self::CutOff { bytes, .. } => write!(f, "{bytes} bytes of a record cut off at the end"),
             Self::RowsRejected { count, of, first } => {
                 write!(f, "{count} of {of} rows rejected")?;
@@ -130,6 +148,9 @@ impl fmt::Display for Loss {
             Self::RepeatedTimes { count, .. } => write!(f, "{count} rows repeat a time and were left out"),
             Self::NoRotations { count, .. } => {
                 write!(f, "{count} attitudes are no rotations and were left out")
+            }
+            Self::StrayStamps { count } => {
+                write!(f, "{count} messages with a time that fits no clock were left out")
             }
             Self::NotHeld { seconds } => write!(
                 f,
@@ -155,9 +176,38 @@ pub enum Oddity {
         /// how many
         count: u64,
     },
+    /// the vehicle could not write as fast as it measured
+    Dropouts {
+        /// how often
+        count: u64,
+        /// how long together, milliseconds
+        ms: u64,
+    },
     /// the recording computer's clock was set while the vehicle's went on
     HostClockSet {
         /// how often
+        count: u64,
+    },
+    /// stamps of the vehicle run back for good: pieces of a log in another order, or two logs in one
+    VehicleClockBack {
+        /// how often
+        count: u64,
+        /// the furthest, microseconds
+        most_us: u64,
+    },
+    /// the vehicle could not write as fast as it logged
+    DroppedByVehicle {
+        /// messages that it dropped, by its own count
+        count: u64,
+    },
+    /// samples whose messages carry no time, as those of releases of before 2014: they are not read
+    WithoutTime {
+        /// how many
+        count: u64,
+    },
+    /// samples of which the log does not say in which unit they are, and releases differ: they are not read
+    UnknownUnit {
+        /// how many
         count: u64,
     },
 }
@@ -174,8 +224,25 @@ impl fmt::Display for Oddity {
                 "{count} host stamps are of no wall clock (before 2010 or after 2100): the recording computer's clock was \
                  not set"
             ),
+            Self::Dropouts { count, ms } => {
+                let seconds = seconds_from_ms(*ms as f64);
+                write!(f, "the vehicle could not write fast enough {count} times: {seconds:.3} s are missing")
+            }
             Self::HostClockSet { count } => {
                 write!(f, "the recording computer's clock was set {count} times while the vehicle's went on")
+            }
+            Self::VehicleClockBack { count, most_us } => {
+                let most_s = seconds_from_us(*most_us as f64);
+                write!(f, "the vehicle's stamps run back {count} times, by {most_s:.1} s at most")
+            }
+            Self::DroppedByVehicle { count } => {
+                write!(f, "the vehicle dropped {count} messages before it could write them")
+            }
+            Self::WithoutTime { count } => {
+                write!(f, "{count} samples carry no time of the vehicle's and are not read")
+            }
+            Self::UnknownUnit { count } => {
+                write!(f, "{count} samples are in a unit that differs between releases and are not read")
             }
         }
     }

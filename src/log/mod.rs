@@ -8,18 +8,25 @@
 //! whoever wants them without keeping any.
 
 pub mod csv;
+mod dataflash;
 mod error;
 mod flights;
 mod foreign;
 mod format;
 mod input;
+mod lookahead;
 mod loss;
 mod onboard;
 mod open;
 mod options;
 mod report;
 mod tlog;
+pub mod ulog;
 
+pub use dataflash::{
+    ARRAY_VALUES, DataflashDamage, DataflashReader, DataflashTextReader, Definition, Definitions, Field,
+    Letter, Message,
+};
 pub use error::LogError;
 pub use flights::{Flights, Hold, LogFlight};
 pub use format::{Certainty, Format, Place, Sink};

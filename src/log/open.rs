@@ -8,11 +8,12 @@ use super::input::Input;
 use super::loss::Loss;
 use super::options::OpenOptions;
 use super::report::ReadReport;
-use super::{csv, tlog};
+use super::{csv, dataflash, tlog, ulog};
 use crate::recording::{Event, Recording, RecordingBuilder};
 
 /// All formats that are read. Their order means nothing.
-pub const FORMATS: &[&Format] = &[&tlog::FORMAT, &csv::FORMAT];
+pub const FORMATS: &[&Format] =
+    &[&tlog::FORMAT, &ulog::FORMAT, &dataflash::BINARY, &dataflash::TEXT, &csv::FORMAT];
 
 /// A log in memory.
 #[derive(Debug, Clone, PartialEq)]
@@ -147,7 +148,11 @@ pub fn format_of<'a>(log: impl Into<Input<'a>>) -> Result<&'static Format, LogEr
 
 fn unknown(came: &str, advice: &'static str) -> LogError {
     let names: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
-    LogError::UnknownFormat { expected: names.join(" or "), came: came.to_owned(), advice }
+    let expected = match names.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => names.join(""),
+    };
+    LogError::UnknownFormat { expected, came: came.to_owned(), advice }
 }
 
 /// Reads a log; where it holds several vehicles and none is chosen, the one that flew.

@@ -6,6 +6,7 @@ use super::csv::CsvReport;
 use super::loss::{Loss, Oddity};
 use super::onboard::OnboardReport;
 use super::tlog::TlogReport;
+use crate::autopilot::VehicleKind;
 use crate::recording::{StreamKey, StreamRepair};
 use crate::wire::{SystemId, Vehicle};
 
@@ -59,6 +60,30 @@ impl ReadReport {
             Details::Onboard(report) => Some(report),
             _ => None,
         }
+    }
+
+    /// Messages carry times of the vehicle's: some that ArduPilot wrote until 2013 do not.
+    #[must_use]
+    pub fn is_timed(&self) -> bool {
+        let untimed = |oddity: &Oddity| matches!(oddity, Oddity::WithoutTime { .. });
+        self.holds_times() || !self.oddities.iter().any(untimed)
+    }
+
+    /// It ends before its first message with a time, as a log that was cut off does.
+    #[must_use]
+    pub fn ends_early(&self) -> bool {
+        self.onboard().is_some() && !self.holds_times() && self.is_timed()
+    }
+
+    fn holds_times(&self) -> bool {
+        self.onboard().is_none_or(|log| log.topics.iter().any(|topic| topic.span_s.is_some()))
+    }
+
+    /// What kind of vehicle the log is of, where it says so.
+    #[must_use]
+    pub fn kind(&self) -> Option<VehicleKind> {
+        let heard = || self.vehicle.and_then(|vehicle| vehicle.kind);
+        self.onboard().map_or_else(heard, |onboard| onboard.kind)
     }
 
     /// Rows and columns, where it is a table.

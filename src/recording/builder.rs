@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::event::Event;
-use super::flight::Recording;
+use super::flight::{ParameterChange, Recording};
 use super::stream::{Stream, StreamKey};
 
 /// What putting a stream's samples in order took.
@@ -23,7 +23,12 @@ pub struct RecordingBuilder {
     by_quantity: Vec<Vec<usize>>,
     rest: Recording,
     numbers: usize,
+    /// time of the last sample, s: when a parameter changes is not said otherwise
+    now_s: Option<f64>,
 }
+
+/// Changes of parameters that are kept: a vehicle that tunes itself makes hundreds.
+const MOST_CHANGES: usize = 10_000;
 
 #[derive(Debug)]
 struct Growing {
@@ -49,13 +54,21 @@ impl RecordingBuilder {
                 growing.push(time_s, values);
                 let added = growing.numbers() - before;
                 self.numbers += added;
+                self.now_s = Some(time_s);
             }
-            Event::Parameter { name, value } => {
-                self.rest.parameters.insert(name.to_owned(), value);
-            }
+            Event::Parameter { name, value } => self.parameter(name, value),
             Event::Text { time_s, text, .. } => self.rest.texts.push((time_s, text.to_owned())),
             Event::ClockReset { time_s, .. } => self.rest.clock_resets_s.push(time_s),
             Event::EstimatorReset { time_s } => self.rest.estimator_resets_s.push(time_s),
+        }
+    }
+
+    fn parameter(&mut self, name: &str, value: f64) {
+        let before = self.rest.parameters.insert(name.to_owned(), value);
+        let changed = before.filter(|before| before.to_bits() != value.to_bits()).zip(self.now_s);
+        let changes = &mut self.rest.parameter_changes;
+        if let Some((before, time_s)) = changed.filter(|_| changes.len() < MOST_CHANGES) {
+            changes.push(ParameterChange { time_s, name: name.to_owned(), before, after: value });
         }
     }
 
@@ -138,5 +151,28 @@ impl Growing {
         let time_s = order.iter().map(|&index| stream.time_s[index]).collect();
         let values = order.iter().flat_map(|&index| stream.sample(index).iter().copied()).collect();
         *stream = Stream { time_s, width: stream.width, values };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::Quantity;
+
+    #[test]
+    fn a_parameter_that_changes_while_samples_come_keeps_both_values_and_the_time() {
+        let mut builder = RecordingBuilder::new();
+        let stream = StreamKey { quantity: Quantity::Armed, source: "EV", instance: 0 };
+        let told = |value| Event::Parameter { name: "MOT_THST_EXPO", value };
+        let sample = |time_s| Event::Sample { stream, time_s, values: &[1.0] };
+        // before the first sample, the same again, and another one
+        for event in [told(0.5), told(0.65), sample(1.0), told(0.65), sample(2.0), told(0.7), sample(3.0)] {
+            builder.add(event);
+        }
+        let (recording, _) = builder.finish();
+        let change =
+            ParameterChange { time_s: 2.0, name: "MOT_THST_EXPO".to_owned(), before: 0.65, after: 0.7 };
+        assert_eq!(recording.parameter_changes, [change]);
+        assert_eq!(recording.parameters["MOT_THST_EXPO"], 0.7);
     }
 }

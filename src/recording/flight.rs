@@ -5,6 +5,19 @@ use std::collections::BTreeMap;
 use super::stream::{Stream, StreamKey};
 use crate::autopilot::Autopilot;
 
+/// A parameter that got another value while a flight was recorded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParameterChange {
+    /// s of the recording's clock: of the sample before it
+    pub time_s: f64,
+    /// name
+    pub name: String,
+    /// value until then, in the autopilot's own unit
+    pub before: f64,
+    /// value since then
+    pub after: f64,
+}
+
 /// A flight of one vehicle.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Recording {
@@ -12,6 +25,8 @@ pub struct Recording {
     pub streams: BTreeMap<StreamKey, Stream>,
     /// the vehicle's parameters as far as they were sent
     pub parameters: BTreeMap<String, f64>,
+    /// what of them changed while it was recorded, in the order of time; [`Self::parameters`] has the last values
+    pub parameter_changes: Vec<ParameterChange>,
     /// which autopilot wrote it
     pub autopilot: Autopilot,
     /// times at which the vehicle's clock started anew (reboot); no flight segment may span one
@@ -20,4 +35,23 @@ pub struct Recording {
     pub estimator_resets_s: Vec<f64>,
     /// what the vehicle said
     pub texts: Vec<(f64, String)>,
+}
+
+impl Recording {
+    /// Adds the streams of another log of the same flight, its stamps brought to this recording's clock by `to_own_s` (s to s).
+    /// Of streams and parameters that both have, its own stay.
+    pub fn add_log(&mut self, other: Recording, to_own_s: impl Fn(f64) -> f64) {
+        for (key, mut stream) in other.streams {
+            stream.time_s.iter_mut().for_each(|time_s| *time_s = to_own_s(*time_s));
+            self.streams.entry(key).or_insert(stream);
+        }
+        for (name, value) in other.parameters {
+            self.parameters.entry(name).or_insert(value);
+        }
+        self.clock_resets_s.extend(other.clock_resets_s.into_iter().map(&to_own_s));
+        self.estimator_resets_s.extend(other.estimator_resets_s.into_iter().map(&to_own_s));
+        if self.texts.is_empty() {
+            self.texts = other.texts.into_iter().map(|(time_s, text)| (to_own_s(time_s), text)).collect();
+        }
+    }
 }

@@ -14,7 +14,7 @@ mod stream;
 
 pub use builder::{RecordingBuilder, StreamRepair};
 pub use event::Event;
-pub use flight::Recording;
+pub use flight::{ParameterChange, Recording};
 pub use overlap::shared_share;
 pub use quantity::Quantity;
 pub use statistics::{StreamStats, StreamTally};

@@ -90,7 +90,7 @@ impl Quantity {
             Self::AngularRateSetpoint => "angular_rate_setpoint",
             Self::ThrustSetpoint => "thrust_setpoint",
             Self::TorqueSetpoint => "torque_setpoint",
-            Self::ThrustVectorSetpoint => "thrust_vector_setpoint",
+            Self::ThrustVectorSetpoint => "thrust_vector",
             Self::LandedState => "landed_state",
             Self::Armed => "armed",
             Self::Mode => "mode",

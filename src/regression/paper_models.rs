@@ -76,6 +76,9 @@ pub fn paper_models(
     gravity_m_s2: f64,
     filter: &ZeroPhase,
 ) -> Option<(SampledModel, SampledModel)> {
+    if !signals.quality.torques {
+        return None;
+    }
     let filtered = Filtered::from(signals, filter)?;
     let step_s = signals.grid.step_s;
     let omega_dot = differentiated(&filtered.rate, step_s);

@@ -65,7 +65,7 @@ impl WeakMotion {
     #[must_use]
     pub fn measured(signals: &Signals, kernel: &WeakKernel, gravity_m_s2: f64) -> Self {
         Self {
-            omega: signals.rate.clone(),
+            omega: signals.rate.clone().filter(|_| signals.quality.torques),
             vertical: VerticalMotion::measured(signals, kernel, gravity_m_s2),
         }
     }
@@ -174,8 +174,15 @@ pub fn weak_rows(signals: &Signals, motion: &WeakMotion, kernel: &WeakKernel) ->
     let columns = |series: &[Vector4<f64>]| -> [Vec<f64>; CHANNELS] {
         std::array::from_fn(|channel| series.iter().map(|w| w[channel]).collect())
     };
-    let wrench = columns(&signals.wrench);
-    let jitter = signals.jitter_wrench.as_deref().map(columns);
+    // without body rates no torque is compared
+    let acting = |mut columns: [Vec<f64>; CHANNELS]| {
+        if motion.omega.is_none() {
+            columns.iter_mut().skip(1).for_each(|torque| torque.fill(0.0));
+        }
+        columns
+    };
+    let wrench = acting(columns(&signals.wrench));
+    let jitter = signals.jitter_wrench.as_deref().map(|jitter| acting(columns(jitter)));
     let heave = heave_columns(signals);
     let smooth = |columns: &[Vec<f64>; CHANNELS], center| {
         Vector4::from_fn(|channel, _| kernel.at(0, &columns[channel], center))
@@ -282,6 +289,7 @@ mod tests {
                 offsets: Vec::new(),
                 airborne_s: Vec::new(),
                 usable: Usable::default(),
+                torques: true,
                 notes: Vec::new(),
             },
         };

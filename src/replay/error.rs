@@ -1,6 +1,6 @@
 //! Why a log cannot be played back.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::link::LinkError;
 use crate::log::LogError;
@@ -10,7 +10,7 @@ use crate::text;
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
     /// it cannot be read
-    #[error("{}: {source}", text::path(&path))]
+    #[error("{}", of_file(path, source))]
     Log {
         /// which file
         path: PathBuf,
@@ -26,4 +26,12 @@ pub enum ReplayError {
     /// the link it should go to has ended
     #[error(transparent)]
     Link(#[from] LinkError),
+}
+
+/// An error of opening names the file itself.
+fn of_file(path: &Path, error: &LogError) -> String {
+    match error {
+        LogError::Open { .. } => error.to_string(),
+        _ => format!("{}: {error}", text::path(&path)),
+    }
 }

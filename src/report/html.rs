@@ -125,7 +125,9 @@ fn cell_markup(cell: &Cell) -> Markup {
 pub(super) fn provenance(inputs: &[(&str, &InputFile)], settings: &[(&str, String)]) -> Markup {
     let files: Vec<Vec<Cell>> = inputs
         .iter()
-        .map(|(role, input)| vec![text(*role), text(input.path.as_str()), text(input.sha256.as_str())])
+        .flat_map(|(role, input)| {
+            input.files().map(|(path, sha256)| vec![text(*role), text(path), text(sha256)])
+        })
         .collect();
     let mut rows = vec![vec![text("program"), text(format!("mavid {}", env!("CARGO_PKG_VERSION")))]];
     rows.extend(settings.iter().map(|(name, value)| vec![text(*name), text(value.as_str())]));

@@ -31,10 +31,9 @@ pub(super) fn correlation_lines(correlation: &Correlation) -> String {
 
 /// Files by name and hash as an array.
 pub(super) fn files(inputs: &[InputFile]) -> String {
-    let file = |input: &InputFile| {
-        format!("  {{ path = {}, sha256 = \"{}\" }}", toml_string(&input.path), input.sha256)
-    };
-    let files: Vec<String> = inputs.iter().map(file).collect();
+    let file =
+        |(path, sha256): (&str, &str)| format!("  {{ path = {}, sha256 = \"{sha256}\" }}", toml_string(path));
+    let files: Vec<String> = inputs.iter().flat_map(InputFile::files).map(file).collect();
     format!("[\n{}\n]", files.join(",\n"))
 }
 
@@ -42,4 +41,9 @@ pub(super) fn files(inputs: &[InputFile]) -> String {
 pub(super) fn provenance(inputs: &[InputFile]) -> String {
     let version = env!("CARGO_PKG_VERSION");
     format!("\n[provenance]\nprogram = \"mavid {version}\"\ninputs = {}\n", files(inputs))
+}
+
+/// The line of a parameter that no flight determined, with the reason.
+pub(super) fn not_determined(name: &str, reason: &str) -> String {
+    format!("{name} = {{ status = \"not_determined\", reason = {} }}", toml_string(reason))
 }

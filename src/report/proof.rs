@@ -1,6 +1,6 @@
 //! The table of `prove` for the terminal.
 
-use crate::study::{Proof, ScoredCase, SizeError};
+use crate::study::{Proof, ProofSummary, ScoredCase, SizeError};
 use crate::text;
 use std::fmt::Write;
 
@@ -16,44 +16,15 @@ pub fn proof_text(document: &Proof) -> String {
         );
     }
     for case in &document.cases {
-        let _ = writeln!(
-            page,
-            "{:<28} {:<6} {:<17} {:<34} {:>22} {:>6.2}",
-            case.case,
-            if case.right { "yes" } else { "NO" },
-            case.verdict,
-            names(case),
-            gain(case),
-            case.seconds
-        );
-        for size in &case.sizes {
-            let _ = writeln!(page, "    {}", line(size));
-        }
-        if let Some(error) = &case.error {
-            let _ = writeln!(page, "    {error}");
-        }
+        add_case(&mut page, case);
     }
     for verdict in &document.unscored {
         let names: Vec<&str> = verdict.effects.iter().map(|effect| effect.id.as_str()).collect();
         let _ =
             writeln!(page, "{:<28} (no answer) {:<17} {}", verdict.case, verdict.verdict, names.join(", "));
     }
-    if let Some(s) = &document.summary {
-        let _ = writeln!(
-            page,
-            "\n{} of {} right; {} false names, {} missed; {} of {} sizes within 10 % (worst {}), {} within 2 sigma; {} of {} hold-outs improved; slowest {:.2} s",
-            s.right,
-            s.cases,
-            s.false_names,
-            s.missed,
-            s.sizes_within_10_percent,
-            s.sizes,
-            s.worst_size_error_percent.map_or("none".to_owned(), |worst| format!("{worst:.1} %")),
-            s.sizes_within_2_sigma,
-            s.holdouts_improved,
-            s.holdouts,
-            s.slowest_s
-        );
+    if let Some(summary) = &document.summary {
+        let _ = writeln!(page, "\n{}", counts(summary));
     }
     for note in &document.notes {
         let _ = writeln!(page, "note: {note}");
@@ -66,6 +37,43 @@ pub fn proof_text(document: &Proof) -> String {
     );
     page.truncate(page.trim_end().len());
     page
+}
+
+fn add_case(page: &mut String, case: &ScoredCase) {
+    let _ = writeln!(
+        page,
+        "{:<28} {:<6} {:<17} {:<34} {:>22} {:>6.2}",
+        case.case,
+        if case.right { "yes" } else { "NO" },
+        case.verdict,
+        names(case),
+        gain(case),
+        case.seconds
+    );
+    for size in &case.sizes {
+        let _ = writeln!(page, "    {}", line(size));
+    }
+    if let Some(error) = &case.error {
+        let _ = writeln!(page, "    {error}");
+    }
+}
+
+fn counts(summary: &ProofSummary) -> String {
+    format!(
+        "{} of {} right; {} false names, {} missed; {} of {} sizes within 10 % (worst {}), {} within 2 sigma; {} of {} \
+         hold-outs improved; slowest {:.2} s",
+        summary.right,
+        summary.cases,
+        summary.false_names,
+        summary.missed,
+        summary.sizes_within_10_percent,
+        summary.sizes,
+        summary.worst_size_error_percent.map_or("none".to_owned(), |worst| format!("{worst:.1} %")),
+        summary.sizes_within_2_sigma,
+        summary.holdouts_improved,
+        summary.holdouts,
+        summary.slowest_s
+    )
 }
 
 fn names(case: &ScoredCase) -> String {

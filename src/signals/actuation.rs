@@ -1,8 +1,10 @@
 //! Actuation of the body: rotors, or force and torque of the log.
 
-use super::actuators::{RotorThrusts, ThrustSource, thrusts_from_commands, thrusts_from_speeds};
+use super::actuators::{thrusts_from_commands, thrusts_from_speeds};
+use super::rotor_thrusts::{RotorThrusts, ThrustSource};
 use super::select::{best, too_short};
-use super::sufficient::{REFUSED_HZ, flowing_rate_hz};
+use super::stated_rotors::rotor_difference;
+use super::sufficient::{LEAST_TORQUE_HZ, flowing_rate_hz};
 use super::{Grid, SignalsError, linear_onto};
 use crate::note::{About, Note};
 use crate::recording::{Quantity, Recording, Stream};
@@ -47,8 +49,10 @@ fn rotor_thrusts(
     match preference {
         ThrustPreference::Measured => match speeds() {
             // a link that hardly carries them may carry the commands
-            Some(speeds) if flowing_rate_hz(&speeds.stream) < REFUSED_HZ => {
-                let faster = commands().ok().filter(|of| flowing_rate_hz(&of.stream) >= REFUSED_HZ);
+            Some(speeds) if flowing_rate_hz(&speeds.stream) < LEAST_TORQUE_HZ => {
+                let speeds_hz = flowing_rate_hz(&speeds.stream);
+                let faster = |of: &RotorThrusts| speeds_hz < SAMPLED_ALIKE * flowing_rate_hz(&of.stream);
+                let faster = commands().ok().filter(faster);
                 Ok(faster.unwrap_or(speeds))
             }
             Some(speeds) => Ok(speeds),
@@ -85,10 +89,10 @@ impl Actuation {
             return Ok(Self::Wrench(key.source, stream.clone()));
         }
         rotor_thrusts(recording, vehicle, preference).map(Self::Rotors).map_err(|error| match error {
-            SignalsError::NoActuators { .. } => too_short(recording, Quantity::Wrench, |s| s.width == 4)
+            SignalsError::NoActuators { .. } => too_short(recording, Quantity::Wrench, |_, s| s.width == 4)
                 .or_else(|| {
                     let rotors = vehicle.rotors.len();
-                    too_short(recording, Quantity::RotorSpeed, |s| s.width >= rotors)
+                    too_short(recording, Quantity::RotorSpeed, |_, s| s.width >= rotors)
                 })
                 .unwrap_or(error),
             other => other,
@@ -135,6 +139,8 @@ impl Actuation {
     pub(super) fn notes(&self, recording: &Recording, vehicle: &Vehicle) -> Vec<Note> {
         let Self::Rotors(rotors) = self else { return Vec::new() };
         let mut notes = rotors.notes.clone();
+        let other = rotor_difference(recording.autopilot, &recording.parameters, vehicle);
+        notes.extend(other.map(|other| Note::warning(About::Vehicle, other.to_string())));
         let needed = vehicle.rotors.len();
         let recorded = |quantity: Quantity| {
             let streams = recording.streams.iter().filter(move |(key, _)| key.quantity == quantity);

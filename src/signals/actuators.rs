@@ -6,39 +6,13 @@
 
 use super::SignalsError;
 use super::grid::LARGEST_VALUE;
-use super::select::{LEAST_SAMPLES, best, is_live, too_short};
+use super::rebuilt::rebuilt;
+use super::rotor_thrusts::{RotorThrusts, ThrustSource};
+use super::select::{LEAST_SAMPLES, MOTORS, best, best_of, is_live, too_short};
 use crate::autopilot::Outputs;
 use crate::note::{About, Note};
 use crate::recording::{Quantity, Recording, Stream, StreamKey};
 use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
-
-/// Source of the thrusts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ThrustSource {
-    /// rotor speed sensors and the thrust coefficient
-    MeasuredSpeed,
-    /// commands sent to the motors and the thrust law
-    Command,
-    /// force and torque of the log itself
-    Wrench,
-}
-
-/// Thrust of each rotor, N, at the time stamps of its source stream.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RotorThrusts {
-    /// width = number of rotors, N, vehicle's rotor order
-    pub stream: Stream,
-    /// normalised commands at the same time stamps if they are the source: for saturation
-    pub command: Option<Stream>,
-    /// thrust, N, that the commands' jitter adds if the rotors follow all of it; only if commands are the source
-    pub jitter: Option<Stream>,
-    /// source of the thrusts
-    pub source: ThrustSource,
-    /// message or column group
-    pub message: &'static str,
-    /// notes on values from the log's parameters and on contradictions to the vehicle file
-    pub notes: Vec<Note>,
-}
 
 /// Rotor thrusts from the commands.
 ///
@@ -47,13 +21,26 @@ pub struct RotorThrusts {
 /// [`SignalsError::TooFewSamples`] where one has, but hardly a sample with a value for every rotor.
 pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result<RotorThrusts, SignalsError> {
     let (propulsion, mut notes) = propulsion_from_log(recording, &vehicle.propulsion);
-    let channels = motor_channels(recording, vehicle.rotors.len(), &mut notes);
-    let needed = channels.iter().max().map_or(0, |last| last + 1);
-    let fits = |stream: &Stream| stream.width >= needed && in_unit(stream, &channels, propulsion.actuator);
-    let (key, raw) = best(recording, Quantity::ActuatorCommand, fits).ok_or_else(|| {
+    let outputs = motor_channels(recording, vehicle.rotors.len(), &mut notes);
+    let motors: Vec<usize> = (0..vehicle.rotors.len()).collect();
+    let read_as = |key: &StreamKey| match key.source {
+        MOTORS => (&motors, Actuator::Thrust),
+        _ => (&outputs, propulsion.actuator),
+    };
+    let fits = |key: &StreamKey, stream: &Stream| {
+        let (channels, actuator) = read_as(key);
+        channels.iter().all(|channel| *channel < stream.width) && in_unit(stream, channels, actuator)
+    };
+    let (key, raw) = best_of(recording, Quantity::ActuatorCommand, fits).ok_or_else(|| {
         too_short(recording, Quantity::ActuatorCommand, fits)
             .unwrap_or_else(|| no_actuators(recording, vehicle))
     })?;
+    let (channels, _) = read_as(key);
+    let expo = thrust_model(recording);
+    let normalized = |value: f64| match key.source {
+        MOTORS => output_of_thrust(value, expo),
+        _ => propulsion.normalized(value),
+    };
     let mut command = Stream { time_s: raw.time_s.clone(), width: channels.len(), values: Vec::new() };
     command.values.reserve(raw.len() * channels.len());
     command.time_s.clear();
@@ -61,7 +48,7 @@ pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result
         let sample = raw.sample(index);
         if channels.iter().all(|&channel| sample[channel].abs() < LARGEST_VALUE) {
             command.time_s.push(raw.time_s[index]);
-            command.values.extend(channels.iter().map(|&channel| propulsion.normalized(sample[channel])));
+            command.values.extend(channels.iter().map(|&channel| normalized(sample[channel])));
         }
     }
     if command.len() < LEAST_SAMPLES {
@@ -73,7 +60,28 @@ pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result
     let stream = Stream { time_s: command.time_s.clone(), width: channels.len(), values };
     let jitter = Some(jitter_thrust(&command, propulsion.thrust_curvature_n()));
     let (command, source) = (Some(command), ThrustSource::Command);
-    Ok(RotorThrusts { stream, command, jitter, source, message: key.source, notes })
+    let mut thrusts = RotorThrusts { stream, command, jitter, source, message: key.source, notes };
+    match rebuilt(recording, &thrusts, &propulsion) {
+        Some(Ok(faster)) => return Ok(faster),
+        Some(Err(note)) => thrusts.notes.push(note),
+        None => {}
+    }
+    Ok(thrusts)
+}
+
+/// The exponent of the curve by which the autopilot makes outputs of thrusts; 0 where it has none.
+fn thrust_model(recording: &Recording) -> f64 {
+    let expo = recording.autopilot.stack().map(|stack| stack.outputs.expo);
+    expo.and_then(|expo| recording.parameters.get(expo).copied()).unwrap_or(0.0)
+}
+
+/// The output `u`, 0..1, at which a curve `(1 - expo) u + expo u^2` gives a share of thrust.
+fn output_of_thrust(share: f64, expo: f64) -> f64 {
+    if expo.abs() < 1e-9 {
+        return share;
+    }
+    let linear = 1.0 - expo;
+    ((linear * linear + 4.0 * expo * share.max(0.0)).sqrt() - linear) / (2.0 * expo)
 }
 
 /// Rotor thrusts from measured speeds. `None` if no speeds, or hardly a sample with all rotors, are recorded, or if no
@@ -172,6 +180,15 @@ pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propu
     let outputs = recording.autopilot.stack().map(|stack| &stack.outputs);
     let range = outputs.and_then(|outputs| outputs.pulses.ends_us(parameter));
     let range = range.map(|(min_us, max_us)| PwmRange { min_us, max_us });
+    let bus = bus_range(recording);
+    if let Some(bus) = bus {
+        if !stated_range.is_some_and(|stated| is_same(stated, bus)) {
+            let (from, to) = (bus.min_us, bus.max_us);
+            note(format!("the log's outputs are those of a bus, {from:.0} to {to:.0}, and no pulse widths"));
+        }
+        propulsion.actuator = Actuator::Pwm(Some(bus));
+    }
+    let range = range.filter(|_| bus.is_none());
     let expo = outputs.and_then(|outputs| parameter(outputs.expo));
     if let Some(range) = range.filter(|range| range.max_us > range.min_us) {
         let (from, to) = (range.min_us, range.max_us);
@@ -201,14 +218,35 @@ fn is_same(a: PwmRange, b: PwmRange) -> bool {
     (a.min_us - b.min_us).abs() < 0.05 && (a.max_us - b.max_us).abs() < 0.05
 }
 
-/// Whether there is a stream of commands in 0..1.
+/// Whether there is a stream of commands in 0..1. One that does not move is of outputs that are not used: zeros are no
+/// fractions.
 #[must_use]
 pub fn holds_fractions(recording: &Recording) -> bool {
-    let commands = |(key, _): &(&StreamKey, &Stream)| key.quantity == Quantity::ActuatorCommand;
-    recording.streams.iter().filter(commands).any(|(_, stream)| {
+    moving_commands(recording).any(|stream| {
         let channels: Vec<usize> = (0..stream.width).collect();
         in_unit(stream, &channels, Actuator::Speed)
     })
+}
+
+/// The range of outputs on a bus, where the log holds moving outputs that are no pulses by their size.
+#[must_use]
+pub fn bus_range(recording: &Recording) -> Option<PwmRange> {
+    let max_us = f64::from(recording.autopilot.stack()?.outputs.bus?);
+    let is_beyond = |stream: &Stream| {
+        // the first motor
+        let values = || stream.values.iter().step_by(stream.width.max(1)).filter(|value| value.is_finite());
+        let beyond = values().filter(|value| **value > LONGEST_PULSE_US && **value <= max_us).count();
+        5 * beyond > values().count()
+    };
+    moving_commands(recording).any(is_beyond).then_some(PwmRange { min_us: 0.0, max_us })
+}
+
+/// No output has a longer pulse, microseconds.
+const LONGEST_PULSE_US: f64 = 2500.0;
+
+fn moving_commands(recording: &Recording) -> impl Iterator<Item = &Stream> {
+    let commands = recording.streams.iter().filter(|(key, _)| key.quantity == Quantity::ActuatorCommand);
+    commands.map(|(_, stream)| stream).filter(|stream| is_live(stream))
 }
 
 /// Output channel (from 0) of each motor, by the functions of the outputs; in order if the log does not contain them.
@@ -306,5 +344,48 @@ mod tests {
         assert_eq!(thrust_n(&fractions), (from_pulses_n, 0));
         let unknown = Recording { parameters: [].into(), ..pulses };
         assert!(thrusts_from_commands(&unknown, &vehicle).is_err());
+    }
+
+    #[test]
+    fn outputs_that_rest_at_nought_are_no_fractions_and_those_of_a_bus_no_pulses() {
+        let mut recording = recording(2000.0, 4000.0);
+        let key = |instance| StreamKey {
+            quantity: Quantity::ActuatorCommand,
+            source: "actuator_outputs",
+            instance,
+        };
+        let still = Stream { time_s: vec![0.0, 1.0, 2.0], width: 1, values: vec![0.0; 3] };
+        recording.streams.insert(key(0), still);
+        assert!(!holds_fractions(&recording));
+        let bus = PwmRange { min_us: 0.0, max_us: 8191.0 };
+        assert_eq!(bus_range(&recording), Some(bus));
+        let stated = Propulsion {
+            actuator: Actuator::Pwm(Some(PwmRange { min_us: 1000.0, max_us: 2000.0 })),
+            ..vehicle().propulsion
+        };
+        let (found, notes) = propulsion_from_log(&recording, &stated);
+        assert_eq!((found.actuator, notes.len()), (Actuator::Pwm(Some(bus)), 1));
+        assert!(notes[0].text.contains("those of a bus, 0 to 8191"), "{}", notes[0].text);
+        assert_eq!(bus_range(&self::recording(1500.0, 100.0)), None);
+    }
+
+    #[test]
+    fn shares_of_thrust_are_thrust_whatever_the_autopilots_curve_and_outputs() {
+        let mut vehicle = vehicle();
+        vehicle.propulsion.actuator = Actuator::Pwm(Some(PwmRange { min_us: 1000.0, max_us: 2000.0 }));
+        vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 8.0, expo: 0.0 };
+        let mut recording = recording(0.25, 0.5);
+        let (_, stream) = recording.streams.pop_first().unwrap();
+        let key = StreamKey { quantity: Quantity::ActuatorCommand, source: MOTORS, instance: 0 };
+        recording.streams.insert(key, stream);
+        // the functions of the outputs say nothing of the motors' own order
+        recording.parameters.extend((1..=4).map(|n| (format!("PWM_MAIN_FUNC{n}"), f64::from(105 - n))));
+        for expo in [0.0, 0.3, 1.0] {
+            recording.parameters.insert("THR_MDL_FAC".to_owned(), expo);
+            let thrusts = thrusts_from_commands(&recording, &vehicle).unwrap();
+            assert_eq!(thrusts.message, MOTORS);
+            assert!((thrusts.stream.values[0] - 2.0).abs() < 1e-9, "{expo}");
+            assert!((thrusts.stream.values[4] - 6.0).abs() < 1e-9, "{expo}");
+        }
     }
 }

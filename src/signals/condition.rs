@@ -1,12 +1,13 @@
 //! Conditioning of one flight: streams are chosen, aligned, interpolated to one grid, and masked.
 
 use super::actuation::{Actuation, ThrustPreference};
-use super::actuators::ThrustSource;
 use super::align::{
     AlignFrame, InertialOnGrid, StreamOffset, attitude_offset, attitudes_onto, position_offset, vectors_onto,
     velocity_offset,
 };
+use super::changed::changes_in_the_air;
 use super::flight::{Quality, Reference, Signals};
+use super::rotor_thrusts::ThrustSource;
 use super::select::{best, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
 use super::usable::{Evidence, airborne_spans, usable};
@@ -79,7 +80,7 @@ pub fn condition(
     let grid = common_grid(&chosen, actuation.stream(), step_s)?;
     let kernel = WeakKernel::new(settings.weak_half_width_s, step_s);
     let airborne_s = airborne_spans(recording, &actuation, vehicle);
-    let slow = sufficient::check(&needed(&chosen, &actuation), &airborne_s)?;
+    let sufficiency = sufficient::check(&needed(&chosen, &actuation), &airborne_s, recording.autopilot)?;
     if grid.count >= Grid::LONGEST {
         return Err(SignalsError::TooLong { span_s: step_s * grid.count as f64 });
     }
@@ -120,6 +121,7 @@ pub fn condition(
         actuation.message(),
         super::select::mean_rate_hz(actuation.stream()),
     ));
+    let changed = changes_in_the_air(recording.autopilot, &recording.parameter_changes, &airborne_s);
     let mut signals = Signals {
         grid,
         usable: mask,
@@ -140,7 +142,13 @@ pub fn condition(
             offsets: motion.offsets,
             airborne_s,
             usable: used,
-            notes: slow.into_iter().chain(actuation.notes(recording, vehicle)).collect(),
+            torques: sufficiency.torques,
+            notes: sufficiency
+                .note
+                .into_iter()
+                .chain(actuation.notes(recording, vehicle))
+                .chain(changed)
+                .collect(),
         },
     };
     let doubts = plausible::check(&signals, vehicle);
@@ -218,7 +226,7 @@ fn step(
 fn no_motion(recording: &Recording) -> SignalsError {
     [(Quantity::AngularRate, 3), (Quantity::Attitude, 4), (Quantity::WorldAcceleration, 3)]
         .into_iter()
-        .find_map(|(quantity, width)| too_short(recording, quantity, |stream| stream.width == width))
+        .find_map(|(quantity, width)| too_short(recording, quantity, |_, stream| stream.width == width))
         .unwrap_or(SignalsError::NoMotion)
 }
 

@@ -41,14 +41,12 @@ pub enum SignalsError {
     )]
     NoMotion,
     /// sampled too slowly
-    #[error(
-        "sampled too slowly to identify from: {slow}. 100 Hz of each is good: request it on a link that carries it, \
-         or take the on-board log. If the log is faster than that, its time column is not in the unit that the mapping \
-         says"
-    )]
+    #[error("sampled too slowly to identify from: {slow}. 100 Hz of each is good: {}", faster(*logging))]
     TooSlow {
         /// each slow stream, its rate, and the rate that was expected
         slow: String,
+        /// what to set for more in the vehicle's own log; `None` of a table, which says nothing of its autopilot
+        logging: Option<&'static str>,
     },
     /// streams do not share a span
     #[error("motion and actuator streams overlap for {overlap_s:.2} s only; at least 1 s is needed")]
@@ -76,4 +74,12 @@ pub enum SignalsError {
         /// reasons why time was left out
         reason: String,
     },
+}
+
+/// What to do for more samples.
+fn faster(logging: Option<&str>) -> String {
+    logging.map_or_else(
+        || "if the log is faster than that, its time column is not in the unit that the mapping says".to_owned(),
+        |logging| format!("for the log that the vehicle writes, {logging}; on a link, request them, if it carries as much"),
+    )
 }

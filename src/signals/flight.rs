@@ -1,8 +1,8 @@
 //! A flight on one clock and one grid.
 
-use super::actuators::ThrustSource;
 use super::align::StreamOffset;
 use super::grid::Grid;
+use super::rotor_thrusts::ThrustSource;
 use super::usable::Usable;
 use crate::note::Note;
 use crate::recording::Quantity;
@@ -44,6 +44,17 @@ pub struct Signals {
 }
 
 impl Signals {
+    /// Instants of the grid from one sample of a quantity's stream to the next; between them the grid is interpolated.
+    #[must_use]
+    pub fn samples_apart(&self, quantity: Quantity) -> usize {
+        let rate_hz = self.quality.sources.iter().find(|(q, ..)| *q == quantity).map(|(.., rate)| *rate);
+        let period_s = rate_hz.filter(|rate| *rate > 0.0).map_or(self.grid.step_s, |rate| 1.0 / rate);
+        (1..1000)
+            .find(|n| f64::from(*n) * self.grid.step_s > 0.75 * period_s)
+            .and_then(|n| usize::try_from(n).ok())
+            .unwrap_or(1)
+    }
+
     /// Emits it as tracing events.
     pub(super) fn emit(&self) {
         let (samples, step_s) = (self.grid.count, self.grid.step_s);
@@ -83,6 +94,8 @@ pub struct Quality {
     pub airborne_s: Vec<(f64, f64)>,
     /// time that each rule of the mask left out
     pub usable: Usable,
+    /// commands and body rates are fast enough to compare torques with the motion; otherwise only forces are compared
+    pub torques: bool,
     /// notes for the user
     pub notes: Vec<Note>,
 }

@@ -6,33 +6,44 @@
 mod actuation;
 mod actuators;
 mod align;
+mod changed;
 mod condition;
 mod error;
 mod filter;
 mod flight;
 mod grid;
 mod noise;
+mod one_flight;
 mod plausible;
+mod rebuilt;
+mod rotor_thrusts;
+mod said;
 mod select;
 mod spectrum;
+mod stated_rotors;
 mod sufficient;
 mod usable;
 mod weak;
 
 pub use actuation::ThrustPreference;
 pub use actuators::{
-    RotorThrusts, ThrustSource, holds_fractions, motor_channels, propulsion_from_log, thrusts_from_commands,
+    bus_range, holds_fractions, motor_channels, propulsion_from_log, thrusts_from_commands,
     thrusts_from_speeds,
 };
 pub use align::StreamOffset;
+pub use changed::changes_in_the_air;
 pub use condition::{ConditionSettings, condition, stride};
 pub use error::SignalsError;
 pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference};
 pub use flight::{Quality, Reference, Signals};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use noise::white_level;
+pub use one_flight::{ClockOffset, clock_offset};
+pub use rotor_thrusts::{RotorThrusts, ThrustSource};
+pub use said::Said;
 pub use select::{best, best_rank, is_live, mean_rate_hz, median_period_s};
 pub use spectrum::highest_harmonic_hz;
-pub use sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ};
-pub use usable::{Evidence, Usable, in_air, usable};
+pub use stated_rotors::{Differing, RotorDifference, rotor_difference};
+pub use sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, LEAST_FORCE_HZ, LEAST_TORQUE_HZ};
+pub use usable::{Evidence, Usable, usable};
 pub use weak::{MAX_ORDER, WeakKernel};

@@ -4,29 +4,95 @@ use super::SignalsError;
 use crate::recording::{Quantity, Recording, Stream, StreamKey};
 use crate::stats::median_step;
 
+/// Commands of the motors themselves, as shares of full thrust, in the autopilot's order of motors: before its thrust curve
+/// and its outputs.
+pub(super) const MOTORS: &str = "actuator_motors";
+
+/// Message names of the attitude, best first. Where both are there, what the vehicle logged comes before what it sent: its
+/// stamps are exact to the microsecond and no sample is lost.
+const ATTITUDE: &[&str] = &[
+    "vehicle_attitude",
+    "vehicle_odometry",
+    "ANG",
+    "ATT",
+    "XKF1",
+    "NKF1",
+    "EKF1",
+    "AHR2",
+    "ATTITUDE_QUATERNION",
+    "ATTITUDE",
+    "ODOMETRY",
+];
+
+/// Message names of the body rates, best first.
+const ANGULAR_RATE: &[&str] = &[
+    // as the sensor read it; what is filtered comes late
+    "sensor_combined",
+    "vehicle_imu",
+    "vehicle_angular_velocity",
+    "vehicle_attitude",
+    "GYR",
+    "IMU",
+    "RATE",
+    "GYR1",
+    "IMU2",
+    "IMU3",
+    "HIGHRES_IMU",
+    "SCALED_IMU",
+    "RAW_IMU",
+    "SCALED_IMU2",
+    "SCALED_IMU3",
+    "ATTITUDE_QUATERNION",
+    "ATTITUDE",
+    "ODOMETRY",
+];
+
+/// Message names of the specific force, best first.
+const SPECIFIC_FORCE: &[&str] = &[
+    "sensor_combined",
+    "vehicle_imu",
+    "vehicle_acceleration",
+    "ACC",
+    "IMU",
+    "ACC1",
+    "IMU2",
+    "IMU3",
+    "HIGHRES_IMU",
+    "SCALED_IMU",
+    "RAW_IMU",
+    "SCALED_IMU2",
+    "SCALED_IMU3",
+];
+
 /// Message names of one quantity, best first. A source that is not listed comes last.
 fn preference(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
-        Quantity::Attitude => &["ATTITUDE_QUATERNION", "ATTITUDE", "ODOMETRY"],
-        Quantity::AngularRate => &[
-            "HIGHRES_IMU",
-            "SCALED_IMU",
-            "RAW_IMU",
-            "SCALED_IMU2",
-            "SCALED_IMU3",
-            "ATTITUDE_QUATERNION",
-            "ATTITUDE",
+        Quantity::Attitude => ATTITUDE,
+        Quantity::AngularRate => ANGULAR_RATE,
+        Quantity::SpecificForce => SPECIFIC_FORCE,
+        Quantity::Position | Quantity::Velocity => &[
+            "vehicle_local_position",
+            "vehicle_odometry",
+            "XKF1",
+            "NKF1",
+            "EKF1",
+            "LOCAL_POSITION_NED",
             "ODOMETRY",
         ],
-        Quantity::SpecificForce => &["HIGHRES_IMU", "SCALED_IMU", "RAW_IMU", "SCALED_IMU2", "SCALED_IMU3"],
-        Quantity::Position | Quantity::Velocity => &["LOCAL_POSITION_NED", "ODOMETRY"],
         // what was asked for comes before the autopilot's own setpoint, into which it feeds back noise
         Quantity::PositionSetpoint
         | Quantity::VelocitySetpoint
         | Quantity::AccelerationSetpoint
-        | Quantity::YawSetpoint => &["SET_POSITION_TARGET_LOCAL_NED", "POSITION_TARGET_LOCAL_NED"],
-        Quantity::ActuatorCommand => &["SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"],
-        Quantity::RotorSpeed => &["ESC_STATUS", "ESC_TELEMETRY_1_TO_4"],
+        | Quantity::YawSetpoint => &[
+            "SET_POSITION_TARGET_LOCAL_NED",
+            "POSITION_TARGET_LOCAL_NED",
+            "trajectory_setpoint",
+            "vehicle_local_position_setpoint",
+        ],
+        Quantity::ActuatorCommand => {
+            &["SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS", MOTORS, "actuator_outputs"]
+        }
+        Quantity::RotorSpeed => &["esc_status", "ESC", "ESC_STATUS", "ESC_TELEMETRY_1_TO_4"],
         _ => &[],
     }
 }
@@ -67,9 +133,10 @@ pub(super) const LEAST_SAMPLES: usize = 10;
 pub(super) fn too_short(
     recording: &Recording,
     quantity: Quantity,
-    fits: impl Fn(&Stream) -> bool,
+    fits: impl Fn(&StreamKey, &Stream) -> bool,
 ) -> Option<SignalsError> {
-    let fitting = recording.streams.iter().filter(|(key, stream)| key.quantity == quantity && fits(stream));
+    let fitting =
+        recording.streams.iter().filter(|(key, stream)| key.quantity == quantity && fits(key, stream));
     let (key, longest) = fitting.max_by_key(|(_, stream)| stream.len())?;
     (longest.len() < LEAST_SAMPLES).then(|| SignalsError::TooFewSamples {
         quantity,
@@ -79,6 +146,9 @@ pub(super) fn too_short(
     })
 }
 
+/// Batches of raw samples with pauses between them are for spectra: they say nothing of the motion between.
+const IN_BATCHES: &str = "ISBD";
+
 /// The best live stream of a quantity that satisfies `fits`: among those within a factor of 1.6 of
 /// the fastest, the first of its quantity's order of preference.
 #[must_use]
@@ -87,11 +157,24 @@ pub fn best(
     quantity: Quantity,
     fits: impl Fn(&Stream) -> bool,
 ) -> Option<(&StreamKey, &Stream)> {
+    best_of(recording, quantity, |_, stream| fits(stream))
+}
+
+/// As [`best`], where it matters whose the stream is.
+pub(super) fn best_of(
+    recording: &Recording,
+    quantity: Quantity,
+    fits: impl Fn(&StreamKey, &Stream) -> bool,
+) -> Option<(&StreamKey, &Stream)> {
     let candidates: Vec<(&StreamKey, &Stream)> = recording
         .streams
         .iter()
         .filter(|(key, stream)| {
-            key.quantity == quantity && stream.len() >= LEAST_SAMPLES && is_live(stream) && fits(stream)
+            key.quantity == quantity
+                && key.source != IN_BATCHES
+                && stream.len() >= LEAST_SAMPLES
+                && is_live(stream)
+                && fits(key, stream)
         })
         .collect();
     let rated: Vec<(&str, f64)> =
@@ -99,14 +182,26 @@ pub fn best(
     best_rank(quantity, &rated).map(|index| candidates[index])
 }
 
+/// A faster inertial sensor says no more, Hz: of several that are fast, the one that filters least is best.
+const ENOUGH_HZ: f64 = 100.0;
+
+/// What a source's rate is worth, Hz.
+fn worth_hz(quantity: Quantity, rate_hz: f64) -> f64 {
+    match quantity {
+        Quantity::AngularRate | Quantity::SpecificForce => rate_hz.min(ENOUGH_HZ),
+        _ => rate_hz,
+    }
+}
+
 /// Which of several sources of a quantity (message and samples a second, in the order of their keys) is used:
 /// among those within a factor of 1.6 of the fastest, the first of the quantity's order of preference.
 #[must_use]
 pub fn best_rank(quantity: Quantity, sources: &[(&str, f64)]) -> Option<usize> {
-    let fastest = sources.iter().map(|(_, rate_hz)| *rate_hz).fold(0.0, f64::max);
+    let worth = |rate_hz: f64| worth_hz(quantity, rate_hz);
+    let fastest = sources.iter().map(|(_, rate_hz)| worth(*rate_hz)).fold(0.0, f64::max);
     let order = preference(quantity);
     let rank = |source: &str| order.iter().position(|name| *name == source).unwrap_or(order.len());
-    let fast = sources.iter().enumerate().filter(|(_, (_, rate_hz))| rate_hz * 1.6 >= fastest);
+    let fast = sources.iter().enumerate().filter(|(_, (_, rate_hz))| worth(*rate_hz) * 1.6 >= fastest);
     fast.min_by_key(|(index, (source, _))| (rank(source), *index)).map(|(index, _)| index)
 }
 
@@ -138,5 +233,10 @@ mod tests {
         assert_eq!(pick(&slow), Some("ATTITUDE"));
         let frozen = recording([("ATTITUDE", stream(0.02, true)), ("HIGHRES_IMU", stream(0.01, false))]);
         assert_eq!(pick(&frozen), Some("ATTITUDE"));
+        let filtered = recording([
+            ("vehicle_angular_velocity", stream(0.004, true)),
+            ("sensor_combined", stream(0.008, true)),
+        ]);
+        assert_eq!(pick(&filtered), Some("sensor_combined"));
     }
 }

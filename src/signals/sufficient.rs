@@ -9,6 +9,7 @@
 //! beside body rates tells from 5 Hz on; accelerometer and velocity do not tell down to that.
 
 use super::SignalsError;
+use crate::autopilot::Autopilot;
 use crate::note::{About, Note};
 use crate::recording::Stream;
 use crate::stats::median;
@@ -19,8 +20,12 @@ pub const LEAST_ACTUATOR_HZ: f64 = 38.0;
 /// The same for body rates, or for the attitude in their place, Hz.
 pub const LEAST_BODY_RATE_HZ: f64 = 38.0;
 
-/// Rate below which nothing is identified, Hz: errors are many standard errors there, see above.
-pub(super) const REFUSED_HZ: f64 = 20.0;
+/// Rate below which torques are not compared with the motion, Hz: errors of inertia are many standard errors there, see
+/// above.
+pub const LEAST_TORQUE_HZ: f64 = 20.0;
+/// Rate below which forces are not compared either, Hz: 10 Hz with some lost frames, which puts three samples or more
+/// into the weak form's kernel. Chosen; not measured.
+pub const LEAST_FORCE_HZ: f64 = 8.0;
 
 /// Intervals longer than this many median intervals are gaps, or belong to a time before the rate was requested.
 /// Chosen; not measured.
@@ -58,12 +63,24 @@ fn flowing_hz(mut gaps_s: Vec<f64>) -> f64 {
 /// A stream that the identification needs: its content, its message, the stream, and the least rate, Hz.
 pub(super) type Needed<'a> = (&'static str, &'static str, &'a Stream, f64);
 
-/// A note on streams that are too slow in the air. Refuses a flight with a stream that is too slow for any
-/// identification.
+/// What the rates of a flight's streams are good for.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Sufficiency {
+    /// fast enough to compare torques with the motion; otherwise forces alone
+    pub(super) torques: bool,
+    /// on streams that are slow
+    pub(super) note: Option<Note>,
+}
+
+/// Judges the rates in the air. Refuses a flight with a stream that is too slow for any identification.
 ///
 /// # Errors
 /// [`SignalsError::TooSlow`], which names each of those streams with its rate.
-pub(super) fn check(needed: &[Needed<'_>], airborne_s: &[(f64, f64)]) -> Result<Option<Note>, SignalsError> {
+pub(super) fn check(
+    needed: &[Needed<'_>],
+    airborne_s: &[(f64, f64)],
+    autopilot: Autopilot,
+) -> Result<Sufficiency, SignalsError> {
     let in_air = needed.iter().filter_map(|(what, message, stream, least_hz)| {
         let rate_hz = flowing_rate_within_hz(stream, airborne_s)?;
         let told = format!("{what} ({message}) at {rate_hz:.1} Hz, expected {least_hz:.0} Hz at least");
@@ -71,16 +88,32 @@ pub(super) fn check(needed: &[Needed<'_>], airborne_s: &[(f64, f64)]) -> Result<
     });
     let (rates_hz, slow): (Vec<f64>, Vec<String>) = in_air.unzip();
     let slow = slow.join("; ");
-    if rates_hz.iter().any(|rate_hz| *rate_hz < REFUSED_HZ) {
-        return Err(SignalsError::TooSlow { slow });
+    let slowest_hz = rates_hz.into_iter().fold(f64::INFINITY, f64::min);
+    let logging = autopilot.stack().map(|stack| stack.logging);
+    if slowest_hz < LEAST_FORCE_HZ {
+        return Err(SignalsError::TooSlow { slow, logging });
     }
-    Ok((!slow.is_empty()).then(|| {
-        let text = format!(
-            "sampled slowly: {slow}. Inertia may be off by several of its standard errors, and a lag cannot be \
-             distinguished from a delay; 100 Hz of each is good"
-        );
-        Note::remark(About::Sensors, text)
-    }))
+    let torques = slowest_hz >= LEAST_TORQUE_HZ;
+    let note =
+        (!slow.is_empty()).then(|| if torques { slow_note(&slow) } else { forces_note(&slow, logging) });
+    Ok(Sufficiency { torques, note })
+}
+
+fn slow_note(slow: &str) -> Note {
+    let text = format!(
+        "sampled slowly: {slow}. Inertia may be off by several of its standard errors, and a lag cannot be \
+         distinguished from a delay; 100 Hz of each is good"
+    );
+    Note::remark(About::Sensors, text)
+}
+
+fn forces_note(slow: &str, logging: Option<&str>) -> Note {
+    let set = logging.map_or_else(String::new, |set| format!(": for the log that the vehicle writes, {set}"));
+    let text = format!(
+        "sampled too slowly to compare torques with the motion: {slow}. Forces alone are used: inertia, damping, centre \
+         of mass and lag cannot be determined. 100 Hz of each is good{set}"
+    );
+    Note::warning(About::Sensors, text)
 }
 
 #[cfg(test)]
@@ -109,18 +142,32 @@ mod tests {
         let needed = |rates: &'static str, stream| (rates, "ATTITUDE", stream, LEAST_BODY_RATE_HZ);
         let outputs = ("actuator outputs", "SERVO_OUTPUT_RAW", &slow, LEAST_ACTUATOR_HZ);
         let flight = [(10.0, 50.0)];
-        let error = check(&[needed("body rates", &good), outputs], &flight).unwrap_err().to_string();
-        assert!(error.contains("actuator outputs (SERVO_OUTPUT_RAW) at 9.5 Hz, expected 38 Hz"), "{error}");
-        assert!(!error.contains("body rates (ATTITUDE)"), "{error}");
+        let found = check(&[needed("body rates", &good), outputs], &flight, Autopilot::Px4).unwrap();
+        let said = found.note.unwrap().text;
+        assert!(!found.torques && said.contains("Forces alone are used"), "{said}");
+        assert!(said.contains("actuator outputs (SERVO_OUTPUT_RAW) at 9.5 Hz, expected 38 Hz"), "{said}");
+        assert!(!said.contains("body rates (ATTITUDE)"), "{said}");
+        assert!(said.contains("set SDLOG_PROFILE = 9"), "{said}");
+        let slower = stream(7.0, 60.0);
+        let outputs_slower = ("actuator outputs", "SERVO_OUTPUT_RAW", &slower, LEAST_ACTUATOR_HZ);
+        let error = check(&[outputs_slower], &flight, Autopilot::Px4).unwrap_err().to_string();
+        assert!(error.contains("actuator outputs (SERVO_OUTPUT_RAW) at 7.0 Hz, expected 38 Hz"), "{error}");
+        assert!(error.contains("set SDLOG_PROFILE = 9"), "{error}");
         // seldom for a minute on the ground, then as asked for
         let mut late = stream(1.0, 60.0);
         late.time_s.extend(stream(100.0, 20.0).time_s.iter().map(|time_s| 60.5 + time_s));
-        assert_eq!(check(&[needed("body rates", &late)], &[(60.5, 80.0)]).unwrap(), None);
-        assert!(check(&[needed("body rates", &late)], &[(5.0, 50.0)]).is_err());
-        assert_eq!(check(&[outputs], &[]).unwrap(), None);
+        let fast_enough = Sufficiency { torques: true, note: None };
+        assert_eq!(
+            check(&[needed("body rates", &late)], &[(60.5, 80.0)], Autopilot::Unknown).unwrap(),
+            fast_enough
+        );
+        assert!(check(&[needed("body rates", &late)], &[(5.0, 50.0)], Autopilot::Unknown).is_err());
+        assert_eq!(check(&[outputs], &[], Autopilot::Unknown).unwrap(), fast_enough);
         // slow, but not hopeless: said
         let thin = stream(25.0, 60.0);
-        let said = check(&[needed("body rates", &thin)], &flight).unwrap().unwrap().text;
+        let found = check(&[needed("body rates", &thin)], &flight, Autopilot::Unknown).unwrap();
+        assert!(found.torques);
+        let said = found.note.unwrap().text;
         assert!(said.contains("body rates (ATTITUDE) at 25.0 Hz, expected 38 Hz"), "{said}");
     }
 }

@@ -1,9 +1,10 @@
 //! The instants of a flight that identification may use.
 
 use super::actuation::Actuation;
+use super::said::Said;
 use super::select::median_period_s;
 use super::{Grid, hold_onto};
-use crate::recording::{Quantity, Recording, Stream};
+use crate::recording::{Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
@@ -78,7 +79,7 @@ pub struct Evidence<'a> {
     pub rate: Option<&'a [Vector3<f64>]>,
 }
 
-/// Spans in the air, s: those that the autopilot reports, and those in which the rotors carry the vehicle.
+/// Spans in the air, s: the rotors carry the vehicle, and the autopilot says neither that it is disarmed nor that it has landed.
 pub(super) fn airborne_spans(
     recording: &Recording,
     actuation: &Actuation,
@@ -86,11 +87,7 @@ pub(super) fn airborne_spans(
 ) -> Vec<(f64, f64)> {
     let stream = actuation.stream();
     let needed = FLYING_SHARE * vehicle.body.mass_kg * vehicle.gravity_m_s2;
-    let landed = recording
-        .streams
-        .iter()
-        .find(|(key, stream)| key.quantity == Quantity::LandedState && !stream.is_empty())
-        .map(|(_, stream)| stream);
+    let words = Said::of(recording);
     // thrust smoothed over half a second: a single sample at the end stop is not a landing
     let mut smooth = 0.0;
     let mut spans: Vec<(f64, f64)> = Vec::new();
@@ -101,8 +98,7 @@ pub(super) fn airborne_spans(
         let collective = actuation.collective_n(index);
         let share = (step / 0.3).clamp(0.0, 1.0);
         smooth = if index == 0 { collective } else { smooth + share * (collective - smooth) };
-        let said = landed.is_none_or(|landed| in_air(landed, t));
-        match (said && smooth > needed, open) {
+        match (words.may_fly(t) && smooth > needed, open) {
             (true, None) => open = Some(t),
             (false, Some(start)) => {
                 spans.push((start, t));
@@ -116,14 +112,6 @@ pub(super) fn airborne_spans(
     }
     spans.retain(|(start, end)| end - start > 2.0);
     spans
-}
-
-/// `MAV_LANDED_STATE_IN_AIR` (2) is the last word before `t_s`; unknown (0) does not contradict.
-#[must_use]
-pub fn in_air(landed: &Stream, t_s: f64) -> bool {
-    let next = landed.time_s.partition_point(|t| *t <= t_s);
-    let state = landed.values.get(next.saturating_sub(1)).copied().unwrap_or(2.0);
-    (state - 2.0).abs() < 0.5 || state.abs() < 0.5
 }
 
 /// The mask, and the time that each rule left out; `transient_s` is left out at the beginning of the first airborne

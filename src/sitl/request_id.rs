@@ -23,3 +23,7 @@ pub(super) const SET_ATTITUDE_TARGET: u32 = dialect::SET_ATTITUDE_TARGET_DATA::I
 pub(super) const SET_POSITION_TARGET_LOCAL_NED: u32 = dialect::SET_POSITION_TARGET_LOCAL_NED_DATA::ID;
 pub(super) const TIMESYNC: u32 = dialect::TIMESYNC_DATA::ID;
 pub(super) const SETUP_SIGNING: u32 = dialect::SETUP_SIGNING_DATA::ID;
+pub(super) const FILE_TRANSFER_PROTOCOL: u32 = dialect::FILE_TRANSFER_PROTOCOL_DATA::ID;
+pub(super) const LOG_REQUEST_LIST: u32 = dialect::LOG_REQUEST_LIST_DATA::ID;
+pub(super) const LOG_REQUEST_DATA: u32 = dialect::LOG_REQUEST_DATA_DATA::ID;
+pub(super) const LOG_REQUEST_END: u32 = dialect::LOG_REQUEST_END_DATA::ID;

@@ -47,7 +47,7 @@ impl Vehicle {
                 self.read_parameter(link, payload);
             }
             id::PARAM_SET if self.is_for_us((payload.u8(4), payload.u8(5))) => {
-                self.set_parameter(link, payload);
+                self.set_parameter(link, payload, now);
             }
             id::REQUEST_DATA_STREAM if !self.settings.autopilot.is_px4() => {
                 self.request_data_stream(link, payload);
@@ -61,6 +61,12 @@ impl Vehicle {
             }
             id::PING if payload.u8(12) == 0 => {
                 self.send(link, &ping(payload.u64(0), payload.u32(8), sender));
+            }
+            id::FILE_TRANSFER_PROTOCOL
+            | id::LOG_REQUEST_LIST
+            | id::LOG_REQUEST_DATA
+            | id::LOG_REQUEST_END => {
+                self.ask_files(link, header.message_id, payload, sender);
             }
             id::MISSION_REQUEST_LIST
             | id::MISSION_REQUEST_INT
@@ -96,7 +102,7 @@ impl Vehicle {
         }
     }
 
-    fn set_parameter(&mut self, link: usize, payload: Payload) {
+    fn set_parameter(&mut self, link: usize, payload: Payload, now: Duration) {
         let name = payload.text(6, 16);
         let px4 = self.settings.autopilot.is_px4();
         let Some(at) = self.parameters.find(&name) else {
@@ -113,6 +119,9 @@ impl Vehicle {
             return;
         };
         self.parameters.set(&name, value);
+        if let Some((kind, value)) = self.parameters.get(at) {
+            self.keeper.parameter(now, &name, kind, value);
+        }
         self.retune();
         if let Some(message) = self.parameters.message(at) {
             // ArduPilot tells every link

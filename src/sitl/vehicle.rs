@@ -3,13 +3,15 @@
 use std::time::Duration;
 
 use mavlink::dialects::ardupilotmega::{
-    HEARTBEAT_DATA, MavAutopilot, MavModeFlag, MavSeverity, MavState, MavType, STATUSTEXT_DATA,
+    HEARTBEAT_DATA, MavAutopilot, MavModeFlag, MavSeverity, MavState, MavType,
 };
 use nalgebra::Vector3;
 
-use super::autopilot::{Autopilot, Text};
+use super::autopilot::Autopilot;
 use super::craft::Craft;
+use super::files::{FileServer, LogSender};
 use super::link::Link;
+use super::logger::{Keeper, Now};
 use super::message::Message;
 use super::message_id::HEARTBEAT;
 use super::parameters::{Parameters, Pulses};
@@ -23,8 +25,6 @@ use crate::wire::{Check, CrcSeeds, Frame, Payload};
 
 /// MAV_COMP_ID_AUTOPILOT1
 const COMPONENT: u8 = 1;
-/// Letters of one STATUSTEXT.
-const CHUNK_BYTES: usize = 50;
 /// Time between heartbeats.
 const HEARTBEAT_PERIOD: Duration = Duration::from_secs(1);
 
@@ -59,9 +59,13 @@ pub struct Vehicle {
     snapshot: Option<Snapshot>,
     /// mode flown and mode asked for, as the links were told last
     told_mode: Option<(Mode, Mode)>,
-    texts: u16,
+    pub(super) texts: u16,
     /// signs what goes out, and what comes in is to be signed
     signing: Option<Signing>,
+    /// the log of its own
+    pub(super) keeper: Keeper,
+    pub(super) file_server: FileServer,
+    pub(super) log_sender: LogSender,
     /// a fence that comes in
     pub(super) upload: Option<Upload>,
 }
@@ -77,6 +81,7 @@ impl Vehicle {
         let parameters = Parameters::new(&settings)?;
         let pulses = Pulses::of(&settings.vehicle, kind);
         let autopilot = Autopilot::new(&settings, Tuning::of(kind, &parameters))?;
+        let keeper = Keeper::new(&settings, &parameters);
         let step = kind.loop_period() / kind.steps_a_loop();
         Ok(Self {
             craft: Craft::new(&settings, step)?,
@@ -94,6 +99,9 @@ impl Vehicle {
             told_mode: None,
             texts: 0,
             upload: None,
+            keeper,
+            file_server: FileServer::new(kind.is_px4()),
+            log_sender: LogSender::new(kind.is_px4()),
             signing: settings
                 .signing_key
                 .clone()
@@ -239,8 +247,14 @@ impl Vehicle {
     }
 
     /// Since boot.
-    fn now(&self) -> Duration {
+    pub(super) fn now(&self) -> Duration {
         self.clock.saturating_sub(self.booted)
+    }
+
+    /// The host's time at the last boot, microseconds since 1970.
+    fn boot_unix_us(&self) -> u64 {
+        let booted = u64::try_from(self.booted.as_micros()).unwrap_or(u64::MAX);
+        self.settings.boot_unix_us.saturating_add(booted)
     }
 
     fn run_loop(&mut self) {
@@ -254,7 +268,14 @@ impl Vehicle {
         for _ in 1..kind.steps_a_loop() {
             self.craft.step(&outputs);
         }
-        self.snapshot = Some(Snapshot { now, shown, pulses_us });
+        let snapshot = Snapshot { now, shown, pulses_us };
+        self.keeper.take(&Now {
+            autopilot: &self.autopilot,
+            snapshot: &snapshot,
+            parameters: &self.parameters,
+            boot_unix_us: self.boot_unix_us(),
+        });
+        self.snapshot = Some(snapshot);
         self.pursue_upload(now);
         let mode = (self.autopilot.mode, self.autopilot.intended);
         if self.told_mode.replace(mode) != Some(mode) {
@@ -262,6 +283,7 @@ impl Vehicle {
         }
         self.send_texts();
         self.send_due(now);
+        self.send_files();
     }
 
     /// Whole microseconds, and what the rotors make of them.
@@ -328,28 +350,6 @@ impl Vehicle {
         }
     }
 
-    /// Texts longer than a message go out in numbered chunks.
-    fn send_texts(&mut self) {
-        while let Some(Text { severity, text }) = self.autopilot.texts.pop_front() {
-            let bytes = text.as_bytes();
-            let is_long = bytes.len() > CHUNK_BYTES;
-            if is_long {
-                self.texts = self.texts.wrapping_add(1).max(1);
-            }
-            for (chunk, part) in bytes.chunks(CHUNK_BYTES).enumerate() {
-                let mut text = [0; CHUNK_BYTES];
-                text[..part.len()].copy_from_slice(part);
-                let message = Message::from(STATUSTEXT_DATA {
-                    severity,
-                    text: text.into(),
-                    id: if is_long { self.texts } else { 0 },
-                    chunk_seq: u8::try_from(chunk).unwrap_or(u8::MAX),
-                });
-                self.broadcast(&message);
-            }
-        }
-    }
-
     /// The target of a message is this autopilot, or everyone.
     pub(super) fn is_for_us(&self, (system, component): (u8, u8)) -> bool {
         (system == 0 || system == self.settings.system) && (component == 0 || component == COMPONENT)
@@ -369,6 +369,7 @@ impl Vehicle {
         }
         self.booted = self.next;
         self.upload = None;
+        self.keeper.reboot(&self.parameters);
         for link in &mut self.links {
             link.restart(self.settings.autopilot);
         }

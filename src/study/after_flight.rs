@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::log::{self, OpenOptions};
+use crate::signals::clock_offset;
 use crate::wire::SystemId;
 
 use super::{
@@ -18,25 +20,66 @@ pub struct AfterFlight {
     pub explained: Result<ExplainStudy, StudyError>,
 }
 
-/// Identifies and explains one recording of the vehicle of this file, both with the settings that they have by themselves.
-/// `system` is the vehicle's MAVLink system id; without it the only one of the recording that flew.
+/// The logs of one flight, and why they are these.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FlightLogs {
+    /// to be analysed together
+    pub logs: Vec<PathBuf>,
+    /// in a sentence without its end; `None` where there is only the recording of the link
+    pub why: Option<String>,
+}
+
+impl FlightLogs {
+    /// The recording of the link, together with the log that the vehicle wrote itself if that is of the same flight. Of both,
+    /// each quantity comes from the better stream. If only one of them can be read, it is that one.
+    #[must_use]
+    pub fn of(link: &Path, system: Option<SystemId>, onboard: Option<&Path>) -> Self {
+        let alone = |path: &Path, why: Option<String>| Self { logs: vec![path.to_owned()], why };
+        let Some(onboard) = onboard else { return alone(link, None) };
+        let vehicle = match log::open(onboard, &OpenOptions::default()) {
+            Ok(vehicle) => vehicle.recording,
+            Err(error) => {
+                return alone(link, Some(format!("the vehicle's own log cannot be read: {error}")));
+            }
+        };
+        let options = OpenOptions { system, ..OpenOptions::default() };
+        let heard = match log::open(link, &options) {
+            Ok(heard) => heard.recording,
+            Err(error) => {
+                let why = format!(
+                    "the recording of the link cannot be read ({error}), the vehicle's own log is analysed alone"
+                );
+                return alone(onboard, Some(why));
+            }
+        };
+        if clock_offset(&vehicle, &heard).is_none() {
+            let why = "the vehicle's own log has another attitude than the recording of the link: it is not of this flight, and \
+                       the recording is analysed alone";
+            return alone(link, Some(why.to_owned()));
+        }
+        let why = "the recording of the link and the vehicle's own log are analysed together";
+        Self { logs: vec![link.to_owned(), onboard.to_owned()], why: Some(why.to_owned()) }
+    }
+}
+
+/// Identifies and explains the logs of one flight of the vehicle of this file, both with the settings that they have by
+/// themselves. `system` is the vehicle's MAVLink system id; without it the only one of a recording that flew.
 #[must_use]
 pub fn after_flight(
-    recording: &Path,
+    logs: &[PathBuf],
     vehicle: &Path,
     system: Option<SystemId>,
     progress: &dyn Progress,
 ) -> AfterFlight {
-    let logs: Vec<PathBuf> = vec![recording.to_owned()];
     let read = ReadSettings { csv_map: None, system };
     let to_identify = IdentifyRequest {
-        logs: logs.clone(),
+        logs: logs.to_vec(),
         vehicle: vehicle.to_owned().into(),
         read: read.clone(),
         ..IdentifyRequest::default()
     };
     let to_explain = ExplainRequest {
-        logs,
+        logs: logs.to_vec(),
         vehicle: vehicle.to_owned().into(),
         read,
         transient_s: ExplainRequest::TRANSIENT_S,

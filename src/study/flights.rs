@@ -2,17 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::autopilot::VehicleKind;
 use crate::config::{ConfigError, load_csv_mapping};
 use crate::diagnose::holdout::HeldOut;
-use crate::log::{Hold, LogError, LogFlight, OpenOptions, ReadReport, format_of, open_flights};
+use crate::log::{
+    Hold, LogError, LogFlight, OpenOptions, OpenedFlights, ReadReport, format_of, open_flights,
+};
 use crate::note::{About, Note};
 use crate::recording::{Recording, shared_share};
-use crate::signals::{ConditionSettings, Signals, condition};
+use crate::signals::{ConditionSettings, Said, Signals};
 use crate::text;
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
 use rayon::prelude::*;
 
+use super::both_logs::each_flight_once;
+use super::flight::{Flight, LoggedBy};
 use super::{InputFile, StudyError};
 
 /// What is identified and validated from of one log: it takes 20 MB a minute at 125 Hz.
@@ -55,14 +60,6 @@ impl ReadSettings {
     }
 }
 
-/// A flight and the log that it came from.
-#[derive(Debug)]
-pub(super) struct Flight {
-    pub(super) recording: Recording,
-    /// name, hash, losses
-    pub(super) input: InputFile,
-}
-
 /// Flights that are ready for estimation; all have one entry a flight.
 #[derive(Debug, Default)]
 pub(super) struct Prepared {
@@ -93,7 +90,8 @@ impl Prepared {
     }
 }
 
-/// The flights of every log, read side by side: each has at least one, and at most as much as `most`.
+/// The flights of every log, read side by side: each has at least one, and at most as much as `most`. A flight that the vehicle
+/// and a ground station have logged is one flight.
 pub(super) fn load_all(
     logs: &[PathBuf],
     read: &ReadSettings,
@@ -101,11 +99,16 @@ pub(super) fn load_all(
 ) -> Result<Vec<Vec<Flight>>, StudyError> {
     let options = read.open_options()?;
     let done: Vec<_> = logs.par_iter().map(|path| load(path, &options, most)).collect();
-    done.into_iter().collect()
+    Ok(each_flight_once(done.into_iter().collect::<Result<_, _>>()?))
 }
 
 fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, StudyError> {
     let opened = open_flights(path, options, most).map_err(|error| unread(path, error))?;
+    if let Some(kind) = opened.report.kind().filter(|kind| *kind != VehicleKind::Multirotor) {
+        let why = format!("expected the log of a multirotor, got that of a {}", kind.name());
+        return Err(StudyError::File { file: text::path(&path), why });
+    }
+    refuse_no_flight(path, &opened)?;
     let about = || About::File(text::path(&path));
     let losses = opened.report.losses.iter().map(ToString::to_string);
     let oddities = opened.report.oddities.iter().map(ToString::to_string);
@@ -114,7 +117,22 @@ fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, 
     input
         .notes
         .extend(whose(&opened.report).into_iter().chain(oddities).map(|text| Note::remark(about(), text)));
-    Ok(of_log(opened.flights.flights, &input))
+    Ok(of_log(opened.flights.flights, &input, LoggedBy::of(&opened.report)))
+}
+
+/// A log that says itself that nothing was flown, or that has no clock, is told so, and not that a stream is missing.
+fn refuse_no_flight(path: &Path, opened: &OpenedFlights) -> Result<(), StudyError> {
+    let mut flights = opened.flights.flights.iter();
+    let why = if !opened.report.is_timed() {
+        "expected a log with times, got one whose messages carry no time of the vehicle's"
+    } else if opened.report.ends_early() {
+        "expected a whole log, got one that ends before its first sample"
+    } else if flights.all(|flight| Said::of(&flight.recording).never_armed()) {
+        "expected a flight, got the log of a vehicle that was never armed"
+    } else {
+        return Ok(());
+    };
+    Err(StudyError::File { file: text::path(&path), why: why.to_owned() })
 }
 
 /// Why a log cannot be read, with its name.
@@ -140,7 +158,7 @@ fn whose(report: &ReadReport) -> Option<String> {
 }
 
 /// Each flight under a name of its own; what is to be said of the log is said of the first.
-fn of_log(flights: Vec<LogFlight>, log: &InputFile) -> Vec<Flight> {
+fn of_log(flights: Vec<LogFlight>, log: &InputFile, logged_by: LoggedBy) -> Vec<Flight> {
     let of = flights.len();
     let named = |(index, flight): (usize, LogFlight)| {
         let mut input = log.clone();
@@ -150,25 +168,9 @@ fn of_log(flights: Vec<LogFlight>, log: &InputFile) -> Vec<Flight> {
         if let Some((from_s, to_s)) = flight.part_s {
             input.path = format!("{}, flight {} of {of} ({from_s:.0} to {to_s:.0} s)", log.path, index + 1);
         }
-        Flight { recording: flight.recording, input }
+        Flight { logged_by, recording: flight.recording, input }
     };
     flights.into_iter().enumerate().map(named).collect()
-}
-
-impl Flight {
-    /// Conditioned for a vehicle of this file.
-    pub(super) fn conditioned(
-        &self,
-        (vehicle, file): (&Vehicle, &Path),
-        settings: &ConditionSettings,
-    ) -> Result<Signals, StudyError> {
-        condition(&self.recording, vehicle, settings).map_err(|source| StudyError::Flight {
-            flight: self.input.path.clone(),
-            vehicle: text::path(&file),
-            source,
-            losses: self.input.losses().into_iter().map(str::to_owned).collect(),
-        })
-    }
 }
 
 /// The flights of every log, conditioned side by side for a vehicle of this file.

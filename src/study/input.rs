@@ -17,6 +17,8 @@ pub struct InputFile {
     pub path: String,
     /// SHA-256 of its bytes, hexadecimal
     pub sha256: String,
+    /// other logs of the same flight that were put together with it: path and SHA-256
+    pub other_logs: Vec<(String, String)>,
     /// what of it was lost on reading, and what else is to be known of it: whose flight it is, what is no flight
     pub notes: Vec<Note>,
 }
@@ -29,7 +31,19 @@ impl InputFile {
     pub fn of(path: &Path) -> Result<Self, StudyError> {
         let sha256 = sha256_of(path)
             .map_err(|error| StudyError::File { file: text::path(&path), why: error.to_string() })?;
-        Ok(Self { path: text::path(&path), sha256, notes: Vec::new() })
+        Ok(Self { path: text::path(&path), sha256, other_logs: Vec::new(), notes: Vec::new() })
+    }
+
+    /// Another log of the same flight was put together with it.
+    pub(super) fn add_log(&mut self, other: Self) {
+        self.other_logs.push((other.path, other.sha256));
+        self.notes.extend(other.notes);
+    }
+
+    /// Path and SHA-256 of each of its files.
+    pub fn files(&self) -> impl Iterator<Item = (&str, &str)> {
+        let others = self.other_logs.iter().map(|(path, sha256)| (path.as_str(), sha256.as_str()));
+        std::iter::once((self.path.as_str(), self.sha256.as_str())).chain(others)
     }
 
     /// What of it was not read or not used: sentence by sentence.
@@ -49,19 +63,27 @@ impl InputFile {
     }
 }
 
-/// `{"path", "sha256", "losses", "notes"}`, the last only where there are some.
+/// `{"path", "sha256", "other_logs", "losses", "notes"}`, the third and the last only where there are some.
 impl Serialize for InputFile {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct OtherLog<'a> {
+            path: &'a str,
+            sha256: &'a str,
+        }
         #[derive(Serialize)]
         struct Written<'a> {
             path: &'a str,
             sha256: &'a str,
+            #[serde(skip_serializing_if = "Vec::is_empty")]
+            other_logs: Vec<OtherLog<'a>>,
             losses: Vec<&'a str>,
             #[serde(skip_serializing_if = "Vec::is_empty")]
             notes: Vec<&'a str>,
         }
         let (losses, notes) = (self.losses(), self.remarks());
-        Written { path: &self.path, sha256: &self.sha256, losses, notes }.serialize(serializer)
+        let other_logs = self.other_logs.iter().map(|(path, sha256)| OtherLog { path, sha256 }).collect();
+        Written { path: &self.path, sha256: &self.sha256, other_logs, losses, notes }.serialize(serializer)
     }
 }
 
@@ -83,7 +105,8 @@ mod tests {
     fn losses_and_remarks_are_written_apart() {
         let about = || About::File("a.tlog".to_owned());
         let notes = vec![Note::remark(about(), "two vehicles"), Note::loss(about(), "3 bytes cut off")];
-        let input = InputFile { path: "a.tlog".to_owned(), sha256: "0".to_owned(), notes };
+        let input =
+            InputFile { path: "a.tlog".to_owned(), sha256: "0".to_owned(), other_logs: Vec::new(), notes };
         let expected =
             r#"{"path":"a.tlog","sha256":"0","losses":["3 bytes cut off"],"notes":["two vehicles"]}"#;
         assert_eq!(text::json_line(&input).unwrap(), expected);

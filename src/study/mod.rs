@@ -5,10 +5,12 @@
 //! [`Progress`].
 
 mod after_flight;
+mod both_logs;
 mod correlation;
 mod effects;
 mod error;
 mod explain;
+mod flight;
 mod flights;
 mod identify;
 mod input;
@@ -19,7 +21,7 @@ mod validate;
 mod vehicle;
 mod vehicle_given;
 
-pub use after_flight::{AfterFlight, after_flight};
+pub use after_flight::{AfterFlight, FlightLogs, after_flight};
 pub use correlation::Correlation;
 pub use effects::{effects_file, effects_of, effects_text, with_further, with_stated_lag};
 pub use error::StudyError;
@@ -44,4 +46,4 @@ pub use validate::{
     ValidatedModel, closed_loop_table, playback_table, prediction_table, validate,
 };
 pub use vehicle::{RotorSummary, VehicleSummary, vehicle_summary};
-pub use vehicle_given::{VehicleGiven, draft_from_log, draft_text};
+pub use vehicle_given::{VehicleGiven, draft_from_log, draft_from_parameters, draft_text, with_thrust_stand};

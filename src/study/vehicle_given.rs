@@ -1,5 +1,7 @@
 //! How a study is told of the vehicle: by a file, or by its mass and size.
 
+use crate::autopilot::Autopilot;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::config::{ConfigError, LoadedVehicle, ModelTables, read_vehicle, vehicle_to_toml};
@@ -7,11 +9,13 @@ use crate::draft::{Draft, Given, draft};
 use crate::log::{Hold, open_flights};
 use crate::note::{About, Note};
 use crate::recording::Recording;
+use crate::stand::{StandError, measured_propulsion, read_table};
 use crate::text;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Guessed, Vehicle};
 
 use super::StudyError;
-use super::flights::{Flight, ReadSettings, file_notes, unread};
+use super::flight::Flight;
+use super::flights::{ReadSettings, file_notes, unread};
 
 /// How a study is told of the vehicle.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,6 +126,58 @@ pub fn draft_from_log(log: &Path, read: &ReadSettings, given: &Given) -> Result<
     };
     drafted(&flight.recording, &text::path(&log), given)
 }
+
+/// A first description of a vehicle by its parameters alone, as they came over the link at `address`.
+///
+/// # Errors
+/// They do not say enough.
+pub fn draft_from_parameters(
+    (autopilot, parameters): (Autopilot, BTreeMap<String, f64>),
+    given: &Given,
+    address: &str,
+) -> Result<Draft, StudyError> {
+    let recording = Recording { autopilot, parameters, ..Recording::default() };
+    draft(&recording, given, "vehicle")
+        .map_err(|error| StudyError::File { file: address.to_owned(), why: error.to_string() })
+}
+
+/// A draft with what a thrust stand measured of one of its rotors in place of guesses.
+///
+/// # Errors
+/// The table cannot be read, does not say enough, or says what no rotor does.
+pub fn with_thrust_stand(mut draft: Draft, table: &Path) -> Result<Draft, StudyError> {
+    let name = text::path(&table);
+    let unusable = |error: StandError| match error {
+        StandError::Read { .. } | StandError::TooLarge { .. } => {
+            StudyError::Setting { name: "thrust-stand", why: error.to_string() }
+        }
+        _ => StudyError::File { file: name.clone(), why: error.to_string() },
+    };
+    let vehicle = &mut draft.vehicle;
+    let stand = read_table(table).and_then(|table| measured_propulsion(&table, &vehicle.propulsion));
+    let stand = stand.map_err(unusable)?;
+    let weight_n = vehicle.body.mass_kg * vehicle.gravity_m_s2 / vehicle.rotors.len() as f64;
+    let hovers = vehicle.propulsion.command_from_thrust(weight_n);
+    let by_flight = vehicle.guesses.iter().any(|guess| {
+        guess.of == Guessed::ThrustMax && guess.relative < FLOWN && stand.measured.contains(&guess.of)
+    });
+    let lifted = stand.propulsion.thrust_from_command_n(hovers) / weight_n;
+    if by_flight && !(1.0 / APART..=APART).contains(&lifted) {
+        draft.origins.push(format!(
+            "{name}: at the command at which the log's vehicle hovers, the stand's thrust is {lifted:.2} times the weight: \
+             another voltage, another rotor, or a wrong mass?"
+        ));
+    }
+    vehicle.propulsion = stand.propulsion;
+    vehicle.guesses.retain(|guess| !stand.measured.contains(&guess.of));
+    draft.origins.extend(stand.sentences.into_iter().map(|sentence| format!("{name}: {sentence}")));
+    Ok(draft)
+}
+
+/// A largest thrust that is known better than this is from a flight.
+const FLOWN: f64 = 0.1;
+/// Thrusts of a stand and of a flight that are further apart contradict each other.
+const APART: f64 = 1.25;
 
 /// A draft as a vehicle file, with where its values come from.
 ///

@@ -10,6 +10,7 @@ mod clock;
 mod decode;
 mod embedded;
 mod encode;
+pub mod file_transfer;
 mod frame;
 mod sender;
 mod splitter;

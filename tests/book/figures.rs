@@ -63,7 +63,7 @@ fn right_names(measured: &Measured) -> String {
     let others: usize = measured.effects.iter().flat_map(|run| run.others.values()).sum();
     let sum = format!(
         "In {found} of {flights} flights the concealed effect was named or was in the confusable set of the named effect. \
-         Another name was given {others} times."
+         Other names: {others}."
     );
     let head = ["effect", "concealed", "named", "in the set", "others named", "median error of size"];
     format!("{}\n\n{}", table(&head, &rows), paragraph(&sum))

@@ -6,6 +6,9 @@ use std::net::{TcpListener, UdpSocket};
 use std::process::{Child, Command, Stdio};
 
 use crate::support::Needed;
+use mavid::log::{Input, OpenOptions};
+use mavid::recording::Quantity;
+use mavid::wire::file_transfer::FileSum;
 use serde_json::{Value, json};
 
 /// The running program; ended when the test is.
@@ -113,4 +116,103 @@ fn mavsdk_finds_px4_healthy_stores_a_fence_and_flies_offboard() {
     let texts = answer["texts"].to_string();
     assert!(texts.contains("Takeoff detected") && texts.contains("Disarmed by landing"), "{texts}");
     assert_eq!(sitl.interrupt().0, Some(0));
+}
+
+/// The log of the flight: what pymavlink downloads is whole, and tells the flight.
+fn fetched(answer: &Value, begins: &str, ends: &str) {
+    let path = answer["path"].as_str().unwrap();
+    assert!(path.starts_with(begins) && path.ends_with(ends), "{path}");
+    let hex = answer["log"].as_str().unwrap();
+    let bytes: Vec<u8> =
+        (0..hex.len() / 2).map(|at| u8::from_str_radix(&hex[2 * at..2 * at + 2], 16).unwrap()).collect();
+    assert_eq!(answer["listed"], json!(bytes.len()));
+    assert_eq!(answer["sum"], json!(FileSum::of(&bytes)));
+    let input = Input::Bytes { name: path, bytes: &bytes };
+    let opened = mavid::log::open(input, &OpenOptions::default()).unwrap();
+    assert!(opened.report.losses.is_empty(), "{:?}", opened.report.losses);
+    let position = opened.recording.streams.iter().find(|(key, _)| key.quantity == Quantity::Position);
+    let (_, position) = position.unwrap();
+    let highest_m = position.values.iter().skip(2).step_by(3).copied().fold(f64::MIN, f64::max);
+    assert!(highest_m > 0.3, "{highest_m}");
+}
+
+#[test]
+fn pymavlink_fetches_the_log_of_a_flight_of_px4() {
+    let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let listen = format!("udpout:127.0.0.1:{port}");
+    let sitl = Sitl::start(&["--warm-up", "2", "--listen", &listen]);
+    let connection = format!("udpin:127.0.0.1:{port}");
+    match crate::python::ask("fetch_with_pymavlink.py", &[&connection, "px4"], &json!(null)) {
+        Ok(answer) => fetched(&answer, "/fs/microsd/log/", ".ulg"),
+        Err(why) => return crate::support::skip(Needed::Peers, &why),
+    }
+    assert_eq!(sitl.interrupt().0, Some(0));
+}
+
+#[test]
+fn pymavlink_fetches_the_log_of_a_flight_of_ardupilot() {
+    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let listen = format!("tcpin:127.0.0.1:{port}");
+    let options = ["--autopilot", "ardupilot", "--speed", "3", "--warm-up", "2", "--listen", listen.as_str()];
+    let sitl = Sitl::start(&options);
+    let connection = format!("tcp:127.0.0.1:{port}");
+    match crate::python::ask("fetch_with_pymavlink.py", &[&connection, "ardupilot"], &json!(null)) {
+        Ok(answer) => fetched(&answer, "/APM/LOGS/", ".BIN"),
+        Err(why) => return crate::support::skip(Needed::Peers, &why),
+    }
+    assert_eq!(sitl.interrupt().0, Some(0));
+}
+
+/// The vehicle writes on its log meanwhile: what comes later is longer.
+#[test]
+fn mavsdk_fetches_a_log_by_both_protocols() {
+    let folder = crate::processes::folder("fetched_by_mavsdk");
+    let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let listen = format!("udpout:127.0.0.1:{port}");
+    let sitl = Sitl::start(&["--warm-up", "2", "--param", "SDLOG_MODE=2", "--listen", &listen]);
+    let connection = format!("udpin://127.0.0.1:{port}");
+    let arguments = [connection.as_str(), folder.to_str().unwrap()];
+    let answer = match crate::python::ask("fetch_with_mavsdk.py", &arguments, &json!(null)) {
+        Ok(answer) => answer,
+        Err(why) => return crate::support::skip(Needed::Mavsdk, &why),
+    };
+    let read = |key: &str| std::fs::read(answer[key].as_str().unwrap()).unwrap();
+    let (by_messages, by_transfer) = (read("log"), read("ftp"));
+    assert_eq!(answer["entries"], json!([by_messages.len()]));
+    assert!(!by_messages.is_empty() && by_transfer.starts_with(&by_messages));
+    let path = answer["path"].as_str().unwrap();
+    let input = Input::Bytes { name: path, bytes: &by_transfer };
+    let opened = mavid::log::open(input, &OpenOptions::default()).unwrap();
+    assert!(opened.recording.streams.keys().any(|key| key.quantity == Quantity::AngularRate));
+    assert_eq!(sitl.interrupt().0, Some(0));
+}
+
+/// A fifth of the datagrams is lost both ways.
+#[test]
+fn a_log_that_pymavlink_serves_by_messages_is_fetched_over_a_lossy_link() {
+    let folder = crate::processes::folder("served_by_pymavlink");
+    let log = folder.join("log.bin");
+    let bytes: Vec<u8> = (0..60_000_u32).map(|at| at.wrapping_mul(2_654_435_761).to_be_bytes()[0]).collect();
+    std::fs::write(&log, &bytes).unwrap();
+    let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let (served, fetched) = std::thread::scope(|scope| {
+        let arguments = [format!("udpout:127.0.0.1:{port}"), log.display().to_string(), "0.2".to_owned()];
+        let served = scope.spawn(move || {
+            let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+            crate::python::ask("logs_with_pymavlink.py", &arguments, &json!(null))
+        });
+        let mut child = Command::new(env!("CARGO_BIN_EXE_mavid"));
+        child.args(["--json", "log", "fetch", "--connect", &format!("udpin:127.0.0.1:{port}"), "--out"]);
+        let fetched = child.arg(folder.join("out")).output().unwrap();
+        (served.join().unwrap(), fetched)
+    });
+    let served = match served {
+        Ok(served) => served,
+        Err(why) => return crate::support::skip(Needed::Peers, &why),
+    };
+    assert!(fetched.status.success(), "{}", String::from_utf8_lossy(&fetched.stderr));
+    let document: Value = serde_json::from_slice(&fetched.stdout).unwrap();
+    assert_eq!((&document["protocol"], &document["bytes"]), (&json!("log"), &json!(bytes.len())));
+    assert_eq!(std::fs::read(document["log"].as_str().unwrap()).unwrap(), bytes);
+    assert!(served["requests"].as_u64().unwrap() > 1, "{served}");
 }

@@ -8,6 +8,7 @@ mod ground;
 
 mod ardupilot;
 mod both;
+mod onboard_logs;
 mod px4;
 mod telemetry;
 

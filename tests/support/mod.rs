@@ -2,6 +2,7 @@
 
 #![allow(dead_code, unused_imports, clippy::unwrap_used)] // no test uses all of it
 
+pub mod dataflash;
 pub mod require;
 
 use std::path::{Path, PathBuf};

@@ -109,7 +109,7 @@ fn story(
     let landed = record.outcome.ending == Ending::Landed;
     progress.stage("identifying and explaining", progress::LANDED);
     let tell = &mut |word: Word| word.say();
-    let analysis = Analysis::of((folder, landed), &vehicle, record.system, tell)?;
+    let analysis = Analysis::of((folder, landed, None), &vehicle, record.system, tell)?;
     Ok((record, analysis))
 }
 
@@ -161,6 +161,9 @@ fn fly_args(port: u16, vehicle: &Path, trajectory: &Path, folder: &Path) -> FlyA
         gate_speed: None,
         accept: Vec::new(),
         signing_key_file: None,
+        set_logging: false,
+        fetch_log: false,
+        no_fetch_log: true,
         plain: true,
     }
 }

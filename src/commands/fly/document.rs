@@ -27,6 +27,9 @@ pub struct Document {
     /// the same
     explanation_failure: Option<String>,
     report: Option<String>,
+    /// the vehicle's own log, where it is what was analysed
+    #[serde(skip_serializing_if = "Option::is_none")]
+    onboard_log: Option<String>,
 }
 
 impl Document {
@@ -47,6 +50,7 @@ impl Document {
             explanation: explained.and_then(|done| done.as_ref().ok()).map(ExplanationDocument::new),
             explanation_failure: explained.and_then(|done| done.as_ref().err()).cloned().or(unwritten(1)),
             report: analysis.and_then(Analysis::report).map(|path| text::path(&path)),
+            onboard_log: analysis.and_then(|analysis| analysis.onboard.as_ref()).map(text::path),
         }
     }
 }

@@ -15,7 +15,7 @@ use mavid::vehicle::{Limits, Vehicle};
 use mavid::wire::{ComponentId, SystemId};
 
 use crate::cli::{CheckName, FlyArgs, OriginName};
-use crate::commands::{CommandError, leftover, output};
+use crate::commands::{CommandError, leftover, network, output};
 
 /// A ground station's component id.
 const STATION: ComponentId = ComponentId(190);
@@ -29,7 +29,7 @@ pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
             "--station-id: expected another id than the vehicle's, got {got} for both"
         )));
     }
-    let address = args.connect.parse().map_err(|error| input(&error))?;
+    let address = network::address("--connect", &args.connect)?;
     let loaded = read_vehicle(&args.vehicle)?;
     output::warnings(&args.vehicle, &loaded.warnings);
     let trajectory = read_trajectory(&args.trajectory)?;

@@ -3,6 +3,7 @@
 use std::io::IsTerminal;
 
 use mavid::fly::{Ending, Record};
+use mavid::wire::SystemId;
 
 use super::document::Document;
 use super::ride::{asks_for_the_word, is_attended, ride};
@@ -12,8 +13,9 @@ use crate::cli::FlyArgs;
 use crate::commands::after_flight::Analysis;
 use crate::commands::last_word::{PATIENCE, within};
 use crate::commands::live::{self, Work};
+use crate::commands::log::{self, Fetching};
 use crate::commands::standard_error::StandardError;
-use crate::commands::words::Words;
+use crate::commands::words::{Word, Words};
 use crate::commands::{CommandError, Outcome, output};
 
 /// Messages and log lines while the view is shown, in the folder of the flight.
@@ -32,7 +34,14 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
             "--quiet: expected --yes with --arm and --plain: with --quiet nothing asks for the word";
         return Err(CommandError::Input(expected.to_owned()));
     }
-    let ride = ride(args)?;
+    let mut ride = ride(args)?;
+    if args.set_logging {
+        // a signal ends the conversation with the vehicle
+        work.ends_itself();
+    }
+    let before = log::before_flight(args)?;
+    // the vehicle that was spoken to, and no other
+    ride.sortie.system = before.system.map(SystemId).or(ride.sortie.system);
     let how = Watch {
         drawn: drawn.then(|| stderr.clone()),
         log: args.out.join(LOG),
@@ -40,13 +49,24 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
         typed: args.plain || std::io::stdin().is_terminal(),
         has_page: ride.sortie.settings.await_word,
     };
-    let (record, view) = fly_it(ride, work, move |pictures, pressed| watch(&how, pictures, pressed))?;
+    let flown = fly_it(ride, work, move |pictures, pressed| watch(&how, pictures, pressed));
+    let mut notes = Vec::new();
+    if !before.noted.is_empty() {
+        // not ended by a signal that ended the flight: what was set has to be put back
+        work.flies();
+        log::put_back(args, &before, &mut |note| notes.push(note));
+        work.ends_itself();
+    }
+    let (record, view) = flown.inspect_err(|_| notes.iter().for_each(Word::say))?;
     let mut said = Words::new(view == View::Stuck);
     said.say(words(&record));
+    said.say(std::mem::take(&mut notes));
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
-    let mut notes = Vec::new();
-    let analysis =
-        Analysis::of((&args.out, landed), &args.vehicle, record.system, &mut |note| notes.push(note));
+    let fetching = if record.outcome.ending == Ending::Landed { Fetching::of(args) } else { Fetching::Not };
+    // each line when it is due: how long a download takes is said before it
+    let onboard = log::after_flight(args, record.system, fetching, &mut |note| said.say(vec![note]));
+    let flown = (&*args.out, landed, onboard.as_deref());
+    let analysis = Analysis::of(flown, &args.vehicle, record.system, &mut |note| notes.push(note));
     said.say(notes);
     let analysis = analysis?;
     let heard = view == View::Ended && said.are_heard();

@@ -261,6 +261,7 @@ impl Flown {
                 offsets: Vec::new(),
                 airborne_s: Vec::new(),
                 usable: Usable::default(),
+                torques: true,
                 notes: Vec::new(),
             },
         }

@@ -44,7 +44,7 @@ pub fn command_noise(signals: &Signals) -> Option<CommandNoise> {
         return None;
     }
     let rotors = signals.rotor_thrust_n.len() / signals.grid.count.max(1);
-    let every = samples_apart(signals, Quantity::ActuatorCommand);
+    let every = signals.samples_apart(Quantity::ActuatorCommand);
     let at = |index: usize, rotor: usize| signals.rotor_thrust_n[index * rotors + rotor];
     let differences: Vec<SVector<f64, MAX_ROTORS>> = (4 * every..signals.grid.count)
         .step_by(every)
@@ -80,7 +80,7 @@ pub fn command_noise(signals: &Signals) -> Option<CommandNoise> {
 
 /// Noise level at the rate of the stream's samples, because the grid is interpolated between them.
 fn levels(signals: &Signals, flat: Vec<f64>, width: usize, quantity: Quantity) -> Vec<f64> {
-    let every = samples_apart(signals, quantity);
+    let every = signals.samples_apart(quantity);
     let mut stream = Stream { time_s: Vec::new(), width, values: Vec::new() };
     for (index, sample) in flat.chunks_exact(width).enumerate().step_by(every) {
         if signals.usable[index] {
@@ -89,16 +89,6 @@ fn levels(signals: &Signals, flat: Vec<f64>, width: usize, quantity: Quantity) -
         }
     }
     white_level(&stream)
-}
-
-/// Instants of the grid from one sample of the stream to the next.
-fn samples_apart(signals: &Signals, quantity: Quantity) -> usize {
-    let rate_hz = signals.quality.sources.iter().find(|(q, ..)| *q == quantity).map(|(.., rate)| *rate);
-    let period_s = rate_hz.filter(|rate| *rate > 0.0).map_or(signals.grid.step_s, |rate| 1.0 / rate);
-    (1..1000)
-        .find(|n| f64::from(*n) * signals.grid.step_s > 0.75 * period_s)
-        .and_then(|n| usize::try_from(n).ok())
-        .unwrap_or(1)
 }
 
 fn rms(levels: &[f64]) -> f64 {

@@ -225,11 +225,12 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
     const PLACES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
     let body = &own.base.vehicle.body;
     let std = |fitted: &Fitted, index: usize| fitted.covariance[(index, index)].max(0.0).sqrt();
+    let first_s = own.rows.time_s.first().copied();
     let mut out = Vec::new();
     for (index, column) in own.rows.nuisances.iter().enumerate() {
         let (name, unit, value) = match column.nuisance {
             // before a change that these rows do not hold
-            Nuisance::Mass if own.base.present.iter().any(|of| is_before(of, own)) => continue,
+            Nuisance::Mass if own.base.present.iter().any(|of| of.is_before(first_s)) => continue,
             Nuisance::Mass => (NAMES[0], UNITS[0], body.mass_kg),
             Nuisance::Inertia(entry) => {
                 let (row, column) = PLACES[entry];
@@ -237,6 +238,10 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
             }
             _ => continue,
         };
+        // one of them says nothing of it: torques were not compared
+        if std(identified, index) <= 0.0 || std(own, index) <= 0.0 {
+            continue;
+        }
         out.push(Agreement {
             name: name.to_owned(),
             unit,
@@ -250,15 +255,12 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
     for present in &own.base.present {
         for &free in &present.free {
             let Some(parameter) = present.parameter(free) else { continue };
+            let known = column_of(present, free, identified);
             out.push(Agreement {
                 name: format!("{}.{}", present.id(), parameter.name),
                 unit: parameter.unit,
                 identified: present.values[free],
-                identified_std: if index < identified.covariance.nrows() {
-                    std(identified, index)
-                } else {
-                    0.0
-                },
+                identified_std: known.map_or(0.0, |index| std(identified, index)),
                 held_out: present.values[free] + own.coefficients[index],
                 held_out_std: std(own, index),
             });
@@ -268,10 +270,11 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
     out
 }
 
-/// Whether a change of mass was before the first row.
-fn is_before(present: &EffectTerm, own: &Fitted) -> bool {
-    let moment_s = present.signature.role.moment.map(|slot| present.values[slot]);
-    moment_s.is_some_and(|moment_s| own.rows.time_s.first().is_some_and(|first_s| moment_s <= *first_s))
+/// Place of an effect's parameter among the coefficients of a fit that estimates it.
+fn column_of(present: &EffectTerm, slot: usize, fitted: &Fitted) -> Option<usize> {
+    let mut free =
+        fitted.base.present.iter().flat_map(|term| term.free.iter().map(move |slot| (term.id(), *slot)));
+    free.position(|place| place == (present.id(), slot)).map(|place| fitted.rows.nuisances.len() + place)
 }
 
 /// Two flights' values weighted by their variances.

@@ -34,7 +34,7 @@ pub(super) fn residuals(
         .par_iter()
         .map(|ready| {
             let frozen = |base: &Base, from: &Fitted| -> Result<(Channels, Fitted), PhysicsError> {
-                let own = evaluate(std::slice::from_ref(&ready.trace), base.clone())?;
+                let own = own_fit(&ready.trace, base)?;
                 Ok((without_known_nuisances(&own, from), own))
             };
             let search = &explanation.search;
@@ -73,13 +73,25 @@ pub(super) fn residuals(
     Ok(Weak { own_rms: floor.map(root), compared, own: parts.into_iter().map(|(.., own)| own).collect() })
 }
 
+/// A flight's own linear fit about a model. The size of a change that was before the flight's rows keeps its value: there
+/// it cannot be distinguished from the mass.
+fn own_fit(trace: &Trace, base: &Base) -> Result<Fitted, PhysicsError> {
+    let first_s = trace.centers.first().map(|&center| trace.grid.time_s(center));
+    let mut base = base.clone();
+    for term in base.present.iter_mut().filter(|term| term.is_before(first_s)) {
+        term.free.clear();
+    }
+    evaluate(std::slice::from_ref(trace), base)
+}
+
 /// The residual without the part of each nuisance: nuisances of the sensors (bias, level of the attitude) as the flight
 /// itself determines them, those of the vehicle as they were identified.
 fn without_known_nuisances(own: &Fitted, identified: &Fitted) -> Channels {
     let mut residual = own.rows.residual.clone();
     for (index, column) in own.rows.nuisances.iter().enumerate() {
         let share = match column.nuisance {
-            Nuisance::Mass | Nuisance::Inertia(_) | Nuisance::Latency => continue,
+            // a model without drag has no column for the velocity's error: neither model is given one
+            Nuisance::Mass | Nuisance::Inertia(_) | Nuisance::Latency | Nuisance::VelocityError => continue,
             Nuisance::AccelerometerBias(_) | Nuisance::Level(_) => own.coefficients[index],
             Nuisance::ForceLatency | Nuisance::Tilt(_) | Nuisance::Jitter => {
                 let columns = &identified.rows.nuisances;

@@ -14,8 +14,8 @@ use crate::diagnose::latency::{LatencyFinding, finding_of};
 use crate::diagnose::recorded::Recorded;
 use crate::diagnose::trace::Trace;
 use crate::estimate::{
-    Estimated, Finding, Method, MethodResult, Nominal, THETA, Theta, ThetaCovariance, identified_vehicle,
-    is_physical, nearest_physical, rescaled, theta_of, thrust_scale,
+    Estimated, Finding, Method, MethodResult, Nominal, THETA, Theta, identified_vehicle, is_physical,
+    nearest_physical, rescaled, thrust_scale,
 };
 use crate::physics::{ActiveEffect, Airframe};
 use crate::signals::Signals;
@@ -79,7 +79,7 @@ fn put_together(
 ) -> JointEstimate {
     let Fits { before, after, settled, split, first } = fits;
     let nominal = Nominal::of(vehicle);
-    let (mut estimated, mut estimated_before) = (estimated(&after), estimated(&before));
+    let (mut estimated, mut estimated_before) = (after.rigid_body(), before.rigid_body());
     let physical = made_physical(&mut estimated, &nominal.theta);
     let result = |estimated: &Estimated| MethodResult::new(Method::Weak, estimated, &nominal);
     let (mut body, mut body_before) = (result(&estimated), result(&estimated_before));
@@ -120,7 +120,8 @@ fn put_together(
 
 /// Replaces a physically impossible inertia by the nearest possible one, if that lies within its error.
 fn made_physical(estimated: &mut Estimated, nominal: &Theta) -> Physical {
-    if is_physical(&estimated.theta) {
+    // an inertia that is not determined needs no repair
+    if is_physical(&estimated.theta) || estimated.theta.iter().any(|value| value.is_nan()) {
         return Physical::AsEstimated;
     }
     let Some(theta) = nearest_physical(&estimated.theta, &estimated.covariance, nominal) else {
@@ -138,10 +139,3 @@ fn made_physical(estimated: &mut Estimated, nominal: &Theta) -> Physical {
 
 /// Standard errors by which an inertia may be moved to the nearest possible one. Chosen; not measured.
 const WITHIN_ERROR: f64 = 3.0;
-
-/// Mass and inertia of a fit: the first columns of its nuisances, in the same order.
-fn estimated(fitted: &Fitted) -> Estimated {
-    let covariance = ThetaCovariance::from_fn(|i, j| fitted.covariance[(i, j)]);
-    debug_assert!(fitted.covariance.nrows() >= THETA);
-    Estimated { theta: theta_of(&fitted.base.vehicle.body), covariance, explained: None }
-}

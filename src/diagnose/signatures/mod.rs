@@ -25,9 +25,11 @@ mod thrust_tilt;
 mod translational_lift;
 mod transport_delay;
 mod vortex_ring;
+mod wanted;
 mod weak_rotor;
 
 pub(super) use gust::SIGNATURE as GUST;
 pub use list::{ALL, latency_kind, latency_signature, signature_of};
 pub(super) use rotor_inertia::SIGNATURE as ROTOR_INERTIA;
 pub(super) use thrust_curve::SIGNATURE as BENT_THRUST;
+pub use wanted::{WANTED, Wanted};

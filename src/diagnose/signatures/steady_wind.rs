@@ -2,7 +2,7 @@
 
 use crate::diagnose::named::Named;
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Carried, Joint, Role, Signature};
+use crate::diagnose::signature::{Carried, Joint, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words::{from_deg, point_of};
 use crate::physics::effects::SteadyWind;
@@ -10,11 +10,19 @@ use crate::text::{significant, with_error};
 
 use super::linear_drag;
 
+/// Wind below which the air is called calm, m/s: force 0 of the Beaufort scale ends at 0.3 m/s. Velocity estimates err by as
+/// much.
+const CALM_M_S: f64 = 0.3;
+
 /// Wind that does not change.
 pub static SIGNATURE: Signature = Signature {
     needs: &[Need::Velocity],
     // together with a drag, or alone where a drag is known: see the role
     role: Role { wind: Some(carried), of_the_day: true, ..Role::NONE },
+    naming: Naming {
+        is_ordinary: |term, _| term.values[0].hypot(term.values[1]) < CALM_M_S,
+        ..Naming::PLAIN
+    },
     joint: Joint {
         // up comes when the rest is known
         forms: Some(|_, _| vec![SIGNATURE.term(&[0.0; 3], &[0, 1])]),

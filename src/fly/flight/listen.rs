@@ -124,20 +124,26 @@ impl Flight {
                 self.note(now, Level::Warning, "estimator", what);
             }
             Novelty::Target(place_m) => {
-                // after a silence it may still tell where its failsafe led
-                let settled = self.is_settled(now) && !self.known.is_in_doubt();
-                let following = settled
-                    && match self.phase {
-                        // at first it may still say where its takeoff led
-                        Phase::Transfer => now.saturating_sub(self.entered) >= TAKEN_OVER,
-                        Phase::Gate | Phase::Course => true,
-                        _ => false,
-                    };
-                if following && let Some(cause) = self.watch.masters.check(now, place_m, stack) {
+                if self.is_following(now)
+                    && let Some(cause) = self.watch.masters.check(now, place_m, stack)
+                {
                     let reports = self.known.reports();
                     self.suspected.get_or_insert((cause, reports));
                 }
             }
         }
+    }
+
+    /// Whether the target that the vehicle reports must be ours.
+    fn is_following(&self, now: Duration) -> bool {
+        // after a silence it may still tell where its failsafe led
+        let settled = self.is_settled(now) && !self.known.is_in_doubt();
+        settled
+            && match self.phase {
+                // at first it may still say where its takeoff led
+                Phase::Transfer => now.saturating_sub(self.entered) >= TAKEN_OVER,
+                Phase::Gate | Phase::Course => true,
+                _ => false,
+            }
     }
 }

@@ -22,7 +22,9 @@ pub fn wanted(autopilot: Autopilot, rotors: usize) -> Vec<RequestedParameter> {
     let outputs = stack.outputs.groups.iter().flat_map(|group| group.names(rotors));
     let one = |purpose| move |name| RequestedParameter { names: vec![name], purpose };
     let outputs = outputs.map(one(Purpose::Thrust));
-    named.chain(outputs).chain(switches(stack).into_iter().map(one(Purpose::Failsafe))).collect()
+    let switches = switches(stack).into_iter().map(one(Purpose::Failsafe));
+    let logging = stack.log_settings.settings.iter().map(|setting| setting.parameter.to_owned());
+    named.chain(outputs).chain(switches).chain(logging.map(one(Purpose::Logging))).collect()
 }
 
 fn all_names(stack: &Stack, name: &str) -> Vec<String> {

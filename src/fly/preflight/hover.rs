@@ -1,11 +1,11 @@
 //! Check whether the vehicle file is that of this vehicle, by the autopilot's hover command and its rotor positions.
 
 use super::Situation;
-use crate::fly::finding::Finding;
+use crate::fly::finding::{Finding, Level};
 use crate::fly::lift::apart;
 use crate::fly::parameters::Parameters;
 use crate::recording::Recording;
-use crate::signals::propulsion_from_log;
+use crate::signals::{Differing, RotorDifference, propulsion_from_log, rotor_difference};
 use crate::vehicle::{Actuator, Propulsion, ThrustLaw, Vehicle};
 
 /// Subject of the check of the thrust.
@@ -28,7 +28,13 @@ const RATIOS_FROM: f64 = 0.5;
 
 pub(super) fn findings(situation: &Situation<'_>) -> Vec<Finding> {
     let Situation { vehicle, parameters, .. } = *situation;
-    hover(vehicle, parameters).into_iter().chain(rotors(vehicle, parameters)).collect()
+    let layout = layout(vehicle, parameters);
+    // the number is not refused twice
+    let rotors = match &layout {
+        Some(refusal) if refusal.level == Level::Refusal => None,
+        _ => rotors(vehicle, parameters),
+    };
+    hover(vehicle, parameters).into_iter().chain(layout).chain(rotors).collect()
 }
 
 /// Beyond `gross` a refusal, beyond `notable` a warning.
@@ -76,9 +82,31 @@ fn hover(vehicle: &Vehicle, parameters: &Parameters) -> Option<Finding> {
     Some(judged(HOVER, words, (apart(lifted_n, weight_n), HOVER_NOTABLE, HOVER_GROSS)))
 }
 
+/// Order, places and turning directions of the rotors: the flight does not need them, and what is identified from it does.
+fn layout(vehicle: &Vehicle, parameters: &Parameters) -> Option<Finding> {
+    let RotorDifference { of, file, stated } =
+        rotor_difference(parameters.autopilot, &parameters.values, vehicle)?;
+    match of {
+        Differing::Count => {
+            let expected = format!("{file}, as the vehicle file has");
+            Some(Finding::refusal(ROTORS, expected, stated, OTHER_FILE))
+        }
+        Differing::Order | Differing::Place | Differing::Spin => {
+            let expected = format!("the rotors as the vehicle file has them, {file}");
+            let remedy = "what is identified from the flight needs the file's rotors in the order of the motors, at their places \
+                          and turning their way";
+            Some(Finding::warning(ROTORS, expected, stated, remedy))
+        }
+        Differing::Arms(_) => None,
+    }
+}
+
+/// What to do where the file is another vehicle's.
+const OTHER_FILE: &str = "see that the vehicle file is this vehicle's (--accept rotors flies all the same)";
+
 /// Number of rotors and their distance from the middle, as PX4 has them.
 fn rotors(vehicle: &Vehicle, parameters: &Parameters) -> Option<Finding> {
-    let remedy = "see that the vehicle file is this vehicle's (--accept rotors flies all the same)";
+    let remedy = OTHER_FILE;
     let wanted = vehicle.rotors.len();
     let count = parameters.get("CA_ROTOR_COUNT").filter(|count| *count > 0.0)?;
     if (count - wanted as f64).abs() > 0.5 {

@@ -4,7 +4,7 @@ use super::failsafes::failsafes;
 use super::page::Page;
 use super::situation::Situation;
 use super::stopping::Stopping;
-use super::{abandoned, autopilot, energy, fence_clearance, hover, readiness, room};
+use super::{abandoned, autopilot, energy, fence_clearance, hover, logging, readiness, room};
 use crate::fly::finding::Finding;
 use crate::fly::safety::Feeding;
 use crate::plan::Extremes;
@@ -27,6 +27,7 @@ pub fn judge(situation: &Situation<'_>) -> Judged {
     findings.extend(abandoned);
     findings.extend(autopilot::findings(situation.parameters, &extremes));
     findings.extend(hover::findings(situation));
+    findings.extend(logging::finding(situation.parameters));
     findings.push(energy::finding(situation.battery, situation.duration_s()));
     findings.extend(readiness::findings(situation.readiness, situation.parameters.autopilot));
     findings.extend(failsafes(situation));

@@ -11,6 +11,7 @@ mod fence_clearance;
 mod fence_download;
 mod hover;
 mod judgement;
+mod logging;
 mod page;
 mod readiness;
 mod room;

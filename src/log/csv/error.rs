@@ -18,7 +18,12 @@ pub enum CsvError {
         source: ::csv::Error,
     },
     /// a column that the mapping names is not in the header
-    #[error("{origin}: expected column(s) {}, but the header has {}", text::listed(missing.iter()), listed(present))]
+    #[error(
+        "{origin}: expected column(s) {}, but the header has {}: name them as configs/csv/default.toml does, or say with \
+         --csv-map which is which",
+        text::listed(missing.iter()),
+        listed(present)
+    )]
     MissingColumns {
         /// file name, or what the bytes are
         origin: String,

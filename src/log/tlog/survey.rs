@@ -69,5 +69,5 @@ fn silent_vehicle(report: &TlogReport, chosen: Option<SystemId>) -> Result<Vehic
     if !speaking.contains(&system) {
         return Err(LogError::SystemAbsent { wanted: system, systems: systems() });
     }
-    Ok(Vehicle { system, component: AUTOPILOT_COMPONENT, autopilot: Autopilot::Unknown })
+    Ok(Vehicle { system, component: AUTOPILOT_COMPONENT, autopilot: Autopilot::Unknown, kind: None })
 }

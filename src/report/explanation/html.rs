@@ -155,12 +155,17 @@ fn rigid_body(study: &ExplainStudy) -> Markup {
         .into_iter()
         .map(|of| {
             let moved = (of.after.value - of.before.value) / of.after.std.max(f64::MIN_POSITIVE);
+            let known = of.not_determined.is_none();
             vec![
                 text(of.name),
                 number(significant(of.nominal, 4)),
                 number(with_error(of.before.value, of.before.std)),
-                number(with_error(of.after.value, of.after.std)),
-                number(format!("{moved:+.1}")),
+                number(if known {
+                    with_error(of.after.value, of.after.std)
+                } else {
+                    "not determined".into()
+                }),
+                number(if known { format!("{moved:+.1}") } else { "-".into() }),
                 text(of.unit),
             ]
         })
@@ -173,6 +178,9 @@ fn rigid_body(study: &ExplainStudy) -> Markup {
             &["parameter", "nominal|", "before|", "after|", "moved|", "unit"],
             &rows,
         ))
+        @for (reason, names) in study.body_not_determined() {
+            (note(&format!("{}: not determined: {reason}.", names.join(", "))))
+        }
         (note(&format!(
             "From command to rotor {} ms.",
             with_error(1e3 * latency.total_s, 1e3 * latency.std_s)

@@ -73,16 +73,19 @@ struct EmpiricalValue {
 
 #[derive(Debug, Clone, Serialize)]
 struct ParameterValue {
-    value: f64,
+    value: Option<f64>,
     std: Option<f64>,
     unit: &'static str,
+    /// why there is no value
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<String>,
 }
 
 #[derive(Debug, Clone, Serialize)]
 struct Moved {
     nominal: f64,
     before: f64,
-    after: f64,
+    after: Option<f64>,
     unit: &'static str,
 }
 
@@ -173,8 +176,10 @@ impl ExplanationDocument {
                 .body()
                 .into_iter()
                 .map(|p| {
-                    let std = p.after.std.is_finite().then_some(p.after.std);
-                    (p.name, ParameterValue { value: p.after.value, std, unit: p.unit })
+                    let known = p.not_determined.is_none();
+                    let std = (known && p.after.std.is_finite()).then_some(p.after.std);
+                    let value = known.then_some(p.after.value);
+                    (p.name, ParameterValue { value, std, unit: p.unit, reason: p.not_determined })
                 })
                 .collect(),
             rigid_body: moved(study),
@@ -234,7 +239,8 @@ fn empirical(study: &ExplainStudy) -> Option<EmpiricalValue> {
 
 fn moved(study: &ExplainStudy) -> BTreeMap<&'static str, Moved> {
     let moved = |p: BodyParameter| {
-        let value = Moved { nominal: p.nominal, before: p.before.value, after: p.after.value, unit: p.unit };
+        let after = p.not_determined.is_none().then_some(p.after.value);
+        let value = Moved { nominal: p.nominal, before: p.before.value, after, unit: p.unit };
         (p.name, value)
     };
     study.body().into_iter().map(moved).collect()

@@ -27,7 +27,11 @@ fn identified(text: &mut String, study: &ExplainStudy) {
         format!("{name} = {{ value = {value:e}, std = {std:e}, unit = \"{unit}\" }}")
     };
     for p in study.body() {
-        let _ = writeln!(text, "{}", entry(p.name, p.after.value, p.after.std, p.unit));
+        let line = match &p.not_determined {
+            None => entry(p.name, p.after.value, p.after.std, p.unit),
+            Some(reason) => model_parts::not_determined(p.name, reason),
+        };
+        let _ = writeln!(text, "{line}");
     }
     let latency = study.latency();
     let _ = writeln!(text, "{}", entry("latency", latency.total_s, latency.std_s, "s"));

@@ -122,9 +122,16 @@ fn body_lines(page: &mut String, study: &ExplainStudy) {
             of.name,
             significant(of.nominal, 4),
             significant(of.before.value, 4),
-            with_error(of.after.value, of.after.std),
+            if of.not_determined.is_some() {
+                "not determined".to_owned()
+            } else {
+                with_error(of.after.value, of.after.std)
+            },
             of.unit
         );
+    }
+    for (reason, names) in study.body_not_determined() {
+        let _ = writeln!(page, "    {}: not determined: {reason}", names.join(", "));
     }
     let latency = study.latency();
     let _ = writeln!(

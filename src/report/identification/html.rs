@@ -46,7 +46,7 @@ fn answer(study: &IdentifyStudy) -> String {
         let found = with.together.effects.iter().filter(|effect| effect.is_significant());
         parts.extend(found.map(effect_words));
     }
-    let good = verdict(study.body());
+    let good = verdict(study, study.body());
     let doubtful = if study.is_doubtful() { ", but see the warnings" } else { "" };
     let is = if good.starts_with("good") { " is" } else { "" };
     let parts = if parts.is_empty() { String::new() } else { format!(": {}", parts.join("; ")) };

@@ -132,7 +132,7 @@ impl IdentificationDocument {
             vehicle: study.vehicle.name.clone(),
             anchor: anchor_name(study.vehicle.anchor),
             methods: identification.methods.iter().map(|m| (m.method.name(), values(m))).collect(),
-            verdict: verdict(&best.result),
+            verdict: verdict(study, &best.result),
             best: Best {
                 method: best.method.name(),
                 why: best.why.clone(),

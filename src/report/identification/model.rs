@@ -6,9 +6,8 @@ use crate::estimate::{
     Finding, Identification, MethodResult, NAMES, THETA, ThrustScale, UNITS, identified_vehicle,
 };
 use crate::report::chart::{Line, Panel};
-use crate::report::model_parts::{correlation_lines, effect_tables, provenance};
+use crate::report::model_parts::{correlation_lines, effect_tables, not_determined, provenance};
 use crate::study::{IdentifyStudy, WithEffects};
-use crate::text::toml_string;
 use std::fmt::Write;
 
 /// The model file: the vehicle with its identified values, and their provenance.
@@ -74,12 +73,9 @@ fn identified_entries(body: &MethodResult, scale: Option<&ThrustScale>) -> Strin
                 "{} = {{ value = {value:e}, std = 0.0, unit = \"{}\", status = \"given\" }}",
                 parameter.name, parameter.unit
             ),
-            Finding::NotDetermined { reason } => writeln!(
-                text,
-                "{} = {{ status = \"not_determined\", reason = {} }}",
-                parameter.name,
-                toml_string(reason)
-            ),
+            Finding::NotDetermined { reason } => {
+                writeln!(text, "{}", not_determined(parameter.name, reason))
+            }
         };
     }
     if let Some(Finding::Determined { value, std }) = scale.map(|scale| &scale.value) {
@@ -103,9 +99,7 @@ fn effect_entry(parameter: &ParameterFound) -> String {
                 "{name} = {{ value = {value:e}, std = 0.0, unit = \"{unit}\", status = \"given\", reason = {why:?} }}"
             )
         }
-        Found::NotDetermined { reason, .. } => {
-            format!("{name} = {{ status = \"not_determined\", reason = {reason:?} }}")
-        }
+        Found::NotDetermined { reason, .. } => not_determined(name, reason),
     }
 }
 

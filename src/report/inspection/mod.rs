@@ -1,6 +1,7 @@
 //! Views of an inspection: text for the terminal, JSON.
 
 mod json;
+mod quantities;
 mod text;
 
 pub use json::InspectionDocument;

@@ -2,6 +2,7 @@
 
 use std::fmt::{Display, Write};
 
+use super::quantities;
 use crate::inspect::{
     Inspection, OnboardReading, Outlook, Reading, StreamSummary, TlogReading, TopicSummary,
 };
@@ -15,6 +16,13 @@ pub fn inspection_text(file: &str, inspection: &Inspection) -> String {
     let mut page = String::new();
     line(&mut page, file);
     line(&mut page, &inspection.verdict);
+    heading(&mut page, "what it will tell");
+    for (name, said) in quantities::lines(inspection) {
+        row(&mut page, &name, said);
+    }
+    if !inspection.advice.is_empty() || !inspection.losses.is_empty() {
+        line(&mut page, "");
+    }
     for advice in &inspection.advice {
         line(&mut page, format!("  - {advice}"));
     }
@@ -46,7 +54,7 @@ fn heading(page: &mut String, text: &str) {
 }
 
 fn parameters_table(page: &mut String, inspection: &Inspection) {
-    heading(page, "what can be identified");
+    heading(page, "mass and inertia");
     for outlook in &inspection.identifiability {
         row(page, outlook.name, expectation(outlook));
     }

@@ -163,13 +163,15 @@ mod tests {
     }
 
     fn said(second: f64) -> String {
-        let input = || InputFile { path: "l".into(), sha256: "0".into(), notes: Vec::new() };
+        let input =
+            || InputFile { path: "l".into(), sha256: "0".into(), other_logs: Vec::new(), notes: Vec::new() };
         let quality = Quality {
             sources: Vec::new(),
             thrust_source: ThrustSource::Command,
             offsets: Vec::new(),
             airborne_s: Vec::new(),
             usable: Usable::default(),
+            torques: true,
             notes: Vec::new(),
         };
         let flight = ValidatedFlight {

@@ -58,6 +58,16 @@ impl Parameters {
         self.list.len()
     }
 
+    /// Name, type and value of each.
+    pub(in crate::sitl) fn all(&self) -> impl Iterator<Item = (&str, ParameterType, f64)> {
+        self.list.iter().map(|parameter| (parameter.name.as_str(), parameter.kind, parameter.value))
+    }
+
+    /// Type and value of one.
+    pub(in crate::sitl) fn get(&self, at: usize) -> Option<(ParameterType, f64)> {
+        self.list.get(at).map(|parameter| (parameter.kind, parameter.value))
+    }
+
     pub(in crate::sitl) fn find(&self, name: &str) -> Option<usize> {
         self.index.get(name).copied()
     }

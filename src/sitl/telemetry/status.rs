@@ -45,11 +45,12 @@ const ESTIMATE_HEIGHT_ONLY: EstimatorStatusFlags = EstimatorStatusFlags::ESTIMAT
     .union(EstimatorStatusFlags::ESTIMATOR_VELOCITY_VERT)
     .union(EstimatorStatusFlags::ESTIMATOR_POS_VERT_ABS);
 
-/// Missions and commands in integers, local setpoints, MAVLink 2, fence.
+/// Missions and commands in integers, local setpoints, MAVLink 2, file transfer, fence.
 const CAPABILITIES: MavProtocolCapability = MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_INT
     .union(MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT)
     .union(MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED)
     .union(MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2)
+    .union(MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FTP)
     .union(MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FENCE);
 
 impl Telemetry {

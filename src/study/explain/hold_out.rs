@@ -8,7 +8,7 @@ use crate::diagnose::holdout::{
     split_last_periods,
 };
 use crate::note::{About, Note};
-use crate::signals::Signals;
+use crate::signals::{Signals, clock_offset};
 use crate::study::flights::{Prepared, shared};
 use crate::study::{Predicted, StudyError};
 
@@ -22,6 +22,14 @@ pub(super) fn refuse_shared(flights: &Prepared, held: &Prepared) -> Result<(), S
                     100.0 * share,
                     input.path,
                     used.path
+                );
+                return Err(StudyError::Setting { name: "holdout", why });
+            }
+            if clock_offset(flight, hold_out).is_some() {
+                let why = format!(
+                    "expected a flight that is not explained, but {} is another log of the flight of {}: give both logs as one \
+                     flight, without --holdout",
+                    input.path, used.path
                 );
                 return Err(StudyError::Setting { name: "holdout", why });
             }

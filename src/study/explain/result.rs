@@ -9,15 +9,16 @@ use crate::diagnose::holdout::{Difference, HoldoutFit};
 use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::{
     AXES, CHANNEL_NAMES, CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, LatencyFinding, Named,
-    Nuisance, Trace, Verdict,
+    Trace, Verdict,
 };
 use crate::draft::Draft;
+use crate::estimate::{Finding, NAMES, Nominal, THETA, UNITS, finding, theta_of};
 use crate::note::Note;
 use crate::physics::ActiveEffect;
 use crate::signals::Quality;
 use crate::study::{Correlation, InputFile};
 use crate::text::significant;
-use crate::vehicle::{RigidBody, Vehicle};
+use crate::vehicle::Vehicle;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// What went in beside the recordings' signals.
@@ -29,6 +30,8 @@ pub struct Given {
     pub inputs: Vec<InputFile>,
     /// where their signals come from
     pub quality: Vec<Quality>,
+    /// Ixx, Iyy, Izz of the rigid body by a window of twice the width, as shares of those by the usual one
+    pub inertia_by_wider_window: [f64; 3],
     /// settings of the method
     pub settings: ExplainSettings,
     /// s left out at the beginning of each flight
@@ -78,7 +81,7 @@ pub struct Estimate {
 }
 
 /// Mass or an entry of the inertia.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct BodyParameter {
     /// as in JSON
     pub name: &'static str,
@@ -90,6 +93,9 @@ pub struct BodyParameter {
     pub before: Estimate,
     /// of the final model
     pub after: Estimate,
+    /// why the final value is no estimate: these flights do not determine it, and the model keeps a value for
+    /// simulations
+    pub not_determined: Option<String>,
 }
 
 /// What is left of the equation of one axis, root mean square.
@@ -150,16 +156,36 @@ impl ExplainStudy {
     pub fn body(&self) -> Vec<BodyParameter> {
         let before = estimates(&self.explanation.search.before);
         let after = estimates(self.fitted());
-        let nominal = body_values(&self.given.vehicle.body);
-        (0..BODY_NAMES.len())
+        let nominal = Nominal::of(&self.given.vehicle);
+        let estimated = self.fitted().rigid_body().with_wider_window(self.given.inertia_by_wider_window);
+        let not_determined = |index| match finding(&estimated, &nominal, index) {
+            Finding::NotDetermined { reason } => Some(reason),
+            Finding::Determined { .. } | Finding::Given { .. } => None,
+        };
+        (0..NAMES.len())
             .map(|index| BodyParameter {
-                name: BODY_NAMES[index],
-                unit: if index == 0 { "kg" } else { "kg m^2" },
-                nominal: nominal[index],
+                name: NAMES[index],
+                unit: UNITS[index],
+                nominal: nominal.theta[index],
                 before: before[index],
                 after: after[index],
+                not_determined: not_determined(index),
             })
             .collect()
+    }
+
+    /// Reasons why mass or entries of the inertia are not determined, each with the names that it holds for.
+    #[must_use]
+    pub fn body_not_determined(&self) -> Vec<(String, Vec<&'static str>)> {
+        let mut reasons: Vec<(String, Vec<&'static str>)> = Vec::new();
+        for BodyParameter { name, not_determined, .. } in self.body() {
+            let Some(reason) = not_determined else { continue };
+            match reasons.iter_mut().find(|(of, _)| *of == reason) {
+                Some((_, names)) => names.push(name),
+                None => reasons.push((reason, vec![name])),
+            }
+        }
+        reasons
     }
 
     /// Where what the found effects leave differs from the recording.
@@ -289,22 +315,11 @@ fn unit_of(channel: &str) -> &'static str {
     if channel.starts_with("force") { "N" } else { "N m" }
 }
 
-/// Names of mass and inertia in the order of the paper's parameters.
-const BODY_NAMES: [&str; 7] = ["mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
-
-/// Mass (kg) and inertia (kg m^2) in the order of [`BODY_NAMES`].
-fn body_values(body: &RigidBody) -> [f64; 7] {
-    let j = &body.inertia_kg_m2;
-    [body.mass_kg, j[(0, 0)], j[(0, 1)], j[(0, 2)], j[(1, 1)], j[(1, 2)], j[(2, 2)]]
-}
-
 /// Mass and inertia of a fit with their standard errors.
-fn estimates(fitted: &Fitted) -> [Estimate; 7] {
-    let values = body_values(&fitted.base.vehicle.body);
-    std::array::from_fn(|index| {
-        let wanted = if index == 0 { Nuisance::Mass } else { Nuisance::Inertia(index - 1) };
-        let place = fitted.rows.nuisances.iter().position(|column| column.nuisance == wanted);
-        let std = place.map_or(f64::NAN, |at| fitted.covariance[(at, at)].max(0.0).sqrt());
-        Estimate { value: values[index], std }
+fn estimates(fitted: &Fitted) -> [Estimate; THETA] {
+    let (values, covariance) = (theta_of(&fitted.base.vehicle.body), fitted.rigid_body().covariance);
+    std::array::from_fn(|index| Estimate {
+        value: values[index],
+        std: covariance[(index, index)].max(0.0).sqrt(),
     })
 }

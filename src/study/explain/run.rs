@@ -8,6 +8,7 @@ use crate::config::LoadedVehicle;
 use crate::diagnose::experiment::{NextSettings, design};
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{ExplainSettings, Trace, Verdict};
+use crate::estimate::inertia_by_wider_window;
 use crate::note::{About, Note};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, names, prepare, refuse_twins};
@@ -103,6 +104,7 @@ impl Task<'_> {
             vehicle: self.vehicle.clone(),
             inputs: flights.inputs.clone(),
             quality: flights.signals.iter().map(|signals| signals.quality.clone()).collect(),
+            inertia_by_wider_window: inertia_by_wider_window(&flights.signals, self.vehicle),
             settings,
             transient_s: self.request.transient_s,
         };

@@ -6,7 +6,7 @@ use crate::draft::Draft;
 use crate::estimate::{
     EstimateError, Identification, IdentifySettings, MethodResult, ThrustScale, apply_anchor, identify,
 };
-use crate::note::Note;
+use crate::note::{About, Note};
 use crate::signals::{Quality, Signals};
 use crate::study::{Correlation, InputFile};
 use crate::vehicle::Vehicle;
@@ -118,5 +118,12 @@ impl IdentifyStudy {
     #[must_use]
     pub fn is_doubtful(&self) -> bool {
         self.identification.notes.iter().any(Note::is_warning)
+    }
+
+    /// The vehicle's file states the rotors otherwise than the autopilot's parameters of a flight.
+    #[must_use]
+    pub fn contradicts_parameters(&self) -> bool {
+        let notes = self.flights.iter().flat_map(|flight| &flight.quality.notes);
+        notes.into_iter().any(|note| note.is_warning() && note.about == About::Vehicle)
     }
 }

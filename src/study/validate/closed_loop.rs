@@ -6,7 +6,7 @@ use super::model::Contender;
 use crate::compare::{TenSignals, autopilot_flight, recorded_tracking_m, resimulated};
 use crate::signals::{Signals, ThrustSource};
 use crate::simulate::pid::{PidFlightSettings, PidSettings};
-use crate::study::flights::Flight;
+use crate::study::flight::Flight;
 use rayon::prelude::*;
 
 /// Table 4 and the lines of Figures 6 to 9, recorded first; no lines where no model flew.

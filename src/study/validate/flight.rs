@@ -12,7 +12,7 @@ use crate::estimate::theta_of;
 use crate::regression::{ZeroPhase, output_prediction_rms, paper_models};
 use crate::signals::{Butterworth, ConditionSettings, Signals};
 use crate::study::StudyError;
-use crate::study::flights::Flight;
+use crate::study::flight::Flight;
 
 /// Lengths of the playback's windows, s.
 const WINDOWS_S: [f64; 3] = [0.1, 0.5, 1.0];

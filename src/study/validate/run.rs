@@ -4,7 +4,8 @@ use super::flight::{CUTOFF_HZ, flight};
 use super::model::contenders;
 use super::request::ValidateRequest;
 use super::result::{ValidateStudy, ValidatedFlight};
-use crate::study::flights::{Flight, IDENTIFIED, load_all, ready, refuse_twins};
+use crate::study::flight::Flight;
+use crate::study::flights::{IDENTIFIED, load_all, ready, refuse_twins};
 use crate::study::{Progress, Stage, StudyError};
 use rayon::prelude::*;
 

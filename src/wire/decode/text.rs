@@ -4,6 +4,7 @@ use crate::recording::Event;
 use crate::text;
 use crate::wire::frame::Payload;
 
+/// Bytes of text in one STATUSTEXT, by the message's definition.
 const CHUNK_BYTES: usize = 50;
 /// No text has more, whatever a broken sender counts.
 const MAX_CHUNKS: u8 = 16;

@@ -1,7 +1,7 @@
 //! The vehicle whose messages are decoded.
 
 use super::source::Source;
-use crate::autopilot::Autopilot;
+use crate::autopilot::{Autopilot, VehicleKind};
 use crate::wire::frame::{ComponentId, SystemId};
 use crate::wire::stamped::Record;
 
@@ -18,6 +18,8 @@ pub struct Vehicle {
     pub component: ComponentId,
     /// which software
     pub autopilot: Autopilot,
+    /// what kind of vehicle, where its HEARTBEAT says so
+    pub kind: Option<VehicleKind>,
 }
 
 impl Vehicle {
@@ -34,6 +36,7 @@ impl Vehicle {
             system: header.system,
             component: header.component,
             autopilot: Autopilot::of_heartbeat(autopilot),
+            kind: VehicleKind::of_mav_type(kind),
         })
     }
 }

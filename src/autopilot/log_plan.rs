@@ -1,0 +1,90 @@
+//! What an autopilot will log by its parameters, and what should be changed of them.
+
+use super::logging::{LogNeed, LogSetting};
+use super::stack::Stack;
+
+/// A parameter that has to be another for an identification.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LogChange {
+    /// its name
+    pub parameter: &'static str,
+    /// what it is
+    pub found: f64,
+    /// what it should be
+    pub wanted: f64,
+    /// the autopilot takes it only when it starts
+    pub restarts: bool,
+}
+
+/// What an autopilot will log, and what should be changed.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LogPlan {
+    /// what it will log, in sentences without their ends
+    pub logs: Vec<String>,
+    /// what an identification needs
+    pub changes: Vec<LogChange>,
+    /// parameters that did not answer
+    pub unknown: Vec<&'static str>,
+}
+
+/// The bits of a value; none of one that is negative or no number.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+fn bits(value: f64) -> u32 {
+    value.round() as u32
+}
+
+impl Stack {
+    /// What it will log by these values of its parameters (`None`: not known), and what an identification needs beyond.
+    #[must_use]
+    pub fn log_plan(&self, value: impl Fn(&str) -> Option<f64>) -> LogPlan {
+        let mut plan = LogPlan::default();
+        for setting in self.log_settings.settings {
+            let Some(found) = value(setting.parameter) else {
+                plan.unknown.push(setting.parameter);
+                continue;
+            };
+            let wanted = match setting.need {
+                LogNeed::Bits(mask) => f64::from(bits(found) | mask),
+                LogNeed::OneOf(values) if values.contains(&found) => found,
+                LogNeed::OneOf(values) => values.first().copied().unwrap_or(found),
+            };
+            if wanted != found {
+                let LogSetting { parameter, restarts, .. } = *setting;
+                plan.changes.push(LogChange { parameter, found, wanted, restarts });
+            }
+        }
+        for rate in self.log_settings.rates {
+            if let Some(found) = value(rate.parameter) {
+                let is_set = bits(found) >> rate.bit & 1 == 1;
+                plan.logs.push(if is_set { rate.with } else { rate.without }.to_owned());
+            }
+        }
+        plan
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::autopilot::{ARDUPILOT, LogChange, PX4};
+
+    #[test]
+    fn defaults_are_too_slow_and_what_is_enough_stays() {
+        let plan = PX4.log_plan(|name| match name {
+            "SDLOG_PROFILE" => Some(1.0),
+            "SDLOG_MODE" => Some(0.0),
+            _ => None,
+        });
+        let change = LogChange { parameter: "SDLOG_PROFILE", found: 1.0, wanted: 9.0, restarts: true };
+        assert_eq!((plan.changes, plan.unknown), (vec![change], vec!["SDLOG_BACKEND"]));
+        assert!(plan.logs[0].contains("10 Hz"));
+        // further bits stay
+        let plan = PX4.log_plan(|name| Some(if name == "SDLOG_PROFILE" { 27.0 } else { 1.0 }));
+        assert_eq!(plan.changes, []);
+        let off = PX4.log_plan(|name| (name == "SDLOG_MODE").then_some(-1.0));
+        assert_eq!((off.changes[0].found, off.changes[0].wanted), (-1.0, 0.0));
+        let plan = ARDUPILOT.log_plan(|name| Some(if name == "LOG_BITMASK" { 176_126.0 } else { 1.0 }));
+        let names: Vec<_> = plan.changes.iter().map(|change| (change.parameter, change.wanted)).collect();
+        assert_eq!(names, [("LOG_BITMASK", 438_271.0), ("LOG_FILE_RATEMAX", 0.0)]);
+        assert_eq!(plan.logs.len(), 3);
+    }
+}

@@ -1,0 +1,119 @@
+//! What an autopilot logs of a flight, by its parameters, and what an identification needs of it.
+
+/// What a parameter of logging has to be for an identification.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LogNeed {
+    /// these bits are set; others stay as they are
+    Bits(u32),
+    /// one of these; where it is none of them it becomes the first
+    OneOf(&'static [f64]),
+}
+
+/// A parameter of logging.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LogSetting {
+    /// its name
+    pub parameter: &'static str,
+    /// what an identification needs
+    pub need: LogNeed,
+    /// the autopilot takes it only when it starts
+    pub restarts: bool,
+    /// what it does, as the end of a sentence
+    pub words: &'static str,
+}
+
+/// What of a log depends on a bit of a parameter: what is logged with it, and without it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LogRate {
+    /// the parameter
+    pub parameter: &'static str,
+    /// its bit
+    pub bit: u32,
+    /// what is logged if it is set
+    pub with: &'static str,
+    /// what is logged if not
+    pub without: &'static str,
+}
+
+/// How an autopilot is told what to log.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Logging {
+    /// parameters, the most important first
+    pub settings: &'static [LogSetting],
+    /// what is logged at which rate
+    pub rates: &'static [LogRate],
+}
+
+/// PX4.
+pub(super) const PX4: Logging = Logging {
+    settings: &[
+        LogSetting {
+            parameter: "SDLOG_PROFILE",
+            need: LogNeed::Bits(1 | 1 << 3),
+            restarts: true,
+            words: "bit 0 logs what PX4 logs by default, bit 3 adds what an identification needs",
+        },
+        LogSetting {
+            parameter: "SDLOG_MODE",
+            need: LogNeed::OneOf(&[0.0, 1.0, 2.0, 4.0]),
+            restarts: true,
+            words: "0 logs while the vehicle is armed",
+        },
+        LogSetting {
+            parameter: "SDLOG_BACKEND",
+            need: LogNeed::Bits(1),
+            restarts: true,
+            words: "bit 0 writes the log to a file",
+        },
+    ],
+    rates: &[LogRate {
+        parameter: "SDLOG_PROFILE",
+        bit: 3,
+        with: "motor commands, torque setpoints, gyroscope and accelerometer at their full rate",
+        without: "motor commands at 10 Hz, torque setpoints at 50 Hz, gyroscope and accelerometer at about 200 Hz",
+    }],
+};
+
+/// ArduPilot.
+pub(super) const ARDUPILOT: Logging = Logging {
+    settings: &[
+        LogSetting {
+            parameter: "LOG_BITMASK",
+            need: LogNeed::Bits(1 | 1 << 10 | 1 << 18),
+            restarts: false,
+            words: "bit 0 is the fast attitude and rate controller, 10 the outputs, 18 the fast inertial unit",
+        },
+        LogSetting {
+            parameter: "LOG_BACKEND_TYPE",
+            need: LogNeed::Bits(1),
+            restarts: true,
+            words: "bit 0 writes the log to a file",
+        },
+        LogSetting {
+            parameter: "LOG_FILE_RATEMAX",
+            need: LogNeed::OneOf(&[0.0]),
+            restarts: false,
+            words: "0 does not limit the rate of any message",
+        },
+    ],
+    rates: &[
+        LogRate {
+            parameter: "LOG_BITMASK",
+            bit: 0,
+            with: "attitude and the outputs of the rate controller at the rate of the main loop",
+            without: "attitude and the outputs of the rate controller at 10 Hz",
+        },
+        LogRate {
+            parameter: "LOG_BITMASK",
+            bit: 18,
+            with: "gyroscope and accelerometer at the rate of the main loop",
+            without: "gyroscope and accelerometer at 25 Hz",
+        },
+        LogRate {
+            parameter: "LOG_BITMASK",
+            bit: 10,
+            with: "outputs to the motors at 10 Hz",
+            without: "no outputs to the motors",
+        },
+    ],
+};

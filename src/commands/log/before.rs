@@ -1,0 +1,129 @@
+//! The logging of a vehicle before a flight: what is set for it, and what is put back after it.
+
+use std::time::Duration;
+
+use mavid::fetch::Noted;
+use mavid::wire::SystemId;
+
+use super::prepare::{agreed, changes_page, earlier, put_back_page};
+use super::session::Session;
+use super::{preparing, state};
+use crate::cli::{FlyArgs, VehicleLinkArgs};
+use crate::commands::words::Word;
+use crate::commands::{CommandError, network, output};
+
+/// A vehicle is waited for as long before a flight.
+const BEFORE: Duration = Duration::from_secs(30);
+/// One that has just flown is heard within this.
+pub(super) const AFTER: Duration = Duration::from_secs(8);
+
+/// What was found before a flight.
+#[derive(Debug, Default)]
+pub struct BeforeFlight {
+    /// the vehicle, where it was spoken to: it alone is flown
+    pub system: Option<u32>,
+    /// what is to be put back after the flight
+    pub noted: Vec<Noted>,
+}
+
+/// The link of a flight to this vehicle.
+pub(super) fn link_of(args: &FlyArgs, system: Option<u32>) -> VehicleLinkArgs {
+    VehicleLinkArgs {
+        connect: args.connect.clone(),
+        system_id: system,
+        signing_key_file: args.signing_key_file.clone(),
+    }
+}
+
+/// With `--set-logging`, sets what an identification needs; nobody else may be armed by then. Otherwise it reminds of what
+/// an earlier run left, and at a terminal puts it back where the user agrees.
+///
+/// # Errors
+/// With `--set-logging`: the vehicle does not answer or take the values, or has to be restarted for them.
+pub fn before_flight(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
+    if args.set_logging {
+        return network::block_on(set(args));
+    }
+    if !state::has_notes() {
+        return Ok(BeforeFlight::default());
+    }
+    Ok(network::block_on(reminded(args)).unwrap_or_else(|error| {
+        output::warning(&format!("what an earlier run changed of the logging is not looked at: {error}"));
+        BeforeFlight::default()
+    }))
+}
+
+fn failed(error: impl std::fmt::Display) -> CommandError {
+    CommandError::Failure(error.to_string())
+}
+
+async fn set(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
+    let link = link_of(args, args.system_id);
+    let mut session = Session::open_as(&link, SystemId(args.station_id), BEFORE).await?;
+    let offer = session.offer().await?;
+    let notes = state::notes(&session.known_as(&offer))?;
+    let prepared = preparing::look(&mut session).await?;
+    let changes = &prepared.plan.changes;
+    let what = changes_page(changes);
+    if !changes.is_empty() {
+        preparing::change(&mut session, &prepared, changes, &notes).await?;
+    }
+    let names: Vec<&str> = changes.iter().map(|change| change.parameter).collect();
+    if preparing::needs_restart(&session, &names) {
+        return Err(CommandError::Failure(format!(
+            "not flown: {what} is set and counts after a restart of the autopilot: restart it, then give the same command \
+             again (mavid does not restart it). Without a flight, mavid log prepare --connect {} --restore puts it back",
+            args.connect
+        )));
+    }
+    if !changes.is_empty() {
+        output::message(&format!("logging: {what}; it is put back after the flight"));
+    }
+    Ok(BeforeFlight { system: Some(session.vehicle.system.0), noted: notes.read().map_err(failed)? })
+}
+
+async fn reminded(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
+    let link = link_of(args, args.system_id);
+    let mut session = Session::open_as(&link, SystemId(args.station_id), BEFORE).await?;
+    let offer = session.offer().await?;
+    let notes = state::notes(&session.known_as(&offer))?;
+    let noted = notes.read().map_err(failed)?;
+    if !noted.is_empty() {
+        output::message(&earlier(&noted));
+        if agreed("restore", "put it back now, before the flight")? {
+            let put_back = preparing::put_back(&mut session, &notes).await?;
+            output::message(&put_back_page(&put_back, false));
+        }
+    }
+    Ok(BeforeFlight { system: Some(session.vehicle.system.0), noted: Vec::new() })
+}
+
+/// After the flight, however it ended: puts back what was set for it. What cannot be put back is told with its values.
+pub fn put_back(args: &FlyArgs, before: &BeforeFlight, tell: &mut impl FnMut(Word)) {
+    if before.noted.is_empty() {
+        return;
+    }
+    let done = network::block_on(async {
+        let link = link_of(args, before.system);
+        let mut session = Session::open_as(&link, SystemId(args.station_id), AFTER).await?;
+        let offer = session.offer().await?;
+        let notes = state::notes(&session.known_as(&offer))?;
+        let put_back = preparing::put_back(&mut session, &notes).await?;
+        let names: Vec<&str> = put_back.done.iter().map(|noted| noted.name.as_str()).collect();
+        Ok(put_back_page(&put_back, preparing::needs_restart(&session, &names)))
+    });
+    match done {
+        Ok(page) => page.lines().for_each(|line| tell(Word::Message(format!("logging: {line}")))),
+        Err(error) => {
+            let values = before
+                .noted
+                .iter()
+                .map(|noted| format!("{} is {} and was {} before", noted.name, noted.set, noted.found));
+            tell(Word::Warning(format!(
+                "the logging is not put back: {error}; {}; later: mavid log prepare --connect {} --restore",
+                values.collect::<Vec<_>>().join(", "),
+                args.connect
+            )));
+        }
+    }
+}

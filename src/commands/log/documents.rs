@@ -1,0 +1,142 @@
+//! What `mavid log` says, for programs and for people.
+
+use std::path::Path;
+
+use mavid::fetch::{Checked, Place, RemoteLog, local_name};
+use mavid::text;
+use serde::Serialize;
+
+use super::fetching::{Done, next, words};
+use super::session::Session;
+
+/// The document of `mavid log list`.
+#[derive(Debug, Serialize)]
+pub struct ListDocument {
+    schema: u32,
+    system: u32,
+    autopilot: &'static str,
+    protocol: &'static str,
+    logs: Vec<LogLine>,
+    /// entries whose names cannot be those of files
+    left_out: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct LogLine {
+    id: Option<u32>,
+    name: Option<String>,
+    bytes: u64,
+    time_utc_s: Option<u32>,
+}
+
+/// The document of `mavid log fetch`.
+#[derive(Debug, Serialize)]
+pub struct FetchDocument {
+    schema: u32,
+    system: u32,
+    autopilot: &'static str,
+    protocol: &'static str,
+    id: Option<u32>,
+    log: String,
+    bytes: u64,
+    /// bytes that an earlier download had brought
+    resumed_bytes: u64,
+    duration_s: f64,
+    /// `crc32`, `length`, or `growing`
+    checked: &'static str,
+    crc32: Option<u32>,
+}
+
+fn name(log: &RemoteLog) -> Option<String> {
+    match &log.place {
+        Place::Path(path) => Some(local_name(path)),
+        Place::Number(_) => None,
+    }
+}
+
+impl ListDocument {
+    /// Of the logs of a vehicle.
+    pub fn new(session: &Session, protocol: &'static str, logs: &[RemoteLog], left_out: usize) -> Self {
+        let line = |log: &RemoteLog| LogLine {
+            id: log.id,
+            name: name(log),
+            bytes: log.size,
+            time_utc_s: log.time_s,
+        };
+        Self {
+            schema: 1,
+            system: session.vehicle.system.0,
+            autopilot: session.stack.id,
+            protocol,
+            logs: logs.iter().map(line).collect(),
+            left_out,
+        }
+    }
+
+    /// For people.
+    pub fn page(&self) -> String {
+        let mut lines = vec![format!(
+            "system {}, {}: {} logs, oldest first",
+            self.system,
+            self.autopilot,
+            self.logs.len()
+        )];
+        for log in &self.logs {
+            let id = log.id.map_or_else(|| "-".to_owned(), |id| id.to_string());
+            let name = log.name.clone().unwrap_or_default();
+            lines.push(format!("{id:>6}  {:>10.2} MB  {name}", log.bytes as f64 / 1e6).trim_end().to_owned());
+        }
+        if self.left_out > 0 {
+            lines.push(format!(
+                "{} entries are left out: their names cannot be those of files",
+                self.left_out
+            ));
+        }
+        if let Some(last) = self.logs.last() {
+            let id = last.id.map_or_else(|| "--last".to_owned(), |id| format!("--id {id}"));
+            lines.push(format!("next: mavid log fetch --connect ADDRESS {id}"));
+        }
+        lines.join("\n")
+    }
+}
+
+impl FetchDocument {
+    /// Of a log that was fetched.
+    pub fn new(session: &Session, protocol: &'static str, log: &RemoteLog, done: &Done) -> Self {
+        let (checked, crc32) = match done.checked {
+            Checked::Sum(sum) => ("crc32", Some(sum)),
+            Checked::Length | Checked::NoAnswer => ("length", None),
+            Checked::Grown(_) => ("growing", None),
+        };
+        Self {
+            schema: 1,
+            system: session.vehicle.system.0,
+            autopilot: session.stack.id,
+            protocol,
+            id: log.id,
+            log: text::path(&done.path),
+            bytes: done.bytes,
+            resumed_bytes: done.resumed,
+            duration_s: done.took.as_secs_f64(),
+            checked,
+            crc32,
+        }
+    }
+}
+
+/// A log that was fetched, for people.
+pub fn page(done: &Done) -> String {
+    let seconds = done.took.as_secs_f64().max(1e-3);
+    let rate_kb_s = (done.bytes - done.resumed.min(done.bytes)) as f64 / seconds / 1e3;
+    let resumed = match done.resumed {
+        0 => String::new(),
+        bytes => format!(" after {:.2} MB of an earlier download", bytes as f64 / 1e6),
+    };
+    format!(
+        "{}: {:.2} MB in {seconds:.1} s, {rate_kb_s:.0} kB/s{resumed}\n{}\n{}",
+        text::path(&done.path),
+        done.bytes as f64 / 1e6,
+        words(done.checked),
+        next(Path::new(&done.path))
+    )
+}

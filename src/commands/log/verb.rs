@@ -1,0 +1,97 @@
+//! The runs of `mavid log list` and `mavid log fetch`.
+
+use mavid::fetch::{Offer, RemoteLog, Wanted};
+
+use super::documents::{FetchDocument, ListDocument, page};
+use super::session::{Flow, Session};
+use super::{fetching, prepare, state};
+use crate::cli::{LogArgs, LogFetchArgs, LogListArgs, LogVerb};
+use crate::commands::progress::bytes_bar;
+use crate::commands::standard_error::StandardError;
+use crate::commands::{CommandError, Outcome, live, network, output};
+
+/// Runs the verb.
+pub fn run(json: bool, stderr: &StandardError, args: &LogArgs) -> Result<Outcome, CommandError> {
+    let (args, stderr) = (args.clone(), stderr.clone());
+    live::run(move |work| {
+        // a signal ends the conversation itself
+        work.ends_itself();
+        network::block_on(async {
+            match &args.verb {
+                LogVerb::List(args) => list(json, args).await,
+                LogVerb::Fetch(args) => fetch(json, &stderr, args).await,
+                LogVerb::Prepare(args) => prepare::run(json, args).await,
+            }
+        })
+    })
+}
+
+async fn list(json: bool, args: &LogListArgs) -> Result<Outcome, CommandError> {
+    let mut session = Session::open(&args.link).await?;
+    let offer = session.offer().await?;
+    remind(&session, &offer);
+    let asked = args.protocol.map(Into::into);
+    let (protocol, logs, left_out) = fetching::list(&mut session, (&offer, asked), Wanted::All).await?;
+    let document = ListDocument::new(&session, protocol.id(), &logs, left_out);
+    if json {
+        output::json(&document)?
+    } else {
+        output::text(&document.page())?
+    }
+    Ok(Outcome::Done)
+}
+
+async fn fetch(json: bool, stderr: &StandardError, args: &LogFetchArgs) -> Result<Outcome, CommandError> {
+    let mut session = Session::open(&args.link).await?;
+    let offer = session.offer().await?;
+    remind(&session, &offer);
+    let wanted = if args.id.is_some() { Wanted::All } else { Wanted::Last };
+    let asked = args.protocol.map(Into::into);
+    let (protocol, logs, _) = fetching::list(&mut session, (&offer, asked), wanted).await?;
+    let log = chosen(&logs, args.id)?;
+    let bar = stderr.bar(bytes_bar(log.size));
+    let mut watch = |bytes, of| {
+        bar.set_length(of);
+        bar.set_position(bytes);
+        Flow::On
+    };
+    let fetched = fetching::fetch(&mut session, &offer, log, (&args.out, &mut watch)).await;
+    bar.finish_and_clear();
+    let Some(done) = fetched? else {
+        return Err(CommandError::Failure("the download did not come to its end".to_owned()));
+    };
+    if json {
+        output::json(&FetchDocument::new(&session, protocol.id(), log, &done))?;
+    } else {
+        output::text(&page(&done))?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// Says what an earlier run changed on the vehicle and did not put back.
+fn remind(session: &Session, offer: &Offer) {
+    let noted = state::notes(&session.known_as(offer)).map(|notes| notes.read());
+    // where there is no folder for notes there are none
+    match noted {
+        Ok(Ok(noted)) if !noted.is_empty() => output::message(&prepare::earlier(&noted)),
+        Ok(Err(error)) => output::warning(&error.to_string()),
+        _ => {}
+    }
+}
+
+fn chosen(logs: &[RemoteLog], id: Option<u32>) -> Result<&RemoteLog, CommandError> {
+    let Some(last) = logs.last() else {
+        let none = "the vehicle has no log; it writes one while it is armed, or as its parameters say";
+        return Err(CommandError::Failure(none.to_owned()));
+    };
+    let Some(id) = id else { return Ok(last) };
+    logs.iter().find(|log| log.id == Some(id)).ok_or_else(|| {
+        let known =
+            |log: Option<&RemoteLog>| log.and_then(|log| log.id).map_or("?".to_owned(), |id| id.to_string());
+        CommandError::Input(format!(
+            "--id: expected a number of the list, {} to {}, got {id}",
+            known(logs.first()),
+            known(Some(last))
+        ))
+    })
+}

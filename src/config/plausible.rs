@@ -1,0 +1,106 @@
+//! What a vehicle file may state and is hardly meant.
+
+use crate::vehicle::{ThrustLaw, Vehicle};
+
+/// Radii of gyration over the distance of the rotors from the centre. Published multirotors have 0.38 to 0.87.
+const GYRATION: (f64, f64) = (0.15, 1.5);
+/// Thrust of all rotors over weight: from a vehicle that hardly climbs to a racer.
+const THRUST_TO_WEIGHT: (f64, f64) = (1.2, 15.0);
+/// Speed of sound, m/s: no propeller's tip reaches it.
+const SOUND_M_S: f64 = 340.0;
+/// Torque per thrust over the rotor's radius, `C_Q / C_T`. Published propellers have 0.1 to 0.3.
+const TORQUE_OVER_RADIUS: (f64, f64) = (0.02, 0.6);
+/// Height of a hub over its distance from the centre: arms that are tilted by 35 degrees.
+const HEIGHT_OVER_ARM: f64 = 0.7;
+
+/// What is possible but hardly meant, sentence by sentence.
+pub(super) fn warnings(vehicle: &Vehicle) -> Vec<String> {
+    let all = [
+        body(vehicle),
+        gyration(vehicle),
+        rotors(vehicle),
+        thrust(vehicle),
+        propeller(vehicle),
+        arms(vehicle),
+    ];
+    all.into_iter().flatten().collect()
+}
+
+fn body(vehicle: &Vehicle) -> Option<String> {
+    let moments = vehicle.body.inertia_kg_m2.symmetric_eigenvalues();
+    let (largest, others) = (moments.max(), moments.sum() - moments.max());
+    (largest > others * (1.0 + 1e-9)).then(|| {
+        format!(
+            "body.inertia: these moments are physically impossible: the largest principal moment, {largest:.4e} kg m^2, \
+             is above the sum of the other two, {others:.4e}"
+        )
+    })
+}
+
+fn gyration(vehicle: &Vehicle) -> Option<String> {
+    let arm_m = vehicle.size().arm_m;
+    let moments = vehicle.body.inertia_kg_m2.symmetric_eigenvalues();
+    let radius = |moment: f64| (moment / vehicle.body.mass_kg).max(0.0).sqrt() / arm_m;
+    let (least, most) = GYRATION;
+    let is_odd = |share: &f64| !(least..=most).contains(share);
+    let share = moments.iter().map(|moment| radius(*moment)).find(is_odd)?;
+    Some(format!(
+        "body.inertia: a radius of gyration of {share:.2} of the arms' {arm_m:.3} m; expected {least} to {most}: a wrong unit, \
+         or another vehicle's arms?"
+    ))
+}
+
+fn rotors(vehicle: &Vehicle) -> Option<String> {
+    (vehicle.mixer().matrix.svd(false, false).rank(1e-9) < 4)
+        .then(|| "rotor: the rotors cannot set thrust and all three torques independently".to_owned())
+}
+
+fn thrust(vehicle: &Vehicle) -> Option<String> {
+    let full_n = vehicle.propulsion.thrust_from_command_n(1.0) * vehicle.rotors.len() as f64;
+    let weight_n = vehicle.body.mass_kg * vehicle.gravity_m_s2;
+    if full_n <= weight_n {
+        return Some(format!(
+            "propulsion: full thrust, {full_n:.3} N, does not lift the weight, {weight_n:.3} N"
+        ));
+    }
+    let (ratio, (least, most)) = (full_n / weight_n, THRUST_TO_WEIGHT);
+    (!(least..=most).contains(&ratio)).then(|| {
+        format!(
+            "propulsion: full thrust, {full_n:.3} N, is {ratio:.2} times the weight, {weight_n:.3} N; expected {least} to {most}"
+        )
+    })
+}
+
+fn propeller(vehicle: &Vehicle) -> Option<String> {
+    let radius_m = vehicle.propulsion.rotor_radius_m?;
+    if let ThrustLaw::Speed { speed_max_rad_s } = vehicle.propulsion.law {
+        let tip_m_s = speed_max_rad_s * radius_m;
+        if tip_m_s > SOUND_M_S {
+            return Some(format!(
+                "propulsion: at speed_max the rotors' tips move at {tip_m_s:.0} m/s, above the speed of sound: speed_max in \
+                 rad/s, rotor_radius in m?"
+            ));
+        }
+    }
+    let (share, (least, most)) = (vehicle.propulsion.torque_per_thrust_m / radius_m, TORQUE_OVER_RADIUS);
+    (!(least..=most).contains(&share)).then(|| {
+        format!(
+            "propulsion: torque per thrust is {share:.3} of the rotors' radius of {radius_m} m; expected {least} to {most}"
+        )
+    })
+}
+
+fn arms(vehicle: &Vehicle) -> Option<String> {
+    let center_m =
+        vehicle.rotors.iter().map(|rotor| rotor.position_m.z).sum::<f64>() / vehicle.rotors.len() as f64;
+    let is_tilted = |rotor: &&crate::vehicle::Rotor| {
+        (rotor.position_m.z - center_m).abs() > HEIGHT_OVER_ARM * rotor.position_m.xy().norm()
+    };
+    let rotor = vehicle.rotors.iter().find(is_tilted)?;
+    Some(format!(
+        "rotor {}: {:.3} m above or below the others, and {:.3} m from the axis; position is x forward, y left, z up",
+        rotor.name,
+        (rotor.position_m.z - center_m).abs(),
+        rotor.position_m.xy().norm()
+    ))
+}

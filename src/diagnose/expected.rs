@@ -1,0 +1,174 @@
+//! How well flights determine what one may want to know of a vehicle, before anything is searched for: each quantity's standard
+//! error by its signature's own columns, at its usual size, with the noise that the rigid body leaves.
+
+use super::base::Base;
+use super::candidates::Candidate;
+use super::evidence::{Evidence, LEAST_ROWS};
+use super::explain::ExplainError;
+use super::fit::Fitted;
+use super::latency::with_any_latency;
+use super::recorded::Recorded;
+use super::score::columns_of;
+use super::signature::{Carried, EffectTerm, Signature};
+use super::signatures::{WANTED, Wanted};
+use super::trace::Trace;
+use crate::physics::Parameter;
+use crate::signals::Signals;
+use crate::vehicle::Vehicle;
+use rayon::prelude::*;
+
+/// Half width of the weak form's test function, s: that of [`ExplainSettings`](super::ExplainSettings).
+const HALF_WIDTH_S: f64 = 0.2;
+
+/// How well a quantity is determined.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExpectedError {
+    /// of which quantity
+    pub quantity: &'static str,
+    /// the standard error, or why there is none
+    pub of: Expected,
+}
+
+/// A standard error, or why there is none.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Expected {
+    /// it is determined, however badly
+    Known {
+        /// the worst of its parameters
+        parameter: &'static str,
+        /// in the parameter's unit
+        std: f64,
+        /// the same over the size on ordinary vehicles
+        of_usual: f64,
+        /// of the parameter
+        unit: &'static str,
+    },
+    /// a quantity that it needs is not recorded
+    Lacks {
+        /// which
+        what: &'static str,
+        /// what for
+        why: &'static str,
+    },
+    /// measured rotor speeds contain it
+    Measured,
+    /// in these flights it acts as mass, inertia or the latency do
+    Confused,
+}
+
+/// How well flights determine each of [`WANTED`].
+///
+/// # Errors
+/// [`ExplainError`] where streams are missing or too little was flown.
+pub fn expected_errors(flights: &[Signals], vehicle: &Vehicle) -> Result<Vec<ExpectedError>, ExplainError> {
+    let traces: Result<Vec<Trace>, _> =
+        flights.iter().map(|signals| Trace::new(signals, vehicle, HALF_WIDTH_S)).collect();
+    let traces = traces?;
+    let rows: usize = traces.iter().map(Trace::rows).sum();
+    if rows < LEAST_ROWS {
+        let (seconds, needed_s) = (rows as f64 * 0.05, LEAST_ROWS as f64 * 0.05);
+        return Err(ExplainError::TooShort { seconds, needed_s });
+    }
+    let (fitted, latency_std_s) = with_any_latency(&traces, Base::rigid(vehicle))?;
+    let flights = Flights { traces: &traces, fitted: &fitted, vehicle };
+    let of = |wanted: &Wanted| ExpectedError {
+        quantity: wanted.name,
+        of: if wanted.signature.role.latency.is_some() {
+            flights.known(wanted, wanted.signature.effect.parameters().first(), Some(latency_std_s))
+        } else {
+            flights.expected(wanted)
+        },
+    };
+    Ok(WANTED.par_iter().map(of).collect())
+}
+
+/// Flights with the rigid body fitted to them.
+struct Flights<'a> {
+    traces: &'a [Trace],
+    fitted: &'a Fitted,
+    vehicle: &'a Vehicle,
+}
+
+impl Flights<'_> {
+    fn expected(&self, wanted: &Wanted) -> Expected {
+        let signature = wanted.signature;
+        let recorded = Recorded::new(&self.fitted.base.vehicle, self.traces);
+        if let Some((_, what, why)) = recorded.lacks(signature.needs) {
+            return Expected::Lacks { what, why };
+        }
+        let tested: Vec<(EffectTerm, Evidence, usize)> = match signature.role.wind {
+            Some(carried) => carried().iter().filter_map(|carried| self.carried(carried)).collect(),
+            None => {
+                let forms = (signature.forms)(&recorded);
+                if forms.is_empty() && recorded.all(|trace| trace.measured_speeds) {
+                    return Expected::Measured;
+                }
+                forms.into_iter().filter_map(|form| self.alone(form.term)).collect()
+            }
+        };
+        let worst = worst(signature, &tested);
+        let std = worst.map(|(_, std)| std);
+        self.known(wanted, worst.map(|(parameter, _)| parameter), std)
+    }
+
+    fn known(&self, wanted: &Wanted, parameter: Option<&'static Parameter>, std: Option<f64>) -> Expected {
+        match (parameter, std) {
+            (Some(parameter), Some(std)) if std.is_finite() && std > 0.0 => {
+                let naming = &wanted.signature.naming;
+                let std = std.max(naming.least_std).max(naming.least);
+                let of_usual = std / (wanted.usual)(self.vehicle).max(f64::MIN_POSITIVE);
+                Expected::Known { parameter: parameter.name, std, of_usual, unit: parameter.unit }
+            }
+            _ => Expected::Confused,
+        }
+    }
+
+    /// A term by itself, with the place of its first parameter among the columns.
+    fn alone(&self, term: EffectTerm) -> Option<(EffectTerm, Evidence, usize)> {
+        let columns = columns_of(self.traces, self.fitted, &Candidate::alone(term.clone()))?;
+        Some((term, self.fitted.weighted.test(&columns)?, 0))
+    }
+
+    /// A term together with the one through which it acts, at the usual size of that.
+    fn carried(&self, carried: &Carried) -> Option<(EffectTerm, Evidence, usize)> {
+        let Carried { carrier, unit, term } = carried;
+        let mut through = unit.clone();
+        for slot in &carrier.free {
+            let usual = carrier.signature.naming.usual;
+            let name = carrier.parameter(*slot)?.name;
+            through.values[*slot] = usual(name, &self.fitted.base.vehicle)?;
+        }
+        let mut base = self.fitted.base.clone();
+        base.present.push(through);
+        let rows = &self.fitted.rows;
+        let mut columns = rows.columns_of(self.traces, &self.fitted.base, carrier).ok()?;
+        columns.extend(rows.columns_through(self.traces, &base, term).ok()?);
+        Some((term.clone(), self.fitted.weighted.test(&columns)?, carrier.free.len()))
+    }
+}
+
+/// The parameter that is determined worst, and its standard error: of each parameter that of the best form, and of each
+/// instance its own.
+fn worst(
+    signature: &Signature,
+    tested: &[(EffectTerm, Evidence, usize)],
+) -> Option<(&'static Parameter, f64)> {
+    let mut best: Vec<(usize, Option<u64>, &'static Parameter, f64)> = Vec::new();
+    for (term, evidence, first) in tested {
+        let instance = signature.role.which.map(|slot| term.values[slot].to_bits());
+        for (place, slot) in term.free.iter().enumerate() {
+            let Some(parameter) = term.parameter(*slot) else { continue };
+            let std = evidence.std(first + place);
+            match best.iter_mut().find(|(known, of, ..)| (known, of) == (slot, &instance)) {
+                Some((.., least)) => *least = least.min(std),
+                None => best.push((*slot, instance, parameter, std)),
+            }
+        }
+    }
+    let of = |slot: usize| best.iter().filter(move |(known, ..)| *known == slot);
+    // what only some of the forms have is a refinement
+    let amounts =
+        signature.amounts.iter().filter(|slot| tested.iter().all(|(term, ..)| term.free.contains(slot)));
+    let amounts = amounts.flat_map(|slot| of(*slot));
+    amounts.map(|(_, _, parameter, std)| (*parameter, *std)).max_by(|a, b| a.1.total_cmp(&b.1))
+}

@@ -1,0 +1,32 @@
+//! Whether the inertia depends on the window of the weak form.
+//!
+//! The torque that causes a motion is in proportion to the angular acceleration at every frequency. Where control answers the
+//! motion that something else causes, torque and motion are in another proportion at each frequency, often with the wrong sign.
+//! A window of twice the width weighs lower frequencies, so a comparison of both tells the two apart.
+
+use super::theta::Theta;
+use super::weak::{WeakEstimate, WeakMethod, solve_weak};
+use crate::regression::{WeakMotion, WeakRows, weak_rows};
+use crate::signals::{Signals, WeakKernel};
+
+/// Places of Ixx, Iyy and Izz in [`Theta`].
+const MOMENTS: [usize; 3] = [1, 4, 6];
+
+/// Ixx, Iyy, Izz by a window of twice `half_width_s`, as shares of those of `narrow`, from the same signals; NaN where either
+/// has none, also if no stretch of flight is long enough for that window.
+pub(super) fn by_wider_window(
+    flights: &[Signals],
+    (narrow, nominal): (&WeakEstimate, &Theta),
+    (half_width_s, gravity_m_s2): (f64, f64),
+) -> [f64; 3] {
+    let rows: Vec<WeakRows> = flights
+        .iter()
+        .map(|signals| {
+            let kernel = WeakKernel::new(2.0 * half_width_s, signals.grid.step_s);
+            let motion = WeakMotion::measured(signals, &kernel, gravity_m_s2);
+            weak_rows(signals, &motion, &kernel)
+        })
+        .collect();
+    let wide = solve_weak(&rows, nominal, WeakMethod::LeastSquares);
+    MOMENTS.map(|index| wide.as_ref().map_or(f64::NAN, |wide| wide.theta[index] / narrow.theta[index]))
+}

@@ -1,0 +1,166 @@
+//! What was found before parameters of a vehicle were changed, in a file of the user's own: it is put back from there, also
+//! by a later run.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::name::local_name;
+use crate::files::write_whole;
+use crate::text;
+
+/// One parameter that was changed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Noted {
+    /// its name
+    pub name: String,
+    /// what it was
+    pub found: f64,
+    /// what it was set to
+    pub set: f64,
+}
+
+#[derive(Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    vehicle: String,
+    #[serde(default)]
+    parameter: Vec<Noted>,
+}
+
+/// Why notes are not read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum NotesError {
+    /// the file system says no
+    #[error("{path}: {source}")]
+    File {
+        /// which file
+        path: String,
+        /// what it says
+        source: io::Error,
+    },
+    /// somebody wrote something else into it
+    #[error("{path}: expected the parameters that were changed on a vehicle, as mavid writes them: {why}")]
+    Form {
+        /// which file
+        path: String,
+        /// what is wrong
+        why: String,
+    },
+}
+
+/// Beginning and end of the name of a vehicle's file.
+const PREFIX: &str = "logging-";
+const SUFFIX: &str = ".toml";
+
+/// The notes of one vehicle.
+#[derive(Debug, Clone)]
+pub struct Notes {
+    path: PathBuf,
+    vehicle: String,
+}
+
+impl Notes {
+    /// Of this vehicle, in this folder.
+    #[must_use]
+    pub fn of(folder: &Path, vehicle: &str) -> Self {
+        let path = folder.join(format!("{PREFIX}{}{SUFFIX}", local_name(vehicle)));
+        Self { path, vehicle: vehicle.to_owned() }
+    }
+
+    /// Whether a file of this name holds notes.
+    #[must_use]
+    pub fn are_at(path: &Path) -> bool {
+        let name = path.file_name().and_then(|name| name.to_str());
+        name.is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX))
+    }
+
+    /// Where they are.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn failed(&self, source: io::Error) -> NotesError {
+        NotesError::File { path: text::path(&self.path), source }
+    }
+
+    /// What was changed and not put back; nothing where there are none.
+    ///
+    /// # Errors
+    /// They cannot be read.
+    pub fn read(&self) -> Result<Vec<Noted>, NotesError> {
+        let written = match fs::read_to_string(&self.path) {
+            Ok(written) => written,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+            Err(error) => return Err(self.failed(error)),
+        };
+        let form = |why: String| NotesError::Form { path: text::path(&self.path), why };
+        let document: Document = toml::from_str(&written).map_err(|error| form(error.to_string()))?;
+        if document.vehicle != self.vehicle {
+            return Err(form(format!("they are of vehicle {}", document.vehicle)));
+        }
+        Ok(document.parameter)
+    }
+
+    /// Adds what is about to be changed: what was found first stays.
+    ///
+    /// # Errors
+    /// They cannot be written; then nothing must be changed.
+    pub fn add(&self, changes: &[Noted]) -> Result<(), NotesError> {
+        let mut parameter = self.read()?;
+        for change in changes {
+            match parameter.iter_mut().find(|known| known.name == change.name) {
+                Some(known) => known.set = change.set,
+                None => parameter.push(change.clone()),
+            }
+        }
+        let document = Document { vehicle: self.vehicle.clone(), parameter };
+        let words = toml::to_string(&document)
+            .map_err(|error| NotesError::Form { path: text::path(&self.path), why: error.to_string() })?;
+        if let Some(folder) = self.path.parent() {
+            fs::create_dir_all(folder).map_err(|error| self.failed(error))?;
+        }
+        let head = "# Parameters of logging that mavid changed on a vehicle, and what they were before.\n\
+                    # `mavid log prepare --connect ADDRESS --restore` puts them back and removes this file.\n";
+        write_whole(&self.path, format!("{head}{words}").as_bytes()).map_err(|error| self.failed(error))
+    }
+
+    /// All is as it was.
+    ///
+    /// # Errors
+    /// The file cannot be removed.
+    pub fn forget(&self) -> Result<(), NotesError> {
+        match fs::remove_file(&self.path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(self.failed(error)),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_found_first_is_kept_until_it_is_put_back() {
+        let folder = std::env::temp_dir().join(format!("mavid-notes-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        let notes = Notes::of(&folder, "ab/../cd");
+        assert_eq!(notes.path(), folder.join("logging-cd.toml"));
+        assert_eq!(notes.read().unwrap(), []);
+        let noted = |found: f64, set: f64| Noted { name: "SDLOG_PROFILE".to_owned(), found, set };
+        notes.add(&[noted(1.0, 9.0)]).unwrap();
+        notes.add(&[noted(9.0, 27.0)]).unwrap();
+        assert_eq!(notes.read().unwrap(), [noted(1.0, 27.0)]);
+        let other = Notes { vehicle: "other".to_owned(), ..notes.clone() };
+        assert!(other.read().unwrap_err().to_string().contains("of vehicle ab/../cd"));
+        notes.forget().unwrap();
+        notes.forget().unwrap();
+        assert_eq!(notes.read().unwrap(), []);
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}

@@ -1,0 +1,119 @@
+//! What judgements of a log rest on.
+
+use super::assess::Assessment;
+use crate::autopilot::VehicleKind;
+use crate::estimate::Estimated;
+use crate::recording::{Quantity, StreamKey, StreamStats};
+use crate::signals::SignalsError;
+use crate::vehicle::Vehicle;
+
+/// Least usable time of flight, s. Chosen; not measured.
+const LEAST_USABLE_S: f64 = 2.0;
+
+/// What the judgement rests on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Evidence<'a> {
+    pub streams: &'a [(StreamKey, usize, StreamStats)],
+    pub assessment: &'a Assessment,
+    pub vehicle: Option<&'a Vehicle>,
+    /// without a vehicle, one of assumed mass and size and what it would come out as
+    pub assumed: Option<(&'a Vehicle, &'a Estimated)>,
+    /// parameters of the autopilot's thrust curve that the log does not hold
+    pub missing_curve: Option<&'static str>,
+    /// what kind of vehicle it is of
+    pub kind: Option<VehicleKind>,
+    /// whether it was ever armed, where it tells
+    pub armed: Option<bool>,
+    /// the log's messages carry times
+    pub timed: bool,
+    /// the log ends before its first message with a time
+    pub ends_early: bool,
+    /// how to make the vehicle log more, where it wrote the log
+    pub logging: Option<&'static str>,
+    /// how to make it log more on board, where the log is of a link
+    pub own_log: Option<&'static str>,
+}
+
+impl Evidence<'_> {
+    /// Rate of the fastest stream of a quantity that moves, Hz.
+    pub(super) fn rate_hz(&self, quantity: Quantity) -> Option<f64> {
+        self.streams
+            .iter()
+            .filter(|(key, _, stats)| {
+                key.quantity == quantity && stats.count >= 10 && !stats.all_zero && !stats.is_constant()
+            })
+            .map(|(_, _, stats)| stats.rate_hz)
+            .reduce(f64::max)
+    }
+
+    /// Rate of what tells the thrust, Hz. Commands that are logged seldom are rebuilt from torque and thrust setpoints.
+    pub(super) fn actuator_hz(&self) -> Option<f64> {
+        let quantities = [Quantity::RotorSpeed, Quantity::ActuatorCommand, Quantity::Wrench];
+        let logged = quantities.into_iter().filter_map(|quantity| self.rate_hz(quantity)).reduce(f64::max)?;
+        let thrust = [Quantity::ThrustVectorSetpoint, Quantity::ThrustSetpoint];
+        let thrust_hz = thrust.into_iter().filter_map(|quantity| self.rate_hz(quantity)).reduce(f64::max);
+        let rebuilt = self.rate_hz(Quantity::TorqueSetpoint).filter(|_| thrust_hz.is_some());
+        Some(rebuilt.map_or(logged, |rebuilt| logged.max(rebuilt)))
+    }
+
+    /// Something tells the force along the thrust.
+    pub(super) fn has_vertical_motion(&self) -> bool {
+        let has = |quantity| self.rate_hz(quantity).is_some();
+        has(Quantity::SpecificForce)
+            || has(Quantity::WorldAcceleration)
+            || (has(Quantity::Attitude) && has(Quantity::AngularRate) && has(Quantity::Velocity))
+    }
+
+    /// rms about an axis, rad/s^2.
+    pub(super) fn angular_acceleration(&self, axis: usize) -> Option<f64> {
+        self.assessment.excitation.as_ref()?.angular_acceleration_rms_rad_s2.map(|rms| rms[axis])
+    }
+
+    /// There are streams, and they have times.
+    pub(super) fn holds_streams(&self) -> bool {
+        self.timed && !self.streams.is_empty()
+    }
+
+    /// Why it is no flight, where the vehicle tells that.
+    pub(super) fn grounded(&self) -> Option<String> {
+        let flown = self.assessment.flight.airborne_s >= LEAST_USABLE_S;
+        match self.armed {
+            Some(false) => Some("the vehicle was never armed".into()),
+            Some(true) if !flown => Some("the vehicle was armed and never in the air".into()),
+            _ => None,
+        }
+    }
+
+    /// Why nothing at all can be identified.
+    pub(super) fn nothing(&self) -> Option<String> {
+        if let Some(kind) = self.kind.filter(|kind| *kind != VehicleKind::Multirotor) {
+            return Some(format!("it is of a {}, and a multirotor is needed", kind.name()));
+        }
+        if !self.timed {
+            return Some("its messages carry no time of the vehicle's".into());
+        }
+        if self.streams.is_empty() && self.ends_early {
+            return Some("it ends before its first sample".into());
+        }
+        if self.streams.is_empty() {
+            return Some("it holds no stream that is known here".into());
+        }
+        if let Some(grounded) = self.grounded() {
+            return Some(grounded);
+        }
+        if self.actuator_hz().is_none() {
+            return Some("no actuator outputs".into());
+        }
+        if self.assessment.flight.airborne_s < LEAST_USABLE_S {
+            return Some("no flight".into());
+        }
+        if let Some(refusal) = &self.assessment.refusal {
+            return Some(match refusal {
+                // which of them, and how fast, is in the advice
+                SignalsError::TooSlow { .. } => "streams are sampled too slowly".to_owned(),
+                other => other.to_string(),
+            });
+        }
+        (self.assessment.flight.usable_s < LEAST_USABLE_S).then(|| "no stretch of flight can be used".into())
+    }
+}

@@ -1,0 +1,77 @@
+//! What identification and diagnosis would make of a log: tried on its liveliest two minutes.
+
+use crate::diagnose::{ExpectedError, expected_errors};
+use crate::draft::{Given, draft};
+use crate::estimate::{Estimated, WeakInformation, WeakMethod, solve_weak, theta_of};
+use crate::recording::{Quantity, Recording};
+use crate::regression::{WeakMotion, weak_rows};
+use crate::signals::{
+    ConditionSettings, Signals, SignalsError, WeakKernel, best, condition, median_period_s,
+};
+use crate::vehicle::Vehicle;
+
+/// Shortest step of the grid, s: what is faster adds memory and no knowledge to a kernel of 0.4 s.
+const LEAST_STEP_S: f64 = 0.008;
+/// Mass of the vehicle that is assumed where none is given, kg: what is relative does not depend on it.
+const ASSUMED_KG: f64 = 1.0;
+
+/// What would come out of a log.
+#[derive(Debug)]
+pub(super) struct Foreseen {
+    /// by which vehicle: the given one, or one drafted from the log
+    pub vehicle: Vehicle,
+    /// mass and size are assumed: only what is relative counts
+    pub assumed: bool,
+    /// rigid body, by this window alone
+    pub body: Option<Estimated>,
+    /// the other quantities; why there are none
+    pub effects: Result<Vec<ExpectedError>, String>,
+}
+
+impl Foreseen {
+    /// The vehicle of assumed mass and size, and the rigid body that would come out; `None` where one was given.
+    pub(super) fn assumed(&self) -> Option<(&Vehicle, &Estimated)> {
+        Some((&self.vehicle, self.body.as_ref()?)).filter(|_| self.assumed)
+    }
+}
+
+/// What would come out of a window of flight.
+///
+/// # Errors
+/// Why it cannot be conditioned; `None` where no vehicle is given and none can be drafted.
+pub(super) fn foresee(
+    window: &Recording,
+    vehicle: Option<&Vehicle>,
+) -> Result<Foreseen, Option<SignalsError>> {
+    let given = Given { mass_kg: ASSUMED_KG, size_m: None, frame: None };
+    let known = vehicle.cloned().or_else(|| Some(draft(window, &given, "assumed").ok()?.vehicle));
+    let mut known = known.ok_or(None)?;
+    if vehicle.is_none() {
+        // what is relative does not rest on them
+        known.guesses.clear();
+    }
+    let period_s = best(window, Quantity::AngularRate, |stream| stream.width == 3)
+        .map_or(LEAST_STEP_S, |(_, stream)| median_period_s(stream));
+    let step_s = (period_s < LEAST_STEP_S).then_some(LEAST_STEP_S);
+    let settings = ConditionSettings { step_s, ..ConditionSettings::default() };
+    let signals = condition(window, &known, &settings)?;
+    Ok(Foreseen {
+        body: body(&signals, &known),
+        effects: expected_errors(std::slice::from_ref(&signals), &known).map_err(|error| error.to_string()),
+        assumed: vehicle.is_none(),
+        vehicle: known,
+    })
+}
+
+fn body(signals: &Signals, vehicle: &Vehicle) -> Option<Estimated> {
+    Some(information(signals, vehicle)?.combined())
+}
+
+/// What the weak form learns of a window.
+pub(super) fn information(signals: &Signals, vehicle: &Vehicle) -> Option<WeakInformation> {
+    let kernel = WeakKernel::new(ConditionSettings::default().weak_half_width_s, signals.grid.step_s);
+    let motion = WeakMotion::measured(signals, &kernel, vehicle.gravity_m_s2);
+    let rows = weak_rows(signals, &motion, &kernel);
+    let estimate = solve_weak(&[rows], &theta_of(&vehicle.body), WeakMethod::LeastSquares)?;
+    Some(WeakInformation::of(&estimate))
+}

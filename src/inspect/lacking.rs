@@ -1,0 +1,113 @@
+//! Streams that a quantity needs and the log lacks, and how to have them.
+
+use super::evidence::Evidence;
+use crate::recording::Quantity;
+use crate::signals::{LEAST_FORCE_HZ, LEAST_TORQUE_HZ};
+
+/// What is missing for a quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Lack {
+    pub reason: String,
+    /// what to have recorded
+    pub set: String,
+}
+
+/// What a quantity is told from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Need {
+    /// of the motors, at this rate or more, Hz
+    Commands(f64),
+    /// of the body, at this rate or more, Hz
+    Turning(f64),
+    /// the same, where they are recorded
+    TurningIfThere(f64),
+    /// along the thrust
+    Force,
+    /// with attitude
+    Velocity,
+    /// of the battery
+    Voltage,
+}
+
+const COMMANDS: Need = Need::Commands(LEAST_FORCE_HZ);
+const TURNING: Need = Need::Turning(LEAST_FORCE_HZ);
+
+/// Rate to ask for, Hz.
+const WANTED_HZ: u32 = 100;
+
+fn needs(quantity: &str) -> &'static [Need] {
+    match quantity {
+        "mass" => &[COMMANDS, Need::Force, Need::TurningIfThere(LEAST_FORCE_HZ)],
+        "thrust_curve" => &[COMMANDS, TURNING, Need::Force],
+        "drag" | "wind" => &[COMMANDS, TURNING, Need::Force, Need::Velocity],
+        "voltage_sag" => &[COMMANDS, TURNING, Need::Force, Need::Voltage],
+        // they act through torques
+        _ => &[Need::Commands(LEAST_TORQUE_HZ), Need::Turning(LEAST_TORQUE_HZ)],
+    }
+}
+
+/// The first stream that a quantity needs and the log lacks.
+pub(super) fn lack(evidence: &Evidence<'_>, quantity: &str) -> Option<Lack> {
+    needs(quantity).iter().find_map(|need| need.lack(evidence))
+}
+
+/// What to have recorded for a quantity where what is recorded serves not.
+pub(super) fn remedy(evidence: &Evidence<'_>, quantity: &str) -> Option<String> {
+    needs(quantity).last().map(|need| need.remedy(evidence))
+}
+
+impl Need {
+    fn lack(self, evidence: &Evidence<'_>) -> Option<Lack> {
+        let has = |quantity| evidence.rate_hz(quantity).is_some();
+        let reason = match self {
+            Self::Commands(least_hz) => slow("motor commands", evidence.actuator_hz(), least_hz)
+                .or_else(|| evidence.actuator_hz().is_none().then(|| "no actuator outputs".into())),
+            Self::Turning(least_hz) if has(Quantity::AngularRate) => {
+                slow("body rates", evidence.rate_hz(Quantity::AngularRate), least_hz)
+            }
+            Self::Turning(_) => Some("no body rates".into()),
+            Self::TurningIfThere(least_hz) => {
+                slow("body rates", evidence.rate_hz(Quantity::AngularRate), least_hz)
+            }
+            Self::Force => (!evidence.has_vertical_motion())
+                .then(|| "no vertical motion: neither accelerometer nor attitude, rates and velocity".into()),
+            Self::Velocity if !has(Quantity::Velocity) => Some("no velocity".into()),
+            Self::Velocity => (!has(Quantity::Attitude)).then(|| "no attitude".into()),
+            Self::Voltage => {
+                let recorded =
+                    evidence.streams.iter().any(|(key, ..)| key.quantity == Quantity::BatteryVoltage);
+                (!recorded).then(|| "no battery voltage".into())
+            }
+        };
+        Some(Lack { reason: reason?, set: self.remedy(evidence) })
+    }
+
+    /// What to have recorded.
+    fn remedy(self, evidence: &Evidence<'_>) -> String {
+        let request = match self {
+            Self::Commands(_) => "SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS",
+            Self::Turning(_) | Self::TurningIfThere(_) => {
+                "ATTITUDE_QUATERNION, ATTITUDE, HIGHRES_IMU or RAW_IMU"
+            }
+            Self::Force => "an IMU message, or attitude and LOCAL_POSITION_NED",
+            Self::Velocity => "LOCAL_POSITION_NED",
+            Self::Voltage => "BATTERY_STATUS or SYS_STATUS",
+        };
+        match (self, evidence.logging, evidence.own_log) {
+            (Self::Voltage, Some(_), _) => "a battery monitor in the autopilot".to_owned(),
+            (Self::Velocity, Some(_), _) => "a position estimate: GPS, or optical flow".to_owned(),
+            (_, Some(logging), _) => logging.to_owned(),
+            (Self::Velocity | Self::Voltage, None, _) | (_, None, None) => {
+                format!("request {request} at {WANTED_HZ} Hz")
+            }
+            (_, None, Some(own)) => {
+                format!("request {request} at {WANTED_HZ} Hz, or {own} and take the log on board")
+            }
+        }
+    }
+}
+
+fn slow(what: &str, rate_hz: Option<f64>, least_hz: f64) -> Option<String> {
+    let hz = rate_hz.filter(|hz| *hz < least_hz)?;
+    Some(format!("{what} at {hz:.0} Hz: too slow, {least_hz:.0} Hz are the least"))
+}

@@ -1,0 +1,175 @@
+//! What one may want to know of a vehicle, one entry a quantity: how well the log will tell it, or why not and what to do.
+
+use super::evidence::Evidence;
+use super::foresee::Foreseen;
+use super::inspection::Outlook;
+use super::lacking::{Lack, lack, remedy};
+use super::outlook::judged;
+use super::quantity::{ExpectedParameter, QuantitySummary};
+use crate::autopilot::VehicleKind;
+use crate::diagnose::{Expected, ExpectedError};
+
+/// A quantity's standard error as a share of its usual size up to which it is told: an effect of usual size is then four
+/// standard errors from nothing, which is what `explain` asks for.
+const TOLD: f64 = 0.25;
+
+/// One of them: its name, its parameters among those of the rigid body, and what to fly for more of it.
+struct Asked {
+    name: &'static str,
+    body: &'static [usize],
+    fly: &'static str,
+}
+
+const ASKED: &[Asked] = &[
+    Asked { name: "mass", body: &[0], fly: "a trajectory of `mavid plan`" },
+    Asked { name: "inertia", body: &[1, 4, 6], fly: "a trajectory of `mavid plan`: it turns about all axes" },
+    Asked { name: "thrust_curve", body: &[], fly: "climbs and descents, hard ones too" },
+    Asked { name: "motor_lag", body: &[], fly: "quick turns about all axes" },
+    Asked { name: "drag", body: &[], fly: "legs there and back at 5 m/s and more" },
+    Asked { name: "wind", body: &[], fly: "legs in several directions at 3 m/s and more" },
+    Asked { name: "centre_of_mass", body: &[], fly: "30 s and more with climbs, in calm air" },
+    Asked { name: "rotor_efficiency", body: &[], fly: "30 s and more with climbs, in calm air" },
+    Asked { name: "voltage_sag", body: &[], fly: "until the battery has lost a tenth of its voltage" },
+];
+
+/// What is known of a log's future results.
+pub(super) struct Outcome<'a> {
+    pub evidence: &'a Evidence<'a>,
+    /// of the rigid body, in `Theta`'s order
+    pub body: &'a [Outlook],
+    /// of the liveliest window; `None` where that could not be tried
+    pub foreseen: Option<&'a Foreseen>,
+    /// the liveliest window is not all of the flight
+    pub at_most: bool,
+}
+
+/// One entry a quantity, in the order of the page.
+pub(super) fn quantities(outcome: &Outcome<'_>) -> Vec<QuantitySummary> {
+    ASKED.iter().map(|asked| outcome.of(asked)).collect()
+}
+
+impl Outcome<'_> {
+    fn of(&self, asked: &Asked) -> QuantitySummary {
+        let evidence = self.evidence;
+        let lack = lack(evidence, asked.name);
+        let none = QuantitySummary {
+            name: asked.name,
+            status: "no",
+            expected: Vec::new(),
+            at_most: false,
+            reason: None,
+            fly: None,
+            set: None,
+        };
+        if evidence.kind.is_some_and(|kind| kind != VehicleKind::Multirotor) || !evidence.holds_streams() {
+            return QuantitySummary { reason: evidence.nothing(), ..none };
+        }
+        if let Some(reason) = evidence.grounded() {
+            let set = lack.map(|lack| lack.set);
+            return QuantitySummary { reason: Some(reason), fly: Some(asked.fly), set, ..none };
+        }
+        if let Some(Lack { reason, set }) = lack {
+            return QuantitySummary { reason: Some(reason), set: Some(set), ..none };
+        }
+        if let Some(reason) = evidence.nothing() {
+            return QuantitySummary { reason: Some(reason), fly: Some(asked.fly), ..none };
+        }
+        if asked.body.is_empty() { self.effect(asked, none) } else { self.body(asked, none) }
+    }
+
+    /// Mass and inertia, by what identification would say.
+    fn body(&self, asked: &Asked, none: QuantitySummary) -> QuantitySummary {
+        let by_window = || {
+            let (vehicle, body) = self.evidence.assumed?;
+            Some((0..self.body.len()).map(|index| judged(vehicle, body, index)).collect::<Vec<_>>())
+        };
+        let by_window = by_window();
+        let judged = by_window.as_deref().unwrap_or(self.body);
+        let parts = || asked.body.iter().filter_map(|index| judged.get(*index));
+        let known = parts().filter_map(|part| {
+            Some(ExpectedParameter {
+                parameter: part.name,
+                std: part.std.filter(|_| by_window.is_none()),
+                unit: part.unit,
+                std_relative: part.std_relative?,
+                of: "value",
+            })
+        });
+        let expected: Vec<ExpectedParameter> = known.collect();
+        let missing: Vec<&Outlook> = parts().filter(|part| part.status == "not_determined").collect();
+        let status = match (expected.len(), missing.len()) {
+            (0, 0) => "possible",
+            (_, 0) => "yes",
+            (some, not) if some > 0 || not < asked.body.len() => "partly",
+            _ => "no",
+        };
+        // what to fly is told beside it
+        let why = |part: &&Outlook| Some(part.reason.as_ref()?.split(';').next()?.to_owned());
+        let told = |part: &&Outlook| Some(format!("{}: {}", part.name, why(part)?));
+        let reasons: Vec<String> = match missing.as_slice() {
+            [only] if asked.body.len() == 1 => why(only).into_iter().collect(),
+            several => several.iter().filter_map(told).collect(),
+        };
+        let at_most = self.at_most && by_window.is_some() && !expected.is_empty();
+        let reason = (!reasons.is_empty()).then(|| reasons.join("; "));
+        let fly = reason.is_some().then_some(asked.fly);
+        QuantitySummary { status, expected, at_most, reason, fly, ..none }
+    }
+
+    /// The others, by the columns of their effects.
+    fn effect(&self, asked: &Asked, none: QuantitySummary) -> QuantitySummary {
+        let effects = self.foreseen.map(|foreseen| (&foreseen.effects, foreseen.assumed));
+        let (errors, assumed) = match effects {
+            Some((Ok(errors), assumed)) => (errors, assumed),
+            Some((Err(why), _)) => {
+                return QuantitySummary { reason: Some(why.clone()), fly: Some(asked.fly), ..none };
+            }
+            None => return QuantitySummary { status: "possible", ..none },
+        };
+        let of =
+            errors.iter().find(|error: &&ExpectedError| error.quantity == asked.name).map(|error| &error.of);
+        match of {
+            Some(Expected::Known { parameter, std, of_usual, unit }) => {
+                let (std, unit) = if assumed { without_mass(*std, unit) } else { (Some(*std), *unit) };
+                let expected =
+                    ExpectedParameter { parameter, std, unit, std_relative: *of_usual, of: "usual" };
+                let is_told = *of_usual <= TOLD;
+                let reason =
+                    format!("an effect of usual size would be {:.1} standard errors", of_usual.recip());
+                QuantitySummary {
+                    status: if is_told { "yes" } else { "no" },
+                    expected: vec![expected],
+                    at_most: self.at_most,
+                    reason: (!is_told).then_some(reason),
+                    fly: (!is_told).then_some(asked.fly),
+                    ..none
+                }
+            }
+            Some(Expected::Lacks { what, why }) => {
+                // what to record is told beside it
+                let why = why.split(';').next().unwrap_or_default();
+                let reason = format!("no {what} that can be used: {why}");
+                QuantitySummary { reason: Some(reason), set: remedy(self.evidence, asked.name), ..none }
+            }
+            Some(Expected::Measured) => {
+                let reason = "rotor speeds are measured, and contain it".to_owned();
+                QuantitySummary { reason: Some(reason), ..none }
+            }
+            Some(Expected::Confused) => {
+                let reason = "this flight cannot tell it from mass, inertia and latency".to_owned();
+                QuantitySummary { reason: Some(reason), fly: Some(asked.fly), ..none }
+            }
+            None => QuantitySummary { status: "possible", ..none },
+        }
+    }
+}
+
+/// A standard error for an assumed mass of 1 kg: what goes with the mass is told for each kilogram, and what goes with the
+/// size is not told.
+fn without_mass(std: f64, unit: &'static str) -> (Option<f64>, &'static str) {
+    match unit {
+        "N/(m/s)" => (Some(std), "1/s"),
+        "m" => (None, "m"),
+        same => (Some(std), same),
+    }
+}

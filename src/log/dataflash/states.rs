@@ -1,0 +1,64 @@
+//! States, which logs write when they change and streams hold all the time.
+
+use crate::recording::Quantity;
+
+/// MAV_LANDED_STATE.
+pub(super) const ON_GROUND: f64 = 1.0;
+/// See [`ON_GROUND`].
+pub(super) const IN_AIR: f64 = 2.0;
+/// A state is given again after this long, s.
+const AGAIN_S: f64 = 1.0;
+
+/// LogEvent of ArduPilot: what it means, if anything.
+const EVENTS: &[(f64, Meaning)] = &[
+    (10.0, Meaning::State(Quantity::Armed, 1.0)),
+    (11.0, Meaning::State(Quantity::Armed, 0.0)),
+    // landing complete, and airborne
+    (18.0, Meaning::State(Quantity::LandedState, ON_GROUND)),
+    (28.0, Meaning::State(Quantity::LandedState, IN_AIR)),
+    // the estimate of height and of yaw jumped
+    (60.0, Meaning::Jump),
+    (62.0, Meaning::Jump),
+];
+
+/// What an event means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Meaning {
+    State(Quantity, f64),
+    Jump,
+}
+
+/// What an event means, if it is known.
+pub(super) fn meaning(event: f64) -> Option<Meaning> {
+    EVENTS.iter().find(|(number, _)| *number == event).map(|(_, meaning)| *meaning)
+}
+
+/// States as they stand.
+#[derive(Debug, Default)]
+pub(super) struct States {
+    known: Vec<(Quantity, f64)>,
+    given_s: f64,
+}
+
+impl States {
+    /// Takes a state; says whether it is the first word of it.
+    pub(super) fn set(&mut self, quantity: Quantity, value: f64) -> bool {
+        match self.known.iter_mut().find(|(known, _)| *known == quantity) {
+            Some((_, known)) => *known = value,
+            None => {
+                self.known.push((quantity, value));
+                return true;
+            }
+        }
+        false
+    }
+
+    /// What is to be given again at this time, s.
+    pub(super) fn due(&mut self, time_s: f64) -> &[(Quantity, f64)] {
+        if time_s - self.given_s < AGAIN_S {
+            return &[];
+        }
+        self.given_s = time_s;
+        &self.known
+    }
+}

@@ -1,0 +1,63 @@
+//! How many messages of which name there are.
+
+use std::collections::BTreeMap;
+
+use super::message::Message;
+use super::routes::Routes;
+use crate::log::onboard::Topic;
+
+/// How many messages of which name there are.
+#[derive(Debug, Default)]
+pub(super) struct Tally {
+    names: BTreeMap<(String, u8), usize>,
+    counts: Vec<Count>,
+    /// samples that are left out because their messages carry no time
+    pub without_time: u64,
+    /// samples that are left out because the log does not say in which unit they are
+    pub unknown_unit: u64,
+}
+
+#[derive(Debug, Default)]
+struct Count {
+    count: u64,
+    span_s: Option<(f64, f64)>,
+    is_used: bool,
+}
+
+impl Tally {
+    /// Counts a message of an instance, written at `stamp_s` of the vehicle's clock.
+    pub(super) fn count(
+        &mut self,
+        message: &Message<'_>,
+        instance: u8,
+        stamp_s: Option<f64>,
+        routes: &mut Routes,
+    ) {
+        let known = routes.tallies.iter().find(|(known, _)| *known == instance).map(|(_, at)| *at);
+        let at = known.unwrap_or_else(|| {
+            let next = self.counts.len();
+            let at = *self.names.entry((message.definition.name.clone(), instance)).or_insert(next);
+            if at == next {
+                self.counts.push(Count::default());
+            }
+            self.counts[at].is_used |= routes.special.is_some() || routes.gives_samples();
+            routes.tallies.push((instance, at));
+            at
+        });
+        let count = &mut self.counts[at];
+        count.count += 1;
+        if let Some(stamp_s) = stamp_s {
+            let (from_s, to_s) = count.span_s.unwrap_or((stamp_s, stamp_s));
+            count.span_s = Some((from_s.min(stamp_s), to_s.max(stamp_s)));
+        }
+    }
+
+    /// By name.
+    pub(super) fn topics(self) -> Vec<Topic> {
+        let topic = |((name, instance), at): ((String, u8), usize)| {
+            let Count { count, span_s, is_used } = self.counts[at];
+            Topic { name, instance, count, span_s, is_used }
+        };
+        self.names.into_iter().map(topic).collect()
+    }
+}

@@ -1,0 +1,299 @@
+//! One way through a log, binary or text.
+
+use super::batches::Batches;
+use super::clock::{Clock, Placed};
+use super::definition::FMT;
+use super::definitions::Definitions;
+use super::identity::Identity;
+use super::join::Join;
+use super::message::Message;
+use super::outlet::Outlet;
+use super::routes::{Route, Routes};
+use super::special::Special;
+use super::states::{IN_AIR, Meaning, ON_GROUND, States, meaning};
+use super::tally::Tally;
+use super::topics::{Demand, Part};
+use crate::autopilot::{ARDUPILOT, Autopilot};
+use crate::log::error::LogError;
+use crate::log::format::Sink;
+use crate::recording::{Event, Quantity};
+
+/// MAV_SEVERITY of texts, which carry none, and of errors.
+const INFORMATION: u8 = 6;
+const ERROR: u8 = 3;
+/// Parameters and messages of the simulator tell the truth that is to be found out.
+const SIMULATOR: &str = "SIM_";
+/// Parameters of Copter 3.4 and later.
+const RATES_IN_DEGREES: &str = "ATC_RAT_";
+const STATES: &str = "EV";
+/// Tells of arming when it changes; others tell it again and again.
+const CHANGES: &str = "ARM";
+const BATCHES: &str = "ISBD";
+
+/// Gives a log's messages one after the other.
+pub(super) trait Messages {
+    /// The next message and all that is defined; `None` at the end.
+    fn next(&mut self) -> Result<Option<(Message<'_>, &Definitions)>, LogError>;
+}
+
+/// What a walk met beside samples.
+#[derive(Debug, Default)]
+pub(super) struct Walked {
+    pub identity: Identity,
+    pub tally: Tally,
+    pub clock: Clock,
+    /// messages dropped before they were written, as the log itself counts
+    pub dropped: u64,
+    /// messages of parameters that are withheld
+    pub withheld: u64,
+}
+
+/// Gives each event with its place to `sink`; memory does not grow with the log.
+pub(super) fn walk(messages: &mut impl Messages, sink: &mut Sink<'_>) -> Result<Walked, LogError> {
+    let mut walk = Walk {
+        out: Outlet::new(sink),
+        routes: Vec::new(),
+        join: Join::default(),
+        batches: Batches::default(),
+        states: States::default(),
+        began_s: None,
+        armed_s: None,
+        jumps: Vec::new(),
+        rates_in_degrees: false,
+        walked: Walked::default(),
+    };
+    walk.routes.resize_with(256, || None);
+    walk.out.give(Event::Autopilot(Autopilot::ArduPilot));
+    while let Some((message, definitions)) = messages.next()? {
+        walk.take(&message, definitions);
+    }
+    walk.finish();
+    Ok(walk.walked)
+}
+
+struct Walk<'a, 'b> {
+    out: Outlet<'a, 'b>,
+    routes: Vec<Option<Routes>>,
+    join: Join,
+    batches: Batches,
+    states: States,
+    /// time of the first sample since the clock began, s: parameters may be of long before
+    began_s: Option<f64>,
+    /// time of the first arming since then, s
+    armed_s: Option<f64>,
+    /// by how much the estimate jumped last, by message
+    jumps: Vec<(u8, f64, f64)>,
+    rates_in_degrees: bool,
+    walked: Walked,
+}
+
+impl Walk<'_, '_> {
+    fn take(&mut self, message: &Message<'_>, definitions: &Definitions) {
+        let number = message.definition.number;
+        self.out.at(message.offset);
+        if number == FMT && message.number(0) == f64::from(FMT) {
+            self.walked.clock.definitions_anew();
+        }
+        let slot = usize::from(number);
+        let kept = self.routes[slot].take();
+        let mut routes = match kept {
+            Some(routes) if routes.revision == definitions.revision(number) => routes,
+            _ => Routes::of(message.definition, definitions),
+        };
+        self.route(message, &mut routes);
+        self.routes[slot] = Some(routes);
+    }
+
+    fn route(&mut self, message: &Message<'_>, routes: &mut Routes) {
+        let instance = routes.instance(message);
+        let stamp_s = routes.stamp_s(message);
+        let placed = stamp_s.map(|stamp_s| (stamp_s, self.walked.clock.place(stamp_s)));
+        self.walked.tally.count(message, instance, stamp_s, routes);
+        let own_s = match placed {
+            Some((_, Placed::At(time_s))) => Some(time_s),
+            Some((stamp_s, Placed::Anew(time_s))) => {
+                self.finish_samples();
+                (self.states, self.began_s, self.armed_s) = (States::default(), None, None);
+                self.jumps.clear();
+                self.out.give(Event::ClockReset { time_s, stamp_s });
+                Some(time_s)
+            }
+            Some((_, Placed::Stray)) => return,
+            None => None,
+        };
+        let time_s = own_s.unwrap_or_else(|| self.walked.clock.now_s());
+        for route in &routes.streams {
+            self.sample(message, route, instance, own_s, time_s);
+        }
+        if let Some((special, fields)) = &routes.special {
+            self.special(*special, message, fields, instance, time_s);
+        }
+        for (quantity, value) in self.states.due(time_s) {
+            self.out.sample(*quantity, STATES, 0, time_s, &[*value]);
+        }
+    }
+
+    fn sample(
+        &mut self,
+        message: &Message<'_>,
+        route: &Route,
+        instance: u8,
+        own_s: Option<f64>,
+        time_s: f64,
+    ) {
+        let topic = route.topic;
+        let mut values = route.values(message);
+        // states are kept, and told again; yes and no are those of armed, or of in the air
+        let states = match topic.quantity {
+            Quantity::Armed => Some([0.0, 1.0]),
+            Quantity::LandedState => Some([ON_GROUND, IN_AIR]),
+            _ => None,
+        };
+        if let Some([no, yes]) = states {
+            if let Some(value) = values.get().first() {
+                let is_change = topic.message == CHANGES;
+                self.state(topic.quantity, if *value > 0.5 { yes } else { no }, time_s, is_change);
+            }
+            return;
+        }
+        self.began_s.get_or_insert(time_s);
+        // when a sample was taken is not to be guessed
+        let Some(own_s) = own_s else {
+            self.walked.tally.without_time += 1;
+            return;
+        };
+        if topic.demands == Demand::RatesInDegrees && !(self.rates_in_degrees || route.has_units) {
+            self.walked.tally.unknown_unit += 1;
+            return;
+        }
+        let sampled = route.sampled.and_then(|field| self.walked.clock.beside(message.number(field) * 1e-6));
+        let time_s = sampled.unwrap_or(own_s);
+        let slot = match topic.part {
+            None => {
+                (topic.convert)(&mut values);
+                self.out.values(topic, route.instance(instance), time_s, &values);
+                return;
+            }
+            Some(Part::OfInstance) => usize::from(instance),
+            Some(Part::Index(index)) => index,
+        };
+        let value = values.get().first().copied().unwrap_or(f64::NAN);
+        if let Some((topic, time_s, values)) = self.join.take(topic, slot, time_s, value) {
+            self.out.values(topic, 0, time_s, &values);
+        }
+    }
+
+    fn special(
+        &mut self,
+        special: Special,
+        message: &Message<'_>,
+        fields: &[usize],
+        instance: u8,
+        time_s: f64,
+    ) {
+        let number = |index: usize| fields.get(index).map_or(f64::NAN, |field| message.number(*field));
+        let text =
+            |index: usize| fields.get(index).map_or_else(Default::default, |field| message.text(*field));
+        match special {
+            Special::Parameter => self.parameter(&text(0), number(1)),
+            Special::Text => {
+                let text = text(0);
+                self.walked.identity.text(&text);
+                self.out.give(Event::Text { time_s, severity: INFORMATION, text: &text });
+            }
+            Special::Event => match meaning(number(0)) {
+                Some(Meaning::State(quantity, value)) => self.state(quantity, value, time_s, true),
+                Some(Meaning::Jump) => self.out.give(Event::EstimatorReset { time_s }),
+                None => {}
+            },
+            Special::Mode => {
+                let by_name = || ARDUPILOT.modes.iter().find(|mode| mode.name.eq_ignore_ascii_case(&text(0)));
+                let by_number = Some(number(0)).filter(|number| number.is_finite());
+                let mode = by_number.or_else(|| by_name().map(|mode| f64::from(mode.number)));
+                mode.into_iter().for_each(|mode| self.state(Quantity::Mode, mode, time_s, false));
+            }
+            Special::Error if number(1) != 0.0 => {
+                let text = format!("error of subsystem {:.0}, code {:.0}", number(0), number(1));
+                self.out.give(Event::Text { time_s, severity: ERROR, text: &text });
+            }
+            Special::Error => {}
+            // of the first core, as the samples that are used
+            Special::Jump if instance == 0 => {
+                self.jumped(message.definition.number, number(0), number(1), time_s);
+            }
+            Special::Jump => {}
+            Special::Dropped => self.walked.dropped = self.walked.dropped.max(count(number(0))),
+            Special::BatchHead => self.batches.head(message, fields),
+            Special::BatchData => self.batch(message, fields),
+        }
+    }
+
+    fn parameter(&mut self, name: &str, value: f64) {
+        if name.starts_with(SIMULATOR) {
+            self.walked.withheld += 1;
+            return;
+        }
+        self.rates_in_degrees |= name.starts_with(RATES_IN_DEGREES);
+        self.walked.identity.parameter(name, value);
+        self.out.give(Event::Parameter { name, value });
+    }
+
+    /// Before the first `change` to a state the contrary held: what is disarmed was armed, and what took off stood on the
+    /// ground from its arming on.
+    fn state(&mut self, quantity: Quantity, value: f64, time_s: f64, change: bool) {
+        let is_first = self.states.set(quantity, value);
+        let before = match (quantity, value) {
+            (Quantity::Armed, 0.0) if change => Some((1.0, self.began_s)),
+            (Quantity::LandedState, IN_AIR) if change => Some((ON_GROUND, self.armed_s.or(self.began_s))),
+            _ => None,
+        };
+        if let Some((contrary, since_s)) = before.filter(|_| is_first) {
+            self.out.sample(quantity, STATES, 0, since_s.unwrap_or(time_s).min(time_s), &[contrary]);
+        }
+        if quantity == Quantity::Armed && value > 0.5 {
+            self.armed_s.get_or_insert(time_s);
+        }
+        self.out.sample(quantity, STATES, 0, time_s, &[value]);
+    }
+
+    /// The first word is of before the log began.
+    fn jumped(&mut self, message: u8, north_m: f64, east_m: f64, time_s: f64) {
+        match self.jumps.iter_mut().find(|(of, ..)| *of == message) {
+            Some(last) if (last.1, last.2) == (north_m, east_m) => {}
+            Some(last) => {
+                *last = (message, north_m, east_m);
+                self.out.give(Event::EstimatorReset { time_s });
+            }
+            None => self.jumps.push((message, north_m, east_m)),
+        }
+    }
+
+    fn batch(&mut self, message: &Message<'_>, fields: &[usize]) {
+        let Some(piece) = self.batches.piece(message, fields) else { return };
+        for (index, sample) in piece.samples.iter().enumerate() {
+            let stamp_s = piece.start_s + index as f64 * piece.step_s;
+            if let Some(time_s) = self.walked.clock.beside(stamp_s) {
+                self.out.sample(piece.quantity, BATCHES, piece.instance, time_s, sample);
+            }
+        }
+    }
+
+    fn finish_samples(&mut self) {
+        for (topic, time_s, values) in self.join.finish() {
+            self.out.values(topic, 0, time_s, &values);
+        }
+    }
+
+    fn finish(&mut self) {
+        self.finish_samples();
+        let time_s = self.walked.clock.now_s();
+        for (quantity, value) in self.states.due(f64::INFINITY) {
+            self.out.sample(*quantity, STATES, 0, time_s, &[*value]);
+        }
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count; it saturates")]
+fn count(number: f64) -> u64 {
+    number as u64
+}

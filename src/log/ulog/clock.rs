@@ -1,0 +1,144 @@
+//! Puts every sample on the vehicle's clock.
+//!
+//! A log's stamps are microseconds since the vehicle started, or of a wall clock; zero is the log's own beginning. Damage
+//! can hide in a stamp, and several logs may stand behind each other in one file, each with a clock of its own.
+
+use crate::units::seconds_from_us;
+
+/// A topic's stamps may run back by this much.
+const BACKWARD_US: u64 = 2_000_000;
+/// A longer leap forward must be confirmed by further stamps: a vehicle that cannot write for longer says so.
+const FORWARD_US: u64 = 60_000_000;
+/// So many stamps in a row that agree with each other but not with the clock: it has leapt or started anew.
+const WITNESSES: u8 = 3;
+/// Time goes on by this much where the clock started anew: how long that took is not known.
+const RESTART_US: i128 = 1_000_000;
+
+/// Where a message falls on the recording's clock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Placed {
+    /// at [`Clock::seconds`] of its stamp
+    At,
+    /// the same, and the vehicle's clock started anew
+    Restarted,
+    /// its stamp fits neither the clock nor a new one (so far): drop the message
+    Stale,
+}
+
+/// The recording's clock.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Clock {
+    /// stamp at which the recording's time is zero; below zero after a restart
+    zero_us: i128,
+    /// the latest stamp that fitted, or the log's beginning
+    last_us: u64,
+    /// a stamp has fitted
+    runs: bool,
+    suspect_us: u64,
+    suspects: u8,
+}
+
+impl Clock {
+    /// A log begins; `true` where it is not the first: the clock started anew.
+    pub(super) fn begin(&mut self, start_us: u64) -> bool {
+        if self.runs {
+            self.restart(start_us);
+            return true;
+        }
+        (self.zero_us, self.last_us) = (start_us.into(), start_us);
+        false
+    }
+
+    /// Recording time of a stamp, s.
+    #[inline]
+    pub(super) fn seconds(&self, stamp_us: u64) -> f64 {
+        seconds_from_us((i128::from(stamp_us) - self.zero_us) as f64)
+    }
+
+    /// Takes the stamp of a topic's message; `before_us` is that of its last one. A topic's first message may be old: it
+    /// was true before the log began.
+    #[inline]
+    pub(super) fn place(&mut self, stamp_us: u64, before_us: Option<u64>) -> Placed {
+        let is_first = before_us.is_none() && stamp_us <= self.last_us;
+        let backward = before_us.is_some_and(|before_us| before_us.saturating_sub(stamp_us) > BACKWARD_US);
+        let forward = self.runs && stamp_us.saturating_sub(self.last_us) > FORWARD_US;
+        if is_first || !backward && !forward {
+            self.last_us = self.last_us.max(stamp_us);
+            self.runs = true;
+            self.suspects = 0;
+            return Placed::At;
+        }
+        self.suspect(stamp_us)
+    }
+
+    fn suspect(&mut self, stamp_us: u64) -> Placed {
+        let agrees = self.suspects > 0 && stamp_us.abs_diff(self.suspect_us) < BACKWARD_US;
+        self.suspects = if agrees { self.suspects + 1 } else { 1 };
+        self.suspect_us = stamp_us;
+        if self.suspects < WITNESSES {
+            return Placed::Stale;
+        }
+        self.suspects = 0;
+        if stamp_us > self.last_us {
+            self.last_us = stamp_us;
+            return Placed::At;
+        }
+        self.restart(stamp_us);
+        Placed::Restarted
+    }
+
+    /// Time goes on from the last stamp of the old clock to the first of the new one.
+    fn restart(&mut self, first_us: u64) {
+        let last_time_us = i128::from(self.last_us) - self.zero_us;
+        self.zero_us = i128::from(first_us) - last_time_us - RESTART_US;
+        self.last_us = first_us;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zero_is_the_logs_beginning_and_older_news_is_before_it() {
+        let mut clock = Clock::default();
+        assert!(!clock.begin(5_000_000));
+        assert_eq!(clock.place(5_100_000, None), Placed::At);
+        assert_eq!(clock.place(1_000_000, None), Placed::At);
+        assert!((clock.seconds(5_100_000) - 0.1).abs() < 1e-9);
+        assert!((clock.seconds(1_000_000) + 4.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_single_stamp_that_fits_nothing_is_dropped() {
+        let mut clock = Clock::default();
+        clock.begin(0);
+        assert_eq!(clock.place(10_000_000, None), Placed::At);
+        for odd in [0, 5_000_000, u64::MAX, 500_000_000] {
+            assert_eq!(clock.place(odd, Some(10_000_000)), Placed::Stale, "{odd}");
+            assert_eq!(clock.place(10_010_000, Some(10_000_000)), Placed::At);
+        }
+    }
+
+    #[test]
+    fn a_clock_that_starts_anew_goes_on_in_time() {
+        let mut clock = Clock::default();
+        clock.begin(100_000_000);
+        clock.place(160_000_000, None);
+        let placed = [1_000_000, 1_004_000, 1_008_000].map(|us| clock.place(us, Some(160_000_000)));
+        assert_eq!(placed, [Placed::Stale, Placed::Stale, Placed::Restarted]);
+        assert!((clock.seconds(1_008_000) - 61.0).abs() < 1e-9);
+        assert!(clock.begin(0));
+        assert!((clock.seconds(0) - 62.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_leap_that_further_stamps_confirm_is_time_that_passed() {
+        let mut clock = Clock::default();
+        clock.begin(0);
+        clock.place(1_000_000, None);
+        let placed = [200_000_000, 200_000_100, 200_000_200].map(|us| clock.place(us, Some(1_000_000)));
+        assert_eq!(placed, [Placed::Stale, Placed::Stale, Placed::At]);
+        assert!((clock.seconds(200_000_200) - 200.0002).abs() < 1e-9);
+    }
+}

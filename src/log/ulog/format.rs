@@ -1,0 +1,74 @@
+//! PX4's own logs among the other formats.
+
+use super::craft::Craft;
+use super::decode::Decoder;
+use super::message::MAGIC;
+use super::reader::UlogReader;
+use super::report::{TopicCount, UlogReport};
+use super::topics::is_read;
+use crate::autopilot::Autopilot;
+use crate::log::error::LogError;
+use crate::log::format::{Certainty, Format, Place, Sink};
+use crate::log::input::Input;
+use crate::log::onboard::{OnboardReport, Topic};
+use crate::log::options::OpenOptions;
+use crate::log::report::{Details, ReadReport};
+use crate::recording::Event;
+use crate::units::seconds_from_us;
+
+/// PX4's own logs.
+pub(in crate::log) const FORMAT: Format =
+    Format { name: "PX4 log (.ulg)", takes_system: false, takes_columns: false, sniff, read };
+
+fn sniff(head: &[u8]) -> Option<Certainty> {
+    head.starts_with(&MAGIC).then_some(Certainty::Certain)
+}
+
+fn read(input: &Input<'_>, _: &OpenOptions, sink: &mut Sink<'_>) -> Result<ReadReport, LogError> {
+    let mut reader = UlogReader::new(input.open()?);
+    let mut decoder = Decoder::default();
+    let mut craft = Craft::default();
+    let mut autopilot = Autopilot::Unknown;
+    while let Some(entry) = reader.next_message()? {
+        let place = Place { offset: entry.offset, arrival_us: None };
+        craft.take(&entry.message);
+        decoder.decode(entry.message, &mut |event| {
+            if let Event::Autopilot(told) = event {
+                autopilot = told;
+            }
+            sink(place, event);
+        });
+    }
+    let report = reader.into_report();
+    let stale = decoder.report().stale_stamps;
+    let onboard = OnboardReport {
+        bytes: report.bytes,
+        messages: report.messages,
+        kind: craft.kind(),
+        firmware: craft.firmware(),
+        topics: topics(&report),
+    };
+    Ok(ReadReport {
+        format: FORMAT.name,
+        vehicle: craft.vehicle(autopilot),
+        losses: report.losses(stale),
+        oddities: report.oddities(),
+        details: Details::Onboard(Box::new(onboard)),
+        ..ReadReport::default()
+    })
+}
+
+/// Each topic that has messages, by name.
+fn topics(report: &UlogReport) -> Vec<Topic> {
+    let seconds = |stamp_us: u64| seconds_from_us(stamp_us as f64);
+    let topic = |topic: &TopicCount| Topic {
+        name: topic.topic.to_string(),
+        instance: topic.instance,
+        count: topic.count,
+        span_s: topic.stamps_us.map(|(first, last)| (seconds(first), seconds(last))),
+        is_used: is_read(&topic.topic),
+    };
+    let mut topics: Vec<Topic> = report.topics.iter().filter(|topic| topic.count > 0).map(topic).collect();
+    topics.sort_by(|a, b| (&a.name, a.instance).cmp(&(&b.name, b.instance)));
+    topics
+}

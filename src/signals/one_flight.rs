@@ -1,0 +1,259 @@
+//! Whether two logs hold the same flight, and how their clocks differ.
+//!
+//! A ground station and the vehicle both log the attitude that the autopilot estimates. Of one flight both series are equal but
+//! for the clock; of two flights, even along the same trajectory, they differ by wind, noise and control.
+
+use super::Grid;
+use super::align::attitudes_onto;
+use super::select::{best, mean_rate_hz};
+use crate::recording::{Quantity, Recording, Stream};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use std::ops::Range;
+
+/// The clock of a second log of a flight, against that of the first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClockOffset {
+    /// s by which the second log's stamps are late, at [`Self::at_s`]
+    pub late_s: f64,
+    /// its standard error, s
+    pub std_s: f64,
+    /// s on the second log's clock
+    pub at_s: f64,
+    /// s by which they become later each second; 0 where that is not significant
+    pub drift: f64,
+}
+
+impl ClockOffset {
+    /// An instant of the second log (s) on the first one's clock (s).
+    #[must_use]
+    pub fn on_first(&self, time_s: f64) -> f64 {
+        time_s - self.late_s - self.drift * (time_s - self.at_s)
+    }
+}
+
+/// Step of the coarse search, s.
+const COARSE_S: f64 = 0.2;
+/// Step of the grid that interpolates the faster attitude, s.
+const FINE_S: f64 = 0.005;
+/// Least number of coarse steps that both logs must cover (10 s), beside half of the shorter one.
+const LEAST_STEPS: usize = 50;
+/// Largest share of the attitude's variance by which two logs of one flight differ. Measured with both logs of flights of both
+/// autopilots' simulators: at most 6e-6 for the same flight, at least 1.5e-2 for the same trajectory flown twice.
+/// Logs of the embedded vehicle have noise of their own each: at most 1e-3.
+const MOST_DIFFERENT: f64 = 3e-3;
+/// Parts of the flight in which the offset is found again, for its standard error and its drift.
+const PARTS: usize = 8;
+
+/// How the clock of `second` differs from that of `first`, if both hold the same flight; `None` if they do not, or if one has
+/// no attitude.
+#[must_use]
+pub fn clock_offset(first: &Recording, second: &Recording) -> Option<ClockOffset> {
+    let attitude = |recording| best(recording, Quantity::Attitude, |stream| stream.width == 4);
+    let (first, second) = (attitude(first)?.1, attitude(second)?.1);
+    // the faster one is interpolated
+    if mean_rate_hz(second) >= mean_rate_hz(first) {
+        let Line { late_s, std_s, at_s, drift } = lateness(first, second)?;
+        return Some(ClockOffset { late_s, std_s, at_s: at_s + late_s, drift });
+    }
+    let Line { late_s, std_s, at_s, drift } = lateness(second, first)?;
+    Some(ClockOffset { late_s: -late_s, std_s, at_s, drift: -drift })
+}
+
+/// By how much the stamps of `fast` are late against those of `slow`.
+fn lateness(slow: &Stream, fast: &Stream) -> Option<Line> {
+    let mut late_s = coarse(slow, fast)?;
+    let (from_s, to_s) = (*fast.time_s.first()? - late_s, *fast.time_s.last()? - late_s);
+    let inside = slow.time_s.partition_point(|time_s| *time_s < from_s)
+        ..slow.time_s.partition_point(|time_s| *time_s <= to_s);
+    let wanted = Samples {
+        axes: inside.clone().map(|index| axes_of(slow.sample(index))).collect::<Option<_>>()?,
+        time_s: slow.time_s.get(inside)?,
+    };
+    let fine = Fine::of(fast)?;
+    // two coarse steps to each side, in tenths of a step
+    let near = (-20..=20).map(|tenth| late_s + f64::from(tenth) * 0.1 * COARSE_S);
+    let rated = near.map(|late_s| (wanted.difference(&fine, late_s), late_s));
+    late_s = rated.min_by(|a, b| a.0.total_cmp(&b.0))?.1;
+    for _ in 0..20 {
+        let step_s = wanted.further_lateness(&fine, late_s, 0..wanted.time_s.len())?.0;
+        late_s += step_s.clamp(-0.1 * COARSE_S, 0.1 * COARSE_S);
+        if step_s.abs() < 1e-6 {
+            break;
+        }
+    }
+    let difference = wanted.difference(&fine, late_s);
+    if difference.is_nan() || difference > MOST_DIFFERENT {
+        return None;
+    }
+    let count = wanted.time_s.len();
+    let parts: Vec<Part> = (0..PARTS)
+        .filter_map(|part| {
+            let range = part * count / PARTS..(part + 1) * count / PARTS;
+            let at_s = *wanted.time_s.get(range.start.midpoint(range.end))?;
+            let (step_s, weight) = wanted.further_lateness(&fine, late_s, range)?;
+            Some(Part { at_s, step_s, weight })
+        })
+        .collect();
+    Some(line(&parts, late_s))
+}
+
+/// A part of the flight.
+struct Part {
+    /// its middle, s on the slow stream's clock
+    at_s: f64,
+    /// by how much later than in the whole the fast stream must be read, s
+    step_s: f64,
+    /// by least squares
+    weight: f64,
+}
+
+/// Lateness along the flight.
+struct Line {
+    /// s, at `at_s`
+    late_s: f64,
+    std_s: f64,
+    /// s on the slow stream's clock
+    at_s: f64,
+    /// s each second
+    drift: f64,
+}
+
+/// Weighted regression over the parts.
+fn line(parts: &[Part], late_s: f64) -> Line {
+    let total: f64 = parts.iter().map(|part| part.weight).sum();
+    let mean =
+        |of: &dyn Fn(&Part) -> f64| parts.iter().map(|part| part.weight * of(part)).sum::<f64>() / total;
+    let (at_s, more_s) = (mean(&|part| part.at_s), mean(&|part| part.step_s));
+    let spread = mean(&|part| (part.at_s - at_s).powi(2));
+    let slope = mean(&|part| (part.at_s - at_s) * (part.step_s - more_s)) / spread;
+    let left = mean(&|part| (part.step_s - more_s - slope * (part.at_s - at_s)).powi(2));
+    let free = (parts.len() as f64 - 2.0).max(1.0);
+    let (std_s, slope_std) = ((left / free).sqrt(), (left / free / spread).sqrt());
+    let drift = if slope.abs() > 4.0 * slope_std { slope } else { 0.0 };
+    Line { late_s: late_s + more_s, std_s, at_s, drift }
+}
+
+/// North and up in the body's axes: what an attitude does to two directions.
+type Axes = [Vector3<f64>; 2];
+
+fn in_body(attitude: &UnitQuaternion<f64>) -> Axes {
+    [Vector3::x(), Vector3::z()].map(|axis| attitude.inverse_transform_vector(&axis))
+}
+
+fn axes(attitude: &Stream, grid: &Grid) -> Option<Vec<Axes>> {
+    Some(attitudes_onto(attitude, 0.0, grid)?.iter().map(in_body).collect())
+}
+
+/// Of one sample, a quaternion w x y z; `None` if it is damaged.
+fn axes_of(sample: &[f64]) -> Option<Axes> {
+    let &[w, x, y, z] = sample else { return None };
+    let attitude = UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 1e-3)?;
+    Some(in_body(&attitude)).filter(|axes| axes[0].x.is_finite())
+}
+
+fn squared(a: &Axes, b: &Axes) -> f64 {
+    (a[0] - b[0]).norm_squared() + (a[1] - b[1]).norm_squared()
+}
+
+fn mean(axes: &[Axes]) -> Axes {
+    let count = axes.len().max(1) as f64;
+    [0, 1].map(|axis| axes.iter().map(|axes| axes[axis]).sum::<Vector3<f64>>() / count)
+}
+
+/// Lateness of `second`, s, that leaves least of the attitude's variance, in steps of [`COARSE_S`].
+fn coarse(first: &Stream, second: &Stream) -> Option<f64> {
+    let grid_of = |stream: &Stream| {
+        let (from_s, to_s) = (*stream.time_s.first()?, *stream.time_s.last()?);
+        (to_s > from_s).then(|| Grid::covering(from_s, to_s, COARSE_S))
+    };
+    let (of_first, of_second) = (grid_of(first)?, grid_of(second)?);
+    let (a, b) = (axes(first, &of_first)?, axes(second, &of_second)?);
+    let shorter = a.len().min(b.len());
+    let least = LEAST_STEPS.max(shorter / 2);
+    if shorter < least {
+        return None;
+    }
+    // the first steps of each that the other does not have
+    let b_first = (1..b.len().saturating_sub(least) + 1).map(|j| (0, j));
+    let a_first = (0..a.len().saturating_sub(least) + 1).map(|i| (i, 0));
+    let (_, (i, j)) = a_first
+        .chain(b_first)
+        .filter_map(|(i, j)| {
+            let count = (a.len() - i).min(b.len() - j);
+            let (a, b) = (&a[i..i + count], &b[j..j + count]);
+            let center = mean(a);
+            let moved: f64 = a.iter().map(|a| squared(a, &center)).sum();
+            let differs: f64 = a.iter().zip(b).map(|(a, b)| squared(a, b)).sum();
+            (moved > 0.0).then(|| (differs / moved, (i, j)))
+        })
+        .min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(of_second.time_s(j) - of_first.time_s(i))
+}
+
+/// An attitude between its samples.
+struct Fine {
+    /// s, [`FINE_S`] apart
+    time_s: Vec<f64>,
+    axes: Vec<Axes>,
+}
+
+impl Fine {
+    fn of(stream: &Stream) -> Option<Self> {
+        let grid = Grid::covering(*stream.time_s.first()?, *stream.time_s.last()?, FINE_S);
+        Some(Self {
+            axes: axes(stream, &grid)?,
+            time_s: (0..grid.count).map(|index| grid.time_s(index)).collect(),
+        })
+    }
+
+    /// Value and slope (1/s) at an instant, s; `None` outside.
+    fn at(&self, time_s: f64) -> Option<(Axes, Axes)> {
+        let left = self.time_s.partition_point(|at_s| *at_s <= time_s).checked_sub(1)?;
+        let (from, to) = (self.axes.get(left)?, self.axes.get(left + 1)?);
+        let share = (time_s - self.time_s[left]) / FINE_S;
+        let value = [0, 1].map(|axis| from[axis].lerp(&to[axis], share));
+        Some((value, [0, 1].map(|axis| (to[axis] - from[axis]) / FINE_S)))
+    }
+}
+
+/// An attitude at its own samples.
+struct Samples<'a> {
+    /// s
+    time_s: &'a [f64],
+    axes: Vec<Axes>,
+}
+
+impl Samples<'_> {
+    /// Each sample of a range that `fine`, read later by `late_s`, has as well: its value, and value and slope there.
+    fn both<'a>(
+        &'a self,
+        fine: &'a Fine,
+        late_s: f64,
+        range: Range<usize>,
+    ) -> impl Iterator<Item = (&'a Axes, Axes, Axes)> {
+        range.filter_map(move |index| {
+            let (value, slope) = fine.at(self.time_s[index] + late_s)?;
+            Some((&self.axes[index], value, slope))
+        })
+    }
+
+    /// Share of the variance by which they differ.
+    fn difference(&self, fine: &Fine, late_s: f64) -> f64 {
+        let center = mean(&self.axes);
+        let both = || self.both(fine, late_s, 0..self.axes.len());
+        let moved: f64 = both().map(|(wanted, ..)| squared(wanted, &center)).sum();
+        both().map(|(wanted, found, _)| squared(wanted, &found)).sum::<f64>() / moved
+    }
+
+    /// By how much later still, s, the other must be read (Gauss-Newton), and the weight of that.
+    fn further_lateness(&self, fine: &Fine, late_s: f64, range: Range<usize>) -> Option<(f64, f64)> {
+        let (mut along, mut weight) = (0.0, 0.0);
+        for (wanted, found, slope) in self.both(fine, late_s, range) {
+            for axis in 0..2 {
+                along += slope[axis].dot(&(wanted[axis] - found[axis]));
+                weight += slope[axis].norm_squared();
+            }
+        }
+        (weight > 0.0).then(|| (along / weight, weight))
+    }
+}

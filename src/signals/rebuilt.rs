@@ -1,0 +1,274 @@
+//! Motor commands of a log that holds them too seldom, rebuilt from what the controller asked for.
+//!
+//! Both autopilots log their motors at 10 Hz unless asked otherwise, and the torque and thrust that their controllers ask
+//! for at 50 Hz and more. The allocation between them is linear in the thrusts: it is fitted on the samples that are there,
+//! and its error on them is told.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::rotor_thrusts::{RotorThrusts, ThrustSource};
+use super::select::best;
+use super::sufficient::{LEAST_ACTUATOR_HZ, flowing_rate_hz};
+use crate::note::{About, Note};
+use crate::recording::{Quantity, Recording, Stream};
+use crate::vehicle::Propulsion;
+
+/// Setpoints must come this many times as often as the commands.
+const FASTER: f64 = 1.5;
+/// A command and the setpoint that it was made from are logged in one cycle of the controller, or the next, s.
+const SAME_CYCLE_S: f64 = 0.006;
+/// Thrust setpoints further apart are no line between each other, s: PX4 logs them at 17 Hz by default.
+const THRUST_GAP_S: f64 = 0.15;
+/// Commands that are no linear function of the setpoints any more: at their ends.
+const UNSATURATED: std::ops::Range<f64> = 0.02..0.98;
+/// Fewer pairs than this fit five coefficients a rotor badly.
+const LEAST_PAIRS: usize = 60;
+/// Share of the commands' variance that the setpoints must explain. PX4's logs have 0.999, with its parameters unchanged.
+const LEAST_EXPLAINED: f64 = 0.95;
+/// Columns of the allocation: a constant, torque about x, y, z, thrust.
+const COLUMNS: usize = 5;
+
+/// Thrusts at the setpoints' rate, in place of those at the slower commands' rate; a note where that does not succeed.
+/// `None` where the commands are fast enough, or nothing faster is logged.
+pub(super) fn rebuilt(
+    recording: &Recording,
+    slow: &RotorThrusts,
+    propulsion: &Propulsion,
+) -> Option<Result<RotorThrusts, Note>> {
+    let command = slow.command.as_ref()?;
+    let slow_hz = flowing_rate_hz(&slow.stream);
+    if slow_hz >= LEAST_ACTUATOR_HZ {
+        return None;
+    }
+    let asked = Asked::of(recording)?;
+    let asked_hz = flowing_rate_hz(&asked.stream);
+    if asked_hz < FASTER * slow_hz {
+        return None;
+    }
+    let note = |text: String| Note::remark(About::Actuators, text);
+    let source = asked.source;
+    let begin = format!("motor commands ({}) are logged at {slow_hz:.0} Hz", slow.message);
+    let Some(allocation) = Allocation::fit(&asked.stream, &slow.stream, command) else {
+        let why = format!("fewer than {LEAST_PAIRS} of them have a setpoint in the same cycle");
+        return Some(Err(note(format!("{begin}, and are not rebuilt from {source}: {why}"))));
+    };
+    let told = format!(
+        "{source} at {asked_hz:.0} Hz explains {:.2} % of their variance and leaves {:.3} N a rotor, rms",
+        100.0 * allocation.explained,
+        allocation.rms_n
+    );
+    if allocation.explained < LEAST_EXPLAINED {
+        return Some(Err(note(format!("{begin}, and are not rebuilt: {told}"))));
+    }
+    let stream = allocation.applied(&asked.stream);
+    let values = stream.values.iter().map(|thrust_n| propulsion.command_from_thrust(*thrust_n)).collect();
+    let command = Some(Stream { values, ..stream.clone() });
+    let mut notes = slow.notes.clone();
+    notes.push(note(format!("{begin}, and are rebuilt: {told}")));
+    let source = ThrustSource::Command;
+    Some(Ok(RotorThrusts { stream, command, jitter: None, source, message: asked.source, notes }))
+}
+
+/// What the controller asked for: torque about x, y, z and thrust, as shares.
+struct Asked {
+    stream: Stream,
+    source: &'static str,
+}
+
+impl Asked {
+    fn of(recording: &Recording) -> Option<Self> {
+        let (key, torque) = best(recording, Quantity::TorqueSetpoint, |stream| stream.width == 3)?;
+        // along the body's z, or alone
+        let (thrust, along) = best(recording, Quantity::ThrustVectorSetpoint, |stream| stream.width == 3)
+            .map(|(_, stream)| (stream, 2))
+            .or_else(|| {
+                best(recording, Quantity::ThrustSetpoint, |stream| stream.width == 1)
+                    .map(|(_, stream)| (stream, 0))
+            })?;
+        let mut stream = Stream { time_s: Vec::with_capacity(torque.len()), width: 4, values: Vec::new() };
+        for index in 0..torque.len() {
+            let time_s = torque.time_s[index];
+            // the thrust moves more slowly than the torque, and is logged more seldom
+            let Some(thrust) = between(thrust, along, time_s) else { continue };
+            let torque = torque.sample(index);
+            if thrust.is_finite() && torque.iter().all(|value| value.is_finite()) {
+                stream.time_s.push(time_s);
+                stream.values.extend(torque.iter().chain([&thrust]));
+            }
+        }
+        (!stream.is_empty()).then_some(Self { stream, source: key.source })
+    }
+}
+
+/// A channel of a stream at a time, on the straight line between two samples; `None` outside of them and in gaps.
+fn between(stream: &Stream, channel: usize, time_s: f64) -> Option<f64> {
+    let after = stream.time_s.partition_point(|stamp_s| *stamp_s < time_s);
+    let (next, next_s) = (stream.sample(after.min(stream.len() - 1))[channel], *stream.time_s.get(after)?);
+    if after == 0 {
+        return (next_s == time_s).then_some(next);
+    }
+    let (last, last_s) = (stream.sample(after - 1)[channel], stream.time_s[after - 1]);
+    let span_s = next_s - last_s;
+    (span_s <= THRUST_GAP_S).then(|| last + (next - last) * (time_s - last_s) / span_s)
+}
+
+/// Index of the stamp nearest to a time, not further than `within_s`.
+fn nearest(stamps_s: &[f64], time_s: f64, within_s: f64) -> Option<usize> {
+    let after = stamps_s.partition_point(|stamp_s| *stamp_s < time_s);
+    let away_s = |index: &usize| (stamps_s[*index] - time_s).abs();
+    let around = after.saturating_sub(1)..stamps_s.len().min(after + 1);
+    around.min_by(|a, b| away_s(a).total_cmp(&away_s(b))).filter(|index| away_s(index) <= within_s)
+}
+
+/// From setpoints to one thrust a rotor.
+struct Allocation {
+    /// one column a rotor
+    coefficients: DMatrix<f64>,
+    /// share of the commands' variance
+    explained: f64,
+    /// what is left of one rotor's thrust, N, root mean square
+    rms_n: f64,
+}
+
+impl Allocation {
+    fn fit(asked: &Stream, thrusts: &Stream, command: &Stream) -> Option<Self> {
+        let unsaturated = |index: &usize| command.sample(*index).iter().all(|u| UNSATURATED.contains(u));
+        let pair = |index: usize| Some((index, nearest(&asked.time_s, thrusts.time_s[index], SAME_CYCLE_S)?));
+        let pairs: Vec<(usize, usize)> = (0..thrusts.len()).filter(unsaturated).filter_map(pair).collect();
+        if pairs.len() < LEAST_PAIRS {
+            return None;
+        }
+        let columns = DMatrix::from_fn(pairs.len(), COLUMNS, |row, column| {
+            if column == 0 { 1.0 } else { asked.sample(pairs[row].1)[column - 1] }
+        });
+        let wanted =
+            DMatrix::from_fn(pairs.len(), thrusts.width, |row, rotor| thrusts.sample(pairs[row].0)[rotor]);
+        // a setpoint that never moves has no coefficient: the least solution leaves it at nought
+        let coefficients = columns.clone().svd(true, true).solve(&wanted, 1e-9).ok()?;
+        let left = &wanted - columns * &coefficients;
+        let mut variance = 0.0;
+        for rotor in 0..wanted.ncols() {
+            let mean = wanted.column(rotor).mean();
+            variance += wanted.column(rotor).map(|thrust_n| (thrust_n - mean).powi(2)).sum();
+        }
+        let squares = left.norm_squared();
+        let rms_n = (squares / (pairs.len() * thrusts.width) as f64).sqrt();
+        Some(Self { coefficients, explained: 1.0 - squares / variance.max(f64::MIN_POSITIVE), rms_n })
+    }
+
+    fn applied(&self, asked: &Stream) -> Stream {
+        let width = self.coefficients.ncols();
+        let mut values = Vec::with_capacity(asked.len() * width);
+        for index in 0..asked.len() {
+            let row = DVector::from_iterator(
+                COLUMNS,
+                std::iter::once(1.0).chain(asked.sample(index).iter().copied()),
+            );
+            // a rotor does not pull downwards
+            values.extend(self.coefficients.tr_mul(&row).iter().map(|thrust_n| thrust_n.max(0.0)));
+        }
+        Stream { time_s: asked.time_s.clone(), width, values }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::StreamKey;
+    use crate::vehicle::{Actuator, ThrustLaw};
+
+    const CURVE: Propulsion = Propulsion {
+        actuator: Actuator::Thrust,
+        law: ThrustLaw::Curve { thrust_max_n: 6.0, expo: 0.5 },
+        thrust_coefficient: None,
+        torque_per_thrust_m: 0.02,
+        rotor_radius_m: None,
+        time_constant_s: None,
+        time_constant_down_s: None,
+    };
+
+    /// Shares of thrust of a quadrotor X that is asked for these at a time; the last is the thrust.
+    fn asked(time_s: f64) -> [f64; 4] {
+        [
+            0.05 * (3.0 * time_s).sin(),
+            0.04 * (4.1 * time_s).cos(),
+            0.02 * (1.7 * time_s).sin(),
+            0.5 + 0.1 * time_s.sin(),
+        ]
+    }
+
+    fn share(rotor: usize, [x, y, z, thrust]: [f64; 4]) -> f64 {
+        let signs = [[-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0], [-1.0, -1.0, -1.0]][rotor];
+        thrust + signs[0] * x + signs[1] * y + signs[2] * z
+    }
+
+    /// Setpoints at 50 Hz and motors' thrusts at 10 Hz, with a disturbance of the commands that no setpoint shows.
+    fn log(disturbance_n: f64) -> (Recording, RotorThrusts) {
+        let key = |quantity| StreamKey { quantity, source: "vehicle_torque_setpoint", instance: 0 };
+        let fast_s: Vec<f64> = (0..1500).map(|index| 0.02 * f64::from(index)).collect();
+        let torque = fast_s.iter().flat_map(|t| asked(*t)[..3].to_vec()).collect();
+        // the thrust at a third of the torque's rate, as PX4 logs it
+        let seldom_s: Vec<f64> = fast_s.iter().copied().step_by(3).chain([29.98]).collect();
+        let thrust = seldom_s.iter().flat_map(|t| [0.0, 0.0, asked(*t)[3]]).collect();
+        let streams = [
+            (key(Quantity::TorqueSetpoint), Stream { time_s: fast_s.clone(), width: 3, values: torque }),
+            (key(Quantity::ThrustVectorSetpoint), Stream { time_s: seldom_s, width: 3, values: thrust }),
+        ]
+        .into();
+        let recording = Recording { streams, ..Recording::default() };
+        let time_s: Vec<f64> = (0..300).map(|index| 0.1 * f64::from(index)).collect();
+        let thrust_n = |t: f64, rotor: usize| {
+            6.0 * share(rotor, asked(t)) + disturbance_n * (37.0 * t + 2.0 * rotor as f64).sin()
+        };
+        let values: Vec<f64> =
+            time_s.iter().flat_map(|t| (0..4).map(|rotor| thrust_n(*t, rotor)).collect::<Vec<_>>()).collect();
+        let command = values.iter().map(|thrust_n| CURVE.command_from_thrust(*thrust_n)).collect();
+        let stream = Stream { time_s, width: 4, values };
+        let command = Some(Stream { values: command, ..stream.clone() });
+        let source = ThrustSource::Command;
+        (
+            recording,
+            RotorThrusts {
+                stream,
+                command,
+                jitter: None,
+                source,
+                message: "actuator_motors",
+                notes: Vec::new(),
+            },
+        )
+    }
+
+    #[test]
+    fn commands_are_rebuilt_at_the_rate_of_the_setpoints() {
+        let (recording, slow) = log(0.0);
+        let fast = rebuilt(&recording, &slow, &CURVE).unwrap().unwrap();
+        assert_eq!(fast.stream.len(), 1500);
+        for index in [0, 333, 1499] {
+            let expected = asked(fast.stream.time_s[index]);
+            for rotor in 0..4 {
+                assert!((fast.stream.sample(index)[rotor] - 6.0 * share(rotor, expected)).abs() < 2e-3);
+            }
+        }
+        assert!(
+            fast.notes[0].text.contains("logged at 10 Hz, and are rebuilt: vehicle_torque_setpoint at 50 Hz")
+        );
+        let command = fast.command.unwrap();
+        assert!((CURVE.thrust_from_command_n(command.values[7]) - fast.stream.values[7]).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_the_setpoints_do_not_explain_is_not_rebuilt() {
+        let (recording, slow) = log(1.0);
+        let note = rebuilt(&recording, &slow, &CURVE).unwrap().unwrap_err();
+        assert!(note.text.contains("are not rebuilt"), "{}", note.text);
+    }
+
+    #[test]
+    fn fast_commands_and_logs_without_setpoints_stay_as_they_are() {
+        let (recording, mut slow) = log(0.0);
+        assert!(rebuilt(&Recording::default(), &slow, &CURVE).is_none());
+        slow.stream.time_s.iter_mut().for_each(|time_s| *time_s *= 0.1);
+        assert!(rebuilt(&recording, &slow, &CURVE).is_none());
+    }
+}

@@ -1,0 +1,126 @@
+//! When a vehicle may be in the air by the autopilot's own words: armed, landed, and whether it asked for thrust.
+
+use crate::recording::{Quantity, Recording, Stream};
+
+/// What an autopilot says of being in the air.
+#[derive(Debug, Clone, Copy)]
+pub struct Said<'a> {
+    landed: Option<&'a Stream>,
+    armed: Option<&'a Stream>,
+    asks: bool,
+}
+
+impl<'a> Said<'a> {
+    /// What a recording holds of it.
+    #[must_use]
+    pub fn of(recording: &'a Recording) -> Self {
+        let streams = |wanted: Quantity| {
+            let of = recording.streams.iter().filter(move |(key, _)| key.quantity == wanted);
+            of.map(|(_, stream)| stream).filter(|stream| !stream.is_empty())
+        };
+        let armed = streams(Quantity::Armed).next();
+        let thrusts = || streams(Quantity::ThrustSetpoint).chain(streams(Quantity::ThrustVectorSetpoint));
+        // what a setpoint is to an autopilot that flies by others is not known: it is heard where nothing else speaks
+        let asks = armed.is_some()
+            || thrusts().next().is_none()
+            || thrusts().any(|thrust| thrust.values.iter().any(|value| *value != 0.0));
+        Self { landed: streams(Quantity::LandedState).next(), armed, asks }
+    }
+
+    /// The autopilot tells when it has landed.
+    #[must_use]
+    pub fn tells_landed(&self) -> bool {
+        self.landed.is_some()
+    }
+
+    /// It tells whether it is armed, and never was.
+    #[must_use]
+    pub fn never_armed(&self) -> bool {
+        self.armed.is_some_and(|armed| armed.values.iter().all(|armed| *armed < 0.5))
+    }
+
+    /// Its words of being armed, else of having landed, whichever it tells.
+    #[must_use]
+    pub fn words(&self) -> Option<&'a Stream> {
+        self.landed.or(self.armed)
+    }
+
+    /// Nothing that it said speaks against flying freely at `t_s`: it is neither disarmed, nor landed, nor about to take off
+    /// or land. Before its first word nothing does.
+    #[must_use]
+    pub fn may_fly(&self, t_s: f64) -> bool {
+        self.may_be(t_s, &[UNDEFINED, IN_AIR])
+    }
+
+    /// The same, take-off and landing included.
+    #[must_use]
+    pub fn may_be_off_ground(&self, t_s: f64) -> bool {
+        self.may_be(t_s, &[UNDEFINED, IN_AIR, TAKEOFF, LANDING])
+    }
+
+    fn may_be(&self, t_s: f64, states: &[f64]) -> bool {
+        let armed = self.armed.and_then(|armed| last_word(armed, t_s)).is_none_or(|armed| armed > 0.5);
+        let landed = self.landed.and_then(|landed| last_word(landed, t_s));
+        self.asks
+            && armed
+            && landed.is_none_or(|landed| states.iter().any(|state| (state - landed).abs() < 0.5))
+    }
+}
+
+/// MAV_LANDED_STATE.
+const UNDEFINED: f64 = 0.0;
+const IN_AIR: f64 = 2.0;
+const TAKEOFF: f64 = 3.0;
+const LANDING: f64 = 4.0;
+
+fn last_word(states: &Stream, t_s: f64) -> Option<f64> {
+    let next = states.time_s.partition_point(|t| *t <= t_s);
+    states.values.get(next.checked_sub(1)? * states.width).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::StreamKey;
+
+    fn stream(time_s: &[f64], values: &[f64]) -> Stream {
+        Stream { time_s: time_s.to_vec(), width: 1, values: values.to_vec() }
+    }
+
+    fn recording(streams: &[(Quantity, Stream)]) -> Recording {
+        let keyed = streams.iter().cloned();
+        Recording {
+            streams: keyed
+                .map(|(quantity, stream)| (StreamKey { quantity, source: "test", instance: 0 }, stream))
+                .collect(),
+            ..Recording::default()
+        }
+    }
+
+    #[test]
+    fn in_the_air_is_neither_disarmed_nor_landed() {
+        let armed = stream(&[1.0, 9.0], &[1.0, 0.0]);
+        let landed = stream(&[2.0, 3.0, 7.0, 8.0], &[1.0, 2.0, 4.0, 1.0]);
+        let said = recording(&[(Quantity::Armed, armed), (Quantity::LandedState, landed)]);
+        let said = Said::of(&said);
+        let times_s = [0.0, 1.5, 2.5, 3.5, 7.5, 8.5, 9.5];
+        assert_eq!(times_s.map(|t_s| said.may_fly(t_s)), [true, true, false, true, false, false, false]);
+        assert_eq!(
+            times_s.map(|t_s| said.may_be_off_ground(t_s)),
+            [true, true, false, true, true, false, false]
+        );
+        assert!(said.tells_landed() && !said.never_armed());
+        let idle = recording(&[(Quantity::Armed, stream(&[0.0, 1.0], &[0.0, 0.0]))]);
+        assert!(Said::of(&idle).never_armed() && !Said::of(&Recording::default()).never_armed());
+    }
+
+    #[test]
+    fn an_autopilot_that_never_asks_for_thrust_does_not_fly() {
+        let (nought, thrust) = (stream(&[0.0, 1.0], &[0.0, 0.0]), stream(&[0.0, 1.0], &[0.0, 0.4]));
+        assert!(!Said::of(&recording(&[(Quantity::ThrustSetpoint, nought.clone())])).may_fly(0.5));
+        assert!(Said::of(&recording(&[(Quantity::ThrustSetpoint, thrust)])).may_fly(0.5));
+        let armed = (Quantity::Armed, stream(&[0.0], &[1.0]));
+        assert!(Said::of(&recording(&[(Quantity::ThrustSetpoint, nought), armed])).may_fly(0.5));
+        assert!(Said::of(&Recording::default()).may_fly(0.5));
+    }
+}

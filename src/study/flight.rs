@@ -1,0 +1,55 @@
+//! One flight of a log.
+
+use super::{InputFile, StudyError};
+use crate::log::{Details, ReadReport};
+use crate::recording::Recording;
+use crate::signals::{ConditionSettings, Signals, condition};
+use crate::text;
+use crate::vehicle::Vehicle;
+use std::path::Path;
+
+/// Who wrote a log.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum LoggedBy {
+    /// the vehicle itself
+    Vehicle,
+    /// a ground station: what the radio brought
+    GroundStation,
+    /// a table does not say
+    Unknown,
+}
+
+impl LoggedBy {
+    pub(super) fn of(report: &ReadReport) -> Self {
+        match report.details {
+            Details::Onboard(_) => Self::Vehicle,
+            Details::Telemetry(_) => Self::GroundStation,
+            Details::Table(_) | Details::None => Self::Unknown,
+        }
+    }
+}
+
+/// A flight and the log that it came from.
+#[derive(Debug)]
+pub(super) struct Flight {
+    pub(super) logged_by: LoggedBy,
+    pub(super) recording: Recording,
+    /// name, hash, losses
+    pub(super) input: InputFile,
+}
+
+impl Flight {
+    /// Conditioned for a vehicle of this file.
+    pub(super) fn conditioned(
+        &self,
+        (vehicle, file): (&Vehicle, &Path),
+        settings: &ConditionSettings,
+    ) -> Result<Signals, StudyError> {
+        condition(&self.recording, vehicle, settings).map_err(|source| StudyError::Flight {
+            flight: self.input.path.clone(),
+            vehicle: text::path(&file),
+            source,
+            losses: self.input.losses().into_iter().map(str::to_owned).collect(),
+        })
+    }
+}

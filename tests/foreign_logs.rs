@@ -1,0 +1,160 @@
+//! `inspect` tells the truth about other people's logs: `fixtures/foreign_logs.toml` says what each is, by other readers.
+
+#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+
+mod support;
+
+use std::path::Path;
+
+use mavid::config::read_vehicle;
+use mavid::inspect::{Inspection, inspect};
+use mavid::log::OpenOptions;
+use mavid::study::{IdentifyRequest, ReadSettings, Silent, VehicleGiven, identify};
+use mavid::wire::SystemId;
+use serde::Deserialize;
+
+/// What a log is.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fact {
+    file: String,
+    kind: Option<String>,
+    system: Option<u32>,
+    armed_s: Option<f64>,
+    #[serde(default)]
+    airborne_s: [f64; 2],
+    commands_hz: Option<f64>,
+    #[serde(default)]
+    good_for: Vec<String>,
+    why: Option<String>,
+    refused: Option<String>,
+}
+
+#[derive(Deserialize)]
+struct Facts {
+    log: Vec<Fact>,
+}
+
+fn facts() -> Vec<Fact> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/foreign_logs.toml");
+    toml::from_str::<Facts>(&std::fs::read_to_string(path).unwrap()).unwrap().log
+}
+
+/// How far an inspection is from the facts, sentence by sentence.
+fn differences(fact: &Fact, found: &Inspection) -> Vec<String> {
+    let mut wrong = Vec::new();
+    let mut hold = |is_right: bool, what: String| {
+        if !is_right {
+            wrong.push(format!("{}: {what}", fact.file));
+        }
+    };
+    let vehicle = &found.vehicle;
+    hold(vehicle.kind == fact.kind.as_deref(), format!("kind {:?}, is {:?}", vehicle.kind, fact.kind));
+    if fact.system.is_some() {
+        hold(vehicle.system == fact.system, format!("system {:?}, is {:?}", vehicle.system, fact.system));
+    }
+    let armed_s: f64 = found.timeline.armed_s.iter().map(|(from_s, to_s)| to_s - from_s).sum();
+    // HEARTBEAT tells it once a second
+    let is = fact.armed_s.unwrap_or(0.0);
+    hold((armed_s - is).abs() <= 1.3, format!("armed {armed_s:.1} s, is {is}"));
+    let flight = &found.flight;
+    let [least, most] = fact.airborne_s;
+    let inside = (least - 0.05..=most + 0.05).contains(&flight.airborne_s);
+    hold(inside, format!("in the air {:.1} s, is {least} to {most}", flight.airborne_s));
+    let usable = flight.usable_s <= flight.airborne_s + 1e-6;
+    hold(usable, format!("usable {:.1} s of {:.1}", flight.usable_s, flight.airborne_s));
+    let spans = flight.segments.iter().all(|one| one.usable_s <= one.end_s - one.start_s + 1e-6);
+    hold(spans, "a segment is usable for longer than it lasts".to_owned());
+    let commands = found.streams.iter().filter(|stream| stream.quantity == "actuator_command");
+    let rates = commands.filter(|stream| stream.state == "live" && stream.count > 9).map(|one| one.rate_hz);
+    match (rates.reduce(f64::max), fact.commands_hz) {
+        (Some(rate), Some(is)) => {
+            hold((rate / is - 1.0).abs() < 0.1, format!("commands at {rate:.1} Hz, is {is}"));
+        }
+        (rate, is) => hold(rate.is_none() == is.is_none(), format!("commands {rate:?} Hz, is {is:?}")),
+    }
+    let good: Vec<&str> = found
+        .identifiability
+        .iter()
+        .filter(|one| ["mass", "ixx", "iyy", "izz"].contains(&one.name) && one.status != "not_determined")
+        .map(|one| one.name)
+        .collect();
+    // a vehicle that tips over is judged by its time in the air alone
+    if fact.why.is_some() || !fact.good_for.is_empty() {
+        hold(good == fact.good_for, format!("good for {good:?}, is for {:?}", fact.good_for));
+    }
+    if let Some(why) = &fact.why {
+        hold(found.verdict.contains(why.as_str()), format!("{}: {why}", found.verdict));
+    }
+    wrong
+}
+
+/// Quantities of a log that is good for nothing are all refused, with a reason, and with what to do where a flight would help.
+fn refusals(fact: &Fact, found: &Inspection) -> Vec<String> {
+    assert_eq!(found.quantities.len(), 9, "{}", fact.file);
+    let wrong = found.quantities.iter().filter(|quantity| {
+        let is_refused = quantity.status == "no" && quantity.reason.is_some();
+        let of_kind = fact.kind.as_deref() != Some("multirotor");
+        let is_helped = of_kind || quantity.fly.is_some() || quantity.set.is_some();
+        let is_untimed = fact.why.as_deref().is_some_and(|why| why.contains("no time"));
+        fact.why.is_some() && !(is_refused && (is_helped || is_untimed))
+    });
+    wrong.map(|quantity| format!("{}: {quantity:?}", fact.file)).collect()
+}
+
+#[test]
+fn the_same_story_with_a_vehicle_and_by_identify() {
+    let Some(shared) = support::shared() else { return };
+    let vehicle = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
+    let known = read_vehicle(&vehicle).unwrap().vehicle;
+    for fact in facts().iter().filter(|fact| fact.refused.is_none()) {
+        let log = shared.join(&fact.file);
+        let inspected = |vehicle| inspect(&log, &OpenOptions::default(), vehicle, &mut |_| ()).unwrap();
+        let (without, with) = (inspected(None), inspected(Some(&known)));
+        assert_eq!(with.vehicle, without.vehicle, "{}", fact.file);
+        assert_eq!(with.timeline, without.timeline, "{}", fact.file);
+        assert_eq!(with.flight.airborne_s, without.flight.airborne_s, "{}", fact.file);
+        assert!(with.flight.usable_s <= with.flight.airborne_s + 1e-6, "{}", fact.file);
+        let Some(why) = &fact.why else { continue };
+        assert!(with.quantities.iter().all(|quantity| quantity.status == "no"), "{}", fact.file);
+        let request = IdentifyRequest {
+            vehicle: VehicleGiven::File(vehicle.clone()),
+            logs: vec![log.clone()],
+            read: ReadSettings { system: fact.system.map(SystemId), ..ReadSettings::default() },
+            ..IdentifyRequest::default()
+        };
+        let refusal = identify(&request, &Silent).err().unwrap().to_string();
+        let told = ["it is of a ", "never armed", "no time"].into_iter().find(|words| why.contains(words));
+        let words = match told {
+            Some("it is of a ") => why.trim_start_matches("it is "),
+            Some(words) => words,
+            None => continue,
+        };
+        // a quadplane says that it is a plane
+        let words = if words.contains("VTOL") && fact.file.ends_with(".tlog") { "of a plane" } else { words };
+        assert!(refusal.contains(words), "{}: {refusal}", fact.file);
+    }
+}
+
+#[test]
+fn the_truth_about_every_foreign_log() {
+    let Some(shared) = support::shared() else { return };
+    let mut wrong = Vec::new();
+    for fact in facts() {
+        let found = inspect(&shared.join(&fact.file), &OpenOptions::default(), None, &mut |_| ());
+        match (found, &fact.refused) {
+            (Ok(found), None) => {
+                wrong.extend(differences(&fact, &found));
+                wrong.extend(refusals(&fact, &found));
+            }
+            (Err(error), Some(words)) => {
+                let error = error.to_string();
+                if !error.contains(words.as_str()) {
+                    wrong.push(format!("{}: {error}", fact.file));
+                }
+            }
+            (found, _) => wrong.push(format!("{}: read {}", fact.file, found.is_ok())),
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

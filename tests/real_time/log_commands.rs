@@ -1,0 +1,160 @@
+//! `mavid log` as a program, against `mavid sitl`: what it lists, fetches, sets and puts back.
+
+use std::io::{BufRead, BufReader};
+use std::net::TcpListener;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+
+use serde_json::Value;
+
+use crate::processes::{config, folder, planned};
+
+const MAVID: &str = env!("CARGO_BIN_EXE_mavid");
+
+/// A vehicle that logs from its start on, and where it listens.
+struct Sitl(Child, String);
+
+impl Sitl {
+    fn start(autopilot: &str, parameters: &[&str]) -> Self {
+        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let mut child = Command::new(MAVID)
+            .args(["sitl", "--warm-up", "2", "--autopilot", autopilot])
+            .args(["--listen", &format!("tcpin:127.0.0.1:{port}")])
+            .args(parameters.iter().flat_map(|parameter| ["--param", parameter]))
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut first = String::new();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut first).unwrap();
+        Self(child, format!("tcpout:127.0.0.1:{port}"))
+    }
+
+    /// `mavid vehicle init --from ADDRESS`: what it wrote.
+    fn drafted(&self, out: &Path) -> String {
+        let Output { status, stderr, .. } = Command::new(MAVID)
+            .args(["vehicle", "init", "--from", &self.1, "--mass", "2", "--size", "0.5"])
+            .args(["--out", out.to_str().unwrap()])
+            .output()
+            .unwrap();
+        assert!(status.success(), "{}", String::from_utf8_lossy(&stderr));
+        std::fs::read_to_string(out).unwrap()
+    }
+
+    /// `mavid --json log ...`: the document and what was said beside it.
+    fn log(&self, state: &Path, arguments: &[&str]) -> (Value, String) {
+        let Output { status, stdout, stderr } = Command::new(MAVID)
+            .args(["--json", "log"])
+            .args(arguments)
+            .args(["--connect", &self.1])
+            .env("MAVID_STATE_DIR", state)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&stderr).into_owned();
+        assert!(status.success(), "{arguments:?}: {said}");
+        (serde_json::from_slice(&stdout).unwrap(), said)
+    }
+}
+
+impl Sitl {
+    /// `mavid fly --set-logging` without `--arm`: its status and what it said.
+    fn check(&self, folder: &Path, trajectory: &Path) -> (Option<i32>, String) {
+        let path = |path: &Path| path.display().to_string();
+        let output = Command::new(MAVID)
+            .args([
+                "fly",
+                "--plain",
+                "--set-logging",
+                "--connect",
+                &self.1,
+                "--vehicle",
+                &config("x500.toml"),
+            ])
+            .args(["--trajectory", &path(trajectory), "--out", &path(&folder.join("flight"))])
+            .env("MAVID_STATE_DIR", folder)
+            .output()
+            .unwrap();
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    }
+}
+
+impl Drop for Sitl {
+    fn drop(&mut self) {
+        // it may have ended already
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+#[test]
+fn logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back() {
+    let folder = folder("log_commands");
+    let (state, out) = (folder.join("state"), folder.join("logs"));
+    let sitl = Sitl::start("px4", &["SDLOG_MODE=2"]);
+    let (listed, _) = sitl.log(&state, &["list"]);
+    assert_eq!((&listed["autopilot"], &listed["protocol"]), (&"px4".into(), &"ftp".into()));
+    assert_eq!(listed["logs"].as_array().unwrap().len(), 1);
+    std::fs::create_dir_all(&folder).unwrap();
+    let drafted = sitl.drafted(&folder.join("vehicle.toml"));
+    assert!(drafted.contains("4 rotors of PX4 by CA_ROTOR_COUNT"), "{drafted}");
+    assert!(
+        drafted.contains("arms from the given size of 0.5 m") && drafted.contains("mass = 2.0"),
+        "{drafted}"
+    );
+    let (fetched, _) = sitl.log(&state, &["fetch", "--last", "--out", out.to_str().unwrap()]);
+    assert_eq!(fetched["checked"], "growing");
+    let log = fetched["log"].as_str().unwrap();
+    assert_eq!(std::fs::metadata(log).unwrap().len(), fetched["bytes"].as_u64().unwrap());
+    assert!(mavid::log::open(log, &mavid::log::OpenOptions::default()).is_ok());
+    let (said, _) = sitl.log(&state, &["prepare"]);
+    assert_eq!(said["changes"][0]["parameter"], "SDLOG_PROFILE");
+    assert_eq!((&said["changes"][0]["set"], &said["notes"]), (&false.into(), &Value::Null));
+    let (set, _) = sitl.log(&state, &["prepare", "--set-logging"]);
+    assert_eq!((&set["changes"][0]["set"], &set["restart"]), (&true.into(), &true.into()));
+    let notes = std::fs::read_to_string(set["notes"].as_str().unwrap()).unwrap();
+    assert!(notes.contains("SDLOG_PROFILE") && notes.contains("found = 1.0"), "{notes}");
+    // a later run knows it, as after a crash
+    let (enough, said) = sitl.log(&state, &["prepare"]);
+    assert_eq!(enough["changes"], Value::Array(Vec::new()));
+    assert!(said.contains("an earlier run changed SDLOG_PROFILE from 1 to 9"), "{said}");
+    let (restored, _) = sitl.log(&state, &["prepare", "--restore"]);
+    assert_eq!(restored["restored"][0]["value"], 1.0);
+    let (again, said) = sitl.log(&state, &["prepare"]);
+    assert_eq!(again["changes"][0]["found"], 1.0);
+    assert!(!said.contains("earlier run"), "{said}");
+}
+
+/// Neither is armed: a flight that does not come about leaves the logging as it was.
+#[test]
+fn a_flight_sets_the_logging_of_each_autopilot_and_puts_it_back() {
+    let trajectory = planned("logged_plan", 1);
+    let of = |autopilot: &str| (Sitl::start(autopilot, &[]), folder(&format!("logged_{autopilot}")));
+    let (px4, state) = of("px4");
+    let (status, said) = px4.check(&state, &trajectory);
+    assert_eq!(status, Some(1), "{said}");
+    assert!(
+        said.contains("not flown: SDLOG_PROFILE = 9 instead of 1 is set and counts after a restart"),
+        "{said}"
+    );
+    let (_, said) = px4.check(&state, &trajectory);
+    assert!(
+        said.contains(
+            "vehicle's own log: expected a log that an identification can use, got motor commands,"
+        ),
+        "{said}"
+    );
+    assert!(said.contains("logging: SDLOG_PROFILE is 1 again"), "{said}");
+    let (restored, _) = px4.log(&state, &["prepare"]);
+    assert_eq!(restored["changes"][0]["found"], 1.0);
+
+    let (ardupilot, state) = of("ardupilot");
+    let (_, said) = ardupilot.check(&state, &trajectory);
+    assert!(said.contains("logging: LOG_BITMASK = 438271 instead of 176126; it is put back"), "{said}");
+    assert!(
+        said.contains("got attitude and the outputs of the rate controller at the rate of the main loop"),
+        "{said}"
+    );
+    assert!(said.contains("logging: LOG_BITMASK is 176126 again"), "{said}");
+    let (restored, _) = ardupilot.log(&state, &["prepare"]);
+    assert_eq!(restored["changes"][0]["found"], 176_126.0);
+}

@@ -1,0 +1,112 @@
+//! Flights whose log is too slow to compare torques with the motion, as both autopilots write by default: forces alone are
+//! used, and what needs torques is not determined.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
+
+use mavid::diagnose::{ExplainSettings, Explanation, Verdict, explain};
+use mavid::estimate::{Finding, IdentifySettings, identify};
+use mavid::physics::ActiveEffect;
+use mavid::recording::{Quantity, Recording, Stream};
+use mavid::signals::{ConditionSettings, Signals, SignalsError, ThrustPreference, condition};
+use mavid::simulate::{
+    FlightSettings, RandomTrajectory, Reference, Truth, VehiclePair, random_vehicle, simulate_flight,
+};
+
+const SEED: u64 = 11;
+
+fn pair() -> VehiclePair {
+    random_vehicle(SEED)
+}
+
+fn flown(effects: Vec<ActiveEffect>) -> Recording {
+    let pair = pair();
+    let trajectory = RandomTrajectory::default().draw(SEED).unwrap();
+    let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
+    let truth = Truth { vehicle: pair.truth, effects, disturbance: None };
+    let settings = FlightSettings { seed: SEED, duration_s: 40.0, ..FlightSettings::default() };
+    simulate_flight(truth, &pair.nominal, &reference, &settings).unwrap().recording
+}
+
+/// One sample of the stream in each period.
+fn thinned(stream: &Stream, rate_hz: f64) -> Stream {
+    let mut out = Stream { time_s: Vec::new(), width: stream.width, values: Vec::new() };
+    for (index, time_s) in stream.time_s.iter().enumerate() {
+        if out.time_s.last().is_none_or(|last| time_s - last > (1.0 - 1e-6) / rate_hz) {
+            out.time_s.push(*time_s);
+            out.values.extend_from_slice(stream.sample(index));
+        }
+    }
+    out
+}
+
+/// Commands at this rate, inertial sensors at 25 Hz, estimates at 10 Hz.
+fn slow(mut recording: Recording, commands_hz: f64) -> Recording {
+    for (key, stream) in &mut recording.streams {
+        let rate_hz = match key.quantity {
+            Quantity::ActuatorCommand => commands_hz,
+            Quantity::AngularRate | Quantity::SpecificForce => 25.0,
+            Quantity::Attitude | Quantity::Position | Quantity::Velocity => 10.0,
+            _ => continue,
+        };
+        *stream = thinned(stream, rate_hz);
+    }
+    recording
+}
+
+fn conditioned(recording: &Recording) -> Result<Signals, SignalsError> {
+    let settings = ConditionSettings { thrust: ThrustPreference::Commands, ..ConditionSettings::default() };
+    condition(recording, &pair().nominal, &settings)
+}
+
+fn explained(effects: Vec<ActiveEffect>) -> Explanation {
+    let signals = conditioned(&slow(flown(effects), 10.0)).unwrap();
+    explain(&[signals], &pair().nominal, &ExplainSettings::default()).unwrap()
+}
+
+#[test]
+fn mass_is_determined_and_inertia_is_not() {
+    let signals = conditioned(&slow(flown(Vec::new()), 10.0)).unwrap();
+    assert!(!signals.quality.torques);
+    let note = &signals.quality.notes[0];
+    assert!(note.is_warning() && note.text.contains("Forces alone are used"), "{note}");
+    let found = identify(&[signals], &pair().nominal, &IdentifySettings::default()).unwrap();
+    let [mass, inertia @ ..] = &found.best.result.parameters;
+    let Finding::Determined { value, std } = mass.finding else { panic!("{mass:?}") };
+    let true_kg = pair().truth.body.mass_kg;
+    assert!((value - true_kg).abs() < 0.01 * true_kg && std < 0.01 * true_kg, "{value} +- {std}, {true_kg}");
+    for parameter in inertia {
+        let Finding::NotDetermined { reason } = &parameter.finding else { panic!("{parameter:?}") };
+        assert!(reason.contains("at too low a rate"), "{reason}");
+    }
+}
+
+#[test]
+fn nothing_is_named_where_nothing_is_concealed() {
+    let found = explained(Vec::new());
+    assert_eq!(found.verdict, Verdict::NothingMissing, "{:?}", found.named);
+    assert!(found.search.after.rigid_body().theta.iter().skip(1).all(|inertia| inertia.is_nan()));
+}
+
+#[test]
+fn drag_is_named_with_its_size() {
+    let size = pair().truth.size();
+    let drag = 0.3 * size.mass_kg;
+    let concealed = [("dx", drag), ("dy", drag), ("dz", drag)];
+    let found = explained(vec![ActiveEffect::named("linear_drag", &concealed, &size).unwrap()]);
+    let [named] = &found.named[..] else { panic!("{:?}", found.named) };
+    assert_eq!(named.id, "linear_drag");
+    for parameter in named.parameters.iter().take(3) {
+        let error = (parameter.value - drag).abs();
+        assert!(error < 0.1 * drag && error < 3.0 * parameter.std, "{parameter:?}, concealed {drag}");
+    }
+}
+
+#[test]
+fn commands_slower_still_are_refused() {
+    let refused = conditioned(&slow(flown(Vec::new()), 4.0)).unwrap_err().to_string();
+    assert!(
+        refused.starts_with("sampled too slowly to identify from")
+            && refused.contains("Hz, expected 38 Hz at least"),
+        "{refused}"
+    );
+}
