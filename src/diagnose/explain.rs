@@ -12,6 +12,7 @@ use super::latency_name::latency_name;
 use super::limits::{is_beyond_showing, limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
 use super::named::{Confusable, Named, NamedParameter, Strength};
+use super::reconstructed::reconstruct;
 use super::search::search;
 use super::signature::{EffectTerm, Signature};
 use super::signatures::{ALL, GUST};
@@ -111,6 +112,7 @@ pub fn explain(
     }
     let mut found = search(&traces, vehicle, &settings.gates, settings.signatures)?;
     leave_out_ordinary(&traces, &mut found)?;
+    tracing::info_span!("reconstruct").in_scope(|| reconstruct(flights, &traces, &mut found))?;
     let beyond = tracing::info_span!("locate").in_scope(|| beyond(&traces, &found));
     let explanation = judge(&traces, vehicle, found, beyond);
     explanation.emit();

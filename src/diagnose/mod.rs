@@ -29,6 +29,7 @@ mod nuisances;
 mod other_forms;
 mod priors;
 mod pruning;
+mod reconstructed;
 mod recorded;
 mod rotors;
 mod rows;

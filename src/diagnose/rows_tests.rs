@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::recording::Quantity;
-use crate::signals::{Grid, Quality, Signals, ThrustSource, Usable};
+use crate::signals::{AsRecorded, Grid, Quality, Signals, ThrustSource, Usable};
 use crate::simulate::random_vehicle;
 use crate::vehicle::{RigidBody, Rotor, Spin, Vehicle};
 use nalgebra::{Matrix3, UnitQuaternion};
@@ -55,6 +55,7 @@ fn turning_on_the_spot() -> Signals {
         wrench: vec![Vector4::zeros(); count],
         jitter_wrench: None,
         battery_voltage_v: None,
+        as_recorded: AsRecorded::default(),
         reference: None,
         quality: Quality {
             sources: vec![(Quantity::ActuatorCommand, "by hand", 1.0 / STEP_S)],

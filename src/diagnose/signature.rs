@@ -215,6 +215,8 @@ pub struct Role {
     pub of_air: bool,
     /// N/(m/s) of lateral drag for one of the first two parameters, at a mean airspeed, m/s
     pub lateral_slope: Option<fn(f64) -> f64>,
+    /// slot of the share that grows with the rotors' speed, and the values of the finer parameters up to it in the common form
+    pub with_speed: Option<(usize, &'static [f64])>,
     /// slot of the drag along body z that is linear in the airspeed
     pub axial: Option<usize>,
     /// slot of the drag through which wind along body z acts
@@ -251,6 +253,7 @@ impl Role {
         latency: None,
         of_air: false,
         lateral_slope: None,
+        with_speed: None,
         axial: None,
         vertical: None,
         axial_part_of: None,

@@ -11,10 +11,10 @@ pub struct ActiveEffect {
 
 impl ActiveEffect {
     /// # Errors
-    /// If the number of values is not that of the effect's parameters, with or without the finer ones.
+    /// If the number of values is not that of the effect's parameters, with or without the finer ones, of which the last may be left out.
     pub fn new(effect: &'static dyn Effect, parameters: &[f64]) -> Result<Self, PhysicsError> {
         let (expected, got) = (effect.parameters().len(), parameters.len());
-        if got != expected && got != expected + effect.finer_parameters().len() {
+        if !(expected..=expected + effect.finer_parameters().len()).contains(&got) {
             return Err(PhysicsError::ParameterCount { id: effect.id(), expected, got });
         }
         Ok(Self { effect, parameters: parameters.to_vec() })

@@ -191,8 +191,8 @@ pub trait Effect: Debug + Sync {
     /// name, unit, bounds
     fn parameters(&self) -> &'static [Parameter];
 
-    /// name, unit, bounds of what a finer form of the effect has beyond [`Effect::parameters`]: given all, or
-    /// none, which is the common form
+    /// name, unit, bounds of what a finer form of the effect has beyond [`Effect::parameters`]: given from the first on, as
+    /// many as differ from the common form
     fn finer_parameters(&self) -> &'static [Parameter] {
         &[]
     }
@@ -277,16 +277,40 @@ pub trait Effect: Debug + Sync {
 /// rotors that turn at `rotors.speed`.
 #[must_use]
 pub fn effect_wrench(effect: &dyn Effect, at: &Condition, rotors: &Rotors, own: &mut Own) -> Wrench {
-    let before = at.thrust_wrench(&rotors.thrust_n);
-    let at = at.with_center_of_mass(at.center_of_mass_m + effect.center_of_mass_m(own));
+    in_order(&mut |visit| visit(effect, own), at, rotors) - at.thrust_wrench(&rotors.thrust_n)
+}
+
+/// Force and torque of rotors that turn at `rotors.speed`, with all that these effects change of it; none of them has states.
+/// One effect's reaction is to the others' forces too.
+#[must_use]
+pub fn effects_wrench<'a>(
+    effects: impl Iterator<Item = (&'a dyn Effect, &'a [f64])> + Clone,
+    at: &Condition,
+    rotors: &Rotors,
+) -> Wrench {
+    let mut each = |visit: &mut Visit| {
+        for (effect, parameters) in effects.clone() {
+            visit(effect, &mut Own { parameters, states: &[], rates: &mut [] });
+        }
+    };
+    in_order(&mut each, at, rotors)
+}
+
+type Visit<'a> = dyn FnMut(&dyn Effect, &mut Own) + 'a;
+
+/// The hooks of the effects that `each` visits, in the order of a simulation.
+fn in_order(each: &mut dyn FnMut(&mut Visit), at: &Condition, rotors: &Rotors) -> Wrench {
+    let mut moved_m = Vector3::zeros();
+    each(&mut |effect, own| moved_m += effect.center_of_mass_m(own));
+    let at = at.with_center_of_mass(at.center_of_mass_m + moved_m);
     let mut changed = *rotors;
-    effect.rotor_speed(&at, own, &mut changed);
+    each(&mut |effect, own| effect.rotor_speed(&at, own, &mut changed));
     if changed.speed != rotors.speed {
         changed.thrust_from_speed(at.airframe);
     }
-    effect.rotor_thrust(&at, own, &mut changed);
+    each(&mut |effect, own| effect.rotor_thrust(&at, own, &mut changed));
     let mut sum = at.thrust_wrench(&changed.thrust_n);
-    effect.wrench(&at, &changed, own, &mut sum);
-    effect.reaction(&at, own, &mut sum);
-    sum - before
+    each(&mut |effect, own| effect.wrench(&at, &changed, own, &mut sum));
+    each(&mut |effect, own| effect.reaction(&at, own, &mut sum));
+    sum
 }

@@ -22,7 +22,7 @@ pub use active_effect::ActiveEffect;
 pub use actuator::{ActuationLatency, RotorLag, RotorStep, delayed_thrusts_n, delayed_wrench};
 pub use airframe::Airframe;
 pub use capacity::MAX_ROTORS;
-pub use effect::{Condition, Effect, Hook, Own, Rotors, effect_wrench};
+pub use effect::{Condition, Effect, Hook, Own, Rotors, effect_wrench, effects_wrench};
 pub use error::PhysicsError;
 pub use euler::{euler_rates, euler_rates_inverse};
 pub use input::Input;

@@ -3,31 +3,16 @@
 //! The normal matrix of the states is block tridiagonal and is factorised block by block. The parameters come by its Schur
 //! complement. Memory and time grow with the number of states, not with its square.
 
-use nalgebra::{Const, DMatrix, DVector, Dyn, OMatrix, SMatrix, SVector};
+use nalgebra::{DMatrix, DVector, SVector};
 use rayon::prelude::*;
 
-use super::residuals::{Group, Residuals, WIDTH};
-
-/// Components of one state.
-pub const STATE: usize = 12;
-
-/// One state.
-pub type State = SVector<f64, STATE>;
-/// A block of the states' normal matrix, or a covariance.
-pub type Block = SMatrix<f64, STATE, STATE>;
-/// Derivatives of one residual by both neighbouring states.
-pub type Pair = SMatrix<f64, WIDTH, { 2 * STATE }>;
+use super::blocks::{Block, Columns, Pair, STATE, State, WIDTH};
+use super::residuals::{Group, Residuals};
 
 /// Added to the diagonal so that states which nothing shows stay where they are.
 const HOLD: f64 = 1e-9;
-/// Steps of the derivatives by differences, states and parameters, in their own units.
-const STATE_STEP: f64 = 1e-5;
-/// See [`STATE_STEP`].
-const PARAMETER_STEP: f64 = 1e-5;
-
-/// States by parameters: one line a component, one column a parameter.
-pub type Columns<const LINES: usize> = OMatrix<f64, Const<LINES>, Dyn>;
-
+/// Rows that one thread takes.
+const ROWS_AT_ONCE: usize = 128;
 /// Residuals of one group over their standard deviations, and their derivatives.
 #[derive(Debug, Clone, Default)]
 pub struct Rows {
@@ -75,52 +60,30 @@ pub struct Reduced {
 }
 
 impl Rows {
-    /// Of a group at states and parameters, by central differences.
+    /// Of a group at states and parameters.
     #[must_use]
     pub fn of(group: &Group, states: &[State], theta: &[f64]) -> Self {
         let form = group.form.as_ref();
         let one = |row: usize| {
             let at = form.intervals()[row];
-            let (a, b) = (states[at], states[at + 1]);
             let weight = group.weights(row);
-            let residual = form.residual(row, &a, &b, theta).component_mul(&weight);
-            let mut by_states = Pair::zeros();
-            for &column in form.states() {
-                let moved = |step: f64| {
-                    let (mut a, mut b) = (a, b);
-                    if column < STATE { a[column] += step } else { b[column - STATE] += step }
-                    form.residual(row, &a, &b, theta)
-                };
-                let slope = (moved(STATE_STEP) - moved(-STATE_STEP)) / (2.0 * STATE_STEP);
-                by_states.set_column(column, &slope.component_mul(&weight));
+            let mut found = form.row(row, &states[at], &states[at + 1], theta);
+            found.residual.component_mul_assign(&weight);
+            for part in 0..WIDTH {
+                found.by_states.row_mut(part).scale_mut(weight[part]);
+                found.by_parameters.row_mut(part).scale_mut(weight[part]);
             }
-            let mut by_parameters = Columns::<WIDTH>::zeros(form.parameters().len());
-            let mut theta = theta.to_vec();
-            for (column, &parameter) in form.parameters().iter().enumerate() {
-                let here = theta[parameter];
-                let mut moved = |step: f64| {
-                    theta[parameter] = here + step;
-                    form.residual(row, &a, &b, &theta)
-                };
-                let slope = (moved(PARAMETER_STEP) - moved(-PARAMETER_STEP)) / (2.0 * PARAMETER_STEP);
-                theta[parameter] = here;
-                by_parameters.set_column(column, &slope.component_mul(&weight));
-            }
-            (residual, by_states, by_parameters)
+            (found.residual, (found.by_states, found.by_parameters))
         };
-        let all: Vec<_> = (0..form.intervals().len()).into_par_iter().map(one).collect();
-        let mut rows = Self::default();
-        for (residual, by_states, by_parameters) in all {
-            rows.residual.push(residual);
-            rows.by_states.push(by_states);
-            rows.by_parameters.push(by_parameters);
-        }
-        rows
+        let count = form.intervals().len();
+        let (residual, (by_states, by_parameters)) =
+            (0..count).into_par_iter().with_min_len(ROWS_AT_ONCE).map(one).unzip();
+        Self { residual, by_states, by_parameters }
     }
 }
 
 impl Normal {
-    /// Of rows of all groups.
+    /// Of rows of all groups; with no `parameters` that of the states alone.
     #[must_use]
     pub fn of(groups: &[Group], rows: &[Rows], states: usize, parameters: usize) -> Self {
         let mut normal = Self {
@@ -150,6 +113,10 @@ impl Normal {
             self.coupling[at] += first.transpose() * second;
             self.state_gradient[at] += first.transpose() * residual;
             self.state_gradient[at + 1] += second.transpose() * residual;
+            self.cost += residual.norm_squared();
+            if self.parameters.is_empty() {
+                continue;
+            }
             let (one, other) = (first.transpose() * by_parameters, second.transpose() * by_parameters);
             let squares = by_parameters.tr_mul(by_parameters);
             let slope = by_parameters.tr_mul(residual);
@@ -163,7 +130,6 @@ impl Normal {
                     self.parameters[(with, parameter)] += squares[(line, column)];
                 }
             }
-            self.cost += residual.norm_squared();
         }
     }
 

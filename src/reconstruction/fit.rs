@@ -2,8 +2,10 @@
 
 use nalgebra::{DMatrix, DVector, SVector};
 
-use super::arrow::{Normal, Reduced, Rows, STATE, State};
-use super::residuals::{Group, WIDTH};
+use super::arrow::{Normal, Reduced, Rows};
+use super::blocks::{STATE, State, WIDTH};
+use super::forces::{BASE, SCALE};
+use super::residuals::Group;
 
 /// A parameter with what is known of it beforehand.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +41,8 @@ const ROUNDS: usize = 14;
 const LEARNED_UNTIL: usize = 9;
 /// A step smaller than this share of every standard error ends the fit.
 const SMALL: f64 = 0.01;
+/// A fit whose next step were larger than this many standard errors has not converged.
+const FAR: f64 = 3.0;
 /// Share of a standard error by which parameters are moved for the slope of the determinant.
 const PROBE: f64 = 0.3;
 /// A noise level changes by no more than this factor in its square in one round.
@@ -93,14 +97,52 @@ struct Turn {
 
 /// What is iterated.
 struct Iterate<'a> {
-    problem: &'a mut Problem,
+    problem: Problem,
     free: &'a [usize],
     theta: Vec<f64>,
 }
 
-impl Iterate<'_> {
+impl<'a> Iterate<'a> {
+    fn new(problem: Problem, free: &'a [usize]) -> Self {
+        let theta = problem.unknowns.iter().map(|unknown| unknown.mean).collect();
+        Self { problem, free, theta }
+    }
+
+    /// To the joint mode, with noise levels that are learned on the way.
+    fn mode(&mut self) -> Result<(), FitError> {
+        for round in 0..ROUNDS {
+            let turn = self.linearised()?;
+            self.moved(&turn);
+            if round > 1 && round < LEARNED_UNTIL {
+                self.learn(&turn, round);
+            }
+            let is_small = |(at, step): (usize, &f64)| step.abs() < SMALL * turn.covariance[(at, at)].sqrt();
+            if round >= LEARNED_UNTIL && turn.step.iter().enumerate().all(is_small) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn finished(self) -> Result<Fit, FitError> {
+        let Turn { rows, reduced, cost, covariance, step } = self.linearised()?;
+        let far = |(at, step): (usize, &f64)| step.abs() > FAR * covariance[(at, at)].sqrt();
+        if step.iter().enumerate().any(far) {
+            return Err(FitError::Diverged);
+        }
+        let Self { problem, free, theta } = self;
+        let sigma = problem.groups.iter().map(|group| group.sigma).collect();
+        let robust = DMatrix::zeros(0, 0);
+        let Problem { time_s, states, groups, unknowns, .. } = problem;
+        let mut fit =
+            Fit { time_s, states, theta, free: free.to_vec(), covariance, robust, cost, sigma, unknowns, rows, reduced };
+        let scores = fit.scores(&groups, free);
+        fit.robust = &fit.covariance * scores.tr_mul(&scores) * &fit.covariance * small_sample();
+        Ok(fit)
+    }
+
     fn linearised(&self) -> Result<Turn, FitError> {
-        let Problem { groups, states, unknowns, .. } = &*self.problem;
+        let Problem { groups, states, unknowns, .. } = &self.problem;
         let rows: Vec<Rows> = groups.iter().map(|group| Rows::of(group, states, &self.theta)).collect();
         let normal = Normal::of(groups, &rows, states.len(), unknowns.len());
         let reduced = normal.reduced().ok_or(FitError::Singular)?;
@@ -167,11 +209,14 @@ impl Iterate<'_> {
 
     /// Half the logarithm of the determinant that the states leave behind when they are integrated out: that of their normal
     /// matrix, less that of the process by its second state, which goes with the parameters too.
-    fn half_log_determinant(&self, turn: &Turn) -> f64 {
-        let ahead = turn.rows[self.problem.process].by_states.iter().map(|pair| {
+    fn half_log_determinant(&self) -> Result<f64, FitError> {
+        let Problem { groups, states, process, .. } = &self.problem;
+        let rows: Vec<Rows> = groups.iter().map(|group| Rows::of(group, states, &self.theta)).collect();
+        let reduced = Normal::of(groups, &rows, states.len(), 0).reduced().ok_or(FitError::Singular)?;
+        let ahead = rows[*process].by_states.iter().map(|pair| {
             pair.fixed_view::<WIDTH, WIDTH>(0, STATE).determinant().abs().ln()
         });
-        0.5 * turn.reduced.log_determinant - ahead.sum::<f64>()
+        Ok(0.5 * reduced.log_determinant - ahead.sum::<f64>())
     }
 
     /// From the joint mode to the mode with the states integrated out, by Laplace: the slope of the determinant moves the
@@ -185,9 +230,9 @@ impl Iterate<'_> {
             for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
                 let kept = self.theta[index];
                 self.theta[index] = kept + sign * probe;
-                let turn = self.linearised();
+                let found = self.half_log_determinant();
                 self.theta[index] = kept;
-                *side = self.half_log_determinant(&turn?);
+                *side = found?;
             }
             slope[at] = (sides[0] - sides[1]) / (2.0 * probe);
         }
@@ -201,36 +246,26 @@ fn selected(matrix: &DMatrix<f64>, of: &[usize]) -> DMatrix<f64> {
     matrix.select_rows(of).select_columns(of)
 }
 
-/// Fits the states and the parameters `free` (indices), and learns the noise levels.
+/// Fits the states and the parameters `free` (indices), learns the noise levels, and goes from the joint mode to that with the
+/// states integrated out.
 ///
 /// # Errors
 /// [`FitError`] where the data do not determine them.
-pub fn fit(mut problem: Problem, free: &[usize]) -> Result<Fit, FitError> {
-    let theta = problem.unknowns.iter().map(|unknown| unknown.mean).collect();
-    let mut iterate = Iterate { problem: &mut problem, free, theta };
-    for round in 0..ROUNDS {
-        let turn = iterate.linearised()?;
-        iterate.moved(&turn);
-        if round > 1 && round < LEARNED_UNTIL {
-            iterate.learn(&turn, round);
-        }
-        let is_small = |(at, step): (usize, &f64)| step.abs() < SMALL * turn.covariance[(at, at)].sqrt();
-        if round >= LEARNED_UNTIL && turn.step.iter().enumerate().all(is_small) {
-            break;
-        }
-    }
+pub fn fit(problem: Problem, free: &[usize]) -> Result<Fit, FitError> {
+    let mut iterate = Iterate::new(problem, free);
+    iterate.mode()?;
     iterate.marginal()?;
-    let turn = iterate.linearised()?;
-    let theta = iterate.theta;
-    let Turn { rows, reduced, cost, covariance, .. } = turn;
-    let sigma = problem.groups.iter().map(|group| group.sigma).collect();
-    let robust = DMatrix::zeros(0, 0);
-    let Problem { time_s, states, groups, unknowns, .. } = problem;
-    let mut fit =
-        Fit { time_s, states, theta, free: free.to_vec(), covariance, robust, cost, sigma, unknowns, rows, reduced };
-    let scores = fit.scores(&groups, free, &DMatrix::zeros(0, 0));
-    fit.robust = &fit.covariance * scores.tr_mul(&scores) * &fit.covariance * small_sample();
-    Ok(fit)
+    iterate.finished()
+}
+
+/// The same up to the joint mode, which is what a choice between forms needs.
+///
+/// # Errors
+/// As [`fit`].
+pub fn fit_mode(problem: Problem, free: &[usize]) -> Result<Fit, FitError> {
+    let mut iterate = Iterate::new(problem, free);
+    iterate.mode()?;
+    iterate.finished()
 }
 
 /// Factor on a covariance from so few blocks (Bell and McCaffrey 2002).
@@ -247,8 +282,21 @@ impl Fit {
         Some((self.theta[self.free[at]], std(&self.covariance), std(&self.robust)))
     }
 
+    /// Scale and values of the effects with their covariance: correlations by the model, standard errors the larger of the
+    /// model's and those of the blocks.
+    #[must_use]
+    pub fn scale_and_effects(&self) -> (DVector<f64>, DMatrix<f64>) {
+        let wanted: Vec<usize> =
+            (0..self.free.len()).filter(|&at| self.free[at] == SCALE || self.free[at] >= BASE).collect();
+        let values = DVector::from_iterator(wanted.len(), wanted.iter().map(|&at| self.theta[self.free[at]]));
+        let model = selected(&self.covariance, &wanted);
+        let larger = |&at: &usize| (self.robust[(at, at)] / self.covariance[(at, at)]).max(1.0).sqrt();
+        let factors = DVector::from_iterator(wanted.len(), wanted.iter().map(larger));
+        (values, model.component_mul(&(&factors * factors.transpose())))
+    }
+
     /// Scores of parameters with the states projected out, summed over blocks of time: one row a block.
-    fn scores(&self, groups: &[Group], of: &[usize], _held: &DMatrix<f64>) -> DMatrix<f64> {
+    fn scores(&self, groups: &[Group], of: &[usize]) -> DMatrix<f64> {
         let (Some(first), Some(last)) = (self.time_s.first(), self.time_s.last()) else {
             return DMatrix::zeros(BLOCKS, of.len());
         };

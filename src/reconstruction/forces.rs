@@ -1,346 +1,246 @@
-//! The force problem: velocity, attitude's error and the error of the autopilot's velocity along time, and what makes the
-//! specific force.
+//! The equation of motion of the force problem: what thrust and effects make of velocity and attitude.
 //!
-//! States: velocity (world, m/s), error of the autopilot's attitude (body, rad: true = stated (1 + [phi]x)), position (m,
-//! not used here), error of the autopilot's velocity (world, m/s).
+//! States: velocity (world, m/s), error of the autopilot's attitude (body, rad: true = stated (1 + [phi]x)), error of the
+//! autopilot's velocity (world, m/s).
 
-use std::sync::Arc;
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use nalgebra::{SVector, UnitQuaternion, Vector3};
-
-use super::arrow::{STATE, State};
-use super::cells::{Cells, LATENESS_S, STEP_S, airframe};
-use super::error::ReconstructionError;
-use super::fit::{Problem, Unknown};
-use super::residuals::{Group, Residuals};
-use crate::physics::{Airframe, Condition, Effect, Input, MAX_ROTORS, Own, Rotors, State as Motion, effect_wrench};
-use crate::recording::Recording;
-use crate::vehicle::Vehicle;
+use super::blocks::{Columns, Pair, STATE, State, WIDTH};
+use super::cells::Cells;
+use super::place::STEP_S;
+use super::residuals::{Residuals, Row};
+use crate::physics::{
+    Airframe, Condition, Effect, Input, MAX_ROTORS, Own, Rotors, State as Motion, effects_wrench,
+};
 
 /// Where each part of a state begins.
-const VELOCITY: usize = 0;
-const TILT: usize = 3;
-const ERROR: usize = 9;
+pub(super) const VELOCITY: usize = 0;
+/// See [`VELOCITY`].
+pub(super) const TILT: usize = 3;
+/// See [`VELOCITY`].
+pub(super) const ERROR: usize = 6;
 
-/// Indices of the parameters that every problem has.
-const SCALE: usize = 0;
-const BIAS: usize = 1;
-const LATE_FORCE: usize = 4;
-const LAG: usize = 5;
-const LATE_ATTITUDE: usize = 6;
-const BASE: usize = 7;
+/// Indices of the parameters that every problem has: nominal over true mass.
+pub(super) const SCALE: usize = 0;
+/// First of three: of the accelerometer, m/s^2.
+pub(super) const BIAS: usize = 1;
+/// Lateness of the commands, s.
+pub(super) const LATE_FORCE: usize = 4;
+/// Lag of the rotors, s.
+pub(super) const LAG: usize = 5;
+/// Lateness of the attitude, s.
+pub(super) const LATE_ATTITUDE: usize = 6;
+/// How many they are.
+pub(super) const BASE: usize = 7;
 
-/// Share of the accelerometer that the autopilot's velocity integrates, and its forgetting, 1/s.
-const SHARED: f64 = 0.9;
-/// See [`SHARED`].
-const FORGET_1_S: f64 = 0.5;
+/// Steps of the derivatives by differences: m/s and rad.
+const MOVED: f64 = 1e-5;
+/// Steps of latenesses and lags, s.
+const MOVED_S: f64 = 1e-4;
+/// Values that an effect has at most.
+pub(super) const MOST_VALUES: usize = 16;
+/// Effects that a problem has at most.
+pub(super) const MOST_TERMS: usize = 16;
+
+/// An effect of the force problem.
+#[derive(Debug, Clone)]
+pub struct Term {
+    /// its equation
+    pub effect: &'static dyn Effect,
+    /// values, in the order of its parameters
+    pub values: Vec<f64>,
+    /// slots of the values that are estimated
+    pub free: Vec<usize>,
+    /// steps of their derivatives by differences, one each
+    pub steps: Vec<f64>,
+    /// index of the first estimated value among the parameters
+    pub(super) first: usize,
+}
+
+impl Term {
+    /// An effect at these values, of which `free` are estimated; `steps` are those of the derivatives by them.
+    #[must_use]
+    pub fn new(effect: &'static dyn Effect, values: Vec<f64>, free: Vec<usize>, steps: Vec<f64>) -> Self {
+        Self { effect, values, free, steps, first: 0 }
+    }
+
+    fn at(&self, theta: &[f64]) -> [f64; MOST_VALUES] {
+        let mut values = [0.0; MOST_VALUES];
+        for (value, of) in values.iter_mut().zip(&self.values) {
+            *value = *of;
+        }
+        for (place, &slot) in self.free.iter().enumerate() {
+            values[slot] = theta[self.first + place];
+        }
+        values
+    }
+}
 
 /// What all equations look at.
 #[derive(Debug)]
-struct Flight {
-    cells: Cells,
-    airframe: Airframe,
-    mass_kg: f64,
-    gravity_m_s2: f64,
-    effects: Vec<(&'static dyn Effect, usize)>,
-    intervals: Vec<usize>,
+pub(super) struct Flight {
+    pub(super) cells: Cells,
+    pub(super) airframe: Airframe,
+    pub(super) terms: Vec<Term>,
+    pub(super) intervals: Vec<usize>,
 }
 
-fn part(state: &State, at: usize) -> Vector3<f64> {
+/// Three components of a state.
+pub(super) fn part(state: &State, at: usize) -> Vector3<f64> {
     state.fixed_rows::<3>(at).into_owned()
 }
 
+/// What both states say of the motion in a cell.
+pub(super) struct Kinematics {
+    velocity_m_s: Vector3<f64>,
+    tilt_rad: Vector3<f64>,
+    attitude: UnitQuaternion<f64>,
+    /// world to body
+    pub(super) to_body: Matrix3<f64>,
+    /// specific force, body, m/s^2
+    pub(super) force_m_s2: Vector3<f64>,
+    /// its derivative by the tilt
+    pub(super) by_tilt: Matrix3<f64>,
+}
+
 impl Flight {
-    /// Attitude in the middle of a cell, and the specific force that the states mean, body.
-    fn kinematic(&self, cell: usize, (a, b): (&State, &State), theta: &[f64]) -> (UnitQuaternion<f64>, Vector3<f64>) {
-        let tilt = (part(a, TILT) + part(b, TILT)) / 2.0 + self.cells.rate_rad_s[cell] * theta[LATE_ATTITUDE];
-        let attitude = self.cells.attitude[cell] * UnitQuaternion::from_scaled_axis(tilt);
-        let acceleration = (part(b, VELOCITY) - part(a, VELOCITY)) / STEP_S + Vector3::z() * self.gravity_m_s2;
-        (attitude, attitude.inverse_transform_vector(&acceleration))
+    pub(super) fn kinematics(&self, cell: usize, (a, b): (&State, &State), theta: &[f64]) -> Kinematics {
+        let tilt_rad = (part(a, TILT) + part(b, TILT)) / 2.0 + self.cells.rate_rad_s[cell] * theta[LATE_ATTITUDE];
+        let attitude = self.tilted(cell, &tilt_rad);
+        let up = Vector3::z() * self.airframe.gravity_m_s2;
+        let acceleration = (part(b, VELOCITY) - part(a, VELOCITY)) / STEP_S + up;
+        let to_body = attitude.to_rotation_matrix().matrix().transpose();
+        let force_m_s2 = to_body * acceleration;
+        // right Jacobian of the rotation, to first order in the small tilt
+        let turning = Matrix3::identity() - tilt_rad.cross_matrix() / 2.0;
+        let by_tilt = force_m_s2.cross_matrix() * turning;
+        let velocity_m_s = (part(a, VELOCITY) + part(b, VELOCITY)) / 2.0;
+        Kinematics { velocity_m_s, tilt_rad, attitude, to_body, force_m_s2, by_tilt }
     }
 
-    /// The specific force that thrust and effects make, body.
-    fn modelled(&self, cell: usize, (a, b): (&State, &State), attitude: UnitQuaternion<f64>, theta: &[f64]) -> Vector3<f64> {
-        let thrust_n = self.cells.thrust_n(cell, theta[LAG], theta[LATE_FORCE]);
-        let state = Motion {
-            position_m: self.cells.position_m[cell],
-            velocity_m_s: (part(a, VELOCITY) + part(b, VELOCITY)) / 2.0,
-            attitude,
-            rates_rad_s: self.cells.rate_rad_s[cell],
-        };
+    fn tilted(&self, cell: usize, tilt_rad: &Vector3<f64>) -> UnitQuaternion<f64> {
+        self.cells.attitude[cell] * UnitQuaternion::from_scaled_axis(*tilt_rad)
+    }
+
+    /// The rotors in a cell behind lag and lateness.
+    fn rotors(&self, cell: usize, theta: &[f64]) -> Rotors {
+        let thrust_n = self.cells.thrusts.behind(cell, theta[LAG], theta[LATE_FORCE]);
         let mut speed = [0.0; MAX_ROTORS];
         for (speed, thrust) in speed.iter_mut().zip(&thrust_n).take(self.airframe.rotor_count()) {
             *speed = self.airframe.relative_speed_of_thrust(*thrust);
         }
+        Rotors { speed, acceleration_1_s: [0.0; MAX_ROTORS], thrust_n }
+    }
+
+    /// The specific force that thrust and effects make, body, m/s^2.
+    fn modelled(
+        &self,
+        cell: usize,
+        (velocity_m_s, attitude): (Vector3<f64>, UnitQuaternion<f64>),
+        rotors: &Rotors,
+        theta: &[f64],
+    ) -> Vector3<f64> {
+        let cells = &self.cells;
+        let rates_rad_s = cells.rate_rad_s[cell];
+        let state = Motion { position_m: cells.position_m[cell], velocity_m_s, attitude, rates_rad_s };
         let input = Input {
-            time_s: self.cells.time_s[cell] + STEP_S / 2.0,
-            speed_command: speed,
+            time_s: cells.time_s[cell] + STEP_S / 2.0,
+            speed_command: rotors.speed,
             speed_rate_1_s: [0.0; MAX_ROTORS],
             wind_m_s: Vector3::zeros(),
-            battery_voltage_v: None,
+            battery_voltage_v: cells.battery_voltage_v.as_ref().map(|all| all[cell]),
         };
-        let rotors = Rotors { speed, acceleration_1_s: [0.0; MAX_ROTORS], thrust_n };
-        let own = |(effect, at): &(&'static dyn Effect, usize)| &theta[*at..*at + effect.parameters().len()];
-        let mut wind_m_s = Vector3::zeros();
-        for entry in &self.effects {
-            wind_m_s += entry.0.wind_m_s(&input, &Own { parameters: own(entry), states: &[], rates: &mut [] });
+        let mut values = [[0.0; MOST_VALUES]; MOST_TERMS];
+        for (values, term) in values.iter_mut().zip(&self.terms) {
+            *values = term.at(theta);
         }
-        let at = Condition::new(&self.airframe, &state, &input, wind_m_s);
-        let mut force_n = Vector3::z() * thrust_n.iter().sum::<f64>() * theta[SCALE];
-        for entry in &self.effects {
-            let mut own = Own { parameters: own(entry), states: &[], rates: &mut [] };
-            force_n += effect_wrench(entry.0, &at, &rotors, &mut own).force_n;
-        }
-        force_n / self.mass_kg
+        let effects = self.terms.iter().zip(&values).map(|(term, values)| (term.effect, &values[..term.values.len()]));
+        let wind = |(effect, parameters): (&'static dyn Effect, &[f64])| {
+            effect.wind_m_s(&input, &Own { parameters, states: &[], rates: &mut [] })
+        };
+        let at = Condition::new(&self.airframe, &state, &input, effects.clone().map(wind).sum());
+        let effects = effects.map(|(effect, parameters)| (effect as &dyn Effect, parameters));
+        let force_n = effects_wrench(effects, &at, rotors).force_n;
+        force_n * (theta[SCALE] / self.airframe.mass_kg)
     }
 }
 
 /// The equation of motion: kinematic less modelled specific force, m/s^2.
 #[derive(Debug)]
-struct Process {
-    flight: Arc<Flight>,
+pub(super) struct Process {
+    flight: std::sync::Arc<Flight>,
+    /// cells whose commands are known
+    intervals: Vec<usize>,
     parameters: Vec<usize>,
 }
 
-const MOVES: [usize; 12] = [0, 1, 2, 3, 4, 5, 12, 13, 14, 15, 16, 17];
+impl Process {
+    pub(super) fn new(flight: std::sync::Arc<Flight>) -> Self {
+        let own = flight.terms.iter().flat_map(|term| term.first..term.first + term.free.len());
+        let parameters = [SCALE, LATE_FORCE, LAG, LATE_ATTITUDE].into_iter().chain(own).collect();
+        let cells = &flight.cells;
+        let intervals = (0..cells.len()).filter(|cell| cells.driven[*cell]).collect();
+        Self { intervals, parameters, flight }
+    }
+}
 
 impl Residuals for Process {
     fn intervals(&self) -> &[usize] {
-        &self.flight.intervals
+        &self.intervals
     }
-    fn states(&self) -> &[usize] {
-        &MOVES
-    }
+
     fn parameters(&self) -> &[usize] {
         &self.parameters
     }
-    fn residual(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> SVector<f64, 3> {
-        let (attitude, force) = self.flight.kinematic(row, (a, b), theta);
-        force - self.flight.modelled(row, (a, b), attitude, theta)
-    }
-}
 
-/// The accelerometer against the kinematic force, m/s^2.
-#[derive(Debug)]
-struct Accelerometer {
-    flight: Arc<Flight>,
-    intervals: Vec<usize>,
-}
-
-impl Residuals for Accelerometer {
-    fn intervals(&self) -> &[usize] {
-        &self.intervals
-    }
-    fn states(&self) -> &[usize] {
-        &MOVES
-    }
-    fn parameters(&self) -> &[usize] {
-        &[BIAS, BIAS + 1, BIAS + 2, LATE_ATTITUDE]
-    }
-    fn residual(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> SVector<f64, 3> {
+    fn row(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> Row {
         let cell = self.intervals[row];
-        let Some((mean, _)) = self.flight.cells.specific_force_m_s2[cell] else { return SVector::zeros() };
-        mean - Vector3::from_row_slice(&theta[BIAS..BIAS + 3]) - self.flight.kinematic(cell, (a, b), theta).1
-    }
-    fn weight(&self, row: usize) -> f64 {
-        self.flight.cells.specific_force_m_s2[self.intervals[row]].map_or(0.0, |(_, count)| count.sqrt())
-    }
-}
-
-/// A part of the state that changes little from one instant to the next.
-#[derive(Debug)]
-struct Walk {
-    flight: Arc<Flight>,
-    states: [usize; 6],
-}
-
-impl Residuals for Walk {
-    fn intervals(&self) -> &[usize] {
-        &self.flight.intervals
-    }
-    fn states(&self) -> &[usize] {
-        &self.states
-    }
-    fn parameters(&self) -> &[usize] {
-        &[]
-    }
-    fn residual(&self, _row: usize, a: &State, b: &State, _theta: &[f64]) -> SVector<f64, 3> {
-        part(b, self.states[0]) - part(a, self.states[0])
-    }
-}
-
-/// A part of the first state, about nought.
-#[derive(Debug)]
-struct Start([usize; 3]);
-
-impl Residuals for Start {
-    fn intervals(&self) -> &[usize] {
-        &[0]
-    }
-    fn states(&self) -> &[usize] {
-        &self.0
-    }
-    fn parameters(&self) -> &[usize] {
-        &[]
-    }
-    fn residual(&self, _row: usize, a: &State, _b: &State, _theta: &[f64]) -> SVector<f64, 3> {
-        part(a, self.0[0])
-    }
-}
-
-/// The autopilot integrates the same accelerometer with its own attitude, so the error of its velocity takes in what that
-/// has of noise and lean: `e' = 0.9 (R (a - b) + g - v') - 0.5 e`.
-#[derive(Debug)]
-struct Mechanization {
-    flight: Arc<Flight>,
-}
-
-const VELOCITY_AND_ERROR: [usize; 12] = [0, 1, 2, 9, 10, 11, 12, 13, 14, 21, 22, 23];
-
-impl Residuals for Mechanization {
-    fn intervals(&self) -> &[usize] {
-        &self.flight.intervals
-    }
-    fn states(&self) -> &[usize] {
-        &VELOCITY_AND_ERROR
-    }
-    fn parameters(&self) -> &[usize] {
-        &[BIAS, BIAS + 1, BIAS + 2]
-    }
-    fn residual(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> SVector<f64, 3> {
-        let cells = &self.flight.cells;
-        let taken = cells.specific_force_m_s2[row].map_or_else(Vector3::zeros, |(mean, _)| {
-            let felt = mean - Vector3::from_row_slice(&theta[BIAS..BIAS + 3]);
-            cells.attitude[row] * felt
-                - Vector3::z() * self.flight.gravity_m_s2
-                - (part(b, VELOCITY) - part(a, VELOCITY)) / STEP_S
-        });
-        part(b, ERROR) - part(a, ERROR) * (1.0 - STEP_S * FORGET_1_S) - taken * (SHARED * STEP_S)
-    }
-}
-
-/// The autopilot's velocity: the true one and its error, m/s.
-#[derive(Debug)]
-struct EstimatedVelocity {
-    flight: Arc<Flight>,
-    intervals: Vec<usize>,
-}
-
-impl Residuals for EstimatedVelocity {
-    fn intervals(&self) -> &[usize] {
-        &self.intervals
-    }
-    fn states(&self) -> &[usize] {
-        &VELOCITY_AND_ERROR
-    }
-    fn parameters(&self) -> &[usize] {
-        &[]
-    }
-    fn residual(&self, row: usize, a: &State, b: &State, _theta: &[f64]) -> SVector<f64, 3> {
-        let (_, share, seen) = self.flight.cells.velocity_m_s[row];
-        let of = |at: usize| part(a, at) * (1.0 - share) + part(b, at) * share;
-        seen - of(VELOCITY) - of(ERROR)
-    }
-}
-
-/// The force problem of a flight with these effects, and which of its parameters are free.
-///
-/// # Errors
-/// [`ReconstructionError`] where the recording lacks a stream, or a flight.
-pub fn force_problem(
-    recording: &Recording,
-    vehicle: &Vehicle,
-    effects: &[&'static dyn Effect],
-) -> Result<(Problem, Vec<usize>), ReconstructionError> {
-    let cells = Cells::of(recording, vehicle)?;
-    let lag_s = vehicle.propulsion.mean_time_constant_s();
-    let unknown = |name, mean, std| Unknown { name, mean, std };
-    let mut unknowns = vec![
-        unknown("scale", 1.0, f64::INFINITY),
-        unknown("bias_x", 0.0, 0.3),
-        unknown("bias_y", 0.0, 0.3),
-        unknown("bias_z", 0.0, 0.3),
-        unknown("late_force", LATENESS_S, 0.002),
-        unknown("lag", lag_s.unwrap_or(0.05), if lag_s.is_some() { 0.005 } else { 0.03 }),
-        unknown("late_attitude", 0.0, 0.01),
-    ];
-    let mut placed = Vec::new();
-    for effect in effects {
-        placed.push((*effect, unknowns.len()));
-        let is_drag = effect.id() == "linear_drag";
-        for parameter in effect.parameters() {
-            let mean = if is_drag { 0.3 * vehicle.body.mass_kg } else { 0.0 };
-            unknowns.push(unknown(parameter.name, mean, f64::INFINITY));
+        let flight = &*self.flight;
+        let motion = flight.kinematics(cell, (a, b), theta);
+        let rotors = flight.rotors(cell, theta);
+        let (velocity, attitude) = (motion.velocity_m_s, motion.attitude);
+        let here = flight.modelled(cell, (velocity, attitude), &rotors, theta);
+        let mut by_velocity = Matrix3::zeros();
+        let mut by_tilt = motion.by_tilt;
+        for axis in 0..3 {
+            let mut moved = velocity;
+            moved[axis] += MOVED;
+            let there = flight.modelled(cell, (moved, attitude), &rotors, theta);
+            by_velocity.set_column(axis, &((here - there) / MOVED));
+            let mut tilt = motion.tilt_rad;
+            tilt[axis] += MOVED;
+            let there = flight.modelled(cell, (velocity, flight.tilted(cell, &tilt)), &rotors, theta);
+            let mut column = by_tilt.column_mut(axis);
+            column += (here - there) / MOVED;
         }
+        let mut by_states = Pair::zeros();
+        let half = by_velocity / 2.0;
+        let mut put = |at: usize, block: &Matrix3<f64>| by_states.fixed_view_mut::<3, 3>(0, at).copy_from(block);
+        put(VELOCITY, &(half - motion.to_body / STEP_S));
+        put(STATE + VELOCITY, &(half + motion.to_body / STEP_S));
+        put(TILT, &(by_tilt / 2.0));
+        put(STATE + TILT, &(by_tilt / 2.0));
+        let mut by_parameters = Columns::<WIDTH>::zeros(self.parameters.len());
+        by_parameters.set_column(0, &(-here / theta[SCALE]));
+        let mut moved = theta.to_vec();
+        for (column, index) in [(1, LATE_FORCE), (2, LAG)] {
+            moved[index] += MOVED_S;
+            let there = flight.modelled(cell, (velocity, attitude), &flight.rotors(cell, &moved), &moved);
+            moved[index] = theta[index];
+            by_parameters.set_column(column, &((here - there) / MOVED_S));
+        }
+        by_parameters.set_column(3, &(by_tilt * flight.cells.rate_rad_s[cell]));
+        let mut column = 4;
+        for term in &flight.terms {
+            for (place, step) in term.steps.iter().enumerate() {
+                let index = term.first + place;
+                moved[index] += step;
+                let there = flight.modelled(cell, (velocity, attitude), &rotors, &moved);
+                moved[index] = theta[index];
+                by_parameters.set_column(column, &((here - there) / *step));
+                column += 1;
+            }
+        }
+        Row { residual: motion.force_m_s2 - here, by_states, by_parameters }
     }
-    let count = cells.len();
-    let flight = Arc::new(Flight {
-        airframe: airframe(vehicle)?,
-        mass_kg: vehicle.body.mass_kg,
-        gravity_m_s2: vehicle.gravity_m_s2,
-        effects: placed,
-        intervals: (0..count).collect(),
-        cells,
-    });
-    let cells = &flight.cells;
-    let mut states = vec![State::zeros(); count + 1];
-    for (state, velocity) in states.iter_mut().zip(&cells.borders_m_s) {
-        state.fixed_rows_mut::<3>(VELOCITY).copy_from(velocity);
-    }
-    let noise = cells.accelerometer_noise_m_s2;
-    let quiet = noise.max() < 0.1;
-    let walk_of = |first: usize| [first, first + 1, first + 2, STATE + first, STATE + first + 1, STATE + first + 2];
-    let physics = [SCALE, LATE_FORCE, LAG, LATE_ATTITUDE].into_iter().chain(BASE..unknowns.len());
-    let felt = (0..count).filter(|cell| cells.specific_force_m_s2[*cell].is_some()).collect();
-    let seen = cells.velocity_m_s.iter().map(|(cell, ..)| *cell).collect();
-    let root = STEP_S.sqrt();
-    let group = |name, form: Box<dyn Residuals>, sigma: Vector3<f64>, floor: Option<Vector3<f64>>, learned_in| Group {
-        form,
-        name,
-        sigma,
-        floor,
-        learned_in,
-    };
-    let groups = vec![
-        group(
-            "process",
-            Box::new(Process { flight: flight.clone(), parameters: physics.collect() }),
-            Vector3::new(0.02, 0.02, 0.1),
-            Some(Vector3::repeat(0.004)),
-            (4, 99),
-        ),
-        group(
-            "accelerometer",
-            Box::new(Accelerometer { flight: flight.clone(), intervals: felt }),
-            noise / if quiet { 0.3 } else { 0.85 },
-            Some(noise * 0.9),
-            (2, 4),
-        ),
-        group(
-            "drift",
-            Box::new(Walk { flight: flight.clone(), states: walk_of(TILT) }),
-            Vector3::new(0.004, 0.004, 0.002) * root * if quiet { 0.1 } else { 1.0 },
-            Some(Vector3::repeat(1e-4 * root)),
-            (4, 99),
-        ),
-        group("tilt at the start", Box::new(Start([3, 4, 5])), Vector3::new(0.02, 0.02, 0.06), None, (0, 0)),
-        group("error at the start", Box::new(Start([9, 10, 11])), Vector3::repeat(0.3), None, (0, 0)),
-        group(
-            "mechanization",
-            Box::new(Mechanization { flight: flight.clone() }),
-            Vector3::repeat(if quiet { 0.01 } else { 0.1 } * (2.0 * STEP_S).sqrt()),
-            Some(Vector3::repeat(2e-5)),
-            (4, 99),
-        ),
-        group(
-            "velocity",
-            Box::new(EstimatedVelocity { flight: flight.clone(), intervals: seen }),
-            Vector3::repeat(0.003),
-            None,
-            (0, 0),
-        ),
-    ];
-    let free = (0..unknowns.len()).collect();
-    let time_s = flight.cells.time_s.clone();
-    Ok((Problem { time_s, states, groups, unknowns, process: 0 }, free))
 }

@@ -1,18 +1,24 @@
 //! Flight path reconstruction together with the parameters of the motion.
 //!
-//! States along time (velocity, attitude's error, position, the error of the autopilot's velocity) and parameters (drag,
+//! States along time (velocity, the attitude's error, the error of the autopilot's velocity) and parameters (drag,
 //! thrust scale, biases, latenesses) are estimated at once, with noise levels that are learned from the flight. What a
 //! filter would smooth away before the estimation stays in it.
 
 mod arrow;
+mod blocks;
 mod cells;
 mod error;
 mod fit;
+mod force_problem;
 mod forces;
+mod place;
 mod residuals;
+mod sensors;
+mod thrusts;
 
-pub use arrow::{STATE, State};
+pub use blocks::{STATE, State, WIDTH};
 pub use error::ReconstructionError;
-pub use fit::{BLOCKS, Fit, FitError, Problem, Unknown, fit};
-pub use forces::force_problem;
-pub use residuals::{Group, Residuals, WIDTH};
+pub use fit::{BLOCKS, Fit, FitError, Problem, Unknown, fit, fit_mode};
+pub use force_problem::{KnownLag, force_problem};
+pub use forces::Term;
+pub use residuals::{Group, Residuals, Row};

@@ -2,21 +2,27 @@
 
 use nalgebra::SVector;
 
-use super::arrow::State;
+use super::blocks::{Columns, Pair, State, WIDTH};
 
-/// Components of a residual; those that are not used stay at nought.
-pub const WIDTH: usize = 3;
+/// One residual and its derivatives, not yet divided by its standard deviation.
+#[derive(Debug, Clone)]
+pub struct Row {
+    /// what is left
+    pub residual: SVector<f64, WIDTH>,
+    /// by both states, one after the other
+    pub by_states: Pair,
+    /// by [`Residuals::parameters`], a column each
+    pub by_parameters: Columns<WIDTH>,
+}
 
 /// Residuals of one kind.
 pub trait Residuals: std::fmt::Debug + Send + Sync {
     /// The interval of each row: its first state.
     fn intervals(&self) -> &[usize];
-    /// Of both states, one after the other, the components that the residual depends on.
-    fn states(&self) -> &[usize];
     /// The parameters that it depends on, as indices.
     fn parameters(&self) -> &[usize];
-    /// One row, not yet divided by its standard deviation.
-    fn residual(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> SVector<f64, WIDTH>;
+    /// One row at two neighbouring states.
+    fn row(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> Row;
     /// What the standard deviation of a row is divided by: the root of the number of samples in a mean.
     fn weight(&self, _row: usize) -> f64 {
         1.0
@@ -30,7 +36,7 @@ pub struct Group {
     pub form: Box<dyn Residuals>,
     /// name, for reports
     pub name: &'static str,
-    /// standard deviation of each component; infinite for one that is not used
+    /// standard deviation of each component
     pub sigma: SVector<f64, WIDTH>,
     /// it is learned, and not below this
     pub floor: Option<SVector<f64, WIDTH>>,

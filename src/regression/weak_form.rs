@@ -254,7 +254,7 @@ impl GyroscopicColumns {
 mod tests {
     use super::*;
     use crate::recording::Quantity;
-    use crate::signals::{Quality, ThrustSource, Usable};
+    use crate::signals::{AsRecorded, Quality, ThrustSource, Usable};
     use nalgebra::SVector;
 
     const STEP_S: f64 = 0.01;
@@ -282,6 +282,7 @@ mod tests {
             wrench: vec![wrench; count],
             jitter_wrench: None,
             battery_voltage_v: None,
+            as_recorded: AsRecorded::default(),
             reference: None,
             quality: Quality {
                 sources: vec![(Quantity::ActuatorCommand, "by hand", 1.0 / STEP_S)],

@@ -6,7 +6,7 @@ use super::align::{
     velocity_offset,
 };
 use super::changed::changes_in_the_air;
-use super::flight::{Quality, Reference, Signals};
+use super::flight::{AsRecorded, Quality, Reference, Signals};
 use super::rotor_thrusts::ThrustSource;
 use super::select::{best, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
@@ -15,6 +15,7 @@ use super::{Grid, SignalsError, WeakKernel, plausible, sufficient};
 use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::{UnitQuaternion, Vector3};
+use std::sync::Arc;
 
 /// Settings of the conditioning.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,6 +136,7 @@ pub fn condition(
         wrench: felt.wrench,
         jitter_wrench: felt.jitter_wrench,
         battery_voltage_v: battery_voltage_v(recording, &grid),
+        as_recorded: chosen.as_recorded(),
         reference: reference(recording, &grid),
         quality: Quality {
             sources,
@@ -190,6 +192,11 @@ impl<'a> Chosen<'a> {
             position: pick(Quantity::Position, 3),
             velocity: pick(Quantity::Velocity, 3),
         }
+    }
+
+    fn as_recorded(&self) -> AsRecorded {
+        let kept = |stream: Option<(&'static str, &Stream)>| stream.map(|(_, s)| Arc::new(s.clone()));
+        AsRecorded { specific_force: kept(self.specific_force), velocity: kept(self.velocity) }
     }
 
     fn list(&self) -> [(Quantity, Option<(&'static str, &'a Stream)>); 6] {

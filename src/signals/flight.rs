@@ -5,8 +5,9 @@ use super::grid::Grid;
 use super::rotor_thrusts::ThrustSource;
 use super::usable::Usable;
 use crate::note::Note;
-use crate::recording::Quantity;
+use crate::recording::{Quantity, Stream};
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
+use std::sync::Arc;
 
 /// A flight on one clock and one grid. Vectors have one entry a grid instant; SI, body FLU, world NWU.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +38,8 @@ pub struct Signals {
     pub jitter_wrench: Option<Vec<Vector4<f64>>>,
     /// V; `None` where it is not recorded
     pub battery_voltage_v: Option<Vec<f64>>,
+    /// what was interpolated, at its own instants
+    pub as_recorded: AsRecorded,
     /// commanded trajectory
     pub reference: Option<Reference>,
     /// sources and corrections
@@ -68,6 +71,15 @@ impl Signals {
         }
         tracing::info!(samples, step_s, usable_s, thrust = ?thrust_source, "flight conditioned");
     }
+}
+
+/// Streams at their own instants, where a mean of raw samples is needed.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct AsRecorded {
+    /// m/s^2, body
+    pub specific_force: Option<Arc<Stream>>,
+    /// m/s, world
+    pub velocity: Option<Arc<Stream>>,
 }
 
 /// The commanded trajectory on the grid, world NWU.

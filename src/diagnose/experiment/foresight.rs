@@ -13,7 +13,7 @@ use crate::diagnose::signatures::{latency_kind, signature_of};
 use crate::diagnose::trace::Trace;
 use crate::physics::ActuationLatency;
 use crate::recording::Quantity;
-use crate::signals::{Grid, Quality, Signals, ThrustSource, Usable};
+use crate::signals::{AsRecorded, Grid, Quality, Signals, ThrustSource, Usable};
 use crate::simulate::Allocation;
 use crate::trajectory::{FourierTrajectory, Reference};
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
@@ -254,6 +254,7 @@ impl Flown {
             wrench: self.wrench,
             jitter_wrench: None,
             battery_voltage_v: voltage,
+            as_recorded: AsRecorded::default(),
             reference: None,
             quality: Quality {
                 sources: vec![(Quantity::ActuatorCommand, "imagined", rate_hz)],

@@ -12,6 +12,8 @@ use super::angular_damping;
 
 /// Slot of the drag along body z.
 const DZ: usize = 2;
+/// Slot of the share that grows with the rotors' speed.
+const WITH_SPEED: usize = 4;
 
 /// Drag in proportion to the airspeed.
 pub static SIGNATURE: Signature = Signature {
@@ -34,6 +36,7 @@ pub static SIGNATURE: Signature = Signature {
     role: Role {
         of_air: true,
         lateral_slope: Some(|_| 1.0),
+        with_speed: Some((WITH_SPEED, &[1.0, 1.0])),
         axial: Some(DZ),
         vertical: Some(DZ),
         damped_by: Some(|| angular_damping::SIGNATURE.whole()),

@@ -5,8 +5,9 @@ use crate::diagnose::signature::{Form, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ThrustTilt;
 
-/// Tilt of the thrust axis that ordinary vehicles have, rad: about half a degree. Chosen; not measured.
-const ORDINARY_RAD: f64 = 0.0087;
+/// Tilt of the thrust axis that ordinary vehicles have, rad. A force that is fixed in the body reads as the offset of the
+/// accelerometer does, and that of autopilots' sensors is 20 mg by their makers (ICM-42688-P, data sheet, table 2).
+const ORDINARY_RAD: f64 = 0.02;
 
 /// A tilted thrust axis.
 pub static SIGNATURE: Signature = Signature {

@@ -6,7 +6,7 @@ use super::{
     SlungLoad, SteadyWind, Tether, ThrustCurve, ThrustTilt, TranslationalLift, TransportDelay, VortexRing,
     WeakRotor,
 };
-use crate::physics::{ActiveEffect, Bounds, Effect, PhysicsError};
+use crate::physics::{ActiveEffect, Bounds, Effect, Parameter, PhysicsError};
 use crate::text::compact;
 use crate::vehicle::VehicleSize;
 
@@ -85,9 +85,10 @@ impl ActiveEffect {
         if let Some((name, _)) = values.iter().find(|(name, _)| !names.contains(name)) {
             return refuse(name, format!("one of {}", names.join(", ")), "an unknown name".to_owned());
         }
-        let is_finer = finer.iter().any(|parameter| values.iter().any(|(name, _)| *name == parameter.name));
+        let is_given = |parameter: &Parameter| values.iter().any(|(name, _)| *name == parameter.name);
+        let finer = &finer[..finer.iter().rposition(is_given).map_or(0, |last| last + 1)];
         let mut parameters = Vec::with_capacity(names.len());
-        for parameter in common.iter().chain(if is_finer { finer } else { &[] }) {
+        for parameter in common.iter().chain(finer) {
             let (least, greatest) = widened(&parameter.bounds, size);
             let range = format!(
                 "{} to {} {}{}",

@@ -1,4 +1,4 @@
-//! Rotor drag: each hub is held back in proportion to its speed through the air and its rotor's speed.
+//! Drag in proportion to the airspeed: of the rotors, each held back at its hub by its own speed, or of the body.
 
 use nalgebra::Vector3;
 
@@ -6,7 +6,8 @@ use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wr
 
 /// `F_i = -(D / N) n_i (v_air + w x r_i)` at each hub `r_i`, where `D = diag(dx, dy, dz)` is the drag of the whole
 /// vehicle at hover and `n_i` is the rotor speed over its hover speed. The torque is `r_i x F_i`. In the finer form
-/// the torque is multiplied by `at_hubs`, which is 0 for the drag of a body at the centre of mass.
+/// the torque is multiplied by `at_hubs`, which is 0 for a drag at the centre of mass, and `n_i` becomes
+/// `1 + with_speed (n_i - 1)`: the drag of a body does not grow with the rotors' speed.
 ///
 /// Martin and Salaun 2010; Faessler et al. 2018 (arXiv 1712.02402).
 #[derive(Debug, Clone, Copy)]
@@ -18,11 +19,19 @@ const PARAMETERS: &[Parameter] = &[
     Parameter { name: "dz", unit: "N/(m/s)", bounds: Bounds::of(0.0, 5.0).by_mass() },
 ];
 
-const FINER: &[Parameter] = &[Parameter { name: "at_hubs", unit: "-", bounds: Bounds::of(0.0, 1.0) }];
+const FINER: &[Parameter] = &[
+    Parameter { name: "at_hubs", unit: "-", bounds: Bounds::of(0.0, 1.0) },
+    Parameter { name: "with_speed", unit: "-", bounds: Bounds::of(0.0, 1.0) },
+];
 
 /// Share of the arm at which the drag acts.
 fn at_hubs(parameters: &[f64]) -> f64 {
     parameters.get(PARAMETERS.len()).copied().unwrap_or(1.0)
+}
+
+/// By how much the drag at a hub grows at the relative speed of its rotor.
+fn growth(parameters: &[f64], speed: f64) -> f64 {
+    parameters.get(PARAMETERS.len() + 1).map_or(speed, |with_speed| 1.0 + with_speed * (speed - 1.0))
 }
 
 impl Effect for LinearDrag {
@@ -50,7 +59,7 @@ impl Effect for LinearDrag {
         let drag = own.axes() * (-1.0 / at.airframe.rotor_count() as f64);
         let mut at_hub = Wrench::zero();
         for ((arm, air), speed) in at.hubs().zip(&rotors.speed) {
-            at_hub.push_at(arm, &(air.component_mul(&drag) * *speed));
+            at_hub.push_at(arm, &(air.component_mul(&drag) * growth(own.parameters, *speed)));
         }
         *sum += Wrench { torque_nm: at_hub.torque_nm * at_hubs(own.parameters), ..at_hub };
     }
@@ -66,7 +75,7 @@ impl Effect for LinearDrag {
             *column = Wrench::zero();
             for ((arm, air), speed) in at.hubs().zip(&rotors.speed) {
                 let mut force = Vector3::zeros();
-                force[axis] = air[axis] * share * speed;
+                force[axis] = air[axis] * share * growth(parameters, *speed);
                 column.push_at(&(arm * lever), &force);
             }
         }

@@ -1,0 +1,165 @@
+//! What the sensors and the autopilot's estimate say of the states.
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::blocks::{Columns, Pair, STATE, State, WIDTH};
+use super::forces::{BIAS, ERROR, Flight, LATE_ATTITUDE, TILT, VELOCITY, part};
+use super::place::STEP_S;
+use super::residuals::{Residuals, Row};
+
+/// Share of the accelerometer that the autopilot's velocity integrates.
+const SHARED: f64 = 0.9;
+/// Its forgetting, 1/s.
+const FORGET_1_S: f64 = 0.5;
+
+fn put(by_states: &mut Pair, at: usize, block: &Matrix3<f64>) {
+    by_states.fixed_view_mut::<3, 3>(0, at).copy_from(block);
+}
+
+/// The accelerometer against the kinematic force, m/s^2.
+#[derive(Debug)]
+pub(super) struct Accelerometer {
+    pub(super) flight: Arc<Flight>,
+    pub(super) intervals: Vec<usize>,
+}
+
+impl Residuals for Accelerometer {
+    fn intervals(&self) -> &[usize] {
+        &self.intervals
+    }
+
+    fn parameters(&self) -> &[usize] {
+        &[BIAS, BIAS + 1, BIAS + 2, LATE_ATTITUDE]
+    }
+
+    fn row(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> Row {
+        let cell = self.intervals[row];
+        let motion = self.flight.kinematics(cell, (a, b), theta);
+        let bias = Vector3::from_row_slice(&theta[BIAS..BIAS + 3]);
+        let mean = self.flight.cells.specific_force_m_s2[cell].map_or(motion.force_m_s2, |(mean, _)| mean);
+        let mut by_states = Pair::zeros();
+        put(&mut by_states, VELOCITY, &(motion.to_body / STEP_S));
+        put(&mut by_states, STATE + VELOCITY, &(-motion.to_body / STEP_S));
+        put(&mut by_states, TILT, &(-motion.by_tilt / 2.0));
+        put(&mut by_states, STATE + TILT, &(-motion.by_tilt / 2.0));
+        let mut by_parameters = Columns::<WIDTH>::zeros(4);
+        by_parameters.fixed_columns_mut::<3>(0).copy_from(&-Matrix3::identity());
+        by_parameters.set_column(3, &(-motion.by_tilt * self.flight.cells.rate_rad_s[cell]));
+        Row { residual: mean - bias - motion.force_m_s2, by_states, by_parameters }
+    }
+
+    fn weight(&self, row: usize) -> f64 {
+        self.flight.cells.specific_force_m_s2[self.intervals[row]].map_or(0.0, |(_, count)| count.sqrt())
+    }
+}
+
+/// The error of the attitude changes little from one instant to the next, rad.
+#[derive(Debug)]
+pub(super) struct TiltWalk(pub(super) Arc<Flight>);
+
+impl Residuals for TiltWalk {
+    fn intervals(&self) -> &[usize] {
+        &self.0.intervals
+    }
+
+    fn parameters(&self) -> &[usize] {
+        &[]
+    }
+
+    fn row(&self, _row: usize, a: &State, b: &State, _theta: &[f64]) -> Row {
+        let mut by_states = Pair::zeros();
+        put(&mut by_states, TILT, &-Matrix3::identity());
+        put(&mut by_states, STATE + TILT, &Matrix3::identity());
+        Row { residual: part(b, TILT) - part(a, TILT), by_states, by_parameters: Columns::<WIDTH>::zeros(0) }
+    }
+}
+
+/// A part of the first state, about nought.
+#[derive(Debug)]
+pub(super) struct Start(pub(super) usize);
+
+impl Residuals for Start {
+    fn intervals(&self) -> &[usize] {
+        &[0]
+    }
+
+    fn parameters(&self) -> &[usize] {
+        &[]
+    }
+
+    fn row(&self, _row: usize, a: &State, _b: &State, _theta: &[f64]) -> Row {
+        let mut by_states = Pair::zeros();
+        put(&mut by_states, self.0, &Matrix3::identity());
+        Row { residual: part(a, self.0), by_states, by_parameters: Columns::<WIDTH>::zeros(0) }
+    }
+}
+
+/// The autopilot integrates the same accelerometer with its own attitude, so the error of its velocity takes in what that
+/// has of noise and lean: `e' = 0.9 (R (a - b) + g - v') - 0.5 e`, m/s.
+#[derive(Debug)]
+pub(super) struct Mechanization(pub(super) Arc<Flight>);
+
+impl Residuals for Mechanization {
+    fn intervals(&self) -> &[usize] {
+        &self.0.intervals
+    }
+
+    fn parameters(&self) -> &[usize] {
+        &[BIAS, BIAS + 1, BIAS + 2]
+    }
+
+    fn row(&self, cell: usize, a: &State, b: &State, theta: &[f64]) -> Row {
+        let cells = &self.0.cells;
+        let kept = 1.0 - STEP_S * FORGET_1_S;
+        let mut residual = part(b, ERROR) - part(a, ERROR) * kept;
+        let mut by_states = Pair::zeros();
+        put(&mut by_states, ERROR, &(-Matrix3::identity() * kept));
+        put(&mut by_states, STATE + ERROR, &Matrix3::identity());
+        let mut by_parameters = Columns::<WIDTH>::zeros(3);
+        if let Some((mean, _)) = cells.specific_force_m_s2[cell] {
+            let felt = mean - Vector3::from_row_slice(&theta[BIAS..BIAS + 3]);
+            let up = Vector3::z() * self.0.airframe.gravity_m_s2;
+            let taken = cells.attitude[cell] * felt - up - (part(b, VELOCITY) - part(a, VELOCITY)) / STEP_S;
+            residual -= taken * (SHARED * STEP_S);
+            put(&mut by_states, VELOCITY, &(-Matrix3::identity() * SHARED));
+            put(&mut by_states, STATE + VELOCITY, &(Matrix3::identity() * SHARED));
+            let turned = cells.attitude[cell].to_rotation_matrix().into_inner() * (SHARED * STEP_S);
+            by_parameters.fixed_columns_mut::<3>(0).copy_from(&turned);
+        }
+        Row { residual, by_states, by_parameters }
+    }
+}
+
+/// The autopilot's velocity: the true one and its error, m/s.
+#[derive(Debug)]
+pub(super) struct EstimatedVelocity {
+    pub(super) flight: Arc<Flight>,
+    pub(super) intervals: Vec<usize>,
+}
+
+impl Residuals for EstimatedVelocity {
+    fn intervals(&self) -> &[usize] {
+        &self.intervals
+    }
+
+    fn parameters(&self) -> &[usize] {
+        &[]
+    }
+
+    fn row(&self, row: usize, a: &State, b: &State, _theta: &[f64]) -> Row {
+        let (_, share, seen) = self.flight.cells.velocity_m_s[row];
+        let of = |at: usize| part(a, at) * (1.0 - share) + part(b, at) * share;
+        let mut by_states = Pair::zeros();
+        for at in [VELOCITY, ERROR] {
+            put(&mut by_states, at, &(-Matrix3::identity() * (1.0 - share)));
+            put(&mut by_states, STATE + at, &(-Matrix3::identity() * share));
+        }
+        Row {
+            residual: seen - of(VELOCITY) - of(ERROR),
+            by_states,
+            by_parameters: Columns::<WIDTH>::zeros(0),
+        }
+    }
+}
