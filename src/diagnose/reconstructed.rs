@@ -39,7 +39,11 @@ const TOLD_APART: f64 = 2.0;
 ///
 /// # Errors
 /// [`PhysicsError`] where the vehicle is not physical.
-pub(super) fn reconstruct(signals: &[Signals], traces: &[Trace], found: &mut Search) -> Result<(), PhysicsError> {
+pub(super) fn reconstruct(
+    signals: &[Signals],
+    traces: &[Trace],
+    found: &mut Search,
+) -> Result<(), PhysicsError> {
     let flights = Flights { signals, latency_std_s: found.latency.std_s };
     match flights.sizes(traces, &found.after)? {
         Ok(after) => found.after = after,
@@ -90,7 +94,7 @@ impl Flights<'_> {
         if terms.iter().all(|term| term.free.is_empty()) {
             return Err(Kept::NoForce);
         }
-                if open.present.iter().any(|present| present.signature.role.with_speed.is_some()) {
+        if open.present.iter().any(|present| present.signature.role.with_speed.is_some()) {
             let together = self.together(fitted, &open, &terms, fit_mode)?;
             choose_forms(&mut base, &terms, &together);
         }
@@ -99,7 +103,13 @@ impl Flights<'_> {
         Ok((base, terms, together))
     }
 
-    fn together(&self, fitted: &Fitted, base: &Base, terms: &[Term], estimate: Estimate) -> Result<Together, Kept> {
+    fn together(
+        &self,
+        fitted: &Fitted,
+        base: &Base,
+        terms: &[Term],
+        estimate: Estimate,
+    ) -> Result<Together, Kept> {
         let one = |signals: &Signals| {
             let lag = known_lag(fitted, signals, self.latency_std_s);
             fitted_flight((signals, base, lag), terms, estimate)
@@ -265,7 +275,11 @@ fn replaced(
     let mass = after.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Mass);
     // of the mass: -m / scale per unit of scale
     let factor = |of: usize| if of == 0 { -mass_kg / scale } else { 1.0 };
-    let all: Vec<(usize, usize, f64)> = mass.map(|mass| (mass, 0, MASS_FORM * mass_kg)).into_iter().chain(places.iter().map(|&(index, next, _, form)| (index, next, form))).collect();
+    let all: Vec<(usize, usize, f64)> = mass
+        .map(|mass| (mass, 0, MASS_FORM * mass_kg))
+        .into_iter()
+        .chain(places.iter().map(|&(index, next, _, form)| (index, next, form)))
+        .collect();
     for &(index, _, form) in &all {
         after.covariance.row_mut(index).fill(0.0);
         after.covariance.column_mut(index).fill(0.0);

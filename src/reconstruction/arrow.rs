@@ -106,8 +106,10 @@ impl Normal {
         for (row, &at) in form.intervals().iter().enumerate() {
             let (residual, by_states) = (&rows.residual[row], &rows.by_states[row]);
             let by_parameters = &rows.by_parameters[row];
-            let (first, second) =
-                (by_states.fixed_columns::<STATE>(0).into_owned(), by_states.fixed_columns::<STATE>(STATE).into_owned());
+            let (first, second) = (
+                by_states.fixed_columns::<STATE>(0).into_owned(),
+                by_states.fixed_columns::<STATE>(STATE).into_owned(),
+            );
             self.diagonal[at] += first.transpose() * first;
             self.diagonal[at + 1] += second.transpose() * second;
             self.coupling[at] += first.transpose() * second;

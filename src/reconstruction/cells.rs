@@ -81,7 +81,8 @@ impl Cells {
         let mut sums = vec![(Vector3::zeros(), 0.0); count];
         for index in 0..force.len() {
             let sample = Vector3::from_row_slice(force.sample(index));
-            if let Some(cell) = cell_of(force.time_s[index]).filter(|_| sample.iter().all(|v| v.is_finite())) {
+            if let Some(cell) = cell_of(force.time_s[index]).filter(|_| sample.iter().all(|v| v.is_finite()))
+            {
                 sums[cell].0 += sample;
                 sums[cell].1 += 1.0;
             }
@@ -102,7 +103,10 @@ impl Cells {
         Ok(Self {
             attitude: places.iter().map(|place| place.turned(attitude)).collect(),
             rate_rad_s: vectors(rate),
-            position_m: signals.position.as_ref().map_or_else(|| vec![Vector3::zeros(); count], |p| vectors(p)),
+            position_m: signals
+                .position
+                .as_ref()
+                .map_or_else(|| vec![Vector3::zeros(); count], |p| vectors(p)),
             battery_voltage_v: signals.battery_voltage_v.as_ref().map(voltage),
             driven: driven(signals, &time_s),
             specific_force_m_s2: sums.into_iter().map(mean).collect(),
@@ -129,7 +133,8 @@ fn airborne(signals: &Signals) -> Option<(f64, f64)> {
     for &(from_s, to_s) in &signals.quality.airborne_s {
         // a log that begins or ends in the air has no ground there to keep away from
         let (begins, ends) = (from_s <= grid.start_s + 0.1, to_s >= end_s - 0.1);
-        let flown = if begins { from_s } else { from_s + RISING_S }..=if ends { to_s } else { to_s - RISING_S };
+        let flown =
+            if begins { from_s } else { from_s + RISING_S }..=if ends { to_s } else { to_s - RISING_S };
         let least_m = if begins { None } else { lifted_m(signals, (from_s, to_s)) };
         for (index, in_air) in in_air.iter_mut().enumerate() {
             let height = signals.position.as_ref().map(|all| all[index].z);

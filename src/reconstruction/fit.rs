@@ -41,8 +41,8 @@ const ROUNDS: usize = 14;
 const LEARNED_UNTIL: usize = 9;
 /// A step smaller than this share of every standard error ends the fit.
 const SMALL: f64 = 0.01;
-/// A fit whose next step were larger than this many standard errors has not converged.
-const FAR: f64 = 3.0;
+/// A fit whose last step was larger than this many standard errors has not converged.
+const FAR: f64 = 1.0;
 /// Share of a standard error by which parameters are moved for the slope of the determinant.
 const PROBE: f64 = 0.3;
 /// A noise level changes by no more than this factor in its square in one round.
@@ -78,10 +78,12 @@ pub struct Fit {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FitError {
     /// states or parameters that nothing determines
-    #[error("expected data that determine all states and parameters, got a normal matrix that is not positive definite")]
+    #[error(
+        "expected data that determine all states and parameters, got a normal matrix that is not positive definite"
+    )]
     Singular,
-    /// it left all numbers
-    #[error("expected a fit that converges, got numbers that are not finite")]
+    /// its steps do not end
+    #[error("expected a fit that converges, got steps that stay larger than their standard errors")]
     Diverged,
 }
 
@@ -116,26 +118,39 @@ impl<'a> Iterate<'a> {
             if round > 1 && round < LEARNED_UNTIL {
                 self.learn(&turn, round);
             }
-            let is_small = |(at, step): (usize, &f64)| step.abs() < SMALL * turn.covariance[(at, at)].sqrt();
-            if round >= LEARNED_UNTIL && turn.step.iter().enumerate().all(is_small) {
+            let within = |share: f64| {
+                let each = turn.step.iter().enumerate();
+                each.into_iter().all(|(at, step)| step.abs() < share * turn.covariance[(at, at)].sqrt())
+            };
+            if round >= LEARNED_UNTIL && within(SMALL) {
                 break;
+            }
+            if round + 1 == ROUNDS && !within(FAR) {
+                return Err(FitError::Diverged);
             }
         }
         Ok(())
     }
 
     fn finished(self) -> Result<Fit, FitError> {
-        let Turn { rows, reduced, cost, covariance, step } = self.linearised()?;
-        let far = |(at, step): (usize, &f64)| step.abs() > FAR * covariance[(at, at)].sqrt();
-        if step.iter().enumerate().any(far) {
-            return Err(FitError::Diverged);
-        }
+        let Turn { rows, reduced, cost, covariance, .. } = self.linearised()?;
         let Self { problem, free, theta } = self;
         let sigma = problem.groups.iter().map(|group| group.sigma).collect();
         let robust = DMatrix::zeros(0, 0);
         let Problem { time_s, states, groups, unknowns, .. } = problem;
-        let mut fit =
-            Fit { time_s, states, theta, free: free.to_vec(), covariance, robust, cost, sigma, unknowns, rows, reduced };
+        let mut fit = Fit {
+            time_s,
+            states,
+            theta,
+            free: free.to_vec(),
+            covariance,
+            robust,
+            cost,
+            sigma,
+            unknowns,
+            rows,
+            reduced,
+        };
         let scores = fit.scores(&groups, free);
         fit.robust = &fit.covariance * scores.tr_mul(&scores) * &fit.covariance * small_sample();
         Ok(fit)
@@ -151,7 +166,8 @@ impl<'a> Iterate<'a> {
         let mut gradient = DVector::zeros(self.free.len());
         for (at, &index) in self.free.iter().enumerate() {
             information[(at, at)] += precision(index);
-            gradient[at] = reduced.gradient[index] + precision(index) * (self.theta[index] - unknowns[index].mean);
+            gradient[at] =
+                reduced.gradient[index] + precision(index) * (self.theta[index] - unknowns[index].mean);
         }
         let covariance = information.try_inverse().ok_or(FitError::Singular)?;
         let step = -(&covariance * gradient);
@@ -188,9 +204,11 @@ impl<'a> Iterate<'a> {
                     rows.by_states[row].fixed_columns::<STATE>(0).into_owned(),
                     rows.by_states[row].fixed_columns::<STATE>(STATE).into_owned(),
                 );
-                let of_states =
-                    (a * one).component_mul(&a) + (a * between).component_mul(&b) * 2.0 + (b * other).component_mul(&b);
-                let projected = turn.reduced.projected(group.form.as_ref(), rows, row).select_columns(self.free);
+                let of_states = (a * one).component_mul(&a)
+                    + (a * between).component_mul(&b) * 2.0
+                    + (b * other).component_mul(&b);
+                let projected =
+                    turn.reduced.projected(group.form.as_ref(), rows, row).select_columns(self.free);
                 let of_parameters = (&projected * &turn.covariance).component_mul(&projected);
                 for part in 0..WIDTH {
                     taken[part] += of_states.row(part).sum() + of_parameters.row(part).sum();
@@ -213,9 +231,10 @@ impl<'a> Iterate<'a> {
         let Problem { groups, states, process, .. } = &self.problem;
         let rows: Vec<Rows> = groups.iter().map(|group| Rows::of(group, states, &self.theta)).collect();
         let reduced = Normal::of(groups, &rows, states.len(), 0).reduced().ok_or(FitError::Singular)?;
-        let ahead = rows[*process].by_states.iter().map(|pair| {
-            pair.fixed_view::<WIDTH, WIDTH>(0, STATE).determinant().abs().ln()
-        });
+        let ahead = rows[*process]
+            .by_states
+            .iter()
+            .map(|pair| pair.fixed_view::<WIDTH, WIDTH>(0, STATE).determinant().abs().ln());
         Ok(0.5 * reduced.log_determinant - ahead.sum::<f64>())
     }
 

@@ -104,7 +104,8 @@ fn groups(flight: &Arc<Flight>) -> Vec<Group> {
     let felt = (0..cells.len()).filter(|cell| cells.specific_force_m_s2[*cell].is_some()).collect();
     let seen = cells.velocity_m_s.iter().map(|(cell, ..)| *cell).collect();
     let root = STEP_S.sqrt();
-    let learned = |group: Group, floor: Vector3<f64>, learned_in| Group { floor: Some(floor), learned_in, ..group };
+    let learned =
+        |group: Group, floor: Vector3<f64>, learned_in| Group { floor: Some(floor), learned_in, ..group };
     let process = group("process", Process::new(flight.clone()), Vector3::new(0.02, 0.02, 0.1));
     let accelerometer = Accelerometer { flight: flight.clone(), intervals: felt };
     let accelerometer = group("accelerometer", accelerometer, noise / if quiet { 0.3 } else { 0.85 });

@@ -105,7 +105,8 @@ pub(super) struct Kinematics {
 
 impl Flight {
     pub(super) fn kinematics(&self, cell: usize, (a, b): (&State, &State), theta: &[f64]) -> Kinematics {
-        let tilt_rad = (part(a, TILT) + part(b, TILT)) / 2.0 + self.cells.rate_rad_s[cell] * theta[LATE_ATTITUDE];
+        let tilt_rad =
+            (part(a, TILT) + part(b, TILT)) / 2.0 + self.cells.rate_rad_s[cell] * theta[LATE_ATTITUDE];
         let attitude = self.tilted(cell, &tilt_rad);
         let up = Vector3::z() * self.airframe.gravity_m_s2;
         let acceleration = (part(b, VELOCITY) - part(a, VELOCITY)) / STEP_S + up;
@@ -154,7 +155,8 @@ impl Flight {
         for (values, term) in values.iter_mut().zip(&self.terms) {
             *values = term.at(theta);
         }
-        let effects = self.terms.iter().zip(&values).map(|(term, values)| (term.effect, &values[..term.values.len()]));
+        let effects =
+            self.terms.iter().zip(&values).map(|(term, values)| (term.effect, &values[..term.values.len()]));
         let wind = |(effect, parameters): (&'static dyn Effect, &[f64])| {
             effect.wind_m_s(&input, &Own { parameters, states: &[], rates: &mut [] })
         };
@@ -215,7 +217,8 @@ impl Residuals for Process {
         }
         let mut by_states = Pair::zeros();
         let half = by_velocity / 2.0;
-        let mut put = |at: usize, block: &Matrix3<f64>| by_states.fixed_view_mut::<3, 3>(0, at).copy_from(block);
+        let mut put =
+            |at: usize, block: &Matrix3<f64>| by_states.fixed_view_mut::<3, 3>(0, at).copy_from(block);
         put(VELOCITY, &(half - motion.to_body / STEP_S));
         put(STATE + VELOCITY, &(half + motion.to_body / STEP_S));
         put(TILT, &(by_tilt / 2.0));

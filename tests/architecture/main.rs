@@ -41,6 +41,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("replay", &["text", "wire", "log", "link"]),
     // vehicle: from actuator values to force
     ("signals", &["note", "stats", "autopilot", "vehicle", "recording"]),
+    // flight path and parameters of the motion at once
+    ("reconstruction", &["vehicle", "physics", "recording", "signals"]),
     // what a thrust stand measured of a rotor
     ("stand", &["units", "text", "vehicle"]),
     // a first description of a vehicle, from parameters, weight and a flight
@@ -67,6 +69,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "physics",
             "recording",
             "signals",
+            "reconstruction",
             "regression",
             "estimate",
             "simulate",
