@@ -34,7 +34,7 @@ pub use list::STACKS;
 pub use log_plan::{LogChange, LogPlan};
 pub use logging::{LogNeed, LogRate, LogSetting, Logging};
 pub use modes::{FlightMode, FlownBy, Mode, Numbering, Wishes};
-pub use outputs::{Numbered, NumberedGroup, Outputs, PulseRange};
+pub use outputs::{MOST_OUTPUTS, Numbered, NumberedGroup, Outputs, PulseRange};
 pub use parameters::{Parameter, ParameterTable, ParameterType, Purpose, Renamed, Unit};
 pub use pilot::{KillSwitch, POSITIONS, PilotSwitches};
 pub use px4::PX4;
