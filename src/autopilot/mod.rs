@@ -32,7 +32,7 @@ pub use kind::Autopilot;
 pub use limits::{Bounded, Braking};
 pub use list::STACKS;
 pub use log_plan::{LogChange, LogPlan};
-pub use logging::{LogNeed, LogRate, LogSetting, Logging};
+pub use logging::{LogNeed, LogOff, LogRate, LogSetting, Logging};
 pub use modes::{FlightMode, FlownBy, Mode, Numbering, Wishes};
 pub use outputs::{MOST_OUTPUTS, Numbered, NumberedGroup, Outputs, PulseRange};
 pub use parameters::{Parameter, ParameterTable, ParameterType, Purpose, Renamed, Unit};
