@@ -64,6 +64,8 @@ fn turning_on_the_spot() -> Signals {
             usable: Usable::default(),
             torques: true,
             notes: Vec::new(),
+            gyro_noise_rad_s: None,
+            height_by_pose: false,
         },
     }
 }

@@ -4,9 +4,7 @@
 use super::rotors::{RotorMotion, Thrusts, felt};
 use super::timing::{command_period_s, inertial_late};
 use crate::physics::{ActuationLatency, Airframe, MAX_ROTORS, State};
-use crate::recording::Quantity;
 use crate::signals::{Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride};
-use crate::stats::white_level_of;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
 use std::ops::Range;
@@ -37,7 +35,7 @@ pub struct Trace {
     pub voltage_v: Option<Vec<f64>>,
     /// thrusts are computed from measured rotor speeds: effects between command and speed are not visible
     pub measured_speeds: bool,
-    /// rad/s, white noise of the gyroscopes, largest axis
+    /// rad/s, white noise of the gyroscopes at their own samples, largest axis; 0 where it is not known
     pub gyro_noise_rad_s: f64,
     /// s between commands (or measured speeds) as logged
     pub command_period_s: f64,
@@ -60,6 +58,8 @@ pub struct Trace {
     pub(super) felt_m_s2: Vec<Vector3<f64>>,
     /// m/s^2
     pub gravity_m_s2: f64,
+    /// motion capture or a camera gives the height
+    pub height_by_pose: bool,
 }
 
 /// Which parts of the state are measured.
@@ -130,7 +130,7 @@ impl Trace {
             torques: signals.quality.torques,
             voltage_v: signals.battery_voltage_v.clone(),
             measured_speeds: signals.quality.thrust_source == ThrustSource::MeasuredSpeed,
-            gyro_noise_rad_s: gyro_noise_rad_s(rates, signals.samples_apart(Quantity::AngularRate)),
+            gyro_noise_rad_s: signals.quality.gyro_noise_rad_s.unwrap_or(0.0),
             command_period_s: command_period_s(signals),
             inertial_late_s,
             inertial_unsure_s,
@@ -142,6 +142,7 @@ impl Trace {
             smooth_lift: Vec::new(),
             felt_m_s2: Vec::new(),
             gravity_m_s2: vehicle.gravity_m_s2,
+            height_by_pose: signals.quality.height_by_pose,
         };
         trace.smooth()?;
         Ok(trace)
@@ -367,11 +368,4 @@ fn commanded_n(signals: &Signals, rotors: usize) -> Vec<Thrusts> {
         all
     };
     signals.rotor_thrust_n.chunks_exact(rotors).map(padded).collect()
-}
-
-fn gyro_noise_rad_s(rates: &[Vector3<f64>], samples_apart: usize) -> f64 {
-    let sampled = || rates.iter().step_by(samples_apart);
-    (0..3)
-        .map(|axis| white_level_of(&sampled().map(|rate| rate[axis]).collect::<Vec<_>>()))
-        .fold(0.0, f64::max)
 }

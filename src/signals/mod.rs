@@ -12,6 +12,7 @@ mod error;
 mod filter;
 mod flight;
 mod grid;
+mod height;
 mod noise;
 mod one_flight;
 mod plausible;
