@@ -5,7 +5,7 @@
 //! conservative if the model is wrong.
 
 use super::channels::{CHANNELS, Channels};
-use super::priors::{OF_KERNEL, Priors, READINGS};
+use super::priors::{OF_KERNEL, Priors};
 use super::rows::Rows;
 use crate::stats::{chance_by_stretches, normal_deviate};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -81,7 +81,7 @@ impl Weighted {
         let mut this = Self::at(rows, &sigma);
         for _ in 0..2 {
             sigma = this.residual_sigma();
-            this = Self::with(rows, &sigma, READINGS * this.long_run_deviation().powi(2));
+            this = Self::with(rows, &sigma, this.long_run_deviation().powi(2));
         }
         this
     }
@@ -89,7 +89,7 @@ impl Weighted {
     /// The same with given standard deviations of the channels (N, N m), for simulated flights.
     #[must_use]
     pub fn at(rows: &Rows, sigma: &[f64; CHANNELS]) -> Self {
-        Self::with(rows, sigma, READINGS * OF_KERNEL)
+        Self::with(rows, sigma, OF_KERNEL)
     }
 
     /// The same if this many rows count as one independent measurement of a slow error.

@@ -20,6 +20,7 @@ mod harmonics;
 pub mod holdout;
 pub mod joint;
 mod latency;
+mod kinematic;
 mod latency_name;
 mod limits;
 pub mod locate;

@@ -184,31 +184,20 @@ impl Trace {
     /// `K` of a vector series, axis by axis.
     #[must_use]
     pub fn weak_vector(&self, order: usize, series: &[Vector3<f64>]) -> [Vec<f64>; 3] {
-        std::array::from_fn(|axis| {
-            let column: Vec<f64> = series.iter().map(|v| v[axis]).collect();
-            self.weak(order, &column)
-        })
+        self.weak_vector_in(order, series, &(0..self.rows()))
     }
 
-    /// Kinematic specific force `K1(v_b) + K(w x v_b + g R' e_z)` at every row, body, m/s^2; `None`
-    /// without attitude and velocity.
-    #[must_use]
-    pub fn weak_kinematic(&self) -> Option<[Vec<f64>; 3]> {
-        if !(self.known.attitude && self.known.velocity) {
-            return None;
-        }
-        let up = Vector3::z() * self.gravity_m_s2;
-        let (mut body, mut rest) = (Vec::new(), Vec::new());
-        for state in &self.states {
-            let velocity = state.body_velocity_m_s();
-            rest.push(state.rates_rad_s.cross(&velocity) + state.attitude.inverse_transform_vector(&up));
-            body.push(velocity);
-        }
-        let (mut derivative, rest) = (self.weak_vector(1, &body), self.weak_vector(0, &rest));
-        for (axis, rest) in derivative.iter_mut().zip(&rest) {
-            axis.iter_mut().zip(rest).for_each(|(d, r)| *d += r);
-        }
-        Some(derivative)
+    /// The same at some of the rows.
+    pub(super) fn weak_vector_in(
+        &self,
+        order: usize,
+        series: &[Vector3<f64>],
+        rows: &Range<usize>,
+    ) -> [Vec<f64>; 3] {
+        std::array::from_fn(|axis| {
+            let column: Vec<f64> = series.iter().map(|v| v[axis]).collect();
+            self.kernel.apply(order, &column, &self.centers[rows.clone()])
+        })
     }
 
     /// An accelerometer is recorded.
