@@ -266,10 +266,10 @@ fn gust_name(gust: &GustFound) -> Option<Named> {
 /// Energy that the accepted effects explain, in sigma squared of the final residual.
 fn explained_energy(found: &Search) -> f64 {
     let (before, after) = (&found.before.weighted, &found.after.weighted);
-    let rows = found.after.rows.len() as f64;
+    let rows = |channel: usize| found.after.rows.count_of(channel) as f64;
     (0..AXES)
         .filter(|&channel| after.sigma[channel] > 0.0)
-        .map(|channel| rows * ((before.sigma[channel] / after.sigma[channel]).powi(2) - 1.0))
+        .map(|channel| rows(channel) * ((before.sigma[channel] / after.sigma[channel]).powi(2) - 1.0))
         .sum()
 }
 

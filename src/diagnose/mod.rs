@@ -5,6 +5,7 @@ mod base;
 mod candidates;
 mod channels;
 mod confusable;
+mod correlation;
 mod drag_location;
 mod effect_term;
 mod empirical;

@@ -15,7 +15,8 @@ pub(in super::super) fn rows_of(
     effects: Vec<Channels>,
 ) -> Rows {
     let time_s = (0..residual[0].len()).map(|row| 0.05 * row as f64).collect();
-    Rows { time_s, runs, residual, nuisances, effects, torque_rms: [1.0; 3], flights: Vec::new() }
+    let measured = std::array::from_fn(|_| runs.clone());
+    Rows { time_s, runs, measured, residual, nuisances, effects, torque_rms: [1.0; 3], flights: Vec::new() }
 }
 
 const STEP_S: f64 = 0.01;
@@ -63,9 +64,9 @@ pub(in super::super) fn turning_on_the_spot() -> Signals {
             airborne_s: Vec::new(),
             usable: Usable::default(),
             torques: true,
-            notes: Vec::new(),
             gyro_noise_rad_s: None,
             height_by_pose: false,
+            notes: Vec::new(),
         },
     }
 }
