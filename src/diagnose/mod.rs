@@ -29,6 +29,7 @@ mod mounting;
 mod named;
 mod nuisances;
 mod other_forms;
+mod price;
 mod priors;
 mod pruning;
 mod recorded;
