@@ -178,7 +178,7 @@ fn a_vehicle_without_a_file_is_checked_by_its_own_parameters() {
     assert!(drafted.contains("4 rotors of PX4 by CA_ROTOR_COUNT"), "{drafted}");
     let vehicle = mavid::config::read_vehicle(&flight.join("vehicle.toml")).unwrap().vehicle;
     assert!((vehicle.body.mass_kg - 2.0643).abs() < 1e-9 && vehicle.rotors.len() == 4);
-    // it was checked as one of a file is: nothing is armed without --arm
+    // it was checked as one of a file is
     let events = std::fs::read_to_string(flight.join("events.jsonl")).unwrap();
-    assert!(events.contains("--arm"), "{events}\n{said}");
+    assert!(events.contains("hover thrust: expected the vehicle file's weight, 20.25"), "{events}\n{said}");
 }
