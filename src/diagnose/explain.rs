@@ -293,7 +293,7 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
             let is_amount = free && present.is_amount(slot);
             let std = if is_amount { std.hypot(present.signature.naming.least_std) } else { std };
             let is_shown = fitted.rows.compares_torques() || !present.is_share_at_hubs(slot);
-            if free || is_shown && (present.signature.naming.says)(present, slot) {
+            if is_shown && (free || (present.signature.naming.says)(present, slot)) {
                 let value = present.values[slot];
                 parameters.push(NamedParameter { name: parameter.name, value, std, unit: parameter.unit });
             }
