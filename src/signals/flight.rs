@@ -136,6 +136,7 @@ mod tests {
             wrench: Vec::new(),
             jitter_wrench: None,
             battery_voltage_v: None,
+            as_recorded: AsRecorded::default(),
             reference: None,
             quality: Quality {
                 sources: vec![(Quantity::AngularRate, "by hand", rate_hz)],
