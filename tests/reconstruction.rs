@@ -111,6 +111,8 @@ fn recorded(vehicle: &Vehicle, seed: u64) -> Signals {
             airborne_s: vec![(0.0, STEP_S * COUNT as f64)],
             usable: Usable::default(),
             torques: true,
+            gyro_noise_rad_s: None,
+            height_by_pose: false,
             notes: Vec::new(),
         },
     }

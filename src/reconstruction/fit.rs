@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, SVector};
 
 use super::arrow::{Normal, Reduced, Rows};
 use super::blocks::{STATE, State, WIDTH};
-use super::forces::{BASE, SCALE};
+use super::places::{BASE, SCALE};
 use super::residuals::Group;
 
 /// A parameter with what is known of it beforehand.

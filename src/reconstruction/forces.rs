@@ -8,30 +8,11 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use super::blocks::{Columns, Pair, STATE, State, WIDTH};
 use super::cells::Cells;
 use super::place::STEP_S;
+use super::places::{LAG, LATE_ATTITUDE, LATE_FORCE, SCALE, TILT, VELOCITY};
 use super::residuals::{Residuals, Row};
 use crate::physics::{
     Airframe, Condition, Effect, Input, MAX_ROTORS, Own, Rotors, State as Motion, effects_wrench,
 };
-
-/// Where each part of a state begins.
-pub(super) const VELOCITY: usize = 0;
-/// See [`VELOCITY`].
-pub(super) const TILT: usize = 3;
-/// See [`VELOCITY`].
-pub(super) const ERROR: usize = 6;
-
-/// Indices of the parameters that every problem has: nominal over true mass.
-pub(super) const SCALE: usize = 0;
-/// First of three: of the accelerometer, m/s^2.
-pub(super) const BIAS: usize = 1;
-/// Lateness of the commands, s.
-pub(super) const LATE_FORCE: usize = 4;
-/// Lag of the rotors, s.
-pub(super) const LAG: usize = 5;
-/// Lateness of the attitude, s.
-pub(super) const LATE_ATTITUDE: usize = 6;
-/// How many they are.
-pub(super) const BASE: usize = 7;
 
 /// Steps of the derivatives by differences: m/s and rad.
 const MOVED: f64 = 1e-5;

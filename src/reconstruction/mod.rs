@@ -12,6 +12,7 @@ mod fit;
 mod force_problem;
 mod forces;
 mod place;
+mod places;
 mod residuals;
 mod sensors;
 mod thrusts;

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 
 use super::blocks::{Columns, Pair, STATE, State, WIDTH};
-use super::forces::{BIAS, ERROR, Flight, LATE_ATTITUDE, TILT, VELOCITY, part};
+use super::forces::{Flight, part};
 use super::place::STEP_S;
+use super::places::{BIAS, ERROR, LATE_ATTITUDE, TILT, VELOCITY};
 use super::residuals::{Residuals, Row};
 
 /// Share of the accelerometer that the autopilot's velocity integrates.
