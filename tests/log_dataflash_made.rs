@@ -401,3 +401,17 @@ fn what_is_known_and_adds_nothing_is_told_apart() {
         assert_eq!((topic.is_used, topic.is_known), (is_used, is_known), "{name}");
     }
 }
+
+#[test]
+fn a_parameter_without_a_value_is_its_default() {
+    let mut log = flown();
+    log.add("PARM", &[44e6.into(), "MOT_SPIN_MIN".into(), f64::NAN.into(), 0.15.into()]);
+    log.add("PARM", &[44e6.into(), "MOT_SPIN_MAX".into(), f64::NAN.into(), f64::NAN.into()]);
+    for bytes in [log.binary.as_slice(), log.text.as_bytes()] {
+        let recording = open(bytes).unwrap().recording;
+        assert!((recording.parameters["MOT_SPIN_MIN"] - 0.15).abs() < 1e-6);
+        assert!(recording.defaulted.iter().eq(["MOT_SPIN_MIN"]), "{:?}", recording.defaulted);
+        assert!(!recording.parameters.contains_key("MOT_SPIN_MAX"));
+        assert_eq!(recording.parameters["FRAME_CLASS"], 1.0, "what is set is no default");
+    }
+}

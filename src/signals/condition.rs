@@ -5,7 +5,7 @@ use super::align::{
     AlignFrame, InertialOnGrid, StreamOffset, attitude_offset, attitudes_onto, position_offset, vectors_onto,
     velocity_offset,
 };
-use super::changed::changes_in_the_air;
+use super::changed::{changes_in_the_air, resting_on_defaults};
 use super::flight::{Quality, Reference, Signals};
 use super::rotor_thrusts::ThrustSource;
 use super::select::{best, median_period_s, too_short};
@@ -121,7 +121,9 @@ pub fn condition(
         actuation.message(),
         super::select::mean_rate_hz(actuation.stream()),
     ));
-    let changed = changes_in_the_air(recording.autopilot, &recording.parameter_changes, &airborne_s);
+    let (autopilot, parameters) = (recording.autopilot, &recording.parameters);
+    let changed = changes_in_the_air(autopilot, &recording.parameter_changes, &airborne_s, parameters);
+    let defaults = resting_on_defaults(autopilot, &recording.defaulted, parameters);
     let mut signals = Signals {
         grid,
         usable: mask,
@@ -148,6 +150,7 @@ pub fn condition(
                 .into_iter()
                 .chain(actuation.notes(recording, vehicle))
                 .chain(changed)
+                .chain(defaults)
                 .collect(),
         },
     };
