@@ -86,6 +86,15 @@ pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3
     [fx, fy, fz, tx, ty, tz, kx, ky, kz]
 }
 
+/// Whether a flight measures a channel. The others are zero.
+pub(super) fn measures(trace: &Trace, channel: usize) -> bool {
+    match channel {
+        0..3 => true,
+        3..AXES => trace.torques,
+        _ => trace.reads_force_twice(),
+    }
+}
+
 pub(super) fn nothing(trace: &Trace) -> [Vec<f64>; 3] {
     std::array::from_fn(|_| vec![0.0; trace.rows()])
 }

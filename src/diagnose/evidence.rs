@@ -5,27 +5,23 @@
 //! conservative if the model is wrong.
 
 use super::channels::{CHANNELS, Channels};
-use super::priors::{OF_KERNEL, Priors, READINGS};
+use super::priors::{OF_KERNEL, Priors};
 use super::rows::Rows;
 use crate::stats::{chance_by_stretches, normal_deviate};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Least number of rows for the cluster test over twelve blocks. Chosen: ten rows a block.
 pub(super) const LEAST_ROWS: usize = 120;
-/// Number of neighbouring rows whose kernels overlap: the kernel is 0.4 s wide and rows are 0.05 s apart.
-const OVERLAP: usize = 8;
-/// Longest residual correlation that is allowed for, rows (6 s). Chosen; not measured.
-const MOST_LAGS: usize = 120;
-/// Least width of the Bartlett window of the scores, rows (1 s). Chosen; not measured.
-const SCORE_LAGS: usize = 20;
 
 /// Rows weighted by each channel's residual, and the nuisances' projection.
 #[derive(Debug, Clone)]
 pub struct Weighted {
-    runs: Vec<Range<usize>>,
-    rows: usize,
+    /// rows without a break between them
+    pub(super) runs: Vec<Range<usize>>,
+    /// the same at which each channel is measured
+    pub(super) measured: [Vec<Range<usize>>; CHANNELS],
+    pub(super) rows: usize,
     /// residual standard deviation of each channel, N and N m
     pub sigma: [f64; CHANNELS],
     /// nuisances and the base's own effects, weighted
@@ -77,11 +73,11 @@ impl Weighted {
     /// its residual.
     #[must_use]
     pub fn new(rows: &Rows) -> Self {
-        let mut sigma: [f64; CHANNELS] = std::array::from_fn(|channel| spread(&rows.residual[channel]));
+        let mut sigma: [f64; CHANNELS] = std::array::from_fn(|channel| spread(rows, channel));
         let mut this = Self::at(rows, &sigma);
         for _ in 0..2 {
             sigma = this.residual_sigma();
-            this = Self::with(rows, &sigma, READINGS * this.long_run_deviation().powi(2));
+            this = Self::with(rows, &sigma, this.long_run_deviation().powi(2));
         }
         this
     }
@@ -89,10 +85,15 @@ impl Weighted {
     /// The same with given standard deviations of the channels (N, N m), for simulated flights.
     #[must_use]
     pub fn at(rows: &Rows, sigma: &[f64; CHANNELS]) -> Self {
-        Self::with(rows, sigma, READINGS * OF_KERNEL)
+        Self::with(rows, sigma, OF_KERNEL)
     }
 
-    /// The same if this many rows count as one independent measurement of a slow error.
+    /// The same with the standard deviations and the correlation of other rows' residual.
+    pub(super) fn like(rows: &Rows, other: &Self) -> Self {
+        Self::with(rows, &other.sigma, other.long_run_deviation().powi(2))
+    }
+
+    /// The same if this many rows of a reading count as one independent measurement of a slow error.
     fn with(rows: &Rows, sigma: &[f64; CHANNELS], alike: f64) -> Self {
         let of_nuisances = rows.nuisances.iter().map(|column| &column.values);
         let columns: Vec<DVector<f64>> =
@@ -109,6 +110,7 @@ impl Weighted {
         }
         let mut this = Self {
             runs: rows.runs.clone(),
+            measured: rows.measured.clone(),
             rows: rows.len(),
             sigma: *sigma,
             nuisances,
@@ -130,11 +132,17 @@ impl Weighted {
         part.iter().map(|value| value * self.sigma[channel]).collect()
     }
 
+    /// Number of rows at which a channel is measured.
+    #[must_use]
+    pub fn count_of(&self, channel: usize) -> usize {
+        self.measured[channel].iter().map(ExactSizeIterator::len).sum()
+    }
+
     /// Standard deviations of the residual of each channel.
     fn residual_sigma(&self) -> [f64; CHANNELS] {
         std::array::from_fn(|channel| {
             let part = self.left.rows(channel * self.rows, self.rows);
-            let std = (part.norm_squared() / self.rows.max(1) as f64).sqrt();
+            let std = (part.norm_squared() / self.count_of(channel).max(1) as f64).sqrt();
             if std > 0.0 { self.sigma[channel] * std } else { self.sigma[channel] }
         })
     }
@@ -254,7 +262,7 @@ impl Weighted {
     fn rms(&self, series: &DVector<f64>) -> [f64; CHANNELS] {
         std::array::from_fn(|channel| {
             let part = series.rows(channel * self.rows, self.rows);
-            (part.norm_squared() / self.rows.max(1) as f64).sqrt() * self.sigma[channel]
+            (part.norm_squared() / self.count_of(channel).max(1) as f64).sqrt() * self.sigma[channel]
         })
     }
 
@@ -270,104 +278,6 @@ impl Weighted {
             out += row.transpose() * row * *variance;
         }
         out
-    }
-
-    /// Autocovariance of each channel up to the lag at which it has decayed, at least the kernels' overlap. Noise of an
-    /// estimator or of a poor accelerometer is correlated for seconds.
-    fn gammas(&self, residual: &DVector<f64>) -> Vec<Vec<f64>> {
-        (0..CHANNELS)
-            .map(|channel| {
-                let zero = self.autocovariance(residual, channel, 0);
-                let mut gamma = vec![zero];
-                for lag in 1..MOST_LAGS {
-                    let at = self.autocovariance(residual, channel, lag);
-                    gamma.push(at);
-                    if lag >= OVERLAP && at < 0.05 * zero {
-                        break;
-                    }
-                }
-                gamma
-            })
-            .collect()
-    }
-
-    fn autocovariance(&self, residual: &DVector<f64>, channel: usize, lag: usize) -> f64 {
-        let series = residual.rows(channel * self.rows, self.rows);
-        let (mut sum, mut count) = (0.0, 0usize);
-        for run in &self.runs {
-            for t in run.start..run.end.saturating_sub(lag) {
-                sum += series[t] * series[t + lag];
-                count += 1;
-            }
-        }
-        if count == 0 { 0.0 } else { sum / count as f64 }
-    }
-
-    /// `sum_c sum_|l|<=L gamma_c(l) sum_t x_c(t) x_c(t+l)'`.
-    fn meat_of_residual(&self, columns: &DMatrix<f64>, gammas: &[Vec<f64>]) -> DMatrix<f64> {
-        let smear = |index: usize| {
-            let (column, mut out) = (columns.column(index), DVector::zeros(columns.nrows()));
-            for (channel, gamma) in gammas.iter().enumerate() {
-                let lags = gamma.len() - 1;
-                let offset = channel * self.rows;
-                for run in &self.runs {
-                    for t in run.clone() {
-                        let first = t.saturating_sub(lags).max(run.start);
-                        let last = (t + lags).min(run.end - 1);
-                        let sum: f64 =
-                            (first..=last).map(|s| gamma[s.abs_diff(t)] * column[offset + s]).sum();
-                        out[offset + t] = sum;
-                    }
-                }
-            }
-            columns.tr_mul(&out)
-        };
-        let parts: Vec<DVector<f64>> = (0..columns.ncols()).into_par_iter().map(smear).collect();
-        let meat = DMatrix::from_columns(&parts);
-        0.5 * (&meat + meat.transpose())
-    }
-
-    /// Score of each row, summed over the channels.
-    fn scores(&self, columns: &DMatrix<f64>, residual: &DVector<f64>) -> DMatrix<f64> {
-        let mut scores = DMatrix::<f64>::zeros(columns.ncols(), self.rows);
-        for channel in 0..CHANNELS {
-            let offset = channel * self.rows;
-            for (index, column) in columns.column_iter().enumerate() {
-                for row in 0..self.rows {
-                    scores[(index, row)] += column[offset + row] * residual[offset + row];
-                }
-            }
-        }
-        scores
-    }
-
-    fn meat_of_scores(
-        &self,
-        columns: &DMatrix<f64>,
-        residual: &DVector<f64>,
-        gammas: &[Vec<f64>],
-    ) -> DMatrix<f64> {
-        let window = gammas.iter().map(Vec::len).max().unwrap_or(0).max(SCORE_LAGS);
-        let scores = self.scores(columns, residual);
-        let size = columns.ncols();
-        let mut meat = DMatrix::<f64>::zeros(size, size);
-        for run in &self.runs {
-            for lag in 0..=window {
-                let length = run.len().saturating_sub(lag);
-                if length == 0 {
-                    continue;
-                }
-                let product: DMatrix<f64> =
-                    scores.columns(run.start, length) * scores.columns(run.start + lag, length).transpose();
-                let bartlett = 1.0 - lag as f64 / (window as f64 + 1.0);
-                if lag == 0 {
-                    meat += product;
-                } else {
-                    meat += bartlett * (&product + product.transpose());
-                }
-            }
-        }
-        meat
     }
 }
 
@@ -388,10 +298,12 @@ pub(super) fn weighted(column: &Channels, sigma: &[f64; CHANNELS]) -> DVector<f6
     )
 }
 
-fn spread(values: &[f64]) -> f64 {
-    let count = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+/// Standard deviation of a channel's residual about its mean, over the rows at which it is measured.
+fn spread(rows: &Rows, channel: usize) -> f64 {
+    let values = || rows.measured[channel].iter().flat_map(|run| &rows.residual[channel][run.clone()]);
+    let count = rows.count_of(channel).max(1) as f64;
+    let mean = values().sum::<f64>() / count;
+    (values().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 #[cfg(test)]
