@@ -330,12 +330,10 @@ fn rotor_speeds_of_a_message_each_stand_in_one_row() {
 fn a_place_on_the_earth_is_a_position_from_the_first_one() {
     let mut log = begun();
     log.define(150, "POS", "QLLfff", "TimeUS,Lat,Lng,Alt,RelHomeAlt,RelOriginAlt");
-    log.define(151, "MOTB", "QfffffB", "TimeUS,LiftMax,BatVolt,ThLimit,ThrAvMx,ThrOut,FailFlags");
     for step in 0..20_u32 {
         let (us, t) = (41e6 + 1e5 * f64::from(step), f64::from(step));
         let [lat, lng] = if step == 0 { [0.0; 2] } else { [47.0 + 1e-5 * t, 8.0 + 1e-5 * t] };
         log.add("POS", &[us, lat, lng, 440.0 + t, 1.0 + t, 2.0 + t].map(Value::from));
-        log.add("MOTB", &[us, 0.9, 0.95 - 0.01 * t, 1.0, 0.8, 0.4, 0.0].map(Value::from));
     }
     let recording = open(&log.binary).unwrap().recording;
     let places = stream(&recording, Quantity::Position, "POS", 0);
@@ -345,7 +343,6 @@ fn a_place_on_the_earth_is_a_position_from_the_first_one() {
     // metres of a degree at 47 degrees north, by the tables of WGS 84
     assert!((north_m - 1e-4 * 111_169.0).abs() < 0.01 && (west_m + 1e-4 * 76_056.0).abs() < 0.02);
     assert_eq!(up_m, 13.0);
-    near(stream(&recording, Quantity::BatteryCompensation, "MOTB", 0).sample(3), &[0.92]);
 }
 
 #[test]
@@ -399,5 +396,19 @@ fn what_is_known_and_adds_nothing_is_told_apart() {
     {
         let topic = topics.iter().find(|topic| topic.name == name).unwrap();
         assert_eq!((topic.is_used, topic.is_known), (is_used, is_known), "{name}");
+    }
+}
+
+#[test]
+fn a_parameter_without_a_value_is_its_default() {
+    let mut log = flown();
+    log.add("PARM", &[44e6.into(), "MOT_SPIN_MIN".into(), f64::NAN.into(), 0.15.into()]);
+    log.add("PARM", &[44e6.into(), "MOT_SPIN_MAX".into(), f64::NAN.into(), f64::NAN.into()]);
+    for bytes in [log.binary.as_slice(), log.text.as_bytes()] {
+        let recording = open(bytes).unwrap().recording;
+        assert!((recording.parameters["MOT_SPIN_MIN"] - 0.15).abs() < 1e-6);
+        assert!(recording.defaulted.iter().eq(["MOT_SPIN_MIN"]), "{:?}", recording.defaulted);
+        assert!(!recording.parameters.contains_key("MOT_SPIN_MAX"));
+        assert_eq!(recording.parameters["FRAME_CLASS"], 1.0, "what is set is no default");
     }
 }

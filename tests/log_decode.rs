@@ -82,6 +82,7 @@ fn owned(event: Event<'_>) -> Said {
             values: values.to_vec(),
         },
         Event::Autopilot(autopilot) => panic!("a frame says no {autopilot:?}"),
+        Event::ParameterDefault { name, .. } => panic!("a frame says no default of {name}"),
         Event::Parameter { name, value } => Said::Parameter(name.to_owned(), value),
         Event::Text { time_s, text, .. } => Said::Text(time_s, text.to_owned()),
         Event::ClockReset { time_s, .. } => Said::ClockReset(time_s),

@@ -185,52 +185,30 @@ pub(super) fn limits_alone(check: &Check<'_>, table: &LimitsTable) -> Result<Lim
     faults.refuse(check.origin).map(|()| limits)
 }
 
+/// Name and value of some keys of a table.
+macro_rules! keys {
+    ($table:ident: $($key:ident),+ $(,)?) => { [$((stringify!($key), $table.$key)),+] };
+}
+
+fn known(key: &str) -> String {
+    format!("limits.{key}")
+}
+
 fn limits(check: &Check<'_>, table: &LimitsTable, faults: &mut Faults) -> Limits {
-    let known = |key: &str| format!("limits.{key}");
     let mut positive = |key: &str, value| faults.optional(check.optional_positive(&known(key), value));
-    let mut angle = |key: &str, deg| positive(key, deg).map(units::rad_from_deg);
-    let [roll_max_rad, pitch_max_rad, yaw_max_rad, yaw_rate_max_rad_s, yaw_acceleration_max_rad_s2] = [
-        ("roll_max_deg", table.roll_max_deg),
-        ("pitch_max_deg", table.pitch_max_deg),
-        ("yaw_max_deg", table.yaw_max_deg),
-        ("yaw_rate_max_deg_s", table.yaw_rate_max_deg_s),
-        ("yaw_acceleration_max_deg_s2", table.yaw_acceleration_max_deg_s2),
-    ]
-    .map(|(key, deg)| angle(key, deg));
-    let [x_max_m, y_max_m, speed_max_m_s, acceleration_max_m_s2, thrust_max_n, torque_max_nm] = [
-        ("x_max_m", table.x_max_m),
-        ("y_max_m", table.y_max_m),
-        ("speed_max_m_s", table.speed_max_m_s),
-        ("acceleration_max_m_s2", table.acceleration_max_m_s2),
-        ("thrust_max_n", table.thrust_max_n),
-        ("torque_max_nm", table.torque_max_nm),
-    ]
+    let [roll_max_rad, pitch_max_rad, yaw_max_rad, yaw_rate_max_rad_s, yaw_acceleration_max_rad_s2] = keys!(
+        table: roll_max_deg, pitch_max_deg, yaw_max_deg, yaw_rate_max_deg_s, yaw_acceleration_max_deg_s2
+    )
+    .map(|(key, deg)| positive(key, deg).map(units::rad_from_deg));
+    let [x_max_m, y_max_m, speed_max_m_s, acceleration_max_m_s2, thrust_max_n, torque_max_nm] = keys!(
+        table: x_max_m, y_max_m, speed_max_m_s, acceleration_max_m_s2, thrust_max_n, torque_max_nm
+    )
     .map(|(key, value)| positive(key, value));
-    let (low, high) = ("vertical_acceleration_min_m_s2", "vertical_acceleration_max_m_s2");
-    let [z_min_m, z_max_m, vertical_acceleration_min_m_s2, vertical_acceleration_max_m_s2] = [
-        ("z_min_m", table.z_min_m),
-        ("z_max_m", table.z_max_m),
-        (low, table.vertical_acceleration_min_m_s2),
-        (high, table.vertical_acceleration_max_m_s2),
-    ]
+    let [z_min_m, z_max_m, vertical_acceleration_min_m_s2, vertical_acceleration_max_m_s2] = keys!(
+        table: z_min_m, z_max_m, vertical_acceleration_min_m_s2, vertical_acceleration_max_m_s2
+    )
     .map(|(key, value)| faults.optional(check.optional_finite(&known(key), value)));
-    for (key, wall_m) in [("x_max_m", x_max_m), ("y_max_m", y_max_m), ("z_max_m", z_max_m)] {
-        if let Some(came) = wall_m.filter(|wall_m| *wall_m > WALL_MOST_M) {
-            faults.check(Err(check.refuse(&known(key), format!("at most {WALL_MOST_M} m"), came)));
-        }
-    }
-    faults.check(check.ordered(("limits.z_min_m", z_min_m), ("limits.z_max_m", z_max_m)));
-    faults.check(check.ordered(
-        (&known(low), vertical_acceleration_min_m_s2),
-        (&known(high), vertical_acceleration_max_m_s2),
-    ));
-    for (key, angle) in [("roll_max_deg", roll_max_rad), ("pitch_max_deg", pitch_max_rad)] {
-        if let Some(rad) = angle.filter(|rad| *rad >= std::f64::consts::FRAC_PI_2) {
-            let came = units::deg_from_rad(rad);
-            faults.check(Err(check.refuse(&known(key), "an angle below 90 degrees", came)));
-        }
-    }
-    Limits {
+    let limits = Limits {
         roll_max_rad,
         pitch_max_rad,
         yaw_max_rad,
@@ -246,6 +224,30 @@ fn limits(check: &Check<'_>, table: &LimitsTable, faults: &mut Faults) -> Limits
         vertical_acceleration_max_m_s2,
         thrust_max_n,
         torque_max_nm,
+    };
+    possible(check, &limits, faults);
+    limits
+}
+
+/// Walls that are near enough, ends in order, angles of a vehicle that is upright.
+fn possible(check: &Check<'_>, limits: &Limits, faults: &mut Faults) {
+    for (key, wall_m) in keys!(limits: x_max_m, y_max_m, z_max_m) {
+        if let Some(came) = wall_m.filter(|wall_m| *wall_m > WALL_MOST_M) {
+            faults.check(Err(check.refuse(&known(key), format!("at most {WALL_MOST_M} m"), came)));
+        }
+    }
+    let ends = [
+        keys!(limits: z_min_m, z_max_m),
+        keys!(limits: vertical_acceleration_min_m_s2, vertical_acceleration_max_m_s2),
+    ];
+    for [(low, least), (high, most)] in ends {
+        faults.check(check.ordered((&known(low), least), (&known(high), most)));
+    }
+    for (key, angle) in [("roll_max_deg", limits.roll_max_rad), ("pitch_max_deg", limits.pitch_max_rad)] {
+        if let Some(rad) = angle.filter(|rad| *rad >= std::f64::consts::FRAC_PI_2) {
+            let came = units::deg_from_rad(rad);
+            faults.check(Err(check.refuse(&known(key), "an angle below 90 degrees", came)));
+        }
     }
 }
 

@@ -241,7 +241,9 @@ impl Telemetry {
                 }
             }
             recording::Event::EstimatorReset { .. } => reset = true,
-            recording::Event::Autopilot(_) | recording::Event::Parameter { .. } => {}
+            recording::Event::Autopilot(_)
+            | recording::Event::Parameter { .. }
+            | recording::Event::ParameterDefault { .. } => {}
         });
         if frame.header().message_id == POSITION_TARGET {
             news.push(Novelty::Target(target_m));

@@ -92,7 +92,10 @@ impl ClockTally {
             }
             Event::ClockReset { time_s, .. } => self.reset(*time_s),
             Event::EstimatorReset { time_s } => keep(&mut self.estimator_resets_s, *time_s),
-            Event::Autopilot(_) | Event::Parameter { .. } | Event::Text { .. } => {}
+            Event::Autopilot(_)
+            | Event::Parameter { .. }
+            | Event::ParameterDefault { .. }
+            | Event::Text { .. } => {}
         }
     }
 

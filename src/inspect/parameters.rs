@@ -1,10 +1,12 @@
 //! The vehicle's parameters as far as they matter for identification.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::inspection::ParameterSummary;
 use crate::autopilot::{Autopilot, STACKS};
+use crate::note::Note;
 use crate::recording::ParameterChange;
+use crate::signals::{changes_in_the_air, resting_on_defaults, settled_parameters};
 
 /// Parameters kept; autopilots have about 1500.
 const KEPT: usize = 10_000;
@@ -12,6 +14,8 @@ const KEPT: usize = 10_000;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Parameters {
     values: BTreeMap<String, f64>,
+    /// names of those that are defaults
+    defaulted: BTreeSet<String>,
     dropped: u64,
     /// those that matter, while samples came
     changes: Vec<ParameterChange>,
@@ -33,13 +37,33 @@ impl Parameters {
         Self { changes: Vec::new(), now_s: None, ..self }
     }
 
-    /// What changed while samples came, as far as it may matter.
-    pub(super) fn changes(&self) -> &[ParameterChange] {
-        &self.changes
+    /// What is to be told of them: changes in the air (spans in s), and defaults in place of values.
+    pub(super) fn notes(&self, autopilot: Autopilot, airborne_s: &[(f64, f64)]) -> Vec<Note> {
+        let mut notes = changes_in_the_air(autopilot, &self.changes, airborne_s, &self.values);
+        notes.extend(resting_on_defaults(autopilot, &self.defaulted, &self.values));
+        notes
+    }
+
+    /// Takes the default of one; says whether it changes what identification reads.
+    pub(super) fn take_default(&mut self, name: &str, value: f64) -> bool {
+        if self.values.contains_key(name) || self.values.len() >= KEPT {
+            return false;
+        }
+        self.values.insert(name.to_owned(), value);
+        self.defaulted.insert(name.to_owned());
+        is_relevant(name, value)
+    }
+
+    /// Of what changed, the values that stood longest in the air.
+    pub(super) fn settle(&mut self, autopilot: Autopilot, airborne_s: &[(f64, f64)]) {
+        self.values.extend(settled_parameters(autopilot, &self.changes, airborne_s));
     }
 
     /// Takes one; says whether it changes what identification reads.
     pub(super) fn take(&mut self, name: &str, value: f64) -> bool {
+        if self.defaulted.remove(name) {
+            self.values.remove(name);
+        }
         if let Some(known) = self.values.get_mut(name) {
             let before = std::mem::replace(known, value);
             let changed = before.to_bits() != value.to_bits();

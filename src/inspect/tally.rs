@@ -18,7 +18,7 @@ use super::window::{WindowRecorder, windows_of};
 use crate::autopilot::{Autopilot, VehicleKind};
 use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport, TlogReport};
 use crate::recording::{Event, Recording, StreamKey, StreamStats};
-use crate::signals::{SignalsError, changes_in_the_air};
+use crate::signals::SignalsError;
 use crate::vehicle::Vehicle;
 use crate::wire::{Sender, Source, SystemId};
 
@@ -54,6 +54,7 @@ impl Tally {
                 self.parameters.at(time_s);
             }
             Event::Parameter { name, value } => return self.parameters.take(name, value),
+            Event::ParameterDefault { name, value } => return self.parameters.take_default(name, value),
             Event::Text { time_s, severity, text } => self.text(time_s, severity, text),
             Event::ClockReset { time_s, .. } => {
                 self.streams.reset();
@@ -291,18 +292,27 @@ impl Found {
         }
     }
 
-    fn inspection(
-        mut self,
-        tally: Tally,
-        mut assessment: Assessment,
-        vehicle: Option<&Vehicle>,
-    ) -> Inspection {
+    /// Of which kind of vehicle it is, and the parameters as they stood in the air. Returns the spans of flight, s.
+    fn settle(&mut self, tally: &mut Tally, assessment: &mut Assessment) -> Vec<(f64, f64)> {
+        let flown_s: Vec<(f64, f64)> =
+            assessment.flight.segments.iter().map(|segment| (segment.start_s, segment.end_s)).collect();
+        tally.parameters.settle(self.autopilot, &flown_s);
         self.kind =
             self.kind.map(|kind| kind.by_parameters(|name| tally.parameters.values().get(name).copied()));
         self.vehicle.kind = self.kind.map(VehicleKind::name);
         if self.kind.is_some_and(|kind| !kind.flies()) {
             assessment.flight = FlightSummary::on_the_ground();
         }
+        flown_s
+    }
+
+    fn inspection(
+        mut self,
+        mut tally: Tally,
+        mut assessment: Assessment,
+        vehicle: Option<&Vehicle>,
+    ) -> Inspection {
+        let flown_s = self.settle(&mut tally, &mut assessment);
         let armed = tally.timeline.armed_ever();
         // a plane's modes have other names than a multirotor's of the same number
         let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);
@@ -332,10 +342,7 @@ impl Found {
             at_most: assessment.flight.usable_s > MOSTLY * most_s,
         });
         let (verdict, mut advice) = verdict(&evidence, &identifiability, &self.vehicle);
-        let flown_s: Vec<(f64, f64)> =
-            assessment.flight.segments.iter().map(|segment| (segment.start_s, segment.end_s)).collect();
-        let changed = changes_in_the_air(self.autopilot, tally.parameters.changes(), &flown_s);
-        advice.extend(changed.iter().map(ToString::to_string));
+        advice.extend(tally.parameters.notes(self.autopilot, &flown_s).iter().map(ToString::to_string));
         Inspection {
             verdict,
             advice,

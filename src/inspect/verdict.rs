@@ -40,56 +40,67 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
             .into();
     }
     if let Some(nothing) = evidence.nothing() {
-        if evidence.kind.is_some_and(|kind| kind != VehicleKind::Multirotor) {
-            return format!("Nothing can be identified from this log: {nothing}.");
-        }
-        let flown = evidence.armed.is_none() || evidence.assessment.flight.airborne_s > 0.0;
-        let next = match evidence.actuator_hz() {
-            _ if !evidence.timed => "ArduPilot writes them since 2014.".to_owned(),
-            _ if evidence.ends_early => "It was cut off: give the whole log.".to_owned(),
-            _ if evidence.streams.is_empty() => "What it holds is listed below.".to_owned(),
-            _ if !flown => "Fly a trajectory of `mavid plan` with it recording.".to_owned(),
-            None => {
-                let how = how(evidence, "request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS");
-                format!("Next time {how}.")
-            }
-            Some(_) if matches!(evidence.assessment.refusal, Some(SignalsError::TooSlow { .. })) => {
-                "See the advice.".to_owned()
-            }
-            Some(_) => "Fly a trajectory of `mavid plan` with it recording.".to_owned(),
-        };
-        return format!("Nothing can be identified from this log: {nothing}. {next}");
+        let is_other = evidence.kind.is_some_and(|kind| kind != VehicleKind::Multirotor);
+        let next = if is_other { String::new() } else { format!(" {}", instead_of_nothing(evidence)) };
+        return format!("Nothing can be identified from this log: {nothing}.{next}");
     }
     let flight = &evidence.assessment.flight;
     let time = format!("{:.0} s of {:.0} s in the air can be used", flight.usable_s, flight.airborne_s);
-    let good: Vec<&Outlook> = outlook.iter().filter(|outlook| outlook.status != "not_determined").collect();
-    let bad: Vec<&str> =
-        principal(outlook).filter(|o| o.status == "not_determined").map(|o| label(o.name)).collect();
-    if good.is_empty() {
-        if let Some(lack) = lack(evidence, "mass").filter(|_| evidence.vehicle.is_none()) {
-            return format!(
-                "Nothing can be identified from this log: {}. Next time {}.",
-                lack.reason, lack.set
-            );
+    if outlook.iter().all(|outlook| outlook.status == "not_determined") {
+        return no_parameter(evidence, &time);
+    }
+    let (bad, good): (Vec<&Outlook>, Vec<&Outlook>) =
+        principal(outlook).partition(|outlook| outlook.status == "not_determined");
+    let bad: Vec<&str> = bad.into_iter().map(|outlook| label(outlook.name)).collect();
+    match evidence.vehicle {
+        None => without_vehicle(&good, &bad, &time),
+        Some(_) => with_vehicle(evidence, &good, &bad, &time),
+    }
+}
+
+/// What to do where nothing at all can be identified.
+fn instead_of_nothing(evidence: &Evidence<'_>) -> String {
+    let flown = evidence.armed.is_none() || evidence.assessment.flight.airborne_s > 0.0;
+    match evidence.actuator_hz() {
+        _ if !evidence.timed => "ArduPilot writes them since 2014.".to_owned(),
+        _ if evidence.ends_early => "It was cut off: give the whole log.".to_owned(),
+        _ if evidence.streams.is_empty() => "What it holds is listed below.".to_owned(),
+        _ if !flown => "Fly a trajectory of `mavid plan` with it recording.".to_owned(),
+        None => {
+            let how = how(evidence, "request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS");
+            format!("Next time {how}.")
         }
-        return format!(
-            "No parameter of the rigid body can be identified from this log, although {time}. {}",
-            "Fly a trajectory of `mavid plan`."
-        );
+        Some(_) if matches!(evidence.assessment.refusal, Some(SignalsError::TooSlow { .. })) => {
+            "See the advice.".to_owned()
+        }
+        Some(_) => "Fly a trajectory of `mavid plan` with it recording.".to_owned(),
     }
-    let good: Vec<&Outlook> = principal(outlook).filter(|o| o.status != "not_determined").collect();
+}
+
+/// There is a flight, and no parameter can be told from it.
+fn no_parameter(evidence: &Evidence<'_>, time: &str) -> String {
+    match lack(evidence, "mass").filter(|_| evidence.vehicle.is_none()) {
+        Some(lack) => {
+            format!("Nothing can be identified from this log: {}. Next time {}.", lack.reason, lack.set)
+        }
+        None => format!(
+            "No parameter of the rigid body can be identified from this log, although {time}. Fly a trajectory of `mavid \
+             plan`."
+        ),
+    }
+}
+
+fn without_vehicle(good: &[&Outlook], bad: &[&str], time: &str) -> String {
     let names: Vec<&str> = good.iter().map(|outlook| label(outlook.name)).collect();
-    if evidence.vehicle.is_none() {
-        return format!(
-            "Has what identification of {} needs{}: {time}. With --vehicle this says how well it will do.",
-            names.join(", "),
-            if bad.is_empty() {
-                String::new()
-            } else {
-                format!(", but not what {} would need", bad.join(", "))
-            }
-        );
-    }
+    let but =
+        if bad.is_empty() { String::new() } else { format!(", but not what {} would need", bad.join(", ")) };
+    format!(
+        "Has what identification of {} needs{but}: {time}. With --vehicle this says how well it will do.",
+        names.join(", ")
+    )
+}
+
+fn with_vehicle(evidence: &Evidence<'_>, good: &[&Outlook], bad: &[&str], time: &str) -> String {
     let to = |poor: bool| -> Vec<String> {
         let wanted = |outlook: &&&Outlook| outlook.std_relative.is_some_and(|std| (std > POOR) == poor);
         let told = |outlook: &&Outlook| {

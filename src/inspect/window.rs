@@ -38,7 +38,7 @@ impl WindowRecorder {
                 self.builder.add(event);
                 None
             }
-            Event::Parameter { .. } | Event::Text { .. } => None,
+            Event::Parameter { .. } | Event::ParameterDefault { .. } | Event::Text { .. } => None,
         }
     }
 
@@ -118,6 +118,7 @@ fn cut(recording: &Recording, from_s: f64, to_s: f64) -> Recording {
     Recording {
         streams: recording.streams.iter().map(|(key, stream)| (*key, piece(stream))).collect(),
         parameters: recording.parameters.clone(),
+        defaulted: recording.defaulted.clone(),
         // told of the whole log
         parameter_changes: Vec::new(),
         autopilot: recording.autopilot,

@@ -297,7 +297,8 @@ fn cut(recording: &Recording, (from_s, to_s): (f64, f64)) -> Option<LogFlight> {
     let changes = recording.parameter_changes.iter().filter(|change| inside(&&change.time_s));
     let recording = Recording {
         streams: pieces.filter(|(_, stream)| !stream.is_empty()).collect(),
-        parameters: recording.parameters.clone(),
+        parameters: parameters_at(recording, to_s),
+        defaulted: recording.defaulted.clone(),
         parameter_changes: changes
             .map(|change| ParameterChange { time_s: change.time_s - start_s, ..change.clone() })
             .collect(),
@@ -307,4 +308,47 @@ fn cut(recording: &Recording, (from_s, to_s): (f64, f64)) -> Option<LogFlight> {
         texts: texts.map(|(time_s, text)| (time_s - start_s, text.clone())).collect(),
     };
     Some(LogFlight { recording, part_s: Some((start_s, end_s)) })
+}
+
+/// The parameters as they stood at a time, s. The throttle of hover is learned in flight and told after it: its last value is
+/// the best.
+fn parameters_at(recording: &Recording, time_s: f64) -> BTreeMap<String, f64> {
+    let mut parameters = recording.parameters.clone();
+    let learned = recording.autopilot.stack().map(|stack| stack.outputs.hover);
+    let later = recording.parameter_changes.iter().rev().take_while(|change| change.time_s >= time_s);
+    for change in later.filter(|change| learned != Some(change.name.as_str())) {
+        parameters.insert(change.name.clone(), change.before);
+    }
+    parameters
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::autopilot::Autopilot;
+
+    #[test]
+    fn a_flight_has_the_parameters_that_stood_at_its_end() {
+        let change = |time_s: f64, name: &str, before: f64, after: f64| ParameterChange {
+            time_s,
+            name: name.to_owned(),
+            before,
+            after,
+        };
+        let recording = Recording {
+            autopilot: Autopilot::ArduPilot,
+            parameters: [("A".to_owned(), 3.0), ("B".to_owned(), 5.0), ("MOT_THST_HOVER".to_owned(), 0.3)]
+                .into(),
+            parameter_changes: vec![
+                change(10.0, "A", 1.0, 2.0),
+                change(50.0, "A", 2.0, 3.0),
+                change(60.0, "MOT_THST_HOVER", 0.2, 0.3),
+            ],
+            ..Recording::default()
+        };
+        let at = |time_s: f64| parameters_at(&recording, time_s).into_values().collect::<Vec<_>>();
+        assert_eq!(at(5.0), [1.0, 5.0, 0.3]);
+        assert_eq!(at(20.0), [2.0, 5.0, 0.3]);
+        assert_eq!(at(f64::INFINITY), [3.0, 5.0, 0.3]);
+    }
 }

@@ -182,6 +182,7 @@ fn within(
         Event::Text { time_s, .. } => keeps(*time_s),
         Event::Autopilot(_)
         | Event::Parameter { .. }
+        | Event::ParameterDefault { .. }
         | Event::ClockReset { .. }
         | Event::EstimatorReset { .. } => true,
     };

@@ -57,14 +57,25 @@ impl RecordingBuilder {
                 self.now_s = Some(time_s);
             }
             Event::Parameter { name, value } => self.parameter(name, value),
+            Event::ParameterDefault { name, value } => self.default_value(name, value),
             Event::Text { time_s, text, .. } => self.rest.texts.push((time_s, text.to_owned())),
             Event::ClockReset { time_s, .. } => self.rest.clock_resets_s.push(time_s),
             Event::EstimatorReset { time_s } => self.rest.estimator_resets_s.push(time_s),
         }
     }
 
+    fn default_value(&mut self, name: &str, value: f64) {
+        if !self.rest.parameters.contains_key(name) {
+            self.rest.parameters.insert(name.to_owned(), value);
+            self.rest.defaulted.insert(name.to_owned());
+        }
+    }
+
     fn parameter(&mut self, name: &str, value: f64) {
         let before = self.rest.parameters.insert(name.to_owned(), value);
+        if self.rest.defaulted.remove(name) {
+            return;
+        }
         let changed = before.filter(|before| before.to_bits() != value.to_bits()).zip(self.now_s);
         let changes = &mut self.rest.parameter_changes;
         if let Some((before, time_s)) = changed.filter(|_| changes.len() < MOST_CHANGES) {
@@ -174,5 +185,27 @@ mod tests {
             ParameterChange { time_s: 2.0, name: "MOT_THST_EXPO".to_owned(), before: 0.65, after: 0.7 };
         assert_eq!(recording.parameter_changes, [change]);
         assert_eq!(recording.parameters["MOT_THST_EXPO"], 0.7);
+    }
+
+    #[test]
+    fn a_default_stands_where_no_value_was_sent() {
+        let told = |name, value| Event::Parameter { name, value };
+        let default = |name, value| Event::ParameterDefault { name, value };
+        let built = |events: &[Event<'_>]| {
+            let mut builder = RecordingBuilder::new();
+            events.iter().for_each(|event| builder.add(*event));
+            builder.finish().0
+        };
+        let mut recording =
+            built(&[told("A", 1.0), default("A", 0.0), default("B", 2.0), default("C", 3.0), told("C", 4.0)]);
+        let stands = |recording: &Recording| {
+            let names: Vec<String> = recording.defaulted.iter().cloned().collect();
+            (recording.parameters.values().copied().collect::<Vec<_>>(), names.join(" "))
+        };
+        assert_eq!(stands(&recording), (vec![1.0, 2.0, 4.0], "B".to_owned()));
+        assert_eq!(recording.parameter_changes, []);
+        // another log of the flight has it
+        recording.add_log(built(&[told("B", 5.0), default("A", 9.0), default("D", 6.0)]), |time_s| time_s);
+        assert_eq!(stands(&recording), (vec![1.0, 5.0, 4.0, 6.0], "D".to_owned()));
     }
 }

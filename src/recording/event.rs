@@ -24,6 +24,13 @@ pub enum Event<'a> {
         /// value in the autopilot's own unit
         value: f64,
     },
+    /// what one of the vehicle's parameters is unless somebody sets it
+    ParameterDefault {
+        /// name
+        name: &'a str,
+        /// value in the autopilot's own unit
+        value: f64,
+    },
     /// what the vehicle said
     Text {
         /// s

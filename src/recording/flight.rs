@@ -1,6 +1,6 @@
 //! A flight as typed streams on the vehicle's own clock.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::stream::{Stream, StreamKey};
 use crate::autopilot::Autopilot;
@@ -25,6 +25,8 @@ pub struct Recording {
     pub streams: BTreeMap<StreamKey, Stream>,
     /// the vehicle's parameters as far as they were sent
     pub parameters: BTreeMap<String, f64>,
+    /// names of those of them whose value was not sent: they are the defaults that the autopilot stated
+    pub defaulted: BTreeSet<String>,
     /// what of them changed while it was recorded, in the order of time; [`Self::parameters`] has the last values
     pub parameter_changes: Vec<ParameterChange>,
     /// which autopilot wrote it
@@ -46,7 +48,15 @@ impl Recording {
             self.streams.entry(key).or_insert(stream);
         }
         for (name, value) in other.parameters {
-            self.parameters.entry(name).or_insert(value);
+            let is_default = other.defaulted.contains(&name);
+            if !self.parameters.contains_key(&name) || self.defaulted.contains(&name) && !is_default {
+                if is_default {
+                    self.defaulted.insert(name.clone());
+                } else {
+                    self.defaulted.remove(&name);
+                }
+                self.parameters.insert(name, value);
+            }
         }
         let resets = [
             (&mut self.clock_resets_s, other.clock_resets_s),

@@ -1,28 +1,115 @@
-//! Parameters that changed while the vehicle flew.
+//! Parameters that changed while the vehicle flew, and those whose value is not in the log.
 
-use crate::autopilot::Autopilot;
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::said::Said;
+use crate::autopilot::{Autopilot, Outputs};
 use crate::note::{About, Note};
-use crate::recording::ParameterChange;
+use crate::recording::{ParameterChange, Recording};
 
 /// Changes that are told one by one.
 const TOLD: usize = 8;
 
+/// Takes, of each parameter that changed and on which the way from command to thrust or the vehicle's build depends, the value
+/// that stood longest in the air: one that was set after the flight says nothing of it.
+pub fn settle_parameters(recording: &mut Recording) {
+    if recording.parameter_changes.is_empty() {
+        return;
+    }
+    let airborne_s = said_airborne(recording);
+    let settled = settled_parameters(recording.autopilot, &recording.parameter_changes, &airborne_s);
+    recording.parameters.extend(settled);
+}
+
+/// Name and value of each such parameter; `airborne_s` are spans in s. One that never stood in them is left out.
+#[must_use]
+pub fn settled_parameters(
+    autopilot: Autopilot,
+    changes: &[ParameterChange],
+    airborne_s: &[(f64, f64)],
+) -> Vec<(String, f64)> {
+    let Some(outputs) = autopilot.stack().map(|stack| &stack.outputs) else { return Vec::new() };
+    let mut by_name: BTreeMap<&str, Vec<&ParameterChange>> = BTreeMap::new();
+    // learned in flight and told after it: the last value is the best
+    let settles = |change: &&ParameterChange| matters(outputs, change) && change.name != outputs.hover;
+    for change in changes.iter().filter(settles) {
+        by_name.entry(change.name.as_str()).or_default().push(change);
+    }
+    let longest = |(name, changes): (&str, Vec<&ParameterChange>)| {
+        Some((name.to_owned(), longest_value(&changes, airborne_s)?))
+    };
+    by_name.into_iter().filter_map(longest).collect()
+}
+
+/// Of one parameter's values the one that stood longest in these spans (s).
+fn longest_value(changes: &[&ParameterChange], airborne_s: &[(f64, f64)]) -> Option<f64> {
+    let since = |index: usize| changes.get(index).map_or(f64::INFINITY, |change| change.time_s);
+    let stood_s = |from_s: f64, to_s: f64| -> f64 {
+        airborne_s.iter().map(|(start_s, end_s)| (end_s.min(to_s) - start_s.max(from_s)).max(0.0)).sum()
+    };
+    let mut values = vec![(changes.first()?.before, stood_s(f64::NEG_INFINITY, since(0)))];
+    for (index, change) in changes.iter().enumerate() {
+        let seconds = stood_s(change.time_s, since(index + 1));
+        match values.iter_mut().find(|(value, _)| value.to_bits() == change.after.to_bits()) {
+            Some((_, known)) => *known += seconds,
+            None => values.push((change.after, seconds)),
+        }
+    }
+    values
+        .into_iter()
+        .filter(|(_, seconds)| *seconds > 0.0)
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(value, _)| value)
+}
+
+/// When the vehicle was in the air by the autopilot's words, s; all the time where it says nothing of it.
+fn said_airborne(recording: &Recording) -> Vec<(f64, f64)> {
+    let said = Said::of(recording);
+    let Some(words) = said.words() else { return vec![(f64::NEG_INFINITY, f64::INFINITY)] };
+    let pairs = words.time_s.windows(2).map(|pair| (pair[0], pair[1]));
+    pairs.filter(|(from_s, _)| said.may_be_off_ground(*from_s)).collect()
+}
+
+/// A note on the parameters of the way from command to thrust, and of the vehicle's build, of which the log holds only the
+/// default.
+#[must_use]
+pub fn resting_on_defaults(
+    autopilot: Autopilot,
+    defaulted: &BTreeSet<String>,
+    parameters: &BTreeMap<String, f64>,
+) -> Option<Note> {
+    let outputs = &autopilot.stack()?.outputs;
+    let known = defaulted.iter().filter_map(|name| Some((name, *parameters.get(name)?)));
+    let told: Vec<String> = known
+        .filter(|(name, value)| outputs.is_relevant(name, *value))
+        .map(|(name, value)| format!("{name} = {}", short(value)))
+        .collect();
+    let text = format!(
+        "the log holds no value of these parameters, and their defaults are used: {}",
+        told.join(", ")
+    );
+    (!told.is_empty()).then(|| Note::remark(About::Actuators, text))
+}
+
+fn matters(outputs: &Outputs, change: &ParameterChange) -> bool {
+    [change.before, change.after].iter().any(|value| outputs.is_relevant(&change.name, *value))
+}
+
 /// Notes on the changes in the air (spans in s) that matter: of the way from command to thrust and of the vehicle's build a
-/// warning, of the controllers' gains a remark.
+/// warning with the value that is taken, of the controllers' gains a remark.
 #[must_use]
 pub fn changes_in_the_air(
     autopilot: Autopilot,
     changes: &[ParameterChange],
     airborne_s: &[(f64, f64)],
+    taken: &BTreeMap<String, f64>,
 ) -> Vec<Note> {
     let Some(outputs) = autopilot.stack().map(|stack| &stack.outputs) else { return Vec::new() };
     let in_the_air = |change: &&ParameterChange| {
         airborne_s.iter().any(|(from_s, to_s)| (*from_s..=*to_s).contains(&change.time_s))
     };
     let flown = || changes.iter().filter(in_the_air);
-    let matters = |change: &&ParameterChange| {
-        [change.before, change.after].iter().any(|value| outputs.is_relevant(&change.name, *value))
-    };
+    let matters = |change: &&ParameterChange| matters(outputs, change);
     let gains = |change: &&ParameterChange| !matters(change) && outputs.is_gain(&change.name);
     let told = |change: &ParameterChange| {
         let ParameterChange { time_s, name, before, after } = change;
@@ -32,7 +119,8 @@ pub fn changes_in_the_air(
         .filter(matters)
         .take(TOLD)
         .map(|change| {
-            let text = format!("{}: the last value is taken for the whole flight", told(change));
+            let value = taken.get(&change.name).copied().unwrap_or(change.after);
+            let text = format!("{}: {} is taken for the whole flight", told(change), short(value));
             Note::warning(About::Actuators, text)
         })
         .collect();
@@ -54,6 +142,7 @@ fn short(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recording::{Quantity, Stream, StreamKey};
 
     fn change(time_s: f64, name: &str, before: f64, after: f64) -> ParameterChange {
         ParameterChange { time_s, name: name.to_owned(), before, after }
@@ -68,23 +157,70 @@ mod tests {
             change(36.0, "STAT_RUNTIME", 1.0, 2.0),
             change(37.0, "SERVO1_FUNCTION", 33.0, 34.0),
         ];
-        let notes = changes_in_the_air(Autopilot::ArduPilot, &changes, &[(10.0, 60.0)]);
+        let airborne_s = [(10.0, 60.0)];
+        let taken = settled_parameters(Autopilot::ArduPilot, &changes, &airborne_s).into_iter().collect();
+        let notes = changes_in_the_air(Autopilot::ArduPilot, &changes, &airborne_s, &taken);
         let texts: Vec<&str> = notes.iter().map(|note| note.text.as_str()).collect();
         assert_eq!(texts.len(), 3, "{texts:?}");
         assert!(
-            texts[0].starts_with("MOT_THST_EXPO changed from 0.65 to 0.5 at 34.2 s, in the air"),
+            texts[0]
+                .starts_with("MOT_THST_EXPO changed from 0.65 to 0.5 at 34.2 s, in the air: 0.5 is taken"),
             "{texts:?}"
         );
         assert!(texts[1].starts_with("SERVO1_FUNCTION changed from 33 to 34"), "{texts:?}");
         assert!(texts[2].starts_with("ATC_RAT_RLL_P") && !notes[2].is_warning(), "{texts:?}");
-        assert_eq!(changes_in_the_air(Autopilot::ArduPilot, &changes, &[]), []);
+        assert_eq!(changes_in_the_air(Autopilot::ArduPilot, &changes, &[], &taken), []);
+    }
+
+    #[test]
+    fn the_value_that_stood_longest_in_the_air_is_taken() {
+        let changes = [
+            change(5.0, "MOT_THST_EXPO", 0.4, 0.65),
+            change(30.0, "MOT_THST_EXPO", 0.65, 0.5),
+            change(35.0, "MOT_THST_EXPO", 0.5, 0.65),
+            // on the ground again
+            change(70.0, "MOT_THST_EXPO", 0.65, 0.1),
+            change(70.0, "MOT_THST_HOVER", 0.2, 0.3),
+            change(40.0, "SERVO1_FUNCTION", 33.0, 34.0),
+            change(40.0, "ATC_RAT_RLL_P", 0.1, 0.2),
+        ];
+        let settled = settled_parameters(Autopilot::ArduPilot, &changes, &[(10.0, 32.0), (34.0, 60.0)]);
+        let expected = [("MOT_THST_EXPO".to_owned(), 0.65), ("SERVO1_FUNCTION".to_owned(), 33.0)];
+        assert_eq!(settled, expected);
+        assert_eq!(settled_parameters(Autopilot::ArduPilot, &changes, &[]), []);
+        let key = StreamKey { quantity: Quantity::Armed, source: "EV", instance: 0 };
+        let armed =
+            Stream { time_s: vec![0.0, 10.0, 60.0, 80.0], width: 1, values: vec![0.0, 1.0, 0.0, 0.0] };
+        let mut recording = Recording {
+            autopilot: Autopilot::ArduPilot,
+            parameters: [("MOT_THST_EXPO".to_owned(), 0.1), ("MOT_THST_HOVER".to_owned(), 0.3)].into(),
+            parameter_changes: changes.to_vec(),
+            streams: [(key, armed)].into(),
+            ..Recording::default()
+        };
+        settle_parameters(&mut recording);
+        let values = [recording.parameters["MOT_THST_EXPO"], recording.parameters["MOT_THST_HOVER"]];
+        assert_eq!(values, [0.65, 0.3]);
+    }
+
+    #[test]
+    fn a_result_that_rests_on_a_default_says_so() {
+        let parameters: BTreeMap<String, f64> =
+            [("MOT_THST_EXPO", 0.65), ("MOT_SPIN_MIN", 0.15), ("LOG_BITMASK", 1.0)]
+                .map(|(name, value)| (name.to_owned(), value))
+                .into();
+        let defaulted = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+        let note = |names: &[&str]| resting_on_defaults(Autopilot::ArduPilot, &defaulted(names), &parameters);
+        let text = note(&["MOT_SPIN_MIN", "LOG_BITMASK"]).unwrap().text;
+        assert!(text.ends_with("their defaults are used: MOT_SPIN_MIN = 0.15"), "{text}");
+        assert_eq!(note(&["LOG_BITMASK"]), None);
     }
 
     #[test]
     fn very_many_changes_have_an_end() {
         let changes: Vec<_> =
             (0..50).map(|n| change(20.0, "MC_ROLLRATE_P", f64::from(n), f64::from(n + 1))).collect();
-        let notes = changes_in_the_air(Autopilot::Px4, &changes, &[(10.0, 60.0)]);
+        let notes = changes_in_the_air(Autopilot::Px4, &changes, &[(10.0, 60.0)], &BTreeMap::new());
         assert_eq!(notes.len(), TOLD + 1);
         assert_eq!(notes[TOLD].text, "42 more changes of parameters in the air");
     }

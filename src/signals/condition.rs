@@ -5,7 +5,7 @@ use super::align::{
     AlignFrame, InertialOnGrid, StreamOffset, attitude_offset, attitudes_onto, position_offset, vectors_onto,
     velocity_offset,
 };
-use super::changed::changes_in_the_air;
+use super::changed::{changes_in_the_air, resting_on_defaults};
 use super::flight::{AsRecorded, Quality, Reference, Signals};
 use super::height::is_height_by_pose;
 use super::noise::gyro_noise_rad_s;
@@ -178,8 +178,11 @@ fn notes(
     (actuation, of_rates): (&Actuation, Option<Note>),
     airborne_s: &[(f64, f64)],
 ) -> Vec<Note> {
-    let changed = changes_in_the_air(recording.autopilot, &recording.parameter_changes, airborne_s);
-    of_rates.into_iter().chain(actuation.notes(recording, vehicle)).chain(changed).collect()
+    let (autopilot, parameters) = (recording.autopilot, &recording.parameters);
+    let changed = changes_in_the_air(autopilot, &recording.parameter_changes, airborne_s, parameters);
+    let defaults = resting_on_defaults(autopilot, &recording.defaulted, parameters);
+    let said = of_rates.into_iter().chain(actuation.notes(recording, vehicle));
+    said.chain(changed).chain(defaults).collect()
 }
 
 /// Samples between the weak form's centres: 0.05 s.

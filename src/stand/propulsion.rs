@@ -63,6 +63,46 @@ fn rows(expected: String, came: String) -> StandError {
     StandError::Rows { expected, came }
 }
 
+/// The name of the law in sentences.
+const CURVE: &str = "the thrust curve";
+
+/// A table's commands as shares of the vehicle's range. The law is of commands in 0..1: what a stand measures outside of them
+/// would bend it, and is no number here.
+fn commands(table: &StandTable, actuator: Actuator) -> Result<Vec<f64>, StandError> {
+    let range = match actuator {
+        Actuator::Pwm(Some(range)) => range,
+        _ => PULSES,
+    };
+    let pulse_us = |command: &f64| {
+        if table.is_pulse { *command } else { PULSES.min_us + command * (PULSES.max_us - PULSES.min_us) }
+    };
+    let pulses: Vec<f64> = table.command.iter().map(pulse_us).collect();
+    let shares: Vec<f64> =
+        pulses.iter().map(|pulse| (pulse - range.min_us) / (range.max_us - range.min_us)).collect();
+    let inside = shares.iter().filter(|u| (-0.3..=1.3).contains(*u)).count();
+    if 2 * inside < shares.iter().filter(|u| u.is_finite()).count() {
+        let expected = format!("commands from {:.0} to {:.0} us", range.min_us, range.max_us);
+        return Err(rows(expected, format!("{:.4} in the middle", median(finite(&pulses)))));
+    }
+    let within = |u: f64| if (0.0..=1.0).contains(&u) { u } else { f64::NAN };
+    Ok(shares.into_iter().map(within).collect())
+}
+
+/// Thrust at full command, N, and the exponent of the curve, from the law's linear and quadratic parts.
+fn full_and_exponent(fit: &Fit) -> (Measured, Measured) {
+    let [linear, quadratic] = [fit.values[0], fit.values[1]];
+    let full = linear + quadratic;
+    let c = &fit.covariance;
+    let full_std = (c[(0, 0)] + c[(1, 1)] + 2.0 * c[(0, 1)]).max(0.0).sqrt();
+    // d expo / d linear, d expo / d quadratic
+    let (by_linear, by_quadratic) = (-quadratic / (full * full), linear / (full * full));
+    let variance = by_linear * by_linear * c[(0, 0)]
+        + by_quadratic * by_quadratic * c[(1, 1)]
+        + 2.0 * by_linear * by_quadratic * c[(0, 1)];
+    let expo = Measured { value: quadratic / full, std: variance.max(0.0).sqrt() };
+    (Measured { value: full, std: full_std }, expo)
+}
+
 /// The rows with enough thrust.
 struct Used<'a> {
     table: &'a StandTable,
@@ -122,52 +162,20 @@ impl StandResult {
         if !used.any(&table.command) {
             return Ok(());
         }
-        let range = match self.propulsion.actuator {
-            Actuator::Pwm(Some(range)) => range,
-            _ => PULSES,
-        };
-        let pulses: Vec<f64> = if table.is_pulse {
-            table.command.clone()
-        } else {
-            table
-                .command
-                .iter()
-                .map(|share| PULSES.min_us + share * (PULSES.max_us - PULSES.min_us))
-                .collect()
-        };
-        let commands: Vec<f64> =
-            pulses.iter().map(|pulse| (pulse - range.min_us) / (range.max_us - range.min_us)).collect();
-        let inside = commands.iter().filter(|u| (-0.3..=1.3).contains(*u)).count();
-        if 2 * inside < commands.iter().filter(|u| u.is_finite()).count() {
-            let expected = format!("commands from {:.0} to {:.0} us", range.min_us, range.max_us);
-            return Err(rows(expected, format!("{:.4} in the middle", median(finite(&pulses)))));
-        }
-        // the law is of commands in 0..1: what a stand measures outside of the vehicle's range bends it
-        let within = |u: &f64| if (0.0..=1.0).contains(u) { *u } else { f64::NAN };
-        let commands: Vec<f64> = commands.iter().map(within).collect();
+        let commands = commands(table, self.propulsion.actuator)?;
         let steps = used.steps(&[&commands, &table.thrust_n]);
         let (u, thrust) = (&steps.means[0], &steps.means[1]);
         let square: Vec<f64> = u.iter().map(|u| u * u).collect();
-        let what = "the thrust curve";
-        let fit = self.law(what, &steps, &[u.clone(), square.clone()], thrust)?;
+        let fit = self.law(CURVE, &steps, &[u.clone(), square.clone()], thrust)?;
         let [linear, quadratic] = [fit.values[0], fit.values[1]];
-        let full = linear + quadratic;
-        let expo = quadratic / full;
-        let (full, expo) = if (0.0..=1.0).contains(&expo) {
-            let c = &fit.covariance;
-            let full_std = (c[(0, 0)] + c[(1, 1)] + 2.0 * c[(0, 1)]).max(0.0).sqrt();
-            // d expo / d linear, d expo / d quadratic
-            let (by_linear, by_quadratic) = (-quadratic / (full * full), linear / (full * full));
-            let variance = by_linear * by_linear * c[(0, 0)]
-                + by_quadratic * by_quadratic * c[(1, 1)]
-                + 2.0 * by_linear * by_quadratic * c[(0, 1)];
-            (Measured { value: full, std: full_std }, Measured { value: expo, std: variance.max(0.0).sqrt() })
+        let bent = quadratic / (linear + quadratic);
+        let (full, expo) = if (0.0..=1.0).contains(&bent) {
+            full_and_exponent(&fit)
         } else {
-            let nearest = if expo < 0.0 { 0.0 } else { 1.0 };
-            let column = if expo < 0.0 { u.clone() } else { square };
-            let bound = self.law(what, &steps, &[column], thrust)?;
+            let (nearest, column) = if bent < 0.0 { (0.0, u.clone()) } else { (1.0, square) };
+            let bound = self.law(CURVE, &steps, &[column], thrust)?;
             self.sentences.push(format!(
-                "the thrust bends more than a vehicle file can state (exponent {expo:.2}): {nearest} is taken; are the \
+                "the thrust bends more than a vehicle file can state (exponent {bent:.2}): {nearest} is taken; are the \
                  commands of the stand in the vehicle's range of pulses?"
             ));
             (bound.measured(0), Measured { value: nearest, std: 0.0 })

@@ -10,7 +10,7 @@ use crate::log::{
 };
 use crate::note::{About, Note};
 use crate::recording::{Recording, shared_share};
-use crate::signals::{ConditionSettings, Said, Signals};
+use crate::signals::{ConditionSettings, Said, Signals, settle_parameters};
 use crate::text;
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
@@ -160,7 +160,8 @@ fn whose(report: &ReadReport) -> Option<String> {
 /// Each flight under a name of its own; what is to be said of the log is said of the first.
 fn of_log(flights: Vec<LogFlight>, log: &InputFile, logged_by: LoggedBy) -> Vec<Flight> {
     let of = flights.len();
-    let named = |(index, flight): (usize, LogFlight)| {
+    let named = |(index, mut flight): (usize, LogFlight)| {
+        settle_parameters(&mut flight.recording);
         let mut input = log.clone();
         if index > 0 {
             input.notes.clear();

@@ -9,6 +9,7 @@ use crate::draft::{Draft, Given, draft};
 use crate::log::{Hold, open_flights};
 use crate::note::{About, Note};
 use crate::recording::Recording;
+use crate::signals::settle_parameters;
 use crate::stand::{StandError, measured_propulsion, read_table};
 use crate::text;
 use crate::vehicle::{Guessed, Vehicle};
@@ -119,11 +120,12 @@ fn drafted(recording: &Recording, log: &str, given: &Given) -> Result<Draft, Stu
 /// # Errors
 /// The log cannot be read, or does not say enough.
 pub fn draft_from_log(log: &Path, read: &ReadSettings, given: &Given) -> Result<Draft, StudyError> {
-    let opened =
+    let mut opened =
         open_flights(log, &read.open_options()?, &DRAFTED_FROM).map_err(|error| unread(log, error))?;
-    let Some(flight) = opened.flights.flights.first() else {
+    let Some(flight) = opened.flights.flights.first_mut() else {
         return Err(StudyError::File { file: text::path(&log), why: "expected a flight, got none".into() });
     };
+    settle_parameters(&mut flight.recording);
     drafted(&flight.recording, &text::path(&log), given)
 }
 

@@ -7,17 +7,10 @@ as JSON. Exit status 77 where pymavlink is missing.
 """
 
 import json
-import os
 import sys
 import time
 
-os.environ["MAVLINK20"] = "1"
-os.environ.setdefault("MAVLINK_DIALECT", "ardupilotmega")
-try:
-    from pymavlink import mavutil
-except ImportError:
-    sys.stderr.write("pymavlink is missing\n")
-    sys.exit(77)
+from messages import mavutil
 
 mavlink = mavutil.mavlink
 PATIENCE_S = 90.0

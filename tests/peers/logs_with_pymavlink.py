@@ -7,18 +7,11 @@ asked for, and writes {"requests": of data, "sent": messages with data} as JSON.
 """
 
 import json
-import os
 import random
 import sys
 import time
 
-os.environ["MAVLINK20"] = "1"
-os.environ.setdefault("MAVLINK_DIALECT", "ardupilotmega")
-try:
-    from pymavlink import mavutil
-except ImportError:
-    sys.stderr.write("pymavlink is missing\n")
-    sys.exit(77)
+from messages import mavutil
 
 PATIENCE_S = 120.0
 SILENT_S = 4.0

@@ -8,18 +8,11 @@ Exit status 77 where pymavlink is missing.
 """
 
 import collections
-import os
 import struct
 import sys
 import time
 
-os.environ["MAVLINK20"] = "1"
-os.environ.setdefault("MAVLINK_DIALECT", "ardupilotmega")
-try:
-    from pymavlink import mavutil
-except ImportError:
-    sys.stderr.write("pymavlink is missing\n")
-    sys.exit(77)
+from messages import mavutil
 
 
 def plain(path):

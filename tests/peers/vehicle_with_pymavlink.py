@@ -11,18 +11,11 @@ youngest. Exit status 77 where pymavlink is missing.
 
 import json
 import math
-import os
 import struct
 import sys
 import time
 
-os.environ["MAVLINK20"] = "1"
-os.environ.setdefault("MAVLINK_DIALECT", "ardupilotmega")
-try:
-    from pymavlink import mavutil
-except ImportError:
-    sys.stderr.write("pymavlink is missing\n")
-    sys.exit(77)
+from messages import mavutil
 
 m = mavutil.mavlink
 PATIENCE_S = 150.0

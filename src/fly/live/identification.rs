@@ -89,7 +89,10 @@ impl LiveIdentification {
                 self.next_s = None;
             }
             Event::EstimatorReset { .. } => self.restart(),
-            Event::Autopilot(_) | Event::Parameter { .. } | Event::Text { .. } => {}
+            Event::Autopilot(_)
+            | Event::Parameter { .. }
+            | Event::ParameterDefault { .. }
+            | Event::Text { .. } => {}
         }
     }
 

@@ -6,6 +6,8 @@ const KNOWN: &[&[&str]] = &[
     &["CTUN", "NTUN", "PSC", "PSCZ", "GUID", "GUIA", "PIDR", "PIDP", "PIDY", "PIDA", "PIDN", "PIDE", "ATSK"],
     // a frequency sweep: it runs for the test alone, and rates and attitude of it are logged beside it
     &["SIDD", "SIDS"],
+    // by how much the outputs make up for the battery: undone in commands that are rebuilt, it makes results worse
+    &["MOTB"],
     // insides of the estimators
     &[
         "NKF2", "NKF3", "NKF5", "NKQ", "XKF2", "XKF3", "XKF5", "XKFS", "XKFM", "XKQ", "XKT", "XKTV", "XKV1",

@@ -10,9 +10,8 @@ use super::units::Unit::{
 use super::values::{Convert, as_is, body, channels, course, euler, guided, quaternion, world};
 use crate::recording::Quantity::{
     self, AccelerationSetpoint, ActuatorCommand, AngularRate, AngularRateSetpoint, Armed, Attitude,
-    AttitudeSetpoint, BarometricHeight, BatteryCompensation, BatteryCurrent, BatteryVoltage, GpsVelocity,
-    LandedState, Position, PositionSetpoint, RotorSpeed, SpecificForce, ThrustSetpoint, TorqueSetpoint,
-    Velocity, VelocitySetpoint,
+    AttitudeSetpoint, BarometricHeight, BatteryCurrent, BatteryVoltage, GpsVelocity, LandedState, Position,
+    PositionSetpoint, RotorSpeed, SpecificForce, ThrustSetpoint, TorqueSetpoint, Velocity, VelocitySetpoint,
 };
 
 /// A field by its names, and what it is in.
@@ -142,7 +141,6 @@ const THRUST: &[Column] = &[c(&["AOut"], Plain)];
 const VOLTAGE: &[Column] = &[c(&["Volt"], Volts)];
 const CURRENT: &[Column] = &[c(&["Curr"], Amperes)];
 const RPM: &[Column] = &[c(&["RPM"], RevolutionsPerMinute)];
-const COMPENSATION: &[Column] = &[c(&["BatVolt"], Plain)];
 const ARM_STATE: &[Column] = &[c(&["ArmState", "Armed"], Plain)];
 const FLYING: &[Column] = &[c(&["isFlying"], Plain)];
 
@@ -288,7 +286,6 @@ pub(super) const TOPICS: &[&[Topic]] = &[
         outputs("RCO3", LAST_OUTPUTS, 18),
         // before 3.2
         Topic::new("MOT", ActuatorCommand, OUTPUTS, channels).demands(Demand::AsManyAsThere),
-        Topic::new("MOTB", BatteryCompensation, COMPENSATION, as_is),
         rotor("ESC", Part::OfInstance),
     ],
     // a message each before 4.1

@@ -31,6 +31,8 @@ const STATES: &str = "EV";
 const CHANGES: &str = "ARM";
 const BATCHES: &str = "ISBD";
 const PLACES: &str = "POS";
+/// Of a parameter, beside its value, since Copter 4.3.
+const DEFAULT: &str = "Default";
 
 /// Gives a log's messages one after the other.
 pub(super) trait Messages {
@@ -208,7 +210,10 @@ impl Walk<'_, '_> {
         let text =
             |index: usize| fields.get(index).map_or_else(Default::default, |field| message.text(*field));
         match special {
-            Special::Parameter => self.parameter(&text(0), number(1)),
+            Special::Parameter => {
+                let default = message.definition.field(DEFAULT).map(|field| message.number(field));
+                self.parameter(&text(0), number(1), default);
+            }
             Special::Text => {
                 let text = text(0);
                 self.walked.identity.text(&text);
@@ -242,7 +247,7 @@ impl Walk<'_, '_> {
         }
     }
 
-    fn parameter(&mut self, name: &str, value: f64) {
+    fn parameter(&mut self, name: &str, value: f64, default: Option<f64>) {
         if name.starts_with(SIMULATOR) {
             self.walked.withheld += 1;
             return;
@@ -250,7 +255,12 @@ impl Walk<'_, '_> {
         let of_rates = RATES.iter().find(|(beginning, _)| name.starts_with(beginning));
         self.rates_as_now = of_rates.map(|(_, as_now)| *as_now).or(self.rates_as_now);
         self.walked.identity.parameter(name, value);
-        self.out.give(Event::Parameter { name, value });
+        if let Some(value) = default.filter(|default| default.is_finite()) {
+            self.out.give(Event::ParameterDefault { name, value });
+        }
+        if value.is_finite() {
+            self.out.give(Event::Parameter { name, value });
+        }
     }
 
     /// Before the first `change` to a state the contrary held: what is disarmed was armed, and what took off stood on the

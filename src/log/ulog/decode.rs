@@ -15,6 +15,10 @@ const PX4: (&str, &str) = ("PX4", "SYS_AUTOSTART");
 /// Beginnings of the names of a simulator's own parameters, which hold its truth.
 const TRUTH: [&str; 2] = ["SIM_", "SIH_"];
 
+fn is_truth(name: &str) -> bool {
+    TRUTH.iter().any(|beginning| name.starts_with(beginning))
+}
+
 /// Turns messages into events.
 #[derive(Debug, Default)]
 pub(super) struct Decoder {
@@ -70,7 +74,12 @@ impl Decoder {
                 let text = text::clean(String::from_utf8_lossy(text).trim_end());
                 sink(Event::Text { time_s, severity, text: &text });
             }
-            Message::ParameterDefault { .. } | Message::Dropout { .. } | Message::Other { .. } => {}
+            Message::ParameterDefault { name, value } => {
+                if !is_truth(name) {
+                    sink(Event::ParameterDefault { name, value });
+                }
+            }
+            Message::Dropout { .. } | Message::Other { .. } => {}
         }
     }
 
@@ -82,7 +91,7 @@ impl Decoder {
     }
 
     fn parameter(&mut self, name: &str, value: f64, sink: &mut dyn FnMut(Event<'_>)) {
-        if TRUTH.iter().any(|beginning| name.starts_with(beginning)) {
+        if is_truth(name) {
             self.report.withheld_truth += 1;
             return;
         }

@@ -39,7 +39,7 @@ pub enum Message<'a> {
         /// value
         value: f64,
     },
-    /// a parameter's default
+    /// a parameter's default in the vehicle's configuration
     ParameterDefault {
         /// name
         name: &'a str,
@@ -186,8 +186,12 @@ pub(super) fn parse<'a>(kind: u8, body: &'a [u8], schema: &'a Schema) -> Option<
             Message::Parameter { name, value }
         }
         b'Q' => {
-            let (name, value) = parameter(body.get(1..)?)?;
-            Message::ParameterDefault { name, value }
+            let (kinds, rest) = body.split_first()?;
+            let (name, value) = parameter(rest)?;
+            match kinds & OF_SETUP {
+                0 => Message::Other { kind: b'Q' },
+                _ => Message::ParameterDefault { name, value },
+            }
         }
         b'L' => text(body, 0)?,
         b'C' => text(body, 2)?,
@@ -203,6 +207,9 @@ fn keyed(body: &[u8]) -> Option<(&str, &str, &[u8])> {
     let (kind, name) = str::from_utf8(key).ok()?.split_once(' ')?;
     Some((kind, name, value))
 }
+
+/// Of the kinds of a default that of the vehicle's configuration; the release's own may be another.
+const OF_SETUP: u8 = 2;
 
 fn parameter(body: &[u8]) -> Option<(&str, f64)> {
     let (kind, name, value) = keyed(body)?;
@@ -262,6 +269,10 @@ mod tests {
         let schema = Schema::default();
         let parameter = b"\x0dint32_t A_BCD\x05\x00\x00\x00";
         assert_eq!(parse(b'P', parameter, &schema), Some(Message::Parameter { name: "A_BCD", value: 5.0 }));
+        let default = |kinds: u8| [&[kinds][..], parameter].concat();
+        let told = Message::ParameterDefault { name: "A_BCD", value: 5.0 };
+        assert_eq!(parse(b'Q', &default(3), &schema), Some(told));
+        assert_eq!(parse(b'Q', &default(1), &schema), Some(Message::Other { kind: b'Q' }));
         let text = b"4\x10\x00\x00\x00\x00\x00\x00\x00low";
         let expected = Message::Text { severity: 4, stamp_us: 16, text: b"low" };
         assert_eq!(parse(b'L', text, &schema), Some(expected));
