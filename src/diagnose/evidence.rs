@@ -5,11 +5,11 @@
 //! conservative if the model is wrong.
 
 use super::channels::{CHANNELS, Channels};
+use super::columns::Columns;
 use super::priors::{OF_KERNEL, Priors, READINGS};
 use super::rows::Rows;
 use crate::stats::{chance_by_stretches, normal_deviate};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Least number of rows for the cluster test over twelve blocks. Chosen: ten rows a block.
@@ -29,7 +29,7 @@ pub struct Weighted {
     /// residual standard deviation of each channel, N and N m
     pub sigma: [f64; CHANNELS],
     /// nuisances and the base's own effects, weighted
-    pub(super) nuisances: DMatrix<f64>,
+    pub(super) nuisances: Columns,
     /// variance of the scores by the priors
     prior_meat: DVector<f64>,
     pub(super) normal: Option<Cholesky<f64, Dyn>>,
@@ -94,12 +94,9 @@ impl Weighted {
 
     /// The same if this many rows count as one independent measurement of a slow error.
     fn with(rows: &Rows, sigma: &[f64; CHANNELS], alike: f64) -> Self {
-        let of_nuisances = rows.nuisances.iter().map(|column| &column.values);
-        let columns: Vec<DVector<f64>> =
-            of_nuisances.chain(&rows.effects).map(|column| weighted(column, sigma)).collect();
-        let priors = Priors::of(&rows.nuisances, columns.len(), alike);
-        let nuisances = DMatrix::from_columns(&columns);
-        let mut normal = nuisances.tr_mul(&nuisances) + DMatrix::from_diagonal(&priors.precision);
+        let nuisances = Columns::weighted(&rows.nuisances, &rows.effects, sigma, rows.len());
+        let priors = Priors::of(&rows.nuisances, nuisances.len(), alike);
+        let mut normal = nuisances.gram() + DMatrix::from_diagonal(&priors.precision);
         // a column that is nowhere excited drops out
         let most = normal.diagonal().max();
         for index in 0..normal.nrows() {
@@ -157,16 +154,17 @@ impl Weighted {
     #[must_use]
     pub fn coefficients(&self, rows: &Rows) -> (DVector<f64>, DMatrix<f64>) {
         let y = weighted(&rows.residual, &self.sigma);
-        let size = self.nuisances.ncols();
+        let size = self.nuisances.len();
         let Some(normal) = &self.normal else {
             return (DVector::zeros(size), DMatrix::from_diagonal_element(size, size, f64::INFINITY));
         };
-        let theta = normal.solve(&self.nuisances.tr_mul(&y));
+        let theta = normal.solve(&self.nuisances.transposed_times(y.as_slice()));
         let bread = normal.inverse();
         let prior = DMatrix::from_diagonal(&self.prior_meat);
         let gammas = self.gammas(&self.left);
-        let by_residual = &bread * (self.meat_of_residual(&self.nuisances, &gammas) + &prior) * &bread;
-        let by_score = &bread * (self.meat_of_scores(&self.nuisances, &self.left, &gammas) + &prior) * &bread;
+        let by_residual = &bread * (self.nuisances.correlated(&gammas, &self.runs) + &prior) * &bread;
+        let scores = self.nuisances.scores(self.left.as_slice());
+        let by_score = &bread * (self.meat_of_scores(&scores, &gammas) + &prior) * &bread;
         let mut covariance = DMatrix::from_fn(size, size, |i, j| {
             let more = |k: usize| (by_score[(k, k)] / by_residual[(k, k)]).max(1.0).sqrt();
             if by_residual[(i, i)] > 0.0 && by_residual[(j, j)] > 0.0 {
@@ -188,14 +186,17 @@ impl Weighted {
 
     /// Coefficients of the nuisances and of the base's effects in the projection of a weighted column.
     pub(super) fn part_in(&self, column: &DVector<f64>) -> DVector<f64> {
-        let part = self.nuisances.tr_mul(column);
+        let part = self.nuisances.transposed_times(column.as_slice());
         self.normal.as_ref().map_or_else(|| DVector::zeros(part.len()), |normal| normal.solve(&part))
     }
 
     /// A column without the part that the nuisances explain.
     pub(super) fn project(&self, column: &DVector<f64>) -> DVector<f64> {
         match &self.normal {
-            Some(normal) => column - &self.nuisances * normal.solve(&self.nuisances.tr_mul(column)),
+            Some(normal) => {
+                let part = self.nuisances.transposed_times(column.as_slice());
+                column - self.nuisances.times(&normal.solve(&part))
+            }
             None => column.clone(),
         }
     }
@@ -224,15 +225,17 @@ impl Weighted {
         let after = &self.left - &partialled * &theta;
         let prior = self.prior_part(&plain);
         let gamma = self.gammas(&after);
-        let by_residual = &inverse * (self.meat_of_residual(&partialled, &gamma) + &prior) * &inverse;
-        let by_score = &inverse * (self.meat_of_scores(&partialled, &after, &gamma) + &prior) * &inverse;
+        let tested = Columns::of(&partialled, self.rows);
+        let scores = tested.scores(after.as_slice());
+        let by_residual = &inverse * (tested.correlated(&gamma, &self.runs) + &prior) * &inverse;
+        let by_score = &inverse * (self.meat_of_scores(&scores, &gamma) + &prior) * &inverse;
         let larger = scaled_trace(&by_residual, &normal) > scaled_trace(&by_score, &normal);
         let covariance = if larger { by_residual } else { by_score };
         let size = columns.len();
         let wald = covariance.clone().cholesky().map_or(0.0, |c| theta.dot(&c.solve(&theta)));
         Some(Evidence {
             z: normal_deviate(wald, size),
-            p_cluster: chance_by_stretches(&self.scores(&partialled, &after), &inverse, &theta),
+            p_cluster: chance_by_stretches(&scores.transposed(), &inverse, &theta),
             gain: energy / self.energy.max(f64::MIN_POSITIVE),
             energy,
             rms: self.rms(&(&partialled * &theta)),
@@ -263,7 +266,7 @@ impl Weighted {
         let size = plain.ncols();
         let Some(normal) = &self.normal else { return DMatrix::zeros(size, size) };
         // X' M Z = X'Z A^-1 P
-        let cross = normal.solve(&self.nuisances.tr_mul(plain));
+        let cross = normal.solve(&self.nuisances.transposed_times_each(plain));
         let mut out = DMatrix::zeros(size, size);
         for (index, variance) in self.prior_meat.iter().enumerate().filter(|(_, p)| **p > 0.0) {
             let row = cross.row(index);
@@ -303,71 +306,11 @@ impl Weighted {
         if count == 0 { 0.0 } else { sum / count as f64 }
     }
 
-    /// `sum_c sum_|l|<=L gamma_c(l) sum_t x_c(t) x_c(t+l)'`.
-    fn meat_of_residual(&self, columns: &DMatrix<f64>, gammas: &[Vec<f64>]) -> DMatrix<f64> {
-        let smear = |index: usize| {
-            let (column, mut out) = (columns.column(index), DVector::zeros(columns.nrows()));
-            for (channel, gamma) in gammas.iter().enumerate() {
-                let lags = gamma.len() - 1;
-                let offset = channel * self.rows;
-                for run in &self.runs {
-                    for t in run.clone() {
-                        let first = t.saturating_sub(lags).max(run.start);
-                        let last = (t + lags).min(run.end - 1);
-                        let sum: f64 =
-                            (first..=last).map(|s| gamma[s.abs_diff(t)] * column[offset + s]).sum();
-                        out[offset + t] = sum;
-                    }
-                }
-            }
-            columns.tr_mul(&out)
-        };
-        let parts: Vec<DVector<f64>> = (0..columns.ncols()).into_par_iter().map(smear).collect();
-        let meat = DMatrix::from_columns(&parts);
-        0.5 * (&meat + meat.transpose())
-    }
-
-    /// Score of each row, summed over the channels.
-    fn scores(&self, columns: &DMatrix<f64>, residual: &DVector<f64>) -> DMatrix<f64> {
-        let mut scores = DMatrix::<f64>::zeros(columns.ncols(), self.rows);
-        for channel in 0..CHANNELS {
-            let offset = channel * self.rows;
-            for (index, column) in columns.column_iter().enumerate() {
-                for row in 0..self.rows {
-                    scores[(index, row)] += column[offset + row] * residual[offset + row];
-                }
-            }
-        }
-        scores
-    }
-
-    fn meat_of_scores(
-        &self,
-        columns: &DMatrix<f64>,
-        residual: &DVector<f64>,
-        gammas: &[Vec<f64>],
-    ) -> DMatrix<f64> {
+    /// Variance of the summed scores (Newey-West): a Bartlett window over their lags.
+    fn meat_of_scores(&self, scores: &Columns, gammas: &[Vec<f64>]) -> DMatrix<f64> {
         let window = gammas.iter().map(Vec::len).max().unwrap_or(0).max(SCORE_LAGS);
-        let scores = self.scores(columns, residual);
-        let size = columns.ncols();
-        let mut meat = DMatrix::<f64>::zeros(size, size);
-        for run in &self.runs {
-            for lag in 0..=window {
-                let length = run.len().saturating_sub(lag);
-                if length == 0 {
-                    continue;
-                }
-                let product: DMatrix<f64> =
-                    scores.columns(run.start, length) * scores.columns(run.start + lag, length).transpose();
-                let bartlett = 1.0 - lag as f64 / (window as f64 + 1.0);
-                if lag == 0 {
-                    meat += product;
-                } else {
-                    meat += bartlett * (&product + product.transpose());
-                }
-            }
-        }
-        meat
+        let bartlett = (0..=window).map(|lag| 1.0 - lag as f64 / (window as f64 + 1.0)).collect();
+        scores.correlated(&[bartlett], &self.runs)
     }
 }
 

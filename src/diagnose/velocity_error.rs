@@ -6,11 +6,12 @@
 
 use super::along::wrench_along;
 use super::base::Base;
-use super::channels::{Nuisance, NuisanceColumn, channels, nothing};
+use super::channels::{Nuisance, NuisanceColumn, channels};
 use super::rotors::RotorMotion;
 use super::trace::Trace;
 use crate::physics::{Model, Wrench};
 use nalgebra::Vector3;
+use std::ops::Range;
 
 /// Standard deviation of the vertical error, m/s: that of PX4's estimate against the truth of its simulator, 0.13 to 0.15
 /// m/s in three flights.
@@ -52,15 +53,38 @@ pub(super) fn velocity_error(
     let mut at_s = from_s;
     while at_s < to_s + 0.5 * apart_s {
         let hat = |index: usize| (1.0 - (trace.grid.time_s(index) - at_s).abs() / apart_s).max(0.0);
-        let force: Vec<Vector3<f64>> =
-            slope.iter().enumerate().map(|(index, slope)| slope * hat(index)).collect();
+        let rows = rows_near(trace, at_s - apart_s, at_s + apart_s);
+        let force = weak_force(trace, rows.clone(), |index| slope[index] * hat(index));
+        let no_torque = std::array::from_fn(|_| vec![0.0; rows.len()]);
         out.push(NuisanceColumn {
             nuisance: Nuisance::VelocityError,
-            values: channels(trace, trace.weak_vector(0, &force), nothing(trace)),
+            values: channels(trace, force, no_torque),
+            first_row: rows.start,
             prior_std: Some(STD_M_S),
             considered: None,
         });
         at_s += apart_s;
     }
     out
+}
+
+/// The rows whose test function overlaps with this time, s.
+fn rows_near(trace: &Trace, from_s: f64, to_s: f64) -> Range<usize> {
+    let reach_s = (trace.kernel.half_count as f64 + 1.0) * trace.grid.step_s;
+    let before = |time_s: f64| trace.centers.partition_point(|&center| trace.grid.time_s(center) < time_s);
+    let first = before(from_s - reach_s);
+    first..before(to_s + reach_s).max(first)
+}
+
+/// `K` of a force at some rows, axis by axis; `of` gives the force at an instant.
+fn weak_force(trace: &Trace, rows: Range<usize>, of: impl Fn(usize) -> Vector3<f64>) -> [Vec<f64>; 3] {
+    let centers = &trace.centers[rows];
+    let (Some(first), Some(last)) = (centers.first(), centers.last()) else { return Default::default() };
+    let (from, half) = (first - trace.kernel.half_count, trace.kernel.half_count);
+    let force: Vec<Vector3<f64>> = (from..=last + half).map(of).collect();
+    let centers: Vec<usize> = centers.iter().map(|center| center - from).collect();
+    std::array::from_fn(|axis| {
+        let column: Vec<f64> = force.iter().map(|force| force[axis]).collect();
+        trace.kernel.apply(0, &column, &centers)
+    })
 }
