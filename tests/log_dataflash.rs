@@ -4,7 +4,7 @@
 
 mod support;
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
 use mavid::autopilot::VehicleKind;
@@ -129,6 +129,46 @@ fn every_line_of_text_logs_is_read() {
         let (found, unknown) = text(&path);
         compare(name, &found, &expected[name]);
         assert_eq!(unknown, expected[name]["lines_of_no_known_type"].as_u64().unwrap(), "{name}");
+    }
+}
+
+/// Names of the parameters of a binary log, and its texts.
+fn names_and_texts(path: &Path) -> (BTreeSet<String>, Vec<String>) {
+    let mut reader = DataflashReader::new(std::fs::File::open(path).unwrap());
+    let (mut names, mut texts) = (BTreeSet::new(), Vec::new());
+    while let Some(message) = reader.next_message().unwrap() {
+        let text =
+            |field: &str| message.definition.field(field).map(|field| message.text(field).into_owned());
+        match message.definition.name.as_str() {
+            "PARM" => names.extend(text("Name")),
+            "MSG" => texts.extend(text("Message")),
+            _ => {}
+        }
+    }
+    (names, texts)
+}
+
+#[test]
+fn parameters_and_texts_are_those_of_another_reader() {
+    let Some((logs, expected)) = logs("bin") else { return };
+    for path in logs {
+        let name = path.file_name().unwrap().to_str().unwrap();
+        let expected = &expected[name];
+        let (names, texts) = names_and_texts(&path);
+        assert_eq!(names.len() as u64, expected["distinct_parameters"].as_u64().unwrap(), "{name}");
+        let first: Vec<&str> =
+            expected["first_texts"].as_array().unwrap().iter().map(|text| text.as_str().unwrap()).collect();
+        assert_eq!(texts[..first.len()], first, "{name}");
+        // and so in a recording, but for the simulator's truth
+        let recording = log::open(&path, &OpenOptions::default()).unwrap().recording;
+        let told = names.iter().filter(|name| !name.starts_with("SIM_"));
+        assert!(told.eq(recording.parameters.keys()), "{name}");
+        let said = recording.texts.iter().map(|(_, text)| text);
+        let said: Vec<&String> = said.filter(|text| !text.starts_with("error of subsystem")).collect();
+        assert!(said.into_iter().eq(&texts), "{name}");
+        for (parameter, value) in expected["parameters_last_value"].as_object().unwrap() {
+            assert!(near(recording.parameters[parameter], value, 0.0), "{name}: {parameter} {value}");
+        }
     }
 }
 

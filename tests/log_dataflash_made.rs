@@ -6,7 +6,7 @@ mod support;
 
 use mavid::autopilot::{Autopilot, VehicleKind};
 use mavid::log::{self, Input, LogError, OpenOptions, Opened};
-use mavid::recording::{Quantity, Recording, Stream, StreamKey};
+use mavid::recording::{Event, Quantity, Recording, Stream, StreamKey};
 use support::dataflash::{DataflashLog, Value};
 
 fn open(bytes: &[u8]) -> Result<Opened, LogError> {
@@ -232,4 +232,172 @@ fn a_log_whose_first_bytes_are_damaged_is_still_one() {
     // without any definition it says nothing
     let refused = open(&log[7000..]).unwrap_err().to_string();
     assert!(refused.contains("got "), "{refused}");
+}
+
+#[test]
+fn rates_before_copter_3_4_are_in_hundredths_of_degrees_and_torques_of_4500() {
+    let told = |parameter: Option<&str>| {
+        let mut log = DataflashLog::new();
+        log.define(129, "PARM", "QNf", "TimeUS,Name,Value");
+        log.define(133, "RATE", "Qffffffffffff", "TimeUS,RDes,R,ROut,PDes,P,POut,YDes,Y,YOut,ADes,A,AOut");
+        parameter.into_iter().for_each(|name| log.add("PARM", &[1e6.into(), name.into(), 0.15.into()]));
+        for step in 0..20_u32 {
+            let us = 2e6 + 1e4 * f64::from(step);
+            let rates = [100.0, 18_000.0, 450.0, 0.0, 9000.0, -900.0, 0.0, 0.0, 0.0, 0.0, 0.0, 500.0];
+            log.add("RATE", &[&[us][..], &rates].concat().into_iter().map(Value::from).collect::<Vec<_>>());
+        }
+        open(&log.binary).unwrap()
+    };
+    let (old, new) = (told(Some("RATE_RLL_P")).recording, told(Some("ATC_RAT_RLL_P")).recording);
+    let pi = std::f64::consts::PI;
+    near(stream(&old, Quantity::AngularRate, "RATE", 0).sample(3), &[pi, -pi / 2.0, 0.0]);
+    near(stream(&old, Quantity::TorqueSetpoint, "RATE", 0).sample(3), &[0.1, 0.2, 0.0]);
+    near(stream(&old, Quantity::ThrustSetpoint, "RATE", 0).sample(3), &[0.5]);
+    near(stream(&new, Quantity::AngularRate, "RATE", 0).sample(3), &[100.0 * pi, -50.0 * pi, 0.0]);
+    let unknown = told(None);
+    assert!(unknown.recording.streams.is_empty());
+    assert!(unknown.report.oddities[0].to_string().contains("80 samples are in a unit that differs"));
+}
+
+#[test]
+fn outputs_beyond_the_fourteenth_stand_in_one_row_with_the_others() {
+    let mut log = begun();
+    log.define(150, "RCO2", "QHHHH", "TimeUS,C15,C16,C17,C18");
+    log.define(
+        151,
+        "RCO3",
+        "QHHHHHHHHHHHHHH",
+        "TimeUS,C19,C20,C21,C22,C23,C24,C25,C26,C27,C28,C29,C30,C31,C32",
+    );
+    for step in 0..20_u32 {
+        let us = 41e6 + 1e5 * f64::from(step);
+        log.add("RCOU", &[us, 1500.0, 1400.0, 1300.0, 1200.0, 0.0, 0.0].map(Value::from));
+        // one is lost
+        if step != 7 {
+            log.add("RCO2", &[us + 8.0, 0.0, 1600.0, 1610.0, 0.0].map(Value::from));
+        }
+        log.add(
+            "RCO3",
+            &[&[us + 16.0, 1700.0][..], &[0.0; 13]].concat().into_iter().map(Value::from).collect::<Vec<_>>(),
+        );
+        log.add("IMU", &[us + 5e4, 0.0, 0.5, 0.25, -0.125, 1.0, 2.0, -9.75].map(Value::from));
+    }
+    let Opened { recording, report } = open(&log.binary).unwrap();
+    let outputs = stream(&recording, Quantity::ActuatorCommand, "RCOU", 0);
+    assert_eq!((outputs.len(), outputs.width), (20, 19));
+    assert!((outputs.time_s[1] - outputs.time_s[0] - 0.1).abs() < 1e-9, "the time is that of RCOU");
+    // none waits for the next one, which may come much later
+    let mut times_s = Vec::new();
+    let input = Input::Bytes { name: "bytes", bytes: &log.binary };
+    let mut take = |_, event: Event<'_>| {
+        if let Event::Sample { time_s, .. } = event {
+            times_s.push(time_s);
+        }
+    };
+    log::stream(input, &OpenOptions::default(), &mut take).unwrap();
+    assert!(times_s.len() == 60 && times_s.is_sorted(), "{times_s:?}");
+    near(&outputs.sample(19)[..4], &[1500.0, 1400.0, 1300.0, 1200.0]);
+    near(&outputs.sample(19)[14..], &[0.0, 1600.0, 1610.0, 0.0, 1700.0]);
+    assert!(outputs.sample(7)[15].is_nan() && outputs.sample(7)[18] == 1700.0);
+    let topics = &report.onboard().unwrap().topics;
+    assert!(topics.iter().filter(|topic| topic.name.starts_with("RCO")).all(|topic| topic.is_used));
+}
+
+#[test]
+fn rotor_speeds_of_a_message_each_stand_in_one_row() {
+    // in thousands of revolutions until 2017, then in revolutions
+    for (letter, rpm) in [("c", 6.0), ("e", 6000.0)] {
+        let mut log = begun();
+        for esc in 0..4_u8 {
+            let format = format!("Q{letter}ccc");
+            log.define(150 + esc, &format!("ESC{}", esc + 1), &format, "TimeUS,RPM,Volt,Curr,Temp");
+        }
+        for step in 0..20_u32 {
+            for esc in 0..4_u8 {
+                let us = 41e6 + 1e5 * f64::from(step) + 30.0 * f64::from(esc);
+                let speed = rpm * (1.0 + 0.1 * f64::from(esc));
+                log.add(&format!("ESC{}", esc + 1), &[us, speed, 12.0, 3.0, 40.0].map(Value::from));
+            }
+        }
+        let recording = open(&log.binary).unwrap().recording;
+        let speeds = stream(&recording, Quantity::RotorSpeed, "ESC", 0);
+        assert_eq!((speeds.len(), speeds.width), (20, 4));
+        near(speeds.sample(5), &[100.0, 110.0, 120.0, 130.0].map(|hz| hz * std::f64::consts::TAU));
+    }
+}
+
+#[test]
+fn a_place_on_the_earth_is_a_position_from_the_first_one() {
+    let mut log = begun();
+    log.define(150, "POS", "QLLfff", "TimeUS,Lat,Lng,Alt,RelHomeAlt,RelOriginAlt");
+    log.define(151, "MOTB", "QfffffB", "TimeUS,LiftMax,BatVolt,ThLimit,ThrAvMx,ThrOut,FailFlags");
+    for step in 0..20_u32 {
+        let (us, t) = (41e6 + 1e5 * f64::from(step), f64::from(step));
+        let [lat, lng] = if step == 0 { [0.0; 2] } else { [47.0 + 1e-5 * t, 8.0 + 1e-5 * t] };
+        log.add("POS", &[us, lat, lng, 440.0 + t, 1.0 + t, 2.0 + t].map(Value::from));
+        log.add("MOTB", &[us, 0.9, 0.95 - 0.01 * t, 1.0, 0.8, 0.4, 0.0].map(Value::from));
+    }
+    let recording = open(&log.binary).unwrap().recording;
+    let places = stream(&recording, Quantity::Position, "POS", 0);
+    assert_eq!(places.len(), 19, "before the first fix it is nowhere");
+    near(places.sample(0), &[0.0, 0.0, 3.0]);
+    let [north_m, west_m, up_m] = *places.sample(10) else { panic!() };
+    // metres of a degree at 47 degrees north, by the tables of WGS 84
+    assert!((north_m - 1e-4 * 111_169.0).abs() < 0.01 && (west_m + 1e-4 * 76_056.0).abs() < 0.02);
+    assert_eq!(up_m, 13.0);
+    near(stream(&recording, Quantity::BatteryCompensation, "MOTB", 0).sample(3), &[0.92]);
+}
+
+#[test]
+fn a_trajectory_in_guided_is_what_was_asked_for() {
+    let columns = "TimeUS,Type,pX,pY,pZ,Terrain,vX,vY,vZ,aX,aY,aZ";
+    // in hundredths of a metre and upwards; since 4.7 in metres and downwards
+    for (multipliers, per_metre, down) in [("F-BBB-BBBBBB", 100.0, -1.0), ("F-000-000000", 1.0, 1.0)] {
+        let mut log = begun();
+        log.define(151, "FMTU", "QBNN", "TimeUS,FmtType,UnitIds,MultIds");
+        log.define(152, "UNIT", "QbZ", "TimeUS,Id,Label");
+        log.define(153, "MULT", "Qbd", "TimeUS,Id,Mult");
+        log.define(150, "GUIP", "QBfffbffffff", columns);
+        for (id, label) in [('m', "m"), ('n', "m/s"), ('o', "m/s/s")] {
+            log.add("UNIT", &[1.0.into(), f64::from(u32::from(id)).into(), label.into()]);
+        }
+        for (id, value) in [('0', 1.0), ('B', 0.01)] {
+            log.add("MULT", &[1.0, f64::from(u32::from(id)), value].map(Value::from));
+        }
+        log.add("FMTU", &[1.0.into(), 150.0.into(), "s-mmm-nnnooo".into(), multipliers.into()]);
+        let told = |kind: f64, us: f64| {
+            let [x, y, z] = [2.0 * per_metre, 3.0 * per_metre, -5.0 * down * per_metre];
+            [us, kind, x, y, z, 0.0, x, y, z, x, y, z].map(Value::from)
+        };
+        for step in 0..20_u32 {
+            log.add("GUIP", &told(3.0, 41e6 + 2e4 * f64::from(step)));
+        }
+        // a speed alone is no trajectory
+        log.add("GUIP", &told(4.0, 42e6));
+        let recording = open(&log.binary).unwrap().recording;
+        for quantity in
+            [Quantity::PositionSetpoint, Quantity::VelocitySetpoint, Quantity::AccelerationSetpoint]
+        {
+            let asked = stream(&recording, quantity, "GUIP", 0);
+            assert_eq!(asked.len(), 20);
+            near(asked.sample(4), &[2.0, -3.0, 5.0]);
+        }
+    }
+}
+
+#[test]
+fn what_is_known_and_adds_nothing_is_told_apart() {
+    let mut log = flown();
+    log.define(150, "SIDD", "Qfffffffff", "TimeUS,Time,Targ,F,Gx,Gy,Gz,Ax,Ay,Az");
+    log.define(151, "NTUN", "Qffffffffff", "TimeUS,DPosX,DPosY,PosX,PosY,DVelX,DVelY,VelX,VelY,DAccX,DAccY");
+    log.add("SIDD", &[43e6, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0].map(Value::from));
+    log.add("NTUN", &[43e6, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0].map(Value::from));
+    let report = open(&log.binary).unwrap().report;
+    let topics = &report.onboard().unwrap().topics;
+    for (name, is_used, is_known) in
+        [("SIDD", false, true), ("NTUN", false, true), ("NEWS", false, false), ("IMU", true, true)]
+    {
+        let topic = topics.iter().find(|topic| topic.name == name).unwrap();
+        assert_eq!((topic.is_used, topic.is_known), (is_used, is_known), "{name}");
+    }
 }

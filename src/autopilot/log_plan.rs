@@ -1,6 +1,6 @@
 //! What an autopilot will log by its parameters, and what should be changed of them.
 
-use super::logging::{LogNeed, LogSetting};
+use super::logging::{LogNeed, LogSetting, bits};
 use super::stack::Stack;
 
 /// A parameter that has to be another for an identification.
@@ -23,14 +23,8 @@ pub struct LogPlan {
     pub logs: Vec<String>,
     /// what an identification needs
     pub changes: Vec<LogChange>,
-    /// parameters that did not answer
+    /// parameters that did not answer, but for those that not every release has
     pub unknown: Vec<&'static str>,
-}
-
-/// The bits of a value; none of one that is negative or no number.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-fn bits(value: f64) -> u32 {
-    value.round() as u32
 }
 
 impl Stack {
@@ -38,11 +32,17 @@ impl Stack {
     #[must_use]
     pub fn log_plan(&self, value: impl Fn(&str) -> Option<f64>) -> LogPlan {
         let mut plan = LogPlan::default();
+        let mut off = Vec::new();
         for setting in self.log_settings.settings {
             let Some(found) = value(setting.parameter) else {
-                plan.unknown.push(setting.parameter);
+                if !setting.optional {
+                    plan.unknown.push(setting.parameter);
+                }
                 continue;
             };
+            if setting.off.holds(found) {
+                off.push(format!("{} = {found}", setting.parameter));
+            }
             let wanted = match setting.need {
                 LogNeed::Bits(mask) => f64::from(bits(found) | mask),
                 LogNeed::OneOf(values) if values.contains(&found) => found,
@@ -52,6 +52,10 @@ impl Stack {
                 let LogSetting { parameter, restarts, .. } = *setting;
                 plan.changes.push(LogChange { parameter, found, wanted, restarts });
             }
+        }
+        if !off.is_empty() {
+            plan.logs.push(format!("nothing: no log is written to a file ({})", off.join(", ")));
+            return plan;
         }
         for rate in self.log_settings.rates {
             if let Some(found) = value(rate.parameter) {
@@ -75,16 +79,34 @@ mod tests {
             _ => None,
         });
         let change = LogChange { parameter: "SDLOG_PROFILE", found: 1.0, wanted: 9.0, restarts: true };
-        assert_eq!((plan.changes, plan.unknown), (vec![change], vec!["SDLOG_BACKEND"]));
+        assert_eq!((plan.changes, plan.unknown), (vec![change], vec![]), "1.16 has no SDLOG_BACKEND");
         assert!(plan.logs[0].contains("10 Hz"));
         // further bits stay
         let plan = PX4.log_plan(|name| Some(if name == "SDLOG_PROFILE" { 27.0 } else { 1.0 }));
         assert_eq!(plan.changes, []);
         let off = PX4.log_plan(|name| (name == "SDLOG_MODE").then_some(-1.0));
         assert_eq!((off.changes[0].found, off.changes[0].wanted), (-1.0, 0.0));
+        assert_eq!(off.unknown, ["SDLOG_PROFILE"]);
         let plan = ARDUPILOT.log_plan(|name| Some(if name == "LOG_BITMASK" { 176_126.0 } else { 1.0 }));
         let names: Vec<_> = plan.changes.iter().map(|change| (change.parameter, change.wanted)).collect();
         assert_eq!(names, [("LOG_BITMASK", 438_271.0), ("LOG_FILE_RATEMAX", 0.0)]);
         assert_eq!(plan.logs.len(), 3);
+    }
+
+    #[test]
+    fn where_logging_is_off_nothing_is_said_to_be_logged() {
+        let none = "nothing: no log is written to a file";
+        for (stack, off, value) in [
+            (&PX4, "SDLOG_MODE", -1.0),
+            (&PX4, "SDLOG_BACKEND", 2.0),
+            (&ARDUPILOT, "LOG_BACKEND_TYPE", 2.0),
+            (&ARDUPILOT, "LOG_BACKEND_TYPE", 0.0),
+        ] {
+            let plan = stack.log_plan(|name| Some(if name == off { value } else { 9.0 }));
+            assert_eq!(plan.logs, [format!("{none} ({off} = {value})")]);
+            assert!(plan.changes.iter().any(|change| change.parameter == off), "{off}");
+        }
+        let both = PX4.log_plan(|name| Some(if name == "SDLOG_MODE" { -1.0 } else { 8.0 }));
+        assert_eq!(both.logs, [format!("{none} (SDLOG_MODE = -1, SDLOG_BACKEND = 8)")]);
     }
 }

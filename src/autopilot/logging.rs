@@ -9,6 +9,35 @@ pub enum LogNeed {
     OneOf(&'static [f64]),
 }
 
+/// Values of a parameter with which no log is written to a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LogOff {
+    /// none
+    Never,
+    /// this one
+    At(f64),
+    /// those without this bit
+    WithoutBit(u32),
+}
+
+impl LogOff {
+    /// Whether no log is written to a file with this value.
+    #[must_use]
+    pub fn holds(self, value: f64) -> bool {
+        match self {
+            Self::Never => false,
+            Self::At(off) => value == off,
+            Self::WithoutBit(bit) => bits(value) >> bit & 1 == 0,
+        }
+    }
+}
+
+/// The bits of a value; none of one that is negative or no number.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+pub(super) fn bits(value: f64) -> u32 {
+    value.round() as u32
+}
+
 /// A parameter of logging.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LogSetting {
@@ -16,6 +45,10 @@ pub struct LogSetting {
     pub parameter: &'static str,
     /// what an identification needs
     pub need: LogNeed,
+    /// with what it is that no log is written
+    pub off: LogOff,
+    /// releases that lack it write to a file whatever is set
+    pub optional: bool,
     /// the autopilot takes it only when it starts
     pub restarts: bool,
     /// what it does, as the end of a sentence
@@ -50,18 +83,24 @@ pub(super) const PX4: Logging = Logging {
         LogSetting {
             parameter: "SDLOG_PROFILE",
             need: LogNeed::Bits(1 | 1 << 3),
+            off: LogOff::Never,
+            optional: false,
             restarts: true,
             words: "bit 0 logs what PX4 logs by default, bit 3 adds what an identification needs",
         },
         LogSetting {
             parameter: "SDLOG_MODE",
             need: LogNeed::OneOf(&[0.0, 1.0, 2.0, 4.0]),
+            off: LogOff::At(-1.0),
+            optional: false,
             restarts: true,
             words: "0 logs while the vehicle is armed",
         },
         LogSetting {
             parameter: "SDLOG_BACKEND",
             need: LogNeed::Bits(1),
+            off: LogOff::WithoutBit(0),
+            optional: true,
             restarts: true,
             words: "bit 0 writes the log to a file",
         },
@@ -80,18 +119,24 @@ pub(super) const ARDUPILOT: Logging = Logging {
         LogSetting {
             parameter: "LOG_BITMASK",
             need: LogNeed::Bits(1 | 1 << 10 | 1 << 18),
+            off: LogOff::Never,
+            optional: false,
             restarts: false,
             words: "bit 0 is the fast attitude and rate controller, 10 the outputs, 18 the fast inertial unit",
         },
         LogSetting {
             parameter: "LOG_BACKEND_TYPE",
             need: LogNeed::Bits(1),
+            off: LogOff::WithoutBit(0),
+            optional: false,
             restarts: true,
             words: "bit 0 writes the log to a file",
         },
         LogSetting {
             parameter: "LOG_FILE_RATEMAX",
             need: LogNeed::OneOf(&[0.0]),
+            off: LogOff::Never,
+            optional: false,
             restarts: false,
             words: "0 does not limit the rate of any message",
         },

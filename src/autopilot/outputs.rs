@@ -49,6 +49,9 @@ impl PulseRange {
     }
 }
 
+/// An autopilot has no more outputs than this.
+pub const MOST_OUTPUTS: usize = 32;
+
 /// Numbered parameters that a flight asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NumberedGroup {
@@ -117,7 +120,7 @@ impl Outputs {
         let drives = |channel: &usize| {
             parameter(&self.function.name(*channel)).is_some_and(|value| self.is_motor(value))
         };
-        Some((1..=16).filter(drives).count()).filter(|count| *count > 0)
+        Some((1..=MOST_OUTPUTS).filter(drives).count()).filter(|count| *count > 0)
     }
 
     /// Whether a parameter tells how a command becomes thrust or how the vehicle is built; an output's function does where it

@@ -32,6 +32,8 @@ pub struct TopicSummary {
     pub rate_hz: Option<f64>,
     /// samples come from them
     pub is_used: bool,
+    /// their meaning is known, used or not
+    pub is_known: bool,
 }
 
 /// The report of a log that the vehicle wrote itself.
@@ -42,6 +44,7 @@ pub(super) fn onboard_reading(report: &ReadReport, onboard: &OnboardReport) -> O
         count: topic.count,
         rate_hz: topic.rate_hz(),
         is_used: topic.is_used,
+        is_known: topic.is_known,
     };
     OnboardReading {
         name: report.format,

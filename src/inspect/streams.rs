@@ -74,6 +74,7 @@ fn state(quantity: Quantity, stats: &StreamStats) -> &'static str {
             | Quantity::LandedState
             | Quantity::BatteryVoltage
             | Quantity::BatteryCurrent
+            | Quantity::BatteryCompensation
             | Quantity::PositionSetpoint
             | Quantity::VelocitySetpoint
             | Quantity::AccelerationSetpoint

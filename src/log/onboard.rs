@@ -30,6 +30,8 @@ pub struct Topic {
     pub span_s: Option<(f64, f64)>,
     /// samples of the recording come from them
     pub is_used: bool,
+    /// their meaning is known, used or not; of PX4's only that of those that are used
+    pub is_known: bool,
 }
 
 impl Topic {

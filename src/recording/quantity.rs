@@ -33,6 +33,8 @@ pub enum Quantity {
     BatteryVoltage,
     /// A (1)
     BatteryCurrent,
+    /// filtered voltage over that of a full battery, by which the autopilot divides its outputs (1)
+    BatteryCompensation,
     /// commanded world position, m (3)
     PositionSetpoint,
     /// commanded world velocity, m/s (3)
@@ -81,6 +83,7 @@ impl Quantity {
             Self::RotorSpeed => "rotor_speed",
             Self::BatteryVoltage => "battery_voltage",
             Self::BatteryCurrent => "battery_current",
+            Self::BatteryCompensation => "battery_compensation",
             Self::PositionSetpoint => "position_setpoint",
             Self::VelocitySetpoint => "velocity_setpoint",
             Self::AccelerationSetpoint => "acceleration_setpoint",

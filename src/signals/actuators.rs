@@ -9,7 +9,7 @@ use super::grid::LARGEST_VALUE;
 use super::rebuilt::rebuilt;
 use super::rotor_thrusts::{RotorThrusts, ThrustSource};
 use super::select::{LEAST_SAMPLES, MOTORS, best, best_of, is_live, too_short};
-use crate::autopilot::Outputs;
+use crate::autopilot::{MOST_OUTPUTS, Outputs};
 use crate::note::{About, Note};
 use crate::recording::{Quantity, Recording, Stream, StreamKey};
 use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
@@ -255,7 +255,7 @@ pub fn motor_channels(recording: &Recording, rotors: usize, notes: &mut Vec<Note
     let Some(stack) = recording.autopilot.stack() else { return (0..rotors).collect() };
     let Outputs { function, .. } = &stack.outputs;
     let find = |motor: usize| {
-        (1..=16).find(|&channel| {
+        (1..=MOST_OUTPUTS).find(|&channel| {
             let drives = recording.parameters.get(&function.name(channel));
             drives.is_some_and(|drives| (drives - stack.outputs.motor(motor)).abs() < 0.5)
         })

@@ -2,7 +2,8 @@
 //!
 //! Both autopilots log their motors at 10 Hz unless asked otherwise, and the torque and thrust that their controllers ask
 //! for at 50 Hz and more. The allocation between them is linear in the thrusts: it is fitted on the samples that are there,
-//! and its error on them is told.
+//! and its error on them is told. ArduPilot divides its outputs by the share of a full battery's voltage that is left
+//! (`MOTB`): the allocation is that to the thrusts before it.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -48,7 +49,9 @@ pub(super) fn rebuilt(
     let note = |text: String| Note::remark(About::Actuators, text);
     let source = asked.source;
     let begin = format!("motor commands ({}) are logged at {slow_hz:.0} Hz", slow.message);
-    let Some(allocation) = Allocation::fit(&asked.stream, &slow.stream, command) else {
+    let battery = Battery::of(recording);
+    let full = battery.made_full(&slow.stream, command, propulsion);
+    let Some(allocation) = Allocation::fit(&asked.stream, &full, command) else {
         let why = format!("fewer than {LEAST_PAIRS} of them have a setpoint in the same cycle");
         return Some(Err(note(format!("{begin}, and are not rebuilt from {source}: {why}"))));
     };
@@ -60,13 +63,63 @@ pub(super) fn rebuilt(
     if allocation.explained < LEAST_EXPLAINED {
         return Some(Err(note(format!("{begin}, and are not rebuilt: {told}"))));
     }
-    let stream = allocation.applied(&asked.stream);
-    let values = stream.values.iter().map(|thrust_n| propulsion.command_from_thrust(*thrust_n)).collect();
-    let command = Some(Stream { values, ..stream.clone() });
+    let (stream, command) = battery.as_it_is(allocation.applied(&asked.stream), propulsion);
+    let command = Some(command);
     let mut notes = slow.notes.clone();
-    notes.push(note(format!("{begin}, and are rebuilt: {told}")));
+    let undone =
+        battery.0.map_or("", |_| "; the autopilot's compensation of the battery's voltage is in them");
+    notes.push(note(format!("{begin}, and are rebuilt: {told}{undone}")));
     let source = ThrustSource::Command;
     Some(Ok(RotorThrusts { stream, command, jitter: None, source, message: asked.source, notes }))
+}
+
+/// The share of a full battery's voltage by which the autopilot divides its outputs; none where it does not.
+struct Battery<'a>(Option<&'a Stream>);
+
+impl<'a> Battery<'a> {
+    fn of(recording: &'a Recording) -> Self {
+        let shares = best(recording, Quantity::BatteryCompensation, |stream| stream.width == 1);
+        Self(shares.map(|(_, stream)| stream))
+    }
+
+    /// It is filtered to less than 1 Hz: the nearest sample will do.
+    fn share(&self, time_s: f64) -> f64 {
+        let nearest = self.0.and_then(|shares| {
+            let index = nearest(&shares.time_s, time_s, f64::INFINITY)?;
+            Some(shares.values[index])
+        });
+        nearest.filter(|share| *share > 0.0).unwrap_or(1.0)
+    }
+
+    /// Thrusts that the commands would give of a full battery, N.
+    fn made_full(&self, thrusts: &Stream, command: &Stream, propulsion: &Propulsion) -> Stream {
+        if self.0.is_none() {
+            return thrusts.clone();
+        }
+        let mut full = Stream { values: Vec::with_capacity(thrusts.values.len()), ..thrusts.clone() };
+        for (index, time_s) in command.time_s.iter().enumerate() {
+            let share = self.share(*time_s);
+            let of_full = command.sample(index).iter().map(|u| propulsion.thrust_from_command_n(u * share));
+            full.values.extend(of_full);
+        }
+        full
+    }
+
+    /// Thrusts as the vehicle file counts them, N, and commands: of those of a full battery.
+    fn as_it_is(&self, full: Stream, propulsion: &Propulsion) -> (Stream, Stream) {
+        let mut command = full.clone();
+        for (index, time_s) in full.time_s.iter().enumerate() {
+            let share = self.share(*time_s);
+            for value in &mut command.values[index * full.width..(index + 1) * full.width] {
+                *value = propulsion.command_from_thrust(*value) / share;
+            }
+        }
+        if self.0.is_none() {
+            return (full, command);
+        }
+        let values = command.values.iter().map(|u| propulsion.thrust_from_command_n(*u)).collect();
+        (Stream { values, ..command.clone() }, command)
+    }
 }
 
 /// What the controller asked for: torque about x, y, z and thrust, as shares.
@@ -255,6 +308,36 @@ mod tests {
         );
         let command = fast.command.unwrap();
         assert!((CURVE.thrust_from_command_n(command.values[7]) - fast.stream.values[7]).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_the_autopilot_adds_for_an_empty_battery_is_in_them() {
+        let (mut recording, mut slow) = log(0.0);
+        let share_of_full = |time_s: f64| 1.0 - 0.006 * time_s;
+        let time_s = slow.stream.time_s.clone();
+        let values = time_s.iter().map(|t| share_of_full(*t)).collect();
+        let command = slow.command.as_mut().unwrap();
+        for (index, value) in command.values.iter_mut().enumerate() {
+            *value /= share_of_full(time_s[index / 4]);
+            slow.stream.values[index] = CURVE.thrust_from_command_n(*value);
+        }
+        assert!(
+            rebuilt(&recording, &slow, &CURVE).unwrap().is_err(),
+            "without it the setpoints explain too little"
+        );
+        let key = StreamKey { quantity: Quantity::BatteryCompensation, source: "MOTB", instance: 0 };
+        recording.streams.insert(key, Stream { time_s, width: 1, values });
+        let known = rebuilt(&recording, &slow, &CURVE).unwrap().unwrap();
+        let error = |index: usize| {
+            let t = known.stream.time_s[index];
+            let output = CURVE.command_from_thrust(6.0 * share(0, asked(t))) / share_of_full(t);
+            (known.stream.sample(index)[0] - CURVE.thrust_from_command_n(output)).abs()
+        };
+        let furthest_n = (0..1495).map(error).fold(0.0, f64::max);
+        assert!(furthest_n < 5e-3, "{furthest_n} N");
+        assert!(
+            known.notes[0].text.ends_with("the autopilot's compensation of the battery's voltage is in them")
+        );
     }
 
     #[test]

@@ -85,6 +85,7 @@ fn preference(quantity: Quantity) -> &'static [&'static str] {
         | Quantity::AccelerationSetpoint
         | Quantity::YawSetpoint => &[
             "SET_POSITION_TARGET_LOCAL_NED",
+            "GUIP",
             "POSITION_TARGET_LOCAL_NED",
             "trajectory_setpoint",
             "vehicle_local_position_setpoint",
@@ -185,10 +186,14 @@ pub(super) fn best_of(
 /// A faster inertial sensor says no more, Hz: of several that are fast, the one that filters least is best.
 const ENOUGH_HZ: f64 = 100.0;
 
+/// A place on the earth, to a centimetre: only where nothing else tells the position.
+const PLACES: &str = "POS";
+
 /// What a source's rate is worth, Hz.
-fn worth_hz(quantity: Quantity, rate_hz: f64) -> f64 {
+fn worth_hz(quantity: Quantity, source: &str, rate_hz: f64) -> f64 {
     match quantity {
         Quantity::AngularRate | Quantity::SpecificForce => rate_hz.min(ENOUGH_HZ),
+        Quantity::Position if source == PLACES => 0.0,
         _ => rate_hz,
     }
 }
@@ -197,11 +202,11 @@ fn worth_hz(quantity: Quantity, rate_hz: f64) -> f64 {
 /// among those within a factor of 1.6 of the fastest, the first of the quantity's order of preference.
 #[must_use]
 pub fn best_rank(quantity: Quantity, sources: &[(&str, f64)]) -> Option<usize> {
-    let worth = |rate_hz: f64| worth_hz(quantity, rate_hz);
-    let fastest = sources.iter().map(|(_, rate_hz)| worth(*rate_hz)).fold(0.0, f64::max);
+    let worth = |(source, rate_hz): &(&str, f64)| worth_hz(quantity, source, *rate_hz);
+    let fastest = sources.iter().map(worth).fold(0.0, f64::max);
     let order = preference(quantity);
     let rank = |source: &str| order.iter().position(|name| *name == source).unwrap_or(order.len());
-    let fast = sources.iter().enumerate().filter(|(_, (_, rate_hz))| worth(*rate_hz) * 1.6 >= fastest);
+    let fast = sources.iter().enumerate().filter(|(_, source)| worth(source) * 1.6 >= fastest);
     fast.min_by_key(|(index, (source, _))| (rank(source), *index)).map(|(index, _)| index)
 }
 
@@ -238,5 +243,12 @@ mod tests {
             ("sensor_combined", stream(0.008, true)),
         ]);
         assert_eq!(pick(&filtered), Some("sensor_combined"));
+    }
+
+    #[test]
+    fn a_place_on_the_earth_is_the_last_resort() {
+        let rank = |sources: &[(&str, f64)]| best_rank(Quantity::Position, sources);
+        assert_eq!(rank(&[("POS", 25.0)]), Some(0));
+        assert_eq!(rank(&[("POS", 25.0), ("XKF1", 10.0)]), Some(1));
     }
 }

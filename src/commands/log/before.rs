@@ -35,7 +35,7 @@ pub(super) fn link_of(args: &FlyArgs, system: Option<u32>) -> VehicleLinkArgs {
     }
 }
 
-/// With `--set-logging`, sets what an identification needs; nobody else may be armed by then. Otherwise it reminds of what
+/// With `--set-logging`, sets what an identification needs, as long as the vehicle is disarmed. Otherwise it reminds of what
 /// an earlier run left, and at a terminal puts it back where the user agrees.
 ///
 /// # Errors

@@ -13,9 +13,9 @@ use crate::cli::{FlyArgs, VehicleLinkArgs};
 use crate::commands::words::Word;
 use crate::commands::{CommandError, network};
 
-/// So long it is measured how fast the link is.
+/// The speed of the link is measured for this long.
 const MEASURED: Duration = Duration::from_secs(2);
-/// A download that nobody asked for takes no longer.
+/// A download without `--fetch-log` is made only if it takes no longer than this.
 const AT_MOST: Duration = Duration::from_secs(60);
 
 /// How a log is fetched after a flight.

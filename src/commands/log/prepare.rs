@@ -30,7 +30,7 @@ struct Document {
     restored: Vec<RestoredLine>,
     /// what somebody else changed since, and stays
     left: Vec<RestoredLine>,
-    /// where it stands what was found
+    /// the file with what was found
     notes: Option<String>,
     /// the autopilot must start anew
     restart: bool,

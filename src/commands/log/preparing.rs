@@ -33,7 +33,7 @@ pub async fn look(session: &mut Session) -> Result<Prepared, CommandError> {
         session.stack.log_settings.settings.iter().map(|setting| setting.parameter).collect();
     let known = read(session, &names).await?;
     let plan = session.stack.log_plan(|name| known.value(name));
-    if plan.unknown.len() == names.len() {
+    if names.iter().all(|name| known.value(name).is_none()) {
         return Err(CommandError::Failure(format!(
             "expected an answer for {}, the vehicle gave none",
             names.join(", ")

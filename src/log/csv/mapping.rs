@@ -89,6 +89,7 @@ pub fn column_count(quantity: Quantity, form: AttitudeForm) -> Option<usize> {
         | Quantity::BarometricHeight
         | Quantity::LandedState
         | Quantity::Armed
+        | Quantity::BatteryCompensation
         | Quantity::Mode => Some(1),
     }
 }

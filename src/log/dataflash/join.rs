@@ -1,15 +1,25 @@
-//! Samples of which several messages hold a value each.
+//! Samples of which several messages hold a part each.
 
-use super::topics::Topic;
+use super::topics::{Part, Topic};
 use super::values::{MOST, Values};
 
 /// Values of one sample are no further apart, s.
 const APART_S: f64 = 0.25;
+/// Those that are written at once, s.
+const AT_ONCE_S: f64 = 0.002;
 
-/// Puts samples together of the values that several messages hold: one each.
-#[derive(Debug, Default)]
+/// Puts samples together of the values that several messages hold.
+#[derive(Debug)]
 pub(super) struct Join {
     open: Vec<Open>,
+    /// time from which a sample is no longer waited for, s
+    due_s: f64,
+}
+
+impl Default for Join {
+    fn default() -> Self {
+        Self { open: Vec::new(), due_s: f64::INFINITY }
+    }
 }
 
 /// A sample that is being put together.
@@ -24,7 +34,19 @@ struct Open {
 }
 
 impl Open {
-    /// The sample and its time: the mean of its values'. None where nothing was put in.
+    fn is_at_once(&self) -> bool {
+        matches!(self.topic.part, Some(Part::From(_)))
+    }
+
+    /// Time from which no further part of it comes, s.
+    fn due_s(&self) -> f64 {
+        match self.count {
+            0.0 => f64::INFINITY,
+            _ => self.first_s + if self.is_at_once() { AT_ONCE_S } else { APART_S },
+        }
+    }
+
+    /// The sample and its time: the mean of its parts'. None where nothing was put in.
     fn take(&mut self) -> Option<(&'static Topic, f64, Values)> {
         if self.count == 0.0 {
             return None;
@@ -40,15 +62,16 @@ impl Open {
 }
 
 impl Join {
-    /// Takes one value; gives the sample before it, where this one begins another.
+    /// Takes a part, its first value at `slot`; gives the sample before it, where this one begins another.
     pub(super) fn take(
         &mut self,
         topic: &'static Topic,
         slot: usize,
         time_s: f64,
-        value: f64,
+        part: &[f64],
     ) -> Option<(&'static Topic, f64, Values)> {
-        if slot >= MOST {
+        let end = slot + part.len();
+        if part.is_empty() || end > MOST {
             return None;
         }
         let same = |open: &Open| open.topic.quantity == topic.quantity && open.topic.source == topic.source;
@@ -63,11 +86,25 @@ impl Join {
         if open.count == 0.0 {
             open.first_s = time_s;
         }
-        open.values[slot] = value;
-        open.width = open.width.max(slot + 1);
-        open.sum_s += time_s;
-        open.count += 1.0;
+        open.values[slot..end].copy_from_slice(part);
+        open.width = open.width.max(end);
+        // of what is written at once the first says when
+        if open.count == 0.0 || !open.is_at_once() {
+            open.sum_s += time_s;
+            open.count += 1.0;
+        }
+        self.due_s = self.due_s.min(open.due_s());
         before
+    }
+
+    /// A sample of which no further part comes at this time or later, s; again until there is none.
+    pub(super) fn due(&mut self, time_s: f64) -> Option<(&'static Topic, f64, Values)> {
+        if time_s < self.due_s {
+            return None;
+        }
+        let sample = self.open.iter_mut().find(|open| time_s >= open.due_s()).and_then(Open::take);
+        self.due_s = self.open.iter().map(Open::due_s).fold(f64::INFINITY, f64::min);
+        sample
     }
 
     /// What is left at the end.

@@ -9,6 +9,7 @@ mod definitions;
 mod format;
 mod identity;
 mod join;
+mod known;
 mod letter;
 mod message;
 mod outlet;

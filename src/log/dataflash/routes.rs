@@ -99,14 +99,17 @@ impl Route {
         let wanted = if topic.demands == Demand::AsManyAsThere { 1 } else { topic.columns.len() };
         let sampled = topic.sampled.and_then(|name| definition.field(name));
         let has_units = definition.fields.iter().any(|field| field.unit.is_some());
+        if topic.demands == Demand::Units && !has_units {
+            return None;
+        }
         (columns.len() >= wanted).then_some(Self { topic, columns, sampled, has_units })
     }
 
-    /// The fields of a message in SI, in the log's frames.
-    pub(super) fn values(&self, message: &Message<'_>) -> Values {
+    /// The fields of a message in SI, in the log's frames, where a number is `times` one of the newest releases.
+    pub(super) fn values(&self, message: &Message<'_>, times: f64) -> Values {
         let mut values = Values::NONE;
         for (field, factor) in &self.columns {
-            values.push(message.number(*field) * factor);
+            values.push(message.number(*field) * factor / times);
         }
         values
     }

@@ -17,6 +17,8 @@ pub(super) enum Special {
     Error,
     /// offsets north and east by which the estimate jumped last
     Jump,
+    /// degrees north and east, and height, m
+    Place,
     /// messages dropped before they were written, so far
     Dropped,
     /// batch, kind of sensor, sensor, multiplier, time of the first sample, rate
@@ -49,6 +51,7 @@ pub(super) const SPECIALS: &[SpecialMessage] = &[
     special("ERR", Special::Error, &[&["Subsys"], &["ECode"]]),
     special("XKF4", Special::Jump, &[&["OFN"], &["OFE"]]),
     special("NKF4", Special::Jump, &[&["OFN"], &["OFE"]]),
+    special("POS", Special::Place, &[&["Lat"], &["Lng"], &["RelOriginAlt", "RelHomeAlt", "RelAlt", "Alt"]]),
     special("DSF", Special::Dropped, &[&["Dp"]]),
     special(
         "ISBH",

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::known::is_known;
 use super::message::Message;
 use super::routes::Routes;
 use crate::log::onboard::Topic;
@@ -56,7 +57,8 @@ impl Tally {
     pub(super) fn topics(self) -> Vec<Topic> {
         let topic = |((name, instance), at): ((String, u8), usize)| {
             let Count { count, span_s, is_used } = self.counts[at];
-            Topic { name, instance, count, span_s, is_used }
+            let is_known = is_used || is_known(&name);
+            Topic { name, instance, count, span_s, is_used, is_known }
         };
         self.names.into_iter().map(topic).collect()
     }

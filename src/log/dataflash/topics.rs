@@ -4,14 +4,15 @@
 
 use super::units::Unit;
 use super::units::Unit::{
-    Amperes, Degrees, DegreesPerSecond, Metres, MetresPerSecond, MetresPerSecondSquared, Microseconds, Plain,
-    RadiansPerSecond, RevolutionsPerMinute, Volts,
+    Amperes, Degrees, DegreesPerSecond, Downwards, Metres, MetresPerSecond, MetresPerSecondSquared,
+    Microseconds, Plain, RadiansPerSecond, RevolutionsPerMinute, Volts,
 };
-use super::values::{Convert, as_is, body, channels, course, euler, quaternion, world};
+use super::values::{Convert, as_is, body, channels, course, euler, guided, quaternion, world};
 use crate::recording::Quantity::{
     self, AccelerationSetpoint, ActuatorCommand, AngularRate, AngularRateSetpoint, Armed, Attitude,
-    AttitudeSetpoint, BarometricHeight, BatteryCurrent, BatteryVoltage, GpsVelocity, LandedState, Position,
-    PositionSetpoint, RotorSpeed, SpecificForce, ThrustSetpoint, TorqueSetpoint, Velocity, VelocitySetpoint,
+    AttitudeSetpoint, BarometricHeight, BatteryCompensation, BatteryCurrent, BatteryVoltage, GpsVelocity,
+    LandedState, Position, PositionSetpoint, RotorSpeed, SpecificForce, ThrustSetpoint, TorqueSetpoint,
+    Velocity, VelocitySetpoint,
 };
 
 /// A field by its names, and what it is in.
@@ -33,7 +34,7 @@ pub(super) struct Topic {
     pub source: &'static str,
     /// the field with the time of the sample, where the message's own is that of its writing
     pub sampled: Option<&'static str>,
-    /// the sample is one value of several that as many messages hold
+    /// the sample is of several messages, each of which holds a part of its values
     pub part: Option<Part>,
     pub demands: Demand,
 }
@@ -47,24 +48,28 @@ pub(super) enum Instance {
     Number(u8),
 }
 
-/// Which value of a sample a message holds.
-#[derive(Debug, Clone, Copy)]
+/// Which values of a sample a message holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Part {
-    /// by its instance
+    /// one, by its instance
     OfInstance,
-    /// by the message's name
+    /// one, by the message's name
     Index(usize),
+    /// all from here on; written at once with the others
+    From(usize),
 }
 
 /// Under which circumstances a message can be used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Demand {
     /// whatever the release
     Nothing,
     /// all columns, or as many of the first as there are
     AsManyAsThere,
-    /// Copter 3.4 and later: before that rates and outputs were in other units
-    RatesInDegrees,
+    /// release known: a number before Copter 3.4 was this many times one of now
+    Rates(f64),
+    /// the log says its units
+    Units,
 }
 
 impl Topic {
@@ -137,6 +142,7 @@ const THRUST: &[Column] = &[c(&["AOut"], Plain)];
 const VOLTAGE: &[Column] = &[c(&["Volt"], Volts)];
 const CURRENT: &[Column] = &[c(&["Curr"], Amperes)];
 const RPM: &[Column] = &[c(&["RPM"], RevolutionsPerMinute)];
+const COMPENSATION: &[Column] = &[c(&["BatVolt"], Plain)];
 const ARM_STATE: &[Column] = &[c(&["ArmState", "Armed"], Plain)];
 const FLYING: &[Column] = &[c(&["isFlying"], Plain)];
 
@@ -156,6 +162,42 @@ const OUTPUTS: &[Column] = &[
     c(&["C13"], Microseconds),
     c(&["C14"], Microseconds),
 ];
+const FURTHER_OUTPUTS: &[Column] = &[
+    c(&["C15"], Microseconds),
+    c(&["C16"], Microseconds),
+    c(&["C17"], Microseconds),
+    c(&["C18"], Microseconds),
+];
+const LAST_OUTPUTS: &[Column] = &[
+    c(&["C19"], Microseconds),
+    c(&["C20"], Microseconds),
+    c(&["C21"], Microseconds),
+    c(&["C22"], Microseconds),
+    c(&["C23"], Microseconds),
+    c(&["C24"], Microseconds),
+    c(&["C25"], Microseconds),
+    c(&["C26"], Microseconds),
+    c(&["C27"], Microseconds),
+    c(&["C28"], Microseconds),
+    c(&["C29"], Microseconds),
+    c(&["C30"], Microseconds),
+    c(&["C31"], Microseconds),
+    c(&["C32"], Microseconds),
+];
+
+/// What kind of target it is, and whether its height is above the ground.
+const TARGET: [Column; 2] = [c(&["Type"], Plain), c(&["Terrain"], Plain)];
+const TARGET_PLACE: &[Column] =
+    &[TARGET[0], TARGET[1], c(&["pX"], Metres), c(&["pY"], Metres), c(&["pZ"], Downwards)];
+const TARGET_SPEED: &[Column] =
+    &[TARGET[0], TARGET[1], c(&["vX"], MetresPerSecond), c(&["vY"], MetresPerSecond), c(&["vZ"], Downwards)];
+const TARGET_ACCELERATION: &[Column] = &[
+    TARGET[0],
+    TARGET[1],
+    c(&["aX"], MetresPerSecondSquared),
+    c(&["aY"], MetresPerSecondSquared),
+    c(&["aZ"], Downwards),
+];
 
 const fn position(
     message: &'static str,
@@ -166,13 +208,23 @@ const fn position(
     Topic::new(message, quantity, columns, world).part("PSC", Part::Index(axis))
 }
 
-const fn motors(
-    message: &'static str,
-    columns: &'static [Column],
-    convert: Convert,
-    quantity: Quantity,
-) -> Topic {
-    Topic::new(message, quantity, columns, convert).demands(Demand::RatesInDegrees)
+/// Of the rate controller. `before` is how many times one of now a number before Copter 3.4 was: rates were in hundredths of
+/// degrees, torques of 4500, thrusts of 1000.
+const fn rate(quantity: Quantity, columns: &'static [Column], convert: Convert, before: f64) -> Topic {
+    Topic::new("RATE", quantity, columns, convert).demands(Demand::Rates(before))
+}
+
+const fn outputs(message: &'static str, columns: &'static [Column], first: usize) -> Topic {
+    let topic = Topic::new(message, ActuatorCommand, columns, channels).demands(Demand::AsManyAsThere);
+    topic.part("RCOU", Part::From(first))
+}
+
+const fn rotor(message: &'static str, part: Part) -> Topic {
+    Topic::new(message, RotorSpeed, RPM, as_is).part("ESC", part)
+}
+
+const fn target(quantity: Quantity, columns: &'static [Column]) -> Topic {
+    Topic::new("GUIP", quantity, columns, guided).demands(Demand::Units)
 }
 
 const fn estimator(message: &'static str) -> [Topic; 3] {
@@ -227,14 +279,34 @@ pub(super) const TOPICS: &[&[Topic]] = &[
     ],
     // rate controller and outputs
     &[
-        motors("RATE", RATES, body, AngularRate),
-        motors("RATE", DESIRED_RATES, body, AngularRateSetpoint),
-        motors("RATE", TORQUE, body, TorqueSetpoint),
-        motors("RATE", THRUST, as_is, ThrustSetpoint),
-        Topic::new("RCOU", ActuatorCommand, OUTPUTS, channels).demands(Demand::AsManyAsThere),
+        rate(AngularRate, RATES, body, 100.0),
+        rate(AngularRateSetpoint, DESIRED_RATES, body, 100.0),
+        rate(TorqueSetpoint, TORQUE, body, 4500.0),
+        rate(ThrustSetpoint, THRUST, as_is, 1000.0),
+        outputs("RCOU", OUTPUTS, 0),
+        outputs("RCO2", FURTHER_OUTPUTS, 14),
+        outputs("RCO3", LAST_OUTPUTS, 18),
         // before 3.2
         Topic::new("MOT", ActuatorCommand, OUTPUTS, channels).demands(Demand::AsManyAsThere),
-        Topic::new("ESC", RotorSpeed, RPM, as_is).part("ESC", Part::OfInstance),
+        Topic::new("MOTB", BatteryCompensation, COMPENSATION, as_is),
+        rotor("ESC", Part::OfInstance),
+    ],
+    // a message each before 4.1
+    &[
+        rotor("ESC1", Part::Index(0)),
+        rotor("ESC2", Part::Index(1)),
+        rotor("ESC3", Part::Index(2)),
+        rotor("ESC4", Part::Index(3)),
+        rotor("ESC5", Part::Index(4)),
+        rotor("ESC6", Part::Index(5)),
+        rotor("ESC7", Part::Index(6)),
+        rotor("ESC8", Part::Index(7)),
+    ],
+    // what was asked for in GUIDED
+    &[
+        target(PositionSetpoint, TARGET_PLACE),
+        target(VelocitySetpoint, TARGET_SPEED),
+        target(AccelerationSetpoint, TARGET_ACCELERATION),
     ],
     // position controller, an axis a message
     &[

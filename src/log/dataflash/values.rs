@@ -6,6 +6,8 @@ use crate::frames::{attitude_from_euler_frd_ned, attitude_from_frd_ned, body_fro
 pub(super) const MOST: usize = 32;
 /// An output that puts out nothing.
 const NO_OUTPUT: f64 = 65_535.0;
+/// A target of position, velocity and acceleration together, as a trajectory is.
+const TRAJECTORY: f64 = 3.0;
 /// A receiver with fewer than three dimensions has no velocity.
 const FIX_3D: f64 = 3.0;
 
@@ -76,9 +78,20 @@ pub(super) fn quaternion(values: &mut Values) {
     values.set(&[q.w, q.i, q.j, q.k]);
 }
 
+/// Kind of a target, whether its height is above the ground, and a vector in the world.
+pub(super) fn guided(values: &mut Values) {
+    let Some([kind, above_ground, x, y, z]) = values.first() else { return values.set(&[]) };
+    if kind != TRAJECTORY || above_ground != 0.0 {
+        return values.set(&[]);
+    }
+    values.set(&[x, y, z]);
+    world(values);
+}
+
 /// Outputs up to the last one that puts out something.
 pub(super) fn channels(values: &mut Values) {
-    let used = values.get().iter().rposition(|output| *output != 0.0).map_or(0, |last| last + 1);
+    let puts_out = |output: &f64| *output != 0.0 && !output.is_nan();
+    let used = values.get().iter().rposition(puts_out).map_or(0, |last| last + 1);
     values.count = used;
     for value in &mut values.list[..used] {
         if *value == NO_OUTPUT {
@@ -116,7 +129,9 @@ mod tests {
         let up = converted(euler, &[0.0, 0.2, 0.0]);
         assert!((up[2] + 0.1_f64.sin()).abs() < 1e-12 && up[1] == 0.0);
         assert_eq!(converted(quaternion, &[0.0; 4]), [0.0; 0]);
-        assert_eq!(converted(channels, &[1500.0, 65_535.0, 1400.0, 0.0])[2..], [1400.0]);
+        assert_eq!(converted(channels, &[1500.0, 65_535.0, 1400.0, 0.0, f64::NAN])[2..], [1400.0]);
+        assert_eq!(converted(guided, &[3.0, 0.0, 1.0, 2.0, 3.0]), [1.0, -2.0, -3.0]);
+        assert_eq!(converted(guided, &[4.0, 0.0, 1.0, 2.0, 3.0]), [0.0; 0]);
         // to the east
         let east = converted(course, &[2.0, std::f64::consts::FRAC_PI_2, 0.5, 3.0]);
         assert!((east[1] + 2.0).abs() < 1e-12 && east[2] == -0.5);

@@ -14,6 +14,7 @@ use super::states::{IN_AIR, Meaning, ON_GROUND, States, meaning};
 use super::tally::Tally;
 use super::topics::{Demand, Part};
 use crate::autopilot::{ARDUPILOT, Autopilot};
+use crate::frames::Geodetic;
 use crate::log::error::LogError;
 use crate::log::format::Sink;
 use crate::recording::{Event, Quantity};
@@ -23,12 +24,13 @@ const INFORMATION: u8 = 6;
 const ERROR: u8 = 3;
 /// Parameters and messages of the simulator tell the truth that is to be found out.
 const SIMULATOR: &str = "SIM_";
-/// Parameters of Copter 3.4 and later.
-const RATES_IN_DEGREES: &str = "ATC_RAT_";
+/// Parameters of Copter 3.4 and later, and of those before: whether rates are as they are now.
+const RATES: [(&str, bool); 2] = [("ATC_RAT_", true), ("RATE_RLL_", false)];
 const STATES: &str = "EV";
 /// Tells of arming when it changes; others tell it again and again.
 const CHANGES: &str = "ARM";
 const BATCHES: &str = "ISBD";
+const PLACES: &str = "POS";
 
 /// Gives a log's messages one after the other.
 pub(super) trait Messages {
@@ -59,7 +61,8 @@ pub(super) fn walk(messages: &mut impl Messages, sink: &mut Sink<'_>) -> Result<
         began_s: None,
         armed_s: None,
         jumps: Vec::new(),
-        rates_in_degrees: false,
+        origin: None,
+        rates_as_now: None,
         walked: Walked::default(),
     };
     walk.routes.resize_with(256, || None);
@@ -83,7 +86,10 @@ struct Walk<'a, 'b> {
     armed_s: Option<f64>,
     /// by how much the estimate jumped last, by message
     jumps: Vec<(u8, f64, f64)>,
-    rates_in_degrees: bool,
+    /// where on the earth positions are counted from
+    origin: Option<Geodetic>,
+    /// rates are in the units of now, as far as it is known
+    rates_as_now: Option<bool>,
     walked: Walked,
 }
 
@@ -122,6 +128,9 @@ impl Walk<'_, '_> {
             None => None,
         };
         let time_s = own_s.unwrap_or_else(|| self.walked.clock.now_s());
+        while let Some((topic, time_s, values)) = self.join.due(time_s) {
+            self.out.values(topic, 0, time_s, &values);
+        }
         for route in &routes.streams {
             self.sample(message, route, instance, own_s, time_s);
         }
@@ -142,7 +151,12 @@ impl Walk<'_, '_> {
         time_s: f64,
     ) {
         let topic = route.topic;
-        let mut values = route.values(message);
+        let times = match topic.demands {
+            Demand::Rates(_) if route.has_units => Some(1.0),
+            Demand::Rates(before) => self.rates_as_now.map(|as_now| if as_now { 1.0 } else { before }),
+            _ => Some(1.0),
+        };
+        let mut values = route.values(message, times.unwrap_or(1.0));
         // states are kept, and told again; yes and no are those of armed, or of in the air
         let states = match topic.quantity {
             Quantity::Armed => Some([0.0, 1.0]),
@@ -162,7 +176,7 @@ impl Walk<'_, '_> {
             self.walked.tally.without_time += 1;
             return;
         };
-        if topic.demands == Demand::RatesInDegrees && !(self.rates_in_degrees || route.has_units) {
+        if times.is_none() {
             self.walked.tally.unknown_unit += 1;
             return;
         }
@@ -175,10 +189,9 @@ impl Walk<'_, '_> {
                 return;
             }
             Some(Part::OfInstance) => usize::from(instance),
-            Some(Part::Index(index)) => index,
+            Some(Part::Index(index) | Part::From(index)) => index,
         };
-        let value = values.get().first().copied().unwrap_or(f64::NAN);
-        if let Some((topic, time_s, values)) = self.join.take(topic, slot, time_s, value) {
+        if let Some((topic, time_s, values)) = self.join.take(topic, slot, time_s, values.get()) {
             self.out.values(topic, 0, time_s, &values);
         }
     }
@@ -222,6 +235,7 @@ impl Walk<'_, '_> {
                 self.jumped(message.definition.number, number(0), number(1), time_s);
             }
             Special::Jump => {}
+            Special::Place => self.place([number(0), number(1)], number(2), time_s),
             Special::Dropped => self.walked.dropped = self.walked.dropped.max(count(number(0))),
             Special::BatchHead => self.batches.head(message, fields),
             Special::BatchData => self.batch(message, fields),
@@ -233,7 +247,8 @@ impl Walk<'_, '_> {
             self.walked.withheld += 1;
             return;
         }
-        self.rates_in_degrees |= name.starts_with(RATES_IN_DEGREES);
+        let of_rates = RATES.iter().find(|(beginning, _)| name.starts_with(beginning));
+        self.rates_as_now = of_rates.map(|(_, as_now)| *as_now).or(self.rates_as_now);
         self.walked.identity.parameter(name, value);
         self.out.give(Event::Parameter { name, value });
     }
@@ -266,6 +281,17 @@ impl Walk<'_, '_> {
             }
             None => self.jumps.push((message, north_m, east_m)),
         }
+    }
+
+    /// Positions are counted from the first place.
+    fn place(&mut self, [latitude_deg, longitude_deg]: [f64; 2], height_m: f64, time_s: f64) {
+        let place = Geodetic { latitude_deg, longitude_deg };
+        // before the first fix it is nowhere
+        if latitude_deg == 0.0 && longitude_deg == 0.0 || !(latitude_deg + longitude_deg).is_finite() {
+            return;
+        }
+        let [north_m, west_m] = place.north_west_m(self.origin.get_or_insert(place));
+        self.out.sample(Quantity::Position, PLACES, 0, time_s, &[north_m, west_m, height_m]);
     }
 
     fn batch(&mut self, message: &Message<'_>, fields: &[usize]) {

@@ -67,6 +67,7 @@ fn topics(report: &UlogReport) -> Vec<Topic> {
         count: topic.count,
         span_s: topic.stamps_us.map(|(first, last)| (seconds(first), seconds(last))),
         is_used: is_read(&topic.topic),
+        is_known: is_read(&topic.topic),
     };
     let mut topics: Vec<Topic> = report.topics.iter().filter(|topic| topic.count > 0).map(topic).collect();
     topics.sort_by(|a, b| (&a.name, a.instance).cmp(&(&b.name, b.instance)));

@@ -231,8 +231,11 @@ fn onboard(page: &mut String, inspection: &Inspection, reading: &OnboardReading)
         let rate = topic.rate_hz.map_or_else(String::new, |hz| format!(" at {hz:.1} Hz"));
         format!("{}{instance} {}{rate}", topic.name, topic.count)
     };
-    for (name, is_used) in [("used", true), ("not used", false)] {
-        let topics: Vec<_> = reading.topics.iter().filter(|topic| topic.is_used == is_used).collect();
+    for (name, use_of) in
+        [("used", (true, true)), ("known, not used", (false, true)), ("not used", (false, false))]
+    {
+        let of_use = |topic: &&TopicSummary| (topic.is_used, topic.is_known) == use_of;
+        let topics: Vec<_> = reading.topics.iter().filter(of_use).collect();
         if !topics.is_empty() {
             row(page, name, listed(topics.into_iter().map(told)));
         }
