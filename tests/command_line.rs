@@ -51,6 +51,27 @@ fn json_is_one_document_and_messages_stay_off_it() {
 }
 
 #[test]
+fn a_missing_vehicle_is_told_with_both_ways_to_give_it() {
+    for arguments in [
+        &["identify", "x.tlog"][..],
+        &["explain", "x.tlog"],
+        &["fly", "--connect", "udpin:127.0.0.1:0", "--trajectory", "t.toml", "--out", "o"],
+    ] {
+        let output = mavid(arguments);
+        assert_eq!(output.status.code(), Some(2));
+        let said = stderr(&output);
+        assert!(said.contains("--vehicle <FILE>") && said.contains("--mass <KG>"), "{said}");
+    }
+}
+
+#[test]
+fn a_vehicle_file_in_place_of_a_log_is_told_so() {
+    let output = mavid(&["inspect", &config("x500.toml")]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("got a vehicle file or a model: give the log"), "{}", stderr(&output));
+}
+
+#[test]
 fn bad_input_and_bad_usage_are_status_two_with_nothing_on_stdout() {
     let path = written("typo.toml", "nmae = \"x\"\n");
     let typo = path.to_str().unwrap();

@@ -8,10 +8,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use mavid::config::read_vehicle;
-use mavid::diagnose::{ExplainSettings, explain};
+use mavid::diagnose::{Expected, ExplainSettings, expected_errors, explain};
 use mavid::inspect::{Inspection, QuantitySummary, inspect};
 use mavid::log::{self, OpenOptions};
-use mavid::signals::{ConditionSettings, condition};
+use mavid::signals::{ConditionSettings, ThrustPreference, condition};
+use mavid::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight};
 use mavid::vehicle::Vehicle;
 
 fn fixture(name: &str) -> PathBuf {
@@ -80,6 +81,24 @@ fn without_a_vehicle_errors_are_relative_and_much_the_same() {
         assert!(quantity(&without, name).expected.iter().all(|one| one.std.is_none()), "{name}");
     }
     assert!(quantity(&without, "drag").expected.iter().all(|one| one.unit == "1/s"));
+}
+
+/// Rotor speeds are behind the motors: what they lag is not in them. Commands beside them tell it.
+#[test]
+fn a_lag_is_not_promised_of_measured_rotor_speeds() {
+    let pair = random_vehicle(5);
+    let trajectory = RandomTrajectory::default().draw(5).unwrap();
+    let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
+    let settings = FlightSettings { seed: 5, duration_s: 30.0, ..FlightSettings::default() };
+    let flight = simulate_flight(Truth::clean(pair.truth), &pair.nominal, &reference, &settings).unwrap();
+    let expected = |thrust| {
+        let settings = ConditionSettings { thrust, ..ConditionSettings::default() };
+        let signals = condition(&flight.recording, &pair.nominal, &settings).unwrap();
+        let errors = expected_errors(&[signals], &pair.nominal).unwrap();
+        errors.into_iter().find(|error| error.quantity == "motor_lag").unwrap().of
+    };
+    assert_eq!(expected(ThrustPreference::Measured), Expected::Measured);
+    assert!(matches!(expected(ThrustPreference::Commands), Expected::Known { .. }));
 }
 
 #[test]

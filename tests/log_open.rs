@@ -92,6 +92,11 @@ fn a_file_of_no_known_format_is_named_with_what_to_do() {
         (b"%PDF-1.4\n1 0 obj", "a PDF document", "the log itself"),
         (b"{\"a\": 1, \"b\": 2}", "JSON", "table"),
         (
+            b"# of a, b and c\nname = \"x\"\n\n[body] # weighed\nmass = 1.0\n[propulsion]\n",
+            "a vehicle file or a model",
+            "`mavid vehicle FILE`",
+        ),
+        (
             b"Dear reader\nno table here\n",
             "text that is no log and has no header of columns",
             "names its columns",

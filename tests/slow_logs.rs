@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
 
+use mavid::diagnose::joint::{Found, RequestedEffects, identify_jointly};
 use mavid::diagnose::{ExplainSettings, Explanation, Verdict, explain};
 use mavid::estimate::{Finding, IdentifySettings, identify};
 use mavid::physics::ActiveEffect;
@@ -95,10 +96,36 @@ fn drag_is_named_with_its_size() {
     let found = explained(vec![ActiveEffect::named("linear_drag", &concealed, &size).unwrap()]);
     let [named] = &found.named[..] else { panic!("{:?}", found.named) };
     assert_eq!(named.id, "linear_drag");
+    // where it acts shows in torques alone
+    assert!(named.parameters.iter().all(|parameter| parameter.name != "at_hubs"), "{:?}", named.parameters);
     for parameter in named.parameters.iter().take(3) {
         let error = (parameter.value - drag).abs();
         assert!(error < 0.1 * drag && error < 3.0 * parameter.std, "{parameter:?}, concealed {drag}");
     }
+}
+
+/// Forces alone tell neither the latency from command to rotor nor which rotor is weak.
+#[test]
+fn what_needs_torques_is_not_determined_together_with_the_rigid_body() {
+    let signals = conditioned(&slow(flown(Vec::new()), 10.0)).unwrap();
+    let identified = |names: &[&str]| {
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        let wanted = RequestedEffects::of(&names).unwrap();
+        identify_jointly(std::slice::from_ref(&signals), (&pair().nominal, &[]), &wanted, 0.2)
+    };
+    let found = identified(&["motor_lag", "linear_drag"]).unwrap();
+    assert!(!found.latency.is_determined(), "{:?}", found.latency);
+    let reason = |effect: &str, parameter: &str| {
+        let of = found.effects.iter().find(|of| of.effect.id() == effect).unwrap();
+        let of = of.parameters.iter().find(|of| of.name == parameter).unwrap();
+        let Found::NotDetermined { reason, .. } = &of.found else { panic!("{of:?}") };
+        reason.clone()
+    };
+    assert!(reason("motor_lag", "time_constant").contains("forces alone do not tell it"));
+    assert!(!reason("linear_drag", "at_hubs").is_empty());
+    assert!(found.acting.iter().all(|effect| effect.effect().id() != "motor_lag"));
+    let refused = identified(&["weak_rotor"]).unwrap_err().to_string();
+    assert!(refused.contains("fast actuator commands and body rates"), "{refused}");
 }
 
 #[test]

@@ -101,6 +101,7 @@ pub static ARDUPILOT: Stack = Stack {
         // motor emergency stop, and arming with it
         kill: KillSwitch::Option { option: numbered("RC", "_OPTION"), channels: 5..=16, stops: [31, 165] },
     },
+    height_by_pose: &[("EK3_SRC1_POSZ", 6.0)],
 };
 
 pub(crate) const STABILIZE: FlightMode = mode(0, "STABILIZE", Pilot);

@@ -152,6 +152,8 @@ pub static PX4: Stack = Stack {
         shows_unknown: false,
         kill: KillSwitch::Channel("RC_MAP_KILL_SW"),
     },
+    // until 1.13 EKF2_HGT_MODE
+    height_by_pose: &[("EKF2_HGT_REF", 3.0), ("EKF2_HGT_MODE", 3.0)],
 };
 
 pub(crate) const ALTITUDE: FlightMode = mode(2, 0, "ALTCTL", "Altitude", Pilot, 1);

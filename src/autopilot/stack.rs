@@ -52,6 +52,8 @@ pub struct Stack {
     pub log_settings: Logging,
     /// how a pilot takes over
     pub pilot: PilotSwitches,
+    /// parameters that say what gives the height, with the value of motion capture or a camera
+    pub height_by_pose: &'static [(&'static str, f64)],
 }
 
 /// There is one table of each autopilot.
@@ -104,6 +106,13 @@ impl Stack {
     #[must_use]
     pub fn failsafe(&self, parameter: &str) -> Option<&'static Failsafe> {
         self.failsafes.iter().find(|failsafe| failsafe.parameter == parameter)
+    }
+
+    /// Whether motion capture or a camera gives the height, by the value of each parameter; `None` where no parameter that says
+    /// so is known.
+    #[must_use]
+    pub fn has_height_by_pose(&self, value: impl Fn(&str) -> Option<f64>) -> Option<bool> {
+        self.height_by_pose.iter().find_map(|(name, pose)| Some(value(name)?.round() == *pose))
     }
 
     /// The autopilot's own name of what is asked for.

@@ -1,21 +1,30 @@
 //! Arguments of the verb that flies a vehicle.
 
 use super::address::ADDRESS;
-use clap::{Args, ValueEnum};
+use super::given::ShapeArgs;
+use clap::{ArgGroup, Args, ValueEnum};
 use mavid::fly::SETPOINT_HZ;
 use std::path::PathBuf;
 
 /// Arguments of `mavid fly`.
 #[derive(Debug, Clone, Args)]
+#[command(group = ArgGroup::new("flown").required(true).args(["vehicle", "mass"]))]
 pub struct FlyArgs {
     #[arg(long, value_name = "ADDRESS", help = ADDRESS)]
     pub connect: String,
     /// trajectory.toml
     #[arg(long, value_name = "FILE")]
     pub trajectory: PathBuf,
-    /// vehicle.toml, or a model
-    #[arg(long, value_name = "FILE")]
-    pub vehicle: PathBuf,
+    /// vehicle.toml, or a model; required without --mass
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["size", "frame"])]
+    pub vehicle: Option<PathBuf>,
+    /// in place of --vehicle: mass with battery, kg. The rest comes from the vehicle's parameters and rules of thumb, and is
+    /// written into the folder of the flight
+    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    pub mass: Option<f64>,
+    /// its shape
+    #[command(flatten)]
+    pub shape: ShapeArgs,
     /// new folder for recording, events, parameters and results
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,

@@ -1,6 +1,6 @@
 //! How a vehicle is given: by a file, or by its mass and shape.
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use mavid::autopilot::{FRAMES, Frame};
 use mavid::draft::Given;
 use mavid::study::VehicleGiven;
@@ -8,9 +8,10 @@ use std::path::PathBuf;
 
 /// The vehicle of a log: a file, or its mass and size.
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("known").required(true).args(["vehicle", "mass"]))]
 pub struct GivenArgs {
     /// vehicle.toml or model.toml; required without --mass
-    #[arg(long, value_name = "FILE", required_unless_present = "mass", conflicts_with_all = ["mass", "size", "frame"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["size", "frame"])]
     pub vehicle: Option<PathBuf>,
     /// in place of --vehicle: mass with battery, kg. The rest comes from the log's parameters, the flight and rules of thumb
     #[arg(long, value_name = "KG", allow_negative_numbers = true)]
@@ -21,12 +22,12 @@ pub struct GivenArgs {
 }
 
 /// With --mass: the shape of the vehicle.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub struct ShapeArgs {
     /// with --mass: distance from motor to motor across the centre, m; without it, what depends on the arms is not determined
     #[arg(long, value_name = "M", requires = "mass", allow_negative_numbers = true)]
     pub size: Option<f64>,
-    /// with --mass, if the log does not say where the motors are: quadrotor-x, quadrotor-plus, hexarotor-x, ...
+    /// with --mass, if log or parameters do not say where the motors are: quadrotor-x, quadrotor-plus, hexarotor-x, ...
     #[arg(long, value_name = "FRAME", requires = "mass", value_parser = frame)]
     pub frame: Option<&'static Frame>,
 }

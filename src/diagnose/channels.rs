@@ -69,6 +69,13 @@ pub struct NuisanceColumn {
 }
 
 impl NuisanceColumn {
+    /// Its value in a row of a channel; zero where it has none.
+    #[must_use]
+    pub fn at(&self, channel: usize, row: usize) -> f64 {
+        let of_row = row.checked_sub(self.first_row).and_then(|place| self.values[channel].get(place));
+        of_row.copied().unwrap_or(0.0)
+    }
+
     /// The column of one flight among the rows of all, of which its own begin at `first`.
     pub(super) fn among(self, first: usize) -> Self {
         Self { first_row: self.first_row + first, ..self }
@@ -83,6 +90,15 @@ pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3
     let second = if trace.reads_force_twice() { force.clone() } else { nothing() };
     let ([fx, fy, fz], [tx, ty, tz], [kx, ky, kz]) = (force, torque, second);
     [fx, fy, fz, tx, ty, tz, kx, ky, kz]
+}
+
+/// Whether a flight measures a channel. The others are zero.
+pub(super) fn measures(trace: &Trace, channel: usize) -> bool {
+    match channel {
+        0..3 => true,
+        3..AXES => trace.torques,
+        _ => trace.reads_force_twice(),
+    }
 }
 
 pub(super) fn nothing(trace: &Trace) -> [Vec<f64>; 3] {

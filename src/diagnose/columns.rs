@@ -146,11 +146,12 @@ impl Columns {
         out
     }
 
-    /// `sum_c sum_|l|<=L w_c(l) sum_t x_c(t) x_c(t+l)'`, where no pair of rows spans a break between `runs`; `weights` has for
-    /// each channel one weight a lag, from 0 to L.
-    pub(super) fn correlated(&self, weights: &[Vec<f64>], runs: &[Range<usize>]) -> DMatrix<f64> {
+    /// `sum_c sum_|l|<=L w_c(l) sum_t x_c(t) x_c(t+l)'`, where no pair of rows spans a break between the runs of the channel;
+    /// `weights` has for each channel one weight a lag, from 0 to L.
+    pub(super) fn correlated(&self, weights: &[Vec<f64>], runs: &[Vec<Range<usize>>]) -> DMatrix<f64> {
         let along = |column: &Vec<Piece>| -> Vec<f64> {
-            let smeared = |piece: &Piece| Some(piece.smeared(weights.get(piece.channel)?, runs));
+            let smeared =
+                |piece: &Piece| Some(piece.smeared(weights.get(piece.channel)?, runs.get(piece.channel)?));
             let smeared: Vec<Piece> = column.iter().filter_map(smeared).collect();
             self.columns.iter().map(|other| shared(&smeared, other)).collect()
         };
@@ -255,7 +256,7 @@ mod tests {
     #[test]
     fn pairs_of_rows_within_reach_count_unless_a_break_is_between() {
         let matrix = columns();
-        let (runs, weights) = ([0..24, 24..60], vec![vec![1.0, 0.5, 0.25]; CHANNELS]);
+        let (runs, weights) = (vec![0..24, 24..60], vec![vec![1.0, 0.5, 0.25]; CHANNELS]);
         let mut expected = DMatrix::<f64>::zeros(3, 3);
         for (channel, run) in (0..CHANNELS).flat_map(|channel| runs.iter().map(move |run| (channel, run))) {
             for (t, s) in run.clone().flat_map(|t: usize| run.clone().map(move |s| (t, s))) {
@@ -264,7 +265,7 @@ mod tests {
                 expected += a.transpose() * b * *weight;
             }
         }
-        let found = Columns::of(&matrix, ROWS).correlated(&weights, &runs);
+        let found = Columns::of(&matrix, ROWS).correlated(&weights, &vec![runs; CHANNELS]);
         assert!((&found - &expected).amax() < 1e-9, "{found} {expected}");
     }
 

@@ -4,7 +4,7 @@
 //! one with drag partly at the hubs. One point together with damping is the simpler description.
 
 use super::fit::{Fitted, Newton, fit};
-use super::signature::EffectTerm;
+use super::price::Price;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 
@@ -18,7 +18,7 @@ const NEAR_STD: f64 = 3.0;
 ///
 /// # Errors
 /// [`PhysicsError`] where the estimate leaves what is physical.
-pub(super) fn one_place(flights: &[Trace], after: &mut Fitted, price: f64) -> Result<bool, PhysicsError> {
+pub(super) fn one_place(flights: &[Trace], after: &mut Fitted, price: Price) -> Result<bool, PhysicsError> {
     let Some((place, slot)) = divided(after) else { return Ok(false) };
     let mut best: Option<(f64, Fitted)> = None;
     for at_hubs in [0.0, 1.0] {
@@ -33,13 +33,13 @@ pub(super) fn one_place(flights: &[Trace], after: &mut Fitted, price: f64) -> Re
             }
         }
         let fitted = fit(flights, base, Newton::Held)?;
-        let cost = cost(&fitted, price);
+        let cost = price.cost(&fitted);
         if best.as_ref().is_none_or(|(least, _)| cost < *least) {
             best = Some((cost, fitted));
         }
     }
     match best {
-        Some((least, fitted)) if least < cost(after, price) => {
+        Some((least, fitted)) if least < price.cost(after) => {
             *after = fitted;
             Ok(true)
         }
@@ -55,19 +55,10 @@ fn divided(fitted: &Fitted) -> Option<(usize, usize)> {
             let near = (NEAR_STD * fitted.covariance[(index, index)].max(0.0).sqrt()).max(NEAR);
             index += 1;
             let value = present.values[slot];
-            if is_share(present, slot) && value > near && value < 1.0 - near {
+            if present.is_share_at_hubs(slot) && value > near && value < 1.0 - near {
                 return Some((place, slot));
             }
         }
     }
     None
-}
-
-fn is_share(present: &EffectTerm, slot: usize) -> bool {
-    present.parameter(slot).is_some_and(|parameter| parameter.name == "at_hubs")
-}
-
-/// Twice the negative log-likelihood plus `price` for each column.
-pub(super) fn cost(fitted: &Fitted, price: f64) -> f64 {
-    2.0 * fitted.misfit() + price * fitted.rows.effects.len() as f64
 }

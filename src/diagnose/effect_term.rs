@@ -52,6 +52,11 @@ impl EffectTerm {
         self.signature.amounts.contains(&slot)
     }
 
+    /// Whether a parameter is the share of a force that acts at the rotors' hubs: it shows only in torques.
+    pub(super) fn is_share_at_hubs(&self, slot: usize) -> bool {
+        self.parameter(slot).is_some_and(|parameter| parameter.name == "at_hubs")
+    }
+
     /// Value of a parameter at which the effect vanishes.
     #[must_use]
     pub fn nothing_at(&self, slot: usize) -> f64 {

@@ -6,7 +6,7 @@
 
 use super::channels::{CHANNELS, Channels};
 use super::columns::Columns;
-use super::priors::{OF_KERNEL, Priors, READINGS};
+use super::priors::{OF_KERNEL, Priors};
 use super::rows::Rows;
 use crate::stats::{chance_by_stretches, normal_deviate};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -14,18 +14,15 @@ use std::ops::Range;
 
 /// Least number of rows for the cluster test over twelve blocks. Chosen: ten rows a block.
 pub(super) const LEAST_ROWS: usize = 120;
-/// Number of neighbouring rows whose kernels overlap: the kernel is 0.4 s wide and rows are 0.05 s apart.
-const OVERLAP: usize = 8;
-/// Longest residual correlation that is allowed for, rows (6 s). Chosen; not measured.
-const MOST_LAGS: usize = 120;
-/// Least width of the Bartlett window of the scores, rows (1 s). Chosen; not measured.
-const SCORE_LAGS: usize = 20;
 
 /// Rows weighted by each channel's residual, and the nuisances' projection.
 #[derive(Debug, Clone)]
 pub struct Weighted {
-    runs: Vec<Range<usize>>,
-    rows: usize,
+    /// rows without a break between them
+    pub(super) runs: Vec<Range<usize>>,
+    /// the same at which each channel is measured
+    pub(super) measured: [Vec<Range<usize>>; CHANNELS],
+    pub(super) rows: usize,
     /// residual standard deviation of each channel, N and N m
     pub sigma: [f64; CHANNELS],
     /// nuisances and the base's own effects, weighted
@@ -77,11 +74,11 @@ impl Weighted {
     /// its residual.
     #[must_use]
     pub fn new(rows: &Rows) -> Self {
-        let mut sigma: [f64; CHANNELS] = std::array::from_fn(|channel| spread(&rows.residual[channel]));
+        let mut sigma: [f64; CHANNELS] = std::array::from_fn(|channel| spread(rows, channel));
         let mut this = Self::at(rows, &sigma);
         for _ in 0..2 {
             sigma = this.residual_sigma();
-            this = Self::with(rows, &sigma, READINGS * this.long_run_deviation().powi(2));
+            this = Self::with(rows, &sigma, this.long_run_deviation().powi(2));
         }
         this
     }
@@ -89,10 +86,15 @@ impl Weighted {
     /// The same with given standard deviations of the channels (N, N m), for simulated flights.
     #[must_use]
     pub fn at(rows: &Rows, sigma: &[f64; CHANNELS]) -> Self {
-        Self::with(rows, sigma, READINGS * OF_KERNEL)
+        Self::with(rows, sigma, OF_KERNEL)
     }
 
-    /// The same if this many rows count as one independent measurement of a slow error.
+    /// The same with the standard deviations and the correlation of other rows' residual.
+    pub(super) fn like(rows: &Rows, other: &Self) -> Self {
+        Self::with(rows, &other.sigma, other.long_run_deviation().powi(2))
+    }
+
+    /// The same if this many rows of a reading count as one independent measurement of a slow error.
     fn with(rows: &Rows, sigma: &[f64; CHANNELS], alike: f64) -> Self {
         let nuisances = Columns::weighted(&rows.nuisances, &rows.effects, sigma, rows.len());
         let priors = Priors::of(&rows.nuisances, nuisances.len(), alike);
@@ -106,6 +108,7 @@ impl Weighted {
         }
         let mut this = Self {
             runs: rows.runs.clone(),
+            measured: rows.measured.clone(),
             rows: rows.len(),
             sigma: *sigma,
             nuisances,
@@ -127,11 +130,17 @@ impl Weighted {
         part.iter().map(|value| value * self.sigma[channel]).collect()
     }
 
+    /// Number of rows at which a channel is measured.
+    #[must_use]
+    pub fn count_of(&self, channel: usize) -> usize {
+        self.measured[channel].iter().map(ExactSizeIterator::len).sum()
+    }
+
     /// Standard deviations of the residual of each channel.
     fn residual_sigma(&self) -> [f64; CHANNELS] {
         std::array::from_fn(|channel| {
             let part = self.left.rows(channel * self.rows, self.rows);
-            let std = (part.norm_squared() / self.rows.max(1) as f64).sqrt();
+            let std = (part.norm_squared() / self.count_of(channel).max(1) as f64).sqrt();
             if std > 0.0 { self.sigma[channel] * std } else { self.sigma[channel] }
         })
     }
@@ -162,7 +171,7 @@ impl Weighted {
         let bread = normal.inverse();
         let prior = DMatrix::from_diagonal(&self.prior_meat);
         let gammas = self.gammas(&self.left);
-        let by_residual = &bread * (self.nuisances.correlated(&gammas, &self.runs) + &prior) * &bread;
+        let by_residual = &bread * (self.meat_of_residual(&self.nuisances, &gammas) + &prior) * &bread;
         let scores = self.nuisances.scores(self.left.as_slice());
         let by_score = &bread * (self.meat_of_scores(&scores, &gammas) + &prior) * &bread;
         let mut covariance = DMatrix::from_fn(size, size, |i, j| {
@@ -227,7 +236,7 @@ impl Weighted {
         let gamma = self.gammas(&after);
         let tested = Columns::of(&partialled, self.rows);
         let scores = tested.scores(after.as_slice());
-        let by_residual = &inverse * (tested.correlated(&gamma, &self.runs) + &prior) * &inverse;
+        let by_residual = &inverse * (self.meat_of_residual(&tested, &gamma) + &prior) * &inverse;
         let by_score = &inverse * (self.meat_of_scores(&scores, &gamma) + &prior) * &inverse;
         let larger = scaled_trace(&by_residual, &normal) > scaled_trace(&by_score, &normal);
         let covariance = if larger { by_residual } else { by_score };
@@ -257,7 +266,7 @@ impl Weighted {
     fn rms(&self, series: &DVector<f64>) -> [f64; CHANNELS] {
         std::array::from_fn(|channel| {
             let part = series.rows(channel * self.rows, self.rows);
-            (part.norm_squared() / self.rows.max(1) as f64).sqrt() * self.sigma[channel]
+            (part.norm_squared() / self.count_of(channel).max(1) as f64).sqrt() * self.sigma[channel]
         })
     }
 
@@ -273,44 +282,6 @@ impl Weighted {
             out += row.transpose() * row * *variance;
         }
         out
-    }
-
-    /// Autocovariance of each channel up to the lag at which it has decayed, at least the kernels' overlap. Noise of an
-    /// estimator or of a poor accelerometer is correlated for seconds.
-    fn gammas(&self, residual: &DVector<f64>) -> Vec<Vec<f64>> {
-        (0..CHANNELS)
-            .map(|channel| {
-                let zero = self.autocovariance(residual, channel, 0);
-                let mut gamma = vec![zero];
-                for lag in 1..MOST_LAGS {
-                    let at = self.autocovariance(residual, channel, lag);
-                    gamma.push(at);
-                    if lag >= OVERLAP && at < 0.05 * zero {
-                        break;
-                    }
-                }
-                gamma
-            })
-            .collect()
-    }
-
-    fn autocovariance(&self, residual: &DVector<f64>, channel: usize, lag: usize) -> f64 {
-        let series = residual.rows(channel * self.rows, self.rows);
-        let (mut sum, mut count) = (0.0, 0usize);
-        for run in &self.runs {
-            for t in run.start..run.end.saturating_sub(lag) {
-                sum += series[t] * series[t + lag];
-                count += 1;
-            }
-        }
-        if count == 0 { 0.0 } else { sum / count as f64 }
-    }
-
-    /// Variance of the summed scores (Newey-West): a Bartlett window over their lags.
-    fn meat_of_scores(&self, scores: &Columns, gammas: &[Vec<f64>]) -> DMatrix<f64> {
-        let window = gammas.iter().map(Vec::len).max().unwrap_or(0).max(SCORE_LAGS);
-        let bartlett = (0..=window).map(|lag| 1.0 - lag as f64 / (window as f64 + 1.0)).collect();
-        scores.correlated(&[bartlett], &self.runs)
     }
 }
 
@@ -331,10 +302,12 @@ pub(super) fn weighted(column: &Channels, sigma: &[f64; CHANNELS]) -> DVector<f6
     )
 }
 
-fn spread(values: &[f64]) -> f64 {
-    let count = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+/// Standard deviation of a channel's residual about its mean, over the rows at which it is measured.
+fn spread(rows: &Rows, channel: usize) -> f64 {
+    let values = || rows.measured[channel].iter().flat_map(|run| &rows.residual[channel][run.clone()]);
+    let count = rows.count_of(channel).max(1) as f64;
+    let mean = values().sum::<f64>() / count;
+    (values().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 #[cfg(test)]

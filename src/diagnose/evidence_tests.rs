@@ -101,3 +101,24 @@ fn what_is_known_of_a_nuisance_counts_once() {
     all_near(&found.theta, &[0.385_276_648_962_127_43, -0.391_595_481_738_795_1]);
     all_near(&[found.energy, found.gain], &[144.469_871_519_824_04, 0.734_621_629_611_421_2]);
 }
+
+/// The last 90 of 240 rows are of a flight whose torques are not compared: there the channel is zero and does not count.
+#[test]
+fn rows_that_do_not_measure_a_channel_do_not_count_in_it() {
+    const MEASURED: usize = 150;
+    let (mut rows, _) = problem(None);
+    let nuisances = rows.nuisances.iter_mut().map(|column| &mut column.values);
+    for values in nuisances.chain(&mut rows.effects).chain([&mut rows.residual]) {
+        values[3][MEASURED..].fill(0.0);
+    }
+    let counted_everywhere = Weighted::new(&rows);
+    rows.measured[3].truncate(1);
+    let weighted = Weighted::new(&rows);
+    assert_eq!((weighted.count_of(3), weighted.count_of(0)), (MEASURED, 240));
+    let left = weighted.left_of(3);
+    let rms = (left.iter().map(|value| value * value).sum::<f64>() / MEASURED as f64).sqrt();
+    assert!((weighted.sigma[3] / rms - 1.0).abs() < 0.02, "{}, not {rms}", weighted.sigma[3]);
+    assert!((weighted.gammas(&weighted.left)[3][0] - 1.0).abs() < 0.04);
+    let ratio = counted_everywhere.sigma[3] / weighted.sigma[3];
+    assert!((ratio / (MEASURED as f64 / 240.0).sqrt() - 1.0).abs() < 0.02, "{ratio}");
+}

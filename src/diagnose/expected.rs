@@ -3,11 +3,12 @@
 
 use super::base::Base;
 use super::candidates::Candidate;
-use super::evidence::{Evidence, LEAST_ROWS};
+use super::evidence::{Evidence, LEAST_ROWS, Weighted};
 use super::explain::ExplainError;
 use super::fit::Fitted;
 use super::latency::with_any_latency;
 use super::recorded::Recorded;
+use super::rows::Rows;
 use super::score::columns_of;
 use super::signature::{Carried, EffectTerm, Signature};
 use super::signatures::{WANTED, Wanted};
@@ -73,10 +74,13 @@ pub fn expected_errors(flights: &[Signals], vehicle: &Vehicle) -> Result<Vec<Exp
     let flights = Flights { traces: &traces, fitted: &fitted, vehicle };
     let of = |wanted: &Wanted| ExpectedError {
         quantity: wanted.name,
-        of: if wanted.signature.role.latency.is_some() {
-            flights.known(wanted, wanted.signature.effect.parameters().first(), Some(latency_std_s))
-        } else {
-            flights.expected(wanted)
+        of: match wanted.signature.role.latency {
+            // what is measured is behind the motors
+            Some(_) if traces.iter().all(|trace| trace.measured_speeds) => Expected::Measured,
+            Some(_) => {
+                flights.known(wanted, wanted.signature.effect.parameters().first(), Some(latency_std_s))
+            }
+            None => flights.expected(wanted),
         },
     };
     Ok(WANTED.par_iter().map(of).collect())
@@ -123,8 +127,16 @@ impl Flights<'_> {
         }
     }
 
-    /// A term by itself, with the place of its first parameter among the columns.
+    /// A term by itself, with the place of its first parameter among the columns. A force of the air is tested beside the slow
+    /// error of the velocity that acts through it at its usual size, as in a fit that has it.
     fn alone(&self, term: EffectTerm) -> Option<(EffectTerm, Evidence, usize)> {
+        if term.signature.role.of_air {
+            let mut through = term.clone();
+            self.make_usual(&mut through, &term.free)?;
+            let (rows, weighted) = self.beside(&through)?;
+            let columns = rows.columns_of(self.traces, &self.with(&through), &term).ok()?;
+            return Some((term, weighted.test(&columns)?, 0));
+        }
         let columns = columns_of(self.traces, self.fitted, &Candidate::alone(term.clone()))?;
         Some((term, self.fitted.weighted.test(&columns)?, 0))
     }
@@ -133,17 +145,35 @@ impl Flights<'_> {
     fn carried(&self, carried: &Carried) -> Option<(EffectTerm, Evidence, usize)> {
         let Carried { carrier, unit, term } = carried;
         let mut through = unit.clone();
-        for slot in &carrier.free {
-            let usual = carrier.signature.naming.usual;
-            let name = carrier.parameter(*slot)?.name;
-            through.values[*slot] = usual(name, &self.fitted.base.vehicle)?;
-        }
-        let mut base = self.fitted.base.clone();
-        base.present.push(through);
-        let rows = &self.fitted.rows;
-        let mut columns = rows.columns_of(self.traces, &self.fitted.base, carrier).ok()?;
+        self.make_usual(&mut through, &carrier.free)?;
+        let (rows, weighted) = self.beside(&through)?;
+        let base = self.with(&through);
+        let mut columns = rows.columns_of(self.traces, &base, carrier).ok()?;
         columns.extend(rows.columns_through(self.traces, &base, term).ok()?);
-        Some((term.clone(), self.fitted.weighted.test(&columns)?, carrier.free.len()))
+        Some((term.clone(), weighted.test(&columns)?, carrier.free.len()))
+    }
+
+    /// Sets these values of a term to their usual size; those without one stay. `None` where no value has one.
+    fn make_usual(&self, term: &mut EffectTerm, slots: &[usize]) -> Option<()> {
+        let usual = term.signature.naming.usual;
+        let of = |slot: &usize| Some((*slot, usual(term.parameter(*slot)?.name, &self.fitted.base.vehicle)?));
+        let known: Vec<(usize, f64)> = slots.iter().filter_map(of).collect();
+        known.iter().for_each(|(slot, value)| term.values[*slot] = *value);
+        (!known.is_empty()).then_some(())
+    }
+
+    /// The base with a term that is not estimated.
+    fn with(&self, term: &EffectTerm) -> Base {
+        let mut base = self.fitted.base.clone();
+        base.present.push(EffectTerm { free: Vec::new(), ..term.clone() });
+        base
+    }
+
+    /// Rows about the base with a term, weighted as those without it.
+    fn beside(&self, term: &EffectTerm) -> Option<(Rows, Weighted)> {
+        let rows = Rows::new(self.traces, &self.with(term)).ok()?;
+        let weighted = Weighted::like(&rows, &self.fitted.weighted);
+        Some((rows, weighted))
     }
 }
 

@@ -63,20 +63,20 @@ impl Fitted {
         })
     }
 
-    /// Negative log-likelihood up to a constant: the sum over the rows of the logarithm of each channel's standard
-    /// deviation, with forces as measured accelerations.
+    /// Negative log-likelihood up to a constant: the sum over the rows at which a channel is measured of the logarithm of its
+    /// standard deviation, with forces as measured accelerations.
     #[must_use]
     pub fn misfit(&self) -> f64 {
-        let rows = self.rows.len() as f64;
         let mass_kg = self.base.vehicle.body.mass_kg;
         let measured = |channel: usize| {
             let of_torque = (3..AXES).contains(&channel);
             self.weighted.sigma[channel] / if of_torque { 1.0 } else { mass_kg }
         };
-        let used: Vec<f64> = (0..CHANNELS).map(measured).filter(|sigma| *sigma != 0.0).collect();
+        let of = |channel: usize| (self.rows.count_of(channel) as f64, measured(channel));
+        let used: Vec<(f64, f64)> = (0..CHANNELS).map(of).filter(|(_, sigma)| *sigma != 0.0).collect();
         // a form that cannot be carried along the flight is no candidate
-        if used.iter().all(|sigma| *sigma > 0.0) {
-            used.iter().map(|sigma| rows * sigma.ln()).sum()
+        if used.iter().all(|(_, sigma)| *sigma > 0.0) {
+            used.iter().map(|(rows, sigma)| rows * sigma.ln()).sum()
         } else {
             f64::INFINITY
         }

@@ -33,6 +33,18 @@ pub struct LatencyFinding {
     pub uneven_std: Option<f64>,
 }
 
+impl LatencyFinding {
+    /// Whether a flight determined it: commands and body rates were fast enough to compare torques.
+    #[must_use]
+    pub fn is_determined(&self) -> bool {
+        self.std_s.is_finite()
+    }
+}
+
+/// Why a latency is not determined.
+pub const NO_LATENCY: &str =
+    "commands or body rates are logged too seldom to compare torques, and forces alone do not tell it";
+
 /// The kind of a shorter latency is not determined, s: sampling and a fast motor together are as long. Chosen; not
 /// measured.
 const LEAST_S: f64 = 0.010;
@@ -145,11 +157,14 @@ fn look_alikes(flights: &[Trace]) -> Vec<EffectTerm> {
     alike.filter_map(|signature| signature.role.like_latency).map(|term| term()).collect()
 }
 
-/// Total and standard error of a fit's latency.
+/// Total and standard error of a fit's latency. Where no torques are compared, the error is infinite: commands are logged so
+/// seldom that what lies between two of them is no straight line, and the force follows it as little as the torque does.
 #[must_use]
 pub fn finding_of(fitted: &Fitted) -> LatencyFinding {
     let index = fitted.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Latency);
-    let std_s = index.map_or(f64::INFINITY, |index| fitted.covariance[(index, index)].max(0.0).sqrt());
+    let std_s = index
+        .filter(|_| fitted.rows.compares_torques())
+        .map_or(f64::INFINITY, |index| fitted.covariance[(index, index)].max(0.0).sqrt());
     LatencyFinding {
         total_s: fitted.base.latency.total_s(),
         std_s,

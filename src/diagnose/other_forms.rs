@@ -1,17 +1,17 @@
 //! Effects with more than one form: the form that explains more is kept.
 
-use super::drag_location::cost;
 use super::fit::{Fitted, Newton, fit};
+use super::price::Price;
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 
-/// Changes the form of an effect if another form explains more than its columns cost (`price` a column, in squared
-/// sigmas). Returns whether a form was changed.
+/// Changes the form of an effect if another form costs less: it explains more than its columns and nuisances cost.
+/// Returns whether a form was changed.
 ///
 /// # Errors
 /// [`PhysicsError`] where the estimate leaves what is physical.
-pub(super) fn other_form(flights: &[Trace], fitted: &mut Fitted, price: f64) -> Result<bool, PhysicsError> {
+pub(super) fn other_form(flights: &[Trace], fitted: &mut Fitted, price: Price) -> Result<bool, PhysicsError> {
     let mut taken = false;
     for place in 0..fitted.base.present.len() {
         let term = &fitted.base.present[place];
@@ -21,7 +21,7 @@ pub(super) fn other_form(flights: &[Trace], fitted: &mut Fitted, price: f64) -> 
             let possible = values.map(|(slot, value)| form.possible(slot, *value, &base.size)).collect();
             base.present[place] = EffectTerm { values: possible, ..form };
             let other = fit(flights, base, Newton::Held)?;
-            if cost(&other, price) < cost(fitted, price) {
+            if price.cost(&other) < price.cost(fitted) {
                 *fitted = other;
                 taken = true;
             }

@@ -1,13 +1,11 @@
 //! The nuisances' priors, as they weigh against the rows.
 
-use super::channels::{Nuisance, NuisanceColumn};
+use super::channels::{Nuisance, NuisanceColumn, SECOND};
 use nalgebra::DVector;
 
 /// Rows of white noise that count as one independent measurement of something slow: one over the rows' distance and the
 /// integral of the squared test function, 1 / (0.05 s x 4.54 1/s).
 pub(super) const OF_KERNEL: f64 = 4.4;
-/// Readings of the force that share the error of the airspeed: accelerometer and kinematics.
-pub(super) const READINGS: f64 = 2.0;
 
 /// One entry a column of the rows: nuisances first, then the base's effects, which have no prior.
 #[derive(Debug, Clone)]
@@ -19,16 +17,49 @@ pub(super) struct Priors {
 }
 
 impl Priors {
-    /// Of these nuisances among `columns` columns. `alike` rows count as one independent measurement of a slow error: rows
-    /// that overlap, and noise that lasts, must not outvote what is known of it.
+    /// Of these nuisances among `columns` columns. `alike` rows of one reading count as one independent measurement of a slow
+    /// error: rows that overlap, noise that lasts, and a second reading that shares the error must not outvote what is known
+    /// of it.
     pub(super) fn of(nuisances: &[NuisanceColumn], columns: usize, alike: f64) -> Self {
         let mut priors = Self { precision: DVector::zeros(columns), meat: DVector::zeros(columns) };
         for (index, column) in nuisances.iter().enumerate() {
             let Some(std) = column.prior_std else { continue };
-            let counts = if column.nuisance == Nuisance::VelocityError { alike } else { 1.0 };
+            let counts =
+                if column.nuisance == Nuisance::VelocityError { alike * readings(column) } else { 1.0 };
             priors.precision[index] = counts * std.powi(-2);
             priors.meat[index] = counts * priors.precision[index];
         }
         priors
+    }
+}
+
+/// Readings of the force in which a column shows: one, or both of accelerometer and kinematics.
+fn readings(column: &NuisanceColumn) -> f64 {
+    let twice = column.values[SECOND..].iter().flatten().any(|value| *value != 0.0);
+    if twice { 2.0 } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::channels::Channels;
+    use super::*;
+
+    #[test]
+    fn a_slow_error_counts_for_each_reading_that_has_it() {
+        let column = |second: f64| {
+            let mut values: Channels = std::array::from_fn(|_| vec![0.0; 3]);
+            values[0].fill(1.0);
+            values[SECOND].fill(second);
+            NuisanceColumn {
+                first_row: 0,
+                nuisance: Nuisance::VelocityError,
+                values,
+                prior_std: Some(0.5),
+                considered: None,
+            }
+        };
+        let priors = Priors::of(&[column(0.0), column(1.0)], 3, 10.0);
+        assert_eq!(priors.precision.as_slice(), [40.0, 80.0, 0.0]);
+        assert_eq!(priors.meat.as_slice(), [400.0, 1600.0, 0.0]);
     }
 }

@@ -17,6 +17,8 @@ pub enum Need {
     ForceTwice,
     /// battery voltage
     Voltage,
+    /// commands and body rates fast enough to compare torques, in one of the flights
+    Torques,
     /// the effect has a time in one flight
     OneFlight,
 }
@@ -34,6 +36,10 @@ impl Need {
                 "it shows in the difference between the inertial unit and the position reference",
             ),
             Self::Voltage => ("battery voltage", "thrust falls with it; record BATTERY_STATUS or SYS_STATUS"),
+            Self::Torques => (
+                "fast actuator commands and body rates",
+                "only torques tell it from its like; record both at 20 Hz at least",
+            ),
             Self::OneFlight => ("one flight", "its moment belongs to one"),
         }
     }
@@ -63,6 +69,19 @@ impl<'a> Recorded<'a> {
         self.flights.iter().all(what)
     }
 
+    /// Whether torques are compared in one of the flights.
+    #[must_use]
+    pub fn compares_torques(&self) -> bool {
+        self.flights.iter().any(|trace| trace.torques)
+    }
+
+    /// Shares of a force that may act at the rotors' hubs, the rest at the centre of mass. The lever shows only in torques:
+    /// where none are compared, there is one form.
+    #[must_use]
+    pub fn shares_at_hubs(&self) -> &'static [f64] {
+        if self.compares_torques() { &[1.0, 0.0] } else { &[1.0] }
+    }
+
     /// The first requirement of an effect that the flights do not satisfy, with its words.
     #[must_use]
     pub fn lacks(&self, needs: &[Need]) -> Option<(Need, &'static str, &'static str)> {
@@ -78,6 +97,7 @@ impl<'a> Recorded<'a> {
             Need::Accelerometer => self.all(Trace::has_accelerometer),
             Need::ForceTwice => self.all(Trace::reads_force_twice),
             Need::Voltage => self.full_voltage().is_some(),
+            Need::Torques => self.compares_torques(),
             Need::OneFlight => self.flights.len() == 1,
         }
     }

@@ -7,7 +7,9 @@
 
 use super::along::{moved_by, wrench_along};
 use super::base::Base;
-use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, append, channels, joined, per_step};
+use super::channels::{
+    AXES, CHANNELS, Channels, Nuisance, NuisanceColumn, SECOND, append, channels, joined, measures, per_step,
+};
 use super::nuisances::{momentum_rows, nuisances};
 use super::rotors::{RotorMotion, Thrusts};
 use super::sensors::{is_of_sensors, true_motion, true_readings};
@@ -26,6 +28,8 @@ pub struct Rows {
     pub time_s: Vec<f64>,
     /// rows without a break between them
     pub runs: Vec<Range<usize>>,
+    /// the same for each channel: only those of flights that measure it; in the others it is zero
+    pub measured: [Vec<Range<usize>>; CHANNELS],
     /// force and torque that the base does not explain: N, N m
     pub residual: Channels,
     /// nuisance columns, in every fit
@@ -61,6 +65,7 @@ impl Rows {
         let mut rows = Self {
             time_s: Vec::new(),
             runs: Vec::new(),
+            measured: Default::default(),
             residual: Default::default(),
             nuisances: Vec::new(),
             effects: Vec::new(),
@@ -78,7 +83,11 @@ impl Rows {
             let before = rows.time_s.len();
             of_one_flight.extend(own.into_iter().map(|column| column.among(before)));
             rows.time_s.extend(trace.centers.iter().map(|&center| trace.grid.time_s(center)));
-            rows.runs.extend(trace.runs.iter().map(|run| run.start + before..run.end + before));
+            let runs = || trace.runs.iter().map(|run| run.start + before..run.end + before);
+            rows.runs.extend(runs());
+            let measured =
+                rows.measured.iter_mut().enumerate().filter(|(channel, _)| measures(trace, *channel));
+            measured.for_each(|(_, measured)| measured.extend(runs()));
             append(&mut rows.residual, &residual);
             rows.nuisances = joined(rows.nuisances, before, nuisances, trace.rows());
             rows.flights.push(along);
@@ -102,6 +111,7 @@ impl Rows {
         Self {
             time_s: self.time_s.clone(),
             runs: self.runs.clone(),
+            measured: self.measured.clone(),
             residual: self.residual.clone(),
             nuisances: kept.cloned().collect(),
             effects: self.effects.clone(),
@@ -114,6 +124,18 @@ impl Rows {
     #[must_use]
     pub fn len(&self) -> usize {
         self.time_s.len()
+    }
+
+    /// Number of rows at which a channel is measured.
+    #[must_use]
+    pub fn count_of(&self, channel: usize) -> usize {
+        self.measured[channel].iter().map(ExactSizeIterator::len).sum()
+    }
+
+    /// Whether any flight's torques are compared.
+    #[must_use]
+    pub fn compares_torques(&self) -> bool {
+        (3..AXES).any(|channel| self.count_of(channel) > 0)
     }
 
     /// No rows at all.

@@ -15,7 +15,8 @@ pub(in super::super) fn rows_of(
     effects: Vec<Channels>,
 ) -> Rows {
     let time_s = (0..residual[0].len()).map(|row| 0.05 * row as f64).collect();
-    Rows { time_s, runs, residual, nuisances, effects, torque_rms: [1.0; 3], flights: Vec::new() }
+    let measured = std::array::from_fn(|_| runs.clone());
+    Rows { time_s, runs, measured, residual, nuisances, effects, torque_rms: [1.0; 3], flights: Vec::new() }
 }
 
 const STEP_S: f64 = 0.01;
@@ -24,7 +25,7 @@ const FELT_M_S2: [f64; 3] = [0.3, -0.2, 11.0];
 const THRUSTS_N: [f64; 4] = [4.0, 5.0, 6.0, 3.5];
 
 /// 1.6 kg, with products of inertia, on hubs at 0.2 m and 0.15 m.
-fn vehicle() -> Vehicle {
+pub(in super::super) fn vehicle() -> Vehicle {
     let inertia_kg_m2 = Matrix3::new(0.02, 0.001, -0.002, 0.001, 0.03, 0.0015, -0.002, 0.0015, 0.045);
     let hubs =
         [(0.2, 0.15, Spin::Cw), (0.2, -0.15, Spin::Ccw), (-0.2, -0.15, Spin::Cw), (-0.2, 0.15, Spin::Ccw)];
@@ -38,7 +39,7 @@ fn vehicle() -> Vehicle {
 }
 
 /// 5 s at a constant rate on the spot, with constant thrusts and a constant reading of the accelerometer.
-fn turning_on_the_spot() -> Signals {
+pub(in super::super) fn turning_on_the_spot() -> Signals {
     let count = 500;
     let rate = Vector3::from(RATE_RAD_S);
     let turned = |i: usize| UnitQuaternion::from_scaled_axis(rate * (STEP_S * i as f64));
@@ -63,6 +64,8 @@ fn turning_on_the_spot() -> Signals {
             airborne_s: Vec::new(),
             usable: Usable::default(),
             torques: true,
+            gyro_noise_rad_s: None,
+            height_by_pose: false,
             notes: Vec::new(),
         },
     }

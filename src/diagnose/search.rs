@@ -10,6 +10,7 @@ use super::latency::{LatencyFinding, finding_of, fit_latency, is_delay};
 use super::locate::mass_step_std_kg;
 use super::mounting::mountings;
 use super::other_forms::other_form;
+use super::price::Price;
 use super::pruning::{UNCHANGED_S, prune};
 use super::score::test_all;
 use super::signature::{EffectTerm, Signature};
@@ -42,7 +43,7 @@ pub fn search(
         last.iter().for_each(Tested::emit);
         let count = last.len() as f64;
         tracing::debug!(candidates = last.len(), taken = steps.len(), "candidates tested");
-        let price = COLUMN_PRICE * after.weighted.long_run_deviation().powi(2);
+        let price = Price::of(&after);
         let ranked = |tested: &[Tested]| {
             let open = tested.iter().filter(|tested| !refused.contains(&tested.candidate.id));
             let passed = open.filter(|tested| passes(tested, &after, gates, count));
@@ -104,9 +105,9 @@ pub fn search(
     Ok(Search { before, after, latency, steps, last })
 }
 
-/// Sorts candidates by the energy that they explain less `price` (sigma squared) for each column.
-fn by_worth(mut tested: Vec<Tested>, price: f64) -> Vec<Tested> {
-    let worth = |tested: &Tested| tested.evidence.energy - price * tested.evidence.theta.len() as f64;
+/// Sorts candidates by the energy that they explain less the price of its columns.
+fn by_worth(mut tested: Vec<Tested>, price: Price) -> Vec<Tested> {
+    let worth = |tested: &Tested| tested.evidence.energy - price.of_columns(tested.evidence.theta.len());
     tested.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     tested
 }
@@ -152,9 +153,6 @@ fn with_last(flights: &[Trace], fitted: Fitted) -> Result<Fitted, PhysicsError> 
 
 /// How often effects are pruned and the search continues after no candidate passes any more. Chosen; not measured.
 const SETTLINGS: usize = 2;
-/// Energy that a column must explain to justify a parameter, in squared standard deviations of independent rows.
-/// Chosen; not measured.
-const COLUMN_PRICE: f64 = 12.0;
 
 /// The candidate's effects with the estimates of the evidence as start values.
 fn started(tested: &Tested, size: &VehicleSize) -> Vec<EffectTerm> {

@@ -4,9 +4,7 @@
 use super::rotors::{RotorMotion, Thrusts, felt};
 use super::timing::{command_period_s, inertial_late};
 use crate::physics::{ActuationLatency, Airframe, MAX_ROTORS, State};
-use crate::recording::Quantity;
 use crate::signals::{Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride};
-use crate::stats::white_level_of;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
 use std::ops::Range;
@@ -37,7 +35,7 @@ pub struct Trace {
     pub voltage_v: Option<Vec<f64>>,
     /// thrusts are computed from measured rotor speeds: effects between command and speed are not visible
     pub measured_speeds: bool,
-    /// rad/s, white noise of the gyroscopes, largest axis
+    /// rad/s, white noise of the gyroscopes at their own samples, largest axis; 0 where it is not known
     pub gyro_noise_rad_s: f64,
     /// s between commands (or measured speeds) as logged
     pub command_period_s: f64,
@@ -60,6 +58,8 @@ pub struct Trace {
     pub(super) felt_m_s2: Vec<Vector3<f64>>,
     /// m/s^2
     pub gravity_m_s2: f64,
+    /// motion capture or a camera gives the height
+    pub height_by_pose: bool,
 }
 
 /// Which parts of the state are measured.
@@ -130,7 +130,7 @@ impl Trace {
             torques: signals.quality.torques,
             voltage_v: signals.battery_voltage_v.clone(),
             measured_speeds: signals.quality.thrust_source == ThrustSource::MeasuredSpeed,
-            gyro_noise_rad_s: gyro_noise_rad_s(rates, signals.samples_apart(Quantity::AngularRate)),
+            gyro_noise_rad_s: signals.quality.gyro_noise_rad_s.unwrap_or(0.0),
             command_period_s: command_period_s(signals),
             inertial_late_s,
             inertial_unsure_s,
@@ -142,6 +142,7 @@ impl Trace {
             smooth_lift: Vec::new(),
             felt_m_s2: Vec::new(),
             gravity_m_s2: vehicle.gravity_m_s2,
+            height_by_pose: signals.quality.height_by_pose,
         };
         trace.smooth()?;
         Ok(trace)
@@ -183,31 +184,20 @@ impl Trace {
     /// `K` of a vector series, axis by axis.
     #[must_use]
     pub fn weak_vector(&self, order: usize, series: &[Vector3<f64>]) -> [Vec<f64>; 3] {
-        std::array::from_fn(|axis| {
-            let column: Vec<f64> = series.iter().map(|v| v[axis]).collect();
-            self.weak(order, &column)
-        })
+        self.weak_vector_in(order, series, &(0..self.rows()))
     }
 
-    /// Kinematic specific force `K1(v_b) + K(w x v_b + g R' e_z)` at every row, body, m/s^2; `None`
-    /// without attitude and velocity.
-    #[must_use]
-    pub fn weak_kinematic(&self) -> Option<[Vec<f64>; 3]> {
-        if !(self.known.attitude && self.known.velocity) {
-            return None;
-        }
-        let up = Vector3::z() * self.gravity_m_s2;
-        let (mut body, mut rest) = (Vec::new(), Vec::new());
-        for state in &self.states {
-            let velocity = state.body_velocity_m_s();
-            rest.push(state.rates_rad_s.cross(&velocity) + state.attitude.inverse_transform_vector(&up));
-            body.push(velocity);
-        }
-        let (mut derivative, rest) = (self.weak_vector(1, &body), self.weak_vector(0, &rest));
-        for (axis, rest) in derivative.iter_mut().zip(&rest) {
-            axis.iter_mut().zip(rest).for_each(|(d, r)| *d += r);
-        }
-        Some(derivative)
+    /// The same at some of the rows.
+    pub(super) fn weak_vector_in(
+        &self,
+        order: usize,
+        series: &[Vector3<f64>],
+        rows: &Range<usize>,
+    ) -> [Vec<f64>; 3] {
+        std::array::from_fn(|axis| {
+            let column: Vec<f64> = series.iter().map(|v| v[axis]).collect();
+            self.kernel.apply(order, &column, &self.centers[rows.clone()])
+        })
     }
 
     /// An accelerometer is recorded.
@@ -367,11 +357,4 @@ fn commanded_n(signals: &Signals, rotors: usize) -> Vec<Thrusts> {
         all
     };
     signals.rotor_thrust_n.chunks_exact(rotors).map(padded).collect()
-}
-
-fn gyro_noise_rad_s(rates: &[Vector3<f64>], samples_apart: usize) -> f64 {
-    let sampled = || rates.iter().step_by(samples_apart);
-    (0..3)
-        .map(|axis| white_level_of(&sampled().map(|rate| rate[axis]).collect::<Vec<_>>()))
-        .fold(0.0, f64::max)
 }

@@ -149,15 +149,8 @@ fn identify_evenly(
         solve_weak(&weak.rows, &nominal.theta, WeakMethod::Instruments(&instruments))
     });
 
-    let harmonic = weak
-        .signals
-        .iter()
-        .filter_map(highest_harmonic_hz)
-        .fold(None, |most: Option<f64>, f| Some(most.map_or(f, |most| most.max(f))));
-    let rate_hz = weak.signals.first().map_or(f64::NAN, |s| 1.0 / s.grid.step_s);
-    let cutoff_hz = settings.cutoff_hz.unwrap_or_else(|| default_cutoff_hz(harmonic, rate_hz));
-    let filter = zero_phase(settings, cutoff_hz, rate_hz)?;
-    let paper = PaperRuns::from(&weak.signals, vehicle, &filter, settings.sigma);
+    let harmonic_hz = highest_of_all_hz(&weak.signals);
+    let (paper, cutoff_hz) = paper_runs(&weak.signals, vehicle, settings, harmonic_hz)?;
     if paper.standard.time_s.is_empty() {
         let text = "LS, GD, FMLS and FMGD need body rates and the vertical motion; this recording lacks one";
         notes.push(Note::remark(About::Estimate, text));
@@ -188,7 +181,7 @@ fn identify_evenly(
         latency: found,
         compensated,
         cutoff_hz,
-        highest_harmonic_hz: harmonic,
+        highest_harmonic_hz: harmonic_hz,
         scaled_condition_number: plain.solution.scaled_condition,
         trim_torque_nm: plain.trim_torque_nm,
         residual: plain.solution.sigma.clone(),
@@ -198,6 +191,24 @@ fn identify_evenly(
         accelerometer_bias: weak.accelerometer_bias,
         notes,
     })
+}
+
+/// The highest harmonic of the flights' commanded trajectories, Hz; `None` if none is known.
+fn highest_of_all_hz(flights: &[Signals]) -> Option<f64> {
+    flights.iter().filter_map(highest_harmonic_hz).reduce(f64::max)
+}
+
+/// The paper's own methods behind a low-pass, and its cut-off, Hz.
+fn paper_runs(
+    flights: &[Signals],
+    vehicle: &Vehicle,
+    settings: &IdentifySettings,
+    harmonic_hz: Option<f64>,
+) -> Result<(PaperRuns, f64), EstimateError> {
+    let rate_hz = flights.first().map_or(f64::NAN, |s| 1.0 / s.grid.step_s);
+    let cutoff_hz = settings.cutoff_hz.unwrap_or_else(|| default_cutoff_hz(harmonic_hz, rate_hz));
+    let filter = zero_phase(settings, cutoff_hz, rate_hz)?;
+    Ok((PaperRuns::from(flights, vehicle, &filter, settings.sigma), cutoff_hz))
 }
 
 /// Ixx, Iyy, Izz of the rigid body by a window of twice the width, as shares of those by the usual one; NaN where either has

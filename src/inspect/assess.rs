@@ -2,6 +2,7 @@
 
 use super::airborne::{Before, airborne, normalized_commands};
 use super::excitation::ExcitationTally;
+use super::flown_rates::FlownRates;
 use super::foresee::information;
 use super::inspection::{Excitation, FlightSummary, OffsetSummary, Segment};
 use super::motion::Motion;
@@ -22,6 +23,7 @@ pub(super) struct Assessor<'a> {
     vehicle: Option<&'a Vehicle>,
     flight: FlightSummary,
     excitation: ExcitationTally,
+    rates: FlownRates,
     before: Before,
     flown: bool,
     /// the vehicle's clock restarted since the last segment
@@ -47,6 +49,8 @@ struct OffsetSum {
 pub(super) struct Assessment {
     pub flight: FlightSummary,
     pub excitation: Option<Excitation>,
+    /// of the streams in the air
+    pub rates: FlownRates,
     /// estimate and covariance to expect; `None` without a vehicle or a usable window
     pub expected: Option<Estimated>,
     pub offsets: Vec<OffsetSummary>,
@@ -75,6 +79,7 @@ impl<'a> Assessor<'a> {
         let commands = normalized_commands(recording);
         let airborne = airborne(recording, commands.as_ref(), &mut self.before);
         self.flight.airborne_from = airborne.from;
+        self.rates.add(recording, &airborne.flown_s);
         // only the first flight begins with the take-off's transient
         let transient_s = self.flown.then_some(0.0);
         let settings = ConditionSettings { transient_s, ..ConditionSettings::default() };
@@ -179,6 +184,7 @@ impl<'a> Assessor<'a> {
         Assessment {
             flight: self.flight,
             excitation: self.excitation.summary(),
+            rates: self.rates,
             refusal: self.refusal.filter(|_| expected.is_none()),
             expected,
             offsets: self.offsets.iter().map(offset).collect(),

@@ -35,14 +35,14 @@ pub(super) struct Evidence<'a> {
 }
 
 impl Evidence<'_> {
-    /// Rate of the fastest stream of a quantity that moves, Hz.
+    /// Rate of the fastest stream of a quantity that moves, Hz: in the air, where something flew.
     pub(super) fn rate_hz(&self, quantity: Quantity) -> Option<f64> {
         self.streams
             .iter()
             .filter(|(key, _, stats)| {
                 key.quantity == quantity && stats.count >= 10 && !stats.all_zero && !stats.is_constant()
             })
-            .map(|(_, _, stats)| stats.rate_hz)
+            .map(|(key, _, stats)| self.assessment.rates.of(key).unwrap_or(stats.rate_hz))
             .reduce(f64::max)
     }
 

@@ -6,7 +6,8 @@ use crate::estimate::{Estimated, WeakInformation, WeakMethod, solve_weak, theta_
 use crate::recording::{Quantity, Recording};
 use crate::regression::{WeakMotion, weak_rows};
 use crate::signals::{
-    ConditionSettings, Signals, SignalsError, WeakKernel, best, condition, median_period_s,
+    ConditionSettings, Signals, SignalsError, ThrustPreference, ThrustSource, WeakKernel, best, condition,
+    median_period_s,
 };
 use crate::vehicle::Vehicle;
 
@@ -55,9 +56,16 @@ pub(super) fn foresee(
     let step_s = (period_s < LEAST_STEP_S).then_some(LEAST_STEP_S);
     let settings = ConditionSettings { step_s, ..ConditionSettings::default() };
     let signals = condition(window, &known, &settings)?;
+    // rotor speeds may be there for the rigid body, and better commands for the effects
+    let for_effects = ConditionSettings { thrust: ThrustPreference::BestSampled, ..settings };
+    let of_effects = match signals.quality.thrust_source {
+        ThrustSource::MeasuredSpeed => condition(window, &known, &for_effects).ok(),
+        _ => None,
+    };
+    let of_effects = std::slice::from_ref(of_effects.as_ref().unwrap_or(&signals));
     Ok(Foreseen {
         body: body(&signals, &known),
-        effects: expected_errors(std::slice::from_ref(&signals), &known).map_err(|error| error.to_string()),
+        effects: expected_errors(of_effects, &known).map_err(|error| error.to_string()),
         assumed: vehicle.is_none(),
         vehicle: known,
     })

@@ -9,6 +9,7 @@ mod assess;
 mod clock;
 mod evidence;
 mod excitation;
+mod flown_rates;
 mod foresee;
 mod inspection;
 mod lacking;

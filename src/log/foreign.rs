@@ -74,6 +74,21 @@ const KNOWN: &[Foreign] = &[
 /// Bytes that are told of what nobody knows.
 const TOLD_BYTES: usize = 8;
 
+/// A vehicle file or a model of this program, which has no signature.
+const VEHICLE: Foreign = begins(
+    b"",
+    "a vehicle file or a model",
+    "give the log of a flight, and this file behind --vehicle; `mavid vehicle FILE` says what is in it",
+);
+
+/// Tables that every vehicle file has.
+const VEHICLE_TABLES: [&str; 2] = ["[body]", "[propulsion]"];
+
+fn is_vehicle_file(head: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(head);
+    VEHICLE_TABLES.iter().all(|table| text.lines().any(|line| line.trim_start().starts_with(table)))
+}
+
 /// The kind of file that begins with these bytes, if its signature is known.
 pub(super) fn foreign(head: &[u8]) -> Option<&'static Foreign> {
     let plain = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
@@ -81,7 +96,7 @@ pub(super) fn foreign(head: &[u8]) -> Option<&'static Foreign> {
         let bytes = if kind.signature.is_ascii() && kind.at == 0 { plain } else { head };
         bytes.get(kind.at..).is_some_and(|bytes| bytes.starts_with(kind.signature))
     };
-    KNOWN.iter().find(is)
+    KNOWN.iter().find(is).or_else(|| is_vehicle_file(head).then_some(&VEHICLE))
 }
 
 /// What a file of no known signature is, by its first bytes, and what to do with it.

@@ -39,7 +39,7 @@ pub struct Recording {
 
 impl Recording {
     /// Adds the streams of another log of the same flight, its stamps brought to this recording's clock by `to_own_s` (s to s).
-    /// Of streams and parameters that both have, its own stay.
+    /// Of streams and parameters that both have, its own stay. Times of resets are in order, those of both logs.
     pub fn add_log(&mut self, other: Recording, to_own_s: impl Fn(f64) -> f64) {
         for (key, mut stream) in other.streams {
             stream.time_s.iter_mut().for_each(|time_s| *time_s = to_own_s(*time_s));
@@ -48,10 +48,34 @@ impl Recording {
         for (name, value) in other.parameters {
             self.parameters.entry(name).or_insert(value);
         }
-        self.clock_resets_s.extend(other.clock_resets_s.into_iter().map(&to_own_s));
-        self.estimator_resets_s.extend(other.estimator_resets_s.into_iter().map(&to_own_s));
+        let resets = [
+            (&mut self.clock_resets_s, other.clock_resets_s),
+            (&mut self.estimator_resets_s, other.estimator_resets_s),
+        ];
+        for (own, other) in resets {
+            own.extend(other.into_iter().map(&to_own_s));
+            own.sort_by(f64::total_cmp);
+        }
         if self.texts.is_empty() {
             self.texts = other.texts.into_iter().map(|(time_s, text)| (to_own_s(time_s), text)).collect();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn resets_of_two_logs_are_in_order() {
+        let with = |clock: [f64; 2], estimator: [f64; 1]| Recording {
+            clock_resets_s: clock.to_vec(),
+            estimator_resets_s: estimator.to_vec(),
+            ..Recording::default()
+        };
+        let mut own = with([5.0, 40.0], [30.0]);
+        own.add_log(with([11.0, 61.0], [21.0]), |time_s| time_s - 1.0);
+        assert_eq!(own.clock_resets_s, [5.0, 10.0, 40.0, 60.0]);
+        assert_eq!(own.estimator_resets_s, [20.0, 30.0]);
     }
 }

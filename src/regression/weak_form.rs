@@ -290,6 +290,8 @@ mod tests {
                 airborne_s: Vec::new(),
                 usable: Usable::default(),
                 torques: true,
+                gyro_noise_rad_s: None,
+                height_by_pose: false,
                 notes: Vec::new(),
             },
         };

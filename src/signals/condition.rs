@@ -7,11 +7,14 @@ use super::align::{
 };
 use super::changed::changes_in_the_air;
 use super::flight::{Quality, Reference, Signals};
+use super::height::is_height_by_pose;
+use super::noise::gyro_noise_rad_s;
 use super::rotor_thrusts::ThrustSource;
-use super::select::{best, median_period_s, too_short};
+use super::select::{best, mean_rate_hz, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
-use super::usable::{Evidence, airborne_spans, usable};
+use super::usable::{Evidence, Usable, airborne_spans, usable};
 use super::{Grid, SignalsError, WeakKernel, plausible, sufficient};
+use crate::note::Note;
 use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -84,44 +87,14 @@ pub fn condition(
     if grid.count >= Grid::LONGEST {
         return Err(SignalsError::TooLong { span_s: step_s * grid.count as f64 });
     }
-    let streams: Vec<&Stream> =
-        chosen.list().iter().filter_map(|(_, s)| s.map(|(_, s)| s)).chain([actuation.stream()]).collect();
-    // the vehicle's clock restarted, or its estimator jumped
-    let resets_s = [recording.clock_resets_s.as_slice(), &recording.estimator_resets_s].concat();
     let rate = chosen.rate.and_then(|(_, s)| vectors_onto(s, 0.0, &grid));
-    let (mask, used) = usable(
-        &grid,
-        &Evidence {
-            streams: &streams,
-            airborne_s: &airborne_s,
-            resets_s: &resets_s,
-            command: actuation.command(),
-            rate: rate.as_deref(),
-        },
-        settings.transient_s,
-    );
-    let centers = kernel.centers(&mask, stride(step_s));
-    if centers.len() < 40 {
-        return Err(SignalsError::NothingUsable {
-            usable_s: mask.iter().filter(|m| **m).count() as f64 * step_s,
-            needed_s: 2.0 + 2.0 * settings.weak_half_width_s,
-            reason: used.summary(),
-        });
-    }
+    let (mask, used) =
+        mask(recording, (&chosen, &actuation), (&grid, rate.as_deref()), &airborne_s, settings.transient_s);
+    let centers = enough_centers(&kernel, (&mask, &used), (step_s, settings.weak_half_width_s))?;
     let frame = AlignFrame { askew: settings.askew, grid: &grid, kernel: &kernel, centers: &centers };
     let motion = Motion::aligned(&chosen, rate, &frame, vehicle.gravity_m_s2);
     let felt = actuation.onto(&grid, vehicle);
-    let mut sources: Vec<(Quantity, &'static str, f64)> = chosen
-        .list()
-        .into_iter()
-        .filter_map(|(quantity, s)| s.map(|(name, s)| (quantity, name, super::select::mean_rate_hz(s))))
-        .collect();
-    sources.push((
-        actuation.quantity(),
-        actuation.message(),
-        super::select::mean_rate_hz(actuation.stream()),
-    ));
-    let changed = changes_in_the_air(recording.autopilot, &recording.parameter_changes, &airborne_s);
+    let notes = notes((recording, vehicle), (&actuation, sufficiency.note), &airborne_s);
     let mut signals = Signals {
         grid,
         usable: mask,
@@ -137,24 +110,74 @@ pub fn condition(
         battery_voltage_v: battery_voltage_v(recording, &grid),
         reference: reference(recording, &grid),
         quality: Quality {
-            sources,
+            sources: sources(&chosen, &actuation),
             thrust_source: actuation.source(),
             offsets: motion.offsets,
+            gyro_noise_rad_s: chosen.rate.and_then(|(_, stream)| gyro_noise_rad_s(stream, &airborne_s)),
             airborne_s,
             usable: used,
             torques: sufficiency.torques,
-            notes: sufficiency
-                .note
-                .into_iter()
-                .chain(actuation.notes(recording, vehicle))
-                .chain(changed)
-                .collect(),
+            height_by_pose: is_height_by_pose(recording),
+            notes,
         },
     };
     let doubts = plausible::check(&signals, vehicle);
     signals.quality.notes.extend(doubts);
     signals.emit();
     Ok(signals)
+}
+
+/// Centres of the weak form's rows, if there are enough for any estimate.
+fn enough_centers(
+    kernel: &WeakKernel,
+    (mask, used): (&[bool], &Usable),
+    (step_s, half_width_s): (f64, f64),
+) -> Result<Vec<usize>, SignalsError> {
+    let centers = kernel.centers(mask, stride(step_s));
+    if centers.len() < 40 {
+        return Err(SignalsError::NothingUsable {
+            usable_s: mask.iter().filter(|m| **m).count() as f64 * step_s,
+            needed_s: 2.0 + 2.0 * half_width_s,
+            reason: used.summary(),
+        });
+    }
+    Ok(centers)
+}
+
+/// The instants that may be used, and the time that each rule left out. `rate`: body rates on the grid, rad/s.
+fn mask(
+    recording: &Recording,
+    (chosen, actuation): (&Chosen<'_>, &Actuation),
+    (grid, rate): (&Grid, Option<&[Vector3<f64>]>),
+    airborne_s: &[(f64, f64)],
+    transient_s: Option<f64>,
+) -> (Vec<bool>, Usable) {
+    let streams: Vec<&Stream> =
+        chosen.list().iter().filter_map(|(_, s)| s.map(|(_, s)| s)).chain([actuation.stream()]).collect();
+    // the vehicle's clock restarted, or its estimator jumped
+    let resets_s = [recording.clock_resets_s.as_slice(), &recording.estimator_resets_s].concat();
+    let command = actuation.command();
+    let evidence = Evidence { streams: &streams, airborne_s, resets_s: &resets_s, command, rate };
+    usable(grid, &evidence, transient_s)
+}
+
+/// Quantity, message and samples a second of what is used.
+fn sources(chosen: &Chosen<'_>, actuation: &Actuation) -> Vec<(Quantity, &'static str, f64)> {
+    let motion = chosen.list().into_iter().filter_map(|(quantity, s)| s.map(|(name, s)| (quantity, name, s)));
+    motion
+        .chain([(actuation.quantity(), actuation.message(), actuation.stream())])
+        .map(|(quantity, name, stream)| (quantity, name, mean_rate_hz(stream)))
+        .collect()
+}
+
+/// What is to be said of the streams' rates, of the actuators, and of parameters that changed in the air.
+fn notes(
+    (recording, vehicle): (&Recording, &Vehicle),
+    (actuation, of_rates): (&Actuation, Option<Note>),
+    airborne_s: &[(f64, f64)],
+) -> Vec<Note> {
+    let changed = changes_in_the_air(recording.autopilot, &recording.parameter_changes, airborne_s);
+    of_rates.into_iter().chain(actuation.notes(recording, vehicle)).chain(changed).collect()
 }
 
 /// Samples between the weak form's centres: 0.05 s.

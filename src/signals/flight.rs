@@ -44,13 +44,14 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// Instants of the grid from one sample of a quantity's stream to the next; between them the grid is interpolated.
+    /// Instants of the grid from one sample of a quantity's stream to the next, to the nearest; between them the grid is
+    /// interpolated.
     #[must_use]
     pub fn samples_apart(&self, quantity: Quantity) -> usize {
         let rate_hz = self.quality.sources.iter().find(|(q, ..)| *q == quantity).map(|(.., rate)| *rate);
         let period_s = rate_hz.filter(|rate| *rate > 0.0).map_or(self.grid.step_s, |rate| 1.0 / rate);
         (1..1000)
-            .find(|n| f64::from(*n) * self.grid.step_s > 0.75 * period_s)
+            .find(|n| (f64::from(*n) + 0.5) * self.grid.step_s > period_s)
             .and_then(|n| usize::try_from(n).ok())
             .unwrap_or(1)
     }
@@ -90,12 +91,58 @@ pub struct Quality {
     pub thrust_source: ThrustSource,
     /// offsets of streams against the inertial unit
     pub offsets: Vec<(Quantity, StreamOffset)>,
+    /// white noise of the gyroscopes at their own samples in the air, largest axis, rad/s; `None` where it is not known
+    pub gyro_noise_rad_s: Option<f64>,
     /// airborne spans, s
     pub airborne_s: Vec<(f64, f64)>,
     /// time that each rule of the mask left out
     pub usable: Usable,
     /// commands and body rates are fast enough to compare torques with the motion; otherwise only forces are compared
     pub torques: bool,
+    /// motion capture or a camera gives the height; otherwise it is not known, or by satellites or air pressure
+    pub height_by_pose: bool,
     /// notes for the user
     pub notes: Vec<Note>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_apart_by_the_nearest_number_of_instants() {
+        let with = |rate_hz: f64| Signals {
+            grid: Grid { start_s: 0.0, step_s: 0.004, count: 0 },
+            usable: Vec::new(),
+            attitude: None,
+            rate: None,
+            specific_force: None,
+            world_acceleration: None,
+            position: None,
+            velocity: None,
+            rotor_thrust_n: Vec::new(),
+            wrench: Vec::new(),
+            jitter_wrench: None,
+            battery_voltage_v: None,
+            reference: None,
+            quality: Quality {
+                sources: vec![(Quantity::AngularRate, "by hand", rate_hz)],
+                thrust_source: ThrustSource::Command,
+                offsets: Vec::new(),
+                gyro_noise_rad_s: None,
+                airborne_s: Vec::new(),
+                usable: Usable::default(),
+                torques: true,
+                height_by_pose: false,
+                notes: Vec::new(),
+            },
+        };
+        // 4, 5.6, 9.5, 13, 20, 26, 40 ms
+        let expected =
+            [(250.0, 1), (178.0, 1), (105.0, 2), (77.0, 3), (50.0, 5), (38.0, 7), (25.0, 10), (0.0, 1)];
+        for (rate_hz, apart) in expected {
+            assert_eq!(with(rate_hz).samples_apart(Quantity::AngularRate), apart, "{rate_hz} Hz");
+        }
+        assert_eq!(with(50.0).samples_apart(Quantity::Attitude), 1);
+    }
 }

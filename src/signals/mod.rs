@@ -12,6 +12,7 @@ mod error;
 mod filter;
 mod flight;
 mod grid;
+mod height;
 mod noise;
 mod one_flight;
 mod plausible;
@@ -44,6 +45,8 @@ pub use said::Said;
 pub use select::{best, best_rank, is_live, mean_rate_hz, median_period_s};
 pub use spectrum::highest_harmonic_hz;
 pub use stated_rotors::{Differing, RotorDifference, rotor_difference};
-pub use sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, LEAST_FORCE_HZ, LEAST_TORQUE_HZ};
+pub use sufficient::{
+    LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, LEAST_FORCE_HZ, LEAST_TORQUE_HZ, flowing_rate_within_hz,
+};
 pub use usable::{Evidence, Usable, usable};
 pub use weak::{MAX_ORDER, WeakKernel};

@@ -94,7 +94,7 @@ fn lateness(slow: &Stream, fast: &Stream) -> Option<Line> {
             Some(Part { at_s, step_s, weight })
         })
         .collect();
-    Some(line(&parts, late_s))
+    line(&parts, late_s)
 }
 
 /// A part of the flight.
@@ -118,19 +118,27 @@ struct Line {
     drift: f64,
 }
 
-/// Weighted regression over the parts.
-fn line(parts: &[Part], late_s: f64) -> Line {
+/// Weighted regression over the parts; without parts `None`. Of fewer than three, or of parts at one instant, no drift is
+/// known, and the offset is not known better than to a step of the grid.
+fn line(parts: &[Part], late_s: f64) -> Option<Line> {
     let total: f64 = parts.iter().map(|part| part.weight).sum();
+    if total.is_nan() || total <= 0.0 {
+        return None;
+    }
     let mean =
         |of: &dyn Fn(&Part) -> f64| parts.iter().map(|part| part.weight * of(part)).sum::<f64>() / total;
     let (at_s, more_s) = (mean(&|part| part.at_s), mean(&|part| part.step_s));
     let spread = mean(&|part| (part.at_s - at_s).powi(2));
+    if parts.len() < 3 || spread.is_nan() || spread <= 0.0 {
+        let scatter = mean(&|part| (part.step_s - more_s).powi(2)).sqrt();
+        return Some(Line { late_s: late_s + more_s, std_s: scatter.max(FINE_S), at_s, drift: 0.0 });
+    }
     let slope = mean(&|part| (part.at_s - at_s) * (part.step_s - more_s)) / spread;
     let left = mean(&|part| (part.step_s - more_s - slope * (part.at_s - at_s)).powi(2));
-    let free = (parts.len() as f64 - 2.0).max(1.0);
+    let free = parts.len() as f64 - 2.0;
     let (std_s, slope_std) = ((left / free).sqrt(), (left / free / spread).sqrt());
     let drift = if slope.abs() > 4.0 * slope_std { slope } else { 0.0 };
-    Line { late_s: late_s + more_s, std_s, at_s, drift }
+    Some(Line { late_s: late_s + more_s, std_s, at_s, drift })
 }
 
 /// North and up in the body's axes: what an attitude does to two directions.
@@ -255,5 +263,36 @@ impl Samples<'_> {
             }
         }
         (weight > 0.0).then(|| (along / weight, weight))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part(at_s: f64, step_s: f64) -> Part {
+        Part { at_s, step_s, weight: 2.0 }
+    }
+
+    #[test]
+    fn a_line_through_too_few_parts_has_no_drift() {
+        for parts in [&[part(3.0, 0.001)][..], &[part(3.0, 0.001), part(5.0, 0.001)]] {
+            let line = line(parts, 0.5).unwrap();
+            assert!((line.late_s - 0.501).abs() < 1e-12);
+            assert_eq!((line.std_s, line.drift), (FINE_S, 0.0));
+        }
+        let at_one = [0.0, 0.0, 0.0].map(|more_s| part(3.0, more_s));
+        assert_eq!(line(&at_one, 0.5).map(|line| (line.drift, line.std_s)), Some((0.0, FINE_S)));
+        assert!(line(&[], 0.5).is_none());
+    }
+
+    /// Least squares through (0, 0), (1, 0), (2, 3) by hand: mean 1, slope 1.5, what is left 0.5, -1, 0.5.
+    #[test]
+    fn a_line_through_three_parts_is_that_of_least_squares() {
+        let line = line(&[part(0.0, 0.0), part(1.0, 0.0), part(2.0, 3.0)], 0.5).unwrap();
+        assert_eq!((line.late_s, line.at_s), (1.5, 1.0));
+        assert!((line.std_s - 0.5_f64.sqrt()).abs() < 1e-12);
+        // 1.5 is less than four times sqrt(0.5 / (2 / 3))
+        assert_eq!(line.drift, 0.0);
     }
 }

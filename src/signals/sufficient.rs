@@ -39,7 +39,8 @@ pub(super) fn flowing_rate_hz(stream: &Stream) -> f64 {
 }
 
 /// The same inside `spans_s` only (s); `None` if they contain less than two samples.
-fn flowing_rate_within_hz(stream: &Stream, spans_s: &[(f64, f64)]) -> Option<f64> {
+#[must_use]
+pub fn flowing_rate_within_hz(stream: &Stream, spans_s: &[(f64, f64)]) -> Option<f64> {
     let inside = |(start, end): &(f64, f64)| {
         let from = stream.time_s.partition_point(|time_s| time_s < start);
         let to = stream.time_s.partition_point(|time_s| time_s <= end);

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::log::{self, OpenOptions};
-use crate::signals::clock_offset;
 use crate::wire::SystemId;
 
+use super::both_logs::each_flight_once;
+use super::flights::{IDENTIFIED, load_all};
 use super::{
     ExplainRequest, ExplainStudy, IdentifyRequest, IdentifyStudy, Progress, ReadSettings, StudyError,
     explain, identify,
@@ -30,21 +30,23 @@ pub struct FlightLogs {
 }
 
 impl FlightLogs {
-    /// The recording of the link, together with the log that the vehicle wrote itself if that is of the same flight. Of both,
-    /// each quantity comes from the better stream. If only one of them can be read, it is that one.
+    /// The recording of the link, together with the log that the vehicle wrote itself if they hold the same flight as
+    /// [`identify`] and [`explain`] find it. Of both, each quantity comes from the better stream. If only one of them can be
+    /// read, it is that one. Of long logs no more is held than for an identification.
     #[must_use]
     pub fn of(link: &Path, system: Option<SystemId>, onboard: Option<&Path>) -> Self {
         let alone = |path: &Path, why: Option<String>| Self { logs: vec![path.to_owned()], why };
         let Some(onboard) = onboard else { return alone(link, None) };
-        let vehicle = match log::open(onboard, &OpenOptions::default()) {
-            Ok(vehicle) => vehicle.recording,
+        let read = ReadSettings { csv_map: None, system };
+        let flights = |path: &Path| load_all(&[path.to_owned()], &read, &IDENTIFIED);
+        let own = match flights(onboard) {
+            Ok(own) => own,
             Err(error) => {
                 return alone(link, Some(format!("the vehicle's own log cannot be read: {error}")));
             }
         };
-        let options = OpenOptions { system, ..OpenOptions::default() };
-        let heard = match log::open(link, &options) {
-            Ok(heard) => heard.recording,
+        let heard = match flights(link) {
+            Ok(heard) => heard,
             Err(error) => {
                 let why = format!(
                     "the recording of the link cannot be read ({error}), the vehicle's own log is analysed alone"
@@ -52,7 +54,8 @@ impl FlightLogs {
                 return alone(onboard, Some(why));
             }
         };
-        if clock_offset(&vehicle, &heard).is_none() {
+        let once = each_flight_once(own.into_iter().chain(heard).collect());
+        if once.iter().flatten().all(|flight| flight.input.other_logs.is_empty()) {
             let why = "the vehicle's own log has another attitude than the recording of the link: it is not of this flight, and \
                        the recording is analysed alone";
             return alone(link, Some(why.to_owned()));

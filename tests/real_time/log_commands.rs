@@ -158,3 +158,27 @@ fn a_flight_sets_the_logging_of_each_autopilot_and_puts_it_back() {
     let (restored, _) = ardupilot.log(&state, &["prepare"]);
     assert_eq!(restored["changes"][0]["found"], 176_126.0);
 }
+
+/// In place of a vehicle file its mass: the rest comes from the parameters that it has, and lies in the folder of the flight.
+#[test]
+fn a_vehicle_without_a_file_is_checked_by_its_own_parameters() {
+    let folder = folder("flown_by_mass");
+    let trajectory = planned("plan_by_mass", 1);
+    let sitl = Sitl::start("px4", &[]);
+    let flight = folder.join("flight");
+    let output = Command::new(MAVID)
+        .args(["fly", "--plain", "--connect", &sitl.1, "--mass", "2.0643", "--size", "0.5"])
+        .args(["--trajectory", trajectory.to_str().unwrap(), "--out", flight.to_str().unwrap()])
+        .env("MAVID_STATE_DIR", &folder)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("the vehicle is drafted from its parameters, with"), "{said}");
+    let drafted = std::fs::read_to_string(flight.join("vehicle.toml")).unwrap();
+    assert!(drafted.contains("4 rotors of PX4 by CA_ROTOR_COUNT"), "{drafted}");
+    let vehicle = mavid::config::read_vehicle(&flight.join("vehicle.toml")).unwrap().vehicle;
+    assert!((vehicle.body.mass_kg - 2.0643).abs() < 1e-9 && vehicle.rotors.len() == 4);
+    // it was checked as one of a file is
+    let events = std::fs::read_to_string(flight.join("events.jsonl")).unwrap();
+    assert!(events.contains("hover thrust: expected the vehicle file's weight, 20.25"), "{events}\n{said}");
+}

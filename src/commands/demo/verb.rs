@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::concealed::{Compared, compare, concealed, table};
 use super::embedded::Embedded;
 use super::progress::{self, Progress};
-use crate::cli::{CriterionName, DemoArgs, FlyArgs, OriginName, PlanArgs};
+use crate::cli::{CriterionName, DemoArgs, FlyArgs, OriginName, PlanArgs, ShapeArgs};
 use crate::commands::after_flight::Analysis;
 use crate::commands::live::{self, Work};
 use crate::commands::sitl::DEFAULT_VEHICLE;
@@ -145,7 +145,9 @@ fn fly_args(port: u16, vehicle: &Path, trajectory: &Path, folder: &Path) -> FlyA
     FlyArgs {
         connect: format!("udpout:127.0.0.1:{port}"),
         trajectory: trajectory.to_owned(),
-        vehicle: vehicle.to_owned(),
+        vehicle: Some(vehicle.to_owned()),
+        mass: None,
+        shape: ShapeArgs::default(),
         out: folder.to_owned(),
         arm: false,
         yes: true,

@@ -1,11 +1,9 @@
 //! What is flown, from the arguments and their files.
 
 use std::io::IsTerminal;
-use std::path::Path;
 use std::time::Duration;
 
-use mavid::config::{StoredTrajectory, read_trajectory, read_vehicle};
-use mavid::files::write_whole;
+use mavid::config::{StoredTrajectory, read_trajectory};
 use mavid::fly::{self, Around, Course, Origin, Ride, Sortie};
 use mavid::link::Signing;
 use mavid::plan::{Roomed, with_room};
@@ -14,6 +12,7 @@ use mavid::units::rad_from_deg;
 use mavid::vehicle::{Limits, Vehicle};
 use mavid::wire::{ComponentId, SystemId};
 
+use super::vehicle::{copy, vehicle_of};
 use crate::cli::{CheckName, FlyArgs, OriginName};
 use crate::commands::{CommandError, leftover, network, output};
 
@@ -30,29 +29,17 @@ pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
         )));
     }
     let address = network::address("--connect", &args.connect)?;
-    let loaded = read_vehicle(&args.vehicle)?;
-    output::warnings(&args.vehicle, &loaded.warnings);
     let trajectory = read_trajectory(&args.trajectory)?;
-    let sortie = sortie(args, &trajectory, &loaded.vehicle)?;
+    let flown = vehicle_of(args)?;
+    let sortie = sortie(args, &trajectory, &flown.vehicle)?;
     let signing =
         args.signing_key_file.as_deref().map(Signing::open).transpose().map_err(|error| input(&error))?;
     output::signing_warnings(signing.as_ref());
     leftover::make_way(&args.out, SystemId(args.station_id))?;
     copy(&args.trajectory, &args.out.join("trajectory.toml"))?;
-    copy(&args.vehicle, &args.out.join("vehicle.toml"))?;
+    let vehicle = flown.put(args)?;
     let parking = fly::Parking::default();
-    Ok(Ride { sortie, vehicle: loaded.vehicle, address, signing, dir: args.out.clone(), parking })
-}
-
-fn copy(from: &Path, to: &Path) -> Result<(), CommandError> {
-    let failed = |error| {
-        CommandError::Input(format!("cannot copy {} to {}: {error}", text::path(&from), text::path(&to)))
-    };
-    if output::is_same(from, to) {
-        return Ok(());
-    }
-    let text = std::fs::read(from).map_err(failed)?;
-    write_whole(to, &text).map_err(failed)
+    Ok(Ride { sortie, vehicle, address, signing, dir: args.out.clone(), parking })
 }
 
 fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> Result<Sortie, CommandError> {

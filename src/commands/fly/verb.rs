@@ -7,6 +7,7 @@ use mavid::wire::SystemId;
 
 use super::document::Document;
 use super::ride::{asks_for_the_word, is_attended, ride};
+use super::vehicle::file_of;
 use super::watch::{View, Watch, fly_it, watch};
 use super::words::words;
 use crate::cli::FlyArgs;
@@ -66,7 +67,7 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
     // each line when it is due: how long a download takes is said before it
     let onboard = log::after_flight(args, record.system, fetching, &mut |note| said.say(vec![note]));
     let flown = (&*args.out, landed, onboard.as_deref());
-    let analysis = Analysis::of(flown, &args.vehicle, record.system, &mut |note| notes.push(note));
+    let analysis = Analysis::of(flown, &file_of(args), record.system, &mut |note| notes.push(note));
     said.say(notes);
     let analysis = analysis?;
     let heard = view == View::Ended && said.are_heard();

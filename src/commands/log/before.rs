@@ -27,7 +27,7 @@ pub struct BeforeFlight {
 }
 
 /// The link of a flight to this vehicle.
-pub(super) fn link_of(args: &FlyArgs, system: Option<u32>) -> VehicleLinkArgs {
+pub fn link_of(args: &FlyArgs, system: Option<u32>) -> VehicleLinkArgs {
     VehicleLinkArgs {
         connect: args.connect.clone(),
         system_id: system,

@@ -76,10 +76,13 @@ impl ListDocument {
     /// For people.
     pub fn page(&self) -> String {
         let mut lines = vec![format!(
-            "system {}, {}: {} logs, oldest first",
+            "system {}, {}: {}",
             self.system,
             self.autopilot,
-            self.logs.len()
+            match self.logs.len() {
+                1 => "1 log".to_owned(),
+                count => format!("{count} logs, oldest first"),
+            }
         )];
         for log in &self.logs {
             let id = log.id.map_or_else(|| "-".to_owned(), |id| id.to_string());
@@ -139,4 +142,21 @@ pub fn page(done: &Done) -> String {
         words(done.checked),
         next(Path::new(&done.path))
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_log_is_one_log() {
+        let log = |id| LogLine { id: Some(id), name: None, bytes: 2_000_000, time_utc_s: None };
+        let page = |logs: Vec<LogLine>| {
+            let (schema, system, autopilot, protocol) = (1, 1, "px4", "ftp");
+            ListDocument { schema, system, autopilot, protocol, logs, left_out: 0 }.page()
+        };
+        assert!(page(vec![log(7)]).starts_with("system 1, px4: 1 log\n"), "{}", page(vec![log(7)]));
+        let two = page(vec![log(7), log(8)]);
+        assert!(two.starts_with("system 1, px4: 2 logs, oldest first\n"), "{two}");
+    }
 }

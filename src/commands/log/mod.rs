@@ -11,7 +11,7 @@ mod session;
 mod state;
 mod verb;
 
-pub use before::{before_flight, put_back};
+pub use before::{before_flight, link_of, put_back};
 pub use flown::{Fetching, after_flight};
 pub use parameters::of_vehicle as parameters_of_vehicle;
 pub use verb::run;

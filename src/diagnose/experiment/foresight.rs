@@ -262,6 +262,8 @@ impl Flown {
                 airborne_s: Vec::new(),
                 usable: Usable::default(),
                 torques: true,
+                gyro_noise_rad_s: Some(like.gyro_noise_rad_s),
+                height_by_pose: like.height_by_pose,
                 notes: Vec::new(),
             },
         }

@@ -47,30 +47,32 @@ pub(super) fn residuals(
         })
         .collect::<Result<_, PhysicsError>>()?;
     let mut blocks = Blocks::new(CHANNELS, settings.block_s);
-    let (mut floor, mut rows) = ([0.0; CHANNELS], 0);
+    let (mut floor, mut rows) = ([0.0; CHANNELS], [0; CHANNELS]);
     for (flight, (before, after, own)) in parts.iter().enumerate() {
-        let count = own.rows.len();
-        rows += count;
+        let counts: [usize; CHANNELS] = std::array::from_fn(|channel| own.rows.count_of(channel));
+        let measured = counts.map(|count| if count > 0 { 1.0 } else { 0.0 });
         for (row, time_s) in own.rows.time_s.iter().enumerate() {
             let squares = |channels: &Channels| -> [f64; CHANNELS] {
                 std::array::from_fn(|channel| channels[channel][row].powi(2))
             };
-            blocks.add((flight, *time_s), &squares(before), &squares(after), &[1.0; CHANNELS]);
+            blocks.add((flight, *time_s), &squares(before), &squares(after), &measured);
         }
-        for (channel, floor) in floor.iter_mut().enumerate() {
-            *floor += count as f64 * own.weighted.sigma[channel].powi(2);
+        for (channel, count) in counts.into_iter().enumerate() {
+            rows[channel] += count;
+            floor[channel] += count as f64 * own.weighted.sigma[channel].powi(2);
         }
     }
     let (mut compared, _) = blocks.compared(settings.draws, settings.seed);
-    let root = |sum: f64| (sum / rows.max(1) as f64).sqrt();
-    for (entry, sum) in compared.iter_mut().zip(floor) {
+    let own_rms: [f64; CHANNELS] =
+        std::array::from_fn(|channel| (floor[channel] / rows[channel].max(1) as f64).sqrt());
+    for (entry, own_rms) in compared.iter_mut().zip(own_rms) {
         // force that is read once only has no second reading
         *entry = entry
-            .filter(|compared| compared.before.value > 0.0 && sum > 0.0)
+            .filter(|compared| compared.before.value > 0.0 && own_rms > 0.0)
             // a flight's own fit has no empirical term
-            .map(|compared| Compared { floor: empirical.is_none().then(|| root(sum)), ..compared });
+            .map(|compared| Compared { floor: empirical.is_none().then_some(own_rms), ..compared });
     }
-    Ok(Weak { own_rms: floor.map(root), compared, own: parts.into_iter().map(|(.., own)| own).collect() })
+    Ok(Weak { own_rms, compared, own: parts.into_iter().map(|(.., own)| own).collect() })
 }
 
 /// A flight's own linear fit about a model. The size of a change that was before the flight's rows keeps its value: there

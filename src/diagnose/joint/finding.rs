@@ -7,7 +7,7 @@ use super::wanted::RequestedEffects;
 use crate::diagnose::fit::Fitted;
 use crate::diagnose::gates::Gates;
 use crate::diagnose::latency::FAST_MOTOR_S;
-use crate::diagnose::latency::{LatencyFinding, held_s, stated_lag_s};
+use crate::diagnose::latency::{LatencyFinding, NO_LATENCY, held_s, stated_lag_s};
 use crate::diagnose::signature::{EffectTerm, LatencyKind, Signature, Whence};
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::trace::Trace;
@@ -241,7 +241,9 @@ fn of_latency(
         (latency.parts.delay_s - held_s(flights), 0.0, fast_s)
     };
     let std = split.map_or(latency.std_s, |(lag, delay)| if is_lag { lag } else { delay });
-    let found = if value > least {
+    let found = if !latency.is_determined() {
+        Found::NotDetermined { held: value.max(0.0), reason: NO_LATENCY.to_owned() }
+    } else if value > least {
         Found::Determined { value, std }
     } else {
         Found::AtBound { value: least, wanted: value, std }
@@ -259,7 +261,8 @@ fn of_latency(
             found: if uneven { found.times(shares[slot]) } else { found.clone() },
         })
         .collect();
-    EffectFound { effect, parameters, z: ((value - ordinary_s) / std).max(0.0), tried: 1 }
+    let z = if latency.is_determined() { ((value - ordinary_s) / std).max(0.0) } else { 0.0 };
+    EffectFound { effect, parameters, z, tried: 1 }
 }
 
 fn fitted_std(fitted: &Fitted, column: usize) -> f64 {

@@ -11,7 +11,10 @@ use super::angular_damping;
 pub static SIGNATURE: Signature = Signature {
     needs: &[Need::Velocity],
     // of the rotors, at their hubs, or of the body, at its centre
-    forms: |_| [1.0, 0.0].map(|at_hubs| SIGNATURE.form(&[0.0, at_hubs], &[0])).to_vec(),
+    forms: |recorded| {
+        let at = |at_hubs: &f64| SIGNATURE.form(&[0.0, *at_hubs], &[0]);
+        recorded.shares_at_hubs().iter().map(at).collect()
+    },
     // 1/s: forces scale with the mass
     naming: Naming {
         usual: |parameter, vehicle| (parameter == "kz").then_some(0.4 * vehicle.body.mass_kg),
@@ -26,7 +29,10 @@ pub static SIGNATURE: Signature = Signature {
         ..Role::NONE
     },
     joint: Joint {
-        forms: Some(|_, _| [1.0, 0.0].map(|at_hubs| SIGNATURE.term(&[0.0, at_hubs], &[0, 1])).to_vec()),
+        forms: Some(|recorded, _| {
+            let at = |at_hubs: &f64| SIGNATURE.term(&[0.0, *at_hubs], &[0, 1]);
+            recorded.shares_at_hubs().iter().map(at).collect()
+        }),
         ..Joint::PLAIN
     },
     ..Signature::of(

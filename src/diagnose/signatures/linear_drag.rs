@@ -16,13 +16,13 @@ const DZ: usize = 2;
 /// Drag in proportion to the airspeed.
 pub static SIGNATURE: Signature = Signature {
     needs: &[Need::Velocity],
-    forms: |_| {
+    forms: |recorded| {
         // of the rotors, at their hubs, or of the body, at its centre
         let at = |at_hubs: f64| {
             let values = [0.0, 0.0, 0.0, at_hubs];
             [SIGNATURE.form(&values, &[0, 1]), SIGNATURE.form(&values, &[0, 1, 2])]
         };
-        [1.0, 0.0].into_iter().flat_map(at).collect()
+        recorded.shares_at_hubs().iter().copied().flat_map(at).collect()
     },
     naming: Naming {
         // 1/s: forces scale with the mass
@@ -41,10 +41,11 @@ pub static SIGNATURE: Signature = Signature {
         ..Role::NONE
     },
     joint: Joint {
-        forms: Some(|_, asked| {
+        forms: Some(|recorded, asked| {
             // an effect along body z is the same term as the drag's z
             let free: &[usize] = if has_axial_part(asked) { &[0, 1, 3] } else { &[0, 1, 2, 3] };
-            [1.0, 0.0].map(|at_hubs| SIGNATURE.term(&[0.0, 0.0, 0.0, at_hubs], free)).to_vec()
+            let at = |at_hubs: &f64| SIGNATURE.term(&[0.0, 0.0, 0.0, *at_hubs], free);
+            recorded.shares_at_hubs().iter().map(at).collect()
         }),
         whence: |_, slot, _, asked| {
             let elsewhere = slot == DZ && has_axial_part(asked);

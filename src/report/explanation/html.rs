@@ -3,7 +3,7 @@
 use super::answer::answer;
 use super::figures;
 use super::hold_out::hold_out;
-use crate::diagnose::{Empirical, Named, Verdict, called, clause};
+use crate::diagnose::{Empirical, NO_LATENCY, Named, Verdict, called, clause};
 use crate::report::chart::inline;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
 use crate::report::number::{chance, significant, spoken, with_error};
@@ -159,7 +159,11 @@ fn rigid_body(study: &ExplainStudy) -> Markup {
             vec![
                 text(of.name),
                 number(significant(of.nominal, 4)),
-                number(with_error(of.before.value, of.before.std)),
+                number(if of.before.std > 0.0 {
+                    with_error(of.before.value, of.before.std)
+                } else {
+                    "not known".into()
+                }),
                 number(if known {
                     with_error(of.after.value, of.after.std)
                 } else {
@@ -181,10 +185,14 @@ fn rigid_body(study: &ExplainStudy) -> Markup {
         @for (reason, names) in study.body_not_determined() {
             (note(&format!("{}: not determined: {reason}.", names.join(", "))))
         }
-        (note(&format!(
-            "From command to rotor {} ms.",
-            with_error(1e3 * latency.total_s, 1e3 * latency.std_s)
-        )))
+        @if latency.is_determined() {
+            (note(&format!(
+                "From command to rotor {} ms.",
+                with_error(1e3 * latency.total_s, 1e3 * latency.std_s)
+            )))
+        } @else {
+            (note(&format!("From command to rotor: not determined: {NO_LATENCY}.")))
+        }
     };
     section("Rigid body", &content)
 }

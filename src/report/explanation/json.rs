@@ -91,10 +91,10 @@ struct Moved {
 
 #[derive(Debug, Clone, Serialize)]
 struct LatencyValue {
-    total_s: f64,
+    total_s: Option<f64>,
     std_s: Option<f64>,
-    delay_s: f64,
-    lag_s: f64,
+    delay_s: Option<f64>,
+    lag_s: Option<f64>,
     named: bool,
 }
 
@@ -248,11 +248,12 @@ fn moved(study: &ExplainStudy) -> BTreeMap<&'static str, Moved> {
 
 fn latency(study: &ExplainStudy) -> LatencyValue {
     let latency = study.latency();
+    let determined = |value: f64| latency.is_determined().then_some(value);
     LatencyValue {
-        total_s: latency.total_s,
-        std_s: latency.std_s.is_finite().then_some(latency.std_s),
-        delay_s: latency.parts.delay_s,
-        lag_s: latency.parts.lag_s,
+        total_s: determined(latency.total_s),
+        std_s: determined(latency.std_s),
+        delay_s: determined(latency.parts.delay_s),
+        lag_s: determined(latency.parts.lag_s),
         named: study.latency_named(),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::answer::answer;
 use crate::config::{ConfigError, vehicle_to_toml};
+use crate::diagnose::NO_LATENCY;
 use crate::report::model_parts::{self, correlation_lines, effect_tables, files};
 use crate::study::{ExplainStudy, ShownOn};
 use crate::text::toml_string;
@@ -34,7 +35,11 @@ fn identified(text: &mut String, study: &ExplainStudy) {
         let _ = writeln!(text, "{line}");
     }
     let latency = study.latency();
-    let _ = writeln!(text, "{}", entry("latency", latency.total_s, latency.std_s, "s"));
+    let _ = if latency.is_determined() {
+        writeln!(text, "{}", entry("latency", latency.total_s, latency.std_s, "s"))
+    } else {
+        writeln!(text, "{}", model_parts::not_determined("latency", NO_LATENCY))
+    };
     text.push_str(&correlation_lines(&study.correlation()));
     for effect in &study.effects {
         let _ = writeln!(text, "\n[identified.effects.{}]", effect.id);

@@ -1,8 +1,7 @@
 //! The page of `explain` for the terminal.
 
 use super::answer::answer;
-use crate::diagnose::{Named, Verdict};
-use crate::diagnose::{called, clause};
+use crate::diagnose::{NO_LATENCY, Named, Verdict, called, clause};
 use crate::report::number::{chance, percent, significant, with_error};
 use crate::report::thrust_source::thrust_name;
 use crate::study::{AxisFit, ExplainStudy, Predicted, QUANTITIES};
@@ -134,11 +133,12 @@ fn body_lines(page: &mut String, study: &ExplainStudy) {
         let _ = writeln!(page, "    {}: not determined: {reason}", names.join(", "));
     }
     let latency = study.latency();
-    let _ = writeln!(
-        page,
-        "    from command to rotor {} ms",
-        with_error(1e3 * latency.total_s, 1e3 * latency.std_s)
-    );
+    let _ = if latency.is_determined() {
+        let known_ms = with_error(1e3 * latency.total_s, 1e3 * latency.std_s);
+        writeln!(page, "    from command to rotor {known_ms} ms")
+    } else {
+        writeln!(page, "    from command to rotor: not determined: {NO_LATENCY}")
+    };
     let _ = writeln!(page, "\n  residual, rms{:>13}{:>12}", "alone", "after");
     for AxisFit { name, unit, before, after } in study.residual() {
         let _ = writeln!(

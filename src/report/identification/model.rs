@@ -1,6 +1,7 @@
 //! The model file, and the parameters over time.
 
 use crate::config::{ConfigError, vehicle_to_toml};
+use crate::diagnose::NO_LATENCY;
 use crate::diagnose::joint::{Found, ParameterFound};
 use crate::estimate::{
     Finding, Identification, MethodResult, NAMES, THETA, ThrustScale, UNITS, identified_vehicle,
@@ -40,13 +41,12 @@ fn model_with(study: &IdentifyStudy, with: &WithEffects) -> Result<String, Confi
     let _ = writeln!(text, "# what the flight did not determine keeps its nominal value in [body]");
     text.push_str(&identified_entries(&together.body, together.scale.as_ref()));
     let latency = &together.latency;
-    if latency.std_s.is_finite() {
-        let _ = writeln!(
-            text,
-            "latency = {{ value = {:e}, std = {:e}, unit = \"s\" }}",
-            latency.total_s, latency.std_s
-        );
-    }
+    let _ = if latency.is_determined() {
+        let (total_s, std_s) = (latency.total_s, latency.std_s);
+        writeln!(text, "latency = {{ value = {total_s:e}, std = {std_s:e}, unit = \"s\" }}")
+    } else {
+        writeln!(text, "{}", not_determined("latency", NO_LATENCY))
+    };
     text.push_str(&correlation_lines(&study.correlation()));
     for effect in &together.effects {
         let _ = writeln!(text, "\n[identified.effects.{}]\nz = {:e}", effect.effect.id(), effect.z);

@@ -54,11 +54,11 @@ struct ParameterValue {
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Latency {
-    value: f64,
-    std: f64,
+    value: Option<f64>,
+    std: Option<f64>,
     unit: &'static str,
-    delay_s: f64,
-    lag_s: f64,
+    delay_s: Option<f64>,
+    lag_s: Option<f64>,
     /// whether it is one of the requested effects
     named: bool,
 }
@@ -82,6 +82,7 @@ struct Used {
 pub(super) fn with_values(with: &WithEffects) -> With {
     let together = &with.together;
     let latency = &together.latency;
+    let determined = |value: f64| latency.is_determined().then_some(value);
     let Correlation { names: correlation_of, rows: correlation } = Correlation::of_fit(&together.after);
     With {
         effects: together.effects.iter().map(effect_value).collect(),
@@ -89,11 +90,11 @@ pub(super) fn with_values(with: &WithEffects) -> With {
         parameters_without: values(&together.body_before),
         thrust: together.scale.as_ref().map(thrust),
         latency: Latency {
-            value: latency.total_s,
-            std: latency.std_s,
+            value: determined(latency.total_s),
+            std: determined(latency.std_s),
             unit: "s",
-            delay_s: latency.parts.delay_s,
-            lag_s: latency.parts.lag_s,
+            delay_s: determined(latency.parts.delay_s),
+            lag_s: determined(latency.parts.lag_s),
             named: together.latency_named,
         },
         misfit: with

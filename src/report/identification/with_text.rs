@@ -1,5 +1,6 @@
 //! The page of `identify --with` for the terminal.
 
+use crate::diagnose::NO_LATENCY;
 use crate::diagnose::joint::{EffectFound, Found, JointEstimate, ParameterFound};
 use crate::estimate::{Finding, Parameter, theta_of};
 use crate::study::{IdentifyStudy, Misfit, WithEffects};
@@ -42,12 +43,12 @@ pub(super) fn with_text(study: &IdentifyStudy, with: &WithEffects) -> String {
     page.push('\n');
     let latency = &together.latency;
     let how = if together.latency_named { "kept as the named kind" } else { "estimated with them" };
-    let _ = writeln!(
-        page,
-        "  actuation latency {:.1} +- {:.1} ms, {how}",
-        1e3 * latency.total_s,
-        1e3 * latency.std_s
-    );
+    let _ = if latency.is_determined() {
+        let (total_ms, std_ms) = (1e3 * latency.total_s, 1e3 * latency.std_s);
+        writeln!(page, "  actuation latency {total_ms:.1} +- {std_ms:.1} ms, {how}")
+    } else {
+        writeln!(page, "  actuation latency not determined: {NO_LATENCY}")
+    };
     page.push_str(&flight_lines(with.quality.iter()));
     page
 }

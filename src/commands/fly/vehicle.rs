@@ -1,0 +1,86 @@
+//! Which vehicle is flown: that of a file, or one drafted from the parameters that the vehicle has on the link.
+
+use std::path::{Path, PathBuf};
+
+use mavid::config::read_vehicle;
+use mavid::draft::parameters_of;
+use mavid::files::write_whole;
+use mavid::study::{draft_from_parameters, draft_text};
+use mavid::text;
+use mavid::vehicle::Vehicle;
+use mavid::wire::SystemId;
+
+use crate::cli::FlyArgs;
+use crate::commands::log::{link_of, parameters_of_vehicle};
+use crate::commands::{CommandError, leftover, output};
+
+/// The vehicle, and its file until it lies in the folder of the flight.
+pub(super) struct Flown {
+    pub(super) vehicle: Vehicle,
+    file: File,
+}
+
+enum File {
+    At(PathBuf),
+    Drafted(String),
+}
+
+/// Where the vehicle's file of a flight lies: as it was given, or in the folder of the flight, where it was drafted.
+pub(super) fn file_of(args: &FlyArgs) -> PathBuf {
+    args.vehicle.clone().unwrap_or_else(|| args.out.join(NAME))
+}
+
+const NAME: &str = "vehicle.toml";
+
+/// The vehicle of the file, or, with a mass in its place, one of the parameters that the vehicle has. For these it is spoken
+/// to; nothing on it is changed.
+///
+/// # Errors
+/// The file is wrong, the vehicle does not answer, or its parameters do not say enough.
+pub(super) fn vehicle_of(args: &FlyArgs) -> Result<Flown, CommandError> {
+    if let Some(path) = &args.vehicle {
+        let loaded = read_vehicle(path)?;
+        output::warnings(path, &loaded.warnings);
+        return Ok(Flown { vehicle: loaded.vehicle, file: File::At(path.clone()) });
+    }
+    let Some(mass_kg) = args.mass else {
+        return Err(CommandError::Input("expected --vehicle or --mass, got neither".to_owned()));
+    };
+    // what is there already is told before anybody is waited for
+    leftover::make_way(&args.out, SystemId(args.station_id))?;
+    let given = args.shape.given(mass_kg);
+    let link = link_of(args, args.system_id);
+    let found = parameters_of_vehicle(&link, |stack, known| parameters_of(stack, &given, known))?;
+    let draft = draft_from_parameters(found, &given, &args.connect)?;
+    let guesses = draft.vehicle.guesses.len();
+    output::message(&format!(
+        "the vehicle is drafted from its parameters, with {guesses} guess{}: {}",
+        if guesses == 1 { "" } else { "es" },
+        text::path(&file_of(args))
+    ));
+    Ok(Flown { file: File::Drafted(draft_text(&draft)?), vehicle: draft.vehicle })
+}
+
+/// Copies a file into the folder of the flight, unless it lies there.
+pub(super) fn copy(from: &Path, to: &Path) -> Result<(), CommandError> {
+    let failed = |error| {
+        CommandError::Input(format!("cannot copy {} to {}: {error}", text::path(&from), text::path(&to)))
+    };
+    if output::is_same(from, to) {
+        return Ok(());
+    }
+    let text = std::fs::read(from).map_err(failed)?;
+    write_whole(to, &text).map_err(failed)
+}
+
+impl Flown {
+    /// Puts its file into the folder of the flight, which is there.
+    pub(super) fn put(self, args: &FlyArgs) -> Result<Vehicle, CommandError> {
+        let to = args.out.join(NAME);
+        match self.file {
+            File::At(from) => copy(&from, &to)?,
+            File::Drafted(text) => output::file(&to, &text)?,
+        }
+        Ok(self.vehicle)
+    }
+}

@@ -1,0 +1,67 @@
+//! What gives the vehicle its height: motion capture, or something less exact.
+
+use crate::recording::{Quantity, Recording};
+
+/// Poses from outside of the vehicle's own sensors: motion capture, or a camera on it.
+const POSES: [&str; 4] =
+    ["vehicle_mocap_odometry", "vehicle_visual_odometry", "att_pos_mocap", "vehicle_vision_position"];
+
+/// Whether motion capture or a camera gives the height: the autopilot's parameters say so; where they are not known, poses
+/// are logged and no satellite receiver's velocity.
+pub(super) fn is_height_by_pose(recording: &Recording) -> bool {
+    let parameter = |name: &str| recording.parameters.get(name).copied();
+    let stated = recording.autopilot.stack().and_then(|stack| stack.has_height_by_pose(parameter));
+    let logs = |what: fn(Quantity, &str) -> bool| {
+        let mut streams = recording.streams.iter();
+        streams.any(|(key, stream)| what(key.quantity, key.source) && !stream.is_empty())
+    };
+    stated.unwrap_or_else(|| {
+        logs(|quantity, source| quantity == Quantity::Position && POSES.contains(&source))
+            && !logs(|quantity, _| quantity == Quantity::GpsVelocity)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::autopilot::Autopilot;
+    use crate::recording::{Stream, StreamKey};
+
+    fn with(
+        streams: &[(Quantity, &'static str)],
+        parameters: &[(&str, f64)],
+        autopilot: Autopilot,
+    ) -> Recording {
+        let stream = Stream { time_s: vec![0.0], width: 3, values: vec![0.0; 3] };
+        let streams = streams.iter().map(|(quantity, source)| {
+            (StreamKey { quantity: *quantity, source, instance: 0 }, stream.clone())
+        });
+        Recording {
+            streams: streams.collect(),
+            parameters: parameters.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+            autopilot,
+            ..Recording::default()
+        }
+    }
+
+    #[test]
+    fn parameters_say_it_before_streams_do() {
+        let estimate = (Quantity::Position, "vehicle_local_position");
+        let pose = (Quantity::Position, "vehicle_mocap_odometry");
+        let receiver = (Quantity::GpsVelocity, "sensor_gps");
+        let cases = [
+            (with(&[estimate], &[], Autopilot::Px4), false),
+            (with(&[estimate, pose], &[], Autopilot::Px4), true),
+            (with(&[estimate, pose, receiver], &[], Autopilot::Px4), false),
+            (with(&[estimate, pose, receiver], &[("EKF2_HGT_REF", 3.0)], Autopilot::Px4), true),
+            (with(&[estimate, pose], &[("EKF2_HGT_REF", 1.0)], Autopilot::Px4), false),
+            (with(&[estimate], &[("EKF2_HGT_MODE", 3.0)], Autopilot::Px4), true),
+            (with(&[estimate], &[("EK3_SRC1_POSZ", 6.0)], Autopilot::ArduPilot), true),
+            (with(&[estimate], &[("EK3_SRC1_POSZ", 1.0)], Autopilot::ArduPilot), false),
+            (with(&[], &[], Autopilot::default()), false),
+        ];
+        for (recording, expected) in cases {
+            assert_eq!(is_height_by_pose(&recording), expected, "{:?}", recording.parameters);
+        }
+    }
+}
