@@ -1,7 +1,9 @@
-//! How fast logs are read, beside pymavlink on the same file.
+//! How fast logs are read, beside pymavlink and pyulog on the same file.
 //!
-//! `cargo bench --bench reading [-- LOG.tlog]`: without a path a log is generated (seeded, the messages of
-//! an identification flight). `MAVID_PYTHON` names a Python that has pymavlink (default `python3`).
+//! `cargo bench --bench reading [-- LOG]`: without a path a telemetry log is generated (seeded, the messages of
+//! an identification flight). Of a log that the vehicle wrote itself (`.ulg`, `.bin`) megabytes a second are measured: all of
+//! it into a recording, and all topics by pyulog, or all messages by pymavlink. `MAVID_PYTHON` names a Python that has pymavlink
+//! and pyulog (default `python3`).
 
 use std::error::Error;
 use std::io::Write;
@@ -9,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use mavid::log::{self, OpenOptions, ReadReport, TlogReader};
+use mavid::log::{self, LogError, OpenOptions, ReadReport, TlogReader};
 use mavid::wire::{MessageWriter, SystemId};
 use mavlink::dialects::ardupilotmega::{self as dialect, MavMessage as M};
 use rand::{RngExt, SeedableRng};
@@ -25,6 +27,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         None => generated_log()?,
     };
     writeln!(out, "{} ({} bytes)", path.display(), std::fs::metadata(&path)?.len())?;
+    match log::format_of(&path)?.name {
+        name if name.ends_with("(.ulg)") => {
+            return onboard(&mut out, &path, "pyulog", "read_ulog_with_pyulog.py");
+        }
+        name if name.ends_with("(.bin)") => {
+            return onboard(&mut out, &path, "pymavlink", "read_dataflash_with_pymavlink.py");
+        }
+        _ => {}
+    }
     let options = OpenOptions { system: Some(SystemId(1)), ..OpenOptions::default() };
     let walk = fastest(|| {
         let mut reader = TlogReader::new(std::fs::File::open(&path)?);
@@ -58,6 +69,41 @@ fn main() -> Result<(), Box<dyn Error>> {
         1e3 * seconds
     )?;
     Ok(())
+}
+
+/// Megabytes a second of a log that the vehicle wrote, medians of a few runs, beside another reader in the same run.
+fn onboard(out: &mut impl Write, path: &Path, other: &str, script: &str) -> Result<(), Box<dyn Error>> {
+    let megabytes = std::fs::metadata(path)?.len() as f64 * 1e-6;
+    let options = OpenOptions::default();
+    let mut samples = 0_u64;
+    let streamed =
+        megabytes / median_s(|| log::stream(path, &options, &mut |_, _| samples += 1).map(|_| ()))?;
+    let recorded = megabytes / median_s(|| log::open(path, &options).map(|_| ()))?;
+    writeln!(out, "{:<34} {streamed:>12.0} MB/s", "samples, streamed")?;
+    writeln!(out, "{:<34} {recorded:>12.0} MB/s", "whole recording in memory")?;
+    let python = std::env::var("MAVID_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers").join(script);
+    let output = Command::new(python).arg(script).arg(path).output()?;
+    match String::from_utf8(output.stdout)?.trim().parse::<f64>() {
+        Ok(rate) => {
+            let times = recorded / rate;
+            writeln!(out, "{other:<34} {rate:>12.1} MB/s, fastest of 3: recording {times:.0} times")?;
+        }
+        Err(_) => writeln!(out, "{other} not measured: {}", String::from_utf8_lossy(&output.stderr).trim())?,
+    }
+    Ok(())
+}
+
+/// Seconds of the median of a few runs.
+fn median_s(mut run: impl FnMut() -> Result<(), LogError>) -> Result<f64, LogError> {
+    let mut times_s = Vec::new();
+    for _ in 0..REPEATS {
+        let start = Instant::now();
+        run()?;
+        times_s.push(start.elapsed().as_secs_f64());
+    }
+    times_s.sort_by(f64::total_cmp);
+    Ok(times_s[REPEATS / 2])
 }
 
 /// Seconds of `mavid identify` from start to exit with one worker: on the 54 s flight of the practice cases

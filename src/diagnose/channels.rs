@@ -58,8 +58,10 @@ pub enum Nuisance {
 pub struct NuisanceColumn {
     /// the quantity
     pub nuisance: Nuisance,
-    /// per unit
+    /// per unit, from [`Self::first_row`] on; zero in the rows before and after
     pub values: Channels,
+    /// row of the first value
+    pub first_row: usize,
     /// standard deviation of the coefficient about zero, its unit; `None`: nothing is known
     pub prior_std: Option<f64>,
     /// per unit, in rows that do not estimate it but contain its error (consider covariance)
@@ -67,21 +69,25 @@ pub struct NuisanceColumn {
 }
 
 impl NuisanceColumn {
-    /// The column of one flight among the rows of all, `count` of them, of which its own begin at `first`.
-    pub(super) fn among(self, first: usize, count: usize) -> Self {
-        let values = self.values.map(|own| {
-            let mut all = vec![0.0; count];
-            all[first..first + own.len()].copy_from_slice(&own);
-            all
-        });
-        Self { values, ..self }
+    /// Its value in a row of a channel; zero where it has none.
+    #[must_use]
+    pub fn at(&self, channel: usize, row: usize) -> f64 {
+        let of_row = row.checked_sub(self.first_row).and_then(|place| self.values[channel].get(place));
+        of_row.copied().unwrap_or(0.0)
+    }
+
+    /// The column of one flight among the rows of all, of which its own begin at `first`.
+    pub(super) fn among(self, first: usize) -> Self {
+        Self { first_row: self.first_row + first, ..self }
     }
 }
 
 /// Channels of the force in each available measurement (N), and of the torque (N m) where torques are compared.
 pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
-    let torque = if trace.torques { torque } else { nothing(trace) };
-    let second = if trace.reads_force_twice() { force.clone() } else { nothing(trace) };
+    let rows = force[0].len();
+    let nothing = || std::array::from_fn(|_| vec![0.0; rows]);
+    let torque = if trace.torques { torque } else { nothing() };
+    let second = if trace.reads_force_twice() { force.clone() } else { nothing() };
     let ([fx, fy, fz], [tx, ty, tz], [kx, ky, kz]) = (force, torque, second);
     [fx, fy, fz, tx, ty, tz, kx, ky, kz]
 }

@@ -5,6 +5,7 @@
 //! conservative if the model is wrong.
 
 use super::channels::{CHANNELS, Channels};
+use super::columns::Columns;
 use super::priors::{OF_KERNEL, Priors};
 use super::rows::Rows;
 use crate::stats::{chance_by_stretches, normal_deviate};
@@ -25,7 +26,7 @@ pub struct Weighted {
     /// residual standard deviation of each channel, N and N m
     pub sigma: [f64; CHANNELS],
     /// nuisances and the base's own effects, weighted
-    pub(super) nuisances: DMatrix<f64>,
+    pub(super) nuisances: Columns,
     /// variance of the scores by the priors
     prior_meat: DVector<f64>,
     pub(super) normal: Option<Cholesky<f64, Dyn>>,
@@ -95,12 +96,9 @@ impl Weighted {
 
     /// The same if this many rows of a reading count as one independent measurement of a slow error.
     fn with(rows: &Rows, sigma: &[f64; CHANNELS], alike: f64) -> Self {
-        let of_nuisances = rows.nuisances.iter().map(|column| &column.values);
-        let columns: Vec<DVector<f64>> =
-            of_nuisances.chain(&rows.effects).map(|column| weighted(column, sigma)).collect();
-        let priors = Priors::of(&rows.nuisances, columns.len(), alike);
-        let nuisances = DMatrix::from_columns(&columns);
-        let mut normal = nuisances.tr_mul(&nuisances) + DMatrix::from_diagonal(&priors.precision);
+        let nuisances = Columns::weighted(&rows.nuisances, &rows.effects, sigma, rows.len());
+        let priors = Priors::of(&rows.nuisances, nuisances.len(), alike);
+        let mut normal = nuisances.gram() + DMatrix::from_diagonal(&priors.precision);
         // a column that is nowhere excited drops out
         let most = normal.diagonal().max();
         for index in 0..normal.nrows() {
@@ -165,16 +163,17 @@ impl Weighted {
     #[must_use]
     pub fn coefficients(&self, rows: &Rows) -> (DVector<f64>, DMatrix<f64>) {
         let y = weighted(&rows.residual, &self.sigma);
-        let size = self.nuisances.ncols();
+        let size = self.nuisances.len();
         let Some(normal) = &self.normal else {
             return (DVector::zeros(size), DMatrix::from_diagonal_element(size, size, f64::INFINITY));
         };
-        let theta = normal.solve(&self.nuisances.tr_mul(&y));
+        let theta = normal.solve(&self.nuisances.transposed_times(y.as_slice()));
         let bread = normal.inverse();
         let prior = DMatrix::from_diagonal(&self.prior_meat);
         let gammas = self.gammas(&self.left);
         let by_residual = &bread * (self.meat_of_residual(&self.nuisances, &gammas) + &prior) * &bread;
-        let by_score = &bread * (self.meat_of_scores(&self.nuisances, &self.left, &gammas) + &prior) * &bread;
+        let scores = self.nuisances.scores(self.left.as_slice());
+        let by_score = &bread * (self.meat_of_scores(&scores, &gammas) + &prior) * &bread;
         let mut covariance = DMatrix::from_fn(size, size, |i, j| {
             let more = |k: usize| (by_score[(k, k)] / by_residual[(k, k)]).max(1.0).sqrt();
             if by_residual[(i, i)] > 0.0 && by_residual[(j, j)] > 0.0 {
@@ -196,14 +195,17 @@ impl Weighted {
 
     /// Coefficients of the nuisances and of the base's effects in the projection of a weighted column.
     pub(super) fn part_in(&self, column: &DVector<f64>) -> DVector<f64> {
-        let part = self.nuisances.tr_mul(column);
+        let part = self.nuisances.transposed_times(column.as_slice());
         self.normal.as_ref().map_or_else(|| DVector::zeros(part.len()), |normal| normal.solve(&part))
     }
 
     /// A column without the part that the nuisances explain.
     pub(super) fn project(&self, column: &DVector<f64>) -> DVector<f64> {
         match &self.normal {
-            Some(normal) => column - &self.nuisances * normal.solve(&self.nuisances.tr_mul(column)),
+            Some(normal) => {
+                let part = self.nuisances.transposed_times(column.as_slice());
+                column - self.nuisances.times(&normal.solve(&part))
+            }
             None => column.clone(),
         }
     }
@@ -232,15 +234,17 @@ impl Weighted {
         let after = &self.left - &partialled * &theta;
         let prior = self.prior_part(&plain);
         let gamma = self.gammas(&after);
-        let by_residual = &inverse * (self.meat_of_residual(&partialled, &gamma) + &prior) * &inverse;
-        let by_score = &inverse * (self.meat_of_scores(&partialled, &after, &gamma) + &prior) * &inverse;
+        let tested = Columns::of(&partialled, self.rows);
+        let scores = tested.scores(after.as_slice());
+        let by_residual = &inverse * (self.meat_of_residual(&tested, &gamma) + &prior) * &inverse;
+        let by_score = &inverse * (self.meat_of_scores(&scores, &gamma) + &prior) * &inverse;
         let larger = scaled_trace(&by_residual, &normal) > scaled_trace(&by_score, &normal);
         let covariance = if larger { by_residual } else { by_score };
         let size = columns.len();
         let wald = covariance.clone().cholesky().map_or(0.0, |c| theta.dot(&c.solve(&theta)));
         Some(Evidence {
             z: normal_deviate(wald, size),
-            p_cluster: chance_by_stretches(&self.scores(&partialled, &after), &inverse, &theta),
+            p_cluster: chance_by_stretches(&scores.transposed(), &inverse, &theta),
             gain: energy / self.energy.max(f64::MIN_POSITIVE),
             energy,
             rms: self.rms(&(&partialled * &theta)),
@@ -271,7 +275,7 @@ impl Weighted {
         let size = plain.ncols();
         let Some(normal) = &self.normal else { return DMatrix::zeros(size, size) };
         // X' M Z = X'Z A^-1 P
-        let cross = normal.solve(&self.nuisances.tr_mul(plain));
+        let cross = normal.solve(&self.nuisances.transposed_times_each(plain));
         let mut out = DMatrix::zeros(size, size);
         for (index, variance) in self.prior_meat.iter().enumerate().filter(|(_, p)| **p > 0.0) {
             let row = cross.row(index);

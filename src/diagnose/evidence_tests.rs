@@ -40,8 +40,13 @@ fn problem(prior_std: Option<f64>) -> (Rows, [Channels; 2]) {
             to.iter_mut().zip(from).for_each(|(to, from)| *to += share * from);
         }
     }
-    let nuisance =
-        |values, prior_std| NuisanceColumn { nuisance: Nuisance::Mass, values, prior_std, considered: None };
+    let nuisance = |values, prior_std| NuisanceColumn {
+        nuisance: Nuisance::Mass,
+        values,
+        first_row: 0,
+        prior_std,
+        considered: None,
+    };
     let nuisances = vec![nuisance(bias, None), nuisance(lean, prior_std)];
     (rows_of(vec![0..150, 150..240], residual, nuisances, vec![present]), [a, b])
 }

@@ -111,6 +111,8 @@ pub fn fit(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted, 
     let mut fitted = evaluate(flights, base.clone())?;
     for _ in 0..PASSES {
         let moved = step(&mut base, &fitted, newton);
+        // two of a long flight at a time take much memory
+        drop(fitted);
         fitted = evaluate(flights, base.clone())?;
         if moved < CONVERGED {
             break;

@@ -4,6 +4,7 @@ mod along;
 mod base;
 mod candidates;
 mod channels;
+mod columns;
 mod confusable;
 mod correlation;
 mod drag_location;

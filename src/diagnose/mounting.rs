@@ -23,11 +23,10 @@ pub(super) fn mountings(
                 return None;
             }
             let columns = columns_of(flights, fitted, &candidate)?;
-            let mut rows = fitted.rows.clone();
             let stands_for = |nuisance| {
                 candidate.parts.iter().any(|part| (part.signature.role.stands_for)(part, nuisance))
             };
-            rows.nuisances.retain(|column| !stands_for(column.nuisance));
+            let rows = fitted.rows.without(stands_for);
             let evidence = Weighted::at(&rows, &fitted.weighted.sigma).test(&columns)?;
             Some(Tested { candidate, evidence })
         })

@@ -54,6 +54,7 @@ pub(super) fn nuisances(
         nuisance,
         values,
         prior_std,
+        first_row: 0,
         considered: None,
     };
     let mass_kg = base.vehicle.body.mass_kg;
@@ -113,6 +114,7 @@ fn sensor_nuisances(trace: &Trace, mass_kg: f64, leans: bool) -> Vec<NuisanceCol
                 nuisance: Nuisance::AccelerometerBias(axis),
                 values,
                 prior_std,
+                first_row: 0,
                 considered: None,
             });
         }
@@ -129,7 +131,8 @@ fn sensor_nuisances(trace: &Trace, mass_kg: f64, leans: bool) -> Vec<NuisanceCol
                 values[first + slot] = column;
             }
             let nuisance = Nuisance::Level(axis);
-            out.push(NuisanceColumn { nuisance, values, prior_std: Some(LEVEL_STD_RAD), considered: None });
+            let prior_std = Some(LEVEL_STD_RAD);
+            out.push(NuisanceColumn { nuisance, values, first_row: 0, prior_std, considered: None });
         }
     }
     out

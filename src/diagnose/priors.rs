@@ -51,6 +51,7 @@ mod tests {
             values[0].fill(1.0);
             values[SECOND].fill(second);
             NuisanceColumn {
+                first_row: 0,
                 nuisance: Nuisance::VelocityError,
                 values,
                 prior_std: Some(0.5),

@@ -8,7 +8,7 @@
 use super::along::{moved_by, wrench_along};
 use super::base::Base;
 use super::channels::{
-    AXES, CHANNELS, Channels, NuisanceColumn, SECOND, append, channels, joined, measures, per_step,
+    AXES, CHANNELS, Channels, Nuisance, NuisanceColumn, SECOND, append, channels, joined, measures, per_step,
 };
 use super::nuisances::{momentum_rows, nuisances};
 use super::rotors::{RotorMotion, Thrusts};
@@ -78,11 +78,10 @@ impl Rows {
             squares +=
                 trace.centers.iter().map(|&c| torque[c].component_mul(&torque[c])).sum::<Vector3<f64>>();
         }
-        let count: usize = flights.iter().map(Trace::rows).sum();
         let mut of_one_flight = Vec::new();
         for (trace, Part { along, residual, nuisances, own }) in flights.iter().zip(parts) {
             let before = rows.time_s.len();
-            of_one_flight.extend(own.into_iter().map(|column| column.among(before, count)));
+            of_one_flight.extend(own.into_iter().map(|column| column.among(before)));
             rows.time_s.extend(trace.centers.iter().map(|&center| trace.grid.time_s(center)));
             let runs = || trace.runs.iter().map(|run| run.start + before..run.end + before);
             rows.runs.extend(runs());
@@ -103,6 +102,22 @@ impl Rows {
     #[must_use]
     pub fn commanded(&self, flight: usize) -> Option<&RotorMotion> {
         self.flights.get(flight).map(|along| &along.commanded)
+    }
+
+    /// The same without the nuisances for which something else stands. No further columns come from it: it has nothing of the
+    /// rotors.
+    pub(super) fn without(&self, stands_for: impl Fn(Nuisance) -> bool) -> Self {
+        let kept = self.nuisances.iter().filter(|column| !stands_for(column.nuisance));
+        Self {
+            time_s: self.time_s.clone(),
+            runs: self.runs.clone(),
+            measured: self.measured.clone(),
+            residual: self.residual.clone(),
+            nuisances: kept.cloned().collect(),
+            effects: self.effects.clone(),
+            torque_rms: self.torque_rms,
+            flights: Vec::new(),
+        }
     }
 
     /// Number of rows.

@@ -12,7 +12,7 @@
 
 use super::along::wrench_along;
 use super::base::Base;
-use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
+use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels};
 use super::rotors::RotorMotion;
 use super::trace::Trace;
 use crate::physics::{Model, Wrench};
@@ -57,6 +57,7 @@ pub(super) fn velocity_error(
         .map(|knot| NuisanceColumn {
             nuisance: Nuisance::VelocityError,
             values: knots.column(knot, trace, (mass_kg, &slope)),
+            first_row: knots.rows(knot, trace).start,
             prior_std: Some(rms_m_s / BETWEEN_KNOTS.sqrt()),
             considered: None,
         })
@@ -109,22 +110,17 @@ impl Knots {
         first..trace.centers.partition_point(|center| away(center) <= reach_s)
     }
 
+    /// Its values in these rows.
     fn column(&self, knot: usize, trace: &Trace, (mass_kg, slope): (f64, &[Vector3<f64>])) -> Channels {
         let hat: Vec<f64> =
             (0..trace.grid.count).map(|index| self.hat(knot, trace.grid.time_s(index))).collect();
         let rows = self.rows(knot, trace);
-        let among = |part: [Vec<f64>; 3]| {
-            part.map(|part| {
-                let mut all = vec![0.0; trace.rows()];
-                all[rows.clone()].copy_from_slice(&part);
-                all
-            })
-        };
         let force: Vec<Vector3<f64>> = slope.iter().zip(&hat).map(|(slope, hat)| slope * *hat).collect();
-        let mut out = channels(trace, among(trace.weak_vector_in(0, &force, &rows)), nothing(trace));
+        let no_torque = std::array::from_fn(|_| vec![0.0; rows.len()]);
+        let mut out = channels(trace, trace.weak_vector_in(0, &force, &rows), no_torque);
         let Some(first) = kinematic(trace) else { return out };
         let error: Vec<Vector3<f64>> = hat.iter().map(|hat| Vector3::z() * *hat).collect();
-        let turned = among(trace.weak_acceleration(&error, &Vector3::zeros(), &rows));
+        let turned = trace.weak_acceleration(&error, &Vector3::zeros(), &rows);
         for (out, turned) in out[first..].iter_mut().zip(&turned) {
             out.iter_mut().zip(turned).for_each(|(out, turned)| *out -= mass_kg * turned);
         }

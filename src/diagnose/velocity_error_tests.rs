@@ -43,7 +43,7 @@ fn the_columns_are_what_an_error_brings_into_the_residual() {
                 let expected: f64 = columns
                     .iter()
                     .zip(ERRORS_M_S)
-                    .map(|(column, error_m_s)| error_m_s * column.values[channel][row])
+                    .map(|(column, error_m_s)| error_m_s * column.at(channel, row))
                     .sum();
                 let found = wrong.residual[channel][row] - right.residual[channel][row];
                 assert!((found - expected).abs() < 1e-9, "channel {channel}: {found}, not {expected}");
@@ -62,7 +62,7 @@ fn the_columns_are_what_an_error_brings_into_the_residual() {
 }
 
 fn sum_at(columns: &[&NuisanceColumn], channel: usize, row: usize) -> f64 {
-    columns.iter().zip(ERRORS_M_S).map(|(column, error)| error * column.values[channel][row]).sum()
+    columns.iter().zip(ERRORS_M_S).map(|(column, error)| error * column.at(channel, row)).sum()
 }
 
 /// A straight line between two independent knots varies less between them than at them.

@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Read};
 use super::error::LogError;
 
 /// Reads so much at once, and holds as much beyond what is asked for.
-const CHUNK_BYTES: usize = 1 << 18;
+const CHUNK_BYTES: usize = 1 << 20;
 
 /// A file's bytes from a place on.
 #[derive(Debug)]

@@ -109,8 +109,13 @@ impl RecordingBuilder {
             self.by_quantity.resize(quantity + 1, Vec::new());
         }
         let of_quantity = &mut self.by_quantity[quantity];
-        let found = of_quantity.iter().copied().find(|&index| self.streams[index].key == key);
-        let index = found.unwrap_or_else(|| {
+        // names are compared by where they stand first: a reader gives the same one each time
+        let at = |is_same: fn(&StreamKey, &StreamKey) -> bool| {
+            of_quantity.iter().copied().find(|&index| is_same(&self.streams[index].key, &key))
+        };
+        let stands_there =
+            |a: &StreamKey, b: &StreamKey| a.instance == b.instance && std::ptr::eq(a.source, b.source);
+        let index = at(stands_there).or_else(|| at(|a, b| a == b)).unwrap_or_else(|| {
             of_quantity.push(self.streams.len());
             self.streams.push(Growing { key, stream: Stream::default(), repair: StreamRepair::default() });
             self.streams.len() - 1

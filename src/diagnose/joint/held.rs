@@ -119,8 +119,8 @@ pub(super) fn estimates(fitted: &Fitted, place: usize) -> Vec<(usize, f64, f64, 
 /// Share of a column of the rows (nuisances first, then the base's effects) that no other column explains; `None` if it
 /// is zero.
 fn own_share(weighted: &Weighted, index: usize) -> Option<f64> {
-    let plain = weighted.nuisances.column(index).norm_squared();
-    let mut unit = DVector::zeros(weighted.nuisances.ncols());
+    let plain = weighted.nuisances.norm_squared(index);
+    let mut unit = DVector::zeros(weighted.nuisances.len());
     unit[index] = 1.0;
     let own = weighted.normal.as_ref()?.solve(&unit)[index].recip();
     (plain > 0.0).then(|| own / plain)

@@ -111,7 +111,7 @@ fn scatter(flights: &[Trace], fitted: &mut Fitted) -> Result<(), PhysicsError> {
             change.iter_mut().zip(before).for_each(|(change, before)| *change -= before);
         }
         let change = weighted(&change, &weights.sigma);
-        Ok(normal.solve(&weights.nuisances.tr_mul(&change)))
+        Ok(normal.solve(&weights.nuisances.transposed_times(change.as_slice())))
     };
     let moves: Vec<_> =
         (0..REPLICATES).into_par_iter().map(moved).collect::<Result<Vec<_>, PhysicsError>>()?;

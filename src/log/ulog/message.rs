@@ -142,6 +142,16 @@ fn likeness(kind: u8, length: usize, body: &[u8], schema: &Schema) -> Likeness {
     }
 }
 
+/// Length, prefix included, of the data message at the beginning of `sight`, where its topic is known and has messages of this
+/// length. It is what [`shape`] calls strong, told with less.
+#[inline]
+pub(super) fn data_bytes(sight: &[u8], schema: &Schema) -> Option<usize> {
+    let [low, high, b'D', id @ ..] = *sight.first_chunk::<{ PREFIX_BYTES + 2 }>()? else { return None };
+    let length = usize::from(u16::from_le_bytes([low, high]));
+    let fits = length >= 2 && schema.fits(u16::from_le_bytes(id), length - 2) == Some(true);
+    fits.then_some(PREFIX_BYTES + length)
+}
+
 fn number(body: &[u8]) -> Option<u16> {
     body.first_chunk().copied().map(u16::from_le_bytes)
 }

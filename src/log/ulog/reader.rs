@@ -3,8 +3,8 @@
 use std::io::Read;
 
 use super::message::{
-    HEADER_BYTES, Likeness, MAGIC, MOST_BYTES, Message, PREFIX_BYTES, Shape, appended_offsets, parse, shape,
-    subscription,
+    HEADER_BYTES, Likeness, MAGIC, MOST_BYTES, Message, PREFIX_BYTES, Shape, appended_offsets, data_bytes,
+    parse, shape, subscription,
 };
 use super::report::UlogReport;
 use super::schema::Schema;
@@ -30,6 +30,8 @@ pub struct UlogReader<R: Read> {
     appended: Vec<u64>,
     /// length of the message that `next_message` gave last
     given: usize,
+    /// length of the data message that follows on it, where one was seen
+    following: Option<usize>,
     report: UlogReport,
 }
 
@@ -68,6 +70,7 @@ impl<R: Read> UlogReader<R> {
             schema: Schema::default(),
             appended: Vec::new(),
             given: 0,
+            following: None,
             report: UlogReport::default(),
         }
     }
@@ -81,13 +84,20 @@ impl<R: Read> UlogReader<R> {
             self.bytes.skip(std::mem::take(&mut self.given));
             self.bytes.look(LOOK_BYTES)?;
             self.report.bytes = self.bytes.offset();
+            if let Some(bytes) = self.data_on_data() {
+                self.given = bytes;
+                break;
+            }
             if self.bytes.offset() == 0 {
                 self.check_beginning()?;
             }
             match self.step() {
                 Step::Take { bytes } => {
                     self.given = bytes;
-                    if self.take(bytes) {
+                    let is_read = self.take(bytes);
+                    let rest = self.bytes.sight().get(bytes..).unwrap_or_default();
+                    self.following = data_bytes(rest, &self.schema).filter(|_| self.appended.is_empty());
+                    if is_read {
                         break;
                     }
                     self.report.note_unreadable(self.bytes.offset(), bytes);
@@ -114,6 +124,20 @@ impl<R: Read> UlogReader<R> {
     #[must_use]
     pub fn into_report(self) -> UlogReport {
         self.report
+    }
+
+    /// Length of the message at the reading position where it is data that was seen there before, and data follow again: what
+    /// most of a log is. It is counted.
+    #[inline]
+    fn data_on_data(&mut self) -> Option<usize> {
+        let bytes = self.following.take()?;
+        let (message, rest) = self.bytes.sight().split_at_checked(bytes)?;
+        self.following = Some(data_bytes(rest, &self.schema)?);
+        let [_, _, _, low, high, body @ ..] = message else { return None };
+        let subscription = self.schema.subscription(u16::from_le_bytes([*low, *high]))?;
+        self.report.messages += 1;
+        self.report.note_data(subscription.id, subscription.layout.stamp_us(body));
+        Some(bytes)
     }
 
     fn check_beginning(&self) -> Result<(), LogError> {
@@ -224,7 +248,9 @@ impl<R: Read> UlogReader<R> {
     fn given(&self) -> Option<Entry<'_>> {
         let message = &self.bytes.sight()[..self.given];
         let (kind, body) = (*message.get(PREFIX_BYTES - 1)?, message.get(PREFIX_BYTES..)?);
-        let message = if message.starts_with(&MAGIC) {
+        let message = if kind == b'D' {
+            parse(kind, body, &self.schema).unwrap_or(Message::Other { kind })
+        } else if message.starts_with(&MAGIC) {
             let stamp = message.get(MAGIC.len() + 1..)?.first_chunk()?;
             Message::Begin { start_us: u64::from_le_bytes(*stamp) }
         } else if kind == b'A' {

@@ -75,9 +75,9 @@ impl Layout {
         self.spans.len()
     }
 
-    /// Whether a message of this length can be of this layout: a writer leaves the padding at its end out.
-    pub(super) fn fits(&self, bytes: usize) -> bool {
-        (self.bytes_without_padding..=self.bytes).contains(&bytes)
+    /// Bytes of a message of this layout, least and most: a writer leaves the padding at its end out.
+    pub(super) fn lengths(&self) -> (usize, usize) {
+        (self.bytes_without_padding, self.bytes)
     }
 
     /// The number of a path such as `esc[0].esc_rpm` or `xyz[2]`.

@@ -28,6 +28,8 @@ pub(in crate::log::ulog) struct Schema {
     definitions: HashMap<String, Definition>,
     layouts: HashMap<String, Arc<Layout>>,
     subscriptions: Vec<Option<Subscription>>,
+    /// least and most bytes of each number's messages, in one place for a judgement of every message
+    lengths: Vec<Option<(usize, usize)>>,
     spans: usize,
 }
 
@@ -51,7 +53,9 @@ impl Schema {
         let slot = usize::from(id);
         if slot >= self.subscriptions.len() {
             self.subscriptions.resize(slot + 1, None);
+            self.lengths.resize(slot + 1, None);
         }
+        self.lengths[slot] = Some(layout.lengths());
         self.subscriptions[slot] = Some(Subscription { id, topic: name.into(), instance, layout });
         self.subscriptions[slot].as_ref()
     }
@@ -65,7 +69,8 @@ impl Schema {
     /// Whether a message of this number can have so many bytes behind its number; `None` for a number that is not known.
     #[inline]
     pub(in crate::log::ulog) fn fits(&self, id: u16, bytes: usize) -> Option<bool> {
-        Some(self.subscription(id)?.layout.fits(bytes))
+        let (least, most) = (*self.lengths.get(usize::from(id))?)?;
+        Some((least..=most).contains(&bytes))
     }
 
     fn layout(&mut self, name: &str) -> Option<Arc<Layout>> {
@@ -105,8 +110,9 @@ mod tests {
         assert_eq!((offset("part[0].xy[1]"), offset("part[1].n")), (Some(16), Some(30)));
         assert_eq!((offset("last"), offset("part[2].n"), offset("part[0].xy[2]")), (Some(32), None, None));
         assert_eq!(layout.paths().last().as_deref(), Some("last"));
-        assert!(layout.fits(36) && layout.fits(40) && !layout.fits(35) && !layout.fits(41));
-        assert_eq!(schema.fits(7, 36), Some(true));
+        assert_eq!(layout.lengths(), (36, 40));
+        let fits = [35, 36, 40, 41].map(|bytes| schema.fits(7, bytes));
+        assert_eq!(fits, [Some(false), Some(true), Some(true), Some(false)]);
         assert_eq!(schema.fits(8, 36), None);
     }
 
