@@ -9,12 +9,14 @@ use super::fit::{Fitted, evaluate};
 use super::signature::EffectTerm;
 use super::tested::Search;
 use super::trace::Trace;
-use crate::physics::{Airframe, Hook, PhysicsError};
+use crate::physics::{
+    Airframe, Condition, Hook, Input, MAX_ROTORS, PhysicsError, Rotors, State, effects_wrench,
+};
 use crate::reconstruction::{
     Fit, FitError, KnownLag, Problem, ReconstructionError, Term, fit, fit_mode, force_problem,
 };
 use crate::signals::{Signals, ThrustSource};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 
 /// Relative standard error that the form of an aerodynamic law adds: on ArduCopter's simulator, whose sensors are clean and whose
@@ -171,13 +173,31 @@ fn terms(base: &Base) -> Option<Vec<Term>> {
         let role = &term.signature.role;
         let told = |slot: &usize| {
             let of_form = role.with_speed.is_some_and(|(own, _)| own == *slot);
-            (role.of_air || role.wind.is_some()) && (term.is_amount(*slot) || of_form)
+            let by_force = role.wind.is_some() || role.of_air && pushes(term, *slot, &airframe, base);
+            by_force && (term.is_amount(*slot) || of_form)
         };
         let free: Vec<usize> = term.free.iter().copied().filter(told).collect();
         let steps = free.iter().map(|&slot| term.step_of(slot, &base.size)).collect();
         Some(Term::new(effect, term.values.clone(), free, steps))
     };
     base.present.iter().map(one).collect()
+}
+
+/// Whether a value of an effect of the air changes the force, and not the torque alone: in forward flight and climb, or in a
+/// descent.
+fn pushes(term: &EffectTerm, slot: usize, airframe: &Airframe, base: &Base) -> bool {
+    let rotors = Rotors::as_commanded(airframe, &[1.1; MAX_ROTORS]);
+    let input = Input { speed_command: rotors.speed, ..Input::from_commands(airframe, 0.0, &[]) };
+    let mut moved = term.values.clone();
+    moved[slot] += term.step_of(slot, &base.size);
+    [Vector3::new(2.0, -1.0, 1.5), Vector3::new(0.5, 0.3, -3.0)].into_iter().any(|velocity_m_s| {
+        let state = State { velocity_m_s, ..State::at_rest(Vector3::z(), 0.3) };
+        let at = Condition::new(airframe, &state, &input, Vector3::zeros());
+        let force_n = |parameters: &[f64]| {
+            effects_wrench(std::iter::once((term.effect(), parameters)), &at, &rotors).force_n
+        };
+        force_n(&moved) != force_n(&term.values)
+    })
 }
 
 fn known_lag(fitted: &Fitted, signals: &Signals, std_s: f64) -> KnownLag {

@@ -42,7 +42,7 @@ const LEARNED_UNTIL: usize = 9;
 /// A step smaller than this share of every standard error ends the fit.
 const SMALL: f64 = 0.01;
 /// A fit whose last step was larger than this many standard errors has not converged.
-const FAR: f64 = 1.0;
+const FAR: f64 = 2.0;
 /// Share of a standard error by which parameters are moved for the slope of the determinant.
 const PROBE: f64 = 0.3;
 /// A noise level changes by no more than this factor in its square in one round.
@@ -118,14 +118,14 @@ impl<'a> Iterate<'a> {
             if round > 1 && round < LEARNED_UNTIL {
                 self.learn(&turn, round);
             }
-            let within = |share: f64| {
-                let each = turn.step.iter().enumerate();
-                each.into_iter().all(|(at, step)| step.abs() < share * turn.covariance[(at, at)].sqrt())
-            };
-            if round >= LEARNED_UNTIL && within(SMALL) {
+            let is_small = |(at, step): (usize, &f64)| step.abs() < SMALL * turn.covariance[(at, at)].sqrt();
+            if round >= LEARNED_UNTIL && turn.step.iter().enumerate().all(is_small) {
                 break;
             }
-            if round + 1 == ROUNDS && !within(FAR) {
+            let wanders = |(at, step): (usize, &f64)| {
+                is_wanted(self.free[at]) && step.abs() > FAR * turn.covariance[(at, at)].sqrt()
+            };
+            if round + 1 == ROUNDS && turn.step.iter().enumerate().any(wanders) {
                 return Err(FitError::Diverged);
             }
         }
@@ -261,6 +261,11 @@ impl<'a> Iterate<'a> {
     }
 }
 
+/// Scale and effects, for which the fit is made; the others are nuisances. A lag at nought, for one, goes to and fro.
+fn is_wanted(parameter: usize) -> bool {
+    parameter == SCALE || parameter >= BASE
+}
+
 fn selected(matrix: &DMatrix<f64>, of: &[usize]) -> DMatrix<f64> {
     matrix.select_rows(of).select_columns(of)
 }
@@ -305,8 +310,7 @@ impl Fit {
     /// model's and those of the blocks.
     #[must_use]
     pub fn scale_and_effects(&self) -> (DVector<f64>, DMatrix<f64>) {
-        let wanted: Vec<usize> =
-            (0..self.free.len()).filter(|&at| self.free[at] == SCALE || self.free[at] >= BASE).collect();
+        let wanted: Vec<usize> = (0..self.free.len()).filter(|&at| is_wanted(self.free[at])).collect();
         let values = DVector::from_iterator(wanted.len(), wanted.iter().map(|&at| self.theta[self.free[at]]));
         let model = selected(&self.covariance, &wanted);
         let larger = |&at: &usize| (self.robust[(at, at)] / self.covariance[(at, at)]).max(1.0).sqrt();
