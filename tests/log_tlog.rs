@@ -295,7 +295,7 @@ fn a_file_of_something_else_is_refused_without_reading_it_all() {
     let mut reader = TlogReader::new(&text[..]);
     let refused = reader.next_record().unwrap_err();
     assert!(refused.to_string().starts_with("expected a telemetry log"), "{refused}");
-    assert!(reader.report().bytes < 2_000_000);
+    assert!(2 * reader.report().bytes < text.len() as u64);
 }
 
 #[test]

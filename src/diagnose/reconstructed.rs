@@ -311,10 +311,11 @@ fn replaced(
     if !differs(fitted, &sizes, covariance) {
         return Ok(Err(Kept::Alike));
     }
-    // what is not the forces' follows
+    // amounts that are not the forces' follow; the forms stay
     let mut held = base.clone();
     for (present, term) in held.present.iter_mut().zip(terms) {
-        present.free.retain(|slot| !term.free.contains(slot));
+        let amounts = present.signature.amounts;
+        present.free.retain(|slot| !term.free.contains(slot) && amounts.contains(slot));
     }
     let settled = fit_rows(traces, held, Newton::Held)?.base;
     for (present, settled) in base.present.iter_mut().zip(&settled.present) {
