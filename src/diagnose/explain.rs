@@ -8,6 +8,7 @@ use super::explanation::{Explanation, Verdict};
 use super::fit::{Fitted, Newton, fit};
 use super::gates::Gates;
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
+use super::instruments::torques_by_instruments;
 use super::latency_name::latency_name;
 use super::limits::{is_beyond_showing, limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
@@ -111,29 +112,51 @@ pub fn explain(
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
     let mut found = search(&traces, vehicle, &settings.gates, settings.signatures)?;
-    leave_out_ordinary(&traces, &mut found)?;
-    tracing::info_span!("reconstruct").in_scope(|| reconstruct(flights, &traces, &mut found))?;
+    settle(flights, &traces, &mut found)?;
     let beyond = tracing::info_span!("locate").in_scope(|| beyond(&traces, &found));
     let explanation = judge(&traces, vehicle, found, beyond);
     explanation.emit();
     Ok(explanation)
 }
 
-/// Removes effects without a name from the model: those of ordinary size, and those that the flight could not have
-/// shown.
-fn leave_out_ordinary(traces: &[Trace], found: &mut Search) -> Result<(), PhysicsError> {
+/// An effect that is nearer to nothing than this many standard errors, beside all others and with its errors as reconstruction
+/// and instruments tell them, leaves the model.
+const STAYS: f64 = 3.0;
+/// How often the model is estimated again after effects left it. Chosen; not measured.
+const SETTLINGS: usize = 3;
+
+/// Leaves effects without a name out, and estimates the sizes of the others by what has no noise of the autopilot's own: forces
+/// with the flight path, torques by instruments.
+fn settle(flights: &[Signals], traces: &[Trace], found: &mut Search) -> Result<(), PhysicsError> {
+    leave_out_ordinary(traces, found)?;
+    for left in (0..SETTLINGS).rev() {
+        tracing::info_span!("reconstruct").in_scope(|| reconstruct(flights, traces, found))?;
+        tracing::info_span!("instruments").in_scope(|| torques_by_instruments(traces, &mut found.after))?;
+        if left == 0 || !leave_out_ordinary(traces, found)? {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Removes effects without a name from the model: those of ordinary size, those that are not certain, and those that the flight
+/// could not have shown. Returns whether there were any.
+fn leave_out_ordinary(traces: &[Trace], found: &mut Search) -> Result<bool, PhysicsError> {
     let mut base = found.after.base.clone();
     let all = found.after.base.clone();
     let mut first = found.after.rows.nuisances.len();
     base.present.retain(|present| {
         let beyond = is_beyond_showing(&found.after, present, first);
+        let strength = fitted_strength(&found.after, present, first);
         first += present.free.len();
-        !(beyond || is_ordinary(present, &all))
+        let uncertain = strength.count > 0 && strength.z < STAYS;
+        !(beyond || uncertain || is_ordinary(present, &all))
     });
-    if base.present.len() < all.present.len() {
+    let any = base.present.len() < all.present.len();
+    if any {
         found.after = fit(traces, base, Newton::Held)?;
     }
-    Ok(())
+    Ok(any)
 }
 
 /// The residual after all names, with its localisation.

@@ -130,7 +130,7 @@ pub(super) fn evaluate(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsE
 }
 
 /// Moves the base by the coefficients; returns the largest move in standard errors.
-fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
+pub(super) fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
     let mut most = 0.0_f64;
     let body = &mut base.vehicle.body;
     for (index, column) in fitted.rows.nuisances.iter().enumerate() {
@@ -182,7 +182,7 @@ fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
 }
 
 /// Largest number of Gauss-Newton passes. Chosen; not measured.
-const PASSES: usize = 8;
+pub(super) const PASSES: usize = 8;
 
 /// A coefficient that moves by less than this many standard errors has converged. Chosen; not measured.
-const CONVERGED: f64 = 0.05;
+pub(super) const CONVERGED: f64 = 0.05;

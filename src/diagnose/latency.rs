@@ -8,6 +8,7 @@ use super::base::Base;
 use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing, per_step};
 use super::evidence::Weighted;
 use super::fit::{Fitted, Newton, evaluate, fit};
+use super::instruments::fit_by_instruments;
 use super::rows::{Rows, residuals};
 use super::signature::EffectTerm;
 use super::signatures::{ALL, BENT_THRUST};
@@ -70,8 +71,7 @@ pub(super) const REFUSED: f64 = 6.0;
 pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFinding), PhysicsError> {
     let mut allowed = base.clone();
     allowed.present = look_alikes(flights);
-    let fitted = fit(flights, allowed, Newton::Free)?;
-    let mut finding = finding_of(&fitted);
+    let (fitted, mut finding) = with_latency(flights, allowed, Newton::Free)?;
     let mut latency = fitted.base.latency;
     let total_s = finding.total_s;
     if total_s > LEAST_S.max(4.0 * finding.std_s)
@@ -98,16 +98,37 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
         let newton = if is_delay(latency, &fitted.base.vehicle) { Newton::Delay } else { Newton::Free };
         let mut base = fitted.base;
         base.latency = latency;
-        let mut fitted = fit(flights, base, newton)?;
-        let told = uneven_lag(flights, &mut fitted, uneven)?;
+        let (mut fitted, found) = with_latency(flights, base, newton)?;
+        finding = found;
+        if let Some((told, found)) = uneven_lag(flights, &mut fitted, uneven)? {
+            finding = LatencyFinding { uneven_std: Some(told), ..found };
+        }
         latency = fitted.base.latency;
-        finding = LatencyFinding { uneven_std: told, ..finding_of(&fitted) };
         if !fed_back {
             finding = LatencyFinding { against_lag, against_delay, ..finding };
         }
     }
     let held = fit(flights, Base { latency, ..base }, Newton::Held)?;
     Ok((held, finding))
+}
+
+/// Fits the latency with everything else: by instruments where they serve, else by least squares.
+///
+/// # Errors
+/// [`PhysicsError`] where the estimate leaves what is physical.
+pub(super) fn with_latency(
+    flights: &[Trace],
+    base: Base,
+    newton: Newton,
+) -> Result<(Fitted, LatencyFinding), PhysicsError> {
+    let plain = fit(flights, base, newton)?;
+    let Some(by) = fit_by_instruments(flights, &plain, newton)? else {
+        let finding = finding_of(&plain);
+        return Ok((plain, finding));
+    };
+    let finding = finding_of(&by);
+    let base = Base { latency: by.base.latency, ..plain.base };
+    Ok((fit(flights, base, Newton::Held)?, finding))
 }
 
 /// The rigid body with the latency that it is found to have, whatever its kind, and the latency's standard error, s: what
@@ -118,8 +139,7 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
 pub(super) fn with_any_latency(flights: &[Trace], base: Base) -> Result<(Fitted, f64), PhysicsError> {
     let mut allowed = base.clone();
     allowed.present = look_alikes(flights);
-    let fitted = fit(flights, allowed, Newton::Free)?;
-    let std_s = finding_of(&fitted).std_s;
+    let (fitted, LatencyFinding { std_s, .. }) = with_latency(flights, allowed, Newton::Free)?;
     let Base { vehicle, latency, .. } = fitted.base;
     Ok((evaluate(flights, Base { vehicle, latency, ..base })?, std_s))
 }
@@ -204,7 +224,11 @@ const UNEVEN_STEP: f64 = 0.2;
 
 /// Estimates different time constants for rising and falling speed if the flight contradicts the stated ratio by more
 /// than a thrust curve would, and refits with them. Returns the standard error.
-fn uneven_lag(flights: &[Trace], fitted: &mut Fitted, stated: f64) -> Result<Option<f64>, PhysicsError> {
+fn uneven_lag(
+    flights: &[Trace],
+    fitted: &mut Fitted,
+    stated: f64,
+) -> Result<Option<(f64, LatencyFinding)>, PhysicsError> {
     let latency = fitted.base.latency;
     if latency.lag_s <= latency.delay_s || is_delay(latency, &fitted.base.vehicle) {
         return Ok(None);
@@ -229,8 +253,9 @@ fn uneven_lag(flights: &[Trace], fitted: &mut Fitted, stated: f64) -> Result<Opt
         let moved = (uneven - fitted.base.latency.uneven).abs();
         let mut base = fitted.base.clone();
         base.latency.uneven = uneven;
-        *fitted = fit(flights, base, Newton::Free)?;
-        told = Some(std);
+        let (again, found) = with_latency(flights, base, Newton::Free)?;
+        *fitted = again;
+        told = Some((std, found));
         if moved < 0.3 * std {
             break;
         }

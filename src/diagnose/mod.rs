@@ -21,6 +21,7 @@ mod grid_refinement;
 mod harmonics;
 pub mod holdout;
 pub mod joint;
+mod instruments;
 mod kinematic;
 mod latency;
 mod latency_name;

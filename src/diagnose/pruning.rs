@@ -1,7 +1,8 @@
 //! Pruning after the search: superfluous effects are removed, and the latency is estimated again.
 
 use super::base::Base;
-use super::fit::{Fitted, Newton, fit};
+use super::fit::{Fitted, Newton};
+use super::latency::with_latency;
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
@@ -11,8 +12,8 @@ use crate::physics::PhysicsError;
 pub(super) const UNCHANGED_S: f64 = 0.001;
 
 /// Removes effects that later ones have made superfluous, and estimates the latency with the remaining ones. Returns
-/// whether any effect was removed, and the change of the latency, s.
-pub(super) fn prune(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64), PhysicsError> {
+/// whether any effect was removed, the change of the latency, s, and its standard error, s.
+pub(super) fn prune(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64, f64), PhysicsError> {
     let mut index = after.rows.nuisances.len();
     let mut kept: Vec<EffectTerm> = Vec::new();
     let mut dropped = false;
@@ -39,8 +40,9 @@ pub(super) fn prune(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64)
     dropped |= kept.len() < after.base.present.len();
     let before_s = after.base.latency.total_s();
     let base = Base { present: kept, ..after.base.clone() };
-    *after = fit(flights, base, Newton::Free)?;
-    Ok((dropped, (after.base.latency.total_s() - before_s).abs()))
+    let (fitted, finding) = with_latency(flights, base, Newton::Free)?;
+    *after = fitted;
+    Ok((dropped, (after.base.latency.total_s() - before_s).abs(), finding.std_s))
 }
 
 /// An accepted effect stays in the model if it is this many standard deviations from zero: the z of

@@ -6,7 +6,7 @@ use super::drag_location::one_place;
 use super::fit::{Fitted, Newton, fit};
 use super::gates::{Gates, passes};
 use super::grid_refinement::{between_grid, refined};
-use super::latency::{LatencyFinding, finding_of, fit_latency, is_delay};
+use super::latency::{LatencyFinding, finding_of, fit_latency, is_delay, with_latency};
 use super::locate::mass_step_std_kg;
 use super::mounting::mountings;
 use super::other_forms::other_form;
@@ -32,6 +32,7 @@ pub fn search(
     let _step = tracing::info_span!("search").entered();
     let (before, latency) = fit_latency(flights, Base::rigid(vehicle))?;
     let mut after = before.clone();
+    let mut latency_std_s = latency.std_s;
     let mut steps: Vec<Step> = Vec::new();
     let mut last;
     let mut settled = 0;
@@ -79,7 +80,8 @@ pub fn search(
             _ => {
                 settled += 1;
                 let before = after.base.present.clone();
-                let (dropped, moved) = prune(flights, &mut after)?;
+                let (dropped, moved, std_s) = prune(flights, &mut after)?;
+                latency_std_s = std_s;
                 let placed = one_place(flights, &mut after, price)? | other_form(flights, &mut after, price)?;
                 let gone = before.iter().map(|present| present.id());
                 let kept = |id: &&'static str| after.base.present.iter().any(|p| p.id() == *id);
@@ -99,7 +101,7 @@ pub fn search(
         against_delay: latency.against_delay,
         uneven_std: latency.uneven_std,
         // what could be taken for a latency makes it uncertain, whether it is in the model or not
-        std_s: found.std_s.max(latency.std_s),
+        std_s: found.std_s.max(latency_std_s),
         ..found
     };
     Ok(Search { before, after, latency, steps, last })
@@ -126,7 +128,10 @@ fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitte
         true => Newton::Free,
         false => Newton::Held,
     };
-    fit(flights, base, newton)
+    match newton {
+        Newton::Held => fit(flights, base, newton),
+        free => Ok(with_latency(flights, base, free)?.0),
+    }
 }
 
 /// Fits the parameters that are estimated last (a ceiling's height), starting from the tried values, unless one reaches

@@ -1,6 +1,7 @@
 //! One flight for the weak form: measured states, and the rotor thrusts in two versions, from commands and from the
 //! motion.
 
+use super::instruments::{Instruments, instruments};
 use super::rotors::{RotorMotion, Thrusts, felt};
 use super::timing::{command_period_s, inertial_late};
 use crate::physics::{ActuationLatency, Airframe, MAX_ROTORS, State};
@@ -60,6 +61,8 @@ pub struct Trace {
     pub gravity_m_s2: f64,
     /// motion capture or a camera gives the height
     pub height_by_pose: bool,
+    /// of the torques, if the commanded trajectory was recorded
+    pub(super) instruments: Option<Instruments>,
 }
 
 /// Which parts of the state are measured.
@@ -143,8 +146,11 @@ impl Trace {
             felt_m_s2: Vec::new(),
             gravity_m_s2: vehicle.gravity_m_s2,
             height_by_pose: signals.quality.height_by_pose,
+            instruments: None,
         };
         trace.smooth()?;
+        let reference = signals.reference.as_ref().filter(|_| trace.torques);
+        trace.instruments = reference.map(|reference| instruments(&trace, reference));
         Ok(trace)
     }
 

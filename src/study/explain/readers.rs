@@ -1,15 +1,48 @@
-//! The effects as readers want them: what is one thing to them is one entry.
+//! The effects as readers want them: what is one thing to them is one entry, and what is two things are two.
 
-use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{Named, NamedParameter};
+use crate::diagnose::signatures::{ALL, signature_of};
+use crate::diagnose::{Named, NamedParameter, Strength};
 
 /// Drag along the rotor axis within this share of that across it is one isotropic drag.
 const ISOTROPIC: f64 = 0.35;
 
+/// Drag along the rotor axis exceeds that across it beyond this many standard errors.
+const TOLD_APART: f64 = 4.0;
+
 /// One drag where the search found it in two pieces: drag across the rotor axis, and thrust that falls with
-/// climb, which is the same law along the axis.
+/// climb, which is the same law along the axis. Both where the search found them in one, and the part along the axis is more
+/// than a drag of the body would be.
 #[must_use]
 pub fn for_readers(named: &[Named]) -> Vec<Named> {
+    let mut out = merged(named);
+    let parts: Vec<Named> = out.iter_mut().filter_map(part_of_climb).collect();
+    out.extend(parts);
+    out
+}
+
+/// Takes out of a drag what it has along the rotor axis, if that is thrust that falls with climb.
+fn part_of_climb(drag: &mut Named) -> Option<Named> {
+    let signature = ALL.iter().find(|of| of.role.axial_part_of.is_some_and(|whole| whole.id() == drag.id))?;
+    let value = |name: &str| drag.parameters.iter().find(|p| p.name == name).copied();
+    let (dx, dy, dz) = (value("dx")?, value("dy")?, value("dz")?);
+    let across = 0.5 * (dx.value + dy.value);
+    let beyond = dz.value - across;
+    if across <= 0.0 || beyond < ISOTROPIC * across || beyond < TOLD_APART * dz.std {
+        return None;
+    }
+    drag.parameters.retain(|parameter| parameter.name != "dz");
+    let own = signature.effect.parameters().first()?;
+    let z = dz.value / dz.std.max(f64::MIN_POSITIVE);
+    Some(Named {
+        id: signature.id(),
+        sentence: signature.effect.sentence(),
+        parameters: vec![NamedParameter { name: own.name, ..dz }],
+        strength: Strength { z, energy: z * z, count: 1, ..drag.strength },
+        confusable_with: Vec::new(),
+    })
+}
+
+fn merged(named: &[Named]) -> Vec<Named> {
     let mut out = named.to_vec();
     let axial_part_of = |named: &Named| signature_of(named.id)?.role.axial_part_of;
     let axial = named.iter().enumerate().find_map(|(place, of)| Some((place, axial_part_of(of)?)));
@@ -62,5 +95,16 @@ mod tests {
         assert_eq!((merged[0].parameters[2].name, merged[0].parameters[2].value), ("dz", 0.55));
         assert_eq!(for_readers(&both(0.9)).len(), 2);
         assert_eq!(for_readers(&both(0.9)[..1]).len(), 1);
+    }
+
+    #[test]
+    fn what_a_drag_has_beyond_along_the_rotor_axis_is_thrust_that_falls_with_climb() {
+        let drag = |dz| [named("linear_drag", &[("dx", 0.4), ("dy", 0.5), ("dz", dz)])];
+        let split = for_readers(&drag(0.9));
+        assert_eq!(split.iter().map(|of| of.id).collect::<Vec<_>>(), ["linear_drag", "inflow"]);
+        assert_eq!(split[0].parameters.len(), 2);
+        assert_eq!((split[1].parameters[0].name, split[1].parameters[0].value), ("kz", 0.9));
+        assert_eq!(for_readers(&drag(0.55)).len(), 1);
+        assert_eq!(for_readers(&drag(0.1)).len(), 1);
     }
 }
