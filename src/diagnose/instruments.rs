@@ -9,6 +9,7 @@ use super::columns::Columns;
 use super::evidence::weighted;
 use super::fit::{CONVERGED, Fitted, Newton, PASSES, evaluate, step};
 use super::trace::Trace;
+use crate::estimate::Estimated;
 use crate::physics::PhysicsError;
 use crate::signals::{Reference, central_difference};
 use nalgebra::{DMatrix, DVector, Rotation3};
@@ -51,13 +52,31 @@ fn instants(late_s: f64, step_s: f64) -> usize {
     (0..).take_while(|count| (f64::from(*count) + 0.5) * step_s < late_s).count()
 }
 
-/// Rigid body, latency and damping of a model as instruments tell them, in place of what the rows of least squares do.
+/// Places of the moments of inertia in [`Estimated::theta`].
+const MOMENTS: [usize; 3] = [1, 4, 6];
+
+/// Normal deviate beyond which least squares and instruments differ.
+const HAUSMAN: f64 = 2.5;
+
+/// Hausman's test (1978) of a value and its standard error by least squares, which is the more precise where nothing is shared
+/// with the noise, against those by instruments, which hold in either case.
+pub(super) fn differs((value, std): (f64, f64), (by, by_std): (f64, f64)) -> bool {
+    let more = by_std.powi(2) - std.powi(2);
+    more < 0.0 || (value - by).powi(2) > HAUSMAN.powi(2) * more
+}
+
+/// Inertia and damping of a model as instruments tell them, where least squares contradicts them.
 ///
 /// # Errors
 /// [`PhysicsError`] where the base is not physical.
 pub(super) fn torques_by_instruments(flights: &[Trace], fitted: &mut Fitted) -> Result<(), PhysicsError> {
     let Some(by) = fit_by_instruments(flights, fitted, Newton::Held)? else { return Ok(()) };
-    let (places, _) = estimated(&by).unwrap_or_default();
+    let (plain, told) = (fitted.rigid_body(), by.rigid_body());
+    let of = |body: &Estimated, at: usize| (body.theta[at], body.covariance[(at, at)].sqrt());
+    if !MOMENTS.into_iter().any(|at| differs(of(&plain, at), of(&told, at))) {
+        return Ok(());
+    }
+    let (places, _) = estimated(&by, Newton::Held).unwrap_or_default();
     let mut after = evaluate(flights, by.base)?;
     // what the torques do not tell stays as it is known
     after.covariance.clone_from(&fitted.covariance);
@@ -84,11 +103,11 @@ pub(super) fn fit_by_instruments(
     newton: Newton,
 ) -> Result<Option<Fitted>, PhysicsError> {
     let mut base = fitted.base.clone();
-    let Some(mut by) = by_instruments(flights, fitted) else { return Ok(None) };
+    let Some(mut by) = by_instruments(flights, fitted, newton) else { return Ok(None) };
     for _ in 0..PASSES {
         let moved = step(&mut base, &by, newton);
         let Ok(again) = evaluate(flights, base.clone()) else { return Ok(None) };
-        let Some(next) = by_instruments(flights, &again) else { return Ok(None) };
+        let Some(next) = by_instruments(flights, &again, newton) else { return Ok(None) };
         by = next;
         if moved < CONVERGED {
             return Ok(Some(by));
@@ -99,11 +118,12 @@ pub(super) fn fit_by_instruments(
 
 /// Inertia, latency and what damps the rotation by instruments; `None` where a flight has no commanded trajectory, or its
 /// torques are not compared.
-fn by_instruments(flights: &[Trace], fitted: &Fitted) -> Option<Fitted> {
+fn by_instruments(flights: &[Trace], fitted: &Fitted, newton: Newton) -> Option<Fitted> {
     let rows = fitted.rows.len();
-    let (places, columns) = estimated(fitted)?;
+    let (places, columns) = estimated(fitted, newton)?;
     let count = columns.len();
-    let (mut asked, mut given) = (DMatrix::zeros(CHANNELS * rows, count), DMatrix::zeros(CHANNELS * rows, count));
+    let (mut asked, mut given) =
+        (DMatrix::zeros(CHANNELS * rows, count), DMatrix::zeros(CHANNELS * rows, count));
     let mut y = weighted(&fitted.rows.residual, &fitted.weighted.sigma);
     y.rows_mut(0, 3 * rows).fill(0.0);
     y.rows_mut(AXES * rows, (CHANNELS - AXES) * rows).fill(0.0);
@@ -155,8 +175,9 @@ fn by_instruments(flights: &[Trace], fitted: &Fitted) -> Option<Fitted> {
     Some(out)
 }
 
-/// Places among the coefficients and, weighted, the columns of what is estimated.
-fn estimated(fitted: &Fitted) -> Option<(Vec<usize>, Vec<DVector<f64>>)> {
+/// Places among the coefficients and, weighted, the columns of what is estimated. A latency that is held is known: it and a
+/// damping explain much of each other.
+fn estimated(fitted: &Fitted, newton: Newton) -> Option<(Vec<usize>, Vec<DVector<f64>>)> {
     let rows = &fitted.rows;
     let torques = 3 * rows.len()..AXES * rows.len();
     let mut out = (Vec::new(), Vec::new());
@@ -168,7 +189,12 @@ fn estimated(fitted: &Fitted) -> Option<(Vec<usize>, Vec<DVector<f64>>)> {
         }
     };
     for (place, column) in rows.nuisances.iter().enumerate() {
-        if matches!(column.nuisance, Nuisance::Inertia(_) | Nuisance::Latency) {
+        let wanted = match column.nuisance {
+            Nuisance::Inertia(_) => true,
+            Nuisance::Latency => newton != Newton::Held,
+            _ => false,
+        };
+        if wanted {
             take(place, &column.values);
         }
     }

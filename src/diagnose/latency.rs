@@ -8,7 +8,7 @@ use super::base::Base;
 use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing, per_step};
 use super::evidence::Weighted;
 use super::fit::{Fitted, Newton, evaluate, fit};
-use super::instruments::fit_by_instruments;
+use super::instruments::{differs, fit_by_instruments};
 use super::rows::{Rows, residuals};
 use super::signature::EffectTerm;
 use super::signatures::{ALL, BENT_THRUST};
@@ -32,6 +32,8 @@ pub struct LatencyFinding {
     pub against_delay: f64,
     /// standard error of [`ActuationLatency::uneven`], if the flight distinguishes rising from falling speed
     pub uneven_std: Option<f64>,
+    /// the total by instruments alone, s, where they serve and are less precise
+    pub by_instruments_s: Option<f64>,
 }
 
 impl LatencyFinding {
@@ -122,13 +124,14 @@ pub(super) fn with_latency(
     newton: Newton,
 ) -> Result<(Fitted, LatencyFinding), PhysicsError> {
     let plain = fit(flights, base, newton)?;
-    let Some(by) = fit_by_instruments(flights, &plain, newton)? else {
-        let finding = finding_of(&plain);
-        return Ok((plain, finding));
-    };
-    let finding = finding_of(&by);
+    let finding = finding_of(&plain);
+    let Some(by) = fit_by_instruments(flights, &plain, newton)? else { return Ok((plain, finding)) };
+    let told = finding_of(&by);
+    if !differs((finding.total_s, finding.std_s), (told.total_s, told.std_s)) {
+        return Ok((plain, LatencyFinding { by_instruments_s: Some(told.total_s), ..finding }));
+    }
     let base = Base { latency: by.base.latency, ..plain.base };
-    Ok((fit(flights, base, Newton::Held)?, finding))
+    Ok((fit(flights, base, Newton::Held)?, told))
 }
 
 /// The rigid body with the latency that it is found to have, whatever its kind, and the latency's standard error, s: what
@@ -192,6 +195,7 @@ pub fn finding_of(fitted: &Fitted) -> LatencyFinding {
         against_lag: 0.0,
         against_delay: 0.0,
         uneven_std: None,
+        by_instruments_s: None,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::base::Base;
 use super::fit::{Fitted, Newton};
-use super::latency::with_latency;
+use super::latency::{LatencyFinding, with_latency};
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
@@ -12,8 +12,11 @@ use crate::physics::PhysicsError;
 pub(super) const UNCHANGED_S: f64 = 0.001;
 
 /// Removes effects that later ones have made superfluous, and estimates the latency with the remaining ones. Returns
-/// whether any effect was removed, the change of the latency, s, and its standard error, s.
-pub(super) fn prune(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64, f64), PhysicsError> {
+/// whether any effect was removed, the change of the latency, s, and what is found of it.
+pub(super) fn prune(
+    flights: &[Trace],
+    after: &mut Fitted,
+) -> Result<(bool, f64, LatencyFinding), PhysicsError> {
     let mut index = after.rows.nuisances.len();
     let mut kept: Vec<EffectTerm> = Vec::new();
     let mut dropped = false;
@@ -42,7 +45,7 @@ pub(super) fn prune(flights: &[Trace], after: &mut Fitted) -> Result<(bool, f64,
     let base = Base { present: kept, ..after.base.clone() };
     let (fitted, finding) = with_latency(flights, base, Newton::Free)?;
     *after = fitted;
-    Ok((dropped, (after.base.latency.total_s() - before_s).abs(), finding.std_s))
+    Ok((dropped, (after.base.latency.total_s() - before_s).abs(), finding))
 }
 
 /// An accepted effect stays in the model if it is this many standard deviations from zero: the z of

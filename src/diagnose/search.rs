@@ -32,7 +32,7 @@ pub fn search(
     let _step = tracing::info_span!("search").entered();
     let (before, latency) = fit_latency(flights, Base::rigid(vehicle))?;
     let mut after = before.clone();
-    let mut latency_std_s = latency.std_s;
+    let mut beside = latency;
     let mut steps: Vec<Step> = Vec::new();
     let mut last;
     let mut settled = 0;
@@ -80,8 +80,8 @@ pub fn search(
             _ => {
                 settled += 1;
                 let before = after.base.present.clone();
-                let (dropped, moved, std_s) = prune(flights, &mut after)?;
-                latency_std_s = std_s;
+                let (dropped, moved, found) = prune(flights, &mut after)?;
+                beside = found;
                 let placed = one_place(flights, &mut after, price)? | other_form(flights, &mut after, price)?;
                 let gone = before.iter().map(|present| present.id());
                 let kept = |id: &&'static str| after.base.present.iter().any(|p| p.id() == *id);
@@ -101,7 +101,8 @@ pub fn search(
         against_delay: latency.against_delay,
         uneven_std: latency.uneven_std,
         // what could be taken for a latency makes it uncertain, whether it is in the model or not
-        std_s: found.std_s.max(latency_std_s),
+        std_s: found.std_s.max(beside.std_s),
+        by_instruments_s: beside.by_instruments_s,
         ..found
     };
     Ok(Search { before, after, latency, steps, last })
