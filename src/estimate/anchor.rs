@@ -4,7 +4,7 @@ use super::identify::Identification;
 use super::nominal::Nominal;
 use super::result::{Estimated, Finding, MethodResult, finding};
 use super::theta::{THETA, Theta, ThetaCovariance, theta_of};
-use crate::vehicle::{Anchor, Guessed, ThrustLaw, Vehicle};
+use crate::vehicle::{Anchor, Guessed, Propulsion, ThrustLaw, Vehicle};
 use nalgebra::SMatrix;
 
 /// Thrust of the rotors relative to the vehicle file, if the mass was weighed.
@@ -72,22 +72,30 @@ pub fn rescaled(estimated: &Estimated, weighed_kg: f64) -> Estimated {
 /// Factor of the rotors' thrust over the stated one, with the vehicle's weighed mass.
 #[must_use]
 pub fn thrust_scale(best: &MethodResult, vehicle: &Vehicle) -> ThrustScale {
-    let (name, unit, stated) = match vehicle.propulsion.law {
-        ThrustLaw::Speed { .. } => {
-            ("thrust_coefficient", "N/(rad/s)^2", vehicle.propulsion.thrust_coefficient.unwrap_or(f64::NAN))
+    let mass = finding(&best.estimated, &Nominal::of(vehicle), 0);
+    ThrustScale::of(mass, vehicle.body.mass_kg, &vehicle.propulsion)
+}
+
+impl ThrustScale {
+    /// By the mass that a flight shows with the stated thrust, and the weighed one.
+    #[must_use]
+    pub fn of(mass: Finding, weighed_kg: f64, stated: &Propulsion) -> Self {
+        let (name, unit, size) = match stated.law {
+            ThrustLaw::Speed { .. } => {
+                ("thrust_coefficient", "N/(rad/s)^2", stated.thrust_coefficient.unwrap_or(f64::NAN))
+            }
+            ThrustLaw::Curve { thrust_max_n, .. } => ("thrust_max", "N", thrust_max_n),
+        };
+        match mass {
+            Finding::Determined { value, std } => {
+                let factor = weighed_kg / value;
+                let relative = std / value;
+                let scaled =
+                    |size: f64| Finding::Determined { value: size * factor, std: size * factor * relative };
+                Self { factor: scaled(1.0), name, value: scaled(size), unit }
+            }
+            other => Self { factor: other.clone(), name, value: other, unit },
         }
-        ThrustLaw::Curve { thrust_max_n, .. } => ("thrust_max", "N", thrust_max_n),
-    };
-    let nominal = Nominal::of(vehicle);
-    match finding(&best.estimated, &nominal, 0) {
-        Finding::Determined { value, std } => {
-            let factor = vehicle.body.mass_kg / value;
-            let relative = std / value;
-            let scaled =
-                |size: f64| Finding::Determined { value: size * factor, std: size * factor * relative };
-            ThrustScale { factor: scaled(1.0), name, value: scaled(stated), unit }
-        }
-        other => ThrustScale { factor: other.clone(), name, value: other, unit },
     }
 }
 
@@ -106,10 +114,7 @@ pub fn identified_vehicle(vehicle: &Vehicle, best: &MethodResult, scale: Option<
     out.body.mass_kg = theta[0];
     out.body.inertia_kg_m2 = super::inertia_of(&theta);
     if let Some(Finding::Determined { value: factor, .. }) = scale.map(|scale| &scale.factor) {
-        out.propulsion.thrust_coefficient = out.propulsion.thrust_coefficient.map(|k| k * factor);
-        if let ThrustLaw::Curve { thrust_max_n, .. } = &mut out.propulsion.law {
-            *thrust_max_n *= factor;
-        }
+        out.propulsion = out.propulsion.scaled(*factor);
         out.guesses.retain(|guess| guess.of != Guessed::ThrustMax);
     }
     out

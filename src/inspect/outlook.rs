@@ -4,7 +4,8 @@ use super::evidence::Evidence;
 use super::inspection::Outlook;
 use super::lacking::lack;
 use crate::estimate::{
-    Estimated, Finding, NAMES, Nominal, THETA, UNITS, finding, rescaled, scale_of, theta_of,
+    Contradiction, Estimated, Finding, NAMES, Nominal, THETA, UNITS, finding, rescaled, scale_of, stated,
+    theta_of,
 };
 use crate::vehicle::{Anchor, Vehicle};
 
@@ -76,6 +77,22 @@ pub(super) fn judged(vehicle: &Vehicle, expected: &Estimated, index: usize) -> O
         Finding::NotDetermined { reason } => Outlook { reason: Some(reason), ..none },
         Finding::Given { .. } => Outlook { reason: Some("known beforehand".into()), ..none },
     }
+}
+
+/// What the log shows of mass, thrust and moments of inertia that is far from what the vehicle file states.
+pub(super) fn contradicted(vehicle: &Vehicle, expected: &Estimated) -> Vec<Contradiction> {
+    let of = |index: usize| {
+        let Finding::Determined { value, std } = expected_finding(vehicle, expected, index) else {
+            return None;
+        };
+        let (size, guess) = stated(vehicle, index);
+        if vehicle.anchor == Anchor::Mass && index == 0 {
+            let factor = size / value;
+            return Contradiction::of("thrust", (factor, factor * std / value), (1.0, guess));
+        }
+        Contradiction::of(NAMES[index], (value, std), (size, guess))
+    };
+    [0, 1, 4, 6].into_iter().filter_map(of).collect()
 }
 
 /// A parameter's size: the larger of what the vehicle file says and what the log does, as [`finding`] judges.
