@@ -130,9 +130,9 @@ fn with_vehicle(evidence: &Evidence<'_>, good: &[&Outlook], bad: &[&str], time: 
 fn doubts(evidence: &Evidence<'_>) -> Vec<String> {
     let mut doubts = Vec::new();
     if let Some(vehicle) = evidence.vehicle {
-        doubts.extend(vehicle.implausible());
         let expected = evidence.assessment.expected.as_ref();
         doubts.extend(expected.and_then(|expected| contradicts_file(&contradicted(vehicle, expected))));
+        doubts.extend(vehicle.implausible());
     }
     if evidence.assessment.notes.iter().any(|note| note.is_warning() && note.about == About::Vehicle) {
         doubts.push("its rotors contradict the autopilot's parameters, see the advice".to_owned());

@@ -12,22 +12,20 @@ const OTHER_ROTORS: &str = "the rotors of the vehicle file contradict the autopi
 pub(super) const TWO_VEHICLES: &str =
     "the flights given together differ by more than flights of one vehicle do";
 
-/// What speaks against an answer, clause by clause: what the vehicle file states and is hardly meant , rotors other
+/// What speaks against an answer, clause by clause: what the vehicle file states and is hardly meant, rotors other
 /// than the autopilot's, and results that are far from the file's.
 pub(super) fn doubts<'a>(
     vehicle: &Vehicle,
     flights: impl IntoIterator<Item = &'a Quality>,
     contradictions: &[Contradiction],
 ) -> Vec<String> {
-    let odd = vehicle.implausible();
-    let mut doubts: Vec<String> =
-        odd.iter().map(|odd| format!("the vehicle file says what is hardly meant, {odd}")).collect();
-    doubts.extend(contradicts_file(contradictions));
+    let mut doubts: Vec<String> = contradicts_file(contradictions).into_iter().collect();
     let other_rotors = |quality: &Quality| {
         quality.notes.iter().any(|note| note.is_warning() && note.about == About::Vehicle)
     };
     if flights.into_iter().any(other_rotors) {
         doubts.push(OTHER_ROTORS.to_owned());
     }
+    doubts.extend(vehicle.implausible().iter().map(|odd| format!("implausible vehicle data, {odd}")));
     doubts
 }
