@@ -63,12 +63,14 @@ impl Base {
     }
 
     /// Brings mass, inertia, thrust and the effects' forces to the scale of the weighed mass; their ratios stay as they are.
-    /// Returns the factor.
-    pub(super) fn to_scale(&mut self) -> f64 {
+    /// Where no torque is compared, the inertia is the file's and stays. Returns the factor.
+    pub(super) fn bring_to_scale(&mut self, compares_torques: bool) -> f64 {
         let Some(weighed_kg) = self.weighed_kg else { return 1.0 };
         let factor = weighed_kg / self.vehicle.body.mass_kg;
         self.vehicle.body.mass_kg = weighed_kg;
-        self.vehicle.body.inertia_kg_m2 *= factor;
+        if compares_torques {
+            self.vehicle.body.inertia_kg_m2 *= factor;
+        }
         self.vehicle.propulsion = self.vehicle.propulsion.scaled(factor);
         for present in &mut self.present {
             for slot in 0..present.values.len() {

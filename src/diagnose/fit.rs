@@ -196,7 +196,7 @@ fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
             index += 1;
         }
     }
-    base.to_scale();
+    base.bring_to_scale(fitted.rows.compares_torques());
     most
 }
 

@@ -323,7 +323,7 @@ fn replaced(
     }
     base.vehicle = settled.vehicle;
     base.vehicle.body.mass_kg = fitted.base.vehicle.body.mass_kg / scale;
-    let by_force = base.to_scale();
+    let by_force = base.bring_to_scale(fitted.rows.compares_torques());
     let mass_kg = base.vehicle.body.mass_kg;
     let mut after = evaluate(traces, base)?;
     let mass = after.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Mass);

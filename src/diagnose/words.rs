@@ -59,11 +59,7 @@ pub fn norm(parameters: &[&NamedParameter]) -> (f64, f64) {
 #[must_use]
 pub fn plain(value: f64, std: f64) -> String {
     let text = with_error(value, std);
-    if text.starts_with('(') {
-        format!("{} +- {}", significant(value, 3), significant(std, 2))
-    } else {
-        text
-    }
+    if text.starts_with('(') { format!("{} +- {}", significant(value, 3), significant(std, 2)) } else { text }
 }
 
 /// A parameter multiplied by `factor`, with the displayed unit.

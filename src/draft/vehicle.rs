@@ -6,7 +6,7 @@ use super::hover::full_thrust;
 use super::rules::{self, Rule};
 use crate::autopilot::{Frame, Layout, LayoutError, LayoutUnit, Outputs, Stack};
 use crate::recording::Recording;
-use crate::signals::{bus_range, holds_fractions, rotor_difference};
+use crate::signals::{RotorDifference, bus_range, holds_fractions, rotor_difference};
 use crate::units::GRAVITY_M_S2;
 use crate::vehicle::{
     Actuator, Anchor, Guess, Guessed, Limits, Propulsion, PwmRange, RigidBody, Rotor, Spin, ThrustLaw,
@@ -135,7 +135,12 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
     vehicle.guesses = noted.guesses;
     let other =
         given.frame.and_then(|_| rotor_difference(recording.autopilot, &recording.parameters, &vehicle));
-    let doubts = other.iter().map(|other| format!("--frame: {other}")).collect();
+    let contradiction = |RotorDifference { file, stated, .. }: &RotorDifference| {
+        format!(
+            "--frame: the given frame contradicts the autopilot's parameters: {stated}, the given frame has {file}"
+        )
+    };
+    let doubts = other.iter().map(contradiction).collect();
     Ok(Draft { vehicle, origins: noted.origins, doubts })
 }
 

@@ -132,7 +132,8 @@ fn doubts(evidence: &Evidence<'_>) -> Vec<String> {
     if let Some(vehicle) = evidence.vehicle {
         let expected = evidence.assessment.expected.as_ref();
         doubts.extend(expected.and_then(|expected| contradicts_file(&contradicted(vehicle, expected))));
-        doubts.extend(vehicle.implausible());
+        let odd = vehicle.implausible();
+        doubts.extend(odd.iter().map(|odd| odd.trim_end_matches('?').to_owned()));
     }
     if evidence.assessment.notes.iter().any(|note| note.is_warning() && note.about == About::Vehicle) {
         doubts.push("its rotors contradict the autopilot's parameters, see the advice".to_owned());

@@ -26,6 +26,8 @@ pub(super) fn doubts<'a>(
     if flights.into_iter().any(other_rotors) {
         doubts.push(OTHER_ROTORS.to_owned());
     }
-    doubts.extend(vehicle.implausible().iter().map(|odd| format!("implausible vehicle data, {odd}")));
+    let odd = vehicle.implausible();
+    // questions are for the warnings
+    doubts.extend(odd.iter().map(|odd| format!("implausible vehicle data, {}", odd.trim_end_matches('?'))));
     doubts
 }

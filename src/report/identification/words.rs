@@ -16,6 +16,10 @@ pub(super) fn verdict(study: &IdentifyStudy, result: &MethodResult) -> String {
         return format!("doubtful: {}", doubts.join("; "));
     }
     let (mut yes, mut no) = (Vec::new(), Vec::new());
+    let scale = study.with.as_ref().map_or(study.scale.as_ref(), |with| with.together.scale.as_ref());
+    if matches!(scale.map(|scale| &scale.factor), Some(Finding::Determined { .. })) {
+        yes.push("thrust");
+    }
     for parameter in &result.parameters {
         match parameter.finding {
             Finding::Determined { .. } => yes.push(parameter.name),
@@ -24,6 +28,7 @@ pub(super) fn verdict(study: &IdentifyStudy, result: &MethodResult) -> String {
         }
     }
     match (yes.is_empty(), no.is_empty()) {
+        (false, true) if scale.is_some() => "good for thrust and all of the inertia".into(),
         (false, true) => "good for all of mass and inertia".into(),
         (false, false) => format!("good for {}; not for {}", yes.join(", "), no.join(", ")),
         (true, _) => "determines none of the parameters".into(),
