@@ -1,6 +1,6 @@
 //! A vehicle that was weighed: its mass is known, and the scale of its thrust is what a flight shows.
 
-#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+#![allow(clippy::panic, clippy::unwrap_used, reason = "a test ends where it fails")]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
