@@ -199,9 +199,9 @@ fn a_table_with_a_frame_makes_a_vehicle() {
 #[test]
 fn mass_and_frame_stand_for_a_file_where_there_is_no_log() {
     let given = ["--mass", "1.5", "--size", "0.5", "--frame", "quadrotor-x"];
-    let exported = mavid(&[&["export", "--to", "sdf"], &given[..]].concat());
+    let exported = mavid(&[&["export", "--to", "px4-sih"], &given[..]].concat());
     assert!(exported.status.success(), "{}", said(&exported));
-    assert!(String::from_utf8_lossy(&exported.stdout).contains("<mass>1.5</mass>"));
+    assert!(String::from_utf8_lossy(&exported.stdout).contains("SIH_MASS 1.5"));
     let trajectory = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/at_bounds_trajectory.toml");
     let out = target("drafted.tlog");
     let files = ["--trajectory", trajectory.to_str().unwrap(), "--out", out.to_str().unwrap()];

@@ -4,21 +4,9 @@ use super::identify::Identification;
 use super::nominal::Nominal;
 use super::result::{Estimated, Finding, MethodResult, finding};
 use super::theta::{THETA, Theta, ThetaCovariance, theta_of};
-use crate::vehicle::{Anchor, Guessed, Propulsion, ThrustLaw, Vehicle};
+use super::thrust_scale::ThrustScale;
+use crate::vehicle::{Anchor, Guessed, Vehicle};
 use nalgebra::SMatrix;
-
-/// Thrust of the rotors relative to the vehicle file, if the mass was weighed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ThrustScale {
-    /// factor on thrust (-), with its standard error
-    pub factor: Finding,
-    /// name of the quantity that it scales, as in the vehicle file
-    pub name: &'static str,
-    /// the scaled quantity
-    pub value: Finding,
-    /// its unit
-    pub unit: &'static str,
-}
 
 /// Brings every method's result to the scale of the vehicle's anchor.
 ///
@@ -74,29 +62,6 @@ pub fn rescaled(estimated: &Estimated, weighed_kg: f64) -> Estimated {
 pub fn thrust_scale(best: &MethodResult, vehicle: &Vehicle) -> ThrustScale {
     let mass = finding(&best.estimated, &Nominal::of(vehicle), 0);
     ThrustScale::of(mass, vehicle.body.mass_kg, &vehicle.propulsion)
-}
-
-impl ThrustScale {
-    /// By the mass that a flight shows with the stated thrust, and the weighed one.
-    #[must_use]
-    pub fn of(mass: Finding, weighed_kg: f64, stated: &Propulsion) -> Self {
-        let (name, unit, size) = match stated.law {
-            ThrustLaw::Speed { .. } => {
-                ("thrust_coefficient", "N/(rad/s)^2", stated.thrust_coefficient.unwrap_or(f64::NAN))
-            }
-            ThrustLaw::Curve { thrust_max_n, .. } => ("thrust_max", "N", thrust_max_n),
-        };
-        match mass {
-            Finding::Determined { value, std } => {
-                let factor = weighed_kg / value;
-                let relative = std / value;
-                let scaled =
-                    |size: f64| Finding::Determined { value: size * factor, std: size * factor * relative };
-                Self { factor: scaled(1.0), name, value: scaled(size), unit }
-            }
-            other => Self { factor: other.clone(), name, value: other, unit },
-        }
-    }
 }
 
 /// The vehicle with the determined parameters; others keep their nominal values.

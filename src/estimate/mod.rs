@@ -18,10 +18,11 @@ mod recursive;
 mod result;
 mod rotor_check;
 mod theta;
+mod thrust_scale;
 mod weak;
 mod window;
 
-pub use anchor::{ThrustScale, apply_anchor, identified_vehicle, rescaled, thrust_scale};
+pub use anchor::{apply_anchor, identified_vehicle, rescaled, thrust_scale};
 pub use error::EstimateError;
 pub use expected::NoiseTerm;
 pub use identify::{Identification, IdentifySettings, identify, inertia_by_wider_window};
@@ -37,4 +38,5 @@ pub use recursive::{GradientStep, History, PAPER_SIGMA, PaperEstimate, gradient_
 pub use result::{Estimated, Finding, MethodResult, Parameter, finding};
 pub use rotor_check::WeakRotor;
 pub use theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, inertia_of, scale_of, theta_of};
+pub use thrust_scale::ThrustScale;
 pub use weak::{Latency, LatencyKind, WeakEstimate, WeakMethod, expected_covariance, latency, solve_weak};

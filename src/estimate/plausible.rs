@@ -1,8 +1,8 @@
 //! Checks of implausible results: another vehicle, a wrong unit, two vehicles at once.
 
-use super::anchor::ThrustScale;
 use super::result::{Finding, MethodResult};
 use super::theta::{NAMES, Theta, theta_of};
+use super::thrust_scale::ThrustScale;
 use super::weak::{WeakMethod, solve_weak};
 use crate::note::{About, Note};
 use crate::regression::WeakRows;
