@@ -100,6 +100,7 @@ fn recorded(vehicle: &Vehicle, seed: u64) -> Signals {
         position: Some(position),
         velocity: Some(velocity),
         rotor_thrust_n: thrusts,
+        full_thrust_n: vehicle.propulsion.full_thrust_n(),
         wrench: vec![Vector4::zeros(); COUNT],
         jitter_wrench: None,
         battery_voltage_v: None,

@@ -132,3 +132,96 @@ fn what_a_thrust_stand_measured_is_no_guess() {
     assert!(said(&run("no-such.csv")).contains("--thrust-stand: cannot read no-such.csv"));
     assert!(!out.exists());
 }
+
+#[test]
+fn a_file_that_exists_is_replaced_only_on_demand() {
+    let out = target("twice.toml");
+    let given = ["--mass", "3", "--size", "0.7", "--frame", "quadrotor-x", "--out", out.to_str().unwrap()];
+    let run = |more: &[&str]| mavid(&[&["vehicle", "init", "--from", &log()], &given[..], more].concat());
+    assert!(run(&[]).status.success());
+    let refused = run(&[]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(said(&refused).contains("which exists; --force replaces it"), "{}", said(&refused));
+    assert!(run(&["--force"]).status.success());
+}
+
+#[test]
+fn what_contradicts_the_log_or_is_absurd_is_said() {
+    let log = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/px4_flight.ulg").display().to_string();
+    let warned = |given: &[&str]| {
+        let out = target("absurd.toml");
+        let output =
+            mavid(&[&["vehicle", "init", "--from", &log, "--out", out.to_str().unwrap()], given].concat());
+        assert!(output.status.success(), "{}", said(&output));
+        said(&output)
+    };
+    let frame = warned(&["--mass", "1", "--size", "0.4", "--frame", "hexarotor-x"]);
+    assert!(frame.contains("--frame: the given frame contradicts the autopilot's parameters: 4 "), "{frame}");
+    let heavy = warned(&["--mass", "400", "--size", "0.1"]);
+    assert!(heavy.contains("arms of 0.050 m on a vehicle of 400.000 kg"), "{heavy}");
+    let plain = warned(&["--mass", "1", "--size", "0.4"]);
+    assert!(!plain.contains("warning"), "{plain}");
+}
+
+#[test]
+fn a_table_with_a_frame_makes_a_vehicle() {
+    let (out, table) = (target("table.toml"), target("hover.csv"));
+    let mut text =
+        "time_s,motor_1_command,motor_2_command,motor_3_command,motor_4_command,specific_force_x_m_s2,\
+                    specific_force_y_m_s2,specific_force_z_m_s2\n"
+            .to_owned();
+    for row in 0..500_u32 {
+        let u = 0.5 + 0.001 * f64::from(row % 2);
+        text +=
+            &format!("{},{u},{u},{u},{u},0,0,{}\n", 0.01 * f64::from(row), 9.8 + 0.01 * f64::from(row % 3));
+    }
+    std::fs::write(&table, text).unwrap();
+    let given = ["--mass", "1.5", "--size", "0.5", "--frame", "quadrotor-x", "--out", out.to_str().unwrap()];
+    let output = mavid(&[&["vehicle", "init", "--from", table.to_str().unwrap()], &given[..]].concat());
+    assert!(output.status.success(), "{}", said(&output));
+    let vehicle = read_vehicle(&out).unwrap().vehicle;
+    let hover_n = 4.0 * vehicle.propulsion.thrust_from_command_n(0.5005);
+    assert!((hover_n / (1.5 * 9.81) - 1.0).abs() < 0.02, "{hover_n}");
+    std::fs::remove_file(&out).unwrap();
+    let bare = mavid(&[
+        "vehicle",
+        "init",
+        "--from",
+        table.to_str().unwrap(),
+        "--mass",
+        "1.5",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert!(said(&bare).contains("--frame quadrotor-x"), "{}", said(&bare));
+}
+
+#[test]
+fn mass_and_frame_stand_for_a_file_where_there_is_no_log() {
+    let given = ["--mass", "1.5", "--size", "0.5", "--frame", "quadrotor-x"];
+    let exported = mavid(&[&["export", "--to", "px4-sih"], &given[..]].concat());
+    assert!(exported.status.success(), "{}", said(&exported));
+    assert!(String::from_utf8_lossy(&exported.stdout).contains("SIH_MASS 1.5"));
+    let trajectory = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/at_bounds_trajectory.toml");
+    let out = target("drafted.tlog");
+    let files = ["--trajectory", trajectory.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    let simulated = mavid(&[&["simulate"], &given[..], &files].concat());
+    assert!(simulated.status.success() && out.exists(), "{}", said(&simulated));
+    for verb in ["plan", "export"] {
+        let neither = mavid(&[verb]);
+        assert_eq!(neither.status.code(), Some(2), "{}", said(&neither));
+    }
+    let validated = mavid(&[
+        "validate",
+        &log(),
+        "--transient",
+        "0",
+        "--mass",
+        "3",
+        "--size",
+        "0.7",
+        "--frame",
+        "quadrotor-x",
+    ]);
+    assert!(validated.status.success(), "{}", said(&validated));
+}

@@ -103,6 +103,7 @@ fn a_validation() {
     let request = ValidateRequest {
         logs: vec![fixture("p04_identify_10_22s.tlog")],
         models: vec![fixture("p04_vehicle.toml"), fixture("p01_vehicle.toml")],
+        drafted: None,
         transient_s: 2.0,
         read: ReadSettings::default(),
     };

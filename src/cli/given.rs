@@ -21,6 +21,27 @@ pub struct GivenArgs {
     pub shape: ShapeArgs,
 }
 
+/// The vehicle of a command that has neither a log nor a link: in place of its file, mass and shape.
+#[derive(Debug, Clone, Default, Args)]
+pub struct DraftArgs {
+    /// in place of a file: mass with battery, kg. With --frame, and best with --size; the rest comes from rules of thumb
+    #[arg(long, value_name = "KG", requires = "frame", allow_negative_numbers = true)]
+    pub mass: Option<f64>,
+    /// its shape
+    #[command(flatten)]
+    pub shape: ShapeArgs,
+}
+
+impl DraftArgs {
+    /// How the study is told of the vehicle.
+    pub fn given(&self, file: Option<&PathBuf>) -> VehicleGiven {
+        match (file, self.mass) {
+            (None, Some(mass_kg)) => VehicleGiven::Weighed(self.shape.given(mass_kg)),
+            (file, _) => VehicleGiven::File(file.cloned().unwrap_or_default()),
+        }
+    }
+}
+
 /// With --mass: the shape of the vehicle.
 #[derive(Debug, Clone, Default, Args)]
 pub struct ShapeArgs {

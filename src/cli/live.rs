@@ -1,6 +1,7 @@
 //! Verbs that speak to vehicles or stand for one.
 
 use super::address::{ADDRESS, LISTEN};
+use super::given::DraftArgs;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mavid::autopilot::{Autopilot, STACKS};
@@ -24,9 +25,12 @@ pub struct DemoArgs {
 /// Arguments of `mavid sitl`.
 #[derive(Debug, Clone, Args)]
 pub struct SitlArgs {
-    /// vehicle.toml or model.toml of the simulated vehicle; without it a Holybro X500
-    #[arg(long, value_name = "FILE")]
+    /// vehicle.toml or model.toml of the simulated vehicle; without it, and without --mass, a Holybro X500
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["mass", "size", "frame"])]
     pub vehicle: Option<PathBuf>,
+    /// in its place
+    #[command(flatten)]
+    pub draft: DraftArgs,
     /// effects to conceal from whoever connects: [[effect]] tables with `id` and the parameters by name
     #[arg(long, value_name = "FILE")]
     pub effects: Option<PathBuf>,

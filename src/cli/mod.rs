@@ -12,7 +12,7 @@ mod verb;
 mod verbosity;
 
 pub use flight::{CheckName, FlyArgs, OriginName};
-pub use given::ShapeArgs;
+pub use given::{DraftArgs, ShapeArgs};
 pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 pub use model::{ExportArgs, ExportFormat, InitArgs, SimulateArgs, VehicleArgs, VehicleVerb};
 pub use onboard::{LogArgs, LogFetchArgs, LogListArgs, LogPrepareArgs, LogVerb, VehicleLinkArgs};

@@ -1,8 +1,8 @@
 //! Arguments of the verbs that take a vehicle or a model alone.
 
-use super::given::ShapeArgs;
+use super::given::{DraftArgs, ShapeArgs};
 use super::recording::ReadArgs;
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Arguments of `mavid vehicle`.
@@ -45,6 +45,9 @@ pub struct InitArgs {
     /// where to write it
     #[arg(long, value_name = "VEHICLE.TOML")]
     pub out: PathBuf,
+    /// replace an existing file
+    #[arg(long)]
+    pub force: bool,
     /// how the log is read
     #[command(flatten)]
     pub read: ReadArgs,
@@ -52,9 +55,13 @@ pub struct InitArgs {
 
 /// Arguments of `mavid simulate`.
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("simulated").required(true).args(["vehicle", "mass"]))]
 pub struct SimulateArgs {
-    /// vehicle.toml or model.toml of the simulated vehicle
-    pub vehicle: PathBuf,
+    /// vehicle.toml or model.toml of the simulated vehicle; required without --mass
+    pub vehicle: Option<PathBuf>,
+    /// in its place
+    #[command(flatten)]
+    pub draft: DraftArgs,
     /// trajectory.toml
     #[arg(long, value_name = "FILE")]
     pub trajectory: PathBuf,
@@ -77,9 +84,13 @@ pub struct SimulateArgs {
 
 /// Arguments of `mavid export`.
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("exported").required(true).args(["model", "mass"]))]
 pub struct ExportArgs {
-    /// model.toml or vehicle.toml
-    pub model: PathBuf,
+    /// model.toml or vehicle.toml; required without --mass
+    pub model: Option<PathBuf>,
+    /// in its place
+    #[command(flatten)]
+    pub draft: DraftArgs,
     /// the simulator
     #[arg(long, value_enum)]
     pub to: ExportFormat,

@@ -1,13 +1,18 @@
 //! Arguments of the verb that plans a flight.
 
-use clap::{Args, ValueEnum};
+use super::given::DraftArgs;
+use clap::{ArgGroup, Args, ValueEnum};
 use std::path::PathBuf;
 
 /// Arguments of `mavid plan`.
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("planned").required(true).args(["vehicle", "mass"]))]
 pub struct PlanArgs {
-    /// vehicle.toml or model.toml
-    pub vehicle: PathBuf,
+    /// vehicle.toml or model.toml; required without --mass
+    pub vehicle: Option<PathBuf>,
+    /// in its place
+    #[command(flatten)]
+    pub draft: DraftArgs,
     /// where to write the trajectory
     #[arg(long)]
     pub out: Option<PathBuf>,

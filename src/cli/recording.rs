@@ -1,7 +1,7 @@
 //! Arguments of the verbs that read recordings of flights.
 
 use super::given::{GivenArgs, ShapeArgs};
-use clap::Args;
+use clap::{ArgGroup, Args};
 use mavid::study::ReadSettings;
 use mavid::wire::SystemId;
 use std::path::PathBuf;
@@ -76,13 +76,21 @@ pub struct ExplainArgs {
 
 /// Arguments of `mavid validate`.
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("compared").required(true).multiple(true).args(["models", "mass"]))]
 pub struct ValidateArgs {
     /// recordings of one vehicle: .tlog, .ulg, .bin, or .csv with known columns
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
     /// a vehicle or model file; the first is the reference for the others
-    #[arg(long = "model", required = true, value_name = "FILE")]
+    #[arg(long = "model", value_name = "FILE")]
     pub models: Vec<PathBuf>,
+    /// a vehicle of this mass with battery, kg, as a further model, before all others. The rest comes from the first log's
+    /// parameters, its flight and rules of thumb
+    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    pub mass: Option<f64>,
+    /// its shape
+    #[command(flatten)]
+    pub shape: ShapeArgs,
     /// write report.html, and charts of each flight simulated in closed loop, into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

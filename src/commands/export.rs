@@ -1,6 +1,5 @@
 //! `mavid export MODEL --to FORMAT`: the model for another simulator.
 
-use mavid::config::read_vehicle;
 use mavid::export::{Exported, Format, export};
 use mavid::study::effects_of;
 use mavid::text;
@@ -19,11 +18,11 @@ struct Document {
 
 /// Runs the verb.
 pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
-    let loaded = read_vehicle(&args.model)?;
+    let (loaded, origin) = args.draft.given(args.model.as_ref()).alone()?;
     let refuse =
-        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&args.model)));
-    output::warnings(&args.model, &loaded.warnings);
-    let active = effects_of(&loaded.model.effects, &text::path(&args.model), &loaded.vehicle)?;
+        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&origin)));
+    output::warnings(&origin, &loaded.warnings);
+    let active = effects_of(&loaded.model.effects, &text::path(&origin), &loaded.vehicle)?;
     let format = match args.to {
         ExportFormat::Px4Sih => Format::Px4Sih,
         ExportFormat::ArdupilotSitl => Format::ArdupilotSitl,

@@ -40,7 +40,7 @@ fn request(args: &PlanArgs) -> Result<PlanningRequest, CommandError> {
         numbers.as_deref().map(|numbers| place(option, numbers)).transpose()
     };
     Ok(PlanningRequest {
-        vehicle: args.vehicle.clone(),
+        vehicle: args.draft.given(args.vehicle.as_ref()),
         limits: args.limits.clone(),
         series: match (&args.check, &args.circle) {
             (Some(file), _) => PlannedSeries::Stored(file.clone()),

@@ -43,16 +43,16 @@ const FOLLOWED_M: f64 = 1.0;
 /// Runs the verb.
 pub fn run(json: bool, args: &SimulateArgs) -> Result<Outcome, CommandError> {
     let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
-    let read = [&args.vehicle, &args.trajectory].into_iter().chain(&args.effects).chain(&args.nominal);
+    let read = [&args.trajectory].into_iter().chain(&args.vehicle).chain(&args.effects).chain(&args.nominal);
     output::refuse_overwriting(&read.collect::<Vec<_>>(), &[&args.out])?;
     if args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv")) {
         let name = text::path(&args.out);
         return Err(CommandError::Input(format!("--out: expected the name of a .tlog, got {name}")));
     }
-    let loaded = read_vehicle(&args.vehicle)?;
-    output::warnings(&args.vehicle, &loaded.warnings);
+    let (loaded, origin) = args.draft.given(args.vehicle.as_ref()).alone()?;
+    output::warnings(&origin, &loaded.warnings);
     let vehicle = loaded.vehicle;
-    let acting = with_further(&loaded.model.effects, &args.vehicle, args.effects.as_deref(), &vehicle)?;
+    let acting = with_further(&loaded.model.effects, &origin, args.effects.as_deref(), &vehicle)?;
     let nominal = match &args.nominal {
         Some(path) => read_vehicle(path)?.vehicle,
         None => vehicle.clone(),

@@ -1,9 +1,9 @@
 //! `mavid sitl`: the embedded simulated vehicle on its own, for any ground station.
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use mavid::config::{LoadedVehicle, parse_vehicle, read_vehicle};
+use mavid::config::{LoadedVehicle, parse_vehicle};
 use mavid::link::{Address, LinkOptions, LinkReader, SigningKey};
 use mavid::sitl::{Firmware, LinkRole, Pace, SensorSettings, Served, Settings, Vehicle, serve};
 use mavid::study::with_further;
@@ -15,6 +15,8 @@ use crate::cli::SitlArgs;
 
 /// The vehicle that flies where none is given.
 pub const DEFAULT_VEHICLE: &str = include_str!("../../configs/x500.toml");
+/// What messages call it.
+const EMBEDDED: &str = "the vehicle within the program";
 /// So far behind the pace a ground station takes the vehicle for one whose link is bad.
 const BEHIND: Duration = Duration::from_millis(500);
 /// The port on which PX4 takes its peer for a companion computer.
@@ -135,12 +137,9 @@ fn firmware(args: &SitlArgs) -> Result<Firmware, CommandError> {
 
 fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
     let kind = firmware(args)?;
-    let LoadedVehicle { vehicle, warnings, model } = loaded(args.vehicle.as_deref())?;
-    if let Some(path) = &args.vehicle {
-        output::warnings(path, &warnings);
-    }
-    let origin = args.vehicle.as_deref().unwrap_or_else(|| Path::new("the embedded vehicle"));
-    let acting = with_further(&model.effects, origin, args.effects.as_deref(), &vehicle)?;
+    let (LoadedVehicle { vehicle, warnings, model }, origin) = loaded(args)?;
+    output::warnings(&origin, &warnings);
+    let acting = with_further(&model.effects, &origin, args.effects.as_deref(), &vehicle)?;
     let key = args.signing_key_file.as_deref().map(SigningKey::read).transpose();
     let signing_key = key.map_err(|error| CommandError::Input(error.to_string()))?;
     if let Some(warning) = args.signing_key_file.as_deref().and_then(SigningKey::exposure) {
@@ -171,11 +170,12 @@ fn unix_us() -> u64 {
     u64::try_from(since.as_micros()).unwrap_or(u64::MAX)
 }
 
-fn loaded(path: Option<&Path>) -> Result<LoadedVehicle, CommandError> {
-    Ok(match path {
-        Some(path) => read_vehicle(path)?,
-        None => parse_vehicle(DEFAULT_VEHICLE, "the vehicle within the program")?,
-    })
+/// The vehicle, and what messages call it.
+fn loaded(args: &SitlArgs) -> Result<(LoadedVehicle, PathBuf), CommandError> {
+    if args.vehicle.is_some() || args.draft.mass.is_some() {
+        return Ok(args.draft.given(args.vehicle.as_ref()).alone()?);
+    }
+    Ok((parse_vehicle(DEFAULT_VEHICLE, EMBEDDED)?, PathBuf::from(EMBEDDED)))
 }
 
 fn seconds_from(name: &str, value: f64) -> Result<Duration, CommandError> {

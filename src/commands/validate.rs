@@ -21,6 +21,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &ValidateArgs) -> Result<Ou
     let request = ValidateRequest {
         logs: args.logs.clone(),
         models: args.models.clone(),
+        drafted: args.mass.map(|mass_kg| args.shape.given(mass_kg)),
         read: args.read.settings(),
         transient_s: args.transient,
     };

@@ -7,6 +7,7 @@ use mavid::draft::parameters_of;
 use mavid::link::Address;
 use mavid::report::vehicle_text;
 use mavid::study::{draft_from_log, draft_from_parameters, draft_text, vehicle_summary, with_thrust_stand};
+use mavid::text;
 
 use super::log::parameters_of_vehicle;
 use super::{CommandError, Outcome, output};
@@ -44,6 +45,13 @@ fn link(args: &InitArgs) -> Option<VehicleLinkArgs> {
 fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
     let inputs: Vec<_> = [&args.from].into_iter().chain(&args.thrust_stand).collect();
     output::refuse_overwriting(&inputs, &[&args.out])?;
+    if args.out.exists() && !args.force {
+        let what = format!(
+            "--out: expected a new file, got {}, which exists; --force replaces it",
+            text::path(&args.out)
+        );
+        return Err(CommandError::Input(what));
+    }
     let given = args.shape.given(args.mass);
     let mut draft = match link(args) {
         Some(link) => {
@@ -56,6 +64,7 @@ fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
     if let Some(table) = &args.thrust_stand {
         draft = with_thrust_stand(draft, table)?;
     }
+    draft.doubts.iter().for_each(|doubt| output::warning(doubt));
     output::file(&args.out, &draft_text(&draft)?)?;
     check(json, &args.out)
 }

@@ -7,7 +7,6 @@ mod error;
 mod faults;
 mod form;
 mod kind;
-mod plausible;
 mod propulsion;
 mod read;
 mod rigid_body;

@@ -9,7 +9,6 @@ use super::ConfigError;
 use super::check::Check;
 use super::faults::Faults;
 use super::kind::Kind;
-use super::plausible::warnings;
 use super::propulsion::propulsion;
 use super::read::{parse_toml_on, read_text};
 use super::rigid_body::rigid_body;
@@ -89,7 +88,7 @@ pub fn parse_vehicle(text: &str, origin: &str) -> Result<LoadedVehicle, ConfigEr
         guesses: guesses(&check, file.guesses, &mut faults),
     };
     faults.refuse(origin)?;
-    let warnings = doubts.into_iter().chain(warnings(&vehicle)).collect();
+    let warnings = doubts.into_iter().chain(vehicle.implausible()).collect();
     let model =
         ModelTables { identified: file.identified, provenance: file.provenance, effects: file.effects };
     Ok(LoadedVehicle { vehicle, warnings, model })

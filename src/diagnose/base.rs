@@ -4,7 +4,7 @@ use super::channels::Nuisance;
 use super::signature::{EffectTerm, LatencyKind};
 use super::signatures::latency_signature;
 use crate::physics::{ActiveEffect, ActuationLatency, Model, PhysicsError, RotorLag};
-use crate::vehicle::{Vehicle, VehicleSize};
+use crate::vehicle::{Anchor, Guessed, Vehicle, VehicleSize};
 use nalgebra::Matrix3;
 
 /// Largest share of the total mass that a slung load may have at the start of a fit. Chosen; not measured.
@@ -28,6 +28,14 @@ pub struct Base {
     pub latency: ActuationLatency,
     /// effects in addition to the rigid body
     pub present: Vec<EffectTerm>,
+    /// kg: the vehicle has this mass, and the scale of its thrust is estimated; `None`: the stated thrust is trusted, and the
+    /// mass is estimated
+    pub weighed_kg: Option<f64>,
+}
+
+/// Force, mass and inertia follow the scale of thrust; lengths, angles, times and ratios do not.
+pub(super) fn follows_force(unit: &str) -> bool {
+    unit.starts_with('N') || unit.starts_with("kg")
 }
 
 impl Base {
@@ -39,7 +47,39 @@ impl Base {
             size: vehicle.size(),
             latency: ActuationLatency::default(),
             present: Vec::new(),
+            weighed_kg: None,
         }
+    }
+
+    /// A rigid body alone on the scale that the vehicle's anchor sets: with a weighed mass no full thrust is a guess.
+    #[must_use]
+    pub fn anchored(vehicle: &Vehicle) -> Self {
+        let mut base = Self::rigid(vehicle);
+        if vehicle.anchor == Anchor::Mass {
+            base.weighed_kg = Some(vehicle.body.mass_kg);
+            base.vehicle.guesses.retain(|guess| guess.of != Guessed::ThrustMax);
+        }
+        base
+    }
+
+    /// Brings mass, inertia, thrust and the effects' forces to the scale of the weighed mass; their ratios stay as they are.
+    /// Where no torque is compared, the inertia is the file's and stays. Returns the factor.
+    pub(super) fn bring_to_scale(&mut self, compares_torques: bool) -> f64 {
+        let Some(weighed_kg) = self.weighed_kg else { return 1.0 };
+        let factor = weighed_kg / self.vehicle.body.mass_kg;
+        self.vehicle.body.mass_kg = weighed_kg;
+        if compares_torques {
+            self.vehicle.body.inertia_kg_m2 *= factor;
+        }
+        self.vehicle.propulsion = self.vehicle.propulsion.scaled(factor);
+        for present in &mut self.present {
+            for slot in 0..present.values.len() {
+                if present.parameter(slot).is_some_and(|parameter| follows_force(parameter.unit)) {
+                    present.values[slot] *= factor;
+                }
+            }
+        }
+        factor
     }
 
     /// Whether an estimated effect satisfies `what`.

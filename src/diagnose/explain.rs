@@ -311,7 +311,7 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
             let free = present.free.contains(&slot);
             let std = if free {
                 index += 1;
-                fitted.covariance[(index - 1, index - 1)].max(0.0).sqrt()
+                fitted.std_of(index - 1, (present.values[slot], parameter.unit))
             } else {
                 0.0
             };

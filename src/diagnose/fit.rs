@@ -1,6 +1,6 @@
 //! Rigid body, latency and effects fitted to the flights: Gauss-Newton on the weak-form rows.
 
-use super::base::Base;
+use super::base::{Base, follows_force};
 use super::channels::{AXES, CHANNELS, Nuisance, NuisanceColumn};
 use super::evidence::Weighted;
 use super::rows::Rows;
@@ -61,6 +61,24 @@ impl Fitted {
             }
             1.0 - left.variance() / with_body.variance().max(f64::MIN_POSITIVE)
         })
+    }
+
+    /// Standard error of `value m_w / m` at a mass m that is the weighed one m_w, by the chain rule: `value` is that of a
+    /// column that follows the scale of force, and the mass is the first column.
+    #[must_use]
+    pub fn std_by_mass(&self, column: usize, value: f64) -> f64 {
+        let share = value / self.base.vehicle.body.mass_kg;
+        let variance = self.covariance[(column, column)] - 2.0 * share * self.covariance[(column, 0)]
+            + share * share * self.covariance[(0, 0)];
+        variance.max(0.0).sqrt()
+    }
+
+    /// Standard error of a free value of an effect, in the place of `column`.
+    pub(super) fn std_of(&self, column: usize, (value, unit): (f64, &str)) -> f64 {
+        if self.base.weighed_kg.is_some() && follows_force(unit) {
+            return self.std_by_mass(column, value);
+        }
+        self.covariance[(column, column)].max(0.0).sqrt()
     }
 
     /// Negative log-likelihood up to a constant: the sum over the rows at which a channel is measured of the logarithm of its
@@ -178,6 +196,7 @@ pub(super) fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
             index += 1;
         }
     }
+    base.bring_to_scale(fitted.rows.compares_torques());
     most
 }
 

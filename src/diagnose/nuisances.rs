@@ -92,7 +92,7 @@ pub(super) fn nuisances(
         out.push(column(Nuisance::Tilt(0), None, force([none(), negative, none()])));
         out.push(column(Nuisance::Tilt(1), None, force([thrust, none(), none()])));
     }
-    if let Some(jitter) = &trace.jitter {
+    if let Some(jitter) = &trace.jitter(&base.vehicle.propulsion) {
         let channel =
             |row: usize| trace.weak(0, &jitter.iter().map(|jitter| -jitter[row]).collect::<Vec<f64>>());
         let values = channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);

@@ -3,7 +3,7 @@
 //! The weak form takes the autopilot's velocity and attitude for the motion, and the error of both pulls a drag towards nought.
 //! Once the effects are named, each flight is reconstructed with them, and their sizes come from there.
 
-use super::base::Base;
+use super::base::{Base, follows_force};
 use super::channels::Nuisance;
 use super::fit::{Fitted, Newton, evaluate, fit as fit_rows};
 use super::signature::EffectTerm;
@@ -311,8 +311,8 @@ fn replaced(
     if !differs(fitted, &sizes, covariance) {
         return Ok(Err(Kept::Alike));
     }
-    // amounts that are not the forces' follow; the forms stay
-    let mut held = base.clone();
+    // amounts that are not the forces' follow, on the scale of the thrust until now; the forms stay
+    let mut held = Base { weighed_kg: None, ..base.clone() };
     for (present, term) in held.present.iter_mut().zip(terms) {
         let amounts = present.signature.amounts;
         present.free.retain(|slot| !term.free.contains(slot) && amounts.contains(slot));
@@ -323,6 +323,7 @@ fn replaced(
     }
     base.vehicle = settled.vehicle;
     base.vehicle.body.mass_kg = fitted.base.vehicle.body.mass_kg / scale;
+    let by_force = base.bring_to_scale(fitted.rows.compares_torques());
     let mass_kg = base.vehicle.body.mass_kg;
     let mut after = evaluate(traces, base)?;
     let mass = after.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Mass);
@@ -330,7 +331,9 @@ fn replaced(
     let mut all: Vec<(usize, usize, f64, f64)> =
         mass.map(|mass| (mass, 0, -mass_kg / scale, MASS_FORM * mass_kg)).into_iter().collect();
     for &Size { place, slot, at, value } in &sizes {
-        all.extend(column(&after, place, slot).map(|index| (index, at, 1.0, FORM * value)));
+        let parameter = after.base.present[place].parameter(slot);
+        let by = if parameter.is_some_and(|of| follows_force(of.unit)) { by_force } else { 1.0 };
+        all.extend(column(&after, place, slot).map(|index| (index, at, by, FORM * by * value)));
     }
     for &(index, _, _, form) in &all {
         after.covariance.row_mut(index).fill(0.0);

@@ -315,10 +315,11 @@ fn residual(
     (by_commands, by_motion): (&[Wrench], &[Wrench]),
 ) -> Channels {
     let airframe = &model.airframe;
+    let jitter = trace.jitter(&airframe.propulsion);
     let (mut forces, mut torques) = (Vec::new(), Vec::new());
     for index in 0..trace.grid.count {
         let rotors = airframe.thrust_wrench(&felt[index]);
-        let jitter = trace.jitter.as_ref().map_or_else(Vector4::zeros, |jitter| jitter[index] * 0.5);
+        let jitter = jitter.as_ref().map_or_else(Vector4::zeros, |jitter| jitter[index] * 0.5);
         let effects_force =
             by_commands[index].force_n - airframe.thrust_wrench(&commanded.thrust_n[index]).force_n;
         let effects_torque =

@@ -53,6 +53,7 @@ pub(in super::super) fn turning_on_the_spot() -> Signals {
         position: None,
         velocity: Some(vec![Vector3::zeros(); count]),
         rotor_thrust_n: THRUSTS_N.repeat(count),
+        full_thrust_n: vehicle().propulsion.full_thrust_n(),
         wrench: vec![Vector4::zeros(); count],
         jitter_wrench: None,
         battery_voltage_v: None,

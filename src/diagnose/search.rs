@@ -30,7 +30,7 @@ pub fn search(
     signatures: &[&'static Signature],
 ) -> Result<Search, PhysicsError> {
     let _step = tracing::info_span!("search").entered();
-    let (before, latency) = fit_latency(flights, Base::rigid(vehicle))?;
+    let (before, latency) = fit_latency(flights, Base::anchored(vehicle))?;
     let mut after = before.clone();
     let mut beside = latency;
     let mut steps: Vec<Step> = Vec::new();

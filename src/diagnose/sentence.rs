@@ -1,6 +1,6 @@
 //! A named effect in the words of its signature.
 
-use super::named::{DetectionLimit, Named};
+use super::named::{DetectionLimit, Named, NamedParameter};
 use super::signature::Signature;
 use super::signatures::signature_of;
 use super::wording::{Clause, Size};
@@ -55,8 +55,11 @@ pub fn brief(named: &Named, vehicle: &Vehicle, with_size: bool) -> String {
 fn size(named: &Named, signature: Option<&Signature>) -> Option<String> {
     match signature.map_or(Size::First, |signature| signature.words.size) {
         Size::Axes => Some(range(named)),
-        Size::Norm { factor, unit, digits } => {
-            Some(format!("{} {unit}", significant(factor * norm(named), digits)))
+        Size::Norm { factor, unit } => {
+            let parameters: Vec<&NamedParameter> =
+                named.parameters.iter().filter(|p| p.unit != "-").collect();
+            let (norm, std) = norm(&parameters);
+            Some(format!("{} {unit}", plain(factor * norm, factor * std)))
         }
         Size::Of { parameter, factor, unit } => said(named, parameter, factor, unit),
         Size::Own(own) => own(named),
@@ -82,7 +85,7 @@ pub fn limit(limit: &DetectionLimit) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::{NamedParameter, Strength};
+    use crate::diagnose::Strength;
     use crate::physics::effects::ALL;
     use crate::physics::effects::by_id;
 

@@ -6,7 +6,7 @@ use super::rotors::{RotorMotion, Thrusts, felt};
 use super::timing::{command_period_s, inertial_late};
 use crate::physics::{ActuationLatency, Airframe, MAX_ROTORS, State};
 use crate::signals::{Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride};
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Propulsion, Vehicle};
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
 use std::ops::Range;
 
@@ -46,10 +46,12 @@ pub struct Trace {
     pub inertial_unsure_s: f64,
     /// m/s^2, body, accelerometer
     specific_force_m_s2: Option<Vec<Vector3<f64>>>,
-    /// N, as commanded (or measured), each rotor
+    /// N, as commanded (or measured), each rotor, on the scale of `full_thrust_n`
     commanded_n: Vec<Thrusts>,
-    /// N, N m: contribution of the commands' jitter if the rotors follow all of it
-    pub jitter: Option<Vec<Vector4<f64>>>,
+    /// N, N m: contribution of the commands' jitter if the rotors follow all of it, on the same scale
+    jitter: Option<Vec<Vector4<f64>>>,
+    /// N, thrust of one rotor at u = 1
+    full_thrust_n: f64,
     /// zero-phase low-pass of body rates, rad/s; the next two are their derivative, rad/s^2, and the specific force
     /// along z, m/s^2
     smooth_rate: Vec<Vector3<f64>>,
@@ -140,6 +142,7 @@ impl Trace {
             specific_force_m_s2: measured.cloned(),
             commanded_n: commanded_n(signals, vehicle.rotors.len()),
             jitter: signals.jitter_wrench.clone(),
+            full_thrust_n: signals.full_thrust_n,
             smooth_rate: Vec::new(),
             smooth_turning: Vec::new(),
             smooth_lift: Vec::new(),
@@ -264,7 +267,17 @@ impl Trace {
     /// Rotor thrusts from the commands, N, behind the latency.
     #[must_use]
     pub fn felt_n(&self, airframe: &Airframe, latency: ActuationLatency) -> Vec<Thrusts> {
-        felt(&self.commanded_n, airframe, self.grid.step_s, latency)
+        let mut felt = felt(&self.commanded_n, airframe, self.grid.step_s, latency);
+        let factor = airframe.propulsion.full_thrust_n() / self.full_thrust_n;
+        felt.iter_mut().flatten().for_each(|thrust| *thrust *= factor);
+        felt
+    }
+
+    /// N, N m: contribution of the commands' jitter on the airframe's scale if the rotors follow all of it.
+    #[must_use]
+    pub fn jitter(&self, propulsion: &Propulsion) -> Option<Vec<Vector4<f64>>> {
+        let factor = propulsion.full_thrust_n() / self.full_thrust_n;
+        self.jitter.as_ref().map(|jitter| jitter.iter().map(|jitter| jitter * factor).collect())
     }
 
     /// Rotor thrusts from the commands, N, behind the latency: raw, and smoothed for regressors.

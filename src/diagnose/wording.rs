@@ -65,14 +65,12 @@ pub enum Size {
     First,
     /// one for each axis: their common value, or their range
     Axes,
-    /// norm of all parameters that have a unit, times a factor, with as many digits
+    /// norm of all parameters that have a unit, times a factor, with its standard error
     Norm {
         /// factor for the displayed unit
         factor: f64,
         /// displayed unit
         unit: &'static str,
-        /// significant digits
-        digits: i32,
     },
     /// one parameter
     Of {

@@ -40,22 +40,26 @@ pub fn range(named: &Named) -> String {
     if let Some((mean, std)) = common(&same) {
         return format!("{} {unit}", plain(mean, std));
     }
-    let least = same.iter().map(|p| p.value).fold(f64::INFINITY, f64::min);
-    let most = same.iter().map(|p| p.value).fold(f64::NEG_INFINITY, f64::max);
-    format!("{} to {} {unit}", significant(least, 2), significant(most, 2))
+    let by_value = |a: &&&NamedParameter, b: &&&NamedParameter| a.value.total_cmp(&b.value);
+    let (least, most) = (same.iter().min_by(by_value), same.iter().max_by(by_value));
+    let ends: Vec<String> = [least, most].into_iter().flatten().map(|p| plain(p.value, p.std)).collect();
+    format!("{} {unit}", ends.join(" to "))
 }
 
-/// Norm of the parameters that have a unit.
+/// Norm of values, and its standard error.
 #[must_use]
-pub fn norm(named: &Named) -> f64 {
-    named.parameters.iter().filter(|p| p.unit != "-").map(|p| p.value * p.value).sum::<f64>().sqrt()
+pub fn norm(parameters: &[&NamedParameter]) -> (f64, f64) {
+    let norm = parameters.iter().map(|p| p.value * p.value).sum::<f64>().sqrt();
+    let along = parameters.iter().map(|p| (p.value * p.std).powi(2)).sum::<f64>().sqrt();
+    let largest = parameters.iter().map(|p| p.std).fold(0.0, f64::max);
+    (norm, if norm > 0.0 { along / norm } else { largest })
 }
 
 /// Value and standard error without parentheses.
 #[must_use]
 pub fn plain(value: f64, std: f64) -> String {
     let text = with_error(value, std);
-    if text.starts_with('(') { significant(value, 3) } else { text }
+    if text.starts_with('(') { format!("{} +- {}", significant(value, 3), significant(std, 2)) } else { text }
 }
 
 /// A parameter multiplied by `factor`, with the displayed unit.

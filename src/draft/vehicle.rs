@@ -6,7 +6,7 @@ use super::hover::full_thrust;
 use super::rules::{self, Rule};
 use crate::autopilot::{Frame, Layout, LayoutError, LayoutUnit, Outputs, Stack};
 use crate::recording::Recording;
-use crate::signals::{bus_range, holds_fractions};
+use crate::signals::{RotorDifference, bus_range, holds_fractions, rotor_difference};
 use crate::units::GRAVITY_M_S2;
 use crate::vehicle::{
     Actuator, Anchor, Guess, Guessed, Limits, Propulsion, PwmRange, RigidBody, Rotor, Spin, ThrustLaw,
@@ -31,6 +31,8 @@ pub struct Draft {
     pub vehicle: Vehicle,
     /// where the other values come from, sentence by sentence
     pub origins: Vec<String>,
+    /// what is given and contradicts the log, sentence by sentence
+    pub doubts: Vec<String>,
 }
 
 /// Why there is no vehicle.
@@ -51,7 +53,10 @@ pub enum DraftError {
         came: f64,
     },
     /// an autopilot whose parameters are not known here
-    #[error("expected a log or vehicle of PX4 or ArduPilot with its parameters, got one of neither")]
+    #[error(
+        "expected a log or vehicle of PX4 or ArduPilot, whose parameters say where the motors are, got none; give the frame \
+         (--frame quadrotor-x)"
+    )]
     Autopilot,
     /// the rotors' places are not known
     #[error("{0}; give the frame (--frame quadrotor-x)")]
@@ -90,14 +95,19 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
     };
     within("mass", "kg", MASSES_KG, given.mass_kg)?;
     given.size_m.map_or(Ok(()), |size_m| within("size", "m", SIZES_M, size_m))?;
-    let stack = recording.autopilot.stack().ok_or(DraftError::Autopilot)?;
+    let stack = recording.autopilot.stack();
+    let outputs = stack.map(|stack| &stack.outputs);
     let parameter = |name: &str| recording.parameters.get(name).copied();
-    let layout = layout(stack, given, &parameter)?;
+    let layout = match (stack, given.frame) {
+        (Some(stack), _) => layout(stack, given, &parameter)?,
+        (None, Some(frame)) => Layout::of(frame, GIVEN_FRAME),
+        (None, None) => return Err(DraftError::Autopilot),
+    };
     let mut noted = Noted::default();
     let arm_m = noted.arm(&layout, given);
     let rotors = rotors(&layout, arm_m / layout.radius());
     let body = noted.body(given.mass_kg, arm_m);
-    let (actuator, expo) = noted.command(recording, &stack.outputs);
+    let (actuator, expo) = noted.command(recording, outputs);
     let radius_m = noted.rotor_radius(&rotors, arm_m);
     let torque_per_thrust_m = noted.torque_ratio(radius_m);
     let mut vehicle = Vehicle {
@@ -118,12 +128,24 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
         gravity_m_s2: GRAVITY_M_S2,
         guesses: Vec::new(),
     };
-    let thrust_max_n = noted.thrust_max(recording, &stack.outputs, &vehicle);
+    let thrust_max_n = noted.thrust_max(recording, outputs, &vehicle);
     vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n, expo };
-    noted.origins.insert(0, format!("{} of {} by {}", layout.name, stack.name, layout.stated_by));
+    let of = stack.map_or_else(String::new, |stack| format!(" of {}", stack.name));
+    noted.origins.insert(0, format!("{}{of} by {}", layout.name, layout.stated_by));
     vehicle.guesses = noted.guesses;
-    Ok(Draft { vehicle, origins: noted.origins })
+    let other =
+        given.frame.and_then(|_| rotor_difference(recording.autopilot, &recording.parameters, &vehicle));
+    let contradiction = |RotorDifference { file, stated, .. }: &RotorDifference| {
+        format!(
+            "--frame: the given frame contradicts the autopilot's parameters: {stated}, the given frame has {file}"
+        )
+    };
+    let doubts = other.iter().map(contradiction).collect();
+    Ok(Draft { vehicle, origins: noted.origins, doubts })
 }
+
+/// What states the layout, where it is not the parameters.
+const GIVEN_FRAME: &str = "the given frame";
 
 /// Where the rotors are, by what is given or by the parameters.
 pub(super) fn layout(
@@ -132,7 +154,7 @@ pub(super) fn layout(
     parameter: &dyn Fn(&str) -> Option<f64>,
 ) -> Result<Layout, LayoutError> {
     match given.frame {
-        Some(frame) => Ok(Layout::of(frame, "the given frame")),
+        Some(frame) => Ok(Layout::of(frame, GIVEN_FRAME)),
         None => stack.geometry.layout(parameter, stack.outputs.motors(parameter)),
     }
 }
@@ -203,8 +225,22 @@ impl Noted {
         }
     }
 
+    /// What a command of an autopilot that is not known means, and the exponent of its thrust curve.
+    fn command_of_any(&mut self, recording: &Recording) -> (Actuator, f64) {
+        let Rule { usual, relative } = rules::THRUST_EXPO;
+        self.guess(Guessed::ThrustCurve, relative, "usual; no autopilot's parameter states it");
+        if holds_fractions(recording) {
+            self.origins.push("commands in 0..1, from no thrust to full thrust".to_owned());
+            return (Actuator::Thrust, usual);
+        }
+        let (min_us, max_us) = PULSES_US;
+        self.origins.push(format!("pulses from {min_us} to {max_us} us, usual, stated by no parameter"));
+        (Actuator::Pwm(Some(PwmRange { min_us, max_us })), usual)
+    }
+
     /// What a command means, and the exponent of its thrust curve.
-    fn command(&mut self, recording: &Recording, outputs: &Outputs) -> (Actuator, f64) {
+    fn command(&mut self, recording: &Recording, outputs: Option<&Outputs>) -> (Actuator, f64) {
+        let Some(outputs) = outputs else { return self.command_of_any(recording) };
         let parameter = |name: &str| recording.parameters.get(name).copied();
         let stated = parameter(outputs.expo).filter(|expo| (0.0..=1.0).contains(expo));
         if holds_fractions(recording) {
@@ -274,7 +310,7 @@ impl Noted {
     }
 
     /// Full thrust of one rotor, N, of a vehicle whose full thrust is still 1 N.
-    fn thrust_max(&mut self, recording: &Recording, outputs: &Outputs, unit: &Vehicle) -> f64 {
+    fn thrust_max(&mut self, recording: &Recording, outputs: Option<&Outputs>, unit: &Vehicle) -> f64 {
         if let Some(shown) = full_thrust(recording, unit) {
             let by = if shown.felt { "its accelerometer" } else { "its hover" };
             self.guess(
@@ -285,14 +321,13 @@ impl Noted {
             return rounded(shown.thrust_max_n);
         }
         let weight_n = unit.body.mass_kg * unit.gravity_m_s2 / unit.rotors.len() as f64;
-        let share =
-            recording.parameters.get(outputs.hover).copied().filter(|share| (0.05..0.95).contains(share));
-        if let Some(share) = share {
-            self.guess(
-                Guessed::ThrustMax,
-                BY_HOVER_SHARE,
-                format!("from the mass and {} = {share}", outputs.hover),
-            );
+        let hover = outputs.and_then(|outputs| {
+            let share = recording.parameters.get(outputs.hover).copied()?;
+            // parameters are in single precision
+            (0.05..0.95).contains(&share).then(|| (outputs.hover, rounded(share)))
+        });
+        if let Some((name, share)) = hover {
+            self.guess(Guessed::ThrustMax, BY_HOVER_SHARE, format!("from the mass and {name} = {share}"));
             return rounded(weight_n / share);
         }
         let Rule { usual, relative } = rules::THRUST_TO_WEIGHT;
@@ -302,91 +337,5 @@ impl Noted {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::autopilot::Autopilot;
-    use crate::recording::{Quantity, Stream, StreamKey};
-
-    fn given(size_m: Option<f64>) -> Given {
-        Given { mass_kg: 1.5, size_m, frame: None }
-    }
-
-    fn copter() -> Recording {
-        let stated = [
-            ("FRAME_CLASS", 1.0),
-            ("FRAME_TYPE", 1.0),
-            ("MOT_THST_EXPO", 0.6),
-            ("MOT_THST_HOVER", 0.4),
-            ("MOT_PWM_MIN", 1000.0),
-            ("MOT_PWM_MAX", 2000.0),
-            ("MOT_SPIN_MIN", 0.15),
-            ("MOT_SPIN_MAX", 0.95),
-        ];
-        let parameters = stated.map(|(name, value)| (name.to_owned(), value)).into();
-        Recording { parameters, autopilot: Autopilot::ArduPilot, ..Recording::default() }
-    }
-
-    fn relative(draft: &Draft, of: Guessed) -> Option<f64> {
-        draft.vehicle.guesses.iter().find(|guess| guess.of == of).map(|guess| guess.relative)
-    }
-
-    #[test]
-    fn parameters_mass_and_size_make_a_vehicle() {
-        let draft = draft(&copter(), &given(Some(0.5)), "drafted").unwrap();
-        let vehicle = &draft.vehicle;
-        // 0.25 m from the centre, at 45 degrees, front right
-        let side_m = 0.25 / 2.0_f64.sqrt();
-        assert!((vehicle.rotors[0].position_m - Vector3::new(side_m, -side_m, 0.0)).norm() < 1e-5);
-        assert_eq!(
-            vehicle.propulsion.actuator,
-            Actuator::Pwm(Some(PwmRange { min_us: 1150.0, max_us: 1950.0 }))
-        );
-        // hovers at 0.4 of the thrust of four rotors
-        let ThrustLaw::Curve { thrust_max_n, expo } = vehicle.propulsion.law else { panic!("a curve") };
-        assert!((thrust_max_n * 4.0 * 0.4 - 1.5 * 9.81).abs() < 1e-3 && expo == 0.6);
-        assert_eq!(relative(&draft, Guessed::ThrustMax), Some(BY_HOVER_SHARE));
-        assert_eq!(relative(&draft, Guessed::Arms), None);
-        assert!(relative(&draft, Guessed::TorqueRatio).is_some_and(|relative| relative > 0.1));
-    }
-
-    #[test]
-    fn arms_that_nobody_states_are_a_guess() {
-        let draft = draft(&copter(), &given(None), "drafted").unwrap();
-        assert!(relative(&draft, Guessed::Arms).is_some());
-    }
-
-    #[test]
-    fn the_flight_says_the_thrust() {
-        let key = |quantity, source| StreamKey { quantity, source, instance: 0 };
-        let time_s: Vec<f64> = (0..400).map(|index| 0.01 * f64::from(index)).collect();
-        // u = 0.5 and a little more in turn, on the ground before
-        let pulse = |index: usize| if index < 100 { 1000.0 } else { 1550.0 + 2.0 * (index % 2) as f64 };
-        let commands = (0..400).flat_map(|index| [pulse(index); 4]).collect();
-        let felt = (0..400).flat_map(|index| [0.0, 0.0, 9.6 + 0.01 * f64::from(index % 2)]).collect();
-        let mut recording = copter();
-        recording.streams = [
-            (
-                key(Quantity::ActuatorCommand, "RCOU"),
-                Stream { time_s: time_s.clone(), width: 4, values: commands },
-            ),
-            (key(Quantity::SpecificForce, "IMU"), Stream { time_s, width: 3, values: felt }),
-        ]
-        .into();
-        let draft = draft(&recording, &given(Some(0.5)), "drafted").unwrap();
-        let each_n = draft.vehicle.propulsion.thrust_from_command_n(0.501_25);
-        assert!((4.0 * each_n / 1.5 - 9.6).abs() < 0.1, "{each_n}");
-        assert!(relative(&draft, Guessed::ThrustMax).is_some_and(|relative| relative < 0.05));
-    }
-
-    #[test]
-    fn what_no_vehicle_is_is_refused() {
-        assert!(draft(&copter(), &Given { mass_kg: 0.0, ..given(None) }, "drafted").is_err());
-        assert!(draft(&copter(), &given(Some(f64::NAN)), "drafted").is_err());
-        assert_eq!(draft(&Recording::default(), &given(None), "drafted"), Err(DraftError::Autopilot));
-        let mut heli = copter();
-        heli.parameters.insert("FRAME_CLASS".to_owned(), 6.0);
-        let frame = Frame::of_id("quadrotor-plus");
-        assert!(draft(&heli, &Given { frame, ..given(None) }, "drafted").is_ok());
-        assert!(matches!(draft(&heli, &given(None), "drafted"), Err(DraftError::Layout(_))));
-    }
-}
+#[path = "vehicle_tests.rs"]
+mod tests;

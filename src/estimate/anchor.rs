@@ -4,21 +4,9 @@ use super::identify::Identification;
 use super::nominal::Nominal;
 use super::result::{Estimated, Finding, MethodResult, finding};
 use super::theta::{THETA, Theta, ThetaCovariance, theta_of};
-use crate::vehicle::{Anchor, Guessed, ThrustLaw, Vehicle};
+use super::thrust_scale::ThrustScale;
+use crate::vehicle::{Anchor, Guessed, Vehicle};
 use nalgebra::SMatrix;
-
-/// Thrust of the rotors relative to the vehicle file, if the mass was weighed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ThrustScale {
-    /// factor on thrust (-), with its standard error
-    pub factor: Finding,
-    /// name of the quantity that it scales, as in the vehicle file
-    pub name: &'static str,
-    /// the scaled quantity
-    pub value: Finding,
-    /// its unit
-    pub unit: &'static str,
-}
 
 /// Brings every method's result to the scale of the vehicle's anchor.
 ///
@@ -72,23 +60,8 @@ pub fn rescaled(estimated: &Estimated, weighed_kg: f64) -> Estimated {
 /// Factor of the rotors' thrust over the stated one, with the vehicle's weighed mass.
 #[must_use]
 pub fn thrust_scale(best: &MethodResult, vehicle: &Vehicle) -> ThrustScale {
-    let (name, unit, stated) = match vehicle.propulsion.law {
-        ThrustLaw::Speed { .. } => {
-            ("thrust_coefficient", "N/(rad/s)^2", vehicle.propulsion.thrust_coefficient.unwrap_or(f64::NAN))
-        }
-        ThrustLaw::Curve { thrust_max_n, .. } => ("thrust_max", "N", thrust_max_n),
-    };
-    let nominal = Nominal::of(vehicle);
-    match finding(&best.estimated, &nominal, 0) {
-        Finding::Determined { value, std } => {
-            let factor = vehicle.body.mass_kg / value;
-            let relative = std / value;
-            let scaled =
-                |size: f64| Finding::Determined { value: size * factor, std: size * factor * relative };
-            ThrustScale { factor: scaled(1.0), name, value: scaled(stated), unit }
-        }
-        other => ThrustScale { factor: other.clone(), name, value: other, unit },
-    }
+    let mass = finding(&best.estimated, &Nominal::of(vehicle), 0);
+    ThrustScale::of(mass, vehicle.body.mass_kg, &vehicle.propulsion)
 }
 
 /// The vehicle with the determined parameters; others keep their nominal values.
@@ -106,10 +79,7 @@ pub fn identified_vehicle(vehicle: &Vehicle, best: &MethodResult, scale: Option<
     out.body.mass_kg = theta[0];
     out.body.inertia_kg_m2 = super::inertia_of(&theta);
     if let Some(Finding::Determined { value: factor, .. }) = scale.map(|scale| &scale.factor) {
-        out.propulsion.thrust_coefficient = out.propulsion.thrust_coefficient.map(|k| k * factor);
-        if let ThrustLaw::Curve { thrust_max_n, .. } = &mut out.propulsion.law {
-            *thrust_max_n *= factor;
-        }
+        out.propulsion = out.propulsion.scaled(*factor);
         out.guesses.retain(|guess| guess.of != Guessed::ThrustMax);
     }
     out

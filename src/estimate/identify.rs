@@ -5,7 +5,7 @@ use super::error::EstimateError;
 use super::method::Method;
 use super::nominal::Nominal;
 use super::paper_runs::PaperRuns;
-use super::plausible::{disagreeing, implausible};
+use super::plausible::disagreeing;
 use super::recommend::{Recommendation, recommend};
 use super::recursive::History;
 use super::result::{Estimated, MethodResult};
@@ -167,7 +167,6 @@ fn identify_evenly(
         Some(MethodResult::new(method, &Estimated::of(found?).with_wider_window(wider), &nominal))
     }));
     let best = recommend((&plain, wider), robust.as_ref(), by_instruments.as_ref(), &nominal);
-    notes.extend(implausible(&best.result, &nominal.theta));
     notes.extend(disagreeing(&weak.rows, &nominal.theta));
     if flights.iter().any(|signals| signals.quality.thrust_source == ThrustSource::Command) {
         notes.push(Note::remark(About::Actuators, BY_COMMANDS));

@@ -1,22 +1,26 @@
 //! Checks of implausible results: another vehicle, a wrong unit, two vehicles at once.
 
 use super::result::{Finding, MethodResult};
-use super::theta::{NAMES, Theta};
+use super::theta::{NAMES, Theta, theta_of};
+use super::thrust_scale::ThrustScale;
 use super::weak::{WeakMethod, solve_weak};
 use crate::note::{About, Note};
 use crate::regression::WeakRows;
+use crate::vehicle::{Guessed, Vehicle};
 
-/// Largest ratio of the identified mass to that of the vehicle file, or its inverse, without a warning. Chosen; not
+/// Largest ratio of an identified mass or thrust to that of the vehicle file, or its inverse, without a warning. Chosen; not
 /// measured.
-const MASS_FACTOR: f64 = 1.5;
+const SCALE_FACTOR: f64 = 1.5;
 /// The same for a moment of inertia. Chosen; not measured.
-const INERTIA_FACTOR: f64 = 3.0;
+const INERTIA_FACTOR: f64 = 1.75;
+/// Standard errors, of the estimate and of a guess in the file, that do not count. Chosen; not measured.
+const WITHIN: f64 = 2.0;
 /// Standard errors of the difference within which the masses of two flights of one vehicle agree. Chosen; not measured.
 const FLIGHTS_SIGMA: f64 = 6.0;
 /// Relative difference within which they agree. Chosen; not measured.
 const FLIGHTS_SHARE: f64 = 0.02;
 
-/// A parameter that is far from what the vehicle file states.
+/// A quantity that is far from what the vehicle file states.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contradiction {
     /// as in files
@@ -25,29 +29,74 @@ pub struct Contradiction {
     pub factor: f64,
 }
 
-/// Estimates that are far from what the vehicle file states: a mass by a factor of 1.5, a moment of inertia by 3.
-#[must_use]
-pub fn contradictions(result: &MethodResult, nominal: &Theta) -> Vec<Contradiction> {
-    [(0, MASS_FACTOR), (1, INERTIA_FACTOR), (4, INERTIA_FACTOR), (6, INERTIA_FACTOR)]
-        .into_iter()
-        .filter_map(|(index, most)| {
-            let Finding::Determined { value, .. } = result.parameters[index].finding else { return None };
-            let factor = value / nominal[index];
-            (factor > most || factor < 1.0 / most).then_some(Contradiction { name: NAMES[index], factor })
-        })
-        .collect()
-}
+impl Contradiction {
+    /// An estimate with its standard error against a stated value, which may be a guess with a relative standard error;
+    /// `None` where they agree within a factor.
+    #[must_use]
+    pub fn of(name: &'static str, (value, std): (f64, f64), (stated, guess): (f64, f64)) -> Option<Self> {
+        let factor = value / stated;
+        let most = if name.starts_with('i') { INERTIA_FACTOR } else { SCALE_FACTOR };
+        let apart = factor.ln().abs() - WITHIN * std / value.abs();
+        (apart > most.ln().max(WITHIN * guess)).then_some(Self { name, factor })
+    }
 
-/// Notes on estimates far from the vehicle file.
-pub(super) fn implausible(result: &MethodResult, nominal: &Theta) -> Vec<Note> {
-    let warning = |Contradiction { name, factor }| {
+    /// A note on it.
+    #[must_use]
+    pub fn note(&self) -> Note {
+        let Self { name, factor } = self;
+        let ask = if *name == NAMES[0] {
+            "are thrust and torque coefficients wrong by this factor? A weighed mass with anchor = \"mass\" sets the scale"
+        } else {
+            "is a length or a coefficient of the rotors wrong?"
+        };
         let text = format!(
-            "{name} is {factor:.2} times what the vehicle file states: is it another vehicle's log, is a unit wrong, or \
-             are thrust and torque coefficients wrong by this factor? A weighed mass with anchor = \"mass\" sets the scale"
+            "{name} is {factor:.2} times what the vehicle file states: is it another vehicle's log, is a unit wrong, or {ask}"
         );
         Note::warning(About::Estimate, text)
+    }
+}
+
+/// Several of them in one clause.
+#[must_use]
+pub fn contradicts_file(all: &[Contradiction]) -> Option<String> {
+    let one = |Contradiction { name, factor }: &Contradiction| {
+        let places = if *factor < 0.1 { 3 } else { 2 };
+        format!("{name} by a factor of {factor:.places$}")
     };
-    contradictions(result, nominal).into_iter().map(warning).collect()
+    let all: Vec<String> = all.iter().map(one).collect();
+    (!all.is_empty()).then(|| format!("it contradicts the vehicle file, {}", all.join(", ")))
+}
+
+/// Relative standard error of what the vehicle's description only guesses of a parameter.
+fn guess(vehicle: &Vehicle, of: Guessed) -> f64 {
+    vehicle.guesses.iter().filter(|guess| guess.of == of).map(|guess| guess.relative).fold(0.0, f64::max)
+}
+
+/// The stated mass (index 0) or moment of inertia (1, 4, 6) with the relative error of a guess.
+#[must_use]
+pub fn stated(vehicle: &Vehicle, index: usize) -> (f64, f64) {
+    let of = if index == 0 { Guessed::ThrustMax } else { Guessed::Inertia };
+    (theta_of(&vehicle.body)[index], guess(vehicle, of))
+}
+
+/// Estimates that are far from what the vehicle file states: mass, thrust and moments of inertia.
+#[must_use]
+pub fn contradictions(
+    result: &MethodResult,
+    vehicle: &Vehicle,
+    scale: Option<&ThrustScale>,
+) -> Vec<Contradiction> {
+    let of_thrust = scale.and_then(|scale| match scale.factor {
+        Finding::Determined { value, std } => {
+            Contradiction::of(scale.name, (value, std), (1.0, guess(vehicle, Guessed::ThrustMax)))
+        }
+        _ => None,
+    });
+    let of_body = [0, 1, 4, 6].into_iter().filter_map(|index| {
+        let Finding::Determined { value, std } = result.parameters[index].finding else { return None };
+        Contradiction::of(NAMES[index], (value, std), stated(vehicle, index))
+    });
+    of_thrust.into_iter().chain(of_body).collect()
 }
 
 /// Notes on flights with contradicting masses.

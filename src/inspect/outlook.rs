@@ -4,7 +4,8 @@ use super::evidence::Evidence;
 use super::inspection::Outlook;
 use super::lacking::lack;
 use crate::estimate::{
-    Estimated, Finding, NAMES, Nominal, THETA, UNITS, finding, rescaled, scale_of, theta_of,
+    Contradiction, Estimated, Finding, NAMES, Nominal, THETA, UNITS, finding, rescaled, scale_of, stated,
+    theta_of,
 };
 use crate::vehicle::{Anchor, Vehicle};
 
@@ -77,6 +78,28 @@ pub(super) fn judged(vehicle: &Vehicle, expected: &Estimated, index: usize) -> O
         Finding::Given { .. } => Outlook { reason: Some("known beforehand".into()), ..none },
     }
 }
+
+/// What the log shows of mass, thrust and moments of inertia that is far from what the vehicle file states.
+pub(super) fn contradicted(vehicle: &Vehicle, expected: &Estimated) -> Vec<Contradiction> {
+    let of = |index: usize| {
+        let Finding::Determined { value, std } = expected_finding(vehicle, expected, index) else {
+            return None;
+        };
+        let (size, guess) = stated(vehicle, index);
+        if vehicle.anchor == Anchor::Mass && index == 0 {
+            let factor = size / value;
+            return Contradiction::of("thrust", (factor, factor * std / value), (1.0, guess));
+        }
+        Contradiction::of(NAMES[index], (value, std), (size, guess))
+    };
+    let is_beyond = |found: &Contradiction| found.factor.ln().abs() > COARSE.ln();
+    let moments = [1, 4, 6].into_iter().filter_map(of).filter(is_beyond);
+    of(0).into_iter().chain(moments).collect()
+}
+
+/// Moments of inertia that differ by less are not told here: latency, a centre of mass that is off and weak rotors, which
+/// `identify` allows for, moved them by up to 3 on the simulated flights of this repository's tests.
+const COARSE: f64 = 4.0;
 
 /// A parameter's size: the larger of what the vehicle file says and what the log does, as [`finding`] judges.
 fn size_of(vehicle: &Vehicle, expected: &Estimated, index: usize) -> f64 {

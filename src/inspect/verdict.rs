@@ -3,8 +3,9 @@
 use super::evidence::Evidence;
 use super::inspection::{Outlook, VehicleSummary};
 use super::lacking::lack;
-use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION};
+use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION, contradicted};
 use crate::autopilot::VehicleKind;
+use crate::estimate::contradicts_file;
 use crate::note::About;
 use crate::recording::Quantity;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
@@ -115,13 +116,29 @@ fn with_vehicle(evidence: &Evidence<'_>, good: &[&Outlook], bad: &[&str], time: 
         .collect();
     let not = if bad.is_empty() { String::new() } else { format!("; not for {}", bad.join(", ")) };
     let parts = parts.join("; ");
-    if evidence.assessment.notes.iter().any(|note| note.is_warning() && note.about == About::Vehicle) {
+    let doubts = doubts(evidence);
+    if !doubts.is_empty() {
         return format!(
-            "Doubtful with this vehicle file: its rotors contradict the autopilot's parameters, see the advice. With the right \
-             file this log may be {parts}{not}: {time}."
+            "Doubtful with this vehicle file: {}. With the right file this log may be {parts}{not}: {time}.",
+            doubts.join("; ")
         );
     }
     format!("This log is {parts}{not}: {time}. Next: `mavid identify`.")
+}
+
+/// What speaks against the vehicle file, clause by clause.
+fn doubts(evidence: &Evidence<'_>) -> Vec<String> {
+    let mut doubts = Vec::new();
+    if let Some(vehicle) = evidence.vehicle {
+        let expected = evidence.assessment.expected.as_ref();
+        doubts.extend(expected.and_then(|expected| contradicts_file(&contradicted(vehicle, expected))));
+        let odd = vehicle.implausible();
+        doubts.extend(odd.iter().map(|odd| odd.trim_end_matches('?').to_owned()));
+    }
+    if evidence.assessment.notes.iter().any(|note| note.is_warning() && note.about == About::Vehicle) {
+        doubts.push("its rotors contradict the autopilot's parameters, see the advice".to_owned());
+    }
+    doubts
 }
 
 /// Mass and moments: the products follow them.

@@ -113,7 +113,7 @@ impl Cells {
             accelerometer_noise_m_s2: Vector3::from_fn(noise),
             velocity_m_s,
             borders_m_s: time_s.iter().map(|t| Place::of(&signals.grid, *t).between(on_grid)).collect(),
-            thrusts: CellThrusts::of(signals, vehicle.rotors.len(), from_s, count),
+            thrusts: CellThrusts::of(signals, vehicle, from_s, count),
             time_s,
         })
     }

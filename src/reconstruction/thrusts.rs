@@ -3,6 +3,7 @@
 use super::place::{Place, STEP_S};
 use crate::physics::{ActuationLatency, MAX_ROTORS, delayed_thrusts_n};
 use crate::signals::Signals;
+use crate::vehicle::Vehicle;
 
 /// Grid on which thrusts are held and lagged, s: a tenth of a cell.
 const FINE_S: f64 = 0.004;
@@ -29,12 +30,14 @@ pub struct CellThrusts {
 
 impl CellThrusts {
     /// Of `count` cells from `from_s` on.
-    pub(super) fn of(signals: &Signals, rotors: usize, from_s: f64, count: usize) -> Self {
+    pub(super) fn of(signals: &Signals, vehicle: &Vehicle, from_s: f64, count: usize) -> Self {
+        let (rotors, factor) = (vehicle.rotors.len(), signals.thrust_factor(&vehicle.propulsion));
         let start_s = from_s - LEAD as f64 * STEP_S;
         let mut held = Vec::with_capacity((count + LEAD) * PER_CELL * rotors);
         for index in 0..(count + LEAD) * PER_CELL {
             let place = Place::of(&signals.grid, start_s + (index as f64 + 0.5) * FINE_S);
-            held.extend((0..rotors).map(|rotor| place.of_rotor(&signals.rotor_thrust_n, rotor, rotors)));
+            let of = |rotor| factor * place.of_rotor(&signals.rotor_thrust_n, rotor, rotors);
+            held.extend((0..rotors).map(of));
         }
         let mut thrust_n = vec![0.0; count * rotors * LAGS * LATE];
         for lag in 0..LAGS {

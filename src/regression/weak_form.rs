@@ -279,6 +279,7 @@ mod tests {
             position: None,
             velocity: None,
             rotor_thrust_n: Vec::new(),
+            full_thrust_n: 1.0,
             wrench: vec![wrench; count],
             jitter_wrench: None,
             battery_voltage_v: None,

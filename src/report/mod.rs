@@ -14,6 +14,7 @@ mod proof;
 mod quality;
 mod thrust_source;
 mod validation;
+mod value;
 mod vehicle;
 
 pub use chart::{Band, Bars, Line, Panel, Strip, Stroke, svg};

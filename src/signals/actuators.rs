@@ -205,7 +205,7 @@ pub fn propulsion_from_log(recording: &Recording, stated: &Propulsion) -> (Propu
     if let (Some(expo), ThrustLaw::Curve { thrust_max_n, expo: stated_expo }) = (expo, stated.law) {
         if (expo - stated_expo).abs() > 1e-6 {
             note(format!(
-                "thrust curve exponent {expo} from the log's parameters, the vehicle file says {stated_expo}"
+                "thrust curve exponent {expo:.3} from the log's parameters, the vehicle file says {stated_expo:.3}"
             ));
         }
         propulsion.law = ThrustLaw::Curve { thrust_max_n, expo };

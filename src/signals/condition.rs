@@ -106,6 +106,7 @@ pub fn condition(
         position: motion.position,
         velocity: motion.velocity,
         rotor_thrust_n: felt.rotor_thrust_n,
+        full_thrust_n: vehicle.propulsion.full_thrust_n(),
         wrench: felt.wrench,
         jitter_wrench: felt.jitter_wrench,
         battery_voltage_v: battery_voltage_v(recording, &grid),

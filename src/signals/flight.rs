@@ -6,6 +6,7 @@ use super::rotor_thrusts::ThrustSource;
 use super::usable::Usable;
 use crate::note::Note;
 use crate::recording::{Quantity, Stream};
+use crate::vehicle::Propulsion;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 use std::sync::Arc;
 
@@ -30,6 +31,8 @@ pub struct Signals {
     pub velocity: Option<Vec<Vector3<f64>>>,
     /// N, one for each rotor and instant, rotor after rotor; empty if the log contains the wrench itself
     pub rotor_thrust_n: Vec<f64>,
+    /// N, full thrust of one rotor of the vehicle for which the thrusts, the wrench and its jitter were computed
+    pub full_thrust_n: f64,
     /// `F = [Fz tau]`, N and N m, from the rotors through the nominal mixer, less half of
     /// [`Self::jitter_wrench`]
     pub wrench: Vec<Vector4<f64>>,
@@ -57,6 +60,12 @@ impl Signals {
             .find(|n| (f64::from(*n) + 0.5) * self.grid.step_s > period_s)
             .and_then(|n| usize::try_from(n).ok())
             .unwrap_or(1)
+    }
+
+    /// What the thrusts must be multiplied by for rotors of another full thrust.
+    #[must_use]
+    pub fn thrust_factor(&self, propulsion: &Propulsion) -> f64 {
+        propulsion.full_thrust_n() / self.full_thrust_n
     }
 
     /// Emits it as tracing events.
@@ -133,6 +142,7 @@ mod tests {
             position: None,
             velocity: None,
             rotor_thrust_n: Vec::new(),
+            full_thrust_n: 1.0,
             wrench: Vec::new(),
             jitter_wrench: None,
             battery_voltage_v: None,

@@ -32,6 +32,18 @@ impl StandQuantity {
             Self::Voltage => "voltage",
         }
     }
+
+    /// Units that its column may have, in messages.
+    pub(super) fn units_words(self) -> &'static str {
+        match self {
+            Self::Pulse => "us, ms",
+            Self::Throttle => "us, %",
+            Self::RotorSpeed => "RPM, rad/s, Hz",
+            Self::Thrust => "N, kgf, gf, lbf, ozf",
+            Self::Torque => "N m, mN m, kgf cm, ozf in",
+            Self::Voltage => "V, mV",
+        }
+    }
 }
 
 /// Names of units, and what of them is one in SI (a pulse: microseconds; a throttle: 1).

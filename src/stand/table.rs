@@ -45,10 +45,28 @@ pub fn read_table(path: &Path) -> Result<StandTable, StandError> {
     if bytes.len() as u64 > BYTES_MAX {
         return Err(StandError::TooLarge { path: path.to_owned(), max: BYTES_MAX });
     }
+    refuse_other_kinds(&bytes)?;
     // some stands write Latin-1
     let text = String::from_utf8(bytes)
         .unwrap_or_else(|error| error.as_bytes().iter().map(|byte| char::from(*byte)).collect());
     parse_table(&text)
+}
+
+/// Files of spreadsheets and archives are no text.
+fn refuse_other_kinds(bytes: &[u8]) -> Result<(), StandError> {
+    let came = match bytes {
+        [b'P', b'K', 3 | 5, 4 | 6, ..] => {
+            "a zip archive, as files of spreadsheets (.xlsx, .ods) are; unpack it, or save the sheet as .csv"
+        }
+        [0xd0, 0xcf, 0x11, 0xe0, ..] => "a file of a spreadsheet (.xls); save the sheet as .csv",
+        [0x1f, 0x8b, ..] => "a gzip archive; unpack it",
+        bytes if bytes.contains(&0) => "a file that is no text",
+        _ => return Ok(()),
+    };
+    Err(StandError::Columns {
+        expected: "a table of a thrust stand as text (.csv)".to_owned(),
+        came: came.to_owned(),
+    })
 }
 
 /// As [`read_table`], from text.
@@ -56,66 +74,72 @@ pub fn read_table(path: &Path) -> Result<StandTable, StandError> {
 /// # Errors
 /// As [`read_table`].
 pub fn parse_table(text: &str) -> Result<StandTable, StandError> {
-    let delimiter = delimiter(text);
-    let mut reader = csv::ReaderBuilder::new()
+    // numbers may have decimal commas: a comma is the last that is tried
+    let found = DELIMITERS.iter().find_map(|delimiter| {
+        let mut rows = rows_of(text, *delimiter);
+        Some((header(&mut rows)?, rows, *delimiter))
+    });
+    let Some((header, rows, delimiter)) = found else {
+        let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
+        return Err(StandError::Columns {
+            expected: "a header with a column of thrust and one of the command or the rotor speed, each with its unit, such \
+                       as Thrust (N), ESC signal (us), Throttle (%), Motor Optical Speed (RPM)"
+                .to_owned(),
+            came: format!("\"{}\"", text::excerpt(first.unwrap_or_default(), 200)),
+        });
+    };
+    let headings: Vec<Heading> = header.iter().map(heading).collect();
+    let table = Chosen::of(&headings, &header)?;
+    let is_instead =
+        |name: &str| name == StandQuantity::Throttle.name() && table.has(StandQuantity::Pulse.name());
+    for (heading, cell) in headings.iter().zip(header.iter()) {
+        let Heading::UnknownUnit(of) = heading else { continue };
+        if table.has(of.name()) || is_instead(of.name()) {
+            continue;
+        }
+        return Err(StandError::Columns {
+            expected: format!("a unit of the column of {}, such as {}", of.name(), of.units_words()),
+            came: format!("the heading {}", quoted(cell)),
+        });
+    }
+    table.read(rows, (&header, delimiter))
+}
+
+/// What may stand between two cells, in the order in which it is tried.
+const DELIMITERS: [u8; 3] = [b';', b'\t', b','];
+
+fn rows_of(text: &str, delimiter: u8) -> impl Iterator<Item = csv::StringRecord> + '_ {
+    let reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
         .delimiter(delimiter)
         .comment(Some(b'#'))
         .from_reader(text.as_bytes());
-    let mut rows = reader.records().map_while(Result::ok);
-    let mut best: Option<Vec<Heading>> = None;
-    let mut seen = String::new();
-    for row in rows.by_ref().take(HEADER_LINES) {
-        let headings: Vec<Heading> = row.iter().map(heading).collect();
-        if seen.is_empty() {
-            seen = row.iter().collect::<Vec<_>>().join(", ");
-        }
-        let of = |wanted: StandQuantity| {
-            headings.iter().any(|heading| match heading {
-                Heading::Of(column) => column.of == wanted,
-                Heading::UnknownUnit(of) => *of == wanted,
-                Heading::Other => false,
-            })
-        };
-        if of(StandQuantity::Thrust) && headings.iter().filter(|one| **one != Heading::Other).count() > 1 {
-            seen = row.iter().collect::<Vec<_>>().join(", ");
-            best = Some(headings);
-            break;
-        }
-    }
-    let came = || format!("\"{}\"", text::excerpt(&seen, 200));
-    let Some(headings) = best else {
-        return Err(StandError::Columns {
-            expected: "a header with a column of thrust and one of the command or the rotor speed, each with its unit, such \
-                       as Thrust (N), ESC signal (us), Throttle (%), Motor Optical Speed (RPM)"
-                .to_owned(),
-            came: came(),
-        });
-    };
-    let unknown = headings.iter().find_map(|heading| match heading {
-        Heading::UnknownUnit(of) => Some(of.name()),
-        _ => None,
-    });
-    let table = Chosen::of(&headings)?;
-    let is_instead =
-        |name: &str| name == StandQuantity::Throttle.name() && table.has(StandQuantity::Pulse.name());
-    if let Some(name) = unknown.filter(|name| !table.has(name) && !is_instead(name)) {
-        let expected =
-            format!("a unit of the column of {name}, such as N, kgf, gf, N m, us, %, RPM, rad/s, V");
-        return Err(StandError::Columns { expected, came: came() });
-    }
-    table.read(rows)
+    reader.into_records().map_while(Result::ok)
 }
 
-/// The delimiter that the text has most often.
-fn delimiter(text: &str) -> u8 {
-    let head: Vec<&str> = text.lines().take(HEADER_LINES).collect();
-    let count = |of: char| head.iter().map(|line| line.matches(of).count()).sum::<usize>();
-    [(b',', ','), (b';', ';'), (b'\t', '\t')]
-        .into_iter()
-        .max_by_key(|(_, of)| count(*of))
-        .map_or(b',', |(byte, _)| byte)
+/// The row that names a thrust and something else.
+fn header(rows: &mut impl Iterator<Item = csv::StringRecord>) -> Option<csv::StringRecord> {
+    rows.take(HEADER_LINES).find(|row| {
+        let headings: Vec<Heading> = row.iter().map(heading).collect();
+        let is_thrust = |heading: &Heading| match heading {
+            Heading::Of(column) => column.of == StandQuantity::Thrust,
+            Heading::UnknownUnit(of) => *of == StandQuantity::Thrust,
+            Heading::Other => false,
+        };
+        headings.iter().any(is_thrust) && headings.iter().filter(|one| **one != Heading::Other).count() > 1
+    })
+}
+
+fn quoted(cell: &str) -> String {
+    format!("\"{}\"", text::excerpt(cell.trim(), 80))
+}
+
+/// A number, where there is one; a comma is a decimal one where it stands between no cells.
+fn number(cell: &str, delimiter: u8) -> Option<f64> {
+    let cell = cell.trim();
+    let read = |cell: &str| cell.parse::<f64>().ok().filter(|number| number.is_finite());
+    read(cell).or_else(|| if delimiter == b',' { None } else { read(&cell.replacen(',', ".", 1)) })
 }
 
 /// Index and factor of the column of each quantity.
@@ -125,7 +149,7 @@ struct Chosen {
 }
 
 impl Chosen {
-    fn of(headings: &[Heading]) -> Result<Self, StandError> {
+    fn of(headings: &[Heading], header: &csv::StringRecord) -> Result<Self, StandError> {
         let mut columns: Vec<(usize, Column)> = Vec::new();
         for (index, heading) in headings.iter().enumerate() {
             let Heading::Of(column) = *heading else { continue };
@@ -133,10 +157,11 @@ impl Chosen {
                 None => columns.push((index, column)),
                 Some(known) if known.1.rank < column.rank => *known = (index, column),
                 Some(known) if known.1.rank > column.rank => {}
-                Some(_) => {
+                Some(known) => {
+                    let [one, other] = [known.0, index].map(|at| quoted(header.get(at).unwrap_or_default()));
                     return Err(StandError::Columns {
                         expected: format!("one column of {}: the table of one rotor", column.of.name()),
-                        came: "several".to_owned(),
+                        came: format!("several, {one} and {other}"),
                     });
                 }
             }
@@ -153,19 +178,29 @@ impl Chosen {
         self.columns.iter().any(|(_, column)| column.of.name() == name)
     }
 
-    fn read(&self, rows: impl Iterator<Item = csv::StringRecord>) -> Result<StandTable, StandError> {
+    fn read(
+        &self,
+        rows: impl Iterator<Item = csv::StringRecord>,
+        (header, delimiter): (&csv::StringRecord, u8),
+    ) -> Result<StandTable, StandError> {
         let pulse = self.find(StandQuantity::Pulse);
         let command = pulse.or_else(|| self.find(StandQuantity::Throttle));
         let [speed, thrust, torque, voltage] =
             [StandQuantity::RotorSpeed, StandQuantity::Thrust, StandQuantity::Torque, StandQuantity::Voltage]
                 .map(|of| self.find(of));
         let mut table = StandTable { is_pulse: pulse.is_some(), ..StandTable::default() };
+        let mut odd: Option<String> = None;
         for row in rows {
             let cell = |at: Option<(usize, f64)>| {
                 let number =
-                    at.and_then(|(index, factor)| Some(row.get(index)?.trim().parse::<f64>().ok()? * factor));
-                number.filter(|number| number.is_finite()).unwrap_or(f64::NAN)
+                    at.and_then(|(index, factor)| Some(number(row.get(index)?, delimiter)? * factor));
+                number.unwrap_or(f64::NAN)
             };
+            let of_thrust = thrust.and_then(|(index, _)| row.get(index)).map(str::trim);
+            let is_odd = |cell: &&str| !cell.is_empty() && number(cell, delimiter).is_none();
+            if odd.is_none() {
+                odd = of_thrust.filter(is_odd).map(quoted);
+            }
             let values = [command, speed, thrust, torque, voltage].map(cell);
             if values.iter().all(|value| value.is_nan()) {
                 table.rows_left_out += 1;
@@ -189,6 +224,13 @@ impl Chosen {
             return Err(StandError::Columns {
                 expected: "a column of the command or of the rotor speed beside that of thrust".to_owned(),
                 came: "neither".to_owned(),
+            });
+        }
+        if table.thrust_n.iter().all(|thrust| thrust.is_nan()) {
+            let name = thrust.and_then(|(index, _)| header.get(index)).unwrap_or_default();
+            return Err(StandError::Rows {
+                expected: format!("numbers in the column {}, such as 4.9", quoted(name)),
+                came: odd.unwrap_or_else(|| "none".to_owned()),
             });
         }
         upright(&mut table.thrust_n);
@@ -230,7 +272,25 @@ mod tests {
         assert!(said("Thrust (N),Torque (N m)\n1,2\n").contains("the command or of the rotor speed"));
         assert!(said("Thrust A (N),Thrust B (N),RPM\n1,2,3\n").contains("one column of thrust"));
         assert!(said("").contains("got \"\""));
+        assert!(
+            said("Thrust A (N),Thrust B (N),RPM\n1,2,3\n").contains("\"Thrust A (N)\" and \"Thrust B (N)\"")
+        );
+        assert!(said("Schub, Thrust ,RPM\n1,2,3\n").contains("got the heading \"Thrust\""));
+        assert!(said("Thrust (N),RPM\n1.234.5,2\n").contains("in the column \"Thrust (N)\""));
         let table = parse_table("Throttle (%);Thrust (g)\n50;700\n").unwrap();
         assert_eq!((table.command[0], table.missing.len()), (0.5, 3));
+    }
+
+    #[test]
+    fn a_decimal_comma_is_one_where_other_signs_stand_between_the_cells() {
+        let table = parse_table("Throttle (%);Thrust (N);RPM\n50,0;7,25;6000,5\n60,0;8,5;7000,5\n").unwrap();
+        assert_eq!((table.thrust_n[0], table.command[0]), (7.25, 0.5));
+    }
+
+    #[test]
+    fn an_archive_is_called_one() {
+        let why = refuse_other_kinds(b"PK\x03\x04rest").unwrap_err().to_string();
+        assert!(why.contains("a zip archive"), "{why}");
+        assert!(refuse_other_kinds(b"Thrust (N),RPM\n").is_ok());
     }
 }

@@ -19,6 +19,8 @@ impl Correlation {
         let mut kept: Vec<(usize, String)> = Vec::new();
         for (index, column) in fitted.rows.nuisances.iter().enumerate() {
             let name = match column.nuisance {
+                // a weighed mass has no error
+                Nuisance::Mass if fitted.base.weighed_kg.is_some() => continue,
                 Nuisance::Mass => NAMES[0].to_owned(),
                 Nuisance::Inertia(entry) => NAMES[1 + entry].to_owned(),
                 Nuisance::Latency => "latency".to_owned(),

@@ -105,10 +105,7 @@ pub(super) fn load_all(
 
 fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, StudyError> {
     let opened = open_flights(path, options, most).map_err(|error| unread(path, error))?;
-    if let Some(kind) = opened.report.kind().filter(|kind| *kind != VehicleKind::Multirotor) {
-        let why = format!("expected the log of a multirotor, got that of a {}", kind.name());
-        return Err(StudyError::File { file: text::path(&path), why });
-    }
+    refuse_other_kinds(path, &opened.report)?;
     refuse_no_flight(path, &opened)?;
     let about = || About::File(text::path(&path));
     let losses = opened.report.losses.iter().map(ToString::to_string);
@@ -119,6 +116,17 @@ fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, 
         .notes
         .extend(whose(&opened.report).into_iter().chain(oddities).map(|text| Note::remark(about(), text)));
     Ok(of_log(opened.flights.flights, &input, LoggedBy::of(&opened.report)))
+}
+
+/// Nothing but a multirotor is known here.
+pub(super) fn refuse_other_kinds(log: &Path, report: &ReadReport) -> Result<(), StudyError> {
+    match report.kind().filter(|kind| *kind != VehicleKind::Multirotor) {
+        None => Ok(()),
+        Some(kind) => {
+            let why = format!("expected the log of a multirotor, got that of a {}", kind.name());
+            Err(StudyError::File { file: text::path(&log), why })
+        }
+    }
 }
 
 /// A log that says itself that nothing was flown, or that has no clock, is told so, and not that a stream is missing.

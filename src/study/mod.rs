@@ -7,6 +7,7 @@
 mod after_flight;
 mod both_logs;
 mod correlation;
+mod doubts;
 mod effects;
 mod error;
 mod explain;

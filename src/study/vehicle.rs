@@ -1,6 +1,7 @@
 //! What follows from a vehicle's file.
 
 use crate::config::LoadedVehicle;
+use crate::text;
 use crate::vehicle::{Actuator, Anchor, Spin, ThrustLaw, Vehicle};
 use serde::Serialize;
 
@@ -125,7 +126,8 @@ fn thrust_law(vehicle: &Vehicle) -> String {
             format!("{coefficient:.4e} N/(rad/s)^2 * (u * {speed_max_rad_s} rad/s)^2")
         }
         ThrustLaw::Curve { thrust_max_n, expo } => {
-            format!("{thrust_max_n} N * ({} u + {expo} u^2)", 1.0 - expo)
+            let [linear, quadratic] = [1.0 - expo, expo].map(text::compact);
+            format!("{} N * ({linear} u + {quadratic} u^2)", text::compact(thrust_max_n))
         }
     }
 }

@@ -16,7 +16,7 @@ use crate::vehicle::{Guessed, Vehicle};
 
 use super::StudyError;
 use super::flight::Flight;
-use super::flights::{ReadSettings, file_notes, unread};
+use super::flights::{ReadSettings, file_notes, refuse_other_kinds, unread};
 
 /// How a study is told of the vehicle.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +58,7 @@ impl Known {
         let mut notes = file_notes(&self.origin, &self.loaded.warnings);
         let about = || About::File(text::path(&self.origin));
         if let Some(draft) = &self.draft {
+            notes.extend(draft.doubts.iter().map(|doubt| Note::warning(about(), doubt.as_str())));
             notes.push(Note::remark(about(), draft.origins.join("; ")));
         }
         notes.extend(guesses(&self.loaded.vehicle).map(|text| Note::remark(about(), text)));
@@ -76,6 +77,22 @@ fn guesses(vehicle: &Vehicle) -> Option<String> {
 }
 
 impl VehicleGiven {
+    /// The vehicle of a file, or drafted of mass and frame alone where there is neither a log nor a link; and what messages call
+    /// it.
+    ///
+    /// # Errors
+    /// The file cannot be read, or what is given is no vehicle's.
+    pub fn alone(&self) -> Result<(LoadedVehicle, PathBuf), StudyError> {
+        match self {
+            Self::File(file) => Ok((read_vehicle(file)?, file.clone())),
+            Self::Weighed(given) => {
+                let draft = draft(&Recording::default(), given, "vehicle")
+                    .map_err(|error| StudyError::Setting { name: "mass", why: error.to_string() })?;
+                Ok((of_draft(&draft), PathBuf::from(DRAFTED)))
+            }
+        }
+    }
+
     /// The vehicle of a file; `None` where it is to be drafted from a log.
     pub(super) fn of_file(&self) -> Result<Option<Known>, StudyError> {
         match self {
@@ -93,19 +110,24 @@ impl VehicleGiven {
             (_, Some(known), _) => Ok(known),
             (Self::Weighed(given), None, Some(flight)) => {
                 let draft = drafted(&flight.recording, &flight.input.path, given)?;
-                let loaded = LoadedVehicle {
-                    vehicle: draft.vehicle.clone(),
-                    warnings: Vec::new(),
-                    model: ModelTables::default(),
-                };
-                let origin = PathBuf::from("the drafted vehicle");
-                Ok(Known { loaded, origin, draft: Some(draft) })
+                Ok(Known { loaded: of_draft(&draft), origin: PathBuf::from(DRAFTED), draft: Some(draft) })
             }
             _ => Err(StudyError::Setting {
                 name: "mass",
                 why: "expected a log with a flight, got none".into(),
             }),
         }
+    }
+}
+
+/// What messages call a vehicle that is of no file.
+const DRAFTED: &str = "the drafted vehicle";
+
+fn of_draft(draft: &Draft) -> LoadedVehicle {
+    LoadedVehicle {
+        warnings: draft.vehicle.implausible(),
+        vehicle: draft.vehicle.clone(),
+        model: ModelTables::default(),
     }
 }
 
@@ -122,6 +144,7 @@ fn drafted(recording: &Recording, log: &str, given: &Given) -> Result<Draft, Stu
 pub fn draft_from_log(log: &Path, read: &ReadSettings, given: &Given) -> Result<Draft, StudyError> {
     let mut opened =
         open_flights(log, &read.open_options()?, &DRAFTED_FROM).map_err(|error| unread(log, error))?;
+    refuse_other_kinds(log, &opened.report)?;
     let Some(flight) = opened.flights.flights.first_mut() else {
         return Err(StudyError::File { file: text::path(&log), why: "expected a flight, got none".into() });
     };
@@ -165,7 +188,7 @@ pub fn with_thrust_stand(mut draft: Draft, table: &Path) -> Result<Draft, StudyE
     });
     let lifted = stand.propulsion.thrust_from_command_n(hovers) / weight_n;
     if by_flight && !(1.0 / APART..=APART).contains(&lifted) {
-        draft.origins.push(format!(
+        draft.doubts.push(format!(
             "{name}: at the command at which the log's vehicle hovers, the stand's thrust is {lifted:.2} times the weight: \
              another voltage, another rotor, or a wrong mass?"
         ));
@@ -189,6 +212,9 @@ pub fn draft_text(draft: &Draft) -> Result<String, ConfigError> {
     let mut out = String::from(
         "# A first description of the vehicle. Every [[guess]] below was not measured: correct the value and delete the guess.\n",
     );
+    for doubt in &draft.doubts {
+        out.push_str(&text::line_comment("# - doubtful:", doubt));
+    }
     for origin in &draft.origins {
         out.push_str(&text::line_comment("# -", origin));
     }

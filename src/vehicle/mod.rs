@@ -7,6 +7,7 @@ mod body;
 mod description;
 mod guess;
 mod limits;
+mod plausible;
 mod propulsion;
 mod rotor;
 mod size;

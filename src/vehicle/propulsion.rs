@@ -95,6 +95,22 @@ impl Propulsion {
         }
     }
 
+    /// Thrust of one rotor at u = 1, N: what sets the scale of all thrusts.
+    #[must_use]
+    pub fn full_thrust_n(&self) -> f64 {
+        self.thrust_from_command_n(1.0)
+    }
+
+    /// The same propulsion with `factor` times the thrust at every command and speed.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.thrust_coefficient = self.thrust_coefficient.map(|coefficient| coefficient * factor);
+        if let ThrustLaw::Curve { thrust_max_n, .. } = &mut self.law {
+            *thrust_max_n *= factor;
+        }
+        self
+    }
+
     /// Second derivative of thrust by command, N: how much thrust the jitter of a command makes.
     #[must_use]
     pub fn thrust_curvature_n(&self) -> f64 {

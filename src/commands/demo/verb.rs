@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::concealed::{Compared, compare, concealed, table};
 use super::embedded::Embedded;
 use super::progress::{self, Progress};
-use crate::cli::{CriterionName, DemoArgs, FlyArgs, OriginName, PlanArgs, ShapeArgs};
+use crate::cli::{CriterionName, DemoArgs, DraftArgs, FlyArgs, OriginName, PlanArgs, ShapeArgs};
 use crate::commands::after_flight::Analysis;
 use crate::commands::live::{self, Work};
 use crate::commands::sitl::DEFAULT_VEHICLE;
@@ -124,7 +124,8 @@ fn folder(args: &DemoArgs) -> Result<PathBuf, CommandError> {
 
 fn plan_args(vehicle: &Path, limits: PathBuf, trajectory: &Path) -> PlanArgs {
     PlanArgs {
-        vehicle: vehicle.to_owned(),
+        vehicle: Some(vehicle.to_owned()),
+        draft: DraftArgs::default(),
         out: Some(trajectory.to_owned()),
         limits: Some(limits),
         criterion: CriterionName::DOpt,

@@ -24,8 +24,9 @@ impl<'a> Commands<'a> {
                 thrusts_n.copy_from_slice(allocation.thrusts_n(wrench).as_slice());
             }
         } else {
+            let factor = signals.thrust_factor(&vehicle.propulsion);
             for (thrusts_n, recorded) in thrusts_n.iter_mut().zip(signals.rotor_thrust_n.chunks(rotors)) {
-                thrusts_n[..rotors].copy_from_slice(recorded);
+                thrusts_n.iter_mut().zip(recorded).for_each(|(thrust, recorded)| *thrust = factor * recorded);
             }
         }
         Ok(Self { signals, delay_instants: model.command_delay_s() / signals.grid.step_s, thrusts_n, model })

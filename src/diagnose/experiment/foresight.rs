@@ -220,7 +220,7 @@ impl<'a> Foresight<'a> {
             flown.thrusts.extend(thrusts.iter().take(rotors));
             flown.wrench.push(Vector4::new(lift, turning.x, turning.y, turning.z));
         }
-        Some(flown.signals(grid, self.like))
+        Some(flown.signals((grid, vehicle.propulsion.full_thrust_n()), self.like))
     }
 }
 
@@ -238,7 +238,7 @@ struct Flown {
 
 impl Flown {
     /// Signals with the streams of the previous flights, of which `like` is the first.
-    fn signals(self, grid: Grid, like: &Trace) -> Signals {
+    fn signals(self, (grid, full_thrust_n): (Grid, f64), like: &Trace) -> Signals {
         let rate_hz = 1.0 / like.command_period_s.max(1e-3);
         let voltage = like.voltage_v.as_ref().map(|voltage| sampled(voltage, grid.count));
         Signals {
@@ -251,6 +251,7 @@ impl Flown {
             position: like.known.position.then_some(self.position),
             velocity: like.known.velocity.then_some(self.velocity),
             rotor_thrust_n: self.thrusts,
+            full_thrust_n,
             wrench: self.wrench,
             jitter_wrench: None,
             battery_voltage_v: voltage,

@@ -5,6 +5,7 @@ use crate::physics::MAX_ROTORS;
 use crate::recording::{Quantity, Stream};
 use crate::signals::{Signals, ThrustSource, white_level};
 use crate::stats::median;
+use crate::vehicle::Propulsion;
 use nalgebra::{SMatrix, SVector, Vector3};
 
 /// White noise of each part of the state; zero if it is not recorded. Estimates of real autopilots are smoother than
@@ -37,15 +38,16 @@ const OTHERWISE: f64 = 0.5;
 const OUTLIER: f64 = 6.0;
 
 /// Jitter of logged commands, by the covariance of their fourth differences over the rotors. `None` if rotor speeds
-/// were measured, or if there is too little data.
+/// were measured, or if there is too little data. It has the scale of the propulsion.
 #[must_use]
-pub fn command_noise(signals: &Signals) -> Option<CommandNoise> {
+pub fn command_noise(signals: &Signals, propulsion: &Propulsion) -> Option<CommandNoise> {
     if signals.quality.thrust_source != ThrustSource::Command || signals.rotor_thrust_n.is_empty() {
         return None;
     }
     let rotors = signals.rotor_thrust_n.len() / signals.grid.count.max(1);
     let every = signals.samples_apart(Quantity::ActuatorCommand);
-    let at = |index: usize, rotor: usize| signals.rotor_thrust_n[index * rotors + rotor];
+    let factor = signals.thrust_factor(propulsion);
+    let at = |index: usize, rotor: usize| factor * signals.rotor_thrust_n[index * rotors + rotor];
     let differences: Vec<SVector<f64, MAX_ROTORS>> = (4 * every..signals.grid.count)
         .step_by(every)
         .filter(|&index| signals.usable[index - 4 * every..=index].iter().all(|usable| *usable))

@@ -70,7 +70,7 @@ fn models_of(ready: &Ready) -> Result<Models, PhysicsError> {
         before: flown(&ready.pair.before)?,
         after: flown(&ready.pair.after)?,
         noise: state_noise(ready.flight.signals),
-        commands: command_noise(ready.flight.signals),
+        commands: command_noise(ready.flight.signals, &ready.pair.after.vehicle.propulsion),
     })
 }
 

@@ -2,8 +2,8 @@
 
 use super::held::{Held, Settled};
 use super::latency::{LEAST_LAG_S, Split};
-use super::scale::follows_force;
 use super::wanted::RequestedEffects;
+use crate::diagnose::base::follows_force;
 use crate::diagnose::fit::Fitted;
 use crate::diagnose::gates::Gates;
 use crate::diagnose::latency::FAST_MOTOR_S;
@@ -280,13 +280,9 @@ impl Scale<'_> {
         self.by_mass.is_some() && follows_force(unit)
     }
 
-    /// Standard error of `value m_w / m` by the chain rule; the mass is the first column.
+    /// Standard error of `value m_w / m`.
     fn std(&self, column: usize, value: f64) -> f64 {
-        let covariance = &self.fitted.covariance;
-        let share = value / self.fitted.base.vehicle.body.mass_kg;
-        let variance = covariance[(column, column)] - 2.0 * share * covariance[(column, 0)]
-            + share * share * covariance[(0, 0)];
-        self.by_mass.unwrap_or(1.0) * variance.max(0.0).sqrt()
+        self.by_mass.unwrap_or(1.0) * self.fitted.std_by_mass(column, value)
     }
 }
 

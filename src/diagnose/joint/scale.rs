@@ -3,7 +3,7 @@
 
 use super::choose::Chosen;
 use super::held::{Settled, settle};
-use crate::diagnose::base::Base;
+use crate::diagnose::base::{Base, follows_force};
 use crate::diagnose::fit::{Fitted, Newton};
 use crate::diagnose::latency::{LatencyFinding, fit_latency};
 use crate::diagnose::signature::EffectTerm;
@@ -16,11 +16,6 @@ use crate::vehicle::{Anchor, Vehicle};
 const PASSES: usize = 4;
 /// A scale that moves by less than this share has converged. Chosen; not measured.
 const CONVERGED: f64 = 1e-4;
-
-/// Force, mass and inertia follow the scale; lengths, angles, times and ratios do not.
-pub(super) fn follows_force(unit: &str) -> bool {
-    unit.starts_with('N') || unit.starts_with("kg")
-}
 
 /// Effects of the vehicle file that act as stated.
 pub(super) struct Kept<'a> {

@@ -18,7 +18,7 @@ pub static SIGNATURE: Signature = Signature {
         &[0, 1, 2],
         Words {
             clause: Clause::Own(|named, _| clause(named)),
-            size: Size::Norm { factor: 1e3, unit: "mm", digits: 3 },
+            size: Size::Norm { factor: 1e3, unit: "mm" },
             limit: Some(|limit| format!("a centre of mass {} mm off", significant(1e3 * limit, 2))),
             told_if_absent: Some(1),
             ..Words::of("a centre of mass that is off")

@@ -53,7 +53,7 @@ pub static SIGNATURE: Signature = Signature {
         &FrameMisalignment,
         &[0, 1, 2],
         Words {
-            size: Size::Norm { factor: 1.0_f64.to_degrees(), unit: "deg", digits: 2 },
+            size: Size::Norm { factor: 1.0_f64.to_degrees(), unit: "deg" },
             ..Words::of("a misaligned position reference")
         },
     )

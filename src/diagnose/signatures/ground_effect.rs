@@ -118,7 +118,10 @@ fn size(named: &Named) -> Option<String> {
     match named.get("ca") {
         Some(ca) if ca.value > 0.0 => {
             let at_two = ca.value * (-2.0 * named.value("cb")).exp();
-            Some(format!("{} % of the thrust at a height of two rotor radii", significant(100.0 * at_two, 2)))
+            let decay_std = named.get("cb").map_or(0.0, |cb| cb.std);
+            let std = at_two * (ca.std / ca.value).hypot(2.0 * decay_std);
+            let percent = words::plain(100.0 * at_two, 100.0 * std);
+            Some(format!("{percent} % of the thrust at a height of two rotor radii"))
         }
         _ => words::said(named, "rho", 1.0, "times Cheeseman and Bennett's"),
     }

@@ -18,7 +18,7 @@ pub static SIGNATURE: Signature = Signature {
         &ImuMisalignment,
         &[0, 1, 2],
         Words {
-            size: Size::Norm { factor: 1.0_f64.to_degrees(), unit: "deg", digits: 2 },
+            size: Size::Norm { factor: 1.0_f64.to_degrees(), unit: "deg" },
             ..Words::of("a misaligned inertial unit")
         },
     )

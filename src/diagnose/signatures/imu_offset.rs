@@ -22,7 +22,7 @@ pub static SIGNATURE: Signature = Signature {
         &ImuOffset,
         &[0, 1, 2],
         Words {
-            size: Size::Norm { factor: 1e3, unit: "mm", digits: 2 },
+            size: Size::Norm { factor: 1e3, unit: "mm" },
             ..Words::of("an accelerometer away from the centre of mass")
         },
     )

@@ -1,12 +1,12 @@
 //! Signature: a steady wind.
 
-use crate::diagnose::named::Named;
+use crate::diagnose::named::{Named, NamedParameter};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Carried, Joint, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
-use crate::diagnose::words::{from_deg, point_of};
+use crate::diagnose::words::{from_deg, norm, point_of};
 use crate::physics::effects::SteadyWind;
-use crate::text::{significant, with_error};
+use crate::text::with_error;
 
 use super::linear_drag;
 
@@ -34,8 +34,9 @@ pub static SIGNATURE: Signature = Signature {
         Words {
             clause: Clause::Own(|named, _| clause(named)),
             size: Size::Own(|named| {
-                let (north, west) = (named.value("north"), named.value("west"));
-                Some(format!("{} m/s from the {}", significant(north.hypot(west), 3), point_of(north, west)))
+                let (speed, std) = speed(named);
+                let point = point_of(named.value("north"), named.value("west"));
+                Some(format!("{} m/s from the {point}", with_error(speed, std)))
             }),
             ..Words::of("a steady wind")
         },
@@ -52,15 +53,15 @@ fn carried() -> Vec<Carried> {
     [1.0, 0.0].map(of).to_vec()
 }
 
+/// Along the ground, m/s, with its standard error.
+fn speed(named: &Named) -> (f64, f64) {
+    let parts: Vec<&NamedParameter> = ["north", "west"].iter().filter_map(|name| named.get(name)).collect();
+    norm(&parts)
+}
+
 fn clause(named: &Named) -> String {
     let (north, east) = (named.value("north"), -named.value("west"));
-    let speed = north.hypot(east);
-    let std = |name: &str| named.get(name).map_or(0.0, |p| p.std);
-    let speed_std = if speed > 0.0 {
-        (north * std("north")).hypot(east * std("west")) / speed
-    } else {
-        std("north").max(std("west"))
-    };
+    let (speed, speed_std) = speed(named);
     let from_deg = from_deg(north, -east);
     let point = point_of(north, -east);
     format!(

@@ -26,7 +26,7 @@ pub static SIGNATURE: Signature = Signature {
                     named.said("y", 1.0_f64.to_degrees())
                 )
             }),
-            size: Size::Norm { factor: 1.0_f64.to_degrees(), unit: "deg", digits: 2 },
+            size: Size::Norm { factor: 1.0_f64.to_degrees(), unit: "deg" },
             ..Words::of("a tilted thrust axis")
         },
     )

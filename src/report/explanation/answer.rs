@@ -14,9 +14,16 @@ const WORSE_PERCENT: f64 = 2.0;
 /// A state that explains less of the misfit is not mentioned, percent. Chosen; not measured.
 const LEAST_STATE_PERCENT: f64 = 10.0;
 
-/// The answer in one sentence.
+/// The answer in one sentence; what makes it doubtful comes first.
 #[must_use]
 pub fn answer(study: &ExplainStudy) -> String {
+    match study.doubts().as_slice() {
+        [] => found(study),
+        doubts => format!("Doubtful: {}. {}", doubts.join("; "), found(study)),
+    }
+}
+
+fn found(study: &ExplainStudy) -> String {
     match study.verdict() {
         Verdict::NothingMissing => nothing(study),
         Verdict::Explained => format!("{}{}.{}", left_out(study), gain(study), not_told_apart(study)),
@@ -176,7 +183,7 @@ fn whereabouts(located: &Located) -> String {
     let mut parts = Vec::new();
     if let Some(field) = &located.field {
         parts.push(format!(
-            "a force of {} N along world {} near {} = {:.1} m in the room, {} m wide",
+            "a force of {} N along world {} near the local position {} = {:.1} m, {} m wide",
             significant(field.force_n, 2),
             field.force_along,
             field.changes_along,

@@ -3,6 +3,7 @@
 use super::answer::answer;
 use super::figures;
 use super::hold_out::hold_out;
+use super::text::{after, scale};
 use crate::diagnose::{Empirical, NO_LATENCY, Named, Verdict, called, clause};
 use crate::report::chart::inline;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
@@ -159,17 +160,15 @@ fn rigid_body(study: &ExplainStudy) -> Markup {
             vec![
                 text(of.name),
                 number(significant(of.nominal, 4)),
-                number(if of.before.std > 0.0 {
+                number(if of.weighed {
+                    significant(of.before.value, 4)
+                } else if of.before.std > 0.0 {
                     with_error(of.before.value, of.before.std)
                 } else {
                     "not known".into()
                 }),
-                number(if known {
-                    with_error(of.after.value, of.after.std)
-                } else {
-                    "not determined".into()
-                }),
-                number(if known { format!("{moved:+.1}") } else { "-".into() }),
+                number(after(&of)),
+                number(if known && !of.weighed { format!("{moved:+.1}") } else { "-".into() }),
                 text(of.unit),
             ]
         })
@@ -182,6 +181,7 @@ fn rigid_body(study: &ExplainStudy) -> Markup {
             &["parameter", "nominal|", "before|", "after|", "moved|", "unit"],
             &rows,
         ))
+        @if let Some(sentence) = study.scale().as_ref().and_then(scale) { (note(&format!("{sentence}."))) }
         @for (reason, names) in study.body_not_determined() {
             (note(&format!("{}: not determined: {reason}.", names.join(", "))))
         }

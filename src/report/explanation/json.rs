@@ -5,6 +5,7 @@ use super::fit_json::{FitValues, fit_values};
 use crate::diagnose::{Along, CHANNEL_NAMES, Named};
 use crate::note::Note;
 use crate::report::thrust_source::thrust_name;
+use crate::report::value::{Thrust, thrust};
 use crate::study::{AxisFit, BodyParameter, ExplainStudy, InputFile, Located};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -22,6 +23,8 @@ pub struct ExplanationDocument {
     #[serde(rename = "fit")]
     prediction: FitValues,
     parameters: BTreeMap<&'static str, ParameterValue>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    thrust: Option<Thrust>,
     rigid_body: BTreeMap<&'static str, Moved>,
     latency: LatencyValue,
     lack_of_fit: Option<LackValue>,
@@ -182,6 +185,7 @@ impl ExplanationDocument {
                     (p.name, ParameterValue { value, std, unit: p.unit, reason: p.not_determined })
                 })
                 .collect(),
+            thrust: study.scale().as_ref().map(thrust),
             rigid_body: moved(study),
             latency: latency(study),
             lack_of_fit: lack(study),

@@ -3,6 +3,7 @@
 use super::answer::answer;
 use crate::config::{ConfigError, vehicle_to_toml};
 use crate::diagnose::NO_LATENCY;
+use crate::estimate::{Finding, ThrustScale};
 use crate::report::model_parts::{self, correlation_lines, effect_tables, files};
 use crate::study::{ExplainStudy, ShownOn};
 use crate::text::toml_string;
@@ -29,10 +30,17 @@ fn identified(text: &mut String, study: &ExplainStudy) {
     };
     for p in study.body() {
         let line = match &p.not_determined {
+            None if p.weighed => format!(
+                "{} = {{ value = {:e}, std = 0.0, unit = \"{}\", status = \"given\" }}",
+                p.name, p.after.value, p.unit
+            ),
             None => entry(p.name, p.after.value, p.after.std, p.unit),
             Some(reason) => model_parts::not_determined(p.name, reason),
         };
         let _ = writeln!(text, "{line}");
+    }
+    if let Some(ThrustScale { name, unit, value: Finding::Determined { value, std }, .. }) = study.scale() {
+        let _ = writeln!(text, "{}", entry(name, value, std, unit));
     }
     let latency = study.latency();
     let _ = if latency.is_determined() {

@@ -2,9 +2,10 @@
 
 use super::answer::answer;
 use crate::diagnose::{NO_LATENCY, Named, Verdict, called, clause};
+use crate::estimate::{Finding, ThrustScale};
 use crate::report::number::{chance, percent, significant, with_error};
 use crate::report::thrust_source::thrust_name;
-use crate::study::{AxisFit, ExplainStudy, Predicted, QUANTITIES};
+use crate::study::{AxisFit, BodyParameter, ExplainStudy, Predicted, QUANTITIES};
 use std::fmt::Write;
 
 /// The page for the terminal: the answer first.
@@ -121,13 +122,12 @@ fn body_lines(page: &mut String, study: &ExplainStudy) {
             of.name,
             significant(of.nominal, 4),
             significant(of.before.value, 4),
-            if of.not_determined.is_some() {
-                "not determined".to_owned()
-            } else {
-                with_error(of.after.value, of.after.std)
-            },
+            after(&of),
             of.unit
         );
+    }
+    if let Some(sentence) = study.scale().as_ref().and_then(scale) {
+        let _ = writeln!(page, "    {sentence}");
     }
     for (reason, names) in study.body_not_determined() {
         let _ = writeln!(page, "    {}: not determined: {reason}", names.join(", "));
@@ -148,6 +148,31 @@ fn body_lines(page: &mut String, study: &ExplainStudy) {
             significant(after, 3)
         );
     }
+}
+
+/// A value with the effects, as people read it.
+pub(super) fn after(of: &BodyParameter) -> String {
+    match of.not_determined {
+        Some(_) => "not determined".to_owned(),
+        None if of.weighed => format!("{} (weighed)", significant(of.after.value, 4)),
+        None => with_error(of.after.value, of.after.std),
+    }
+}
+
+/// What a weighed mass makes of the stated thrust.
+pub(super) fn scale(of: &ThrustScale) -> Option<String> {
+    let (Finding::Determined { value, std }, Finding::Determined { value: factor, .. }) =
+        (&of.value, &of.factor)
+    else {
+        return None;
+    };
+    let times = significant(*factor, 3);
+    Some(format!(
+        "{} {} {}, {times} times the vehicle file's: identified, since the mass was weighed",
+        of.name,
+        with_error(*value, *std),
+        of.unit
+    ))
 }
 
 fn limit_lines(page: &mut String, study: &ExplainStudy) {

@@ -47,10 +47,9 @@ fn answer(study: &IdentifyStudy) -> String {
         parts.extend(found.map(effect_words));
     }
     let good = verdict(study, study.body());
-    let doubtful = if study.is_doubtful() { ", but see the warnings" } else { "" };
-    let is = if good.starts_with("good") { " is" } else { "" };
+    let is = if good.starts_with("determines") { "" } else { " is" };
     let parts = if parts.is_empty() { String::new() } else { format!(": {}", parts.join("; ")) };
-    format!("The flight{is} {good}{doubtful}{parts}.")
+    format!("The flight{is} {good}{parts}.")
 }
 
 /// The report: one file, nothing loaded from anywhere.

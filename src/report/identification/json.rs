@@ -2,13 +2,13 @@
 
 use crate::estimate::{Identification, LatencyKind, NAMES, THETA};
 use crate::report::thrust_source::thrust_name;
+use crate::report::value::{Thrust, Value, thrust, values};
 use crate::signals::Quality;
 use crate::study::{IdentifyStudy, InputFile};
 use crate::vehicle::Anchor;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-use super::value::{Thrust, Value, thrust, values};
 use super::with_json::{With, with_values};
 use super::words::verdict;
 

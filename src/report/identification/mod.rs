@@ -5,7 +5,6 @@ mod html;
 mod json;
 mod model;
 mod text;
-mod value;
 mod with_json;
 mod with_text;
 mod words;

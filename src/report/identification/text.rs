@@ -23,8 +23,7 @@ fn body_text(study: &IdentifyStudy) -> String {
     let mut page = String::new();
     let identification = &study.identification;
     let best = &identification.best;
-    let but = if study.is_doubtful() { "; doubtful: see the warnings below" } else { "" };
-    let _ = writeln!(page, "{}: {}{but}", study.vehicle.name, verdict(study, &best.result));
+    let _ = writeln!(page, "{}: {}", study.vehicle.name, verdict(study, &best.result));
     let _ = writeln!(page, "  method {}: {}", best.method.name(), best.why);
     if best.made_physical {
         let _ = writeln!(

@@ -2,11 +2,11 @@
 
 use crate::diagnose::joint::{EffectFound, Found, ParameterFound, Physical};
 use crate::report::thrust_source::thrust_name;
+use crate::report::value::{Thrust, Value, thrust, values};
 use crate::study::{Correlation, WithEffects};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-use super::value::{Thrust, Value, thrust, values};
 use super::words::{beyond, physical};
 
 /// The `with` of the JSON document.

@@ -12,8 +12,15 @@ use super::words::{beyond, flight_lines, number, physical};
 pub(super) fn with_text(study: &IdentifyStudy, with: &WithEffects) -> String {
     let together = &with.together;
     let ids: Vec<&str> = together.effects.iter().map(|effect| effect.effect.id()).collect();
-    let mut page =
-        format!("{}: {} identified together with the rigid body\n", study.vehicle.name, ids.join(", "));
+    let mut doubts = study.doubts().join("; ");
+    if !doubts.is_empty() {
+        doubts = format!("doubtful: {doubts}; ");
+    }
+    let mut page = format!(
+        "{}: {doubts}{} identified together with the rigid body\n",
+        study.vehicle.name,
+        ids.join(", ")
+    );
     for effect in &together.effects {
         let _ = writeln!(page, "  {}: {}", effect.effect.id(), evidence(effect));
     }

@@ -1,29 +1,25 @@
 //! Words and numbers that several views of an identification have in common.
 
 use crate::diagnose::joint::{ParameterFound, Physical};
-use crate::estimate::{Contradiction, Finding, MethodResult, contradictions, theta_of};
+use crate::estimate::{Finding, MethodResult};
 use crate::report::thrust_source::thrust_name;
 use crate::signals::Quality;
 use crate::study::IdentifyStudy;
-use crate::text::{compact, significant};
+use crate::text::compact;
 use std::fmt::Write;
 
-/// What the flight is good for, in one sentence. A result that contradicts the vehicle's file is good for nothing until
-/// one of both is corrected.
+/// What the flight is good for, in one sentence. A result that contradicts the vehicle's file, or rests on one that is
+/// hardly meant, is good for nothing until one of both is corrected.
 pub(super) fn verdict(study: &IdentifyStudy, result: &MethodResult) -> String {
-    let vehicle = &study.vehicle;
-    let contradictions = contradictions(result, &theta_of(&vehicle.body));
-    if !contradictions.is_empty() {
-        let one = |Contradiction { name, factor }: &Contradiction| {
-            format!("{name} by a factor of {}", significant(*factor, 2))
-        };
-        let all: Vec<String> = contradictions.iter().map(one).collect();
-        return format!("doubtful: it contradicts the vehicle file, {}", all.join(", "));
-    }
-    if study.contradicts_parameters() {
-        return "doubtful: the rotors of the vehicle file contradict the autopilot's parameters".to_owned();
+    let doubts = study.doubts();
+    if !doubts.is_empty() {
+        return format!("doubtful: {}", doubts.join("; "));
     }
     let (mut yes, mut no) = (Vec::new(), Vec::new());
+    let scale = study.with.as_ref().map_or(study.scale.as_ref(), |with| with.together.scale.as_ref());
+    if matches!(scale.map(|scale| &scale.factor), Some(Finding::Determined { .. })) {
+        yes.push("thrust");
+    }
     for parameter in &result.parameters {
         match parameter.finding {
             Finding::Determined { .. } => yes.push(parameter.name),
@@ -32,6 +28,7 @@ pub(super) fn verdict(study: &IdentifyStudy, result: &MethodResult) -> String {
         }
     }
     match (yes.is_empty(), no.is_empty()) {
+        (false, true) if scale.is_some() => "good for thrust and all of the inertia".into(),
         (false, true) => "good for all of mass and inertia".into(),
         (false, false) => format!("good for {}; not for {}", yes.join(", "), no.join(", ")),
         (true, _) => "determines none of the parameters".into(),

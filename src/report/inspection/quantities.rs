@@ -57,7 +57,7 @@ fn error(one: &ExpectedParameter, is_named: bool) -> String {
         "iyy" if is_named => "Iyy ",
         "izz" if is_named => "Izz ",
         // the mass is given, or assumed
-        "thrust_scale" => "the thrust of each kilogram to ",
+        "thrust_scale" => "thrust over weight to ",
         _ => "",
     };
     let share = format!("{} %", significant(100.0 * one.std_relative, 2));

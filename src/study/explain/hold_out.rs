@@ -77,7 +77,10 @@ impl ExplainStudy {
             return;
         }
         match differing(&self.explanation, &used, vehicle, &settings) {
-            Ok(why) => self.notes.extend(why.into_iter().map(|why| Note::warning(About::Estimate, why))),
+            Ok(why) => {
+                self.notes.extend(why.iter().map(|why| Note::warning(About::Estimate, why.as_str())));
+                self.differing = why;
+            }
             Err(error) => {
                 let text = format!("whether the flights are of one vehicle: {error}");
                 self.notes.push(Note::warning(About::Estimate, text));

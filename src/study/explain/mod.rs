@@ -1,5 +1,6 @@
 //! Which physics the model left out: from logs to names, sizes, and the gain on what was not used.
 
+mod doubts;
 mod evidence;
 mod figures;
 mod hold_out;

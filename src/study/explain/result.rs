@@ -12,7 +12,9 @@ use crate::diagnose::{
     Trace, Verdict,
 };
 use crate::draft::Draft;
-use crate::estimate::{Finding, NAMES, Nominal, THETA, UNITS, finding, theta_of};
+use crate::estimate::{
+    Estimated, Finding, NAMES, Nominal, THETA, ThrustScale, UNITS, finding, rescaled, theta_of,
+};
 use crate::note::Note;
 use crate::physics::ActiveEffect;
 use crate::signals::Quality;
@@ -65,6 +67,8 @@ pub struct ExplainStudy {
     pub next: Option<Result<NextFlight, NextError>>,
     /// what the user should know, all of it warnings
     pub notes: Vec<Note>,
+    /// why the flights cannot be of one vehicle
+    pub(super) differing: Option<String>,
     /// the vehicle as it was drafted, where it came from no file
     pub drafted: Option<Draft>,
     /// the flights that were explained as the weak form sees them
@@ -93,6 +97,8 @@ pub struct BodyParameter {
     pub before: Estimate,
     /// of the final model
     pub after: Estimate,
+    /// known beforehand: the vehicle was weighed
+    pub weighed: bool,
     /// why the final value is no estimate: these flights do not determine it, and the model keeps a value for
     /// simulations
     pub not_determined: Option<String>,
@@ -126,6 +132,7 @@ impl ExplainStudy {
             empirical: None,
             shown_on: ShownOn::Nothing { reason: "no hold-out".to_owned() },
             notes: Vec::new(),
+            differing: None,
             drafted: None,
             traces: Vec::new(),
             given,
@@ -157,10 +164,11 @@ impl ExplainStudy {
         let before = estimates(&self.explanation.search.before);
         let after = estimates(self.fitted());
         let nominal = Nominal::of(&self.given.vehicle);
-        let estimated = self.fitted().rigid_body().with_wider_window(self.given.inertia_by_wider_window);
+        let estimated = on_scale(self.fitted()).with_wider_window(self.given.inertia_by_wider_window);
+        let is_weighed = |index| index == 0 && self.fitted().base.weighed_kg.is_some();
         let not_determined = |index| match finding(&estimated, &nominal, index) {
-            Finding::NotDetermined { reason } => Some(reason),
-            Finding::Determined { .. } | Finding::Given { .. } => None,
+            Finding::NotDetermined { reason } if !is_weighed(index) => Some(reason),
+            _ => None,
         };
         (0..NAMES.len())
             .map(|index| BodyParameter {
@@ -169,9 +177,25 @@ impl ExplainStudy {
                 nominal: nominal.theta[index],
                 before: before[index],
                 after: after[index],
+                weighed: is_weighed(index),
                 not_determined: not_determined(index),
             })
             .collect()
+    }
+
+    /// The rotors' thrust against the vehicle file's, where the mass was weighed.
+    #[must_use]
+    pub fn scale(&self) -> Option<ThrustScale> {
+        let fitted = self.fitted();
+        let weighed_kg = fitted.base.weighed_kg?;
+        // with the stated thrust the flight would show this mass
+        let stated = &self.given.vehicle.propulsion;
+        let of_stated = stated.full_thrust_n() / fitted.base.vehicle.propulsion.full_thrust_n();
+        let mut estimated = fitted.rigid_body();
+        estimated.theta *= of_stated;
+        estimated.covariance *= of_stated.powi(2);
+        let mass = finding(&estimated, &Nominal::of(&self.given.vehicle), 0);
+        Some(ThrustScale::of(mass, weighed_kg, stated))
     }
 
     /// Reasons why mass or entries of the inertia are not determined, each with the names that it holds for.
@@ -315,9 +339,15 @@ fn unit_of(channel: &str) -> &'static str {
     if channel.starts_with("force") { "N" } else { "N m" }
 }
 
+/// Mass and inertia of a fit, with the covariance that a weighed mass leaves.
+fn on_scale(fitted: &Fitted) -> Estimated {
+    let estimated = fitted.rigid_body();
+    fitted.base.weighed_kg.map_or(estimated.clone(), |weighed_kg| rescaled(&estimated, weighed_kg))
+}
+
 /// Mass and inertia of a fit with their standard errors.
 fn estimates(fitted: &Fitted) -> [Estimate; THETA] {
-    let (values, covariance) = (theta_of(&fitted.base.vehicle.body), fitted.rigid_body().covariance);
+    let (values, covariance) = (theta_of(&fitted.base.vehicle.body), on_scale(fitted).covariance);
     std::array::from_fn(|index| Estimate {
         value: values[index],
         std: covariance[(index, index)].max(0.0).sqrt(),

@@ -8,7 +8,7 @@ use crate::config::LoadedVehicle;
 use crate::diagnose::experiment::{NextSettings, design};
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{ExplainSettings, Trace, Verdict};
-use crate::estimate::inertia_by_wider_window;
+use crate::estimate::{Contradiction, inertia_by_wider_window};
 use crate::note::{About, Note};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, names, prepare, refuse_twins};
@@ -19,8 +19,6 @@ use crate::vehicle::Vehicle;
 
 /// Share of the flight that may be saturated without a word.
 const SATURATED: f64 = 0.3;
-/// A file is wrong by less than this in mass.
-const MASS_FACTOR: f64 = 1.6;
 /// What a recording without velocity cannot tell.
 const NO_VELOCITY: &str = "no velocity (LOCAL_POSITION_NED or similar), or no attitude, is recorded: drag, wind and \
                            other effects of the air cannot be tested, and a named effect may be a substitute for \
@@ -110,7 +108,8 @@ impl Task<'_> {
         };
         let mut study = ExplainStudy::new(given, explanation);
         study.notes.extend_from_slice(self.notes);
-        study.notes.extend(mass(&study));
+        let contradictions = study.contradictions();
+        study.notes.extend(contradictions.iter().map(Contradiction::note));
         self.progress.stage(Stage::Predicting);
         study.show_explained(flights);
         study.show_held_out(held, back, shown_on);
@@ -180,19 +179,6 @@ fn of_data(flights: &Prepared, held: &Prepared) -> Vec<Note> {
         notes.push(Note::warning(About::File(input.path.clone()), NO_VELOCITY));
     }
     notes
-}
-
-/// A mass that is far from the file's.
-fn mass(study: &ExplainStudy) -> Option<Note> {
-    let flown_kg = study.explanation.search.after.base.vehicle.body.mass_kg;
-    let factor = flown_kg / study.given.vehicle.body.mass_kg;
-    (!(1.0 / MASS_FACTOR..=MASS_FACTOR).contains(&factor)).then(|| {
-        let text = format!(
-            "the estimated mass is {factor:.2} times that of the vehicle file: is it another vehicle's file, or is \
-             the thrust coefficient wrong by this factor?"
-        );
-        Note::warning(About::Vehicle, text)
-    })
 }
 
 /// The part held back is another's, or what is left of the part explained drifts with time.

@@ -4,10 +4,12 @@ use crate::diagnose::CHANNEL_NAMES;
 use crate::diagnose::joint::JointEstimate;
 use crate::draft::Draft;
 use crate::estimate::{
-    EstimateError, Identification, IdentifySettings, MethodResult, ThrustScale, apply_anchor, identify,
+    Contradiction, EstimateError, Identification, IdentifySettings, MethodResult, ThrustScale, apply_anchor,
+    contradictions, identify,
 };
-use crate::note::{About, Note};
+use crate::note::Note;
 use crate::signals::{Quality, Signals};
+use crate::study::doubts::{TWO_VEHICLES, doubts};
 use crate::study::{Correlation, InputFile};
 use crate::vehicle::Vehicle;
 
@@ -28,6 +30,8 @@ pub struct IdentifyStudy {
     pub with: Option<WithEffects>,
     /// what is to be known of the vehicle's file
     pub notes: Vec<Note>,
+    /// flights that cannot be of one vehicle with one load
+    pub disagree: bool,
     /// the vehicle as it was drafted, where it came from no file
     pub drafted: Option<Draft>,
 }
@@ -81,6 +85,9 @@ impl IdentifyStudy {
     ) -> Result<Self, EstimateError> {
         let mut identification = identify(&flights, &vehicle, settings)?;
         let scale = apply_anchor(&mut identification, &vehicle);
+        let disagree = identification.notes.iter().any(Note::is_warning);
+        let contradictions = contradictions(&identification.best.result, &vehicle, scale.as_ref());
+        identification.notes.extend(contradictions.iter().map(Contradiction::note));
         Ok(Self {
             vehicle,
             flights,
@@ -89,6 +96,7 @@ impl IdentifyStudy {
             scale,
             with: None,
             notes: Vec::new(),
+            disagree,
             drafted: None,
         })
     }
@@ -114,16 +122,14 @@ impl IdentifyStudy {
         Correlation::of_method(&self.identification.best.result)
     }
 
-    /// Something about the estimate is doubtful.
+    /// Why the answer is doubtful, clause by clause; none where nothing speaks against it.
     #[must_use]
-    pub fn is_doubtful(&self) -> bool {
-        self.identification.notes.iter().any(Note::is_warning)
-    }
-
-    /// The vehicle's file states the rotors otherwise than the autopilot's parameters of a flight.
-    #[must_use]
-    pub fn contradicts_parameters(&self) -> bool {
-        let notes = self.flights.iter().flat_map(|flight| &flight.quality.notes);
-        notes.into_iter().any(|note| note.is_warning() && note.about == About::Vehicle)
+    pub fn doubts(&self) -> Vec<String> {
+        let scale = self.with.as_ref().map_or(self.scale.as_ref(), |with| with.together.scale.as_ref());
+        let contradictions = contradictions(self.body(), &self.vehicle, scale);
+        let flights = self.flights.iter().map(|flight| &flight.quality);
+        let mut doubts = doubts(&self.vehicle, flights, &contradictions);
+        doubts.extend(self.disagree.then(|| TWO_VEHICLES.to_owned()));
+        doubts
     }
 }

@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use crate::plan::PlanRequest;
+use crate::study::VehicleGiven;
 
 /// What is to be flown, and inside of which limits.
 #[derive(Debug, Clone)]
 pub struct PlanningRequest {
-    /// vehicle or model file
-    pub vehicle: PathBuf,
+    /// vehicle or model file, or mass and frame
+    pub vehicle: VehicleGiven,
     /// file with the limits; `None`: the vehicle's own
     pub limits: Option<PathBuf>,
     /// where the series comes from

@@ -2,7 +2,7 @@
 
 use super::request::{Circle, PlannedSeries, PlanningRequest};
 use super::result::{Flown, PlanStudy};
-use crate::config::{StoredTransitions, read_limits, read_trajectory, read_vehicle};
+use crate::config::{StoredTransitions, read_limits, read_trajectory};
 use crate::note::{About, Note};
 use crate::plan::{
     Dynamics, FlightPlan, PlanError, RestInside, Roomed, assess, bounds_of, flight_path, floor_m, plan,
@@ -25,12 +25,12 @@ const TURN_S: [f64; 2] = [0.1, 1000.0];
 /// # Errors
 /// [`StudyError`] where a file or a setting cannot be used, or no trajectory keeps the limits.
 pub fn plan_flight(request: &PlanningRequest, progress: &dyn Progress) -> Result<PlanStudy, StudyError> {
-    let loaded = read_vehicle(&request.vehicle)?;
+    let (loaded, origin) = request.vehicle.alone()?;
     let vehicle = loaded.vehicle;
-    let mut notes = file_notes(&request.vehicle, &loaded.warnings);
+    let mut notes = file_notes(&origin, &loaded.warnings);
     let stated = request.limits.as_deref().map_or(Ok(vehicle.limits), read_limits)?;
     let Roomed { limits, notes: of_room } = with_room(&stated, &vehicle);
-    notes.extend(file_notes(request.limits.as_deref().unwrap_or(&request.vehicle), &of_room));
+    notes.extend(file_notes(request.limits.as_deref().unwrap_or(&origin), &of_room));
     notes.iter().for_each(|note| progress.note(note));
     let (mut study, rest) = planned(request, (&vehicle, &limits), (notes, progress))?;
     let flight = around(&study.series, request, study.repeats);

@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 
 use super::result::ValidatedModel;
 use crate::config::{LoadedVehicle, read_vehicle};
+use crate::draft::Given;
 use crate::note::Note;
 use crate::physics::Model;
+use crate::study::flight::Flight;
 use crate::study::flights::file_notes;
-use crate::study::{InputFile, Progress, StudyError, effects_of, with_stated_lag};
+use crate::study::{InputFile, Progress, StudyError, VehicleGiven, effects_of, with_stated_lag};
 use crate::text;
 use crate::vehicle::Vehicle;
 
@@ -37,13 +39,29 @@ pub(super) fn contenders(
 }
 
 fn contender(file: &Path, loaded: LoadedVehicle) -> Result<Contender, StudyError> {
-    let effects = effects_of(&loaded.model.effects, &text::path(&file), &loaded.vehicle)?;
+    let name = file.file_stem().map_or_else(|| loaded.vehicle.name.clone(), |stem| text::path(&stem));
+    let input = InputFile::of(file)?;
+    flying(loaded, ValidatedModel { name, input })
+}
+
+fn flying(loaded: LoadedVehicle, of: ValidatedModel) -> Result<Contender, StudyError> {
+    let file = || of.input.path.clone();
+    let effects = effects_of(&loaded.model.effects, &file(), &loaded.vehicle)?;
     let effects = with_stated_lag(effects, &loaded.vehicle);
     let model = Model::new(&loaded.vehicle, effects)
-        .map_err(|error| StudyError::File { file: text::path(&file), why: error.to_string() })?;
-    let name = file.file_stem().map_or_else(|| loaded.vehicle.name.clone(), |stem| text::path(&stem));
-    let of = ValidatedModel { name, input: InputFile::of(file)? };
+        .map_err(|error| StudyError::File { file: file(), why: error.to_string() })?;
     Ok(Contender { of, vehicle: loaded.vehicle, model })
+}
+
+/// The vehicle that is drafted from the first flight of the logs, which is named as its source, and what is to be known of it.
+pub(super) fn drafted(given: Given, logs: &[Vec<Flight>]) -> Result<(Contender, Vec<Note>), StudyError> {
+    let known = VehicleGiven::Weighed(given).of_flights(None, logs)?;
+    let notes = known.notes();
+    let name = text::path(&known.origin);
+    let first = logs.iter().flatten().next();
+    let sha256 = first.map_or_else(String::new, |flight| flight.input.sha256.clone());
+    let input = InputFile { path: name.clone(), sha256, other_logs: Vec::new(), notes: Vec::new() };
+    Ok((flying(known.loaded, ValidatedModel { name, input })?, notes))
 }
 
 /// Models whose files have one name are called by their paths.

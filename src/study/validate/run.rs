@@ -1,7 +1,7 @@
 //! Opens models and logs, and compares each flight with all models.
 
 use super::flight::{CUTOFF_HZ, flight};
-use super::model::contenders;
+use super::model::{contenders, drafted};
 use super::request::ValidateRequest;
 use super::result::{ValidateStudy, ValidatedFlight};
 use crate::study::flight::Flight;
@@ -16,9 +16,15 @@ use rayon::prelude::*;
 /// [`StudyError`] where a file or a setting cannot be used, or a log holds nothing to compare with.
 pub fn validate(request: &ValidateRequest, progress: &dyn Progress) -> Result<ValidateStudy, StudyError> {
     request.check()?;
-    let (models, notes) = contenders(&request.models, progress)?;
+    let (mut models, mut notes) = contenders(&request.models, progress)?;
     progress.stage(Stage::Reading);
     let logs = load_all(&request.logs, &request.read, &IDENTIFIED)?;
+    if let Some(given) = request.drafted {
+        let (drafted, of_draft) = drafted(given, &logs)?;
+        of_draft.iter().for_each(|note| progress.note(note));
+        notes.splice(0..0, of_draft);
+        models.insert(0, drafted);
+    }
     refuse_twins(logs.iter())?;
     progress.stage(Stage::Predicting);
     let one = |log| ready(log, |of: &Flight| flight(of, &models, request.transient_s));

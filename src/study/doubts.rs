@@ -1,0 +1,33 @@
+//! Why an answer is doubtful.
+
+use crate::estimate::{Contradiction, contradicts_file};
+use crate::note::About;
+use crate::signals::Quality;
+use crate::vehicle::Vehicle;
+
+/// The rotors of the vehicle file are not those of the autopilot.
+const OTHER_ROTORS: &str = "the rotors of the vehicle file contradict the autopilot's parameters";
+
+/// Flights of one answer that are of two vehicles.
+pub(super) const TWO_VEHICLES: &str =
+    "the flights given together differ by more than flights of one vehicle do";
+
+/// What speaks against an answer, clause by clause: what the vehicle file states and is hardly meant, rotors other
+/// than the autopilot's, and results that are far from the file's.
+pub(super) fn doubts<'a>(
+    vehicle: &Vehicle,
+    flights: impl IntoIterator<Item = &'a Quality>,
+    contradictions: &[Contradiction],
+) -> Vec<String> {
+    let mut doubts: Vec<String> = contradicts_file(contradictions).into_iter().collect();
+    let other_rotors = |quality: &Quality| {
+        quality.notes.iter().any(|note| note.is_warning() && note.about == About::Vehicle)
+    };
+    if flights.into_iter().any(other_rotors) {
+        doubts.push(OTHER_ROTORS.to_owned());
+    }
+    let odd = vehicle.implausible();
+    // questions are for the warnings
+    doubts.extend(odd.iter().map(|odd| format!("implausible vehicle data, {}", odd.trim_end_matches('?'))));
+    doubts
+}

@@ -1,0 +1,34 @@
+//! Why an explanation is doubtful.
+
+use super::result::{BodyParameter, ExplainStudy};
+use crate::estimate::{Contradiction, Finding, NAMES, ThrustScale, stated};
+use crate::study::doubts::{TWO_VEHICLES, doubts};
+use crate::vehicle::Guessed;
+
+impl ExplainStudy {
+    /// Mass, thrust and moments of inertia that are far from what the vehicle file states.
+    pub(super) fn contradictions(&self) -> Vec<Contradiction> {
+        let vehicle = &self.given.vehicle;
+        let guesses = vehicle.guesses.iter().filter(|guess| guess.of == Guessed::ThrustMax);
+        let guess = guesses.map(|guess| guess.relative).fold(0.0, f64::max);
+        let of_thrust = |ThrustScale { name, factor, .. }: ThrustScale| match factor {
+            Finding::Determined { value, std } => Contradiction::of(name, (value, std), (1.0, guess)),
+            _ => None,
+        };
+        let of_body = |(index, of): (usize, BodyParameter)| {
+            let moment = matches!(index, 0 | 1 | 4 | 6) && !of.weighed && of.not_determined.is_none();
+            let estimate = (of.after.value, of.after.std);
+            moment.then(|| Contradiction::of(NAMES[index], estimate, stated(vehicle, index)))?
+        };
+        let body = self.body().into_iter().enumerate().filter_map(of_body);
+        self.scale().and_then(of_thrust).into_iter().chain(body).collect()
+    }
+
+    /// Why the answer is doubtful, clause by clause; none where nothing speaks against it.
+    #[must_use]
+    pub fn doubts(&self) -> Vec<String> {
+        let mut doubts = doubts(&self.given.vehicle, &self.given.quality, &self.contradictions());
+        doubts.extend(self.differing.as_ref().map(|_| TWO_VEHICLES.to_owned()));
+        doubts
+    }
+}
