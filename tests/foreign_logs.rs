@@ -130,8 +130,6 @@ fn the_same_story_with_a_vehicle_and_by_identify() {
             Some(words) => words,
             None => continue,
         };
-        // a quadplane says that it is a plane
-        let words = if words.contains("VTOL") && fact.file.ends_with(".tlog") { "of a plane" } else { words };
         assert!(refusal.contains(words), "{}: {refusal}", fact.file);
     }
 }

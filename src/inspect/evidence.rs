@@ -26,6 +26,8 @@ pub(super) struct Evidence<'a> {
     pub armed: Option<bool>,
     /// the log's messages carry times
     pub timed: bool,
+    /// most of the log are messages that nothing in it defines
+    pub undefined: bool,
     /// the log ends before its first message with a time
     pub ends_early: bool,
     /// how to make the vehicle log more, where it wrote the log
@@ -74,6 +76,12 @@ impl Evidence<'_> {
         self.timed && !self.streams.is_empty()
     }
 
+    /// The log shows a flight, and by the vehicle file's thrust there was none.
+    pub(super) fn is_contradicted(&self) -> bool {
+        matches!(self.assessment.refusal, Some(SignalsError::ThrustTooLow { .. }))
+            && self.assessment.flight.airborne_s >= LEAST_USABLE_S
+    }
+
     /// Why it is no flight, where the vehicle tells that.
     pub(super) fn grounded(&self) -> Option<String> {
         let flown = self.assessment.flight.airborne_s >= LEAST_USABLE_S;
@@ -89,8 +97,11 @@ impl Evidence<'_> {
         if let Some(kind) = self.kind.filter(|kind| *kind != VehicleKind::Multirotor) {
             return Some(format!("it is of a {}, and a multirotor is needed", kind.name()));
         }
-        if !self.timed {
+        if !self.timed && !self.undefined {
             return Some("its messages carry no time of the vehicle's".into());
+        }
+        if self.streams.is_empty() && self.undefined {
+            return Some("its messages are not defined in it: its beginning is missing".into());
         }
         if self.streams.is_empty() && self.ends_early {
             return Some("it ends before its first sample".into());

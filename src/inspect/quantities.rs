@@ -72,7 +72,9 @@ impl Outcome<'_> {
             return QuantitySummary { reason: Some(reason), set: Some(set), ..none };
         }
         if let Some(reason) = evidence.nothing() {
-            return QuantitySummary { reason: Some(reason), fly: Some(asked.fly), ..none };
+            // another flight does not mend a vehicle file
+            let fly = (!evidence.is_contradicted()).then_some(asked.fly);
+            return QuantitySummary { reason: Some(reason), fly, ..none };
         }
         if asked.body.is_empty() { self.effect(asked, none) } else { self.body(asked, none) }
     }

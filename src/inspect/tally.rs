@@ -189,6 +189,7 @@ impl Pass {
             numbers_held_max: self.numbers_held_max,
             kind: self.report.kind(),
             timed: self.report.is_timed(),
+            undefined: self.report.lacks_definitions(),
             ends_early: self.report.ends_early(),
             logging: logging(&self.report, self.tally.autopilot),
         };
@@ -242,6 +243,7 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         numbers_held_max: recording.streams.values().map(|s| s.values.len() + s.len()).sum(),
         kind: report.kind(),
         timed: report.is_timed(),
+        undefined: report.lacks_definitions(),
         ends_early: report.ends_early(),
         logging: logging(report, recording.autopilot),
     };
@@ -260,6 +262,8 @@ struct Found {
     kind: Option<VehicleKind>,
     /// messages carry times
     timed: bool,
+    /// most of its messages are not defined in it
+    undefined: bool,
     /// it ends before the first of them
     ends_early: bool,
     /// of a log that the vehicle wrote: how to make it log more
@@ -329,6 +333,7 @@ impl Found {
             kind: self.kind,
             armed,
             timed: self.timed,
+            undefined: self.undefined,
             ends_early: self.ends_early,
             logging: self.logging,
             own_log: self.autopilot.stack().map(|stack| stack.logging),

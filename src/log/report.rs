@@ -69,6 +69,13 @@ impl ReadReport {
         self.holds_times() || !self.oddities.iter().any(untimed)
     }
 
+    /// Most of it are messages that nothing in it defines: its beginning is missing.
+    #[must_use]
+    pub fn lacks_definitions(&self) -> bool {
+        let skipped = self.losses.iter().map(|loss| if let Loss::Skipped { bytes, .. } = loss { *bytes } else { 0 });
+        self.onboard().is_some_and(|log| !self.holds_times() && 2 * skipped.sum::<u64>() > log.bytes)
+    }
+
     /// It ends before its first message with a time, as a log that was cut off does.
     #[must_use]
     pub fn ends_early(&self) -> bool {

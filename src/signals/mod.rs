@@ -13,6 +13,7 @@ mod filter;
 mod flight;
 mod grid;
 mod height;
+mod lifts;
 mod noise;
 mod one_flight;
 mod plausible;

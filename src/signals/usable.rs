@@ -9,7 +9,7 @@ use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
 /// Thrust below which a vehicle does not fly, as a share of the nominal weight. Chosen; not measured.
-const FLYING_SHARE: f64 = 0.4;
+pub(super) const FLYING_SHARE: f64 = 0.4;
 /// Time left out at both ends of an airborne span for lift-off and touch-down, s. Chosen; not measured.
 const GROUND_MARGIN_S: f64 = 0.5;
 /// A pause is a gap if it is longer than this many periods and than [`LEAST_GAP_S`]. Chosen; not measured.

@@ -105,7 +105,8 @@ pub(super) fn load_all(
 
 fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, StudyError> {
     let opened = open_flights(path, options, most).map_err(|error| unread(path, error))?;
-    if let Some(kind) = opened.report.kind().filter(|kind| *kind != VehicleKind::Multirotor) {
+    let kind = opened.report.kind().map(|kind| kind.by_parameters(|name| parameter(&opened, name)));
+    if let Some(kind) = kind.filter(|kind| *kind != VehicleKind::Multirotor) {
         let why = format!("expected the log of a multirotor, got that of a {}", kind.name());
         return Err(StudyError::File { file: text::path(&path), why });
     }
@@ -121,10 +122,17 @@ fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, 
     Ok(of_log(opened.flights.flights, &input, LoggedBy::of(&opened.report)))
 }
 
+/// What the log says of a parameter of the vehicle.
+fn parameter(opened: &OpenedFlights, name: &str) -> Option<f64> {
+    opened.flights.flights.iter().find_map(|flight| flight.recording.parameters.get(name).copied())
+}
+
 /// A log that says itself that nothing was flown, or that has no clock, is told so, and not that a stream is missing.
 fn refuse_no_flight(path: &Path, opened: &OpenedFlights) -> Result<(), StudyError> {
     let mut flights = opened.flights.flights.iter();
-    let why = if !opened.report.is_timed() {
+    let why = if opened.report.lacks_definitions() {
+        "expected a whole log, got one whose messages are not defined: its beginning is missing"
+    } else if !opened.report.is_timed() {
         "expected a log with times, got one whose messages carry no time of the vehicle's"
     } else if opened.report.ends_early() {
         "expected a whole log, got one that ends before its first sample"
