@@ -178,7 +178,10 @@ fn both_protocols_bring_the_same_bytes_over_a_link_that_loses_a_fifth_both_ways(
             let listed = lossy.list(&mut embedded, autopilot, protocol);
             assert_eq!((listed.len(), listed[0].size), (1, whole.len() as u64));
             lossy.arrived = 0;
+            let began = lossy.now;
             let (bytes, _) = lossy.bytes(&mut embedded, autopilot, &listed[0]).unwrap();
+            let bytes_s = whole.len() as f64 / (lossy.now - began).as_secs_f64();
+            assert!(bytes_s > 12e3, "{kind:?} {protocol:?}: {bytes_s:.0} bytes/s");
             assert!(bytes == whole, "{kind:?} {protocol:?}");
             // what came once is hardly asked for again
             let needed = whole.len() / piece;
@@ -496,7 +499,10 @@ fn parameters_of_logging_are_read_and_set_as_each_autopilot_encodes_them() {
         let mut setting = SetParameters::new(vehicle(autopilot), &known, &[(name, wanted + 1.0)]).unwrap();
         Way::of_liar().talk(&mut setting, &mut Silent, |_| false).unwrap();
         let failures: Vec<String> = setting.failures().map(|(of, why)| format!("{of}: {why}")).collect();
-        assert!(failures[0].starts_with(&format!("{name}: expected {name} = {}", wanted + 1.0)), "{failures:?}");
+        assert!(
+            failures[0].starts_with(&format!("{name}: expected {name} = {}", wanted + 1.0)),
+            "{failures:?}"
+        );
     }
 }
 

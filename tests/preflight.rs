@@ -906,14 +906,22 @@ fn logging_that_waits_for_a_restart_is_not_called_enough() {
     let mut scene = Scene::good();
     scene.parameters = Parameters {
         autopilot: Autopilot::Px4,
-        values: [("SDLOG_PROFILE", 9.0), ("SDLOG_MODE", 0.0)].map(|(name, value)| (name.to_owned(), value)).into(),
+        values: [("SDLOG_PROFILE", 9.0), ("SDLOG_MODE", 0.0)]
+            .map(|(name, value)| (name.to_owned(), value))
+            .into(),
         ..Parameters::default()
     };
     let said = scene.said("vehicle's own log");
     assert_eq!(said.level, Level::Ok, "{said}");
-    assert!(said.came.ends_with("if SDLOG_PROFILE was not changed since the autopilot's last start"), "{said}");
+    assert!(
+        said.came.ends_with("if SDLOG_PROFILE was not changed since the autopilot's last start"),
+        "{said}"
+    );
     scene.log_awaited = vec![LogAwaited { parameter: "SDLOG_PROFILE", set: 9.0, runs_by: 1.0 }];
     let said = scene.said("vehicle's own log");
     assert_eq!(said.level, Level::Warning, "{said}");
-    assert!(said.came.contains("it runs by 1; motor commands at 10 Hz") && said.remedy.contains("restart"), "{said}");
+    assert!(
+        said.came.contains("it runs by 1; motor commands at 10 Hz") && said.remedy.contains("restart"),
+        "{said}"
+    );
 }

@@ -96,9 +96,8 @@ impl Stack {
     #[must_use]
     pub fn log_rates_from_start(&self) -> Option<&'static str> {
         let logging = self.log_settings;
-        let restarts = |name: &str| {
-            logging.settings.iter().any(|setting| setting.restarts && setting.parameter == name)
-        };
+        let restarts =
+            |name: &str| logging.settings.iter().any(|setting| setting.restarts && setting.parameter == name);
         logging.rates.iter().map(|rate| rate.parameter).find(|name| restarts(name))
     }
 }

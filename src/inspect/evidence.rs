@@ -24,6 +24,10 @@ pub(super) struct Evidence<'a> {
     pub kind: Option<VehicleKind>,
     /// whether it was ever armed, where it tells
     pub armed: Option<bool>,
+    /// time in the air by the autopilot's own words, s
+    pub said_in_air_s: f64,
+    /// messages that cannot be read, where they are many
+    pub unreadable: Option<u64>,
     /// the log's messages carry times
     pub timed: bool,
     /// most of the log are messages that nothing in it defines
@@ -87,6 +91,10 @@ impl Evidence<'_> {
         let flown = self.assessment.flight.airborne_s >= LEAST_USABLE_S;
         match self.armed {
             Some(false) => Some("the vehicle was never armed".into()),
+            Some(true) if !flown && self.said_in_air_s >= LEAST_USABLE_S => Some(format!(
+                "the autopilot says that it was in the air for {:.0} s, and its motor outputs in this log carry nothing",
+                self.said_in_air_s
+            )),
             Some(true) if !flown => Some("the vehicle was armed and never in the air".into()),
             _ => None,
         }
@@ -113,7 +121,12 @@ impl Evidence<'_> {
             return Some(grounded);
         }
         if self.actuator_hz().is_none() {
-            return Some("no actuator outputs".into());
+            return Some(match self.unreadable {
+                Some(count) => {
+                    format!("no actuator outputs that can be read: {count} messages of the log cannot")
+                }
+                None => "no actuator outputs".into(),
+            });
         }
         if self.assessment.flight.airborne_s < LEAST_USABLE_S {
             return Some("no flight".into());

@@ -131,15 +131,25 @@ impl Outcome<'_> {
         let of =
             errors.iter().find(|error: &&ExpectedError| error.quantity == asked.name).map(|error| &error.of);
         match of {
-            Some(Expected::Known { parameter, std, of_usual, unit }) => {
-                let (std, unit) = if assumed { without_mass(*std, unit) } else { (Some(*std), *unit) };
-                let expected =
-                    ExpectedParameter { parameter, std, unit, std_relative: *of_usual, of: "usual" };
-                let is_told = *of_usual <= TOLD;
-                let reason =
-                    format!("an effect of usual size would be {:.1} standard errors", of_usual.recip());
+            Some(Expected::Known { parameter, std, of_usual, unit, shown }) => {
+                // one that is larger than usual is told by a flight that would not tell a usual one
+                let shown = shown.filter(|_| *of_usual > TOLD);
+                let usual = std / of_usual;
+                let (parameter, std) = shown.map_or((*parameter, *std), |shown| (shown.parameter, shown.std));
+                let std_relative = std / usual;
+                let (std, unit) = if assumed { without_mass(std, unit) } else { (Some(std), *unit) };
+                let expected = ExpectedParameter { parameter, std, unit, std_relative, of: "usual" };
+                let is_told = std_relative <= TOLD && shown.is_none();
+                let holds = shown.map_or_else(String::new, |shown| {
+                    format!(", and this flight shows one of {:.1} in {parameter}", shown.deviates)
+                });
+                let reason = format!(
+                    "an effect of usual size would be {:.1} standard errors{holds}",
+                    std_relative.recip()
+                );
+                let not = if shown.is_some() { "partly" } else { "no" };
                 QuantitySummary {
-                    status: if is_told { "yes" } else { "no" },
+                    status: if is_told { "yes" } else { not },
                     expected: vec![expected],
                     at_most: self.at_most,
                     reason: (!is_told).then_some(reason),

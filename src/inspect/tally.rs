@@ -11,12 +11,12 @@ use super::outlook::outlook;
 use super::parameters::Parameters;
 use super::quantities::{Outcome, quantities};
 use super::reading::reading_of;
-use super::streams::{StreamTallies, summary_of};
+use super::streams::{StreamTallies, is_disordered, summary_of};
 use super::timeline::TimelineTally;
 use super::verdict::verdict;
 use super::window::{WindowRecorder, windows_of};
 use crate::autopilot::{Autopilot, VehicleKind};
-use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport, TlogReport};
+use crate::log::{self, Input, LogError, Loss, OpenOptions, Opened, Place, ReadReport, TlogReport};
 use crate::recording::{Event, Recording, StreamKey, StreamStats};
 use crate::signals::SignalsError;
 use crate::vehicle::Vehicle;
@@ -100,6 +100,10 @@ pub fn inspect<'a>(
         first = Pass::run(input, &options, (vehicle, Parameters::default()), progress);
     }
     let first = first?;
+    if is_disordered(&first.tally.streams.summary()) {
+        // windows need the order of time
+        return Ok(inspect_recording(&log::open(input, &options)?, vehicle));
+    }
     // commands become thrust by the autopilot's parameters: windows before they came are looked at again
     let pass = if first.parameters_late && vehicle.is_some() {
         Pass::run(input, &options, (vehicle, first.tally.parameters.read_again()), progress)?
@@ -188,6 +192,7 @@ impl Pass {
             streams: self.tally.streams.summary(),
             numbers_held_max: self.numbers_held_max,
             kind: self.report.kind(),
+            unreadable: unreadable(&self.report),
             timed: self.report.is_timed(),
             undefined: self.report.lacks_definitions(),
             ends_early: self.report.ends_early(),
@@ -231,6 +236,9 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         stream.time_s.first().iter().chain(&stream.time_s.last()).for_each(|t| tally.clock.cover(**t));
         streams.push((*key, stream.width, StreamStats::of(stream)));
     }
+    recording.parameters.iter().for_each(|(name, value)| {
+        tally.parameters.take(name, *value);
+    });
     recording.clock_resets_s.iter().for_each(|time_s| tally.clock.reset(*time_s));
     let mut assessor = Assessor::new(vehicle);
     windows_of(recording).for_each(|window| assessor.window(&window));
@@ -242,6 +250,7 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         streams,
         numbers_held_max: recording.streams.values().map(|s| s.values.len() + s.len()).sum(),
         kind: report.kind(),
+        unreadable: unreadable(report),
         timed: report.is_timed(),
         undefined: report.lacks_definitions(),
         ends_early: report.ends_early(),
@@ -260,6 +269,8 @@ struct Found {
     numbers_held_max: usize,
     /// what kind of vehicle
     kind: Option<VehicleKind>,
+    /// messages that cannot be read, where they are many
+    unreadable: Option<u64>,
     /// messages carry times
     timed: bool,
     /// most of its messages are not defined in it
@@ -268,6 +279,13 @@ struct Found {
     ends_early: bool,
     /// of a log that the vehicle wrote: how to make it log more
     logging: Option<&'static str>,
+}
+
+/// Messages that cannot be read: a tenth of all and more is damage that takes streams away.
+fn unreadable(report: &ReadReport) -> Option<u64> {
+    let of = |loss: &Loss| if let Loss::Unreadable { count, .. } = loss { *count } else { 0 };
+    let count = report.losses.iter().map(of).sum::<u64>();
+    report.onboard().filter(|log| 10 * count > log.messages).map(|_| count)
 }
 
 /// How to make the vehicle log what identification needs; `None` of a log that it did not write.
@@ -317,7 +335,7 @@ impl Found {
         vehicle: Option<&Vehicle>,
     ) -> Inspection {
         let flown_s = self.settle(&mut tally, &mut assessment);
-        let armed = tally.timeline.armed_ever();
+        let (armed, said_in_air_s) = (tally.timeline.armed_ever(), tally.timeline.said_in_air_s());
         // a plane's modes have other names than a multirotor's of the same number
         let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);
         let is_known = self.vehicle.kind.is_none_or(|kind| rotors.contains(&kind));
@@ -332,6 +350,8 @@ impl Found {
             missing_curve,
             kind: self.kind,
             armed,
+            said_in_air_s,
+            unreadable: self.unreadable,
             timed: self.timed,
             undefined: self.undefined,
             ends_early: self.ends_early,

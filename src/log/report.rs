@@ -72,8 +72,12 @@ impl ReadReport {
     /// Most of it are messages that nothing in it defines: its beginning is missing.
     #[must_use]
     pub fn lacks_definitions(&self) -> bool {
-        let skipped = self.losses.iter().map(|loss| if let Loss::Skipped { bytes, .. } = loss { *bytes } else { 0 });
-        self.onboard().is_some_and(|log| !self.holds_times() && 2 * skipped.sum::<u64>() > log.bytes)
+        let passed = |loss: &Loss| match loss {
+            Loss::Skipped { bytes, .. } | Loss::CutOff { bytes, .. } => *bytes,
+            _ => 0,
+        };
+        let passed: u64 = self.losses.iter().map(passed).sum();
+        self.onboard().is_some_and(|log| !self.holds_times() && passed > log.bytes / 2)
     }
 
     /// It ends before its first message with a time, as a log that was cut off does.

@@ -1,9 +1,9 @@
 //! Whether the thrust of a vehicle file lifts its weight in a flight that the log shows.
 
+use super::SignalsError;
 use super::actuation::Actuation;
 use super::said::Said;
 use super::select::best;
-use super::SignalsError;
 use super::usable::FLYING_SHARE;
 use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
@@ -44,7 +44,8 @@ pub(super) fn too_little(
 fn moving_s(stream: &Stream, said: &Said<'_>) -> f64 {
     let size = |index: usize| stream.sample(index).iter().map(|value| value * value).sum::<f64>().sqrt();
     let moved = |index: &usize| size(*index) > MOVES && said.may_fly(stream.time_s[*index]);
-    let step_s = |index: usize| stream.time_s.get(index + 1).map_or(0.0, |next_s| next_s - stream.time_s[index]);
+    let step_s =
+        |index: usize| stream.time_s.get(index + 1).map_or(0.0, |next_s| next_s - stream.time_s[index]);
     // a gap counts for a tenth of a second at most
     (0..stream.len()).filter(moved).map(|index| step_s(index).clamp(0.0, 0.1)).sum()
 }

@@ -42,7 +42,7 @@ pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use noise::white_level;
 pub use one_flight::{ClockOffset, clock_offset};
 pub use rotor_thrusts::{RotorThrusts, ThrustSource};
-pub use said::Said;
+pub use said::{LEAST_FREE_S, Said};
 pub use select::{best, best_rank, is_live, mean_rate_hz, median_period_s};
 pub use spectrum::highest_harmonic_hz;
 pub use stated_rotors::{Differing, RotorDifference, rotor_difference};

@@ -148,7 +148,10 @@ fn logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back() {
     std::fs::write(place, notes.replacen("\n[[parameter]]", &format!("{silent}\n[[parameter]]"), 1)).unwrap();
     let (status, restored, said) = sitl.log_ends(&state, &["prepare", "--restore"]);
     assert_eq!((status, &restored["restored"][0]["value"]), (Some(1), &1.0.into()), "{said}");
-    assert_eq!((&restored["not_restored"][0]["parameter"], &restored["restart"]), (&"NOT_THERE".into(), &true.into()));
+    assert_eq!(
+        (&restored["not_restored"][0]["parameter"], &restored["restart"]),
+        (&"NOT_THERE".into(), &true.into())
+    );
     assert!(said.contains("NOT_THERE not put back: the values stand in"), "{said}");
     let kept = std::fs::read_to_string(place).unwrap();
     assert!(kept.contains("NOT_THERE") && !kept.contains("SDLOG_PROFILE"), "{kept}");

@@ -208,7 +208,10 @@ pub fn agreed(word: &str, what: &str) -> Result<bool, CommandError> {
     let answer = line.trim().to_ascii_lowercase();
     let agrees = answer == word || ALSO_YES.contains(&answer.as_str());
     if !agrees && !answer.is_empty() && !NO.contains(&answer.as_str()) {
-        output::message(&format!("expected {word}, y or n, got {}: that is taken for no", text::excerpt(&answer, 20)));
+        output::message(&format!(
+            "expected {word}, y or n, got {}: that is taken for no",
+            text::excerpt(&answer, 20)
+        ));
     }
     Ok(agrees)
 }

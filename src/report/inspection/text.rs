@@ -140,7 +140,9 @@ fn clock(page: &mut String, inspection: &Inspection) {
     let clock = &inspection.clock;
     heading(page, "clock");
     let span = match clock.span_s {
-        (first_s, last_s) if first_s.is_finite() && last_s.is_finite() => format!("{first_s:.1} to {last_s:.1} s"),
+        (first_s, last_s) if first_s.is_finite() && last_s.is_finite() => {
+            format!("{first_s:.1} to {last_s:.1} s")
+        }
         _ => "no sample has a time of it".to_owned(),
     };
     row(page, "vehicle's clock", span);
