@@ -70,6 +70,14 @@ pub struct Shown {
     pub deviates: f64,
 }
 
+impl ExpectedError {
+    /// Something stands out of the flights that may be this quantity.
+    #[must_use]
+    pub fn stands_out(&self) -> bool {
+        matches!(self.of, Expected::Known { shown: Some(_), .. })
+    }
+}
+
 /// From so many standard errors on it stands out: as many as [`explain`](super::explain) asks for.
 const STANDS_OUT: f64 = 4.0;
 

@@ -39,7 +39,7 @@ impl Moment {
         }
         let passed_s = later.utc_s - self.utc_s;
         let is_own_time = passed_s < 0.0 || now_s > FASTER * (then_s + passed_s) + ALLOWANCE_S;
-        (!is_own_time).then(|| now_s < passed_s + 0.5 * then_s)
+        (!is_own_time).then_some(now_s < passed_s + 0.5 * then_s)
     }
 }
 

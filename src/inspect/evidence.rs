@@ -26,6 +26,8 @@ pub(super) struct Evidence<'a> {
     pub armed: Option<bool>,
     /// time in the air by the autopilot's own words, s
     pub said_in_air_s: f64,
+    /// steps back of the clock in a log that the vehicle wrote, where they are too many for restarts
+    pub steps_back: Option<usize>,
     /// messages that cannot be read, where they are many
     pub unreadable: Option<u64>,
     /// the log's messages carry times
@@ -116,6 +118,9 @@ impl Evidence<'_> {
         }
         if self.streams.is_empty() {
             return Some("it holds no stream that is known here".into());
+        }
+        if let Some(count) = self.steps_back {
+            return Some(format!("its samples are out of order, the clock steps back {count} times"));
         }
         if let Some(grounded) = self.grounded() {
             return Some(grounded);

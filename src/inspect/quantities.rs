@@ -64,6 +64,9 @@ impl Outcome<'_> {
         if evidence.kind.is_some_and(|kind| kind != VehicleKind::Multirotor) || !evidence.holds_streams() {
             return QuantitySummary { reason: evidence.nothing(), ..none };
         }
+        if let Some(reason) = evidence.nothing().filter(|_| evidence.steps_back.is_some()) {
+            return QuantitySummary { reason: Some(reason), ..none };
+        }
         if let Some(reason) = evidence.grounded() {
             let set = lack.map(|lack| lack.set);
             return QuantitySummary { reason: Some(reason), fly: Some(asked.fly), set, ..none };
@@ -140,9 +143,16 @@ impl Outcome<'_> {
                 let (std, unit) = if assumed { without_mass(std, unit) } else { (Some(std), *unit) };
                 let expected = ExpectedParameter { parameter, std, unit, std_relative, of: "usual" };
                 let is_told = std_relative <= TOLD && shown.is_none();
-                let holds = shown.map_or_else(String::new, |shown| {
-                    format!(", and this flight shows one of {:.1} in {parameter}", shown.deviates)
-                });
+                // what stands out is in the errors of all, and which effect it is only a search tells
+                let stands_out = errors.iter().any(ExpectedError::stands_out);
+                let holds = match shown {
+                    Some(shown) => format!(
+                        "; but something stands out of this flight that would be one of {:.1}: `explain` tells what it is",
+                        shown.deviates
+                    ),
+                    None if stands_out => "; better once what stands out of this flight is known".to_owned(),
+                    None => String::new(),
+                };
                 let reason = format!(
                     "an effect of usual size would be {:.1} standard errors{holds}",
                     std_relative.recip()

@@ -65,6 +65,7 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
 fn instead_of_nothing(evidence: &Evidence<'_>) -> String {
     let flown = evidence.armed.is_none() || evidence.assessment.flight.airborne_s > 0.0;
     match evidence.actuator_hz() {
+        _ if evidence.steps_back.is_some() => "It is damaged: give a sound copy.".to_owned(),
         None if evidence.unreadable.is_some() => "It is damaged: give a sound copy.".to_owned(),
         _ if evidence.undefined => "Give the whole log.".to_owned(),
         _ if !evidence.timed => "ArduPilot writes them since 2014.".to_owned(),
