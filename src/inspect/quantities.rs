@@ -7,7 +7,7 @@ use super::lacking::{Lack, lack, remedy};
 use super::outlook::judged;
 use super::quantity::{ExpectedParameter, QuantitySummary};
 use crate::autopilot::VehicleKind;
-use crate::diagnose::{Expected, ExpectedError};
+use crate::diagnose::{Expected, ExpectedError, Shown};
 
 /// A quantity's standard error as a share of its usual size up to which it is told: an effect of usual size is then four
 /// standard errors from nothing, which is what `explain` asks for.
@@ -144,15 +144,7 @@ impl Outcome<'_> {
                 let expected = ExpectedParameter { parameter, std, unit, std_relative, of: "usual" };
                 let is_told = std_relative <= TOLD && shown.is_none();
                 // what stands out is in the errors of all, and which effect it is only a search tells
-                let stands_out = errors.iter().any(ExpectedError::stands_out);
-                let holds = match shown {
-                    Some(shown) => format!(
-                        "; but something stands out of this flight that would be one of {:.1}: `explain` tells what it is",
-                        shown.deviates
-                    ),
-                    None if stands_out => "; better once what stands out of this flight is known".to_owned(),
-                    None => String::new(),
-                };
+                let holds = beyond(shown, errors.iter().any(ExpectedError::stands_out));
                 let reason = format!(
                     "an effect of usual size would be {:.1} standard errors{holds}",
                     std_relative.recip()
@@ -183,6 +175,18 @@ impl Outcome<'_> {
             }
             None => QuantitySummary { status: "possible", ..none },
         }
+    }
+}
+
+/// What is to be said of something that stands out of the flight: this quantity, or another one.
+fn beyond(shown: Option<Shown>, stands_out: bool) -> String {
+    match shown {
+        Some(shown) => format!(
+            "; but something stands out of this flight that would be one of {:.1}: `explain` tells what it is",
+            shown.deviates
+        ),
+        None if stands_out => "; better once what stands out of this flight is known".to_owned(),
+        None => String::new(),
     }
 }
 

@@ -16,7 +16,7 @@ use super::timeline::TimelineTally;
 use super::verdict::verdict;
 use super::window::{WindowRecorder, windows_of};
 use crate::autopilot::{Autopilot, VehicleKind};
-use crate::log::{self, Input, LogError, Loss, OpenOptions, Opened, Place, ReadReport, TlogReport};
+use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport, TlogReport};
 use crate::recording::{Event, Recording, StreamKey, StreamStats};
 use crate::signals::SignalsError;
 use crate::vehicle::Vehicle;
@@ -194,7 +194,7 @@ impl Pass {
             streams: self.tally.streams.summary(),
             numbers_held_max: self.numbers_held_max,
             kind: self.report.kind(),
-            unreadable: unreadable(&self.report),
+            unreadable: self.report.unreadable(),
             timed: self.report.is_timed(),
             undefined: self.report.lacks_definitions(),
             ends_early: self.report.ends_early(),
@@ -252,7 +252,7 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         streams,
         numbers_held_max: recording.streams.values().map(|s| s.values.len() + s.len()).sum(),
         kind: report.kind(),
-        unreadable: unreadable(report),
+        unreadable: report.unreadable(),
         timed: report.is_timed(),
         undefined: report.lacks_definitions(),
         ends_early: report.ends_early(),
@@ -281,13 +281,6 @@ struct Found {
     ends_early: bool,
     /// of a log that the vehicle wrote: how to make it log more
     logging: Option<&'static str>,
-}
-
-/// Messages that cannot be read: a tenth of all and more is damage that takes streams away.
-fn unreadable(report: &ReadReport) -> Option<u64> {
-    let of = |loss: &Loss| if let Loss::Unreadable { count, .. } = loss { *count } else { 0 };
-    let count = report.losses.iter().map(of).sum::<u64>();
-    report.onboard().filter(|log| 10 * count > log.messages).map(|_| count)
 }
 
 /// How to make the vehicle log what identification needs; `None` of a log that it did not write.
@@ -330,6 +323,15 @@ impl Found {
         flown_s
     }
 
+    /// Steps back of the clock, if they are too many for restarts: then no time in the air is known.
+    fn steps_back(&self, count: usize, assessment: &mut Assessment) -> Option<usize> {
+        let is_many = matches!(self.reading, Reading::Onboard(_)) && count >= STEPS_BACK;
+        if is_many {
+            assessment.flight = FlightSummary::out_of_order();
+        }
+        is_many.then_some(count)
+    }
+
     fn inspection(
         mut self,
         mut tally: Tally,
@@ -338,11 +340,7 @@ impl Found {
     ) -> Inspection {
         let flown_s = self.settle(&mut tally, &mut assessment);
         let clock = std::mem::take(&mut tally.clock).summary();
-        let is_onboard = matches!(self.reading, Reading::Onboard(_));
-        let steps_back = Some(clock.resets_s.len()).filter(|count| is_onboard && *count >= STEPS_BACK);
-        if steps_back.is_some() {
-            assessment.flight = FlightSummary::out_of_order();
-        }
+        let steps_back = self.steps_back(clock.resets_s.len(), &mut assessment);
         let (armed, said_in_air_s) = (tally.timeline.armed_ever(), tally.timeline.said_in_air_s());
         // a plane's modes have other names than a multirotor's of the same number
         let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);

@@ -69,6 +69,15 @@ impl ReadReport {
         self.holds_times() || !self.oddities.iter().any(untimed)
     }
 
+    /// Messages that cannot be read in a log that the vehicle wrote, if they are a tenth of all and more: damage that takes
+    /// streams away.
+    #[must_use]
+    pub fn unreadable(&self) -> Option<u64> {
+        let of = |loss: &Loss| if let Loss::Unreadable { count, .. } = loss { *count } else { 0 };
+        let count = self.losses.iter().map(of).sum::<u64>();
+        self.onboard().filter(|log| count > log.messages / 10).map(|_| count)
+    }
+
     /// Most of it are messages that nothing in it defines: its beginning is missing.
     #[must_use]
     pub fn lacks_definitions(&self) -> bool {

@@ -85,11 +85,7 @@ pub fn condition(
     let grid = common_grid(&chosen, actuation.stream(), step_s)?;
     let kernel = WeakKernel::new(settings.weak_half_width_s, step_s);
     let airborne_s = airborne_spans(recording, &actuation, vehicle);
-    if airborne_s.is_empty()
-        && let Some(contradiction) = too_little(recording, &actuation, vehicle)
-    {
-        return Err(contradiction);
-    }
+    too_little(recording, &actuation, vehicle).filter(|_| airborne_s.is_empty()).map_or(Ok(()), Err)?;
     let sufficiency = sufficient::check(&needed(&chosen, &actuation), &airborne_s, recording.autopilot)?;
     if grid.count >= Grid::LONGEST {
         return Err(SignalsError::TooLong { span_s: step_s * grid.count as f64 });

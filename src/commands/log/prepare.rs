@@ -115,19 +115,22 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
             restart: restart || !prepared.awaited.is_empty(),
         })?;
     } else if set {
-        let mut lines = vec![format!("set; what was found stands in {place}")];
-        lines.push("after the flight: mavid log prepare --connect ADDRESS --restore puts it back".to_owned());
-        if restart {
-            lines.push(
-                "restart the autopilot now: until then it logs as before. mavid does not restart it"
-                    .to_owned(),
-            );
-        }
-        output::text(&lines.join("\n"))?;
+        output::text(&set_page(&place, restart))?;
     } else if !changes.is_empty() {
         output::text("nothing is changed; --set-logging sets it")?;
     }
     Ok(Outcome::Done)
+}
+
+/// What was set, for people.
+fn set_page(place: &str, restart: bool) -> String {
+    let mut page = format!(
+        "set; what was found stands in {place}\nafter the flight: mavid log prepare --connect ADDRESS --restore puts it back"
+    );
+    if restart {
+        page.push_str("\nrestart the autopilot now: until then it logs as before. mavid does not restart it");
+    }
+    page
 }
 
 fn says(session: &Session, prepared: &Prepared) -> String {

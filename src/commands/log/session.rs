@@ -78,7 +78,6 @@ impl Session {
         let (start, mut signals) = (Instant::now(), network::Signals::new()?);
         let wanted = args.system_id.map(SystemId);
         let mut roster = Roster::default();
-        // why nobody is at the other end
         let mut absent = None;
         let mut beats = interval(HEARTBEAT);
         loop {
