@@ -8,7 +8,6 @@ use super::asked::Asked;
 use super::pace::Pace;
 use super::peer::Peer;
 use super::{Dialogue, FetchError};
-use crate::units::seconds_from_ms;
 use crate::wire::{Frame, Vehicle};
 
 /// Messages with the time since the start in ms, and where in them it is: SYSTEM_TIME, ATTITUDE, LOCAL_POSITION_NED.
@@ -57,8 +56,8 @@ impl Dialogue for Uptime {
         let is_own = header.system == self.vehicle.system && header.component == self.vehicle.component;
         let says = SAYS.iter().find(|(id, _)| is_own && *id == header.message_id);
         if let (Some((_, offset)), None) = (says, self.said) {
-            let ms = f64::from(frame.payload().u32(*offset));
-            self.said = Some((ms > 0.0).then(|| seconds_from_ms(ms)));
+            let up = Duration::from_millis(frame.payload().u32(*offset).into());
+            self.said = Some((!up.is_zero()).then(|| up.as_secs_f64()));
         }
     }
 
