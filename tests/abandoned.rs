@@ -90,6 +90,7 @@ fn judged(course: &Course, parameters: &Parameters, vehicle: &Vehicle) -> Judged
         limits: &limits,
         tracking_max_m: 1.0,
         parameters,
+        log_awaited: &[],
         release: Some((4, 6)),
         fence: &fence,
         battery: &BatteryState::default(),

@@ -136,6 +136,18 @@ fn both_logs_of_px4_are_one_flight_and_the_better_streams_of_each_are_used() {
     let told = String::from_utf8_lossy(&ran.stderr);
     assert!(ran.status.success() && told.contains("only a part of the flight is left out"), "{told}");
 
+    // the vehicle's own words of taking off and landing stand: over the link they are others
+    let usable_s = |logs: &[&str]| {
+        let ran = mavid(&folder, &[&["identify", "--json"], logs, &vehicle[..]].concat());
+        let document: serde_json::Value = serde_json::from_slice(&ran.stdout).unwrap();
+        document["data_quality"]["flights"][0]["usable_s"].as_f64().unwrap()
+    };
+    let (own_s, both_s) = (usable_s(&["px09.ulg"]), usable_s(&["px09.ulg", "px09.tlog"]));
+    assert!(both_s > own_s - 1.0, "{both_s} of {own_s}");
+    // most of this flight is taking off and landing
+    let short = mavid(&folder, &["identify", "ap11.tlog", "--vehicle", "ardupilot-quad-a.toml"]);
+    assert!(short.status.success(), "{}", String::from_utf8_lossy(&short.stderr));
+
     let held = mavid(&folder, &[&["explain", "px02.ulg", "--holdout", "px02.tlog"], &vehicle[..]].concat());
     let told = String::from_utf8_lossy(&held.stderr);
     assert!(

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
-use mavid::autopilot::Autopilot;
+use mavid::autopilot::{Autopilot, LogAwaited};
 use mavid::config::load_vehicle;
 use mavid::fence::{FenceItem, Zone};
 use mavid::fly::finding::{Finding, Level, worst};
@@ -380,6 +380,7 @@ struct Scene {
     readiness: Readiness,
     home_m: Option<Vector3<f64>>,
     stand_m: Vector3<f64>,
+    log_awaited: Vec<LogAwaited>,
 }
 
 impl Scene {
@@ -411,6 +412,7 @@ impl Scene {
             },
             home_m: Some(Vector3::zeros()),
             stand_m: Vector3::zeros(),
+            log_awaited: Vec::new(),
         }
     }
 
@@ -429,6 +431,7 @@ impl Scene {
             limits: &self.limits,
             tracking_max_m: 1.0,
             parameters: &self.parameters,
+            log_awaited: &self.log_awaited,
             release: Some((4, 6)),
             fence: &self.fence,
             battery: &self.battery,
@@ -896,4 +899,29 @@ fn what_is_not_ready_is_refused_with_its_reason() {
     let mut scene = Scene::good();
     scene.battery.endurance_s = None;
     assert_eq!(scene.said("battery").level, Level::Warning);
+}
+
+#[test]
+fn logging_that_waits_for_a_restart_is_not_called_enough() {
+    let mut scene = Scene::good();
+    scene.parameters = Parameters {
+        autopilot: Autopilot::Px4,
+        values: [("SDLOG_PROFILE", 9.0), ("SDLOG_MODE", 0.0)]
+            .map(|(name, value)| (name.to_owned(), value))
+            .into(),
+        ..Parameters::default()
+    };
+    let said = scene.said("vehicle's own log");
+    assert_eq!(said.level, Level::Ok, "{said}");
+    assert!(
+        said.came.ends_with("if SDLOG_PROFILE was not changed since the autopilot's last start"),
+        "{said}"
+    );
+    scene.log_awaited = vec![LogAwaited { parameter: "SDLOG_PROFILE", set: 9.0, runs_by: 1.0 }];
+    let said = scene.said("vehicle's own log");
+    assert_eq!(said.level, Level::Warning, "{said}");
+    assert!(
+        said.came.contains("it runs by 1; motor commands at 10 Hz") && said.remedy.contains("restart"),
+        "{said}"
+    );
 }

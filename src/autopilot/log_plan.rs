@@ -16,6 +16,17 @@ pub struct LogChange {
     pub restarts: bool,
 }
 
+/// A parameter that was set and counts only from the next start of the autopilot on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LogAwaited {
+    /// its name
+    pub parameter: &'static str,
+    /// what it is
+    pub set: f64,
+    /// what it was when the autopilot started: so it logs until it starts anew
+    pub runs_by: f64,
+}
+
 /// What an autopilot will log, and what should be changed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LogPlan {
@@ -65,11 +76,35 @@ impl Stack {
         }
         plan
     }
+
+    /// The same while some parameters still wait for a start of the autopilot: what it logs is by those that it started
+    /// with, what should be changed by those that it will start with.
+    #[must_use]
+    pub fn log_plan_until_start(
+        &self,
+        value: impl Fn(&str) -> Option<f64>,
+        awaited: &[LogAwaited],
+    ) -> LogPlan {
+        let runs_by = |name: &str| {
+            let awaited = awaited.iter().find(|awaited| awaited.parameter == name);
+            awaited.map_or_else(|| value(name), |awaited| Some(awaited.runs_by))
+        };
+        LogPlan { logs: self.log_plan(runs_by).logs, ..self.log_plan(&value) }
+    }
+
+    /// The parameter that sets the rates of its log, where it is read at a start alone.
+    #[must_use]
+    pub fn log_rates_from_start(&self) -> Option<&'static str> {
+        let logging = self.log_settings;
+        let restarts =
+            |name: &str| logging.settings.iter().any(|setting| setting.restarts && setting.parameter == name);
+        logging.rates.iter().map(|rate| rate.parameter).find(|name| restarts(name))
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::autopilot::{ARDUPILOT, LogChange, PX4};
+    use crate::autopilot::{ARDUPILOT, LogAwaited, LogChange, PX4};
 
     #[test]
     fn defaults_are_too_slow_and_what_is_enough_stays() {
@@ -91,6 +126,17 @@ mod tests {
         let names: Vec<_> = plan.changes.iter().map(|change| (change.parameter, change.wanted)).collect();
         assert_eq!(names, [("LOG_BITMASK", 438_271.0), ("LOG_FILE_RATEMAX", 0.0)]);
         assert_eq!(plan.logs.len(), 3);
+    }
+
+    #[test]
+    fn until_a_start_it_logs_by_what_it_started_with() {
+        let value = |name: &str| Some(if name == "SDLOG_PROFILE" { 9.0 } else { 1.0 });
+        let awaited = LogAwaited { parameter: "SDLOG_PROFILE", set: 9.0, runs_by: 1.0 };
+        let plan = PX4.log_plan_until_start(value, &[awaited]);
+        assert!(plan.changes.is_empty() && plan.logs[0].contains("10 Hz"), "{plan:?}");
+        assert_eq!(PX4.log_plan_until_start(value, &[]), PX4.log_plan(value));
+        assert_eq!(PX4.log_rates_from_start(), Some("SDLOG_PROFILE"));
+        assert_eq!(ARDUPILOT.log_rates_from_start(), None);
     }
 
     #[test]

@@ -31,7 +31,7 @@ pub use geometry::{Geometry, Layout, LayoutError, LayoutUnit, RotorPlace};
 pub use kind::Autopilot;
 pub use limits::{Bounded, Braking};
 pub use list::STACKS;
-pub use log_plan::{LogChange, LogPlan};
+pub use log_plan::{LogAwaited, LogChange, LogPlan};
 pub use logging::{LogNeed, LogOff, LogRate, LogSetting, Logging};
 pub use modes::{FlightMode, FlownBy, Mode, Numbering, Wishes};
 pub use outputs::{MOST_OUTPUTS, Numbered, NumberedGroup, Outputs, PulseRange};

@@ -14,6 +14,9 @@ pub enum CommandError {
     /// the program or the machine failed
     #[error("{0}")]
     Failure(String),
+    /// a signal ended it
+    #[error("{0}")]
+    Ended(String),
     /// it failed and said so; the exit status
     #[error("it failed, and said why")]
     Told(u8),

@@ -68,7 +68,7 @@ impl CommandError {
     pub fn status(&self) -> u8 {
         match self {
             Self::Input(_) | Self::Inputs(_) => 2,
-            Self::Failure(_) => 1,
+            Self::Failure(_) | Self::Ended(_) => 1,
             Self::Told(status) => *status,
         }
     }

@@ -43,6 +43,8 @@ pub enum Expected {
         of_usual: f64,
         /// of the parameter
         unit: &'static str,
+        /// what the flights hold of it already, however badly an effect of usual size is determined
+        shown: Option<Shown>,
     },
     /// a quantity that it needs is not recorded
     Lacks {
@@ -56,6 +58,28 @@ pub enum Expected {
     /// in these flights it acts as mass, inertia or the latency do
     Confused,
 }
+
+/// A parameter that stands out of the flights' own residual.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shown {
+    /// its name
+    pub parameter: &'static str,
+    /// standard error, in its unit
+    pub std: f64,
+    /// standard errors from nothing
+    pub deviates: f64,
+}
+
+impl ExpectedError {
+    /// Something stands out of the flights that may be this quantity.
+    #[must_use]
+    pub fn stands_out(&self) -> bool {
+        matches!(self.of, Expected::Known { shown: Some(_), .. })
+    }
+}
+
+/// From so many standard errors on it stands out: as many as [`explain`](super::explain) asks for.
+const STANDS_OUT: f64 = 4.0;
 
 /// How well flights determine each of [`WANTED`].
 ///
@@ -78,7 +102,8 @@ pub fn expected_errors(flights: &[Signals], vehicle: &Vehicle) -> Result<Vec<Exp
             // what is measured is behind the motors
             Some(_) if traces.iter().all(|trace| trace.measured_speeds) => Expected::Measured,
             Some(_) => {
-                flights.known(wanted, wanted.signature.effect.parameters().first(), Some(latency_std_s))
+                let lag = wanted.signature.effect.parameters().first().map(|lag| (lag, latency_std_s));
+                flights.known(wanted, lag, None)
             }
             None => flights.expected(wanted),
         },
@@ -110,18 +135,23 @@ impl Flights<'_> {
                 forms.into_iter().filter_map(|form| self.alone(form.term)).collect()
             }
         };
-        let worst = worst(signature, &tested);
-        let std = worst.map(|(_, std)| std);
-        self.known(wanted, worst.map(|(parameter, _)| parameter), std)
+        // a wind is seen through a drag of usual size, which these flights need not have
+        let shown = signature.role.wind.is_none().then(|| shown(signature, &tested)).flatten();
+        self.known(wanted, worst(signature, &tested), shown)
     }
 
-    fn known(&self, wanted: &Wanted, parameter: Option<&'static Parameter>, std: Option<f64>) -> Expected {
-        match (parameter, std) {
-            (Some(parameter), Some(std)) if std.is_finite() && std > 0.0 => {
+    fn known(
+        &self,
+        wanted: &Wanted,
+        worst: Option<(&'static Parameter, f64)>,
+        shown: Option<Shown>,
+    ) -> Expected {
+        match worst {
+            Some((parameter, std)) if std.is_finite() && std > 0.0 => {
                 let naming = &wanted.signature.naming;
                 let std = std.max(naming.least_std).max(naming.least);
                 let of_usual = std / (wanted.usual)(self.vehicle).max(f64::MIN_POSITIVE);
-                Expected::Known { parameter: parameter.name, std, of_usual, unit: parameter.unit }
+                Expected::Known { parameter: parameter.name, std, of_usual, unit: parameter.unit, shown }
             }
             _ => Expected::Confused,
         }
@@ -175,6 +205,21 @@ impl Flights<'_> {
         let weighted = Weighted::like(&rows, &self.fitted.weighted);
         Some((rows, weighted))
     }
+}
+
+/// The amount that is the most standard errors from nothing, where that is enough of them.
+fn shown(signature: &Signature, tested: &[(EffectTerm, Evidence, usize)]) -> Option<Shown> {
+    let of = |(term, evidence, first): &(EffectTerm, Evidence, usize)| {
+        let amounts = term.free.iter().enumerate().filter(|(_, slot)| signature.amounts.contains(slot));
+        let amounts = amounts.filter_map(|(place, slot)| {
+            let (parameter, std) = (term.parameter(*slot)?, evidence.std(first + place));
+            let deviates = evidence.theta.get(first + place)?.abs() / std;
+            Some(Shown { parameter: parameter.name, std, deviates })
+        });
+        amounts.collect::<Vec<_>>()
+    };
+    let all = tested.iter().flat_map(of).filter(|shown| shown.deviates.is_finite());
+    all.filter(|shown| shown.deviates >= STANDS_OUT).max_by(|a, b| a.deviates.total_cmp(&b.deviates))
 }
 
 /// The parameter that is determined worst, and its standard error: of each parameter that of the best form, and of each

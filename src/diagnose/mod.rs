@@ -58,7 +58,7 @@ pub use candidates::{Candidate, candidates};
 pub use channels::{AXES, CHANNEL_NAMES, CHANNELS, Channels, Nuisance, NuisanceColumn, SECOND};
 pub use empirical::{Along, Empirical};
 pub use evidence::{Evidence, Weighted};
-pub use expected::{Expected, ExpectedError, expected_errors};
+pub use expected::{Expected, ExpectedError, Shown, expected_errors};
 pub use explain::{ExplainError, ExplainSettings, explain};
 pub use explanation::{Explanation, Verdict};
 pub use fit::{Fitted, fit};

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::moment::Moment;
 use super::name::local_name;
 use crate::files::write_whole;
 use crate::text;
@@ -21,6 +22,9 @@ pub struct Noted {
     pub found: f64,
     /// what it was set to
     pub set: f64,
+    /// when it was set; not in notes of older releases
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<Moment>,
 }
 
 #[derive(Debug, Default, Serialize, Deserialize)]
@@ -114,10 +118,22 @@ impl Notes {
         let mut parameter = self.read()?;
         for change in changes {
             match parameter.iter_mut().find(|known| known.name == change.name) {
-                Some(known) => known.set = change.set,
+                Some(known) => (known.set, known.at) = (change.set, change.at),
                 None => parameter.push(change.clone()),
             }
         }
+        self.write(parameter)
+    }
+
+    /// Keeps these alone: the others are as they were. Without any the file goes.
+    ///
+    /// # Errors
+    /// The file cannot be written or removed.
+    pub fn keep(&self, parameter: Vec<Noted>) -> Result<(), NotesError> {
+        if parameter.is_empty() { self.forget() } else { self.write(parameter) }
+    }
+
+    fn write(&self, parameter: Vec<Noted>) -> Result<(), NotesError> {
         let document = Document { vehicle: self.vehicle.clone(), parameter };
         let words = toml::to_string(&document)
             .map_err(|error| NotesError::Form { path: text::path(&self.path), why: error.to_string() })?;
@@ -129,11 +145,7 @@ impl Notes {
         write_whole(&self.path, format!("{head}{words}").as_bytes()).map_err(|error| self.failed(error))
     }
 
-    /// All is as it was.
-    ///
-    /// # Errors
-    /// The file cannot be removed.
-    pub fn forget(&self) -> Result<(), NotesError> {
+    fn forget(&self) -> Result<(), NotesError> {
         match fs::remove_file(&self.path) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => Err(self.failed(error)),
             _ => Ok(()),
@@ -152,14 +164,24 @@ mod tests {
         let notes = Notes::of(&folder, "ab/../cd");
         assert_eq!(notes.path(), folder.join("logging-cd.toml"));
         assert_eq!(notes.read().unwrap(), []);
-        let noted = |found: f64, set: f64| Noted { name: "SDLOG_PROFILE".to_owned(), found, set };
-        notes.add(&[noted(1.0, 9.0)]).unwrap();
-        notes.add(&[noted(9.0, 27.0)]).unwrap();
-        assert_eq!(notes.read().unwrap(), [noted(1.0, 27.0)]);
+        let at = |utc_s: f64| Some(Moment { utc_s, up_s: Some(60.0) });
+        let noted = |found: f64, set: f64, utc_s: f64| Noted {
+            name: "SDLOG_PROFILE".to_owned(),
+            found,
+            set,
+            at: at(utc_s),
+        };
+        notes.add(&[noted(1.0, 9.0, 1e9)]).unwrap();
+        notes.add(&[noted(9.0, 27.0, 2e9)]).unwrap();
+        assert_eq!(notes.read().unwrap(), [noted(1.0, 27.0, 2e9)]);
+        let mode = Noted { name: "SDLOG_MODE".to_owned(), at: None, ..noted(-1.0, 0.0, 0.0) };
+        notes.add(std::slice::from_ref(&mode)).unwrap();
+        notes.keep(vec![mode.clone()]).unwrap();
+        assert_eq!(notes.read().unwrap(), [mode]);
         let other = Notes { vehicle: "other".to_owned(), ..notes.clone() };
         assert!(other.read().unwrap_err().to_string().contains("of vehicle ab/../cd"));
-        notes.forget().unwrap();
-        notes.forget().unwrap();
+        notes.keep(Vec::new()).unwrap();
+        notes.keep(Vec::new()).unwrap();
         assert_eq!(notes.read().unwrap(), []);
         fs::remove_dir_all(&folder).unwrap();
     }

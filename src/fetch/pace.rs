@@ -47,6 +47,12 @@ impl Pace {
         first.mul_f64(1.5_f64.powi(i32::try_from(tries.min(8)).unwrap_or(8))).min(ANSWER.1)
     }
 
+    /// So many times the spacing of a stream's messages, within bounds; the longest before anything is known.
+    pub(super) fn between(&self, spacings: u32, (least, most): (Duration, Duration)) -> Duration {
+        let spacing = self.spacing_s.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+        spacing.map_or(most, |spacing| (spacing * spacings).clamp(least, most))
+    }
+
     /// How long a stream may be silent that was begun `tries` times before without anything new.
     pub(super) fn silence(&self, tries: u32) -> Duration {
         let spacing = bounded(self.spacing_s, SILENCE_FACTOR, SILENCE);

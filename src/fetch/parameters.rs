@@ -103,6 +103,8 @@ struct Setting {
     wanted: f64,
     came: Option<f64>,
     asked: Asked,
+    /// it was asked for often enough
+    given_up: bool,
 }
 
 impl Setting {
@@ -112,7 +114,7 @@ impl Setting {
     }
 }
 
-/// Sets some parameters, and waits until the vehicle says each new value.
+/// Sets some parameters, and waits until the vehicle says each new value or was asked for it often enough.
 #[derive(Debug)]
 pub struct SetParameters {
     peer: Peer,
@@ -134,23 +136,34 @@ impl SetParameters {
                 wanted: *wanted,
                 came: None,
                 asked: Asked::default(),
+                given_up: false,
             })
         };
         let items = wanted.iter().filter_map(setting).collect();
         Ok(Self { peer: Peer::of(vehicle)?, pace: Pace::default(), items })
+    }
+
+    /// Names of those that are not what was asked for, and why.
+    pub fn failures(&self) -> impl Iterator<Item = (&str, FetchError)> {
+        self.items.iter().filter(|item| !item.is_settled()).map(|item| {
+            let came =
+                item.came.map_or_else(|| "nothing".to_owned(), |came| format!("{} = {came}", item.name));
+            let failure = FetchError::NotSet { name: item.name.clone(), wanted: item.wanted, came };
+            (item.name.as_str(), failure)
+        })
     }
 }
 
 impl Dialogue for SetParameters {
     fn poll(&mut self, now: Duration) -> Result<Option<MavMessage>, FetchError> {
         for item in &mut self.items {
-            if item.is_settled() || !item.asked.is_due(now, &self.pace) {
+            if item.is_settled() || item.given_up || !item.asked.is_due(now, &self.pace) {
                 continue;
             }
             if item.asked.send_at_most(SET_TRIES, now, "").is_err() {
-                let came =
-                    item.came.map_or_else(|| "nothing".to_owned(), |came| format!("{} = {came}", item.name));
-                return Err(FetchError::NotSet { name: item.name.clone(), wanted: item.wanted, came });
+                // the others are set all the same
+                item.given_up = true;
+                continue;
             }
             let value = item.was.encoded(&self.peer, item.wanted);
             return Ok(Some(self.peer.set_parameter(&item.name, value, item.was.of_type)));
@@ -167,6 +180,6 @@ impl Dialogue for SetParameters {
     }
 
     fn is_done(&self) -> bool {
-        self.items.iter().all(Setting::is_settled)
+        self.items.iter().all(|item| item.is_settled() || item.given_up)
     }
 }

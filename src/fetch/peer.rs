@@ -17,6 +17,8 @@ const LOG_ENTRY: u32 = 118;
 const LOG_DATA: u32 = 120;
 /// The message with what a vehicle offers, as a parameter of a command.
 const AUTOPILOT_VERSION: f32 = 148.0;
+/// The message with the vehicle's time.
+const SYSTEM_TIME: f32 = 2.0;
 /// Bytes of one LOG_DATA.
 pub(super) const LOG_DATA_BYTES: usize = 90;
 
@@ -107,7 +109,12 @@ impl Peer {
         self.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, AUTOPILOT_VERSION)
     }
 
-    /// The older one.
+    /// A request for SYSTEM_TIME.
+    pub(super) fn request_system_time(&self) -> MavMessage {
+        self.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, SYSTEM_TIME)
+    }
+
+    /// The older one of the version.
     pub(super) fn request_capabilities(&self) -> MavMessage {
         self.command(MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, 1.0)
     }

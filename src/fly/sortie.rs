@@ -5,6 +5,7 @@ use std::time::Duration;
 use super::course::Course;
 use super::preflight::{HOVER, ROTORS};
 use super::safety::FirstQuestion;
+use crate::autopilot::LogAwaited;
 use crate::vehicle::Limits;
 use crate::wire::{ComponentId, Nonce, SystemId};
 
@@ -104,6 +105,8 @@ pub struct Settings {
     pub await_word: bool,
     /// a refusal by one of these is a warning
     pub accepted: Vec<Check>,
+    /// parameters of the vehicle's logging that were set and wait for its next start
+    pub log_awaited: Vec<LogAwaited>,
     /// from which the questions after the vehicle's mode are counted; drawn again for each run, so that answers to others
     /// are not taken for answers to us
     pub first_question: FirstQuestion,
@@ -130,6 +133,7 @@ impl Default for Settings {
             await_clearance: false,
             await_word: false,
             accepted: Vec::new(),
+            log_awaited: Vec::new(),
             first_question: FirstQuestion::random(),
         }
     }

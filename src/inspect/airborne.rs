@@ -2,11 +2,13 @@
 
 use crate::autopilot::Autopilot;
 use crate::recording::{Quantity, Recording, Stream};
-use crate::signals::{Said, best};
+use crate::signals::{LEAST_FREE_S, Said, best};
 
 /// Command from which a motor does more than idle: autopilots let motors idle at up to this value. Chosen; not
 /// measured.
 const LEAST_COMMAND: f64 = 0.12;
+/// What an output may be as a fraction of full scale, reversed ones and pulses of 0 included: the rest is damage.
+const OUTPUTS: std::ops::RangeInclusive<f64> = -1.0..=1.5;
 /// Share of the largest actuation so far that carries a vehicle. Chosen; not measured.
 const FLYING_SHARE: f64 = 0.2;
 /// Time over which actuation is smoothed, s, so that a single sample at a bound is not a landing. Chosen; not measured.
@@ -21,15 +23,21 @@ const LEAST_MOVING: usize = 5;
 /// Motor outputs as fractions of full scale: the channels that move, pulse widths from 1000 to 2000 us.
 pub(super) fn normalized_commands(recording: &Recording) -> Option<Stream> {
     let (_, raw) = best(recording, Quantity::ActuatorCommand, |_| true)?;
-    let finite = || raw.values.iter().copied().filter(|value| value.is_finite());
-    let in_microseconds = finite().fold(0.0, f64::max) > 2.5;
+    // a few that are damaged do not tell the unit
+    let given = raw.values.iter().filter(|value| value.is_finite() && **value > 0.0);
+    let (count, pulses) =
+        given.fold((0_u64, 0_u64), |(count, pulses), value| (count + 1, pulses + u64::from(*value > 2.5)));
+    let in_microseconds = 2 * pulses > count;
     let moves = |channel: &usize| {
         let mut values = (0..raw.len()).map(|i| raw.sample(i)[*channel]).filter(|value| value.is_finite());
         let first = values.next();
         values.any(|value| Some(value) != first)
     };
     let channels: Vec<usize> = (0..raw.width).filter(moves).collect();
-    let fraction = |value: f64| if in_microseconds { (value - 1000.0) / 1000.0 } else { value };
+    let fraction = |value: f64| {
+        let fraction = if in_microseconds { (value - 1000.0) / 1000.0 } else { value };
+        if OUTPUTS.contains(&fraction) { fraction } else { f64::NAN }
+    };
     let values = (0..raw.len())
         .flat_map(|i| channels.iter().map(move |&channel| fraction(raw.sample(i)[channel])))
         .collect();
@@ -66,7 +74,7 @@ fn effort(recording: &Recording, commands: Option<&Stream>) -> Option<(Stream, f
 pub(super) struct Airborne {
     /// spans off the ground, s
     pub flown_s: Vec<(f64, f64)>,
-    /// the same without taking off and landing: what identification may use
+    /// the same without taking off and landing, if enough is left: what identification may use
     pub free_s: Vec<(f64, f64)>,
     /// what tells them
     pub from: &'static str,
@@ -124,11 +132,11 @@ pub(super) fn airborne(recording: &Recording, commands: Option<&Stream>, before:
 
 impl Airborne {
     fn when(time_s: &[f64], said: &Said<'_>, from: &'static str, carries: impl Fn(usize) -> bool) -> Self {
-        Self {
-            flown_s: spans(time_s, |i| carries(i) && said.may_be_off_ground(time_s[i])),
-            free_s: spans(time_s, |i| carries(i) && said.may_fly(time_s[i])),
-            from,
-        }
+        let flown_s = spans(time_s, |i| carries(i) && said.may_be_off_ground(time_s[i]));
+        let free_s = spans(time_s, |i| carries(i) && said.may_fly(time_s[i]));
+        let seconds: f64 = free_s.iter().map(|(start_s, end_s)| end_s - start_s).sum();
+        let free_s = if seconds < LEAST_FREE_S { flown_s.clone() } else { free_s };
+        Self { flown_s, free_s, from }
     }
 
     /// Only spans during which the vehicle moved. One that began in the window before has moved there.

@@ -203,6 +203,11 @@ impl FlightSummary {
         self.gap_s += used.gap_s;
     }
 
+    /// Of a log whose samples are out of order: no time is known.
+    pub(super) fn out_of_order() -> Self {
+        Self { airborne_from: "nothing: its samples are out of order", ..Self::default() }
+    }
+
     /// Of a vehicle that does not fly, whatever its motors did.
     pub(super) fn on_the_ground() -> Self {
         Self { airborne_from: "the kind of vehicle", ..Self::default() }

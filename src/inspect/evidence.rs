@@ -24,8 +24,16 @@ pub(super) struct Evidence<'a> {
     pub kind: Option<VehicleKind>,
     /// whether it was ever armed, where it tells
     pub armed: Option<bool>,
+    /// time in the air by the autopilot's own words, s
+    pub said_in_air_s: f64,
+    /// steps back of the clock in a log that the vehicle wrote, where they are too many for restarts
+    pub steps_back: Option<usize>,
+    /// messages that cannot be read, where they are many
+    pub unreadable: Option<u64>,
     /// the log's messages carry times
     pub timed: bool,
+    /// most of the log are messages that nothing in it defines
+    pub undefined: bool,
     /// the log ends before its first message with a time
     pub ends_early: bool,
     /// how to make the vehicle log more, where it wrote the log
@@ -74,11 +82,21 @@ impl Evidence<'_> {
         self.timed && !self.streams.is_empty()
     }
 
+    /// The log shows a flight, and by the vehicle file's thrust there was none.
+    pub(super) fn is_contradicted(&self) -> bool {
+        matches!(self.assessment.refusal, Some(SignalsError::ThrustTooLow { .. }))
+            && self.assessment.flight.airborne_s >= LEAST_USABLE_S
+    }
+
     /// Why it is no flight, where the vehicle tells that.
     pub(super) fn grounded(&self) -> Option<String> {
         let flown = self.assessment.flight.airborne_s >= LEAST_USABLE_S;
         match self.armed {
             Some(false) => Some("the vehicle was never armed".into()),
+            Some(true) if !flown && self.said_in_air_s >= LEAST_USABLE_S => Some(format!(
+                "the autopilot says that it was in the air for {:.0} s, and its motor outputs in this log carry nothing",
+                self.said_in_air_s
+            )),
             Some(true) if !flown => Some("the vehicle was armed and never in the air".into()),
             _ => None,
         }
@@ -89,8 +107,11 @@ impl Evidence<'_> {
         if let Some(kind) = self.kind.filter(|kind| *kind != VehicleKind::Multirotor) {
             return Some(format!("it is of a {}, and a multirotor is needed", kind.name()));
         }
-        if !self.timed {
+        if !self.timed && !self.undefined {
             return Some("its messages carry no time of the vehicle's".into());
+        }
+        if self.streams.is_empty() && self.undefined {
+            return Some("its messages are not defined in it: its beginning is missing".into());
         }
         if self.streams.is_empty() && self.ends_early {
             return Some("it ends before its first sample".into());
@@ -98,11 +119,19 @@ impl Evidence<'_> {
         if self.streams.is_empty() {
             return Some("it holds no stream that is known here".into());
         }
+        if let Some(count) = self.steps_back {
+            return Some(format!("its samples are out of order, the clock steps back {count} times"));
+        }
         if let Some(grounded) = self.grounded() {
             return Some(grounded);
         }
         if self.actuator_hz().is_none() {
-            return Some("no actuator outputs".into());
+            return Some(match self.unreadable {
+                Some(count) => {
+                    format!("no actuator outputs that can be read: {count} messages of the log cannot")
+                }
+                None => "no actuator outputs".into(),
+            });
         }
         if self.assessment.flight.airborne_s < LEAST_USABLE_S {
             return Some("no flight".into());

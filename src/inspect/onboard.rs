@@ -28,7 +28,7 @@ pub struct TopicSummary {
     pub instance: u8,
     /// how many
     pub count: u64,
-    /// messages a second; none below two, or without stamps
+    /// messages a second; none below ten, within a tenth of a second, or without stamps
     pub rate_hz: Option<f64>,
     /// samples come from them
     pub is_used: bool,

@@ -7,7 +7,7 @@ use super::lacking::{Lack, lack, remedy};
 use super::outlook::judged;
 use super::quantity::{ExpectedParameter, QuantitySummary};
 use crate::autopilot::VehicleKind;
-use crate::diagnose::{Expected, ExpectedError};
+use crate::diagnose::{Expected, ExpectedError, Shown};
 
 /// A quantity's standard error as a share of its usual size up to which it is told: an effect of usual size is then four
 /// standard errors from nothing, which is what `explain` asks for.
@@ -64,6 +64,9 @@ impl Outcome<'_> {
         if evidence.kind.is_some_and(|kind| kind != VehicleKind::Multirotor) || !evidence.holds_streams() {
             return QuantitySummary { reason: evidence.nothing(), ..none };
         }
+        if let Some(reason) = evidence.nothing().filter(|_| evidence.steps_back.is_some()) {
+            return QuantitySummary { reason: Some(reason), ..none };
+        }
         if let Some(reason) = evidence.grounded() {
             let set = lack.map(|lack| lack.set);
             return QuantitySummary { reason: Some(reason), fly: Some(asked.fly), set, ..none };
@@ -72,7 +75,9 @@ impl Outcome<'_> {
             return QuantitySummary { reason: Some(reason), set: Some(set), ..none };
         }
         if let Some(reason) = evidence.nothing() {
-            return QuantitySummary { reason: Some(reason), fly: Some(asked.fly), ..none };
+            // another flight does not mend a vehicle file
+            let fly = (!evidence.is_contradicted()).then_some(asked.fly);
+            return QuantitySummary { reason: Some(reason), fly, ..none };
         }
         if asked.body.is_empty() { self.effect(asked, none) } else { self.body(asked, none) }
     }
@@ -129,15 +134,24 @@ impl Outcome<'_> {
         let of =
             errors.iter().find(|error: &&ExpectedError| error.quantity == asked.name).map(|error| &error.of);
         match of {
-            Some(Expected::Known { parameter, std, of_usual, unit }) => {
-                let (std, unit) = if assumed { without_mass(*std, unit) } else { (Some(*std), *unit) };
-                let expected =
-                    ExpectedParameter { parameter, std, unit, std_relative: *of_usual, of: "usual" };
-                let is_told = *of_usual <= TOLD;
-                let reason =
-                    format!("an effect of usual size would be {:.1} standard errors", of_usual.recip());
+            Some(Expected::Known { parameter, std, of_usual, unit, shown }) => {
+                // one that is larger than usual is told by a flight that would not tell a usual one
+                let shown = shown.filter(|_| *of_usual > TOLD);
+                let usual = std / of_usual;
+                let (parameter, std) = shown.map_or((*parameter, *std), |shown| (shown.parameter, shown.std));
+                let std_relative = std / usual;
+                let (std, unit) = if assumed { without_mass(std, unit) } else { (Some(std), *unit) };
+                let expected = ExpectedParameter { parameter, std, unit, std_relative, of: "usual" };
+                let is_told = std_relative <= TOLD && shown.is_none();
+                // what stands out is in the errors of all, and which effect it is only a search tells
+                let holds = beyond(shown, errors.iter().any(ExpectedError::stands_out));
+                let reason = format!(
+                    "an effect of usual size would be {:.1} standard errors{holds}",
+                    std_relative.recip()
+                );
+                let not = if shown.is_some() { "partly" } else { "no" };
                 QuantitySummary {
-                    status: if is_told { "yes" } else { "no" },
+                    status: if is_told { "yes" } else { not },
                     expected: vec![expected],
                     at_most: self.at_most,
                     reason: (!is_told).then_some(reason),
@@ -161,6 +175,18 @@ impl Outcome<'_> {
             }
             None => QuantitySummary { status: "possible", ..none },
         }
+    }
+}
+
+/// What is to be said of something that stands out of the flight: this quantity, or another one.
+fn beyond(shown: Option<Shown>, stands_out: bool) -> String {
+    match shown {
+        Some(shown) => format!(
+            "; but something stands out of this flight that would be one of {:.1}: `explain` tells what it is",
+            shown.deviates
+        ),
+        None if stands_out => "; better once what stands out of this flight is known".to_owned(),
+        None => String::new(),
     }
 }
 

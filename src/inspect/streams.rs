@@ -43,21 +43,42 @@ impl StreamTallies {
     }
 }
 
+/// Steps back in time of a stream that stand for more than late messages, at least, and as a share of its samples.
+const LEAST_BACKWARD: u64 = 10;
+const BACKWARD: f64 = 0.01;
+/// Samples beyond which a log is not sorted in memory.
+const SORTED: u64 = 20_000_000;
+
+/// Whether samples stand in another order than that of time, as in a file whose pieces were put together wrongly.
+pub(super) fn is_disordered(streams: &[(StreamKey, usize, StreamStats)]) -> bool {
+    let back = |stats: &StreamStats| {
+        stats.backward >= LEAST_BACKWARD && stats.backward as f64 > BACKWARD * stats.count as f64
+    };
+    let samples: u64 = streams.iter().map(|(.., stats)| stats.count).sum();
+    samples <= SORTED && streams.iter().any(|(.., stats)| back(stats))
+}
+
+/// Of ArduPilot's states, whichever message tells them.
+const REPEATED: &str = "EV";
+
 /// A stream as it is told.
 pub(super) fn summary_of((key, width, stats): &(StreamKey, usize, StreamStats)) -> StreamSummary {
+    // a log that writes states when they change has no rate of them: its reader gives each again and again
+    let is_repeated = key.source == REPEATED;
+    let unless_repeated = |value: f64| if is_repeated { f64::NAN } else { value };
     StreamSummary {
         quantity: key.quantity.name(),
         source: key.source,
         instance: key.instance,
         width: *width,
-        count: stats.count,
+        count: if is_repeated { stats.changes + 1 } else { stats.count },
         span_s: stats.span_s,
-        rate_hz: stats.rate_hz,
-        median_period_s: stats.median_period_s,
-        jitter_s: stats.jitter_s,
-        gaps: stats.gaps,
-        largest_gap_s: stats.largest_gap_s,
-        missing_s: stats.missing_s,
+        rate_hz: unless_repeated(stats.rate_hz),
+        median_period_s: unless_repeated(stats.median_period_s),
+        jitter_s: unless_repeated(stats.jitter_s),
+        gaps: if is_repeated { 0 } else { stats.gaps },
+        largest_gap_s: if is_repeated { 0.0 } else { stats.largest_gap_s },
+        missing_s: if is_repeated { 0.0 } else { stats.missing_s },
         backward: stats.backward,
         repeated_stamps: stats.repeated_stamps,
         resets: stats.resets,

@@ -11,7 +11,7 @@ use super::outlook::outlook;
 use super::parameters::Parameters;
 use super::quantities::{Outcome, quantities};
 use super::reading::reading_of;
-use super::streams::{StreamTallies, summary_of};
+use super::streams::{StreamTallies, is_disordered, summary_of};
 use super::timeline::TimelineTally;
 use super::verdict::verdict;
 use super::window::{WindowRecorder, windows_of};
@@ -28,6 +28,8 @@ const MOSTLY: f64 = 1.05;
 const WARNING: u8 = 4;
 /// Warnings kept; further ones are counted.
 const KEPT_WARNINGS: usize = 200;
+/// Steps back of a vehicle's clock in one of its own logs that no restarts explain. Chosen; not measured.
+const STEPS_BACK: usize = 10;
 /// Events between two calls of the progress function.
 const PROGRESS_EVENTS: u32 = 1 << 16;
 
@@ -100,6 +102,10 @@ pub fn inspect<'a>(
         first = Pass::run(input, &options, (vehicle, Parameters::default()), progress);
     }
     let first = first?;
+    if is_disordered(&first.tally.streams.summary()) {
+        // windows need the order of time
+        return Ok(inspect_recording(&log::open(input, &options)?, vehicle));
+    }
     // commands become thrust by the autopilot's parameters: windows before they came are looked at again
     let pass = if first.parameters_late && vehicle.is_some() {
         Pass::run(input, &options, (vehicle, first.tally.parameters.read_again()), progress)?
@@ -188,7 +194,9 @@ impl Pass {
             streams: self.tally.streams.summary(),
             numbers_held_max: self.numbers_held_max,
             kind: self.report.kind(),
+            unreadable: self.report.unreadable(),
             timed: self.report.is_timed(),
+            undefined: self.report.lacks_definitions(),
             ends_early: self.report.ends_early(),
             logging: logging(&self.report, self.tally.autopilot),
         };
@@ -230,6 +238,9 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         stream.time_s.first().iter().chain(&stream.time_s.last()).for_each(|t| tally.clock.cover(**t));
         streams.push((*key, stream.width, StreamStats::of(stream)));
     }
+    recording.parameters.iter().for_each(|(name, value)| {
+        tally.parameters.take(name, *value);
+    });
     recording.clock_resets_s.iter().for_each(|time_s| tally.clock.reset(*time_s));
     let mut assessor = Assessor::new(vehicle);
     windows_of(recording).for_each(|window| assessor.window(&window));
@@ -241,7 +252,9 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         streams,
         numbers_held_max: recording.streams.values().map(|s| s.values.len() + s.len()).sum(),
         kind: report.kind(),
+        unreadable: report.unreadable(),
         timed: report.is_timed(),
+        undefined: report.lacks_definitions(),
         ends_early: report.ends_early(),
         logging: logging(report, recording.autopilot),
     };
@@ -258,8 +271,12 @@ struct Found {
     numbers_held_max: usize,
     /// what kind of vehicle
     kind: Option<VehicleKind>,
+    /// messages that cannot be read, where they are many
+    unreadable: Option<u64>,
     /// messages carry times
     timed: bool,
+    /// most of its messages are not defined in it
+    undefined: bool,
     /// it ends before the first of them
     ends_early: bool,
     /// of a log that the vehicle wrote: how to make it log more
@@ -306,6 +323,15 @@ impl Found {
         flown_s
     }
 
+    /// Steps back of the clock, if they are too many for restarts: then no time in the air is known.
+    fn steps_back(&self, count: usize, assessment: &mut Assessment) -> Option<usize> {
+        let is_many = matches!(self.reading, Reading::Onboard(_)) && count >= STEPS_BACK;
+        if is_many {
+            assessment.flight = FlightSummary::out_of_order();
+        }
+        is_many.then_some(count)
+    }
+
     fn inspection(
         mut self,
         mut tally: Tally,
@@ -313,7 +339,9 @@ impl Found {
         vehicle: Option<&Vehicle>,
     ) -> Inspection {
         let flown_s = self.settle(&mut tally, &mut assessment);
-        let armed = tally.timeline.armed_ever();
+        let clock = std::mem::take(&mut tally.clock).summary();
+        let steps_back = self.steps_back(clock.resets_s.len(), &mut assessment);
+        let (armed, said_in_air_s) = (tally.timeline.armed_ever(), tally.timeline.said_in_air_s());
         // a plane's modes have other names than a multirotor's of the same number
         let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);
         let is_known = self.vehicle.kind.is_none_or(|kind| rotors.contains(&kind));
@@ -328,7 +356,11 @@ impl Found {
             missing_curve,
             kind: self.kind,
             armed,
+            said_in_air_s,
+            steps_back,
+            unreadable: self.unreadable,
             timed: self.timed,
+            undefined: self.undefined,
             ends_early: self.ends_early,
             logging: self.logging,
             own_log: self.autopilot.stack().map(|stack| stack.logging),
@@ -347,7 +379,7 @@ impl Found {
             verdict,
             advice,
             vehicle: self.vehicle,
-            clock: tally.clock.summary(),
+            clock,
             reading: self.reading,
             losses: self.losses,
             streams: self.streams.iter().map(summary_of).collect(),

@@ -87,6 +87,11 @@ impl TimelineTally {
         self.armed_ever
     }
 
+    /// Time in the air by the autopilot's own words, s.
+    pub(super) fn said_in_air_s(&self) -> f64 {
+        self.in_air.closed.iter().chain(&self.in_air.open).map(|(from_s, to_s)| to_s - from_s).sum()
+    }
+
     /// What was collected.
     pub(super) fn summary(self, autopilot: Autopilot) -> Timeline {
         let (armed_s, armed_dropped) = self.armed.finish();

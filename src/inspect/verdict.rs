@@ -40,6 +40,9 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
                 advice."
             .into();
     }
+    if evidence.is_contradicted() {
+        return "Nothing can be identified with this vehicle file: its thrust contradicts the log. See the advice.".into();
+    }
     if let Some(nothing) = evidence.nothing() {
         let is_other = evidence.kind.is_some_and(|kind| kind != VehicleKind::Multirotor);
         let next = if is_other { String::new() } else { format!(" {}", instead_of_nothing(evidence)) };
@@ -63,6 +66,9 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
 fn instead_of_nothing(evidence: &Evidence<'_>) -> String {
     let flown = evidence.armed.is_none() || evidence.assessment.flight.airborne_s > 0.0;
     match evidence.actuator_hz() {
+        _ if evidence.steps_back.is_some() => "It is damaged: give a sound copy.".to_owned(),
+        None if evidence.unreadable.is_some() => "It is damaged: give a sound copy.".to_owned(),
+        _ if evidence.undefined => "Give the whole log.".to_owned(),
         _ if !evidence.timed => "ArduPilot writes them since 2014.".to_owned(),
         _ if evidence.ends_early => "It was cut off: give the whole log.".to_owned(),
         _ if evidence.streams.is_empty() => "What it holds is listed below.".to_owned(),

@@ -111,6 +111,11 @@ pub(super) fn otherwise(head: &[u8]) -> (String, &'static str) {
             "a file that begins with zeros only".to_owned(),
             "its recording was interrupted before anything was stored",
         )
+    } else if is_piece_of_dataflash(head) {
+        (
+            "a piece of an ArduPilot log (.bin) without the definitions that begin it".to_owned(),
+            "give the whole log",
+        )
     } else if is_frame(head) {
         ("MAVLink frames without stamps".to_owned(), "record the link with `mavid record`")
     } else if head.iter().any(is_binary) || !is_text(head) {
@@ -122,6 +127,15 @@ pub(super) fn otherwise(head: &[u8]) -> (String, &'static str) {
             "the first line of a table names its columns, as configs/csv/default.toml lists them",
         )
     }
+}
+
+/// Headers of messages by which a piece of an ArduPilot log is told that begins within one, and bytes to each at most.
+const LEAST_HEADERS: usize = 8;
+const HEADER_EVERY: usize = 256;
+
+fn is_piece_of_dataflash(head: &[u8]) -> bool {
+    let headers = head.windows(2).filter(|pair| *pair == b"\xa3\x95").count();
+    headers >= LEAST_HEADERS && headers * HEADER_EVERY > head.len()
 }
 
 /// UTF-8, but for a letter that the head's end cuts.

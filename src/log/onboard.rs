@@ -2,6 +2,10 @@
 
 use crate::autopilot::VehicleKind;
 
+/// Fewer messages of a kind, or within less time in s, have no rate. Chosen; not measured.
+const LEAST_MESSAGES: u64 = 10;
+const LEAST_SPAN_S: f64 = 0.1;
+
 /// What was met in a log that the vehicle wrote itself.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct OnboardReport {
@@ -35,10 +39,23 @@ pub struct Topic {
 }
 
 impl Topic {
-    /// Messages a second between first and last; `None` below two, or without stamps.
+    /// Messages a second between first and last; `None` below ten, within a tenth of a second, or without stamps.
     #[must_use]
     pub fn rate_hz(&self) -> Option<f64> {
         let (first_s, last_s) = self.span_s?;
-        (self.count > 1 && last_s > first_s).then(|| (self.count - 1) as f64 / (last_s - first_s))
+        let has_rate = self.count >= LEAST_MESSAGES && last_s - first_s >= LEAST_SPAN_S;
+        has_rate.then(|| (self.count - 1) as f64 / (last_s - first_s))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Topic;
+
+    #[test]
+    fn few_messages_have_no_rate() {
+        let of = |count, end_s| Topic { count, span_s: Some((1.0, end_s)), ..Topic::default() }.rate_hz();
+        assert_eq!((of(3, 1.000_124), of(3, 9.0), of(100, 1.000_124)), (None, None, None));
+        assert_eq!(of(11, 2.0), Some(10.0));
     }
 }

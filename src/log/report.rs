@@ -69,6 +69,26 @@ impl ReadReport {
         self.holds_times() || !self.oddities.iter().any(untimed)
     }
 
+    /// Messages that cannot be read in a log that the vehicle wrote, if they are a tenth of all and more: damage that takes
+    /// streams away.
+    #[must_use]
+    pub fn unreadable(&self) -> Option<u64> {
+        let of = |loss: &Loss| if let Loss::Unreadable { count, .. } = loss { *count } else { 0 };
+        let count = self.losses.iter().map(of).sum::<u64>();
+        self.onboard().filter(|log| count > log.messages / 10).map(|_| count)
+    }
+
+    /// Most of it are messages that nothing in it defines: its beginning is missing.
+    #[must_use]
+    pub fn lacks_definitions(&self) -> bool {
+        let passed = |loss: &Loss| match loss {
+            Loss::Skipped { bytes, .. } | Loss::CutOff { bytes, .. } => *bytes,
+            _ => 0,
+        };
+        let passed: u64 = self.losses.iter().map(passed).sum();
+        self.onboard().is_some_and(|log| !self.holds_times() && passed > log.bytes / 2)
+    }
+
     /// It ends before its first message with a time, as a log that was cut off does.
     #[must_use]
     pub fn ends_early(&self) -> bool {

@@ -8,6 +8,12 @@ const SHORTEST_S: f64 = 1e-6;
 const BINS: usize = 34 * 64;
 /// A period this many times the median is a gap.
 const GAP_PERIODS: f64 = 3.0;
+/// Periods of which more than this share are so long come in bursts: then none is a gap, and the mean tells the rate. Chosen;
+/// not measured.
+const RARE: f64 = 0.2;
+/// Fewer samples, or over less time in s, have no rate. Chosen; not measured.
+const LEAST_SAMPLES: u64 = 10;
+const LEAST_SPAN_S: f64 = 0.1;
 
 /// How a stream runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,7 +22,7 @@ pub struct StreamStats {
     pub count: u64,
     /// first and last stamp, s; NaN where there is none
     pub span_s: (f64, f64),
-    /// samples a second over the span, without gaps; NaN below two samples
+    /// samples a second over the span, without gaps; NaN below ten samples or a tenth of a second
     pub rate_hz: f64,
     /// s; NaN below two samples
     pub median_period_s: f64,
@@ -126,14 +132,18 @@ impl StreamTally {
         let is_gap = |bin: &&Bin| bin.count > 0 && bin.longest_s > GAP_PERIODS * median_period_s;
         let gaps = || self.bins.iter().filter(is_gap);
         let periods: u64 = self.bins.iter().map(|bin| bin.count).sum();
+        let long: u64 = gaps().map(|bin| bin.count).sum();
+        let in_bursts = long as f64 > RARE * periods as f64;
+        let gaps = || gaps().filter(|_| !in_bursts);
         let gap_count: u64 = gaps().map(|bin| bin.count).sum();
         let gap_s: f64 = gaps().map(|bin| bin.sum_s).sum();
         let running_s = self.bins.iter().map(|bin| bin.sum_s).sum::<f64>() - gap_s;
+        let has_rate = self.count >= LEAST_SAMPLES && running_s >= LEAST_SPAN_S;
         let any = self.count > 0;
         StreamStats {
             count: self.count,
             span_s: if any { (self.first_s, self.last_s) } else { (f64::NAN, f64::NAN) },
-            rate_hz: (periods - gap_count) as f64 / running_s,
+            rate_hz: if has_rate { (periods - gap_count) as f64 / running_s } else { f64::NAN },
             median_period_s,
             jitter_s: (self.quantile_s(0.84) - self.quantile_s(0.16)) / 2.0,
             gaps: gap_count,
@@ -255,5 +265,17 @@ mod tests {
     fn too_few_samples_have_no_rate() {
         assert!(stats(&[]).rate_hz.is_nan() && stats(&[]).span_s.0.is_nan());
         assert!(stats(&[1.0]).median_period_s.is_nan());
+        // three within a tenth of a millisecond, and a thousand within a tenth of a second
+        assert!(stats(&[1.0, 1.000_062, 1.000_124]).rate_hz.is_nan());
+        let close: Vec<f64> = (0..1000).map(|index| f64::from(index) * 62e-6).collect();
+        assert!(stats(&close).rate_hz.is_nan());
+    }
+
+    #[test]
+    fn samples_in_bursts_have_the_rate_of_their_mean() {
+        let times: Vec<f64> =
+            (0..100).map(|index| f64::from(index / 2) + 62e-6 * f64::from(index % 2)).collect();
+        let stats = stats(&times);
+        assert!((stats.rate_hz - 2.0).abs() < 0.05 && stats.gaps == 0, "{stats:?}");
     }
 }

@@ -8,6 +8,7 @@ use super::align::{
 use super::changed::{changes_in_the_air, resting_on_defaults};
 use super::flight::{AsRecorded, Quality, Reference, Signals};
 use super::height::is_height_by_pose;
+use super::lifts::too_little;
 use super::noise::gyro_noise_rad_s;
 use super::rotor_thrusts::ThrustSource;
 use super::select::{best, mean_rate_hz, median_period_s, too_short};
@@ -84,6 +85,7 @@ pub fn condition(
     let grid = common_grid(&chosen, actuation.stream(), step_s)?;
     let kernel = WeakKernel::new(settings.weak_half_width_s, step_s);
     let airborne_s = airborne_spans(recording, &actuation, vehicle);
+    too_little(recording, &actuation, vehicle).filter(|_| airborne_s.is_empty()).map_or(Ok(()), Err)?;
     let sufficiency = sufficient::check(&needed(&chosen, &actuation), &airborne_s, recording.autopilot)?;
     if grid.count >= Grid::LONGEST {
         return Err(SignalsError::TooLong { span_s: step_s * grid.count as f64 });

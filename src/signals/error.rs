@@ -64,6 +64,21 @@ pub enum SignalsError {
         /// s
         span_s: f64,
     },
+    /// by the vehicle file nothing was flown, and the log shows a flight
+    #[error(
+        "the vehicle file contradicts the log: by the file the rotors give at most {most_n:.3} N in this flight, less than its \
+         weight of {weight_n:.3} N, and below {:.0} % of that nothing flies; the log shows a flight. Correct thrust and mass \
+         in the vehicle file",
+        100.0 * share
+    )]
+    ThrustTooLow {
+        /// largest sum of the rotors' thrusts by the file, N
+        most_n: f64,
+        /// weight by the file, N
+        weight_n: f64,
+        /// of the weight: below it a vehicle does not fly
+        share: f64,
+    },
     /// no stretch of flight is left
     #[error("nothing to identify from: {usable_s:.1} s usable, at least {needed_s:.1} s needed ({reason})")]
     NothingUsable {

@@ -67,6 +67,9 @@ impl<'a> Said<'a> {
     }
 }
 
+/// Taking off and landing count as flight where less than this is left without them, s. Chosen; not measured.
+pub const LEAST_FREE_S: f64 = 8.0;
+
 /// MAV_LANDED_STATE.
 const UNDEFINED: f64 = 0.0;
 const IN_AIR: f64 = 2.0;

@@ -1,7 +1,7 @@
 //! The instants of a flight that identification may use.
 
 use super::actuation::Actuation;
-use super::said::Said;
+use super::said::{LEAST_FREE_S, Said};
 use super::select::median_period_s;
 use super::{Grid, hold_onto};
 use crate::recording::{Recording, Stream};
@@ -9,7 +9,7 @@ use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
 /// Thrust below which a vehicle does not fly, as a share of the nominal weight. Chosen; not measured.
-const FLYING_SHARE: f64 = 0.4;
+pub(super) const FLYING_SHARE: f64 = 0.4;
 /// Time left out at both ends of an airborne span for lift-off and touch-down, s. Chosen; not measured.
 const GROUND_MARGIN_S: f64 = 0.5;
 /// A pause is a gap if it is longer than this many periods and than [`LEAST_GAP_S`]. Chosen; not measured.
@@ -80,14 +80,25 @@ pub struct Evidence<'a> {
 }
 
 /// Spans in the air, s: the rotors carry the vehicle, and the autopilot says neither that it is disarmed nor that it has landed.
+/// Where little is left without taking off and landing, these count too.
 pub(super) fn airborne_spans(
     recording: &Recording,
     actuation: &Actuation,
     vehicle: &Vehicle,
 ) -> Vec<(f64, f64)> {
-    let stream = actuation.stream();
     let needed = FLYING_SHARE * vehicle.body.mass_kg * vehicle.gravity_m_s2;
     let words = Said::of(recording);
+    let free = carried_spans(actuation, needed, |t_s| words.may_fly(t_s));
+    let seconds = |spans: &[(f64, f64)]| spans.iter().map(|(start, end)| end - start).sum::<f64>();
+    if seconds(&free) >= LEAST_FREE_S {
+        return free;
+    }
+    carried_spans(actuation, needed, |t_s| words.may_be_off_ground(t_s))
+}
+
+/// Spans in which the rotors give more than `needed` (N) and the autopilot's words allow flight, s.
+fn carried_spans(actuation: &Actuation, needed: f64, may_fly: impl Fn(f64) -> bool) -> Vec<(f64, f64)> {
+    let stream = actuation.stream();
     // thrust smoothed over half a second: a single sample at the end stop is not a landing
     let mut smooth = 0.0;
     let mut spans: Vec<(f64, f64)> = Vec::new();
@@ -98,7 +109,7 @@ pub(super) fn airborne_spans(
         let collective = actuation.collective_n(index);
         let share = (step / 0.3).clamp(0.0, 1.0);
         smooth = if index == 0 { collective } else { smooth + share * (collective - smooth) };
-        match (words.may_fly(t) && smooth > needed, open) {
+        match (may_fly(t) && smooth > needed, open) {
             (true, None) => open = Some(t),
             (false, Some(start)) => {
                 spans.push((start, t));

@@ -20,6 +20,10 @@ const USED: [Quantity; 10] = [
     Quantity::AccelerationSetpoint,
 ];
 
+/// What the vehicle says of its state: in its own log as well, and often in other words than over the link, where taking off
+/// and landing are no flight.
+const STATES: [Quantity; 3] = [Quantity::Armed, Quantity::LandedState, Quantity::Mode];
+
 /// Least share of the flight that a stream of the ground station must cover to replace one of the vehicle's. Chosen; not
 /// measured.
 const LEAST_COVERED: f64 = 0.9;
@@ -83,11 +87,13 @@ fn add(onboard: &mut Flight, sent: Flight, offset: ClockOffset) {
     onboard.input.add_log(sent.input);
 }
 
-/// Leaves out streams that cover only a part of the flight, if the vehicle's log has the quantity itself; says so.
+/// Leaves out streams that cover only a part of the flight, and words of the vehicle's state, if the vehicle's log has the
+/// quantity itself; says so of the former.
 fn leave_out_parts(sent: &mut Recording, onboard: &Recording, offset: &ClockOffset) -> &'static str {
+    let has: BTreeSet<Quantity> = onboard.streams.keys().map(|key| key.quantity).collect();
+    sent.streams.retain(|key, _| !(STATES.contains(&key.quantity) && has.contains(&key.quantity)));
     let Some((_, attitude)) = best(onboard, Quantity::Attitude, |_| true) else { return "" };
     let (Some(from_s), Some(to_s)) = (attitude.time_s.first(), attitude.time_s.last()) else { return "" };
-    let has: BTreeSet<Quantity> = onboard.streams.keys().map(|key| key.quantity).collect();
     let before = sent.streams.len();
     sent.streams.retain(|key, stream| {
         let covers = match (stream.time_s.first(), stream.time_s.last()) {

@@ -105,7 +105,7 @@ pub(super) fn load_all(
 
 fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, StudyError> {
     let opened = open_flights(path, options, most).map_err(|error| unread(path, error))?;
-    refuse_other_kinds(path, &opened.report)?;
+    refuse_other_kinds(path, &opened)?;
     refuse_no_flight(path, &opened)?;
     let about = || About::File(text::path(&path));
     let losses = opened.report.losses.iter().map(ToString::to_string);
@@ -119,8 +119,9 @@ fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, 
 }
 
 /// Nothing but a multirotor is known here.
-pub(super) fn refuse_other_kinds(log: &Path, report: &ReadReport) -> Result<(), StudyError> {
-    match report.kind().filter(|kind| *kind != VehicleKind::Multirotor) {
+pub(super) fn refuse_other_kinds(log: &Path, opened: &OpenedFlights) -> Result<(), StudyError> {
+    let kind = opened.report.kind().map(|kind| kind.by_parameters(|name| parameter(opened, name)));
+    match kind.filter(|kind| *kind != VehicleKind::Multirotor) {
         None => Ok(()),
         Some(kind) => {
             let why = format!("expected the log of a multirotor, got that of a {}", kind.name());
@@ -129,10 +130,17 @@ pub(super) fn refuse_other_kinds(log: &Path, report: &ReadReport) -> Result<(), 
     }
 }
 
+/// What the log says of a parameter of the vehicle.
+fn parameter(opened: &OpenedFlights, name: &str) -> Option<f64> {
+    opened.flights.flights.iter().find_map(|flight| flight.recording.parameters.get(name).copied())
+}
+
 /// A log that says itself that nothing was flown, or that has no clock, is told so, and not that a stream is missing.
 fn refuse_no_flight(path: &Path, opened: &OpenedFlights) -> Result<(), StudyError> {
     let mut flights = opened.flights.flights.iter();
-    let why = if !opened.report.is_timed() {
+    let why = if opened.report.lacks_definitions() {
+        "expected a whole log, got one whose messages are not defined: its beginning is missing"
+    } else if !opened.report.is_timed() {
         "expected a log with times, got one whose messages carry no time of the vehicle's"
     } else if opened.report.ends_early() {
         "expected a whole log, got one that ends before its first sample"

@@ -144,7 +144,7 @@ fn drafted(recording: &Recording, log: &str, given: &Given) -> Result<Draft, Stu
 pub fn draft_from_log(log: &Path, read: &ReadSettings, given: &Given) -> Result<Draft, StudyError> {
     let mut opened =
         open_flights(log, &read.open_options()?, &DRAFTED_FROM).map_err(|error| unread(log, error))?;
-    refuse_other_kinds(log, &opened.report)?;
+    refuse_other_kinds(log, &opened)?;
     let Some(flight) = opened.flights.flights.first_mut() else {
         return Err(StudyError::File { file: text::path(&log), why: "expected a flight, got none".into() });
     };

@@ -17,6 +17,17 @@ struct Sitl(Child, String);
 impl Sitl {
     fn start(autopilot: &str, parameters: &[&str]) -> Self {
         let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        Self::start_at(port, autopilot, parameters)
+    }
+
+    /// The same vehicle restarts, with these parameters.
+    fn restarted(self, autopilot: &str, parameters: &[&str]) -> Self {
+        let port = self.1.rsplit(':').next().unwrap().parse().unwrap();
+        drop(self);
+        Self::start_at(port, autopilot, parameters)
+    }
+
+    fn start_at(port: u16, autopilot: &str, parameters: &[&str]) -> Self {
         let mut child = Command::new(MAVID)
             .args(["sitl", "--warm-up", "2", "--autopilot", autopilot])
             .args(["--listen", &format!("tcpin:127.0.0.1:{port}")])
@@ -43,6 +54,13 @@ impl Sitl {
 
     /// `mavid --json log ...`: the document and what was said beside it.
     fn log(&self, state: &Path, arguments: &[&str]) -> (Value, String) {
+        let (status, document, said) = self.log_ends(state, arguments);
+        assert_eq!(status, Some(0), "{arguments:?}: {said}");
+        (document, said)
+    }
+
+    /// The same however it ends, with its status.
+    fn log_ends(&self, state: &Path, arguments: &[&str]) -> (Option<i32>, Value, String) {
         let Output { status, stdout, stderr } = Command::new(MAVID)
             .args(["--json", "log"])
             .args(arguments)
@@ -51,8 +69,7 @@ impl Sitl {
             .output()
             .unwrap();
         let said = String::from_utf8_lossy(&stderr).into_owned();
-        assert!(status.success(), "{arguments:?}: {said}");
-        (serde_json::from_slice(&stdout).unwrap(), said)
+        (status.code(), serde_json::from_slice(&stdout).unwrap_or_default(), said)
     }
 }
 
@@ -117,8 +134,28 @@ fn logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back() {
     let (enough, said) = sitl.log(&state, &["prepare"]);
     assert_eq!(enough["changes"], Value::Array(Vec::new()));
     assert!(said.contains("an earlier run changed SDLOG_PROFILE from 1 to 9"), "{said}");
-    let (restored, _) = sitl.log(&state, &["prepare", "--restore"]);
-    assert_eq!(restored["restored"][0]["value"], 1.0);
+    // it was not restarted since, and logs as before
+    assert_eq!((&enough["restart"], &enough["awaiting_restart"][0]), (&true.into(), &"SDLOG_PROFILE".into()));
+    assert!(enough["logs"][0].as_str().unwrap().contains("10 Hz"), "{enough}");
+    let sitl = sitl.restarted("px4", &["SDLOG_MODE=2", "SDLOG_PROFILE=9"]);
+    let (enough, _) = sitl.log(&state, &["prepare"]);
+    assert_eq!((&enough["restart"], &enough["awaiting_restart"]), (&false.into(), &Value::Array(Vec::new())));
+    assert!(enough["logs"][0].as_str().unwrap().contains("full rate"), "{enough}");
+    // one that does not answer does not keep the others from being put back, and stays noted
+    let place = set["notes"].as_str().unwrap();
+    let notes = std::fs::read_to_string(place).unwrap();
+    let silent = "\n[[parameter]]\nname = \"NOT_THERE\"\nfound = 3.0\nset = 4.0\n";
+    std::fs::write(place, notes.replacen("\n[[parameter]]", &format!("{silent}\n[[parameter]]"), 1)).unwrap();
+    let (status, restored, said) = sitl.log_ends(&state, &["prepare", "--restore"]);
+    assert_eq!((status, &restored["restored"][0]["value"]), (Some(1), &1.0.into()), "{said}");
+    assert_eq!(
+        (&restored["not_restored"][0]["parameter"], &restored["restart"]),
+        (&"NOT_THERE".into(), &true.into())
+    );
+    assert!(said.contains("NOT_THERE not put back: the values stand in"), "{said}");
+    let kept = std::fs::read_to_string(place).unwrap();
+    assert!(kept.contains("NOT_THERE") && !kept.contains("SDLOG_PROFILE"), "{kept}");
+    std::fs::remove_file(place).unwrap();
     let (again, said) = sitl.log(&state, &["prepare"]);
     assert_eq!(again["changes"][0]["found"], 1.0);
     assert!(!said.contains("earlier run"), "{said}");
@@ -136,6 +173,10 @@ fn a_flight_sets_the_logging_of_each_autopilot_and_puts_it_back() {
         said.contains("not flown: SDLOG_PROFILE = 9 instead of 1 is set and counts after a restart"),
         "{said}"
     );
+    let (status, said) = px4.check(&state, &trajectory);
+    assert_eq!(status, Some(1), "{said}");
+    assert!(said.contains("not flown: the autopilot was not restarted since its logging was set"), "{said}");
+    let px4 = px4.restarted("px4", &["SDLOG_PROFILE=9"]);
     let (_, said) = px4.check(&state, &trajectory);
     assert!(
         said.contains(
@@ -157,6 +198,20 @@ fn a_flight_sets_the_logging_of_each_autopilot_and_puts_it_back() {
     assert!(said.contains("logging: LOG_BITMASK is 176126 again"), "{said}");
     let (restored, _) = ardupilot.log(&state, &["prepare"]);
     assert_eq!(restored["changes"][0]["found"], 176_126.0);
+}
+
+/// Nobody listens there: that is said at once.
+#[test]
+fn a_host_that_refuses_is_not_waited_for() {
+    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let begun = std::time::Instant::now();
+    let output = Command::new(MAVID)
+        .args(["log", "list", "--connect", &format!("tcpout:127.0.0.1:{port}")])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("refused") && begun.elapsed().as_secs() < 15, "{said}");
+    assert_eq!(output.status.code(), Some(1));
 }
 
 /// In place of a vehicle file its mass: the rest comes from the parameters that it has, and lies in the folder of the flight.

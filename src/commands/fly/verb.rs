@@ -43,6 +43,7 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
     let before = log::before_flight(args)?;
     // the vehicle that was spoken to, and no other
     ride.sortie.system = before.system.map(SystemId).or(ride.sortie.system);
+    ride.sortie.settings.log_awaited.clone_from(&before.awaited);
     let how = Watch {
         drawn: drawn.then(|| stderr.clone()),
         log: args.out.join(LOG),

@@ -2,10 +2,11 @@
 
 use std::time::Duration;
 
+use mavid::autopilot::LogAwaited;
 use mavid::fetch::Noted;
 use mavid::wire::SystemId;
 
-use super::prepare::{agreed, changes_page, earlier, put_back_page};
+use super::prepare::{agreed, changes_page, earlier, put_back_page, restart_now};
 use super::session::Session;
 use super::{preparing, state};
 use crate::cli::{FlyArgs, VehicleLinkArgs};
@@ -24,6 +25,8 @@ pub struct BeforeFlight {
     pub system: Option<u32>,
     /// what is to be put back after the flight
     pub noted: Vec<Noted>,
+    /// what an earlier run set, and counts only after a restart that has not come
+    pub awaited: Vec<LogAwaited>,
 }
 
 /// The link of a flight to this vehicle.
@@ -47,10 +50,14 @@ pub fn before_flight(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
     if !state::has_notes() {
         return Ok(BeforeFlight::default());
     }
-    Ok(network::block_on(reminded(args)).unwrap_or_else(|error| {
-        output::warning(&format!("what an earlier run changed of the logging is not looked at: {error}"));
-        BeforeFlight::default()
-    }))
+    match network::block_on(reminded(args)) {
+        Err(error @ CommandError::Ended(_)) => Err(error),
+        Err(error) => {
+            output::warning(&format!("what an earlier run changed of the logging is not looked at: {error}"));
+            Ok(BeforeFlight::default())
+        }
+        done => done,
+    }
 }
 
 fn failed(error: impl std::fmt::Display) -> CommandError {
@@ -62,7 +69,7 @@ async fn set(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
     let mut session = Session::open_as(&link, SystemId(args.station_id), BEFORE).await?;
     let offer = session.offer().await?;
     let notes = state::notes(&session.known_as(&offer))?;
-    let prepared = preparing::look(&mut session).await?;
+    let prepared = preparing::look(&mut session, &notes).await?;
     let changes = &prepared.plan.changes;
     let what = changes_page(changes);
     if !changes.is_empty() {
@@ -76,10 +83,26 @@ async fn set(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
             args.connect
         )));
     }
+    if !prepared.awaited.is_empty() {
+        return Err(CommandError::Failure(format!(
+            "not flown: {}. Then give the same command again. Without a flight, mavid log prepare --connect {} --restore \
+             puts it back",
+            restart_now(&prepared.awaited),
+            args.connect
+        )));
+    }
+    if !prepared.unsure.is_empty() {
+        output::warning(&format!(
+            "whether the autopilot was restarted since {} was set, its time since its start does not tell: if it was not, it \
+             logs as before",
+            prepared.unsure.join(", ")
+        ));
+    }
     if !changes.is_empty() {
         output::message(&format!("logging: {what}; it is put back after the flight"));
     }
-    Ok(BeforeFlight { system: Some(session.vehicle.system.0), noted: notes.read().map_err(failed)? })
+    let noted = notes.read().map_err(failed)?;
+    Ok(BeforeFlight { system: Some(session.vehicle.system.0), noted, awaited: Vec::new() })
 }
 
 async fn reminded(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
@@ -87,15 +110,19 @@ async fn reminded(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
     let mut session = Session::open_as(&link, SystemId(args.station_id), BEFORE).await?;
     let offer = session.offer().await?;
     let notes = state::notes(&session.known_as(&offer))?;
+    let mut before = BeforeFlight { system: Some(session.vehicle.system.0), ..BeforeFlight::default() };
     let noted = notes.read().map_err(failed)?;
-    if !noted.is_empty() {
-        output::message(&earlier(&noted));
-        if agreed("restore", "put it back now, before the flight")? {
-            let put_back = preparing::put_back(&mut session, &notes).await?;
-            output::message(&put_back_page(&put_back, false));
-        }
+    if noted.is_empty() {
+        return Ok(before);
     }
-    Ok(BeforeFlight { system: Some(session.vehicle.system.0), noted: Vec::new() })
+    output::message(&earlier(&noted));
+    if agreed("restore", "put it back now, before the flight")? {
+        let put_back = preparing::put_back(&mut session, &notes).await?;
+        output::message(&put_back_page(&put_back));
+    } else {
+        before.awaited = preparing::look(&mut session, &notes).await?.awaited;
+    }
+    Ok(before)
 }
 
 /// After the flight, however it ended: puts back what was set for it. What cannot be put back is told with its values.
@@ -109,11 +136,17 @@ pub fn put_back(args: &FlyArgs, before: &BeforeFlight, tell: &mut impl FnMut(Wor
         let offer = session.offer().await?;
         let notes = state::notes(&session.known_as(&offer))?;
         let put_back = preparing::put_back(&mut session, &notes).await?;
-        let names: Vec<&str> = put_back.done.iter().map(|noted| noted.name.as_str()).collect();
-        Ok(put_back_page(&put_back, preparing::needs_restart(&session, &names)))
+        Ok((put_back_page(&put_back), put_back.failed.is_empty()))
     });
     match done {
-        Ok(page) => page.lines().for_each(|line| tell(Word::Message(format!("logging: {line}")))),
+        Ok((page, whole)) => {
+            let word = if whole { Word::Message } else { Word::Warning };
+            page.lines().for_each(|line| tell(word(format!("logging: {line}"))));
+            if !whole {
+                let later = format!("later: mavid log prepare --connect {} --restore", args.connect);
+                tell(Word::Warning(later));
+            }
+        }
         Err(error) => {
             let values = before
                 .noted

@@ -36,7 +36,8 @@ pub async fn list(
 ) -> Result<(Protocol, Vec<RemoteLog>, usize), CommandError> {
     let protocol = asked.unwrap_or_else(|| offer.protocol());
     match listed(session, protocol, wanted).await {
-        Err(error) if asked.is_none() && protocol == Protocol::Ftp && error.status() == 1 => {
+        // a signal ends all of it
+        Err(error @ CommandError::Failure(_)) if asked.is_none() && protocol == Protocol::Ftp => {
             output::warning(&format!("no file transfer: {error}; asking by log messages"));
             listed(session, Protocol::Log, wanted).await
         }
@@ -87,7 +88,14 @@ pub async fn fetch(
         Ok(flow) => flow,
         Err(error) => {
             session.say(&download.farewell(session.elapsed())).await;
-            return Err(error);
+            return Err(match error {
+                CommandError::Ended(why) => CommandError::Ended(format!(
+                    "{why}; {} of {} bytes are kept, and the same command goes on with them",
+                    part.length(),
+                    download.size().unwrap_or(log.size)
+                )),
+                other => other,
+            });
         }
     };
     let Some(fetched) = download.fetched().filter(|_| flow == Flow::On) else {

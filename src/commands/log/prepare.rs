@@ -2,12 +2,12 @@
 
 use std::io::{self, BufRead, IsTerminal};
 
-use mavid::autopilot::LogChange;
+use mavid::autopilot::{LogAwaited, LogChange};
 use mavid::fetch::Noted;
 use mavid::text;
 use serde::Serialize;
 
-use super::preparing::{self, PutBack};
+use super::preparing::{self, Prepared, PutBack};
 use super::session::Session;
 use super::state;
 use crate::cli::LogPrepareArgs;
@@ -15,6 +15,10 @@ use crate::commands::{CommandError, Outcome, output};
 
 /// The word that agrees at a terminal.
 const YES: &str = "set";
+/// What agrees as well.
+const ALSO_YES: [&str; 2] = ["y", "yes"];
+/// What does not, beside return alone.
+const NO: [&str; 2] = ["n", "no"];
 
 /// The document.
 #[derive(Debug, Serialize)]
@@ -30,10 +34,22 @@ struct Document {
     restored: Vec<RestoredLine>,
     /// what somebody else changed since, and stays
     left: Vec<RestoredLine>,
+    /// what could not be put back, and stays noted
+    not_restored: Vec<NotRestored>,
+    /// parameters that count only after a restart that has not come since they were set
+    awaiting_restart: Vec<&'static str>,
     /// the file with what was found
     notes: Option<String>,
     /// the autopilot must start anew
     restart: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct NotRestored {
+    parameter: String,
+    /// what it was before
+    value: f64,
+    why: String,
 }
 
 #[derive(Debug, Serialize)]
@@ -56,18 +72,19 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
     let mut session = Session::open(&args.link).await?;
     let offer = session.offer().await?;
     let notes = state::notes(&session.known_as(&offer))?;
-    let noted = notes.read().map_err(|error| CommandError::Input(error.to_string()))?;
+    notes.read().map_err(|error| CommandError::Input(error.to_string()))?;
+    let place = text::path(&notes.path());
     if args.restore {
         let put_back = preparing::put_back(&mut session, &notes).await?;
-        return restored(json, &session, &put_back);
+        return restored(json, &session, &put_back, place);
     }
-    let prepared = preparing::look(&mut session).await?;
+    let prepared = preparing::look(&mut session, &notes).await?;
     let changes = &prepared.plan.changes;
     if !json {
-        output::text(&says(&session, &prepared.plan.logs, changes, &prepared.plan.unknown))?;
+        output::text(&says(&session, &prepared))?;
     }
-    if !noted.is_empty() {
-        output::message(&earlier(&noted));
+    if !prepared.noted.is_empty() {
+        output::message(&earlier(&prepared.noted));
     }
     let set = !changes.is_empty() && (args.set_logging || !json && agreed(YES, "set this")?);
     if set {
@@ -75,7 +92,6 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
     }
     let names: Vec<&str> = changes.iter().map(|change| change.parameter).collect();
     let restart = set && preparing::needs_restart(&session, &names);
-    let place = text::path(&notes.path());
     if json {
         let line = |change: &LogChange| ChangeLine {
             parameter: change.parameter,
@@ -93,34 +109,55 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
             unknown: prepared.plan.unknown.clone(),
             restored: Vec::new(),
             left: Vec::new(),
-            notes: (set || !noted.is_empty()).then_some(place),
-            restart,
+            not_restored: Vec::new(),
+            awaiting_restart: prepared.awaited.iter().map(|awaited| awaited.parameter).collect(),
+            notes: (set || !prepared.noted.is_empty()).then_some(place),
+            restart: restart || !prepared.awaited.is_empty(),
         })?;
     } else if set {
-        let mut lines = vec![format!("set; what was found stands in {place}")];
-        lines.push("after the flight: mavid log prepare --connect ADDRESS --restore puts it back".to_owned());
-        if restart {
-            lines.push(
-                "restart the autopilot now: until then it logs as before. mavid does not restart it"
-                    .to_owned(),
-            );
-        }
-        output::text(&lines.join("\n"))?;
+        output::text(&set_page(&place, restart))?;
     } else if !changes.is_empty() {
         output::text("nothing is changed; --set-logging sets it")?;
     }
     Ok(Outcome::Done)
 }
 
-fn says(session: &Session, logs: &[String], changes: &[LogChange], unknown: &[&str]) -> String {
+/// What was set, for people.
+fn set_page(place: &str, restart: bool) -> String {
+    let mut page = format!(
+        "set; what was found stands in {place}\nafter the flight: mavid log prepare --connect ADDRESS --restore puts it back"
+    );
+    if restart {
+        page.push_str("\nrestart the autopilot now: until then it logs as before. mavid does not restart it");
+    }
+    page
+}
+
+fn says(session: &Session, prepared: &Prepared) -> String {
+    let Prepared { plan, awaited, unsure, noted, .. } = prepared;
+    let (changes, unknown) = (&plan.changes, &plan.unknown);
+    let until = if awaited.is_empty() { "" } else { " until the autopilot is restarted" };
     let mut lines =
-        vec![format!("system {}, {}, logs in flight:", session.vehicle.system, session.stack.name)];
-    lines.extend(logs.iter().map(|line| format!("  {line}")));
+        vec![format!("system {}, {}, logs in flight{until}:", session.vehicle.system, session.stack.name)];
+    lines.extend(plan.logs.iter().map(|line| format!("  {line}")));
     if !unknown.is_empty() {
         lines.push(format!("not known: {} did not answer", unknown.join(", ")));
     }
-    if changes.is_empty() && unknown.is_empty() {
-        lines.push("that is enough for an identification".to_owned());
+    if !awaited.is_empty() {
+        lines.push(restart_now(awaited));
+    }
+    let from_start = session.stack.log_rates_from_start();
+    if changes.is_empty() && unknown.is_empty() && awaited.is_empty() {
+        lines.push(match from_start {
+            Some(name) if !unsure.is_empty() => format!(
+                "that is enough for an identification if the autopilot was restarted since {name} was set: whether it was, \
+                 its time since its start does not tell"
+            ),
+            Some(name) if !noted.iter().any(|noted| noted.name == name) => format!(
+                "that is enough for an identification, if {name} was not changed since the autopilot's last start"
+            ),
+            _ => "that is enough for an identification".to_owned(),
+        });
     }
     for change in changes {
         let LogChange { parameter, found, wanted, restarts } = change;
@@ -133,6 +170,17 @@ fn says(session: &Session, logs: &[String], changes: &[LogChange], unknown: &[&s
         ));
     }
     lines.join("\n")
+}
+
+/// What waits for a restart.
+pub fn restart_now(awaited: &[LogAwaited]) -> String {
+    let list = awaited.iter().map(|LogAwaited { parameter, set, runs_by }| {
+        format!("{parameter} = {set} is set, and it still runs by {runs_by}")
+    });
+    format!(
+        "the autopilot was not restarted since its logging was set ({}): restart it now, mavid does not restart it",
+        list.collect::<Vec<_>>().join("; ")
+    )
 }
 
 /// What is changed, for people.
@@ -156,16 +204,27 @@ pub fn agreed(word: &str, what: &str) -> Result<bool, CommandError> {
     if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
         return Ok(false);
     }
-    output::message(&format!("type {word} and return to {what}, or return alone to leave it"));
+    output::message(&format!("type {word} or y and return to {what}, or return alone to leave it"));
     let mut line = String::new();
     let read = io::stdin().lock().read_line(&mut line);
     read.map_err(|error| CommandError::Failure(format!("cannot read standard input: {error}")))?;
-    Ok(line.trim() == word)
+    let answer = line.trim().to_ascii_lowercase();
+    let agrees = answer == word || ALSO_YES.contains(&answer.as_str());
+    if !agrees && !answer.is_empty() && !NO.contains(&answer.as_str()) {
+        output::message(&format!(
+            "expected {word}, y or n, got {}: that is taken for no",
+            text::excerpt(&answer, 20)
+        ));
+    }
+    Ok(agrees)
 }
 
-fn restored(json: bool, session: &Session, put_back: &PutBack) -> Result<Outcome, CommandError> {
-    let names: Vec<&str> = put_back.done.iter().map(|noted| noted.name.as_str()).collect();
-    let restart = preparing::needs_restart(session, &names);
+fn restored(
+    json: bool,
+    session: &Session,
+    put_back: &PutBack,
+    place: String,
+) -> Result<Outcome, CommandError> {
     if json {
         let line = |name: &str, value: f64| RestoredLine { parameter: name.to_owned(), value };
         output::json(&Document {
@@ -177,17 +236,34 @@ fn restored(json: bool, session: &Session, put_back: &PutBack) -> Result<Outcome
             unknown: Vec::new(),
             restored: put_back.done.iter().map(|noted| line(&noted.name, noted.found)).collect(),
             left: put_back.left.iter().map(|(noted, now)| line(&noted.name, *now)).collect(),
-            notes: None,
-            restart,
+            not_restored: put_back
+                .failed
+                .iter()
+                .map(|(noted, why)| NotRestored {
+                    parameter: noted.name.clone(),
+                    value: noted.found,
+                    why: why.clone(),
+                })
+                .collect(),
+            awaiting_restart: Vec::new(),
+            notes: (!put_back.failed.is_empty()).then(|| place.clone()),
+            restart: put_back.restart,
         })?;
     } else {
-        output::text(&put_back_page(put_back, restart))?;
+        output::text(&put_back_page(put_back))?;
     }
-    Ok(Outcome::Done)
+    if put_back.failed.is_empty() {
+        return Ok(Outcome::Done);
+    }
+    let names: Vec<&str> = put_back.failed.iter().map(|(noted, _)| noted.name.as_str()).collect();
+    Err(CommandError::Failure(format!(
+        "{} not put back: the values stand in {place}, and the same command tries again",
+        names.join(", ")
+    )))
 }
 
 /// What was put back, for people.
-pub fn put_back_page(put_back: &PutBack, restart: bool) -> String {
+pub fn put_back_page(put_back: &PutBack) -> String {
     let mut lines: Vec<String> =
         put_back.done.iter().map(|noted| format!("{} is {} again", noted.name, noted.found)).collect();
     for (noted, now) in &put_back.left {
@@ -196,9 +272,12 @@ pub fn put_back_page(put_back: &PutBack, restart: bool) -> String {
             noted.name, noted.set, noted.found
         ));
     }
+    for (noted, why) in &put_back.failed {
+        lines.push(format!("{} is not put back to {}: {why}", noted.name, noted.found));
+    }
     if lines.is_empty() {
         lines.push("nothing to put back on this vehicle".to_owned());
-    } else if restart {
+    } else if put_back.restart {
         lines.push("the autopilot logs so after its next start".to_owned());
     }
     lines.join("\n")

@@ -1,17 +1,23 @@
 //! What the autopilot will log, what is changed of it, and how that is put back.
 
-use mavid::autopilot::{LogChange, LogPlan};
-use mavid::fetch::{Known, Noted, Notes, ReadParameters, SetParameters};
+use mavid::autopilot::{LogAwaited, LogChange, LogPlan};
+use mavid::fetch::{Known, Moment, Noted, Notes, ReadParameters, SetParameters};
 
 use super::session::{Flow, Session};
 use crate::commands::CommandError;
 
 /// What a vehicle will log, with its parameters.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Prepared {
     known: Known,
     /// what it logs, and what should be changed
     pub plan: LogPlan,
+    /// what an earlier run changed and did not put back
+    pub noted: Vec<Noted>,
+    /// of these what waits for a restart of the autopilot
+    pub awaited: Vec<LogAwaited>,
+    /// of these what waits for one or has had it: the vehicle does not say
+    pub unsure: Vec<&'static str>,
 }
 
 /// What was put back, or not.
@@ -21,25 +27,62 @@ pub struct PutBack {
     pub done: Vec<Noted>,
     /// those that somebody changed meanwhile: they stay, with what they are
     pub left: Vec<(Noted, f64)>,
+    /// those that are not put back, and why: they stay in the notes
+    pub failed: Vec<(Noted, String)>,
+    /// the autopilot logs by what was put back only after a restart
+    pub restart: bool,
 }
 
 fn failed(error: impl std::fmt::Display) -> CommandError {
     CommandError::Failure(error.to_string())
 }
 
-/// Asks the vehicle for its parameters of logging.
-pub async fn look(session: &mut Session) -> Result<Prepared, CommandError> {
+/// Asks the vehicle for its parameters of logging, and whether it was restarted since an earlier run set them.
+pub async fn look(session: &mut Session, notes: &Notes) -> Result<Prepared, CommandError> {
     let names: Vec<&str> =
         session.stack.log_settings.settings.iter().map(|setting| setting.parameter).collect();
     let known = read(session, &names).await?;
-    let plan = session.stack.log_plan(|name| known.value(name));
     if names.iter().all(|name| known.value(name).is_none()) {
         return Err(CommandError::Failure(format!(
             "expected an answer for {}, the vehicle gave none",
             names.join(", ")
         )));
     }
-    Ok(Prepared { known, plan })
+    let noted = notes.read().map_err(failed)?;
+    let mut prepared = Prepared { known, noted, ..Prepared::default() };
+    wait_for_start(session, &mut prepared).await?;
+    let known = &prepared.known;
+    prepared.plan = session.stack.log_plan_until_start(|name| known.value(name), &prepared.awaited);
+    Ok(prepared)
+}
+
+/// Which of the noted parameters count only after a restart that has not come.
+async fn wait_for_start(session: &mut Session, prepared: &mut Prepared) -> Result<(), CommandError> {
+    let settings = session.stack.log_settings.settings.iter().filter(|setting| setting.restarts);
+    let set: Vec<(&'static str, &Noted)> = settings
+        .filter_map(|setting| {
+            let noted = prepared.noted.iter().find(|noted| noted.name == setting.parameter)?;
+            (prepared.known.value(&noted.name) == Some(noted.set)).then_some((setting.parameter, noted))
+        })
+        .collect();
+    if set.is_empty() {
+        return Ok(());
+    }
+    let now = session.moment().await?;
+    let (mut awaited, mut unsure) = (Vec::new(), Vec::new());
+    for (parameter, noted) in set {
+        match has_restarted(noted, &now) {
+            Some(true) => {}
+            Some(false) => awaited.push(LogAwaited { parameter, set: noted.set, runs_by: noted.found }),
+            None => unsure.push(parameter),
+        }
+    }
+    (prepared.awaited, prepared.unsure) = (awaited, unsure);
+    Ok(())
+}
+
+fn has_restarted(noted: &Noted, now: &Moment) -> Option<bool> {
+    noted.at.and_then(|at| at.restarted_until(now))
 }
 
 async fn read(session: &mut Session, names: &[&str]) -> Result<Known, CommandError> {
@@ -55,19 +98,22 @@ pub async fn change(
     changes: &[LogChange],
     notes: &Notes,
 ) -> Result<(), CommandError> {
+    let at = Some(session.moment().await?);
     let noted = |change: &LogChange| Noted {
         name: change.parameter.to_owned(),
         found: change.found,
         set: change.wanted,
+        at,
     };
     notes.add(&changes.iter().map(noted).collect::<Vec<_>>()).map_err(failed)?;
     let wanted: Vec<(&str, f64)> = changes.iter().map(|change| (change.parameter, change.wanted)).collect();
     let mut setting = SetParameters::new(session.vehicle, &prepared.known, &wanted).map_err(failed)?;
     session.talk_disarmed(&mut setting).await?;
-    Ok(())
+    let failures: Vec<String> = setting.failures().map(|(_, why)| why.to_string()).collect();
+    if failures.is_empty() { Ok(()) } else { Err(CommandError::Failure(failures.join("; "))) }
 }
 
-/// Puts back what an earlier run changed, as far as nobody else changed it since.
+/// Puts back what an earlier run changed, as far as nobody else changed it since. What cannot be put back stays noted.
 pub async fn put_back(session: &mut Session, notes: &Notes) -> Result<PutBack, CommandError> {
     let noted = notes.read().map_err(failed)?;
     let names: Vec<&str> = noted.iter().map(|noted| noted.name.as_str()).collect();
@@ -76,24 +122,31 @@ pub async fn put_back(session: &mut Session, notes: &Notes) -> Result<PutBack, C
     let mut wanted = Vec::new();
     for noted in &noted {
         match known.value(&noted.name) {
-            Some(now) if now == noted.set => {
-                wanted.push((noted.name.as_str(), noted.found));
-                put_back.done.push(noted.clone());
-            }
+            Some(now) if now == noted.set => wanted.push(noted),
             // as it was: the run ended before it changed it
             Some(now) if now == noted.found => put_back.done.push(noted.clone()),
             Some(now) => put_back.left.push((noted.clone(), now)),
-            None => {
-                return Err(CommandError::Failure(format!(
-                    "expected the value of {}, the vehicle does not answer: it is not put back yet",
-                    noted.name
-                )));
-            }
+            None => put_back.failed.push((noted.clone(), "the vehicle does not answer for it".to_owned())),
         }
     }
-    let mut setting = SetParameters::new(session.vehicle, &known, &wanted).map_err(failed)?;
+    let values: Vec<(&str, f64)> = wanted.iter().map(|noted| (noted.name.as_str(), noted.found)).collect();
+    let mut setting = SetParameters::new(session.vehicle, &known, &values).map_err(failed)?;
     session.talk_disarmed(&mut setting).await?;
-    notes.forget().map_err(failed)?;
+    let names: Vec<&str> = values.iter().map(|(name, _)| *name).collect();
+    if needs_restart(session, &names) {
+        let now = session.moment().await?;
+        // what the autopilot never started with needs no restart to be gone
+        put_back.restart = wanted.iter().any(|noted| has_restarted(noted, &now) != Some(false));
+    }
+    let failures: Vec<(&str, String)> =
+        setting.failures().map(|(name, why)| (name, why.to_string())).collect();
+    for noted in wanted {
+        match failures.iter().find(|(name, _)| *name == noted.name) {
+            Some((_, why)) => put_back.failed.push((noted.clone(), why.clone())),
+            None => put_back.done.push(noted.clone()),
+        }
+    }
+    notes.keep(put_back.failed.iter().map(|(noted, _)| noted.clone()).collect()).map_err(failed)?;
     Ok(put_back)
 }
 

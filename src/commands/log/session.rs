@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use mavid::autopilot::Stack;
-use mavid::fetch::{Dialogue, Offer, Survey};
+use mavid::fetch::{Dialogue, Moment, Offer, Survey, Uptime};
 use mavid::fly::{Choice, Roster, heartbeat};
-use mavid::link::{LinkOptions, LinkReader, LinkWriter, Received, Signing};
+use mavid::link::{LinkEvent, LinkOptions, LinkReader, LinkWriter, Received, Signing};
 use mavid::wire::{Frame, SystemId, Vehicle};
 use tokio::time::{Instant, MissedTickBehavior, interval};
 
@@ -49,34 +49,47 @@ pub struct Session {
 }
 
 impl Session {
-    /// Opens the link and waits for the vehicle; one that is armed is refused.
+    /// Opens the link and waits for the vehicle; one that is armed is refused. A host that refuses is not waited for.
     pub async fn open(args: &VehicleLinkArgs) -> Result<Self, CommandError> {
-        Self::open_as(args, LinkOptions::default().system, THERE_WITHIN).await
+        Self::begin(args, LinkOptions::default(), THERE_WITHIN).await
     }
 
-    /// The same by this station, for a vehicle that has to be heard within this time.
+    /// The same by this station, for a vehicle that has to be heard within this time: its host may still refuse.
     pub async fn open_as(
         args: &VehicleLinkArgs,
         station: SystemId,
+        patience: Duration,
+    ) -> Result<Self, CommandError> {
+        let options = LinkOptions { system: station, patient: true, ..LinkOptions::default() };
+        Self::begin(args, options, patience).await
+    }
+
+    async fn begin(
+        args: &VehicleLinkArgs,
+        options: LinkOptions,
         patience: Duration,
     ) -> Result<Self, CommandError> {
         let address = network::address("--connect", &args.connect)?;
         let signing = args.signing_key_file.as_deref().map(Signing::open).transpose();
         let signing = signing.map_err(|error| CommandError::Input(error.to_string()))?;
         output::signing_warnings(signing.as_ref());
-        let options = LinkOptions { system: station, signing, patient: true, ..LinkOptions::default() };
+        let options = LinkOptions { signing, ..options };
         let (mut reader, writer) = network::open(&address, options).await?;
         let (start, mut signals) = (Instant::now(), network::Signals::new()?);
         let wanted = args.system_id.map(SystemId);
         let mut roster = Roster::default();
+        let mut absent = None;
         let mut beats = interval(HEARTBEAT);
         loop {
             tokio::select! {
                 received = reader.receive() => {
-                    if let Received::Frame(frame) = received.map_err(|error| CommandError::Failure(error.to_string()))?
-                        && let Some(frame) = Frame::at_start(frame.bytes())
-                    {
-                        roster.hear(start.elapsed(), frame);
+                    match received.map_err(|error| CommandError::Failure(error.to_string()))? {
+                        Received::Frame(frame) => {
+                            if let Some(frame) = Frame::at_start(frame.bytes()) {
+                                roster.hear(start.elapsed(), frame);
+                            }
+                        }
+                        Received::Event(event) => note_absence(&args.connect, &event, &mut absent),
                     }
                 }
                 _ = beats.tick() => {
@@ -104,7 +117,7 @@ impl Session {
                         "{}: expected a HEARTBEAT of a vehicle within {} s, heard {}",
                         args.connect,
                         patience.as_secs(),
-                        roster.heard()
+                        absent.map_or_else(|| roster.heard(), |why| format!("nobody ({why})"))
                     )));
                 }
                 Choice::Wait => {}
@@ -117,6 +130,13 @@ impl Session {
         let mut survey = Survey::new(self.vehicle);
         self.talk(&mut survey, |_| Ok(Flow::On)).await?;
         Ok(survey.offer())
+    }
+
+    /// Now, with the vehicle's time since its start.
+    pub async fn moment(&mut self) -> Result<Moment, CommandError> {
+        let mut uptime = Uptime::new(self.vehicle);
+        self.talk(&mut uptime, |_| Ok(Flow::On)).await?;
+        Ok(Moment::now(uptime.up_s()))
     }
 
     /// Talks until the dialogue is done, or `each` has enough, which is asked again and again.
@@ -191,9 +211,10 @@ impl Session {
         let _ = tokio::time::timeout(Duration::from_millis(500), self.writer.flush()).await;
     }
 
-    /// By which number the vehicle is known from one run to the next.
+    /// By which name the vehicle is known from one run to the next: two simulated ones may say the same number.
     pub fn known_as(&self, offer: &Offer) -> String {
-        offer.uid.clone().unwrap_or_else(|| format!("system-{}", self.vehicle.system))
+        let name = format!("{}-system-{}", self.stack.id, self.vehicle.system);
+        offer.uid.iter().fold(name, |name, uid| format!("{name}-{uid}"))
     }
 
     /// Its clock.
@@ -207,8 +228,20 @@ impl Session {
     }
 }
 
+/// Says once that nobody is at the other end.
+fn note_absence(connect: &str, event: &LinkEvent, absent: &mut Option<String>) {
+    match event {
+        LinkEvent::Waiting { why } => {
+            if absent.is_none() {
+                output::message(&format!("{connect}: {event}"));
+            }
+            *absent = Some(why.clone());
+        }
+        LinkEvent::Connected { .. } | LinkEvent::Restored { .. } => *absent = None,
+        _ => {}
+    }
+}
+
 fn interrupted(name: &str) -> CommandError {
-    CommandError::Failure(format!(
-        "ended by {name}; what came of a log is kept, and the same command goes on with it"
-    ))
+    CommandError::Ended(format!("ended by {name}"))
 }

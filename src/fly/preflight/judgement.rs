@@ -27,7 +27,7 @@ pub fn judge(situation: &Situation<'_>) -> Judged {
     findings.extend(abandoned);
     findings.extend(autopilot::findings(situation.parameters, &extremes));
     findings.extend(hover::findings(situation));
-    findings.extend(logging::finding(situation.parameters));
+    findings.extend(logging::finding(situation.parameters, situation.log_awaited));
     findings.push(energy::finding(situation.battery, situation.duration_s()));
     findings.extend(readiness::findings(situation.readiness, situation.parameters.autopilot));
     findings.extend(failsafes(situation));

@@ -3,6 +3,7 @@
 use super::energy::BatteryState;
 use super::fence::Fence;
 use super::readiness::Readiness;
+use crate::autopilot::LogAwaited;
 use crate::fly::course::approach;
 use crate::fly::parameters::Parameters;
 use crate::fly::setpoint::Place;
@@ -30,6 +31,8 @@ pub struct Situation<'a> {
     pub tracking_max_m: f64,
     /// parameters of the vehicle
     pub parameters: &'a Parameters,
+    /// parameters of its logging that count only from its next start on
+    pub log_awaited: &'a [LogAwaited],
     /// major and minor number of the autopilot's release, where it said so
     pub release: Option<(u8, u8)>,
     /// the vehicle's fence

@@ -243,6 +243,7 @@ impl Clearance {
             limits: &sortie.limits,
             tracking_max_m: sortie.settings.tracking_max_m,
             parameters,
+            log_awaited: &sortie.settings.log_awaited,
             release: flight.release(),
             fence: &fence,
             battery: &battery,

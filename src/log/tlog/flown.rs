@@ -19,6 +19,8 @@ const LEAST_MOVING: u64 = 20;
 /// What a system did, by its own messages.
 #[derive(Debug, Clone, Copy, Default)]
 struct Deeds {
+    /// it says that it is of a kind that stays on the ground or in the water
+    stays_down: bool,
     armed: bool,
     landed_state_told: bool,
     in_air_armed: bool,
@@ -28,6 +30,9 @@ struct Deeds {
 
 impl Deeds {
     fn flew(&self) -> bool {
+        if self.stays_down {
+            return false;
+        }
         if self.landed_state_told { self.in_air_armed } else { self.moving_armed >= LEAST_MOVING }
     }
 
@@ -35,8 +40,11 @@ impl Deeds {
         let payload = record.frame.payload();
         let length = |[x, y, z]: [f64; 3]| (x * x + y * y + z * z).sqrt();
         let moving = match Source::from_message_id(record.frame.header().message_id) {
-            Some(Source::Heartbeat) if Vehicle::from_heartbeat(record).is_some() => {
-                self.armed = payload.u8(6) & ARMED != 0;
+            Some(Source::Heartbeat) => {
+                if let Some(vehicle) = Vehicle::from_heartbeat(record) {
+                    self.stays_down = vehicle.kind.is_some_and(|kind| !kind.flies());
+                    self.armed = payload.u8(6) & ARMED != 0;
+                }
                 return;
             }
             Some(Source::ExtendedSysState) => {
@@ -55,7 +63,8 @@ impl Deeds {
 }
 
 /// The system of a telemetry log that flew: it was armed and in the air or, where it does not tell that, in motion.
-/// Where none flew, the only one that sends motion, or the only one there is.
+/// Where none flew, the only one that sends motion, or the only one there is; of those a rover or a submarine only where there
+/// is nothing else.
 ///
 /// # Errors
 /// The log cannot be read, or more than one system flew, or none did and more than one sends motion.
@@ -78,10 +87,12 @@ pub(super) fn who_flew(input: &Input<'_>) -> Result<SystemId, LogError> {
 
 fn chosen(vehicles: &[SystemId], deeds: impl Fn(&SystemId) -> Deeds) -> Result<SystemId, LogError> {
     let those = |did: fn(&Deeds) -> bool| -> Vec<SystemId> {
-        vehicles.iter().copied().filter(|system| did(&deeds(system))).collect()
+        vehicles.iter().copied().filter(|system| did(&deeds(system))).collect::<Vec<_>>()
     };
     let flew = those(Deeds::flew);
-    let candidates = if flew.is_empty() { those(|deeds| deeds.motion > 0) } else { flew.clone() };
+    let kinds: [fn(&Deeds) -> bool; 3] =
+        [Deeds::flew, |deeds| deeds.motion > 0 && !deeds.stays_down, |deeds| deeds.motion > 0];
+    let candidates = kinds.into_iter().map(those).find(|systems| !systems.is_empty()).unwrap_or_default();
     match (candidates.as_slice(), vehicles) {
         ([only], _) | ([], [only, ..]) => Ok(*only),
         (_, []) => Err(LogError::NoVehicle { systems: Vec::new() }),

@@ -139,7 +139,13 @@ fn excitation(page: &mut String, inspection: &Inspection) {
 fn clock(page: &mut String, inspection: &Inspection) {
     let clock = &inspection.clock;
     heading(page, "clock");
-    row(page, "vehicle's clock", format!("{:.1} to {:.1} s", clock.span_s.0, clock.span_s.1));
+    let span = match clock.span_s {
+        (first_s, last_s) if first_s.is_finite() && last_s.is_finite() => {
+            format!("{first_s:.1} to {last_s:.1} s")
+        }
+        _ => "no sample has a time of it".to_owned(),
+    };
+    row(page, "vehicle's clock", span);
     if let Some(start_us) = clock.start_utc_us {
         row(page, "host's at its start", utc(start_us));
     }
