@@ -66,7 +66,7 @@ pub use harmonics::{LackOfFit, Line, flown_period_s, lack_of_fit, period_s};
 pub use latency::{LatencyFinding, NO_LATENCY, fit_latency};
 pub use named::{Confusable, DetectionLimit, Named, NamedParameter, Strength};
 pub use recorded::{Need, Recorded};
-pub use rotors::{RotorMotion, Thrusts};
+pub use rotors::{OfRotors, RotorMotion, Thrusts};
 pub use rows::Rows;
 pub use search::search;
 pub use sentence::{brief, called, clause, limit};

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::recording::Quantity;
-use crate::signals::{AsRecorded, Grid, Quality, Signals, ThrustSource, Usable};
+use crate::signals::{AsRecorded, Grid, Quality, Series, Signals, ThrustSource, Usable};
 use crate::simulate::random_vehicle;
 use crate::vehicle::{RigidBody, Rotor, Spin, Vehicle};
 use nalgebra::{Matrix3, UnitQuaternion};
@@ -46,14 +46,14 @@ pub(in super::super) fn turning_on_the_spot() -> Signals {
     Signals {
         grid: Grid { start_s: 0.0, step_s: STEP_S, count },
         usable: vec![true; count],
-        attitude: Some((0..count).map(turned).collect()),
-        rate: Some(vec![rate; count]),
-        specific_force: Some(vec![Vector3::from(FELT_M_S2); count]),
+        attitude: Some(Series::new((0..count).map(turned).collect())),
+        rate: Some(vec![rate; count].into()),
+        specific_force: Some(vec![Vector3::from(FELT_M_S2); count].into()),
         world_acceleration: None,
         position: None,
-        velocity: Some(vec![Vector3::zeros(); count]),
-        rotor_thrust_n: THRUSTS_N.repeat(count),
-        wrench: vec![Vector4::zeros(); count],
+        velocity: Some(vec![Vector3::zeros(); count].into()),
+        rotor_thrust_n: THRUSTS_N.repeat(count).into(),
+        wrench: vec![Vector4::zeros(); count].into(),
         jitter_wrench: None,
         battery_voltage_v: None,
         as_recorded: AsRecorded::default(),

@@ -7,7 +7,7 @@ use super::base::Base;
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::{Effect, Hook, Measurement, State};
-use crate::signals::central_difference;
+use crate::signals::{Series, central_difference};
 use nalgebra::Vector3;
 use std::borrow::Cow;
 
@@ -43,7 +43,7 @@ pub(super) fn true_readings<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [T
     }
     let moved = |trace: &Trace| {
         let (states, force) = undone(trace, &faults);
-        trace.reading(states, force)
+        trace.reading(states, force.map(Series::new))
     };
     Cow::Owned(flights.iter().map(moved).collect())
 }
@@ -55,9 +55,9 @@ fn faults(base: &Base) -> Vec<&EffectTerm> {
 /// One flight's states and, where it was recorded, specific force (m/s^2, body).
 fn undone(trace: &Trace, faults: &[&EffectTerm]) -> (Vec<State>, Option<Vec<Vector3<f64>>>) {
     let shown_force = trace.specific_force_m_s2();
-    let mut states = trace.states.clone();
+    let mut states = trace.states.to_vec();
     let mut force: Vec<Vector3<f64>> =
-        shown_force.map_or_else(|| vec![Vector3::zeros(); states.len()], <[_]>::to_vec);
+        shown_force.map_or_else(|| vec![Vector3::zeros(); states.len()], |force| force.to_vec());
     for _ in 0..PASSES {
         let turning = angular_acceleration(&states, trace.grid.step_s);
         let mut missed = 0.0_f64;

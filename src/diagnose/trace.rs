@@ -1,10 +1,12 @@
 //! One flight for the weak form: measured states, and the rotor thrusts in two versions, from commands and from the
 //! motion.
 
-use super::rotors::{RotorMotion, Thrusts, felt};
+use super::rotors::{OfRotors, RotorMotion, felt, filtered};
 use super::timing::{command_period_s, inertial_late};
-use crate::physics::{ActuationLatency, Airframe, MAX_ROTORS, State};
-use crate::signals::{Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride};
+use crate::physics::{ActuationLatency, Airframe, State};
+use crate::signals::{
+    Butterworth, Grid, Series, Signals, ThrustSource, WeakKernel, central_difference, stride,
+};
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
 use std::ops::Range;
@@ -26,13 +28,13 @@ pub struct Trace {
     /// rows without a break between them
     pub runs: Vec<Range<usize>>,
     /// measured states; parts that were not recorded are zero (attitude: level)
-    pub states: Vec<State>,
+    pub states: Series<State>,
     /// parts of the state that are measured
     pub known: Known,
     /// commands and body rates are fast enough to compare torques; otherwise torque channels are zero
     pub torques: bool,
     /// V
-    pub voltage_v: Option<Vec<f64>>,
+    pub voltage_v: Option<Series<f64>>,
     /// thrusts are computed from measured rotor speeds: effects between command and speed are not visible
     pub measured_speeds: bool,
     /// rad/s, white noise of the gyroscopes at their own samples, largest axis; 0 where it is not known
@@ -44,18 +46,18 @@ pub struct Trace {
     /// s, uncertainty of this delay: the difference of attitude and velocity, or the advance of the attitude alone
     pub inertial_unsure_s: f64,
     /// m/s^2, body, accelerometer
-    specific_force_m_s2: Option<Vec<Vector3<f64>>>,
+    specific_force_m_s2: Option<Series<Vector3<f64>>>,
     /// N, as commanded (or measured), each rotor
-    commanded_n: Vec<Thrusts>,
+    commanded_n: OfRotors,
     /// N, N m: contribution of the commands' jitter if the rotors follow all of it
-    pub jitter: Option<Vec<Vector4<f64>>>,
+    pub jitter: Option<Series<Vector4<f64>>>,
     /// zero-phase low-pass of body rates, rad/s; the next two are their derivative, rad/s^2, and the specific force
     /// along z, m/s^2
-    smooth_rate: Vec<Vector3<f64>>,
-    smooth_turning: Vec<Vector3<f64>>,
-    smooth_lift: Vec<f64>,
+    smooth_rate: Series<Vector3<f64>>,
+    smooth_turning: Series<Vector3<f64>>,
+    smooth_lift: Series<f64>,
     /// specific force, body, m/s^2: the accelerometer's, else the smoothed one of the kinematics
-    pub(super) felt_m_s2: Vec<Vector3<f64>>,
+    pub(super) felt_m_s2: Series<Vector3<f64>>,
     /// m/s^2
     pub gravity_m_s2: f64,
     /// motion capture or a camera gives the height
@@ -125,7 +127,7 @@ impl Trace {
             kernel,
             centers,
             runs,
-            states: states(signals, rates),
+            states: states(signals, rates).into(),
             known,
             torques: signals.quality.torques,
             voltage_v: signals.battery_voltage_v.clone(),
@@ -135,12 +137,12 @@ impl Trace {
             inertial_late_s,
             inertial_unsure_s,
             specific_force_m_s2: measured.cloned(),
-            commanded_n: commanded_n(signals, vehicle.rotors.len()),
+            commanded_n: OfRotors::new(vehicle.rotors.len(), signals.rotor_thrust_n.clone()),
             jitter: signals.jitter_wrench.clone(),
-            smooth_rate: Vec::new(),
-            smooth_turning: Vec::new(),
-            smooth_lift: Vec::new(),
-            felt_m_s2: Vec::new(),
+            smooth_rate: Series::default(),
+            smooth_turning: Series::default(),
+            smooth_lift: Series::default(),
+            felt_m_s2: Series::default(),
             gravity_m_s2: vehicle.gravity_m_s2,
             height_by_pose: signals.quality.height_by_pose,
         };
@@ -154,19 +156,23 @@ impl Trace {
         states: Vec<State>,
         specific_force_m_s2: Option<Vec<Vector3<f64>>>,
     ) -> Result<Self, TraceError> {
-        let mut trace = self.reading(states, specific_force_m_s2);
+        let mut trace = self.reading(states, specific_force_m_s2.map(Series::new));
         trace.smooth()?;
         Ok(trace)
     }
 
     /// The same if only the measurements of force and momentum are needed; smoothed series stay as they were.
-    pub(super) fn reading(&self, states: Vec<State>, specific_force_m_s2: Option<Vec<Vector3<f64>>>) -> Self {
-        Self { states, specific_force_m_s2, ..self.clone() }
+    pub(super) fn reading(
+        &self,
+        states: Vec<State>,
+        specific_force_m_s2: Option<Series<Vector3<f64>>>,
+    ) -> Self {
+        Self { states: states.into(), specific_force_m_s2, ..self.clone() }
     }
 
     /// Measured specific force, m/s^2, body; `None` without an accelerometer.
-    pub(super) fn specific_force_m_s2(&self) -> Option<&[Vector3<f64>]> {
-        self.specific_force_m_s2.as_deref()
+    pub(super) fn specific_force_m_s2(&self) -> Option<&Series<Vector3<f64>>> {
+        self.specific_force_m_s2.as_ref()
     }
 
     /// Number of weak-form rows.
@@ -194,10 +200,7 @@ impl Trace {
         series: &[Vector3<f64>],
         rows: &Range<usize>,
     ) -> [Vec<f64>; 3] {
-        std::array::from_fn(|axis| {
-            let column: Vec<f64> = series.iter().map(|v| v[axis]).collect();
-            self.kernel.apply(order, &column, &self.centers[rows.clone()])
-        })
+        self.kernel.apply_vector(order, series, &self.centers[rows.clone()])
     }
 
     /// An accelerometer is recorded.
@@ -230,13 +233,14 @@ impl Trace {
         let vectors = |axes: &[Vec<f64>; 3]| -> Vec<Vector3<f64>> {
             (0..self.grid.count).map(|i| Vector3::new(axes[0][i], axes[1][i], axes[2][i])).collect()
         };
-        self.smooth_rate = vectors(&rates);
-        self.smooth_turning = vectors(&turning);
+        self.smooth_rate = vectors(&rates).into();
+        self.smooth_turning = vectors(&turning).into();
         let measured = self.specific_force_m_s2.clone();
-        let force = measured.clone().unwrap_or_else(|| self.kinematic_force());
+        let force = measured.clone().unwrap_or_else(|| self.kinematic_force().into());
         let along = |axis: usize| filter.filtfilt(&force.iter().map(|force| force[axis]).collect::<Vec<_>>());
-        self.smooth_lift = along(2);
-        self.felt_m_s2 = measured.unwrap_or_else(|| vectors(&[along(0), along(1), self.smooth_lift.clone()]));
+        let lift = along(2);
+        self.felt_m_s2 = measured.unwrap_or_else(|| vectors(&[along(0), along(1), lift.clone()]).into());
+        self.smooth_lift = lift.into();
         Ok(())
     }
 
@@ -257,24 +261,19 @@ impl Trace {
 
     /// Rotor thrusts from the commands, N, behind the latency.
     #[must_use]
-    pub fn felt_n(&self, airframe: &Airframe, latency: ActuationLatency) -> Vec<Thrusts> {
-        felt(&self.commanded_n, airframe, self.grid.step_s, latency)
+    pub fn felt_n(&self, latency: ActuationLatency) -> OfRotors {
+        felt(&self.commanded_n, self.grid.step_s, latency)
     }
 
     /// Rotor thrusts from the commands, N, behind the latency: raw, and smoothed for regressors.
     #[must_use]
-    pub fn by_commands(&self, airframe: &Airframe, latency: ActuationLatency) -> (Vec<Thrusts>, RotorMotion) {
-        let felt = self.felt_n(airframe, latency);
+    pub fn by_commands(&self, airframe: &Airframe, latency: ActuationLatency) -> (OfRotors, RotorMotion) {
+        let felt = self.felt_n(latency);
         let rate_hz = 1.0 / self.grid.step_s;
-        let mut smooth = vec![[0.0; MAX_ROTORS]; self.grid.count];
-        if let Some(filter) = Butterworth::new(SMOOTH_HZ.min(0.4 * rate_hz), rate_hz) {
-            for rotor in 0..airframe.rotor_count() {
-                let column: Vec<f64> = felt.iter().map(|thrusts| thrusts[rotor]).collect();
-                for (out, value) in smooth.iter_mut().zip(filter.filtfilt(&column)) {
-                    out[rotor] = value;
-                }
-            }
-        }
+        let filter = Butterworth::new(SMOOTH_HZ.min(0.4 * rate_hz), rate_hz);
+        let smooth = filtered(&felt, |column| {
+            filter.as_ref().map_or_else(|| vec![0.0; column.len()], |filter| filter.filtfilt(column))
+        });
         let turning = RotorMotion::new(smooth, airframe, self.grid.step_s);
         (felt, turning)
     }
@@ -288,27 +287,27 @@ impl Trace {
         (mass_kg, inertia): (f64, &Matrix3<f64>),
         commanded: &RotorMotion,
         effects: Option<&[Vector4<f64>]>,
-    ) -> Vec<Thrusts> {
+    ) -> OfRotors {
         let mixer = vehicle.mixer().matrix;
         let rotors = vehicle.rotors.len();
         let mixer = DMatrix::from_fn(4, rotors, |i, j| mixer[(i, j)]);
         let Ok(inverse) = mixer.clone().pseudo_inverse(1e-12) else { return commanded.thrust_n.clone() };
-        let mut out = commanded.thrust_n.clone();
-        for (i, thrusts) in out.iter_mut().enumerate() {
+        let mut out: Vec<f64> = Vec::with_capacity(rotors * self.grid.count);
+        for (i, thrusts) in commanded.thrust_n.each().enumerate() {
             let rate = self.smooth_rate[i];
             let torque = inertia * self.smooth_turning[i] + rate.cross(&(inertia * rate));
             let mut short = Vector4::new(mass_kg * self.smooth_lift[i], torque.x, torque.y, torque.z);
             if let Some(effects) = effects {
                 short -= effects[i];
             }
-            for (rotor, thrust) in thrusts.iter().enumerate().take(rotors) {
+            for (rotor, thrust) in thrusts.iter().enumerate() {
                 short -= Vector4::from_fn(|row, _| mixer[(row, rotor)] * thrust);
             }
-            for (rotor, thrust) in thrusts.iter_mut().enumerate().take(rotors) {
-                *thrust += (0..4).map(|row| inverse[(rotor, row)] * short[row]).sum::<f64>();
-            }
+            out.extend(thrusts.iter().enumerate().map(|(rotor, thrust)| {
+                thrust + (0..4).map(|row| inverse[(rotor, row)] * short[row]).sum::<f64>()
+            }));
         }
-        out
+        OfRotors::new(rotors, out.into())
     }
 
     /// Torque that the measured rotation needs, `J w' + w x J w`, smoothed, body, N m.
@@ -316,7 +315,7 @@ impl Trace {
     pub fn turning_torque(&self, inertia: &Matrix3<f64>) -> Vec<Vector3<f64>> {
         self.smooth_rate
             .iter()
-            .zip(&self.smooth_turning)
+            .zip(self.smooth_turning.iter())
             .map(|(rate, turning)| inertia * turning + rate.cross(&(inertia * rate)))
             .collect()
     }
@@ -336,7 +335,7 @@ fn centers_and_runs(signals: &Signals, kernel: &WeakKernel) -> (Vec<usize>, Vec<
 
 /// States at each grid instant; what is not known is zero or level.
 fn states(signals: &Signals, rates: &[Vector3<f64>]) -> Vec<State> {
-    let of = |series: &Option<Vec<Vector3<f64>>>, i: usize| {
+    let of = |series: &Option<Series<Vector3<f64>>>, i: usize| {
         series.as_ref().map_or_else(Vector3::zeros, |series| series[i])
     };
     (0..signals.grid.count)
@@ -347,14 +346,4 @@ fn states(signals: &Signals, rates: &[Vector3<f64>]) -> Vec<State> {
             rates_rad_s: rates[i],
         })
         .collect()
-}
-
-/// Thrust of each rotor by the commands, N.
-fn commanded_n(signals: &Signals, rotors: usize) -> Vec<Thrusts> {
-    let padded = |thrusts: &[f64]| {
-        let mut all = [0.0; MAX_ROTORS];
-        all[..rotors].copy_from_slice(thrusts);
-        all
-    };
-    signals.rotor_thrust_n.chunks_exact(rotors).map(padded).collect()
 }
