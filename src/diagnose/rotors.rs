@@ -25,7 +25,13 @@ impl OfRotors {
     #[must_use]
     pub fn at(&self, index: usize) -> Thrusts {
         let mut all = [0.0; MAX_ROTORS];
-        all[..self.rotors].copy_from_slice(&self.flat[index * self.rotors..(index + 1) * self.rotors]);
+        let flat = &self.flat[index * self.rotors..(index + 1) * self.rotors];
+        // the usual numbers of rotors are copied without a call
+        match flat {
+            [a, b, c, d] => all[..4].copy_from_slice(&[*a, *b, *c, *d]),
+            [a, b, c, d, e, f] => all[..6].copy_from_slice(&[*a, *b, *c, *d, *e, *f]),
+            _ => all[..flat.len()].copy_from_slice(flat),
+        }
         all
     }
 
