@@ -12,7 +12,7 @@ use super::channels::{
 };
 use super::nuisances::{momentum_rows, nuisances};
 use super::rotors::{OfRotors, RotorMotion};
-use super::sensors::{is_of_sensors, true_motion, true_readings};
+use super::sensors::{KnownMotion, is_of_sensors, true_motion, true_readings};
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use super::velocity_error::velocity_error;
@@ -41,6 +41,8 @@ pub struct Rows {
     pub torque_rms: [f64; 3],
     /// data for further columns about the same base
     flights: Vec<Arc<Along>>,
+    /// of the base, where it has effects on the sensors
+    known_motion: Option<KnownMotion>,
 }
 
 /// One flight's rotors and loads under the base.
@@ -62,7 +64,9 @@ impl Rows {
     /// [`PhysicsError`] where the base is not physical.
     pub fn new(recorded: &[Trace], base: &Base) -> Result<Self, PhysicsError> {
         let model = base.model(&[])?;
-        let flights = &true_motion(recorded, base)[..];
+        let known_motion = KnownMotion::of(recorded, base);
+        let motion = KnownMotion::or_found(known_motion.as_ref(), recorded, base);
+        let flights = &motion[..];
         let parts: Vec<Part> =
             flights.par_iter().map(|trace| one_flight((trace, flights.len()), base, &model)).collect();
         let mut rows = Self {
@@ -74,6 +78,7 @@ impl Rows {
             effects: Vec::new(),
             torque_rms: [0.0; 3],
             flights: Vec::new(),
+            known_motion: known_motion.clone(),
         };
         let mut squares = Vector3::zeros();
         for trace in flights {
@@ -120,6 +125,7 @@ impl Rows {
             effects: self.effects.clone(),
             torque_rms: self.torque_rms,
             flights: Vec::new(),
+            known_motion: None,
         }
     }
 
@@ -158,7 +164,7 @@ impl Rows {
         base: &Base,
         candidate: &EffectTerm,
     ) -> Result<Vec<Channels>, PhysicsError> {
-        let motion = true_motion(flights, base);
+        let motion = KnownMotion::or_found(self.known_motion.as_ref(), flights, base);
         let mut columns = Vec::with_capacity(candidate.free.len());
         for &index in &candidate.free {
             let mut moved = candidate.clone();
@@ -186,7 +192,8 @@ impl Rows {
         base: &Base,
         candidate: &EffectTerm,
     ) -> Result<Vec<Channels>, PhysicsError> {
-        let (without, motion) = (base.model(&[])?, true_motion(flights, base));
+        let without = base.model(&[])?;
+        let motion = KnownMotion::or_found(self.known_motion.as_ref(), flights, base);
         let mut columns = Vec::with_capacity(candidate.free.len());
         for &index in &candidate.free {
             let mut moved = candidate.clone();

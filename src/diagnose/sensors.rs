@@ -10,6 +10,7 @@ use crate::physics::{Effect, Hook, Measurement, State};
 use crate::signals::{Series, central_difference};
 use nalgebra::Vector3;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Largest number of fixed-point passes. Each pass reduces the error by the effect's size (below 0.2).
 const PASSES: usize = 8;
@@ -33,6 +34,53 @@ pub(super) fn true_motion<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [Tra
         trace.with_motion(states, force).unwrap_or_else(|_| trace.clone())
     };
     Cow::Owned(flights.iter().map(moved).collect())
+}
+
+/// The true motion of flights with effects on the sensors, kept: many columns need it, and it takes long to find.
+#[derive(Debug, Clone)]
+pub(super) struct KnownMotion {
+    faults: Vec<EffectTerm>,
+    /// states and felt specific force of each flight as recorded
+    recorded: Vec<(Series<State>, Series<Vector3<f64>>)>,
+    flights: Arc<[Trace]>,
+}
+
+impl KnownMotion {
+    /// `None` where the base has no effect on the sensors.
+    pub(super) fn of(recorded: &[Trace], base: &Base) -> Option<Self> {
+        let faults: Vec<EffectTerm> = faults(base).into_iter().cloned().collect();
+        (!faults.is_empty()).then(|| Self {
+            faults,
+            recorded: recorded.iter().map(|trace| (trace.states.clone(), trace.felt_m_s2.clone())).collect(),
+            flights: true_motion(recorded, base).into(),
+        })
+    }
+
+    fn is_of(&self, recorded: &[Trace], base: &Base) -> bool {
+        let faults = faults(base);
+        let same_flight = |(known, trace): (&(Series<State>, Series<Vector3<f64>>), &Trace)| {
+            Arc::ptr_eq(&known.0, &trace.states) && Arc::ptr_eq(&known.1, &trace.felt_m_s2)
+        };
+        let same_fault = |(known, fault): (&EffectTerm, &&EffectTerm)| {
+            known.is(fault.signature) && known.values == fault.values
+        };
+        self.faults.len() == faults.len()
+            && self.recorded.len() == recorded.len()
+            && self.recorded.iter().zip(recorded).all(same_flight)
+            && self.faults.iter().zip(&faults).all(same_fault)
+    }
+
+    /// The true motion of flights given a base: the one that is known, or else found anew.
+    pub(super) fn or_found<'a>(
+        known: Option<&'a Self>,
+        recorded: &'a [Trace],
+        base: &Base,
+    ) -> Cow<'a, [Trace]> {
+        match known.filter(|known| known.is_of(recorded, base)) {
+            Some(known) => Cow::Borrowed(&known.flights),
+            None => true_motion(recorded, base),
+        }
+    }
 }
 
 /// The same if only the measurements of force and momentum are needed.

@@ -190,17 +190,28 @@ impl Trace {
     /// `K` of a vector series, axis by axis.
     #[must_use]
     pub fn weak_vector(&self, order: usize, series: &[Vector3<f64>]) -> [Vec<f64>; 3] {
-        self.weak_vector_in(order, series, &(0..self.rows()))
+        self.kernel.apply_vector(order, series, &self.centers)
     }
 
-    /// The same at some of the rows.
+    /// The same at some of the rows, of a series over the instants that these reach.
     pub(super) fn weak_vector_in(
         &self,
         order: usize,
         series: &[Vector3<f64>],
         rows: &Range<usize>,
     ) -> [Vec<f64>; 3] {
-        self.kernel.apply_vector(order, series, &self.centers[rows.clone()])
+        let from = self.reach(rows).start;
+        let centers: Vec<usize> = self.centers[rows.clone()].iter().map(|center| center - from).collect();
+        self.kernel.apply_vector(order, series, &centers)
+    }
+
+    /// Instants that the test functions of these rows reach.
+    pub(super) fn reach(&self, rows: &Range<usize>) -> Range<usize> {
+        match self.centers[rows.clone()] {
+            [first, .., last] => first - self.kernel.half_count..last + self.kernel.half_count + 1,
+            [only] => only - self.kernel.half_count..only + self.kernel.half_count + 1,
+            [] => 0..0,
+        }
     }
 
     /// An accelerometer is recorded.

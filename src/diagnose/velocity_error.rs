@@ -117,10 +117,11 @@ impl Knots {
 
     /// Its values in these rows.
     fn column(&self, knot: usize, trace: &Trace, (mass_kg, slope): (f64, &[Vector3<f64>])) -> Channels {
-        let hat: Vec<f64> =
-            (0..trace.grid.count).map(|index| self.hat(knot, trace.grid.time_s(index))).collect();
         let rows = self.rows(knot, trace);
-        let force: Vec<Vector3<f64>> = slope.iter().zip(&hat).map(|(slope, hat)| slope * *hat).collect();
+        let reach = trace.reach(&rows);
+        let hat: Vec<f64> = reach.clone().map(|index| self.hat(knot, trace.grid.time_s(index))).collect();
+        let force: Vec<Vector3<f64>> =
+            slope[reach].iter().zip(&hat).map(|(slope, hat)| slope * *hat).collect();
         let no_torque = std::array::from_fn(|_| vec![0.0; rows.len()]);
         let mut out = channels(trace, trace.weak_vector_in(0, &force, &rows), no_torque);
         let Some(first) = kinematic(trace) else { return out };
