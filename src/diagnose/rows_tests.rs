@@ -16,7 +16,17 @@ pub(in super::super) fn rows_of(
 ) -> Rows {
     let time_s = (0..residual[0].len()).map(|row| 0.05 * row as f64).collect();
     let measured = std::array::from_fn(|_| runs.clone());
-    Rows { time_s, runs, measured, residual, nuisances, effects, torque_rms: [1.0; 3], flights: Vec::new() }
+    Rows {
+        time_s,
+        runs,
+        measured,
+        residual,
+        nuisances,
+        effects,
+        torque_rms: [1.0; 3],
+        flights: Vec::new(),
+        known_motion: None,
+    }
 }
 
 const STEP_S: f64 = 0.01;

@@ -148,3 +148,31 @@ fn angular_acceleration(states: &[State], step_s: f64) -> Vec<Vector3<f64>> {
     });
     (0..states.len()).map(|i| Vector3::new(axes[0][i], axes[1][i], axes[2][i])).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::rows::tests::{turning_on_the_spot, vehicle};
+    use super::super::signatures::signature_of;
+    use super::*;
+
+    #[test]
+    fn a_known_motion_is_taken_for_its_own_base_alone() {
+        let vehicle = vehicle();
+        let flights = [Trace::new(&turning_on_the_spot(), &vehicle, 0.2).unwrap()];
+        let turned = |angle_rad: f64| {
+            let mut base = Base::rigid(&vehicle);
+            let signature = signature_of("imu_misalignment").unwrap();
+            base.present.push(signature.term(&[angle_rad, 0.0, 0.0], &[0]));
+            base
+        };
+        let known = KnownMotion::of(&flights, &turned(0.02));
+        let rate = |motion: Cow<[Trace]>| motion[0].states[100].rates_rad_s;
+        for angle_rad in [0.02, 0.05] {
+            let base = turned(angle_rad);
+            let found = rate(KnownMotion::or_found(known.as_ref(), &flights, &base));
+            assert_eq!(found, rate(true_motion(&flights, &base)));
+        }
+        assert!(matches!(KnownMotion::or_found(known.as_ref(), &flights, &turned(0.02)), Cow::Borrowed(_)));
+        assert!(KnownMotion::of(&flights, &Base::rigid(&vehicle)).is_none());
+    }
+}
