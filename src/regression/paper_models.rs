@@ -92,7 +92,7 @@ pub fn paper_models(
     let mut runs = crate::signals::Grid::runs(&inside, 50).into_iter().peekable();
     let (mut phi, mut low_wrench) = (FilteredPhi::new(pair), [PairMemory::default(); 4]);
     // the filters run through the whole flight; what they give is kept where it may be used
-    for i in 0..count {
+    for (i, omega_dot) in omega_dot.iter().enumerate() {
         let filtered_phi = phi.next(vertical.momentum[i], vertical.rest[i], &filtered.rate[i]);
         let wrench = filtered.wrench[i];
         let filtered_wrench =
@@ -100,7 +100,7 @@ pub fn paper_models(
         let Some(run) = runs.peek().filter(|run| run.contains(&i)) else { continue };
         let force = vertical.rate[i] + vertical.rest[i];
         let time_s = signals.grid.time_s(i);
-        standard.push(time_s, Phi::of(force, &filtered.rate[i], &omega_dot[i]), wrench);
+        standard.push(time_s, Phi::of(force, &filtered.rate[i], omega_dot), wrench);
         by_filter.push(time_s, filtered_phi, filtered_wrench);
         if i + 1 == run.end {
             let kept = standard.time_s.len() - run.len()..standard.time_s.len();
