@@ -9,7 +9,7 @@ use std::sync::Arc;
 use mavid::physics::effects::LinearDrag;
 use mavid::reconstruction::{Fit, KnownLag, STATE, State, Term, fit, force_problem};
 use mavid::recording::{Quantity, Stream};
-use mavid::signals::{AsRecorded, Grid, Quality, Signals, ThrustSource, Usable};
+use mavid::signals::{AsRecorded, Grid, Quality, Series, Signals, ThrustSource, Usable};
 use mavid::simulate::random_vehicle;
 use mavid::vehicle::Vehicle;
 use nalgebra::{Rotation3, UnitQuaternion, Vector3, Vector4};
@@ -93,15 +93,15 @@ fn recorded(vehicle: &Vehicle, seed: u64) -> Signals {
             specific_force: Some(Arc::new(stream(&felt))),
             velocity: Some(Arc::new(stream(&velocity))),
         },
-        attitude: Some(attitude),
-        rate: Some(rates),
-        specific_force: Some(felt),
+        attitude: Some(attitude.into()),
+        rate: Some(rates.into()),
+        specific_force: Some(felt.into()),
         world_acceleration: None,
-        position: Some(position),
-        velocity: Some(velocity),
-        rotor_thrust_n: thrusts,
+        position: Some(position.into()),
+        velocity: Some(velocity.into()),
+        rotor_thrust_n: thrusts.into(),
         full_thrust_n: vehicle.propulsion.full_thrust_n(),
-        wrench: vec![Vector4::zeros(); COUNT],
+        wrench: vec![Vector4::zeros(); COUNT].into(),
         jitter_wrench: None,
         battery_voltage_v: None,
         reference: None,
@@ -135,8 +135,10 @@ fn fitted(signals: &Signals, vehicle: &Vehicle, term: Term) -> Fit {
 
 /// Least squares of the measured sideways force on the autopilot's velocity, N/(m/s).
 fn regressed(signals: &Signals, vehicle: &Vehicle, axis: usize) -> f64 {
-    let each = signals.attitude.iter().flatten().zip(signals.velocity.iter().flatten());
-    let each = each.zip(signals.specific_force.iter().flatten());
+    let vectors = |series: &Option<Series<Vector3<f64>>>| series.clone().unwrap_or_default();
+    let (velocity, felt) = (vectors(&signals.velocity), vectors(&signals.specific_force));
+    let attitude = signals.attitude.clone().unwrap_or_default();
+    let each = attitude.iter().zip(velocity.iter()).zip(felt.iter());
     let sums = each.fold((0.0, 0.0), |(cross, square), ((attitude, velocity), felt)| {
         let through = attitude.inverse_transform_vector(velocity)[axis];
         (cross - vehicle.body.mass_kg * felt[axis] * through, square + through * through)

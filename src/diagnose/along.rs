@@ -35,8 +35,8 @@ pub fn wrench_along(model: &Model, trace: &Trace, turning: &RotorMotion) -> Vec<
         }
         let input = Input {
             time_s: trace.grid.time_s(index),
-            speed_command: turning.speed[index],
-            speed_rate_1_s: turning.acceleration_1_s[index],
+            speed_command: turning.speed.at(index),
+            speed_rate_1_s: turning.acceleration_1_s.at(index),
             wind_m_s: Vector3::zeros(),
             battery_voltage_v: trace.voltage_v.as_ref().map(|v| v[index]),
         };
@@ -83,8 +83,8 @@ pub(super) fn moved_by(
         if base.present.is_empty() {
             break;
         }
-        let of_effects = by_motion.iter().zip(&motion.thrust_n).map(|(all, thrusts)| {
-            let rest = *all - airframe.thrust_wrench(thrusts);
+        let of_effects = by_motion.iter().enumerate().map(|(index, all)| {
+            let rest = *all - airframe.thrust_wrench(&motion.thrust_n.at(index));
             Vector4::new(rest.force_n.z, rest.torque_nm.x, rest.torque_nm.y, rest.torque_nm.z)
         });
         let mut of_effects: Vec<Vector4<f64>> = of_effects.collect();

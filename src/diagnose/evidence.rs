@@ -78,7 +78,10 @@ impl Weighted {
         let mut this = Self::at(rows, &sigma);
         for _ in 0..2 {
             sigma = this.residual_sigma();
-            this = Self::with(rows, &sigma, this.long_run_deviation().powi(2));
+            let alike = this.long_run_deviation().powi(2);
+            // two of a long flight at a time take much memory
+            drop(this);
+            this = Self::with(rows, &sigma, alike);
         }
         this
     }
@@ -219,7 +222,8 @@ impl Weighted {
         let seen = plain.iter().zip(&partialled).all(|(plain, partialled)| {
             plain.norm_squared() > 0.0 && partialled.norm_squared() > 1e-6 * plain.norm_squared()
         });
-        seen.then(|| (DMatrix::from_columns(&plain), DMatrix::from_columns(&partialled)))
+        let put_together = |columns: Vec<DVector<f64>>| DMatrix::from_columns(&columns);
+        seen.then(|| (put_together(plain), put_together(partialled)))
     }
 
     /// Tests columns. `None` if they cannot be distinguished from the nuisances or from each other.

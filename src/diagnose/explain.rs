@@ -6,6 +6,7 @@ use super::confusable::confusable_with;
 use super::evidence::LEAST_ROWS;
 use super::explanation::{Explanation, Verdict};
 use super::fit::{Fitted, Newton, fit};
+use super::floors::add_floors;
 use super::gates::Gates;
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
 use super::instruments::torques_by_instruments;
@@ -136,6 +137,7 @@ fn settle(flights: &[Signals], traces: &[Trace], found: &mut Search) -> Result<(
             break;
         }
     }
+    add_floors(&mut found.after);
     Ok(())
 }
 

@@ -27,7 +27,7 @@ pub(super) type Instruments = [Vec<Vec<f64>>; 3];
 /// Instruments of a flight: sideways acceleration for roll, forward for pitch, turning for yaw.
 pub(super) fn instruments(trace: &Trace, reference: &Reference) -> Instruments {
     let turned = |axis: usize| -> Vec<f64> {
-        let each = reference.acceleration.iter().zip(&reference.yaw);
+        let each = reference.acceleration.iter().zip(reference.yaw.iter());
         each.map(|(world, yaw)| {
             Rotation3::from_euler_angles(0.0, 0.0, *yaw).inverse_transform_vector(world)[axis]
         })

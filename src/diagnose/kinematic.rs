@@ -12,12 +12,14 @@ impl Trace {
         if !(self.known.attitude && self.known.velocity) {
             return None;
         }
-        let velocity: Vec<Vector3<f64>> = self.states.iter().map(|state| state.velocity_m_s).collect();
-        Some(self.weak_acceleration(&velocity, &(Vector3::z() * self.gravity_m_s2), &(0..self.rows())))
+        let all = 0..self.rows();
+        let velocity: Vec<Vector3<f64>> =
+            self.states[self.reach(&all)].iter().map(|state| state.velocity_m_s).collect();
+        Some(self.weak_acceleration(&velocity, &(Vector3::z() * self.gravity_m_s2), &all))
     }
 
     /// `K1(R'v) + K(w x R'v + R'a)` at some of the rows, body, m/s^2, with the measured attitude `R` and rates `w`: of `v' + a`
-    /// for a velocity (world, m/s, one entry a grid instant) and a constant acceleration (world, m/s^2).
+    /// for a velocity (world, m/s, one entry for each instant that these rows reach) and a constant acceleration (world, m/s^2).
     pub(super) fn weak_acceleration(
         &self,
         velocity_m_s: &[Vector3<f64>],
@@ -25,7 +27,7 @@ impl Trace {
         rows: &Range<usize>,
     ) -> [Vec<f64>; 3] {
         let (mut body, mut rest) = (Vec::new(), Vec::new());
-        for (state, velocity) in self.states.iter().zip(velocity_m_s) {
+        for (state, velocity) in self.states[self.reach(rows)].iter().zip(velocity_m_s) {
             let velocity = state.attitude.inverse_transform_vector(velocity);
             let constant = state.attitude.inverse_transform_vector(constant_m_s2);
             rest.push(state.rates_rad_s.cross(&velocity) + constant);

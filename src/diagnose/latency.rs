@@ -308,7 +308,7 @@ pub(super) fn lag_column(flights: &[Trace], fitted: &Fitted) -> Channels {
         if let Some(commanded) = fitted.rows.commanded(index) {
             let thrust: Vec<Vector4<f64>> = commanded
                 .thrust_n
-                .iter()
+                .each()
                 .map(|thrusts| Vector4::new(thrusts.iter().sum(), 0.0, 0.0, 0.0))
                 .collect();
             let late = delayed_wrench(&thrust, trace.grid.step_s, behind);

@@ -4,7 +4,6 @@ use super::base::Base;
 use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
 use super::rotors::RotorMotion;
 use super::trace::Trace;
-use crate::physics::Wrench;
 use crate::regression::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor};
 use crate::signals::central_difference;
 use nalgebra::Vector3;
@@ -45,7 +44,7 @@ pub(super) fn nuisances(
     trace: &Trace,
     base: &Base,
     commanded: &RotorMotion,
-    by_commands: &[Wrench],
+    by_commands_n: &[Vector3<f64>],
 ) -> Vec<NuisanceColumn> {
     let none = || vec![0.0; trace.rows()];
     let force = |values: [Vec<f64>; 3]| channels(trace, values, nothing(trace));
@@ -60,14 +59,14 @@ pub(super) fn nuisances(
     let mass_kg = base.vehicle.body.mass_kg;
     let mut out = Vec::new();
     // more mass than assumed: more force than assumed was there, in proportion to it
-    let forces: Vec<Vector3<f64>> = by_commands.iter().map(|w| w.force_n / -mass_kg).collect();
+    let forces: Vec<Vector3<f64>> = by_commands_n.iter().map(|force_n| force_n / -mass_kg).collect();
     out.push(column(Nuisance::Mass, None, force(trace.weak_vector(0, &forces))));
     for (entry, axes) in momentum_rows(trace).into_iter().enumerate() {
         let values = axes.map(|values| values.into_iter().map(|v| -v).collect::<Vec<f64>>());
         out.push(column(Nuisance::Inertia(entry), None, torque(values)));
     }
     // by the commands for the force, by the motion for the torques
-    let thrust: Vec<f64> = commanded.thrust_n.iter().map(|thrusts| thrusts.iter().sum::<f64>()).collect();
+    let thrust: Vec<f64> = commanded.thrust_n.each().map(|thrusts| thrusts.iter().sum::<f64>()).collect();
     let late: Vec<f64> = central_difference(&thrust, trace.grid.step_s).iter().map(|d| -d).collect();
     let late = trace.weak(0, &late);
     let turning = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);

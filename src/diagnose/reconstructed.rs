@@ -22,9 +22,6 @@ use rayon::prelude::*;
 /// Relative standard error that the form of an aerodynamic law adds: on ArduCopter's simulator, whose sensors are clean and whose
 /// laws are others, sizes were right to 1 to 3 %.
 const FORM: f64 = 0.02;
-/// Relative standard error of the mass that the thrust law adds: of 20 flights of both autopilots' simulators 16 were within 0.2 %,
-/// four within 0.4 %.
-const MASS_FORM: f64 = 0.003;
 /// Normal deviate beyond which the weak form and the reconstruction differ.
 const HAUSMAN: f64 = 2.5;
 /// Standard deviation of a lag that the torques have told, s, beside its own.
@@ -329,7 +326,7 @@ fn replaced(
     let mass = after.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Mass);
     // of the mass: -m / scale per unit of scale
     let mut all: Vec<(usize, usize, f64, f64)> =
-        mass.map(|mass| (mass, 0, -mass_kg / scale, MASS_FORM * mass_kg)).into_iter().collect();
+        mass.map(|mass| (mass, 0, -mass_kg / scale, 0.0)).into_iter().collect();
     for &Size { place, slot, at, value } in &sizes {
         let parameter = after.base.present[place].parameter(slot);
         let by = if parameter.is_some_and(|of| follows_force(of.unit)) { by_force } else { 1.0 };

@@ -11,8 +11,8 @@ use super::channels::{
     AXES, CHANNELS, Channels, Nuisance, NuisanceColumn, SECOND, append, channels, joined, measures, per_step,
 };
 use super::nuisances::{momentum_rows, nuisances};
-use super::rotors::{RotorMotion, Thrusts};
-use super::sensors::{is_of_sensors, true_motion, true_readings};
+use super::rotors::{OfRotors, RotorMotion};
+use super::sensors::{KnownMotion, is_of_sensors, true_motion, true_readings};
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use super::velocity_error::velocity_error;
@@ -20,6 +20,7 @@ use crate::physics::{Model, PhysicsError, Wrench};
 use nalgebra::{Vector3, Vector4};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// All flights in weak form, linearised about a base.
 #[derive(Debug, Clone)]
@@ -39,17 +40,21 @@ pub struct Rows {
     /// N m, root mean square of the torque that the motion needs, about body x, y, z
     pub torque_rms: [f64; 3],
     /// data for further columns about the same base
-    flights: Vec<Along>,
+    flights: Vec<Arc<Along>>,
+    /// of the base, where it has effects on the sensors
+    known_motion: Option<KnownMotion>,
 }
 
 /// One flight's rotors and loads under the base.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 struct Along {
-    felt: Vec<Thrusts>,
+    felt: OfRotors,
     commanded: RotorMotion,
     motion: RotorMotion,
-    by_commands: Vec<Wrench>,
-    by_motion: Vec<Wrench>,
+    /// N, of the model with the rotors by the commands
+    force_n: Vec<Vector3<f64>>,
+    /// N m, of the model with the rotors by the motion
+    torque_nm: Vec<Vector3<f64>>,
 }
 
 impl Rows {
@@ -59,7 +64,9 @@ impl Rows {
     /// [`PhysicsError`] where the base is not physical.
     pub fn new(recorded: &[Trace], base: &Base) -> Result<Self, PhysicsError> {
         let model = base.model(&[])?;
-        let flights = &true_motion(recorded, base)[..];
+        let known_motion = KnownMotion::of(recorded, base);
+        let motion = KnownMotion::or_found(known_motion.as_ref(), recorded, base);
+        let flights = &motion[..];
         let parts: Vec<Part> =
             flights.par_iter().map(|trace| one_flight((trace, flights.len()), base, &model)).collect();
         let mut rows = Self {
@@ -71,6 +78,7 @@ impl Rows {
             effects: Vec::new(),
             torque_rms: [0.0; 3],
             flights: Vec::new(),
+            known_motion: known_motion.clone(),
         };
         let mut squares = Vector3::zeros();
         for trace in flights {
@@ -90,7 +98,7 @@ impl Rows {
             measured.for_each(|(_, measured)| measured.extend(runs()));
             append(&mut rows.residual, &residual);
             rows.nuisances = joined(rows.nuisances, before, nuisances, trace.rows());
-            rows.flights.push(along);
+            rows.flights.push(Arc::new(along));
         }
         rows.nuisances.append(&mut of_one_flight);
         rows.torque_rms = std::array::from_fn(|axis| (squares[axis] / rows.len().max(1) as f64).sqrt());
@@ -117,6 +125,7 @@ impl Rows {
             effects: self.effects.clone(),
             torque_rms: self.torque_rms,
             flights: Vec::new(),
+            known_motion: None,
         }
     }
 
@@ -155,7 +164,7 @@ impl Rows {
         base: &Base,
         candidate: &EffectTerm,
     ) -> Result<Vec<Channels>, PhysicsError> {
-        let motion = true_motion(flights, base);
+        let motion = KnownMotion::or_found(self.known_motion.as_ref(), flights, base);
         let mut columns = Vec::with_capacity(candidate.free.len());
         for &index in &candidate.free {
             let mut moved = candidate.clone();
@@ -183,7 +192,8 @@ impl Rows {
         base: &Base,
         candidate: &EffectTerm,
     ) -> Result<Vec<Channels>, PhysicsError> {
-        let (without, motion) = (base.model(&[])?, true_motion(flights, base));
+        let without = base.model(&[])?;
+        let motion = KnownMotion::or_found(self.known_motion.as_ref(), flights, base);
         let mut columns = Vec::with_capacity(candidate.free.len());
         for &index in &candidate.free {
             let mut moved = candidate.clone();
@@ -235,9 +245,7 @@ impl Rows {
         let model = base.model(&[])?;
         let mut out = Channels::default();
         for (trace, along) in true_readings(recorded, base).iter().zip(&self.flights) {
-            let rotors = (&along.felt[..], &along.commanded, &along.motion);
-            let part = residual(trace, base, &model, rotors, (&along.by_commands, &along.by_motion));
-            append(&mut out, &part);
+            append(&mut out, &residual(trace, base, &model, along));
         }
         Ok(out)
     }
@@ -248,18 +256,18 @@ impl Rows {
         for (trace, along) in flights.iter().zip(&self.flights) {
             let of = |model: &Model| {
                 rayon::join(
-                    || wrench_along(model, trace, &along.commanded),
-                    || wrench_along(model, trace, &along.motion),
+                    || forces_n(&wrench_along(model, trace, &along.commanded)),
+                    || torques_nm(&wrench_along(model, trace, &along.motion)),
                 )
             };
-            let ((force, torque), below) = (of(up), down.map(of));
+            let ((mut forces, mut torques), below) = (of(up), down.map(of));
             let (force_0, torque_0) =
-                below.as_ref().map_or((&along.by_commands, &along.by_motion), |(f, t)| (f, t));
-            let per = |a: Vector3<f64>, b: Vector3<f64>| (a - b) / step;
-            let forces: Vec<Vector3<f64>> =
-                force.iter().zip(force_0).map(|(a, b)| per(a.force_n, b.force_n)).collect();
-            let torques: Vec<Vector3<f64>> =
-                torque.iter().zip(torque_0).map(|(a, b)| per(a.torque_nm, b.torque_nm)).collect();
+                below.as_ref().map_or((&along.force_n, &along.torque_nm), |(f, t)| (f, t));
+            let per_step = |of: &mut [Vector3<f64>], from: &[Vector3<f64>]| {
+                of.iter_mut().zip(from).for_each(|(a, b)| *a = (*a - b) / step);
+            };
+            per_step(&mut forces, force_0);
+            per_step(&mut torques, torque_0);
             append(&mut out, &weak_wrench(trace, &forces, &torques));
         }
         out
@@ -276,6 +284,14 @@ pub(super) fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, Phy
     let mut out = Channels::default();
     parts.iter().for_each(|part| append(&mut out, part));
     Ok(out)
+}
+
+fn forces_n(wrenches: &[Wrench]) -> Vec<Vector3<f64>> {
+    wrenches.iter().map(|wrench| wrench.force_n).collect()
+}
+
+fn torques_nm(wrenches: &[Wrench]) -> Vec<Vector3<f64>> {
+    wrenches.iter().map(|wrench| wrench.torque_nm).collect()
 }
 
 fn weak_wrench(trace: &Trace, forces: &[Vector3<f64>], torques: &[Vector3<f64>]) -> Channels {
@@ -296,34 +312,30 @@ fn one_flight((trace, flights): (&Trace, usize), base: &Base, model: &Model) -> 
     let (felt, commanded) = trace.by_commands(&model.airframe, base.latency);
     let (by_commands, (motion, by_motion)) =
         rayon::join(|| wrench_along(model, trace, &commanded), || moved_by(trace, (base, model), &commanded));
+    let (force_n, torque_nm) = (forces_n(&by_commands), torques_nm(&by_motion));
+    drop((by_commands, by_motion));
+    let along = Along { felt, commanded, motion, force_n, torque_nm };
     let (residual, (nuisances, own)) = rayon::join(
-        || residual(trace, base, model, (&felt, &commanded, &motion), (&by_commands, &by_motion)),
+        || residual(trace, base, model, &along),
         || {
-            let own = velocity_error((trace, flights), (base, model), &commanded, &by_commands);
-            (nuisances(trace, base, &commanded, &by_commands), own)
+            let own = velocity_error((trace, flights), (base, model), &along.commanded, &along.force_n);
+            (nuisances(trace, base, &along.commanded, &along.force_n), own)
         },
     );
-    Part { along: Along { felt, commanded, motion, by_commands, by_motion }, residual, nuisances, own }
+    Part { along, residual, nuisances, own }
 }
 
 /// `m K(a) - K(F)` and `D(J w) + K(w x J w) - K(M)`, with the effects' part from the smooth thrusts.
-fn residual(
-    trace: &Trace,
-    base: &Base,
-    model: &Model,
-    (felt, commanded, motion): (&[Thrusts], &RotorMotion, &RotorMotion),
-    (by_commands, by_motion): (&[Wrench], &[Wrench]),
-) -> Channels {
+fn residual(trace: &Trace, base: &Base, model: &Model, along: &Along) -> Channels {
     let airframe = &model.airframe;
     let jitter = trace.jitter(&airframe.propulsion);
+    let (commanded_n, moved_n) = (&along.commanded.thrust_n, &along.motion.thrust_n);
     let (mut forces, mut torques) = (Vec::new(), Vec::new());
     for index in 0..trace.grid.count {
-        let rotors = airframe.thrust_wrench(&felt[index]);
+        let rotors = airframe.thrust_wrench(&along.felt.at(index));
         let jitter = jitter.as_ref().map_or_else(Vector4::zeros, |jitter| jitter[index] * 0.5);
-        let effects_force =
-            by_commands[index].force_n - airframe.thrust_wrench(&commanded.thrust_n[index]).force_n;
-        let effects_torque =
-            by_motion[index].torque_nm - airframe.thrust_wrench(&motion.thrust_n[index]).torque_nm;
+        let effects_force = along.force_n[index] - airframe.thrust_wrench(&commanded_n.at(index)).force_n;
+        let effects_torque = along.torque_nm[index] - airframe.thrust_wrench(&moved_n.at(index)).torque_nm;
         let used = if trace.usable[index] { 1.0 } else { 0.0 };
         forces.push(rotors.force_n - Vector3::z() * jitter[0] + effects_force * used);
         torques

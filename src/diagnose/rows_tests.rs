@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::recording::Quantity;
-use crate::signals::{AsRecorded, Grid, Quality, Signals, ThrustSource, Usable};
+use crate::signals::{AsRecorded, Grid, Quality, Series, Signals, ThrustSource, Usable};
 use crate::simulate::random_vehicle;
 use crate::vehicle::{RigidBody, Rotor, Spin, Vehicle};
 use nalgebra::{Matrix3, UnitQuaternion};
@@ -16,7 +16,17 @@ pub(in super::super) fn rows_of(
 ) -> Rows {
     let time_s = (0..residual[0].len()).map(|row| 0.05 * row as f64).collect();
     let measured = std::array::from_fn(|_| runs.clone());
-    Rows { time_s, runs, measured, residual, nuisances, effects, torque_rms: [1.0; 3], flights: Vec::new() }
+    Rows {
+        time_s,
+        runs,
+        measured,
+        residual,
+        nuisances,
+        effects,
+        torque_rms: [1.0; 3],
+        flights: Vec::new(),
+        known_motion: None,
+    }
 }
 
 const STEP_S: f64 = 0.01;
@@ -46,15 +56,15 @@ pub(in super::super) fn turning_on_the_spot() -> Signals {
     Signals {
         grid: Grid { start_s: 0.0, step_s: STEP_S, count },
         usable: vec![true; count],
-        attitude: Some((0..count).map(turned).collect()),
-        rate: Some(vec![rate; count]),
-        specific_force: Some(vec![Vector3::from(FELT_M_S2); count]),
+        attitude: Some(Series::new((0..count).map(turned).collect())),
+        rate: Some(vec![rate; count].into()),
+        specific_force: Some(vec![Vector3::from(FELT_M_S2); count].into()),
         world_acceleration: None,
         position: None,
-        velocity: Some(vec![Vector3::zeros(); count]),
-        rotor_thrust_n: THRUSTS_N.repeat(count),
+        velocity: Some(vec![Vector3::zeros(); count].into()),
+        rotor_thrust_n: THRUSTS_N.repeat(count).into(),
         full_thrust_n: vehicle().propulsion.full_thrust_n(),
-        wrench: vec![Vector4::zeros(); count],
+        wrench: vec![Vector4::zeros(); count].into(),
         jitter_wrench: None,
         battery_voltage_v: None,
         as_recorded: AsRecorded::default(),

@@ -30,16 +30,21 @@ pub(super) fn test_all(
         })
         .map(|(_, candidate)| *candidate)
         .collect();
-    let columns: Vec<Option<Vec<Channels>>> =
-        widest.par_iter().map(|candidate| columns_of(flights, fitted, candidate)).collect();
-    let mut out: Vec<Tested> = open
-        .par_iter()
-        .filter_map(|candidate| {
-            let (wide, columns) = widest.iter().zip(&columns).find(|(wide, _)| covers(wide, candidate))?;
-            let evidence = fitted.weighted.test(&chosen(columns.as_ref()?, wide, candidate))?;
-            Some(Tested { candidate: (*candidate).clone(), evidence })
-        })
-        .collect();
+    // columns of a long flight take much memory: each candidate's are gone before the next one's
+    let tested_of = |(place, wide): (usize, &&Candidate)| -> Vec<(usize, Tested)> {
+        let is_of =
+            |candidate: &Candidate| widest.iter().position(|wide| covers(wide, candidate)) == Some(place);
+        let Some(columns) = columns_of(flights, fitted, wide) else { return Vec::new() };
+        let covered = open.iter().enumerate().filter(|(_, candidate)| is_of(candidate));
+        let tested = covered.filter_map(|(index, candidate)| {
+            let evidence = fitted.weighted.test(&chosen(&columns, wide, candidate))?;
+            Some((index, Tested { candidate: (*candidate).clone(), evidence }))
+        });
+        tested.collect()
+    };
+    let mut tested: Vec<(usize, Tested)> = widest.par_iter().enumerate().flat_map_iter(tested_of).collect();
+    tested.sort_by_key(|(index, _)| *index);
+    let mut out: Vec<Tested> = tested.into_iter().map(|(_, tested)| tested).collect();
     out.extend(test_winds(flights, fitted, signatures));
     // in the order of the signatures
     let place =

@@ -7,9 +7,10 @@ use super::base::Base;
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::{Effect, Hook, Measurement, State};
-use crate::signals::central_difference;
+use crate::signals::{Series, central_difference};
 use nalgebra::Vector3;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Largest number of fixed-point passes. Each pass reduces the error by the effect's size (below 0.2).
 const PASSES: usize = 8;
@@ -35,6 +36,53 @@ pub(super) fn true_motion<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [Tra
     Cow::Owned(flights.iter().map(moved).collect())
 }
 
+/// The true motion of flights with effects on the sensors, kept: many columns need it, and it takes long to find.
+#[derive(Debug, Clone)]
+pub(super) struct KnownMotion {
+    faults: Vec<EffectTerm>,
+    /// states and felt specific force of each flight as recorded
+    recorded: Vec<(Series<State>, Series<Vector3<f64>>)>,
+    flights: Arc<[Trace]>,
+}
+
+impl KnownMotion {
+    /// `None` where the base has no effect on the sensors.
+    pub(super) fn of(recorded: &[Trace], base: &Base) -> Option<Self> {
+        let faults: Vec<EffectTerm> = faults(base).into_iter().cloned().collect();
+        (!faults.is_empty()).then(|| Self {
+            faults,
+            recorded: recorded.iter().map(|trace| (trace.states.clone(), trace.felt_m_s2.clone())).collect(),
+            flights: true_motion(recorded, base).into(),
+        })
+    }
+
+    fn is_of(&self, recorded: &[Trace], base: &Base) -> bool {
+        let faults = faults(base);
+        let same_flight = |(known, trace): (&(Series<State>, Series<Vector3<f64>>), &Trace)| {
+            Arc::ptr_eq(&known.0, &trace.states) && Arc::ptr_eq(&known.1, &trace.felt_m_s2)
+        };
+        let same_fault = |(known, fault): (&EffectTerm, &&EffectTerm)| {
+            known.is(fault.signature) && known.values == fault.values
+        };
+        self.faults.len() == faults.len()
+            && self.recorded.len() == recorded.len()
+            && self.recorded.iter().zip(recorded).all(same_flight)
+            && self.faults.iter().zip(&faults).all(same_fault)
+    }
+
+    /// The true motion of flights given a base: the one that is known, or else found anew.
+    pub(super) fn or_found<'a>(
+        known: Option<&'a Self>,
+        recorded: &'a [Trace],
+        base: &Base,
+    ) -> Cow<'a, [Trace]> {
+        match known.filter(|known| known.is_of(recorded, base)) {
+            Some(known) => Cow::Borrowed(&known.flights),
+            None => true_motion(recorded, base),
+        }
+    }
+}
+
 /// The same if only the measurements of force and momentum are needed.
 pub(super) fn true_readings<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [Trace]> {
     let faults = faults(base);
@@ -43,7 +91,7 @@ pub(super) fn true_readings<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [T
     }
     let moved = |trace: &Trace| {
         let (states, force) = undone(trace, &faults);
-        trace.reading(states, force)
+        trace.reading(states, force.map(Series::new))
     };
     Cow::Owned(flights.iter().map(moved).collect())
 }
@@ -55,9 +103,9 @@ fn faults(base: &Base) -> Vec<&EffectTerm> {
 /// One flight's states and, where it was recorded, specific force (m/s^2, body).
 fn undone(trace: &Trace, faults: &[&EffectTerm]) -> (Vec<State>, Option<Vec<Vector3<f64>>>) {
     let shown_force = trace.specific_force_m_s2();
-    let mut states = trace.states.clone();
+    let mut states = trace.states.to_vec();
     let mut force: Vec<Vector3<f64>> =
-        shown_force.map_or_else(|| vec![Vector3::zeros(); states.len()], <[_]>::to_vec);
+        shown_force.map_or_else(|| vec![Vector3::zeros(); states.len()], |force| force.to_vec());
     for _ in 0..PASSES {
         let turning = angular_acceleration(&states, trace.grid.step_s);
         let mut missed = 0.0_f64;
@@ -99,4 +147,32 @@ fn angular_acceleration(states: &[State], step_s: f64) -> Vec<Vector3<f64>> {
         central_difference(&states.iter().map(|state| state.rates_rad_s[axis]).collect::<Vec<_>>(), step_s)
     });
     (0..states.len()).map(|i| Vector3::new(axes[0][i], axes[1][i], axes[2][i])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rows::tests::{turning_on_the_spot, vehicle};
+    use super::super::signatures::signature_of;
+    use super::*;
+
+    #[test]
+    fn a_known_motion_is_taken_for_its_own_base_alone() {
+        let vehicle = vehicle();
+        let flights = [Trace::new(&turning_on_the_spot(), &vehicle, 0.2).unwrap()];
+        let turned = |angle_rad: f64| {
+            let mut base = Base::rigid(&vehicle);
+            let signature = signature_of("imu_misalignment").unwrap();
+            base.present.push(signature.term(&[angle_rad, 0.0, 0.0], &[0]));
+            base
+        };
+        let known = KnownMotion::of(&flights, &turned(0.02));
+        let rate = |motion: Cow<[Trace]>| motion[0].states[100].rates_rad_s;
+        for angle_rad in [0.02, 0.05] {
+            let base = turned(angle_rad);
+            let found = rate(KnownMotion::or_found(known.as_ref(), &flights, &base));
+            assert_eq!(found, rate(true_motion(&flights, &base)));
+        }
+        assert!(matches!(KnownMotion::or_found(known.as_ref(), &flights, &turned(0.02)), Cow::Borrowed(_)));
+        assert!(KnownMotion::of(&flights, &Base::rigid(&vehicle)).is_none());
+    }
 }

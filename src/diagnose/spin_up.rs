@@ -64,8 +64,8 @@ impl SpinUp {
         let input = Input::from_commands(airframe, 0.0, &[]);
         let at = Condition::new(airframe, state, &input, Vector3::zeros());
         let mut rotors = Rotors::still();
-        rotors.speed = motion.speed[index];
-        rotors.acceleration_1_s = motion.acceleration_1_s[index];
+        rotors.speed = motion.speed.at(index);
+        rotors.acceleration_1_s = motion.acceleration_1_s.at(index);
         let mut sum = Wrench::zero();
         let mut own = Own { parameters: &[self.jr_kg_m2], states: &[], rates: &mut [] };
         RotorInertia.wrench(&at, &rotors, &mut own, &mut sum);

@@ -2,10 +2,12 @@
 //! motion.
 
 use super::instruments::{Instruments, instruments};
-use super::rotors::{RotorMotion, Thrusts, felt};
+use super::rotors::{OfRotors, RotorMotion, felt, filtered};
 use super::timing::{command_period_s, inertial_late};
-use crate::physics::{ActuationLatency, Airframe, MAX_ROTORS, State};
-use crate::signals::{Butterworth, Grid, Signals, ThrustSource, WeakKernel, central_difference, stride};
+use crate::physics::{ActuationLatency, Airframe, State};
+use crate::signals::{
+    Butterworth, Grid, Series, Signals, ThrustSource, WeakKernel, central_difference, stride,
+};
 use crate::vehicle::{Propulsion, Vehicle};
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
 use std::ops::Range;
@@ -27,13 +29,13 @@ pub struct Trace {
     /// rows without a break between them
     pub runs: Vec<Range<usize>>,
     /// measured states; parts that were not recorded are zero (attitude: level)
-    pub states: Vec<State>,
+    pub states: Series<State>,
     /// parts of the state that are measured
     pub known: Known,
     /// commands and body rates are fast enough to compare torques; otherwise torque channels are zero
     pub torques: bool,
     /// V
-    pub voltage_v: Option<Vec<f64>>,
+    pub voltage_v: Option<Series<f64>>,
     /// thrusts are computed from measured rotor speeds: effects between command and speed are not visible
     pub measured_speeds: bool,
     /// rad/s, white noise of the gyroscopes at their own samples, largest axis; 0 where it is not known
@@ -45,20 +47,20 @@ pub struct Trace {
     /// s, uncertainty of this delay: the difference of attitude and velocity, or the advance of the attitude alone
     pub inertial_unsure_s: f64,
     /// m/s^2, body, accelerometer
-    specific_force_m_s2: Option<Vec<Vector3<f64>>>,
+    specific_force_m_s2: Option<Series<Vector3<f64>>>,
     /// N, as commanded (or measured), each rotor, on the scale of `full_thrust_n`
-    commanded_n: Vec<Thrusts>,
+    commanded_n: OfRotors,
     /// N, N m: contribution of the commands' jitter if the rotors follow all of it, on the same scale
-    jitter: Option<Vec<Vector4<f64>>>,
+    jitter: Option<Series<Vector4<f64>>>,
     /// N, thrust of one rotor at u = 1
     full_thrust_n: f64,
     /// zero-phase low-pass of body rates, rad/s; the next two are their derivative, rad/s^2, and the specific force
     /// along z, m/s^2
-    smooth_rate: Vec<Vector3<f64>>,
-    smooth_turning: Vec<Vector3<f64>>,
-    smooth_lift: Vec<f64>,
+    smooth_rate: Series<Vector3<f64>>,
+    smooth_turning: Series<Vector3<f64>>,
+    smooth_lift: Series<f64>,
     /// specific force, body, m/s^2: the accelerometer's, else the smoothed one of the kinematics
-    pub(super) felt_m_s2: Vec<Vector3<f64>>,
+    pub(super) felt_m_s2: Series<Vector3<f64>>,
     /// m/s^2
     pub gravity_m_s2: f64,
     /// motion capture or a camera gives the height
@@ -130,7 +132,7 @@ impl Trace {
             kernel,
             centers,
             runs,
-            states: states(signals, rates),
+            states: states(signals, rates).into(),
             known,
             torques: signals.quality.torques,
             voltage_v: signals.battery_voltage_v.clone(),
@@ -140,13 +142,13 @@ impl Trace {
             inertial_late_s,
             inertial_unsure_s,
             specific_force_m_s2: measured.cloned(),
-            commanded_n: commanded_n(signals, vehicle.rotors.len()),
+            commanded_n: OfRotors::new(vehicle.rotors.len(), signals.rotor_thrust_n.clone()),
             jitter: signals.jitter_wrench.clone(),
             full_thrust_n: signals.full_thrust_n,
-            smooth_rate: Vec::new(),
-            smooth_turning: Vec::new(),
-            smooth_lift: Vec::new(),
-            felt_m_s2: Vec::new(),
+            smooth_rate: Series::default(),
+            smooth_turning: Series::default(),
+            smooth_lift: Series::default(),
+            felt_m_s2: Series::default(),
             gravity_m_s2: vehicle.gravity_m_s2,
             height_by_pose: signals.quality.height_by_pose,
             instruments: None,
@@ -163,19 +165,23 @@ impl Trace {
         states: Vec<State>,
         specific_force_m_s2: Option<Vec<Vector3<f64>>>,
     ) -> Result<Self, TraceError> {
-        let mut trace = self.reading(states, specific_force_m_s2);
+        let mut trace = self.reading(states, specific_force_m_s2.map(Series::new));
         trace.smooth()?;
         Ok(trace)
     }
 
     /// The same if only the measurements of force and momentum are needed; smoothed series stay as they were.
-    pub(super) fn reading(&self, states: Vec<State>, specific_force_m_s2: Option<Vec<Vector3<f64>>>) -> Self {
-        Self { states, specific_force_m_s2, ..self.clone() }
+    pub(super) fn reading(
+        &self,
+        states: Vec<State>,
+        specific_force_m_s2: Option<Series<Vector3<f64>>>,
+    ) -> Self {
+        Self { states: states.into(), specific_force_m_s2, ..self.clone() }
     }
 
     /// Measured specific force, m/s^2, body; `None` without an accelerometer.
-    pub(super) fn specific_force_m_s2(&self) -> Option<&[Vector3<f64>]> {
-        self.specific_force_m_s2.as_deref()
+    pub(super) fn specific_force_m_s2(&self) -> Option<&Series<Vector3<f64>>> {
+        self.specific_force_m_s2.as_ref()
     }
 
     /// Number of weak-form rows.
@@ -193,20 +199,28 @@ impl Trace {
     /// `K` of a vector series, axis by axis.
     #[must_use]
     pub fn weak_vector(&self, order: usize, series: &[Vector3<f64>]) -> [Vec<f64>; 3] {
-        self.weak_vector_in(order, series, &(0..self.rows()))
+        self.kernel.apply_vector(order, series, &self.centers)
     }
 
-    /// The same at some of the rows.
+    /// The same at some of the rows, of a series over the instants that these reach.
     pub(super) fn weak_vector_in(
         &self,
         order: usize,
         series: &[Vector3<f64>],
         rows: &Range<usize>,
     ) -> [Vec<f64>; 3] {
-        std::array::from_fn(|axis| {
-            let column: Vec<f64> = series.iter().map(|v| v[axis]).collect();
-            self.kernel.apply(order, &column, &self.centers[rows.clone()])
-        })
+        let from = self.reach(rows).start;
+        let centers: Vec<usize> = self.centers[rows.clone()].iter().map(|center| center - from).collect();
+        self.kernel.apply_vector(order, series, &centers)
+    }
+
+    /// Instants that the test functions of these rows reach.
+    pub(super) fn reach(&self, rows: &Range<usize>) -> Range<usize> {
+        match self.centers[rows.clone()] {
+            [first, .., last] => first - self.kernel.half_count..last + self.kernel.half_count + 1,
+            [only] => only - self.kernel.half_count..only + self.kernel.half_count + 1,
+            [] => 0..0,
+        }
     }
 
     /// An accelerometer is recorded.
@@ -239,13 +253,14 @@ impl Trace {
         let vectors = |axes: &[Vec<f64>; 3]| -> Vec<Vector3<f64>> {
             (0..self.grid.count).map(|i| Vector3::new(axes[0][i], axes[1][i], axes[2][i])).collect()
         };
-        self.smooth_rate = vectors(&rates);
-        self.smooth_turning = vectors(&turning);
+        self.smooth_rate = vectors(&rates).into();
+        self.smooth_turning = vectors(&turning).into();
         let measured = self.specific_force_m_s2.clone();
-        let force = measured.clone().unwrap_or_else(|| self.kinematic_force());
+        let force = measured.clone().unwrap_or_else(|| self.kinematic_force().into());
         let along = |axis: usize| filter.filtfilt(&force.iter().map(|force| force[axis]).collect::<Vec<_>>());
-        self.smooth_lift = along(2);
-        self.felt_m_s2 = measured.unwrap_or_else(|| vectors(&[along(0), along(1), self.smooth_lift.clone()]));
+        let lift = along(2);
+        self.felt_m_s2 = measured.unwrap_or_else(|| vectors(&[along(0), along(1), lift.clone()]).into());
+        self.smooth_lift = lift.into();
         Ok(())
     }
 
@@ -266,11 +281,9 @@ impl Trace {
 
     /// Rotor thrusts from the commands, N, behind the latency.
     #[must_use]
-    pub fn felt_n(&self, airframe: &Airframe, latency: ActuationLatency) -> Vec<Thrusts> {
-        let mut felt = felt(&self.commanded_n, airframe, self.grid.step_s, latency);
+    pub fn felt_n(&self, airframe: &Airframe, latency: ActuationLatency) -> OfRotors {
         let factor = airframe.propulsion.full_thrust_n() / self.full_thrust_n;
-        felt.iter_mut().flatten().for_each(|thrust| *thrust *= factor);
-        felt
+        felt(&self.commanded_n, self.grid.step_s, latency).scaled(factor)
     }
 
     /// N, N m: contribution of the commands' jitter on the airframe's scale if the rotors follow all of it.
@@ -282,18 +295,13 @@ impl Trace {
 
     /// Rotor thrusts from the commands, N, behind the latency: raw, and smoothed for regressors.
     #[must_use]
-    pub fn by_commands(&self, airframe: &Airframe, latency: ActuationLatency) -> (Vec<Thrusts>, RotorMotion) {
+    pub fn by_commands(&self, airframe: &Airframe, latency: ActuationLatency) -> (OfRotors, RotorMotion) {
         let felt = self.felt_n(airframe, latency);
         let rate_hz = 1.0 / self.grid.step_s;
-        let mut smooth = vec![[0.0; MAX_ROTORS]; self.grid.count];
-        if let Some(filter) = Butterworth::new(SMOOTH_HZ.min(0.4 * rate_hz), rate_hz) {
-            for rotor in 0..airframe.rotor_count() {
-                let column: Vec<f64> = felt.iter().map(|thrusts| thrusts[rotor]).collect();
-                for (out, value) in smooth.iter_mut().zip(filter.filtfilt(&column)) {
-                    out[rotor] = value;
-                }
-            }
-        }
+        let filter = Butterworth::new(SMOOTH_HZ.min(0.4 * rate_hz), rate_hz);
+        let smooth = filtered(&felt, |column| {
+            filter.as_ref().map_or_else(|| vec![0.0; column.len()], |filter| filter.filtfilt(column))
+        });
         let turning = RotorMotion::new(smooth, airframe, self.grid.step_s);
         (felt, turning)
     }
@@ -307,27 +315,27 @@ impl Trace {
         (mass_kg, inertia): (f64, &Matrix3<f64>),
         commanded: &RotorMotion,
         effects: Option<&[Vector4<f64>]>,
-    ) -> Vec<Thrusts> {
+    ) -> OfRotors {
         let mixer = vehicle.mixer().matrix;
         let rotors = vehicle.rotors.len();
         let mixer = DMatrix::from_fn(4, rotors, |i, j| mixer[(i, j)]);
         let Ok(inverse) = mixer.clone().pseudo_inverse(1e-12) else { return commanded.thrust_n.clone() };
-        let mut out = commanded.thrust_n.clone();
-        for (i, thrusts) in out.iter_mut().enumerate() {
+        let mut out: Vec<f64> = Vec::with_capacity(rotors * self.grid.count);
+        for (i, thrusts) in commanded.thrust_n.each().enumerate() {
             let rate = self.smooth_rate[i];
             let torque = inertia * self.smooth_turning[i] + rate.cross(&(inertia * rate));
             let mut short = Vector4::new(mass_kg * self.smooth_lift[i], torque.x, torque.y, torque.z);
             if let Some(effects) = effects {
                 short -= effects[i];
             }
-            for (rotor, thrust) in thrusts.iter().enumerate().take(rotors) {
+            for (rotor, thrust) in thrusts.iter().enumerate() {
                 short -= Vector4::from_fn(|row, _| mixer[(row, rotor)] * thrust);
             }
-            for (rotor, thrust) in thrusts.iter_mut().enumerate().take(rotors) {
-                *thrust += (0..4).map(|row| inverse[(rotor, row)] * short[row]).sum::<f64>();
-            }
+            out.extend(thrusts.iter().enumerate().map(|(rotor, thrust)| {
+                thrust + (0..4).map(|row| inverse[(rotor, row)] * short[row]).sum::<f64>()
+            }));
         }
-        out
+        OfRotors::new(rotors, out.into())
     }
 
     /// Torque that the measured rotation needs, `J w' + w x J w`, smoothed, body, N m.
@@ -335,7 +343,7 @@ impl Trace {
     pub fn turning_torque(&self, inertia: &Matrix3<f64>) -> Vec<Vector3<f64>> {
         self.smooth_rate
             .iter()
-            .zip(&self.smooth_turning)
+            .zip(self.smooth_turning.iter())
             .map(|(rate, turning)| inertia * turning + rate.cross(&(inertia * rate)))
             .collect()
     }
@@ -355,7 +363,7 @@ fn centers_and_runs(signals: &Signals, kernel: &WeakKernel) -> (Vec<usize>, Vec<
 
 /// States at each grid instant; what is not known is zero or level.
 fn states(signals: &Signals, rates: &[Vector3<f64>]) -> Vec<State> {
-    let of = |series: &Option<Vec<Vector3<f64>>>, i: usize| {
+    let of = |series: &Option<Series<Vector3<f64>>>, i: usize| {
         series.as_ref().map_or_else(Vector3::zeros, |series| series[i])
     };
     (0..signals.grid.count)
@@ -366,14 +374,4 @@ fn states(signals: &Signals, rates: &[Vector3<f64>]) -> Vec<State> {
             rates_rad_s: rates[i],
         })
         .collect()
-}
-
-/// Thrust of each rotor by the commands, N.
-fn commanded_n(signals: &Signals, rotors: usize) -> Vec<Thrusts> {
-    let padded = |thrusts: &[f64]| {
-        let mut all = [0.0; MAX_ROTORS];
-        all[..rotors].copy_from_slice(thrusts);
-        all
-    };
-    signals.rotor_thrust_n.chunks_exact(rotors).map(padded).collect()
 }

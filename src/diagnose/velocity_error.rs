@@ -15,7 +15,7 @@ use super::base::Base;
 use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels};
 use super::rotors::RotorMotion;
 use super::trace::Trace;
-use crate::physics::{Model, Wrench};
+use crate::physics::Model;
 use nalgebra::Vector3;
 use std::ops::Range;
 
@@ -42,14 +42,14 @@ pub(super) fn velocity_error(
     (trace, flights): (&Trace, usize),
     (base, model): (&Base, &Model),
     commanded: &RotorMotion,
-    by_commands: &[Wrench],
+    by_commands_n: &[Vector3<f64>],
 ) -> Vec<NuisanceColumn> {
     let of_air = base.present.iter().any(|term| term.signature.role.of_air);
     let (Some(first), Some(last)) = (trace.centers.first(), trace.centers.last()) else { return Vec::new() };
     if !of_air || !trace.known.velocity {
         return Vec::new();
     }
-    let slope = slope(trace, model, commanded, by_commands);
+    let slope = slope(trace, model, commanded, by_commands_n);
     let knots = Knots::of((trace.grid.time_s(*first), trace.grid.time_s(*last)), trace.grid.step_s, flights);
     let rms_m_s = if trace.height_by_pose { RMS_BY_POSE_M_S } else { RMS_M_S };
     let mass_kg = base.vehicle.body.mass_kg;
@@ -65,14 +65,19 @@ pub(super) fn velocity_error(
 }
 
 /// Change of the force with the vertical velocity at each grid instant, body, N per m/s.
-fn slope(trace: &Trace, model: &Model, commanded: &RotorMotion, by_commands: &[Wrench]) -> Vec<Vector3<f64>> {
-    let mut states = trace.states.clone();
+fn slope(
+    trace: &Trace,
+    model: &Model,
+    commanded: &RotorMotion,
+    by_commands_n: &[Vector3<f64>],
+) -> Vec<Vector3<f64>> {
+    let mut states = trace.states.to_vec();
     states.iter_mut().for_each(|state| state.velocity_m_s += Vector3::z() * STEP_M_S);
-    let shifted = trace.reading(states, trace.specific_force_m_s2().map(<[Vector3<f64>]>::to_vec));
+    let shifted = trace.reading(states, trace.specific_force_m_s2().cloned());
     wrench_along(model, &shifted, commanded)
         .iter()
-        .zip(by_commands)
-        .map(|(shifted, plain)| (shifted.force_n - plain.force_n) / STEP_M_S)
+        .zip(by_commands_n)
+        .map(|(shifted, plain_n)| (shifted.force_n - plain_n) / STEP_M_S)
         .collect()
 }
 
@@ -112,10 +117,11 @@ impl Knots {
 
     /// Its values in these rows.
     fn column(&self, knot: usize, trace: &Trace, (mass_kg, slope): (f64, &[Vector3<f64>])) -> Channels {
-        let hat: Vec<f64> =
-            (0..trace.grid.count).map(|index| self.hat(knot, trace.grid.time_s(index))).collect();
         let rows = self.rows(knot, trace);
-        let force: Vec<Vector3<f64>> = slope.iter().zip(&hat).map(|(slope, hat)| slope * *hat).collect();
+        let reach = trace.reach(&rows);
+        let hat: Vec<f64> = reach.clone().map(|index| self.hat(knot, trace.grid.time_s(index))).collect();
+        let force: Vec<Vector3<f64>> =
+            slope[reach].iter().zip(&hat).map(|(slope, hat)| slope * *hat).collect();
         let no_torque = std::array::from_fn(|_| vec![0.0; rows.len()]);
         let mut out = channels(trace, trace.weak_vector_in(0, &force, &rows), no_torque);
         let Some(first) = kinematic(trace) else { return out };

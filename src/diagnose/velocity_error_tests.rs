@@ -5,6 +5,7 @@ use super::super::rows::tests::{turning_on_the_spot, vehicle};
 use super::super::signatures::signature_of;
 use super::*;
 use crate::signals::Signals;
+use std::sync::Arc;
 
 /// Errors of the vertical velocity at the knots, m/s.
 const ERRORS_M_S: [f64; 3] = [0.2, -0.15, 0.1];
@@ -15,7 +16,8 @@ fn rows(mut signals: Signals, lacks_m_s: impl Fn(f64) -> f64) -> Rows {
     let mut base = Base::rigid(&vehicle);
     base.present.push(signature_of("linear_drag").unwrap().term(&[0.4, 0.5, 0.6, 1.0], &[0, 1, 2]));
     let grid = signals.grid;
-    for (index, velocity) in signals.velocity.iter_mut().flatten().enumerate() {
+    let velocities = signals.velocity.iter_mut().flat_map(|series| Arc::make_mut(series).iter_mut());
+    for (index, velocity) in velocities.enumerate() {
         velocity.z -= lacks_m_s(grid.time_s(index));
     }
     Rows::new(&[Trace::new(&signals, &vehicle, 0.2).unwrap()], &base).unwrap()

@@ -49,10 +49,11 @@ pub(super) fn as_stated(found: &Latency, vehicle: &Vehicle, flights: &[Signals])
 pub(super) fn take_out(signals: &mut Signals, vehicle: &Vehicle, latency: ActuationLatency) {
     let step_s = signals.grid.step_s;
     if let Some(jitter) = &mut signals.jitter_wrench {
-        *jitter = delayed_wrench(jitter, step_s, latency);
+        *jitter = delayed_wrench(jitter, step_s, latency).into();
     }
     signals.wrench = uneven_wrench(signals, vehicle, latency)
-        .unwrap_or_else(|| delayed_wrench(&signals.wrench, step_s, latency));
+        .unwrap_or_else(|| delayed_wrench(&signals.wrench, step_s, latency))
+        .into();
 }
 
 /// Wrench of rotors that slow down more slowly than they speed up, minus half of that of the jitter, which is behind

@@ -151,7 +151,7 @@ fn identify_evenly(
 
     let harmonic_hz = highest_of_all_hz(&weak.signals);
     let (paper, cutoff_hz) = paper_runs(&weak.signals, vehicle, settings, harmonic_hz)?;
-    if paper.standard.time_s.is_empty() {
+    if paper.is_empty() {
         let text = "LS, GD, FMLS and FMGD need body rates and the vertical motion; this recording lacks one";
         notes.push(Note::remark(About::Estimate, text));
     }

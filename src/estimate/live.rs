@@ -93,7 +93,7 @@ impl RecursiveEstimator {
 mod tests {
     use super::*;
     use crate::estimate::least_squares;
-    use crate::regression::{BodyKinematics, SampledModel, standard_regressor};
+    use crate::regression::{Phi, SampledModel};
     use nalgebra::{SVector, Vector3};
 
     /// Coloured residuals on a lively motion, `count` rows of 10 ms.
@@ -109,18 +109,14 @@ mod tests {
             };
             colour = 0.9 * colour + Vector4::new(hash(1), 0.01 * hash(2), 0.01 * hash(3), 0.01 * hash(4));
             let wave = |f: f64, phase: f64| (f * t + phase).sin();
-            let gamma = standard_regressor(&BodyKinematics {
-                specific_force_z_m_s2: 9.81 + 0.3 * wave(2.0, 0.1),
-                omega_rad_s: Vector3::new(0.5 * wave(2.5, 0.0), 0.5 * wave(3.1, 1.0), 0.4 * wave(1.3, 2.0)),
-                omega_dot_rad_s2: Vector3::new(
-                    1.5 * wave(2.5, 1.6),
-                    1.5 * wave(3.1, 2.6),
-                    0.8 * wave(1.3, 3.6),
-                ),
-            });
+            let gamma = Phi::of(
+                9.81 + 0.3 * wave(2.0, 0.1),
+                &Vector3::new(0.5 * wave(2.5, 0.0), 0.5 * wave(3.1, 1.0), 0.4 * wave(1.3, 2.0)),
+                &Vector3::new(1.5 * wave(2.5, 1.6), 1.5 * wave(3.1, 2.6), 0.8 * wave(1.3, 3.6)),
+            );
             model.time_s.push(t);
             model.gamma.push(gamma);
-            model.upsilon.push(gamma * truth + colour);
+            model.upsilon.push(gamma.matrix() * truth + colour);
         }
         model.runs.push(0..model.time_s.len());
         model
@@ -134,7 +130,7 @@ mod tests {
             let batch = least_squares(&model).unwrap();
             let mut recursive = RecursiveEstimator::new(model.step_s);
             for (gamma, upsilon) in model.gamma.iter().zip(&model.upsilon) {
-                recursive.add(gamma, upsilon);
+                recursive.add(&gamma.matrix(), upsilon);
             }
             let estimate = recursive.estimate().unwrap();
             assert_eq!(recursive.rows(), u64::from(count));
@@ -151,7 +147,7 @@ mod tests {
         let mut recursive = RecursiveEstimator::new(0.01);
         assert!(recursive.estimate().is_none());
         let model = model(1);
-        recursive.add(&model.gamma[0], &model.upsilon[0]);
+        recursive.add(&model.gamma[0].matrix(), &model.upsilon[0]);
         assert!(recursive.estimate().is_none());
     }
 }

@@ -5,13 +5,14 @@ use super::nominal::Nominal;
 use super::recursive::{GradientStep, History, PaperEstimate, gradient_descent, least_squares};
 use super::result::{Estimated, MethodResult};
 use super::theta::ThetaCovariance;
-use crate::regression::{SampledModel, ZeroPhase, paper_models};
+use crate::regression::{Phi, SampledModel, ZeroPhase, paper_models};
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
 
 /// The paper's four methods.
 pub(super) struct PaperRuns {
-    pub(super) standard: SampledModel,
+    /// `Gamma' Gamma` of the standard model as flown, without a sample zero
+    gram: ThetaCovariance,
     runs: Vec<(Method, PaperEstimate)>,
     nominal: Nominal,
 }
@@ -22,9 +23,13 @@ impl PaperRuns {
         let (mut standard, mut filtered) = (SampledModel::default(), SampledModel::default());
         for signals in flights {
             if let Some((one, other)) = paper_models(signals, vehicle.gravity_m_s2, filter) {
-                standard.extend(&one);
-                filtered.extend(&other);
+                standard.extend(one);
+                filtered.extend(other);
             }
+        }
+        let mut gram = ThetaCovariance::zeros();
+        for gamma in standard.gamma.iter().map(Phi::matrix) {
+            gram += gamma.tr_mul(&gamma);
         }
         let mut runs = Vec::new();
         for (model, by_ls, by_gd) in
@@ -37,7 +42,12 @@ impl PaperRuns {
             runs.push((by_gd, gradient_descent(model, &nominal.theta, sigma, GradientStep::Implicit)));
         }
         runs.sort_by_key(|(method, _)| *method);
-        Self { standard, runs, nominal }
+        Self { gram, runs, nominal }
+    }
+
+    /// No method had a sample to run on.
+    pub(super) fn is_empty(&self) -> bool {
+        self.runs.is_empty()
     }
 
     /// Their results; what the flights cannot tell by `weak`, they cannot tell by these methods either.
@@ -62,11 +72,7 @@ impl PaperRuns {
 
     /// cond(W) of (20) as flown.
     pub(super) fn condition_number(&self) -> Option<f64> {
-        let mut gram = ThetaCovariance::zeros();
-        for gamma in &self.standard.gamma {
-            gram += gamma.tr_mul(gamma);
-        }
-        let values = gram.symmetric_eigenvalues();
+        let values = self.gram.symmetric_eigenvalues();
         (values.min() > 0.0).then(|| (values.max() / values.min()).sqrt())
     }
 }

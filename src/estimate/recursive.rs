@@ -41,7 +41,7 @@ pub fn least_squares(model: &SampledModel) -> Option<PaperEstimate> {
     let mut history = History { time_s: Vec::new(), theta: Vec::new() };
     let mut next_s = f64::NEG_INFINITY;
     for ((gamma, upsilon), &time_s) in model.gamma.iter().zip(&model.upsilon).zip(&model.time_s) {
-        sums.add(gamma, upsilon);
+        sums.add(&gamma.matrix(), upsilon);
         if time_s >= next_s {
             next_s = time_s + HISTORY_STEP_S;
             if let Some(theta) = sums.solve() {
@@ -121,7 +121,10 @@ fn sandwich(model: &SampledModel, theta: &Theta, inverse: &SMatrix<f64, THETA, T
             .step_by(block)
             .map(|start| {
                 (start..(start + block).min(run.end))
-                    .map(|i| model.gamma[i].tr_mul(&(model.upsilon[i] - model.gamma[i] * theta)))
+                    .map(|i| {
+                        let gamma = model.gamma[i].matrix();
+                        gamma.tr_mul(&(model.upsilon[i] - gamma * theta))
+                    })
                     .sum()
             })
             .collect();
@@ -155,6 +158,7 @@ pub fn gradient_descent(
     let mut history = History { time_s: Vec::new(), theta: Vec::new() };
     let mut next_s = f64::NEG_INFINITY;
     for ((gamma, upsilon), &time_s) in model.gamma.iter().zip(&model.upsilon).zip(&model.time_s) {
+        let gamma = &gamma.matrix();
         theta += gain_matrix(gamma, gain, step) * (upsilon - gamma * theta);
         if time_s >= next_s {
             next_s = time_s + HISTORY_STEP_S;
@@ -167,6 +171,7 @@ pub fn gradient_descent(
     let guess = Theta::from_fn(|i, _| scale_of(start, i).powi(2));
     let mut covariance = ThetaCovariance::from_diagonal(&guess);
     for gamma in &model.gamma {
+        let gamma = &gamma.matrix();
         let k = gain_matrix(gamma, gain, step);
         let transition = ThetaCovariance::identity() - k * gamma;
         covariance = transition * covariance * transition.transpose() + k * noise * k.transpose();
@@ -197,7 +202,7 @@ fn long_run_variance(model: &SampledModel, theta: &Theta) -> Matrix4<f64> {
     let mut count = 0_u32;
     for run in &model.runs {
         let residuals: Vec<Vector4<f64>> =
-            run.clone().map(|i| model.upsilon[i] - model.gamma[i] * theta).collect();
+            run.clone().map(|i| model.upsilon[i] - model.gamma[i].matrix() * theta).collect();
         for chunk in residuals.chunks_exact(block) {
             let total: Vector4<f64> = chunk.iter().sum();
             sum += total.component_mul(&total) / block as f64;
@@ -218,18 +223,14 @@ mod tests {
         for i in 0..20_000 {
             let t = f64::from(i) * step_s;
             let wave = |f: f64, phase: f64| (f * t + phase).sin();
-            let gamma = crate::regression::standard_regressor(&crate::regression::BodyKinematics {
-                specific_force_z_m_s2: 9.81 + 0.3 * wave(2.0, 0.1),
-                omega_rad_s: Vector3::new(0.5 * wave(2.5, 0.0), 0.5 * wave(3.1, 1.0), 0.4 * wave(1.3, 2.0)),
-                omega_dot_rad_s2: Vector3::new(
-                    1.5 * wave(2.5, 1.6),
-                    1.5 * wave(3.1, 2.6),
-                    0.8 * wave(1.3, 3.6),
-                ),
-            });
+            let gamma = crate::regression::Phi::of(
+                9.81 + 0.3 * wave(2.0, 0.1),
+                &Vector3::new(0.5 * wave(2.5, 0.0), 0.5 * wave(3.1, 1.0), 0.4 * wave(1.3, 2.0)),
+                &Vector3::new(1.5 * wave(2.5, 1.6), 1.5 * wave(3.1, 2.6), 0.8 * wave(1.3, 3.6)),
+            );
             model.time_s.push(t);
             model.gamma.push(gamma);
-            model.upsilon.push(gamma * truth);
+            model.upsilon.push(gamma.matrix() * truth);
         }
         model.runs.push(0..model.time_s.len());
         (model, truth)

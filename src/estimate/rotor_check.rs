@@ -7,6 +7,7 @@ use super::weak::WeakEstimate;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
+use std::sync::Arc;
 
 /// A rotor that gives the share `factor` of its commanded thrust and torque.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,7 +90,7 @@ pub fn with_weak_rotor(flights: &[Signals], vehicle: &Vehicle, weak: &WeakRotor)
     let mut out = flights.to_vec();
     for signals in &mut out {
         let thrusts = signals.rotor_thrust_n.chunks_exact(vehicle.rotors.len());
-        for (wrench, thrusts) in signals.wrench.iter_mut().zip(thrusts) {
+        for (wrench, thrusts) in Arc::make_mut(&mut signals.wrench).iter_mut().zip(thrusts) {
             *wrench -= column * ((1.0 - weak.factor) * thrusts[weak.index]);
         }
     }

@@ -253,7 +253,7 @@ mod tests {
         let sine = |i: usize| Vector3::new((TAU * 0.5 * grid.time_s(i)).sin(), 0.0, 0.0);
         let motion = Motion {
             usable: vec![true; grid.count],
-            rate: Some((0..grid.count).map(sine).collect()),
+            rate: Some(std::sync::Arc::new((0..grid.count).map(sine).collect())),
             thrust: Some(vec![9.8; grid.count]),
             velocity: None,
             altitude: None,

@@ -2,7 +2,7 @@
 
 use super::airborne::normalized_commands;
 use crate::recording::{Quantity, Recording, Stream};
-use crate::signals::{Evidence, Grid, Signals, Usable, best, cubic_onto, median_period_s, usable};
+use crate::signals::{Evidence, Grid, Series, Signals, Usable, best, cubic_onto, median_period_s, usable};
 use crate::units::STANDARD_GRAVITY_M_S2;
 use nalgebra::Vector3;
 
@@ -15,18 +15,21 @@ pub(super) struct Motion {
     /// airborne, exciting, not saturated, no gap
     pub usable: Vec<bool>,
     /// rad/s
-    pub rate: Option<Vec<Vector3<f64>>>,
+    pub rate: Option<Series<Vector3<f64>>>,
     /// m/s^2 along the thrust
     pub thrust: Option<Vec<f64>>,
     /// m/s
-    pub velocity: Option<Vec<Vector3<f64>>>,
+    pub velocity: Option<Series<Vector3<f64>>>,
     /// m
     pub altitude: Option<Vec<f64>>,
 }
 
 impl From<Signals> for Motion {
     fn from(signals: Signals) -> Self {
-        let thrust = thrust(signals.specific_force.as_deref(), signals.world_acceleration.as_deref());
+        let thrust = thrust(
+            signals.specific_force.as_ref().map(|force| force.as_slice()),
+            signals.world_acceleration.as_ref().map(|acceleration| acceleration.as_slice()),
+        );
         Self {
             thrust,
             altitude: signals.position.map(|position| position.iter().map(|p| p.z).collect()),
@@ -78,6 +81,7 @@ impl Motion {
         let (mask, used) = usable(&grid, &evidence, transient_s);
         let thrust = thrust(specific_force.as_deref(), world_acceleration.as_deref());
         let altitude = position.map(|position| position.iter().map(|p| p.z).collect());
+        let (rate, velocity) = (rate.map(Series::new), velocity.map(Series::new));
         Some((Self { grid, usable: mask, rate, thrust, velocity, altitude }, used))
     }
 }

@@ -107,7 +107,7 @@ impl Cells {
                 .position
                 .as_ref()
                 .map_or_else(|| vec![Vector3::zeros(); count], |p| vectors(p)),
-            battery_voltage_v: signals.battery_voltage_v.as_ref().map(voltage),
+            battery_voltage_v: signals.battery_voltage_v.as_ref().map(|series| voltage(series)),
             driven: driven(signals, &time_s),
             specific_force_m_s2: sums.into_iter().map(mean).collect(),
             accelerometer_noise_m_s2: Vector3::from_fn(noise),

@@ -142,7 +142,9 @@ impl Growing {
         }
         self.stream.time_s.push(time_s);
         self.stream.values.extend_from_slice(values);
-        self.stream.values.resize(self.stream.time_s.len() * self.stream.width, 0.0);
+        if values.len() < self.stream.width {
+            self.stream.values.resize(self.stream.time_s.len() * self.stream.width, 0.0);
+        }
     }
 
     /// Makes room for channels that were zero so far.

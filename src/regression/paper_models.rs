@@ -1,9 +1,9 @@
 //! The paper's two models built from a conditioned flight: the standard one (34) and the filtered one
 //! (37) to (39).
 
-use super::{BodyKinematics, gyroscopic_regressor, momentum_regressor, standard_regressor};
-use crate::signals::{Butterworth, FilterPair, Signals, WindowedFir, central_difference};
-use nalgebra::{Quaternion, SMatrix, UnitQuaternion, Vector3, Vector4};
+use super::{FilteredPhi, Phi};
+use crate::signals::{Butterworth, FilterPair, PairMemory, Signals, WindowedFir, central_difference};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
 /// `Gamma(hT) Theta = Upsilon(hT)` at each instant h that may be used.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -12,8 +12,8 @@ pub struct SampledModel {
     pub step_s: f64,
     /// s, vehicle clock
     pub time_s: Vec<f64>,
-    /// regressor, rows Fz, torques (N, N m)
-    pub gamma: Vec<SMatrix<f64, 4, 7>>,
+    /// regressor
+    pub gamma: Vec<Phi>,
     /// output (N, N m)
     pub upsilon: Vec<Vector4<f64>>,
     /// index ranges without a break in time
@@ -86,32 +86,28 @@ pub fn paper_models(
     let pair = FilterPair::new(FilterPair::PAPER_LAMBDA_RAD_S, step_s);
 
     let count = signals.grid.count;
-    let momentum: Vec<_> =
-        (0..count).map(|i| momentum_regressor(vertical.momentum[i], &filtered.rate[i])).collect();
-    let gyroscopic: Vec<_> =
-        (0..count).map(|i| gyroscopic_regressor(vertical.rest[i], &filtered.rate[i])).collect();
-    let (rate_of_momentum, low_gyroscopic) = (
-        filter_entries(&momentum, |column| pair.rate(column)),
-        filter_entries(&gyroscopic, |column| pair.low_pass(column)),
-    );
-    let low_wrench = filter_entries(&filtered.wrench, |column| pair.low_pass(column));
-
     let (mut standard, mut by_filter) = (SampledModel::empty(step_s), SampledModel::empty(step_s));
     let edge = filter.edge_count();
     let inside: Vec<bool> = (0..count).map(|i| signals.usable[i] && i >= edge && i + edge < count).collect();
-    for run in crate::signals::Grid::runs(&inside, 50) {
-        let start = standard.time_s.len();
-        for i in run {
-            let kinematics = BodyKinematics {
-                specific_force_z_m_s2: vertical.rate[i] + vertical.rest[i],
-                omega_rad_s: filtered.rate[i],
-                omega_dot_rad_s2: omega_dot[i],
-            };
-            standard.push(signals.grid.time_s(i), standard_regressor(&kinematics), filtered.wrench[i]);
-            by_filter.push(signals.grid.time_s(i), rate_of_momentum[i] + low_gyroscopic[i], low_wrench[i]);
+    let mut runs = crate::signals::Grid::runs(&inside, 50).into_iter().peekable();
+    let (mut phi, mut low_wrench) = (FilteredPhi::new(pair), [PairMemory::default(); 4]);
+    // the filters run through the whole flight; what they give is kept where it may be used
+    for (i, omega_dot) in omega_dot.iter().enumerate() {
+        let filtered_phi = phi.next(vertical.momentum[i], vertical.rest[i], &filtered.rate[i]);
+        let wrench = filtered.wrench[i];
+        let filtered_wrench =
+            Vector4::from_fn(|entry, _| pair.next_low_pass(&mut low_wrench[entry], wrench[entry]));
+        let Some(run) = runs.peek().filter(|run| run.contains(&i)) else { continue };
+        let force = vertical.rate[i] + vertical.rest[i];
+        let time_s = signals.grid.time_s(i);
+        standard.push(time_s, Phi::of(force, &filtered.rate[i], omega_dot), wrench);
+        by_filter.push(time_s, filtered_phi, filtered_wrench);
+        if i + 1 == run.end {
+            let kept = standard.time_s.len() - run.len()..standard.time_s.len();
+            standard.runs.push(kept.clone());
+            by_filter.runs.push(kept);
+            runs.next();
         }
-        standard.runs.push(start..standard.time_s.len());
-        by_filter.runs.push(start..by_filter.time_s.len());
     }
     Some((standard, by_filter))
 }
@@ -121,19 +117,23 @@ impl SampledModel {
         Self { step_s, ..Self::default() }
     }
 
-    fn push(&mut self, time_s: f64, gamma: SMatrix<f64, 4, 7>, upsilon: Vector4<f64>) {
+    fn push(&mut self, time_s: f64, gamma: Phi, upsilon: Vector4<f64>) {
         self.time_s.push(time_s);
         self.gamma.push(gamma);
         self.upsilon.push(upsilon);
     }
 
     /// Appends another flight's samples.
-    pub fn extend(&mut self, other: &Self) {
+    pub fn extend(&mut self, other: Self) {
+        if self.time_s.is_empty() {
+            *self = other;
+            return;
+        }
         let shift = self.time_s.len();
         self.step_s = other.step_s;
-        self.time_s.extend_from_slice(&other.time_s);
-        self.gamma.extend_from_slice(&other.gamma);
-        self.upsilon.extend_from_slice(&other.upsilon);
+        self.time_s.extend(other.time_s);
+        self.gamma.extend(other.gamma);
+        self.upsilon.extend(other.upsilon);
         self.runs.extend(other.runs.iter().map(|run| run.start + shift..run.end + shift));
     }
 }
@@ -196,26 +196,6 @@ fn vertical(filtered: &Filtered, gravity_m_s2: f64, step_s: f64) -> Option<Verti
     let rest = filtered.specific_force_z.clone()?;
     let zero = vec![0.0; rest.len()];
     Some(Vertical { momentum: zero.clone(), rate: zero, rest })
-}
-
-/// Applies a filter to each entry of a series of matrices.
-fn filter_entries<const R: usize, const C: usize>(
-    series: &[SMatrix<f64, R, C>],
-    filter: impl Fn(&[f64]) -> Vec<f64>,
-) -> Vec<SMatrix<f64, R, C>> {
-    let mut out = series.to_vec();
-    let mut column = vec![0.0; series.len()];
-    for entry in 0..R * C {
-        for (value, matrix) in column.iter_mut().zip(series) {
-            *value = matrix[entry];
-        }
-        if column.iter().any(|v| *v != 0.0) {
-            for (matrix, value) in out.iter_mut().zip(filter(&column)) {
-                matrix[entry] = value;
-            }
-        }
-    }
-    out
 }
 
 fn arrays(vectors: &[Vector3<f64>]) -> Vec<[f64; 3]> {

@@ -14,7 +14,7 @@ pub fn output_prediction_rms(
     let (mut sum, mut count) = (Vector4::zeros(), 0_usize);
     for ((time_s, gamma), upsilon) in model.time_s.iter().zip(&model.gamma).zip(&model.upsilon) {
         if (from_s..=to_s).contains(time_s) {
-            let error = gamma * theta - upsilon;
+            let error = gamma.matrix() * theta - upsilon;
             sum += error.component_mul(&error);
             count += 1;
         }
@@ -25,13 +25,12 @@ pub fn output_prediction_rms(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::SMatrix;
+    use crate::regression::Phi;
+    use nalgebra::Vector3;
 
     #[test]
     fn each_component_has_its_own_error() {
-        let mut gamma = SMatrix::<f64, 4, 7>::zeros();
-        gamma[(0, 0)] = 10.0;
-        gamma[(1, 1)] = 2.0;
+        let gamma = Phi::of(10.0, &Vector3::zeros(), &Vector3::new(2.0, 0.0, 0.0));
         let model = SampledModel {
             step_s: 1.0,
             time_s: vec![0.0, 1.0, 2.0],

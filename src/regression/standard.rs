@@ -3,6 +3,7 @@
 //!
 //! The paper prints `Phi` in two halves; the rows here are those of (7) to (10).
 
+use super::Phi;
 use nalgebra::{SMatrix, Vector3};
 
 /// The motion of one instant as far as (7) to (10) need it. Body FLU, SI.
@@ -20,17 +21,8 @@ pub struct BodyKinematics {
 /// Izz (kg m^2).
 #[must_use]
 pub fn standard_regressor(kinematics: &BodyKinematics) -> SMatrix<f64, 4, 7> {
-    let (p, q, r) = (kinematics.omega_rad_s.x, kinematics.omega_rad_s.y, kinematics.omega_rad_s.z);
-    let (dp, dq, dr) =
-        (kinematics.omega_dot_rad_s2.x, kinematics.omega_dot_rad_s2.y, kinematics.omega_dot_rad_s2.z);
-    #[rustfmt::skip]
-    let phi = SMatrix::<f64, 4, 7>::from_row_slice(&[
-        kinematics.specific_force_z_m_s2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-        0.0, dp, dq - p * r, dr + p * q, -q * r, q * q - r * r, q * r,
-        0.0, p * r, dp + q * r, r * r - p * p, dq, dr - p * q, -p * r,
-        0.0, -p * q, p * p - q * q, dp - q * r, p * q, dq + p * r, dr,
-    ]);
-    phi
+    let BodyKinematics { specific_force_z_m_s2, omega_rad_s, omega_dot_rad_s2 } = kinematics;
+    Phi::of(*specific_force_z_m_s2, omega_rad_s, omega_dot_rad_s2).matrix()
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@
 //! `F_command = F + tau F'` exactly, a pure delay gives it to first order.
 
 use super::filtered::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor};
-use crate::signals::{Grid, Reference, Signals, WeakKernel, stride};
+use crate::signals::{Grid, Reference, Series, Signals, WeakKernel, stride};
 use nalgebra::{SMatrix, UnitQuaternion, Vector3, Vector4};
 
 /// Fz, `tau_x`, `tau_y`, `tau_z`.
@@ -22,7 +22,7 @@ pub const CHANNELS: usize = 4;
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeakMotion {
     /// rad/s, body
-    pub omega: Option<Vec<Vector3<f64>>>,
+    pub omega: Option<Series<Vector3<f64>>>,
     /// m/s^2, what an ideal accelerometer on body z shows
     pub vertical: Option<VerticalMotion>,
 }
@@ -88,7 +88,7 @@ impl WeakMotion {
             .map(|i| (reference.acceleration[late(i)] + Vector3::new(0.0, 0.0, gravity_m_s2)).norm())
             .collect();
         Self {
-            omega: Some(omega),
+            omega: Some(omega.into()),
             vertical: Some(VerticalMotion {
                 specific_force_z: Some(specific_force_z),
                 kinematic: None,
@@ -157,7 +157,7 @@ fn kinematic(signals: &Signals, gravity_m_s2: f64) -> Option<(Vec<f64>, Vec<f64>
     let velocity = signals.velocity.as_ref()?;
     let mut w = Vec::with_capacity(rate.len());
     let mut rest = Vec::with_capacity(rate.len());
-    for ((q, omega), v) in attitude.iter().zip(rate).zip(velocity) {
+    for ((q, omega), v) in attitude.iter().zip(rate.iter()).zip(velocity.iter()) {
         let body = q.inverse_transform_vector(v);
         let up = q.inverse_transform_vector(&Vector3::z());
         w.push(body.z);
@@ -187,7 +187,7 @@ pub fn weak_rows(signals: &Signals, motion: &WeakMotion, kernel: &WeakKernel) ->
     let smooth = |columns: &[Vec<f64>; CHANNELS], center| {
         Vector4::from_fn(|channel, _| kernel.at(0, &columns[channel], center))
     };
-    let products = motion.omega.as_deref().map(GyroscopicColumns::from);
+    let products = motion.omega.as_ref().map(|omega| GyroscopicColumns::from(omega));
     for run in Grid::runs(&signals.usable, 2 * kernel.half_count + 1) {
         let first = rows.time_s.len();
         for center in (run.start + kernel.half_count..run.end - kernel.half_count).step_by(stride) {
@@ -218,7 +218,7 @@ pub fn weak_rows(signals: &Signals, motion: &WeakMotion, kernel: &WeakKernel) ->
 fn heave_columns(signals: &Signals) -> Option<[Vec<f64>; 3]> {
     let (attitude, velocity) = (signals.attitude.as_ref()?, signals.velocity.as_ref()?);
     let axes: Vec<Vector3<f64>> = attitude.iter().map(|q| q.transform_vector(&Vector3::z())).collect();
-    let w = axes.iter().zip(velocity).map(|(axis, v)| axis.dot(v)).collect();
+    let w = axes.iter().zip(velocity.iter()).map(|(axis, v)| axis.dot(v)).collect();
     Some([w, axes.iter().map(|axis| axis.x).collect(), axes.iter().map(|axis| axis.y).collect()])
 }
 
@@ -273,14 +273,14 @@ mod tests {
             grid: Grid { start_s: 0.0, step_s: STEP_S, count },
             usable: vec![true; count],
             attitude: None,
-            rate: Some(series(&rate)),
-            specific_force: Some(series(&|t| Vector3::new(0.0, 0.0, lift(t)))),
+            rate: Some(series(&rate).into()),
+            specific_force: Some(series(&|t| Vector3::new(0.0, 0.0, lift(t))).into()),
             world_acceleration: None,
             position: None,
             velocity: None,
-            rotor_thrust_n: Vec::new(),
+            rotor_thrust_n: Vec::new().into(),
             full_thrust_n: 1.0,
-            wrench: vec![wrench; count],
+            wrench: vec![wrench; count].into(),
             jitter_wrench: None,
             battery_voltage_v: None,
             as_recorded: AsRecorded::default(),

@@ -6,7 +6,7 @@ use super::align::{
     velocity_offset,
 };
 use super::changed::{changes_in_the_air, resting_on_defaults};
-use super::flight::{AsRecorded, Quality, Reference, Signals};
+use super::flight::{AsRecorded, Quality, Reference, Series, Signals};
 use super::height::is_height_by_pose;
 use super::lifts::too_little;
 use super::noise::gyro_noise_rad_s;
@@ -101,17 +101,17 @@ pub fn condition(
     let mut signals = Signals {
         grid,
         usable: mask,
-        attitude: motion.attitude,
-        rate: motion.rate,
-        specific_force: motion.specific_force,
-        world_acceleration: motion.world_acceleration,
-        position: motion.position,
-        velocity: motion.velocity,
-        rotor_thrust_n: felt.rotor_thrust_n,
+        attitude: motion.attitude.map(Series::new),
+        rate: motion.rate.map(Series::new),
+        specific_force: motion.specific_force.map(Series::new),
+        world_acceleration: motion.world_acceleration.map(Series::new),
+        position: motion.position.map(Series::new),
+        velocity: motion.velocity.map(Series::new),
+        rotor_thrust_n: felt.rotor_thrust_n.into(),
         full_thrust_n: vehicle.propulsion.full_thrust_n(),
-        wrench: felt.wrench,
-        jitter_wrench: felt.jitter_wrench,
-        battery_voltage_v: battery_voltage_v(recording, &grid),
+        wrench: felt.wrench.into(),
+        jitter_wrench: felt.jitter_wrench.map(Series::new),
+        battery_voltage_v: battery_voltage_v(recording, &grid).map(Series::new),
         as_recorded: chosen.as_recorded(),
         reference: reference(recording, &grid),
         quality: Quality {
@@ -364,8 +364,10 @@ fn reference(recording: &Recording, grid: &Grid) -> Option<Reference> {
         .and_then(|(_, stream)| super::cubic_onto(&unwrapped(stream), 0.0, grid))
         .unwrap_or_else(|| vec![0.0; grid.count]);
     Some(Reference {
-        acceleration: acceleration.chunks_exact(3).map(|a| Vector3::new(a[0], a[1], a[2])).collect(),
-        yaw,
+        acceleration: Series::new(
+            acceleration.chunks_exact(3).map(|a| Vector3::new(a[0], a[1], a[2])).collect(),
+        ),
+        yaw: yaw.into(),
         message: key.source,
     })
 }

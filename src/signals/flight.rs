@@ -10,6 +10,9 @@ use crate::vehicle::Propulsion;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 use std::sync::Arc;
 
+/// Values that parts and versions of a flight have in common: a copy takes no memory.
+pub type Series<T> = Arc<Vec<T>>;
+
 /// A flight on one clock and one grid. Vectors have one entry a grid instant; SI, body FLU, world NWU.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Signals {
@@ -18,29 +21,29 @@ pub struct Signals {
     /// airborne, sufficiently excited, not saturated, no gap in a used stream
     pub usable: Vec<bool>,
     /// body to world
-    pub attitude: Option<Vec<UnitQuaternion<f64>>>,
+    pub attitude: Option<Series<UnitQuaternion<f64>>>,
     /// rad/s, body
-    pub rate: Option<Vec<Vector3<f64>>>,
+    pub rate: Option<Series<Vector3<f64>>>,
     /// m/s^2, body
-    pub specific_force: Option<Vec<Vector3<f64>>>,
+    pub specific_force: Option<Series<Vector3<f64>>>,
     /// m/s^2, world, gravity removed, where the log holds it
-    pub world_acceleration: Option<Vec<Vector3<f64>>>,
+    pub world_acceleration: Option<Series<Vector3<f64>>>,
     /// m, world
-    pub position: Option<Vec<Vector3<f64>>>,
+    pub position: Option<Series<Vector3<f64>>>,
     /// m/s, world
-    pub velocity: Option<Vec<Vector3<f64>>>,
+    pub velocity: Option<Series<Vector3<f64>>>,
     /// N, one for each rotor and instant, rotor after rotor; empty if the log contains the wrench itself
-    pub rotor_thrust_n: Vec<f64>,
+    pub rotor_thrust_n: Series<f64>,
     /// N, full thrust of one rotor of the vehicle for which the thrusts, the wrench and its jitter were computed
     pub full_thrust_n: f64,
     /// `F = [Fz tau]`, N and N m, from the rotors through the nominal mixer, less half of
     /// [`Self::jitter_wrench`]
-    pub wrench: Vec<Vector4<f64>>,
+    pub wrench: Series<Vector4<f64>>,
     /// contribution of the commands' jitter to the wrench if the rotors follow all of it (N, N m); they follow a share
     /// between none and all
-    pub jitter_wrench: Option<Vec<Vector4<f64>>>,
+    pub jitter_wrench: Option<Series<Vector4<f64>>>,
     /// V; `None` where it is not recorded
-    pub battery_voltage_v: Option<Vec<f64>>,
+    pub battery_voltage_v: Option<Series<f64>>,
     /// what was interpolated, at its own instants
     pub as_recorded: AsRecorded,
     /// commanded trajectory
@@ -96,9 +99,9 @@ pub struct AsRecorded {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
     /// m/s^2, without gravity
-    pub acceleration: Vec<Vector3<f64>>,
+    pub acceleration: Series<Vector3<f64>>,
     /// rad about up
-    pub yaw: Vec<f64>,
+    pub yaw: Series<f64>,
     /// message that it came from
     pub message: &'static str,
 }
@@ -141,9 +144,9 @@ mod tests {
             world_acceleration: None,
             position: None,
             velocity: None,
-            rotor_thrust_n: Vec::new(),
+            rotor_thrust_n: Series::default(),
             full_thrust_n: 1.0,
-            wrench: Vec::new(),
+            wrench: Series::default(),
             jitter_wrench: None,
             battery_voltage_v: None,
             as_recorded: AsRecorded::default(),

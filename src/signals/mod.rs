@@ -37,7 +37,7 @@ pub use changed::{changes_in_the_air, resting_on_defaults, settle_parameters, se
 pub use condition::{ConditionSettings, condition, stride};
 pub use error::SignalsError;
 pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference};
-pub use flight::{AsRecorded, Quality, Reference, Signals};
+pub use flight::{AsRecorded, Quality, Reference, Series, Signals};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use noise::white_level;
 pub use one_flight::{ClockOffset, clock_offset};

@@ -20,7 +20,7 @@ use super::both_logs::each_flight_once;
 use super::flight::{Flight, LoggedBy};
 use super::{InputFile, StudyError};
 
-/// What is identified and validated from of one log: it takes 20 MB a minute at 125 Hz, and 100 bytes a number.
+/// What is identified and validated from of one log: it takes about 50 bytes a number.
 pub(super) const IDENTIFIED: Hold = Hold { seconds: 1800.0, numbers: 3_000_000 };
 /// What is explained of one log. Memory and time grow with the numbers: a log of an on-board profile holds more of them a second
 /// than telemetry.

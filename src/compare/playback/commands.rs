@@ -20,7 +20,7 @@ impl<'a> Commands<'a> {
         let mut thrusts_n = vec![[0.0; MAX_ROTORS]; signals.grid.count];
         if signals.rotor_thrust_n.is_empty() {
             let allocation = Allocation::new(vehicle, 0.0)?;
-            for (thrusts_n, wrench) in thrusts_n.iter_mut().zip(&signals.wrench) {
+            for (thrusts_n, wrench) in thrusts_n.iter_mut().zip(signals.wrench.iter()) {
                 thrusts_n.copy_from_slice(allocation.thrusts_n(wrench).as_slice());
             }
         } else {

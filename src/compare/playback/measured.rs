@@ -3,7 +3,7 @@
 use crate::compare::CompareError;
 use crate::compare::mean_square::MeanSquare;
 use crate::physics::State;
-use crate::signals::Signals;
+use crate::signals::{Series, Signals};
 use nalgebra::Vector3;
 
 /// What was measured of the body.
@@ -25,7 +25,7 @@ impl<'a> MeasuredStates<'a> {
 
     /// What is not recorded is zero.
     pub fn at(&self, index: usize) -> State {
-        let vector = |series: &Option<Vec<Vector3<f64>>>| {
+        let vector = |series: &Option<Series<Vector3<f64>>>| {
             series.as_ref().map(|series| series[index]).unwrap_or_default()
         };
         State {

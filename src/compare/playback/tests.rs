@@ -73,7 +73,7 @@ fn flywheels_show_in_measured_speeds_as_they_spin_up() {
     assert!(with < 0.8 * without, "rates {without} to {with}");
     // thrust that rises by 2 N/s from 1 N on: n = sqrt(T / T_hover), n' = T' / (2 T_hover n)
     let rotors = vehicle.rotors.len();
-    for (place, thrust_n) in signals.rotor_thrust_n.iter_mut().enumerate() {
+    for (place, thrust_n) in std::sync::Arc::make_mut(&mut signals.rotor_thrust_n).iter_mut().enumerate() {
         *thrust_n = 1.0 + 2.0 * signals.grid.step_s * (place / rotors) as f64;
     }
     let model = Model::new(&vehicle, vec![]).unwrap();

@@ -13,7 +13,7 @@ use crate::diagnose::signatures::{latency_kind, signature_of};
 use crate::diagnose::trace::Trace;
 use crate::physics::ActuationLatency;
 use crate::recording::Quantity;
-use crate::signals::{AsRecorded, Grid, Quality, Signals, ThrustSource, Usable};
+use crate::signals::{AsRecorded, Grid, Quality, Series, Signals, ThrustSource, Usable};
 use crate::simulate::Allocation;
 use crate::trajectory::{FourierTrajectory, Reference};
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
@@ -244,17 +244,17 @@ impl Flown {
         Signals {
             grid,
             usable: vec![true; grid.count],
-            attitude: like.known.attitude.then_some(self.attitude),
-            rate: Some(self.rate),
-            specific_force: like.has_accelerometer().then_some(self.felt),
+            attitude: like.known.attitude.then(|| self.attitude.into()),
+            rate: Some(self.rate.into()),
+            specific_force: like.has_accelerometer().then(|| self.felt.into()),
             world_acceleration: None,
-            position: like.known.position.then_some(self.position),
-            velocity: like.known.velocity.then_some(self.velocity),
-            rotor_thrust_n: self.thrusts,
+            position: like.known.position.then(|| self.position.into()),
+            velocity: like.known.velocity.then(|| self.velocity.into()),
+            rotor_thrust_n: self.thrusts.into(),
             full_thrust_n,
-            wrench: self.wrench,
+            wrench: self.wrench.into(),
             jitter_wrench: None,
-            battery_voltage_v: voltage,
+            battery_voltage_v: voltage.map(Series::new),
             as_recorded: AsRecorded::default(),
             reference: None,
             quality: Quality {

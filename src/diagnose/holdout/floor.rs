@@ -3,7 +3,7 @@
 use crate::compare::{CommandNoise, StateNoise};
 use crate::physics::MAX_ROTORS;
 use crate::recording::{Quantity, Stream};
-use crate::signals::{Signals, ThrustSource, white_level};
+use crate::signals::{Series, Signals, ThrustSource, white_level};
 use crate::stats::median;
 use crate::vehicle::Propulsion;
 use nalgebra::{SMatrix, SVector, Vector3};
@@ -12,7 +12,7 @@ use nalgebra::{SMatrix, SVector, Vector3};
 /// white noise, so the result is a lower bound for them.
 #[must_use]
 pub fn state_noise(signals: &Signals) -> StateNoise {
-    let vectors = |series: &Option<Vec<Vector3<f64>>>, quantity: Quantity| {
+    let vectors = |series: &Option<Series<Vector3<f64>>>, quantity: Quantity| {
         series.as_ref().map_or(0.0, |series| {
             let flat: Vec<f64> = series.iter().flat_map(|v| [v.x, v.y, v.z]).collect();
             rms(&levels(signals, flat, 3, quantity))

@@ -17,6 +17,7 @@ use nalgebra::{DMatrix, Vector3};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Number of noisier motions. Chosen; not measured.
 const REPLICATES: u64 = 12;
@@ -130,7 +131,7 @@ fn noisier(trace: &Trace, rng: &mut Pcg64Mcg) -> Trace {
         let series: Vec<f64> = trace.felt_m_s2.iter().map(|felt| felt[axis]).collect();
         Some(white_level_of(&series)).filter(|level| level.is_finite()).unwrap_or(0.0)
     });
-    for felt in &mut trace.felt_m_s2 {
+    for felt in Arc::make_mut(&mut trace.felt_m_s2) {
         let noise = Vector3::from_fn(|_, _| StandardNormal.sample(rng));
         *felt += level.component_mul(&noise);
     }

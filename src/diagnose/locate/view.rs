@@ -243,13 +243,13 @@ impl View {
         let mut rate_n_s = Vec::new();
         for (flight, trace) in traces.iter().enumerate() {
             let Some(commanded) = fitted.rows.commanded(flight) else { return };
-            let total: Vec<f64> = commanded.thrust_n.iter().map(|thrusts| thrusts.iter().sum()).collect();
+            let total: Vec<f64> = commanded.thrust_n.each().map(|thrusts| thrusts.iter().sum()).collect();
             let rate = central_difference(&total, trace.grid.step_s);
             for &center in &trace.centers {
                 self.thrust_n.push(total[center]);
                 rate_n_s.push(rate[center]);
                 for (rotor, values) in rotors.iter_mut().enumerate() {
-                    values.push(commanded.thrust_n[center][rotor]);
+                    values.push(commanded.thrust_n.at(center)[rotor]);
                 }
             }
         }

@@ -52,7 +52,9 @@ impl Clock {
     /// Recording time of a stamp, s.
     #[inline]
     pub(super) fn seconds(&self, stamp_us: u64) -> f64 {
-        seconds_from_us((i128::from(stamp_us) - self.zero_us) as f64)
+        let since_us = i128::from(stamp_us) - self.zero_us;
+        // 64 bits become a number in one instruction
+        seconds_from_us(i64::try_from(since_us).map_or_else(|_| since_us as f64, |us| us as f64))
     }
 
     /// Takes the stamp of a topic's message; `before_us` is that of its last one. A topic's first message may be old: it

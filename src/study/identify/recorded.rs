@@ -45,7 +45,7 @@ impl IdentifyStudy {
         });
         let Some((standard, _)) = models else { return Vec::new() };
         let by = |component: usize, theta: &Theta| -> Vec<f64> {
-            standard.gamma.iter().map(|gamma| (gamma * theta)[component]).collect()
+            standard.gamma.iter().map(|gamma| (gamma.matrix() * theta)[component]).collect()
         };
         (0..COMPONENTS.len())
             .map(|component| RotorsAndMotion {

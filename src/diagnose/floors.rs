@@ -1,0 +1,29 @@
+//! What no statistics of one flight tell: how far the laws themselves hold.
+
+use super::channels::Nuisance;
+use super::fit::Fitted;
+
+/// Relative standard error of the mass that the thrust law adds: of 20 flights of both autopilots' simulators 16 were within 0.2 %,
+/// four within 0.4 %.
+const MASS: f64 = 0.003;
+/// Relative standard error that the torque law adds to moments of inertia: by instruments they were right to 0.3 % where statistics
+/// said 0.1 %.
+const INERTIA: f64 = 0.003;
+
+/// Adds the errors of the laws to those of a fit's mass and moments of inertia.
+pub(super) fn add_floors(fitted: &mut Fitted) {
+    let body = &fitted.base.vehicle.body;
+    for (index, column) in fitted.rows.nuisances.iter().enumerate() {
+        let floor = match column.nuisance {
+            Nuisance::Mass => MASS * body.mass_kg,
+            Nuisance::Inertia(0) => INERTIA * body.inertia_kg_m2[(0, 0)],
+            Nuisance::Inertia(3) => INERTIA * body.inertia_kg_m2[(1, 1)],
+            Nuisance::Inertia(5) => INERTIA * body.inertia_kg_m2[(2, 2)],
+            _ => continue,
+        };
+        // what no row bears on stays undetermined
+        if fitted.covariance[(index, index)] > 0.0 {
+            fitted.covariance[(index, index)] += floor.powi(2);
+        }
+    }
+}
