@@ -14,6 +14,7 @@ use super::latency_name::latency_name;
 use super::limits::{is_beyond_showing, limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
 use super::named::{Confusable, Named, NamedParameter, Strength};
+use super::physical::make_physical;
 use super::reconstructed::reconstruct;
 use super::search::search;
 use super::signature::{EffectTerm, Signature};
@@ -113,7 +114,7 @@ pub fn explain(
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
     let mut found = search(&traces, vehicle, &settings.gates, settings.signatures)?;
-    settle(flights, &traces, &mut found)?;
+    settle((flights, &traces), vehicle, &mut found)?;
     let beyond = tracing::info_span!("locate").in_scope(|| beyond(&traces, &found));
     let explanation = judge(&traces, vehicle, found, beyond);
     explanation.emit();
@@ -128,7 +129,11 @@ const SETTLINGS: usize = 3;
 
 /// Leaves effects without a name out, and estimates the sizes of the others by what has no noise of the autopilot's own: forces
 /// with the flight path, torques by instruments.
-fn settle(flights: &[Signals], traces: &[Trace], found: &mut Search) -> Result<(), PhysicsError> {
+fn settle(
+    (flights, traces): (&[Signals], &[Trace]),
+    vehicle: &Vehicle,
+    found: &mut Search,
+) -> Result<(), PhysicsError> {
     leave_out_ordinary(traces, found)?;
     for left in (0..SETTLINGS).rev() {
         tracing::info_span!("reconstruct").in_scope(|| reconstruct(flights, traces, found))?;
@@ -138,7 +143,8 @@ fn settle(flights: &[Signals], traces: &[Trace], found: &mut Search) -> Result<(
         }
     }
     add_floors(&mut found.after);
-    Ok(())
+    make_physical(traces, vehicle, &mut found.before)?;
+    make_physical(traces, vehicle, &mut found.after)
 }
 
 /// Removes effects without a name from the model: those of ordinary size, those that are not certain, and those that the flight

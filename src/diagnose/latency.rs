@@ -32,8 +32,6 @@ pub struct LatencyFinding {
     pub against_delay: f64,
     /// standard error of [`ActuationLatency::uneven`], if the flight distinguishes rising from falling speed
     pub uneven_std: Option<f64>,
-    /// the total by instruments alone, s, where they serve and are less precise
-    pub by_instruments_s: Option<f64>,
 }
 
 impl LatencyFinding {
@@ -56,6 +54,9 @@ const LEAST_S: f64 = 0.010;
 const HELD: f64 = 0.25;
 /// Noise of the gyroscopes above which the kind of the latency is not determined, rad/s. Chosen; not measured.
 const NOISY_RAD_S: f64 = 0.03;
+/// Standard error of a latency by least squares where the gyroscopes' noise is fed back and no instrument confirms it, s. On flights
+/// with an estimator in the loop it was wrong by 2 to 40 ms.
+const UNCONFIRMED_S: f64 = 0.02;
 /// Latency of sampling and a fast motor, s. A lag or delay is named if it is beyond it. Chosen; not measured.
 pub(super) const FAST_MOTOR_S: f64 = 0.004;
 /// A split into delay and lag is rejected if a lag alone has a larger log-likelihood by this much a row. Something else
@@ -81,7 +82,7 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
     {
         let both = against_lag > REFUSED && against_delay > REFUSED && (0.0..total_s).contains(&delay_s);
         // fed back, the gyroscopes' noise moves commands and motion together, and the second order with them
-        let fed_back = flights.iter().any(|trace| trace.gyro_noise_rad_s > NOISY_RAD_S);
+        let fed_back = is_fed_back(flights);
         // of two kinds that both serve, the one that the description states
         let uneven = stated_uneven(&fitted.base.vehicle);
         let states_lag = fitted.base.vehicle.propulsion.time_constant_down_s.is_some();
@@ -125,10 +126,15 @@ pub(super) fn with_latency(
 ) -> Result<(Fitted, LatencyFinding), PhysicsError> {
     let plain = fit(flights, base, newton)?;
     let finding = finding_of(&plain);
-    let Some(by) = fit_by_instruments(flights, &plain, newton)? else { return Ok((plain, finding)) };
+    let Some(by) = fit_by_instruments(flights, &plain, newton)? else {
+        let unconfirmed_s = if is_fed_back(flights) { UNCONFIRMED_S } else { 0.0 };
+        return Ok((plain, LatencyFinding { std_s: finding.std_s.hypot(unconfirmed_s), ..finding }));
+    };
     let told = finding_of(&by);
     if !differs((finding.total_s, finding.std_s), (told.total_s, told.std_s)) {
-        return Ok((plain, LatencyFinding { by_instruments_s: Some(told.total_s), ..finding }));
+        // the difference is what least squares may be wrong by
+        let std_s = finding.std_s.hypot(finding.total_s - told.total_s);
+        return Ok((plain, LatencyFinding { std_s, ..finding }));
     }
     let base = Base { latency: by.base.latency, ..plain.base };
     Ok((fit(flights, base, Newton::Held)?, told))
@@ -145,6 +151,11 @@ pub(super) fn with_any_latency(flights: &[Trace], base: Base) -> Result<(Fitted,
     let (fitted, LatencyFinding { std_s, .. }) = with_latency(flights, allowed, Newton::Free)?;
     let Base { vehicle, latency, .. } = fitted.base;
     Ok((evaluate(flights, Base { vehicle, latency, ..base })?, std_s))
+}
+
+/// Whether the gyroscopes' noise moves commands and motion together.
+fn is_fed_back(flights: &[Trace]) -> bool {
+    flights.iter().any(|trace| trace.gyro_noise_rad_s > NOISY_RAD_S)
 }
 
 /// The split into delay and lag, or the lag alone if it explains the flight far better.
@@ -195,7 +206,6 @@ pub fn finding_of(fitted: &Fitted) -> LatencyFinding {
         against_lag: 0.0,
         against_delay: 0.0,
         uneven_std: None,
-        by_instruments_s: None,
     }
 }
 

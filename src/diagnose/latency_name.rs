@@ -16,18 +16,13 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     if !traces.iter().any(|trace| trace.torques) {
         return None;
     }
-    let LatencyFinding { total_s, std_s, parts, against_lag, against_delay, uneven_std, by_instruments_s } =
-        found.latency;
+    let LatencyFinding { total_s, std_s, parts, against_lag, against_delay, uneven_std } = found.latency;
     let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
     let motor_s = stated_lag_s(vehicle);
     let of_sensors_s = |trace: &Trace| trace.inertial_late_s + trace.inertial_unsure_s;
     let late_s = traces.iter().map(of_sensors_s).fold(0.0, f64::max);
     let ordinary_s = motor_s + FAST_MOTOR_S + 0.5 * period_s + late_s;
-    if total_s - ordinary_s < 4.0 * std_s {
-        return None;
-    }
-    // instruments have to show it as well, as precise as they are: the controller's answer to noise looks like a latency
-    if by_instruments_s.is_some_and(|by_s| by_s - ordinary_s < SHOWN * (total_s - ordinary_s)) {
+    if total_s - ordinary_s < 4.0 * std_s.hypot(ORDINARY_STD_S) {
         return None;
     }
     let unsure_s = traces.iter().map(|trace| trace.inertial_unsure_s).fold(0.0, f64::max);
@@ -50,7 +45,7 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     };
     let (own, others) = if is_lag { (against_lag, against_delay) } else { (against_delay, against_lag) };
     let told_apart = others > TOLD_APART && own < 0.5 * REFUSED;
-    let z = (total_s - ordinary_s) / found.latency.std_s;
+    let z = (total_s - ordinary_s) / found.latency.std_s.hypot(ORDINARY_STD_S);
     Some(Named {
         id: kind.id(),
         sentence: kind.effect.sentence(),
@@ -87,8 +82,8 @@ fn parameters_of(
     vec![of(name, rising_s), of("time_constant_down", falling_s)]
 }
 
-/// Share of a latency beyond the ordinary that the estimate by instruments must show. Chosen; not measured.
-const SHOWN: f64 = 0.5;
+/// Standard error of the latency that every vehicle has, s: low-passes of gyroscopes at 30 to 80 Hz delay by 2 to 7 ms.
+const ORDINARY_STD_S: f64 = 0.0025;
 
 /// Standard deviations beyond which a lag is distinguished from a delay. More than for other pairs, because rotors with
 /// different rising and falling time constants are neither and resemble a delay. Chosen; not measured.

@@ -32,6 +32,7 @@ mod mounting;
 mod named;
 mod nuisances;
 mod other_forms;
+mod physical;
 mod price;
 mod priors;
 mod pruning;

@@ -102,7 +102,6 @@ pub fn search(
         uneven_std: latency.uneven_std,
         // what could be taken for a latency makes it uncertain, whether it is in the model or not
         std_s: found.std_s.max(beside.std_s),
-        by_instruments_s: beside.by_instruments_s,
         ..found
     };
     Ok(Search { before, after, latency, steps, last })
