@@ -9,7 +9,7 @@ use super::fit::{Fitted, Newton, fit};
 use super::floors::add_floors;
 use super::gates::Gates;
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
-use super::instruments::torques_by_instruments;
+use super::latency::is_fed_back;
 use super::latency_name::latency_name;
 use super::limits::{is_beyond_showing, limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
@@ -20,6 +20,7 @@ use super::search::search;
 use super::signature::{EffectTerm, Signature};
 use super::signatures::{ALL, GUST};
 use super::tested::{Search, Step, Tested};
+use super::torques_by_instruments::torques_by_instruments;
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
 use crate::signals::Signals;
@@ -137,7 +138,10 @@ fn settle(
     leave_out_ordinary(traces, found)?;
     for left in (0..SETTLINGS).rev() {
         tracing::info_span!("reconstruct").in_scope(|| reconstruct(flights, traces, found))?;
-        tracing::info_span!("instruments").in_scope(|| torques_by_instruments(traces, &mut found.after))?;
+        if is_fed_back(traces) {
+            tracing::info_span!("instruments")
+                .in_scope(|| torques_by_instruments(traces, &mut found.after))?;
+        }
         if left == 0 || !leave_out_ordinary(traces, found)? {
             break;
         }

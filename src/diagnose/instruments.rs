@@ -1,18 +1,8 @@
-//! Torques by instruments (two-stage least squares).
-//!
-//! The controller answers the noise of the measured motion, so commands and motion share it, and least squares takes the
-//! answer for the vehicle. The commanded trajectory causes the motion and has none of that noise: only what of each column
-//! goes with it is compared.
+//! Instruments: what the commanded trajectory asks of the torques. It causes the motion, and has none of the noise that the
+//! measured motion and the commands share.
 
-use super::channels::{AXES, CHANNELS, Channels, Nuisance};
-use super::columns::Columns;
-use super::evidence::weighted;
-use super::fit::{CONVERGED, Fitted, Newton, PASSES, evaluate, step};
-use super::trace::Trace;
-use crate::estimate::Estimated;
-use crate::physics::PhysicsError;
 use crate::signals::{Reference, central_difference};
-use nalgebra::{DMatrix, DVector, Rotation3};
+use nalgebra::{DMatrix, Rotation3};
 
 /// Delays at which the trajectory serves, s: controllers follow it within these.
 const LATE_S: [f64; 3] = [0.0, 0.15, 0.3];
@@ -24,8 +14,12 @@ const LEAST_DIRECTION: f64 = 1e-6;
 /// One column an instrument, one value a row, for the torque about each body axis.
 pub(super) type Instruments = [Vec<Vec<f64>>; 3];
 
-/// Instruments of a flight: sideways acceleration for roll, forward for pitch, turning for yaw.
-pub(super) fn instruments(trace: &Trace, reference: &Reference) -> Instruments {
+/// Instruments of a flight on a grid of this step, s, by the weak form's derivatives of a series at its rows: sideways acceleration for roll, forward for pitch, turning for yaw.
+pub(super) fn instruments(
+    reference: &Reference,
+    step_s: f64,
+    weak: impl Fn(usize, &[f64]) -> Vec<f64>,
+) -> Instruments {
     let turned = |axis: usize| -> Vec<f64> {
         let each = reference.acceleration.iter().zip(reference.yaw.iter());
         each.map(|(world, yaw)| {
@@ -33,15 +27,15 @@ pub(super) fn instruments(trace: &Trace, reference: &Reference) -> Instruments {
         })
         .collect()
     };
-    let turning = central_difference(&reference.yaw, trace.grid.step_s);
+    let turning = central_difference(&reference.yaw, step_s);
     [turned(1), turned(0), turning].map(|series| {
         LATE_S
             .iter()
             .flat_map(|late_s| {
-                let late = instants(*late_s, trace.grid.step_s);
+                let late = instants(*late_s, step_s);
                 let behind: Vec<f64> =
                     (0..series.len()).map(|index| series[index.saturating_sub(late)]).collect();
-                (0..ORDERS).map(|order| trace.weak(order, &behind)).collect::<Vec<_>>()
+                (0..ORDERS).map(|order| weak(order, &behind)).collect::<Vec<_>>()
             })
             .collect()
     })
@@ -52,164 +46,8 @@ fn instants(late_s: f64, step_s: f64) -> usize {
     (0..).take_while(|count| (f64::from(*count) + 0.5) * step_s < late_s).count()
 }
 
-/// Places of the moments of inertia in [`Estimated::theta`].
-const MOMENTS: [usize; 3] = [1, 4, 6];
-
-/// Normal deviate beyond which least squares and instruments differ.
-const HAUSMAN: f64 = 2.5;
-
-/// Hausman's test (1978) of a value and its standard error by least squares, which is the more precise where nothing is shared
-/// with the noise, against those by instruments, which hold in either case.
-pub(super) fn differs((value, std): (f64, f64), (by, by_std): (f64, f64)) -> bool {
-    let more = by_std.powi(2) - std.powi(2);
-    more < 0.0 || (value - by).powi(2) > HAUSMAN.powi(2) * more
-}
-
-/// Inertia and damping of a model as instruments tell them, where least squares contradicts them.
-///
-/// # Errors
-/// [`PhysicsError`] where the base is not physical.
-pub(super) fn torques_by_instruments(flights: &[Trace], fitted: &mut Fitted) -> Result<(), PhysicsError> {
-    let Some(by) = fit_by_instruments(flights, fitted, Newton::Held)? else { return Ok(()) };
-    let (plain, told) = (fitted.rigid_body(), by.rigid_body());
-    let of = |body: &Estimated, at: usize| (body.theta[at], body.covariance[(at, at)].sqrt());
-    if !MOMENTS.into_iter().any(|at| differs(of(&plain, at), of(&told, at))) {
-        return Ok(());
-    }
-    let (places, _) = estimated(&by, Newton::Held).unwrap_or_default();
-    let mut after = evaluate(flights, by.base)?;
-    // what the torques do not tell stays as it is known
-    after.covariance.clone_from(&fitted.covariance);
-    let others = 0..after.covariance.nrows();
-    for &place in &places {
-        for other in others.clone() {
-            let shared = by.covariance[(place, other)];
-            (after.covariance[(place, other)], after.covariance[(other, place)]) = (shared, shared);
-        }
-    }
-    *fitted = after;
-    Ok(())
-}
-
-/// The fit with inertia, latency and what damps the rotation by instruments, iterated; `None` where they cannot be had so.
-///
-/// Coefficients and covariance of the result are those of these parameters, and zero for all others.
-///
-/// # Errors
-/// [`PhysicsError`] where the base is not physical.
-pub(super) fn fit_by_instruments(
-    flights: &[Trace],
-    fitted: &Fitted,
-    newton: Newton,
-) -> Result<Option<Fitted>, PhysicsError> {
-    let mut base = fitted.base.clone();
-    let Some(mut by) = by_instruments(flights, fitted, newton) else { return Ok(None) };
-    for _ in 0..PASSES {
-        let moved = step(&mut base, &by, newton);
-        let Ok(again) = evaluate(flights, base.clone()) else { return Ok(None) };
-        let Some(next) = by_instruments(flights, &again, newton) else { return Ok(None) };
-        by = next;
-        if moved < CONVERGED {
-            return Ok(Some(by));
-        }
-    }
-    Ok(None)
-}
-
-/// Inertia, latency and what damps the rotation by instruments; `None` where a flight has no commanded trajectory, or its
-/// torques are not compared.
-fn by_instruments(flights: &[Trace], fitted: &Fitted, newton: Newton) -> Option<Fitted> {
-    let rows = fitted.rows.len();
-    let (places, columns) = estimated(fitted, newton)?;
-    let count = columns.len();
-    let (mut asked, mut given) =
-        (DMatrix::zeros(CHANNELS * rows, count), DMatrix::zeros(CHANNELS * rows, count));
-    let mut y = weighted(&fitted.rows.residual, &fitted.weighted.sigma);
-    y.rows_mut(0, 3 * rows).fill(0.0);
-    y.rows_mut(AXES * rows, (CHANNELS - AXES) * rows).fill(0.0);
-    let mut first = 0;
-    for trace in flights {
-        let basis = trace.instruments.as_ref()?;
-        for axis in 0..3 {
-            let basis = directions(&basis[axis], trace.rows())?;
-            let from = (3 + axis) * rows + first;
-            let mut own = DMatrix::from_fn(trace.rows(), count, |row, column| columns[column][from + row]);
-            for mut column in own.column_iter_mut() {
-                let mean = column.mean();
-                column.add_scalar_mut(-mean);
-            }
-            let mean = y.rows(from, trace.rows()).mean();
-            y.rows_mut(from, trace.rows()).add_scalar_mut(-mean);
-            let along = &basis * basis.tr_mul(&own);
-            asked.view_mut((from, 0), (trace.rows(), count)).copy_from(&along);
-            given.view_mut((from, 0), (trace.rows(), count)).copy_from(&own);
-        }
-        first += trace.rows();
-    }
-    let normal = asked.tr_mul(&asked);
-    let scale = normal.diagonal().map(|square| if square > 0.0 { square.sqrt().recip() } else { 0.0 });
-    if scale.iter().any(|scale| *scale == 0.0) {
-        return None;
-    }
-    let scaled = DMatrix::from_fn(count, count, |i, j| normal[(i, j)] * scale[i] * scale[j]);
-    let inverse = scaled.cholesky()?.inverse();
-    let bread = DMatrix::from_fn(count, count, |i, j| inverse[(i, j)] * scale[i] * scale[j]);
-    let coefficients = &bread * asked.tr_mul(&y);
-    let left = y - &given * &coefficients;
-    let tested = Columns::of(&asked, rows);
-    let gammas = fitted.weighted.gammas(&left);
-    let by_residual = &bread * fitted.weighted.meat_of_residual(&tested, &gammas) * &bread;
-    let scores = tested.scores(left.as_slice());
-    let by_score = &bread * fitted.weighted.meat_of_scores(&scores, &gammas) * &bread;
-    let more = |k: usize| (by_score[(k, k)] / by_residual[(k, k)]).max(1.0).sqrt();
-    let covariance = DMatrix::from_fn(count, count, |i, j| by_residual[(i, j)] * more(i) * more(j));
-    let mut out = fitted.clone();
-    out.coefficients.fill(0.0);
-    out.covariance.fill(0.0);
-    for (i, &place) in places.iter().enumerate() {
-        out.coefficients[place] = coefficients[i];
-        for (j, &other) in places.iter().enumerate() {
-            out.covariance[(place, other)] = covariance[(i, j)];
-        }
-    }
-    Some(out)
-}
-
-/// Places among the coefficients and, weighted, the columns of what is estimated. A latency that is held is known: it and a
-/// damping explain much of each other.
-fn estimated(fitted: &Fitted, newton: Newton) -> Option<(Vec<usize>, Vec<DVector<f64>>)> {
-    let rows = &fitted.rows;
-    let torques = 3 * rows.len()..AXES * rows.len();
-    let mut out = (Vec::new(), Vec::new());
-    let mut take = |place: usize, values: &Channels| {
-        let column = weighted(values, &fitted.weighted.sigma);
-        if column.rows_range(torques.clone()).norm_squared() > 0.0 {
-            out.0.push(place);
-            out.1.push(column);
-        }
-    };
-    for (place, column) in rows.nuisances.iter().enumerate() {
-        let wanted = match column.nuisance {
-            Nuisance::Inertia(_) => true,
-            Nuisance::Latency => newton != Newton::Held,
-            _ => false,
-        };
-        if wanted {
-            take(place, &column.values);
-        }
-    }
-    let terms = fitted.base.present.iter().flat_map(|present| present.free.iter().map(move |_| present));
-    for (place, (present, column)) in terms.zip(&rows.effects).enumerate() {
-        // the forces tell a drag; the torques tell what else damps the rotation
-        if present.signature.role.like_latency.is_some() && !present.signature.role.of_air {
-            take(rows.nuisances.len() + place, column);
-        }
-    }
-    (!out.0.is_empty()).then_some(out)
-}
-
 /// Orthonormal directions of the instruments about their means.
-fn directions(instruments: &[Vec<f64>], rows: usize) -> Option<DMatrix<f64>> {
+pub(super) fn directions(instruments: &[Vec<f64>], rows: usize) -> Option<DMatrix<f64>> {
     let mut all = DMatrix::from_fn(rows, instruments.len(), |row, column| instruments[column][row]);
     for mut column in all.column_iter_mut() {
         let mean = column.mean();

@@ -8,10 +8,10 @@ use super::base::Base;
 use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing, per_step};
 use super::evidence::Weighted;
 use super::fit::{Fitted, Newton, evaluate, fit};
-use super::instruments::{differs, fit_by_instruments};
 use super::rows::{Rows, residuals};
 use super::signature::EffectTerm;
 use super::signatures::{ALL, BENT_THRUST};
+use super::torques_by_instruments::{differs, fit_by_instruments};
 use super::trace::Trace;
 use crate::physics::{ActuationLatency, PhysicsError, delayed_wrench};
 use crate::vehicle::Vehicle;
@@ -154,7 +154,7 @@ pub(super) fn with_any_latency(flights: &[Trace], base: Base) -> Result<(Fitted,
 }
 
 /// Whether the gyroscopes' noise moves commands and motion together.
-fn is_fed_back(flights: &[Trace]) -> bool {
+pub(super) fn is_fed_back(flights: &[Trace]) -> bool {
     flights.iter().any(|trace| trace.gyro_noise_rad_s > NOISY_RAD_S)
 }
 

@@ -49,6 +49,7 @@ pub mod signatures;
 mod spin_up;
 mod tested;
 mod timing;
+mod torques_by_instruments;
 mod trace;
 mod velocity_error;
 pub mod wording;

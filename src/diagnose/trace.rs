@@ -155,7 +155,8 @@ impl Trace {
         };
         trace.smooth()?;
         let reference = signals.reference.as_ref().filter(|_| trace.torques);
-        trace.instruments = reference.map(|reference| instruments(&trace, reference));
+        trace.instruments = reference
+            .map(|reference| instruments(reference, grid.step_s, |order, series| trace.weak(order, series)));
         Ok(trace)
     }
 
