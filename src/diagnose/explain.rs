@@ -126,7 +126,7 @@ pub fn explain(
 /// and instruments tell them, leaves the model.
 const STAYS: f64 = 3.0;
 /// How often the model is estimated again after effects left it. Chosen; not measured.
-const SETTLINGS: usize = 3;
+const SETTLINGS: usize = 6;
 
 /// Leaves effects without a name out, and estimates the sizes of the others by what has no noise of the autopilot's own: forces
 /// with the flight path, torques by instruments.
@@ -140,7 +140,7 @@ fn settle(
         tracing::info_span!("reconstruct").in_scope(|| reconstruct(flights, traces, found))?;
         if is_fed_back(traces) {
             tracing::info_span!("instruments")
-                .in_scope(|| torques_by_instruments(traces, &mut found.after))?;
+                .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
         }
         if left == 0 || !leave_out_ordinary(traces, found)? {
             break;
@@ -154,21 +154,31 @@ fn settle(
 /// Removes effects without a name from the model: those of ordinary size, those that are not certain, and those that the flight
 /// could not have shown. Returns whether there were any.
 fn leave_out_ordinary(traces: &[Trace], found: &mut Search) -> Result<bool, PhysicsError> {
-    let mut base = found.after.base.clone();
     let all = found.after.base.clone();
     let mut first = found.after.rows.nuisances.len();
-    base.present.retain(|present| {
+    let mut weakest: Option<(f64, usize)> = None;
+    let mut kept: Vec<bool> = Vec::new();
+    for (place, present) in all.present.iter().enumerate() {
         let beyond = is_beyond_showing(&found.after, present, first);
         let strength = fitted_strength(&found.after, present, first);
         first += present.free.len();
-        let uncertain = strength.count > 0 && strength.z < STAYS;
-        !(beyond || uncertain || is_ordinary(present, &all))
-    });
-    let any = base.present.len() < all.present.len();
-    if any {
-        found.after = fit(traces, base, Newton::Held)?;
+        kept.push(!(beyond || is_ordinary(present, &all)));
+        if strength.count > 0 && strength.z < STAYS && weakest.is_none_or(|(least, _)| strength.z < least) {
+            weakest = Some((strength.z, place));
+        }
     }
-    Ok(any)
+    // two that explain much of each other are both uncertain: one leaves, and the other is judged again
+    if let Some((_, place)) = weakest {
+        kept[place] = false;
+    }
+    if kept.iter().all(|kept| *kept) {
+        return Ok(false);
+    }
+    let mut base = all;
+    let mut each = kept.into_iter();
+    base.present.retain(|_| each.next().unwrap_or(true));
+    found.after = fit(traces, base, Newton::Held)?;
+    Ok(true)
 }
 
 /// The residual after all names, with its localisation.
@@ -370,12 +380,15 @@ fn fitted_strength(fitted: &Fitted, present: &EffectTerm, first: usize) -> Stren
         .enumerate()
         .filter(|(_, slot)| present.is_amount(**slot))
         .map(|(index, &slot)| (first + index, slot))
+        .filter(|&(index, _)| fitted.covariance[(index, index)] > 0.0)
         .collect();
     let count = amounts.len();
     let away = amounts.iter().map(|&(_, slot)| present.from_nothing(slot)).collect::<Vec<_>>();
     let away = DVector::from_vec(away);
     let covariance = DMatrix::from_fn(count, count, |i, j| fitted.covariance[(amounts[i].0, amounts[j].0)]);
-    let wald = covariance.cholesky().map_or(0.0, |factor| away.dot(&factor.solve(&away)));
+    // a covariance of two estimators need not be positive definite
+    let apart = || (0..count).map(|i| away[i].powi(2) / covariance[(i, i)]).fold(0.0, f64::max);
+    let wald = covariance.clone().cholesky().map_or_else(apart, |factor| away.dot(&factor.solve(&away)));
     Strength { z: normal_deviate(wald, count), gain: 0.0, energy: wald, count }
 }
 

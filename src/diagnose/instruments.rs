@@ -11,6 +11,9 @@ const ORDERS: usize = 3;
 /// Directions of the instruments with less than this share of the first one's length are left out.
 const LEAST_DIRECTION: f64 = 1e-6;
 
+/// Least rms of an instrument about its mean, m/s^2 and rad/s or their derivatives. Chosen; not measured.
+const LEAST_RMS: f64 = 0.01;
+
 /// One column an instrument, one value a row, for the torque about each body axis.
 pub(super) type Instruments = [Vec<Vec<f64>>; 3];
 
@@ -53,8 +56,11 @@ pub(super) fn directions(instruments: &[Vec<f64>], rows: usize) -> Option<DMatri
         let mean = column.mean();
         column.add_scalar_mut(-mean);
         let length = column.norm();
-        if length > 0.0 {
+        // what is asked for all along is no excitation, nor is its rounding
+        if length > LEAST_RMS * (rows as f64).sqrt() {
             column /= length;
+        } else {
+            column.fill(0.0);
         }
     }
     let square = all.tr_mul(&all).symmetric_eigen();

@@ -126,15 +126,16 @@ pub(super) fn with_latency(
 ) -> Result<(Fitted, LatencyFinding), PhysicsError> {
     let plain = fit(flights, base, newton)?;
     let finding = finding_of(&plain);
-    let Some(by) = fit_by_instruments(flights, &plain, newton)? else {
-        let unconfirmed_s = if is_fed_back(flights) { UNCONFIRMED_S } else { 0.0 };
-        return Ok((plain, LatencyFinding { std_s: finding.std_s.hypot(unconfirmed_s), ..finding }));
+    // where the noise is fed back, least squares may be wrong by what it differs from instruments, or by more than they tell
+    let unsure = |by_s: Option<f64>| {
+        let unsure_s = if is_fed_back(flights) { by_s.unwrap_or(UNCONFIRMED_S) } else { 0.0 };
+        LatencyFinding { std_s: finding.std_s.hypot(unsure_s), ..finding }
     };
+    let Some(by) = fit_by_instruments(flights, &plain, newton)? else { return Ok((plain, unsure(None))) };
     let told = finding_of(&by);
     if !differs((finding.total_s, finding.std_s), (told.total_s, told.std_s)) {
-        // the difference is what least squares may be wrong by
-        let std_s = finding.std_s.hypot(finding.total_s - told.total_s);
-        return Ok((plain, LatencyFinding { std_s, ..finding }));
+        let apart_s = Some((finding.total_s - told.total_s).abs()).filter(|_| told.std_s < UNCONFIRMED_S);
+        return Ok((plain, unsure(apart_s)));
     }
     let base = Base { latency: by.base.latency, ..plain.base };
     Ok((fit(flights, base, Newton::Held)?, told))

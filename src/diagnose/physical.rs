@@ -3,9 +3,8 @@
 use super::channels::Nuisance;
 use super::fit::{Fitted, evaluate};
 use super::trace::Trace;
-use crate::estimate::{THETA, Theta, inertia_of, is_physical, nearest_physical, theta_of};
+use crate::estimate::{Theta, inertia_of, is_physical, nearest_physical, theta_of};
 use crate::physics::PhysicsError;
-use crate::stats::normal_deviate;
 use crate::vehicle::Vehicle;
 
 /// Standard errors by which an inertia may be moved to the nearest one that a body can have. Chosen; not measured.
@@ -51,5 +50,6 @@ fn near(fitted: &Fitted, theta: &Theta, nominal: &Theta) -> Option<Theta> {
     let nearest = nearest_physical(theta, &covariance, nominal)?;
     let by = nearest - theta;
     let wald = by.dot(&covariance.cholesky()?.solve(&by));
-    (normal_deviate(wald, THETA) <= WITHIN_ERROR).then_some(nearest)
+    // it is moved along what forbids it: one direction
+    (wald <= WITHIN_ERROR.powi(2)).then_some(nearest)
 }

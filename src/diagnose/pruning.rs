@@ -2,7 +2,7 @@
 
 use super::base::Base;
 use super::fit::{Fitted, Newton};
-use super::latency::{LatencyFinding, with_latency};
+use super::latency::{LatencyFinding, is_delay, with_latency};
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
@@ -43,7 +43,8 @@ pub(super) fn prune(
     dropped |= kept.len() < after.base.present.len();
     let before_s = after.base.latency.total_s();
     let base = Base { present: kept, ..after.base.clone() };
-    let (fitted, finding) = with_latency(flights, base, Newton::Free)?;
+    let newton = if is_delay(base.latency, &base.vehicle) { Newton::Delay } else { Newton::Free };
+    let (fitted, finding) = with_latency(flights, base, newton)?;
     *after = fitted;
     Ok((dropped, (after.base.latency.total_s() - before_s).abs(), finding))
 }

@@ -12,6 +12,7 @@ use super::trace::Trace;
 use crate::estimate::Estimated;
 use crate::physics::PhysicsError;
 use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
 /// Places of the moments of inertia in [`Estimated::theta`].
 const MOMENTS: [usize; 3] = [1, 4, 6];
@@ -26,14 +27,22 @@ pub(super) fn differs((value, std): (f64, f64), (by, by_std): (f64, f64)) -> boo
     more < 0.0 || (value - by).powi(2) > HAUSMAN.powi(2) * more
 }
 
-/// Inertia and damping of a model as instruments tell them, where least squares contradicts them.
+/// Inertia and damping of a model as instruments tell them, where least squares contradicts them. The latency of the model and
+/// its standard error, s, are known.
 ///
 /// # Errors
 /// [`PhysicsError`] where the base is not physical.
-pub(super) fn torques_by_instruments(flights: &[Trace], fitted: &mut Fitted) -> Result<(), PhysicsError> {
-    let Some(by) = fit_by_instruments(flights, fitted, Newton::Held)? else { return Ok(()) };
+pub(super) fn torques_by_instruments(
+    flights: &[Trace],
+    latency_std_s: f64,
+    fitted: &mut Fitted,
+) -> Result<(), PhysicsError> {
+    let Some(mut by) = fit_by_instruments(flights, fitted, Newton::Held)? else { return Ok(()) };
+    if let Some(brings) = brought_by_latency(flights, &by).filter(|_| latency_std_s.is_finite()) {
+        by.covariance += &brings * brings.transpose() * latency_std_s.powi(2);
+    }
     let (plain, told) = (fitted.rigid_body(), by.rigid_body());
-    let of = |body: &Estimated, at: usize| (body.theta[at], body.covariance[(at, at)].sqrt());
+    let of = |body: &Estimated, at: usize| (body.theta[at], body.covariance[(at, at)].max(0.0).sqrt());
     if !MOMENTS.into_iter().any(|at| differs(of(&plain, at), of(&told, at))) {
         return Ok(());
     }
@@ -77,53 +86,114 @@ pub(super) fn fit_by_instruments(
     Ok(None)
 }
 
-/// Inertia, latency and what damps the rotation by instruments; `None` where a flight has no commanded trajectory, or its
-/// torques are not compared.
-fn by_instruments(flights: &[Trace], fitted: &Fitted, newton: Newton) -> Option<Fitted> {
-    let rows = fitted.rows.len();
-    let (places, columns) = estimated(fitted, newton)?;
-    let count = columns.len();
-    let (mut asked, mut given) =
-        (DMatrix::zeros(CHANNELS * rows, count), DMatrix::zeros(CHANNELS * rows, count));
-    let mut y = weighted(&fitted.rows.residual, &fitted.weighted.sigma);
-    y.rows_mut(0, 3 * rows).fill(0.0);
-    y.rows_mut(AXES * rows, (CHANNELS - AXES) * rows).fill(0.0);
-    let mut first = 0;
-    for trace in flights {
-        let basis = trace.instruments.as_ref()?;
-        for axis in 0..3 {
-            let basis = directions(&basis[axis], trace.rows())?;
-            let from = (3 + axis) * rows + first;
-            let mut own = DMatrix::from_fn(trace.rows(), count, |row, column| columns[column][from + row]);
+/// The torque rows: columns as they are, what of them goes with the instruments, and the inverse of their normal matrix.
+struct Projected {
+    /// among the coefficients of the fit
+    places: Vec<usize>,
+    given: DMatrix<f64>,
+    asked: DMatrix<f64>,
+    bread: DMatrix<f64>,
+}
+
+impl Projected {
+    /// `None` where no flight has instruments, or they do not tell the columns apart.
+    fn of(flights: &[Trace], fitted: &Fitted, newton: Newton) -> Option<Self> {
+        let (places, columns) = estimated(fitted, newton)?;
+        let count = columns.len();
+        let all = CHANNELS * fitted.rows.len();
+        let (mut asked, mut given) = (DMatrix::zeros(all, count), DMatrix::zeros(all, count));
+        for (rows, basis) in served(flights, fitted) {
+            let mut own =
+                DMatrix::from_fn(rows.len(), count, |row, column| columns[column][rows.start + row]);
             for mut column in own.column_iter_mut() {
                 let mean = column.mean();
                 column.add_scalar_mut(-mean);
             }
-            let mean = y.rows(from, trace.rows()).mean();
-            y.rows_mut(from, trace.rows()).add_scalar_mut(-mean);
             let along = &basis * basis.tr_mul(&own);
-            asked.view_mut((from, 0), (trace.rows(), count)).copy_from(&along);
-            given.view_mut((from, 0), (trace.rows(), count)).copy_from(&own);
+            asked.view_mut((rows.start, 0), (rows.len(), count)).copy_from(&along);
+            given.view_mut((rows.start, 0), (rows.len(), count)).copy_from(&own);
+        }
+        let normal = asked.tr_mul(&asked);
+        let scale = normal.diagonal().map(f64::sqrt);
+        if scale.iter().any(|scale| *scale <= 0.0) {
+            return None;
+        }
+        let scaled = DMatrix::from_fn(count, count, |i, j| normal[(i, j)] / (scale[i] * scale[j]));
+        let inverse = scaled.cholesky()?.inverse();
+        let bread = DMatrix::from_fn(count, count, |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
+        Some(Self { places, given, asked, bread })
+    }
+
+    /// Coefficients for a column of the torque rows.
+    fn part_in(&self, column: &DVector<f64>) -> DVector<f64> {
+        &self.bread * self.asked.tr_mul(column)
+    }
+}
+
+/// Rows among those of all channels, with their instruments, of each torque that has any: those of a vehicle that is not asked
+/// to turn about an axis say nothing of it.
+fn served(flights: &[Trace], fitted: &Fitted) -> Vec<(Range<usize>, DMatrix<f64>)> {
+    let mut out = Vec::new();
+    let mut first = 0;
+    for trace in flights {
+        for (axis, columns) in trace.instruments.iter().flatten().enumerate() {
+            let from = (3 + axis) * fitted.rows.len() + first;
+            let basis = directions(columns, trace.rows());
+            out.extend(basis.map(|basis| (from..from + trace.rows(), basis)));
         }
         first += trace.rows();
     }
-    let normal = asked.tr_mul(&asked);
-    let scale = normal.diagonal().map(|square| if square > 0.0 { square.sqrt().recip() } else { 0.0 });
-    if scale.iter().any(|scale| *scale == 0.0) {
+    out
+}
+
+/// The torques' part of a column, about its mean in each stretch with instruments.
+fn of_torques(column: &Channels, flights: &[Trace], fitted: &Fitted) -> DVector<f64> {
+    let all = weighted(column, &fitted.weighted.sigma);
+    let mut out = DVector::zeros(all.len());
+    for (rows, _) in served(flights, fitted) {
+        let part = all.rows_range(rows.clone());
+        let mean = part.mean();
+        out.rows_range_mut(rows).copy_from(&part.add_scalar(-mean));
+    }
+    out
+}
+
+/// What a second of error of the latency brings into each coefficient.
+fn brought_by_latency(flights: &[Trace], fitted: &Fitted) -> Option<DVector<f64>> {
+    let projected = Projected::of(flights, fitted, Newton::Held)?;
+    let column = fitted.rows.nuisances.iter().find(|column| column.nuisance == Nuisance::Latency)?;
+    let part = projected.part_in(&of_torques(&column.values, flights, fitted));
+    let mut out = DVector::zeros(fitted.covariance.nrows());
+    for (&place, by) in projected.places.iter().zip(part.iter()) {
+        out[place] = *by;
+    }
+    Some(out)
+}
+
+/// Inertia, latency and what damps the rotation by instruments; `None` where they do not tell them apart.
+fn by_instruments(flights: &[Trace], fitted: &Fitted, newton: Newton) -> Option<Fitted> {
+    let projected = Projected::of(flights, fitted, newton)?;
+    let Projected { places, given, asked, bread } = &projected;
+    let y = of_torques(&fitted.rows.residual, flights, fitted);
+    let coefficients = projected.part_in(&y);
+    let left = y - given * &coefficients;
+    let tested = Columns::of(asked, fitted.rows.len());
+    let gammas = fitted.weighted.gammas(&left);
+    let by_residual = bread * fitted.weighted.meat_of_residual(&tested, &gammas) * bread;
+    let scores = tested.scores(left.as_slice());
+    let by_score = bread * fitted.weighted.meat_of_scores(&scores, &gammas) * bread;
+    let more = |k: usize| (by_score[(k, k)] / by_residual[(k, k)]).max(1.0).sqrt();
+    let count = places.len();
+    let covariance = DMatrix::from_fn(count, count, |i, j| {
+        if by_residual[(i, i)] > 0.0 && by_residual[(j, j)] > 0.0 {
+            by_residual[(i, j)] * more(i) * more(j)
+        } else {
+            by_score[(i, j)]
+        }
+    });
+    if covariance.diagonal().iter().any(|variance| !(*variance > 0.0)) {
         return None;
     }
-    let scaled = DMatrix::from_fn(count, count, |i, j| normal[(i, j)] * scale[i] * scale[j]);
-    let inverse = scaled.cholesky()?.inverse();
-    let bread = DMatrix::from_fn(count, count, |i, j| inverse[(i, j)] * scale[i] * scale[j]);
-    let coefficients = &bread * asked.tr_mul(&y);
-    let left = y - &given * &coefficients;
-    let tested = Columns::of(&asked, rows);
-    let gammas = fitted.weighted.gammas(&left);
-    let by_residual = &bread * fitted.weighted.meat_of_residual(&tested, &gammas) * &bread;
-    let scores = tested.scores(left.as_slice());
-    let by_score = &bread * fitted.weighted.meat_of_scores(&scores, &gammas) * &bread;
-    let more = |k: usize| (by_score[(k, k)] / by_residual[(k, k)]).max(1.0).sqrt();
-    let covariance = DMatrix::from_fn(count, count, |i, j| by_residual[(i, j)] * more(i) * more(j));
     let mut out = fitted.clone();
     out.coefficients.fill(0.0);
     out.covariance.fill(0.0);

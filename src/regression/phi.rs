@@ -1,6 +1,6 @@
 //! A regressor by what its entries are made of: of 28 entries, ten numbers.
 
-use super::RATE_PAIRS;
+use super::filtered::RATE_PAIRS;
 use crate::signals::{FilterPair, PairMemory};
 use nalgebra::{SMatrix, Vector3};
 

@@ -15,8 +15,10 @@ const TOLD_APART: f64 = 4.0;
 #[must_use]
 pub fn for_readers(named: &[Named]) -> Vec<Named> {
     let mut out = merged(named);
-    let parts: Vec<Named> = out.iter_mut().filter_map(part_of_climb).collect();
-    out.extend(parts);
+    if out.iter().all(|named| signature_of(named.id).is_none_or(|of| of.role.axial_part_of.is_none())) {
+        let parts: Vec<Named> = out.iter_mut().filter_map(part_of_climb).collect();
+        out.extend(parts);
+    }
     out
 }
 
@@ -27,7 +29,10 @@ fn part_of_climb(drag: &mut Named) -> Option<Named> {
     let (dx, dy, dz) = (value("dx")?, value("dy")?, value("dz")?);
     let across = 0.5 * (dx.value + dy.value);
     let beyond = dz.value - across;
-    if across <= 0.0 || beyond < ISOTROPIC * across || beyond < TOLD_APART * dz.std {
+    let std = dz.std.hypot(0.5 * dx.std.hypot(dy.std));
+    // that of the body grows with no rotor's speed and acts at its centre
+    let of_body = ["at_hubs", "with_speed"].iter().any(|name| value(name).is_some_and(|of| of.value == 0.0));
+    if of_body || across <= 0.0 || beyond < ISOTROPIC * across || beyond < TOLD_APART * std {
         return None;
     }
     drag.parameters.retain(|parameter| parameter.name != "dz");
