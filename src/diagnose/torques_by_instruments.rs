@@ -46,7 +46,8 @@ pub(super) fn torques_by_instruments(
     if !MOMENTS.into_iter().any(|at| differs(of(&plain, at), of(&told, at))) {
         return Ok(());
     }
-    let (places, _) = estimated(&by, Newton::Held).unwrap_or_default();
+    let places: Vec<usize> =
+        (0..by.covariance.nrows()).filter(|&place| by.covariance[(place, place)] > 0.0).collect();
     let mut after = evaluate(flights, by.base)?;
     // what the torques do not tell stays as it is known
     after.covariance.clone_from(&fitted.covariance);
@@ -98,11 +99,12 @@ struct Projected {
 impl Projected {
     /// `None` where no flight has instruments, or they do not tell the columns apart.
     fn of(flights: &[Trace], fitted: &Fitted, newton: Newton) -> Option<Self> {
-        let (places, columns) = estimated(fitted, newton)?;
+        let served = served(flights, fitted);
+        let (places, columns) = estimated(fitted, &served, newton)?;
         let count = columns.len();
         let all = CHANNELS * fitted.rows.len();
         let (mut asked, mut given) = (DMatrix::zeros(all, count), DMatrix::zeros(all, count));
-        for (rows, basis) in served(flights, fitted) {
+        for (rows, basis) in served {
             let mut own =
                 DMatrix::from_fn(rows.len(), count, |row, column| columns[column][rows.start + row]);
             for mut column in own.column_iter_mut() {
@@ -130,9 +132,15 @@ impl Projected {
     }
 }
 
-/// Rows among those of all channels, with their instruments, of each torque that has any: those of a vehicle that is not asked
+/// Rows among those of all channels, with their instruments.
+type Served = (Range<usize>, DMatrix<f64>);
+
+/// Share of a column's squares that must lie where there are instruments.
+const LEAST_TOLD: f64 = 0.5;
+
+/// The rows and instruments of each torque that has any: those of a vehicle that is not asked
 /// to turn about an axis say nothing of it.
-fn served(flights: &[Trace], fitted: &Fitted) -> Vec<(Range<usize>, DMatrix<f64>)> {
+fn served(flights: &[Trace], fitted: &Fitted) -> Vec<Served> {
     let mut out = Vec::new();
     let mut first = 0;
     for trace in flights {
@@ -207,14 +215,16 @@ fn by_instruments(flights: &[Trace], fitted: &Fitted, newton: Newton) -> Option<
 }
 
 /// Places among the coefficients and, weighted, the columns of what is estimated. A latency that is held is known: it and a
-/// damping explain much of each other.
-fn estimated(fitted: &Fitted, newton: Newton) -> Option<(Vec<usize>, Vec<DVector<f64>>)> {
+/// damping explain much of each other. So is what acts about axes without instruments.
+fn estimated(fitted: &Fitted, served: &[Served], newton: Newton) -> Option<(Vec<usize>, Vec<DVector<f64>>)> {
     let rows = &fitted.rows;
     let torques = 3 * rows.len()..AXES * rows.len();
     let mut out = (Vec::new(), Vec::new());
     let mut take = |place: usize, values: &Channels| {
         let column = weighted(values, &fitted.weighted.sigma);
-        if column.rows_range(torques.clone()).norm_squared() > 0.0 {
+        let of = |rows: Range<usize>| column.rows_range(rows).norm_squared();
+        let told: f64 = served.iter().map(|(rows, _)| of(rows.clone())).sum();
+        if told > LEAST_TOLD * of(torques.clone()) {
             out.0.push(place);
             out.1.push(column);
         }

@@ -27,6 +27,8 @@ pub struct Contradiction {
     pub name: &'static str,
     /// estimate over stated value
     pub factor: f64,
+    /// the stated value is that of a rule of thumb
+    pub guessed: bool,
 }
 
 impl Contradiction {
@@ -37,20 +39,22 @@ impl Contradiction {
         let factor = value / stated;
         let most = if name.starts_with('i') { INERTIA_FACTOR } else { SCALE_FACTOR };
         let apart = factor.ln().abs() - WITHIN * std / value.abs();
-        (apart > most.ln().max(WITHIN * guess)).then_some(Self { name, factor })
+        (apart > most.ln().max(WITHIN * guess)).then_some(Self { name, factor, guessed: guess > 0.0 })
     }
 
     /// A note on it.
     #[must_use]
     pub fn note(&self) -> Note {
-        let Self { name, factor } = self;
+        let Self { name, factor, guessed } = self;
         let ask = if *name == NAMES[0] {
             "are thrust and torque coefficients wrong by this factor? A weighed mass with anchor = \"mass\" sets the scale"
         } else {
             "is a length or a coefficient of the rotors wrong?"
         };
+        let stated =
+            if *guessed { "the rule of thumb says of this mass and size" } else { "the vehicle file states" };
         let text = format!(
-            "{name} is {factor:.2} times what the vehicle file states: is it another vehicle's log, is a unit wrong, or {ask}"
+            "{name} is {factor:.2} times what {stated}: is it another vehicle's log, is a unit wrong, or {ask}"
         );
         Note::warning(About::Estimate, text)
     }
@@ -59,12 +63,18 @@ impl Contradiction {
 /// Several of them in one clause.
 #[must_use]
 pub fn contradicts_file(all: &[Contradiction]) -> Option<String> {
-    let one = |Contradiction { name, factor }: &Contradiction| {
+    let one = |Contradiction { name, factor, .. }: &Contradiction| {
         let places = if *factor < 0.1 { 3 } else { 2 };
         format!("{name} by a factor of {factor:.places$}")
     };
-    let all: Vec<String> = all.iter().map(one).collect();
-    (!all.is_empty()).then(|| format!("it contradicts the vehicle file, {}", all.join(", ")))
+    let clause = |guessed: bool, begins: &str| {
+        let those: Vec<String> = all.iter().filter(|of| of.guessed == guessed).map(one).collect();
+        (!those.is_empty()).then(|| format!("{begins}, {}", those.join(", ")))
+    };
+    let of_file = clause(false, "it contradicts the vehicle file");
+    let of_thumb = clause(true, "it is far from the rule of thumb for this mass and size");
+    let clauses: Vec<String> = of_file.into_iter().chain(of_thumb).collect();
+    (!clauses.is_empty()).then(|| clauses.join(", and "))
 }
 
 /// Relative standard error of what the vehicle's description only guesses of a parameter.

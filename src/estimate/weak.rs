@@ -130,7 +130,8 @@ fn solve_with(
     method: WeakMethod<'_>,
     curvature: bool,
 ) -> Option<WeakEstimate> {
-    if flights.iter().all(|rows| rows.time_s.is_empty()) {
+    let nothing_measured = (0..CHANNELS).all(|channel| !is_measured(flights, channel));
+    if nothing_measured || flights.iter().all(|rows| rows.time_s.is_empty()) {
         return None;
     }
     let mut theta = *start;
