@@ -1,32 +1,25 @@
 //! The whole method: search, lack of fit, verdict.
 
-use super::base::Base;
 use super::channels::{AXES, CHANNELS};
 use super::confusable::confusable_with;
 use super::evidence::LEAST_ROWS;
 use super::explanation::{Explanation, Verdict};
-use super::fit::{Fitted, Newton, fit};
-use super::floors::add_floors;
+use super::fit::Fitted;
 use super::gates::Gates;
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
-use super::latency::is_fed_back;
 use super::latency_name::latency_name;
-use super::limits::{is_beyond_showing, limits, too_little_excitation};
+use super::limits::{limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
 use super::named::{Confusable, Named, NamedParameter, Strength};
-use super::physical::make_physical;
-use super::reconstructed::reconstruct;
 use super::search::search;
-use super::signature::{EffectTerm, Signature};
+use super::settle::{fitted_strength, settle};
+use super::signature::Signature;
 use super::signatures::{ALL, GUST};
 use super::tested::{Search, Step, Tested};
-use super::torques_by_instruments::torques_by_instruments;
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
 use crate::signals::Signals;
-use crate::stats::normal_deviate;
 use crate::vehicle::Vehicle;
-use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
 /// Settings of an explanation.
@@ -120,65 +113,6 @@ pub fn explain(
     let explanation = judge(&traces, vehicle, found, beyond);
     explanation.emit();
     Ok(explanation)
-}
-
-/// An effect that is nearer to nothing than this many standard errors, beside all others and with its errors as reconstruction
-/// and instruments tell them, leaves the model.
-const STAYS: f64 = 3.0;
-/// How often the model is estimated again after effects left it. Chosen; not measured.
-const SETTLINGS: usize = 6;
-
-/// Leaves effects without a name out, and estimates the sizes of the others by what has no noise of the autopilot's own: forces
-/// with the flight path, torques by instruments.
-fn settle(
-    (flights, traces): (&[Signals], &[Trace]),
-    vehicle: &Vehicle,
-    found: &mut Search,
-) -> Result<(), PhysicsError> {
-    leave_out_ordinary(traces, found)?;
-    for left in (0..SETTLINGS).rev() {
-        tracing::info_span!("reconstruct").in_scope(|| reconstruct(flights, traces, found))?;
-        if is_fed_back(traces) {
-            tracing::info_span!("instruments")
-                .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
-        }
-        if left == 0 || !leave_out_ordinary(traces, found)? {
-            break;
-        }
-    }
-    add_floors(&mut found.after);
-    make_physical(traces, vehicle, &mut found.before)?;
-    make_physical(traces, vehicle, &mut found.after)
-}
-
-/// Removes effects without a name from the model: those of ordinary size, those that are not certain, and those that the flight
-/// could not have shown. Returns whether there were any.
-fn leave_out_ordinary(traces: &[Trace], found: &mut Search) -> Result<bool, PhysicsError> {
-    let all = found.after.base.clone();
-    let mut first = found.after.rows.nuisances.len();
-    let mut weakest: Option<(f64, usize)> = None;
-    let mut kept: Vec<bool> = Vec::new();
-    for (place, present) in all.present.iter().enumerate() {
-        let beyond = is_beyond_showing(&found.after, present, first);
-        let strength = fitted_strength(&found.after, present, first);
-        first += present.free.len();
-        kept.push(!(beyond || is_ordinary(present, &all)));
-        if strength.count > 0 && strength.z < STAYS && weakest.is_none_or(|(least, _)| strength.z < least) {
-            weakest = Some((strength.z, place));
-        }
-    }
-    // two that explain much of each other are both uncertain: one leaves, and the other is judged again
-    if let Some((_, place)) = weakest {
-        kept[place] = false;
-    }
-    if kept.iter().all(|kept| *kept) {
-        return Ok(false);
-    }
-    let mut base = all;
-    let mut each = kept.into_iter();
-    base.present.retain(|_| each.next().unwrap_or(true));
-    found.after = fit(traces, base, Newton::Held)?;
-    Ok(true)
 }
 
 /// The residual after all names, with its localisation.
@@ -358,38 +292,6 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
         });
     }
     out
-}
-
-/// Whether an effect stays in the model without a name: every vehicle has this much of it, or it is too small for its
-/// name.
-fn is_ordinary(term: &EffectTerm, base: &Base) -> bool {
-    let naming = &term.signature.naming;
-    let of_all = || term.values.iter().map(|value| value * value).sum::<f64>().sqrt();
-    let amounts = || term.signature.amounts.iter().filter_map(|&slot| term.values.get(slot));
-    naming.ordinary.is_some_and(|ordinary| term.size() < ordinary)
-        || naming.least > 0.0 && of_all() < naming.least
-        || naming.most.is_some_and(|most| amounts().any(|amount| *amount > most))
-        || (naming.is_ordinary)(term, &base.present)
-}
-
-/// Significance of an effect that was accepted together with another, from the distance of its amounts from zero.
-fn fitted_strength(fitted: &Fitted, present: &EffectTerm, first: usize) -> Strength {
-    let amounts: Vec<(usize, usize)> = present
-        .free
-        .iter()
-        .enumerate()
-        .filter(|(_, slot)| present.is_amount(**slot))
-        .map(|(index, &slot)| (first + index, slot))
-        .filter(|&(index, _)| fitted.covariance[(index, index)] > 0.0)
-        .collect();
-    let count = amounts.len();
-    let away = amounts.iter().map(|&(_, slot)| present.from_nothing(slot)).collect::<Vec<_>>();
-    let away = DVector::from_vec(away);
-    let covariance = DMatrix::from_fn(count, count, |i, j| fitted.covariance[(amounts[i].0, amounts[j].0)]);
-    // a covariance of two estimators need not be positive definite
-    let apart = || (0..count).map(|i| away[i].powi(2) / covariance[(i, i)]).fold(0.0, f64::max);
-    let wald = covariance.clone().cholesky().map_or_else(apart, |factor| away.dot(&factor.solve(&away)));
-    Strength { z: normal_deviate(wald, count), gain: 0.0, energy: wald, count }
 }
 
 fn strength(step: &Step) -> Strength {

@@ -44,6 +44,7 @@ mod score;
 mod search;
 mod sensors;
 mod sentence;
+mod settle;
 pub mod signature;
 pub mod signatures;
 mod spin_up;

@@ -199,7 +199,7 @@ fn by_instruments(flights: &[Trace], fitted: &Fitted, newton: Newton) -> Option<
             by_score[(i, j)]
         }
     });
-    if covariance.diagonal().iter().any(|variance| !(*variance > 0.0)) {
+    if covariance.diagonal().iter().any(|variance| variance.is_nan() || *variance <= 0.0) {
         return None;
     }
     let mut out = fitted.clone();

@@ -57,7 +57,7 @@ impl Dialogue for Uptime {
         let says = SAYS.iter().find(|(id, _)| is_own && *id == header.message_id);
         if let (Some((_, offset)), None) = (says, self.said) {
             let up = Duration::from_millis(frame.payload().u32(*offset).into());
-            self.said = Some((!up.is_zero()).then(|| up.as_secs_f64()));
+            self.said = Some((!up.is_zero()).then_some(up.as_secs_f64()));
         }
     }
 

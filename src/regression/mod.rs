@@ -9,7 +9,6 @@ mod weak_form;
 
 pub use filtered::{RATE_PAIRS, gyroscopic_from_products, gyroscopic_regressor, momentum_regressor};
 pub use paper_models::{SampledModel, ZeroPhase, paper_models};
-use phi::FilteredPhi;
 pub use phi::Phi;
 pub use prediction::output_prediction_rms;
 pub use standard::{BodyKinematics, standard_regressor};

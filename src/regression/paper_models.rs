@@ -1,7 +1,7 @@
 //! The paper's two models built from a conditioned flight: the standard one (34) and the filtered one
 //! (37) to (39).
 
-use super::{FilteredPhi, Phi};
+use super::phi::{FilteredPhi, Phi};
 use crate::signals::{Butterworth, FilterPair, PairMemory, Signals, WindowedFir, central_difference};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 

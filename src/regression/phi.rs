@@ -1,6 +1,8 @@
 //! A regressor by what its entries are made of: of 28 entries, ten numbers.
 
 use super::filtered::RATE_PAIRS;
+#[cfg(test)]
+use super::filtered::{gyroscopic_regressor, momentum_regressor};
 use crate::signals::{FilterPair, PairMemory};
 use nalgebra::{SMatrix, Vector3};
 
@@ -81,7 +83,6 @@ impl FilteredPhi {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::regression::{gyroscopic_regressor, momentum_regressor};
 
     #[test]
     fn filtered_it_is_each_entry_filtered() {
