@@ -49,6 +49,30 @@ impl Weighted {
         columns.correlated(gammas, &self.measured)
     }
 
+    /// Covariance of coefficients whose normal matrix has the inverse `bread`, from the residual that they leave: by its
+    /// autocovariance, with standard errors by the scores where those are larger. `prior` is the part of what was known before
+    /// in the variance of the scores.
+    pub(super) fn sandwich(
+        &self,
+        bread: &DMatrix<f64>,
+        columns: &Columns,
+        left: &DVector<f64>,
+        prior: &DMatrix<f64>,
+    ) -> DMatrix<f64> {
+        let gammas = self.gammas(left);
+        let by_residual = bread * (self.meat_of_residual(columns, &gammas) + prior) * bread;
+        let scores = columns.scores(left.as_slice());
+        let by_score = bread * (self.meat_of_scores(&scores, &gammas) + prior) * bread;
+        let more = |k: usize| (by_score[(k, k)] / by_residual[(k, k)]).max(1.0).sqrt();
+        DMatrix::from_fn(bread.nrows(), bread.ncols(), |i, j| {
+            if by_residual[(i, i)] > 0.0 && by_residual[(j, j)] > 0.0 {
+                by_residual[(i, j)] * more(i) * more(j)
+            } else {
+                by_score[(i, j)]
+            }
+        })
+    }
+
     /// Variance of the summed scores (Newey-West): a Bartlett window over their lags.
     pub(super) fn meat_of_scores(&self, scores: &Columns, gammas: &[Vec<f64>]) -> DMatrix<f64> {
         let window = gammas.iter().map(Vec::len).max().unwrap_or(0).max(SCORE_LAGS);

@@ -173,18 +173,7 @@ impl Weighted {
         let theta = normal.solve(&self.nuisances.transposed_times(y.as_slice()));
         let bread = normal.inverse();
         let prior = DMatrix::from_diagonal(&self.prior_meat);
-        let gammas = self.gammas(&self.left);
-        let by_residual = &bread * (self.meat_of_residual(&self.nuisances, &gammas) + &prior) * &bread;
-        let scores = self.nuisances.scores(self.left.as_slice());
-        let by_score = &bread * (self.meat_of_scores(&scores, &gammas) + &prior) * &bread;
-        let mut covariance = DMatrix::from_fn(size, size, |i, j| {
-            let more = |k: usize| (by_score[(k, k)] / by_residual[(k, k)]).max(1.0).sqrt();
-            if by_residual[(i, i)] > 0.0 && by_residual[(j, j)] > 0.0 {
-                by_residual[(i, j)] * more(i) * more(j)
-            } else {
-                by_score[(i, j)]
-            }
-        });
+        let mut covariance = self.sandwich(&bread, &self.nuisances, &self.left, &prior);
         for (index, column) in rows.nuisances.iter().enumerate() {
             let Some(considered) = &column.considered else { continue };
             // what one unit of its error brings into the others (consider covariance)

@@ -81,6 +81,14 @@ impl Fitted {
         self.covariance[(column, column)].max(0.0).sqrt()
     }
 
+    /// Another model of the same flights, with the covariance as it is known.
+    ///
+    /// # Errors
+    /// [`PhysicsError`] where the base is not physical.
+    pub(super) fn moved_to(&self, flights: &[Trace], base: Base) -> Result<Self, PhysicsError> {
+        Ok(Self { covariance: self.covariance.clone(), ..evaluate(flights, base)? })
+    }
+
     /// Negative log-likelihood up to a constant: the sum over the rows at which a channel is measured of the logarithm of its
     /// standard deviation, with forces as measured accelerations.
     #[must_use]

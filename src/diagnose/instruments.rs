@@ -4,20 +4,23 @@
 use crate::signals::{Reference, central_difference};
 use nalgebra::{DMatrix, Rotation3};
 
-/// Delays at which the trajectory serves, s: controllers follow it within these.
+/// Delays at which the trajectory serves, s: controllers follow it within these. Chosen; not measured.
 const LATE_S: [f64; 3] = [0.0, 0.15, 0.3];
 /// Derivatives of the commanded acceleration: the torque follows its second.
 const ORDERS: usize = 3;
-/// Directions of the instruments with less than this share of the first one's length are left out.
+/// Directions of the instruments with less than this share of the first one's length are left out. Chosen; not
+/// measured.
 const LEAST_DIRECTION: f64 = 1e-6;
 
 /// Least rms of an instrument about its mean, m/s^2 and rad/s or their derivatives. Chosen; not measured.
 const LEAST_RMS: f64 = 0.01;
 
-/// One column an instrument, one value a row, for the torque about each body axis.
-pub(super) type Instruments = [Vec<Vec<f64>>; 3];
+/// For the torque about each body axis the orthonormal directions of its instruments about their means, one row a row of the
+/// weak form; `None` where nothing is asked of it.
+pub(super) type Instruments = [Option<DMatrix<f64>>; 3];
 
-/// Instruments of a flight on a grid of this step, s, by the weak form's derivatives of a series at its rows: sideways acceleration for roll, forward for pitch, turning for yaw.
+/// Instruments of a flight on a grid of this step, s, by the weak form's derivatives of a series at its rows: sideways
+/// acceleration for roll, forward for pitch, turning for yaw.
 pub(super) fn instruments(
     reference: &Reference,
     step_s: f64,
@@ -32,7 +35,7 @@ pub(super) fn instruments(
     };
     let turning = central_difference(&reference.yaw, step_s);
     [turned(1), turned(0), turning].map(|series| {
-        LATE_S
+        let columns: Vec<Vec<f64>> = LATE_S
             .iter()
             .flat_map(|late_s| {
                 let late = instants(*late_s, step_s);
@@ -40,7 +43,8 @@ pub(super) fn instruments(
                     (0..series.len()).map(|index| series[index.saturating_sub(late)]).collect();
                 (0..ORDERS).map(|order| weak(order, &behind)).collect::<Vec<_>>()
             })
-            .collect()
+            .collect();
+        directions(&columns)
     })
 }
 
@@ -50,7 +54,8 @@ fn instants(late_s: f64, step_s: f64) -> usize {
 }
 
 /// Orthonormal directions of the instruments about their means.
-pub(super) fn directions(instruments: &[Vec<f64>], rows: usize) -> Option<DMatrix<f64>> {
+fn directions(instruments: &[Vec<f64>]) -> Option<DMatrix<f64>> {
+    let rows = instruments.first()?.len();
     let mut all = DMatrix::from_fn(rows, instruments.len(), |row, column| instruments[column][row]);
     for mut column in all.column_iter_mut() {
         let mean = column.mean();

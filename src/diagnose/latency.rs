@@ -8,10 +8,11 @@ use super::base::Base;
 use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing, per_step};
 use super::evidence::Weighted;
 use super::fit::{Fitted, Newton, evaluate, fit};
+use super::hausman::differ;
 use super::rows::{Rows, residuals};
 use super::signature::EffectTerm;
 use super::signatures::{ALL, BENT_THRUST};
-use super::torques_by_instruments::{differs, fit_by_instruments};
+use super::torques_by_instruments::fit_by_instruments;
 use super::trace::Trace;
 use crate::physics::{ActuationLatency, PhysicsError, delayed_wrench};
 use crate::vehicle::Vehicle;
@@ -133,7 +134,7 @@ pub(super) fn with_latency(
     };
     let Some(by) = fit_by_instruments(flights, &plain, newton)? else { return Ok((plain, unsure(None))) };
     let told = finding_of(&by);
-    if !differs((finding.total_s, finding.std_s), (told.total_s, told.std_s)) {
+    if !differ(told.total_s - finding.total_s, finding.std_s.powi(2), told.std_s.powi(2)) {
         let apart_s = Some((finding.total_s - told.total_s).abs()).filter(|_| told.std_s < UNCONFIRMED_S);
         return Ok((plain, unsure(apart_s)));
     }

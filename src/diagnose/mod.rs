@@ -20,6 +20,7 @@ mod floors;
 mod gates;
 mod grid_refinement;
 mod harmonics;
+mod hausman;
 pub mod holdout;
 mod instruments;
 pub mod joint;

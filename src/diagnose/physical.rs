@@ -1,7 +1,7 @@
 //! An inertia that a body can have, for every model that is written or simulated.
 
 use super::channels::Nuisance;
-use super::fit::{Fitted, evaluate};
+use super::fit::Fitted;
 use super::trace::Trace;
 use crate::estimate::{Theta, inertia_of, is_physical, nearest_physical, theta_of};
 use crate::physics::PhysicsError;
@@ -28,8 +28,7 @@ pub(super) fn make_physical(
     let moved = near(fitted, &theta, &nominal);
     let mut base = fitted.base.clone();
     base.vehicle.body.inertia_kg_m2 = inertia_of(&moved.unwrap_or(nominal));
-    let mut after = evaluate(flights, base)?;
-    after.covariance.clone_from(&fitted.covariance);
+    let mut after = fitted.moved_to(flights, base)?;
     if moved.is_none() {
         for (place, column) in after.rows.nuisances.iter().enumerate() {
             let Nuisance::Inertia(entry) = column.nuisance else { continue };

@@ -6,6 +6,7 @@
 use super::base::{Base, follows_force};
 use super::channels::Nuisance;
 use super::fit::{Fitted, Newton, evaluate, fit as fit_rows};
+use super::hausman::differ;
 use super::signature::EffectTerm;
 use super::tested::Search;
 use super::trace::Trace;
@@ -22,8 +23,6 @@ use rayon::prelude::*;
 /// Relative standard error that the form of an aerodynamic law adds: on ArduCopter's simulator, whose sensors are clean and whose
 /// laws are others, sizes were right to 1 to 3 %.
 const FORM: f64 = 0.02;
-/// Normal deviate beyond which the weak form and the reconstruction differ.
-const HAUSMAN: f64 = 2.5;
 /// Standard deviation of a lag that the torques have told, s, beside its own.
 const LAG_STD_S: f64 = 0.01;
 /// Standard deviation of a lag where none was found, s.
@@ -270,7 +269,7 @@ fn column(fitted: &Fitted, place: usize, slot: usize) -> Option<usize> {
     Some(fitted.rows.nuisances.len() + before + own)
 }
 
-/// Hausman's test (1978): the weak form is the more efficient while the autopilot's velocity has no error that matters; where
+/// The weak form is the more precise while the autopilot's velocity has no error that matters; where
 /// the reconstruction finds something else beyond what its greater variance allows, or where it is the more precise one, the
 /// reconstruction holds.
 fn differs(fitted: &Fitted, sizes: &[Size], covariance: &DMatrix<f64>) -> bool {
@@ -278,7 +277,7 @@ fn differs(fitted: &Fitted, sizes: &[Size], covariance: &DMatrix<f64>) -> bool {
         let Some(index) = column(fitted, place, slot) else { return false };
         let (more, less) = (covariance[(at, at)], fitted.covariance[(index, index)]);
         let apart = value - fitted.base.present[place].values[slot];
-        more < less || apart.powi(2) > HAUSMAN.powi(2) * (more - less)
+        differ(apart, less, more)
     })
 }
 
@@ -321,16 +320,28 @@ fn replaced(
     base.vehicle = settled.vehicle;
     base.vehicle.body.mass_kg = fitted.base.vehicle.body.mass_kg / scale;
     let by_force = base.bring_to_scale(fitted.rows.compares_torques());
-    let mass_kg = base.vehicle.body.mass_kg;
     let mut after = evaluate(traces, base)?;
+    put_covariance(&mut after, &sizes, (scale, by_force), covariance);
+    Ok(Ok(after))
+}
+
+/// Puts the covariance of the scale and of the sizes, and the error of their forms, in place of the fit's own. `by_force` is the
+/// factor by which what follows the force was brought to the scale of a weighed mass.
+fn put_covariance(
+    after: &mut Fitted,
+    sizes: &[Size],
+    (scale, by_force): (f64, f64),
+    covariance: &DMatrix<f64>,
+) {
+    let mass_kg = after.base.vehicle.body.mass_kg;
     let mass = after.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Mass);
     // of the mass: -m / scale per unit of scale
     let mut all: Vec<(usize, usize, f64, f64)> =
         mass.map(|mass| (mass, 0, -mass_kg / scale, 0.0)).into_iter().collect();
-    for &Size { place, slot, at, value } in &sizes {
+    for &Size { place, slot, at, value } in sizes {
         let parameter = after.base.present[place].parameter(slot);
         let by = if parameter.is_some_and(|of| follows_force(of.unit)) { by_force } else { 1.0 };
-        all.extend(column(&after, place, slot).map(|index| (index, at, by, FORM * by * value)));
+        all.extend(column(after, place, slot).map(|index| (index, at, by, FORM * by * value)));
     }
     for &(index, _, _, form) in &all {
         after.covariance.row_mut(index).fill(0.0);
@@ -342,5 +353,4 @@ fn replaced(
             after.covariance[(row, column)] += by * and * covariance[(i, j)];
         }
     }
-    Ok(Ok(after))
 }

@@ -19,7 +19,7 @@ use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
 
 /// An effect that is nearer to nothing than this many standard errors, beside all others and with its errors as reconstruction
-/// and instruments tell them, leaves the model.
+/// and instruments tell them, leaves the model. Chosen; not measured.
 const STAYS: f64 = 3.0;
 /// How often the model is estimated again after effects left it. Chosen; not measured.
 const SETTLINGS: usize = 6;
@@ -31,14 +31,14 @@ pub(super) fn settle(
     vehicle: &Vehicle,
     found: &mut Search,
 ) -> Result<(), PhysicsError> {
-    leave_out_ordinary(traces, found)?;
+    leave_out_unnamed(traces, found)?;
     for left in (0..SETTLINGS).rev() {
         tracing::info_span!("reconstruct").in_scope(|| reconstruct(flights, traces, found))?;
         if is_fed_back(traces) {
             tracing::info_span!("instruments")
                 .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
         }
-        if left == 0 || !leave_out_ordinary(traces, found)? {
+        if left == 0 || !leave_out_unnamed(traces, found)? {
             break;
         }
     }
@@ -49,7 +49,7 @@ pub(super) fn settle(
 
 /// Removes effects without a name from the model: those of ordinary size, those that are not certain, and those that the flight
 /// could not have shown. Returns whether there were any.
-fn leave_out_ordinary(traces: &[Trace], found: &mut Search) -> Result<bool, PhysicsError> {
+fn leave_out_unnamed(traces: &[Trace], found: &mut Search) -> Result<bool, PhysicsError> {
     let all = found.after.base.clone();
     let mut first = found.after.rows.nuisances.len();
     let mut weakest: Option<(f64, usize)> = None;

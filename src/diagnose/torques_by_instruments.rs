@@ -7,7 +7,7 @@ use super::channels::{AXES, CHANNELS, Channels, Nuisance};
 use super::columns::Columns;
 use super::evidence::weighted;
 use super::fit::{CONVERGED, Fitted, Newton, PASSES, evaluate, step};
-use super::instruments::directions;
+use super::hausman::differ;
 use super::trace::Trace;
 use crate::estimate::Estimated;
 use crate::physics::PhysicsError;
@@ -16,16 +16,6 @@ use std::ops::Range;
 
 /// Places of the moments of inertia in [`Estimated::theta`].
 const MOMENTS: [usize; 3] = [1, 4, 6];
-
-/// Normal deviate beyond which least squares and instruments differ.
-const HAUSMAN: f64 = 2.5;
-
-/// Hausman's test (1978) of a value and its standard error by least squares, which is the more precise where nothing is shared
-/// with the noise, against those by instruments, which hold in either case.
-pub(super) fn differs((value, std): (f64, f64), (by, by_std): (f64, f64)) -> bool {
-    let more = by_std.powi(2) - std.powi(2);
-    more < 0.0 || (value - by).powi(2) > HAUSMAN.powi(2) * more
-}
 
 /// Inertia and damping of a model as instruments tell them, where least squares contradicts them. The latency of the model and
 /// its standard error, s, are known.
@@ -42,15 +32,17 @@ pub(super) fn torques_by_instruments(
         by.covariance += &brings * brings.transpose() * latency_std_s.powi(2);
     }
     let (plain, told) = (fitted.rigid_body(), by.rigid_body());
-    let of = |body: &Estimated, at: usize| (body.theta[at], body.covariance[(at, at)].max(0.0).sqrt());
-    if !MOMENTS.into_iter().any(|at| differs(of(&plain, at), of(&told, at))) {
+    let contradicts = |at: usize| {
+        let variance = |body: &Estimated| body.covariance[(at, at)];
+        differ(told.theta[at] - plain.theta[at], variance(&plain), variance(&told))
+    };
+    if !MOMENTS.into_iter().any(contradicts) {
         return Ok(());
     }
     let places: Vec<usize> =
         (0..by.covariance.nrows()).filter(|&place| by.covariance[(place, place)] > 0.0).collect();
-    let mut after = evaluate(flights, by.base)?;
     // what the torques do not tell stays as it is known
-    after.covariance.clone_from(&fitted.covariance);
+    let mut after = fitted.moved_to(flights, by.base)?;
     let others = 0..after.covariance.nrows();
     for &place in &places {
         for other in others.clone() {
@@ -74,11 +66,11 @@ pub(super) fn fit_by_instruments(
     newton: Newton,
 ) -> Result<Option<Fitted>, PhysicsError> {
     let mut base = fitted.base.clone();
-    let Some(mut by) = by_instruments(flights, fitted, newton) else { return Ok(None) };
+    let Some(mut by) = by_instruments(flights, fitted.clone(), newton) else { return Ok(None) };
     for _ in 0..PASSES {
         let moved = step(&mut base, &by, newton);
         let Ok(again) = evaluate(flights, base.clone()) else { return Ok(None) };
-        let Some(next) = by_instruments(flights, &again, newton) else { return Ok(None) };
+        let Some(next) = by_instruments(flights, again, newton) else { return Ok(None) };
         by = next;
         if moved < CONVERGED {
             return Ok(Some(by));
@@ -111,7 +103,7 @@ impl Projected {
                 let mean = column.mean();
                 column.add_scalar_mut(-mean);
             }
-            let along = &basis * basis.tr_mul(&own);
+            let along = basis * basis.tr_mul(&own);
             asked.view_mut((rows.start, 0), (rows.len(), count)).copy_from(&along);
             given.view_mut((rows.start, 0), (rows.len(), count)).copy_from(&own);
         }
@@ -132,22 +124,21 @@ impl Projected {
     }
 }
 
-/// Rows among those of all channels, with their instruments.
-type Served = (Range<usize>, DMatrix<f64>);
+/// Rows among those of all channels, with the directions of their instruments.
+type Served<'a> = (Range<usize>, &'a DMatrix<f64>);
 
-/// Share of a column's squares that must lie where there are instruments.
+/// Share of a column's squares that must lie where there are instruments. Chosen; not measured.
 const LEAST_TOLD: f64 = 0.5;
 
-/// The rows and instruments of each torque that has any: those of a vehicle that is not asked
-/// to turn about an axis say nothing of it.
-fn served(flights: &[Trace], fitted: &Fitted) -> Vec<Served> {
+/// The rows and instruments of each torque that has any: those of a vehicle that is not asked to turn about an axis say nothing
+/// of it.
+fn served<'a>(flights: &'a [Trace], fitted: &Fitted) -> Vec<Served<'a>> {
     let mut out = Vec::new();
     let mut first = 0;
     for trace in flights {
-        for (axis, columns) in trace.instruments.iter().flatten().enumerate() {
+        for (axis, basis) in trace.instruments.iter().flat_map(|all| all.iter()).enumerate() {
             let from = (3 + axis) * fitted.rows.len() + first;
-            let basis = directions(columns, trace.rows());
-            out.extend(basis.map(|basis| (from..from + trace.rows(), basis)));
+            out.extend(basis.iter().map(|basis| (from..from + trace.rows(), basis)));
         }
         first += trace.rows();
     }
@@ -179,44 +170,36 @@ fn brought_by_latency(flights: &[Trace], fitted: &Fitted) -> Option<DVector<f64>
 }
 
 /// Inertia, latency and what damps the rotation by instruments; `None` where they do not tell them apart.
-fn by_instruments(flights: &[Trace], fitted: &Fitted, newton: Newton) -> Option<Fitted> {
-    let projected = Projected::of(flights, fitted, newton)?;
+fn by_instruments(flights: &[Trace], mut fitted: Fitted, newton: Newton) -> Option<Fitted> {
+    let projected = Projected::of(flights, &fitted, newton)?;
     let Projected { places, given, asked, bread } = &projected;
-    let y = of_torques(&fitted.rows.residual, flights, fitted);
+    let y = of_torques(&fitted.rows.residual, flights, &fitted);
     let coefficients = projected.part_in(&y);
     let left = y - given * &coefficients;
     let tested = Columns::of(asked, fitted.rows.len());
-    let gammas = fitted.weighted.gammas(&left);
-    let by_residual = bread * fitted.weighted.meat_of_residual(&tested, &gammas) * bread;
-    let scores = tested.scores(left.as_slice());
-    let by_score = bread * fitted.weighted.meat_of_scores(&scores, &gammas) * bread;
-    let more = |k: usize| (by_score[(k, k)] / by_residual[(k, k)]).max(1.0).sqrt();
-    let count = places.len();
-    let covariance = DMatrix::from_fn(count, count, |i, j| {
-        if by_residual[(i, i)] > 0.0 && by_residual[(j, j)] > 0.0 {
-            by_residual[(i, j)] * more(i) * more(j)
-        } else {
-            by_score[(i, j)]
-        }
-    });
+    let nothing_known = DMatrix::zeros(places.len(), places.len());
+    let covariance = fitted.weighted.sandwich(bread, &tested, &left, &nothing_known);
     if covariance.diagonal().iter().any(|variance| variance.is_nan() || *variance <= 0.0) {
         return None;
     }
-    let mut out = fitted.clone();
-    out.coefficients.fill(0.0);
-    out.covariance.fill(0.0);
+    fitted.coefficients.fill(0.0);
+    fitted.covariance.fill(0.0);
     for (i, &place) in places.iter().enumerate() {
-        out.coefficients[place] = coefficients[i];
+        fitted.coefficients[place] = coefficients[i];
         for (j, &other) in places.iter().enumerate() {
-            out.covariance[(place, other)] = covariance[(i, j)];
+            fitted.covariance[(place, other)] = covariance[(i, j)];
         }
     }
-    Some(out)
+    Some(fitted)
 }
 
 /// Places among the coefficients and, weighted, the columns of what is estimated. A latency that is held is known: it and a
 /// damping explain much of each other. So is what acts about axes without instruments.
-fn estimated(fitted: &Fitted, served: &[Served], newton: Newton) -> Option<(Vec<usize>, Vec<DVector<f64>>)> {
+fn estimated(
+    fitted: &Fitted,
+    served: &[Served<'_>],
+    newton: Newton,
+) -> Option<(Vec<usize>, Vec<DVector<f64>>)> {
     let rows = &fitted.rows;
     let torques = 3 * rows.len()..AXES * rows.len();
     let mut out = (Vec::new(), Vec::new());

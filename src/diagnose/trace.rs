@@ -11,6 +11,7 @@ use crate::signals::{
 use crate::vehicle::{Propulsion, Vehicle};
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Cut-off of the zero-phase low-pass of the regressors' signals, Hz. Chosen; not measured.
 const SMOOTH_HZ: f64 = 6.0;
@@ -66,7 +67,7 @@ pub struct Trace {
     /// motion capture or a camera gives the height
     pub height_by_pose: bool,
     /// of the torques, if the commanded trajectory was recorded
-    pub(super) instruments: Option<Instruments>,
+    pub(super) instruments: Option<Arc<Instruments>>,
 }
 
 /// Which parts of the state are measured.
@@ -156,7 +157,8 @@ impl Trace {
         trace.smooth()?;
         let reference = signals.reference.as_ref().filter(|_| trace.torques);
         trace.instruments = reference
-            .map(|reference| instruments(reference, grid.step_s, |order, series| trace.weak(order, series)));
+            .map(|reference| instruments(reference, grid.step_s, |order, series| trace.weak(order, series)))
+            .map(Arc::new);
         Ok(trace)
     }
 

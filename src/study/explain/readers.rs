@@ -6,7 +6,7 @@ use crate::diagnose::{Named, NamedParameter, Strength};
 /// Drag along the rotor axis within this share of that across it is one isotropic drag.
 const ISOTROPIC: f64 = 0.35;
 
-/// Drag along the rotor axis exceeds that across it beyond this many standard errors.
+/// Drag along the rotor axis exceeds that across it beyond this many standard errors. Chosen; not measured.
 const TOLD_APART: f64 = 4.0;
 
 /// One drag where the search found it in two pieces: drag across the rotor axis, and thrust that falls with
