@@ -3,10 +3,10 @@
 use super::airborne::{Before, airborne, normalized_commands};
 use super::excitation::ExcitationTally;
 use super::flown_rates::FlownRates;
-use super::foresee::information;
+use super::foresee::Learnt;
 use super::inspection::{Excitation, FlightSummary, OffsetSummary, Segment};
 use super::motion::Motion;
-use crate::estimate::{Estimated, WeakInformation};
+use crate::estimate::Estimated;
 use crate::note::Note;
 use crate::recording::{Quantity, Recording};
 use crate::signals::{ConditionSettings, Quality, Signals, SignalsError, Usable, condition};
@@ -28,7 +28,7 @@ pub(super) struct Assessor<'a> {
     flown: bool,
     /// the vehicle's clock restarted since the last segment
     restarted: bool,
-    information: Option<WeakInformation>,
+    learnt: Option<Learnt>,
     offsets: Vec<OffsetSum>,
     notes: Vec<Note>,
     refusal: Option<SignalsError>,
@@ -117,10 +117,10 @@ impl<'a> Assessor<'a> {
 
     /// What identification would learn from the window: its own weak form, solved.
     fn inform(&mut self, signals: &Signals, vehicle: &Vehicle) {
-        if let Some(information) = information(signals, vehicle) {
-            match &mut self.information {
-                Some(all) => all.add(&information),
-                None => self.information = Some(information),
+        if let Some(learnt) = Learnt::of(signals, vehicle) {
+            match &mut self.learnt {
+                Some(all) => all.add(&learnt),
+                None => self.learnt = Some(learnt),
             }
         }
         self.note(&signals.quality);
@@ -175,7 +175,7 @@ impl<'a> Assessor<'a> {
 
     /// What was collected.
     pub(super) fn finish(self) -> Assessment {
-        let expected = self.information.as_ref().map(WeakInformation::combined);
+        let expected = self.learnt.as_ref().map(Learnt::combined);
         let offset = |sum: &OffsetSum| OffsetSummary {
             quantity: sum.quantity.name(),
             late_s: sum.weighted_s / sum.weight,

@@ -4,8 +4,8 @@ use super::evidence::Evidence;
 use super::inspection::Outlook;
 use super::lacking::lack;
 use crate::estimate::{
-    Contradiction, Estimated, Finding, NAMES, Nominal, THETA, UNITS, finding, rescaled, scale_of, stated,
-    theta_of,
+    Contradiction, Estimated, Finding, NAMES, Nominal, THETA, UNITS, finding, rescaled, scaling_mass, size_of,
+    stated,
 };
 use crate::vehicle::{Anchor, Vehicle};
 
@@ -71,7 +71,7 @@ pub(super) fn judged(vehicle: &Vehicle, expected: &Estimated, index: usize) -> O
         Finding::Determined { std, .. } => Outlook {
             status: "determined",
             std: Some(std),
-            std_relative: Some(std / size_of(vehicle, expected, index)),
+            std_relative: Some(std / size_here(vehicle, expected, index)),
             ..none
         },
         Finding::NotDetermined { reason } => Outlook { reason: Some(reason), ..none },
@@ -101,30 +101,28 @@ pub(super) fn contradicted(vehicle: &Vehicle, expected: &Estimated) -> Vec<Contr
 /// `identify` allows for, moved them by up to 3 on the simulated flights of this repository's tests.
 const COARSE: f64 = 4.0;
 
-/// A parameter's size: the larger of what the vehicle file says and what the log does, as [`finding`] judges.
-fn size_of(vehicle: &Vehicle, expected: &Estimated, index: usize) -> f64 {
-    let stated = scale_of(&theta_of(&vehicle.body), index);
+/// A parameter's size on the scale that the vehicle's anchor sets.
+fn size_here(vehicle: &Vehicle, expected: &Estimated, index: usize) -> f64 {
     let theta = match vehicle.anchor {
         Anchor::Mass => rescaled(expected, vehicle.body.mass_kg).theta,
         Anchor::Thrust => expected.theta,
     };
-    stated.max(scale_of(&theta.map(f64::abs), index))
+    size_of(&theta, &Nominal::of(vehicle), index)
 }
 
 /// What `identify` will say, on the scale that the vehicle's anchor sets.
 fn expected_finding(vehicle: &Vehicle, expected: &Estimated, index: usize) -> Finding {
     let nominal = Nominal::of(vehicle);
-    let of_mass = finding(expected, &nominal, 0);
-    match (vehicle.anchor, of_mass) {
-        (Anchor::Mass, Finding::Determined { .. }) if index > 0 => {
+    if vehicle.anchor == Anchor::Thrust {
+        return finding(expected, &nominal, index);
+    }
+    match scaling_mass(expected, &nominal) {
+        Finding::Determined { .. } if index > 0 => {
             finding(&rescaled(expected, vehicle.body.mass_kg), &nominal, index)
         }
-        (Anchor::Mass, unknown) if index > 0 => match unknown {
-            Finding::NotDetermined { reason } => {
-                Finding::NotDetermined { reason: format!("the thrust scale is not determined: {reason}") }
-            }
-            other => other,
-        },
-        _ => finding(expected, &nominal, index),
+        Finding::NotDetermined { reason } if index > 0 => {
+            Finding::NotDetermined { reason: format!("the thrust scale is not determined: {reason}") }
+        }
+        of_mass => of_mass,
     }
 }

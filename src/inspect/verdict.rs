@@ -5,7 +5,7 @@ use super::inspection::{Outlook, VehicleSummary};
 use super::lacking::lack;
 use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION, contradicted};
 use crate::autopilot::VehicleKind;
-use crate::estimate::contradicts_file;
+use crate::estimate::{POOR, contradicts_file};
 use crate::note::About;
 use crate::recording::Quantity;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
@@ -14,8 +14,6 @@ use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 const AMPLE_S: f64 = 20.0;
 /// Lost share of the flight from which it is mentioned. Chosen; not measured.
 const NOTABLE_SHARE: f64 = 0.05;
-/// Standard error, as a share of the parameter, from which it is poor. Chosen; not measured.
-const POOR: f64 = 0.1;
 /// Rate to ask for, Hz.
 const WANTED_HZ: u32 = 100;
 
