@@ -80,7 +80,7 @@ pub fn rests_on_guessed_curve(estimated: &Estimated) -> Option<Note> {
         .map(|index| format!("{} by {:.0} %", NAMES[index], 100.0 * share(index)))
         .collect();
     let text = format!(
-        "{CURVE_IS_A_GUESS}, and one standard error of it moves {}: that is in the standard errors. --with thrust_curve has the \
+        "{CURVE_IS_A_GUESS}, and one standard error of it moves {}: that is in the standard errors. `identify --with thrust_curve` has the \
          flight tell the curve; where it is known, state it in a vehicle file",
         those.join(", ")
     );

@@ -2,7 +2,10 @@
 
 use crate::diagnose::{ExpectedError, expected_errors};
 use crate::draft::{Given, draft};
-use crate::estimate::{Estimated, GuessedCurve, WeakInformation, WeakMethod, solve_weak, theta_of};
+use crate::estimate::{
+    Contradiction, Estimated, GuessedCurve, IdentifySettings, WeakInformation, WeakMethod, apply_anchor,
+    contradictions, identify, solve_weak, theta_of,
+};
 use crate::recording::{Quantity, Recording};
 use crate::regression::{WeakMotion, weak_rows};
 use crate::signals::{
@@ -25,6 +28,8 @@ pub(super) struct Foreseen {
     pub assumed: bool,
     /// rigid body, by this window alone
     pub body: Option<Estimated>,
+    /// what `identify` makes of this window that is far from what the given vehicle's file states
+    pub contradictions: Vec<Contradiction>,
     /// the other quantities; why there are none
     pub effects: Result<Vec<ExpectedError>, String>,
 }
@@ -64,11 +69,20 @@ pub(super) fn foresee(
     };
     let of_effects = std::slice::from_ref(of_effects.as_ref().unwrap_or(&signals));
     Ok(Foreseen {
+        contradictions: vehicle.map(|vehicle| contradicted(&signals, vehicle)).unwrap_or_default(),
         body: body(&signals, &known),
         effects: expected_errors(of_effects, &known).map_err(|error| error.to_string()),
         assumed: vehicle.is_none(),
         vehicle: known,
     })
+}
+
+/// What identification would find far from what the vehicle file states.
+fn contradicted(signals: &Signals, vehicle: &Vehicle) -> Vec<Contradiction> {
+    let settings = IdentifySettings::default();
+    let Ok(mut found) = identify(std::slice::from_ref(signals), vehicle, &settings) else { return Vec::new() };
+    let scale = apply_anchor(&mut found, vehicle);
+    contradictions(&found.best.result, vehicle, scale.as_ref())
 }
 
 fn body(signals: &Signals, vehicle: &Vehicle) -> Option<Estimated> {

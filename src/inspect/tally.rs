@@ -28,8 +28,6 @@ const MOSTLY: f64 = 1.05;
 const WARNING: u8 = 4;
 /// Warnings kept; further ones are counted.
 const KEPT_WARNINGS: usize = 200;
-/// Steps back of a vehicle's clock in one of its own logs that no restarts explain. Chosen; not measured.
-const STEPS_BACK: usize = 10;
 /// Events between two calls of the progress function.
 const PROGRESS_EVENTS: u32 = 1 << 16;
 
@@ -198,6 +196,8 @@ impl Pass {
             timed: self.report.is_timed(),
             undefined: self.report.lacks_definitions(),
             ends_early: self.report.ends_early(),
+            steps_back: self.report.out_of_order(),
+            damage: self.report.damage(),
             logging: logging(&self.report, self.tally.autopilot),
         };
         found.inspection(self.tally, self.assessment, vehicle)
@@ -256,6 +256,8 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         timed: report.is_timed(),
         undefined: report.lacks_definitions(),
         ends_early: report.ends_early(),
+        steps_back: report.out_of_order(),
+        damage: report.damage(),
         logging: logging(report, recording.autopilot),
     };
     found.inspection(tally, assessor.finish(), vehicle)
@@ -279,6 +281,10 @@ struct Found {
     undefined: bool,
     /// it ends before the first of them
     ends_early: bool,
+    /// steps back of its stamps, where its messages stand in another order than they were written in
+    steps_back: Option<u64>,
+    /// how much of it is damaged, in words, where streams may be gone with it
+    damage: Option<String>,
     /// of a log that the vehicle wrote: how to make it log more
     logging: Option<&'static str>,
 }
@@ -323,15 +329,6 @@ impl Found {
         flown_s
     }
 
-    /// Steps back of the clock, if they are too many for restarts: then no time in the air is known.
-    fn steps_back(&self, count: usize, assessment: &mut Assessment) -> Option<usize> {
-        let is_many = matches!(self.reading, Reading::Onboard(_)) && count >= STEPS_BACK;
-        if is_many {
-            assessment.flight = FlightSummary::out_of_order();
-        }
-        is_many.then_some(count)
-    }
-
     fn inspection(
         mut self,
         mut tally: Tally,
@@ -340,7 +337,10 @@ impl Found {
     ) -> Inspection {
         let flown_s = self.settle(&mut tally, &mut assessment);
         let clock = std::mem::take(&mut tally.clock).summary();
-        let steps_back = self.steps_back(clock.resets_s.len(), &mut assessment);
+        if self.steps_back.is_some() {
+            // then no time in the air is known
+            assessment.flight = FlightSummary::out_of_order();
+        }
         let (armed, said_in_air_s) = (tally.timeline.armed_ever(), tally.timeline.said_in_air_s());
         // a plane's modes have other names than a multirotor's of the same number
         let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);
@@ -353,15 +353,17 @@ impl Found {
             assessment: &assessment,
             vehicle,
             assumed: foreseen.as_ref().and_then(Foreseen::assumed),
+            contradictions: foreseen.as_ref().map_or(&[], |foreseen| &foreseen.contradictions),
             missing_curve,
             kind: self.kind,
             armed,
             said_in_air_s,
-            steps_back,
+            steps_back: self.steps_back,
             unreadable: self.unreadable,
             timed: self.timed,
             undefined: self.undefined,
             ends_early: self.ends_early,
+            damage: self.damage.as_deref(),
             logging: self.logging,
             own_log: self.autopilot.stack().map(|stack| stack.logging),
         };

@@ -7,7 +7,7 @@ use crate::diagnose::joint::{RequestedEffects, identify_jointly};
 use crate::study::flight::Flight;
 use crate::study::flights::{IDENTIFIED, Prepared, load_all, names, prepare, refuse_twins};
 use crate::study::vehicle_given::Known;
-use crate::study::{Progress, Stage, StudyError, effects_of};
+use crate::study::{InputFile, Progress, Stage, StudyError, effects_of};
 use crate::text;
 
 /// Estimates mass and inertia from logs, and the effects that are asked for together with them.
@@ -30,7 +30,9 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     let Prepared { recordings, signals, inputs } = prepare(logs, vehicle, &request.conditioning())?;
     // memory for the work that begins
     drop(recordings);
-    let study = IdentifyStudy::of_signals(signals, inputs, known.loaded.vehicle, &request.settings())?;
+    let lost: Vec<String> = inputs.iter().flat_map(InputFile::losses).map(str::to_owned).collect();
+    let study = IdentifyStudy::of_signals(signals, inputs, known.loaded.vehicle, &request.settings())
+        .map_err(|error| StudyError::of_estimate(error, &lost))?;
     Ok(IdentifyStudy { with, notes, drafted: known.draft, ..study })
 }
 
