@@ -90,7 +90,7 @@ fn body(signals: &Signals, vehicle: &Vehicle) -> Option<Estimated> {
 }
 
 /// What the weak form learns of windows of flight.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Learnt {
     body: WeakInformation,
     /// the same at both ends of a guessed thrust curve

@@ -121,7 +121,7 @@ fn with_vehicle(evidence: &Evidence<'_>, good: &[&Outlook], bad: &[&str], time: 
         let told = |outlook: &&Outlook| {
             let name = label(outlook.name);
             // shares of what a wrong file states mean nothing
-            match outlook.std_relative.filter(|_| doubts.is_empty()) {
+            match outlook.std_relative.filter(|_| doubts.is_empty() && evidence.assessment.apart.is_empty()) {
                 Some(std) => format!("{name} to {}", percent(std)),
                 None => name.to_owned(),
             }
@@ -135,6 +135,9 @@ fn with_vehicle(evidence: &Evidence<'_>, good: &[&Outlook], bad: &[&str], time: 
         .collect();
     let not = if bad.is_empty() { String::new() } else { format!("; not for {}", bad.join(", ")) };
     let parts = parts.join("; ");
+    if let Some(apart) = evidence.assessment.apart.first().filter(|_| doubts.is_empty()) {
+        return format!("Doubtful: {apart}. One by one its flights may be {parts}{not}: {time}.");
+    }
     if !doubts.is_empty() {
         return format!(
             "Doubtful with this vehicle file: {}. With the right file this log may be {parts}{not}: {time}.",

@@ -70,6 +70,7 @@ async fn set(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
     let offer = session.offer().await?;
     let notes = state::notes(&session.known_as(&offer))?;
     let prepared = preparing::look(&mut session, &notes).await?;
+    preparing::expect_rates(&session, &prepared)?;
     let changes = &prepared.plan.changes;
     let what = changes_page(changes);
     if !changes.is_empty() {
