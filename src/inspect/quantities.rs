@@ -182,7 +182,8 @@ impl Outcome<'_> {
 fn beyond(shown: Option<Shown>, stands_out: bool) -> String {
     match shown {
         Some(shown) => format!(
-            "; but something stands out of this flight that would be one of {:.1}: `explain` tells what it is",
+            "; but something stands out of this flight that, if it were this, would be {:.1} standard errors: `explain` tells \
+             what it is",
             shown.deviates
         ),
         None if stands_out => "; better once what stands out of this flight is known".to_owned(),

@@ -35,12 +35,12 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
     if let Some(SignalsError::NoActuators { .. }) = &evidence.assessment.refusal
         && evidence.actuator_hz().is_some()
     {
-        return "Nothing can be identified with this vehicle file: its actuators are not those of the log. See the \
+        return "Nothing can be identified with this vehicle: its actuators are not those of the log. See the \
                 advice."
             .into();
     }
     if evidence.is_contradicted() {
-        return "Nothing can be identified with this vehicle file: its thrust contradicts the log. See the advice.".into();
+        return "Nothing can be identified with this vehicle: its thrust contradicts the log. See the advice.".into();
     }
     if let Some(nothing) = evidence.nothing() {
         let is_other = evidence.kind.is_some_and(|kind| kind != VehicleKind::Multirotor);
@@ -140,7 +140,7 @@ fn with_vehicle(evidence: &Evidence<'_>, good: &[&Outlook], bad: &[&str], time: 
     }
     if !doubts.is_empty() {
         return format!(
-            "Doubtful with this vehicle file: {}. With the right file this log may be {parts}{not}: {time}.",
+            "Doubtful with this vehicle: {}. With the right one this log may be {parts}{not}: {time}.",
             doubts.join("; ")
         );
     }

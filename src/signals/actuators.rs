@@ -130,10 +130,9 @@ fn no_actuators(recording: &Recording, vehicle: &Vehicle) -> SignalsError {
         Actuator::Pwm(Some(_)) => "pulse widths in microseconds",
         Actuator::Pwm(None) | Actuator::Speed | Actuator::Thrust => "values in 0..1",
     };
-    let found: Vec<String> = recording
-        .streams
-        .iter()
-        .filter(|(key, _)| key.quantity == Quantity::ActuatorCommand)
+    let commands =
+        || recording.streams.iter().filter(|(key, _)| key.quantity == Quantity::ActuatorCommand);
+    let found: Vec<String> = commands()
         .map(|(key, stream)| {
             let largest = stream.values.iter().copied().filter(|v| v.is_finite()).fold(f64::NAN, f64::max);
             let still = if is_live(stream) { "" } else { ", which does not move" };
@@ -144,6 +143,7 @@ fn no_actuators(recording: &Recording, vehicle: &Vehicle) -> SignalsError {
         rotors: vehicle.rotors.len(),
         unit,
         found: if found.is_empty() { "none".into() } else { found.join(", ") },
+        channels: commands().map(|(_, stream)| stream.width).max().unwrap_or(0),
     }
 }
 

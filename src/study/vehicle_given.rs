@@ -55,15 +55,28 @@ pub(super) struct Known {
 impl Known {
     /// What is to be known of it.
     pub(super) fn notes(&self) -> Vec<Note> {
-        let mut notes = file_notes(&self.origin, &self.loaded.warnings);
         let about = || About::File(text::path(&self.origin));
-        if let Some(draft) = &self.draft {
-            notes.extend(draft.doubts.iter().map(|doubt| Note::warning(about(), doubt.as_str())));
-            notes.push(Note::remark(about(), draft.origins.join("; ")));
+        match &self.draft {
+            Some(draft) => draft_notes(draft),
+            None => {
+                let mut notes = file_notes(&self.origin, &self.loaded.warnings);
+                notes.extend(guesses(&self.loaded.vehicle).map(|text| Note::remark(about(), text)));
+                notes
+            }
         }
-        notes.extend(guesses(&self.loaded.vehicle).map(|text| Note::remark(about(), text)));
-        notes
     }
+}
+
+/// What is to be known of a drafted vehicle: what is hardly meant, what contradicts the log, where its values come from, and
+/// which of them are guesses.
+#[must_use]
+pub fn draft_notes(draft: &Draft) -> Vec<Note> {
+    let about = || About::File(DRAFTED.to_owned());
+    let mut notes = file_notes(Path::new(DRAFTED), &draft.vehicle.implausible());
+    notes.extend(draft.doubts.iter().map(|doubt| Note::warning(about(), doubt.as_str())));
+    notes.push(Note::remark(about(), draft.origins.join("; ")));
+    notes.extend(guesses(&draft.vehicle).map(|text| Note::remark(about(), text)));
+    notes
 }
 
 /// The guesses that a vehicle rests on, in a sentence.
