@@ -110,7 +110,10 @@ mod tests {
         let theta = SVector::from([2.0, 0.02, 0.0, 0.0, 0.03, 0.0, 0.05]);
         let mut covariance = ThetaCovariance::zeros();
         covariance[(0, 0)] = 0.02_f64.powi(2); // 1 % of the mass
-        let out = rescaled(&Estimated { theta, covariance, explained: None, by_wider_window: None, by_guessed_curve: None }, 2.2);
+        let out = rescaled(
+            &Estimated { theta, covariance, explained: None, by_wider_window: None, by_guessed_curve: None },
+            2.2,
+        );
         assert!((out.theta[0] - 2.2).abs() < 1e-12);
         assert!((out.theta[1] - 0.022).abs() < 1e-12);
         assert!(out.covariance[(0, 0)].abs() < 1e-15); // weighed: no error left

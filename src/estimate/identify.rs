@@ -152,10 +152,7 @@ fn identify_evenly(
 
     let harmonic_hz = highest_of_all_hz(&weak.signals);
     let (paper, cutoff_hz) = paper_runs(&weak.signals, vehicle, settings, harmonic_hz)?;
-    if paper.is_empty() {
-        let text = "LS, GD, FMLS and FMGD need body rates and the vertical motion; this recording lacks one";
-        notes.push(Note::remark(About::Estimate, text));
-    }
+    notes.extend(paper.is_empty().then(|| Note::remark(About::Estimate, NO_PAPER)));
 
     let wider = weak.by_wider_window(&plain, &nominal.theta, settings);
     let by_curve = moved_by_curve(flights, vehicle, compensated, &nominal.theta);
@@ -169,14 +166,15 @@ fn identify_evenly(
         (Method::WeakRobust, robust.as_ref()),
         (Method::WeakIv, by_instruments.as_ref()),
     ];
-    methods.extend(weak_forms.into_iter().filter_map(|(method, found)| {
-        Some(MethodResult::new(method, &whole(found?), &nominal))
-    }));
+    methods.extend(
+        weak_forms
+            .into_iter()
+            .filter_map(|(method, found)| Some(MethodResult::new(method, &whole(found?), &nominal))),
+    );
     let best = recommend((&plain, &whole), robust.as_ref(), by_instruments.as_ref(), &nominal);
     notes.extend(disagreeing(&weak.rows, &nominal.theta));
-    if flights.iter().any(|signals| signals.quality.thrust_source == ThrustSource::Command) {
-        notes.push(Note::remark(About::Actuators, BY_COMMANDS));
-    }
+    let by_commands = |signals: &Signals| signals.quality.thrust_source == ThrustSource::Command;
+    notes.extend(flights.iter().any(by_commands).then(|| Note::remark(About::Actuators, BY_COMMANDS)));
     Ok(Identification {
         best,
         methods,
@@ -237,6 +235,10 @@ pub fn moved_by_guessed_curve(flights: &[Signals], vehicle: &Vehicle) -> Option<
     let (_, latency) = weak.compensate(&nominal.theta, vehicle);
     moved_by_curve(flights, vehicle, latency, &nominal.theta)
 }
+
+/// Where the paper's methods have nothing to run on.
+const NO_PAPER: &str =
+    "LS, GD, FMLS and FMGD need body rates and the vertical motion; this recording lacks one";
 
 /// Error that the standard errors do not include if thrust is computed from commands.
 const BY_COMMANDS: &str = "thrust from commands: the standard errors do not include the commands between two samples, \

@@ -60,7 +60,9 @@ impl Evidence<'_> {
 
     /// What a quantity's streams hold instead of a signal, where they do not move.
     pub(super) fn still(&self, quantity: Quantity) -> Option<&'static str> {
-        let of = |(key, _, stats): &&(StreamKey, usize, StreamStats)| key.quantity == quantity && stats.count >= 10;
+        let of = |(key, _, stats): &&(StreamKey, usize, StreamStats)| {
+            key.quantity == quantity && stats.count >= 10
+        };
         let (.., stats) = self.streams.iter().find(of).filter(|_| self.rate_hz(quantity).is_none())?;
         Some(if stats.all_zero { "hold nothing but zeros" } else { "never change" })
     }

@@ -80,7 +80,9 @@ pub(super) fn foresee(
 /// What identification would find far from what the vehicle file states.
 fn contradicted(signals: &Signals, vehicle: &Vehicle) -> Vec<Contradiction> {
     let settings = IdentifySettings::default();
-    let Ok(mut found) = identify(std::slice::from_ref(signals), vehicle, &settings) else { return Vec::new() };
+    let Ok(mut found) = identify(std::slice::from_ref(signals), vehicle, &settings) else {
+        return Vec::new();
+    };
     let scale = apply_anchor(&mut found, vehicle);
     contradictions(&found.best.result, vehicle, scale.as_ref())
 }

@@ -10,17 +10,17 @@ use super::inspection::{FlightSummary, Inspection, Reading, Text, TextSummary, T
 use super::outlook::outlook;
 use super::parameters::Parameters;
 use super::quantities::{Outcome, quantities};
-use super::reading::reading_of;
+use super::reading::{reading_of, vehicle_of};
 use super::streams::{StreamTallies, is_disordered, summary_of};
 use super::timeline::TimelineTally;
 use super::verdict::verdict;
 use super::window::{WindowRecorder, windows_of};
 use crate::autopilot::{Autopilot, VehicleKind};
-use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport, TlogReport};
+use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport};
 use crate::recording::{Event, Recording, StreamKey, StreamStats};
 use crate::signals::SignalsError;
 use crate::vehicle::Vehicle;
-use crate::wire::{Sender, Source, SystemId};
+use crate::wire::SystemId;
 
 /// A window holds all of a flight where no more than this times its seconds can be used.
 const MOSTLY: f64 = 1.05;
@@ -204,27 +204,6 @@ impl Pass {
     }
 }
 
-/// Whose log it is.
-fn vehicle_of(report: &ReadReport, autopilot: Autopilot) -> VehicleSummary {
-    let speaker = report.vehicle;
-    let heartbeats = |telemetry: &TlogReport| -> u64 {
-        let own = |sender: &&Sender| {
-            speaker.is_some_and(|own| own.system == sender.system && own.component == sender.component)
-        };
-        let beats = |sender: &Sender| sender.messages.get(Source::Heartbeat.message_id());
-        telemetry.senders.iter().filter(own).map(beats).sum()
-    };
-    VehicleSummary {
-        system: speaker.map(|speaker| speaker.system.0),
-        component: speaker.map(|speaker| speaker.component.0),
-        autopilot: autopilot.id(),
-        others: report.others.iter().map(|system| system.0).collect(),
-        without_heartbeat: report.telemetry().is_some_and(|telemetry| heartbeats(telemetry) == 0),
-        kind: report.kind().map(VehicleKind::name),
-        firmware: report.onboard().and_then(|onboard| onboard.firmware.clone()),
-    }
-}
-
 /// What a recording that is in memory holds.
 #[must_use]
 pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspection {
@@ -326,7 +305,18 @@ impl Found {
         if self.kind.is_some_and(|kind| !kind.flies()) {
             assessment.flight = FlightSummary::on_the_ground();
         }
+        if self.steps_back.is_some() {
+            // then no time in the air is known
+            assessment.flight = FlightSummary::out_of_order();
+        }
         flown_s
+    }
+
+    /// Whose names of modes hold: a plane's are others than a multirotor's of the same number.
+    fn modes_of(&self) -> Autopilot {
+        let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);
+        let is_known = self.vehicle.kind.is_none_or(|kind| rotors.contains(&kind));
+        if is_known { self.autopilot } else { Autopilot::Unknown }
     }
 
     fn inspection(
@@ -337,15 +327,7 @@ impl Found {
     ) -> Inspection {
         let flown_s = self.settle(&mut tally, &mut assessment);
         let clock = std::mem::take(&mut tally.clock).summary();
-        if self.steps_back.is_some() {
-            // then no time in the air is known
-            assessment.flight = FlightSummary::out_of_order();
-        }
-        let (armed, said_in_air_s) = (tally.timeline.armed_ever(), tally.timeline.said_in_air_s());
-        // a plane's modes have other names than a multirotor's of the same number
-        let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);
-        let is_known = self.vehicle.kind.is_none_or(|kind| rotors.contains(&kind));
-        let modes = if is_known { self.autopilot } else { Autopilot::Unknown };
+        let modes = self.modes_of();
         let foreseen = self.foreseen(&tally, &mut assessment, vehicle);
         let missing_curve = tally.parameters.missing_curve(self.autopilot);
         let evidence = Evidence {
@@ -356,8 +338,8 @@ impl Found {
             contradictions: foreseen.as_ref().map_or(&[], |foreseen| &foreseen.contradictions),
             missing_curve,
             kind: self.kind,
-            armed,
-            said_in_air_s,
+            armed: tally.timeline.armed_ever(),
+            said_in_air_s: tally.timeline.said_in_air_s(),
             steps_back: self.steps_back,
             unreadable: self.unreadable,
             timed: self.timed,

@@ -327,7 +327,9 @@ fn remarks(evidence: &Evidence<'_>, vehicle: &VehicleSummary) -> Vec<String> {
             Anchor::Mass => rescaled(expected, vehicle.body.mass_kg),
             Anchor::Thrust => expected.clone(),
         };
-        advice.extend(rests_on_guessed_curve(&on_scale).map(|note| format!("A guess bears on inertia: {}.", note.text)));
+        advice.extend(
+            rests_on_guessed_curve(&on_scale).map(|note| format!("A guess bears on inertia: {}.", note.text)),
+        );
     }
     advice.extend(evidence.assessment.notes.iter().map(ToString::to_string));
     advice

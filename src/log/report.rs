@@ -99,7 +99,8 @@ impl ReadReport {
     pub fn damage(&self) -> Option<String> {
         let share = self.passed_share();
         let by_messages = || self.unreadable().map(|count| format!("{count} of its messages cannot be read"));
-        let by_bytes = (share > DAMAGED).then(|| format!("{:.0} % of its bytes cannot be read", 100.0 * share));
+        let by_bytes =
+            (share > DAMAGED).then(|| format!("{:.0} % of its bytes cannot be read", 100.0 * share));
         by_bytes.or_else(by_messages)
     }
 

@@ -130,8 +130,7 @@ fn no_actuators(recording: &Recording, vehicle: &Vehicle) -> SignalsError {
         Actuator::Pwm(Some(_)) => "pulse widths in microseconds",
         Actuator::Pwm(None) | Actuator::Speed | Actuator::Thrust => "values in 0..1",
     };
-    let commands =
-        || recording.streams.iter().filter(|(key, _)| key.quantity == Quantity::ActuatorCommand);
+    let commands = || recording.streams.iter().filter(|(key, _)| key.quantity == Quantity::ActuatorCommand);
     let found: Vec<String> = commands()
         .map(|(key, stream)| {
             let largest = stream.values.iter().copied().filter(|v| v.is_finite()).fold(f64::NAN, f64::max);

@@ -97,7 +97,11 @@ pub enum StudyError {
 impl StudyError {
     /// Why nothing can be identified, with what of the logs could not be read.
     pub(super) fn of_estimate(error: EstimateError, losses: &[String]) -> Self {
-        if losses.is_empty() { Self::Identify(error) } else { Self::IdentifyDamaged { error, losses: losses.to_vec() } }
+        if losses.is_empty() {
+            Self::Identify(error)
+        } else {
+            Self::IdentifyDamaged { error, losses: losses.to_vec() }
+        }
     }
 }
 

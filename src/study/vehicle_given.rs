@@ -99,7 +99,8 @@ impl VehicleGiven {
         let (mut loaded, origin) = match self {
             Self::File(file) => (read_vehicle(file)?, file.clone()),
             Self::Weighed(given) => {
-                let draft = draft(&Recording::default(), given, "vehicle").map_err(|error| not_given(&error))?;
+                let draft =
+                    draft(&Recording::default(), given, "vehicle").map_err(|error| not_given(&error))?;
                 (of_draft(&draft), PathBuf::from(DRAFTED))
             }
         };

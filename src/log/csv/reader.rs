@@ -216,7 +216,11 @@ impl<'a, 'b> Reading<'a, 'b> {
             } else {
                 ""
             };
-            return Err(format!("expected {} cells as in the header, came {}{why}", self.columns, record.len()));
+            return Err(format!(
+                "expected {} cells as in the header, came {}{why}",
+                self.columns,
+                record.len()
+            ));
         }
         let column = &self.mapping.time.column;
         let raw_time = number(record, self.time_index, column)?;

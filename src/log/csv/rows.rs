@@ -99,7 +99,8 @@ pub(super) fn number(record: &ByteRecord, index: usize, column: &str) -> Result<
         // binary garbage need not be repeated whole
         _ => {
             let (column, came) = (text::excerpt(column, CELL_CHARS), text::excerpt(&text, CELL_CHARS));
-            let is_decimal_comma = text.matches(',').count() == 1 && text.replace(',', ".").parse::<f64>().is_ok();
+            let is_decimal_comma =
+                text.matches(',').count() == 1 && text.replace(',', ".").parse::<f64>().is_ok();
             let why = if is_decimal_comma { ": write it with a decimal point" } else { "" };
             Err(format!("column \"{column}\": expected a number, came \"{came}\"{why}"))
         }
