@@ -101,6 +101,12 @@ impl Evidence<'_> {
             && self.assessment.flight.airborne_s >= LEAST_USABLE_S
     }
 
+    /// The log has actuator outputs, and they are not those of the vehicle.
+    pub(super) fn has_other_actuators(&self) -> bool {
+        matches!(self.assessment.refusal, Some(SignalsError::NoActuators { .. }))
+            && self.actuator_hz().is_some()
+    }
+
     /// Why it is no flight, where the vehicle tells that.
     pub(super) fn grounded(&self) -> Option<String> {
         let flown = self.assessment.flight.airborne_s >= LEAST_USABLE_S;

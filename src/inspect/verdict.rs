@@ -32,12 +32,8 @@ pub(super) fn verdict(
 }
 
 fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
-    if let Some(SignalsError::NoActuators { .. }) = &evidence.assessment.refusal
-        && evidence.actuator_hz().is_some()
-    {
-        return "Nothing can be identified with this vehicle: its actuators are not those of the log. See the \
-                advice."
-            .into();
+    if evidence.has_other_actuators() {
+        return "Nothing can be identified with this vehicle: its actuators are not those of the log. See the advice.".into();
     }
     if evidence.is_contradicted() {
         return "Nothing can be identified with this vehicle: its thrust contradicts the log. See the advice.".into();

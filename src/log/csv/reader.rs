@@ -211,7 +211,7 @@ impl<'a, 'b> Reading<'a, 'b> {
     /// The row's raw time and the cells of each quantity, or why the row is of no use.
     fn cells(&self, record: &ByteRecord) -> Result<(f64, Vec<Vec<f64>>), String> {
         if record.len() != self.columns {
-            let why = if record.len() > self.columns && record.iter().all(is_whole) {
+            let why = if 2 * record.len() > 3 * self.columns && record.iter().all(is_whole) {
                 ": are commas both between the cells and decimal marks? Write numbers with a decimal point"
             } else {
                 ""
