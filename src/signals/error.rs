@@ -9,18 +9,15 @@ pub enum SignalsError {
     /// no actuator stream that fits the vehicle
     #[error(
         "no actuator outputs for {rotors} rotors: expected {unit}, as the vehicle file's [propulsion] says; \
-         the recording holds {found}. {}",
-        actuators_wanted(*rotors, *channels)
+         the recording holds {found}"
     )]
     NoActuators {
         /// rotors of the vehicle
         rotors: usize,
         /// what the vehicle file expects
         unit: &'static str,
-        /// what the recording has
+        /// what the recording has, and what to do
         found: String,
-        /// most channels of commands that it has
-        channels: usize,
     },
     /// a needed stream has too few samples
     #[error(
@@ -100,16 +97,4 @@ fn faster(logging: Option<&str>) -> String {
         || "if the log is faster than that, its time column is not in the unit that the mapping says".to_owned(),
         |logging| format!("for the log that the vehicle writes, {logging}; on a link, request them, if it carries as much"),
     )
-}
-
-/// What to do for actuator outputs that fit the vehicle.
-fn actuators_wanted(rotors: usize, channels: usize) -> String {
-    if (1..rotors).contains(&channels) {
-        return format!(
-            "Is it the log of another vehicle, or is the frame wrong? Expected {rotors} channels, one for each rotor"
-        );
-    }
-    "They must be in that unit and move. Record actuator outputs (over MAVLink SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS), or \
-     correct `actuator`"
-        .to_owned()
 }
