@@ -159,7 +159,7 @@ fn stray_stamps_lengthen_nothing_and_are_counted() {
     let (head, mut of_minute) = minute();
     let strays = with_stray_stamps(of_minute.iter_mut(), 3);
     let found = inspected(&[head, of_minute.concat()].concat());
-    assert_eq!(found.clock.span_s, (0.0, 59.99));
+    assert!(found.clock.span_s.0.abs() < 1e-9 && (found.clock.span_s.1 - 59.99).abs() < 1e-9);
     let told = |count: u64| format!("{count} messages with a time that fits no clock were left out");
     assert_eq!(found.losses, [told(strays)]);
 
@@ -201,14 +201,10 @@ fn a_missing_beginning_is_told_as_that() {
     let mut bytes = log.binary.clone();
     bytes[2 * 89..3 * 89].fill(0x5a);
     let found = inspected(&bytes);
-    assert!(
-        found.verdict.contains("no actuator outputs") && found.verdict.contains("It is damaged, "),
-        "{}",
-        found.verdict
-    );
-    let all =
-        found.advice.join(" ") + &found.quantities.iter().filter_map(|of| of.set.clone()).collect::<String>();
-    assert!(all.contains("give a sound copy of the log") && !all.contains("LOG_BITMASK"), "{all}");
+    assert!(found.verdict.contains("its beginning is missing. Give the whole log"), "{}", found.verdict);
+    let set = found.quantities.iter().filter_map(|of| of.set.clone());
+    let all = found.advice.iter().cloned().chain(set).collect::<String>();
+    assert!(!all.contains("LOG_BITMASK"), "{all}");
     // nothing but the messages
     let found = inspected(&bytes[89..]);
     assert!(found.verdict.contains("its beginning is missing. Give the whole log"), "{}", found.verdict);

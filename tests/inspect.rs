@@ -232,8 +232,10 @@ fn every_shared_flight_is_inspected_without_and_with_its_vehicle() {
         let expected = format!("Has what identification of {needs}");
         assert!(verdict.starts_with(&expected), "{}: {verdict}", path.display());
         let inspection = inspected(&path, Some(&vehicle));
+        // the stated torque per thrust of one vehicle is far from what it flew with, as `identify` says of it too
+        let far = inspection.verdict.contains("it contradicts the vehicle file, izz by a factor of 0.3");
         assert!(
-            inspection.verdict.starts_with("This log is good for mass"),
+            inspection.verdict.starts_with("This log is good for mass") || far && name.starts_with("ap_"),
             "{}: {}",
             path.display(),
             inspection.verdict
@@ -275,10 +277,7 @@ fn every_shared_table_is_inspected() {
         assert!(!inspection.verdict.is_empty());
         let ixx = &inspection.identifiability[1];
         if path.display().to_string().contains("crazypad") {
-            assert!(
-                ixx.reason.as_ref().unwrap().contains("body rates or commands are not recorded"),
-                "{ixx:?}"
-            );
+            assert!(ixx.reason.as_ref().unwrap().starts_with("no body rates"), "{ixx:?}");
         }
     }
 }
