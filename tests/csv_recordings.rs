@@ -355,3 +355,12 @@ fn what_is_no_text_is_said_and_not_printed() {
         assert!(!error.chars().any(char::is_control), "{error:?}");
     }
 }
+
+#[test]
+fn commas_as_decimal_marks_are_told() {
+    let reason = |text: &str| read(text).unwrap_err().to_string();
+    let said = reason("time_s,battery_V\n0,1,11,1\n0,2,11,2\n");
+    assert!(said.contains("commas both between the cells and decimal marks"), "{said}");
+    let said = reason("time_s;battery_V\n0,1;11,1\n0,2;11,2\n");
+    assert!(said.contains("came \"0,1\": write it with a decimal point"), "{said}");
+}

@@ -225,3 +225,35 @@ fn mass_and_frame_stand_for_a_file_where_there_is_no_log() {
     ]);
     assert!(validated.status.success(), "{}", said(&validated));
 }
+
+#[test]
+fn what_is_given_out_of_range_is_told_by_its_option() {
+    let log = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/px4_flight.ulg").display().to_string();
+    for (given, expected) in [
+        (["--mass", "1e9", "--size", "0.4"], "--mass: expected a mass from 0.005 to 500 kg, got 1000000000"),
+        (["--mass", "1", "--size", "99"], "--size: expected a size from 0.03 to 10 m, got 99"),
+    ] {
+        for verb in ["identify", "inspect", "explain"] {
+            let output = mavid(&[&[verb, &log], &given[..]].concat());
+            assert!(said(&output).contains(expected), "{verb}: {}", said(&output));
+        }
+    }
+}
+
+#[test]
+fn without_a_log_the_guesses_are_told_too() {
+    let given = ["--mass", "1.5", "--size", "0.4", "--frame", "quadrotor-x"];
+    let out = target("of_guesses.toml");
+    let plan = mavid(&[&["plan", "--out", out.to_str().unwrap()], &given[..]].concat());
+    let log = target("of_guesses.tlog");
+    let trajectory = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/at_bounds_trajectory.toml");
+    let [log, trajectory] = [log.display().to_string(), trajectory.display().to_string()];
+    let simulate = mavid(&[&["simulate", "--trajectory", &trajectory, "--out", &log], &given[..]].concat());
+    let folder = target("of_guesses_model");
+    let export =
+        mavid(&[&["export", "--to", "mjcf", "--out", folder.to_str().unwrap()], &given[..]].concat());
+    for output in [plan, simulate, export] {
+        let said = said(&output);
+        assert!(said.contains("rests on guesses: the nominal moments of inertia +- 30 %"), "{said}");
+    }
+}

@@ -108,3 +108,49 @@ fn identify_and_inspect_say_that_the_file_is_wrong_by_a_factor() {
         );
     }
 }
+
+/// A flight of the vehicle whose thrust curve is linear, for a description that guesses an exponent of 0.6.
+#[test]
+fn a_guessed_thrust_curve_is_in_the_errors_until_the_flight_tells_it() {
+    let log = scratch("linear.tlog").display().to_string();
+    let vehicle = root().join("fixtures/px4-sih.toml").display().to_string();
+    let trajectory = root().join("fixtures/at_bounds_trajectory.toml").display().to_string();
+    mavid(&["simulate", &vehicle, "--trajectory", &trajectory, "--out", &log, "--seed", "5"]);
+    let given = ["--mass", "1.06", "--size", "0.5657", "--frame", "quadrotor-x"];
+    let identified = mavid(&[&["identify", &log], &given[..]].concat());
+    let inspected = mavid(&[&["inspect", &log], &given[..]].concat());
+    let with = mavid(&[&["identify", &log, "--with", "thrust_curve"], &given[..]].concat());
+    for name in ["ixx", "iyy"] {
+        let of = |document: &Value| {
+            let parameter = &document["methods"]["WEAK"][name];
+            [parameter["value"].as_f64().unwrap(), parameter["std"].as_f64().unwrap()]
+        };
+        let [value, std] = of(&identified);
+        assert!((value / 0.02 - 1.0).abs() > 0.2, "{name} {value}: the guess does not bear on it");
+        assert!((value - 0.02).abs() < 2.0 * std, "{name} {value} +- {std}");
+        let told = &with["with"]["parameters"][name];
+        let (value, std) = (told["value"].as_f64().unwrap(), told["std"].as_f64().unwrap());
+        assert!((value / 0.02 - 1.0).abs() < 0.08 && std < 0.002, "{name} {value} +- {std}");
+    }
+    let verdict = identified["verdict"].as_str().unwrap();
+    assert!(!verdict.contains("good for thrust") && !verdict.contains("good for all"), "{verdict}");
+    assert!(identified["notes"].to_string().contains("--with thrust_curve"), "{}", identified["notes"]);
+    let verdict = inspected["verdict"].as_str().unwrap();
+    assert!(verdict.contains("poor for") && !verdict.contains("good for Ixx"), "{verdict}");
+    assert!(inspected["advice"].to_string().contains("--with thrust_curve"), "{}", inspected["advice"]);
+    // the same rule for both: a stated inertia that is wrong by a factor of two
+    let mut stated = load_vehicle(Path::new(&vehicle)).unwrap();
+    stated.body.inertia_kg_m2 *= 2.2;
+    let file = scratch("twice.toml");
+    std::fs::write(&file, vehicle_to_toml(&stated).unwrap()).unwrap();
+    for verb in ["inspect", "identify"] {
+        let document = mavid(&[verb, &log, "--vehicle", file.to_str().unwrap()]);
+        let verdict = document["verdict"].as_str().unwrap();
+        assert!(
+            verdict.to_lowercase().starts_with("doubtful")
+                && verdict.contains("it contradicts the vehicle file, ixx by a factor of 0.4"),
+            "{verb}: {verdict}"
+        );
+        assert!(!verdict.contains(" 0.00 %"), "{verdict}");
+    }
+}

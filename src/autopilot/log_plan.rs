@@ -77,6 +77,13 @@ impl Stack {
         plan
     }
 
+    /// Of the parameters that did not answer, those on which the rates of the log depend: without them nothing is prepared.
+    #[must_use]
+    pub fn rates_unknown(&self, plan: &LogPlan) -> Vec<&'static str> {
+        let sets_rates = |name: &&&str| self.log_settings.rates.iter().any(|rate| rate.parameter == **name);
+        plan.unknown.iter().filter(sets_rates).copied().collect()
+    }
+
     /// The same while some parameters still wait for a start of the autopilot: what it logs is by those that it started
     /// with, what should be changed by those that it will start with.
     #[must_use]
@@ -122,6 +129,9 @@ mod tests {
         let off = PX4.log_plan(|name| (name == "SDLOG_MODE").then_some(-1.0));
         assert_eq!((off.changes[0].found, off.changes[0].wanted), (-1.0, 0.0));
         assert_eq!(off.unknown, ["SDLOG_PROFILE"]);
+        assert_eq!(PX4.rates_unknown(&off), ["SDLOG_PROFILE"]);
+        let old = ARDUPILOT.log_plan(|name| (name == "LOG_BITMASK").then_some(0.0));
+        assert!(!old.unknown.is_empty() && ARDUPILOT.rates_unknown(&old).is_empty(), "{old:?}");
         let plan = ARDUPILOT.log_plan(|name| Some(if name == "LOG_BITMASK" { 176_126.0 } else { 1.0 }));
         let names: Vec<_> = plan.changes.iter().map(|change| (change.parameter, change.wanted)).collect();
         assert_eq!(names, [("LOG_BITMASK", 438_271.0), ("LOG_FILE_RATEMAX", 0.0)]);

@@ -43,7 +43,13 @@ impl Fitted {
                 *value = f64::NAN;
             }
         }
-        Estimated { theta, covariance, explained: Some(self.explained_torques()), by_wider_window: None }
+        Estimated {
+            theta,
+            covariance,
+            explained: Some(self.explained_torques()),
+            by_wider_window: None,
+            by_guessed_curve: None,
+        }
     }
 
     /// Share of the variance of the torques about body x, y, z that the inertia explains, without the part of nuisances and

@@ -137,7 +137,8 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
         given.frame.and_then(|_| rotor_difference(recording.autopilot, &recording.parameters, &vehicle));
     let contradiction = |RotorDifference { file, stated, .. }: &RotorDifference| {
         format!(
-            "--frame: the given frame contradicts the autopilot's parameters: {stated}, the given frame has {file}"
+            "--frame: the given frame contradicts the autopilot's parameters: {stated}, the given frame has {file}: leave \
+             --frame out, and the parameters say where the motors are"
         )
     };
     let doubts = other.iter().map(contradiction).collect();

@@ -25,7 +25,9 @@ pub fn apply_anchor(identification: &mut Identification, vehicle: &Vehicle) -> O
         identification.residual.iter_mut().for_each(|residual| *residual *= factor);
     }
     for result in identification.methods.iter_mut().chain([&mut identification.best.result]) {
-        if matches!(result.parameters[0].finding, Finding::Determined { .. }) {
+        // the curve's scale goes out with the mass, and its slope stays
+        let flown = finding(&result.estimated.clone().with_guessed_curve(None), &nominal, 0);
+        if matches!(flown, Finding::Determined { .. }) {
             *result = MethodResult::new(result.method, &rescaled(&result.estimated, weighed), &nominal);
         } else {
             for index in 1..THETA {
@@ -54,13 +56,26 @@ pub fn rescaled(estimated: &Estimated, weighed_kg: f64) -> Estimated {
         jacobian[(row, 0)] -= theta[row] / estimated.theta[0];
     }
     let covariance: ThetaCovariance = jacobian * estimated.covariance * jacobian.transpose();
-    Estimated { theta, covariance, ..estimated.clone() }
+    let by_guessed_curve = estimated.by_guessed_curve.map(|moved| jacobian * moved);
+    Estimated { theta, covariance, by_guessed_curve, ..estimated.clone() }
+}
+
+/// The mass that a flight shows with the stated thrust, whose factor it is. A guessed curve adds to its error, and never hides
+/// it: inertia has its scale from it.
+#[must_use]
+pub fn scaling_mass(estimated: &Estimated, nominal: &Nominal) -> Finding {
+    match finding(&estimated.clone().with_guessed_curve(None), nominal, 0) {
+        Finding::Determined { value, std } => {
+            Finding::Determined { value, std: std.hypot(estimated.moved_by_curve(0)) }
+        }
+        other => other,
+    }
 }
 
 /// Factor of the rotors' thrust over the stated one, with the vehicle's weighed mass.
 #[must_use]
 pub fn thrust_scale(best: &MethodResult, vehicle: &Vehicle) -> ThrustScale {
-    let mass = finding(&best.estimated, &Nominal::of(vehicle), 0);
+    let mass = scaling_mass(&best.estimated, &Nominal::of(vehicle));
     ThrustScale::of(mass, vehicle.body.mass_kg, &vehicle.propulsion)
 }
 
@@ -95,7 +110,10 @@ mod tests {
         let theta = SVector::from([2.0, 0.02, 0.0, 0.0, 0.03, 0.0, 0.05]);
         let mut covariance = ThetaCovariance::zeros();
         covariance[(0, 0)] = 0.02_f64.powi(2); // 1 % of the mass
-        let out = rescaled(&Estimated { theta, covariance, explained: None, by_wider_window: None }, 2.2);
+        let out = rescaled(
+            &Estimated { theta, covariance, explained: None, by_wider_window: None, by_guessed_curve: None },
+            2.2,
+        );
         assert!((out.theta[0] - 2.2).abs() < 1e-12);
         assert!((out.theta[1] - 0.022).abs() < 1e-12);
         assert!(out.covariance[(0, 0)].abs() < 1e-15); // weighed: no error left

@@ -2,6 +2,7 @@
 
 use super::compensate::{as_stated, compensation, take_out};
 use super::error::EstimateError;
+use super::guessed_curve::{GuessedCurve, MovedByCurve, moved_by_curve};
 use super::method::Method;
 use super::nominal::Nominal;
 use super::paper_runs::PaperRuns;
@@ -151,26 +152,29 @@ fn identify_evenly(
 
     let harmonic_hz = highest_of_all_hz(&weak.signals);
     let (paper, cutoff_hz) = paper_runs(&weak.signals, vehicle, settings, harmonic_hz)?;
-    if paper.is_empty() {
-        let text = "LS, GD, FMLS and FMGD need body rates and the vertical motion; this recording lacks one";
-        notes.push(Note::remark(About::Estimate, text));
-    }
+    notes.extend(paper.is_empty().then(|| Note::remark(About::Estimate, NO_PAPER)));
 
     let wider = weak.by_wider_window(&plain, &nominal.theta, settings);
-    let mut methods = paper.results(&Estimated::of(&plain).with_wider_window(wider));
+    let by_curve = moved_by_curve(flights, vehicle, compensated, &nominal.theta);
+    let whole = |weak: &WeakEstimate| {
+        let moved = by_curve.map(|by| by.on(&weak.theta));
+        Estimated::of(weak).with_wider_window(wider).with_guessed_curve(moved)
+    };
+    let mut methods = paper.results(&whole(&plain));
     let weak_forms = [
         (Method::Weak, Some(&plain)),
         (Method::WeakRobust, robust.as_ref()),
         (Method::WeakIv, by_instruments.as_ref()),
     ];
-    methods.extend(weak_forms.into_iter().filter_map(|(method, found)| {
-        Some(MethodResult::new(method, &Estimated::of(found?).with_wider_window(wider), &nominal))
-    }));
-    let best = recommend((&plain, wider), robust.as_ref(), by_instruments.as_ref(), &nominal);
+    methods.extend(
+        weak_forms
+            .into_iter()
+            .filter_map(|(method, found)| Some(MethodResult::new(method, &whole(found?), &nominal))),
+    );
+    let best = recommend((&plain, &whole), robust.as_ref(), by_instruments.as_ref(), &nominal);
     notes.extend(disagreeing(&weak.rows, &nominal.theta));
-    if flights.iter().any(|signals| signals.quality.thrust_source == ThrustSource::Command) {
-        notes.push(Note::remark(About::Actuators, BY_COMMANDS));
-    }
+    let by_commands = |signals: &Signals| signals.quality.thrust_source == ThrustSource::Command;
+    notes.extend(flights.iter().any(by_commands).then(|| Note::remark(About::Actuators, BY_COMMANDS)));
     Ok(Identification {
         best,
         methods,
@@ -220,6 +224,21 @@ pub fn inertia_by_wider_window(flights: &[Signals], vehicle: &Vehicle) -> [f64; 
     let narrow = solve_weak(&weak.rows, &nominal.theta, WeakMethod::LeastSquares);
     narrow.map_or([f64::NAN; 3], |narrow| weak.by_wider_window(&narrow, &nominal.theta, &settings))
 }
+
+/// How far mass and inertia move with one standard error of a guessed thrust curve; `None` where it is no guess, or nothing can
+/// be estimated.
+#[must_use]
+pub fn moved_by_guessed_curve(flights: &[Signals], vehicle: &Vehicle) -> Option<MovedByCurve> {
+    GuessedCurve::of(vehicle)?;
+    let (nominal, settings) = (Nominal::of(vehicle), IdentifySettings::default());
+    let mut weak = WeakFlights::from(flights, vehicle, &settings);
+    let (_, latency) = weak.compensate(&nominal.theta, vehicle);
+    moved_by_curve(flights, vehicle, latency, &nominal.theta)
+}
+
+/// Where the paper's methods have nothing to run on.
+const NO_PAPER: &str =
+    "LS, GD, FMLS and FMGD need body rates and the vertical motion; this recording lacks one";
 
 /// Error that the standard errors do not include if thrust is computed from commands.
 const BY_COMMANDS: &str = "thrust from commands: the standard errors do not include the commands between two samples, \

@@ -79,6 +79,7 @@ impl WeakInformation {
             covariance: ThetaCovariance::from_element(f64::NAN),
             explained: self.explained,
             by_wider_window: None,
+            by_guessed_curve: None,
         };
         let Some(inverse) = inverse else { return estimated };
         let of_theta = used.iter().enumerate().filter(|(_, parameter)| **parameter < THETA);

@@ -4,6 +4,7 @@ mod anchor;
 mod compensate;
 mod error;
 mod expected;
+mod guessed_curve;
 mod identify;
 mod information;
 mod live;
@@ -22,20 +23,23 @@ mod thrust_scale;
 mod weak;
 mod window;
 
-pub use anchor::{apply_anchor, identified_vehicle, rescaled, thrust_scale};
+pub use anchor::{apply_anchor, identified_vehicle, rescaled, scaling_mass, thrust_scale};
 pub use error::EstimateError;
 pub use expected::NoiseTerm;
-pub use identify::{Identification, IdentifySettings, identify, inertia_by_wider_window};
+pub use guessed_curve::{GuessedCurve, MovedByCurve, rests_on_guessed_curve};
+pub use identify::{
+    Identification, IdentifySettings, identify, inertia_by_wider_window, moved_by_guessed_curve,
+};
 pub use information::WeakInformation;
 pub use live::RecursiveEstimator;
 pub use method::Method;
 pub use nominal::Nominal;
 pub use physical::{is_physical, nearest_physical, second_moments};
-pub use plausible::{Contradiction, contradictions, contradicts_file, stated};
+pub use plausible::{Contradiction, contradictions, contradicts_file, flights_apart, stated};
 pub use problem::{Channel, Problem, Solution};
 pub use recommend::Recommendation;
 pub use recursive::{GradientStep, History, PAPER_SIGMA, PaperEstimate, gradient_descent, least_squares};
-pub use result::{Estimated, Finding, MethodResult, Parameter, finding};
+pub use result::{Estimated, Finding, MethodResult, POOR, Parameter, finding, size_of};
 pub use rotor_check::WeakRotor;
 pub use theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, inertia_of, scale_of, theta_of};
 pub use thrust_scale::ThrustScale;

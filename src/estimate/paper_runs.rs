@@ -60,6 +60,7 @@ impl PaperRuns {
                     covariance: run.covariance,
                     explained: weak.explained,
                     by_wider_window: weak.by_wider_window,
+                    by_guessed_curve: weak.by_guessed_curve,
                 };
                 MethodResult::new(*method, &estimated, &self.nominal)
             })

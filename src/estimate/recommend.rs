@@ -28,16 +28,17 @@ pub struct Recommendation {
     pub made_physical: bool,
 }
 
-/// Chooses between the weak form's variants. `wider`: moments of inertia by a window of twice the width, as shares.
+/// Chooses between the weak form's variants. `whole` adds to an estimate what all of them have in common: what a wider window
+/// and a guessed thrust curve say of it.
 #[must_use]
 pub fn recommend(
-    (plain, wider): (&WeakEstimate, [f64; 3]),
+    (plain, whole): (&WeakEstimate, &dyn Fn(&WeakEstimate) -> Estimated),
     robust: Option<&WeakEstimate>,
     instruments: Option<&WeakEstimate>,
     nominal: &Nominal,
 ) -> Recommendation {
     let (method, chosen, why) = choose(plain, robust, instruments);
-    let mut estimated = Estimated::of(chosen).with_wider_window(wider);
+    let mut estimated = whole(chosen);
     // an inertia that is not determined needs no repair
     let as_estimated = MethodResult::new(method, &estimated, nominal);
     let determined = |i: usize| matches!(as_estimated.parameters[i].finding, Finding::Determined { .. });

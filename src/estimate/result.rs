@@ -42,6 +42,12 @@ pub enum Finding {
     },
 }
 
+/// In a reason.
+pub(super) const CURVE_IS_A_GUESS: &str = "the shape of the thrust curve is a guess";
+
+/// Standard error, as a share of the parameter's size, from which it is poor. Chosen; not measured.
+pub const POOR: f64 = 0.1;
+
 /// Least share of a torque's variance that the rigid body must explain for its inertia to be reported. Chosen; not
 /// measured.
 pub const LEAST_EXPLAINED: f64 = 0.3;
@@ -64,6 +70,8 @@ pub struct Estimated {
     /// Ixx, Iyy, Izz by a window of twice the width, as shares of this estimate's; NaN where it is not determined, `None` if
     /// it was not assessed
     pub by_wider_window: Option<[f64; 3]>,
+    /// how far `theta` moves with one standard error of a guessed thrust curve; `None` where no guess bears on it
+    pub by_guessed_curve: Option<Theta>,
 }
 
 impl Estimated {
@@ -81,6 +89,7 @@ impl Estimated {
             covariance: weak.covariance,
             explained: Some(explained),
             by_wider_window: None,
+            by_guessed_curve: None,
         }
     }
 
@@ -88,6 +97,18 @@ impl Estimated {
     #[must_use]
     pub fn with_wider_window(self, ratios: [f64; 3]) -> Self {
         Self { by_wider_window: Some(ratios), ..self }
+    }
+
+    /// The same with how far a guessed thrust curve moves it.
+    #[must_use]
+    pub fn with_guessed_curve(self, moved: Option<Theta>) -> Self {
+        Self { by_guessed_curve: moved, ..self }
+    }
+
+    /// How far a guessed thrust curve moves a parameter, in its unit.
+    #[must_use]
+    pub fn moved_by_curve(&self, index: usize) -> f64 {
+        self.by_guessed_curve.map_or(0.0, |moved| moved[index].abs())
     }
 }
 
@@ -185,6 +206,12 @@ fn of_feedback(estimated: &Estimated, index: usize) -> Option<String> {
     })
 }
 
+/// Size of a parameter by which its errors are judged: the larger of the nominal and of the estimate.
+#[must_use]
+pub fn size_of(theta: &Theta, nominal: &Nominal, index: usize) -> f64 {
+    scale_of(&nominal.theta, index).max(scale_of(&theta.map(f64::abs), index))
+}
+
 /// Assesses one parameter.
 #[must_use]
 pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Finding {
@@ -198,7 +225,7 @@ pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Findin
         return Finding::NotDetermined { reason: reason.to_owned() };
     }
     let std = variance.max(0.0).sqrt();
-    let size = scale_of(&nominal.theta, index).max(scale_of(&estimated.theta.map(f64::abs), index));
+    let size = size_of(&estimated.theta, nominal, index);
     let relative = std / size;
     if relative > LARGEST_RELATIVE_STD {
         return Finding::NotDetermined {
@@ -221,9 +248,16 @@ pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Findin
             reason: format!("estimate {value:.3e} +- {std:.1e} is not distinguishable from zero"),
         };
     }
-    let guessed = nominal.guessed(index);
-    match nominal.guesses(index) {
-        Some(why) if guessed > LARGEST_RELATIVE_STD => Finding::NotDetermined { reason: why },
-        _ => Finding::Determined { value, std: std.hypot(guessed * value) },
+    let (guessed, by_curve) = (nominal.guessed(index), estimated.moved_by_curve(index));
+    if guessed.hypot(by_curve / size) > LARGEST_RELATIVE_STD {
+        let of_curve = (by_curve > 0.0).then(|| {
+            format!(
+                "{CURVE_IS_A_GUESS}, one standard error of it moves this by {:.0} %",
+                100.0 * by_curve / size
+            )
+        });
+        let why: Vec<String> = nominal.guesses(index).into_iter().chain(of_curve).collect();
+        return Finding::NotDetermined { reason: why.join(" and ") };
     }
+    Finding::Determined { value, std: std.hypot(guessed * value).hypot(by_curve) }
 }

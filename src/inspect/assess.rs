@@ -3,10 +3,10 @@
 use super::airborne::{Before, airborne, normalized_commands};
 use super::excitation::ExcitationTally;
 use super::flown_rates::FlownRates;
-use super::foresee::information;
+use super::foresee::Learnt;
 use super::inspection::{Excitation, FlightSummary, OffsetSummary, Segment};
 use super::motion::Motion;
-use crate::estimate::{Estimated, WeakInformation};
+use crate::estimate::{Estimated, flights_apart};
 use crate::note::Note;
 use crate::recording::{Quantity, Recording};
 use crate::signals::{ConditionSettings, Quality, Signals, SignalsError, Usable, condition};
@@ -14,6 +14,8 @@ use crate::vehicle::Vehicle;
 
 /// Segments kept; a log with more is counted.
 const KEPT_SEGMENTS: usize = 1000;
+/// Flights behind one another in one log that are compared.
+const KEPT_FLIGHTS: usize = 64;
 /// Largest pause between two spans of one flight that the border of a window divides, s. Chosen; not measured.
 const SAME_FLIGHT_S: f64 = 0.5;
 
@@ -28,7 +30,10 @@ pub(super) struct Assessor<'a> {
     flown: bool,
     /// the vehicle's clock restarted since the last segment
     restarted: bool,
-    information: Option<WeakInformation>,
+    learnt: Option<Learnt>,
+    /// of the flights between two restarts of the vehicle's clock
+    of_each: Vec<Learnt>,
+    anew: bool,
     offsets: Vec<OffsetSum>,
     notes: Vec<Note>,
     refusal: Option<SignalsError>,
@@ -53,6 +58,8 @@ pub(super) struct Assessment {
     pub rates: FlownRates,
     /// estimate and covariance to expect; `None` without a vehicle or a usable window
     pub expected: Option<Estimated>,
+    /// why its flights cannot be of one vehicle with one load, in words
+    pub apart: Vec<String>,
     pub offsets: Vec<OffsetSummary>,
     /// what the conditioning remarked, each once
     pub notes: Vec<Note>,
@@ -76,6 +83,7 @@ impl<'a> Assessor<'a> {
     /// Looks at a window.
     pub(super) fn window(&mut self, recording: &Recording) {
         self.restarted |= !recording.clock_resets_s.is_empty();
+        self.anew |= !recording.clock_resets_s.is_empty();
         let commands = normalized_commands(recording);
         let airborne = airborne(recording, commands.as_ref(), &mut self.before);
         self.flight.airborne_from = airborne.from;
@@ -117,10 +125,16 @@ impl<'a> Assessor<'a> {
 
     /// What identification would learn from the window: its own weak form, solved.
     fn inform(&mut self, signals: &Signals, vehicle: &Vehicle) {
-        if let Some(information) = information(signals, vehicle) {
-            match &mut self.information {
-                Some(all) => all.add(&information),
-                None => self.information = Some(information),
+        if let Some(learnt) = Learnt::of(signals, vehicle) {
+            match &mut self.learnt {
+                Some(all) => all.add(&learnt),
+                None => self.learnt = Some(learnt.clone()),
+            }
+            let has_room = self.of_each.len() < KEPT_FLIGHTS;
+            match self.of_each.last_mut().filter(|_| !std::mem::take(&mut self.anew)) {
+                Some(flight) => flight.add(&learnt),
+                None if has_room => self.of_each.push(learnt),
+                None => {}
             }
         }
         self.note(&signals.quality);
@@ -175,7 +189,12 @@ impl<'a> Assessor<'a> {
 
     /// What was collected.
     pub(super) fn finish(self) -> Assessment {
-        let expected = self.information.as_ref().map(WeakInformation::combined);
+        let expected = self.learnt.as_ref().map(Learnt::combined);
+        let alone = |learnt: &Learnt| {
+            let Estimated { theta, covariance, .. } = learnt.combined();
+            Some((theta, covariance))
+        };
+        let each: Vec<_> = self.of_each.iter().map(alone).collect();
         let offset = |sum: &OffsetSum| OffsetSummary {
             quantity: sum.quantity.name(),
             late_s: sum.weighted_s / sum.weight,
@@ -187,6 +206,7 @@ impl<'a> Assessor<'a> {
             rates: self.rates,
             refusal: self.refusal.filter(|_| expected.is_none()),
             expected,
+            apart: flights_apart(&each),
             offsets: self.offsets.iter().map(offset).collect(),
             notes: self.notes,
             liveliest: self.liveliest,

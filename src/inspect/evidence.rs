@@ -2,7 +2,7 @@
 
 use super::assess::Assessment;
 use crate::autopilot::VehicleKind;
-use crate::estimate::Estimated;
+use crate::estimate::{Contradiction, Estimated};
 use crate::recording::{Quantity, StreamKey, StreamStats};
 use crate::signals::SignalsError;
 use crate::vehicle::Vehicle;
@@ -18,6 +18,8 @@ pub(super) struct Evidence<'a> {
     pub vehicle: Option<&'a Vehicle>,
     /// without a vehicle, one of assumed mass and size and what it would come out as
     pub assumed: Option<(&'a Vehicle, &'a Estimated)>,
+    /// what `identify` would find far from what the vehicle file states
+    pub contradictions: &'a [Contradiction],
     /// parameters of the autopilot's thrust curve that the log does not hold
     pub missing_curve: Option<&'static str>,
     /// what kind of vehicle it is of
@@ -26,8 +28,8 @@ pub(super) struct Evidence<'a> {
     pub armed: Option<bool>,
     /// time in the air by the autopilot's own words, s
     pub said_in_air_s: f64,
-    /// steps back of the clock in a log that the vehicle wrote, where they are too many for restarts
-    pub steps_back: Option<usize>,
+    /// steps back of the stamps, where messages stand in another order than they were written in
+    pub steps_back: Option<u64>,
     /// messages that cannot be read, where they are many
     pub unreadable: Option<u64>,
     /// the log's messages carry times
@@ -36,6 +38,8 @@ pub(super) struct Evidence<'a> {
     pub undefined: bool,
     /// the log ends before its first message with a time
     pub ends_early: bool,
+    /// how much of it is damaged, in words, where streams may be gone with it
+    pub damage: Option<&'a str>,
     /// how to make the vehicle log more, where it wrote the log
     pub logging: Option<&'static str>,
     /// how to make it log more on board, where the log is of a link
@@ -52,6 +56,15 @@ impl Evidence<'_> {
             })
             .map(|(key, _, stats)| self.assessment.rates.of(key).unwrap_or(stats.rate_hz))
             .reduce(f64::max)
+    }
+
+    /// What a quantity's streams hold instead of a signal, where they do not move.
+    pub(super) fn still(&self, quantity: Quantity) -> Option<&'static str> {
+        let of = |(key, _, stats): &&(StreamKey, usize, StreamStats)| {
+            key.quantity == quantity && stats.count >= 10
+        };
+        let (.., stats) = self.streams.iter().find(of).filter(|_| self.rate_hz(quantity).is_none())?;
+        Some(if stats.all_zero { "hold nothing but zeros" } else { "never change" })
     }
 
     /// Rate of what tells the thrust, Hz. Commands that are logged seldom are rebuilt from torque and thrust setpoints.
@@ -79,13 +92,19 @@ impl Evidence<'_> {
 
     /// There are streams, and they have times.
     pub(super) fn holds_streams(&self) -> bool {
-        self.timed && !self.streams.is_empty()
+        self.timed && !self.undefined && !self.streams.is_empty()
     }
 
     /// The log shows a flight, and by the vehicle file's thrust there was none.
     pub(super) fn is_contradicted(&self) -> bool {
         matches!(self.assessment.refusal, Some(SignalsError::ThrustTooLow { .. }))
             && self.assessment.flight.airborne_s >= LEAST_USABLE_S
+    }
+
+    /// The log has actuator outputs, and they are not those of the vehicle.
+    pub(super) fn has_other_actuators(&self) -> bool {
+        matches!(self.assessment.refusal, Some(SignalsError::NoActuators { .. }))
+            && self.actuator_hz().is_some()
     }
 
     /// Why it is no flight, where the vehicle tells that.
@@ -110,7 +129,7 @@ impl Evidence<'_> {
         if !self.timed && !self.undefined {
             return Some("its messages carry no time of the vehicle's".into());
         }
-        if self.streams.is_empty() && self.undefined {
+        if self.undefined {
             return Some("its messages are not defined in it: its beginning is missing".into());
         }
         if self.streams.is_empty() && self.ends_early {
@@ -120,7 +139,7 @@ impl Evidence<'_> {
             return Some("it holds no stream that is known here".into());
         }
         if let Some(count) = self.steps_back {
-            return Some(format!("its samples are out of order, the clock steps back {count} times"));
+            return Some(format!("its messages are out of order, their stamps run back {count} times"));
         }
         if let Some(grounded) = self.grounded() {
             return Some(grounded);

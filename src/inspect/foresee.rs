@@ -2,7 +2,10 @@
 
 use crate::diagnose::{ExpectedError, expected_errors};
 use crate::draft::{Given, draft};
-use crate::estimate::{Estimated, WeakInformation, WeakMethod, solve_weak, theta_of};
+use crate::estimate::{
+    Contradiction, Estimated, GuessedCurve, IdentifySettings, WeakInformation, WeakMethod, apply_anchor,
+    contradictions, identify, solve_weak, theta_of,
+};
 use crate::recording::{Quantity, Recording};
 use crate::regression::{WeakMotion, weak_rows};
 use crate::signals::{
@@ -25,6 +28,8 @@ pub(super) struct Foreseen {
     pub assumed: bool,
     /// rigid body, by this window alone
     pub body: Option<Estimated>,
+    /// what `identify` makes of this window that is far from what the given vehicle's file states
+    pub contradictions: Vec<Contradiction>,
     /// the other quantities; why there are none
     pub effects: Result<Vec<ExpectedError>, String>,
 }
@@ -64,6 +69,7 @@ pub(super) fn foresee(
     };
     let of_effects = std::slice::from_ref(of_effects.as_ref().unwrap_or(&signals));
     Ok(Foreseen {
+        contradictions: vehicle.map(|vehicle| contradicted(&signals, vehicle)).unwrap_or_default(),
         body: body(&signals, &known),
         effects: expected_errors(of_effects, &known).map_err(|error| error.to_string()),
         assumed: vehicle.is_none(),
@@ -71,12 +77,58 @@ pub(super) fn foresee(
     })
 }
 
+/// What identification would find far from what the vehicle file states.
+fn contradicted(signals: &Signals, vehicle: &Vehicle) -> Vec<Contradiction> {
+    let settings = IdentifySettings::default();
+    let Ok(mut found) = identify(std::slice::from_ref(signals), vehicle, &settings) else {
+        return Vec::new();
+    };
+    let scale = apply_anchor(&mut found, vehicle);
+    contradictions(&found.best.result, vehicle, scale.as_ref())
+}
+
 fn body(signals: &Signals, vehicle: &Vehicle) -> Option<Estimated> {
-    Some(information(signals, vehicle)?.combined())
+    Some(Learnt::of(signals, vehicle)?.combined())
+}
+
+/// What the weak form learns of windows of flight.
+#[derive(Debug, Clone)]
+pub(super) struct Learnt {
+    body: WeakInformation,
+    /// the same at both ends of a guessed thrust curve
+    at_ends: Option<(GuessedCurve, [WeakInformation; 2])>,
+}
+
+impl Learnt {
+    /// Of a window; `None` where nothing can be learnt.
+    pub(super) fn of(signals: &Signals, vehicle: &Vehicle) -> Option<Self> {
+        let at_ends = GuessedCurve::of(vehicle).and_then(|curve| {
+            let [low, high] = curve.bent(signals, vehicle);
+            Some((curve, [information(&low, vehicle)?, information(&high, vehicle)?]))
+        });
+        Some(Self { body: information(signals, vehicle)?, at_ends })
+    }
+
+    /// Adds another window.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.body.add(&other.body);
+        if let (Some((_, ends)), Some((_, others))) = (&mut self.at_ends, &other.at_ends) {
+            ends.iter_mut().zip(others).for_each(|(end, other)| end.add(other));
+        }
+    }
+
+    /// The estimate that all windows together give.
+    pub(super) fn combined(&self) -> Estimated {
+        let body = self.body.combined();
+        let moved = self.at_ends.as_ref().map(|(curve, [low, high])| {
+            curve.moved([&low.combined().theta, &high.combined().theta]).on(&body.theta)
+        });
+        body.with_guessed_curve(moved)
+    }
 }
 
 /// What the weak form learns of a window.
-pub(super) fn information(signals: &Signals, vehicle: &Vehicle) -> Option<WeakInformation> {
+fn information(signals: &Signals, vehicle: &Vehicle) -> Option<WeakInformation> {
     let kernel = WeakKernel::new(ConditionSettings::default().weak_half_width_s, signals.grid.step_s);
     let motion = WeakMotion::measured(signals, &kernel, vehicle.gravity_m_s2);
     let rows = weak_rows(signals, &motion, &kernel);

@@ -32,6 +32,9 @@ enum Need {
 const COMMANDS: Need = Need::Commands(LEAST_FORCE_HZ);
 const TURNING: Need = Need::Turning(LEAST_FORCE_HZ);
 
+/// What to do about a stream that may be gone with damage.
+pub(super) const SOUND_COPY: &str = "give a sound copy of the log";
+
 /// Rate to ask for, Hz.
 const WANTED_HZ: u32 = 100;
 
@@ -65,7 +68,10 @@ impl Need {
             Self::Turning(least_hz) if has(Quantity::AngularRate) => {
                 slow("body rates", evidence.rate_hz(Quantity::AngularRate), least_hz)
             }
-            Self::Turning(_) => Some("no body rates".into()),
+            Self::Turning(_) => Some(match evidence.still(Quantity::AngularRate) {
+                Some(hold) => format!("no body rates: they {hold}"),
+                None => "no body rates".into(),
+            }),
             Self::TurningIfThere(least_hz) => {
                 slow("body rates", evidence.rate_hz(Quantity::AngularRate), least_hz)
             }
@@ -84,6 +90,9 @@ impl Need {
 
     /// What to have recorded.
     fn remedy(self, evidence: &Evidence<'_>) -> String {
+        if evidence.damage.is_some() {
+            return SOUND_COPY.to_owned();
+        }
         let request = match self {
             Self::Commands(_) => "SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS",
             Self::Turning(_) | Self::TurningIfThere(_) => {

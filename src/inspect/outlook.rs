@@ -4,8 +4,7 @@ use super::evidence::Evidence;
 use super::inspection::Outlook;
 use super::lacking::lack;
 use crate::estimate::{
-    Contradiction, Estimated, Finding, NAMES, Nominal, THETA, UNITS, finding, rescaled, scale_of, stated,
-    theta_of,
+    Estimated, Finding, NAMES, Nominal, THETA, UNITS, finding, rescaled, scaling_mass, size_of,
 };
 use crate::vehicle::{Anchor, Vehicle};
 
@@ -16,13 +15,17 @@ const AXES: [(usize, usize); THETA - 1] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2
 /// Names of the body axes.
 pub(super) const AXIS_NAMES: [&str; 3] = ["roll", "pitch", "yaw"];
 
+/// The quantity that a parameter is part of.
+fn quantity_of(index: usize) -> &'static str {
+    if index == 0 { "mass" } else { "inertia" }
+}
+
 /// Why a parameter cannot be identified, as far as streams and motion tell.
 fn obstacle(evidence: &Evidence<'_>, index: usize) -> Option<String> {
     if let Some(nothing) = evidence.nothing() {
         return Some(nothing);
     }
-    let quantity = if index == 0 { "mass" } else { "inertia" };
-    if let Some(lack) = lack(evidence, quantity) {
+    if let Some(lack) = lack(evidence, quantity_of(index)) {
         return Some(lack.reason);
     }
     let (first, second) = AXES[index.checked_sub(1)?];
@@ -39,7 +42,13 @@ pub(super) fn outlook(evidence: &Evidence<'_>) -> Vec<Outlook> {
 
 fn of(evidence: &Evidence<'_>, index: usize) -> Outlook {
     if let (Some(vehicle), Some(expected)) = (evidence.vehicle, &evidence.assessment.expected) {
-        return judged(vehicle, expected, index);
+        let found = judged(vehicle, expected, index);
+        // a stream that is missing is told as without a vehicle
+        let missing = || Some(lack(evidence, quantity_of(index))?.reason);
+        return match found.status {
+            "not_determined" => Outlook { reason: missing().or(found.reason), ..found },
+            _ => found,
+        };
     }
     let none = blank(NAMES[index], UNITS[index]);
     // by a vehicle of assumed mass and size, what is not determined is not determined by any
@@ -71,7 +80,7 @@ pub(super) fn judged(vehicle: &Vehicle, expected: &Estimated, index: usize) -> O
         Finding::Determined { std, .. } => Outlook {
             status: "determined",
             std: Some(std),
-            std_relative: Some(std / size_of(vehicle, expected, index)),
+            std_relative: Some(std / size_here(vehicle, expected, index)),
             ..none
         },
         Finding::NotDetermined { reason } => Outlook { reason: Some(reason), ..none },
@@ -79,52 +88,28 @@ pub(super) fn judged(vehicle: &Vehicle, expected: &Estimated, index: usize) -> O
     }
 }
 
-/// What the log shows of mass, thrust and moments of inertia that is far from what the vehicle file states.
-pub(super) fn contradicted(vehicle: &Vehicle, expected: &Estimated) -> Vec<Contradiction> {
-    let of = |index: usize| {
-        let Finding::Determined { value, std } = expected_finding(vehicle, expected, index) else {
-            return None;
-        };
-        let (size, guess) = stated(vehicle, index);
-        if vehicle.anchor == Anchor::Mass && index == 0 {
-            let factor = size / value;
-            return Contradiction::of("thrust", (factor, factor * std / value), (1.0, guess));
-        }
-        Contradiction::of(NAMES[index], (value, std), (size, guess))
-    };
-    let is_beyond = |found: &Contradiction| found.factor.ln().abs() > COARSE.ln();
-    let moments = [1, 4, 6].into_iter().filter_map(of).filter(is_beyond);
-    of(0).into_iter().chain(moments).collect()
-}
-
-/// Moments of inertia that differ by less are not told here: latency, a centre of mass that is off and weak rotors, which
-/// `identify` allows for, moved them by up to 3 on the simulated flights of this repository's tests.
-const COARSE: f64 = 4.0;
-
-/// A parameter's size: the larger of what the vehicle file says and what the log does, as [`finding`] judges.
-fn size_of(vehicle: &Vehicle, expected: &Estimated, index: usize) -> f64 {
-    let stated = scale_of(&theta_of(&vehicle.body), index);
+/// A parameter's size on the scale that the vehicle's anchor sets.
+fn size_here(vehicle: &Vehicle, expected: &Estimated, index: usize) -> f64 {
     let theta = match vehicle.anchor {
         Anchor::Mass => rescaled(expected, vehicle.body.mass_kg).theta,
         Anchor::Thrust => expected.theta,
     };
-    stated.max(scale_of(&theta.map(f64::abs), index))
+    size_of(&theta, &Nominal::of(vehicle), index)
 }
 
 /// What `identify` will say, on the scale that the vehicle's anchor sets.
 fn expected_finding(vehicle: &Vehicle, expected: &Estimated, index: usize) -> Finding {
     let nominal = Nominal::of(vehicle);
-    let of_mass = finding(expected, &nominal, 0);
-    match (vehicle.anchor, of_mass) {
-        (Anchor::Mass, Finding::Determined { .. }) if index > 0 => {
+    if vehicle.anchor == Anchor::Thrust {
+        return finding(expected, &nominal, index);
+    }
+    match scaling_mass(expected, &nominal) {
+        Finding::Determined { .. } if index > 0 => {
             finding(&rescaled(expected, vehicle.body.mass_kg), &nominal, index)
         }
-        (Anchor::Mass, unknown) if index > 0 => match unknown {
-            Finding::NotDetermined { reason } => {
-                Finding::NotDetermined { reason: format!("the thrust scale is not determined: {reason}") }
-            }
-            other => other,
-        },
-        _ => finding(expected, &nominal, index),
+        Finding::NotDetermined { reason } if index > 0 => {
+            Finding::NotDetermined { reason: format!("the thrust scale is not determined: {reason}") }
+        }
+        of_mass => of_mass,
     }
 }

@@ -75,8 +75,11 @@ impl Outcome<'_> {
             return QuantitySummary { reason: Some(reason), set: Some(set), ..none };
         }
         if let Some(reason) = evidence.nothing() {
-            // another flight does not mend a vehicle file
-            let fly = (!evidence.is_contradicted()).then_some(asked.fly);
+            // another flight mends neither a vehicle file nor damage
+            let is_mended = !(evidence.is_contradicted() || evidence.has_other_actuators())
+                && evidence.damage.is_none()
+                && !evidence.undefined;
+            let fly = is_mended.then_some(asked.fly);
             return QuantitySummary { reason: Some(reason), fly, ..none };
         }
         if asked.body.is_empty() { self.effect(asked, none) } else { self.body(asked, none) }
@@ -182,7 +185,8 @@ impl Outcome<'_> {
 fn beyond(shown: Option<Shown>, stands_out: bool) -> String {
     match shown {
         Some(shown) => format!(
-            "; but something stands out of this flight that would be one of {:.1}: `explain` tells what it is",
+            "; but something stands out of this flight that, if it were this, would be {:.1} standard errors: `explain` tells \
+             what it is",
             shown.deviates
         ),
         None if stands_out => "; better once what stands out of this flight is known".to_owned(),

@@ -1,11 +1,12 @@
 //! The readers' reports as they are told.
 
-use super::inspection::{CsvReading, Reading, SenderSummary, TlogReading};
+use super::inspection::{CsvReading, Reading, SenderSummary, TlogReading, VehicleSummary};
 use super::onboard::onboard_reading;
+use crate::autopilot::{Autopilot, VehicleKind};
 use crate::log::csv::CsvReport;
 use crate::log::{Details, ReadReport, TlogReport};
 use crate::units::seconds_from_us;
-use crate::wire::{ByteOrder, Source};
+use crate::wire::{ByteOrder, Sender, Source};
 
 /// Damaged places told one by one.
 const TOLD_RESYNCS: usize = 20;
@@ -78,5 +79,26 @@ fn csv_reading(report: &CsvReport) -> CsvReading {
         rows_repeating_a_time: report.rows_repeating_a_time,
         invalid_attitudes: report.invalid_attitudes,
         unused_columns: report.unused_columns.clone(),
+    }
+}
+
+/// Whose log it is.
+pub(super) fn vehicle_of(report: &ReadReport, autopilot: Autopilot) -> VehicleSummary {
+    let speaker = report.vehicle;
+    let heartbeats = |telemetry: &TlogReport| -> u64 {
+        let own = |sender: &&Sender| {
+            speaker.is_some_and(|own| own.system == sender.system && own.component == sender.component)
+        };
+        let beats = |sender: &Sender| sender.messages.get(Source::Heartbeat.message_id());
+        telemetry.senders.iter().filter(own).map(beats).sum()
+    };
+    VehicleSummary {
+        system: speaker.map(|speaker| speaker.system.0),
+        component: speaker.map(|speaker| speaker.component.0),
+        autopilot: autopilot.id(),
+        others: report.others.iter().map(|system| system.0).collect(),
+        without_heartbeat: report.telemetry().is_some_and(|telemetry| heartbeats(telemetry) == 0),
+        kind: report.kind().map(VehicleKind::name),
+        firmware: report.onboard().and_then(|onboard| onboard.firmware.clone()),
     }
 }

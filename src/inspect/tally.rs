@@ -10,17 +10,17 @@ use super::inspection::{FlightSummary, Inspection, Reading, Text, TextSummary, T
 use super::outlook::outlook;
 use super::parameters::Parameters;
 use super::quantities::{Outcome, quantities};
-use super::reading::reading_of;
+use super::reading::{reading_of, vehicle_of};
 use super::streams::{StreamTallies, is_disordered, summary_of};
 use super::timeline::TimelineTally;
 use super::verdict::verdict;
 use super::window::{WindowRecorder, windows_of};
 use crate::autopilot::{Autopilot, VehicleKind};
-use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport, TlogReport};
+use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport};
 use crate::recording::{Event, Recording, StreamKey, StreamStats};
 use crate::signals::SignalsError;
 use crate::vehicle::Vehicle;
-use crate::wire::{Sender, Source, SystemId};
+use crate::wire::SystemId;
 
 /// A window holds all of a flight where no more than this times its seconds can be used.
 const MOSTLY: f64 = 1.05;
@@ -28,8 +28,6 @@ const MOSTLY: f64 = 1.05;
 const WARNING: u8 = 4;
 /// Warnings kept; further ones are counted.
 const KEPT_WARNINGS: usize = 200;
-/// Steps back of a vehicle's clock in one of its own logs that no restarts explain. Chosen; not measured.
-const STEPS_BACK: usize = 10;
 /// Events between two calls of the progress function.
 const PROGRESS_EVENTS: u32 = 1 << 16;
 
@@ -198,30 +196,11 @@ impl Pass {
             timed: self.report.is_timed(),
             undefined: self.report.lacks_definitions(),
             ends_early: self.report.ends_early(),
+            steps_back: self.report.out_of_order(),
+            damage: self.report.damage(),
             logging: logging(&self.report, self.tally.autopilot),
         };
         found.inspection(self.tally, self.assessment, vehicle)
-    }
-}
-
-/// Whose log it is.
-fn vehicle_of(report: &ReadReport, autopilot: Autopilot) -> VehicleSummary {
-    let speaker = report.vehicle;
-    let heartbeats = |telemetry: &TlogReport| -> u64 {
-        let own = |sender: &&Sender| {
-            speaker.is_some_and(|own| own.system == sender.system && own.component == sender.component)
-        };
-        let beats = |sender: &Sender| sender.messages.get(Source::Heartbeat.message_id());
-        telemetry.senders.iter().filter(own).map(beats).sum()
-    };
-    VehicleSummary {
-        system: speaker.map(|speaker| speaker.system.0),
-        component: speaker.map(|speaker| speaker.component.0),
-        autopilot: autopilot.id(),
-        others: report.others.iter().map(|system| system.0).collect(),
-        without_heartbeat: report.telemetry().is_some_and(|telemetry| heartbeats(telemetry) == 0),
-        kind: report.kind().map(VehicleKind::name),
-        firmware: report.onboard().and_then(|onboard| onboard.firmware.clone()),
     }
 }
 
@@ -256,6 +235,8 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         timed: report.is_timed(),
         undefined: report.lacks_definitions(),
         ends_early: report.ends_early(),
+        steps_back: report.out_of_order(),
+        damage: report.damage(),
         logging: logging(report, recording.autopilot),
     };
     found.inspection(tally, assessor.finish(), vehicle)
@@ -279,6 +260,10 @@ struct Found {
     undefined: bool,
     /// it ends before the first of them
     ends_early: bool,
+    /// steps back of its stamps, where its messages stand in another order than they were written in
+    steps_back: Option<u64>,
+    /// how much of it is damaged, in words, where streams may be gone with it
+    damage: Option<String>,
     /// of a log that the vehicle wrote: how to make it log more
     logging: Option<&'static str>,
 }
@@ -320,16 +305,18 @@ impl Found {
         if self.kind.is_some_and(|kind| !kind.flies()) {
             assessment.flight = FlightSummary::on_the_ground();
         }
+        if self.steps_back.is_some() {
+            // then no time in the air is known
+            assessment.flight = FlightSummary::out_of_order();
+        }
         flown_s
     }
 
-    /// Steps back of the clock, if they are too many for restarts: then no time in the air is known.
-    fn steps_back(&self, count: usize, assessment: &mut Assessment) -> Option<usize> {
-        let is_many = matches!(self.reading, Reading::Onboard(_)) && count >= STEPS_BACK;
-        if is_many {
-            assessment.flight = FlightSummary::out_of_order();
-        }
-        is_many.then_some(count)
+    /// Whose names of modes hold: a plane's are others than a multirotor's of the same number.
+    fn modes_of(&self) -> Autopilot {
+        let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);
+        let is_known = self.vehicle.kind.is_none_or(|kind| rotors.contains(&kind));
+        if is_known { self.autopilot } else { Autopilot::Unknown }
     }
 
     fn inspection(
@@ -340,12 +327,7 @@ impl Found {
     ) -> Inspection {
         let flown_s = self.settle(&mut tally, &mut assessment);
         let clock = std::mem::take(&mut tally.clock).summary();
-        let steps_back = self.steps_back(clock.resets_s.len(), &mut assessment);
-        let (armed, said_in_air_s) = (tally.timeline.armed_ever(), tally.timeline.said_in_air_s());
-        // a plane's modes have other names than a multirotor's of the same number
-        let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);
-        let is_known = self.vehicle.kind.is_none_or(|kind| rotors.contains(&kind));
-        let modes = if is_known { self.autopilot } else { Autopilot::Unknown };
+        let modes = self.modes_of();
         let foreseen = self.foreseen(&tally, &mut assessment, vehicle);
         let missing_curve = tally.parameters.missing_curve(self.autopilot);
         let evidence = Evidence {
@@ -353,15 +335,17 @@ impl Found {
             assessment: &assessment,
             vehicle,
             assumed: foreseen.as_ref().and_then(Foreseen::assumed),
+            contradictions: foreseen.as_ref().map_or(&[], |foreseen| &foreseen.contradictions),
             missing_curve,
             kind: self.kind,
-            armed,
-            said_in_air_s,
-            steps_back,
+            armed: tally.timeline.armed_ever(),
+            said_in_air_s: tally.timeline.said_in_air_s(),
+            steps_back: self.steps_back,
             unreadable: self.unreadable,
             timed: self.timed,
             undefined: self.undefined,
             ends_early: self.ends_early,
+            damage: self.damage.as_deref(),
             logging: self.logging,
             own_log: self.autopilot.stack().map(|stack| stack.logging),
         };

@@ -2,20 +2,19 @@
 
 use super::evidence::Evidence;
 use super::inspection::{Outlook, VehicleSummary};
-use super::lacking::lack;
-use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION, contradicted};
+use super::lacking::{SOUND_COPY, lack};
+use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION};
 use crate::autopilot::VehicleKind;
-use crate::estimate::contradicts_file;
+use crate::estimate::{POOR, contradicts_file, rescaled, rests_on_guessed_curve};
 use crate::note::About;
 use crate::recording::Quantity;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
+use crate::vehicle::Anchor;
 
 /// Time of flight that a good identification needs, s. Chosen; not measured.
 const AMPLE_S: f64 = 20.0;
 /// Lost share of the flight from which it is mentioned. Chosen; not measured.
 const NOTABLE_SHARE: f64 = 0.05;
-/// Standard error, as a share of the parameter, from which it is poor. Chosen; not measured.
-const POOR: f64 = 0.1;
 /// Rate to ask for, Hz.
 const WANTED_HZ: u32 = 100;
 
@@ -33,15 +32,11 @@ pub(super) fn verdict(
 }
 
 fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
-    if let Some(SignalsError::NoActuators { .. }) = &evidence.assessment.refusal
-        && evidence.actuator_hz().is_some()
-    {
-        return "Nothing can be identified with this vehicle file: its actuators are not those of the log. See the \
-                advice."
-            .into();
+    if evidence.has_other_actuators() {
+        return "Nothing can be identified with this vehicle: its actuators are not those of the log. See the advice.".into();
     }
     if evidence.is_contradicted() {
-        return "Nothing can be identified with this vehicle file: its thrust contradicts the log. See the advice.".into();
+        return "Nothing can be identified with this vehicle: its thrust contradicts the log. See the advice.".into();
     }
     if let Some(nothing) = evidence.nothing() {
         let is_other = evidence.kind.is_some_and(|kind| kind != VehicleKind::Multirotor);
@@ -67,8 +62,8 @@ fn instead_of_nothing(evidence: &Evidence<'_>) -> String {
     let flown = evidence.armed.is_none() || evidence.assessment.flight.airborne_s > 0.0;
     match evidence.actuator_hz() {
         _ if evidence.steps_back.is_some() => "It is damaged: give a sound copy.".to_owned(),
-        None if evidence.unreadable.is_some() => "It is damaged: give a sound copy.".to_owned(),
         _ if evidence.undefined => "Give the whole log.".to_owned(),
+        _ if evidence.damage.is_some() => damaged(evidence),
         _ if !evidence.timed => "ArduPilot writes them since 2014.".to_owned(),
         _ if evidence.ends_early => "It was cut off: give the whole log.".to_owned(),
         _ if evidence.streams.is_empty() => "What it holds is listed below.".to_owned(),
@@ -84,9 +79,17 @@ fn instead_of_nothing(evidence: &Evidence<'_>) -> String {
     }
 }
 
+/// What to do with a damaged log.
+fn damaged(evidence: &Evidence<'_>) -> String {
+    format!("It is damaged, {}: {SOUND_COPY}.", evidence.damage.unwrap_or_default())
+}
+
 /// There is a flight, and no parameter can be told from it.
 fn no_parameter(evidence: &Evidence<'_>, time: &str) -> String {
     match lack(evidence, "mass").filter(|_| evidence.vehicle.is_none()) {
+        Some(lack) if evidence.damage.is_some() => {
+            format!("Nothing can be identified from this log: {}. {}", lack.reason, damaged(evidence))
+        }
         Some(lack) => {
             format!("Nothing can be identified from this log: {}. Next time {}.", lack.reason, lack.set)
         }
@@ -108,10 +111,16 @@ fn without_vehicle(good: &[&Outlook], bad: &[&str], time: &str) -> String {
 }
 
 fn with_vehicle(evidence: &Evidence<'_>, good: &[&Outlook], bad: &[&str], time: &str) -> String {
+    let doubts = doubts(evidence);
     let to = |poor: bool| -> Vec<String> {
         let wanted = |outlook: &&&Outlook| outlook.std_relative.is_some_and(|std| (std > POOR) == poor);
         let told = |outlook: &&Outlook| {
-            format!("{} to {}", label(outlook.name), percent(outlook.std_relative.unwrap_or(f64::NAN)))
+            let name = label(outlook.name);
+            // shares of what a wrong file states mean nothing
+            match outlook.std_relative.filter(|_| doubts.is_empty() && evidence.assessment.apart.is_empty()) {
+                Some(std) => format!("{name} to {}", percent(std)),
+                None => name.to_owned(),
+            }
         };
         good.iter().filter(wanted).map(told).collect()
     };
@@ -122,10 +131,12 @@ fn with_vehicle(evidence: &Evidence<'_>, good: &[&Outlook], bad: &[&str], time: 
         .collect();
     let not = if bad.is_empty() { String::new() } else { format!("; not for {}", bad.join(", ")) };
     let parts = parts.join("; ");
-    let doubts = doubts(evidence);
+    if let Some(apart) = evidence.assessment.apart.first().filter(|_| doubts.is_empty()) {
+        return format!("Doubtful: {apart}. One by one its flights may be {parts}{not}: {time}.");
+    }
     if !doubts.is_empty() {
         return format!(
-            "Doubtful with this vehicle file: {}. With the right file this log may be {parts}{not}: {time}.",
+            "Doubtful with this vehicle: {}. With the right one this log may be {parts}{not}: {time}.",
             doubts.join("; ")
         );
     }
@@ -136,8 +147,7 @@ fn with_vehicle(evidence: &Evidence<'_>, good: &[&Outlook], bad: &[&str], time: 
 fn doubts(evidence: &Evidence<'_>) -> Vec<String> {
     let mut doubts = Vec::new();
     if let Some(vehicle) = evidence.vehicle {
-        let expected = evidence.assessment.expected.as_ref();
-        doubts.extend(expected.and_then(|expected| contradicts_file(&contradicted(vehicle, expected))));
+        doubts.extend(contradicts_file(evidence.contradictions));
         let odd = vehicle.implausible();
         doubts.extend(odd.iter().map(|odd| odd.trim_end_matches('?').to_owned()));
     }
@@ -167,6 +177,7 @@ fn label(name: &'static str) -> &'static str {
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match percent {
+        p if p < 0.01 => "less than 0.01 %".to_owned(),
         p if p < 0.1 => format!("{p:.2} %"),
         p if p < 10.0 => format!("{p:.1} %"),
         p => format!("{p:.0} %"),
@@ -175,12 +186,19 @@ fn percent(share: f64) -> String {
 
 /// What to do to have more: another setting of the vehicle's own log, or a message over the link.
 fn how(evidence: &Evidence<'_>, request: &str) -> String {
+    if evidence.damage.is_some() {
+        return SOUND_COPY.to_owned();
+    }
     evidence.logging.map_or_else(|| format!("{request} at {WANTED_HZ} Hz"), str::to_owned)
 }
 
 /// Streams that are not there, or too slow.
 fn missing(evidence: &Evidence<'_>) -> Vec<String> {
-    let mut advice = Vec::new();
+    let mut advice: Vec<String> = evidence
+        .damage
+        .map(|damage| format!("Damaged: {damage}; what is missing of the flight may be gone with it."))
+        .into_iter()
+        .collect();
     if let Some(refusal) = &evidence.assessment.refusal {
         advice.push(refusal.to_string());
     }
@@ -199,7 +217,10 @@ fn missing(evidence: &Evidence<'_>) -> Vec<String> {
     }
     match evidence.rate_hz(Quantity::AngularRate) {
         None => advice.push(format!(
-            "No body rates: inertia cannot be identified. To have them, {}.",
+            "{}: inertia cannot be identified. To have them, {}.",
+            evidence
+                .still(Quantity::AngularRate)
+                .map_or("No body rates".to_owned(), |hold| format!("The body rates of this log {hold}")),
             how(
                 evidence,
                 "request ATTITUDE_QUATERNION or HIGHRES_IMU (PX4), ATTITUDE or RAW_IMU (ArduPilot)"
@@ -223,10 +244,12 @@ fn missing(evidence: &Evidence<'_>) -> Vec<String> {
         advice.push("No attitude: streams cannot be aligned, and neither drag nor wind can be told.".into());
     }
     if evidence.rate_hz(Quantity::Velocity).is_none() {
-        let how = evidence
-            .logging
-            .map_or("To have it, request LOCAL_POSITION_NED.", |_| "The vehicle had no estimate of it.");
-        advice.push(format!("No velocity: drag cannot be told. {how}"));
+        let how = match (evidence.damage, evidence.logging) {
+            (Some(_), _) => "",
+            (None, Some(_)) => " The vehicle had no estimate of it.",
+            (None, None) => " To have it, request LOCAL_POSITION_NED.",
+        };
+        advice.push(format!("No velocity: drag cannot be told.{how}"));
     }
     advice
 }
@@ -294,6 +317,15 @@ fn remarks(evidence: &Evidence<'_>, vehicle: &VehicleSummary) -> Vec<String> {
                  file's counts."
             ));
         }
+    }
+    if let (Some(vehicle), Some(expected)) = (evidence.vehicle, &evidence.assessment.expected) {
+        let on_scale = match vehicle.anchor {
+            Anchor::Mass => rescaled(expected, vehicle.body.mass_kg),
+            Anchor::Thrust => expected.clone(),
+        };
+        advice.extend(
+            rests_on_guessed_curve(&on_scale).map(|note| format!("A guess bears on inertia: {}.", note.text)),
+        );
     }
     advice.extend(evidence.assessment.notes.iter().map(ToString::to_string));
     advice

@@ -116,6 +116,13 @@ pub(super) fn otherwise(head: &[u8]) -> (String, &'static str) {
             "a piece of an ArduPilot log (.bin) without the definitions that begin it".to_owned(),
             "give the whole log",
         )
+    } else if is_piece_of_ulog(head) {
+        (
+            "a piece of a PX4 log (.ulg): its beginning is missing, and with it what its messages mean, so that nothing of \
+             it can be read"
+                .to_owned(),
+            "give the whole log, as it lies on the vehicle's card",
+        )
     } else if is_frame(head) {
         ("MAVLink frames without stamps".to_owned(), "record the link with `mavid record`")
     } else if head.iter().any(is_binary) || !is_text(head) {
@@ -136,6 +143,26 @@ const HEADER_EVERY: usize = 256;
 fn is_piece_of_dataflash(head: &[u8]) -> bool {
     let headers = head.windows(2).filter(|pair| *pair == b"\xa3\x95").count();
     headers >= LEAST_HEADERS && headers * HEADER_EVERY > head.len()
+}
+
+/// Kinds of a ULog's messages, and messages in a row by which a piece of one is told.
+const ULOG_KINDS: &[u8] = b"BFIMPQAROLCSD";
+/// See [`ULOG_KINDS`].
+const LEAST_IN_A_ROW: usize = 12;
+/// Bytes of a ULog's message that say its length and kind.
+const ULOG_PREFIX: usize = 3;
+
+fn is_piece_of_ulog(head: &[u8]) -> bool {
+    let length = |at: usize| {
+        let [low, high, kind] = head.get(at..at + ULOG_PREFIX)? else { return None };
+        let bytes = usize::from(u16::from_le_bytes([*low, *high]));
+        (bytes > 0 && ULOG_KINDS.contains(kind)).then_some(at + ULOG_PREFIX + bytes)
+    };
+    let in_a_row = |at: usize| {
+        let mut next = at;
+        (0..LEAST_IN_A_ROW).all(|_| length(next).inspect(|after| next = *after).is_some())
+    };
+    (0..head.len()).any(in_a_row)
 }
 
 /// UTF-8, but for a letter that the head's end cuts.

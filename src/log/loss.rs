@@ -168,6 +168,8 @@ pub enum Oddity {
     BackwardStamps {
         /// how many
         count: u64,
+        /// how many of these further than any link explains
+        far: u64,
         /// the furthest, microseconds
         most_us: u64,
     },
@@ -215,7 +217,7 @@ pub enum Oddity {
 impl fmt::Display for Oddity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::BackwardStamps { count, most_us } => {
+            Self::BackwardStamps { count, most_us, .. } => {
                 let most_s = seconds_from_us(*most_us as f64);
                 write!(f, "{count} host stamps run backwards, by {most_s:.3} s at most")
             }

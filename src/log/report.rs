@@ -3,12 +3,20 @@
 use std::collections::BTreeMap;
 
 use super::csv::CsvReport;
-use super::loss::{Loss, Oddity};
+use super::loss::{Loss, Oddity, Position};
 use super::onboard::OnboardReport;
 use super::tlog::TlogReport;
 use crate::autopilot::VehicleKind;
 use crate::recording::{StreamKey, StreamRepair};
 use crate::wire::{SystemId, Vehicle};
+
+/// Share of a log's bytes without which it is damaged so much that streams may be gone, and that which is most of it. Chosen;
+/// not measured.
+const DAMAGED: f64 = 0.1;
+/// See [`DAMAGED`].
+const MOSTLY: f64 = 0.5;
+/// Steps back of a log's stamps that nothing but another order explains. Chosen; not measured.
+const OUT_OF_ORDER: u64 = 5;
 
 /// What was met while reading a log, whatever its format.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -78,15 +86,44 @@ impl ReadReport {
         self.onboard().filter(|log| count > log.messages / 10).map(|_| count)
     }
 
-    /// Most of it are messages that nothing in it defines: its beginning is missing.
+    /// Most of it are messages that nothing in it defines: its beginning is missing, or damaged beyond reading.
     #[must_use]
     pub fn lacks_definitions(&self) -> bool {
+        let at_once = |loss: &Loss| loss.first() == Some(Position::Byte(0));
+        let is_of_beginning = !self.holds_times() || self.losses.iter().any(at_once);
+        self.onboard().is_some() && is_of_beginning && self.passed_share() > MOSTLY
+    }
+
+    /// How much of a log that the vehicle wrote is damaged, in words, if it is so much that streams may be gone with it.
+    #[must_use]
+    pub fn damage(&self) -> Option<String> {
+        let share = self.passed_share();
+        let by_messages = || self.unreadable().map(|count| format!("{count} of its messages cannot be read"));
+        let by_bytes =
+            (share > DAMAGED).then(|| format!("{:.0} % of its bytes cannot be read", 100.0 * share));
+        by_bytes.or_else(by_messages)
+    }
+
+    /// Share of a log that the vehicle wrote which is no message, 0 to 1.
+    fn passed_share(&self) -> f64 {
         let passed = |loss: &Loss| match loss {
             Loss::Skipped { bytes, .. } | Loss::CutOff { bytes, .. } => *bytes,
             _ => 0,
         };
         let passed: u64 = self.losses.iter().map(passed).sum();
-        self.onboard().is_some_and(|log| !self.holds_times() && passed > log.bytes / 2)
+        self.onboard().map_or(0.0, |log| passed as f64 / log.bytes.max(1) as f64)
+    }
+
+    /// How often its stamps run back, where that is too often for clocks that were set or vehicles that started anew: its
+    /// messages stand in another order than they were written in.
+    #[must_use]
+    pub fn out_of_order(&self) -> Option<u64> {
+        let back = |oddity: &Oddity| match oddity {
+            Oddity::VehicleClockBack { count, .. } => *count,
+            Oddity::BackwardStamps { far, .. } => *far,
+            _ => 0,
+        };
+        self.oddities.iter().map(back).max().filter(|count| *count >= OUT_OF_ORDER)
     }
 
     /// It ends before its first message with a time, as a log that was cut off does.

@@ -130,21 +130,29 @@ fn no_actuators(recording: &Recording, vehicle: &Vehicle) -> SignalsError {
         Actuator::Pwm(Some(_)) => "pulse widths in microseconds",
         Actuator::Pwm(None) | Actuator::Speed | Actuator::Thrust => "values in 0..1",
     };
-    let found: Vec<String> = recording
-        .streams
-        .iter()
-        .filter(|(key, _)| key.quantity == Quantity::ActuatorCommand)
+    let commands = || recording.streams.iter().filter(|(key, _)| key.quantity == Quantity::ActuatorCommand);
+    let found: Vec<String> = commands()
         .map(|(key, stream)| {
             let largest = stream.values.iter().copied().filter(|v| v.is_finite()).fold(f64::NAN, f64::max);
             let still = if is_live(stream) { "" } else { ", which does not move" };
             format!("{} ({} channels, largest value {largest:.3}{still})", key.source, stream.width)
         })
         .collect();
-    SignalsError::NoActuators {
-        rotors: vehicle.rotors.len(),
-        unit,
-        found: if found.is_empty() { "none".into() } else { found.join(", ") },
+    let rotors = vehicle.rotors.len();
+    let channels = commands().map(|(_, stream)| stream.width).max().unwrap_or(0);
+    let found = if found.is_empty() { "none".to_owned() } else { found.join(", ") };
+    let found = format!("{found}. {}", actuators_wanted(rotors, channels));
+    SignalsError::NoActuators { rotors, unit, found }
+}
+
+/// What to do for actuator outputs that fit the vehicle.
+fn actuators_wanted(rotors: usize, channels: usize) -> String {
+    if (1..rotors).contains(&channels) {
+        return format!("Is it another vehicle's log, or is the frame wrong? Expected {rotors} channels");
     }
+    "They must be in that unit and move. Record actuator outputs (over MAVLink SERVO_OUTPUT_RAW or \
+     ACTUATOR_OUTPUT_STATUS), or correct `actuator`"
+        .to_owned()
 }
 
 /// Whether values can have the vehicle's unit: most are within its range, and not in that of another unit.

@@ -133,6 +133,33 @@ pub fn changes_in_the_air(
     notes
 }
 
+/// A note on the parameters of the way from command to thrust, and of the vehicle's build, that differ between two flights,
+/// told by their numbers.
+#[must_use]
+pub fn other_settings(
+    (one, number): (&Recording, usize),
+    (other, other_number): (&Recording, usize),
+) -> Option<Note> {
+    let outputs = &one.autopilot.stack().filter(|_| one.autopilot == other.autopilot)?.outputs;
+    let differs = |(name, value): &(&String, &f64)| {
+        let there = other.parameters.get(*name)?;
+        let apart = (*there - **value).abs() > SAME * value.abs().max(there.abs());
+        // learned in flight
+        let counts = outputs.is_relevant(name, **value) && name.as_str() != outputs.hover;
+        (apart && counts).then(|| format!("{name} {} in place of {}", short(*there), short(**value)))
+    };
+    let all: Vec<String> = one.parameters.iter().filter_map(|pair| differs(&pair)).collect();
+    let more = if all.len() > TOLD { format!(" and {} more", all.len() - TOLD) } else { String::new() };
+    let text = format!(
+        "flight {other_number} was flown with other settings than flight {number}: {}{more}: is it the same vehicle?",
+        all.iter().take(TOLD).cloned().collect::<Vec<_>>().join(", ")
+    );
+    (!all.is_empty()).then(|| Note::warning(About::Actuators, text))
+}
+
+/// Values in single precision that differ by less, as a share, are the same.
+const SAME: f64 = 1e-6;
+
 /// As many digits as single precision has.
 fn short(value: f64) -> String {
     let digits = format!("{value:.6e}").parse::<f64>().unwrap_or(value);
@@ -214,6 +241,23 @@ mod tests {
         let text = note(&["MOT_SPIN_MIN", "LOG_BITMASK"]).unwrap().text;
         assert!(text.ends_with("their defaults are used: MOT_SPIN_MIN = 0.15"), "{text}");
         assert_eq!(note(&["LOG_BITMASK"]), None);
+    }
+
+    #[test]
+    fn settings_that_differ_between_flights_are_told() {
+        let flown = |values: &[(&str, f64)]| Recording {
+            autopilot: Autopilot::Px4,
+            parameters: values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+            ..Recording::default()
+        };
+        let one = flown(&[("THR_MDL_FAC", 0.0), ("MPC_THR_HOVER", 0.5), ("CA_ROTOR_COUNT", 4.0)]);
+        let other = flown(&[("THR_MDL_FAC", 0.3), ("MPC_THR_HOVER", 0.4), ("CA_ROTOR_COUNT", 4.0)]);
+        let text = other_settings((&one, 1), (&other, 2)).unwrap().text;
+        assert_eq!(
+            text,
+            "flight 2 was flown with other settings than flight 1: THR_MDL_FAC 0.3 in place of 0: is it the same vehicle?"
+        );
+        assert_eq!(other_settings((&one, 1), (&one, 2)), None);
     }
 
     #[test]

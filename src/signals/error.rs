@@ -9,14 +9,14 @@ pub enum SignalsError {
     /// no actuator stream that fits the vehicle
     #[error(
         "no actuator outputs for {rotors} rotors: expected {unit}, as the vehicle file's [propulsion] says; \
-         the recording holds {found}. They must be in that unit and move. Record actuator outputs (over MAVLink SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS), or correct `actuator`"
+         the recording holds {found}"
     )]
     NoActuators {
         /// rotors of the vehicle
         rotors: usize,
         /// what the vehicle file expects
         unit: &'static str,
-        /// what the recording has
+        /// what the recording has, and what to do
         found: String,
     },
     /// a needed stream has too few samples

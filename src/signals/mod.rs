@@ -33,7 +33,9 @@ pub use actuators::{
     thrusts_from_speeds,
 };
 pub use align::StreamOffset;
-pub use changed::{changes_in_the_air, resting_on_defaults, settle_parameters, settled_parameters};
+pub use changed::{
+    changes_in_the_air, other_settings, resting_on_defaults, settle_parameters, settled_parameters,
+};
 pub use condition::{ConditionSettings, condition, stride};
 pub use error::SignalsError;
 pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference};

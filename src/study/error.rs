@@ -62,6 +62,14 @@ pub enum StudyError {
     /// nothing can be identified
     #[error(transparent)]
     Identify(#[from] EstimateError),
+    /// nothing can be identified from logs that are damaged
+    #[error("{error}{}", lost(losses))]
+    IdentifyDamaged {
+        /// why
+        error: EstimateError,
+        /// what of the logs could not be read
+        losses: Vec<String>,
+    },
     /// effects cannot be identified together with the rigid body
     #[error("{logs}: {source}")]
     Joint {
@@ -84,6 +92,17 @@ pub enum StudyError {
         /// why
         source: ExplainError,
     },
+}
+
+impl StudyError {
+    /// Why nothing can be identified, with what of the logs could not be read.
+    pub(super) fn of_estimate(error: EstimateError, losses: &[String]) -> Self {
+        if losses.is_empty() {
+            Self::Identify(error)
+        } else {
+            Self::IdentifyDamaged { error, losses: losses.to_vec() }
+        }
+    }
 }
 
 fn lost(losses: &[String]) -> String {

@@ -138,6 +138,13 @@ fn parameter(opened: &OpenedFlights, name: &str) -> Option<f64> {
 /// A log that says itself that nothing was flown, or that has no clock, is told so, and not that a stream is missing.
 fn refuse_no_flight(path: &Path, opened: &OpenedFlights) -> Result<(), StudyError> {
     let mut flights = opened.flights.flights.iter();
+    if let Some(count) = opened.report.out_of_order() {
+        let why = format!(
+            "expected a log in the order in which it was written, got one whose stamps run back {count} times: it is damaged, or \
+             its pieces were put together wrongly; give a sound copy"
+        );
+        return Err(StudyError::File { file: text::path(&path), why });
+    }
     let why = if opened.report.lacks_definitions() {
         "expected a whole log, got one whose messages are not defined: its beginning is missing"
     } else if !opened.report.is_timed() {

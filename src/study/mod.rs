@@ -47,4 +47,6 @@ pub use validate::{
     ValidatedModel, closed_loop_table, playback_table, prediction_table, validate,
 };
 pub use vehicle::{RotorSummary, VehicleSummary, vehicle_summary};
-pub use vehicle_given::{VehicleGiven, draft_from_log, draft_from_parameters, draft_text, with_thrust_stand};
+pub use vehicle_given::{
+    VehicleGiven, draft_from_log, draft_from_parameters, draft_notes, draft_text, with_thrust_stand,
+};

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::config::{ConfigError, LoadedVehicle, ModelTables, read_vehicle, vehicle_to_toml};
-use crate::draft::{Draft, Given, draft};
+use crate::draft::{Draft, DraftError, Given, draft};
 use crate::log::{Hold, open_flights};
 use crate::note::{About, Note};
 use crate::recording::Recording;
@@ -55,15 +55,28 @@ pub(super) struct Known {
 impl Known {
     /// What is to be known of it.
     pub(super) fn notes(&self) -> Vec<Note> {
-        let mut notes = file_notes(&self.origin, &self.loaded.warnings);
         let about = || About::File(text::path(&self.origin));
-        if let Some(draft) = &self.draft {
-            notes.extend(draft.doubts.iter().map(|doubt| Note::warning(about(), doubt.as_str())));
-            notes.push(Note::remark(about(), draft.origins.join("; ")));
+        match &self.draft {
+            Some(draft) => draft_notes(draft),
+            None => {
+                let mut notes = file_notes(&self.origin, &self.loaded.warnings);
+                notes.extend(guesses(&self.loaded.vehicle).map(|text| Note::remark(about(), text)));
+                notes
+            }
         }
-        notes.extend(guesses(&self.loaded.vehicle).map(|text| Note::remark(about(), text)));
-        notes
     }
+}
+
+/// What is to be known of a drafted vehicle: what is hardly meant, what contradicts the log, where its values come from, and
+/// which of them are guesses.
+#[must_use]
+pub fn draft_notes(draft: &Draft) -> Vec<Note> {
+    let about = || About::File(DRAFTED.to_owned());
+    let mut notes = file_notes(Path::new(DRAFTED), &draft.vehicle.implausible());
+    notes.extend(draft.doubts.iter().map(|doubt| Note::warning(about(), doubt.as_str())));
+    notes.push(Note::remark(about(), draft.origins.join("; ")));
+    notes.extend(guesses(&draft.vehicle).map(|text| Note::remark(about(), text)));
+    notes
 }
 
 /// The guesses that a vehicle rests on, in a sentence.
@@ -78,19 +91,21 @@ fn guesses(vehicle: &Vehicle) -> Option<String> {
 
 impl VehicleGiven {
     /// The vehicle of a file, or drafted of mass and frame alone where there is neither a log nor a link; and what messages call
-    /// it.
+    /// it. The guesses that it rests on are among its warnings.
     ///
     /// # Errors
     /// The file cannot be read, or what is given is no vehicle's.
     pub fn alone(&self) -> Result<(LoadedVehicle, PathBuf), StudyError> {
-        match self {
-            Self::File(file) => Ok((read_vehicle(file)?, file.clone())),
+        let (mut loaded, origin) = match self {
+            Self::File(file) => (read_vehicle(file)?, file.clone()),
             Self::Weighed(given) => {
-                let draft = draft(&Recording::default(), given, "vehicle")
-                    .map_err(|error| StudyError::Setting { name: "mass", why: error.to_string() })?;
-                Ok((of_draft(&draft), PathBuf::from(DRAFTED)))
+                let draft =
+                    draft(&Recording::default(), given, "vehicle").map_err(|error| not_given(&error))?;
+                (of_draft(&draft), PathBuf::from(DRAFTED))
             }
-        }
+        };
+        loaded.warnings.extend(guesses(&loaded.vehicle));
+        Ok((loaded, origin))
     }
 
     /// The vehicle of a file; `None` where it is to be drafted from a log.
@@ -133,8 +148,16 @@ fn of_draft(draft: &Draft) -> LoadedVehicle {
 
 fn drafted(recording: &Recording, log: &str, given: &Given) -> Result<Draft, StudyError> {
     let name = Path::new(log).file_stem().map_or_else(|| "vehicle".to_owned(), text::path);
-    draft(recording, given, &name)
-        .map_err(|error| StudyError::File { file: log.to_owned(), why: error.to_string() })
+    draft(recording, given, &name).map_err(|error| match error {
+        DraftError::Given { .. } => not_given(&error),
+        _ => StudyError::File { file: log.to_owned(), why: error.to_string() },
+    })
+}
+
+/// What was given on the command line and is no vehicle's.
+fn not_given(error: &DraftError) -> StudyError {
+    let name = if let DraftError::Given { what, .. } = error { what } else { "mass" };
+    StudyError::Setting { name, why: error.to_string() }
 }
 
 /// A first description of the vehicle of a log.
@@ -162,8 +185,10 @@ pub fn draft_from_parameters(
     address: &str,
 ) -> Result<Draft, StudyError> {
     let recording = Recording { autopilot, parameters, ..Recording::default() };
-    draft(&recording, given, "vehicle")
-        .map_err(|error| StudyError::File { file: address.to_owned(), why: error.to_string() })
+    draft(&recording, given, "vehicle").map_err(|error| match error {
+        DraftError::Given { .. } => not_given(&error),
+        _ => StudyError::File { file: address.to_owned(), why: error.to_string() },
+    })
 }
 
 /// A draft with what a thrust stand measured of one of its rotors in place of guesses.

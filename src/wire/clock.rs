@@ -24,6 +24,8 @@ const BACKWARD_US: i64 = 2_000_000;
 const FORWARD_US: i64 = 5_000_000;
 /// So many stamps in a row that agree with each other but not with the clock: the clock has restarted.
 const WITNESSES: u8 = 3;
+/// A vehicle that starts anew may have run this much longer than it was silent: links buffer.
+const BOOT_US: i64 = 10_000_000;
 /// Microseconds larger than this are Unix time (2001), not time since boot (31 years).
 const UNIX_FROM_US: u64 = 1_000_000_000_000_000;
 const WRAP_MS_US: i64 = (1 << 32) * 1000;
@@ -119,6 +121,9 @@ pub struct VehicleClock {
     /// host's stamp of the first message after a leap that no stamped message has explained yet
     adrift_host_us: Option<i64>,
     host_steps: u64,
+    /// restarts to a time since boot that has not passed since the message before
+    ran_back: u64,
+    ran_back_most_us: u64,
 }
 
 impl VehicleClock {
@@ -137,6 +142,8 @@ impl VehicleClock {
             heard_host_us: None,
             adrift_host_us: None,
             host_steps: 0,
+            ran_back: 0,
+            ran_back_most_us: 0,
         };
         match anchor {
             Some(Anchor { stamp: Stamp::BootMs(ms), host_us }) => {
@@ -186,6 +193,13 @@ impl VehicleClock {
     #[must_use]
     pub fn host_steps(&self) -> u64 {
         self.host_steps
+    }
+
+    /// How often the time since boot ran back to one that had not passed since the message before, and by how much at most,
+    /// microseconds: that is no restart, but messages in another order.
+    #[must_use]
+    pub fn ran_back(&self) -> (u64, u64) {
+        (self.ran_back, self.ran_back_most_us)
     }
 
     /// Recording time of a host stamp, microseconds.
@@ -265,6 +279,11 @@ impl VehicleClock {
     fn restart(&mut self, base: Base, raw_us: i64, host_us: i64) -> Placed {
         let last_host_us = self.tied(base).map_or(host_us, |tied| tied.last_host_us);
         let passed_us = host_us.saturating_sub(last_host_us).max(1000);
+        let back_us = self.tied(base).map_or(0, |tied| tied.last_raw_us.saturating_sub(raw_us));
+        if base == Base::Boot && back_us > 0 && raw_us > passed_us.saturating_add(BOOT_US) {
+            self.ran_back += 1;
+            self.ran_back_most_us = self.ran_back_most_us.max(back_us.unsigned_abs());
+        }
         let time_us = self.last_time_us.saturating_add(passed_us);
         if base == Base::Boot {
             self.unix = None;

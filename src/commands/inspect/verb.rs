@@ -4,7 +4,7 @@ use mavid::config::read_vehicle;
 use mavid::inspect::{self, Inspection};
 use mavid::log::format_of;
 use mavid::report::{InspectionDocument, inspection_text};
-use mavid::study::{draft_from_log, unread};
+use mavid::study::{draft_from_log, draft_notes, unread};
 use mavid::text;
 use mavid::vehicle::Vehicle;
 
@@ -22,6 +22,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &InspectArgs) -> Result<Out
     let weighed = args.mass.map(|mass_kg| args.shape.given(mass_kg));
     let draft =
         weighed.map(|weighed| draft_from_log(&args.log, &args.read.settings(), &weighed)).transpose()?;
+    draft.iter().flat_map(draft_notes).for_each(|note| output::note(&note));
     let of_file = loaded.as_ref().map(|loaded| &loaded.vehicle);
     let vehicle = of_file.or_else(|| draft.as_ref().map(|draft| &draft.vehicle));
     let inspection = inspect(stderr, args, vehicle)?;

@@ -70,6 +70,7 @@ async fn set(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
     let offer = session.offer().await?;
     let notes = state::notes(&session.known_as(&offer))?;
     let prepared = preparing::look(&mut session, &notes).await?;
+    preparing::expect_rates(&session, &prepared)?;
     let changes = &prepared.plan.changes;
     let what = changes_page(changes);
     if !changes.is_empty() {
@@ -118,7 +119,7 @@ async fn reminded(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
     output::message(&earlier(&noted));
     if agreed("restore", "put it back now, before the flight")? {
         let put_back = preparing::put_back(&mut session, &notes).await?;
-        output::message(&put_back_page(&put_back));
+        put_back_page(&put_back).lines().for_each(output::message);
     } else {
         before.awaited = preparing::look(&mut session, &notes).await?.awaited;
     }

@@ -119,6 +119,9 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
     } else if !changes.is_empty() {
         output::text("nothing is changed; --set-logging sets it")?;
     }
+    if args.set_logging {
+        preparing::expect_rates(&session, &prepared)?;
+    }
     Ok(Outcome::Done)
 }
 

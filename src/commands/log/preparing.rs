@@ -56,6 +56,21 @@ pub async fn look(session: &mut Session, notes: &Notes) -> Result<Prepared, Comm
     Ok(prepared)
 }
 
+/// Fails where the vehicle did not answer for what sets the rates of its log: that was to be set.
+///
+/// # Errors
+/// It did not.
+pub fn expect_rates(session: &Session, prepared: &Prepared) -> Result<(), CommandError> {
+    let unknown = session.stack.rates_unknown(&prepared.plan).join(", ");
+    if unknown.is_empty() {
+        return Ok(());
+    }
+    Err(CommandError::Failure(format!(
+        "--set-logging: expected an answer for {unknown}, which sets the rates of the log, the vehicle gave none: it is not set. \
+         Try again on a better link, or set it with another ground station"
+    )))
+}
+
 /// Which of the noted parameters count only after a restart that has not come.
 async fn wait_for_start(session: &mut Session, prepared: &mut Prepared) -> Result<(), CommandError> {
     let settings = session.stack.log_settings.settings.iter().filter(|setting| setting.restarts);

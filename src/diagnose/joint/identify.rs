@@ -14,8 +14,8 @@ use crate::diagnose::latency::{LatencyFinding, finding_of};
 use crate::diagnose::recorded::Recorded;
 use crate::diagnose::trace::Trace;
 use crate::estimate::{
-    Estimated, Finding, Method, MethodResult, Nominal, THETA, Theta, identified_vehicle, is_physical,
-    nearest_physical, rescaled, thrust_scale,
+    Estimated, Finding, Method, MethodResult, MovedByCurve, Nominal, THETA, Theta, identified_vehicle,
+    is_physical, moved_by_guessed_curve, nearest_physical, rescaled, thrust_scale,
 };
 use crate::physics::{ActiveEffect, Airframe};
 use crate::signals::Signals;
@@ -57,7 +57,8 @@ pub fn identify_jointly(
     let (mut after, split) = latency::split(&traces, after, wanted)?;
     swing::allow_for_noise(&traces, &mut after, &mut settled)?;
     let fits = Fits { before, after, settled, split, first };
-    let estimate = put_together(&traces, (vehicle, &kept), wanted, fits);
+    let by_curve = moved_by_guessed_curve(flights, vehicle);
+    let estimate = put_together(&traces, (vehicle, &kept), (wanted, by_curve), fits);
     estimate.effects.iter().for_each(EffectFound::emit);
     Ok(estimate)
 }
@@ -74,12 +75,19 @@ struct Fits {
 fn put_together(
     traces: &[Trace],
     (vehicle, kept): (&Vehicle, &[&ActiveEffect]),
-    wanted: &RequestedEffects,
+    (wanted, by_curve): (&RequestedEffects, Option<MovedByCurve>),
     fits: Fits,
 ) -> JointEstimate {
     let Fits { before, after, settled, split, first } = fits;
     let nominal = Nominal::of(vehicle);
-    let (mut estimated, mut estimated_before) = (after.rigid_body(), before.rigid_body());
+    let guessed = |estimated: Estimated, by: Option<MovedByCurve>| {
+        let moved = by.map(|by| by.on(&estimated.theta));
+        estimated.with_guessed_curve(moved)
+    };
+    // a curve that the flight tells is no guess any more
+    let left = by_curve.filter(|_| !wanted.has(CURVE));
+    let (mut estimated, mut estimated_before) =
+        (guessed(after.rigid_body(), left), guessed(before.rigid_body(), by_curve));
     let physical = made_physical(&mut estimated, &nominal.theta);
     let result = |estimated: &Estimated| MethodResult::new(Method::Weak, estimated, &nominal);
     let (mut body, mut body_before) = (result(&estimated), result(&estimated_before));
@@ -136,6 +144,9 @@ fn made_physical(estimated: &mut Estimated, nominal: &Theta) -> Physical {
     estimated.theta = theta;
     Physical::Moved
 }
+
+/// The effect that takes the place of a guessed thrust curve.
+const CURVE: &str = "thrust_curve";
 
 /// Standard errors by which an inertia may be moved to the nearest possible one. Chosen; not measured.
 const WITHIN_ERROR: f64 = 3.0;

@@ -90,6 +90,12 @@ pub(super) fn no_text(head: &[u8]) -> Option<&'static str> {
     }
 }
 
+/// A whole number, or nothing: all that is left of numbers whose decimal marks part cells.
+fn is_whole(cell: &[u8]) -> bool {
+    let digits = cell.trim_ascii().strip_prefix(b"-").unwrap_or(cell.trim_ascii());
+    digits.iter().all(u8::is_ascii_digit)
+}
+
 /// Comma, semicolon or tab, whichever the header has most of; comma where it has none.
 fn guess_delimiter(head: &[u8]) -> u8 {
     let count = |delimiter: u8| head.iter().filter(|byte| **byte == delimiter).count();
@@ -205,7 +211,16 @@ impl<'a, 'b> Reading<'a, 'b> {
     /// The row's raw time and the cells of each quantity, or why the row is of no use.
     fn cells(&self, record: &ByteRecord) -> Result<(f64, Vec<Vec<f64>>), String> {
         if record.len() != self.columns {
-            return Err(format!("expected {} cells as in the header, came {}", self.columns, record.len()));
+            let why = if 2 * record.len() > 3 * self.columns && record.iter().all(is_whole) {
+                ": are commas both between the cells and decimal marks? Write numbers with a decimal point"
+            } else {
+                ""
+            };
+            return Err(format!(
+                "expected {} cells as in the header, came {}{why}",
+                self.columns,
+                record.len()
+            ));
         }
         let column = &self.mapping.time.column;
         let raw_time = number(record, self.time_index, column)?;

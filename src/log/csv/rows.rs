@@ -97,11 +97,13 @@ pub(super) fn number(record: &ByteRecord, index: usize, column: &str) -> Result<
     match text.parse::<f64>() {
         Ok(value) if !value.is_infinite() => Ok(value),
         // binary garbage need not be repeated whole
-        _ => Err(format!(
-            "column \"{}\": expected a number, came \"{}\"",
-            text::excerpt(column, CELL_CHARS),
-            text::excerpt(&text, CELL_CHARS)
-        )),
+        _ => {
+            let (column, came) = (text::excerpt(column, CELL_CHARS), text::excerpt(&text, CELL_CHARS));
+            let is_decimal_comma =
+                text.matches(',').count() == 1 && text.replace(',', ".").parse::<f64>().is_ok();
+            let why = if is_decimal_comma { ": write it with a decimal point" } else { "" };
+            Err(format!("column \"{column}\": expected a number, came \"{came}\"{why}"))
+        }
     }
 }
 

@@ -3,8 +3,10 @@
 /// A stamp this much before the last one, s, is of another clock, or of no clock. Messages of several threads run back by
 /// less.
 const BACK_S: f64 = 10.0;
-/// A stamp this much after the last one, s, needs a second one that agrees.
-const LEAP_S: f64 = 3600.0;
+/// A stamp this much after the last one, s, needs a second one that agrees: damage hides in stamps, and a pause is rarer.
+const LEAP_S: f64 = 10.0;
+/// Two stamps behind one another agree within this, s.
+const AGREES_S: f64 = 2.0;
 /// Between two logs of which one stands behind the other, s: the pause itself is not known.
 const PAUSE_S: f64 = 1.0;
 
@@ -69,6 +71,7 @@ impl Clock {
             return Placed::At(0.0);
         };
         let follows = |last_s: f64| (-BACK_S..LEAP_S).contains(&(stamp_s - last_s));
+        let agrees = |doubted_s: f64| (stamp_s - doubted_s).abs() < AGREES_S;
         if std::mem::take(&mut self.may_restart) && stamp_s < self.last_s {
             let time_s = self.latest_s - zero_s + PAUSE_S;
             self.zero_s = Some(stamp_s - time_s);
@@ -76,11 +79,13 @@ impl Clock {
             return Placed::Anew(time_s);
         }
         if !follows(self.last_s) {
-            if !self.doubted_s.is_some_and(follows) {
+            if !self.doubted_s.is_some_and(agrees) {
                 self.doubted_s = Some(stamp_s);
                 self.strays += 1;
                 return Placed::Stray;
             }
+            // the first of both is not read, and was right
+            self.strays -= 1;
             if stamp_s < self.last_s {
                 self.ran_back += 1;
                 self.ran_back_most_s = self.ran_back_most_s.max(self.last_s - stamp_s);
@@ -107,8 +112,12 @@ mod tests {
         // threads
         assert_eq!(clock.place(41.25), Placed::At(1.25));
         assert_eq!([clock.place(9000.0), clock.place(9001.0)], [Placed::Stray, Placed::At(8961.0)]);
-        assert_eq!((clock.strays, clock.ran_back), (2, 0));
+        assert_eq!((clock.strays, clock.ran_back), (1, 0));
         assert_eq!([clock.place(50.0), clock.place(51.0)], [Placed::Stray, Placed::At(11.0)]);
+        assert_eq!((clock.strays, clock.ran_back), (1, 1));
+        // two wrong ones that do not agree, far ahead by less than an hour
+        assert_eq!([clock.place(900.0), clock.place(2000.0)], [Placed::Stray; 2]);
+        assert_eq!(clock.place(51.5), Placed::At(11.5));
         assert_eq!((clock.strays, clock.ran_back), (3, 1));
     }
 

@@ -11,6 +11,8 @@ use crate::wire::{
 const KEPT_RESYNCS: usize = 1000;
 /// Stamps of several threads run back against each other by less, which is not odd.
 const TOLD_BACKWARD_US: u64 = 1_000_000;
+/// Stamps run back by more, us, where a clock was set or frames stand in another order. Links hold none back for so long.
+const FAR_US: u64 = 10_000_000;
 /// Host stamps further apart than an hour leap.
 const LEAP_US: u64 = 3_600_000_000;
 
@@ -56,6 +58,8 @@ pub struct TlogReport {
     pub backward_stamps: u64,
     /// the furthest that a host stamp lies before its predecessor, microseconds
     pub backward_most_us: u64,
+    /// stamps further before their predecessor than any link explains
+    pub backward_far: u64,
     /// host stamps equal to their predecessor, of records with a stamp of their own
     pub doubled_stamps: u64,
     /// host stamps more than an hour after their predecessor: a pause, the seam of two logs, or a clock that was set
@@ -121,13 +125,19 @@ impl TlogReport {
     /// What is odd about the host's stamps; no frame is lost by it. Samples are placed by the vehicle's own clock.
     #[must_use]
     pub fn oddities(&self) -> Vec<Oddity> {
-        let backward = Oddity::BackwardStamps { count: self.backward_stamps, most_us: self.backward_most_us };
+        let backward = Oddity::BackwardStamps {
+            count: self.backward_stamps,
+            far: self.backward_far,
+            most_us: self.backward_most_us,
+        };
+        let (ran_back, most_us) = self.decode.ran_back;
         let implausible = Oddity::ImplausibleStamps { count: self.odd_stamps };
         let set = Oddity::HostClockSet { count: self.decode.host_steps };
         [
             (self.backward_most_us > TOLD_BACKWARD_US, backward),
             (self.odd_stamps > 0, implausible),
             (self.decode.host_steps > 0, set),
+            (ran_back > 0, Oddity::VehicleClockBack { count: ran_back, most_us }),
         ]
         .into_iter()
         .filter_map(|(is_told, oddity)| is_told.then_some(oddity))
@@ -140,6 +150,7 @@ impl TlogReport {
         let back_us = last_us.saturating_sub(stamp_us);
         self.backward_stamps += u64::from(back_us > 0);
         self.backward_most_us = self.backward_most_us.max(back_us);
+        self.backward_far += u64::from(back_us > FAR_US);
         self.doubled_stamps += u64::from(stamp_us == last_us && !shared_stamp);
         self.leaping_stamps += u64::from(stamp_us.saturating_sub(last_us) > LEAP_US);
     }

@@ -5,10 +5,12 @@
 
 use crate::units::seconds_from_us;
 
-/// A topic's stamps may run back by this much.
-const BACKWARD_US: u64 = 2_000_000;
-/// A longer leap forward must be confirmed by further stamps: a vehicle that cannot write for longer says so.
-const FORWARD_US: u64 = 60_000_000;
+/// A topic's stamps may run back by this much, and so may a damaged stamp lie ahead that is not told from a short pause.
+const BACKWARD_US: u64 = 5_000_000;
+/// A longer leap forward must be confirmed by further stamps: damage hides in stamps, and a pause is rarer.
+const FORWARD_US: u64 = 5_000_000;
+/// Stamps behind one another agree within this.
+const AGREES_US: u64 = 2_000_000;
 /// So many stamps in a row that agree with each other but not with the clock: it has leapt or started anew.
 const WITNESSES: u8 = 3;
 /// Time goes on by this much where the clock started anew: how long that took is not known.
@@ -36,6 +38,10 @@ pub(super) struct Clock {
     runs: bool,
     suspect_us: u64,
     suspects: u8,
+    /// times that stamps ran back for good, though no other log began
+    pub ran_back: u64,
+    /// the furthest of these, microseconds
+    pub ran_back_most_us: u64,
 }
 
 impl Clock {
@@ -74,7 +80,7 @@ impl Clock {
     }
 
     fn suspect(&mut self, stamp_us: u64) -> Placed {
-        let agrees = self.suspects > 0 && stamp_us.abs_diff(self.suspect_us) < BACKWARD_US;
+        let agrees = self.suspects > 0 && stamp_us.abs_diff(self.suspect_us) < AGREES_US;
         self.suspects = if agrees { self.suspects + 1 } else { 1 };
         self.suspect_us = stamp_us;
         if self.suspects < WITNESSES {
@@ -85,6 +91,8 @@ impl Clock {
             self.last_us = stamp_us;
             return Placed::At;
         }
+        self.ran_back += 1;
+        self.ran_back_most_us = self.ran_back_most_us.max(self.last_us - stamp_us);
         self.restart(stamp_us);
         Placed::Restarted
     }
@@ -116,7 +124,7 @@ mod tests {
         let mut clock = Clock::default();
         clock.begin(0);
         assert_eq!(clock.place(10_000_000, None), Placed::At);
-        for odd in [0, 5_000_000, u64::MAX, 500_000_000] {
+        for odd in [0, 4_000_000, u64::MAX, 500_000_000, 40_000_000] {
             assert_eq!(clock.place(odd, Some(10_000_000)), Placed::Stale, "{odd}");
             assert_eq!(clock.place(10_010_000, Some(10_000_000)), Placed::At);
         }
@@ -129,6 +137,7 @@ mod tests {
         clock.place(160_000_000, None);
         let placed = [1_000_000, 1_004_000, 1_008_000].map(|us| clock.place(us, Some(160_000_000)));
         assert_eq!(placed, [Placed::Stale, Placed::Stale, Placed::Restarted]);
+        assert_eq!((clock.ran_back, clock.ran_back_most_us), (1, 159_000_000 - 8_000));
         assert!((clock.seconds(1_008_000) - 61.0).abs() < 1e-9);
         assert!(clock.begin(0));
         assert!((clock.seconds(0) - 62.0).abs() < 1e-9);

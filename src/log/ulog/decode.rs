@@ -43,6 +43,8 @@ struct Topic {
 pub(super) struct DecodeReport {
     /// messages of topics that are read whose stamps fit no clock
     pub(super) stale_stamps: u64,
+    /// times that stamps ran back for good, and the furthest of these, microseconds
+    pub(super) ran_back: (u64, u64),
     /// parameters of a simulator's truth: counted, never read
     pub(super) withheld_truth: u64,
 }
@@ -123,7 +125,10 @@ impl Decoder {
         let Some(stamp_us) = subscription.layout.stamp_us(bytes) else { return };
         match self.clock.place(stamp_us, topic.last_us) {
             Placed::At => topic.last_us = Some(stamp_us),
-            Placed::Restarted => self.restarted(stamp_us, sink),
+            Placed::Restarted => {
+                self.report.ran_back = (self.clock.ran_back, self.clock.ran_back_most_us);
+                self.restarted(stamp_us, sink);
+            }
             Placed::Stale => {
                 self.report.stale_stamps += 1;
                 return;

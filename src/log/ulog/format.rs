@@ -10,6 +10,7 @@ use crate::autopilot::Autopilot;
 use crate::log::error::LogError;
 use crate::log::format::{Certainty, Format, Place, Sink};
 use crate::log::input::Input;
+use crate::log::loss::Oddity;
 use crate::log::onboard::{OnboardReport, Topic};
 use crate::log::options::OpenOptions;
 use crate::log::report::{Details, ReadReport};
@@ -41,6 +42,9 @@ fn read(input: &Input<'_>, _: &OpenOptions, sink: &mut Sink<'_>) -> Result<ReadR
     }
     let report = reader.into_report();
     let stale = decoder.report().stale_stamps;
+    let (count, most_us) = decoder.report().ran_back;
+    let mut oddities = report.oddities();
+    oddities.extend((count > 0).then_some(Oddity::VehicleClockBack { count, most_us }));
     let onboard = OnboardReport {
         bytes: report.bytes,
         messages: report.messages,
@@ -52,7 +56,7 @@ fn read(input: &Input<'_>, _: &OpenOptions, sink: &mut Sink<'_>) -> Result<ReadR
         format: FORMAT.name,
         vehicle: craft.vehicle(autopilot),
         losses: report.losses(stale),
-        oddities: report.oddities(),
+        oddities,
         details: Details::Onboard(Box::new(onboard)),
         ..ReadReport::default()
     })

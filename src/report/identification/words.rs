@@ -1,7 +1,7 @@
 //! Words and numbers that several views of an identification have in common.
 
 use crate::diagnose::joint::{ParameterFound, Physical};
-use crate::estimate::{Finding, MethodResult};
+use crate::estimate::{Finding, MethodResult, Nominal, POOR, size_of};
 use crate::report::thrust_source::thrust_name;
 use crate::signals::Quality;
 use crate::study::IdentifyStudy;
@@ -15,23 +15,39 @@ pub(super) fn verdict(study: &IdentifyStudy, result: &MethodResult) -> String {
     if !doubts.is_empty() {
         return format!("doubtful: {}", doubts.join("; "));
     }
-    let (mut yes, mut no) = (Vec::new(), Vec::new());
     let scale = study.with.as_ref().map_or(study.scale.as_ref(), |with| with.together.scale.as_ref());
-    if matches!(scale.map(|scale| &scale.factor), Some(Finding::Determined { .. })) {
-        yes.push("thrust");
+    let (mut good, mut poor, mut no) = (Vec::new(), Vec::new(), Vec::new());
+    let mut tell = |name: &'static str, relative: f64| {
+        if relative > POOR {
+            poor.push(format!("{name} to {:.0} %", 100.0 * relative));
+        } else {
+            good.push(name);
+        }
+    };
+    if let Some(Finding::Determined { value, std }) = scale.map(|scale| &scale.factor) {
+        tell("thrust", std / value);
     }
-    for parameter in &result.parameters {
+    let nominal = Nominal::of(&study.vehicle);
+    for (index, parameter) in result.parameters.iter().enumerate() {
         match parameter.finding {
-            Finding::Determined { .. } => yes.push(parameter.name),
+            Finding::Determined { std, .. } => {
+                tell(parameter.name, std / size_of(&result.estimated.theta, &nominal, index));
+            }
             Finding::NotDetermined { .. } => no.push(parameter.name),
             Finding::Given { .. } => {}
         }
     }
-    match (yes.is_empty(), no.is_empty()) {
-        (false, true) if scale.is_some() => "good for thrust and all of the inertia".into(),
-        (false, true) => "good for all of mass and inertia".into(),
-        (false, false) => format!("good for {}; not for {}", yes.join(", "), no.join(", ")),
-        (true, _) => "determines none of the parameters".into(),
+    if poor.is_empty() && no.is_empty() {
+        let all = if scale.is_some() { "thrust and all of the inertia" } else { "all of mass and inertia" };
+        return format!("good for {all}");
+    }
+    let part = |word: &str, names: String| (!names.is_empty()).then(|| format!("{word} {names}"));
+    let parts = [part("good for", good.join(", ")), part("poor for", poor.join(", "))];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    match part("not for", no.join(", ")) {
+        _ if parts.is_empty() => "determines none of the parameters".into(),
+        Some(not) => format!("{}; {not}", parts.join("; ")),
+        None => parts.join("; "),
     }
 }
 

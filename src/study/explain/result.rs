@@ -13,10 +13,11 @@ use crate::diagnose::{
 };
 use crate::draft::Draft;
 use crate::estimate::{
-    Estimated, Finding, NAMES, Nominal, THETA, ThrustScale, UNITS, finding, rescaled, theta_of,
+    Estimated, Finding, MovedByCurve, NAMES, Nominal, THETA, ThrustScale, UNITS, finding, rescaled,
+    scaling_mass, theta_of,
 };
 use crate::note::Note;
-use crate::physics::ActiveEffect;
+use crate::physics::{ActiveEffect, Effect, effects::ThrustCurve};
 use crate::signals::Quality;
 use crate::study::{Correlation, InputFile};
 use crate::text::significant;
@@ -34,6 +35,8 @@ pub struct Given {
     pub quality: Vec<Quality>,
     /// Ixx, Iyy, Izz of the rigid body by a window of twice the width, as shares of those by the usual one
     pub inertia_by_wider_window: [f64; 3],
+    /// how far mass and inertia move with one standard error of a guessed thrust curve
+    pub by_guessed_curve: Option<MovedByCurve>,
     /// settings of the method
     pub settings: ExplainSettings,
     /// s left out at the beginning of each flight
@@ -161,10 +164,10 @@ impl ExplainStudy {
     /// Mass and inertia, nominal, alone and with the effects.
     #[must_use]
     pub fn body(&self) -> Vec<BodyParameter> {
-        let before = estimates(&self.explanation.search.before);
-        let after = estimates(self.fitted());
+        let before = self.estimates(&self.explanation.search.before);
+        let after = self.estimates(self.fitted());
         let nominal = Nominal::of(&self.given.vehicle);
-        let estimated = on_scale(self.fitted()).with_wider_window(self.given.inertia_by_wider_window);
+        let estimated = self.on_scale(self.fitted()).with_wider_window(self.given.inertia_by_wider_window);
         let is_weighed = |index| index == 0 && self.fitted().base.weighed_kg.is_some();
         let not_determined = |index| match finding(&estimated, &nominal, index) {
             Finding::NotDetermined { reason } if !is_weighed(index) => Some(reason),
@@ -194,8 +197,30 @@ impl ExplainStudy {
         let mut estimated = fitted.rigid_body();
         estimated.theta *= of_stated;
         estimated.covariance *= of_stated.powi(2);
-        let mass = finding(&estimated, &Nominal::of(&self.given.vehicle), 0);
+        let mass = scaling_mass(&self.guessing(estimated, fitted), &Nominal::of(&self.given.vehicle));
         Some(ThrustScale::of(mass, weighed_kg, stated))
+    }
+
+    /// Mass and inertia of a fit, with the covariance that a weighed mass leaves.
+    fn on_scale(&self, fitted: &Fitted) -> Estimated {
+        let estimated = self.guessing(fitted.rigid_body(), fitted);
+        fitted.base.weighed_kg.map_or(estimated.clone(), |weighed_kg| rescaled(&estimated, weighed_kg))
+    }
+
+    /// An estimate with what a guessed thrust curve does to it, unless the fit has a curve of its own.
+    fn guessing(&self, estimated: Estimated, fitted: &Fitted) -> Estimated {
+        let told = fitted.base.estimates(|term| term.id() == ThrustCurve.id());
+        let moved = self.given.by_guessed_curve.filter(|_| !told).map(|by| by.on(&estimated.theta));
+        estimated.with_guessed_curve(moved)
+    }
+
+    /// Mass and inertia of a fit with their standard errors.
+    fn estimates(&self, fitted: &Fitted) -> [Estimate; THETA] {
+        let (values, of) = (theta_of(&fitted.base.vehicle.body), self.on_scale(fitted));
+        std::array::from_fn(|index| Estimate {
+            value: values[index],
+            std: of.covariance[(index, index)].max(0.0).sqrt().hypot(of.moved_by_curve(index)),
+        })
     }
 
     /// Reasons why mass or entries of the inertia are not determined, each with the names that it holds for.
@@ -337,19 +362,4 @@ impl ExplainStudy {
 /// Unit of what is left of an axis.
 fn unit_of(channel: &str) -> &'static str {
     if channel.starts_with("force") { "N" } else { "N m" }
-}
-
-/// Mass and inertia of a fit, with the covariance that a weighed mass leaves.
-fn on_scale(fitted: &Fitted) -> Estimated {
-    let estimated = fitted.rigid_body();
-    fitted.base.weighed_kg.map_or(estimated.clone(), |weighed_kg| rescaled(&estimated, weighed_kg))
-}
-
-/// Mass and inertia of a fit with their standard errors.
-fn estimates(fitted: &Fitted) -> [Estimate; THETA] {
-    let (values, covariance) = (theta_of(&fitted.base.vehicle.body), on_scale(fitted).covariance);
-    std::array::from_fn(|index| Estimate {
-        value: values[index],
-        std: covariance[(index, index)].max(0.0).sqrt(),
-    })
 }

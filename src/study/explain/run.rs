@@ -8,7 +8,7 @@ use crate::config::LoadedVehicle;
 use crate::diagnose::experiment::{NextSettings, design};
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{ExplainSettings, Trace, Verdict};
-use crate::estimate::{Contradiction, inertia_by_wider_window};
+use crate::estimate::{Contradiction, inertia_by_wider_window, moved_by_guessed_curve};
 use crate::note::{About, Note};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, names, prepare, refuse_twins};
@@ -103,6 +103,7 @@ impl Task<'_> {
             inputs: flights.inputs.clone(),
             quality: flights.signals.iter().map(|signals| signals.quality.clone()).collect(),
             inertia_by_wider_window: inertia_by_wider_window(&flights.signals, self.vehicle),
+            by_guessed_curve: moved_by_guessed_curve(&flights.signals, self.vehicle),
             settings,
             transient_s: self.request.transient_s,
         };

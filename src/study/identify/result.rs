@@ -5,7 +5,7 @@ use crate::diagnose::joint::JointEstimate;
 use crate::draft::Draft;
 use crate::estimate::{
     Contradiction, EstimateError, Identification, IdentifySettings, MethodResult, ThrustScale, apply_anchor,
-    contradictions, identify,
+    contradictions, identify, rests_on_guessed_curve,
 };
 use crate::note::Note;
 use crate::signals::{Quality, Signals};
@@ -88,6 +88,7 @@ impl IdentifyStudy {
         let disagree = identification.notes.iter().any(Note::is_warning);
         let contradictions = contradictions(&identification.best.result, &vehicle, scale.as_ref());
         identification.notes.extend(contradictions.iter().map(Contradiction::note));
+        identification.notes.extend(rests_on_guessed_curve(&identification.best.result.estimated));
         Ok(Self {
             vehicle,
             flights,

@@ -4,10 +4,13 @@ use super::request::IdentifyRequest;
 use super::result::{IdentifyStudy, WithEffects};
 use crate::diagnose::ExplainSettings;
 use crate::diagnose::joint::{RequestedEffects, identify_jointly};
+use crate::note::Note;
+use crate::recording::Recording;
+use crate::signals::other_settings;
 use crate::study::flight::Flight;
 use crate::study::flights::{IDENTIFIED, Prepared, load_all, names, prepare, refuse_twins};
 use crate::study::vehicle_given::Known;
-use crate::study::{Progress, Stage, StudyError, effects_of};
+use crate::study::{InputFile, Progress, Stage, StudyError, effects_of};
 use crate::text;
 
 /// Estimates mass and inertia from logs, and the effects that are asked for together with them.
@@ -22,16 +25,28 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     let logs = load_all(&request.logs, &request.read, &IDENTIFIED)?;
     refuse_twins(logs.iter())?;
     let known = request.vehicle.of_flights(known, &logs)?;
-    let notes = known.notes();
+    let mut notes = known.notes();
     notes.iter().for_each(|note| progress.note(note));
     progress.stage(Stage::Identifying);
     let with = wanted.map(|wanted| with_effects(request, (&logs, &known), &wanted)).transpose()?;
     let vehicle = (&known.loaded.vehicle, known.origin.as_path());
     let Prepared { recordings, signals, inputs } = prepare(logs, vehicle, &request.conditioning())?;
+    let apart = settings_apart(&recordings);
+    apart.iter().for_each(|note| progress.note(note));
+    notes.extend(apart);
     // memory for the work that begins
     drop(recordings);
-    let study = IdentifyStudy::of_signals(signals, inputs, known.loaded.vehicle, &request.settings())?;
+    let lost: Vec<String> = inputs.iter().flat_map(InputFile::losses).map(str::to_owned).collect();
+    let study = IdentifyStudy::of_signals(signals, inputs, known.loaded.vehicle, &request.settings())
+        .map_err(|error| StudyError::of_estimate(error, &lost))?;
     Ok(IdentifyStudy { with, notes, drafted: known.draft, ..study })
+}
+
+/// Flights with other settings than the first.
+fn settings_apart(flights: &[Recording]) -> Vec<Note> {
+    let Some((first, others)) = flights.split_first() else { return Vec::new() };
+    let others = others.iter().enumerate();
+    others.filter_map(|(index, other)| other_settings((first, 1), (other, index + 2))).collect()
 }
 
 /// The named effects together with the rigid body, on the rows on which `explain` would find them.

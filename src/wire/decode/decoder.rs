@@ -90,6 +90,7 @@ impl Decoder {
         let stamp = source.stamp(payload);
         let placed = self.clock.place(stamp, host_us);
         self.report.host_steps = self.clock.host_steps();
+        self.report.ran_back = self.clock.ran_back();
         let time_us = match placed {
             Placed::At(time_us) => time_us,
             Placed::Restarted(time_us) => {

@@ -11,6 +11,8 @@ pub struct DecodeReport {
     pub stale_stamps: u64,
     /// times that the recording computer's clock was set while the vehicle's continued
     pub host_steps: u64,
+    /// times that the vehicle's time since boot ran back and nothing started anew, and the furthest of these, microseconds
+    pub ran_back: (u64, u64),
     /// messages of a simulator's truth and parameters SIM_*, SIH_*: never read
     pub withheld_truth: u64,
     /// messages in a frame or unit that cannot be used, by message

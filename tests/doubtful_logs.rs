@@ -1,0 +1,284 @@
+//! Logs that are damaged, in another order than they were written in, or of two vehicles: what is said of them.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::indexing_slicing, reason = "a test ends where it fails")]
+
+mod support;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use mavid::config::load_vehicle;
+use mavid::inspect::{Inspection, inspect, inspect_recording};
+use mavid::log::{self, Input, Loss, OpenOptions};
+use mavid::recording::Quantity;
+use mavid::vehicle::Vehicle;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use support::dataflash::DataflashLog;
+
+const DATA: u8 = b'D';
+const HEADER: usize = 16;
+
+fn fixture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
+}
+
+fn written(name: &str, bytes: &[u8]) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("doubtful_logs");
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join(name);
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+fn inspected(bytes: &[u8]) -> Inspection {
+    let input = Input::Bytes { name: "bytes", bytes };
+    inspect(input, &OpenOptions::default(), None, &mut |_| ()).unwrap()
+}
+
+/// What `mavid` says and its status.
+fn mavid(arguments: &[&str]) -> (String, Option<i32>) {
+    let output = Command::new(env!("CARGO_BIN_EXE_mavid")).args(arguments).output().unwrap();
+    let said = [output.stdout, output.stderr].concat();
+    (String::from_utf8_lossy(&said).into_owned(), output.status.code())
+}
+
+fn shuffled<T>(pieces: &mut [T], random: &mut Pcg64) {
+    for last in (1..pieces.len()).rev() {
+        pieces.swap(last, random.random_range(0..=last));
+    }
+}
+
+/// The records of a telemetry log with MAVLink 2.
+fn records(log: &[u8]) -> Vec<&[u8]> {
+    let (mut records, mut at) = (Vec::new(), 0);
+    while at + 10 < log.len() {
+        assert_eq!(log[at + 8], 0xfd);
+        let bytes = 8 + 12 + usize::from(log[at + 9]) + if log[at + 10] & 1 == 1 { 13 } else { 0 };
+        records.push(&log[at..at + bytes]);
+        at += bytes;
+    }
+    records
+}
+
+/// The messages of a PX4 log behind its header.
+fn messages(log: &[u8]) -> Vec<&[u8]> {
+    let (mut messages, mut at) = (Vec::new(), HEADER);
+    while at + 3 <= log.len() {
+        let bytes = 3 + usize::from(u16::from_le_bytes([log[at], log[at + 1]]));
+        messages.push(&log[at..(at + bytes).min(log.len())]);
+        at += bytes;
+    }
+    messages
+}
+
+/// A log of ArduPilot of a minute: an inertial unit, and a state now and then.
+fn minute() -> (Vec<u8>, Vec<Vec<u8>>) {
+    let mut log = DataflashLog::new();
+    log.define(131, "IMU", "QBffffff", "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ");
+    let head = log.binary.clone();
+    let messages = (0..6000).map(|index| {
+        log.binary.clear();
+        let time_us = 5e6 + 1e4 * f64::from(index);
+        let gyro = 0.1 * (0.01 * f64::from(index)).sin();
+        log.add("IMU", &[time_us, 0.0, gyro, gyro, gyro, 0.1, 0.2, -9.8].map(Into::into));
+        log.binary.clone()
+    });
+    let messages = messages.collect();
+    (head, messages)
+}
+
+fn is_refused(bytes: &[u8], name: &str) {
+    let found = inspected(bytes);
+    assert!(
+        found.verdict.contains("its messages are out of order, their stamps run back"),
+        "{}",
+        found.verdict
+    );
+    assert!(found.flight.segments.is_empty() && found.flight.airborne_s == 0.0, "{:?}", found.flight);
+    let path = written(name, bytes);
+    let (said, status) =
+        mavid(&["identify", path.to_str().unwrap(), "--mass", "2", "--frame", "quadrotor-x"]);
+    assert_eq!(status, Some(2), "{said}");
+    assert!(
+        said.contains("expected a log in the order in which it was written, got one whose stamps"),
+        "{said}"
+    );
+}
+
+#[test]
+fn messages_in_another_order_are_told_and_not_timed() {
+    let mut random = Pcg64::seed_from_u64(7);
+    let whole = std::fs::read(fixture("p01_identify_0_25s.tlog")).unwrap();
+    let mut shuffle = records(&whole);
+    shuffled(&mut shuffle, &mut random);
+    is_refused(&shuffle.concat(), "shuffled.tlog");
+    // the frames alone, behind stamps in order
+    let stamps: Vec<&[u8]> = records(&whole).into_iter().map(|record| &record[..8]).collect();
+    let restamped = stamps.iter().zip(&shuffle).flat_map(|(stamp, record)| [*stamp, &record[8..]].concat());
+    is_refused(&restamped.collect::<Vec<u8>>(), "restamped.tlog");
+    let (head, mut messages_of_minute) = minute();
+    shuffled(&mut messages_of_minute, &mut random);
+    is_refused(&[head, messages_of_minute.concat()].concat(), "shuffled.bin");
+    let whole = std::fs::read(fixture("px4_flight.ulg")).unwrap();
+    let (mut data, other): (Vec<&[u8]>, Vec<&[u8]>) =
+        messages(&whole).into_iter().partition(|message| message.get(2) == Some(&DATA));
+    shuffled(&mut data, &mut random);
+    is_refused(&[&whole[..HEADER], &other.concat(), &data.concat()].concat(), "shuffled.ulg");
+}
+
+#[test]
+fn what_transport_reorders_is_sorted_into_place() {
+    let whole = std::fs::read(fixture("p01_identify_0_25s.tlog")).unwrap();
+    let mut random = Pcg64::seed_from_u64(9);
+    let mut swapped = records(&whole);
+    for _ in 0..500 {
+        let at = random.random_range(0..swapped.len() - 8);
+        swapped.swap(at, at + random.random_range(1..8));
+    }
+    let (found, sound) = (inspected(&swapped.concat()), inspected(&whole));
+    assert!((found.flight.airborne_s - sound.flight.airborne_s).abs() < 0.1, "{}", found.verdict);
+}
+
+/// A bit of the stamps' bytes that says more than an hour or a second.
+fn with_stray_stamps<'a>(messages: impl Iterator<Item = &'a mut Vec<u8>>, stamp_at: usize) -> u64 {
+    let mut random = Pcg64::seed_from_u64(3);
+    let mut strays = 0;
+    for (index, message) in messages.enumerate() {
+        if index % 397 == 200 {
+            let bit = random.random_range(25..36_usize);
+            message[stamp_at + bit / 8] ^= 1 << (bit % 8);
+            strays += 1;
+        }
+    }
+    strays
+}
+
+#[test]
+fn stray_stamps_lengthen_nothing_and_are_counted() {
+    let (head, mut of_minute) = minute();
+    let strays = with_stray_stamps(of_minute.iter_mut(), 3);
+    let found = inspected(&[head, of_minute.concat()].concat());
+    assert_eq!(found.clock.span_s, (0.0, 59.99));
+    let told = |count: u64| format!("{count} messages with a time that fits no clock were left out");
+    assert_eq!(found.losses, [told(strays)]);
+
+    let whole = std::fs::read(fixture("px4_flight.ulg")).unwrap();
+    let sound = inspected(&whole);
+    let mut damaged: Vec<Vec<u8>> = messages(&whole).into_iter().map(<[u8]>::to_vec).collect();
+    let read = damaged.iter_mut().filter(|message| message.get(2) == Some(&DATA) && message.len() > 40);
+    let strays = with_stray_stamps(read, 5);
+    let found = inspected(&[&whole[..HEADER], &damaged.concat()].concat());
+    let apart = |one: (f64, f64), other: (f64, f64)| (one.0 - other.0).abs().max((one.1 - other.1).abs());
+    assert!(apart(found.clock.span_s, sound.clock.span_s) < 5.0, "{:?}", found.clock);
+    assert!((found.flight.airborne_s - sound.flight.airborne_s).abs() < 0.2, "{}", found.verdict);
+    assert!(found.clock.resets_s.is_empty());
+    // of topics that are read
+    let left_out: u64 = found.losses[0].split(' ').next().unwrap().parse().unwrap();
+    assert!((1..=strays).contains(&left_out), "{:?}", found.losses);
+}
+
+#[test]
+fn a_missing_beginning_is_told_as_that() {
+    let whole = std::fs::read(fixture("px4_flight.ulg")).unwrap();
+    for cut in [1, 100, 5000, whole.len() / 2] {
+        let path = written("cut.ulg", &whole[cut..]);
+        let (said, status) = mavid(&["inspect", path.to_str().unwrap()]);
+        assert_eq!(status, Some(2), "{said}");
+        assert!(said.contains("a piece of a PX4 log (.ulg): its beginning is missing"), "{cut}: {said}");
+    }
+    let mut log = DataflashLog::new();
+    log.define(130, "MSG", "QZ", "TimeUS,Message");
+    log.define(131, "IMU", "QBffffff", "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ");
+    for index in 0..3000 {
+        let time_us = 5e6 + 1e4 * f64::from(index);
+        log.add("IMU", &[time_us, 0.0, 0.1, 0.1, 0.1, 0.1, 0.2, -9.8].map(Into::into));
+        if index % 100 == 0 {
+            log.add("MSG", &[time_us.into(), "flying".into()]);
+        }
+    }
+    // the definition of the inertial unit is damaged, and with it most of the log
+    let mut bytes = log.binary.clone();
+    bytes[2 * 89..3 * 89].fill(0x5a);
+    let found = inspected(&bytes);
+    assert!(
+        found.verdict.contains("no actuator outputs") && found.verdict.contains("It is damaged, "),
+        "{}",
+        found.verdict
+    );
+    let all =
+        found.advice.join(" ") + &found.quantities.iter().filter_map(|of| of.set.clone()).collect::<String>();
+    assert!(all.contains("give a sound copy of the log") && !all.contains("LOG_BITMASK"), "{all}");
+    // nothing but the messages
+    let found = inspected(&bytes[89..]);
+    assert!(found.verdict.contains("its beginning is missing. Give the whole log"), "{}", found.verdict);
+}
+
+#[test]
+fn missing_rates_are_one_story_with_and_without_a_vehicle() {
+    let vehicle = load_vehicle(&fixture("p01_vehicle.toml")).unwrap();
+    let opened = log::open(fixture("p01_identify_0_25s.tlog").as_path(), &OpenOptions::default()).unwrap();
+    let (mut without, mut zero) = (opened.clone(), opened);
+    without.recording.streams.retain(|key, _| key.quantity != Quantity::AngularRate);
+    let rates = zero.recording.streams.iter_mut().filter(|(key, _)| key.quantity == Quantity::AngularRate);
+    rates.for_each(|(_, stream)| stream.values.fill(0.0));
+    for (opened, expected) in
+        [(without, "no body rates"), (zero, "no body rates: they hold nothing but zeros")]
+    {
+        let reasons = |vehicle: Option<&Vehicle>| -> Vec<String> {
+            let found = inspect_recording(&opened, vehicle);
+            let inertia = found.identifiability.iter().skip(1).filter_map(|of| of.reason.clone());
+            let of_quantity = found.quantities[1].reason.clone();
+            inertia
+                .chain(of_quantity)
+                .chain(found.advice.into_iter().filter(|one| one.contains("ody rates")))
+                .collect()
+        };
+        assert_eq!(reasons(None), reasons(Some(&vehicle)));
+        assert_eq!(reasons(None)[..7], vec![expected.to_owned(); 7]);
+    }
+}
+
+#[test]
+fn two_vehicles_in_one_log_are_told() {
+    let config = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(name);
+    let heavier = std::fs::read_to_string(config("x500.toml")).unwrap();
+    let inertia = heavier.lines().find(|line| line.starts_with("inertia")).unwrap();
+    let of_other = "inertia = { xx = 0.0286, yy = 0.0286, zz = 0.0527 }";
+    let other = written("other.toml", heavier.replace(inertia, of_other).as_bytes());
+    let trajectory = fixture("at_bounds_trajectory.toml").display().to_string();
+    let flown = |vehicle: &Path, seed: &str| {
+        let log = written(&format!("flown_{seed}.tlog"), &[]).display().to_string();
+        let vehicle = vehicle.display().to_string();
+        let (said, status) =
+            mavid(&["simulate", &vehicle, "--trajectory", &trajectory, "--out", &log, "--seed", seed]);
+        assert_eq!(status, Some(0), "{said}");
+        log
+    };
+    let (one, again, another) =
+        (flown(&config("x500.toml"), "1"), flown(&config("x500.toml"), "2"), flown(&other, "3"));
+    let stated = config("x500.toml").display().to_string();
+    let (same, _) = mavid(&["identify", &one, &again, "--vehicle", &stated]);
+    assert!(!same.contains("two vehicles"), "{same}");
+    let (differ, _) = mavid(&["identify", &one, &another, "--vehicle", &stated]);
+    assert!(differ.contains("doubtful: ") && differ.contains("two vehicles or two loads"), "{differ}");
+    let both = |other: &str| {
+        let bytes = [std::fs::read(&one).unwrap(), std::fs::read(other).unwrap()].concat();
+        mavid(&["inspect", written("both.tlog", &bytes).to_str().unwrap(), "--vehicle", &stated]).0
+    };
+    let (same, differ) = (both(&again), both(&another));
+    assert!(same.contains("This log is good for "), "{same}");
+    assert!(differ.contains("Doubtful: flight 2 alone gives an i"), "{differ}");
+}
+
+#[test]
+fn losses_of_order_are_no_losses_of_bytes() {
+    let (head, messages) = minute();
+    let opened = log::open(
+        Input::Bytes { name: "bytes", bytes: &[head, messages.concat()].concat() },
+        &OpenOptions::default(),
+    )
+    .unwrap();
+    assert!(!opened.report.losses.iter().any(|loss| matches!(loss, Loss::StrayStamps { .. })));
+    assert_eq!((opened.report.out_of_order(), opened.report.damage()), (None, None));
+}
