@@ -24,6 +24,19 @@ pub struct Doubt {
     pub output: f64,
 }
 
+/// What the controller holds for true.
+#[derive(Debug, Clone, Copy)]
+pub struct Belief {
+    /// m, world
+    pub position: Vector3<f64>,
+    /// m/s, world
+    pub velocity: Vector3<f64>,
+    /// body to world
+    pub rotation: Matrix3<f64>,
+    /// rad/s, body
+    pub rates: Vector3<f64>,
+}
+
 /// A controller that believes the maker.
 pub struct Controller {
     mass: f64,
@@ -31,9 +44,10 @@ pub struct Controller {
     /// from thrust and torque to the rotors' squared speeds
     mix: Matrix4<f64>,
     speed_max: f64,
-    doubt: Doubt,
     /// m s
     sum: Vector3<f64>,
+    /// tangent of the steepest lean that is asked for
+    steepest: f64,
 }
 
 /// Gains: position 1/s^2, velocity 1/s, the sum 1/s^3, attitude 1/s^2, rates 1/s.
@@ -43,7 +57,7 @@ const GAINS: [f64; 5] = [4.0, 3.4, 1.0, 55.0, 12.0];
 const YAW: f64 = 0.25;
 
 impl Controller {
-    pub fn new(craft: &Craft, doubt: Doubt) -> Self {
+    pub fn new(craft: &Craft, steepest: f64) -> Self {
         let columns: [_; 4] = std::array::from_fn(|rotor| {
             let (hub, thrust) = (craft.hubs[rotor], craft.thrust_coefficient);
             Vector4::new(
@@ -59,34 +73,49 @@ impl Controller {
             inertia: Matrix3::from_diagonal(&craft.said_inertia),
             mix,
             speed_max: craft.speed_max,
-            doubt,
             sum: Vector3::zeros(),
+            steepest,
         }
     }
 
-    /// Actuator values `time` s into the flight; `step` s since the last.
+    /// Actuator values `time` s into the flight on a state that is doubted; `step` s since the last.
     pub fn outputs(
         &mut self,
         path: &Path,
         (time, step): (f64, f64),
-        state: &State,
+        (state, doubt): (&State, Doubt),
         dice: &mut impl Rng,
     ) -> [f64; 4] {
-        let wanted = path.at(time);
         let mut noise = |sigma: f64| {
             Vector3::from_fn(|_, _| {
                 let drawn: f64 = StandardNormal.sample(dice);
                 sigma * drawn
             })
         };
-        let at = three(state, place::POSITION) + noise(self.doubt.position);
-        let velocity = three(state, place::VELOCITY) + noise(self.doubt.velocity);
-        let turn = rotation(state) * Rotation3::new(noise(self.doubt.attitude)).matrix();
-        let rates = three(state, place::RATES) + noise(self.doubt.rates);
+        let belief = Belief {
+            position: three(state, place::POSITION) + noise(doubt.position),
+            velocity: three(state, place::VELOCITY) + noise(doubt.velocity),
+            rotation: rotation(state) * Rotation3::new(noise(doubt.attitude)).matrix(),
+            rates: three(state, place::RATES) + noise(doubt.rates),
+        };
+        let drawn = noise(doubt.output);
+        let fourth = noise(doubt.output).x;
+        let decided = self.decide(path, (time, step), &belief);
+        std::array::from_fn(|rotor| {
+            let extra = if rotor < 3 { drawn[rotor] } else { fourth };
+            (decided[rotor] + extra).clamp(0.05, 1.0)
+        })
+    }
+
+    /// Actuator values on what is believed, without bounds.
+    pub fn decide(&mut self, path: &Path, (time, step): (f64, f64), belief: &Belief) -> [f64; 4] {
+        let wanted = path.at(time);
+        let Belief { position, velocity, rotation: turn, rates } = belief;
         let [kp, kv, ki, kr, kw] = GAINS;
-        let off = at - wanted.position;
+        let off = position - wanted.position;
         self.sum = (self.sum + off * step).map(|sum| sum.clamp(-2.0, 2.0));
         let push = up(&wanted) - kp * off - kv * (velocity - wanted.velocity) - ki * self.sum;
+        let push = self.leaned(push);
         let thrust = self.mass * push.dot(&turn.column(2)).max(0.2 * GRAVITY);
         let to = attitude(&push, wanted.yaw);
         // how the reference itself turns, from what it asks for a little later
@@ -100,12 +129,15 @@ impl Controller {
         answer.z *= YAW;
         let torque = self.inertia * answer + rates.cross(&(self.inertia * rates));
         let squares = self.mix * Vector4::new(thrust, torque.x, torque.y, torque.z);
-        let drawn = noise(self.doubt.output);
-        let fourth = noise(self.doubt.output).x;
-        std::array::from_fn(|rotor| {
-            let extra = if rotor < 3 { drawn[rotor] } else { fourth };
-            (squares[rotor].max(0.0).sqrt() / self.speed_max + extra).clamp(0.05, 1.0)
-        })
+        std::array::from_fn(|rotor| squares[rotor].max(0.0).sqrt() / self.speed_max)
+    }
+
+    /// A push no steeper than is allowed.
+    fn leaned(&self, push: Vector3<f64>) -> Vector3<f64> {
+        let most = self.steepest * push.z.max(0.3 * GRAVITY);
+        let level = push.xy().norm();
+        let share = if level > most { most / level } else { 1.0 };
+        Vector3::new(push.x * share, push.y * share, push.z)
     }
 }
 

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use rand::{Rng, RngExt};
 
 use super::dice;
+use super::mission::{self, Leg};
 
 /// Harmonics.
 const HARMONICS: usize = 5;
@@ -49,6 +50,8 @@ pub struct Path {
     waves: [[(f64, f64); HARMONICS]; 4],
     /// m
     height: f64,
+    /// of a mission; empty: the series
+    legs: Vec<Leg>,
 }
 
 /// Hover before the series begins, s.
@@ -63,6 +66,23 @@ impl Path {
         let mut dice = dice(seed, 2);
         let period = dice.random_range(10.0..14.0_f64);
         let periods = periods.unwrap_or((50.0 / period).round());
+        Self::series((period, HOVER + periods * period), room, &mut dice)
+    }
+
+    /// The path of a seed from waypoint to waypoint in a room of `reach` m about the middle, `duration` s long.
+    pub fn mission(seed: u64, (room, reach): (Room, f64), duration: f64) -> Self {
+        let mut dice = dice(seed, 2);
+        let legs = mission::legs((room, reach), (HOVER, duration), &mut dice);
+        let waves = [[(0.0, 0.0); HARMONICS]; 4];
+        Self { period: duration, duration, waves, height: 0.0, legs }
+    }
+
+    /// The path of a seed as a series of this period, `duration` s long.
+    pub fn of_period(seed: u64, room: Room, (period, duration): (f64, f64)) -> Self {
+        Self::series((period, duration), room, &mut dice(seed, 2))
+    }
+
+    fn series((period, duration): (f64, f64), room: Room, mut dice: &mut impl Rng) -> Self {
         let mut waves = [[(0.0, 0.0); HARMONICS]; 4];
         for axis in &mut waves {
             for (place, wave) in axis.iter_mut().enumerate() {
@@ -75,7 +95,7 @@ impl Path {
                 (*cosine, *sine) = (*cosine / less, *sine / less);
             }
         }
-        let mut path = Self { period, duration: HOVER + periods * period, waves, height: 0.0 };
+        let mut path = Self { period, duration, waves, height: 0.0, legs: Vec::new() };
         path.fit(room);
         path
     }
@@ -125,6 +145,9 @@ impl Path {
 
     /// What is asked for `time` s after the flight's beginning.
     pub fn at(&self, time: f64) -> RequestedEffects {
+        if !self.legs.is_empty() {
+            return mission::at(&self.legs, time);
+        }
         let since = (time - HOVER).max(0.0);
         let [share, rise, bend] = blend(since / BLEND);
         let (rise, bend) = (rise / BLEND, bend / (BLEND * BLEND));
