@@ -25,8 +25,14 @@ fn craft() -> Craft {
 
 /// Hovering 1 m or so above the ground.
 fn begin(craft: &Craft, hidden: &Hidden) -> State {
-    let room =
-        Room { speed: 1.0, acceleration: 2.0, heights: (1.0, 2.0), lively_climb: false, plunge: false };
+    let room = Room {
+        speed: 1.0,
+        acceleration: 2.0,
+        heights: (1.0, 2.0),
+        lively_climb: false,
+        plunge: false,
+        fall: 1.0,
+    };
     hovering(craft, hidden, &Path::random(1, room, None))
 }
 

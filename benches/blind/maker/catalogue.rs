@@ -99,6 +99,7 @@ impl Case {
             heights: (low, low + dice.random_range(1.0..2.5)),
             lively_climb: false,
             plunge: false,
+            fall: 1.0,
         };
         let conditions = Conditions::random(seed);
         let (hidden, expect, truth) = (Hidden::default(), Vec::new(), Vec::new());

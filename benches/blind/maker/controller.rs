@@ -46,9 +46,36 @@ pub struct Controller {
     speed_max: f64,
     /// m s
     sum: Vector3<f64>,
-    /// tangent of the steepest lean that is asked for
-    steepest: f64,
+    tune: Tune,
 }
+
+/// How a controller is set up.
+#[derive(Debug, Clone, Copy)]
+pub struct Tune {
+    /// tangent of the steepest lean that is asked for
+    pub steepest: f64,
+    /// kg m^2 about the body's axes that it holds for true
+    pub inertia: Vector3<f64>,
+    /// how quickly it turns: 1 as the gains say
+    pub quickness: f64,
+}
+
+impl Tune {
+    /// By the maker's file alone.
+    pub fn by_file(craft: &Craft) -> Self {
+        Self { steepest: f64::INFINITY, inertia: craft.said_inertia, quickness: 1.0 }
+    }
+
+    /// As somebody who flies the vehicle sets it: slow motors are not driven to ring.
+    pub fn in_flight(craft: &Craft, lag: f64) -> Self {
+        let inertia = 0.9 * craft.inertia.diagonal();
+        let quickness = (0.7 / (lag + 0.02) / GAINS[4]).min(1.0);
+        Self { steepest: STEEPEST.to_radians().tan(), inertia, quickness }
+    }
+}
+
+/// Degrees of lean that a vehicle is allowed.
+const STEEPEST: f64 = 36.0;
 
 /// Gains: position 1/s^2, velocity 1/s, the sum 1/s^3, attitude 1/s^2, rates 1/s.
 const GAINS: [f64; 5] = [4.0, 3.4, 1.0, 55.0, 12.0];
@@ -57,7 +84,7 @@ const GAINS: [f64; 5] = [4.0, 3.4, 1.0, 55.0, 12.0];
 const YAW: f64 = 0.25;
 
 impl Controller {
-    pub fn new(craft: &Craft, steepest: f64) -> Self {
+    pub fn new(craft: &Craft, tune: Tune) -> Self {
         let columns: [_; 4] = std::array::from_fn(|rotor| {
             let (hub, thrust) = (craft.hubs[rotor], craft.thrust_coefficient);
             Vector4::new(
@@ -70,11 +97,11 @@ impl Controller {
         let mix = Matrix4::from_columns(&columns).try_inverse().unwrap_or_else(Matrix4::identity);
         Self {
             mass: craft.said_mass,
-            inertia: Matrix3::from_diagonal(&craft.said_inertia),
+            inertia: Matrix3::from_diagonal(&tune.inertia),
             mix,
             speed_max: craft.speed_max,
             sum: Vector3::zeros(),
-            steepest,
+            tune,
         }
     }
 
@@ -111,7 +138,9 @@ impl Controller {
     pub fn decide(&mut self, path: &Path, (time, step): (f64, f64), belief: &Belief) -> [f64; 4] {
         let wanted = path.at(time);
         let Belief { position, velocity, rotation: turn, rates } = belief;
+        let quick = self.tune.quickness;
         let [kp, kv, ki, kr, kw] = GAINS;
+        let [kp, kv, ki] = [kp * quick * quick, kv * quick, ki * quick.powi(3)];
         let off = position - wanted.position;
         self.sum = (self.sum + off * step).map(|sum| sum.clamp(-2.0, 2.0));
         let push = up(&wanted) - kp * off - kv * (velocity - wanted.velocity) - ki * self.sum;
@@ -125,7 +154,7 @@ impl Controller {
         let skew = 0.5 * (to.transpose() * turn - turn.transpose() * to);
         let lean = Vector3::new(skew[(2, 1)], skew[(0, 2)], skew[(1, 0)]);
         let turning = rates - turn.transpose() * to * ahead;
-        let mut answer = -kr * lean - kw * turning;
+        let mut answer = -kr * quick * quick * lean - kw * quick * turning;
         answer.z *= YAW;
         let torque = self.inertia * answer + rates.cross(&(self.inertia * rates));
         let squares = self.mix * Vector4::new(thrust, torque.x, torque.y, torque.z);
@@ -134,7 +163,7 @@ impl Controller {
 
     /// A push no steeper than is allowed.
     fn leaned(&self, push: Vector3<f64>) -> Vector3<f64> {
-        let most = self.steepest * push.z.max(0.3 * GRAVITY);
+        let most = self.tune.steepest * push.z.max(0.3 * GRAVITY);
         let level = push.xy().norm();
         let share = if level > most { most / level } else { 1.0 };
         Vector3::new(push.x * share, push.y * share, push.z)

@@ -5,7 +5,7 @@ use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::body::{Drive, SIZE, State, place, put, rotation, straighten, terminals, three};
-use super::controller::{Controller, Doubt};
+use super::controller::{Controller, Doubt, Tune};
 use super::hidden::{Gust, Hidden};
 use super::path::{Path, RequestedEffects};
 use super::vehicle::Craft;
@@ -137,7 +137,7 @@ pub fn fly(
     (seed, doubt): (u64, Doubt),
 ) -> Result<Vec<Instant>, Lost> {
     let mut noise = dice(seed, 3);
-    let mut controller = Controller::new(craft, f64::INFINITY);
+    let mut controller = Controller::new(craft, Tune::by_file(craft));
     let mut plant = Plant::new(craft, hidden, path, seed);
     let mut flown = Vec::new();
     let ticks = (0..).take_while(|&tick| f64::from(tick) * TICK <= path.duration);

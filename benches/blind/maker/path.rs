@@ -22,6 +22,8 @@ pub struct Room {
     pub lively_climb: bool,
     /// up and down slowly and far
     pub plunge: bool,
+    /// how fast the harmonics in x, y and yaw fall with their number, as a power
+    pub fall: f64,
 }
 
 /// What is asked for at an instant.
@@ -84,9 +86,10 @@ impl Path {
 
     fn series((period, duration): (f64, f64), room: Room, mut dice: &mut impl Rng) -> Self {
         let mut waves = [[(0.0, 0.0); HARMONICS]; 4];
-        for axis in &mut waves {
-            for (place, wave) in axis.iter_mut().enumerate() {
-                *wave = drawn(&mut dice, 1.0 / (1.0 + place as f64));
+        for (axis, of_axis) in waves.iter_mut().enumerate() {
+            let fall = if axis == 2 { 1.0 } else { room.fall };
+            for (place, wave) in of_axis.iter_mut().enumerate() {
+                *wave = drawn(&mut dice, (1.0 + place as f64).powf(-fall));
             }
         }
         if room.plunge {
@@ -119,7 +122,8 @@ impl Path {
         let span = (room.heights.1 - room.heights.0) / (high - low);
         let most = if room.lively_climb { room.speed } else { 0.7 * room.speed };
         let upright = span.min(most / climb).min(0.6 * room.acceleration.min(5.0) / push);
-        let turn = 0.9 / yaw_rate;
+        // a soft series is turned gently as well
+        let turn = if room.fall > 1.0 { 0.65 } else { 0.9 } / yaw_rate;
         for (axis, scale) in [level, level, upright, turn].into_iter().enumerate() {
             for (cosine, sine) in &mut self.waves[axis] {
                 *cosine *= scale;

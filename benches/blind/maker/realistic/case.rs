@@ -160,13 +160,12 @@ impl RealCase {
 /// Indoors or in the open.
 fn room(motion_capture: bool, dice: &mut impl rand::Rng) -> Room {
     let mut between = |low: f64, high: f64| dice.random_range(low..high);
-    let (speed, heights) = if motion_capture {
-        (between(1.5, 3.2), (between(0.8, 1.0), between(1.9, 2.3)))
+    let (speed, acceleration, heights, fall) = if motion_capture {
+        (between(1.5, 3.2), between(3.5, 7.0), (between(0.8, 1.0), between(1.9, 2.3)), 1.4)
     } else {
-        (between(2.8, 6.0), (between(1.5, 1.8), between(3.4, 4.6)))
+        (between(2.8, 5.5), between(4.3, 8.5), (between(1.5, 1.8), between(3.4, 4.6)), 1.8)
     };
-    let lively_climb = dice.random_bool(0.3);
-    Room { speed, acceleration: dice.random_range(3.5..7.0), heights, lively_climb, plunge: false }
+    Room { speed, acceleration, heights, lively_climb: false, plunge: false, fall }
 }
 
 /// Sizes and rooms where they are others with an estimator in the loop.

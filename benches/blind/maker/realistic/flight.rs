@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use rand::Rng;
 
 use super::super::body::{State, place, rotation, three};
-use super::super::controller::{Belief, Controller};
+use super::super::controller::{Belief, Controller, Tune};
 use super::super::dice;
 use super::super::flight::{Instant, Lost, Plant, TICK};
 use super::super::hidden::Hidden;
@@ -66,9 +66,6 @@ pub struct Flown {
 /// s on the ground's readings before the recording begins.
 const WARM: f64 = 12.0;
 
-/// Degrees that the controller asks for at most.
-const STEEPEST: f64 = 36.0;
-
 /// m off the path beyond which a flight is given up: a receiver wanders.
 const ASTRAY: f64 = 5.0;
 
@@ -116,7 +113,7 @@ pub fn fly(
 ) -> Result<Flown, Lost> {
     let mut noise = dice(seed, 9);
     let mut plant = Plant::new(craft, hidden, path, seed);
-    let mut controller = Controller::new(craft, STEEPEST.to_radians().tan());
+    let mut controller = Controller::new(craft, Tune::in_flight(craft, hidden.lag.0));
     let mut before = plant.state;
     let (mut mind, mut late) = awake((craft, &before), senses, &mut noise);
     let mut watch = Watch::new(craft, hidden);
