@@ -149,7 +149,8 @@ impl Controller {
         let to = attitude(&push, wanted.yaw);
         // how the reference itself turns, from what it asks for a little later
         let soon = path.at(time + 0.01);
-        let between = attitude(&up(&wanted), wanted.yaw).transpose() * attitude(&up(&soon), soon.yaw);
+        let asked = |wanted: &RequestedEffects| attitude(&self.leaned(up(wanted)), wanted.yaw);
+        let between = asked(&wanted).transpose() * asked(&soon);
         let ahead = Rotation3::from_matrix_unchecked(between).scaled_axis() / 0.01;
         let skew = 0.5 * (to.transpose() * turn - turn.transpose() * to);
         let lean = Vector3::new(skew[(2, 1)], skew[(0, 2)], skew[(1, 0)]);

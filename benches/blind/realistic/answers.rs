@@ -75,7 +75,8 @@ fn effects(case: &RealCase, flown: &Flown) -> Map<String, Value> {
             "motor_lag" => json!(of("time_constant")),
             "transport_delay" => json!(of("delay")),
             "rotor_inertia" => json!(of("jr")),
-            "blade_flapping" => json!(of("k")),
+            // the disc leans away from the wind: against the torque that a positive coefficient means
+            "blade_flapping" => json!(-of("k")),
             "ground_effect" => json!(of("rho")),
             "translational_lift" => json!(lift(case, flown)),
             "weak_rotor" => json!({

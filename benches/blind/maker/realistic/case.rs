@@ -84,7 +84,7 @@ impl RealCase {
             let case = Self::new(seed, draw, entries);
             match case.fly(0) {
                 Err(lost) => why = format!("{lost:?}"),
-                Ok(first) if entries.len() == 1 && first.seen.whole() < 1.5 * PLAIN => {
+                Ok(first) if entries.len() == 1 && first.seen.whole() < PLAIN => {
                     why = format!("shows only {:.1}", first.seen.whole());
                 }
                 Ok(first) => match case.fly(1) {
@@ -163,7 +163,7 @@ fn room(motion_capture: bool, dice: &mut impl rand::Rng) -> Room {
     let (speed, acceleration, heights, fall) = if motion_capture {
         (between(1.5, 3.2), between(3.5, 7.0), (between(0.8, 1.0), between(1.9, 2.3)), 1.4)
     } else {
-        (between(2.8, 5.5), between(4.3, 8.5), (between(1.5, 1.8), between(3.4, 4.6)), 1.8)
+        (between(3.0, 6.0), between(5.0, 9.0), (between(1.5, 1.8), between(3.4, 4.6)), 1.8)
     };
     Room { speed, acceleration, heights, lively_climb: false, plunge: false, fall }
 }

@@ -30,7 +30,7 @@ impl Unit {
         let way = drawn_three(1.0, dice);
         let askew = dice.random_range(0.2..0.5_f64).to_radians();
         Self {
-            white: [spread(0.1, 1.5, dice), spread(0.005, 0.1, dice)],
+            white: [noisy(0.1, 1.5, dice), noisy(0.005, 0.1, dice)],
             vibration: spread(0.05, 0.6, dice),
             bias: [drawn_three(0.15, dice), drawn_three(0.008, dice)],
             walk: [0.004, 0.0002],
@@ -38,6 +38,11 @@ impl Unit {
             cut: dice.random_range(30.0..80.0),
         }
     }
+}
+
+/// Between two levels, more often near the upper one.
+fn noisy(low: f64, high: f64, dice: &mut impl Rng) -> f64 {
+    low * (high / low).powf(dice.random_range(0.0..1.0_f64).powf(0.7))
 }
 
 /// What the unit says at a tick.
