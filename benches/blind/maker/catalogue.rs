@@ -97,6 +97,7 @@ impl Case {
             speed: dice.random_range(0.8..3.0),
             acceleration: 4.5,
             heights: (low, low + dice.random_range(1.0..2.5)),
+            climb: f64::INFINITY,
             lively_climb: false,
             plunge: false,
             fall: 1.0,

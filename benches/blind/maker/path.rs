@@ -18,7 +18,9 @@ pub struct Room {
     pub acceleration: f64,
     /// m, lowest and highest
     pub heights: (f64, f64),
-    /// share of the heights' range that is used at least, whatever the speed
+    /// m/s, the fastest climb
+    pub climb: f64,
+    /// as fast up and down as to the sides
     pub lively_climb: bool,
     /// up and down slowly and far
     pub plunge: bool,
@@ -120,7 +122,7 @@ impl Path {
         }
         let level = (room.speed / speed).min(room.acceleration / hard);
         let span = (room.heights.1 - room.heights.0) / (high - low);
-        let most = if room.lively_climb { room.speed } else { 0.7 * room.speed };
+        let most = if room.lively_climb { room.speed } else { room.climb.min(0.7 * room.speed) };
         let upright = span.min(most / climb).min(0.6 * room.acceleration.min(5.0) / push);
         // a soft series is turned gently as well
         let turn = if room.fall > 1.0 { 0.65 } else { 0.9 } / yaw_rate;

@@ -165,7 +165,8 @@ fn room(motion_capture: bool, dice: &mut impl rand::Rng) -> Room {
     } else {
         (between(3.0, 6.0), between(5.0, 9.0), (between(1.5, 1.8), between(3.4, 4.6)), 1.8)
     };
-    Room { speed, acceleration, heights, lively_climb: false, plunge: false, fall }
+    let climb = dice.random_range(0.6..1.5);
+    Room { speed, acceleration, heights, climb, lively_climb: false, plunge: false, fall }
 }
 
 /// Sizes and rooms where they are others with an estimator in the loop.
@@ -176,6 +177,8 @@ fn adjust(case: &mut Case, id: &'static str, dice: &mut impl rand::Rng) {
             entry.2 = value;
         }
     };
+    // nobody climbs for the sake of an effect
+    case.room.lively_climb = false;
     match id {
         // beyond what motors have
         "motor_lag" => {
