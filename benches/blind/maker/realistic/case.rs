@@ -105,7 +105,7 @@ impl RealCase {
         // nobody flies centimetres above the ground by a receiver
         let motion_capture = dice.random_bool(0.41) || low;
         let needs = entries.iter().any(|entry| NEED_MOTION.contains(entry));
-        let mission = dice.random_bool(0.28) && !needs;
+        let mission = dice.random_bool(0.5) && !needs;
         let unit = Unit::random(&mut dice);
         let source = Source::random(motion_capture, &mut dice);
         let trust = Trust::random(unit.white, &source, &mut dice);
@@ -161,9 +161,9 @@ impl RealCase {
 fn room(motion_capture: bool, dice: &mut impl rand::Rng) -> Room {
     let mut between = |low: f64, high: f64| dice.random_range(low..high);
     let (speed, acceleration, heights, fall) = if motion_capture {
-        (between(1.5, 3.2), between(3.5, 7.0), (between(0.8, 1.0), between(1.9, 2.3)), 1.4)
+        (between(1.6, 3.3), between(3.8, 7.5), (between(0.8, 1.0), between(1.9, 2.3)), 1.05)
     } else {
-        (between(3.0, 6.0), between(5.0, 9.0), (between(1.5, 1.8), between(3.4, 4.6)), 1.8)
+        (between(3.2, 6.2), between(5.5, 9.5), (between(1.5, 1.8), between(3.4, 4.6)), 1.5)
     };
     let climb = dice.random_range(0.6..1.5);
     Room { speed, acceleration, heights, climb, lively_climb: false, plunge: false, fall }
