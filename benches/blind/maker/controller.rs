@@ -58,19 +58,20 @@ pub struct Tune {
     pub inertia: Vector3<f64>,
     /// how quickly it turns: 1 as the gains say
     pub quickness: f64,
+    /// of what it does about z, as a share of what it does about the others
+    pub yaw: f64,
 }
 
 impl Tune {
     /// By the maker's file alone.
     pub fn by_file(craft: &Craft) -> Self {
-        Self { steepest: f64::INFINITY, inertia: craft.said_inertia, quickness: 1.0 }
+        Self { steepest: f64::INFINITY, inertia: craft.said_inertia, quickness: 1.0, yaw: 0.25 }
     }
 
-    /// As somebody who flies the vehicle sets it: slow motors are not driven to ring.
+    /// As somebody who flies the vehicle sets it: slow motors are not driven to ring, quick ones are used.
     pub fn in_flight(craft: &Craft, lag: f64) -> Self {
-        let inertia = 0.9 * craft.inertia.diagonal();
-        let quickness = (0.7 / (lag + 0.02) / GAINS[4]).min(1.0);
-        Self { steepest: STEEPEST.to_radians().tan(), inertia, quickness }
+        let quickness = (0.8 / (lag + 0.02) / GAINS[4]).min(1.8);
+        Self { steepest: STEEPEST.to_radians().tan(), inertia: craft.inertia.diagonal(), quickness, yaw: 0.5 }
     }
 }
 
@@ -79,9 +80,6 @@ const STEEPEST: f64 = 36.0;
 
 /// Gains: position 1/s^2, velocity 1/s, the sum 1/s^3, attitude 1/s^2, rates 1/s.
 const GAINS: [f64; 5] = [4.0, 3.4, 1.0, 55.0, 12.0];
-
-/// Yaw is turned more gently.
-const YAW: f64 = 0.25;
 
 impl Controller {
     pub fn new(craft: &Craft, tune: Tune) -> Self {
@@ -140,7 +138,8 @@ impl Controller {
         let Belief { position, velocity, rotation: turn, rates } = belief;
         let quick = self.tune.quickness;
         let [kp, kv, ki, kr, kw] = GAINS;
-        let [kp, kv, ki] = [kp * quick * quick, kv * quick, ki * quick.powi(3)];
+        let slow = quick.min(1.0);
+        let [kp, kv, ki] = [kp * slow * slow, kv * slow, ki * slow.powi(3)];
         let off = position - wanted.position;
         self.sum = (self.sum + off * step).map(|sum| sum.clamp(-2.0, 2.0));
         let push = up(&wanted) - kp * off - kv * (velocity - wanted.velocity) - ki * self.sum;
@@ -156,7 +155,7 @@ impl Controller {
         let lean = Vector3::new(skew[(2, 1)], skew[(0, 2)], skew[(1, 0)]);
         let turning = rates - turn.transpose() * to * ahead;
         let mut answer = -kr * quick * quick * lean - kw * quick * turning;
-        answer.z *= YAW;
+        answer.z *= self.tune.yaw;
         let torque = self.inertia * answer + rates.cross(&(self.inertia * rates));
         let squares = self.mix * Vector4::new(thrust, torque.x, torque.y, torque.z);
         std::array::from_fn(|rotor| squares[rotor].max(0.0).sqrt() / self.speed_max)

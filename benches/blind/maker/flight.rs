@@ -157,7 +157,7 @@ fn instant(drive: &Drive, time: f64, state: &State, path: &Path) -> Instant {
     let (volts, amperes) = if drive.hidden.battery.exponent == 0.0 {
         // a pack that sags as packs do, of which the speed controllers know nothing
         let (volts, amperes) = terminals(&drive.hidden.battery, state[place::CHARGE], 0.0);
-        (volts - 0.004 * time - 0.02 * (motion.amperes - amperes), motion.amperes)
+        (volts - drive.hidden.battery.fall * time - 0.02 * (motion.amperes - amperes), motion.amperes)
     } else {
         (motion.volts, motion.amperes)
     };

@@ -13,7 +13,7 @@ use super::inertial::Unit;
 use super::position::{Source, Trust};
 use super::seen::PLAIN;
 use super::streams::Streams;
-use super::telemetry;
+use super::{spread, telemetry};
 
 /// What is concealed here.
 pub const EFFECTS: &[&str] = &[
@@ -117,6 +117,7 @@ impl RealCase {
         case.room = room(motion_capture, &mut dice);
         let lag = dice.random_range(0.012..0.035);
         case.hidden.lag = (lag, lag);
+        case.hidden.battery.fall = spread(0.006, 0.03, &mut dice);
         let said = dice.random_bool(0.72);
         for entry in entries {
             case.conceal(entry, &mut dice);

@@ -175,7 +175,7 @@ impl Trust {
             force: about(white[0].max(0.2), 0.8, 2.5),
             rates: about(white[1].max(0.01), 0.8, 2.5),
             position: if source.motion_capture { about(0.005, 0.6, 2.0) } else { about(0.6, 0.7, 1.6) },
-            velocity: about(0.16, 0.7, 1.6),
+            velocity: about(0.13, 0.7, 1.5),
             height: about(0.3, 0.7, 1.5),
             yaw: about(source.yaw.0, 1.2, 2.0),
         }
