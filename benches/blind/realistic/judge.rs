@@ -120,7 +120,7 @@ fn told(judged: &Judged, case: &RealCase) -> String {
         .sizes
         .iter()
         .chain(&judged.bodies)
-        .map(|Stated { name, value, std, truth }| format!("{name} {value:.4} +- {std:.2} ({truth:.4})"))
+        .map(|Stated { name, value, std, truth }| format!("{name} {value:.3e} +- {std:.1e} ({truth:.3e})"))
         .collect();
     let source = if case.senses.source.motion_capture { "capture" } else { "receiver" };
     let way = if case.mission { "mission" } else { "series" };

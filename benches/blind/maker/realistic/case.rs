@@ -142,8 +142,8 @@ impl RealCase {
             let reach = if self.senses.source.motion_capture { 2.2 } else { 7.0 };
             Path::mission(seed, (*room, reach), duration)
         } else {
-            let periods = dice(seed, 12).random_range(4..=5_u32);
-            Path::of_period(seed, *room, (50.0 / f64::from(periods), duration))
+            let period = dice(seed, 12).random_range(10.5..14.5);
+            Path::of_period(seed, *room, (period, duration))
         };
         fly((craft, hidden), &path, &self.senses, seed)
     }

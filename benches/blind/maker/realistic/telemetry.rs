@@ -26,7 +26,9 @@ pub fn log(flown: &Flown, streams: &Streams, seed: u64) -> Vec<u8> {
     for (count, tick) in flown.ticks.iter().enumerate() {
         let since = count as f64 * TICK;
         for message in schedule.messages((since, boot), tick, &mut dice) {
-            frames.push((boot + since + 0.0001 + drawn(streams.jitter, &mut dice).abs(), message));
+            // now and then the link is busy
+            let busy = if dice.random_bool(0.001) { dice.random_range(0.02..0.1) } else { 0.0 };
+            frames.push((boot + since + 0.0001 + busy + drawn(streams.jitter, &mut dice).abs(), message));
         }
     }
     for fix in flown.fixes.iter().filter(|fix| fix.velocity.is_some()) {
