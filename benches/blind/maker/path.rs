@@ -24,7 +24,7 @@ pub struct Room {
     pub lively_climb: bool,
     /// up and down slowly and far
     pub plunge: bool,
-    /// how fast the harmonics in x, y and yaw fall with their number, as a power
+    /// how fast the harmonics level fall with their number, as a power
     pub fall: f64,
 }
 
@@ -89,7 +89,12 @@ impl Path {
     fn series((period, duration): (f64, f64), room: Room, mut dice: &mut impl Rng) -> Self {
         let mut waves = [[(0.0, 0.0); HARMONICS]; 4];
         for (axis, of_axis) in waves.iter_mut().enumerate() {
-            let fall = if axis == 2 { 1.0 } else { room.fall };
+            let fall = match axis {
+                0 | 1 => room.fall,
+                // no body has much to turn itself with
+                3 if room.climb.is_finite() => 1.5,
+                _ => 1.0,
+            };
             for (place, wave) in of_axis.iter_mut().enumerate() {
                 *wave = drawn(&mut dice, (1.0 + place as f64).powf(-fall));
             }
@@ -124,8 +129,8 @@ impl Path {
         let span = (room.heights.1 - room.heights.0) / (high - low);
         let most = if room.lively_climb { room.speed } else { room.climb.min(0.7 * room.speed) };
         let upright = span.min(most / climb).min(0.6 * room.acceleration.min(5.0) / push);
-        // a soft series is turned gently as well
-        let turn = if room.fall > 1.0 { 0.65 } else { 0.9 } / yaw_rate;
+        // as gently where climbs are bounded
+        let turn = if room.climb.is_finite() { 0.65 } else { 0.9 } / yaw_rate;
         for (axis, scale) in [level, level, upright, turn].into_iter().enumerate() {
             for (cosine, sine) in &mut self.waves[axis] {
                 *cosine *= scale;

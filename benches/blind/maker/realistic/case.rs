@@ -162,9 +162,9 @@ impl RealCase {
 fn room(motion_capture: bool, dice: &mut impl rand::Rng) -> Room {
     let mut between = |low: f64, high: f64| dice.random_range(low..high);
     let (speed, acceleration, heights, fall) = if motion_capture {
-        (between(1.6, 3.3), between(3.8, 7.5), (between(0.8, 1.0), between(1.9, 2.3)), 1.05)
+        (between(1.6, 3.3), between(3.8, 7.5), (between(0.8, 1.0), between(1.9, 2.3)), 0.5)
     } else {
-        (between(3.2, 6.2), between(5.5, 9.5), (between(1.5, 1.8), between(3.4, 4.6)), 1.5)
+        (between(3.2, 6.2), between(5.5, 9.5), (between(1.5, 1.8), between(3.4, 4.6)), 1.0)
     };
     let climb = dice.random_range(0.6..1.5);
     Room { speed, acceleration, heights, climb, lively_climb: false, plunge: false, fall }
