@@ -121,7 +121,7 @@ impl Estimator {
             (VELOCITY, (self.trust.force * TICK).powi(2)),
             (ATTITUDE, (self.trust.rates * TICK).powi(2)),
             (RATES, 4e-8 * TICK),
-            (FORCE, 1e-4 * TICK),
+            (FORCE, 1.6e-5 * TICK),
         ];
         for (place, variance) in grown {
             for axis in place..place + 3 {

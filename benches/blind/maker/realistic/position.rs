@@ -172,10 +172,10 @@ impl Trust {
     pub fn random(white: [f64; 2], source: &Source, dice: &mut impl Rng) -> Self {
         let mut about = |value: f64, low: f64, high: f64| value * spread(low, high, dice);
         Self {
-            force: about(white[0].max(0.2), 0.8, 2.5),
+            force: about(white[0].max(0.2), 1.0, 3.0),
             rates: about(white[1].max(0.01), 0.8, 2.5),
             position: if source.motion_capture { about(0.005, 0.6, 2.0) } else { about(0.6, 0.7, 1.6) },
-            velocity: about(0.13, 0.7, 1.5),
+            velocity: about(0.1, 0.7, 1.5),
             height: about(0.3, 0.7, 1.5),
             yaw: about(source.yaw.0, 1.2, 2.0),
         }
