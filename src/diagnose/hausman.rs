@@ -10,6 +10,11 @@ pub(super) fn differ(apart: f64, precise_variance: f64, robust_variance: f64) ->
     apart.powi(2) > DEVIATE.powi(2) * (robust_variance - precise_variance)
 }
 
+/// Whether they differ by more than the greater one of their variances allows: a contradiction whichever is the more precise.
+pub(super) fn contradict(apart: f64, one_variance: f64, other_variance: f64) -> bool {
+    apart.powi(2) > DEVIATE.powi(2) * one_variance.max(other_variance)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -19,5 +24,6 @@ mod tests {
         assert!(!differ(2.0, 1.0, 2.0));
         assert!(differ(3.0, 1.0, 2.0));
         assert!(differ(0.1, 2.0, 1.0), "the second is the more precise one");
+        assert!(!contradict(0.1, 2.0, 1.0) && !contradict(3.0, 2.0, 1.0) && contradict(4.0, 2.0, 1.0));
     }
 }

@@ -8,7 +8,7 @@ use super::base::Base;
 use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing, per_step};
 use super::evidence::Weighted;
 use super::fit::{Fitted, Newton, evaluate, fit};
-use super::hausman::differ;
+use super::hausman::{contradict, differ};
 use super::rows::{Rows, residuals};
 use super::signature::EffectTerm;
 use super::signatures::{ALL, BENT_THRUST};
@@ -134,7 +134,9 @@ pub(super) fn with_latency(
     };
     let Some(by) = fit_by_instruments(flights, &plain, newton)? else { return Ok((plain, unsure(None))) };
     let told = finding_of(&by);
-    if !differ(told.total_s - finding.total_s, finding.std_s.powi(2), told.std_s.powi(2)) {
+    // without such noise least squares has nothing against it but a contradiction
+    let refutes = if is_fed_back(flights) { differ } else { contradict };
+    if !refutes(told.total_s - finding.total_s, finding.std_s.powi(2), told.std_s.powi(2)) {
         let apart_s = Some((finding.total_s - told.total_s).abs()).filter(|_| told.std_s < UNCONFIRMED_S);
         return Ok((plain, unsure(apart_s)));
     }

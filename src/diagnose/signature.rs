@@ -239,6 +239,8 @@ pub struct Role {
     pub moment: Option<usize>,
     /// it belongs to the day, not to the vehicle
     pub of_the_day: bool,
+    /// it belongs to how the vehicle is loaded: its first two amounts change where a battery is put back elsewhere
+    pub of_the_loading: bool,
     /// depends on how the vehicle moves
     pub by_motion: bool,
     /// whether a nuisance models small sizes of it
@@ -265,6 +267,7 @@ impl Role {
         hangs_below: false,
         moment: None,
         of_the_day: false,
+        of_the_loading: false,
         by_motion: true,
         stands_for: |_, _| false,
         turns_inertial_unit: false,

@@ -3,7 +3,6 @@
 use super::settings::PlaybackSettings;
 use super::windows::{Played, WindowErrors, played};
 use crate::compare::CompareError;
-use crate::compare::mean_square::MeanSquare;
 use crate::physics::{MAX_ROTORS, Model, State};
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
@@ -53,16 +52,14 @@ pub fn playback_floor(
     if let Some(commands) = commands {
         commands.disturb(&mut otherwise, signals.grid.step_s, &mut generator);
     }
-    let mut out = Vec::with_capacity(exact.starts.len());
-    for &start in &exact.starts {
-        let mut errors = [MeanSquare::default(); 4];
-        let measured = exact.states.at(start);
+    let windows = &exact.windows;
+    let mut out = Vec::with_capacity(windows.starts.len());
+    for &start in &windows.starts {
+        let measured = windows.states.at(start);
         let truth = exact.window(start, &measured)?;
         let simulated = otherwise.window(start, &noise.on(&measured, &mut generator))?;
-        for (truth, simulated) in truth.iter().zip(&simulated) {
-            exact.states.compare(simulated, &noise.on(truth, &mut generator), &mut errors);
-        }
-        out.push(exact.errors(start, &errors));
+        let pairs = truth.iter().zip(simulated).map(|(truth, of)| (of, noise.on(truth, &mut generator)));
+        out.push(windows.errors_against(start, pairs));
     }
     Ok(out)
 }

@@ -12,4 +12,4 @@ mod windows;
 pub use fit::{Fit, playback};
 pub use floor::{CommandNoise, StateNoise, playback_floor};
 pub use settings::PlaybackSettings;
-pub use windows::{WindowErrors, playback_windows};
+pub use windows::{WindowErrors, playback_windows, unchanged_windows};

@@ -115,3 +115,28 @@ fn what_cannot_be_played_back_is_refused() {
     signals.rate = None;
     assert!(matches!(run(&signals, 0.5), Err(CompareError::Missing { what: "body rates", .. })));
 }
+
+#[test]
+fn a_lag_of_a_fraction_of_a_step_stays_finite() {
+    let (vehicle, signals) = flown(vec![], 0.1, ThrustPreference::Commands);
+    let lag = || vec![ActiveEffect::new(&MotorLag, &[0.0005]).unwrap()];
+    let model = Model::new(&vehicle, lag()).unwrap();
+    let settings = PlaybackSettings { step_s: 0.004, ..PlaybackSettings::default() };
+    let fit = playback((&model, &vehicle), &signals, &settings).unwrap();
+    assert!(fit.quantities().iter().all(|error| error.is_some_and(|error| error < 10.0)), "{fit:?}");
+}
+
+#[test]
+fn what_does_not_change_errs_by_the_motion_itself() {
+    let (_, signals) = flown(vec![], 0.1, ThrustPreference::Commands);
+    let settings = PlaybackSettings::default();
+    let windows = super::unchanged_windows(&signals, &settings).unwrap();
+    let position = signals.position.as_ref().unwrap();
+    let steps = windows[3].counts[0];
+    let start =
+        (0..signals.grid.count).find(|&n| signals.grid.time_s(n) >= windows[3].start_s - 1e-9).unwrap();
+    let moved = (position[start + steps] - position[start]).norm();
+    assert!((windows[3].at_end[0] - moved).abs() < 1e-9, "{} m against {moved} m", windows[3].at_end[0]);
+    let sum: f64 = (1..=steps).map(|n| (position[start + n] - position[start]).norm_squared()).sum();
+    assert!((windows[3].squares[0] - sum).abs() < 1e-9 * sum.max(1.0));
+}

@@ -24,16 +24,29 @@ pub fn playback_windows(
 ) -> Result<Vec<WindowErrors>, CompareError> {
     let model = played(model, signals);
     let played = Played::of((&model, vehicle), push, signals, settings)?;
-    let mut out = Vec::with_capacity(played.starts.len());
-    for &start in &played.starts {
-        let mut errors = [MeanSquare::default(); 4];
-        let simulated = played.window(start, &played.states.at(start))?;
-        for (index, state) in (start + 1..).zip(&simulated) {
-            played.states.compare(state, &played.states.at(index), &mut errors);
-        }
-        out.push(played.errors(start, &errors));
-    }
-    Ok(out)
+    let windows = &played.windows;
+    windows
+        .starts
+        .iter()
+        .map(|&start| {
+            let simulated = played.window(start, &windows.states.at(start))?;
+            Ok(windows.errors(start, &simulated))
+        })
+        .collect()
+}
+
+/// The same windows, predicted by the state at the start of each: nothing changes. The baseline that published benchmarks call
+/// naive.
+///
+/// # Errors
+/// As [`playback`](super::playback).
+pub fn unchanged_windows(
+    signals: &Signals,
+    settings: &PlaybackSettings,
+) -> Result<Vec<WindowErrors>, CompareError> {
+    let windows = Windows::of(signals, settings)?;
+    let unchanged = |&start: &usize| windows.errors(start, &vec![windows.states.at(start); windows.window]);
+    Ok(windows.starts.iter().map(unchanged).collect())
 }
 
 /// Squared errors of one window, in the order of [`Fit::quantities`](super::Fit::quantities).
@@ -45,6 +58,8 @@ pub struct WindowErrors {
     pub squares: [f64; 4],
     /// instants in each sum; 0 where the recording does not hold the quantity
     pub counts: [usize; 4],
+    /// sizes of the errors at the end of the window: m, m/s, rad, rad/s; 0 where the recording does not hold the quantity
+    pub at_end: [f64; 4],
 }
 
 /// Where rotor speeds were measured, what lies between command and speed is left out.
@@ -53,18 +68,72 @@ pub(super) fn played(model: &Model, signals: &Signals) -> Model {
     if measured_speeds { model.with_measured_speeds() } else { model.clone() }
 }
 
-/// A recording ready to be played back.
-pub(super) struct Played<'a> {
-    model: &'a Model,
-    push: Option<Push<'a>>,
+/// Where a recording is predicted, and what was measured there.
+pub(super) struct Windows<'a> {
     pub states: MeasuredStates<'a>,
-    pub commands: Commands<'a>,
-    step_s: f64,
-    substeps: u32,
     /// instants
     window: usize,
     warm_up: usize,
     pub starts: Vec<usize>,
+}
+
+impl<'a> Windows<'a> {
+    fn of(signals: &'a Signals, settings: &PlaybackSettings) -> Result<Self, CompareError> {
+        let states = MeasuredStates::of(signals)?;
+        let step_s = signals.grid.step_s;
+        let count =
+            |time_s: f64| (1..signals.grid.count).take_while(|n| *n as f64 * step_s <= time_s + 1e-9).count();
+        let (window, warm_up) = (count(settings.window_s).max(1), count(settings.warm_up_s));
+        let mut starts = Vec::new();
+        for run in Grid::runs(&signals.usable, window + warm_up + 1) {
+            starts.extend((run.start + warm_up..run.end - window).step_by(count(settings.stride_s).max(1)));
+        }
+        if starts.is_empty() {
+            let PlaybackSettings { window_s, warm_up_s, .. } = *settings;
+            return Err(CompareError::NoWindow { window_s, warm_up_s });
+        }
+        Ok(Self { states, window, warm_up, starts })
+    }
+
+    /// Errors of the states predicted for the instants after `start`.
+    fn errors(&self, start: usize, predicted: &[State]) -> WindowErrors {
+        let measured = (start + 1..).map(|index| self.states.at(index));
+        self.errors_against(start, predicted.iter().copied().zip(measured))
+    }
+
+    /// Errors of predicted states, each with what it is compared with, in a window from `start` on.
+    pub fn errors_against(
+        &self,
+        start: usize,
+        pairs: impl IntoIterator<Item = (State, State)>,
+    ) -> WindowErrors {
+        let mut errors = [MeanSquare::default(); 4];
+        let mut at_end = [MeanSquare::default(); 4];
+        for (predicted, measured) in pairs {
+            at_end = [MeanSquare::default(); 4];
+            self.states.compare(&predicted, &measured, &mut at_end);
+            for (sum, one) in errors.iter_mut().zip(&at_end) {
+                sum.sum += one.sum;
+                sum.count += one.count;
+            }
+        }
+        WindowErrors {
+            start_s: self.states.signals.grid.time_s(start),
+            squares: errors.map(|error| error.sum),
+            counts: errors.map(|error| error.count),
+            at_end: at_end.map(|error| error.sum.sqrt()),
+        }
+    }
+}
+
+/// A recording ready to be played back.
+pub(super) struct Played<'a> {
+    model: &'a Model,
+    push: Option<Push<'a>>,
+    pub windows: Windows<'a>,
+    pub commands: Commands<'a>,
+    step_s: f64,
+    substeps: u32,
 }
 
 impl<'a> Played<'a> {
@@ -74,33 +143,22 @@ impl<'a> Played<'a> {
         signals: &'a Signals,
         settings: &PlaybackSettings,
     ) -> Result<Self, CompareError> {
-        let states = MeasuredStates::of(signals)?;
+        let windows = Windows::of(signals, settings)?;
         let commands = Commands::of(model, vehicle, signals)?;
         let step_s = signals.grid.step_s;
-        let count =
-            |time_s: f64| (1..signals.grid.count).take_while(|n| *n as f64 * step_s <= time_s + 1e-9).count();
-        let (window, warm_up) = (count(settings.window_s).max(1), count(settings.warm_up_s));
         let substeps = (1..100).find(|n| step_s / f64::from(*n) <= settings.step_s + 1e-12).unwrap_or(100);
-        let mut starts = Vec::new();
-        for run in Grid::runs(&signals.usable, window + warm_up + 1) {
-            starts.extend((run.start + warm_up..run.end - window).step_by(count(settings.stride_s).max(1)));
-        }
-        if starts.is_empty() {
-            let PlaybackSettings { window_s, warm_up_s, .. } = *settings;
-            return Err(CompareError::NoWindow { window_s, warm_up_s });
-        }
-        Ok(Self { model, push, states, commands, step_s, substeps, window, warm_up, starts })
+        Ok(Self { model, push, windows, commands, step_s, substeps })
     }
 
     /// States at the instants after `start`, from `initial` there.
     pub fn window(&self, start: usize, initial: &State) -> Result<Vec<State>, CompareError> {
-        let first = start - self.warm_up;
-        let mut plant =
-            Plant::new(self.model, self.push, &self.states.at(first), &self.commands.at(first, 0.0))?;
-        let mut out = Vec::with_capacity(self.window);
-        for index in first..start + self.window {
+        let Windows { states, window, warm_up, .. } = &self.windows;
+        let first = start - warm_up;
+        let mut plant = Plant::new(self.model, self.push, &states.at(first), &self.commands.at(first, 0.0))?;
+        let mut out = Vec::with_capacity(*window);
+        for index in first..start + window {
             match index.cmp(&start) {
-                Ordering::Less => plant.set_state(&self.states.at(index)),
+                Ordering::Less => plant.set_state(&states.at(index)),
                 Ordering::Equal => plant.set_state(initial),
                 Ordering::Greater => {}
             }
@@ -113,13 +171,5 @@ impl<'a> Played<'a> {
             }
         }
         Ok(out)
-    }
-
-    pub fn errors(&self, start: usize, errors: &[MeanSquare; 4]) -> WindowErrors {
-        WindowErrors {
-            start_s: self.states.signals.grid.time_s(start),
-            squares: errors.map(|error| error.sum),
-            counts: errors.map(|error| error.count),
-        }
     }
 }

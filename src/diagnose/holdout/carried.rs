@@ -1,5 +1,6 @@
 //! Transfer of the identified model to another flight.
 
+use super::loading::{Loaded, loaded};
 use super::settings::{HeldOut, HoldoutSettings};
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
@@ -11,14 +12,37 @@ use crate::diagnose::signature::EffectTerm;
 use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::trace::Trace;
 use crate::physics::{ActuationLatency, PhysicsError};
+use crate::text::significant;
 use crate::vehicle::Vehicle;
 
 /// The two models that are compared on one flight.
 pub(super) struct Pair {
     pub(super) before: Base,
     pub(super) after: Base,
+    /// with the flight's own centre of mass, where its beginning shows another one: what is predicted with
+    pub(super) loaded: Option<LoadedPair>,
     /// parameters that were not kept, as sentences
     pub(super) notes: Vec<String>,
+}
+
+/// A pair with a flight's own centre of mass.
+pub(super) struct LoadedPair {
+    before: Base,
+    after: Base,
+    /// vehicle clock, s, up to where the flight was used for it
+    until_s: f64,
+}
+
+impl Pair {
+    /// The models for predictions, before and after.
+    pub(super) fn predicting(&self) -> (&Base, &Base) {
+        self.loaded.as_ref().map_or((&self.before, &self.after), |loaded| (&loaded.before, &loaded.after))
+    }
+
+    /// Vehicle clock, s, from which on the flight is predicted.
+    pub(super) fn predicted_from_s(&self) -> f64 {
+        self.loaded.as_ref().map_or(f64::NEG_INFINITY, |loaded| loaded.until_s)
+    }
 }
 
 /// The rigid body alone, and the model with its effects. A latency with a name is an effect: the rigid body alone then
@@ -44,7 +68,7 @@ pub(super) fn pair(
     if let Some(term) = empirical {
         after.vehicle.body.mass_kg += term.mass_change_kg;
     }
-    Pair { before, after, notes: Vec::new() }
+    Pair { before, after, loaded: None, notes: Vec::new() }
 }
 
 /// The pair for a hold-out flight. Parameters that belong to the day or to a time are estimated again or reported.
@@ -81,6 +105,18 @@ pub(super) fn carried_over(
     if by_voltage && trace.voltage_v.is_none() {
         pair.notes
             .push(format!("{}: the battery's voltage is not recorded, so its sag is left out", flight.name));
+    }
+    if let Some(Loaded { base: after, moved_m: [x, y], until_s }) = loaded(&pair.after, trace, settings)? {
+        pair.notes.push(format!(
+            "{}: its centre of mass is not where that of the flights explained is: by ({}, {}) mm along body x and y, as a battery \
+             that is put back elsewhere moves it. This is from the first seconds of the flight, and the errors are those of the \
+             rest",
+            flight.name,
+            significant(1e3 * x, 2),
+            significant(1e3 * y, 2)
+        ));
+        let before = loaded(&pair.before, trace, settings)?.map_or_else(|| pair.before.clone(), |of| of.base);
+        pair.loaded = Some(LoadedPair { before, after, until_s });
     }
     Ok(pair)
 }

@@ -1,6 +1,6 @@
 //! Closed-loop simulation of the held-out flights from their setpoints, as in Table 4.
 
-use super::bootstrap::{Blocks, Compared};
+use super::bootstrap::{Blocks, Compared, Squares};
 use super::ready::{Ready, flown};
 use super::settings::HoldoutSettings;
 use crate::compare::{SIGNALS, TenSignals, autopilot_flight};
@@ -43,9 +43,11 @@ pub(super) fn flown_again(
             let again = autopilot_flight(recording, &model, nominal).map_err(|error| named(&error))?;
             Ok(recorded.square_errors(&again, span_s(ready)))
         };
-        let (before, after) = rayon::join(|| fly(&ready.pair.before), || fly(&ready.pair.after));
+        let (before, after) = ready.pair.predicting();
+        let (before, after) = rayon::join(|| fly(before), || fly(after));
         for ((time_s, before), (_, after)) in before?.iter().zip(&after?) {
-            blocks.add((index, *time_s), before, after, &[1.0; SIGNALS.len()]);
+            let squares = Squares { unchanged: None, before, after, count: &[1.0; SIGNALS.len()] };
+            blocks.add((index, *time_s), squares);
         }
     }
     if blocks.len() == 0 {

@@ -10,6 +10,7 @@ mod closed_loop;
 mod error;
 mod floor;
 mod hold_out;
+mod loading;
 mod open_loop;
 mod other_vehicle;
 mod ready;
@@ -18,7 +19,7 @@ mod shown;
 mod split;
 mod weak;
 
-pub use bootstrap::{Compared, Interval};
+pub use bootstrap::{AtEnd, Compared, Interval};
 pub use closed_loop::ClosedLoop;
 pub use error::HoldoutError;
 pub use floor::{command_noise, state_noise};

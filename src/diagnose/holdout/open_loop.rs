@@ -1,18 +1,22 @@
 //! Open-loop prediction from the measured state with the recorded actuators.
 
-use super::bootstrap::{Blocks, Compared, Interval};
+use super::bootstrap::{AtEnd, Blocks, Compared, Interval, Squares};
 use super::error::HoldoutError;
 use super::floor::{command_noise, state_noise};
 use super::ready::{Ready, flown};
 use super::settings::HoldoutSettings;
 use crate::compare::{
     CommandNoise, PlaybackSettings, StateNoise, WindowErrors, playback_floor, playback_windows,
+    unchanged_windows,
 };
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
 use crate::physics::{Model, PhysicsError};
 use rayon::prelude::*;
 
+/// Time from one window's start to the next one's, s. Motions that repeat must not always be met at the same place. Chosen; not
+/// measured.
+const STRIDE_S: f64 = 0.17;
 /// Lengths of the windows, s.
 pub const WINDOWS_S: [f64; 3] = [0.1, 0.5, 1.0];
 
@@ -66,9 +70,10 @@ pub(super) fn open_loop(
 }
 
 fn models_of(ready: &Ready) -> Result<Models, PhysicsError> {
+    let (before, after) = ready.pair.predicting();
     Ok(Models {
-        before: flown(&ready.pair.before)?,
-        after: flown(&ready.pair.after)?,
+        before: flown(before)?,
+        after: flown(after)?,
         noise: state_noise(ready.flight.signals),
         commands: command_noise(ready.flight.signals, &ready.pair.after.vehicle.propulsion),
     })
@@ -81,9 +86,10 @@ fn one_length(
     settings: &HoldoutSettings,
 ) -> Result<(OpenLoop, Option<Interval>, usize), HoldoutError> {
     // grids are seldom faster than 4 ms: one step an instant
-    let playback = PlaybackSettings { window_s, step_s: 0.004, ..PlaybackSettings::default() };
+    let playback =
+        PlaybackSettings { window_s, stride_s: STRIDE_S, step_s: 0.004, ..PlaybackSettings::default() };
     let mut blocks = Blocks::new(4, settings.block_s);
-    let (mut floor, mut windows) = ([(0.0, 0usize); 4], 0);
+    let (mut floor, mut at_end, mut windows) = ([(0.0, 0usize); 4], [[0.0; 3]; 4], 0);
     for (index, (ready, models)) in ready.iter().zip(models).enumerate() {
         let failed = |source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source };
         let signals = ready.flight.signals;
@@ -92,11 +98,12 @@ fn one_length(
             let push = push.as_ref().map(|push| push as crate::simulate::Push);
             playback_windows((model, &base.vehicle), push, signals, &playback)
         };
+        let (base_before, base_after) = ready.pair.predicting();
         let ((before, after), noise) = rayon::join(
             || {
                 rayon::join(
-                    || run(&models.before, &ready.pair.before, None),
-                    || run(&models.after, &ready.pair.after, empirical),
+                    || run(&models.before, base_before, None),
+                    || run(&models.after, base_after, empirical),
                 )
             },
             || {
@@ -107,10 +114,23 @@ fn one_length(
         );
         let (before, after, noise) =
             (before.map_err(failed)?, after.map_err(failed)?, noise.map_err(failed)?);
-        windows += before.len();
-        for (before, after) in before.iter().zip(&after) {
-            let counts = before.counts.map(|count| count as f64);
-            blocks.add((index, before.start_s), &before.squares, &after.squares, &counts);
+        let unchanged = unchanged_windows(signals, &playback).map_err(failed)?;
+        let from_s = ready.pair.predicted_from_s();
+        let each = unchanged.iter().zip(&before).zip(&after);
+        for ((unchanged, before), after) in each.filter(|((of, _), _)| of.start_s >= from_s) {
+            windows += 1;
+            let squares = Squares {
+                unchanged: Some(&unchanged.squares),
+                before: &before.squares,
+                after: &after.squares,
+                count: &before.counts.map(|count| count as f64),
+            };
+            blocks.add((index, before.start_s), squares);
+            for (quantity, sums) in at_end.iter_mut().enumerate() {
+                for (sum, of) in sums.iter_mut().zip([unchanged, before, after]) {
+                    *sum += of.at_end[quantity];
+                }
+            }
         }
         for WindowErrors { squares, counts, .. } in noise {
             for (floor, (square, count)) in floor.iter_mut().zip(squares.iter().zip(counts)) {
@@ -119,9 +139,11 @@ fn one_length(
         }
     }
     let (mut each, improvement) = blocks.compared(settings.draws, settings.seed);
-    for (compared, (sum, count)) in each.iter_mut().zip(floor) {
+    for ((compared, (sum, count)), at_end) in each.iter_mut().zip(floor).zip(at_end) {
         if let Some(compared) = compared.as_mut().filter(|_| count > 0) {
             compared.floor = Some((sum / count as f64).sqrt());
+            let [unchanged, before, after] = at_end.map(|sum| sum / windows as f64);
+            compared.at_end = Some(AtEnd { unchanged, before, after });
         }
     }
     let of = OpenLoop {

@@ -1,6 +1,7 @@
 //! Test whether the held-out flights can be of the identified vehicle.
 
 use super::error::HoldoutError;
+use super::loading::COM_M;
 use super::ready::{Ready, trace_of};
 use super::settings::{HeldOut, HoldoutSettings};
 use super::weak::Weak;
@@ -72,8 +73,6 @@ const OF_THE_VEHICLE: [&str; 6] = [
 /// Least relevant difference of an effect that belongs to the vehicle, as a share of its amount. Chosen; not measured.
 const AMOUNT_SHARE: f64 = 0.6;
 const COM: &str = "com_offset.";
-/// Largest change of the centre of mass by a battery pack that was put back in another place, m. Chosen; not measured.
-const COM_M: f64 = 0.002;
 /// Least ratio of the residual of the held-out flight's own fit to that of the identified flights. A rotor 10 % weak, a
 /// centre of mass 10 mm off and a bent thrust curve in the hold-out alone gave 4.4 to 25 in simulated flights.
 const LEFT_RATIO: f64 = 4.0;

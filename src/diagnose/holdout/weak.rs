@@ -1,7 +1,6 @@
 //! The weak form's residual of the frozen models.
 
-use super::bootstrap::Blocks;
-use super::bootstrap::Compared;
+use super::bootstrap::{Blocks, Compared, Squares};
 use super::ready::Ready;
 use super::settings::HoldoutSettings;
 use crate::diagnose::base::Base;
@@ -55,7 +54,8 @@ pub(super) fn residuals(
             let squares = |channels: &Channels| -> [f64; CHANNELS] {
                 std::array::from_fn(|channel| channels[channel][row].powi(2))
             };
-            blocks.add((flight, *time_s), &squares(before), &squares(after), &measured);
+            let (before, after) = (&squares(before), &squares(after));
+            blocks.add((flight, *time_s), Squares { unchanged: None, before, after, count: &measured });
         }
         for (channel, count) in counts.into_iter().enumerate() {
             rows[channel] += count;

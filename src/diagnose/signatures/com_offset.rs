@@ -1,7 +1,7 @@
 //! Signature: an offset of the centre of mass.
 
 use crate::diagnose::named::Named;
-use crate::diagnose::signature::{Naming, Signature};
+use crate::diagnose::signature::{Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ComOffset;
 use crate::text::{significant, with_error};
@@ -13,6 +13,7 @@ const NUISANCE_M: f64 = 0.000_15;
 pub static SIGNATURE: Signature = Signature {
     forms: |_| vec![SIGNATURE.form(&[0.0; 3], &[0, 1])],
     naming: Naming { least: NUISANCE_M, ..Naming::PLAIN },
+    role: Role { of_the_loading: true, ..Role::NONE },
     ..Signature::of(
         &ComOffset,
         &[0, 1, 2],

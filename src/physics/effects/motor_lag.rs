@@ -13,6 +13,9 @@ pub struct MotorLag;
 
 /// Faster than this the rotor follows at once for every rate that a log has.
 const LEAST_TIME_CONSTANT_S: f64 = 1e-4;
+/// Least time constant that is integrated, s: a Runge-Kutta step of fourth order is stable up to 2.79 time constants, and steps
+/// are up to 4 ms long.
+const LEAST_INTEGRATED_S: f64 = 2e-3;
 
 const fn time_constant(name: &'static str) -> Parameter {
     Parameter { name, unit: "s", bounds: Bounds::of(LEAST_TIME_CONSTANT_S, 0.5) }
@@ -64,7 +67,7 @@ impl Effect for MotorLag {
     }
 
     fn rotor_speed(&self, _at: &Condition, own: &mut Own, rotors: &mut Rotors) {
-        let at_least = |time_constant_s: f64| time_constant_s.max(LEAST_TIME_CONSTANT_S);
+        let at_least = |time_constant_s: f64| time_constant_s.max(LEAST_INTEGRATED_S);
         let rising_s = at_least(own.parameters[0]);
         let falling_s = own.parameters.get(1).map_or(rising_s, |down_s| at_least(*down_s));
         let lag = RotorLag { rising_s, falling_s };

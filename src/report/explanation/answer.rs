@@ -17,10 +17,30 @@ const LEAST_STATE_PERCENT: f64 = 10.0;
 /// The answer in one sentence; what makes it doubtful comes first.
 #[must_use]
 pub fn answer(study: &ExplainStudy) -> String {
+    let found = format!("{}{}", found(study), no_model(study));
     match study.doubts().as_slice() {
-        [] => found(study),
-        doubts => format!("Doubtful: {}. {}", doubts.join("; "), found(study)),
+        [] => found,
+        doubts => format!("Doubtful: {}. {found}", doubts.join("; ")),
     }
+}
+
+/// A sentence on what the model does not predict.
+fn no_model(study: &ExplainStudy) -> String {
+    let (predicted, on) = match &study.holdout {
+        Some(_) if study.other_vehicle().is_some() => return String::new(),
+        Some(holdout) => (Some(holdout), study.shown_on.words()),
+        None => (study.identify.as_ref(), "the flights that were explained"),
+    };
+    let worse = predicted.map_or_else(Vec::new, Predicted::worse_than_unchanged);
+    if worse.is_empty() {
+        return String::new();
+    }
+    let worse: Vec<String> = worse.into_iter().map(ToOwned::to_owned).collect();
+    format!(
+        " On {on} the 0.5 s error of {} is larger than that of a state that does not change: for prediction of this, the \
+         model is not usable.",
+        list(&worse)
+    )
 }
 
 fn found(study: &ExplainStudy) -> String {

@@ -1,7 +1,7 @@
 //! The fit before and after as JSON, with all values of the report's tables.
 
 use crate::compare::SIGNALS;
-use crate::diagnose::holdout::{Compared, HoldoutFit, OpenLoop};
+use crate::diagnose::holdout::{AtEnd, Compared, HoldoutFit, OpenLoop};
 use crate::diagnose::{AXES, CHANNEL_NAMES};
 use crate::study::{ExplainStudy, Predicted, QUANTITIES, ShownOn};
 use serde::Serialize;
@@ -22,8 +22,12 @@ pub(super) struct FitValues {
 /// Over windows of 0.5 s, then everything.
 #[derive(Debug, Clone, Serialize)]
 struct PairValue {
+    /// by a state that does not change
+    unchanged: Option<FitValue>,
     before: Option<FitValue>,
     after: Option<FitValue>,
+    /// quantities that a state that does not change predicts better over 0.5 s
+    worse_than_unchanged: Vec<&'static str>,
     /// error that white noise of the sensors alone would cause
     floor: Option<FitValue>,
     windows: Option<usize>,
@@ -66,6 +70,8 @@ struct ShownValue {
 /// Root mean square errors with 95 % bootstrap intervals over blocks of the flight.
 #[derive(Debug, Clone, Serialize)]
 struct ComparedValue {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unchanged: Option<f64>,
     before: f64,
     before_range: Option<(f64, f64)>,
     after: f64,
@@ -73,7 +79,17 @@ struct ComparedValue {
     floor: Option<f64>,
     improvement_percent: f64,
     improvement_range_percent: Option<(f64, f64)>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    at_end: Option<AtEndValue>,
     unit: &'static str,
+}
+
+/// Mean size of the error at the end of the windows.
+#[derive(Debug, Clone, Serialize)]
+struct AtEndValue {
+    unchanged: f64,
+    before: f64,
+    after: f64,
 }
 
 /// A parameter as identified and from the hold-out alone.
@@ -122,6 +138,8 @@ fn pair(predicted: Option<&Predicted>) -> PairValue {
         Some(FitValue { position_m, velocity_m_s, attitude_rad, rates_rad_s })
     };
     PairValue {
+        unchanged: each(&|of| of.unchanged.map(|of| of.value)),
+        worse_than_unchanged: predicted.map_or_else(Vec::new, Predicted::worse_than_unchanged),
         before: each(&|of| Some(of.before.value)),
         after: each(&|of| Some(of.after.value)),
         floor: each(&|of| of.floor),
@@ -186,6 +204,7 @@ fn shown(of: &HoldoutFit) -> ShownValue {
 
 fn compared(of: &Compared, unit: &'static str) -> ComparedValue {
     ComparedValue {
+        unchanged: of.unchanged.map(|of| of.value),
         before: of.before.value,
         before_range: of.before.range,
         after: of.after.value,
@@ -193,6 +212,7 @@ fn compared(of: &Compared, unit: &'static str) -> ComparedValue {
         floor: of.floor,
         improvement_percent: of.improvement_percent.value,
         improvement_range_percent: of.improvement_percent.range,
+        at_end: of.at_end.map(|AtEnd { unchanged, before, after }| AtEndValue { unchanged, before, after }),
         unit,
     }
 }

@@ -1,7 +1,7 @@
 //! The section on the fit before and after, and on the hold-out.
 
 use crate::compare::SIGNALS;
-use crate::diagnose::holdout::{Compared, HoldoutFit};
+use crate::diagnose::holdout::{AtEnd, Compared, HoldoutFit};
 use crate::diagnose::{AXES, CHANNEL_NAMES};
 use crate::report::html::{Cell, note, number, section, table, text, warning};
 use crate::report::number::{percent, significant, spoken, with_error};
@@ -9,13 +9,17 @@ use crate::study::{ExplainStudy, Predicted, QUANTITIES, ShownOn};
 use maud::{Markup, html};
 
 const COMPARED: [&str; 6] = ["", "before|", "after|", "noise alone|", "better by|", "unit"];
+const PREDICTED: [&str; 7] = ["", "unchanged|", "before|", "after|", "noise alone|", "better by|", "unit"];
+const AT_END: [&str; 5] = ["", "unchanged|", "before|", "after|", "unit"];
 
 /// Errors before and after, on the explained flights and on the hold-out flights.
 pub(super) fn hold_out(study: &ExplainStudy) -> Markup {
     let content = html! {
         (note("Open-loop prediction from the measured state with the recorded actuators. Before: the rigid body \
-               identified on the same flights. Intervals: 95 % of a bootstrap over blocks of the flight. Noise alone: \
-               the error that white noise of the sensors would cause with the right model."))
+               identified on the same flights. Unchanged: a state that does not change. Better by: than the better one of \
+               these two. Intervals: 95 % of a bootstrap over blocks of the flight. Noise alone: the error that white \
+               noise of the sensors would cause with the right model. At the horizon: the mean size of the error at \
+               the end of the window, one window each 0.17 s."))
         @if let Some(predicted) = &study.identify { (prediction("flights explained", predicted)) }
         @if let Some(predicted) = &study.holdout { (prediction(&study.shown_on.heading(), predicted)) }
         @if let ShownOn::Nothing { reason } = &study.shown_on {
@@ -46,18 +50,31 @@ fn compared_row(name: &str, unit: &str, of: &Compared) -> Vec<Cell> {
 }
 
 fn prediction(on: &str, predicted: &Predicted) -> Markup {
-    let mut rows = Vec::new();
+    let (mut rows, mut at_end) = (Vec::new(), Vec::new());
     for of in &predicted.open_loop {
         for (compared, (name, unit)) in of.quantities().iter().zip(QUANTITIES) {
-            if let Some(compared) = compared {
-                rows.push(compared_row(&format!("{name}, {} s", of.window_s), unit, compared));
+            let Some(compared) = compared else { continue };
+            let mut row = compared_row(&format!("{name}, {} s", of.window_s), unit, compared);
+            row.insert(
+                1,
+                number(compared.unchanged.map_or_else(|| "-".to_owned(), |of| significant(of.value, 3))),
+            );
+            rows.push(row);
+            if let Some(AtEnd { unchanged, before, after }) = compared.at_end {
+                let mut row = vec![text(format!("{name} after {} s", of.window_s))];
+                row.extend([unchanged, before, after].map(|error| number(significant(error, 3))));
+                row.push(text(unit));
+                at_end.push(row);
             }
         }
     }
     let mean = predicted
         .improvement_percent
         .map_or_else(String::new, |mean| format!("; mean at 0.5 s better by {}", percent(&mean)));
-    table(&format!("Prediction error, rms, {on}{mean}"), &COMPARED, &rows)
+    html! {
+        (table(&format!("Prediction error, rms, {on}{mean}"), &PREDICTED, &rows))
+        (table(&format!("Error at the horizon, mean, {on}"), &AT_END, &at_end))
+    }
 }
 
 fn weak_form(shown: &HoldoutFit) -> Markup {

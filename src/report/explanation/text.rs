@@ -84,32 +84,59 @@ fn located_lines(page: &mut String, study: &ExplainStudy) {
 fn fit_lines(page: &mut String, study: &ExplainStudy) {
     let _ = writeln!(
         page,
-        "\n  open-loop prediction over 0.5 s, rms   {:>12}{:>12}{:>12}  better by",
-        "rigid body", "with it", "noise alone"
+        "\n  open-loop prediction over 0.5 s, rms {:>10}{:>12}{:>12}{:>13}  better by",
+        "unchanged", "rigid body", "with it", "noise alone"
     );
     let shown = study.shown_on.heading();
     for (name, of) in [("flights explained", &study.identify), (shown.as_str(), &study.holdout)] {
         let _ = writeln!(page, "    {name}");
         predicted_lines(page, of.as_ref());
     }
+    page.push_str("    unchanged: a state that does not change; better by: than the better one of it and the rigid body\n");
+    at_end_lines(page, study.holdout.as_ref().or(study.identify.as_ref()));
 }
 
 fn predicted_lines(page: &mut String, predicted: Option<&Predicted>) {
     let Some(predicted) = predicted else { return };
     for (of, (name, unit)) in predicted.half_second().iter().zip(QUANTITIES) {
         let Some(of) = of else { continue };
+        let figure = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| significant(value, 3));
         let _ = writeln!(
             page,
-            "      {:<33}{:>12}{:>12}{:>12}  {}",
+            "      {:<30}{:>11}{:>12}{:>12}{:>13}  {}",
             format!("{name} ({unit})"),
-            significant(of.before.value, 3),
-            significant(of.after.value, 3),
-            of.floor.map_or_else(|| "-".to_owned(), |floor| significant(floor, 3)),
+            figure(of.unchanged.map(|of| of.value)),
+            figure(Some(of.before.value)),
+            figure(Some(of.after.value)),
+            figure(of.floor),
             percent(&of.improvement_percent)
         );
     }
     if let Some(mean) = predicted.improvement_percent {
-        let _ = writeln!(page, "      {:<69}  {}", "mean", percent(&mean));
+        let _ = writeln!(page, "      {:<78}  {}", "mean", percent(&mean));
+    }
+}
+
+/// Errors at the end of the windows, as benchmarks of multi-step prediction give them.
+fn at_end_lines(page: &mut String, predicted: Option<&Predicted>) {
+    let Some(predicted) = predicted else { return };
+    let _ = writeln!(
+        page,
+        "\n  error at the horizon, mean{:>21}{:>12}{:>12}",
+        "unchanged", "rigid body", "with it"
+    );
+    for of in &predicted.open_loop {
+        for (compared, (name, unit)) in of.quantities().iter().zip(QUANTITIES) {
+            let Some(at_end) = compared.and_then(|of| of.at_end) else { continue };
+            let _ = writeln!(
+                page,
+                "    {:<32}{:>11}{:>12}{:>12}",
+                format!("{name} after {} s ({unit})", of.window_s),
+                significant(at_end.unchanged, 3),
+                significant(at_end.before, 3),
+                significant(at_end.after, 3)
+            );
+        }
     }
 }
 

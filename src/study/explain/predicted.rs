@@ -1,6 +1,5 @@
 //! The errors of open-loop prediction.
 
-use crate::compare::improvement_percent;
 use crate::diagnose::holdout::{Compared, HoldoutFit, Interval, OpenLoop};
 
 /// Open-loop errors on one set of flights.
@@ -43,15 +42,21 @@ impl Predicted {
             .min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
+    /// What a state that does not change predicts better over 0.5 s: for that the model is none.
+    #[must_use]
+    pub fn worse_than_unchanged(&self) -> Vec<&'static str> {
+        let quantities = self.half_second().into_iter().zip(QUANTITIES);
+        quantities
+            .filter(|(of, _)| of.is_some_and(|of| of.is_worse_than_unchanged()))
+            .map(|(_, (name, _))| name)
+            .collect()
+    }
+
     /// Mean improvement over the quantities, percent.
     #[must_use]
     pub fn improvement(&self) -> Option<f64> {
-        let each: Vec<f64> = self
-            .half_second()
-            .into_iter()
-            .flatten()
-            .map(|of| improvement_percent(of.before.value, of.after.value))
-            .collect();
+        let each: Vec<f64> =
+            self.half_second().into_iter().flatten().map(|of| of.improvement_percent.value).collect();
         (!each.is_empty()).then(|| each.iter().sum::<f64>() / each.len() as f64)
     }
 }
