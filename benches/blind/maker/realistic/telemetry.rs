@@ -191,8 +191,8 @@ fn inertial(time: f64, tick: &Tick, ardupilot: bool) -> MavMessage {
         zgyro,
         xmag: 0.21,
         zmag: 0.42,
-        abs_pressure: 1013.2,
-        pressure_alt: 490.0,
+        abs_pressure: narrow(1013.2 - 0.12 * tick.belief.position.z),
+        pressure_alt: narrow(FIELD.2 + tick.belief.position.z),
         temperature: 31.0,
         fields_updated: dialect::HighresImuUpdatedFlags::from_bits_truncate(0b11_1111),
         ..Default::default()
