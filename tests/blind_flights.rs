@@ -11,6 +11,9 @@ use maker::catalogue::Case;
 use maker::flight::hovering;
 use maker::hidden::{Hidden, Load};
 use maker::path::{Path, Room};
+use maker::realistic::case::RealCase;
+use maker::realistic::low_pass::LowPass;
+use maker::realistic::position::Source;
 use maker::vehicle::Craft;
 use maker::{GRAVITY, dopri};
 use mavid::config::parse_vehicle;
@@ -25,8 +28,15 @@ fn craft() -> Craft {
 
 /// Hovering 1 m or so above the ground.
 fn begin(craft: &Craft, hidden: &Hidden) -> State {
-    let room =
-        Room { speed: 1.0, acceleration: 2.0, heights: (1.0, 2.0), lively_climb: false, plunge: false };
+    let room = Room {
+        speed: 1.0,
+        acceleration: 2.0,
+        heights: (1.0, 2.0),
+        climb: 3.0,
+        lively_climb: false,
+        plunge: false,
+        fall: 1.0,
+    };
     hovering(craft, hidden, &Path::random(1, room, None))
 }
 
@@ -130,6 +140,81 @@ fn a_load_swings_at_its_frequency_and_momentum_is_kept() {
     let momentum =
         craft.mass * three(&whole, place::VELOCITY) + load.mass * three(&whole, place::LOAD_VELOCITY);
     assert!(momentum.norm() < 1e-6, "{momentum}");
+}
+
+#[test]
+fn a_low_pass_keeps_what_is_slow_and_halves_power_at_its_cut() {
+    let (cut, step) = (30.0, 0.004);
+    let gain = |rate: f64| {
+        let mut filter = LowPass::new(cut, step, Vector3::zeros());
+        let wave = |tick: u32| (std::f64::consts::TAU * rate * step * f64::from(tick)).sin();
+        let passed: Vec<f64> = (0..5000).map(|tick| filter.next(wave(tick) * Vector3::x()).x).collect();
+        (2.0 * passed[1000..].iter().map(|value| value * value).sum::<f64>() / 4000.0).sqrt()
+    };
+    close(gain(1.0), 1.0, 1e-3);
+    close(gain(cut), 0.5_f64.sqrt(), 0.01);
+}
+
+#[test]
+fn a_mission_is_smooth_and_stops() {
+    let room = Room {
+        speed: 3.0,
+        acceleration: 5.0,
+        heights: (1.0, 3.0),
+        climb: 3.0,
+        lively_climb: false,
+        plunge: false,
+        fall: 1.0,
+    };
+    let path = Path::mission(3, (room, 5.0), 54.0);
+    let mut still = 0;
+    for tick in 0..5400 {
+        let time = 0.01 * f64::from(tick);
+        let (now, soon) = (path.at(time), path.at(time + 1e-5));
+        assert!((soon.position - now.position - 1e-5 * now.velocity).norm() < 1e-8);
+        assert!((soon.velocity - now.velocity - 1e-5 * now.acceleration).norm() < 1e-7);
+        assert!(now.velocity.norm() < 3.001 && now.position.xy().amax() < 5.001);
+        still += u32::from(now.velocity.norm() < 1e-9);
+    }
+    assert!(still > 500, "{still}");
+}
+
+/// With sensors that hardly err and a delay that is known, an estimator believes what is true.
+#[test]
+fn an_estimator_of_good_sensors_is_right() {
+    let mut case = RealCase::new(4, 0, &[]);
+    let senses = &mut case.senses;
+    (senses.unit.white, senses.unit.vibration, senses.waits) = ([0.01, 0.0005], 0.0, 0);
+    senses.unit.mount = nalgebra::Rotation3::identity();
+    senses.source = Source { yaw: (0.001, 0.0), position: (0.001, 60.0), ..senses.source.clone() };
+    senses.source.velocity = 0.01;
+    senses.source.believed_late = senses.source.late;
+    let errors = case.fly(0).unwrap().errors;
+    assert!(errors.velocity.amax() < 0.02, "{errors:?}");
+    // the bias of the force is first believed 0.12 m/s^2 wrong an axis, 0.7 degrees
+    assert!(errors.tilt < 0.7 && errors.rates < 0.1, "{errors:?}");
+}
+
+#[test]
+fn realistic_flights_are_the_same_again_and_tell_what_is_believed() {
+    let case = RealCase::new(11, 0, &["linear_drag"]);
+    let flown = case.fly(1).unwrap();
+    let bytes = case.log(&flown, 1);
+    assert_eq!(bytes, case.log(&case.fly(1).unwrap(), 1));
+    // errors as of real estimators
+    let errors = flown.errors;
+    assert!((0.004..0.2).contains(&errors.velocity.norm()), "{errors:?}");
+    assert!((0.2..2.0).contains(&errors.tilt), "{errors:?}");
+    let file = std::env::temp_dir().join(format!("mavid_blind_realistic_{}.tlog", std::process::id()));
+    std::fs::write(&file, bytes).unwrap();
+    let loaded = log::open(&file, &OpenOptions::default());
+    std::fs::remove_file(&file).unwrap();
+    let recording = loaded.unwrap().recording;
+    let longest = recording
+        .streams
+        .values()
+        .map(|stream| stream.time_s.last().unwrap_or(&0.0) - stream.time_s.first().unwrap_or(&0.0));
+    close(longest.fold(0.0, f64::max), 30.0, 0.3);
 }
 
 /// As `mavid prove` reads and explains a case.

@@ -5,11 +5,17 @@
 //! [--write DIR]`: `--write` puts the flights down as cases with their answers, which `mavid prove` scores. Every wrong
 //! answer is told with its seed and what was true; with `BLIND_TELL` in the environment the right ones are as well.
 //!
+//! With `--realistic` the controller flies on what an estimator believes, and the telemetry carries that belief. The
+//! flights are scored as practice flights are; `--cases` is the number of flights an effect, `--several` of those with
+//! two and four effects, `--out FILE` stores the figures, `--sanity N` tells how N estimators err, `--write DIR` puts N
+//! flights (`--flights N`) down as cases.
+//!
 //! Vehicle, conditions and noise are the seed's, whatever is concealed: what one seed's noise makes look like an
 //! effect may be named beside several entries, and is one event.
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, reason = "a benchmark prints")]
 
 mod maker;
+mod realistic;
 mod score;
 #[path = "../support/mod.rs"]
 mod support;
@@ -33,6 +39,9 @@ struct Request {
 }
 
 fn main() {
+    if Arguments::of_process().has("--realistic") {
+        return realistic::run(&Arguments::of_process());
+    }
     let request = request();
     let wanted = |entry: &&&'static str| {
         request

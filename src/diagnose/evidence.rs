@@ -4,7 +4,7 @@
 //! autocovariance of the scores (Newey-West), whichever is larger. Unexplained physics enlarges it, so the evidence is
 //! conservative if the model is wrong.
 
-use super::channels::{CHANNELS, Channels};
+use super::channels::{CHANNELS, Channels, SECOND};
 use super::columns::Columns;
 use super::priors::{OF_KERNEL, Priors};
 use super::rows::Rows;
@@ -95,6 +95,13 @@ impl Weighted {
     /// The same with the standard deviations and the correlation of other rows' residual.
     pub(super) fn like(rows: &Rows, other: &Self) -> Self {
         Self::with(rows, &other.sigma, other.long_run_deviation().powi(2))
+    }
+
+    /// The same by the first reading of the force alone.
+    pub(super) fn by_first_reading(rows: &Rows, other: &Self) -> Self {
+        let mut sigma = other.sigma;
+        sigma[SECOND..].fill(0.0);
+        Self::with(rows, &sigma, other.long_run_deviation().powi(2))
     }
 
     /// The same if this many rows of a reading count as one independent measurement of a slow error.

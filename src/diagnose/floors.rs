@@ -10,9 +10,22 @@ const MASS: f64 = 0.003;
 /// said 0.1 %.
 const INERTIA: f64 = 0.003;
 
-/// Adds the errors of the laws to those of a fit's mass and moments of inertia.
+/// Relative standard error that the form of an effect's law adds to its size: on ArduCopter's simulator, whose sensors are clean
+/// and whose laws are others, sizes were right to 1 to 3 %.
+pub(super) const FORM: f64 = 0.02;
+
+/// Adds the errors of the laws to those of a fit's mass, moments of inertia and sizes of effects.
 pub(super) fn add_floors(fitted: &mut Fitted) {
     let body = &fitted.base.vehicle.body;
+    let mut index = fitted.rows.nuisances.len();
+    for term in &fitted.base.present {
+        for &slot in &term.free {
+            if term.is_amount(slot) && fitted.covariance[(index, index)] > 0.0 {
+                fitted.covariance[(index, index)] += (FORM * term.from_nothing(slot)).powi(2);
+            }
+            index += 1;
+        }
+    }
     for (index, column) in fitted.rows.nuisances.iter().enumerate() {
         let floor = match column.nuisance {
             Nuisance::Mass => MASS * body.mass_kg,

@@ -20,9 +20,6 @@ use crate::signals::{Signals, ThrustSource};
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 
-/// Relative standard error that the form of an aerodynamic law adds: on ArduCopter's simulator, whose sensors are clean and whose
-/// laws are others, sizes were right to 1 to 3 %.
-const FORM: f64 = 0.02;
 /// Standard deviation of a lag that the torques have told, s, beside its own.
 const LAG_STD_S: f64 = 0.01;
 /// Standard deviation of a lag where none was found, s.
@@ -325,7 +322,7 @@ fn replaced(
     Ok(Ok(after))
 }
 
-/// Puts the covariance of the scale and of the sizes, and the error of their forms, in place of the fit's own. `by_force` is the
+/// Puts the covariance of the scale and of the sizes in place of the fit's own. `by_force` is the
 /// factor by which what follows the force was brought to the scale of a weighed mass.
 fn put_covariance(
     after: &mut Fitted,
@@ -336,20 +333,19 @@ fn put_covariance(
     let mass_kg = after.base.vehicle.body.mass_kg;
     let mass = after.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Mass);
     // of the mass: -m / scale per unit of scale
-    let mut all: Vec<(usize, usize, f64, f64)> =
-        mass.map(|mass| (mass, 0, -mass_kg / scale, 0.0)).into_iter().collect();
-    for &Size { place, slot, at, value } in sizes {
+    let mut all: Vec<(usize, usize, f64)> =
+        mass.map(|mass| (mass, 0, -mass_kg / scale)).into_iter().collect();
+    for &Size { place, slot, at, .. } in sizes {
         let parameter = after.base.present[place].parameter(slot);
         let by = if parameter.is_some_and(|of| follows_force(of.unit)) { by_force } else { 1.0 };
-        all.extend(column(after, place, slot).map(|index| (index, at, by, FORM * by * value)));
+        all.extend(column(after, place, slot).map(|index| (index, at, by)));
     }
-    for &(index, _, _, form) in &all {
+    for &(index, ..) in &all {
         after.covariance.row_mut(index).fill(0.0);
         after.covariance.column_mut(index).fill(0.0);
-        after.covariance[(index, index)] = form.powi(2);
     }
-    for &(row, i, by, _) in &all {
-        for &(column, j, and, _) in &all {
+    for &(row, i, by) in &all {
+        for &(column, j, and) in &all {
             after.covariance[(row, column)] += by * and * covariance[(i, j)];
         }
     }

@@ -1,8 +1,9 @@
 //! After the search: which effects stay in the model, and what has no noise of the autopilot's own tells their sizes.
 
 use super::base::Base;
+use super::felt::Felt;
 use super::fit::{Fitted, Newton, fit};
-use super::floors::add_floors;
+use super::floors::{FORM, add_floors};
 use super::latency::is_fed_back;
 use super::limits::is_beyond_showing;
 use super::named::Strength;
@@ -43,22 +44,25 @@ pub(super) fn settle(
         }
     }
     add_floors(&mut found.after);
+    found.latency.std_s = found.latency.std_s.hypot(FORM * found.latency.total_s);
     make_physical(traces, vehicle, &mut found.before)?;
     make_physical(traces, vehicle, &mut found.after)
 }
 
-/// Removes effects without a name from the model: those of ordinary size, those that are not certain, and those that the flight
-/// could not have shown. Returns whether there were any.
+/// Removes effects without a name from the model: those of ordinary size, those that are not certain, those that the accelerometer
+/// does not feel, and those that the flight could not have shown. Returns whether there were any.
 fn leave_out_unnamed(traces: &[Trace], found: &mut Search) -> Result<bool, PhysicsError> {
     let all = found.after.base.clone();
+    let felt = Felt::of(&found.after);
     let mut first = found.after.rows.nuisances.len();
     let mut weakest: Option<(f64, usize)> = None;
     let mut kept: Vec<bool> = Vec::new();
     for (place, present) in all.present.iter().enumerate() {
         let beyond = is_beyond_showing(&found.after, present, first);
         let strength = fitted_strength(&found.after, present, first);
+        let refuted = felt.as_ref().is_some_and(|felt| felt.refutes(&found.after, present, first));
         first += present.free.len();
-        kept.push(!(beyond || is_ordinary(present, &all)));
+        kept.push(!(beyond || refuted || is_ordinary(present, &all)));
         if strength.count > 0 && strength.z < STAYS && weakest.is_none_or(|(least, _)| strength.z < least) {
             weakest = Some((strength.z, place));
         }

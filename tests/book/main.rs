@@ -1,4 +1,5 @@
-//! The parts of the book that are made from the code and from one output of a benchmark, `docs/measured.json`.
+//! The parts of the book that are made from the code and from outputs of benchmarks, `docs/measured.json`
+//! and `docs/measured-realistic.json`.
 //!
 //! `MAVID_WRITE_BOOK=1 cargo test --release --test book` writes them; without the variable the test compares.
 
@@ -14,6 +15,9 @@ mod measured;
 mod ordinary;
 mod overview;
 mod picture;
+mod realistic;
+#[path = "../../benches/support/realistic.rs"]
+mod stored;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -23,8 +27,10 @@ use measured::Measured;
 
 /// What makes the generated parts anew.
 const WRITE: &str = "MAVID_WRITE_BOOK=1 cargo test --release --test book";
-/// What makes the measurements anew; the command itself stands in the file.
+/// What makes the measurements anew; the command itself stands in each file.
 const MEASURED: &str = "docs/measured.json";
+/// Those of flights with an estimator in the loop.
+const REALISTIC: &str = "docs/measured-realistic.json";
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -36,6 +42,12 @@ fn read(path: &Path) -> String {
 
 fn measured() -> Measured {
     serde_json::from_str(&read(&root().join(MEASURED))).unwrap_or_else(|error| panic!("{MEASURED}: {error}"))
+}
+
+fn realistic_blocks() -> Vec<(&'static str, String)> {
+    let text = read(&root().join(REALISTIC));
+    let measured = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{REALISTIC}: {error}"));
+    realistic::blocks(&measured)
 }
 
 /// Every generated file with its text.
@@ -50,7 +62,7 @@ fn generated(measured: &Measured) -> BTreeMap<PathBuf, String> {
     for (name, blocks) in [
         ("effects.md", vec![("effects", overview::table_of_effects())]),
         ("SUMMARY.md", vec![("effects", overview::contents())]),
-        ("figures-diagnosis.md", figures::blocks(measured)),
+        ("figures-diagnosis.md", [figures::blocks(measured), realistic_blocks()].concat()),
     ] {
         let path = source.join(name);
         let text = blocks::replaced(&read(&path), &blocks).unwrap_or_else(|error| panic!("{name}: {error}"));

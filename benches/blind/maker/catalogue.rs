@@ -97,8 +97,10 @@ impl Case {
             speed: dice.random_range(0.8..3.0),
             acceleration: 4.5,
             heights: (low, low + dice.random_range(1.0..2.5)),
+            climb: f64::INFINITY,
             lively_climb: false,
             plunge: false,
+            fall: 1.0,
         };
         let conditions = Conditions::random(seed);
         let (hidden, expect, truth) = (Hidden::default(), Vec::new(), Vec::new());

@@ -24,6 +24,19 @@ pub struct Doubt {
     pub output: f64,
 }
 
+/// What the controller holds for true.
+#[derive(Debug, Clone, Copy)]
+pub struct Belief {
+    /// m, world
+    pub position: Vector3<f64>,
+    /// m/s, world
+    pub velocity: Vector3<f64>,
+    /// body to world
+    pub rotation: Matrix3<f64>,
+    /// rad/s, body
+    pub rates: Vector3<f64>,
+}
+
 /// A controller that believes the maker.
 pub struct Controller {
     mass: f64,
@@ -31,19 +44,45 @@ pub struct Controller {
     /// from thrust and torque to the rotors' squared speeds
     mix: Matrix4<f64>,
     speed_max: f64,
-    doubt: Doubt,
     /// m s
     sum: Vector3<f64>,
+    tune: Tune,
 }
+
+/// How a controller is set up.
+#[derive(Debug, Clone, Copy)]
+pub struct Tune {
+    /// tangent of the steepest lean that is asked for
+    pub steepest: f64,
+    /// kg m^2 about the body's axes that it holds for true
+    pub inertia: Vector3<f64>,
+    /// how quickly it turns: 1 as the gains say
+    pub quickness: f64,
+    /// of what it does about z, as a share of what it does about the others
+    pub yaw: f64,
+}
+
+impl Tune {
+    /// By the maker's file alone.
+    pub fn by_file(craft: &Craft) -> Self {
+        Self { steepest: f64::INFINITY, inertia: craft.said_inertia, quickness: 1.0, yaw: 0.25 }
+    }
+
+    /// As somebody who flies the vehicle sets it: slow motors are not driven to ring, quick ones are used.
+    pub fn in_flight(craft: &Craft, lag: f64) -> Self {
+        let quickness = (0.8 / (lag + 0.02) / GAINS[4]).min(1.8);
+        Self { steepest: STEEPEST.to_radians().tan(), inertia: craft.inertia.diagonal(), quickness, yaw: 0.5 }
+    }
+}
+
+/// Degrees of lean that a vehicle is allowed.
+const STEEPEST: f64 = 36.0;
 
 /// Gains: position 1/s^2, velocity 1/s, the sum 1/s^3, attitude 1/s^2, rates 1/s.
 const GAINS: [f64; 5] = [4.0, 3.4, 1.0, 55.0, 12.0];
 
-/// Yaw is turned more gently.
-const YAW: f64 = 0.25;
-
 impl Controller {
-    pub fn new(craft: &Craft, doubt: Doubt) -> Self {
+    pub fn new(craft: &Craft, tune: Tune) -> Self {
         let columns: [_; 4] = std::array::from_fn(|rotor| {
             let (hub, thrust) = (craft.hubs[rotor], craft.thrust_coefficient);
             Vector4::new(
@@ -56,56 +95,78 @@ impl Controller {
         let mix = Matrix4::from_columns(&columns).try_inverse().unwrap_or_else(Matrix4::identity);
         Self {
             mass: craft.said_mass,
-            inertia: Matrix3::from_diagonal(&craft.said_inertia),
+            inertia: Matrix3::from_diagonal(&tune.inertia),
             mix,
             speed_max: craft.speed_max,
-            doubt,
             sum: Vector3::zeros(),
+            tune,
         }
     }
 
-    /// Actuator values `time` s into the flight; `step` s since the last.
+    /// Actuator values `time` s into the flight on a state that is doubted; `step` s since the last.
     pub fn outputs(
         &mut self,
         path: &Path,
         (time, step): (f64, f64),
-        state: &State,
+        (state, doubt): (&State, Doubt),
         dice: &mut impl Rng,
     ) -> [f64; 4] {
-        let wanted = path.at(time);
         let mut noise = |sigma: f64| {
             Vector3::from_fn(|_, _| {
                 let drawn: f64 = StandardNormal.sample(dice);
                 sigma * drawn
             })
         };
-        let at = three(state, place::POSITION) + noise(self.doubt.position);
-        let velocity = three(state, place::VELOCITY) + noise(self.doubt.velocity);
-        let turn = rotation(state) * Rotation3::new(noise(self.doubt.attitude)).matrix();
-        let rates = three(state, place::RATES) + noise(self.doubt.rates);
+        let belief = Belief {
+            position: three(state, place::POSITION) + noise(doubt.position),
+            velocity: three(state, place::VELOCITY) + noise(doubt.velocity),
+            rotation: rotation(state) * Rotation3::new(noise(doubt.attitude)).matrix(),
+            rates: three(state, place::RATES) + noise(doubt.rates),
+        };
+        let drawn = noise(doubt.output);
+        let fourth = noise(doubt.output).x;
+        let decided = self.decide(path, (time, step), &belief);
+        std::array::from_fn(|rotor| {
+            let extra = if rotor < 3 { drawn[rotor] } else { fourth };
+            (decided[rotor] + extra).clamp(0.05, 1.0)
+        })
+    }
+
+    /// Actuator values on what is believed, without bounds.
+    pub fn decide(&mut self, path: &Path, (time, step): (f64, f64), belief: &Belief) -> [f64; 4] {
+        let wanted = path.at(time);
+        let Belief { position, velocity, rotation: turn, rates } = belief;
+        let quick = self.tune.quickness;
         let [kp, kv, ki, kr, kw] = GAINS;
-        let off = at - wanted.position;
+        let slow = quick.min(1.0);
+        let [kp, kv, ki] = [kp * slow * slow, kv * slow, ki * slow.powi(3)];
+        let off = position - wanted.position;
         self.sum = (self.sum + off * step).map(|sum| sum.clamp(-2.0, 2.0));
         let push = up(&wanted) - kp * off - kv * (velocity - wanted.velocity) - ki * self.sum;
+        let push = self.leaned(push);
         let thrust = self.mass * push.dot(&turn.column(2)).max(0.2 * GRAVITY);
         let to = attitude(&push, wanted.yaw);
         // how the reference itself turns, from what it asks for a little later
         let soon = path.at(time + 0.01);
-        let between = attitude(&up(&wanted), wanted.yaw).transpose() * attitude(&up(&soon), soon.yaw);
+        let asked = |wanted: &RequestedEffects| attitude(&self.leaned(up(wanted)), wanted.yaw);
+        let between = asked(&wanted).transpose() * asked(&soon);
         let ahead = Rotation3::from_matrix_unchecked(between).scaled_axis() / 0.01;
         let skew = 0.5 * (to.transpose() * turn - turn.transpose() * to);
         let lean = Vector3::new(skew[(2, 1)], skew[(0, 2)], skew[(1, 0)]);
         let turning = rates - turn.transpose() * to * ahead;
-        let mut answer = -kr * lean - kw * turning;
-        answer.z *= YAW;
+        let mut answer = -kr * quick * quick * lean - kw * quick * turning;
+        answer.z *= self.tune.yaw;
         let torque = self.inertia * answer + rates.cross(&(self.inertia * rates));
         let squares = self.mix * Vector4::new(thrust, torque.x, torque.y, torque.z);
-        let drawn = noise(self.doubt.output);
-        let fourth = noise(self.doubt.output).x;
-        std::array::from_fn(|rotor| {
-            let extra = if rotor < 3 { drawn[rotor] } else { fourth };
-            (squares[rotor].max(0.0).sqrt() / self.speed_max + extra).clamp(0.05, 1.0)
-        })
+        std::array::from_fn(|rotor| squares[rotor].max(0.0).sqrt() / self.speed_max)
+    }
+
+    /// A push no steeper than is allowed.
+    fn leaned(&self, push: Vector3<f64>) -> Vector3<f64> {
+        let most = self.tune.steepest * push.z.max(0.3 * GRAVITY);
+        let level = push.xy().norm();
+        let share = if level > most { most / level } else { 1.0 };
+        Vector3::new(push.x * share, push.y * share, push.z)
     }
 }
 

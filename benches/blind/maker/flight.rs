@@ -5,7 +5,7 @@ use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::body::{Drive, SIZE, State, place, put, rotation, straighten, terminals, three};
-use super::controller::{Controller, Doubt};
+use super::controller::{Controller, Doubt, Tune};
 use super::hidden::{Gust, Hidden};
 use super::path::{Path, RequestedEffects};
 use super::vehicle::Craft;
@@ -68,6 +68,67 @@ pub fn hovering(craft: &Craft, hidden: &Hidden, path: &Path) -> State {
     state
 }
 
+/// A vehicle in its air, whoever steers it.
+pub struct Plant<'a> {
+    drive: Drive<'a>,
+    pub state: State,
+    turbulence: Turbulence,
+    /// actuator values, tick by tick
+    sent: Vec<[f64; 4]>,
+    /// whole ticks that a command waits, and s of another
+    waiting: (usize, f64),
+    hover: f64,
+    step: f64,
+}
+
+impl<'a> Plant<'a> {
+    /// Hovering where the path begins.
+    pub fn new(craft: &'a Craft, hidden: &'a Hidden, path: &Path, seed: u64) -> Self {
+        let (whole, part) = ((hidden.delay / TICK).floor(), hidden.delay.rem_euclid(TICK));
+        let waiting = (0..).take_while(|&ticks| f64::from(ticks) < whole).count();
+        Self {
+            drive: Drive::new(craft, hidden),
+            state: hovering(craft, hidden, path),
+            turbulence: Turbulence::new(hidden.gust, seed),
+            sent: Vec::new(),
+            waiting: (waiting, part),
+            hover: craft.hover_speed() / craft.speed_max,
+            step: TICK,
+        }
+    }
+
+    /// What was true at `time`, when `command` was given; a tick passes.
+    pub fn tick(&mut self, time: f64, command: [f64; 4], path: &Path) -> Instant {
+        self.sent.push(command);
+        let (waiting, part) = self.waiting;
+        let of = |back: usize| {
+            self.sent.len().checked_sub(1 + back).map_or([self.hover; 4], |place| self.sent[place])
+        };
+        let (late, now) = (of(if part > 0.0 { waiting + 1 } else { waiting }), of(waiting));
+        let Self { drive, state, step, turbulence, .. } = self;
+        drive.gust = turbulence.next(TICK);
+        drive.command = late;
+        let instant = Instant { command, ..instant(drive, time, state, path) };
+        let (split, end) = (time + part, time + TICK);
+        dopri::advance(|time, state| drive.motion(time, state).slope, state, (time, split), step);
+        drive.command = now;
+        dopri::advance(|time, state| drive.motion(time, state).slope, state, (split, end), step);
+        *step = step.min(TICK);
+        straighten(state);
+        instant
+    }
+
+    /// Whether the vehicle is where it may be at `time`.
+    pub fn check(&self, time: f64, path: &Path, most: f64) -> Result<(), Lost> {
+        let at = three(&self.state, place::POSITION);
+        let off = (at - path.at(time).position).norm();
+        if off.is_nan() || off > most {
+            return Err(Lost::Strayed(time, off));
+        }
+        if at.z < 0.4 * self.drive.craft.radius { Err(Lost::Ground(time)) } else { Ok(()) }
+    }
+}
+
 /// Flies a path.
 pub fn fly(
     craft: &Craft,
@@ -76,43 +137,15 @@ pub fn fly(
     (seed, doubt): (u64, Doubt),
 ) -> Result<Vec<Instant>, Lost> {
     let mut noise = dice(seed, 3);
-    let mut turbulence = Turbulence::new(hidden.gust, seed);
-    let mut controller = Controller::new(craft, doubt);
-    let mut drive = Drive::new(craft, hidden);
-    let mut state = hovering(craft, hidden, path);
-    let hover = craft.hover_speed() / craft.speed_max;
-    let (whole, part) = ((hidden.delay / TICK).floor(), hidden.delay.rem_euclid(TICK));
-    let waiting = (0..).take_while(|&ticks| f64::from(ticks) < whole).count();
-    let mut sent: Vec<[f64; 4]> = Vec::new();
+    let mut controller = Controller::new(craft, Tune::by_file(craft));
+    let mut plant = Plant::new(craft, hidden, path, seed);
     let mut flown = Vec::new();
-    let mut step = TICK;
     let ticks = (0..).take_while(|&tick| f64::from(tick) * TICK <= path.duration);
     for tick in ticks {
         let time = f64::from(tick) * TICK;
-        let command = controller.outputs(path, (time, TICK), &state, &mut noise);
-        sent.push(command);
-        let of = |back: usize| sent.len().checked_sub(1 + back).map_or([hover; 4], |place| sent[place]);
-        drive.gust = turbulence.next(TICK);
-        drive.command = of(if part > 0.0 { waiting + 1 } else { waiting });
-        flown.push(instant(&drive, time, &state, path));
-        let split = time + part;
-        dopri::advance(|time, state| drive.motion(time, state).slope, &mut state, (time, split), &mut step);
-        drive.command = of(waiting);
-        let end = time + TICK;
-        dopri::advance(|time, state| drive.motion(time, state).slope, &mut state, (split, end), &mut step);
-        step = step.min(TICK);
-        straighten(&mut state);
-        let at = three(&state, place::POSITION);
-        let off = (at - path.at(end).position).norm();
-        if off.is_nan() || off > 1.5 {
-            return Err(Lost::Strayed(end, off));
-        }
-        if at.z < 0.4 * craft.radius {
-            return Err(Lost::Ground(end));
-        }
-        if let Some(last) = flown.last_mut() {
-            last.command = command;
-        }
+        let command = controller.outputs(path, (time, TICK), (&plant.state, doubt), &mut noise);
+        flown.push(plant.tick(time, command, path));
+        plant.check(time + TICK, path, 1.5)?;
     }
     Ok(flown)
 }
@@ -124,7 +157,7 @@ fn instant(drive: &Drive, time: f64, state: &State, path: &Path) -> Instant {
     let (volts, amperes) = if drive.hidden.battery.exponent == 0.0 {
         // a pack that sags as packs do, of which the speed controllers know nothing
         let (volts, amperes) = terminals(&drive.hidden.battery, state[place::CHARGE], 0.0);
-        (volts - 0.004 * time - 0.02 * (motion.amperes - amperes), motion.amperes)
+        (volts - drive.hidden.battery.fall * time - 0.02 * (motion.amperes - amperes), motion.amperes)
     } else {
         (motion.volts, motion.amperes)
     };

@@ -46,6 +46,8 @@ pub struct Battery {
     pub exponent: f64,
     /// share of electric power that turns the rotors
     pub efficiency: f64,
+    /// V/s by which it falls where the controllers hold the speed
+    pub fall: f64,
 }
 
 /// A load on a cord from the centre of mass.
@@ -172,6 +174,7 @@ impl Default for Hidden {
                 per_joule: 0.0,
                 exponent: 0.0,
                 efficiency: 0.6,
+                fall: 0.004,
             },
             outside: None,
         }

@@ -4,6 +4,8 @@
 //!
 //! World north, west, up; body x forward, y left, z up; SI. A rotor's `spin` is +1 where it turns counter-clockwise
 //! seen from above.
+//!
+//! In [`realistic`] the controller flies on what an estimator believes, and the telemetry carries that belief.
 
 pub mod body;
 pub mod catalogue;
@@ -12,7 +14,9 @@ pub mod controller;
 pub mod dopri;
 pub mod flight;
 pub mod hidden;
+pub mod mission;
 pub mod path;
+pub mod realistic;
 pub mod rotors;
 pub mod telemetry;
 pub mod vehicle;

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use rand::{Rng, RngExt};
 
 use super::dice;
+use super::mission::{self, Leg};
 
 /// Harmonics.
 const HARMONICS: usize = 5;
@@ -17,10 +18,14 @@ pub struct Room {
     pub acceleration: f64,
     /// m, lowest and highest
     pub heights: (f64, f64),
-    /// share of the heights' range that is used at least, whatever the speed
+    /// m/s, the fastest climb
+    pub climb: f64,
+    /// as fast up and down as to the sides
     pub lively_climb: bool,
     /// up and down slowly and far
     pub plunge: bool,
+    /// how fast the harmonics level fall with their number, as a power
+    pub fall: f64,
 }
 
 /// What is asked for at an instant.
@@ -49,6 +54,8 @@ pub struct Path {
     waves: [[(f64, f64); HARMONICS]; 4],
     /// m
     height: f64,
+    /// of a mission; empty: the series
+    legs: Vec<Leg>,
 }
 
 /// Hover before the series begins, s.
@@ -63,10 +70,33 @@ impl Path {
         let mut dice = dice(seed, 2);
         let period = dice.random_range(10.0..14.0_f64);
         let periods = periods.unwrap_or((50.0 / period).round());
+        Self::series((period, HOVER + periods * period), room, &mut dice)
+    }
+
+    /// The path of a seed from waypoint to waypoint in a room of `reach` m about the middle, `duration` s long.
+    pub fn mission(seed: u64, (room, reach): (Room, f64), duration: f64) -> Self {
+        let mut dice = dice(seed, 2);
+        let legs = mission::legs((room, reach), (HOVER, duration), &mut dice);
+        let waves = [[(0.0, 0.0); HARMONICS]; 4];
+        Self { period: duration, duration, waves, height: 0.0, legs }
+    }
+
+    /// The path of a seed as a series of this period, `duration` s long.
+    pub fn of_period(seed: u64, room: Room, (period, duration): (f64, f64)) -> Self {
+        Self::series((period, duration), room, &mut dice(seed, 2))
+    }
+
+    fn series((period, duration): (f64, f64), room: Room, mut dice: &mut impl Rng) -> Self {
         let mut waves = [[(0.0, 0.0); HARMONICS]; 4];
-        for axis in &mut waves {
-            for (place, wave) in axis.iter_mut().enumerate() {
-                *wave = drawn(&mut dice, 1.0 / (1.0 + place as f64));
+        for (axis, of_axis) in waves.iter_mut().enumerate() {
+            let fall = match axis {
+                0 | 1 => room.fall,
+                // no body has much to turn itself with
+                3 if room.climb.is_finite() => 1.5,
+                _ => 1.0,
+            };
+            for (place, wave) in of_axis.iter_mut().enumerate() {
+                *wave = drawn(&mut dice, (1.0 + place as f64).powf(-fall));
             }
         }
         if room.plunge {
@@ -75,7 +105,7 @@ impl Path {
                 (*cosine, *sine) = (*cosine / less, *sine / less);
             }
         }
-        let mut path = Self { period, duration: HOVER + periods * period, waves, height: 0.0 };
+        let mut path = Self { period, duration, waves, height: 0.0, legs: Vec::new() };
         path.fit(room);
         path
     }
@@ -97,9 +127,10 @@ impl Path {
         }
         let level = (room.speed / speed).min(room.acceleration / hard);
         let span = (room.heights.1 - room.heights.0) / (high - low);
-        let most = if room.lively_climb { room.speed } else { 0.7 * room.speed };
+        let most = if room.lively_climb { room.speed } else { room.climb.min(0.7 * room.speed) };
         let upright = span.min(most / climb).min(0.6 * room.acceleration.min(5.0) / push);
-        let turn = 0.9 / yaw_rate;
+        // as gently where climbs are bounded
+        let turn = if room.climb.is_finite() { 0.65 } else { 0.9 } / yaw_rate;
         for (axis, scale) in [level, level, upright, turn].into_iter().enumerate() {
             for (cosine, sine) in &mut self.waves[axis] {
                 *cosine *= scale;
@@ -125,6 +156,9 @@ impl Path {
 
     /// What is asked for `time` s after the flight's beginning.
     pub fn at(&self, time: f64) -> RequestedEffects {
+        if !self.legs.is_empty() {
+            return mission::at(&self.legs, time);
+        }
         let since = (time - HOVER).max(0.0);
         let [share, rise, bend] = blend(since / BLEND);
         let (rise, bend) = (rise / BLEND, bend / (BLEND * BLEND));

@@ -47,7 +47,7 @@ impl Conditions {
 }
 
 /// Host's clock when the recording begins, microseconds since 1970.
-const HOST_US: f64 = 1.79e15;
+pub const HOST_US: f64 = 1.79e15;
 
 /// Share of the frames that never arrive.
 const LOST: f64 = 0.004;
@@ -88,10 +88,7 @@ fn messages(
     let due = |every: usize| tick.is_multiple_of(every);
     if due(250) {
         out.push(heartbeat());
-        out.push(MavMessage::EXTENDED_SYS_STATE(dialect::EXTENDED_SYS_STATE_DATA {
-            landed_state: dialect::MavLandedState::MAV_LANDED_STATE_IN_AIR,
-            ..Default::default()
-        }));
+        out.push(in_air());
     }
     if due(with.every) {
         out.push(attitude(time + with.attitude_late, now, (hidden, with), dice));
@@ -114,14 +111,27 @@ fn messages(
         out.push(setpoint(time, now));
     }
     if due(125) {
-        let mut message = dialect::BATTERY_STATUS_DATA { voltages: [u16::MAX; 10], ..Default::default() };
-        let cell = now.volts / 4.0 + 0.001 * drawn(dice);
-        message.voltages[..4].fill(u16::try_from(whole(1000.0 * cell)).unwrap_or(u16::MAX));
-        message.current_battery = i16::try_from(whole(100.0 * now.amperes)).unwrap_or(i16::MAX);
-        message.battery_remaining = 70;
-        out.push(MavMessage::BATTERY_STATUS(message));
+        out.push(battery(now, dice));
     }
     out
+}
+
+/// The pack's voltage and current.
+pub fn battery(now: &Instant, dice: &mut impl Rng) -> MavMessage {
+    let mut message = dialect::BATTERY_STATUS_DATA { voltages: [u16::MAX; 10], ..Default::default() };
+    let cell = now.volts / 4.0 + 0.001 * drawn(dice);
+    message.voltages[..4].fill(u16::try_from(whole(1000.0 * cell)).unwrap_or(u16::MAX));
+    message.current_battery = i16::try_from(whole(100.0 * now.amperes)).unwrap_or(i16::MAX);
+    message.battery_remaining = 70;
+    MavMessage::BATTERY_STATUS(message)
+}
+
+/// That the vehicle flies.
+pub fn in_air() -> MavMessage {
+    MavMessage::EXTENDED_SYS_STATE(dialect::EXTENDED_SYS_STATE_DATA {
+        landed_state: dialect::MavLandedState::MAV_LANDED_STATE_IN_AIR,
+        ..Default::default()
+    })
 }
 
 fn heartbeat() -> MavMessage {
@@ -200,7 +210,8 @@ fn position(time: f64, now: &Instant, (hidden, with): Told, dice: &mut impl Rng)
     MavMessage::LOCAL_POSITION_NED(dialect::LOCAL_POSITION_NED_DATA { time_boot_ms, x, y, z, vx, vy, vz })
 }
 
-fn setpoint(time: f64, now: &Instant) -> MavMessage {
+/// What was asked for.
+pub fn setpoint(time: f64, now: &Instant) -> MavMessage {
     let [x, y, z] = mirrored(&now.wanted.position);
     let [vx, vy, vz] = mirrored(&now.wanted.velocity);
     let [afx, afy, afz] = mirrored(&now.wanted.acceleration);
@@ -223,7 +234,7 @@ fn setpoint(time: f64, now: &Instant) -> MavMessage {
 }
 
 /// From left and up to right and down, or north, west, up to north, east, down.
-fn mirrored(value: &Vector3<f64>) -> [f32; 3] {
+pub fn mirrored(value: &Vector3<f64>) -> [f32; 3] {
     [narrow(value.x), narrow(-value.y), narrow(-value.z)]
 }
 
@@ -235,11 +246,13 @@ fn drawn(dice: &mut impl Rng) -> f64 {
     StandardNormal.sample(dice)
 }
 
-fn micros(time: f64) -> u64 {
+/// Microseconds of a time in s.
+pub fn micros(time: f64) -> u64 {
     let time = std::time::Duration::try_from_secs_f64(time + 1e-7).unwrap_or_default();
     u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
 }
 
-fn millis(time: f64) -> u32 {
+/// Milliseconds of a time in s.
+pub fn millis(time: f64) -> u32 {
     u32::try_from(micros(time + 0.0005) / 1000).unwrap_or(u32::MAX)
 }

@@ -34,6 +34,26 @@ pub struct Craft {
     pub said_inertia: Vector3<f64>,
     /// how much of the thrust is quadratic in the actuator, as the maker says, where he states thrusts, not speeds
     pub said_curve: Option<f64>,
+    /// s, the motors' lag where the maker says it
+    pub said_lag: Option<f64>,
+    /// whether the actuators are told as pulse widths
+    pub pulses: bool,
+}
+
+/// kg, arm and rotor radius in m, N/(rad/s)^2, N m per N, kg m^2 about x: of four quadrotors.
+const BASES: [[f64; 6]; 4] = [
+    [0.50, 0.175, 0.087, 5.5e-6, 0.0215, 0.0043],
+    [1.00, 0.245, 0.120, 5.3e-6, 0.0188, 0.0245],
+    [1.78, 0.187, 0.113, 8.3e-6, 0.0495, 0.0118],
+    [1.90, 0.250, 0.143, 9.6e-6, 0.0185, 0.0225],
+];
+
+/// Where rotors stand on a circle, clockwise from `first` rad.
+fn hubs(arm: f64, first: f64) -> [Vector3<f64>; 4] {
+    std::array::from_fn(|index| {
+        let angle = first - std::f64::consts::FRAC_PI_2 * index as f64;
+        Vector3::new(arm * angle.cos(), arm * angle.sin(), 0.0)
+    })
 }
 
 impl Craft {
@@ -61,10 +81,7 @@ impl Craft {
             ["front_left", "front_right", "rear_right", "rear_left"]
         };
         // clockwise from the front
-        let hubs = std::array::from_fn(|index| {
-            let angle = first - std::f64::consts::FRAC_PI_2 * index as f64;
-            Vector3::new(arm * angle.cos(), arm * angle.sin(), 0.0)
-        });
+        let hubs = hubs(arm, first);
         let turn = if dice.random_bool(0.5) { 1.0 } else { -1.0 };
         let mut wrong = |by: f64| 1.0 + by * dice.random_range(-1.0..1.0);
         let said_mass = mass * wrong(0.05);
@@ -84,7 +101,36 @@ impl Craft {
             said_mass,
             said_inertia: said,
             said_curve: None,
+            said_lag: None,
+            pulses: false,
         }
+    }
+
+    /// A vehicle within 25 % of one of four in all that makes it; the maker's mass and inertia are wrong.
+    pub fn near_a_base(seed: u64, pulses: bool) -> Self {
+        let mut dice = dice(seed, 1);
+        let [mass, arm, radius, thrust, ratio, around_x] = BASES[dice.random_range(0..BASES.len())];
+        let mut near = |value: f64, by: f64| value * dice.random_range(1.0 - by..1.0 + by);
+        let (mass, arm, radius) = (near(mass, 0.2), near(arm, 0.2), near(radius, 0.2));
+        let thrust_coefficient = near(thrust, 0.2);
+        let torque_coefficient = thrust_coefficient * near(ratio, 0.15);
+        let around_x = near(around_x, 0.2);
+        let around_y = near(around_x, 0.12);
+        let around_z = near(0.86 * (around_x + around_y), 0.08);
+        let said_mass = near(mass, 0.06);
+        let said_x = near(around_x, 0.4);
+        let said_z = near(around_z, 0.3).clamp(0.2 * said_x, 1.96 * said_x);
+        let hover_speed = (mass * GRAVITY / (4.0 * thrust_coefficient)).sqrt();
+        let speed_max = hover_speed / near(0.61, 0.15);
+        let mut product = || 0.035 * around_x * dice.random_range(-1.0..1.0);
+        let (xy, xz, yz) = (product(), product(), product());
+        let mut craft = Self::random(seed);
+        craft.hubs = hubs(arm, std::f64::consts::FRAC_PI_4);
+        craft.names = ["front_left", "front_right", "rear_right", "rear_left"];
+        craft.spins = [-1.0, 1.0, -1.0, 1.0];
+        craft.inertia = Matrix3::new(around_x, xy, xz, xy, around_y, yz, xz, yz, around_z);
+        craft.said_inertia = Vector3::new(said_x, said_x, said_z);
+        Self { mass, radius, thrust_coefficient, torque_coefficient, speed_max, said_mass, pulses, ..craft }
     }
 
     /// rad/s at which four rotors carry the vehicle
@@ -104,12 +150,21 @@ impl Craft {
 
     /// What the maker says of the rotors: speeds, or thrusts that are right in hover.
     fn propulsion(&self) -> String {
+        let lag = self.said_lag.map_or_else(String::new, |lag| format!("time_constant = {lag:.5}\n"));
+        if self.pulses {
+            return format!(
+                "actuator = \"pwm\"\npwm_min = 1000\npwm_max = 2000\nthrust_max = {:.5}           # N\n\
+                 thrust_expo = 1.0\ntorque_ratio = {:.6}         # N m per N\n{lag}",
+                self.thrust_coefficient * self.speed_max * self.speed_max,
+                self.torque_coefficient / self.thrust_coefficient,
+            );
+        }
         let Some(f) = self.said_curve else {
             return format!(
                 "actuator = \"speed\"               # u in 0..1 commands the rotor speed u * speed_max\n\
                  speed_max = {:.3}             # rad/s\n\
                  thrust_coefficient = {:.6e}   # N/(rad/s)^2\n\
-                 torque_coefficient = {:.6e}   # N m/(rad/s)^2\n",
+                 torque_coefficient = {:.6e}   # N m/(rad/s)^2\n{lag}",
                 self.speed_max, self.thrust_coefficient, self.torque_coefficient,
             );
         };

@@ -1,0 +1,93 @@
+//! Whether the accelerometer feels a force that was found: what acts on the vehicle shows in both readings of the force, a slow error
+//! of the autopilot's velocity in the second one only.
+
+use super::channels::SECOND;
+use super::evidence::Weighted;
+use super::fit::Fitted;
+use super::hausman::differ;
+use super::signature::EffectTerm;
+use nalgebra::{DMatrix, DVector};
+
+/// Standard errors below which the accelerometer alone shows no effect. Chosen; not measured.
+const NOTHING: f64 = 2.0;
+
+/// Largest factor by which the other columns may raise the variance of an amount: a force that is fixed in the body is the same as
+/// the accelerometer's bias, and the accelerometer alone says nothing of it. Chosen; not measured.
+const INFLATION: f64 = 30.0;
+
+/// What the accelerometer and the torques alone say of a model's columns.
+pub(super) struct Felt {
+    coefficients: DVector<f64>,
+    covariance: DMatrix<f64>,
+    /// factor by which the other columns raise each variance
+    inflation: DVector<f64>,
+}
+
+impl Felt {
+    /// `None` where force is read once.
+    pub(super) fn of(fitted: &Fitted) -> Option<Self> {
+        let sigma = &fitted.weighted.sigma;
+        if sigma[SECOND..].iter().all(|sigma| *sigma <= 0.0) || sigma[..3].iter().all(|sigma| *sigma <= 0.0) {
+            return None;
+        }
+        let felt = Weighted::by_first_reading(&fitted.rows, &fitted.weighted);
+        let normal = felt.normal.as_ref()?;
+        let information = normal.l_dirty().lower_triangle();
+        let information = (&information * information.transpose()).diagonal();
+        let inflation = normal.inverse().diagonal().component_mul(&information);
+        let (coefficients, covariance) = felt.coefficients(&fitted.rows);
+        Some(Self { coefficients, covariance, inflation })
+    }
+
+    /// Whether the accelerometer shows none of an effect's amounts, and contradicts one of them. The effect's first column in the
+    /// model has this index.
+    pub(super) fn refutes(&self, fitted: &Fitted, term: &EffectTerm, first: usize) -> bool {
+        let each = term.free.iter().enumerate().filter(|(_, slot)| term.is_amount(**slot));
+        let of = |(index, &slot): (usize, &usize)| {
+            let at = (first + index, first + index);
+            let size = term.from_nothing(slot);
+            Amount {
+                size,
+                variance: fitted.covariance[at],
+                felt: size + self.coefficients[first + index],
+                felt_variance: self.covariance[at],
+            }
+        };
+        let told = |(index, _): &(usize, &usize)| self.inflation[first + index] < INFLATION;
+        let amounts: Vec<Amount> =
+            each.filter(told).map(of).filter(|amount| amount.felt_variance > 0.0).collect();
+        amounts.iter().all(Amount::is_nothing) && amounts.iter().any(Amount::is_contradicted)
+    }
+}
+
+/// A size by everything, and by the accelerometer and the torques alone, with their variances.
+struct Amount {
+    size: f64,
+    variance: f64,
+    felt: f64,
+    felt_variance: f64,
+}
+
+impl Amount {
+    fn is_nothing(&self) -> bool {
+        self.felt.powi(2) < NOTHING.powi(2) * self.felt_variance
+    }
+
+    fn is_contradicted(&self) -> bool {
+        self.felt_variance > self.variance && differ(self.size - self.felt, self.variance, self.felt_variance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_force_that_the_accelerometer_does_not_feel_is_contradicted() {
+        let amount = |size, felt| Amount { size, variance: 0.01, felt, felt_variance: 0.04 };
+        // 0.1 and 0.2 standard errors: the difference has 0.17
+        assert!(amount(1.0, 0.1).is_nothing() && amount(1.0, 0.1).is_contradicted());
+        assert!(!amount(1.0, 0.7).is_nothing() && !amount(1.0, 0.7).is_contradicted());
+        assert!(amount(0.4, 0.1).is_nothing() && !amount(0.4, 0.1).is_contradicted());
+    }
+}
