@@ -6,6 +6,7 @@ use super::candidates::Candidate;
 use super::evidence::{Evidence, LEAST_ROWS, Weighted};
 use super::explain::ExplainError;
 use super::fit::Fitted;
+use super::floors::FORM;
 use super::latency::with_any_latency;
 use super::recorded::Recorded;
 use super::rows::Rows;
@@ -149,8 +150,9 @@ impl Flights<'_> {
         match worst {
             Some((parameter, std)) if std.is_finite() && std > 0.0 => {
                 let naming = &wanted.signature.naming;
-                let std = std.max(naming.least_std).max(naming.least);
-                let of_usual = std / (wanted.usual)(self.vehicle).max(f64::MIN_POSITIVE);
+                let usual = (wanted.usual)(self.vehicle).max(f64::MIN_POSITIVE);
+                let std = std.max(naming.least_std).max(naming.least).hypot(FORM * usual);
+                let of_usual = std / usual;
                 Expected::Known { parameter: parameter.name, std, of_usual, unit: parameter.unit, shown }
             }
             _ => Expected::Confused,

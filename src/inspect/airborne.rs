@@ -3,10 +3,13 @@
 use crate::autopilot::Autopilot;
 use crate::recording::{Quantity, Recording, Stream};
 use crate::signals::{LEAST_FREE_S, Said, best};
+use crate::stats::median;
 
 /// Command from which a motor does more than idle: autopilots let motors idle at up to this value. Chosen; not
 /// measured.
 const LEAST_COMMAND: f64 = 0.12;
+/// So many samples of a channel behind one another, other than its median, are no damage: single ones are.
+const LEAST_CHANGED: usize = 3;
 /// What an output may be as a fraction of full scale, reversed ones and pulses of 0 included: the rest is damage.
 const OUTPUTS: std::ops::RangeInclusive<f64> = -1.0..=1.5;
 /// Share of the largest actuation so far that carries a vehicle. Chosen; not measured.
@@ -29,9 +32,10 @@ pub(super) fn normalized_commands(recording: &Recording) -> Option<Stream> {
         given.fold((0_u64, 0_u64), |(count, pulses), value| (count + 1, pulses + u64::from(*value > 2.5)));
     let in_microseconds = 2 * pulses > count;
     let moves = |channel: &usize| {
-        let mut values = (0..raw.len()).map(|i| raw.sample(i)[*channel]).filter(|value| value.is_finite());
-        let first = values.next();
-        values.any(|value| Some(value) != first)
+        let values: Vec<f64> =
+            (0..raw.len()).map(|i| raw.sample(i)[*channel]).filter(|value| value.is_finite()).collect();
+        let rest = median(&mut values.clone());
+        values.windows(LEAST_CHANGED).any(|values| values.iter().all(|value| *value != rest))
     };
     let channels: Vec<usize> = (0..raw.width).filter(moves).collect();
     let fraction = |value: f64| {

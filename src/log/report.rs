@@ -97,7 +97,9 @@ impl ReadReport {
     /// How much of a log that the vehicle wrote is damaged, in words, if it is so much that streams may be gone with it.
     #[must_use]
     pub fn damage(&self) -> Option<String> {
-        let share = self.passed_share();
+        let skipped = |loss: &Loss| if let Loss::Skipped { bytes, .. } = loss { *bytes } else { 0 };
+        // an end that was cut off is no damage
+        let share = self.share_of(skipped);
         let by_messages = || self.unreadable().map(|count| format!("{count} of its messages cannot be read"));
         let by_bytes =
             (share > DAMAGED).then(|| format!("{:.0} % of its bytes cannot be read", 100.0 * share));
@@ -110,7 +112,12 @@ impl ReadReport {
             Loss::Skipped { bytes, .. } | Loss::CutOff { bytes, .. } => *bytes,
             _ => 0,
         };
-        let passed: u64 = self.losses.iter().map(passed).sum();
+        self.share_of(passed)
+    }
+
+    /// Share of a log that the vehicle wrote, 0 to 1, that its losses have of these bytes.
+    fn share_of(&self, bytes: impl Fn(&Loss) -> u64) -> f64 {
+        let passed: u64 = self.losses.iter().map(bytes).sum();
         self.onboard().map_or(0.0, |log| passed as f64 / log.bytes.max(1) as f64)
     }
 

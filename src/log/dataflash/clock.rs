@@ -3,8 +3,11 @@
 /// A stamp this much before the last one, s, is of another clock, or of no clock. Messages of several threads run back by
 /// less.
 const BACK_S: f64 = 10.0;
-/// A stamp this much after the last one, s, needs a second one that agrees: damage hides in stamps, and a pause is rarer.
-const LEAP_S: f64 = 10.0;
+/// A stamp this much after the last one, s, needs a second one that agrees: damage hides in stamps. The first one is not read, so
+/// that pauses of a log are let pass.
+const LEAP_S: f64 = 3600.0;
+/// A stamp this much after the last one, s, is damaged, whatever agrees with it: no log lasts for a month.
+const NEVER_S: f64 = 2.7e6;
 /// Two stamps behind one another agree within this, s.
 const AGREES_S: f64 = 2.0;
 /// Between two logs of which one stands behind the other, s: the pause itself is not known.
@@ -79,7 +82,7 @@ impl Clock {
             return Placed::Anew(time_s);
         }
         if !follows(self.last_s) {
-            if !self.doubted_s.is_some_and(agrees) {
+            if stamp_s - self.last_s > NEVER_S || !self.doubted_s.is_some_and(agrees) {
                 self.doubted_s = Some(stamp_s);
                 self.strays += 1;
                 return Placed::Stray;
@@ -115,20 +118,25 @@ mod tests {
         assert_eq!((clock.strays, clock.ran_back), (1, 0));
         assert_eq!([clock.place(50.0), clock.place(51.0)], [Placed::Stray, Placed::At(11.0)]);
         assert_eq!((clock.strays, clock.ran_back), (1, 1));
-        // two wrong ones that do not agree, far ahead by less than an hour
-        assert_eq!([clock.place(900.0), clock.place(2000.0)], [Placed::Stray; 2]);
+        // two wrong ones that do not agree
+        assert_eq!([clock.place(9000.0), clock.place(20_000.0)], [Placed::Stray; 2]);
         assert_eq!(clock.place(51.5), Placed::At(11.5));
         assert_eq!((clock.strays, clock.ran_back), (3, 1));
+        // two wrong ones that agree, years ahead
+        assert_eq!(
+            [clock.place(9e9), clock.place(9e9 + 0.1), clock.place(52.0)],
+            [Placed::Stray, Placed::Stray, Placed::At(12.0)]
+        );
     }
 
     #[test]
     fn a_second_log_behind_the_first_begins_after_it() {
         let mut clock = Clock::default();
         clock.definitions_anew();
-        assert_eq!([clock.place(40.0), clock.place(48.0)], [Placed::At(0.0), Placed::At(8.0)]);
+        assert_eq!([clock.place(40.0), clock.place(60.0)], [Placed::At(0.0), Placed::At(20.0)]);
         clock.definitions_anew();
-        assert_eq!([clock.place(3.0), clock.place(4.0)], [Placed::Anew(9.0), Placed::At(10.0)]);
-        assert_eq!(clock.beside(4.1), Some(10.1));
+        assert_eq!([clock.place(3.0), clock.place(4.0)], [Placed::Anew(21.0), Placed::At(22.0)]);
+        assert_eq!(clock.beside(4.1), Some(22.1));
         assert_eq!(clock.beside(400.0), None);
     }
 }

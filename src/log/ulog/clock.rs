@@ -5,10 +5,11 @@
 
 use crate::units::seconds_from_us;
 
-/// A topic's stamps may run back by this much, and so may a damaged stamp lie ahead that is not told from a short pause.
-const BACKWARD_US: u64 = 5_000_000;
-/// A longer leap forward must be confirmed by further stamps: damage hides in stamps, and a pause is rarer.
-const FORWARD_US: u64 = 5_000_000;
+/// A topic's stamps may run back by this much.
+const BACKWARD_US: u64 = 2_000_000;
+/// A longer leap forward must be confirmed by further stamps: damage hides in stamps. The first ones are not read, so that pauses
+/// of a log are let pass; a vehicle that cannot write for longer says so.
+const FORWARD_US: u64 = 60_000_000;
 /// Stamps behind one another agree within this.
 const AGREES_US: u64 = 2_000_000;
 /// So many stamps in a row that agree with each other but not with the clock: it has leapt or started anew.
@@ -124,7 +125,7 @@ mod tests {
         let mut clock = Clock::default();
         clock.begin(0);
         assert_eq!(clock.place(10_000_000, None), Placed::At);
-        for odd in [0, 4_000_000, u64::MAX, 500_000_000, 40_000_000] {
+        for odd in [0, 5_000_000, u64::MAX, 500_000_000] {
             assert_eq!(clock.place(odd, Some(10_000_000)), Placed::Stale, "{odd}");
             assert_eq!(clock.place(10_010_000, Some(10_000_000)), Placed::At);
         }
