@@ -17,6 +17,8 @@ const DAMAGED: f64 = 0.1;
 const MOSTLY: f64 = 0.5;
 /// Steps back of a log's stamps that nothing but another order explains. Chosen; not measured.
 const OUT_OF_ORDER: u64 = 5;
+/// One message of so many that the vehicle wrote may run back by a damaged stamp. Chosen; not measured.
+const DAMAGED_STAMPS: u64 = 500;
 
 /// What was met while reading a log, whatever its format.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -130,7 +132,9 @@ impl ReadReport {
             Oddity::BackwardStamps { far, .. } => *far,
             _ => 0,
         };
-        self.oddities.iter().map(back).max().filter(|count| *count >= OUT_OF_ORDER)
+        // damaged stamps run back here and there
+        let least = OUT_OF_ORDER.max(self.onboard().map_or(0, |log| log.messages / DAMAGED_STAMPS));
+        self.oddities.iter().map(back).max().filter(|count| *count >= least)
     }
 
     /// It ends before its first message with a time, as a log that was cut off does.

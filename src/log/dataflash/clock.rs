@@ -8,6 +8,8 @@ const BACK_S: f64 = 10.0;
 const LEAP_S: f64 = 3600.0;
 /// A stamp this much after the last one, s, is damaged, whatever agrees with it: no log lasts for a month.
 const NEVER_S: f64 = 2.7e6;
+/// A leap this long, s, that the next stamp takes back was damage.
+const DOUBTFUL_S: f64 = 10.0;
 /// Two stamps behind one another agree within this, s.
 const AGREES_S: f64 = 2.0;
 /// Between two logs of which one stands behind the other, s: the pause itself is not known.
@@ -33,6 +35,8 @@ pub(super) struct Clock {
     latest_s: f64,
     /// a stamp far from the last one, until another agrees with it
     doubted_s: Option<f64>,
+    /// the last stamp before a leap, s, until another has followed it
+    before_leap_s: Option<f64>,
     /// definitions began anew: so may the clock
     may_restart: bool,
     /// stamps that fit no clock
@@ -81,7 +85,12 @@ impl Clock {
             (self.last_s, self.latest_s, self.doubted_s) = (stamp_s, stamp_s, None);
             return Placed::Anew(time_s);
         }
-        if !follows(self.last_s) {
+        let taken_back = |before_s: &f64| (-BACK_S..DOUBTFUL_S).contains(&(stamp_s - before_s));
+        let mut before_leap_s = (stamp_s - self.last_s > DOUBTFUL_S).then_some(self.last_s);
+        if self.before_leap_s.take().as_ref().is_some_and(taken_back) {
+            self.strays += 1;
+            self.latest_s = stamp_s;
+        } else if !follows(self.last_s) {
             if stamp_s - self.last_s > NEVER_S || !self.doubted_s.is_some_and(agrees) {
                 self.doubted_s = Some(stamp_s);
                 self.strays += 1;
@@ -89,12 +98,14 @@ impl Clock {
             }
             // the first of both is not read, and was right
             self.strays -= 1;
+            before_leap_s = None;
             if stamp_s < self.last_s {
                 self.ran_back += 1;
                 self.ran_back_most_s = self.ran_back_most_s.max(self.last_s - stamp_s);
             }
         }
         self.doubted_s = None;
+        self.before_leap_s = before_leap_s;
         self.last_s = stamp_s;
         self.latest_s = self.latest_s.max(stamp_s);
         Placed::At(stamp_s - zero_s)
@@ -118,10 +129,13 @@ mod tests {
         assert_eq!((clock.strays, clock.ran_back), (1, 0));
         assert_eq!([clock.place(50.0), clock.place(51.0)], [Placed::Stray, Placed::At(11.0)]);
         assert_eq!((clock.strays, clock.ran_back), (1, 1));
+        // one that is wrong by less than an hour is read, and the next one takes it back
+        assert_eq!([clock.place(900.0), clock.place(51.25)], [Placed::At(860.0), Placed::At(11.25)]);
+        assert_eq!((clock.strays, clock.ran_back), (2, 1));
         // two wrong ones that do not agree
         assert_eq!([clock.place(9000.0), clock.place(20_000.0)], [Placed::Stray; 2]);
         assert_eq!(clock.place(51.5), Placed::At(11.5));
-        assert_eq!((clock.strays, clock.ran_back), (3, 1));
+        assert_eq!((clock.strays, clock.ran_back), (4, 1));
         // two wrong ones that agree, years ahead
         assert_eq!(
             [clock.place(9e9), clock.place(9e9 + 0.1), clock.place(52.0)],
